@@ -1,0 +1,275 @@
+//! What a node sees of the transport.
+
+use std::any::Any;
+use std::fmt;
+use std::time::Duration;
+
+use crate::inbox::{Counts, Inbox, Queue, Wake};
+
+/// Why the bus refuses.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum BusError {
+    /// The session could not be opened.
+    #[error("cannot open the bus at {at}: {reason}")]
+    Open {
+        /// Where.
+        at: String,
+        /// What the transport says.
+        reason: String,
+    },
+    /// A declaration or a send failed.
+    #[error("{topic}: {reason}")]
+    Topic {
+        /// The topic.
+        topic: String,
+        /// What the transport says.
+        reason: String,
+    },
+    /// Nobody answered in time.
+    #[error("{topic}: no answer within {limit_ms} ms")]
+    NoAnswer {
+        /// The topic.
+        topic: String,
+        /// How long was waited, ms.
+        limit_ms: u64,
+    },
+    /// The message does not fit its limit, or the answer does not decode.
+    #[error("{topic}: {source}")]
+    Message {
+        /// The topic.
+        topic: String,
+        /// What is wrong with it.
+        source: maulstick_types::DecodeError,
+    },
+    /// The rig's folder cannot be used.
+    #[error("{reason}")]
+    Folder {
+        /// What is wrong, and where.
+        reason: String,
+        /// What to do.
+        help: String,
+    },
+}
+
+/// How a topic travels. Every class may drop: nothing is ever held back by a slow receiver.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Class {
+    /// Samples, states and contact models.
+    RealTime,
+    /// Credits, commands and replies.
+    Control,
+    /// Rare values that late joiners need: the last one is kept for them, and a loss is repaired.
+    Cached,
+    /// Frames and the journal.
+    Data,
+    /// Status.
+    Background,
+}
+
+/// A payload that arrived.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Arrival {
+    /// Its topic.
+    pub key: String,
+    /// Header and body; empty for a token.
+    pub bytes: Vec<u8>,
+    /// When it arrived, rig clock, ns.
+    pub arrived_ns: u64,
+    /// For a token: whether it appeared (or went).
+    pub present: bool,
+}
+
+/// Sends to one topic.
+pub trait Publish: Send {
+    /// Sends; may drop, never waits for a receiver.
+    ///
+    /// # Errors
+    /// [`BusError::Topic`] where the transport is closed.
+    fn put(&self, bytes: Vec<u8>) -> Result<(), BusError>;
+}
+
+/// What arrives on a key expression, until dropped.
+pub struct Subscription {
+    /// The queue.
+    pub inbox: Inbox<Arrival>,
+    pub(crate) _keep: Box<dyn Any + Send>,
+}
+
+impl Subscription {
+    /// The oldest arrival that waits.
+    #[must_use]
+    pub fn try_recv(&self) -> Option<Arrival> {
+        self.inbox.try_recv()
+    }
+
+    /// What has gone through.
+    #[must_use]
+    pub fn counts(&self) -> Counts {
+        self.inbox.counts()
+    }
+}
+
+impl fmt::Debug for Subscription {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("Subscription").field("inbox", &self.inbox).finish_non_exhaustive()
+    }
+}
+
+/// A query that waits for its answer. Dropping it answers nothing.
+pub struct Request {
+    /// The topic that was asked.
+    pub key: String,
+    /// What was asked: header and body.
+    pub bytes: Vec<u8>,
+    pub(crate) answer: Box<dyn FnOnce(Vec<u8>) -> Result<(), BusError> + Send>,
+}
+
+impl Request {
+    /// Answers.
+    ///
+    /// # Errors
+    /// [`BusError::Topic`] where the asker is gone.
+    pub fn answer(self, bytes: Vec<u8>) -> Result<(), BusError> {
+        (self.answer)(bytes)
+    }
+}
+
+impl fmt::Debug for Request {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("Request").field("key", &self.key).finish_non_exhaustive()
+    }
+}
+
+/// Queries on a key expression, until dropped.
+pub struct Server {
+    pub(crate) inbox: Inbox<Request>,
+    pub(crate) _keep: Box<dyn Any + Send>,
+}
+
+impl Server {
+    /// The oldest query that waits.
+    #[must_use]
+    pub fn try_recv(&self) -> Option<Request> {
+        self.inbox.try_recv()
+    }
+}
+
+impl fmt::Debug for Server {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("Server").finish_non_exhaustive()
+    }
+}
+
+/// What became of a query.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Answer {
+    /// An answer.
+    Bytes(Vec<u8>),
+    /// No answer will come.
+    Ended,
+}
+
+/// An asked query: answers arrive in its inbox, then [`Answer::Ended`].
+#[derive(Debug)]
+pub struct Pending {
+    pub(crate) inbox: Inbox<Answer>,
+    pub(crate) topic: String,
+    pub(crate) limit: Duration,
+}
+
+impl Pending {
+    /// The next answer that has arrived.
+    #[must_use]
+    pub fn try_recv(&self) -> Option<Answer> {
+        self.inbox.try_recv()
+    }
+
+    /// Waits on `wake`, which must be the one that the query was asked with, for the first answer.
+    ///
+    /// # Errors
+    /// [`BusError::NoAnswer`] where none comes in time.
+    pub fn wait(&self, wake: &Wake) -> Result<Vec<u8>, BusError> {
+        let give_up = std::time::Instant::now() + self.limit + Duration::from_millis(200);
+        loop {
+            match self.inbox.try_recv() {
+                Some(Answer::Bytes(bytes)) => return Ok(bytes),
+                Some(Answer::Ended) => break,
+                None => {}
+            }
+            let left = give_up.saturating_duration_since(std::time::Instant::now());
+            if left.is_zero() {
+                break;
+            }
+            wake.wait(left);
+        }
+        Err(BusError::NoAnswer {
+            topic: self.topic.clone(),
+            limit_ms: u64::try_from(self.limit.as_millis()).unwrap_or(u64::MAX),
+        })
+    }
+}
+
+/// Kept for as long as a node lives; dropped, or with its process, it disappears for all.
+pub struct Token {
+    pub(crate) _keep: Box<dyn Any + Send>,
+}
+
+impl fmt::Debug for Token {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("Token").finish_non_exhaustive()
+    }
+}
+
+/// A transport with the rig's clock.
+pub trait Bus: Send + Sync {
+    /// Declares that this process sends on `key`.
+    ///
+    /// # Errors
+    /// [`BusError::Topic`].
+    fn publisher(&self, key: &str, class: Class) -> Result<Box<dyn Publish>, BusError>;
+
+    /// Receives what matches `key`; `Cached` topics give their last value at once.
+    ///
+    /// # Errors
+    /// [`BusError::Topic`].
+    fn subscribe(
+        &self,
+        key: &str,
+        class: Class,
+        queue: Queue,
+        wake: &Wake,
+    ) -> Result<Subscription, BusError>;
+
+    /// Answers queries on `key`; at most `capacity` wait.
+    ///
+    /// # Errors
+    /// [`BusError::Topic`].
+    fn serve(&self, key: &str, capacity: usize, wake: &Wake) -> Result<Server, BusError>;
+
+    /// Asks `key`; answers and the end arrive in the result and ring `wake`.
+    ///
+    /// # Errors
+    /// [`BusError::Topic`].
+    fn ask(
+        &self,
+        key: &str,
+        bytes: Vec<u8>,
+        limit: Duration,
+        wake: &Wake,
+    ) -> Result<Pending, BusError>;
+
+    /// Shows that this node lives.
+    ///
+    /// # Errors
+    /// [`BusError::Topic`].
+    fn token(&self, key: &str) -> Result<Token, BusError>;
+
+    /// Watches tokens come and go, those that already live first.
+    ///
+    /// # Errors
+    /// [`BusError::Topic`].
+    fn watch(&self, key: &str, wake: &Wake) -> Result<Subscription, BusError>;
+
+    /// The rig's clock, ns.
+    fn now_ns(&self) -> u64;
+}

@@ -1,0 +1,32 @@
+//! How the processes of a rig reach each other.
+//!
+//! [`Bus`] is what a node sees: publishers, bounded subscriptions, queries, liveliness tokens and
+//! the rig's clock. [`ZenohBus`] carries it between processes; [`MemoryNet`] carries it inside one
+//! process under a virtual clock, and loses, delays and reorders what a test tells it to. No other
+//! crate names zenoh.
+//!
+//! | module | holds |
+//! | --- | --- |
+//! | [`bus`] | the trait and its parts |
+//! | [`inbox`] | bounded queues and the wake-up that they share |
+//! | [`typed`] | messages instead of bytes |
+//! | [`credit`] | streams that lose nothing: credit, a ring, re-asking for gaps |
+//! | [`clock`] | the rig's clock |
+//! | [`rig`] | the rig's folder and what a foreign program needs to find it |
+
+pub mod bus;
+pub mod clock;
+pub mod credit;
+pub mod inbox;
+mod memory;
+pub mod rig;
+pub mod typed;
+mod zenoh_bus;
+
+pub use bus::{Arrival, Bus, BusError, Class, Pending, Publish, Request, Server, Subscription};
+pub use clock::RigClock;
+pub use credit::{CreditReceiver, CreditSender};
+pub use inbox::{Counts, Inbox, Queue, Wake};
+pub use memory::{Faults, MemoryBus, MemoryNet};
+pub use rig::{RigFolder, RigInfo};
+pub use zenoh_bus::{Dial, ZenohBus};

@@ -1,0 +1,373 @@
+//! The bus inside one process, under a virtual clock, with faults on demand.
+//!
+//! Nothing arrives until [`MemoryNet::advance`] lets time pass; what arrives when is decided by a
+//! seeded random number generator alone, so a test that fails fails again.
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError, Weak};
+use std::time::Duration;
+
+use rand_pcg::Pcg32;
+use rand_pcg::rand_core::Rng as _;
+
+use crate::bus::{
+    Answer, Arrival, Bus, BusError, Class, Pending, Publish, Request, Server, Subscription, Token,
+};
+use crate::inbox::{Inbox, Queue, Wake};
+
+/// What goes wrong on the way.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Faults {
+    /// Chance that a message that is not cached, a query or an answer is lost.
+    pub loss: f64,
+    /// Largest delay, ns; each message draws its own, so messages overtake each other.
+    pub delay_ns: u64,
+}
+
+/// Something on its way.
+enum Parcel {
+    Message { key: String, bytes: Vec<u8>, present: bool, token: bool },
+    Question { key: String, bytes: Vec<u8>, answers: Inbox<Answer> },
+    Answer { bytes: Vec<u8>, answers: Inbox<Answer> },
+    End { answers: Inbox<Answer> },
+}
+
+struct Listener {
+    expression: String,
+    inbox: Inbox<Arrival>,
+    tokens: bool,
+}
+
+struct Net {
+    now_ns: u64,
+    faults: Faults,
+    random: Pcg32,
+    next_id: u64,
+    parcels: BTreeMap<(u64, u64), Parcel>,
+    listeners: BTreeMap<u64, Listener>,
+    servers: BTreeMap<u64, (String, Inbox<Request>)>,
+    cached: BTreeMap<String, Vec<u8>>,
+    tokens: BTreeSet<String>,
+}
+
+/// The network: make a [`MemoryBus`] of it for each node.
+#[derive(Clone)]
+pub struct MemoryNet {
+    net: Arc<Mutex<Net>>,
+}
+
+/// One node's end of a [`MemoryNet`].
+#[derive(Clone)]
+pub struct MemoryBus {
+    net: Arc<Mutex<Net>>,
+}
+
+impl std::fmt::Debug for MemoryNet {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("MemoryNet").finish_non_exhaustive()
+    }
+}
+
+impl std::fmt::Debug for MemoryBus {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("MemoryBus").finish_non_exhaustive()
+    }
+}
+
+fn lock(net: &Mutex<Net>) -> MutexGuard<'_, Net> {
+    net.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+/// Whether a key matches an expression: `*` stands for one chunk, `**` for any number.
+fn matches(expression: &str, key: &str) -> bool {
+    fn chunks(expression: &[&str], key: &[&str]) -> bool {
+        match (expression, key) {
+            ([], []) => true,
+            (["**", rest @ ..], _) => {
+                chunks(rest, key) || (!key.is_empty() && chunks(expression, &key[1..]))
+            }
+            ([first, rest @ ..], [chunk, others @ ..]) => {
+                (*first == "*" || first == chunk) && chunks(rest, others)
+            }
+            _ => false,
+        }
+    }
+    chunks(
+        &expression.split('/').collect::<Vec<_>>(),
+        &key.split('/').collect::<Vec<_>>(),
+    )
+}
+
+impl Net {
+    fn chance(&mut self) -> f64 {
+        f64::from(self.random.next_u32()) / f64::from(u32::MAX)
+    }
+
+    fn send(&mut self, parcel: Parcel, may_be_lost: bool) {
+        if may_be_lost && self.chance() < self.faults.loss {
+            return;
+        }
+        let delay = self.chance() * self.faults.delay_ns as f64;
+        self.next_id += 1;
+        self.parcels.insert((self.now_ns + delay as u64, self.next_id), parcel);
+    }
+
+    fn deliver(&mut self, this: &Arc<Mutex<Net>>, parcel: Parcel) {
+        match parcel {
+            Parcel::Message { key, bytes, present, token } => {
+                for listener in self.listeners.values() {
+                    if listener.tokens == token && matches(&listener.expression, &key) {
+                        listener.inbox.push(Arrival {
+                            key: key.clone(),
+                            bytes: bytes.clone(),
+                            arrived_ns: self.now_ns,
+                            present,
+                        });
+                    }
+                }
+            }
+            Parcel::Question { key, bytes, answers } => {
+                for (expression, inbox) in self.servers.values() {
+                    if matches(expression, &key) {
+                        let net = Arc::downgrade(this);
+                        let answers = answers.clone();
+                        let answer = Box::new(move |bytes: Vec<u8>| {
+                            if let Some(net) = Weak::upgrade(&net) {
+                                lock(&net).send(Parcel::Answer { bytes, answers }, true);
+                            }
+                            Ok(())
+                        });
+                        inbox.push(Request { key: key.clone(), bytes: bytes.clone(), answer });
+                    }
+                }
+            }
+            Parcel::Answer { bytes, answers } => answers.push(Answer::Bytes(bytes)),
+            Parcel::End { answers } => answers.push(Answer::Ended),
+        }
+    }
+}
+
+impl MemoryNet {
+    /// A network at time `start_ns` whose faults follow `seed`.
+    #[must_use]
+    pub fn new(seed: u64, start_ns: u64, faults: Faults) -> Self {
+        Self {
+            net: Arc::new(Mutex::new(Net {
+                now_ns: start_ns,
+                faults,
+                random: Pcg32::new(seed, 0x6d61_756c),
+                next_id: 0,
+                parcels: BTreeMap::new(),
+                listeners: BTreeMap::new(),
+                servers: BTreeMap::new(),
+                cached: BTreeMap::new(),
+                tokens: BTreeSet::new(),
+            })),
+        }
+    }
+
+    /// A node's end.
+    #[must_use]
+    pub fn bus(&self) -> MemoryBus {
+        MemoryBus { net: Arc::clone(&self.net) }
+    }
+
+    /// Changes what goes wrong from now on.
+    pub fn set_faults(&self, faults: Faults) {
+        lock(&self.net).faults = faults;
+    }
+
+    /// Lets time pass and delivers what is due, in order of time.
+    pub fn advance(&self, ns: u64) {
+        let mut net = lock(&self.net);
+        let until = net.now_ns + ns;
+        while let Some((&(due, id), _)) = net.parcels.first_key_value() {
+            if due > until {
+                break;
+            }
+            net.now_ns = net.now_ns.max(due);
+            if let Some(parcel) = net.parcels.remove(&(due, id)) {
+                net.deliver(&self.net, parcel);
+            }
+        }
+        net.now_ns = until;
+    }
+}
+
+/// Takes something out of the network when dropped.
+struct Leave {
+    net: Weak<Mutex<Net>>,
+    id: u64,
+    token: Option<String>,
+}
+
+impl Drop for Leave {
+    fn drop(&mut self) {
+        let Some(net) = self.net.upgrade() else { return };
+        let mut net = lock(&net);
+        net.listeners.remove(&self.id);
+        net.servers.remove(&self.id);
+        if let Some(key) = self.token.take() {
+            net.tokens.remove(&key);
+            let gone = Parcel::Message { key, bytes: Vec::new(), present: false, token: true };
+            net.send(gone, false);
+        }
+    }
+}
+
+struct MemoryPublisher {
+    net: Arc<Mutex<Net>>,
+    key: String,
+    class: Class,
+}
+
+impl Publish for MemoryPublisher {
+    fn put(&self, bytes: Vec<u8>) -> Result<(), BusError> {
+        let mut net = lock(&self.net);
+        let cached = self.class == Class::Cached;
+        if cached {
+            net.cached.insert(self.key.clone(), bytes.clone());
+        }
+        let key = self.key.clone();
+        net.send(Parcel::Message { key, bytes, present: true, token: false }, !cached);
+        Ok(())
+    }
+}
+
+impl MemoryBus {
+    fn listen(&self, key: &str, queue: Queue, wake: &Wake, tokens: bool) -> (Subscription, u64) {
+        let mut net = lock(&self.net);
+        net.next_id += 1;
+        let id = net.next_id;
+        let inbox = Inbox::new(queue, wake);
+        let listener = Listener { expression: key.to_owned(), inbox: inbox.clone(), tokens };
+        net.listeners.insert(id, listener);
+        let keep = Leave { net: Arc::downgrade(&self.net), id, token: None };
+        (Subscription { inbox, _keep: Box::new(keep) }, id)
+    }
+}
+
+impl Bus for MemoryBus {
+    fn publisher(&self, key: &str, class: Class) -> Result<Box<dyn Publish>, BusError> {
+        Ok(Box::new(MemoryPublisher { net: Arc::clone(&self.net), key: key.to_owned(), class }))
+    }
+
+    fn subscribe(
+        &self,
+        key: &str,
+        class: Class,
+        queue: Queue,
+        wake: &Wake,
+    ) -> Result<Subscription, BusError> {
+        let (subscription, _) = self.listen(key, queue, wake, false);
+        if class == Class::Cached {
+            let net = lock(&self.net);
+            for (cached, bytes) in &net.cached {
+                if matches(key, cached) {
+                    subscription.inbox.push(Arrival {
+                        key: cached.clone(),
+                        bytes: bytes.clone(),
+                        arrived_ns: net.now_ns,
+                        present: true,
+                    });
+                }
+            }
+        }
+        Ok(subscription)
+    }
+
+    fn serve(&self, key: &str, capacity: usize, wake: &Wake) -> Result<Server, BusError> {
+        let mut net = lock(&self.net);
+        net.next_id += 1;
+        let id = net.next_id;
+        let inbox = Inbox::new(Queue::Bounded(capacity), wake);
+        net.servers.insert(id, (key.to_owned(), inbox.clone()));
+        let keep = Leave { net: Arc::downgrade(&self.net), id, token: None };
+        Ok(Server { inbox, _keep: Box::new(keep) })
+    }
+
+    fn ask(
+        &self,
+        key: &str,
+        bytes: Vec<u8>,
+        limit: Duration,
+        wake: &Wake,
+    ) -> Result<Pending, BusError> {
+        let inbox = Inbox::new(Queue::Ring(64), wake);
+        let mut net = lock(&self.net);
+        let answers = inbox.clone();
+        net.send(Parcel::Question { key: key.to_owned(), bytes, answers }, true);
+        net.next_id += 1;
+        let end = (net.now_ns + u64::try_from(limit.as_nanos()).unwrap_or(u64::MAX / 2), net.next_id);
+        net.parcels.insert(end, Parcel::End { answers: inbox.clone() });
+        Ok(Pending { inbox, topic: key.to_owned(), limit })
+    }
+
+    fn token(&self, key: &str) -> Result<Token, BusError> {
+        let mut net = lock(&self.net);
+        net.tokens.insert(key.to_owned());
+        let appeared =
+            Parcel::Message { key: key.to_owned(), bytes: Vec::new(), present: true, token: true };
+        net.send(appeared, false);
+        let keep = Leave { net: Arc::downgrade(&self.net), id: 0, token: Some(key.to_owned()) };
+        Ok(Token { _keep: Box::new(keep) })
+    }
+
+    fn watch(&self, key: &str, wake: &Wake) -> Result<Subscription, BusError> {
+        let (subscription, _) = self.listen(key, Queue::Ring(1024), wake, true);
+        let net = lock(&self.net);
+        for token in net.tokens.iter().filter(|token| matches(key, token)) {
+            subscription.inbox.push(Arrival {
+                key: token.clone(),
+                bytes: Vec::new(),
+                arrived_ns: net.now_ns,
+                present: true,
+            });
+        }
+        Ok(subscription)
+    }
+
+    fn now_ns(&self) -> u64 {
+        lock(&self.net).now_ns
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn expressions_match_as_zenoh_does() {
+        for (expression, key, expected) in [
+            ("a/b", "a/b", true),
+            ("a/*", "a/b", true),
+            ("a/*/c", "a/b/c", true),
+            ("a/*", "a/b/c", false),
+            ("a/**", "a", true),
+            ("a/**", "a/b/c", true),
+            ("**/c", "a/b/c", true),
+            ("a/b", "a/c", false),
+        ] {
+            assert_eq!(matches(expression, key), expected, "{expression} {key}");
+        }
+    }
+
+    #[test]
+    fn nothing_arrives_before_its_time_and_late_joiners_get_cached_values() {
+        let net = MemoryNet::new(1, 0, Faults { loss: 0.0, delay_ns: 1000 });
+        let wake = Wake::new();
+        let bus = net.bus();
+        bus.publisher("a/def", Class::Cached).expect("a publisher").put(vec![7]).expect("sent");
+        let late = net.bus().subscribe("a/*", Class::Cached, Queue::Ring(4), &wake).expect("late");
+        assert_eq!(late.try_recv().map(|arrival| arrival.bytes), Some(vec![7]));
+        let server = bus.serve("q", 4, &wake).expect("a server");
+        let pending = bus.ask("q", vec![1], Duration::from_millis(1), &wake).expect("asked");
+        assert!(server.try_recv().is_none());
+        net.advance(1000);
+        server.try_recv().expect("a question").answer(vec![2]).expect("answered");
+        net.advance(1000);
+        assert_eq!(pending.try_recv(), Some(Answer::Bytes(vec![2])));
+        net.advance(1_000_000);
+        assert_eq!(pending.try_recv(), Some(Answer::Ended));
+    }
+}

@@ -1,0 +1,232 @@
+//! The rig's folder: sockets, the lock that keeps a name to one rig, and what others need to join.
+
+use std::fs::{self, DirBuilder, File, OpenOptions};
+use std::io::Write as _;
+use std::os::unix::fs::{DirBuilderExt as _, MetadataExt as _, PermissionsExt as _};
+use std::path::{Path, PathBuf};
+
+use maulstick_types::topics::check_name;
+use nix::fcntl::{Flock, FlockArg};
+use serde::{Deserialize, Serialize};
+
+use crate::bus::BusError;
+use crate::clock::RigClock;
+
+/// Sockets have at most 107 bytes of path on Linux.
+const SOCKET_PATH_MAX: usize = 107;
+
+/// What a program needs to join a rig; `rig.json` in its folder.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct RigInfo {
+    /// Name of the rig.
+    pub rig: String,
+    /// zenoh locator to connect to, in mode `client` or `peer`.
+    pub endpoint: String,
+    /// What every topic begins with.
+    pub prefix: String,
+    /// Rig clock = `CLOCK_MONOTONIC` + this, ns.
+    pub clock_offset_ns: u64,
+    /// Process of the launcher.
+    pub pid: u32,
+}
+
+/// A rig's folder, mode 0700.
+#[derive(Debug)]
+pub struct RigFolder {
+    path: PathBuf,
+    rig: String,
+    _lock: Option<Flock<File>>,
+}
+
+fn folder_error(reason: String, help: &str) -> BusError {
+    BusError::Folder { reason, help: help.to_owned() }
+}
+
+/// Where the folders of all rigs lie: the user's run-time folder, else one in the temporary folder.
+fn base() -> PathBuf {
+    match std::env::var_os("XDG_RUNTIME_DIR") {
+        Some(dir) if Path::new(&dir).is_dir() => PathBuf::from(dir).join("maulstick"),
+        _ => std::env::temp_dir().join(format!("maulstick-{}", nix::unistd::getuid())),
+    }
+}
+
+fn make_private(path: &Path) -> Result<(), BusError> {
+    DirBuilder::new().recursive(true).mode(0o700).create(path).map_err(|error| {
+        folder_error(format!("cannot make {}: {error}", path.display()), "check its permissions")
+    })?;
+    let meta = fs::metadata(path).map_err(|error| {
+        folder_error(format!("cannot read {}: {error}", path.display()), "check its permissions")
+    })?;
+    if meta.uid() != nix::unistd::getuid().as_raw() || meta.permissions().mode() & 0o077 != 0 {
+        return Err(folder_error(
+            format!("{} is not a folder of yours alone", path.display()),
+            "remove it, or set XDG_RUNTIME_DIR to a folder of mode 0700",
+        ));
+    }
+    Ok(())
+}
+
+impl RigFolder {
+    /// Makes the folder of a new rig and takes its name.
+    ///
+    /// # Errors
+    /// [`BusError::Folder`] where the name is bad or taken, or the folder cannot be made.
+    pub fn create(rig: &str) -> Result<Self, BusError> {
+        Self::create_in(&base(), rig)
+    }
+
+    /// As [`RigFolder::create`], below `base`.
+    ///
+    /// # Errors
+    /// As [`RigFolder::create`].
+    pub fn create_in(base: &Path, rig: &str) -> Result<Self, BusError> {
+        check_name(rig)
+            .map_err(|what| folder_error(format!("rig name {what}"), "choose another name"))?;
+        make_private(base)?;
+        let path = base.join(rig);
+        make_private(&path)?;
+        if path.join("0123456789abcdef0123456789abcdef.sock").as_os_str().len() > SOCKET_PATH_MAX {
+            return Err(folder_error(
+                format!("{} is too long for a socket", path.display()),
+                "set XDG_RUNTIME_DIR to a shorter path",
+            ));
+        }
+        let lock_path = path.join("lock");
+        let file = OpenOptions::new()
+            .create(true)
+            .truncate(false)
+            .write(true)
+            .open(&lock_path)
+            .map_err(|error| {
+                folder_error(
+                    format!("cannot open {}: {error}", lock_path.display()),
+                    "check its permissions",
+                )
+            })?;
+        let lock = Flock::lock(file, FlockArg::LockExclusiveNonblock).map_err(|_| {
+            let owner = RigInfo::read(&path).map_or(String::new(), |i| format!(" (pid {})", i.pid));
+            folder_error(
+                format!("a rig called '{rig}' is already running{owner}"),
+                "stop it, or give this one another name with `--name` or in rig.toml",
+            )
+        })?;
+        for entry in fs::read_dir(&path).into_iter().flatten().flatten() {
+            let name = entry.file_name();
+            let stale = Path::new(&name).extension().is_some_and(|e| e == "sock" || e == "json");
+            if stale {
+                fs::remove_file(entry.path()).ok();
+            }
+        }
+        Ok(Self { path, rig: rig.to_owned(), _lock: Some(lock) })
+    }
+
+    /// The folder of a running rig.
+    ///
+    /// # Errors
+    /// [`BusError::Folder`] where no such rig runs.
+    pub fn join(rig: &str) -> Result<(Self, RigInfo), BusError> {
+        Self::join_at(&base().join(rig))
+    }
+
+    /// The running rig of the folder `path`.
+    ///
+    /// # Errors
+    /// [`BusError::Folder`] where no rig runs there.
+    pub fn join_at(path: &Path) -> Result<(Self, RigInfo), BusError> {
+        let running = File::open(path.join("lock"))
+            .is_ok_and(|file| Flock::lock(file, FlockArg::LockSharedNonblock).is_err());
+        let info = RigInfo::read(path).filter(|_| running).ok_or_else(|| {
+            let name = path.file_name().unwrap_or_default().to_string_lossy();
+            folder_error(
+                format!("no rig called '{name}' is running"),
+                "start one with `maulstick up`, or name another with `--name`",
+            )
+        })?;
+        Ok((Self { path: path.to_owned(), rig: info.rig.clone(), _lock: None }, info))
+    }
+
+    /// Path of the folder.
+    #[must_use]
+    pub fn path(&self) -> &Path {
+        &self.path
+    }
+
+    /// Name of the rig.
+    #[must_use]
+    pub fn rig(&self) -> &str {
+        &self.rig
+    }
+
+    /// The zenoh locator of a node's socket.
+    #[must_use]
+    pub fn locator(&self, node: &str) -> String {
+        format!("unixsock-stream/{}", self.path.join(format!("{node}.sock")).display())
+    }
+
+    /// Writes `rig.json`, by which others find the rig.
+    ///
+    /// # Errors
+    /// [`BusError::Folder`] where the folder cannot be written.
+    pub fn announce(&self, hub: &str, clock: RigClock) -> Result<RigInfo, BusError> {
+        let info = RigInfo {
+            rig: self.rig.clone(),
+            endpoint: self.locator(hub),
+            prefix: format!("maulstick/{}/", self.rig),
+            clock_offset_ns: clock.offset_ns(),
+            pid: std::process::id(),
+        };
+        let beside = self.path.join("rig.json.tmp");
+        let write = || -> std::io::Result<()> {
+            let mut file = File::create(&beside)?;
+            file.write_all(serde_json::to_string_pretty(&info)?.as_bytes())?;
+            fs::rename(&beside, self.path.join("rig.json"))
+        };
+        write().map_err(|error| {
+            folder_error(format!("cannot write {}: {error}", beside.display()), "free some space")
+        })?;
+        Ok(info)
+    }
+
+    /// Takes back `rig.json`; the launcher calls it when the rig stops.
+    pub fn withdraw(&self) {
+        fs::remove_file(self.path.join("rig.json")).ok();
+    }
+}
+
+impl RigInfo {
+    fn read(folder: &Path) -> Option<Self> {
+        serde_json::from_slice(&fs::read(folder.join("rig.json")).ok()?).ok()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_name_belongs_to_one_rig_at_a_time() {
+        let base = tempfile::tempdir().expect("a folder");
+        let base = base.path().join("rigs");
+        let first = RigFolder::create_in(&base, "studio").expect("first");
+        first.announce("hub", RigClock::start()).expect("announced");
+        let error = RigFolder::create_in(&base, "studio").expect_err("second").to_string();
+        assert!(error.contains("already running") && error.contains("pid"), "{error}");
+        assert!(RigFolder::create_in(&base, "other").is_ok());
+        drop(first);
+        assert!(RigFolder::create_in(&base, "studio").is_ok());
+    }
+
+    #[test]
+    fn others_may_not_read_the_folder() {
+        let base = tempfile::tempdir().expect("a folder");
+        fs::set_permissions(base.path(), fs::Permissions::from_mode(0o755)).expect("chmod");
+        let error = RigFolder::create_in(base.path(), "studio").expect_err("refused").to_string();
+        assert!(error.contains("yours alone"), "{error}");
+    }
+
+    #[test]
+    fn joining_what_does_not_run_says_so() {
+        let error = RigFolder::join_at(Path::new("/nonexistent/studio")).expect_err("none");
+        assert_eq!(error.to_string(), "no rig called 'studio' is running");
+    }
+}

@@ -1,0 +1,180 @@
+//! Messages instead of bytes.
+
+use std::collections::BTreeSet;
+use std::marker::PhantomData;
+use std::time::Duration;
+
+use maulstick_types::{DecodeError, Flags, Header, Message, Origin, decode, encode};
+
+use crate::bus::{Bus, BusError, Class, Publish, Subscription};
+use crate::inbox::{Queue, Wake};
+
+/// Draws an epoch: a number that differs at each start of a process.
+#[must_use]
+pub fn random_epoch() -> u32 {
+    random_u64() as u32 | 1
+}
+
+/// Draws 64 random bits for a client's name.
+#[must_use]
+pub fn random_u64() -> u64 {
+    use std::hash::{BuildHasher as _, RandomState};
+    RandomState::new().hash_one(std::process::id())
+}
+
+/// Sends one kind of message on one topic, numbered from 0.
+pub struct Sender<M> {
+    publish: Box<dyn Publish>,
+    topic: String,
+    origin: Origin,
+    next: u64,
+    message: PhantomData<fn(M)>,
+}
+
+impl<M: Message> Sender<M> {
+    /// Declares the topic.
+    ///
+    /// # Errors
+    /// [`BusError::Topic`].
+    pub fn new(bus: &dyn Bus, topic: &str, class: Class, origin: Origin) -> Result<Self, BusError> {
+        let publish = bus.publisher(topic, class)?;
+        Ok(Self { publish, topic: topic.to_owned(), origin, next: 0, message: PhantomData })
+    }
+
+    /// Sends a message; `event_ns` is when what it tells was so.
+    ///
+    /// # Errors
+    /// [`BusError::Message`] where it exceeds its limit, [`BusError::Topic`].
+    pub fn send(&mut self, now_ns: u64, event_ns: u64, message: &M) -> Result<(), BusError> {
+        let flags = if self.next == 0 { Flags::FIRST } else { Flags::NONE };
+        let bytes = encode(&self.origin, flags, self.next, event_ns, now_ns, message)
+            .map_err(|source| BusError::Message { topic: self.topic.clone(), source })?;
+        self.next += 1;
+        self.publish.put(bytes)
+    }
+}
+
+impl<M> std::fmt::Debug for Sender<M> {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("Sender").field("topic", &self.topic).finish_non_exhaustive()
+    }
+}
+
+/// Decodes what arrives; says once for each sender what it does not understand, counts and drops.
+#[derive(Debug, Default)]
+pub struct Reader {
+    refused: u64,
+    told: BTreeSet<String>,
+}
+
+impl Reader {
+    /// The message, or nothing where it was refused.
+    pub fn read<M: Message>(&mut self, topic: &str, bytes: &[u8]) -> Option<(Header, M)> {
+        match decode::<M>(bytes) {
+            Ok(message) => Some(message),
+            Err(error) => {
+                self.refuse(topic, &error);
+                None
+            }
+        }
+    }
+
+    /// Counts a refusal and tells it, once for each topic and reason.
+    pub fn refuse(&mut self, topic: &str, error: &DecodeError) {
+        self.refused += 1;
+        let kind = std::mem::discriminant(error);
+        if self.told.insert(format!("{topic} {kind:?}")) {
+            tracing::warn!("{topic}: {error}");
+        }
+    }
+
+    /// Messages refused so far.
+    #[must_use]
+    pub fn refused(&self) -> u64 {
+        self.refused
+    }
+}
+
+/// Receives one kind of message.
+pub struct Receiver<M> {
+    subscription: Subscription,
+    reader: Reader,
+    message: PhantomData<fn() -> M>,
+}
+
+impl<M: Message> Receiver<M> {
+    /// Subscribes.
+    ///
+    /// # Errors
+    /// [`BusError::Topic`].
+    pub fn new(
+        bus: &dyn Bus,
+        topic: &str,
+        class: Class,
+        queue: Queue,
+        wake: &Wake,
+    ) -> Result<Self, BusError> {
+        let subscription = bus.subscribe(topic, class, queue, wake)?;
+        Ok(Self { subscription, reader: Reader::default(), message: PhantomData })
+    }
+
+    /// The next message that waits and is understood.
+    pub fn try_recv(&mut self) -> Option<Received<M>> {
+        while let Some(arrival) = self.subscription.try_recv() {
+            if let Some((header, message)) = self.reader.read(&arrival.key, &arrival.bytes) {
+                let (key, arrived_ns) = (arrival.key, arrival.arrived_ns);
+                return Some(Received { key, arrived_ns, header, message });
+            }
+        }
+        None
+    }
+
+    /// The newest message that waits.
+    pub fn newest(&mut self) -> Option<Received<M>> {
+        std::iter::from_fn(|| self.try_recv()).last()
+    }
+
+    /// Messages that were refused.
+    #[must_use]
+    pub fn refused(&self) -> u64 {
+        self.reader.refused()
+    }
+}
+
+impl<M> std::fmt::Debug for Receiver<M> {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("Receiver").field("subscription", &self.subscription).finish_non_exhaustive()
+    }
+}
+
+/// A message that arrived.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Received<M> {
+    /// Its topic.
+    pub key: String,
+    /// When it arrived, rig clock, ns.
+    pub arrived_ns: u64,
+    /// Its header.
+    pub header: Header,
+    /// Itself.
+    pub message: M,
+}
+
+/// Asks a query and waits for its answer.
+///
+/// # Errors
+/// [`BusError::NoAnswer`], or [`BusError::Message`] where the answer does not decode.
+pub fn ask<Q: Message, A: Message>(
+    bus: &dyn Bus,
+    topic: &str,
+    origin: Origin,
+    question: &Q,
+    limit: Duration,
+) -> Result<A, BusError> {
+    let wake = Wake::new();
+    let now = bus.now_ns();
+    let refused = |source| BusError::Message { topic: topic.to_owned(), source };
+    let bytes = encode(&origin, Flags::NONE, 0, now, now, question).map_err(refused)?;
+    let answer = bus.ask(topic, bytes, limit, &wake)?.wait(&wake)?;
+    Ok(decode::<A>(&answer).map_err(refused)?.1)
+}

@@ -1,0 +1,272 @@
+//! The bus between processes.
+
+use std::time::Duration;
+
+use zenoh::Wait as _;
+use zenoh::handlers::CallbackDrop;
+use zenoh::qos::{CongestionControl, Priority};
+use zenoh::query::ConsolidationMode;
+use zenoh::sample::{Sample, SampleKind};
+use zenoh_ext::{
+    AdvancedPublisherBuilderExt as _, AdvancedSubscriberBuilderExt as _, CacheConfig,
+    HistoryConfig, MissDetectionConfig, RecoveryConfig,
+};
+
+use crate::bus::{
+    Answer, Arrival, Bus, BusError, Class, Pending, Publish, Request, Server, Subscription, Token,
+};
+use crate::clock::RigClock;
+use crate::inbox::{Inbox, Queue, Wake};
+
+/// How a process joins the rig's sockets.
+#[derive(Clone, Debug)]
+pub struct Dial {
+    /// Name shown to others.
+    pub name: String,
+    /// Own locator; none for a program that only connects.
+    pub listen: Option<String>,
+    /// Locators to connect to.
+    pub connect: Vec<String>,
+}
+
+/// The largest message that a receiver accepts, bytes: a full-screen frame and some.
+const MAX_MESSAGE_BYTES: usize = 96 << 20;
+/// A peer that says nothing for this long is gone, ms.
+const LEASE_MS: u32 = 3000;
+
+/// A zenoh session with the rig's clock.
+#[derive(Debug)]
+pub struct ZenohBus {
+    session: zenoh::Session,
+    clock: RigClock,
+}
+
+fn topic_error(topic: &str, error: impl std::fmt::Display) -> BusError {
+    BusError::Topic { topic: topic.to_owned(), reason: error.to_string() }
+}
+
+fn priority(class: Class) -> Priority {
+    match class {
+        Class::RealTime => Priority::RealTime,
+        Class::Control => Priority::InteractiveHigh,
+        Class::Cached => Priority::InteractiveLow,
+        Class::Data => Priority::Data,
+        Class::Background => Priority::Background,
+    }
+}
+
+impl ZenohBus {
+    /// Opens a session.
+    ///
+    /// # Errors
+    /// [`BusError::Open`] where a locator cannot be used, or zenoh listens elsewhere than asked.
+    pub fn open(dial: &Dial, clock: RigClock) -> Result<Self, BusError> {
+        let at = dial.listen.iter().chain(&dial.connect).cloned().collect::<Vec<_>>().join(", ");
+        let open_error = |error: String| BusError::Open { at: at.clone(), reason: error };
+        let config = config(dial).map_err(|error| open_error(error.to_string()))?;
+        let session = zenoh::open(config).wait().map_err(|error| open_error(error.to_string()))?;
+        if let Some(listen) = &dial.listen {
+            let locators = session.info().locators().wait();
+            if !locators.iter().any(|locator| locator.to_string() == *listen) {
+                return Err(open_error(format!("zenoh listens at {locators:?} instead")));
+            }
+        }
+        Ok(Self { session, clock })
+    }
+
+    /// Says goodbye to all peers.
+    pub fn close(&self) {
+        if let Err(error) = self.session.close().wait() {
+            tracing::debug!("closing the bus: {error}");
+        }
+    }
+}
+
+fn config(dial: &Dial) -> zenoh::Result<zenoh::Config> {
+    let json = |value: &serde_json::Value| value.to_string();
+    let mut config = zenoh::Config::default();
+    let settings = [
+        ("mode", serde_json::json!("peer")),
+        ("metadata", serde_json::json!({ "name": dial.name, "pid": std::process::id() })),
+        ("listen/endpoints", serde_json::json!(dial.listen.iter().collect::<Vec<_>>())),
+        ("connect/endpoints", serde_json::json!(dial.connect)),
+        ("connect/timeout_ms", serde_json::json!(2000)),
+        ("connect/exit_on_failure", serde_json::json!(!dial.connect.is_empty())),
+        (
+            "connect/retry",
+            serde_json::json!({
+                "period_init_ms": 50, "period_max_ms": 500, "period_increase_factor": 2
+            }),
+        ),
+        ("scouting/multicast/enabled", serde_json::json!(false)),
+        ("scouting/gossip/enabled", serde_json::json!(true)),
+        (
+            "scouting/gossip/autoconnect_strategy",
+            serde_json::json!({ "peer": { "to_router": "always", "to_peer": "greater-zid" } }),
+        ),
+        ("timestamping/enabled", serde_json::json!(true)),
+        ("transport/link/tx/lease", serde_json::json!(LEASE_MS)),
+        ("transport/link/tx/queue/size/real_time", serde_json::json!(16)),
+        ("transport/link/rx/max_message_size", serde_json::json!(MAX_MESSAGE_BYTES)),
+        ("transport/unicast/lowlatency", serde_json::json!(false)),
+        ("transport/shared_memory/enabled", serde_json::json!(false)),
+    ];
+    for (key, value) in settings {
+        config.insert_json5(key, &json(&value)).map_err(|error| format!("{key}: {error}"))?;
+    }
+    Ok(config)
+}
+
+struct ZenohPublisher {
+    topic: String,
+    send: Box<dyn Fn(Vec<u8>) -> zenoh::Result<()> + Send>,
+}
+
+impl Publish for ZenohPublisher {
+    fn put(&self, bytes: Vec<u8>) -> Result<(), BusError> {
+        (self.send)(bytes).map_err(|error| topic_error(&self.topic, error))
+    }
+}
+
+/// Turns a sample into an arrival; the only work that a callback does.
+fn arrive(inbox: &Inbox<Arrival>, clock: RigClock, sample: &Sample) {
+    inbox.push(Arrival {
+        key: sample.key_expr().as_str().to_owned(),
+        bytes: sample.payload().to_bytes().into_owned(),
+        arrived_ns: clock.now_ns(),
+        present: sample.kind() == SampleKind::Put,
+    });
+}
+
+impl Bus for ZenohBus {
+    fn publisher(&self, key: &str, class: Class) -> Result<Box<dyn Publish>, BusError> {
+        let builder = self
+            .session
+            .declare_publisher(key.to_owned())
+            .congestion_control(CongestionControl::Drop)
+            .priority(priority(class));
+        let send: Box<dyn Fn(Vec<u8>) -> zenoh::Result<()> + Send> = if class == Class::Cached {
+            let publisher = builder
+                .cache(CacheConfig::default().max_samples(1))
+                .publisher_detection()
+                .sample_miss_detection(
+                    MissDetectionConfig::default().heartbeat(Duration::from_millis(500)),
+                )
+                .wait()
+                .map_err(|error| topic_error(key, error))?;
+            Box::new(move |bytes| publisher.put(bytes).wait())
+        } else {
+            let publisher = builder.wait().map_err(|error| topic_error(key, error))?;
+            Box::new(move |bytes| publisher.put(bytes).wait())
+        };
+        Ok(Box::new(ZenohPublisher { topic: key.to_owned(), send }))
+    }
+
+    fn subscribe(
+        &self,
+        key: &str,
+        class: Class,
+        queue: Queue,
+        wake: &Wake,
+    ) -> Result<Subscription, BusError> {
+        let inbox = Inbox::new(queue, wake);
+        let (to, clock) = (inbox.clone(), self.clock);
+        let builder = self
+            .session
+            .declare_subscriber(key.to_owned())
+            .callback(move |sample| arrive(&to, clock, &sample));
+        let keep: Box<dyn std::any::Any + Send> = if class == Class::Cached {
+            let subscriber = builder
+                .history(HistoryConfig::default().max_samples(1).detect_late_publishers())
+                .recovery(RecoveryConfig::default().heartbeat())
+                .wait()
+                .map_err(|error| topic_error(key, error))?;
+            Box::new(subscriber)
+        } else {
+            Box::new(builder.wait().map_err(|error| topic_error(key, error))?)
+        };
+        Ok(Subscription { inbox, _keep: keep })
+    }
+
+    fn serve(&self, key: &str, capacity: usize, wake: &Wake) -> Result<Server, BusError> {
+        let inbox = Inbox::new(Queue::Bounded(capacity), wake);
+        let to = inbox.clone();
+        let queryable = self
+            .session
+            .declare_queryable(key.to_owned())
+            .callback(move |query| {
+                let bytes =
+                    query.payload().map(|p| p.to_bytes().into_owned()).unwrap_or_default();
+                let key = query.key_expr().as_str().to_owned();
+                let topic = key.clone();
+                let answer = Box::new(move |bytes: Vec<u8>| {
+                    query
+                        .reply(query.key_expr().clone(), bytes)
+                        .wait()
+                        .map_err(|error| topic_error(&topic, error))
+                });
+                to.push(Request { key, bytes, answer });
+            })
+            .wait()
+            .map_err(|error| topic_error(key, error))?;
+        Ok(Server { inbox, _keep: Box::new(queryable) })
+    }
+
+    fn ask(
+        &self,
+        key: &str,
+        bytes: Vec<u8>,
+        limit: Duration,
+        wake: &Wake,
+    ) -> Result<Pending, BusError> {
+        let inbox = Inbox::new(Queue::Ring(64), wake);
+        let (answers, end) = (inbox.clone(), inbox.clone());
+        let callback = CallbackDrop {
+            callback: move |reply: zenoh::query::Reply| {
+                if let Ok(sample) = reply.result() {
+                    answers.push(Answer::Bytes(sample.payload().to_bytes().into_owned()));
+                }
+            },
+            drop: move || end.push(Answer::Ended),
+        };
+        self.session
+            .get(key.to_owned())
+            .payload(bytes)
+            .timeout(limit)
+            .congestion_control(CongestionControl::Drop)
+            .priority(Priority::InteractiveHigh)
+            .consolidation(ConsolidationMode::None)
+            .with(callback)
+            .wait()
+            .map_err(|error| topic_error(key, error))?;
+        Ok(Pending { inbox, topic: key.to_owned(), limit })
+    }
+
+    fn token(&self, key: &str) -> Result<Token, BusError> {
+        let token = self
+            .session
+            .liveliness()
+            .declare_token(key.to_owned())
+            .wait()
+            .map_err(|error| topic_error(key, error))?;
+        Ok(Token { _keep: Box::new(token) })
+    }
+
+    fn watch(&self, key: &str, wake: &Wake) -> Result<Subscription, BusError> {
+        let inbox = Inbox::new(Queue::Ring(1024), wake);
+        let (to, clock) = (inbox.clone(), self.clock);
+        let subscriber = self
+            .session
+            .liveliness()
+            .declare_subscriber(key.to_owned())
+            .history(true)
+            .callback(move |sample| arrive(&to, clock, &sample))
+            .wait()
+            .map_err(|error| topic_error(key, error))?;
+        Ok(Subscription { inbox, _keep: Box::new(subscriber) })
+    }
+
+    fn now_ns(&self) -> u64 {
+        self.clock.now_ns()
+    }
+}

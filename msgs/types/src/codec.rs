@@ -1,0 +1,103 @@
+//! The only file that names the codec: bincode, little endian, fixed width, always with a limit.
+
+use serde::Serialize;
+use serde::de::DeserializeOwned;
+
+use crate::header::{DecodeError, Flags, HEADER_BYTES, Header, Origin};
+use crate::schema::{Schema, Wire};
+
+/// A message of the rig: a schema with a version and a size limit.
+///
+/// Implemented by the macro of `define.rs` alone.
+pub trait Message: Wire + Send + Sync + 'static {
+    /// Name in the schema and in logs.
+    const NAME: &'static str;
+    /// Version of the field table; fields are only appended, and each version has golden bytes.
+    const VERSION: u16;
+    /// The largest body that is encoded or decoded, bytes.
+    const MAX_BYTES: usize;
+
+    /// The field table with its hash.
+    fn schema() -> &'static Schema;
+
+    /// Reads a body that has passed the header's checks.
+    ///
+    /// # Errors
+    /// [`DecodeError::Body`] where the bytes do not hold the fields, [`DecodeError::Trailing`]
+    /// where they hold more.
+    fn decode_body(body: &[u8]) -> Result<Self, DecodeError>;
+}
+
+/// Encodes header and body; `sent_ns` is the rig clock's time of sending.
+///
+/// # Errors
+/// [`DecodeError::TooLong`] where the body exceeds the message's limit.
+pub fn encode<M: Message>(
+    origin: &Origin,
+    flags: Flags,
+    seq: u64,
+    event_ns: u64,
+    sent_ns: u64,
+    message: &M,
+) -> Result<Vec<u8>, DecodeError> {
+    let mut bytes = vec![0; HEADER_BYTES];
+    let config = bincode::config::standard().with_fixed_int_encoding();
+    bincode::serde::encode_into_std_write(message, &mut bytes, config)
+        .map_err(|error| DecodeError::Body { name: M::NAME, reason: error.to_string() })?;
+    let length = bytes.len() - HEADER_BYTES;
+    if length > M::MAX_BYTES {
+        return Err(DecodeError::TooLong { name: M::NAME, length, limit: M::MAX_BYTES });
+    }
+    let header = Header {
+        version: M::VERSION,
+        schema: M::schema().hash,
+        source: origin.source,
+        epoch: origin.epoch,
+        flags,
+        length: u32::try_from(length).unwrap_or(u32::MAX),
+        seq,
+        event_ns,
+        sent_ns,
+    };
+    bytes[..HEADER_BYTES].copy_from_slice(&header.to_bytes());
+    Ok(bytes)
+}
+
+/// Decodes header and body.
+///
+/// # Errors
+/// Any [`DecodeError`]; hostile bytes give one too, never a panic and never an allocation beyond
+/// the message's limit.
+pub fn decode<M: Message>(bytes: &[u8]) -> Result<(Header, M), DecodeError> {
+    let header = Header::from_bytes(bytes)?;
+    let body = &bytes[HEADER_BYTES..];
+    if header.schema != M::schema().hash {
+        return Err(DecodeError::UnknownSchema {
+            name: M::NAME,
+            wanted: M::schema().hash,
+            got: header.schema,
+            version: header.version,
+        });
+    }
+    if body.len() > M::MAX_BYTES {
+        return Err(DecodeError::TooLong { name: M::NAME, length: body.len(), limit: M::MAX_BYTES });
+    }
+    Ok((header, M::decode_body(body)?))
+}
+
+/// Decodes a body with an upper bound on what the codec may claim.
+pub(crate) fn decode_limited<M, const LIMIT: usize>(
+    name: &'static str,
+    body: &[u8],
+) -> Result<M, DecodeError>
+where
+    M: DeserializeOwned + Serialize,
+{
+    let config = bincode::config::standard().with_fixed_int_encoding().with_limit::<LIMIT>();
+    let (message, used) = bincode::serde::decode_from_slice(body, config)
+        .map_err(|error| DecodeError::Body { name, reason: error.to_string() })?;
+    if used != body.len() {
+        return Err(DecodeError::Trailing { name, left: body.len() - used });
+    }
+    Ok(message)
+}

@@ -1,0 +1,117 @@
+//! What crosses to a force-feedback device: models that it evaluates by itself, never forces.
+
+use crate::define::{message, wire_enum, wire_struct};
+use crate::pose::Pose;
+
+wire_struct! {
+    /// Canvas grain: a small band-limited tangential texture.
+    pub struct Grain {
+        /// Amplitude as a share of the normal force.
+        pub amplitude: f64,
+        /// Dominant wavelength, m.
+        pub wavelength_m: f64,
+        /// Seed of its phases.
+        pub seed: u64,
+    }
+}
+
+wire_struct! {
+    /// One of the five control tuples of the Hermite curve (Baxter 2004, § 8.7.2).
+    pub struct HermiteKnot {
+        /// Depth as a fraction of the head's length along the plane's normal.
+        pub depth: f64,
+        /// Force, N.
+        pub force_n: f64,
+        /// Slope, N per such fraction.
+        pub slope_n: f64,
+    }
+}
+
+wire_enum! {
+    /// Normal force by depth.
+    pub enum ForceLaw {
+        /// No force; for comparison and for a lifted brush.
+        None,
+        /// Two straight pieces (Baxter 2004, eq. 8.1).
+        Linear {
+            /// Force when the handle meets the plane, N.
+            k1_n: f64,
+            /// Further force a head's length below, N.
+            k2_n: f64,
+        },
+        /// Piecewise cubic: compression, buckling, bending, hard stop (Baxter 2004, fig. 8.2).
+        Hermite {
+            /// Knots in order of depth.
+            knots: Vec<HermiteKnot>,
+        },
+        /// A force linearised about a pose.
+        Local {
+            /// Where it holds.
+            pose: Pose,
+            /// Force there, N.
+            force_n: [f64; 3],
+            /// Derivative of the force by position, N/m, row after row.
+            stiffness_n_m: [[f64; 3]; 3],
+        },
+        /// A hard wall, for comparison.
+        Rigid {
+            /// Stiffness, N/m.
+            stiffness_n_m: f64,
+        },
+    }
+}
+
+message! {
+    /// What the hand feels until the next model: evaluated at the device's own rate. All in the
+    /// desk frame.
+    pub struct ContactModel [version 1, at most 4096 bytes] {
+        /// The device that it is for: the source of its samples.
+        pub device: u32,
+        /// The device's epoch; another one is dropped.
+        pub device_epoch: u32,
+        /// The device's brush as in `rig.toml`; another one is dropped.
+        pub brush: String,
+        /// A point of the plane, m.
+        pub plane_point_m: [f64; 3],
+        /// Its unit normal, toward the painter.
+        pub plane_normal: [f64; 3],
+        /// Coefficient of friction at rest.
+        pub friction_static: f64,
+        /// Coefficient of friction in motion.
+        pub friction_kinetic: f64,
+        /// Drag of the paint, N·s/m.
+        pub viscous_n_s_m: f64,
+        /// Canvas grain.
+        pub grain: Grain,
+        /// Normal force by depth.
+        pub law: ForceLaw,
+        /// Length of the brush head, m.
+        pub head_length_m: f64,
+        /// After this time since its arrival the model decays, ns.
+        pub time_to_live_ns: u64,
+        /// A change of model is spread over this time, ns.
+        pub recovery_ns: u64,
+    }
+}
+
+message! {
+    /// A force from the paint's fields with all that makes it a model.
+    pub struct FluidForce [version 1, at most 2048 bytes] {
+        /// The device that it is for.
+        pub device: u32,
+        /// The device's epoch.
+        pub device_epoch: u32,
+        /// Pose for which it holds, desk frame.
+        pub pose: Pose,
+        /// Linear, then angular velocity for which it holds, m/s and rad/s.
+        pub velocity: [f64; 6],
+        /// Force, then torque, N and N·m.
+        pub wrench: [f64; 6],
+        /// Derivative of the wrench by velocity, row after row.
+        pub jacobian: [[f64; 6]; 6],
+        /// As in [`ContactModel`].
+        pub time_to_live_ns: u64,
+        /// As in [`ContactModel`].
+        pub recovery_ns: u64,
+    }
+}

@@ -1,0 +1,40 @@
+//! What the processes of a rig say to each other.
+//!
+//! Every message is one definition (`define.rs`) from which its struct, its codec, its field
+//! table, its schema hash and its size limit follow. On the wire a message is a 48-byte
+//! [`Header`] and a body in little-endian, fixed-width bincode. This crate knows no transport.
+//!
+//! | module | holds |
+//! | --- | --- |
+//! | [`header`] | the header, flags, and the errors of reading a message |
+//! | [`schema`] | field tables and their hash |
+//! | [`topics`] | the key expressions of a rig |
+//! | [`stylus`], [`haptics`], [`brush`], [`scene`], [`paint`], [`command`] | the messages |
+
+mod codec;
+mod define;
+
+pub mod brush;
+pub mod catalogue;
+pub mod command;
+pub mod haptics;
+pub mod header;
+pub mod mixture;
+pub mod paint;
+pub mod pose;
+pub mod scene;
+pub mod schema;
+pub mod stylus;
+pub mod topics;
+
+pub use catalogue::{CATALOGUE, CatalogueEntry};
+pub use codec::{Message, decode, encode};
+pub use header::{DecodeError, Flags, HEADER_BYTES, Header, Origin};
+pub use mixture::{Mixture, MixtureError};
+pub use pose::Pose;
+
+/// The FNV-1a hash of `text`, by which sources, schemas and files are named.
+#[must_use]
+pub fn name_hash(text: &str) -> u32 {
+    schema::fnv1a(text.as_bytes())
+}

@@ -1,0 +1,168 @@
+//! What the paint node says: credit, journal, frames, status.
+
+use serde_bytes::ByteBuf;
+
+use crate::command::Command;
+use crate::define::{message, wire_enum, wire_struct};
+
+/// Side of a tile in cells.
+pub const TILE: usize = 64;
+
+wire_struct! {
+    /// How far the paint node has consumed a brush's states.
+    pub struct BrushCredit {
+        /// The brush: the source of its states.
+        pub brush: u32,
+        /// Its epoch.
+        pub epoch: u32,
+        /// All states below this number are consumed.
+        pub next: u64,
+        /// Mean share of wet cells under the brush, 0 to 1.
+        pub wetness: f32,
+        /// Mean thickness of the film under the brush, m.
+        pub film_m: f32,
+        /// Kinematic viscosity of that film, m²/s.
+        pub viscosity_m2_s: f32,
+    }
+}
+
+message! {
+    /// Credit to the brushes.
+    pub struct PaintConsumed [version 1, at most 4096 bytes] {
+        /// One a brush.
+        pub brushes: Vec<BrushCredit>,
+    }
+}
+
+wire_enum! {
+    /// What the sequencer accepted.
+    pub enum Entry {
+        /// Brush states, from the first to the last of a range.
+        States {
+            /// Name of the brush.
+            brush: String,
+            /// Its epoch.
+            epoch: u32,
+            /// First state.
+            from: u64,
+            /// Last state.
+            to: u64,
+        },
+        /// A command.
+        Command {
+            /// Who sent it.
+            client: u64,
+            /// Its number.
+            number: u64,
+            /// What it does.
+            command: Command,
+        },
+        /// A sixtieth of a second of flowing or drying.
+        Tick {
+            /// Number of ticks since the painting began.
+            count: u64,
+        },
+        /// A decision of the paint node itself.
+        Decision {
+            /// In words: the backend, a degradation.
+            what: String,
+        },
+    }
+}
+
+message! {
+    /// An entry of the journal, in order.
+    pub struct JournalEntry [version 1, at most 1048576 bytes] {
+        /// From 0, without gaps.
+        pub index: u64,
+        /// What was accepted.
+        pub entry: Entry,
+    }
+}
+
+message! {
+    /// Asks for the tiles of a surface that changed.
+    pub struct FrameRequest [version 1, at most 256 bytes] {
+        /// The surface.
+        pub surface: u32,
+        /// Tiles of a version above this; 0 asks for all.
+        pub since: u64,
+        /// The epoch that `since` belongs to; 0 if none.
+        pub epoch: u32,
+        /// Visible tiles of that level: least x, y, then one past the greatest.
+        pub tiles: [u32; 4],
+        /// 0 is full resolution, each further level halves it.
+        pub level: u32,
+        /// How long to wait where nothing changed, ms, at most 400.
+        pub wait_ms: u32,
+    }
+}
+
+wire_struct! {
+    /// A changed tile, unlit, 64×64 cells from the lowest row.
+    pub struct FrameTile {
+        /// Column of the tile.
+        pub x: u32,
+        /// Row of the tile, 0 at the bottom.
+        pub y: u32,
+        /// Five planes of half floats: linear red, green, blue (sRGB primaries, unclamped), gloss,
+        /// wetness; then a plane of floats: height, m. Little endian, 4096 values a plane.
+        pub planes: ByteBuf,
+    }
+}
+
+wire_struct! {
+    /// The newest brush state that a frame holds.
+    pub struct FrameHolds {
+        /// The brush: the source of its states.
+        pub brush: u32,
+        /// Its epoch.
+        pub epoch: u32,
+        /// All states below this number are in the picture.
+        pub next: u64,
+    }
+}
+
+message! {
+    /// The tiles that changed; where they are too many for one reply the rest comes with the next.
+    pub struct FrameReply [version 1, at most 67108864 bytes] {
+        /// The surface.
+        pub surface: u32,
+        /// Epoch of the paint node: where it differs from the asker's, all tiles come anew.
+        pub epoch: u32,
+        /// Ask for what is newer than this next.
+        pub version: u64,
+        /// The level of the tiles.
+        pub level: u32,
+        /// Cells of the surface at this level, across and up.
+        pub cells: [u32; 2],
+        /// The journal entries below this index are in the picture.
+        pub journal: u64,
+        /// The brush states that are in the picture.
+        pub holds: Vec<FrameHolds>,
+        /// Whether further tiles wait for the next request.
+        pub more: bool,
+        /// The tiles.
+        pub tiles: Vec<FrameTile>,
+    }
+}
+
+message! {
+    /// How the paint node fares, ten times a second.
+    pub struct PaintStatus [version 1, at most 4096 bytes] {
+        /// Entries of the journal so far.
+        pub journal: u64,
+        /// Steps of the paint model so far.
+        pub steps: u64,
+        /// Footprint cells so far.
+        pub footprint_cells: u64,
+        /// Age of the oldest brush state that waits, ns.
+        pub lag_ns: u64,
+        /// Bytes that the tiles take.
+        pub memory_bytes: u64,
+        /// Brush states that were lost for good.
+        pub lost: u64,
+        /// Messages that did not decode or were not expected.
+        pub refused: u64,
+    }
+}

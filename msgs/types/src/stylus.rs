@@ -1,0 +1,192 @@
+//! What an input device says: samples, what it is, how it fares, and where a played take stands.
+
+use crate::command::After;
+use crate::define::{message, wire_enum, wire_struct};
+use crate::pose::Pose;
+
+/// Bits of [`StylusSample::senses`], [`StylusInfo::senses`] and [`StylusInfo::drives`].
+pub mod axes {
+    /// Position.
+    pub const POSITION: u32 = 1;
+    /// Orientation of the handle.
+    pub const ORIENTATION: u32 = 2;
+    /// Tip pressure.
+    pub const PRESSURE: u32 = 4;
+    /// Tilt of the pen.
+    pub const TILT: u32 = 8;
+    /// Rotation of the pen about its axis.
+    pub const TWIST: u32 = 16;
+    /// Switches on the handle.
+    pub const SWITCHES: u32 = 32;
+    /// Whether the pen is near.
+    pub const PROXIMITY: u32 = 64;
+    /// Force (driven by force-feedback devices).
+    pub const FORCE: u32 = 128;
+    /// Velocity.
+    pub const VELOCITY: u32 = 256;
+}
+
+/// Tilt of a pen that senses none: 30° toward the lower right, radians about y and x as in
+/// [`StylusPose::Contact`]: atan(tan 30° · cos 45°) and its negative.
+pub const DEFAULT_TILT_RAD: [f64; 2] = [0.387_596_686_651_816_3, -0.387_596_686_651_816_3];
+
+wire_enum! {
+    /// How a device says where the brush is, in the desk frame.
+    pub enum StylusPose {
+        /// A 6-DOF device: the brush frame (origin where head and ferrule meet, bristles along −z).
+        Ferrule {
+            /// Brush frame to desk frame.
+            pose: Pose,
+        },
+        /// A pen or a mouse: a contact point with tilt and pressure.
+        Contact {
+            /// The tip on (or above) the working area, m.
+            point_m: [f64; 3],
+            /// Angle between z and the projection of the pen's axis, pointing to the far end, onto
+            /// the x-z and onto the y-z plane, rad, each within ±85°.
+            tilt_rad: [f64; 2],
+            /// Rotation about the pen's axis, rad.
+            twist_rad: f64,
+            /// 0 hovering to 1 full, after the pressure curve.
+            pressure: f64,
+        },
+    }
+}
+
+message! {
+    /// One sample of an input device; `event_ns` of its header is the time of sampling.
+    pub struct StylusSample [version 1, at most 512 bytes] {
+        /// What the device senses, see [`axes`].
+        pub senses: u32,
+        /// Where the brush is.
+        pub pose: StylusPose,
+        /// Velocity of the ferrule or contact point, m/s, 0 where not sensed.
+        pub velocity_m_s: [f64; 3],
+        /// Force applied to the hand, N, 0 where the device drives none.
+        pub force_n: [f64; 3],
+        /// A bit a pressed switch.
+        pub switches: u32,
+        /// Whether the stylus is near enough to count.
+        pub in_range: bool,
+    }
+}
+
+impl StylusSample {
+    /// A sample out of range at the desk's origin.
+    #[must_use]
+    pub fn away() -> Self {
+        Self {
+            senses: axes::POSITION,
+            pose: StylusPose::Contact {
+                point_m: [0.0; 3],
+                tilt_rad: DEFAULT_TILT_RAD,
+                twist_rad: 0.0,
+                pressure: 0.0,
+            },
+            velocity_m_s: [0.0; 3],
+            force_n: [0.0; 3],
+            switches: 0,
+            in_range: false,
+        }
+    }
+
+    /// What is wrong with the numbers, if anything: a device in any language may send them.
+    #[must_use]
+    pub fn fault(&self) -> Option<&'static str> {
+        let finite = |values: &[f64]| values.iter().all(|value| value.is_finite());
+        if !finite(&self.velocity_m_s) || !finite(&self.force_n) {
+            return Some("velocity or force is not finite");
+        }
+        match &self.pose {
+            StylusPose::Ferrule { pose } if !pose.is_valid() => {
+                Some("the ferrule pose is not finite or its quaternion is not a unit one")
+            }
+            StylusPose::Contact { point_m, tilt_rad, twist_rad, pressure } => {
+                if !finite(point_m) || !twist_rad.is_finite() {
+                    Some("the contact point or the twist is not finite")
+                } else if !tilt_rad.iter().all(|tilt| tilt.abs() <= 1.484) {
+                    Some("the tilt is not within 85°")
+                } else if !(0.0..=1.0).contains(pressure) {
+                    Some("the pressure is not within 0 and 1")
+                } else {
+                    None
+                }
+            }
+            StylusPose::Ferrule { .. } => None,
+        }
+    }
+}
+
+message! {
+    /// What a device is; cached for late joiners.
+    pub struct StylusInfo [version 1, at most 1024 bytes] {
+        /// Name of the device as in its topics.
+        pub device: String,
+        /// The driver that serves it.
+        pub driver: String,
+        /// The brush that it moves.
+        pub brush: String,
+        /// Of devices in range the one of highest priority paints.
+        pub priority: i32,
+        /// What it senses, see [`axes`].
+        pub senses: u32,
+        /// What it drives, see [`axes`].
+        pub drives: u32,
+        /// Samples a second.
+        pub rate_hz: f64,
+        /// Largest force, N; 0 where it drives none.
+        pub max_force_n: f64,
+        /// Largest stiffness that it renders, N/m.
+        pub max_stiffness_n_m: f64,
+        /// Working area in the desk frame: least x, y, z, then greatest, m.
+        pub workspace_m: [f64; 6],
+    }
+}
+
+message! {
+    /// How a device fares, ten times a second.
+    pub struct StylusStatus [version 1, at most 4096 bytes] {
+        /// Samples published since the start.
+        pub samples: u64,
+        /// Samples that did not fit into the ring to the publisher.
+        pub dropped: u64,
+        /// Latched faults, in words.
+        pub faults: Vec<String>,
+        /// Lateness of wake-ups: counts of below 50 µs, 100 µs, 200 µs … doubling, the rest.
+        pub lateness: Vec<u64>,
+        /// Time spent in a tick, in the same bins.
+        pub execution: Vec<u64>,
+        /// Size of the force now, N.
+        pub force_n: f64,
+        /// Messages dropped because they named another device, epoch or brush.
+        pub foreign_models: u64,
+    }
+}
+
+wire_struct! {
+    /// Where the end of a take lies in a brush's stream.
+    pub struct TakeEnd {
+        /// The brush state that holds the take's last sample.
+        pub after: After,
+        /// Samples of the take.
+        pub samples: u64,
+    }
+}
+
+message! {
+    /// Where a played take stands, ten times a second and at its end.
+    pub struct TakeStatus [version 1, at most 1024 bytes] {
+        /// Epoch of this playing; a take played again has another.
+        pub epoch: u32,
+        /// Time in the take of the newest sample sent, ns.
+        pub position_ns: u64,
+        /// Length of the take, ns.
+        pub length_ns: u64,
+        /// Samples sent.
+        pub sent: u64,
+        /// Samples that the brush node has consumed.
+        pub consumed: u64,
+        /// Set once the brush node has consumed the last sample.
+        pub end: Option<TakeEnd>,
+    }
+}

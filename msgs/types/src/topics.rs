@@ -1,0 +1,123 @@
+//! The key expressions of a rig, built and read in one place.
+
+/// The topics of one rig, all below `maulstick/<rig>/`.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Topics {
+    prefix: String,
+}
+
+/// Checks the name of a rig, device, brush or node: 1 to 32 letters, digits, `_` and `-`.
+///
+/// # Errors
+/// What is wrong, in words.
+pub fn check_name(name: &str) -> Result<(), String> {
+    let fits = |c: char| c.is_ascii_alphanumeric() || c == '_' || c == '-';
+    if name.is_empty() || name.len() > 32 || !name.chars().all(fits) {
+        return Err(format!("'{name}' is not 1 to 32 letters, digits, '_' or '-'"));
+    }
+    Ok(())
+}
+
+macro_rules! topics {
+    ($( $(#[$meta:meta])* $method:ident ( $($arg:ident),* ) = $pattern:literal; )*) => {
+        impl Topics {
+            $(
+                $(#[$meta])*
+                #[must_use]
+                pub fn $method(&self $(, $arg: &str)*) -> String {
+                    format!("{}{}", self.prefix, format_args!($pattern))
+                }
+            )*
+        }
+    };
+}
+
+topics! {
+    /// Samples of a device: [`StylusSample`](crate::stylus::StylusSample).
+    sample(device) = "stylus/{device}/sample";
+    /// What a device is: [`StylusInfo`](crate::stylus::StylusInfo), cached.
+    stylus_info(device) = "stylus/{device}/info";
+    /// How a device fares: [`StylusStatus`](crate::stylus::StylusStatus).
+    stylus_status(device) = "stylus/{device}/status";
+    /// Where a played take stands: [`TakeStatus`](crate::stylus::TakeStatus).
+    take_status(device) = "stylus/{device}/take";
+    /// What the hand feels: [`ContactModel`](crate::haptics::ContactModel).
+    contact_model(device) = "haptics/{device}/model";
+    /// What the hand feels of moving paint: [`FluidForce`](crate::haptics::FluidForce).
+    fluid_force(device) = "haptics/{device}/fluid";
+    /// A brush file: [`BrushDef`](crate::brush::BrushDef), cached.
+    brush_def(brush) = "brush/{brush}/def";
+    /// Solved states: [`BrushState`](crate::brush::BrushState).
+    brush_state(brush) = "brush/{brush}/state";
+    /// Credit to devices: [`BrushConsumed`](crate::brush::BrushConsumed).
+    brush_consumed(brush) = "brush/{brush}/consumed";
+    /// Credit to brushes: [`PaintConsumed`](crate::paint::PaintConsumed).
+    paint_consumed() = "paint/consumed";
+    /// The desk: [`Scene`](crate::scene::Scene), cached.
+    scene() = "scene";
+    /// The journal: [`JournalEntry`](crate::paint::JournalEntry).
+    journal() = "paint/journal";
+    /// Frames, a query: [`FrameRequest`](crate::paint::FrameRequest).
+    frame() = "paint/frame";
+    /// How the paint node fares: [`PaintStatus`](crate::paint::PaintStatus).
+    paint_status() = "paint/status";
+    /// Commands, a query: [`CommandRequest`](crate::command::CommandRequest).
+    command(node) = "command/{node}";
+    /// Lost messages, a query: [`GapRequest`](crate::command::GapRequest) on the stream's own key.
+    gap(stream) = "gap/{stream}";
+    /// The liveliness token of a node.
+    node(node) = "node/{node}";
+}
+
+impl Topics {
+    /// The topics of the rig called `rig`.
+    #[must_use]
+    pub fn new(rig: &str) -> Self {
+        Self { prefix: format!("maulstick/{rig}/") }
+    }
+
+    /// What every topic of the rig begins with.
+    #[must_use]
+    pub fn prefix(&self) -> &str {
+        &self.prefix
+    }
+
+    /// The topic without the rig's prefix.
+    #[must_use]
+    pub fn relative<'a>(&self, key: &'a str) -> Option<&'a str> {
+        key.strip_prefix(&self.prefix)
+    }
+
+    /// The middle of a three-part topic: `phantom` of `…/stylus/phantom/sample`.
+    #[must_use]
+    pub fn middle<'a>(&self, key: &'a str) -> Option<&'a str> {
+        let mut parts = self.relative(key)?.split('/');
+        match (parts.next(), parts.next(), parts.next(), parts.next()) {
+            (Some(_), Some(middle), Some(_), None) => Some(middle),
+            _ => None,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn builds_and_reads_topics() {
+        let topics = Topics::new("studio");
+        let key = topics.sample("phantom");
+        assert_eq!(key, "maulstick/studio/stylus/phantom/sample");
+        assert_eq!(topics.middle(&key), Some("phantom"));
+        assert_eq!(topics.middle(&topics.scene()), None);
+        assert_eq!(Topics::new("other").middle(&key), None);
+    }
+
+    #[test]
+    fn refuses_names_that_are_no_key() {
+        for name in ["", "a/b", "a*", "@x", "ä", &"x".repeat(33)] {
+            assert!(check_name(name).is_err(), "{name}");
+        }
+        assert_eq!(check_name("phantom-2"), Ok(()));
+    }
+}

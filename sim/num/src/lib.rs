@@ -1,0 +1,11 @@
+//! Elementary functions with the same bytes on every machine, and rigid motions.
+//!
+//! std's transcendentals call the system's library, which uses fused multiply-add where the
+//! processor has it: two machines would paint two pictures. The functions of f64 are those of the
+//! `libm` crate, plain Rust without such dispatch; those of f32 are written so that a loop over a
+//! plane vectorises and so that a shader can hold the same polynomial.
+
+mod elementary;
+pub mod geometry;
+
+pub use elementary::{acos, atan2, cos, exp, exp_f32, ln, powf, sin, sin_cos, sinc};

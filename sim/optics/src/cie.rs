@@ -1,0 +1,137 @@
+//! CIE observers and illuminants, from the tables in `data/` (which state their source).
+
+use std::sync::OnceLock;
+
+use crate::spectrum::{Spectrum, interpolate};
+
+/// A standard observer.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Observer {
+    /// CIE 1931, 2°.
+    #[default]
+    Cie1931,
+    /// CIE 1964, 10°.
+    Cie1964,
+}
+
+/// The spectrum of the light in the studio.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Illuminant {
+    /// Its name.
+    pub name: String,
+    /// Relative power.
+    pub power: Spectrum,
+}
+
+/// Names of the illuminants that come with the crate.
+pub const ILLUMINANTS: [&str; 6] = ["A", "D50", "D65", "FL2", "FL8", "FL11"];
+
+/// Reads the columns of one of our own tables: comments, a header line, numbers.
+fn columns<const N: usize>(text: &str) -> [Vec<f64>; N] {
+    let mut table: [Vec<f64>; N] = std::array::from_fn(|_| Vec::new());
+    for line in text.lines().filter(|line| line.starts_with(|c: char| c.is_ascii_digit())) {
+        for (column, cell) in table.iter_mut().zip(line.split(',')) {
+            column.push(cell.parse().unwrap_or(f64::NAN));
+        }
+    }
+    table
+}
+
+fn observers() -> &'static [Vec<f64>; 7] {
+    static TABLE: OnceLock<[Vec<f64>; 7]> = OnceLock::new();
+    TABLE.get_or_init(|| columns(include_str!("../data/observers.csv")))
+}
+
+fn illuminants() -> &'static [Vec<f64>; 7] {
+    static TABLE: OnceLock<[Vec<f64>; 7]> = OnceLock::new();
+    TABLE.get_or_init(|| columns(include_str!("../data/illuminants.csv")))
+}
+
+impl Observer {
+    /// x̄, ȳ, z̄ at `nm`, linear between the 1 nm steps of the table.
+    #[must_use]
+    pub fn at(self, nm: f64) -> [f64; 3] {
+        let first = match self {
+            Self::Cie1931 => 1,
+            Self::Cie1964 => 4,
+        };
+        std::array::from_fn(|i| interpolate(&observers()[first + i], nm - 380.0))
+    }
+}
+
+impl Illuminant {
+    /// One of [`ILLUMINANTS`].
+    #[must_use]
+    pub fn named(name: &str) -> Option<Self> {
+        let column = ILLUMINANTS.iter().position(|known| known.eq_ignore_ascii_case(name))?;
+        let table = &illuminants()[column + 1];
+        let power = Spectrum::from_fn(|nm| interpolate(table, (nm - 380.0) / 5.0));
+        Some(Self { name: ILLUMINANTS[column].to_owned(), power })
+    }
+
+    /// Average daylight, the default.
+    #[must_use]
+    pub fn d65() -> Self {
+        Self::named("D65").unwrap_or_else(|| Self { name: "E".into(), power: Spectrum::flat(1.0) })
+    }
+
+    /// XYZ of a reflectance by the sum over the 101 samples, Y = 1 for the perfect diffuser
+    /// (Baxter 2004, eq. 7.5).
+    #[must_use]
+    pub fn xyz(&self, observer: Observer, reflectance: &Spectrum) -> [f64; 3] {
+        let mut sum = [0.0; 3];
+        let mut white = 0.0;
+        for (i, r) in reflectance.0.iter().enumerate() {
+            let response = observer.at(crate::spectrum::wavelength(i));
+            let power = self.power.0[i];
+            for (total, value) in sum.iter_mut().zip(response) {
+                *total += value * power * r;
+            }
+            white += response[1] * power;
+        }
+        sum.map(|total| total / white)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// XYZ of the perfect diffuser by sums at 5 nm.
+    fn white(observer: Observer, name: &str) -> [f64; 3] {
+        let column = ILLUMINANTS.iter().position(|known| *known == name).expect("known") + 1;
+        let mut sum = [0.0; 3];
+        for (nm, power) in illuminants()[0].iter().zip(&illuminants()[column]) {
+            for (total, value) in sum.iter_mut().zip(observer.at(*nm)) {
+                *total += value * power;
+            }
+        }
+        sum.map(|total| 100.0 * total / sum[1])
+    }
+
+    #[test]
+    fn whites_are_those_of_the_cie() {
+        use Observer::{Cie1931, Cie1964};
+        for (observer, name, x, z) in [
+            (Cie1931, "A", 109.849, 35.5825),
+            (Cie1931, "D50", 96.4197, 82.5123),
+            (Cie1931, "D65", 95.0430, 108.8801),
+            (Cie1964, "A", 111.1439, 35.1995),
+            (Cie1964, "D50", 96.7198, 81.4267),
+            (Cie1964, "D65", 94.8118, 107.3241),
+        ] {
+            let got = white(observer, name);
+            println!("{name} {observer:?}: {got:?}, expected {x} {z}");
+            assert!((got[0] - x).abs() < 1e-4 && (got[2] - z).abs() < 1e-4);
+            assert!((got[0] * 1.00001 - x).abs() > 1e-4, "a fault of 1e-5 would pass");
+        }
+    }
+
+    #[test]
+    fn the_101_samples_see_nearly_the_same_white() {
+        let xyz = Illuminant::d65().xyz(Observer::Cie1931, &Spectrum::flat(1.0));
+        assert!((xyz[0] - 0.950_430).abs() < 5e-4 && (xyz[2] - 1.088_801).abs() < 5e-4, "{xyz:?}");
+        assert_eq!(Illuminant::named("d50").map(|light| light.name), Some("D50".into()));
+        assert_eq!(Illuminant::named("candle"), None);
+    }
+}
