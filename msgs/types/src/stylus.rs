@@ -28,7 +28,7 @@ pub mod axes {
 
 /// Tilt of a pen that senses none: 30° toward the lower right, radians about y and x as in
 /// [`StylusPose::Contact`]: atan(tan 30° · cos 45°) and its negative.
-pub const DEFAULT_TILT_RAD: [f64; 2] = [0.387_596_686_651_816_3, -0.387_596_686_651_816_3];
+pub const DEFAULT_TILT_RAD: [f64; 2] = [0.387_596_686_655_180_66, -0.387_596_686_655_180_66];
 
 wire_enum! {
     /// How a device says where the brush is, in the desk frame.

@@ -1,0 +1,186 @@
+//! Surfaces on the desk, and where a stylus holds the ferrule.
+
+use glam::DVec3;
+use maulstick_num::geometry::{Rigid, rotation, shortest_arc};
+use maulstick_num::sin_cos;
+use maulstick_types::scene::{CANVAS, Scene, Surface};
+use maulstick_types::stylus::{StylusPose, StylusSample};
+
+/// A pen without pressure holds the point of the head this far above the surface, m.
+pub const HOVER_M: f64 = 5e-3;
+
+/// A surface as the brush sees it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Plane {
+    /// Number of the surface.
+    pub id: u32,
+    /// Surface frame to desk frame.
+    pub to_desk: Rigid,
+    /// Desk lengths per surface length.
+    pub zoom: f64,
+    /// Width and height in the surface's own lengths, m.
+    pub size_m: [f64; 2],
+    /// Side of a cell in the surface's own lengths, m.
+    pub cell_m: f64,
+}
+
+impl Plane {
+    fn of(surface: &Surface) -> Self {
+        Self {
+            id: surface.id,
+            to_desk: Rigid::from(&surface.pose),
+            zoom: surface.zoom,
+            size_m: surface.cells.map(|cells| f64::from(cells) * surface.cell_m),
+            cell_m: surface.cell_m,
+        }
+    }
+
+    /// A motion in desk lengths as the surface sees it: lengths are divided by the zoom.
+    #[must_use]
+    pub fn to_surface(&self, in_desk: &Rigid) -> Rigid {
+        let mut local = self.to_desk.inverse().after(in_desk);
+        local.translation /= self.zoom;
+        local
+    }
+
+    /// Its normal toward the painter, desk frame.
+    #[must_use]
+    pub fn normal(&self) -> DVec3 {
+        self.to_desk.vector(DVec3::Z)
+    }
+
+    /// Whether a point lies over the surface.
+    fn holds(&self, in_desk: DVec3) -> bool {
+        let p = self.to_desk.inverse().point(in_desk) / self.zoom;
+        (0.0..self.size_m[0]).contains(&p.x) && (0.0..self.size_m[1]).contains(&p.y)
+    }
+}
+
+/// The surfaces of a scene.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Desk {
+    planes: Vec<Plane>,
+}
+
+impl Desk {
+    /// The desk of a scene; the palette lies over the canvas.
+    #[must_use]
+    pub fn of(scene: &Scene) -> Self {
+        let mut planes: Vec<Plane> = scene.surfaces.iter().map(Plane::of).collect();
+        planes.sort_by_key(|plane| std::cmp::Reverse(plane.id));
+        Self { planes }
+    }
+
+    /// The surface called `id`.
+    #[must_use]
+    pub fn plane(&self, id: u32) -> Option<&Plane> {
+        self.planes.iter().find(|plane| plane.id == id)
+    }
+
+    /// The surface that lies under a point: the palette before the canvas, and beside all the
+    /// canvas, whose plane goes on.
+    #[must_use]
+    pub fn under(&self, in_desk: DVec3) -> Option<&Plane> {
+        self.planes.iter().find(|plane| plane.holds(in_desk)).or_else(|| self.plane(CANVAS))
+    }
+}
+
+/// The orientation of a pen: its axis by two tilts, turned about itself.
+#[must_use]
+pub fn pen_orientation(tilt_rad: [f64; 2], twist_rad: f64) -> glam::DQuat {
+    let tangent = |angle: f64| {
+        let (s, c) = sin_cos(angle);
+        s / c
+    };
+    let axis = DVec3::new(tangent(tilt_rad[0]), tangent(tilt_rad[1]), 1.0).normalize();
+    shortest_arc(DVec3::Z, axis) * rotation(DVec3::Z, twist_rad)
+}
+
+/// Where a stylus points: the ferrule of a 6-DOF device, the contact point of a pen. By it the
+/// surface is chosen.
+#[must_use]
+pub fn aim(sample: &StylusSample, head_length_m: f64) -> DVec3 {
+    match &sample.pose {
+        StylusPose::Ferrule { pose } => {
+            Rigid::from(pose).point(DVec3::new(0.0, 0.0, -head_length_m))
+        }
+        StylusPose::Contact { point_m, .. } => DVec3::from_array(*point_m),
+    }
+}
+
+/// Brush frame to desk frame for a sample. For a pen the ferrule is at contact point + axis · head
+/// length · (1 − depth_share · pressure), and [`HOVER_M`] higher without pressure.
+#[must_use]
+pub fn ferrule(
+    sample: &StylusSample,
+    head_length_m: f64,
+    depth_share: f64,
+    normal: DVec3,
+) -> Rigid {
+    match &sample.pose {
+        StylusPose::Ferrule { pose } => Rigid::from(pose),
+        StylusPose::Contact { point_m, tilt_rad, twist_rad, pressure } => {
+            let rotation = pen_orientation(*tilt_rad, *twist_rad);
+            let axis = rotation * DVec3::Z;
+            let hover = if *pressure > 0.0 { 0.0 } else { HOVER_M };
+            let translation = DVec3::from_array(*point_m)
+                + axis * (head_length_m * (1.0 - depth_share * pressure))
+                + normal * hover;
+            Rigid { rotation, translation }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use maulstick_types::stylus::{DEFAULT_TILT_RAD, axes};
+
+    use super::*;
+
+    fn pen(pressure: f64) -> StylusSample {
+        StylusSample {
+            senses: axes::POSITION | axes::PRESSURE,
+            pose: StylusPose::Contact {
+                point_m: [0.01, 0.02, 0.0],
+                tilt_rad: DEFAULT_TILT_RAD,
+                twist_rad: 0.0,
+                pressure,
+            },
+            ..StylusSample::away()
+        }
+    }
+
+    #[test]
+    fn the_default_tilt_is_30_degrees_toward_the_lower_right() {
+        let axis = pen_orientation(DEFAULT_TILT_RAD, 0.4) * DVec3::Z;
+        assert!((axis.z - 0.75f64.sqrt()).abs() < 1e-12, "{axis}");
+        assert!((axis.x - 0.125f64.sqrt()).abs() < 1e-12 && (axis.x + axis.y).abs() < 1e-12);
+    }
+
+    #[test]
+    fn pressure_lowers_the_ferrule_along_the_pen() {
+        let length = 0.025;
+        let at = |pressure: f64| {
+            let rigid = ferrule(&pen(pressure), length, 0.5, DVec3::Z);
+            rigid.point(DVec3::new(0.0, 0.0, -length))
+        };
+        let contact = DVec3::new(0.01, 0.02, 0.0);
+        assert!((at(0.0) - contact - DVec3::Z * HOVER_M).length() < 1e-12);
+        assert!((at(1e-12) - contact).length() < 1e-12, "a touch begins at the contact point");
+        assert!((at(1.0).z + 0.5 * length * 0.75f64.sqrt()).abs() < 1e-12);
+    }
+
+    #[test]
+    fn zoom_divides_lengths() {
+        let plane = Plane {
+            id: CANVAS,
+            to_desk: Rigid { translation: DVec3::new(-0.1, -0.1, 0.0), ..Rigid::IDENTITY },
+            zoom: 2.0,
+            size_m: [0.1; 2],
+            cell_m: 2.5e-4,
+        };
+        let pose = Rigid { translation: DVec3::new(0.0, 0.0, 0.03), ..Rigid::IDENTITY };
+        let local = plane.to_surface(&pose).translation;
+        assert!((local - DVec3::new(0.05, 0.05, 0.015)).length() < 1e-15);
+    }
+}

@@ -1,0 +1,27 @@
+//! vBRUSH (Baxter 2004, ch. 3): the head of a brush as spines that bend to the least energy.
+//!
+//! Pure: stylus samples and the scene come in, [`BrushState`](maulstick_types::brush::BrushState)s
+//! go out, and time is in the messages.
+//!
+//! | module | holds |
+//! | --- | --- |
+//! | [`file`] | the brush file and the library of brushes |
+//! | [`spine`] | a chain of segments: directions, joint angles, joints |
+//! | [`energy`] | spring and friction: value, gradient, Hessian |
+//! | [`qp`] | the quadratic program of one Newton step |
+//! | [`solver`] | the constrained minimum; a whole solve reads from top to bottom |
+//! | [`desk`] | surfaces, and where a stylus holds the ferrule |
+//! | [`model`] | the brush that follows a stylus |
+
+pub mod desk;
+pub mod energy;
+pub mod file;
+pub mod model;
+pub mod qp;
+pub mod solver;
+pub mod spine;
+
+pub use file::{BrushError, BrushFile};
+pub use model::BrushModel;
+pub use solver::{Solution, Solver};
+pub use spine::{Spine, SpineShape};

@@ -1,0 +1,180 @@
+//! A spine: segments joined by springs, its shape the unit directions of its segments.
+//!
+//! Energy and constraints depend on the directions alone: the bending angle of a joint is the angle
+//! between two neighbours, and every joint's place is linear in them. The solver therefore works on
+//! directions, which have no singular pose; θ and φ (Baxter 2004, eq. 3.10, with R = R_y(φ)·R_x(θ))
+//! are how a shape travels in messages.
+
+use glam::{DQuat, DVec3};
+use maulstick_num::{acos, atan2, sin_cos};
+
+/// What a spine is made of.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Spine {
+    /// Lengths of the segments, m, from the ferrule to the point.
+    pub lengths_m: Vec<f64>,
+    /// Stiffness K of the joint at the beginning of each segment, N·m/rad.
+    pub stiffness: Vec<f64>,
+}
+
+impl Spine {
+    /// A spine of `joints` equal segments with bending stiffness `ei` (N·m²): K = EI/l, doubled at
+    /// the clamp, between which and the first joint only half a segment lies. With the doubling the
+    /// chain converges to the beam with second order in its segments; without, with first.
+    #[must_use]
+    pub fn uniform(length_m: f64, joints: usize, ei: f64) -> Self {
+        let segment = length_m / joints as f64;
+        let mut stiffness = vec![ei / segment; joints];
+        stiffness[0] *= 2.0;
+        Self { lengths_m: vec![segment; joints], stiffness }
+    }
+
+    /// Number of joints, which is the number of segments.
+    #[must_use]
+    pub fn joints(&self) -> usize {
+        self.lengths_m.len()
+    }
+
+    /// Its whole length, m.
+    #[must_use]
+    pub fn length_m(&self) -> f64 {
+        self.lengths_m.iter().sum()
+    }
+
+    /// Its stiffest joint, N·m/rad.
+    #[must_use]
+    pub fn stiffest(&self) -> f64 {
+        self.stiffness.iter().copied().fold(0.0, f64::max)
+    }
+}
+
+/// A spine in space.
+#[derive(Clone, Debug, PartialEq)]
+pub struct SpineShape {
+    /// Where it begins.
+    pub root: DVec3,
+    /// Unit direction in which it would go unbent.
+    pub base: DVec3,
+    /// Unit direction of each segment.
+    pub directions: Vec<DVec3>,
+}
+
+/// The spine's base frame is the brush frame turned half around x: its +z is the brush's −z.
+const BRUSH_TO_SPINE: DQuat = DQuat::from_xyzw(1.0, 0.0, 0.0, 0.0);
+
+impl SpineShape {
+    /// A straight spine in a brush of orientation `brush`.
+    #[must_use]
+    pub fn straight(root: DVec3, brush: DQuat, joints: usize) -> Self {
+        let base = brush * DVec3::NEG_Z;
+        Self { root, base, directions: vec![base; joints] }
+    }
+
+    /// The end of segment `i`: the root plus all segments up to it.
+    #[must_use]
+    pub fn joint(&self, spine: &Spine, i: usize) -> DVec3 {
+        let ends = self.directions.iter().zip(&spine.lengths_m).take(i + 1);
+        ends.fold(self.root, |p, (direction, length)| p + *direction * *length)
+    }
+
+    /// The tip.
+    #[must_use]
+    pub fn tip(&self, spine: &Spine) -> DVec3 {
+        self.joint(spine, spine.joints() - 1)
+    }
+
+    /// Turns all segments with the brush, which turned by `turn`.
+    pub fn turn(&mut self, turn: DQuat) {
+        self.base = turn * self.base;
+        self.directions.iter_mut().for_each(|d| *d = (turn * *d).normalize());
+    }
+
+    /// θ and φ of each joint, in a brush of orientation `brush`.
+    pub fn angles(&self, brush: DQuat, into: &mut Vec<[f32; 2]>) {
+        let mut frame = brush * BRUSH_TO_SPINE;
+        for direction in &self.directions {
+            let local = frame.conjugate() * *direction;
+            let theta = std::f64::consts::FRAC_PI_2 - acos(-local.y);
+            let phi = atan2(local.x, local.z);
+            into.push([theta as f32, phi as f32]);
+            frame *= bend([theta, phi]);
+        }
+    }
+
+    /// The shape of given angles.
+    #[must_use]
+    pub fn from_angles(root: DVec3, brush: DQuat, angles: &[[f32; 2]]) -> Self {
+        let mut frame = brush * BRUSH_TO_SPINE;
+        let base = frame * DVec3::Z;
+        let directions = angles
+            .iter()
+            .map(|angles| {
+                frame = (frame * bend(angles.map(f64::from))).normalize();
+                frame * DVec3::Z
+            })
+            .collect();
+        Self { root, base, directions }
+    }
+}
+
+/// R_y(φ)·R_x(θ).
+fn bend([theta, phi]: [f64; 2]) -> DQuat {
+    let ((st, ct), (sp, cp)) = (sin_cos(0.5 * theta), sin_cos(0.5 * phi));
+    DQuat::from_xyzw(cp * st, sp * ct, -sp * st, cp * ct)
+}
+
+#[cfg(test)]
+mod tests {
+    use maulstick_num::geometry::rotation;
+    use proptest::prelude::*;
+
+    use super::*;
+
+    fn angle() -> impl Strategy<Value = f32> {
+        -1.3f32..1.3
+    }
+
+    proptest! {
+        #[test]
+        fn angles_and_directions_are_the_same_shape(
+            angles in prop::collection::vec([angle(), angle()], 1..8),
+            turn in -3.0..3.0f64,
+        ) {
+            let brush = rotation(DVec3::new(0.6, 0.0, 0.8), turn);
+            let shape = SpineShape::from_angles(DVec3::ZERO, brush, &angles);
+            let mut back = Vec::new();
+            shape.angles(brush, &mut back);
+            for (one, two) in angles.iter().zip(&back) {
+                prop_assert!((one[0] - two[0]).abs() < 1e-5 && (one[1] - two[1]).abs() < 1e-5);
+            }
+        }
+
+        #[test]
+        fn a_joint_bends_by_acos_of_the_cosines(theta in angle(), phi in angle()) {
+            let shape = SpineShape::from_angles(DVec3::ZERO, DQuat::IDENTITY, &[[theta, phi]]);
+            let bend = acos(shape.base.dot(shape.directions[0]));
+            let [theta, phi] = [f64::from(theta), f64::from(phi)];
+            // Baxter 2004, eq. 3.12.
+            let expected = acos(maulstick_num::cos(theta) * maulstick_num::cos(phi));
+            prop_assert!((bend - expected).abs() < 1e-6);
+        }
+    }
+
+    #[test]
+    fn bristles_go_along_minus_z_of_the_brush() {
+        let spine = Spine::uniform(0.03, 3, 1e-4);
+        let shape = SpineShape::straight(DVec3::ZERO, DQuat::IDENTITY, 3);
+        assert!((shape.tip(&spine) - DVec3::new(0.0, 0.0, -0.03)).length() < 1e-15);
+        assert_eq!(spine.stiffness[0], 2.0 * spine.stiffness[1]);
+    }
+
+    #[test]
+    fn the_rotation_is_that_of_equation_3_10() {
+        let (theta, phi) = (0.3, -0.7);
+        let ((st, ct), (sp, cp)) = (sin_cos(theta), sin_cos(phi));
+        let r = bend([theta, phi]);
+        assert!((r * DVec3::X - DVec3::new(cp, 0.0, -sp)).length() < 1e-15);
+        assert!((r * DVec3::Y - DVec3::new(sp * st, ct, cp * st)).length() < 1e-15);
+        assert!((r * DVec3::Z - DVec3::new(sp * ct, -st, cp * ct)).length() < 1e-15);
+    }
+}
