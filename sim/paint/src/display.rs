@@ -1,0 +1,157 @@
+//! Unlit colour of tiles, as the view and the exports take it.
+
+use half::f16;
+use half::slice::HalfFloatSliceExt as _;
+use maulstick_optics::{FilmPlanes, Studio};
+
+use crate::quantum::QUANTUM_M;
+use crate::tile::{TILE_CELLS, Tile};
+
+/// A tile as it is shown, before light.
+#[derive(Clone, Debug, PartialEq)]
+pub struct DisplayTile {
+    /// Linear red, green, blue (sRGB primaries, unclamped).
+    pub rgb: [Vec<f32>; 3],
+    /// Share of the surface that is glossy, 0 to 1.
+    pub gloss: Vec<f32>,
+    /// 1 where paint is wet.
+    pub wetness: Vec<f32>,
+    /// Height above the bare surface, m.
+    pub height: Vec<f32>,
+}
+
+impl DisplayTile {
+    /// The display of a tile over a ground; `tile` is none where nothing was painted.
+    #[must_use]
+    pub fn of(tile: Option<&Tile>, studio: &Studio, ground: &[f32]) -> Self {
+        let films: Vec<(usize, Vec<f32>)> = tile
+            .map(Tile::wet)
+            .unwrap_or_default()
+            .iter()
+            .map(|(slot, plane)| {
+                (*slot, plane.iter().map(|count| count * QUANTUM_M as f32).collect())
+            })
+            .collect();
+        let mut height = vec![0.0f32; TILE_CELLS];
+        for (_, film) in &films {
+            height.iter_mut().zip(film).for_each(|(sum, thickness)| *sum += thickness);
+        }
+        let mut rgb = [const { Vec::new() }; 3];
+        rgb.iter_mut().for_each(|plane| plane.resize(TILE_CELLS, 0.0));
+        let [red, green, blue] = &mut rgb;
+        let paints: Vec<(usize, &[f32])> =
+            films.iter().map(|(slot, film)| (*slot, film.as_slice())).collect();
+        studio.shade(&FilmPlanes { paints: &paints, ground }, [red, green, blue]);
+        let wetness: Vec<f32> =
+            height.iter().map(|thickness| f32::from(u8::from(*thickness > 0.0))).collect();
+        Self { rgb, gloss: wetness.clone(), wetness, height }
+    }
+
+    /// The tile of the next level from its four children: lower left, lower right, upper left,
+    /// upper right; absent ones lie beyond the edge and count as `outside`.
+    #[must_use]
+    pub fn coarser(children: [Option<&Self>; 4], outside: &Self) -> Self {
+        let children = children.map(|child| child.unwrap_or(outside));
+        let halve = |plane: &dyn Fn(&Self) -> &Vec<f32>| {
+            const SIDE: usize = maulstick_types::paint::TILE;
+            let mut out = Vec::with_capacity(TILE_CELLS);
+            for y in 0..SIDE {
+                for x in 0..SIDE {
+                    let child = children[2 * (2 * y / SIDE) + 2 * x / SIDE];
+                    let plane = plane(child);
+                    let at = (2 * y % SIDE) * SIDE + 2 * x % SIDE;
+                    let sum = plane[at] + plane[at + 1] + plane[at + SIDE] + plane[at + SIDE + 1];
+                    out.push(0.25 * sum);
+                }
+            }
+            out
+        };
+        Self {
+            rgb: [halve(&|t| &t.rgb[0]), halve(&|t| &t.rgb[1]), halve(&|t| &t.rgb[2])],
+            gloss: halve(&|t| &t.gloss),
+            wetness: halve(&|t| &t.wetness),
+            height: halve(&|t| &t.height),
+        }
+    }
+
+    /// The planes as a frame carries them: red, green, blue, gloss, wetness as half floats, height
+    /// as floats, little endian.
+    #[must_use]
+    pub fn to_bytes(&self) -> Vec<u8> {
+        let mut bytes = Vec::with_capacity(TILE_CELLS * 14);
+        let mut halves = vec![f16::ZERO; TILE_CELLS];
+        let [red, green, blue] = &self.rgb;
+        for plane in [red, green, blue, &self.gloss, &self.wetness] {
+            halves.convert_from_f32_slice(plane);
+            bytes.extend(halves.iter().flat_map(|half| half.to_le_bytes()));
+        }
+        bytes.extend(self.height.iter().flat_map(|height| height.to_le_bytes()));
+        bytes
+    }
+
+    /// Reads [`to_bytes`](Self::to_bytes); none where the length is wrong.
+    #[must_use]
+    pub fn from_bytes(bytes: &[u8]) -> Option<Self> {
+        if bytes.len() != TILE_CELLS * 14 {
+            return None;
+        }
+        let half = |plane: usize| -> Vec<f32> {
+            bytes[plane * TILE_CELLS * 2..][..TILE_CELLS * 2]
+                .chunks_exact(2)
+                .map(|pair| f16::from_le_bytes([pair[0], pair[1]]).to_f32())
+                .collect()
+        };
+        let height = bytes[TILE_CELLS * 10..]
+            .chunks_exact(4)
+            .map(|four| f32::from_le_bytes([four[0], four[1], four[2], four[3]]))
+            .collect();
+        Some(Self { rgb: [half(0), half(1), half(2)], gloss: half(3), wetness: half(4), height })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use maulstick_optics::PaintLibrary;
+
+    use super::*;
+
+    fn tile() -> (Studio, Vec<f32>, DisplayTile) {
+        let mut studio = Studio::daylight();
+        let library = PaintLibrary::measured().expect("whole");
+        studio.add(library.find("Ultramarine Blue").expect("known"));
+        let ground = vec![0.95; studio.wavelengths()];
+        let plane: Box<[f32]> =
+            (0..TILE_CELLS).map(|i| if i % 2 == 0 { 33_000.0 } else { 0.0 }).collect();
+        let tile = Tile::new([(0, plane)].into_iter());
+        let shown = DisplayTile::of(Some(&tile), &studio, &ground);
+        (studio, ground, shown)
+    }
+
+    #[test]
+    fn a_blue_film_is_blue_and_has_its_thickness() {
+        let (_, _, shown) = tile();
+        assert!(shown.rgb[2][0] > 1.5 * shown.rgb[0][0]);
+        assert!((shown.height[0] - 33_000.0 * QUANTUM_M as f32).abs() < 1e-9);
+        assert_eq!((shown.wetness[0], shown.wetness[1]), (1.0, 0.0));
+    }
+
+    #[test]
+    fn bytes_come_back_within_half_precision() {
+        let (_, _, shown) = tile();
+        let back = DisplayTile::from_bytes(&shown.to_bytes()).expect("whole");
+        for (one, two) in shown.rgb.iter().flatten().zip(back.rgb.iter().flatten()) {
+            assert!((one - two).abs() < 1e-3 * one.abs().max(1e-3));
+        }
+        assert_eq!(shown.height, back.height);
+        assert_eq!(DisplayTile::from_bytes(&[0; 7]), None);
+    }
+
+    #[test]
+    fn a_coarser_tile_is_the_mean_of_its_cells() {
+        let (studio, ground, shown) = tile();
+        let bare = DisplayTile::of(None, &studio, &ground);
+        let coarse = DisplayTile::coarser([Some(&shown), None, None, None], &bare);
+        assert!((coarse.height[0] - 0.5 * shown.height[0]).abs() < 1e-9);
+        assert_eq!(coarse.height[40], 0.0, "the right half lies beyond the edge");
+    }
+}

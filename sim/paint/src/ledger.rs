@@ -1,0 +1,142 @@
+//! The ledger: where all paint came from and where it is.
+//!
+//! Tube and cleaner are booked at every transfer; brush, canvas and palette are counted afresh from
+//! what lies there. What the tubes gave must be found in the others to the quantum.
+
+use std::collections::BTreeMap;
+
+use serde::Serialize;
+
+use crate::quantum::{Counts, SLOTS, add};
+
+/// What was booked.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Ledger {
+    tube: Counts,
+    cleaner: Counts,
+}
+
+impl Ledger {
+    /// The tubes gave.
+    pub fn from_tube(&mut self, counts: &Counts) {
+        add(&mut self.tube, counts);
+    }
+
+    /// The cleaner took.
+    pub fn to_cleaner(&mut self, counts: &Counts) {
+        add(&mut self.cleaner, counts);
+    }
+}
+
+/// What was counted.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Stocks {
+    /// On all brushes.
+    pub brush: Counts,
+    /// On the canvas.
+    pub canvas: Counts,
+    /// On the palette.
+    pub palette: Counts,
+}
+
+/// The ledger as a file; volumes in m³, what the tubes gave is negative, so that all accounts sum
+/// to zero.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct LedgerReport {
+    /// Volume of all paints by account, m³.
+    pub accounts_m3: BTreeMap<&'static str, f64>,
+    /// Volume by paint and account, m³.
+    pub paints_m3: BTreeMap<String, BTreeMap<&'static str, f64>>,
+    /// What the tubes gave less what was found, quanta; 0, or paint was created or destroyed.
+    pub quanta_missing: i64,
+    /// Steps of the paint model.
+    pub steps: u64,
+    /// Cells that footprints covered, summed over the steps.
+    pub footprint_cells: u64,
+    /// Cells of the canvas with paint on them.
+    pub covered_cells: u64,
+    /// Time of the performance from its first to its last state, s.
+    pub seconds: f64,
+}
+
+/// What else a report holds.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Tallies {
+    /// As [`LedgerReport::steps`].
+    pub steps: u64,
+    /// As [`LedgerReport::footprint_cells`].
+    pub footprint_cells: u64,
+    /// As [`LedgerReport::covered_cells`].
+    pub covered_cells: u64,
+    /// As [`LedgerReport::seconds`].
+    pub seconds: f64,
+}
+
+/// Balances the books. `names` are the paints by slot, `quantum_m3` is a quantum's volume.
+#[must_use]
+pub fn balance(
+    ledger: &Ledger,
+    stocks: &Stocks,
+    names: &[String],
+    quantum_m3: f64,
+    tallies: Tallies,
+) -> LedgerReport {
+    let accounts: [(&'static str, &Counts); 4] = [
+        ("brush", &stocks.brush),
+        ("canvas", &stocks.canvas),
+        ("palette", &stocks.palette),
+        ("cleaner", &ledger.cleaner),
+    ];
+    let volume = |count: u64| count as f64 * quantum_m3;
+    let sum = |counts: &Counts| counts.iter().sum::<u64>();
+    let negative = |count: u64| if count == 0 { 0.0 } else { -volume(count) };
+    let mut accounts_m3 = BTreeMap::from([("tube", negative(sum(&ledger.tube)))]);
+    accounts_m3.extend(accounts.iter().map(|(name, counts)| (*name, volume(sum(counts)))));
+    let mut paints_m3 = BTreeMap::new();
+    for (slot, name) in names.iter().enumerate().take(SLOTS) {
+        let mut row = BTreeMap::from([("tube", negative(ledger.tube[slot]))]);
+        row.extend(accounts.iter().map(|(account, counts)| (*account, volume(counts[slot]))));
+        paints_m3.insert(name.clone(), row);
+    }
+    // Slot by slot, so that too much of one paint cannot hide too little of another.
+    let quanta_missing = (0..SLOTS)
+        .map(|slot| {
+            let found: u64 = accounts.iter().map(|(_, counts)| counts[slot]).sum();
+            ledger.tube[slot] as i64 - found as i64
+        })
+        .max_by_key(|missing| missing.abs())
+        .unwrap_or(0);
+    LedgerReport {
+        accounts_m3,
+        paints_m3,
+        quanta_missing,
+        steps: tallies.steps,
+        footprint_cells: tallies.footprint_cells,
+        covered_cells: tallies.covered_cells,
+        seconds: tallies.seconds,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_single_missing_quantum_is_seen() {
+        let mut ledger = Ledger::default();
+        let mut given = [0; SLOTS];
+        (given[0], given[1]) = (1000, 7);
+        ledger.from_tube(&given);
+        let mut stocks = Stocks::default();
+        (stocks.canvas[0], stocks.brush[0], stocks.palette[1]) = (600, 400, 7);
+        let names = ["A".to_owned(), "B".to_owned()];
+        let report = |stocks: &Stocks| balance(&ledger, stocks, &names, 1e-18, Tallies::default());
+        assert_eq!(report(&stocks).quanta_missing, 0);
+        let total: f64 = report(&stocks).accounts_m3.values().sum();
+        assert!(total.abs() < 1e-30);
+        stocks.canvas[0] -= 1;
+        assert_eq!(report(&stocks).quanta_missing, 1);
+        (stocks.canvas[0], stocks.palette[1]) = (601, 6);
+        assert_ne!(report(&stocks).quanta_missing, 0, "one paint does not stand in for another");
+    }
+}

@@ -1,0 +1,41 @@
+//! Paint on surfaces.
+//!
+//! Pure: brush states and commands come in, tiles and reports go out. [`Sequencer`] decides the
+//! order and keeps the journal; [`Painting`] does what the journal says; a [`PaintModel`] moves the
+//! paint of one step.
+//!
+//! | module | holds |
+//! | --- | --- |
+//! | [`quantum`] | the unit in which paint is counted |
+//! | [`tile`], [`store`], [`window`] | tiles, their versions, and windows leased on them |
+//! | [`head`], [`path`] | the head of a brush in space, and its motion cut into steps |
+//! | [`footprint`], [`transfer`] | the cells under the head, and what each receives |
+//! | [`model`], [`deposit`] | paint models |
+//! | [`load`], [`ledger`], [`history`] | what a brush carries, the books, undo |
+//! | [`setup`] | the scene of a new painting |
+//! | [`painting`], [`sequencer`] | the painting and its journal |
+//! | [`display`], [`picture`] | unlit colour for the view, and pictures as files |
+
+pub mod deposit;
+pub mod display;
+pub mod footprint;
+pub mod head;
+pub mod history;
+pub mod ledger;
+pub mod load;
+pub mod model;
+pub mod painting;
+pub mod path;
+pub mod picture;
+pub mod quantum;
+pub mod sequencer;
+pub mod setup;
+pub mod store;
+pub mod tile;
+pub mod transfer;
+pub mod window;
+
+pub use model::PaintModel;
+pub use painting::{PaintRefusal, Painting};
+pub use sequencer::{Effect, Sequencer};
+pub use setup::PaintingSetup;

@@ -1,0 +1,257 @@
+//! The sequencer: it decides what enters the journal and in which order; nothing else does.
+
+use std::collections::BTreeMap;
+
+use maulstick_types::brush::BrushState;
+use maulstick_types::command::{Command, CommandRequest, Outcome};
+use maulstick_types::paint::{Entry, JournalEntry};
+use maulstick_types::{Flags, Header, Origin};
+
+use crate::painting::{PaintRefusal, Painting};
+
+/// Clients whose last reply is kept, so that a repeated command is done once.
+const CLIENTS: usize = 64;
+
+/// What a command asks of the outside world; done by whoever runs the sequencer, at once.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Effect {
+    /// Write the picture and, if asked, the ledger.
+    Snapshot {
+        /// A PNG.
+        path: String,
+        /// A JSON file.
+        ledger: Option<String>,
+    },
+}
+
+/// A reply to the command `number` of `client`.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Replied {
+    /// Who asked.
+    pub client: u64,
+    /// The command's number.
+    pub number: u64,
+    /// What became of it.
+    pub outcome: Outcome,
+    /// What is still to be done for it; the outcome holds if that succeeds.
+    pub effect: Option<Effect>,
+}
+
+/// A take that may paint.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+struct Announced {
+    device: u32,
+    epoch: u32,
+}
+
+/// Orders states and commands, keeps the journal, drives the painting.
+#[derive(Debug)]
+pub struct Sequencer {
+    painting: Painting,
+    next: u64,
+    journal: Vec<JournalEntry>,
+    announced: BTreeMap<String, Announced>,
+    consumed: BTreeMap<Origin, u64>,
+    waiting: Vec<CommandRequest>,
+    answered: BTreeMap<u64, (u64, Outcome)>,
+    ignored: u64,
+}
+
+impl Sequencer {
+    /// A sequencer at the beginning of a painting's journal.
+    #[must_use]
+    pub fn new(painting: Painting) -> Self {
+        Self {
+            painting,
+            next: 0,
+            journal: Vec::new(),
+            announced: BTreeMap::new(),
+            consumed: BTreeMap::new(),
+            waiting: Vec::new(),
+            answered: BTreeMap::new(),
+            ignored: 0,
+        }
+    }
+
+    /// The painting.
+    #[must_use]
+    pub fn painting(&self) -> &Painting {
+        &self.painting
+    }
+
+    /// The painting, for what is not journalled: committing, counting, defining brushes.
+    pub fn painting_mut(&mut self) -> &mut Painting {
+        &mut self.painting
+    }
+
+    /// Index of the next journal entry.
+    #[must_use]
+    pub fn journal_next(&self) -> u64 {
+        self.next
+    }
+
+    /// States that were dropped because their take was not announced.
+    #[must_use]
+    pub fn ignored(&self) -> u64 {
+        self.ignored
+    }
+
+    /// Entries since the last call, ranges of states joined.
+    pub fn drain_journal(&mut self) -> Vec<JournalEntry> {
+        std::mem::take(&mut self.journal)
+    }
+
+    /// What is consumed of a brush's states: all below this number.
+    #[must_use]
+    pub fn consumed(&self, brush: Origin) -> u64 {
+        self.consumed.get(&brush).copied().unwrap_or(0)
+    }
+
+    /// Accepts a state, which must come in order, and then the commands that waited for it.
+    ///
+    /// A state of a replayed take that nobody announced paints nothing.
+    ///
+    /// # Errors
+    /// [`PaintRefusal`] where the state does not fit; it is consumed all the same.
+    pub fn state(
+        &mut self,
+        brush: &str,
+        header: &Header,
+        state: &BrushState,
+    ) -> Result<Vec<Replied>, PaintRefusal> {
+        let from = Announced { device: state.device, epoch: state.device_epoch };
+        let replayed = header.flags.has(Flags::REPLAY);
+        let result = if replayed && self.announced.get(brush) != Some(&from) {
+            self.ignored += 1;
+            Ok(())
+        } else {
+            self.enter_states(brush, header.epoch, header.seq);
+            self.painting.state(brush, state)
+        };
+        self.consumed.retain(|origin, _| {
+            origin.source != header.source || origin.epoch == header.epoch
+        });
+        self.consumed.insert(header.origin(), header.seq + 1);
+        let replies = self.release();
+        result.map(|()| replies)
+    }
+
+    fn enter_states(&mut self, brush: &str, epoch: u32, seq: u64) {
+        if let Some(JournalEntry { entry: Entry::States { brush: b, epoch: e, to, .. }, .. }) =
+            self.journal.last_mut()
+            && b == brush
+            && *e == epoch
+            && *to + 1 == seq
+        {
+            *to = seq;
+            return;
+        }
+        self.enter(Entry::States { brush: brush.to_owned(), epoch, from: seq, to: seq });
+    }
+
+    fn enter(&mut self, entry: Entry) -> u64 {
+        let index = self.next;
+        self.journal.push(JournalEntry { index, entry });
+        self.next += 1;
+        index
+    }
+
+    /// Enters a decision of the node itself.
+    pub fn decide(&mut self, what: &str) {
+        self.enter(Entry::Decision { what: what.to_owned() });
+    }
+
+    /// Accepts a command, at once or when the state that it waits for has come.
+    pub fn command(&mut self, request: CommandRequest) -> Replied {
+        let (client, number) = (request.client, request.number);
+        let reply = |outcome| Replied { client, number, outcome, effect: None };
+        if let Some((answered, outcome)) = self.answered.get(&client) {
+            if *answered == number {
+                return reply(outcome.clone());
+            }
+            if *answered > number {
+                return reply(Outcome::Refused {
+                    what: format!("command {number} comes after command {answered}"),
+                    help: "number commands upward".to_owned(),
+                });
+            }
+        }
+        if self.waiting.iter().any(|w| w.client == client && w.number == number) {
+            return reply(Outcome::Waiting);
+        }
+        let due = request.after.as_ref().is_none_or(|after| {
+            let origin = Origin { source: after.brush, epoch: after.epoch };
+            self.consumed(origin) > after.sequence
+        });
+        if due {
+            return self.execute(&request);
+        }
+        self.waiting.push(request);
+        reply(Outcome::Waiting)
+    }
+
+    /// Does the waiting commands whose state has come.
+    fn release(&mut self) -> Vec<Replied> {
+        let mut replies = Vec::new();
+        let mut place = 0;
+        while place < self.waiting.len() {
+            let due = self.waiting[place].after.as_ref().is_none_or(|after| {
+                let origin = Origin { source: after.brush, epoch: after.epoch };
+                self.consumed(origin) > after.sequence
+            });
+            if due {
+                let request = self.waiting.remove(place);
+                replies.push(self.execute(&request));
+            } else {
+                place += 1;
+            }
+        }
+        replies
+    }
+
+    fn execute(&mut self, request: &CommandRequest) -> Replied {
+        let mut effect = None;
+        let done = match &request.command {
+            Command::Load { brush, mixture } => {
+                self.painting.load(brush, mixture).map(|()| String::new())
+            }
+            Command::Clean { brush } => self.painting.clean(brush).map(|()| String::new()),
+            Command::Take { brush, device, device_epoch, loads } => {
+                self.painting.take(brush, loads).map(|()| {
+                    let take = Announced { device: *device, epoch: *device_epoch };
+                    self.announced.insert(brush.clone(), take);
+                    String::new()
+                })
+            }
+            Command::Undo => self.painting.undo(),
+            Command::Redo => self.painting.redo(),
+            Command::Snapshot { path, ledger } => {
+                effect = Some(Effect::Snapshot { path: path.clone(), ledger: ledger.clone() });
+                Ok(path.clone())
+            }
+            Command::Place { surface, pose, zoom } => {
+                self.painting.place(*surface, pose, *zoom).map(|()| String::new())
+            }
+            Command::Mark => Ok(String::new()),
+        };
+        let (client, number) = (request.client, request.number);
+        let outcome = match done {
+            Ok(detail) => {
+                let command = request.command.clone();
+                let journal = self.enter(Entry::Command { client, number, command });
+                Outcome::Done { journal, detail }
+            }
+            Err(PaintRefusal { what, help }) => Outcome::Refused { what, help },
+        };
+        self.remember(client, number, outcome.clone());
+        Replied { client, number, outcome, effect }
+    }
+
+    /// Keeps what became of a command, also when its effect failed after all.
+    pub fn remember(&mut self, client: u64, number: u64, outcome: Outcome) {
+        if self.answered.len() >= CLIENTS && !self.answered.contains_key(&client) {
+            self.answered.pop_first();
+        }
+        self.answered.insert(client, (number, outcome));
+    }
+}

@@ -1,0 +1,197 @@
+//! The scene of a new painting.
+
+use maulstick_optics::{PaintLibrary, Spectrum};
+use maulstick_types::scene::{CANVAS, Light, PALETTE, Scene, Surface, Well, WellKind};
+use maulstick_types::{Mixture, Pose};
+
+use crate::painting::PaintRefusal;
+
+/// Grounds by name: internal reflectance, the same at every wavelength. Acrylic gesso is titanium
+/// white and chalk in a lean binder.
+pub const GROUNDS: [(&str, f64); 3] = [("gesso", 0.95), ("grey", 0.35), ("black", 0.03)];
+
+/// Paints in the wells of a new palette.
+pub const PALETTE_PAINTS: [&str; 10] = [
+    "Titanium White",
+    "Hansa Yellow Opaque",
+    "Cadmium Orange",
+    "Pyrrole Red",
+    "Quinacridone Magenta",
+    "Ultramarine Blue",
+    "Phthalo Green Blue Shade",
+    "Yellow Ochre",
+    "Burnt Sienna",
+    "Bone Black",
+];
+
+/// Cells of the palette, across and up.
+const PALETTE_CELLS: [u32; 2] = [512, 1024];
+/// Radius of its wells, cells, and their distance from its left edge.
+const WELL_CELLS: f64 = 36.0;
+/// Gap between palette and canvas on the desk, m.
+const GAP_M: f64 = 0.01;
+
+/// What a new painting is made with.
+#[derive(Clone, Debug, PartialEq)]
+pub struct PaintingSetup {
+    /// Cells of the canvas, across and up.
+    pub cells: [u32; 2],
+    /// Side of a cell, m.
+    pub cell_m: f64,
+    /// Name of the ground, one of [`GROUNDS`].
+    pub ground: String,
+    /// Name of the tooth.
+    pub tooth: String,
+    /// Seed of the tooth.
+    pub tooth_seed: u64,
+    /// What the palette's wells hold, from the top.
+    pub wells: Vec<Mixture>,
+}
+
+impl Default for PaintingSetup {
+    fn default() -> Self {
+        Self {
+            cells: [1024, 1024],
+            cell_m: 2.5e-4,
+            ground: "gesso".to_owned(),
+            tooth: "linen".to_owned(),
+            tooth_seed: 1,
+            wells: PALETTE_PAINTS.iter().map(|name| Mixture::pure(name)).collect(),
+        }
+    }
+}
+
+impl PaintingSetup {
+    /// Checks sizes, the ground's name and the wells' paints.
+    ///
+    /// # Errors
+    /// [`PaintRefusal`] with what to do.
+    pub fn check(&self, library: &PaintLibrary) -> Result<(), PaintRefusal> {
+        if self.cells.iter().any(|cells| !(1..=65_536).contains(cells)) {
+            return Err(PaintRefusal::new(
+                format!("a canvas of {}×{} cells", self.cells[0], self.cells[1]),
+                "choose 1 to 65536 cells either way",
+            ));
+        }
+        if !(1e-5..=1e-2).contains(&self.cell_m) {
+            return Err(PaintRefusal::new(
+                format!("cells of {} mm", self.cell_m * 1e3),
+                "choose .01 to 10 mm",
+            ));
+        }
+        ground_reflectance(&self.ground)?;
+        for mixture in &self.wells {
+            library.check(mixture).map_err(PaintRefusal::paint)?;
+        }
+        Ok(())
+    }
+
+    /// The scene: the canvas in the middle of the desk, the palette to its left.
+    #[must_use]
+    pub fn scene(&self) -> Scene {
+        let size = self.cells.map(|cells| f64::from(cells) * self.cell_m);
+        let palette = PALETTE_CELLS.map(|cells| f64::from(cells) * self.cell_m);
+        let at = |x: f64, y: f64| Pose { position_m: [x, y, 0.0], ..Pose::IDENTITY };
+        let surface = |id: u32, pose: Pose, cells: [u32; 2]| Surface {
+            id,
+            pose,
+            zoom: 1.0,
+            cells,
+            cell_m: self.cell_m,
+            ground: self.ground.clone(),
+            tooth: self.tooth.clone(),
+            tooth_seed: self.tooth_seed,
+            wells: Vec::new(),
+        };
+        let canvas = surface(CANVAS, at(-0.5 * size[0], -0.5 * size[1]), self.cells);
+        let left = -0.5 * size[0] - GAP_M - palette[0];
+        let mut board = surface(PALETTE, at(left, -0.5 * palette[1]), PALETTE_CELLS);
+        board.ground = "grey".to_owned();
+        board.tooth = "panel".to_owned();
+        board.wells = self.wells();
+        let light = Light {
+            direction: [-0.5, 0.5, 0.5f64.sqrt()],
+            intensity: 1.0,
+            illuminant: "D65".to_owned(),
+        };
+        Scene { version: 1, surfaces: vec![canvas, board], paints: Vec::new(), light }
+    }
+
+    /// Wells along the left edge, the cleaner in the lower right corner.
+    fn wells(&self) -> Vec<Well> {
+        let radius_m = WELL_CELLS * self.cell_m;
+        let count = self.wells.len().max(1) as f64;
+        let place = |i: usize| {
+            let y = f64::from(PALETTE_CELLS[1]) * (1.0 - (i as f64 + 0.5) / count);
+            [1.5 * radius_m, y * self.cell_m]
+        };
+        let mut wells: Vec<Well> = self
+            .wells
+            .iter()
+            .enumerate()
+            .map(|(i, mixture)| Well {
+                center_m: place(i),
+                radius_m,
+                kind: WellKind::Paint { mixture: mixture.clone() },
+            })
+            .collect();
+        let corner = [f64::from(PALETTE_CELLS[0]) * self.cell_m - 1.5 * radius_m, 1.5 * radius_m];
+        wells.push(Well { center_m: corner, radius_m, kind: WellKind::Cleaner });
+        wells
+    }
+}
+
+/// The internal reflectance of a ground.
+///
+/// # Errors
+/// [`PaintRefusal`] with the names that there are.
+pub fn ground_reflectance(name: &str) -> Result<Spectrum, PaintRefusal> {
+    GROUNDS
+        .iter()
+        .find(|(ground, _)| *ground == name)
+        .map(|(_, reflectance)| Spectrum::flat(*reflectance))
+        .ok_or_else(|| {
+            let names = GROUNDS.map(|(ground, _)| ground).join(", ");
+            PaintRefusal::new(
+                format!("there is no ground called '{name}'"),
+                &format!("choose one of {names}"),
+            )
+        })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn canvas_and_palette_do_not_overlap_and_wells_lie_on_the_palette() {
+        let setup = PaintingSetup::default();
+        let scene = setup.scene();
+        let [canvas, palette] = &scene.surfaces[..] else { panic!("two surfaces") };
+        let right = palette.pose.position_m[0] + f64::from(palette.cells[0]) * palette.cell_m;
+        assert!(right < canvas.pose.position_m[0]);
+        assert_eq!(palette.wells.len(), 11);
+        for well in &palette.wells {
+            for i in 0..2 {
+                let size = f64::from(palette.cells[i]) * palette.cell_m;
+                assert!(well.center_m[i] > well.radius_m && well.center_m[i] < size - well.radius_m);
+            }
+        }
+    }
+
+    #[test]
+    fn a_bad_setup_says_what_to_do() {
+        let library = PaintLibrary::measured().expect("whole");
+        let check = |change: fn(&mut PaintingSetup)| {
+            let mut setup = PaintingSetup::default();
+            change(&mut setup);
+            setup.check(&library)
+        };
+        assert_eq!(check(|_| {}), Ok(()));
+        assert!(check(|s| s.cells = [0, 10]).is_err());
+        assert!(check(|s| s.cell_m = f64::NAN).is_err());
+        let error = check(|s| s.ground = "gesoo".into()).expect_err("unknown");
+        assert!(error.help.contains("gesso"));
+        assert!(check(|s| s.wells = vec![Mixture::pure("Blue")]).is_err());
+    }
+}

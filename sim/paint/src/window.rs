@@ -1,0 +1,157 @@
+//! A window: leased tiles copied into contiguous planes, on which the kernels work.
+
+use maulstick_types::paint::TILE;
+
+use crate::quantum::SLOTS;
+use crate::store::{TileRect, TileStore};
+use crate::tile::{Tile, TileId, Version};
+
+/// The planes of a rectangle of tiles, row after row from the bottom.
+#[derive(Debug)]
+pub struct Window {
+    rect: TileRect,
+    width: usize,
+    height: usize,
+    wet: [Option<Vec<f32>>; SLOTS],
+    dirty: Vec<bool>,
+}
+
+impl Window {
+    /// Leases `rect` and copies its tiles; none where it is leased already.
+    pub fn open(store: &mut TileStore, rect: TileRect) -> Option<Self> {
+        if !store.lease(&rect) {
+            return None;
+        }
+        let [width, height] = rect.cells();
+        let tiles = rect.tiles().count();
+        let mut window =
+            Self { rect, width, height, wet: [const { None }; SLOTS], dirty: vec![false; tiles] };
+        for id in rect.tiles() {
+            let Some(tile) = &store.version(id).tile else { continue };
+            let start = window.corner(id);
+            for (slot, plane) in tile.wet() {
+                let to = window.wet[*slot].get_or_insert_with(|| vec![0.0; width * height]);
+                for (row, cells) in plane.chunks_exact(TILE).enumerate() {
+                    to[start + row * width..][..TILE].copy_from_slice(cells);
+                }
+            }
+        }
+        Some(window)
+    }
+
+    /// The tiles.
+    #[must_use]
+    pub fn rect(&self) -> TileRect {
+        self.rect
+    }
+
+    /// Cells across.
+    #[must_use]
+    pub fn width(&self) -> usize {
+        self.width
+    }
+
+    /// Cells up.
+    #[must_use]
+    pub fn height(&self) -> usize {
+        self.height
+    }
+
+    /// The surface's cell at the window's lower left corner.
+    #[must_use]
+    pub fn origin(&self) -> [i64; 2] {
+        self.rect.from.map(|tile| i64::from(tile) * TILE as i64)
+    }
+
+    /// The plane of a slot, made if it is not there.
+    pub fn plane_mut(&mut self, slot: usize) -> &mut Vec<f32> {
+        let cells = self.width * self.height;
+        self.wet[slot].get_or_insert_with(|| vec![0.0; cells])
+    }
+
+    /// The planes in use, in order of slot.
+    pub fn planes(&self) -> impl Iterator<Item = (usize, &[f32])> {
+        self.wet.iter().enumerate().filter_map(|(slot, plane)| Some((slot, plane.as_deref()?)))
+    }
+
+    /// Counts of all paints in a cell.
+    #[must_use]
+    pub fn total(&self, cell: usize) -> f32 {
+        self.wet.iter().flatten().map(|plane| plane[cell]).sum()
+    }
+
+    /// Remembers that cells `from`..`to` (of the window) change.
+    pub fn touch(&mut self, from: [usize; 2], to: [usize; 2]) {
+        let across = self.width / TILE;
+        for y in from[1] / TILE..to[1].div_ceil(TILE) {
+            for x in from[0] / TILE..to[0].div_ceil(TILE) {
+                self.dirty[y * across + x] = true;
+            }
+        }
+    }
+
+    /// Writes the changed tiles back as new versions, numbered from `next` on, and reports each
+    /// with the version that it replaced.
+    pub fn commit(
+        &mut self,
+        store: &mut TileStore,
+        next: &mut u64,
+        mut replaced: impl FnMut(TileId, Version),
+    ) {
+        for (place, id) in self.rect.tiles().enumerate() {
+            if !std::mem::take(&mut self.dirty[place]) {
+                continue;
+            }
+            let start = self.corner(id);
+            let planes = self.wet.iter().enumerate().filter_map(|(slot, plane)| {
+                let plane = plane.as_ref()?;
+                let mut cells = Vec::with_capacity(TILE * TILE);
+                for row in 0..TILE {
+                    cells.extend_from_slice(&plane[start + row * self.width..][..TILE]);
+                }
+                Some((slot, cells.into_boxed_slice()))
+            });
+            let tile = Some(std::sync::Arc::new(Tile::new(planes)));
+            *next += 1;
+            replaced(id, store.replace(id, Version { number: *next, tile }));
+        }
+    }
+
+    /// Gives the tiles back; what was not committed is gone.
+    pub fn close(self, store: &mut TileStore) {
+        store.release(&self.rect);
+    }
+
+    fn corner(&self, id: TileId) -> usize {
+        let x = (id.x - self.rect.from[0]) as usize * TILE;
+        let y = (id.y - self.rect.from[1]) as usize * TILE;
+        y * self.width + x
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_is_written_through_a_window_is_read_through_another() {
+        let mut store = TileStore::new([200, 200]);
+        let mut next = 0;
+        let rect = TileRect { from: [1, 0], to: [3, 2] };
+        let mut window = Window::open(&mut store, rect).expect("free");
+        let cell = 70 * window.width() + 65;
+        window.plane_mut(3)[cell] = 5.0;
+        window.touch([65, 70], [66, 71]);
+        let mut changed = Vec::new();
+        window.commit(&mut store, &mut next, |id, _| changed.push(id));
+        assert_eq!(changed, vec![TileId { x: 2, y: 1 }]);
+        window.close(&mut store);
+        assert_eq!(store.counts()[3], 5);
+        let whole = TileRect { from: [0, 0], to: [4, 4] };
+        let window = Window::open(&mut store, whole).expect("free again");
+        let (slot, plane) = window.planes().next().expect("one plane");
+        assert_eq!((slot, plane[70 * window.width() + 64 + 65]), (3, 5.0));
+        assert_eq!(store.version(TileId { x: 2, y: 1 }).number, next);
+        assert!(Window::open(&mut store, whole).is_none(), "leases are exclusive");
+    }
+}
