@@ -15,7 +15,7 @@
 //! film_um = 150.0          # of a freshly loaded head
 //! ```
 
-use serde::Deserialize;
+use serde::{Deserialize, Serialize};
 
 use crate::spine::Spine;
 
@@ -49,7 +49,7 @@ pub enum BrushError {
 }
 
 /// The head's shape.
-#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Head {
     /// Widest, mm.
@@ -61,7 +61,7 @@ pub struct Head {
 }
 
 /// The spine's springs.
-#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct SpineSection {
     /// Number of joints.
@@ -71,7 +71,7 @@ pub struct SpineSection {
 }
 
 /// Contact with the surface.
-#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct ContactSection {
     /// Coefficient of friction.
@@ -79,7 +79,7 @@ pub struct ContactSection {
 }
 
 /// What the head carries.
-#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct LoadSection {
     /// Film on a freshly loaded head, µm.
@@ -87,7 +87,7 @@ pub struct LoadSection {
 }
 
 /// A brush file.
-#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct BrushFile {
     /// What kind of brush it is.
@@ -147,6 +147,14 @@ impl BrushFile {
     /// As [`BrushFile::library_text`].
     pub fn library(kind: &str) -> Result<Self, BrushError> {
         Self::parse(Self::library_text(kind)?)
+    }
+
+    /// As a file, which [`parse`](Self::parse) reads back to the same brush.
+    ///
+    /// # Errors
+    /// [`BrushError::File`] where a value cannot be written as TOML.
+    pub fn to_toml(&self) -> Result<String, BrushError> {
+        toml::to_string(self).map_err(|error| BrushError::File(error.to_string()))
     }
 
     fn check(&self) -> Result<(), BrushError> {
@@ -233,6 +241,7 @@ mod tests {
         for (name, _) in LIBRARY {
             let brush = BrushFile::library(name).expect(name);
             assert_eq!(brush.kind, name);
+            assert_eq!(BrushFile::parse(&brush.to_toml().expect("text")), Ok(brush.clone()));
             let double = brush.scaled_to(2.0 * brush.head.width_mm).expect("scaled");
             assert!((double.surface_m2() / brush.surface_m2() - 4.0).abs() < 1e-9);
             assert!((double.length_m() / brush.length_m() - 2.0).abs() < 1e-12);

@@ -107,6 +107,12 @@ impl Sequencer {
         self.consumed.get(&brush).copied().unwrap_or(0)
     }
 
+    /// What is consumed of every brush's states.
+    #[must_use]
+    pub fn consumed_all(&self) -> Vec<(Origin, u64)> {
+        self.consumed.iter().map(|(origin, next)| (*origin, *next)).collect()
+    }
+
     /// Accepts a state, which must come in order, and then the commands that waited for it.
     ///
     /// A state of a replayed take that nobody announced paints nothing.

@@ -142,7 +142,9 @@ impl<M: Message> CreditReceiver<M> {
         let replay = header.flags.has(Flags::REPLAY);
         let first = header.flags.has(Flags::FIRST);
         if !self.streams.contains_key(&origin) {
+            // The sender has started anew: what is left of its stream before means nothing now.
             self.streams.retain(|other, _| other.source != origin.source);
+            self.ready.retain(|left| left.header.source != origin.source);
             let next = (first || !replay).then_some(header.seq);
             let topic = key.to_owned();
             let stream = Stream {

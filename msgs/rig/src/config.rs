@@ -1,0 +1,387 @@
+//! The settings of a rig: `rig.toml`, with the defaults of `default.toml`.
+
+use std::collections::BTreeMap;
+use std::path::Path;
+
+use maulstick_types::topics::check_name;
+use serde::{Deserialize, Serialize};
+
+use crate::fault::Fault;
+
+/// The commented default.
+pub const DEFAULT: &str = include_str!("default.toml");
+/// Drivers of devices.
+pub const DRIVERS: [&str; 1] = ["simulated"];
+/// Paint models.
+pub const MODELS: [&str; 1] = ["deposit"];
+/// Backends of the paint model.
+pub const BACKENDS: [&str; 2] = ["auto", "cpu"];
+/// Priority of the mouse over the window.
+pub const MOUSE_PRIORITY: i32 = -100;
+/// Priority of a device that `rig.toml` does not name.
+pub const FOREIGN_PRIORITY: i32 = 0;
+/// Priority of a played take.
+pub const PLAYER_PRIORITY: i32 = i32::MAX;
+
+/// `[rig]`.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct RigSection {
+    /// Name of the rig.
+    pub name: String,
+}
+
+/// `[canvas]`.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct CanvasSection {
+    /// Width, mm.
+    pub width_mm: f64,
+    /// Height, mm.
+    pub height_mm: f64,
+    /// Side of a cell, mm.
+    pub cell_mm: f64,
+    /// Name of the tooth.
+    pub tooth: String,
+    /// Seed of the tooth.
+    pub tooth_seed: u64,
+    /// Name of the ground.
+    pub ground: String,
+}
+
+impl Default for CanvasSection {
+    fn default() -> Self {
+        Self {
+            width_mm: 256.0,
+            height_mm: 256.0,
+            cell_mm: 0.25,
+            tooth: "linen".into(),
+            tooth_seed: 1,
+            ground: "gesso".into(),
+        }
+    }
+}
+
+impl CanvasSection {
+    /// Cells across and up.
+    #[must_use]
+    pub fn cells(&self) -> [u32; 2] {
+        [self.width_mm, self.height_mm].map(|mm| (mm / self.cell_mm).round() as u32)
+    }
+}
+
+/// `[palette]`.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct PaletteSection {
+    /// Mixtures in the wells.
+    pub wells: Vec<String>,
+}
+
+/// `[[device]]`.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct DeviceSection {
+    /// Name in the topics.
+    pub name: String,
+    /// One of [`DRIVERS`].
+    pub driver: String,
+    /// Of devices in range the highest paints.
+    #[serde(default)]
+    pub priority: i32,
+    /// The brush that it moves.
+    pub brush: String,
+    /// Device frame to desk frame, m.
+    #[serde(default)]
+    pub position_m: [f64; 3],
+    /// Device frame to desk frame, a unit quaternion.
+    #[serde(default = "no_turn")]
+    pub orientation: [f64; 4],
+    /// Largest force, N.
+    #[serde(default = "default_force")]
+    pub max_force_n: f64,
+    /// Points of the pressure curve.
+    #[serde(default = "straight_curve")]
+    pub pressure_curve: Vec<[f64; 2]>,
+}
+
+fn no_turn() -> [f64; 4] {
+    [0.0, 0.0, 0.0, 1.0]
+}
+
+fn default_force() -> f64 {
+    3.0
+}
+
+fn straight_curve() -> Vec<[f64; 2]> {
+    vec![[0.0, 0.0], [1.0, 1.0]]
+}
+
+/// `[[brush]]`.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct BrushSection {
+    /// Name in the topics.
+    pub name: String,
+    /// A brush of the library, or a path to a brush file.
+    pub kind: String,
+    /// Width of the head, mm.
+    pub size_mm: f64,
+    /// Share of the head's length that full pressure presses in.
+    #[serde(default = "half")]
+    pub depth_share: f64,
+}
+
+fn half() -> f64 {
+    0.5
+}
+
+/// `[paint]`.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct PaintSection {
+    /// One of [`MODELS`].
+    pub model: String,
+    /// One of [`BACKENDS`].
+    pub backend: String,
+}
+
+impl Default for PaintSection {
+    fn default() -> Self {
+        Self { model: "deposit".into(), backend: "auto".into() }
+    }
+}
+
+/// When a node is started again.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Restart {
+    /// When it fails, at most three times in ten seconds.
+    #[default]
+    OnFailure,
+    /// Never.
+    Never,
+}
+
+/// `[node.NAME]`.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct NodeSection {
+    /// When it is started again.
+    pub restart: Restart,
+}
+
+/// A rig.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct RigConfig {
+    /// The rig itself.
+    pub rig: RigSection,
+    /// The canvas.
+    #[serde(default)]
+    pub canvas: CanvasSection,
+    /// The palette.
+    #[serde(default)]
+    pub palette: PaletteSection,
+    /// Devices with a driver of their own.
+    #[serde(default)]
+    pub device: Vec<DeviceSection>,
+    /// Brushes; the first is that of the mouse and of foreign devices.
+    #[serde(default)]
+    pub brush: Vec<BrushSection>,
+    /// The paint.
+    #[serde(default)]
+    pub paint: PaintSection,
+    /// Nodes by name.
+    #[serde(default)]
+    pub node: BTreeMap<String, NodeSection>,
+}
+
+impl Default for RigConfig {
+    fn default() -> Self {
+        #[expect(clippy::expect_used, reason = "the file is part of the crate and tested")]
+        Self::parse(DEFAULT, "default.toml").expect("the built-in default is valid")
+    }
+}
+
+impl RigConfig {
+    /// Reads a file.
+    ///
+    /// # Errors
+    /// A [`Fault`] with the line.
+    pub fn read(path: &Path) -> Result<Self, Fault> {
+        let text =
+            std::fs::read_to_string(path).map_err(|error| Fault::file(path, &error, false))?;
+        Self::parse(&text, &path.display().to_string())
+    }
+
+    /// Reads a text; `name` is how errors call it.
+    ///
+    /// # Errors
+    /// A [`Fault`] with the line.
+    pub fn parse(text: &str, name: &str) -> Result<Self, Fault> {
+        let mut config: Self =
+            toml::from_str(text).map_err(|error| toml_fault(text, name, &error))?;
+        if config.brush.is_empty() {
+            config.brush.push(BrushSection {
+                name: "main".into(),
+                kind: "round".into(),
+                size_mm: 10.0,
+                depth_share: 0.5,
+            });
+        }
+        config.check(text, name)?;
+        Ok(config)
+    }
+
+    /// As the file that nodes read.
+    ///
+    /// # Errors
+    /// A [`Fault`] where a value cannot be written as TOML.
+    pub fn to_toml(&self) -> Result<String, Fault> {
+        toml::to_string(self).map_err(|error| Fault::failure(error.to_string()))
+    }
+
+    /// The brush called `name`.
+    #[must_use]
+    pub fn brush_named(&self, name: &str) -> Option<&BrushSection> {
+        self.brush.iter().find(|brush| brush.name == name)
+    }
+
+    fn check(&self, text: &str, name: &str) -> Result<(), Fault> {
+        let fault = |what: String, word: &str| {
+            Fault::usage(what).at(format!("{name}:{}", line_of(text, word)))
+        };
+        let names = [&self.rig.name]
+            .into_iter()
+            .chain(self.device.iter().map(|device| &device.name))
+            .chain(self.brush.iter().map(|brush| &brush.name));
+        for word in names {
+            check_name(word).map_err(|what| {
+                fault(format!("the name {what}"), word).help("choose another name")
+            })?;
+        }
+        for (place, device) in self.device.iter().enumerate() {
+            if self.device[..place].iter().any(|other| other.name == device.name) {
+                return Err(fault(format!("two devices are called '{}'", device.name), &device.name)
+                    .help("give each its own name"));
+            }
+            choose("driver", &device.driver, &DRIVERS).map_err(|(what, help)| {
+                fault(what, &device.driver).help(help)
+            })?;
+            if self.brush_named(&device.brush).is_none() {
+                let names = self.brush.iter().map(|brush| brush.name.as_str());
+                let (what, help) = unknown("brush", &device.brush, names);
+                return Err(fault(what, &device.brush).help(help));
+            }
+            let numbers = device.position_m.iter().chain(&device.orientation);
+            if !numbers.chain([&device.max_force_n]).all(|value| value.is_finite()) {
+                return Err(fault(format!("a number of '{}' is not finite", device.name), &device.name)
+                    .help("write plain numbers"));
+            }
+        }
+        for brush in &self.brush {
+            if !(0.1..=300.0).contains(&brush.size_mm) {
+                return Err(fault(format!("size_mm = {} of '{}'", brush.size_mm, brush.name), "size_mm")
+                    .help("choose 0.1 to 300"));
+            }
+            if !(0.0..=0.9).contains(&brush.depth_share) {
+                let what = format!("depth_share = {} of '{}'", brush.depth_share, brush.name);
+                return Err(fault(what, "depth_share").help("choose 0 to 0.9"));
+            }
+        }
+        let canvas = &self.canvas;
+        for (key, value) in [("width_mm", canvas.width_mm), ("height_mm", canvas.height_mm)] {
+            let cells = value / canvas.cell_mm;
+            if !(canvas.cell_mm > 0.0 && (0.5..=65_536.0).contains(&cells)) {
+                return Err(fault(format!("{key} = {value} with cells of {} mm", canvas.cell_mm), key)
+                    .help("choose a size of 1 to 65536 cells"));
+            }
+        }
+        choose("paint model", &self.paint.model, &MODELS)
+            .and_then(|()| choose("backend", &self.paint.backend, &BACKENDS))
+            .map_err(|(what, help)| fault(what, "[paint]").help(help))
+    }
+}
+
+fn unknown<'a>(
+    kind: &str,
+    name: &str,
+    names: impl Iterator<Item = &'a str> + Clone,
+) -> (String, String) {
+    let all = names.clone().collect::<Vec<_>>().join(", ");
+    let nearest = Fault::nearest(name, names).unwrap_or_default();
+    (
+        format!("there is no {kind} called '{name}'"),
+        format!("did you mean '{nearest}'? There are: {all}"),
+    )
+}
+
+fn choose(kind: &str, name: &str, names: &[&'static str]) -> Result<(), (String, String)> {
+    if names.contains(&name) { Ok(()) } else { Err(unknown(kind, name, names.iter().copied())) }
+}
+
+/// The line, from 1, on which `word` first stands.
+fn line_of(text: &str, word: &str) -> usize {
+    text.lines().position(|line| line.contains(word)).map_or(1, |place| place + 1)
+}
+
+/// A fault of the TOML reader, with its line, and the nearest key where a key is unknown.
+#[must_use]
+pub fn toml_fault(text: &str, name: &str, error: &toml::de::Error) -> Fault {
+    let start = error.span().map_or(0, |span| span.start.min(text.len()));
+    let line = text[..start].matches('\n').count() + 1;
+    let message = error.message();
+    let fault = Fault::usage(message.lines().next().unwrap_or(message)).at(format!("{name}:{line}"));
+    let quoted: Vec<&str> = message.split('`').skip(1).step_by(2).collect();
+    match quoted.as_slice() {
+        [key, keys @ ..] if message.starts_with("unknown field") && !keys.is_empty() => {
+            let nearest = Fault::nearest(key, keys.iter().copied()).unwrap_or_default();
+            Fault { what: format!("unknown key '{key}'"), ..fault }
+                .help(format!("did you mean '{nearest}'? There are: {}", keys.join(", ")))
+        }
+        _ => fault.help("see the commented default: `maulstick up --print-config`"),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn error(from: &str, to: &str) -> String {
+        assert!(DEFAULT.contains(from), "{from}");
+        RigConfig::parse(&DEFAULT.replace(from, to), "rig.toml").expect_err(to).to_string()
+    }
+
+    #[test]
+    fn the_default_is_valid_and_survives_writing() {
+        let config = RigConfig::default();
+        assert_eq!(config.canvas.cells(), [1024, 1024]);
+        assert_eq!(config.canvas, CanvasSection::default());
+        let again = RigConfig::parse(&config.to_toml().expect("text"), "rig.toml");
+        assert_eq!(again, Ok(config));
+    }
+
+    #[test]
+    fn a_misspelt_key_or_name_gets_its_line_and_the_nearest_one() {
+        let text = error("cell_mm = 0.25 ", "cel_mm = 0.25 ");
+        assert!(text.contains("unknown key 'cel_mm'") && text.contains("'cell_mm'"), "{text}");
+        assert!(text.contains("rig.toml:11"), "{text}");
+        let text = error("driver = \"simulated\"", "driver = \"simulted\"");
+        assert!(text.contains("no driver called 'simulted'"), "{text}");
+        assert!(text.contains("did you mean 'simulated'") && text.contains("rig.toml:28"), "{text}");
+        let text = error("brush = \"main\"", "brush = \"mian\"");
+        assert!(text.contains("'mian'") && text.contains("'main'"), "{text}");
+        assert!(error("model = \"deposit\"", "model = \"depsoit\"").contains("'deposit'"));
+    }
+
+    #[test]
+    fn impossible_numbers_are_refused() {
+        assert!(error("width_mm = 256", "width_mm = -1").contains("width_mm"));
+        assert!(error("cell_mm = 0.25", "cell_mm = 0").contains("cells"));
+        assert!(error("size_mm = 10", "size_mm = nan").contains("size_mm"));
+        assert!(error("name = \"studio\"", "name = \"my studio\"").contains("my studio"));
+        assert!(error("width_mm = 256", "width_mm = \"wide\"").contains("rig.toml:9"));
+        assert!(error("[rig]", "[rig").contains("rig.toml:4"));
+    }
+}

@@ -1,0 +1,111 @@
+//! An error as the user sees it.
+
+use std::fmt;
+
+use maulstick_bus::BusError;
+
+/// Exit code for bad usage and bad input files.
+pub const EXIT_USAGE: i32 = 2;
+/// Exit code for failures.
+pub const EXIT_FAILURE: i32 = 1;
+
+/// What went wrong, where, and what to do about it.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Fault {
+    /// What.
+    pub what: String,
+    /// A file with its line, or a topic.
+    pub place: Option<String>,
+    /// What to do.
+    pub help: Option<String>,
+    /// [`EXIT_USAGE`] or [`EXIT_FAILURE`].
+    pub code: i32,
+}
+
+impl Fault {
+    /// Bad usage or a bad input file.
+    #[must_use]
+    pub fn usage(what: impl Into<String>) -> Self {
+        Self { what: what.into(), place: None, help: None, code: EXIT_USAGE }
+    }
+
+    /// A failure.
+    #[must_use]
+    pub fn failure(what: impl Into<String>) -> Self {
+        Self { what: what.into(), place: None, help: None, code: EXIT_FAILURE }
+    }
+
+    /// Says where.
+    #[must_use]
+    pub fn at(mut self, place: impl Into<String>) -> Self {
+        self.place = Some(place.into());
+        self
+    }
+
+    /// Says what to do.
+    #[must_use]
+    pub fn help(mut self, help: impl Into<String>) -> Self {
+        self.help = Some(help.into());
+        self
+    }
+
+    /// A file that cannot be read (an input file) or written (a failure).
+    #[must_use]
+    pub fn file(path: &std::path::Path, error: &std::io::Error, writing: bool) -> Self {
+        let (verb, fault): (_, fn(String) -> Self) =
+            if writing { ("write", Self::failure) } else { ("read", Self::usage) };
+        let help = match error.kind() {
+            std::io::ErrorKind::NotFound if writing => "the folder must exist",
+            std::io::ErrorKind::NotFound => "check the path",
+            std::io::ErrorKind::PermissionDenied => "check the permissions",
+            std::io::ErrorKind::StorageFull => "free some space",
+            _ => "check the path and the disk",
+        };
+        fault(format!("cannot {verb} the file: {error}")).at(path.display().to_string()).help(help)
+    }
+
+    /// The nearest of `names` to `name`.
+    #[must_use]
+    pub fn nearest<'a>(name: &str, names: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
+        names
+            .into_iter()
+            .max_by(|a, b| strsim::jaro_winkler(a, name).total_cmp(&strsim::jaro_winkler(b, name)))
+    }
+}
+
+impl fmt::Display for Fault {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "error: {}", self.what)?;
+        if let Some(place) = &self.place {
+            write!(f, "\n  --> {place}")?;
+        }
+        if let Some(help) = &self.help {
+            write!(f, "\n help: {help}")?;
+        }
+        Ok(())
+    }
+}
+
+impl std::error::Error for Fault {}
+
+impl From<BusError> for Fault {
+    fn from(error: BusError) -> Self {
+        match error {
+            BusError::Open { at, reason } => Self::failure(format!("cannot join the rig: {reason}"))
+                .at(at)
+                .help("see that the rig is running and that its folder is yours"),
+            BusError::Topic { topic, reason } => Self::failure(reason)
+                .at(topic)
+                .help("the node was restarted or the rig has stopped: look at `maulstick up`"),
+            BusError::NoAnswer { topic, limit_ms } => {
+                Self::failure(format!("no answer within {limit_ms} ms"))
+                    .at(topic)
+                    .help("see whether that node runs")
+            }
+            BusError::Message { topic, source } => Self::failure(source.to_string())
+                .at(topic)
+                .help("all nodes of a rig must be of the same build"),
+            BusError::Folder { reason, help } => Self::failure(reason).help(help),
+        }
+    }
+}

@@ -1,0 +1,18 @@
+//! `rig.toml`, and how a process of a rig lives.
+//!
+//! | module | holds |
+//! | --- | --- |
+//! | [`config`] | the settings of a rig |
+//! | [`fault`] | an error as the user sees it: what, where, what to do |
+//! | [`member`] | joining a rig, living in it, leaving it |
+//! | [`stop`] | when to stop: a signal, or the launcher's end |
+
+pub mod config;
+pub mod fault;
+pub mod member;
+pub mod stop;
+
+pub use config::RigConfig;
+pub use fault::Fault;
+pub use member::{Member, MemberArgs};
+pub use stop::Stop;

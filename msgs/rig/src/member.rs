@@ -1,0 +1,138 @@
+//! Joining a rig, living in it, leaving it.
+
+use std::path::PathBuf;
+use std::sync::Arc;
+use std::time::Duration;
+
+use maulstick_bus::typed::random_epoch;
+use maulstick_bus::{Bus, Dial, RigClock, RigFolder, Wake, ZenohBus};
+use maulstick_bus::bus::Token;
+use maulstick_types::topics::Topics;
+use maulstick_types::{Origin, name_hash};
+
+use crate::config::RigConfig;
+use crate::fault::Fault;
+use crate::stop::Stop;
+
+/// Socket of the launcher, to which every other process connects first.
+pub const HUB: &str = "hub";
+/// The settings in the rig's folder, as the nodes read them.
+pub const CONFIG_FILE: &str = "rig.toml";
+
+/// Where a process belongs.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct MemberArgs {
+    /// The rig's folder.
+    pub folder: PathBuf,
+    /// Name of the node.
+    pub node: String,
+    /// Whether a launcher holds our standard input open.
+    pub guarded: bool,
+}
+
+/// A process in a rig.
+pub struct Member {
+    /// Its name.
+    pub node: String,
+    /// The bus.
+    pub bus: Arc<dyn Bus>,
+    /// The rig's topics.
+    pub topics: Topics,
+    /// The rig's settings.
+    pub config: RigConfig,
+    /// What rings when there is something to do.
+    pub wake: Wake,
+    /// Whether to stop.
+    pub stop: Stop,
+    session: Arc<ZenohBus>,
+    token: Option<Token>,
+}
+
+impl Member {
+    /// Joins a running rig.
+    ///
+    /// # Errors
+    /// A [`Fault`] where the rig does not run or cannot be reached.
+    pub fn join(args: &MemberArgs) -> Result<Self, Fault> {
+        let (folder, info) = RigFolder::join_at(&args.folder)?;
+        let config = RigConfig::read(&folder.path().join(CONFIG_FILE))?;
+        let dial = Dial {
+            name: args.node.clone(),
+            listen: Some(folder.locator(&args.node)),
+            connect: vec![info.endpoint.clone()],
+        };
+        let session = ZenohBus::open(&dial, RigClock::with_offset(info.clock_offset_ns))?;
+        let session = Arc::new(session);
+        let wake = Wake::new();
+        let system = |error: std::io::Error| Fault::failure(error.to_string());
+        let stop = Stop::on_signals(&wake).map_err(system)?;
+        if args.guarded {
+            stop.on_launcher_end(&wake).map_err(system)?;
+        }
+        Ok(Self {
+            node: args.node.clone(),
+            bus: Arc::clone(&session) as Arc<dyn Bus>,
+            topics: Topics::new(&info.rig),
+            config,
+            wake,
+            stop,
+            session,
+            token: None,
+        })
+    }
+
+    /// Who this process is when it sends as `name`.
+    #[must_use]
+    pub fn origin(&self, name: &str) -> Origin {
+        Origin { source: name_hash(name), epoch: random_epoch() }
+    }
+
+    /// Tells the rig that this node is ready.
+    ///
+    /// # Errors
+    /// A [`Fault`] where the bus is closed.
+    pub fn ready(&mut self) -> Result<(), Fault> {
+        self.token = Some(self.bus.token(&self.topics.node(&self.node))?);
+        Ok(())
+    }
+
+    /// Calls `turn` whenever there is something to do, or after the time that it returned, until
+    /// it is time to stop.
+    ///
+    /// # Errors
+    /// What `turn` returns.
+    pub fn run(
+        &self,
+        mut turn: impl FnMut() -> Result<Duration, Fault>,
+    ) -> Result<(), Fault> {
+        while !self.stop.requested() {
+            let wait = turn()?;
+            self.wake.wait(wait);
+        }
+        Ok(())
+    }
+
+    /// Leaves the rig.
+    pub fn leave(mut self) {
+        self.token = None;
+        self.session.close();
+    }
+}
+
+impl std::fmt::Debug for Member {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("Member").field("node", &self.node).finish_non_exhaustive()
+    }
+}
+
+/// Sends log lines of `level` and above, and of zenoh only errors, to the standard error.
+pub fn log_to_stderr(level: &str) {
+    let filter = format!("zenoh=error,zenoh_transport=off,zenoh_link=off,{level}");
+    tracing_subscriber::fmt()
+        .with_env_filter(tracing_subscriber::EnvFilter::new(filter))
+        .with_writer(std::io::stderr)
+        .without_time()
+        .with_target(false)
+        .try_init()
+        .ok();
+}

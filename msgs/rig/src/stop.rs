@@ -1,0 +1,73 @@
+//! When to stop: a signal, or the launcher's end.
+
+use std::io::Read as _;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::Duration;
+
+use maulstick_bus::Wake;
+use signal_hook::consts::{SIGINT, SIGTERM};
+use signal_hook::iterator::Signals;
+
+/// Whether this process shall stop.
+#[derive(Clone, Debug, Default)]
+pub struct Stop {
+    flag: Arc<AtomicBool>,
+    signal: Arc<AtomicBool>,
+}
+
+impl Stop {
+    /// Watches for SIGTERM and SIGINT, and rings `wake` when they come.
+    ///
+    /// # Errors
+    /// What the system says where signals cannot be watched.
+    pub fn on_signals(wake: &Wake) -> std::io::Result<Self> {
+        let stop = Self::default();
+        let mut signals = Signals::new([SIGTERM, SIGINT])?;
+        let (flag, signal, wake) =
+            (Arc::clone(&stop.flag), Arc::clone(&stop.signal), wake.clone());
+        std::thread::Builder::new().name("signals".into()).spawn(move || {
+            for _ in signals.forever() {
+                signal.store(true, Ordering::SeqCst);
+                flag.store(true, Ordering::SeqCst);
+                wake.ring();
+            }
+        })?;
+        Ok(stop)
+    }
+
+    /// Also stops when the standard input ends, which the launcher holds open: so a node follows
+    /// its launcher even if that was killed. Should the node not stop in time, it is ended.
+    ///
+    /// # Errors
+    /// What the system says where no thread can be started.
+    pub fn on_launcher_end(&self, wake: &Wake) -> std::io::Result<()> {
+        let (flag, wake) = (Arc::clone(&self.flag), wake.clone());
+        std::thread::Builder::new().name("launcher".into()).spawn(move || {
+            let mut byte = [0];
+            while matches!(std::io::stdin().read(&mut byte), Ok(n) if n > 0) {}
+            flag.store(true, Ordering::SeqCst);
+            wake.ring();
+            std::thread::sleep(Duration::from_millis(1500));
+            std::process::exit(crate::fault::EXIT_FAILURE);
+        })?;
+        Ok(())
+    }
+
+    /// Asks to stop.
+    pub fn request(&self) {
+        self.flag.store(true, Ordering::SeqCst);
+    }
+
+    /// Whether to stop.
+    #[must_use]
+    pub fn requested(&self) -> bool {
+        self.flag.load(Ordering::SeqCst)
+    }
+
+    /// Whether a signal asked for it.
+    #[must_use]
+    pub fn by_signal(&self) -> bool {
+        self.signal.load(Ordering::SeqCst)
+    }
+}

@@ -1,0 +1,325 @@
+//! The brush node: stylus samples in; brush states, credit and contact models out.
+
+use std::collections::BTreeMap;
+use std::sync::Arc;
+use std::time::Duration;
+
+use maulstick_brush::{BrushFile, BrushModel};
+use maulstick_bus::credit::Stamp;
+use maulstick_bus::typed::{Received, Receiver, Sender};
+use maulstick_bus::{Bus, BusError, Class, CreditReceiver, CreditSender, Queue, Wake};
+use maulstick_types::brush::{BrushConsumed, BrushDef, BrushState, Solve};
+use maulstick_types::haptics::ContactModel;
+use maulstick_types::paint::PaintConsumed;
+use maulstick_types::scene::Scene;
+use maulstick_types::stylus::{StylusInfo, StylusSample, axes};
+use maulstick_types::topics::Topics;
+use maulstick_types::{Flags, Origin, name_hash};
+
+use crate::arbiter::Arbiter;
+use crate::backlog::{Backlog, Waiting};
+use crate::feel::contact_model;
+
+/// Live, states older than this are not added to: the brush merges, ns.
+const OLDEST_NS: u64 = 50_000_000;
+/// Least time between two contact models, ns.
+const MODEL_PERIOD_NS: u64 = 4_000_000;
+/// Sub-solves of one message at most: below its 60 KiB.
+const SOLVES: usize = 200;
+
+/// What a brush node is told at its start.
+#[derive(Clone, Debug)]
+pub struct BrushSettings {
+    /// Name of the brush.
+    pub name: String,
+    /// Its file, at its size.
+    pub file: BrushFile,
+    /// Share of the head's length that full pressure presses in.
+    pub depth_share: f64,
+    /// The devices that move it, by name, with their priority.
+    pub devices: BTreeMap<String, i32>,
+    /// Devices that move other brushes.
+    pub others: Vec<String>,
+    /// Priority of a device that is in neither list, if it may move this brush.
+    pub foreign_priority: Option<i32>,
+    /// Epoch of this start.
+    pub epoch: u32,
+}
+
+/// The brush node.
+pub struct BrushNode {
+    bus: Arc<dyn Bus>,
+    topics: Topics,
+    wake: Wake,
+    settings: BrushSettings,
+    model: BrushModel,
+    samples: CreditReceiver<StylusSample>,
+    states: CreditSender<BrushState>,
+    credit: Receiver<PaintConsumed>,
+    scene: Receiver<Scene>,
+    scene_version: u64,
+    infos: Receiver<StylusInfo>,
+    consumed: Sender<BrushConsumed>,
+    drives_force: BTreeMap<u32, bool>,
+    models: BTreeMap<String, (Sender<ContactModel>, u64)>,
+    arbiter: Arbiter,
+    backlog: Backlog,
+    progress: BTreeMap<Origin, BrushConsumed>,
+    told: BTreeMap<Origin, u64>,
+    /// The take whose states are being sent.
+    replayed: Option<Origin>,
+    touching: bool,
+    bad: u64,
+    _def: Sender<BrushDef>,
+}
+
+impl BrushNode {
+    /// A node on `bus`; it rings `wake` when there is something to do.
+    ///
+    /// # Errors
+    /// [`BusError`].
+    pub fn new(
+        bus: Arc<dyn Bus>,
+        topics: &Topics,
+        wake: &Wake,
+        settings: BrushSettings,
+    ) -> Result<Self, BusError> {
+        let me = Origin { source: name_hash(&settings.name), epoch: settings.epoch };
+        let b = &*bus;
+        let name = settings.name.as_str();
+        let mut def = Sender::new(b, &topics.brush_def(name), Class::Cached, me)?;
+        let toml = settings.file.to_toml().map_err(|error| BusError::Topic {
+            topic: topics.brush_def(name),
+            reason: error.to_string(),
+        })?;
+        let hash = name_hash(&toml);
+        let now = b.now_ns();
+        def.send(now, now, &BrushDef { brush: name.to_owned(), toml, hash })?;
+        Ok(Self {
+            samples: CreditReceiver::new(b, topics, &topics.sample("*"), me, wake)?,
+            states: CreditSender::new(b, topics, &topics.brush_state(name), me, wake)?,
+            credit: Receiver::new(b, &topics.paint_consumed(), Class::Control, Queue::Ring(64), wake)?,
+            scene: Receiver::new(b, &topics.scene(), Class::Cached, Queue::Ring(16), wake)?,
+            scene_version: 0,
+            infos: Receiver::new(b, &topics.stylus_info("*"), Class::Cached, Queue::Ring(64), wake)?,
+            consumed: Sender::new(b, &topics.brush_consumed(name), Class::Control, me)?,
+            model: BrushModel::new(settings.file.clone(), settings.depth_share),
+            drives_force: BTreeMap::new(),
+            models: BTreeMap::new(),
+            arbiter: Arbiter::default(),
+            backlog: Backlog::default(),
+            progress: BTreeMap::new(),
+            told: BTreeMap::new(),
+            replayed: None,
+            touching: false,
+            bad: 0,
+            _def: def,
+            topics: topics.clone(),
+            wake: wake.clone(),
+            settings,
+            bus,
+        })
+    }
+
+    /// What rings when there is something to do.
+    #[must_use]
+    pub fn wake(&self) -> &Wake {
+        &self.wake
+    }
+
+    /// How many states were sent.
+    #[must_use]
+    pub fn sent(&self) -> u64 {
+        self.states.next_seq()
+    }
+
+    /// Does all there is to do and returns how long to wait at most.
+    ///
+    /// # Errors
+    /// [`BusError`].
+    pub fn turn(&mut self) -> Result<Duration, BusError> {
+        let bus = Arc::clone(&self.bus);
+        let now_ns = bus.now_ns();
+        self.take_in(now_ns);
+        self.samples.poll(&*bus)?;
+        while let Some(received) = self.next_sample() {
+            self.sample(received, now_ns)?;
+        }
+        self.flush(now_ns)?;
+        self.states.serve(now_ns)?;
+        for origin in self.samples.unheard() {
+            self.told.remove(&origin);
+        }
+        self.tell(now_ns)?;
+        Ok(Duration::from_millis(20))
+    }
+
+    /// Scene, credit, and what the devices are.
+    fn take_in(&mut self, now_ns: u64) {
+        while let Some(scene) = self.scene.try_recv() {
+            if scene.message.version >= self.scene_version {
+                self.scene_version = scene.message.version;
+                self.model.set_scene(&scene.message);
+            }
+        }
+        while let Some(credit) = self.credit.try_recv() {
+            let me = self.states.origin();
+            for brush in credit.message.brushes.iter().filter(|b| b.brush == me.source) {
+                self.states.consumed(brush.epoch, brush.next, now_ns);
+            }
+        }
+        while let Some(info) = self.infos.try_recv() {
+            let drives = info.message.drives & axes::FORCE != 0;
+            self.drives_force.insert(name_hash(&info.message.device), drives);
+        }
+    }
+
+    /// The next sample that may be consumed: a replayed one waits for credit, and all wait for a
+    /// scene. A take that is played anew does not wait for what the one before is owed.
+    fn next_sample(&mut self) -> Option<Received<StylusSample>> {
+        let next = self.samples.peek()?;
+        let replayed = next.header.flags.has(Flags::REPLAY);
+        if replayed && next.header.flags.has(Flags::FIRST) {
+            self.states.forgive();
+        }
+        if !self.model.has_scene() || (replayed && !self.states.has_credit()) {
+            return None;
+        }
+        self.samples.next()
+    }
+
+    fn sample(&mut self, received: Received<StylusSample>, now_ns: u64) -> Result<(), BusError> {
+        let origin = received.header.origin();
+        let (seq, event_ns) = (received.header.seq, received.header.event_ns);
+        let device = self.topics.middle(&received.key).unwrap_or_default().to_owned();
+        let Some(priority) = self.priority(&device) else { return Ok(()) };
+        self.note(origin, seq);
+        if let Some(fault) = received.message.fault() {
+            self.bad += 1;
+            if self.bad == 1 {
+                tracing::warn!("{}: sample {seq} is dropped: {fault}", received.key);
+            }
+            return Ok(());
+        }
+        let in_range = received.message.in_range;
+        if !self.arbiter.hear(origin, priority, in_range, now_ns, self.touching) {
+            return Ok(());
+        }
+        if received.header.flags.has(Flags::REPLAY) {
+            let mut flags = Flags::REPLAY;
+            if self.replayed != Some(origin) {
+                self.replayed = Some(origin);
+                self.backlog.take();
+                flags = flags.with(Flags::FIRST);
+            }
+            if let Some(state) = self.model.state(origin, seq, event_ns, &received.message) {
+                self.send(flags, now_ns, &state)?;
+            }
+        } else {
+            let sample = received.message;
+            self.backlog.push(Waiting { origin, seq, event_ns, sample });
+            self.flush(now_ns)?;
+        }
+        self.feel(&device, origin, now_ns)
+    }
+
+    fn priority(&self, device: &str) -> Option<i32> {
+        if self.settings.others.iter().any(|other| other == device) {
+            return None;
+        }
+        self.settings.devices.get(device).copied().or(self.settings.foreign_priority)
+    }
+
+    /// Sends what waits, if paint keeps up; what has waited is one message.
+    fn flush(&mut self, now_ns: u64) -> Result<(), BusError> {
+        let late = self.states.oldest_age_ns(now_ns) > OLDEST_NS;
+        if self.backlog.is_empty() || late || !self.states.has_credit() {
+            return Ok(());
+        }
+        let waiting = self.backlog.take();
+        let Some(last) = waiting.last().cloned() else { return Ok(()) };
+        let solves: Vec<Solve> = waiting
+            .iter()
+            .filter_map(|w| self.model.follow(w.origin, w.event_ns, &w.sample))
+            .collect();
+        let chunks = solves.chunks(SOLVES).count();
+        for (place, solves) in solves.chunks(SOLVES).enumerate() {
+            let flags = if place + 1 < chunks { Flags::CONTINUES } else { Flags::NONE };
+            let state = BrushState {
+                device: last.origin.source,
+                device_epoch: last.origin.epoch,
+                device_seq: last.seq,
+                solves: solves.to_vec(),
+            };
+            self.send(flags, now_ns, &state)?;
+        }
+        Ok(())
+    }
+
+    fn send(&mut self, flags: Flags, now_ns: u64, state: &BrushState) -> Result<(), BusError> {
+        let Some(last) = state.solves.last() else { return Ok(()) };
+        self.touching = !last.contacts.is_empty();
+        let stamp = Stamp { now_ns, event_ns: last.event_ns };
+        let number = self.states.send(flags, stamp, state)?;
+        let origin = Origin { source: state.device, epoch: state.device_epoch };
+        if let Some(progress) = self.progress.get_mut(&origin) {
+            progress.state = number;
+        }
+        Ok(())
+    }
+
+    /// A sample is consumed.
+    fn note(&mut self, origin: Origin, seq: u64) {
+        let me = self.states.origin();
+        self.progress.retain(|other, _| other.source != origin.source || *other == origin);
+        self.told.retain(|other, _| other.source != origin.source || *other == origin);
+        let progress = self.progress.entry(origin).or_insert(BrushConsumed {
+            device: origin.source,
+            device_epoch: origin.epoch,
+            next: 0,
+            brush_epoch: me.epoch,
+            state: self.states.next_seq(),
+        });
+        progress.next = seq + 1;
+    }
+
+    /// Tells devices what is consumed.
+    fn tell(&mut self, now_ns: u64) -> Result<(), BusError> {
+        for (origin, progress) in &self.progress {
+            if self.told.get(origin) != Some(&progress.next) {
+                self.told.insert(*origin, progress.next);
+                self.consumed.send(now_ns, now_ns, progress)?;
+            }
+        }
+        Ok(())
+    }
+
+    /// Gives a force-feedback device its contact model.
+    fn feel(&mut self, device: &str, origin: Origin, now_ns: u64) -> Result<(), BusError> {
+        if self.drives_force.get(&origin.source) != Some(&true) {
+            return Ok(());
+        }
+        let Some(desk) = self.model.desk() else { return Ok(()) };
+        let Some(plane) = desk.plane(maulstick_types::scene::CANVAS) else { return Ok(()) };
+        if !self.models.contains_key(device) {
+            let topic = self.topics.contact_model(device);
+            let me = self.states.origin();
+            let sender = Sender::new(&*self.bus, &topic, Class::RealTime, me)?;
+            self.models.insert(device.to_owned(), (sender, 0));
+        }
+        let model = contact_model(origin, &self.settings.name, self.model.file(), plane);
+        if let Some((sender, sent_ns)) = self.models.get_mut(device)
+            && now_ns >= *sent_ns + MODEL_PERIOD_NS
+        {
+            *sent_ns = now_ns;
+            sender.send(now_ns, now_ns, &model)?;
+        }
+        Ok(())
+    }
+}
+
+impl std::fmt::Debug for BrushNode {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("BrushNode").field("states", &self.states).finish_non_exhaustive()
+    }
+}

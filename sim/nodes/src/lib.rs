@@ -1,0 +1,24 @@
+//! The nodes of the simulation: each decodes, steps and encodes, and knows neither which transport
+//! carries its messages nor what time it is, but for what the bus tells it.
+//!
+//! | module | holds |
+//! | --- | --- |
+//! | [`brush_node`] | stylus samples in, brush states and contact models out |
+//! | [`arbiter`] | which of several devices moves the brush |
+//! | [`backlog`] | what a live brush does while it may not send |
+//! | [`feel`] | the contact model for the hand |
+//! | [`paint_node`] | brush states and commands in, journal and credit out |
+//! | [`frames`] | pictures of what changed, for whoever asks |
+//! | [`offline`] | the same brush and paint in one process, without a bus |
+
+pub mod arbiter;
+pub mod backlog;
+pub mod brush_node;
+pub mod feel;
+pub mod frames;
+pub mod offline;
+pub mod paint_node;
+
+pub use brush_node::{BrushNode, BrushSettings};
+pub use offline::Offline;
+pub use paint_node::PaintNode;

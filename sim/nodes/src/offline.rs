@@ -1,0 +1,104 @@
+//! The same brush and the same paint in one process, without a bus: what `maulstick render` runs.
+//! The messages that would have crossed the bus are handed on directly, so the painting is the
+//! same, byte for byte.
+
+use maulstick_brush::{BrushFile, BrushModel};
+use maulstick_paint::{PaintRefusal, Painting, Sequencer};
+use maulstick_types::command::{Command, CommandRequest, Outcome};
+use maulstick_types::stylus::StylusSample;
+use maulstick_types::{Flags, Header, Message as _, Mixture, Origin, name_hash};
+
+/// Brush and paint, driven by samples.
+#[derive(Debug)]
+pub struct Offline {
+    model: BrushModel,
+    sequencer: Sequencer,
+    brush: String,
+    player: Origin,
+    me: Origin,
+    next: u64,
+    samples: u64,
+    commands: u64,
+}
+
+impl Offline {
+    /// A brush called `brush` over a painting; each stroke takes the next of `loads` in turn.
+    ///
+    /// # Errors
+    /// [`PaintRefusal`] where a load is wrong.
+    pub fn new(
+        painting: Painting,
+        brush: &str,
+        file: BrushFile,
+        depth_share: f64,
+        loads: Vec<Mixture>,
+    ) -> Result<Self, PaintRefusal> {
+        let mut model = BrushModel::new(file.clone(), depth_share);
+        model.set_scene(painting.scene());
+        let mut sequencer = Sequencer::new(painting);
+        sequencer.painting_mut().define_brush(brush, file);
+        let player = Origin { source: name_hash("player"), epoch: 1 };
+        let me = Origin { source: name_hash(brush), epoch: 1 };
+        let mut offline = Self {
+            model,
+            sequencer,
+            brush: brush.to_owned(),
+            player,
+            me,
+            next: 0,
+            samples: 0,
+            commands: 0,
+        };
+        let (device, device_epoch) = (player.source, player.epoch);
+        offline.command(Command::Take { brush: brush.to_owned(), device, device_epoch, loads })?;
+        Ok(offline)
+    }
+
+    /// Does a command now.
+    ///
+    /// # Errors
+    /// [`PaintRefusal`] where the painting refuses it.
+    pub fn command(&mut self, command: Command) -> Result<(), PaintRefusal> {
+        self.commands += 1;
+        let request = CommandRequest { client: 1, number: self.commands, after: None, command };
+        match self.sequencer.command(request).outcome {
+            Outcome::Refused { what, help } => Err(PaintRefusal { what, help }),
+            _ => Ok(()),
+        }
+    }
+
+    /// Follows one sample.
+    ///
+    /// # Errors
+    /// [`PaintRefusal`] where the painting refuses its state.
+    pub fn sample(&mut self, event_ns: u64, sample: &StylusSample) -> Result<(), PaintRefusal> {
+        let number = self.samples;
+        self.samples += 1;
+        if sample.fault().is_some() {
+            return Ok(());
+        }
+        let Some(state) = self.model.state(self.player, number, event_ns, sample) else {
+            return Ok(());
+        };
+        let header = Header {
+            version: maulstick_types::brush::BrushState::VERSION,
+            schema: 0,
+            source: self.me.source,
+            epoch: self.me.epoch,
+            flags: Flags::REPLAY,
+            length: 0,
+            seq: self.next,
+            event_ns,
+            sent_ns: event_ns,
+        };
+        self.next += 1;
+        self.sequencer.state(&self.brush, &header, &state)?;
+        self.sequencer.drain_journal();
+        Ok(())
+    }
+
+    /// The painting.
+    pub fn painting_mut(&mut self) -> &mut Painting {
+        self.sequencer.painting_mut()
+    }
+}
