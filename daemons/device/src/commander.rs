@@ -1,0 +1,76 @@
+//! Commands to the paint node, repeated with the same number until they are answered.
+
+use std::sync::Arc;
+use std::time::{Duration, Instant};
+
+use maulstick_bus::typed::{ask, random_epoch, random_u64};
+use maulstick_bus::{Bus, BusError};
+use maulstick_rig::Fault;
+use maulstick_types::command::{After, Command, CommandReply, CommandRequest, Outcome};
+use maulstick_types::topics::Topics;
+use maulstick_types::{Origin, name_hash};
+
+/// A query for a command waits this long before it is asked again.
+const ASK: Duration = Duration::from_secs(2);
+
+/// A client of the paint node.
+pub struct Commander {
+    bus: Arc<dyn Bus>,
+    topic: String,
+    client: u64,
+    number: u64,
+    me: Origin,
+}
+
+impl Commander {
+    /// A client with a number of its own.
+    #[must_use]
+    pub fn new(bus: Arc<dyn Bus>, topics: &Topics) -> Self {
+        let me = Origin { source: name_hash("commander"), epoch: random_epoch() };
+        Self { bus, topic: topics.command("paint"), client: random_u64(), number: 0, me }
+    }
+
+    /// Sends a command and waits until it is done or refused, at most for `patience`; gives up
+    /// early where `stop` says so.
+    ///
+    /// # Errors
+    /// A [`Fault`] with the node's own words where it is refused, or where nobody answers.
+    pub fn send(
+        &mut self,
+        command: Command,
+        after: Option<After>,
+        patience: Duration,
+        stop: &dyn Fn() -> bool,
+    ) -> Result<String, Fault> {
+        self.number += 1;
+        let number = self.number;
+        let request = CommandRequest { client: self.client, number, after, command };
+        let give_up = Instant::now() + patience;
+        loop {
+            let asked = Instant::now();
+            let limit = ASK.min(patience);
+            match ask::<_, CommandReply>(&*self.bus, &self.topic, self.me, &request, limit) {
+                Ok(CommandReply { outcome: Outcome::Done { detail, .. }, .. }) => return Ok(detail),
+                Ok(CommandReply { outcome: Outcome::Refused { what, help }, .. }) => {
+                    return Err(Fault::usage(what).at(self.topic.clone()).help(help));
+                }
+                Ok(CommandReply { outcome: Outcome::Waiting, .. })
+                | Err(BusError::NoAnswer { .. }) => {}
+                Err(error) => return Err(error.into()),
+            }
+            if Instant::now() >= give_up || stop() {
+                return Err(Fault::failure("the paint node does not answer")
+                    .at(self.topic.clone())
+                    .help("see whether it runs: `maulstick up` shows its nodes"));
+            }
+            // A node that is not there yet answers at once with nothing.
+            std::thread::sleep(Duration::from_millis(20).saturating_sub(asked.elapsed()));
+        }
+    }
+}
+
+impl std::fmt::Debug for Commander {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("Commander").field("topic", &self.topic).finish_non_exhaustive()
+    }
+}

@@ -1,0 +1,249 @@
+//! A take: the samples of a stylus as an MCAP file, one channel `stylus/<device>/sample` whose
+//! messages are those of the bus, header and all. `log_time` is the time since the take's start.
+
+use std::fs::File;
+use std::io::{BufReader, BufWriter};
+use std::path::Path;
+
+use maulstick_rig::Fault;
+use maulstick_types::stylus::StylusSample;
+use maulstick_types::{Flags, Message as _, Origin, decode, encode, name_hash};
+use mcap::records::MessageHeader;
+use mcap::sans_io::LinearReaderOptions;
+
+/// Encoding of the messages: the bus's own header and body.
+pub const MESSAGE_ENCODING: &str = "x-maulstick";
+/// Encoding of the schemas: a field table as JSON.
+pub const SCHEMA_ENCODING: &str = "x-maulstick-fields+json";
+
+/// A sample and when it was taken.
+#[derive(Clone, Debug, PartialEq)]
+pub struct TakeSample {
+    /// Since the take's start, ns.
+    pub time_ns: u64,
+    /// The sample.
+    pub sample: StylusSample,
+}
+
+/// The samples of one stylus, in order of time.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Take {
+    /// Name of the device.
+    pub device: String,
+    /// At least one.
+    pub samples: Vec<TakeSample>,
+}
+
+/// What a damaged take still holds.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Salvage {
+    /// The whole samples before the damage.
+    pub take: Take,
+    /// What is wrong, if anything.
+    pub damage: Option<String>,
+}
+
+impl Take {
+    /// Length from the first sample to the last, ns.
+    #[must_use]
+    pub fn length_ns(&self) -> u64 {
+        match (self.samples.first(), self.samples.last()) {
+            (Some(first), Some(last)) => last.time_ns - first.time_ns,
+            _ => 0,
+        }
+    }
+
+    /// Reads a take.
+    ///
+    /// # Errors
+    /// A [`Fault`] where the file cannot be read, is damaged, or holds no samples of one stylus.
+    pub fn read(path: &Path) -> Result<Self, Fault> {
+        let salvage = Self::salvage(path)?;
+        match salvage.damage {
+            None => Ok(salvage.take),
+            Some(damage) => {
+                let (count, name) = (salvage.take.samples.len(), path.display());
+                Err(Fault::usage(format!("the take is damaged: {damage}"))
+                    .at(name.to_string())
+                    .help(format!(
+                        "{count} samples before the damage are whole: \
+                         `maulstick take recover {name} -o whole.mcap` keeps them"
+                    )))
+            }
+        }
+    }
+
+    /// Reads as much of a take as is whole.
+    ///
+    /// # Errors
+    /// A [`Fault`] where the file cannot be read, is no MCAP file, or holds nothing whole.
+    pub fn salvage(path: &Path) -> Result<Salvage, Fault> {
+        let place = path.display().to_string();
+        let fault = |what: String, help: &str| Fault::usage(what).at(place.clone()).help(help);
+        let file = File::open(path).map_err(|error| Fault::file(path, &error, false))?;
+        let options = LinearReaderOptions::default();
+        let reader = mcap::io::MessageReader::new_with_options(BufReader::new(file), options);
+        let mut devices: Vec<Take> = Vec::new();
+        let mut damage = None;
+        let mut last_ns = 0;
+        for (number, message) in reader.enumerate() {
+            let message = match message {
+                Ok(message) => message,
+                Err(mcap::McapError::BadMagic) if number == 0 => {
+                    return Err(fault("this is no MCAP file".into(), "`maulstick import` makes takes from tables of strokes"));
+                }
+                Err(error) => {
+                    damage = Some(error.to_string());
+                    break;
+                }
+            };
+            let Some(device) = device_of(&message.channel.topic) else { continue };
+            let sample = match decode::<StylusSample>(&message.data) {
+                Ok((_, sample)) => sample,
+                Err(error) => {
+                    damage = Some(format!("message {number}: {error}"));
+                    break;
+                }
+            };
+            if message.log_time < last_ns {
+                damage = Some(format!("message {number}: time runs backward"));
+                break;
+            }
+            last_ns = message.log_time;
+            if let Some(what) = sample.fault() {
+                damage = Some(format!("message {number}: {what}"));
+                break;
+            }
+            let sample = TakeSample { time_ns: message.log_time, sample };
+            match devices.iter_mut().find(|take| take.device == device) {
+                Some(take) => take.samples.push(sample),
+                None => devices.push(Take { device: device.to_owned(), samples: vec![sample] }),
+            }
+        }
+        let mut devices = devices.into_iter();
+        match (devices.next(), devices.next()) {
+            (Some(take), None) => Ok(Salvage { take, damage }),
+            (None, _) => Err(match damage {
+                Some(damage) => fault(
+                    format!("the take is damaged from its start: {damage}"),
+                    "nothing of it can be recovered",
+                ),
+                None => fault(
+                    "the file holds no stylus samples".into(),
+                    "a take has a topic stylus/<device>/sample",
+                ),
+            }),
+            (Some(one), Some(two)) => Err(fault(
+                format!("the take holds samples of '{}' and '{}'", one.device, two.device),
+                "play takes of one stylus",
+            )),
+        }
+    }
+
+    /// Writes the take: whole under its name, or not at all.
+    ///
+    /// # Errors
+    /// A [`Fault`] where the file cannot be written.
+    pub fn write(&self, path: &Path) -> Result<(), Fault> {
+        let mut beside = path.file_name().unwrap_or_default().to_os_string();
+        beside.push(format!(".{}.tmp", std::process::id()));
+        let beside = path.with_file_name(beside);
+        let write = || -> Result<(), std::io::Error> {
+            let file = BufWriter::new(File::create(&beside)?);
+            self.write_to(file).map_err(std::io::Error::other)?;
+            File::open(&beside)?.sync_all()?;
+            std::fs::rename(&beside, path)
+        };
+        write().map_err(|error| {
+            std::fs::remove_file(&beside).ok();
+            Fault::file(path, &error, true)
+        })
+    }
+
+    fn write_to(&self, file: BufWriter<File>) -> mcap::McapResult<()> {
+        let mut writer = mcap::WriteOptions::new()
+            .profile("maulstick")
+            .library(concat!("maulstick ", env!("CARGO_PKG_VERSION")))
+            .compression(Some(mcap::Compression::Zstd))
+            .compression_threads(0)
+            .create(file)?;
+        let fields = serde_json::to_vec(StylusSample::schema()).unwrap_or_default();
+        let schema = writer.add_schema("StylusSample/1", SCHEMA_ENCODING, &fields)?;
+        let topic = format!("stylus/{}/sample", self.device);
+        let no_metadata = std::collections::BTreeMap::new();
+        let channel_id = writer.add_channel(schema, &topic, MESSAGE_ENCODING, &no_metadata)?;
+        let origin = Origin { source: name_hash(&self.device), epoch: 1 };
+        for (number, TakeSample { time_ns, sample }) in self.samples.iter().enumerate() {
+            let flags = if number == 0 { Flags::FIRST } else { Flags::NONE };
+            let bytes = encode(&origin, flags, number as u64, *time_ns, *time_ns, sample)
+                .map_err(|error| mcap::McapError::Io(std::io::Error::other(error)))?;
+            let header = MessageHeader {
+                channel_id,
+                sequence: number as u32,
+                log_time: *time_ns,
+                publish_time: *time_ns,
+            };
+            writer.write_to_known_channel(&header, &bytes)?;
+        }
+        writer.finish()?;
+        Ok(())
+    }
+}
+
+/// `pen` of `stylus/pen/sample`, with or without a rig's prefix.
+fn device_of(topic: &str) -> Option<&str> {
+    let mut parts = topic.rsplit('/');
+    match (parts.next(), parts.next(), parts.next()) {
+        (Some("sample"), Some(device), Some("stylus")) => Some(device),
+        _ => None,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn take() -> Take {
+        let sample = |i: u64| TakeSample {
+            time_ns: i * 8_000_000,
+            sample: StylusSample { switches: i as u32, ..StylusSample::away() },
+        };
+        Take { device: "pen".into(), samples: (0..5000).map(sample).collect() }
+    }
+
+    #[test]
+    fn what_is_written_is_read_and_twice_the_same() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let paths = [folder.path().join("a.mcap"), folder.path().join("b.mcap")];
+        for path in &paths {
+            take().write(path).expect("written");
+        }
+        assert_eq!(Take::read(&paths[0]), Ok(take()));
+        let bytes = paths.map(|path| std::fs::read(path).expect("read"));
+        assert!(bytes[0] == bytes[1]);
+    }
+
+    #[test]
+    fn a_truncated_take_says_what_is_whole_wherever_it_ends() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let path = folder.path().join("a.mcap");
+        take().write(&path).expect("written");
+        let whole = std::fs::read(&path).expect("read");
+        for keep in (1..whole.len()).step_by(whole.len() / 97) {
+            std::fs::write(&path, &whole[..keep]).expect("cut");
+            let fault = Take::read(&path).expect_err("cut").to_string();
+            assert!(fault.contains("a.mcap") && fault.contains("help"), "{keep}: {fault}");
+        }
+    }
+
+    #[test]
+    fn other_files_are_refused() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let path = folder.path().join("a.mcap");
+        std::fs::write(&path, "0.1 2 3 4\n".repeat(50)).expect("written");
+        assert!(Take::read(&path).expect_err("a table").what.contains("no MCAP"));
+        std::fs::write(&path, "").expect("written");
+        assert!(Take::read(&path).is_err());
+        assert!(Take::read(&folder.path().join("none")).expect_err("none").what.contains("read"));
+    }
+}

@@ -1,0 +1,217 @@
+//! The thread that talks to the rig: samples and status out, models in.
+
+use std::path::PathBuf;
+use std::time::Duration;
+
+use glam::DQuat;
+use maulstick_brush::BrushFile;
+use maulstick_bus::credit::Stamp;
+use maulstick_bus::typed::{Receiver, Sender};
+use maulstick_bus::{Class, CreditSender, Queue};
+use maulstick_device::Take;
+use maulstick_haptics::contact::Contact;
+use maulstick_haptics::Limits;
+use maulstick_num::geometry::{Rigid, canonical};
+use maulstick_rig::config::DeviceSection;
+use maulstick_rig::{Fault, Member};
+use maulstick_types::Flags;
+use maulstick_types::haptics::ContactModel;
+use maulstick_types::stylus::{StylusInfo, StylusPose, StylusSample, StylusStatus};
+
+use crate::driver::Driver;
+use crate::host::{BINS, Delivery, Host, Ticked, bin};
+use crate::simulated::Simulated;
+
+/// What a haptic daemon is told.
+#[derive(Clone, Debug)]
+pub struct HapticSettings {
+    /// The device's section of `rig.toml`.
+    pub device: DeviceSection,
+    /// A take that a simulated hand follows.
+    pub hand: Option<PathBuf>,
+}
+
+/// Time between two statuses, ns.
+const STATUS_PERIOD_NS: u64 = 100_000_000;
+/// Out of range a sample goes out only this often, ns.
+const IDLE_PERIOD_NS: u64 = 50_000_000;
+
+/// Runs a device in the rig of `member`.
+///
+/// # Errors
+/// A [`Fault`] where the device or the rig cannot be used.
+pub fn run(member: &mut Member, settings: &HapticSettings) -> Result<(), Fault> {
+    let mut daemon = Daemon::new(member, settings)?;
+    member.ready()?;
+    member.run(|| daemon.turn())
+}
+
+struct Daemon {
+    bus: std::sync::Arc<dyn maulstick_bus::Bus>,
+    host: Host,
+    to_desk: Rigid,
+    senses: u32,
+    brush: String,
+    samples: CreditSender<StylusSample>,
+    models: Receiver<ContactModel>,
+    status: Sender<StylusStatus>,
+    _info: Sender<StylusInfo>,
+    offset_ns: u64,
+    told: StylusStatus,
+    deliveries: u64,
+    status_ns: u64,
+    published_ns: u64,
+    was_in_range: bool,
+}
+
+fn driver(member: &Member, settings: &HapticSettings) -> Result<Box<dyn Driver>, Fault> {
+    let Some(path) = &settings.hand else { return Ok(Box::new(Simulated::at_rest())) };
+    let take = Take::read(path)?;
+    let section = member
+        .config
+        .brush_named(&settings.device.brush)
+        .ok_or_else(|| Fault::usage(format!("no brush '{}'", settings.device.brush)))?;
+    let file = BrushFile::library(&section.kind)
+        .and_then(|file| file.scaled_to(section.size_mm))
+        .map_err(|error| Fault::usage(error.to_string()))?;
+    Ok(Box::new(Simulated::following(&take, file.length_m(), section.depth_share)))
+}
+
+impl Daemon {
+    fn new(member: &Member, settings: &HapticSettings) -> Result<Self, Fault> {
+        let device = &settings.device;
+        let driver = driver(member, settings)?;
+        let abilities = driver.abilities();
+        let limits = Limits {
+            max_force_n: device.max_force_n.min(abilities.max_force_n),
+            max_stiffness_n_m: abilities.max_stiffness_n_m,
+            ..Limits::default()
+        };
+        let host = Host::start(driver, limits)
+            .map_err(|error| Fault::failure(format!("the servo cannot start: {error}")))?;
+        for warning in &host.warnings {
+            tracing::warn!("{}: {warning}", device.name);
+        }
+        let (bus, topics) = (&*member.bus, &member.topics);
+        let origin = member.origin(&device.name);
+        let now = bus.now_ns();
+        let mut info = Sender::new(bus, &topics.stylus_info(&device.name), Class::Cached, origin)?;
+        let told = StylusInfo {
+            device: device.name.clone(),
+            driver: device.driver.clone(),
+            brush: device.brush.clone(),
+            priority: device.priority,
+            senses: abilities.senses,
+            drives: abilities.drives,
+            rate_hz: 1000.0,
+            max_force_n: limits.max_force_n,
+            max_stiffness_n_m: limits.max_stiffness_n_m,
+            workspace_m: abilities.workspace_m,
+        };
+        info.send(now, now, &told)?;
+        let monotonic = nix::time::clock_gettime(nix::time::ClockId::CLOCK_MONOTONIC)
+            .map_or(0, |t| t.tv_sec() as u64 * 1_000_000_000 + t.tv_nsec() as u64);
+        let [x, y, z, w] = device.orientation;
+        let topic = topics.contact_model(&device.name);
+        Ok(Self {
+            to_desk: Rigid {
+                rotation: canonical(DQuat::from_xyzw(x, y, z, w)),
+                translation: device.position_m.into(),
+            },
+            senses: abilities.senses,
+            brush: device.brush.clone(),
+            samples: CreditSender::new(bus, topics, &topics.sample(&device.name), origin, &member.wake)?,
+            models: Receiver::new(bus, &topic, Class::RealTime, Queue::Latest, &member.wake)?,
+            status: Sender::new(bus, &topics.stylus_status(&device.name), Class::Background, origin)?,
+            _info: info,
+            offset_ns: bus.now_ns() - monotonic,
+            told: StylusStatus {
+                samples: 0,
+                dropped: 0,
+                faults: Vec::new(),
+                lateness: vec![0; BINS],
+                execution: vec![0; BINS],
+                force_n: 0.0,
+                foreign_models: 0,
+            },
+            deliveries: 0,
+            status_ns: 0,
+            published_ns: 0,
+            was_in_range: false,
+            host,
+            bus: member.bus.clone(),
+        })
+    }
+
+    fn turn(&mut self) -> Result<Duration, Fault> {
+        let now_ns = self.bus.now_ns();
+        self.deliver();
+        while let Ok(ticked) = self.host.ticks.pop() {
+            self.publish(&ticked, now_ns)?;
+        }
+        // Nobody waits for credit on a live device; the ring is there for who missed something.
+        self.samples.forgive();
+        self.samples.serve(now_ns)?;
+        if now_ns >= self.status_ns + STATUS_PERIOD_NS {
+            self.status_ns = now_ns;
+            self.status.send(now_ns, now_ns, &self.told)?;
+        }
+        Ok(Duration::from_millis(1))
+    }
+
+    /// Hands the newest model to the servo, if it is meant for this device as it is now.
+    fn deliver(&mut self) {
+        let Some(received) = self.models.newest() else { return };
+        let (me, model) = (self.samples.origin(), received.message);
+        if model.device != me.source || model.device_epoch != me.epoch || model.brush != self.brush {
+            self.told.foreign_models += 1;
+            return;
+        }
+        match Contact::new(&model) {
+            Ok(contact) => {
+                self.deliveries += 1;
+                self.host.models.write(Delivery {
+                    contact: Some(contact),
+                    sender: Some(received.header.origin()),
+                    number: self.deliveries,
+                });
+            }
+            Err(what) => {
+                self.told.foreign_models += 1;
+                if self.told.foreign_models == 1 {
+                    tracing::warn!("{}: a contact model is dropped: {what}", received.key);
+                }
+            }
+        }
+    }
+
+    fn publish(&mut self, ticked: &Ticked, now_ns: u64) -> Result<(), Fault> {
+        self.told.lateness[bin(ticked.late_ns)] += 1;
+        self.told.execution[bin(ticked.spent_ns)] += 1;
+        self.told.force_n = ticked.force.length();
+        if ticked.latched && self.told.faults.is_empty() {
+            self.told.faults.push("a reading was not finite: force is off until re-armed".into());
+        }
+        let event_ns = ticked.monotonic_ns + self.offset_ns;
+        let reading = &ticked.reading;
+        let left = self.was_in_range && !reading.in_range;
+        self.was_in_range = reading.in_range;
+        if !reading.in_range && !left && event_ns < self.published_ns + IDLE_PERIOD_NS {
+            return Ok(());
+        }
+        self.published_ns = event_ns;
+        let in_device =
+            Rigid { rotation: reading.held.orientation, translation: reading.held.position };
+        let sample = StylusSample {
+            senses: self.senses,
+            pose: StylusPose::Ferrule { pose: self.to_desk.after(&in_device).to_pose() },
+            velocity_m_s: self.to_desk.vector(reading.held.velocity).to_array(),
+            force_n: self.to_desk.vector(ticked.force).to_array(),
+            switches: reading.switches,
+            in_range: reading.in_range,
+        };
+        self.told.samples += 1;
+        self.samples.send(Flags::NONE, Stamp { now_ns, event_ns }, &sample)?;
+        Ok(())
+    }
+}

@@ -1,0 +1,151 @@
+//! A device and a hand, simulated: the hand follows a take and feels the force; without a take it
+//! rests beside the desk, out of range.
+
+use glam::{DQuat, DVec3};
+use maulstick_brush::desk::{ferrule, pen_orientation};
+use maulstick_device::Take;
+use maulstick_haptics::contact::Held;
+use maulstick_haptics::{Hand, Plant};
+use maulstick_types::stylus::{DEFAULT_TILT_RAD, axes};
+
+use crate::driver::{Abilities, Driver, Reading};
+
+/// Where the hand rests, desk frame, m.
+const REST: DVec3 = DVec3::new(0.2, -0.2, 0.1);
+
+/// Where the hand wants to be at a time.
+#[derive(Clone, Copy, Debug)]
+struct Target {
+    time_s: f64,
+    position: DVec3,
+    orientation: DQuat,
+    switches: u32,
+    in_range: bool,
+}
+
+/// The simulated device.
+#[derive(Debug)]
+pub struct Simulated {
+    plant: Plant,
+    force: DVec3,
+    targets: Vec<Target>,
+    next: usize,
+    time_s: f64,
+}
+
+impl Simulated {
+    /// A hand at rest.
+    #[must_use]
+    pub fn at_rest() -> Self {
+        Self {
+            plant: Plant::omni(Hand::PEN_GRIP, REST),
+            force: DVec3::ZERO,
+            targets: Vec::new(),
+            next: 0,
+            time_s: 0.0,
+        }
+    }
+
+    /// A hand that follows a take with a brush whose head is `head_length_m` long.
+    #[must_use]
+    pub fn following(take: &Take, head_length_m: f64, depth_share: f64) -> Self {
+        let start_ns = take.samples.first().map_or(0, |first| first.time_ns);
+        let targets: Vec<Target> = take
+            .samples
+            .iter()
+            .map(|s| {
+                let rigid = ferrule(&s.sample, head_length_m, depth_share, DVec3::Z);
+                Target {
+                    time_s: (s.time_ns - start_ns) as f64 * 1e-9,
+                    position: rigid.translation,
+                    orientation: rigid.rotation,
+                    switches: s.sample.switches,
+                    in_range: s.sample.in_range,
+                }
+            })
+            .collect();
+        let start = targets.first().map_or(REST, |first| first.position);
+        let mut simulated = Self::at_rest();
+        simulated.plant = Plant::omni(Hand::PEN_GRIP, start);
+        simulated.targets = targets;
+        simulated
+    }
+
+    fn target(&mut self) -> Target {
+        while self.next + 1 < self.targets.len() && self.targets[self.next + 1].time_s <= self.time_s
+        {
+            self.next += 1;
+        }
+        let over = self.targets.last().is_none_or(|last| self.time_s > last.time_s);
+        let rest = Target {
+            time_s: 0.0,
+            position: REST,
+            orientation: pen_orientation(DEFAULT_TILT_RAD, 0.0),
+            switches: 0,
+            in_range: false,
+        };
+        if over { rest } else { self.targets[self.next] }
+    }
+}
+
+impl Driver for Simulated {
+    fn abilities(&self) -> Abilities {
+        Abilities {
+            senses: axes::POSITION | axes::ORIENTATION | axes::VELOCITY | axes::SWITCHES,
+            drives: axes::FORCE,
+            max_force_n: self.plant.max_force_n,
+            max_stiffness_n_m: 500.0,
+            workspace_m: [-0.3, -0.3, -0.05, 0.3, 0.3, 0.3],
+        }
+    }
+
+    fn read(&mut self, dt: f64) -> Reading {
+        let target = self.target();
+        self.plant.advance(self.force, target.position, dt);
+        self.time_s += dt;
+        Reading {
+            held: Held {
+                position: self.plant.position(),
+                orientation: target.orientation,
+                velocity: self.plant.velocity(),
+            },
+            switches: target.switches,
+            in_range: target.in_range,
+        }
+    }
+
+    fn write(&mut self, force: DVec3) {
+        self.force = force;
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use maulstick_device::demo::performance;
+
+    use super::*;
+
+    #[test]
+    fn a_free_hand_follows_its_take_with_the_lag_of_its_grip() {
+        let take = performance(1);
+        let mut device = Simulated::following(&take, 0.025, 0.5);
+        let (mut sum, mut count) = (0.0, 0);
+        for tick in 0..10_000 {
+            let reading = device.read(1e-3);
+            let target = device.target();
+            if tick > 500 && reading.in_range {
+                sum += (reading.held.position - target.position).length();
+                count += 1;
+            }
+        }
+        // Damping over stiffness is 19 ms of lag, at about 0.1 m/s.
+        assert!(count > 9000 && sum / f64::from(count) < 0.005, "{} m", sum / f64::from(count));
+    }
+
+    #[test]
+    fn without_a_take_it_rests_out_of_range() {
+        let mut device = Simulated::at_rest();
+        let reading = (0..1000).map(|_| device.read(1e-3)).last().expect("a reading");
+        assert!(!reading.in_range && (reading.held.position - REST).length() < 1e-3);
+    }
+}
