@@ -154,11 +154,13 @@ fn draw(hand: &mut Hand, samples: &mut Vec<TakeSample>, start_s: f64, stroke: &S
     let phases = [TAU * hand.chance(), TAU * hand.chance()];
     for step in 0..=steps {
         let t = step as f64 / steps as f64;
-        let at = spline(&stroke.points, minimum_jerk(t));
+        let s = minimum_jerk(t);
+        let at = spline(&stroke.points, s);
         // The hand trembles at about 9 Hz by a tenth of a millimetre.
         let tremor = |phase: f64| 1e-4 * sin(phase + TAU * 9.0 * step as f64 / RATE_HZ);
         let at = [at[0] + tremor(phases[0]), at[1] + tremor(phases[1])];
-        let swell = (5.0 * t).min(1.0).min(3.5 * (1.0 - t)).max(0.0);
+        // The brush is set down and lifted while it moves: a press at rest would leave a hook.
+        let swell = (6.0 * s).min(1.0).min(4.0 * (1.0 - s)).max(0.0);
         let pressure = stroke.pressure * swell * (0.9 + 0.1 * cos(TAU * t));
         samples.push(pen(start_s + step as f64 / RATE_HZ, at, pressure.clamp(0.0, 1.0)));
     }

@@ -2,7 +2,7 @@
 
 use std::io::Read as _;
 use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::atomic::{AtomicBool, AtomicI32, Ordering};
 use std::time::Duration;
 
 use maulstick_bus::Wake;
@@ -13,7 +13,8 @@ use signal_hook::iterator::Signals;
 #[derive(Clone, Debug, Default)]
 pub struct Stop {
     flag: Arc<AtomicBool>,
-    signal: Arc<AtomicBool>,
+    /// The signal that asked for it, 0 if none did.
+    signal: Arc<AtomicI32>,
 }
 
 impl Stop {
@@ -27,8 +28,8 @@ impl Stop {
         let (flag, signal, wake) =
             (Arc::clone(&stop.flag), Arc::clone(&stop.signal), wake.clone());
         std::thread::Builder::new().name("signals".into()).spawn(move || {
-            for _ in signals.forever() {
-                signal.store(true, Ordering::SeqCst);
+            for number in signals.forever() {
+                signal.store(number, Ordering::SeqCst);
                 flag.store(true, Ordering::SeqCst);
                 wake.ring();
             }
@@ -68,6 +69,16 @@ impl Stop {
     /// Whether a signal asked for it.
     #[must_use]
     pub fn by_signal(&self) -> bool {
-        self.signal.load(Ordering::SeqCst)
+        self.signal.load(Ordering::SeqCst) != 0
+    }
+
+    /// The exit code after a stop: `interrupted` after Ctrl-C, 128 + SIGTERM after that, else 0.
+    #[must_use]
+    pub fn exit_code(&self, interrupted: i32) -> i32 {
+        match self.signal.load(Ordering::SeqCst) {
+            0 => 0,
+            SIGINT => interrupted,
+            other => 128 + other,
+        }
     }
 }

@@ -79,6 +79,19 @@ pub fn write_whole(
     })
 }
 
+/// Sees, before the work that fills it, whether a file can be written.
+///
+/// # Errors
+/// What the file system says.
+pub fn check_writable(path: &Path) -> Result<(), Error> {
+    if path.is_dir() {
+        return Err(Error::from(std::io::ErrorKind::IsADirectory));
+    }
+    let beside = beside(path);
+    File::create(&beside)?;
+    std::fs::remove_file(&beside)
+}
+
 impl Picture {
     /// Writes a PNG: 8 bits a channel, marked as sRGB.
     ///

@@ -1,0 +1,5 @@
+//! The haptic process of a rig.
+
+fn main() {
+    maulstick::finish(maulstick::nodes::haptic());
+}

@@ -1,0 +1,5 @@
+//! The paint process of a rig.
+
+fn main() {
+    maulstick::finish(maulstick::nodes::paint());
+}

@@ -1,0 +1,5 @@
+//! The player process of a rig.
+
+fn main() {
+    maulstick::finish(maulstick::nodes::player());
+}

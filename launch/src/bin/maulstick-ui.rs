@@ -1,0 +1,5 @@
+//! The window of a rig.
+
+fn main() {
+    maulstick::finish(maulstick::nodes::ui());
+}

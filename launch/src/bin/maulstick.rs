@@ -1,0 +1,5 @@
+//! The command.
+
+fn main() {
+    maulstick::finish(maulstick::cli::run());
+}

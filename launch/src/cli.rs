@@ -1,0 +1,66 @@
+//! The command line of `maulstick`.
+
+use clap::{Parser, Subcommand};
+use maulstick_rig::Fault;
+
+use crate::commands::{bench, demo, endpoint, import, paints, render, schema, take};
+use crate::up;
+
+/// A painting rig that you can feel
+#[derive(Parser, Debug)]
+#[command(name = "maulstick", version, max_term_width = 100)]
+struct Cli {
+    #[command(subcommand)]
+    command: Command,
+}
+
+#[derive(Subcommand, Debug)]
+enum Command {
+    /// Starts a rig and keeps it running
+    Up(up::UpOptions),
+    /// Paints a take without a rig
+    Render(render::RenderOptions),
+    /// Makes a take of a table of strokes
+    Import(import::ImportOptions),
+    /// Makes a take of a performance from a seed
+    Demo(demo::DemoOptions),
+    /// Shows or repairs takes
+    #[command(subcommand)]
+    Take(take::TakeCommand),
+    /// Tells a program in any language how to join a running rig
+    Endpoint(endpoint::EndpointOptions),
+    /// Prints the messages of the rig
+    Schema(schema::SchemaOptions),
+    /// Lists the paints
+    Paints(paints::PaintsOptions),
+    /// Measures, beside peers
+    Bench(bench::BenchOptions),
+}
+
+/// Runs the command line and returns the exit code.
+///
+/// # Errors
+/// A [`Fault`] as the user sees it.
+pub fn run() -> Result<i32, Fault> {
+    match Cli::parse().command {
+        Command::Up(options) => up::run(&options),
+        Command::Render(options) => render::run(&options),
+        Command::Import(options) => import::run(&options),
+        Command::Demo(options) => demo::run(&options),
+        Command::Take(command) => take::run(&command),
+        Command::Endpoint(options) => endpoint::run(&options),
+        Command::Schema(options) => schema::run(&options),
+        Command::Paints(options) => paints::run(&options),
+        Command::Bench(options) => bench::run(&options),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use clap::CommandFactory as _;
+
+    #[test]
+    fn the_command_line_is_consistent() {
+        super::Cli::command().debug_assert();
+    }
+}

@@ -1,0 +1,45 @@
+//! `maulstick bench`: starts the benchmarks, which live in a program of their own with their peers.
+
+use std::path::PathBuf;
+use std::process::Command;
+
+use clap::Args;
+use maulstick_rig::Fault;
+
+/// Options of `maulstick bench`.
+#[derive(Args, Clone, Debug)]
+pub struct BenchOptions {
+    /// What to measure; everything if absent
+    area: Option<String>,
+    /// As JSON
+    #[arg(long)]
+    json: bool,
+}
+
+/// Runs the benchmarks.
+///
+/// # Errors
+/// A [`Fault`] where they are not built.
+pub fn run(options: &BenchOptions) -> Result<i32, Fault> {
+    let program = beside("maulstick-bench")?;
+    let mut command = Command::new(&program);
+    command.args(&options.area);
+    if options.json {
+        command.arg("--json");
+    }
+    let status = command.status().map_err(|error| {
+        Fault::failure(format!("the benchmarks cannot be started: {error}"))
+            .at(program.display().to_string())
+            .help("build them: cargo build --release -p maulstick-bench")
+    })?;
+    Ok(status.code().unwrap_or(maulstick_rig::fault::EXIT_FAILURE))
+}
+
+/// The program called `name` beside this one.
+///
+/// # Errors
+/// A [`Fault`] where this program does not know its own path.
+pub fn beside(name: &str) -> Result<PathBuf, Fault> {
+    let own = std::env::current_exe().map_err(|error| Fault::failure(error.to_string()))?;
+    Ok(own.with_file_name(name))
+}

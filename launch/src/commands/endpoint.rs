@@ -1,0 +1,39 @@
+//! `maulstick endpoint`: how a program in any language joins a running rig.
+
+use clap::Args;
+use maulstick_bus::RigFolder;
+use maulstick_rig::Fault;
+use serde_json::json;
+
+use crate::commands::print_json;
+
+/// Options of `maulstick endpoint`.
+#[derive(Args, Clone, Debug)]
+pub struct EndpointOptions {
+    /// The rig's name
+    #[arg(long, value_name = "RIG", default_value = "studio")]
+    name: String,
+    /// As JSON
+    #[arg(long)]
+    json: bool,
+}
+
+/// Prints where the rig is.
+///
+/// # Errors
+/// A [`Fault`] where no such rig runs.
+pub fn run(options: &EndpointOptions) -> Result<i32, Fault> {
+    let (_, info) = RigFolder::join(&options.name)?;
+    if options.json {
+        print_json(&json!({
+            "rig": info.rig,
+            "endpoint": info.endpoint,
+            "prefix": info.prefix,
+            "clock_offset_ns": info.clock_offset_ns,
+            "pid": info.pid,
+        }))?;
+    } else {
+        println!("{}", info.endpoint);
+    }
+    Ok(0)
+}

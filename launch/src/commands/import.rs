@@ -1,0 +1,46 @@
+//! `maulstick import`: a table of strokes as a take.
+
+use std::path::PathBuf;
+
+use clap::Args;
+use maulstick_device::table::{TableLayout, import};
+use maulstick_rig::Fault;
+
+use crate::performance::parse_size;
+
+/// Options of `maulstick import`.
+#[derive(Args, Clone, Debug)]
+pub struct ImportOptions {
+    /// A table: t (s), x, y, pressure (0 to 1) and, if there are any, tilt_x, tilt_y, twist (degrees)
+    table: PathBuf,
+    /// The take to write
+    #[arg(short, long, value_name = "TAKE")]
+    output: PathBuf,
+    /// Length of a table unit
+    #[arg(long, value_name = "MM", default_value_t = 0.25)]
+    unit_mm: f64,
+    /// The tablet's area in table units; its middle becomes the desk's origin
+    #[arg(long, value_name = "WxH", value_parser = parse_size, default_value = "1024x1024")]
+    size: [u32; 2],
+}
+
+/// Imports the table.
+///
+/// # Errors
+/// A [`Fault`] with the table's line, or where the take cannot be written.
+pub fn run(options: &ImportOptions) -> Result<i32, Fault> {
+    if !(options.unit_mm > 0.0 && options.unit_mm.is_finite()) {
+        return Err(Fault::usage(format!("--unit-mm {}", options.unit_mm)).help("choose above 0"));
+    }
+    let size = options.size.map(f64::from);
+    let layout = TableLayout { unit_mm: options.unit_mm, size };
+    let take = import(&options.table, layout, "table")?;
+    take.write(&options.output)?;
+    println!(
+        "{}: {} samples, {:.1} s",
+        options.output.display(),
+        take.samples.len(),
+        take.length_ns() as f64 * 1e-9
+    );
+    Ok(0)
+}

@@ -1,0 +1,35 @@
+//! The subcommands, one file each.
+
+pub mod bench;
+pub mod demo;
+pub mod endpoint;
+pub mod import;
+pub mod paints;
+pub mod render;
+pub mod schema;
+pub mod take;
+
+use indicatif::{ProgressBar, ProgressStyle};
+use maulstick_rig::Fault;
+use serde_json::Value;
+
+/// Prints JSON, indented.
+///
+/// # Errors
+/// A [`Fault`] where it cannot be written as text.
+pub fn print_json(value: &Value) -> Result<(), Fault> {
+    let text = serde_json::to_string_pretty(value)
+        .map_err(|error| Fault::failure(error.to_string()))?;
+    println!("{text}");
+    Ok(())
+}
+
+/// A progress bar over seconds of a take, drawn only on a terminal.
+#[must_use]
+pub fn progress_bar(length_ns: u64) -> ProgressBar {
+    let bar = ProgressBar::new(length_ns / 1_000_000);
+    if let Ok(style) = ProgressStyle::with_template("{msg} {bar:40} {percent:>3} %, {eta} left") {
+        bar.set_style(style);
+    }
+    bar
+}

@@ -1,0 +1,66 @@
+//! `maulstick render`: a take, painted in one process.
+
+use std::path::PathBuf;
+
+use clap::Args;
+use maulstick_device::Take;
+use maulstick_nodes::Offline;
+use maulstick_nodes::paint_node::write_snapshot;
+use maulstick_paint::Painting;
+use maulstick_paint::picture::check_writable;
+use maulstick_rig::{Fault, RigConfig};
+
+use crate::commands::progress_bar;
+use crate::performance::{PaintingOptions, brush_file, library, painting_setup, refused};
+
+/// Options of `maulstick render`.
+#[derive(Args, Clone, Debug)]
+pub struct RenderOptions {
+    /// The take
+    take: PathBuf,
+    /// The picture, a PNG
+    #[arg(short, long, value_name = "PNG")]
+    output: PathBuf,
+    /// Settings of the rig
+    #[arg(long, value_name = "FILE")]
+    rig: Option<PathBuf>,
+    #[command(flatten)]
+    painting: PaintingOptions,
+}
+
+/// Paints the take.
+///
+/// # Errors
+/// A [`Fault`] for bad input, or where the picture cannot be written.
+pub fn run(options: &RenderOptions) -> Result<i32, Fault> {
+    let mut config = match &options.rig {
+        Some(path) => RigConfig::read(path)?,
+        None => RigConfig::default(),
+    };
+    let section = options.painting.apply(&mut config)?;
+    let library = library()?;
+    let loads = options.painting.mixtures(&library)?;
+    let take = Take::read(&options.take)?;
+    for path in [Some(&options.output), options.painting.ledger.as_ref()].into_iter().flatten() {
+        check_writable(path).map_err(|error| Fault::file(path, &error, true))?;
+    }
+    let painting = Painting::new(&painting_setup(&config)?, library).map_err(refused)?;
+    let file = brush_file(&section)?;
+    let mut offline = Offline::new(painting, &section.name, file, section.depth_share, loads)
+        .map_err(refused)?;
+    let bar = progress_bar(take.length_ns()).with_message("painting");
+    // The start does not matter to the painting; a live one has the clock's time here.
+    let (start_ns, first_ns) = (1_000_000_000, take.samples[0].time_ns);
+    for (number, sample) in take.samples.iter().enumerate() {
+        let time_ns = sample.time_ns - first_ns;
+        offline.sample(start_ns + time_ns, &sample.sample).map_err(refused)?;
+        if number % 64 == 0 {
+            bar.set_position(time_ns / 1_000_000);
+        }
+    }
+    bar.finish_and_clear();
+    let ledger = options.painting.ledger.as_deref();
+    write_snapshot(offline.painting_mut(), &options.output, ledger)
+        .map_err(|(path, error)| Fault::file(path.as_ref(), &error, true))?;
+    Ok(0)
+}

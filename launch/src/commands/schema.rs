@@ -1,0 +1,80 @@
+//! `maulstick schema`: the messages of the rig, for programs in other languages.
+
+use clap::Args;
+use maulstick_rig::Fault;
+use maulstick_types::CATALOGUE;
+use maulstick_types::schema::{Field, Shape};
+use serde_json::json;
+
+use crate::commands::print_json;
+
+/// Options of `maulstick schema`.
+#[derive(Args, Clone, Debug)]
+pub struct SchemaOptions {
+    /// Only this message
+    message: Option<String>,
+    /// As JSON
+    #[arg(long)]
+    json: bool,
+}
+
+/// Prints the field tables.
+///
+/// # Errors
+/// A [`Fault`] for an unknown message, with the nearest name.
+pub fn run(options: &SchemaOptions) -> Result<i32, Fault> {
+    let wanted = |name: &str| options.message.as_deref().is_none_or(|message| message == name);
+    let entries: Vec<_> = CATALOGUE.iter().filter(|entry| wanted(entry.name)).collect();
+    if let (true, Some(message)) = (entries.is_empty(), &options.message) {
+        let nearest = Fault::nearest(message, CATALOGUE.iter().map(|entry| entry.name));
+        return Err(Fault::usage(format!("there is no message called '{message}'"))
+            .help(format!("did you mean '{}'?", nearest.unwrap_or_default())));
+    }
+    if options.json {
+        let messages: Vec<_> = entries
+            .iter()
+            .map(|entry| {
+                let schema = (entry.schema)();
+                json!({
+                    "name": entry.name,
+                    "version": entry.version,
+                    "hash": schema.hash,
+                    "max_bytes": entry.max_bytes,
+                    "topics": entry.topics,
+                    "types": schema.types,
+                })
+            })
+            .collect();
+        print_json(&json!({
+            "header": "magic u16 0x4D4C, version u16, schema u32, source u32, epoch u32, flags u32, \
+                       length u32, seq u64, event_ns u64, sent_ns u64",
+            "encoding": "little endian, fixed width; Vec and String: u64 length; enum: u32 tag; \
+                         Option and bool: u8",
+            "messages": messages,
+        }))?;
+        return Ok(0);
+    }
+    for entry in entries {
+        let schema = (entry.schema)();
+        println!(
+            "{}  version {}, hash {:#010x}, at most {} bytes, on {}",
+            entry.name,
+            entry.version,
+            schema.hash,
+            entry.max_bytes,
+            entry.topics.join(", ")
+        );
+        let fields = |fields: &[Field]| {
+            for field in fields {
+                println!("    {:<18} {}", field.name, field.ty);
+            }
+        };
+        match schema.types.get(entry.name) {
+            Some(Shape::Struct(members)) => fields(members),
+            Some(Shape::Enum(variants)) => variants.iter().for_each(|v| fields(&v.fields)),
+            None => {}
+        }
+        println!();
+    }
+    Ok(0)
+}

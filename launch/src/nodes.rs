@@ -1,0 +1,269 @@
+//! The mains of the rig's nodes. The launcher starts them; they can be started by hand too.
+
+use std::collections::BTreeMap;
+use std::path::PathBuf;
+use std::sync::Arc;
+
+use clap::Parser;
+use maulstick_bus::typed::random_epoch;
+use maulstick_bus::RigFolder;
+use maulstick_device::Take;
+use maulstick_device::player::{self, PlayerSettings, Rate};
+use maulstick_haptic::daemon::{self, HapticSettings};
+use maulstick_nodes::frames::FrameServer;
+use maulstick_nodes::{BrushNode, BrushSettings, PaintNode};
+use maulstick_paint::Painting;
+use maulstick_rig::config::{FOREIGN_PRIORITY, MOUSE_PRIORITY, PLAYER_PRIORITY, RigConfig};
+use maulstick_rig::member::log_to_stderr;
+use maulstick_rig::{Fault, Member, MemberArgs};
+use maulstick_types::Mixture;
+use nix::sys::prctl::set_pdeathsig;
+use nix::sys::signal::Signal;
+
+use crate::performance::{brush_file, library, painting_setup, refused};
+
+/// Name of the mouse over the window as a device.
+pub const MOUSE: &str = "mouse";
+/// Name of the player as a device.
+pub const PLAYER: &str = "player";
+
+/// Options of every node.
+#[derive(clap::Args, Clone, Debug)]
+struct NodeOptions {
+    /// The rig's folder
+    #[arg(long, value_name = "FOLDER", conflicts_with = "name")]
+    folder: Option<PathBuf>,
+    /// The rig's name, for a node that is started by hand
+    #[arg(long, value_name = "RIG", default_value = "studio")]
+    name: String,
+    /// Name of the node in the rig
+    #[arg(long, value_name = "NODE")]
+    node: Option<String>,
+    /// End with the launcher, which holds the standard input open
+    #[arg(long, hide = true)]
+    guarded: bool,
+}
+
+impl NodeOptions {
+    /// Joins the rig; when the launcher dies this process gets `orphan`.
+    fn join(&self, node: &str, orphan: Signal) -> Result<Member, Fault> {
+        log_to_stderr("info");
+        if self.guarded {
+            let launcher = nix::unistd::getppid();
+            set_pdeathsig(orphan).map_err(|error| Fault::failure(error.to_string()))?;
+            if nix::unistd::getppid() != launcher {
+                return Err(Fault::failure("the launcher is gone"));
+            }
+        }
+        let folder = match &self.folder {
+            Some(folder) => folder.clone(),
+            None => RigFolder::join(&self.name)?.0.path().to_owned(),
+        };
+        let node = self.node.clone().unwrap_or_else(|| node.to_owned());
+        Member::join(&MemberArgs { folder, node, guarded: self.guarded })
+    }
+}
+
+/// Follows a stylus with a brush
+#[derive(Parser)]
+#[command(name = "maulstick-brush", version)]
+struct BrushOptions {
+    #[command(flatten)]
+    node: NodeOptions,
+    /// The brush of rig.toml
+    #[arg(long, value_name = "BRUSH")]
+    brush: String,
+}
+
+/// Name of a brush's node.
+#[must_use]
+pub fn brush_node_name(brush: &str) -> String {
+    format!("brush-{brush}")
+}
+
+fn brush_settings(config: &RigConfig, brush: &str) -> Result<BrushSettings, Fault> {
+    let section = config
+        .brush_named(brush)
+        .ok_or_else(|| Fault::usage(format!("there is no brush '{brush}' in rig.toml")))?;
+    let first = config.brush[0].name == brush;
+    let mut devices = BTreeMap::from([(PLAYER.to_owned(), PLAYER_PRIORITY)]);
+    if first {
+        devices.insert(MOUSE.to_owned(), MOUSE_PRIORITY);
+    }
+    let mut others = Vec::new();
+    for device in &config.device {
+        if device.brush == brush {
+            devices.insert(device.name.clone(), device.priority);
+        } else {
+            others.push(device.name.clone());
+        }
+    }
+    Ok(BrushSettings {
+        name: brush.to_owned(),
+        file: brush_file(section)?,
+        depth_share: section.depth_share,
+        devices,
+        others,
+        foreign_priority: first.then_some(FOREIGN_PRIORITY),
+        epoch: random_epoch(),
+    })
+}
+
+/// Main of the brush node.
+///
+/// # Errors
+/// A [`Fault`].
+pub fn brush() -> Result<i32, Fault> {
+    let options = BrushOptions::parse();
+    let mut member = options.node.join(&brush_node_name(&options.brush), Signal::SIGKILL)?;
+    let settings = brush_settings(&member.config, &options.brush)?;
+    let mut node =
+        BrushNode::new(Arc::clone(&member.bus), &member.topics, &member.wake, settings)?;
+    member.ready()?;
+    member.run(|| Ok(node.turn()?))?;
+    member.leave();
+    Ok(0)
+}
+
+/// Paints what the brushes do
+#[derive(Parser)]
+#[command(name = "maulstick-paint", version)]
+struct PaintOptions {
+    #[command(flatten)]
+    node: NodeOptions,
+}
+
+/// Main of the paint node.
+///
+/// # Errors
+/// A [`Fault`].
+pub fn paint() -> Result<i32, Fault> {
+    let options = PaintOptions::parse();
+    let mut member = options.node.join("paint", Signal::SIGKILL)?;
+    let setup = painting_setup(&member.config)?;
+    let painting = Painting::new(&setup, library()?).map_err(refused)?;
+    let origin = member.origin("paint");
+    let bus = Arc::clone(&member.bus);
+    let mut node =
+        PaintNode::new(Arc::clone(&bus), &member.topics, &member.wake, origin, painting)?;
+    let (topic, feed) = (member.topics.frame(), node.feed());
+    let frames = FrameServer::new(bus, &topic, feed.clone(), &member.wake, origin)?;
+    let stop = member.stop.clone();
+    let thread = std::thread::Builder::new()
+        .name("frames".into())
+        .spawn(move || frames.run(&stop))
+        .map_err(|error| Fault::failure(error.to_string()))?;
+    member.ready()?;
+    let result = member.run(|| Ok(node.turn()?));
+    member.stop.request();
+    feed.ring();
+    thread.join().ok();
+    member.leave();
+    result.map(|()| 0)
+}
+
+/// Drives a force-feedback stylus
+#[derive(Parser)]
+#[command(name = "maulstick-haptic", version)]
+struct HapticOptions {
+    #[command(flatten)]
+    node: NodeOptions,
+    /// The device of rig.toml
+    #[arg(long, value_name = "DEVICE")]
+    device: String,
+    /// A take that a simulated hand follows
+    #[arg(long, value_name = "TAKE")]
+    hand: Option<PathBuf>,
+}
+
+/// Main of the haptic daemon.
+///
+/// # Errors
+/// A [`Fault`].
+pub fn haptic() -> Result<i32, Fault> {
+    let options = HapticOptions::parse();
+    // The servo takes its force back before it ends, so it is asked, not killed.
+    let mut member = options.node.join(&options.device, Signal::SIGTERM)?;
+    let names = member.config.device.iter().map(|device| device.name.as_str());
+    let nearest = Fault::nearest(&options.device, names).unwrap_or_default().to_owned();
+    let device = member.config.device.iter().find(|device| device.name == options.device);
+    let device = device.cloned().ok_or_else(|| {
+        Fault::usage(format!("there is no device '{}' in rig.toml", options.device))
+            .help(format!("did you mean '{nearest}'?"))
+    })?;
+    daemon::run(&mut member, &HapticSettings { device, hand: options.hand })?;
+    member.leave();
+    Ok(0)
+}
+
+/// Plays a take as a device
+#[derive(Parser)]
+#[command(name = "maulstick-player", version)]
+struct PlayerOptions {
+    #[command(flatten)]
+    node: NodeOptions,
+    /// The take
+    #[arg(long, value_name = "TAKE")]
+    take: PathBuf,
+    /// Seconds of the take a second, or 'max'
+    #[arg(long, default_value = "1")]
+    rate: Rate,
+    /// The brush that it moves
+    #[arg(long, default_value = "main")]
+    brush: String,
+    /// What each stroke loads, in turn
+    #[arg(long, value_name = "MIX")]
+    load: Vec<String>,
+    /// Take time, ns, up to which it plays as fast as it can
+    #[arg(long, default_value_t = 0, hide = true)]
+    resume_ns: u64,
+    /// Stay after the end
+    #[arg(long, hide = true)]
+    stay: bool,
+}
+
+/// Main of the player.
+///
+/// # Errors
+/// A [`Fault`].
+pub fn player() -> Result<i32, Fault> {
+    let options = PlayerOptions::parse();
+    let loads = options
+        .load
+        .iter()
+        .map(|text| text.parse::<Mixture>().map_err(|error| Fault::usage(error.to_string())))
+        .collect::<Result<_, _>>()?;
+    let settings = PlayerSettings {
+        take: Take::read(&options.take)?,
+        rate: options.rate,
+        resume_ns: options.resume_ns,
+        brush: options.brush,
+        loads,
+        stay: options.stay,
+    };
+    let mut member = options.node.join(PLAYER, Signal::SIGKILL)?;
+    player::run(&mut member, &settings)?;
+    member.leave();
+    Ok(0)
+}
+
+/// Shows the painting and lends the mouse as a stylus
+#[derive(Parser)]
+#[command(name = "maulstick-ui", version)]
+struct UiOptions {
+    #[command(flatten)]
+    node: NodeOptions,
+}
+
+/// Main of the window.
+///
+/// # Errors
+/// A [`Fault`].
+pub fn ui() -> Result<i32, Fault> {
+    let options = UiOptions::parse();
+    let member = options.node.join("ui", Signal::SIGKILL)?;
+    let by_signal = member.stop.clone();
+    maulstick_ui::run(member, MOUSE)?;
+    // Ended by a signal it has not been closed by the painter.
+    Ok(i32::from(by_signal.by_signal()))
+}

@@ -1,0 +1,169 @@
+//! What `render` and `up --play` share: the take, the brush, the loads, the canvas.
+
+use std::path::{Path, PathBuf};
+
+use clap::Args;
+use maulstick_brush::BrushFile;
+use maulstick_optics::PaintLibrary;
+use maulstick_paint::{PaintRefusal, PaintingSetup};
+use maulstick_rig::config::{BrushSection, RigConfig};
+use maulstick_rig::Fault;
+use maulstick_types::Mixture;
+
+/// Options of a painting.
+#[derive(Args, Clone, Debug, Default)]
+pub struct PaintingOptions {
+    /// Size of the canvas in cells, for example 1024x1024
+    #[arg(long, value_name = "WxH", value_parser = parse_size)]
+    pub size: Option<[u32; 2]>,
+    /// The brush: one of rig.toml, one of the library, or a brush file
+    #[arg(long, value_name = "NAME")]
+    pub brush: Option<String>,
+    /// What each stroke loads, in turn; give it several times: "Cobalt Blue=0.7,Titanium White=0.3"
+    #[arg(long, value_name = "MIX")]
+    pub load: Vec<String>,
+    /// Writes the ledger of the paint to this JSON file
+    #[arg(long, value_name = "FILE")]
+    pub ledger: Option<PathBuf>,
+}
+
+/// Reads `WxH`.
+///
+/// # Errors
+/// What is wrong, in words.
+pub fn parse_size(text: &str) -> Result<[u32; 2], String> {
+    let wrong = || format!("'{text}' is not a size such as 1024x768");
+    let (width, height) = text.split_once(['x', 'X', '×']).ok_or_else(wrong)?;
+    let parse = |side: &str| side.trim().parse::<u32>().map_err(|_| wrong());
+    let size = [parse(width)?, parse(height)?];
+    if size.iter().any(|side| !(1..=65_536).contains(side)) {
+        return Err(format!("a canvas has 1 to 65536 cells either way, not {text}"));
+    }
+    Ok(size)
+}
+
+impl PaintingOptions {
+    /// Puts size and brush into the rig's settings, and returns the brush's section.
+    ///
+    /// # Errors
+    /// A [`Fault`] for an unknown brush, with the nearest name.
+    pub fn apply(&self, config: &mut RigConfig) -> Result<BrushSection, Fault> {
+        if let Some(size) = self.size {
+            config.canvas.width_mm = f64::from(size[0]) * config.canvas.cell_mm;
+            config.canvas.height_mm = f64::from(size[1]) * config.canvas.cell_mm;
+        }
+        let section = match &self.brush {
+            None => config.brush[0].clone(),
+            Some(name) => match config.brush_named(name) {
+                Some(section) => section.clone(),
+                None => BrushSection { kind: name.clone(), ..config.brush[0].clone() },
+            },
+        };
+        brush_file(&section)?;
+        if let Some(place) = config.brush.iter().position(|brush| brush.name == section.name) {
+            config.brush[place] = section.clone();
+        }
+        Ok(section)
+    }
+
+    /// The loads, each with the paints' names as the library spells them.
+    ///
+    /// # Errors
+    /// A [`Fault`] for a bad mixture or an unknown paint, with the nearest name.
+    pub fn mixtures(&self, library: &PaintLibrary) -> Result<Vec<Mixture>, Fault> {
+        self.load
+            .iter()
+            .map(|text| {
+                let at = |refusal: PaintRefusal| refused(refusal).at(format!("--load {text:?}"));
+                let mixture: Mixture =
+                    text.parse().map_err(|error| at(PaintRefusal::paint(maulstick_optics::PaintError::Mixture(error))))?;
+                library.check(&mixture).map_err(|error| at(PaintRefusal::paint(error)))
+            })
+            .collect()
+    }
+}
+
+/// A refusal of the painting as the user sees it.
+#[must_use]
+pub fn refused(refusal: PaintRefusal) -> Fault {
+    Fault::usage(refusal.what).help(refusal.help)
+}
+
+/// The measured paints.
+///
+/// # Errors
+/// None in practice: they are part of the program.
+pub fn library() -> Result<PaintLibrary, Fault> {
+    PaintLibrary::measured().map_err(|error| Fault::failure(error.to_string()))
+}
+
+/// The brush file of a section, at its size.
+///
+/// # Errors
+/// A [`Fault`] for an unknown kind or a bad file.
+pub fn brush_file(section: &BrushSection) -> Result<BrushFile, Fault> {
+    let path = Path::new(&section.kind);
+    let named = path.components().count() == 1 && path.extension().is_none();
+    let file = if named {
+        BrushFile::library(&section.kind).map_err(|error| {
+            Fault::usage(error.to_string()).help("`--brush FILE.toml` takes a brush file")
+        })?
+    } else {
+        let text =
+            std::fs::read_to_string(path).map_err(|error| Fault::file(path, &error, false))?;
+        BrushFile::parse(&text).map_err(|error| {
+            Fault::usage(error.to_string()).at(section.kind.clone()).help("correct the brush file")
+        })?
+    };
+    file.scaled_to(section.size_mm).map_err(|error| Fault::usage(error.to_string()))
+}
+
+/// The painting that the rig's settings ask for.
+///
+/// # Errors
+/// A [`Fault`] for a well that is no mixture.
+pub fn painting_setup(config: &RigConfig) -> Result<PaintingSetup, Fault> {
+    let canvas = &config.canvas;
+    let wells = config
+        .palette
+        .wells
+        .iter()
+        .map(|text| {
+            text.parse::<Mixture>()
+                .map_err(|error| Fault::usage(error.to_string()).at("[palette] wells"))
+        })
+        .collect::<Result<_, _>>()?;
+    Ok(PaintingSetup {
+        cells: canvas.cells(),
+        cell_m: canvas.cell_mm * 1e-3,
+        ground: canvas.ground.clone(),
+        tooth: canvas.tooth.clone(),
+        tooth_seed: canvas.tooth_seed,
+        wells,
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn sizes_are_read_or_refused() {
+        assert_eq!(parse_size("640x480"), Ok([640, 480]));
+        for text in ["640", "x480", "0x10", "640x-1", "1e3x2", "70000x1"] {
+            assert!(parse_size(text).is_err(), "{text}");
+        }
+    }
+
+    #[test]
+    fn a_brush_may_come_from_the_rig_the_library_or_a_file() {
+        let apply = |name: &str| {
+            let options = PaintingOptions { brush: Some(name.into()), ..Default::default() };
+            options.apply(&mut RigConfig::default()).map(|section| (section.name, section.kind))
+        };
+        assert_eq!(apply("main"), Ok(("main".into(), "round".into())));
+        assert_eq!(apply("round"), Ok(("main".into(), "round".into())));
+        assert!(apply("ruond").expect_err("misspelt").what.contains("'round'"));
+        assert!(apply("no/such.toml").expect_err("no file").what.contains("read"));
+    }
+}

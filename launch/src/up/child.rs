@@ -1,0 +1,172 @@
+//! One process of the rig: started in a group of its own, watched, stopped.
+//!
+//! It cannot outlive its launcher: the launcher holds its standard input open and it ends when that
+//! ends; besides, the kernel signals it when the launcher dies.
+
+use std::collections::VecDeque;
+use std::os::unix::process::CommandExt as _;
+use std::path::Path;
+use std::process::{Child, ChildStdin, Command, ExitStatus, Stdio};
+use std::time::{Duration, Instant};
+
+use maulstick_rig::Fault;
+use maulstick_rig::config::Restart;
+use nix::sys::signal::{Signal, killpg};
+use nix::unistd::Pid;
+
+use crate::up::plan::NodeSpec;
+
+/// So many failures within [`WINDOW`] are too many.
+const FAILURES: usize = 3;
+/// See [`FAILURES`].
+const WINDOW: Duration = Duration::from_secs(10);
+
+/// How a node fares.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum State {
+    /// Started, its token not yet seen.
+    Starting,
+    /// Its token is there.
+    Running,
+    /// Ended, to be started again.
+    Restarting,
+    /// Ended with success.
+    Ended,
+    /// Failed too often, or may not be started again.
+    Failed,
+}
+
+impl State {
+    /// As the table shows it.
+    #[must_use]
+    pub fn word(self) -> &'static str {
+        match self {
+            Self::Starting => "starting",
+            Self::Running => "running",
+            Self::Restarting => "restarting",
+            Self::Ended => "ended",
+            Self::Failed => "failed",
+        }
+    }
+}
+
+/// A node and its process.
+#[derive(Debug)]
+pub struct Node {
+    /// What it is.
+    pub spec: NodeSpec,
+    /// How it fares.
+    pub state: State,
+    /// How often it was started again.
+    pub restarts: u32,
+    process: Option<(Child, Option<ChildStdin>)>,
+    failures: VecDeque<Instant>,
+}
+
+/// How a process ended.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Ended {
+    /// With success.
+    Well,
+    /// With an exit code of bad usage: starting it again would not help.
+    Refused(i32),
+    /// Otherwise.
+    Badly,
+}
+
+impl Node {
+    /// A node that is not started.
+    #[must_use]
+    pub fn new(spec: NodeSpec) -> Self {
+        let failures = VecDeque::new();
+        Self { spec, state: State::Restarting, restarts: 0, process: None, failures }
+    }
+
+    /// Starts the process.
+    ///
+    /// # Errors
+    /// A [`Fault`] where the system cannot.
+    pub fn start(&mut self, folder: &Path) -> Result<(), Fault> {
+        let mut child = Command::new(&self.spec.program)
+            .arg("--folder")
+            .arg(folder)
+            .args(["--node", &self.spec.name, "--guarded"])
+            .args(&self.spec.args)
+            .stdin(Stdio::piped())
+            .stdout(Stdio::null())
+            .process_group(0)
+            .spawn()
+            .map_err(|error| {
+                Fault::failure(format!("node '{}' cannot be started: {error}", self.spec.name))
+                    .at(self.spec.program.display().to_string())
+            })?;
+        let stdin = child.stdin.take();
+        self.process = Some((child, stdin));
+        self.state = State::Starting;
+        Ok(())
+    }
+
+    /// Process id, while it runs.
+    #[must_use]
+    pub fn pid(&self) -> Option<u32> {
+        self.process.as_ref().map(|(child, _)| child.id())
+    }
+
+    /// Whether the process has ended, and how.
+    pub fn ended(&mut self) -> Option<Ended> {
+        let (child, _) = self.process.as_mut()?;
+        let status = child.try_wait().ok()??;
+        self.process = None;
+        Some(judge(status))
+    }
+
+    /// Counts a failure and says whether the node may be started again.
+    pub fn fail(&mut self) -> bool {
+        let now = Instant::now();
+        self.failures.push_back(now);
+        while self.failures.front().is_some_and(|first| now - *first > WINDOW) {
+            self.failures.pop_front();
+        }
+        let again = self.spec.restart == Restart::OnFailure && self.failures.len() < FAILURES;
+        self.state = if again { State::Restarting } else { State::Failed };
+        again
+    }
+
+    /// Asks the process to end.
+    pub fn terminate(&mut self) {
+        if let Some((_, stdin)) = &mut self.process {
+            stdin.take();
+        }
+        self.signal(Signal::SIGTERM);
+        // A stopped process hears no other signal.
+        self.signal(Signal::SIGCONT);
+    }
+
+    /// Ends the process and all that it started, and waits for it.
+    pub fn kill(&mut self) {
+        self.signal(Signal::SIGKILL);
+        if let Some((mut child, _)) = self.process.take() {
+            child.wait().ok();
+        }
+    }
+
+    fn signal(&self, signal: Signal) {
+        if let Some(pid) = self.pid().and_then(|pid| i32::try_from(pid).ok()) {
+            killpg(Pid::from_raw(pid), signal).ok();
+        }
+    }
+}
+
+impl Drop for Node {
+    fn drop(&mut self) {
+        self.kill();
+    }
+}
+
+fn judge(status: ExitStatus) -> Ended {
+    match status.code() {
+        Some(0) => Ended::Well,
+        Some(code) if code == maulstick_rig::fault::EXIT_USAGE => Ended::Refused(code),
+        _ => Ended::Badly,
+    }
+}

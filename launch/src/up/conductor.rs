@@ -1,0 +1,171 @@
+//! A take that is played from its start to its picture, whoever dies on the way.
+
+use std::path::PathBuf;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Arc, mpsc};
+use std::time::Duration;
+
+use maulstick_bus::typed::Receiver;
+use maulstick_bus::{Bus, BusError, Class, Queue, Wake};
+use maulstick_device::commander::Commander;
+use maulstick_device::player::Rate;
+use maulstick_rig::config::RigConfig;
+use maulstick_rig::Fault;
+use maulstick_types::command::Command;
+use maulstick_types::stylus::{TakeEnd, TakeStatus};
+use maulstick_types::topics::Topics;
+
+use crate::nodes::PLAYER;
+use crate::up::plan::{NodeSpec, Role, node};
+
+/// What is played, and what becomes of it.
+#[derive(Clone, Debug)]
+pub struct Performance {
+    /// The take.
+    pub take: PathBuf,
+    /// How fast.
+    pub rate: Rate,
+    /// The brush that follows it.
+    pub brush: String,
+    /// What each stroke loads, in turn.
+    pub loads: Vec<String>,
+    /// The picture to write at its end.
+    pub snapshot: Option<PathBuf>,
+    /// The ledger to write at its end.
+    pub ledger: Option<PathBuf>,
+    /// Length of the take, ns.
+    pub length_ns: u64,
+}
+
+/// Follows a take being played.
+#[derive(Debug)]
+pub struct Conductor {
+    /// What is played.
+    pub performance: Performance,
+    statuses: Receiver<TakeStatus>,
+    epoch: Option<u32>,
+    forgotten: Option<u32>,
+    position_ns: u64,
+    end: Option<TakeEnd>,
+    writing: Option<Writing>,
+}
+
+/// The picture being written: its outcome, and whether nobody waits for it any more.
+#[derive(Debug)]
+struct Writing {
+    outcome: mpsc::Receiver<Result<(), Fault>>,
+    given_up: Arc<AtomicBool>,
+}
+
+/// How long the picture may take to be written.
+const SNAPSHOT: Duration = Duration::from_secs(300);
+
+impl Conductor {
+    /// Listens to the player.
+    ///
+    /// # Errors
+    /// [`BusError::Topic`].
+    pub fn new(
+        bus: &dyn Bus,
+        topics: &Topics,
+        performance: Performance,
+        wake: &Wake,
+    ) -> Result<Self, BusError> {
+        let topic = topics.take_status(PLAYER);
+        let statuses = Receiver::new(bus, &topic, Class::Background, Queue::Ring(64), wake)?;
+        Ok(Self {
+            performance,
+            statuses,
+            epoch: None,
+            forgotten: None,
+            position_ns: 0,
+            end: None,
+            writing: None,
+        })
+    }
+
+    /// The player's process; it plays as fast as it can up to where the take has been before.
+    ///
+    /// # Errors
+    /// A [`Fault`] where its program is missing.
+    pub fn player(&self, config: &RigConfig) -> Result<NodeSpec, Fault> {
+        let performance = &self.performance;
+        let mut args = vec![
+            "--take".to_owned(),
+            performance.take.display().to_string(),
+            "--rate".to_owned(),
+            performance.rate.to_string(),
+            "--brush".to_owned(),
+            performance.brush.clone(),
+            "--resume-ns".to_owned(),
+            self.position_ns.to_string(),
+            "--stay".to_owned(),
+        ];
+        for load in &performance.loads {
+            args.extend(["--load".to_owned(), load.clone()]);
+        }
+        node(config, PLAYER, Role::Player, "maulstick-player", args)
+    }
+
+    /// Takes in where the player is; returns its position in the take, ns.
+    pub fn follow(&mut self) -> u64 {
+        while let Some(status) = self.statuses.try_recv() {
+            let told = status.message;
+            if Some(told.epoch) == self.forgotten {
+                continue;
+            }
+            self.epoch = Some(told.epoch);
+            self.position_ns = self.position_ns.max(told.position_ns);
+            self.end = told.end;
+        }
+        self.position_ns
+    }
+
+    /// The take has to be played again: what the player said so far holds no more.
+    pub fn begin_again(&mut self) {
+        self.follow();
+        self.forgotten = self.epoch.take();
+        self.end = None;
+        if let Some(writing) = self.writing.take() {
+            writing.given_up.store(true, Ordering::SeqCst);
+        }
+    }
+
+    /// Has the picture written once paint has consumed the end of the take; true when it is there.
+    ///
+    /// # Errors
+    /// A [`Fault`] where it cannot be written.
+    pub fn snapshot(&mut self, bus: &Arc<dyn Bus>, topics: &Topics) -> Result<bool, Fault> {
+        let Some(end) = &self.end else { return Ok(false) };
+        if let Some(writing) = &self.writing {
+            return match writing.outcome.try_recv() {
+                Ok(outcome) => outcome.map(|()| true),
+                Err(_) => Ok(false),
+            };
+        }
+        let path = |path: &PathBuf| path.display().to_string();
+        let command = match &self.performance.snapshot {
+            Some(picture) => Command::Snapshot {
+                path: path(picture),
+                ledger: self.performance.ledger.as_ref().map(path),
+            },
+            None => Command::Mark,
+        };
+        let (to_conductor, outcome) = mpsc::channel();
+        let given_up = Arc::new(AtomicBool::new(false));
+        let stop = Arc::clone(&given_up);
+        let mut commander = Commander::new(Arc::clone(bus), topics);
+        let after = Some(end.after.clone());
+        std::thread::Builder::new()
+            .name("snapshot".into())
+            .spawn(move || {
+                let stop = || stop.load(Ordering::SeqCst);
+                let sent = commander.send(command, after, SNAPSHOT, &stop);
+                let code = maulstick_rig::fault::EXIT_FAILURE;
+                to_conductor.send(sent.map(|_| ()).map_err(|fault| Fault { code, ..fault })).ok();
+            })
+            .map_err(|error| Fault::failure(error.to_string()))?;
+        self.writing = Some(Writing { outcome, given_up });
+        Ok(false)
+    }
+}

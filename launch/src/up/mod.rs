@@ -1,0 +1,109 @@
+//! `maulstick up`: starts a rig and keeps it running.
+//!
+//! | module | holds |
+//! | --- | --- |
+//! | [`plan`] | which processes a rig has |
+//! | [`child`] | one process: started, watched, stopped |
+//! | [`supervisor`] | all of them: tokens, restarts, the table, the end |
+//! | [`conductor`] | a take that is played from its start to its picture |
+
+pub mod child;
+pub mod conductor;
+pub mod plan;
+pub mod supervisor;
+
+use std::path::PathBuf;
+
+use clap::Args;
+use maulstick_bus::RigFolder;
+use maulstick_device::Take;
+use maulstick_device::player::Rate;
+use maulstick_paint::picture::check_writable;
+use maulstick_rig::config::{DEFAULT, RigConfig};
+use maulstick_rig::{Fault, member};
+
+use crate::performance::{PaintingOptions, library, painting_setup, refused};
+use crate::up::conductor::Performance;
+use crate::up::supervisor::Supervisor;
+
+/// Options of `maulstick up`.
+#[derive(Args, Clone, Debug)]
+pub struct UpOptions {
+    /// Settings of the rig; without it the built-in default
+    #[arg(long, value_name = "FILE")]
+    rig: Option<PathBuf>,
+    /// Name of the rig, instead of that in its settings
+    #[arg(long, value_name = "RIG")]
+    name: Option<String>,
+    /// No window
+    #[arg(long)]
+    headless: bool,
+    /// Plays a take in the place of the devices
+    #[arg(long, value_name = "TAKE")]
+    play: Option<PathBuf>,
+    /// Seconds of the take a second, or 'max'
+    #[arg(long, value_name = "R|max", default_value = "1", requires = "play")]
+    rate: Rate,
+    /// Writes the picture at the end of the take and stops
+    #[arg(long, value_name = "PNG", requires = "play")]
+    snapshot: Option<PathBuf>,
+    #[command(flatten)]
+    painting: PaintingOptions,
+    /// Prints the commented default settings and does nothing else
+    #[arg(long)]
+    print_config: bool,
+}
+
+/// Runs the rig until it is told to stop.
+///
+/// # Errors
+/// A [`Fault`] for bad settings or input, an occupied name, or nodes that do not stay up.
+pub fn run(options: &UpOptions) -> Result<i32, Fault> {
+    if options.print_config {
+        print!("{DEFAULT}");
+        return Ok(0);
+    }
+    if options.play.is_none() && (!options.painting.load.is_empty() || options.painting.ledger.is_some()) {
+        return Err(Fault::usage("--load and --ledger need --play TAKE")
+            .help("a painter loads the brush by hand"));
+    }
+    member::log_to_stderr("info");
+    let mut config = match &options.rig {
+        Some(path) => RigConfig::read(path)?,
+        None => RigConfig::default(),
+    };
+    if let Some(name) = &options.name {
+        config.rig.name.clone_from(name);
+    }
+    let section = options.painting.apply(&mut config)?;
+    let library = library()?;
+    let loads = options.painting.mixtures(&library)?;
+    painting_setup(&config)?.check(&library).map_err(refused)?;
+    let performance = match &options.play {
+        None => None,
+        Some(path) => {
+            let length_ns = Take::read(path)?.length_ns();
+            for file in [&options.snapshot, &options.painting.ledger].into_iter().flatten() {
+                check_writable(file).map_err(|error| Fault::file(file, &error, true))?;
+            }
+            Some(Performance {
+                take: absolute(path)?,
+                rate: options.rate,
+                brush: section.name,
+                loads: loads.iter().map(ToString::to_string).collect(),
+                snapshot: options.snapshot.as_deref().map(absolute).transpose()?,
+                ledger: options.painting.ledger.as_deref().map(absolute).transpose()?,
+                length_ns,
+            })
+        }
+    };
+    let folder = RigFolder::create(&config.rig.name)?;
+    let nodes = plan::nodes(&config, options.headless, performance.is_some())?;
+    let mut supervisor = Supervisor::start(folder, &config, nodes, performance)?;
+    supervisor.run()
+}
+
+/// The nodes run elsewhere: they need whole paths.
+fn absolute(path: &std::path::Path) -> Result<PathBuf, Fault> {
+    std::path::absolute(path).map_err(|error| Fault::file(path, &error, false))
+}

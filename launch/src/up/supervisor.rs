@@ -1,0 +1,350 @@
+//! All processes of the rig: their tokens, their restarts, the table, the end.
+
+use std::collections::BTreeSet;
+use std::sync::Arc;
+use std::time::{Duration, Instant};
+
+use indicatif::ProgressBar;
+use maulstick_bus::{Bus, Dial, RigClock, RigFolder, Subscription, Wake, ZenohBus};
+use maulstick_rig::member::{CONFIG_FILE, HUB};
+use maulstick_rig::{Fault, RigConfig, Stop};
+use maulstick_types::topics::Topics;
+
+use crate::EXIT_INTERRUPTED;
+use crate::commands::progress_bar;
+use crate::up::child::{Ended, Node, State};
+use crate::up::conductor::{Conductor, Performance};
+use crate::up::plan::{NodeSpec, Role};
+
+/// A node shows its token within this time, or it counts as failed.
+const START_TIME: Duration = Duration::from_secs(30);
+/// All nodes end within this time when asked.
+const GRACE: Duration = Duration::from_millis(1200);
+/// How often children are looked at.
+const TICK: Duration = Duration::from_millis(20);
+/// Pause before a node is started again.
+const RESTART_PAUSE: Duration = Duration::from_millis(200);
+
+/// A running rig.
+pub struct Supervisor {
+    folder: RigFolder,
+    config: RigConfig,
+    session: Arc<ZenohBus>,
+    bus: Arc<dyn Bus>,
+    topics: Topics,
+    wake: Wake,
+    stop: Stop,
+    tokens: Subscription,
+    present: BTreeSet<String>,
+    nodes: Vec<Node>,
+    due: Vec<(String, Instant)>,
+    started: Vec<(String, Instant)>,
+    conductor: Option<Conductor>,
+    bar: Option<ProgressBar>,
+    shown: bool,
+}
+
+/// Why the rig ends.
+enum End {
+    /// With this exit code.
+    Code(i32),
+    /// With a fault.
+    Fault(Fault),
+}
+
+impl Supervisor {
+    /// Opens the hub and starts the nodes.
+    ///
+    /// # Errors
+    /// A [`Fault`] where the folder, the bus or a process cannot be used.
+    pub fn start(
+        folder: RigFolder,
+        config: &RigConfig,
+        specs: Vec<NodeSpec>,
+        performance: Option<Performance>,
+    ) -> Result<Self, Fault> {
+        let clock = RigClock::start();
+        let dial =
+            Dial { name: HUB.into(), listen: Some(folder.locator(HUB)), connect: Vec::new() };
+        let session = Arc::new(ZenohBus::open(&dial, clock)?);
+        let bus: Arc<dyn Bus> = Arc::clone(&session) as Arc<dyn Bus>;
+        let topics = Topics::new(folder.rig());
+        let wake = Wake::new();
+        let stop = Stop::on_signals(&wake).map_err(|error| Fault::failure(error.to_string()))?;
+        let tokens = bus.watch(&topics.node("*"), &wake)?;
+        let path = folder.path().join(CONFIG_FILE);
+        std::fs::write(&path, config.to_toml()?)
+            .map_err(|error| Fault::file(&path, &error, true))?;
+        folder.announce(HUB, clock)?;
+        let conductor = match performance {
+            Some(performance) => Some(Conductor::new(&*bus, &topics, performance, &wake)?),
+            None => None,
+        };
+        let mut supervisor = Self {
+            nodes: specs.into_iter().map(Node::new).collect(),
+            folder,
+            config: config.clone(),
+            session,
+            bus,
+            topics,
+            wake,
+            stop,
+            tokens,
+            present: BTreeSet::new(),
+            due: Vec::new(),
+            started: Vec::new(),
+            conductor,
+            bar: None,
+            shown: false,
+        };
+        for place in 0..supervisor.nodes.len() {
+            supervisor.start_node(place)?;
+        }
+        Ok(supervisor)
+    }
+
+    fn start_node(&mut self, place: usize) -> Result<(), Fault> {
+        let node = &mut self.nodes[place];
+        node.start(self.folder.path())?;
+        let name = node.spec.name.clone();
+        self.started.retain(|(other, _)| *other != name);
+        self.started.push((name, Instant::now()));
+        Ok(())
+    }
+
+    /// Keeps the rig running until it is told to stop, and returns the exit code.
+    ///
+    /// # Errors
+    /// A [`Fault`] where a node that the rig cannot do without does not stay up.
+    pub fn run(&mut self) -> Result<i32, Fault> {
+        let end = loop {
+            if self.stop.requested() {
+                break End::Code(self.stop.exit_code(EXIT_INTERRUPTED));
+            }
+            match self.turn() {
+                Ok(None) => {}
+                Ok(Some(code)) => break End::Code(code),
+                Err(fault) => break End::Fault(fault),
+            }
+            self.wake.wait(TICK);
+        };
+        if let Some(bar) = self.bar.take() {
+            bar.finish_and_clear();
+        }
+        self.stop_all();
+        self.folder.withdraw();
+        self.session.close();
+        match end {
+            End::Code(code) => Ok(code),
+            End::Fault(fault) => Err(fault),
+        }
+    }
+
+    /// One look at everything; an exit code where the rig is to end.
+    fn turn(&mut self) -> Result<Option<i32>, Fault> {
+        self.watch_tokens();
+        if let Some(code) = self.watch_children()? {
+            return Ok(Some(code));
+        }
+        self.restart_due()?;
+        self.watch_starts()?;
+        self.show_when_ready();
+        self.conduct()
+    }
+
+    fn watch_tokens(&mut self) {
+        while let Some(arrival) = self.tokens.try_recv() {
+            let Some(name) =
+                self.topics.relative(&arrival.key).and_then(|key| key.strip_prefix("node/"))
+            else {
+                continue;
+            };
+            if arrival.present {
+                self.present.insert(name.to_owned());
+            } else {
+                self.present.remove(name);
+            }
+            let node = self.nodes.iter_mut().find(|node| node.spec.name == name);
+            if let Some(node) = node.filter(|node| node.state == State::Starting)
+                && arrival.present
+            {
+                node.state = State::Running;
+            }
+        }
+    }
+
+    fn watch_children(&mut self) -> Result<Option<i32>, Fault> {
+        for place in 0..self.nodes.len() {
+            let Some(ended) = self.nodes[place].ended() else { continue };
+            let (name, role) = (self.nodes[place].spec.name.clone(), self.nodes[place].spec.role);
+            self.present.remove(&name);
+            match ended {
+                Ended::Well => {
+                    self.nodes[place].state = State::Ended;
+                    if role == Role::Window {
+                        return Ok(Some(0));
+                    }
+                }
+                Ended::Refused(code) if role == Role::Player => return Ok(Some(code)),
+                Ended::Refused(_) => {
+                    self.nodes[place].state = State::Failed;
+                    return Err(self.failed(&name));
+                }
+                Ended::Badly => {
+                    let again = self.nodes[place].fail();
+                    if !again {
+                        if role == Role::Device {
+                            tracing::error!("node '{name}' failed and is not started again");
+                            continue;
+                        }
+                        return Err(self.failed(&name));
+                    }
+                    tracing::warn!("node '{name}' failed and is started again");
+                    self.due.push((name, Instant::now() + RESTART_PAUSE));
+                    self.replay_after(role);
+                }
+            }
+        }
+        Ok(None)
+    }
+
+    fn failed(&self, name: &str) -> Fault {
+        Fault::failure(format!("node '{name}' does not stay up"))
+            .at(self.topics.node(name))
+            .help("its own messages above say why; three failures in ten seconds are the limit")
+    }
+
+    /// A take whose brush or paint died is played again from its start, on a new painting.
+    fn replay_after(&mut self, role: Role) {
+        let Some(conductor) = &mut self.conductor else { return };
+        if matches!(role, Role::Device | Role::Window) {
+            return;
+        }
+        conductor.begin_again();
+        let again = |role: Role| matches!(role, Role::Paint | Role::Brush | Role::Player);
+        for node in self.nodes.iter_mut().filter(|node| again(node.spec.role)) {
+            if node.pid().is_some() {
+                node.kill();
+                node.state = State::Restarting;
+                self.present.remove(&node.spec.name);
+                self.due.push((node.spec.name.clone(), Instant::now()));
+            }
+        }
+        self.due.retain(|(name, _)| name != crate::nodes::PLAYER);
+        self.nodes.retain(|node| node.spec.role != Role::Player);
+    }
+
+    fn restart_due(&mut self) -> Result<(), Fault> {
+        let now = Instant::now();
+        let due: Vec<String> = self
+            .due
+            .iter()
+            .filter(|(_, when)| *when <= now)
+            .map(|(name, _)| name.clone())
+            .collect();
+        self.due.retain(|(name, _)| !due.contains(name));
+        for name in due {
+            if let Some(place) = self.nodes.iter().position(|node| node.spec.name == name) {
+                self.nodes[place].restarts += 1;
+                self.start_node(place)?;
+            }
+        }
+        Ok(())
+    }
+
+    /// A node that shows no token in time is killed, and with that has failed.
+    fn watch_starts(&mut self) -> Result<(), Fault> {
+        let now = Instant::now();
+        for node in self.nodes.iter_mut().filter(|node| node.state == State::Starting) {
+            let since = self.started.iter().find(|(name, _)| *name == node.spec.name);
+            if since.is_some_and(|(_, since)| now - *since > START_TIME) {
+                tracing::warn!("node '{}' does not get ready", node.spec.name);
+                node.terminate();
+                node.kill();
+                if !node.fail() {
+                    return Err(Fault::failure(format!("node '{}' does not get ready", node.spec.name))
+                        .help("its own messages above say why"));
+                }
+                self.due.push((node.spec.name.clone(), now));
+            }
+        }
+        Ok(())
+    }
+
+    fn ready(&self) -> bool {
+        self.nodes.iter().all(|node| node.state == State::Running || node.state == State::Ended)
+    }
+
+    fn show_when_ready(&mut self) {
+        if self.shown || !self.ready() {
+            return;
+        }
+        self.shown = true;
+        eprintln!("rig '{}' is up: {}", self.folder.rig(), self.folder.locator(HUB));
+        eprintln!("  {:<16} {:>8}  {:<10} program", "node", "pid", "state");
+        for node in &self.nodes {
+            let program = node.spec.program.file_name().unwrap_or_default().to_string_lossy();
+            eprintln!(
+                "  {:<16} {:>8}  {:<10} {program}",
+                node.spec.name,
+                node.pid().unwrap_or(0),
+                node.state.word(),
+            );
+        }
+        match &self.conductor {
+            None => eprintln!("Ctrl-C stops it"),
+            Some(conductor) => {
+                let bar = progress_bar(conductor.performance.length_ns);
+                self.bar = Some(bar.with_message("playing"));
+            }
+        }
+    }
+
+    /// Starts the player when all others are ready; has the picture written at the take's end.
+    fn conduct(&mut self) -> Result<Option<i32>, Fault> {
+        let ready = self.ready();
+        let Some(conductor) = &mut self.conductor else { return Ok(None) };
+        if !self.nodes.iter().any(|node| node.spec.role == Role::Player) {
+            if ready {
+                let spec = conductor.player(&self.config)?;
+                self.nodes.push(Node::new(spec));
+                self.start_node(self.nodes.len() - 1)?;
+            }
+            return Ok(None);
+        }
+        let position_ns = conductor.follow();
+        if let Some(bar) = &self.bar {
+            bar.set_position(position_ns / 1_000_000);
+        }
+        if !conductor.snapshot(&self.bus, &self.topics)? {
+            return Ok(None);
+        }
+        let window = self.nodes.iter().any(|node| node.spec.role == Role::Window);
+        if window && conductor.performance.snapshot.is_none() {
+            // The painter looks at what was painted; the window's end is the rig's.
+            self.conductor = None;
+            return Ok(None);
+        }
+        Ok(Some(0))
+    }
+
+    /// Asks all nodes to end, and ends those that do not.
+    fn stop_all(&mut self) {
+        self.nodes.iter_mut().for_each(Node::terminate);
+        let give_up = Instant::now() + GRACE;
+        while Instant::now() < give_up {
+            let left = self.nodes.iter_mut().filter(|node| node.pid().is_some());
+            if left.filter_map(|node| node.ended().is_none().then_some(())).count() == 0 {
+                break;
+            }
+            self.wake.wait(Duration::from_millis(5));
+        }
+        self.nodes.iter_mut().for_each(Node::kill);
+    }
+}
+
+impl std::fmt::Debug for Supervisor {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("Supervisor").field("nodes", &self.nodes).finish_non_exhaustive()
+    }
+}

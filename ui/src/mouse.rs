@@ -1,0 +1,168 @@
+//! The mouse as a stylus of lowest priority.
+//!
+//! A tablet reaches the rig twice, by its daemon and as the pointer: the mouse counts only while no
+//! other stylus has been in range for a second.
+
+use maulstick_bus::credit::Stamp;
+use maulstick_bus::typed::{Receiver, Sender};
+use maulstick_bus::{Bus, BusError, Class, CreditSender, Queue, Wake};
+use maulstick_rig::config::MOUSE_PRIORITY;
+use maulstick_types::stylus::{DEFAULT_TILT_RAD, StylusInfo, StylusPose, StylusSample, axes};
+use maulstick_types::topics::Topics;
+use maulstick_types::{Flags, Origin};
+
+/// Another stylus in range silences the mouse for this long, ns.
+const SILENCE_NS: u64 = 1_000_000_000;
+/// Pressure of a pressed button.
+const PRESSED: f64 = 0.5;
+
+/// Where the pointer is on the desk, and whether its button is down.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Pointer {
+    /// On the desk, m.
+    pub at: [f64; 3],
+    /// The primary button.
+    pub pressed: bool,
+}
+
+/// The mouse.
+pub struct Mouse {
+    samples: CreditSender<StylusSample>,
+    others: Receiver<StylusSample>,
+    _info: Sender<StylusInfo>,
+    me: Origin,
+    silent_until_ns: u64,
+    sent_ns: u64,
+    was_in_range: bool,
+}
+
+impl Mouse {
+    /// A mouse called `name` that moves `brush`.
+    ///
+    /// # Errors
+    /// [`BusError::Topic`].
+    pub fn new(
+        bus: &dyn Bus,
+        topics: &Topics,
+        name: &str,
+        brush: &str,
+        me: Origin,
+    ) -> Result<Self, BusError> {
+        let wake = Wake::new();
+        let mut info = Sender::new(bus, &topics.stylus_info(name), Class::Cached, me)?;
+        let now = bus.now_ns();
+        let told = StylusInfo {
+            device: name.to_owned(),
+            driver: "pointer".into(),
+            brush: brush.to_owned(),
+            priority: MOUSE_PRIORITY,
+            senses: axes::POSITION | axes::SWITCHES,
+            drives: 0,
+            rate_hz: 60.0,
+            max_force_n: 0.0,
+            max_stiffness_n_m: 0.0,
+            workspace_m: [-0.5, -0.5, 0.0, 0.5, 0.5, 0.0],
+        };
+        info.send(now, now, &told)?;
+        let others = topics.sample("*");
+        Ok(Self {
+            samples: CreditSender::new(bus, topics, &topics.sample(name), me, &wake)?,
+            others: Receiver::new(bus, &others, Class::RealTime, Queue::Ring(256), &wake)?,
+            _info: info,
+            me,
+            silent_until_ns: 0,
+            sent_ns: 0,
+            was_in_range: false,
+        })
+    }
+
+    /// Sends what the pointer did since the last call: its places in order, evenly spread over that
+    /// time; none where it is not over the canvas.
+    ///
+    /// # Errors
+    /// [`BusError::Topic`].
+    pub fn send(&mut self, now_ns: u64, places: &[Pointer]) -> Result<(), BusError> {
+        while let Some(other) = self.others.try_recv() {
+            if other.header.source != self.me.source && other.message.in_range {
+                self.silent_until_ns = now_ns + SILENCE_NS;
+            }
+        }
+        self.samples.forgive();
+        self.samples.serve(now_ns)?;
+        let places = if now_ns < self.silent_until_ns { &[] } else { places };
+        if places.is_empty() {
+            if self.was_in_range {
+                self.was_in_range = false;
+                let stamp = Stamp { now_ns, event_ns: now_ns };
+                self.samples.send(Flags::NONE, stamp, &StylusSample::away())?;
+            }
+            self.sent_ns = now_ns;
+            return Ok(());
+        }
+        self.was_in_range = true;
+        // After a pause the pointer has not crept here: its last move took one frame at most.
+        let since_ns = self.sent_ns.max(now_ns.saturating_sub(16_000_000));
+        for (number, place) in places.iter().enumerate() {
+            let share = (number + 1) as f64 / places.len() as f64;
+            let event_ns = since_ns + ((now_ns - since_ns) as f64 * share) as u64;
+            let sample = StylusSample {
+                senses: axes::POSITION | axes::SWITCHES,
+                pose: StylusPose::Contact {
+                    point_m: place.at,
+                    tilt_rad: DEFAULT_TILT_RAD,
+                    twist_rad: 0.0,
+                    pressure: if place.pressed { PRESSED } else { 0.0 },
+                },
+                switches: u32::from(place.pressed),
+                in_range: true,
+                ..StylusSample::away()
+            };
+            self.samples.send(Flags::NONE, Stamp { now_ns, event_ns }, &sample)?;
+        }
+        self.sent_ns = now_ns;
+        Ok(())
+    }
+}
+
+impl std::fmt::Debug for Mouse {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("Mouse").field("was_in_range", &self.was_in_range).finish_non_exhaustive()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use maulstick_bus::{Faults, MemoryNet};
+
+    use super::*;
+
+    const SECOND: u64 = 1_000_000_000;
+
+    #[test]
+    fn another_stylus_silences_the_mouse_for_a_second() {
+        let net = MemoryNet::new(1, SECOND, Faults::default());
+        let (bus, topics, wake) = (net.bus(), Topics::new("t"), Wake::new());
+        let me = Origin { source: 1, epoch: 1 };
+        let mut mouse = Mouse::new(&bus, &topics, "mouse", "main", me).expect("a mouse");
+        let (topic, class) = (topics.sample("mouse"), Class::RealTime);
+        let mut heard = Receiver::<StylusSample>::new(&bus, &topic, class, Queue::Ring(64), &wake)
+            .expect("a receiver");
+        let pen = Origin { source: 2, epoch: 1 };
+        let mut pen = Sender::new(&bus, &topics.sample("pen"), class, pen).expect("a pen");
+        let place = Pointer { at: [0.0; 3], pressed: true };
+        let mut turn = |mouse: &mut Mouse| {
+            mouse.send(bus.now_ns(), &[place]).expect("sent");
+            net.advance(SECOND / 10);
+            heard.newest().map(|sample| sample.message.in_range)
+        };
+        assert_eq!(turn(&mut mouse), Some(true));
+        let near = StylusSample { in_range: true, ..StylusSample::away() };
+        pen.send(0, 0, &near).expect("sent");
+        turn(&mut mouse);
+        assert_eq!(turn(&mut mouse), Some(false), "it says that it is out of range");
+        for _ in 0..9 {
+            assert_eq!(turn(&mut mouse), None);
+        }
+        assert_eq!(turn(&mut mouse), Some(true));
+    }
+}
