@@ -3,7 +3,7 @@
 use clap::{Parser, Subcommand};
 use maulstick_rig::Fault;
 
-use crate::commands::{bench, demo, endpoint, import, paints, render, schema, take};
+use crate::commands::{bench, control, demo, endpoint, import, paints, render, schema, take};
 use crate::up;
 
 /// A painting rig that you can feel
@@ -27,6 +27,16 @@ enum Command {
     /// Shows or repairs takes
     #[command(subcommand)]
     Take(take::TakeCommand),
+    /// Loads a brush of a running rig
+    Load(control::LoadOptions),
+    /// Takes all paint off a brush of a running rig
+    Clean(control::CleanOptions),
+    /// Takes the newest step in a running rig back
+    Undo(control::HistoryOptions),
+    /// Does the newest undone step in a running rig again
+    Redo(control::HistoryOptions),
+    /// Writes the picture of a running rig
+    Snapshot(control::SnapshotOptions),
     /// Tells a program in any language how to join a running rig
     Endpoint(endpoint::EndpointOptions),
     /// Prints the messages of the rig
@@ -48,6 +58,11 @@ pub fn run() -> Result<i32, Fault> {
         Command::Import(options) => import::run(&options),
         Command::Demo(options) => demo::run(&options),
         Command::Take(command) => take::run(&command),
+        Command::Load(options) => control::load(&options),
+        Command::Clean(options) => control::clean(&options),
+        Command::Undo(options) => control::undo(&options),
+        Command::Redo(options) => control::redo(&options),
+        Command::Snapshot(options) => control::snapshot(&options),
         Command::Endpoint(options) => endpoint::run(&options),
         Command::Schema(options) => schema::run(&options),
         Command::Paints(options) => paints::run(&options),

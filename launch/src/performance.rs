@@ -19,7 +19,8 @@ pub struct PaintingOptions {
     /// The brush: one of rig.toml, one of the library, or a brush file
     #[arg(long, value_name = "NAME")]
     pub brush: Option<String>,
-    /// What each stroke loads, in turn; give it several times: "Cobalt Blue=0.7,Titanium White=0.3"
+    /// What each stroke loads, in turn; give it several times: "Cobalt Blue=0.7,Titanium White=0.3".
+    /// Without a take it is what the brush carries at the start
     #[arg(long, value_name = "MIX")]
     pub load: Vec<String>,
     /// Writes the ledger of the paint to this JSON file

@@ -16,8 +16,8 @@ use crate::canvas::{Canvas, DESK_COLOUR, fit, level, to_desk};
 use crate::frames::{FrameInbox, pull};
 use crate::mouse::{Mouse, Pointer};
 
-/// How often the window looks whether it shall stop.
-const LOOK: Duration = Duration::from_millis(100);
+/// A pressed pointer that stands still is told this often: a longer silence would lift the brush.
+const STILL: Duration = Duration::from_millis(30);
 
 /// The painter's view.
 pub struct App {
@@ -142,7 +142,9 @@ impl eframe::App for App {
         if let Err(error) = self.mouse.send(self.bus.now_ns(), &places) {
             tracing::warn!("the mouse: {error}");
         }
-        context.request_repaint_after(LOOK);
+        if self.pressed {
+            context.request_repaint_after(STILL);
+        }
     }
 
     fn ui(&mut self, ui: &mut egui::Ui, _frame: &mut eframe::Frame) {

@@ -26,6 +26,9 @@ use crate::performance::{PaintingOptions, library, painting_setup, refused};
 use crate::up::conductor::Performance;
 use crate::up::supervisor::Supervisor;
 
+/// What the brush carries at the start, where nothing else is asked for.
+const FIRST_LOAD: &str = "Ultramarine Blue";
+
 /// Options of `maulstick up`.
 #[derive(Args, Clone, Debug)]
 pub struct UpOptions {
@@ -63,9 +66,9 @@ pub fn run(options: &UpOptions) -> Result<i32, Fault> {
         print!("{DEFAULT}");
         return Ok(0);
     }
-    if options.play.is_none() && (!options.painting.load.is_empty() || options.painting.ledger.is_some()) {
-        return Err(Fault::usage("--load and --ledger need --play TAKE")
-            .help("a painter loads the brush by hand"));
+    if options.play.is_none() && options.painting.ledger.is_some() {
+        return Err(Fault::usage("--ledger needs --play TAKE")
+            .help("`maulstick snapshot --ledger FILE` asks a running rig"));
     }
     member::log_to_stderr("info");
     let mut config = match &options.rig {
@@ -99,7 +102,11 @@ pub fn run(options: &UpOptions) -> Result<i32, Fault> {
     };
     let folder = RigFolder::create(&config.rig.name)?;
     let nodes = plan::nodes(&config, options.headless, performance.is_some())?;
-    let mut supervisor = Supervisor::start(folder, &config, nodes, performance)?;
+    let first_load = match loads.into_iter().next() {
+        Some(mixture) => mixture,
+        None => FIRST_LOAD.parse().map_err(|error| Fault::failure(format!("{error}")))?,
+    };
+    let mut supervisor = Supervisor::start(folder, &config, nodes, performance, first_load)?;
     supervisor.run()
 }
 

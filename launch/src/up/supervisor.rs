@@ -6,8 +6,11 @@ use std::time::{Duration, Instant};
 
 use indicatif::ProgressBar;
 use maulstick_bus::{Bus, Dial, RigClock, RigFolder, Subscription, Wake, ZenohBus};
+use maulstick_device::commander::Commander;
 use maulstick_rig::member::{CONFIG_FILE, HUB};
 use maulstick_rig::{Fault, RigConfig, Stop};
+use maulstick_types::Mixture;
+use maulstick_types::command::Command;
 use maulstick_types::topics::Topics;
 
 use crate::EXIT_INTERRUPTED;
@@ -22,6 +25,8 @@ const START_TIME: Duration = Duration::from_secs(30);
 const GRACE: Duration = Duration::from_millis(1200);
 /// How often children are looked at.
 const TICK: Duration = Duration::from_millis(20);
+/// How long the paint node may take to load a brush.
+const LOAD_TIME: Duration = Duration::from_secs(10);
 /// Pause before a node is started again.
 const RESTART_PAUSE: Duration = Duration::from_millis(200);
 
@@ -40,6 +45,7 @@ pub struct Supervisor {
     due: Vec<(String, Instant)>,
     started: Vec<(String, Instant)>,
     conductor: Option<Conductor>,
+    first_load: Mixture,
     bar: Option<ProgressBar>,
     shown: bool,
 }
@@ -62,6 +68,7 @@ impl Supervisor {
         config: &RigConfig,
         specs: Vec<NodeSpec>,
         performance: Option<Performance>,
+        first_load: Mixture,
     ) -> Result<Self, Fault> {
         let clock = RigClock::start();
         let dial =
@@ -94,6 +101,7 @@ impl Supervisor {
             due: Vec::new(),
             started: Vec::new(),
             conductor,
+            first_load,
             bar: None,
             shown: false,
         };
@@ -174,9 +182,17 @@ impl Supervisor {
     }
 
     fn watch_children(&mut self) -> Result<Option<i32>, Fault> {
-        for place in 0..self.nodes.len() {
-            let Some(ended) = self.nodes[place].ended() else { continue };
-            let (name, role) = (self.nodes[place].spec.name.clone(), self.nodes[place].spec.role);
+        let ended: Vec<(String, Ended)> = self
+            .nodes
+            .iter_mut()
+            .filter_map(|node| node.ended().map(|ended| (node.spec.name.clone(), ended)))
+            .collect();
+        for (name, ended) in ended {
+            // One node's end may have taken others out of the rig.
+            let Some(place) = self.nodes.iter().position(|node| node.spec.name == name) else {
+                continue;
+            };
+            let role = self.nodes[place].spec.role;
             self.present.remove(&name);
             match ended {
                 Ended::Well => {
@@ -292,11 +308,33 @@ impl Supervisor {
             );
         }
         match &self.conductor {
-            None => eprintln!("Ctrl-C stops it"),
+            None => {
+                eprintln!("Ctrl-C stops it");
+                self.load_brushes();
+            }
             Some(conductor) => {
                 let bar = progress_bar(conductor.performance.length_ns);
                 self.bar = Some(bar.with_message("playing"));
             }
+        }
+    }
+
+    /// Gives the painter loaded brushes. The commands go their own way: nothing waits for them.
+    fn load_brushes(&self) {
+        let (bus, topics) = (Arc::clone(&self.bus), self.topics.clone());
+        let brushes: Vec<String> = self.config.brush.iter().map(|b| b.name.clone()).collect();
+        let (mixture, stop) = (self.first_load.clone(), self.stop.clone());
+        let load = move || {
+            let mut commander = Commander::new(bus, &topics);
+            for brush in brushes {
+                let command = Command::Load { brush, mixture: mixture.clone() };
+                if let Err(fault) = commander.send(command, None, LOAD_TIME, &|| stop.requested()) {
+                    tracing::warn!("{}", fault.what);
+                }
+            }
+        };
+        if let Err(error) = std::thread::Builder::new().name("load".into()).spawn(load) {
+            tracing::warn!("the brushes cannot be loaded: {error}");
         }
     }
 

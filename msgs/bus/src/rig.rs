@@ -4,6 +4,7 @@ use std::fs::{self, DirBuilder, File, OpenOptions};
 use std::io::Write as _;
 use std::os::unix::fs::{DirBuilderExt as _, MetadataExt as _, PermissionsExt as _};
 use std::path::{Path, PathBuf};
+use std::time::{Duration, Instant};
 
 use maulstick_types::topics::check_name;
 use nix::fcntl::{Flock, FlockArg};
@@ -66,6 +67,35 @@ fn make_private(path: &Path) -> Result<(), BusError> {
     Ok(())
 }
 
+/// The processes of a killed rig are gone within this time.
+const LAST_BREATH: Duration = Duration::from_secs(3);
+
+/// Removes what a rig before left behind, once the last of its processes has let go of it.
+fn clear(path: &Path) -> Result<(), BusError> {
+    let give_up = Instant::now() + LAST_BREATH;
+    for entry in fs::read_dir(path).into_iter().flatten().flatten() {
+        let file = entry.path();
+        let extension = file.extension().and_then(|extension| extension.to_str());
+        if extension == Some("lock") {
+            while File::open(&file)
+                .is_ok_and(|file| Flock::lock(file, FlockArg::LockExclusiveNonblock).is_err())
+            {
+                if Instant::now() > give_up {
+                    return Err(folder_error(
+                        format!("a process of the rig before still holds {}", file.display()),
+                        "end it: `pkill maulstick-`",
+                    ));
+                }
+                std::thread::sleep(Duration::from_millis(10));
+            }
+        }
+        if matches!(extension, Some("lock" | "sock" | "json")) {
+            fs::remove_file(&file).ok();
+        }
+    }
+    Ok(())
+}
+
 impl RigFolder {
     /// Makes the folder of a new rig and takes its name.
     ///
@@ -110,13 +140,7 @@ impl RigFolder {
                 "stop it, or give this one another name with `--name` or in rig.toml",
             )
         })?;
-        for entry in fs::read_dir(&path).into_iter().flatten().flatten() {
-            let name = entry.file_name();
-            let stale = Path::new(&name).extension().is_some_and(|e| e == "sock" || e == "json");
-            if stale {
-                fs::remove_file(entry.path()).ok();
-            }
-        }
+        clear(&path)?;
         Ok(Self { path, rig: rig.to_owned(), _lock: Some(lock) })
     }
 

@@ -23,7 +23,8 @@ use crate::inbox::{Inbox, Queue, Wake};
 pub struct Dial {
     /// Name shown to others.
     pub name: String,
-    /// Own locator; none for a program that only connects.
+    /// Own locator. A program without one joins as a client: the process that it connects to passes
+    /// everything on.
     pub listen: Option<String>,
     /// Locators to connect to.
     pub connect: Vec<String>,
@@ -86,7 +87,7 @@ fn config(dial: &Dial) -> zenoh::Result<zenoh::Config> {
     let json = |value: &serde_json::Value| value.to_string();
     let mut config = zenoh::Config::default();
     let settings = [
-        ("mode", serde_json::json!("peer")),
+        ("mode", serde_json::json!(if dial.listen.is_some() { "peer" } else { "client" })),
         ("metadata", serde_json::json!({ "name": dial.name, "pid": std::process::id() })),
         ("listen/endpoints", serde_json::json!(dial.listen.iter().collect::<Vec<_>>())),
         ("connect/endpoints", serde_json::json!(dial.connect)),

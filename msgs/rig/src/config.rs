@@ -249,8 +249,8 @@ impl RigConfig {
     }
 
     fn check(&self, text: &str, name: &str) -> Result<(), Fault> {
-        let fault = |what: String, word: &str| {
-            Fault::usage(what).at(format!("{name}:{}", line_of(text, word)))
+        let fault = |what: String, key: &str, value: &str| {
+            Fault::usage(what).at(format!("{name}:{}", line_of(text, key, value)))
         };
         let names = [&self.rig.name]
             .into_iter()
@@ -258,49 +258,49 @@ impl RigConfig {
             .chain(self.brush.iter().map(|brush| &brush.name));
         for word in names {
             check_name(word).map_err(|what| {
-                fault(format!("the name {what}"), word).help("choose another name")
+                fault(format!("the name {what}"), "name", word).help("choose another name")
             })?;
         }
         for (place, device) in self.device.iter().enumerate() {
             if self.device[..place].iter().any(|other| other.name == device.name) {
-                return Err(fault(format!("two devices are called '{}'", device.name), &device.name)
+                return Err(fault(format!("two devices are called '{}'", device.name), "name", &device.name)
                     .help("give each its own name"));
             }
             choose("driver", &device.driver, &DRIVERS).map_err(|(what, help)| {
-                fault(what, &device.driver).help(help)
+                fault(what, "driver", &device.driver).help(help)
             })?;
             if self.brush_named(&device.brush).is_none() {
                 let names = self.brush.iter().map(|brush| brush.name.as_str());
                 let (what, help) = unknown("brush", &device.brush, names);
-                return Err(fault(what, &device.brush).help(help));
+                return Err(fault(what, "brush", &device.brush).help(help));
             }
             let numbers = device.position_m.iter().chain(&device.orientation);
             if !numbers.chain([&device.max_force_n]).all(|value| value.is_finite()) {
-                return Err(fault(format!("a number of '{}' is not finite", device.name), &device.name)
+                return Err(fault(format!("a number of '{}' is not finite", device.name), "name", &device.name)
                     .help("write plain numbers"));
             }
         }
         for brush in &self.brush {
             if !(0.1..=300.0).contains(&brush.size_mm) {
-                return Err(fault(format!("size_mm = {} of '{}'", brush.size_mm, brush.name), "size_mm")
+                return Err(fault(format!("size_mm = {} of '{}'", brush.size_mm, brush.name), "size_mm", "")
                     .help("choose 0.1 to 300"));
             }
             if !(0.0..=0.9).contains(&brush.depth_share) {
                 let what = format!("depth_share = {} of '{}'", brush.depth_share, brush.name);
-                return Err(fault(what, "depth_share").help("choose 0 to 0.9"));
+                return Err(fault(what, "depth_share", "").help("choose 0 to 0.9"));
             }
         }
         let canvas = &self.canvas;
         for (key, value) in [("width_mm", canvas.width_mm), ("height_mm", canvas.height_mm)] {
             let cells = value / canvas.cell_mm;
             if !(canvas.cell_mm > 0.0 && (0.5..=65_536.0).contains(&cells)) {
-                return Err(fault(format!("{key} = {value} with cells of {} mm", canvas.cell_mm), key)
+                return Err(fault(format!("{key} = {value} with cells of {} mm", canvas.cell_mm), key, "")
                     .help("choose a size of 1 to 65536 cells"));
             }
         }
         choose("paint model", &self.paint.model, &MODELS)
             .and_then(|()| choose("backend", &self.paint.backend, &BACKENDS))
-            .map_err(|(what, help)| fault(what, "[paint]").help(help))
+            .map_err(|(what, help)| fault(what, "[paint]", "").help(help))
     }
 }
 
@@ -321,9 +321,10 @@ fn choose(kind: &str, name: &str, names: &[&'static str]) -> Result<(), (String,
     if names.contains(&name) { Ok(()) } else { Err(unknown(kind, name, names.iter().copied())) }
 }
 
-/// The line, from 1, on which `word` first stands.
-fn line_of(text: &str, word: &str) -> usize {
-    text.lines().position(|line| line.contains(word)).map_or(1, |place| place + 1)
+/// The line, from 1, on which `key` and `value` first stand together.
+fn line_of(text: &str, key: &str, value: &str) -> usize {
+    let holds = |line: &str| line.contains(key) && line.contains(value);
+    text.lines().position(holds).map_or(1, |place| place + 1)
 }
 
 /// A fault of the TOML reader, with its line, and the nearest key where a key is unknown.

@@ -1,5 +1,6 @@
 //! Joining a rig, living in it, leaving it.
 
+use std::io::IsTerminal as _;
 use std::path::PathBuf;
 use std::sync::Arc;
 use std::time::Duration;
@@ -125,12 +126,15 @@ impl std::fmt::Debug for Member {
     }
 }
 
-/// Sends log lines of `level` and above, and of zenoh only errors, to the standard error.
+/// Sends log lines of `level` and above to the standard error; of the libraries only what a painter
+/// can do something about.
 pub fn log_to_stderr(level: &str) {
-    let filter = format!("zenoh=error,zenoh_transport=off,zenoh_link=off,{level}");
+    let quiet = "zenoh=error,zenoh_transport=off,zenoh_link=off,wgpu=error,wgpu_core=error,\
+                 wgpu_hal=error,winit=error,egui_winit=error,egui_wgpu=error,eframe=error,naga=error";
     tracing_subscriber::fmt()
-        .with_env_filter(tracing_subscriber::EnvFilter::new(filter))
+        .with_env_filter(tracing_subscriber::EnvFilter::new(format!("{quiet},{level}")))
         .with_writer(std::io::stderr)
+        .with_ansi(std::io::stderr().is_terminal())
         .without_time()
         .with_target(false)
         .try_init()

@@ -225,7 +225,8 @@ impl FrameServer {
         let mut reply = FrameReply {
             surface: asked.surface,
             epoch: self.me.epoch,
-            version: fed.version,
+            // 0 is what a new view asks with, so an unpainted canvas is of version 1.
+            version: fed.version.max(1),
             level: asked.level.min(16),
             cells: [0; 2],
             journal: fed.journal,
@@ -349,6 +350,14 @@ mod tests {
         paint(&rig, TileId { x: 3, y: 0 }, 8);
         let news = ask(&mut rig, &request(7, 5, 0)).expect("news");
         assert_eq!(news.tiles.iter().map(|t| (t.x, t.y)).collect::<Vec<_>>(), vec![(3, 0)]);
+    }
+
+    #[test]
+    fn an_unpainted_canvas_is_sent_once() {
+        let mut rig = rig();
+        let all = ask(&mut rig, &request(0, 0, 0)).expect("at once");
+        assert_eq!(all.tiles.len(), 12);
+        assert_eq!(ask(&mut rig, &request(all.version, 5, 0)), None, "it waits for news");
     }
 
     #[test]

@@ -80,7 +80,7 @@ impl PaintNode {
             status: Sender::new(b, &topics.paint_status(), Class::Background, me)?,
             scene,
             feed: Feed::new(),
-            fed_version: 0,
+            fed_version: 1,
             fed_scene,
             fed_ns: 0,
             status_ns: 0,

@@ -116,7 +116,7 @@ impl Painting {
             model: Box::new(Deposit::default()),
             ledger: Ledger::default(),
             history: History::default(),
-            versions: 0,
+            versions: 1,
             steps: 0,
             footprint_cells: 0,
             span_ns: None,

@@ -1,0 +1,137 @@
+//! Commands to a running rig: `maulstick load`, `clean`, `undo`, `redo` and `snapshot`.
+
+use std::path::PathBuf;
+use std::sync::Arc;
+use std::time::Duration;
+
+use clap::Args;
+use maulstick_bus::{Bus, Dial, RigClock, RigFolder, ZenohBus};
+use maulstick_device::commander::Commander;
+use maulstick_paint::PaintRefusal;
+use maulstick_rig::Fault;
+use maulstick_types::command::Command;
+use maulstick_types::topics::Topics;
+
+use crate::performance::{library, refused};
+
+/// Which rig a command is for.
+#[derive(Args, Clone, Debug)]
+pub struct Target {
+    /// The rig's name
+    #[arg(long, value_name = "RIG", default_value = "studio")]
+    name: String,
+}
+
+/// Options of `maulstick load`.
+#[derive(Args, Clone, Debug)]
+pub struct LoadOptions {
+    /// What the brush takes up: "Cobalt Blue=0.7,Titanium White=0.3"
+    mixture: String,
+    /// The brush
+    #[arg(long, default_value = "main")]
+    brush: String,
+    #[command(flatten)]
+    target: Target,
+}
+
+/// Options of `maulstick clean`.
+#[derive(Args, Clone, Debug)]
+pub struct CleanOptions {
+    /// The brush
+    #[arg(long, default_value = "main")]
+    brush: String,
+    #[command(flatten)]
+    target: Target,
+}
+
+/// Options of `maulstick undo` and `maulstick redo`.
+#[derive(Args, Clone, Debug)]
+pub struct HistoryOptions {
+    #[command(flatten)]
+    target: Target,
+}
+
+/// Options of `maulstick snapshot`.
+#[derive(Args, Clone, Debug)]
+pub struct SnapshotOptions {
+    /// The picture, a PNG
+    #[arg(short, long, value_name = "PNG")]
+    output: PathBuf,
+    /// The ledger of the paint, JSON
+    #[arg(long, value_name = "FILE")]
+    ledger: Option<PathBuf>,
+    #[command(flatten)]
+    target: Target,
+}
+
+/// How long a node has to answer.
+const PATIENCE: Duration = Duration::from_secs(10);
+
+/// Sends a command to the paint node of a rig; returns what it says.
+fn send(target: &Target, command: Command) -> Result<String, Fault> {
+    let (folder, info) = RigFolder::join(&target.name)?;
+    let dial = Dial { name: "cli".into(), listen: None, connect: vec![info.endpoint] };
+    let session = ZenohBus::open(&dial, RigClock::with_offset(info.clock_offset_ns))?;
+    let bus = Arc::new(session);
+    let topics = Topics::new(folder.rig());
+    let mut commander = Commander::new(Arc::clone(&bus) as Arc<dyn Bus>, &topics);
+    let said = commander.send(command, None, PATIENCE, &|| false);
+    bus.close();
+    said
+}
+
+/// Loads a brush.
+///
+/// # Errors
+/// A [`Fault`] for an unknown paint or brush, or where no rig runs.
+pub fn load(options: &LoadOptions) -> Result<i32, Fault> {
+    let mixture = options.mixture.parse().map_err(|error| {
+        refused(PaintRefusal::paint(maulstick_optics::PaintError::Mixture(error)))
+    })?;
+    let mixture = library()?.check(&mixture).map_err(|e| refused(PaintRefusal::paint(e)))?;
+    send(&options.target, Command::Load { brush: options.brush.clone(), mixture })?;
+    Ok(0)
+}
+
+/// Cleans a brush.
+///
+/// # Errors
+/// A [`Fault`] for an unknown brush, or where no rig runs.
+pub fn clean(options: &CleanOptions) -> Result<i32, Fault> {
+    send(&options.target, Command::Clean { brush: options.brush.clone() })?;
+    Ok(0)
+}
+
+/// Takes the newest step back.
+///
+/// # Errors
+/// A [`Fault`] where there is none, or where no rig runs.
+pub fn undo(options: &HistoryOptions) -> Result<i32, Fault> {
+    println!("undone: {}", send(&options.target, Command::Undo)?);
+    Ok(0)
+}
+
+/// Does the newest undone step again.
+///
+/// # Errors
+/// A [`Fault`] where there is none, or where no rig runs.
+pub fn redo(options: &HistoryOptions) -> Result<i32, Fault> {
+    println!("redone: {}", send(&options.target, Command::Redo)?);
+    Ok(0)
+}
+
+/// Has the picture of the canvas written.
+///
+/// # Errors
+/// A [`Fault`] where it cannot be written, or where no rig runs.
+pub fn snapshot(options: &SnapshotOptions) -> Result<i32, Fault> {
+    let whole = |path: &PathBuf| {
+        std::path::absolute(path)
+            .map(|path| path.display().to_string())
+            .map_err(|error| Fault::file(path, &error, true))
+    };
+    let path = whole(&options.output)?;
+    let ledger = options.ledger.as_ref().map(whole).transpose()?;
+    println!("{}", send(&options.target, Command::Snapshot { path, ledger })?);
+    Ok(0)
+}

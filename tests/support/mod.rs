@@ -1,0 +1,174 @@
+//! Real processes for whole-rig tests: rigs of their own names in folders of their own.
+
+#![allow(dead_code, unreachable_pub, missing_docs, reason = "shared by test programs, each of which uses a part")]
+
+pub mod display;
+
+use std::io::{BufRead as _, BufReader};
+use std::path::PathBuf;
+use std::process::{Child, Command, ExitStatus, Output, Stdio};
+use std::sync::{Arc, Mutex};
+use std::time::{Duration, Instant};
+
+use nix::sys::signal::{Signal, kill};
+use nix::unistd::Pid;
+
+/// Nothing in a test takes longer than this, unless it hangs.
+pub const PATIENCE: Duration = Duration::from_secs(120);
+
+/// The command under test.
+pub const MAULSTICK: &str = env!("CARGO_BIN_EXE_maulstick");
+
+/// A folder for files and one for rigs; both go when dropped.
+pub struct Place {
+    folder: tempfile::TempDir,
+}
+
+impl Place {
+    pub fn new() -> Self {
+        Self { folder: tempfile::tempdir().expect("a temporary folder") }
+    }
+
+    pub fn path(&self, name: &str) -> PathBuf {
+        self.folder.path().join(name)
+    }
+
+    /// A command in this place.
+    pub fn maulstick(&self, args: &[&str]) -> Command {
+        let mut command = Command::new(MAULSTICK);
+        command.args(args).current_dir(self.folder.path()).env("XDG_RUNTIME_DIR", self.folder.path());
+        command
+    }
+
+    /// Runs a command to its end.
+    pub fn run(&self, args: &[&str]) -> Output {
+        self.maulstick(args).output().expect("started")
+    }
+
+    /// Runs a command that must succeed.
+    pub fn done(&self, args: &[&str]) -> Output {
+        let output = self.run(args);
+        assert!(output.status.success(), "{args:?}: {}", String::from_utf8_lossy(&output.stderr));
+        output
+    }
+
+    /// A demo of the first `seconds`, as `name`.
+    pub fn short_demo(&self, name: &str, seconds: f64) {
+        let take = maulstick_device::demo::performance(3);
+        let end = (seconds * 1e9) as u64;
+        let samples = take.samples.into_iter().filter(|sample| sample.time_ns <= end).collect();
+        let take = maulstick_device::Take { device: "demo".into(), samples };
+        take.write(&self.path(name)).expect("written");
+    }
+
+    pub fn bytes(&self, name: &str) -> Vec<u8> {
+        std::fs::read(self.path(name)).unwrap_or_else(|error| panic!("{name}: {error}"))
+    }
+
+    /// Processes of a rig in this place.
+    pub fn processes(&self) -> Vec<(u32, String)> {
+        let mark = self.folder.path().display().to_string();
+        let mut found = Vec::new();
+        for entry in std::fs::read_dir("/proc").into_iter().flatten().flatten() {
+            let Ok(pid) = entry.file_name().to_string_lossy().parse::<u32>() else { continue };
+            let Ok(line) = std::fs::read(entry.path().join("cmdline")) else { continue };
+            let line = String::from_utf8_lossy(&line).replace('\0', " ");
+            if line.contains("maulstick-") && line.contains(&mark) {
+                found.push((pid, line));
+            }
+        }
+        found
+    }
+
+    /// Process of a node of the rig, by its program.
+    pub fn pid(&self, program: &str) -> Option<u32> {
+        let name = format!("/{program} ");
+        self.processes().into_iter().find(|(_, line)| line.contains(&name)).map(|(pid, _)| pid)
+    }
+
+    /// Waits until no process of a rig in this place is left.
+    pub fn wait_empty(&self, limit: Duration) {
+        let empty = wait_for(limit, || self.processes().is_empty().then_some(()));
+        assert!(empty.is_some(), "left behind: {:?}", self.processes());
+    }
+}
+
+/// Looks until something is there; none after `limit`.
+pub fn wait_for<T>(limit: Duration, mut look: impl FnMut() -> Option<T>) -> Option<T> {
+    let give_up = Instant::now() + limit;
+    loop {
+        if let Some(found) = look() {
+            return Some(found);
+        }
+        if Instant::now() > give_up {
+            return None;
+        }
+        std::thread::yield_now();
+        std::thread::park_timeout(Duration::from_millis(2));
+    }
+}
+
+/// Sends a signal to a process.
+pub fn signal(pid: u32, signal: Signal) {
+    kill(Pid::from_raw(pid as i32), signal).expect("the process is there");
+}
+
+/// A running launcher, whose messages are read as they come.
+pub struct Launcher {
+    child: Child,
+    said: Arc<Mutex<String>>,
+}
+
+impl Launcher {
+    pub fn start(mut command: Command) -> Self {
+        let mut child =
+            command.stdout(Stdio::null()).stderr(Stdio::piped()).spawn().expect("started");
+        let said = Arc::new(Mutex::new(String::new()));
+        let (to, from) = (Arc::clone(&said), child.stderr.take().expect("piped"));
+        std::thread::spawn(move || {
+            for line in BufReader::new(from).lines().map_while(Result::ok) {
+                let mut said = to.lock().expect("unpoisoned");
+                said.push_str(&line);
+                said.push('\n');
+            }
+        });
+        Self { child, said }
+    }
+
+    pub fn pid(&self) -> u32 {
+        self.child.id()
+    }
+
+    pub fn said(&self) -> String {
+        self.said.lock().expect("unpoisoned").clone()
+    }
+
+    /// Waits until it has said something.
+    pub fn wait_says(&mut self, text: &str) {
+        let heard = wait_for(PATIENCE, || self.said().contains(text).then_some(()));
+        assert!(heard.is_some(), "never said '{text}', but: {}", self.said());
+    }
+
+    /// Waits for its end.
+    pub fn wait(&mut self, limit: Duration) -> ExitStatus {
+        wait_for(limit, || self.child.try_wait().expect("waited"))
+            .unwrap_or_else(|| panic!("does not end; it said: {}", self.said()))
+    }
+
+    pub fn signal(&self, which: Signal) {
+        signal(self.pid(), which);
+    }
+}
+
+impl Drop for Launcher {
+    fn drop(&mut self) {
+        self.child.kill().ok();
+        self.child.wait().ok();
+    }
+}
+
+/// Whether two files are the same, said in few words if not.
+pub fn assert_same(one: &[u8], two: &[u8], what: &str) {
+    let differs = one.iter().zip(two).position(|(a, b)| a != b);
+    assert!(one == two, "{what}: {} and {} bytes, first difference at {differs:?}", one.len(), two.len());
+}
