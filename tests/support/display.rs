@@ -1,7 +1,6 @@
 //! A display for windows, and a hand at its mouse.
 
 use std::io::{BufRead as _, BufReader};
-use std::path::Path;
 use std::process::{Child, Command, Stdio};
 
 use x11rb::connection::Connection as _;
@@ -110,20 +109,6 @@ impl Display {
             .reply()
             .expect("a pixel");
         [image.data[2], image.data[1], image.data[0]]
-    }
-
-    /// A window as a PNG.
-    pub fn screenshot(&self, window: Window, path: &Path) {
-        let size = self.connection.get_geometry(window).expect("sent").reply().expect("a size");
-        let image = self
-            .connection
-            .get_image(ImageFormat::Z_PIXMAP, window, 0, 0, size.width, size.height, u32::MAX)
-            .expect("sent")
-            .reply()
-            .expect("a picture");
-        let rgb: Vec<u8> = image.data.chunks_exact(4).flat_map(|p| [p[2], p[1], p[0]]).collect();
-        let (width, height) = (usize::from(size.width), usize::from(size.height));
-        maulstick_paint::picture::Picture { width, height, rgb }.write_png(path).expect("written");
     }
 }
 

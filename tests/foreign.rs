@@ -1,0 +1,101 @@
+//! What others do to a rig: a device in another language, and messages that are none.
+
+mod support;
+
+use std::path::Path;
+use std::process::{Command, Stdio};
+use std::time::Duration;
+
+use maulstick_bus::typed::Receiver;
+use maulstick_bus::{Bus, Class, Dial, Queue, RigClock, RigFolder, Wake, ZenohBus};
+use maulstick_types::command::{Command as Order, CommandRequest};
+use maulstick_types::paint::PaintStatus;
+use maulstick_types::topics::Topics;
+use maulstick_types::{Flags, Origin, encode};
+use support::{Launcher, PATIENCE, Place, wait_for};
+
+/// A client of the rig in a place.
+fn join(place: &Place) -> (ZenohBus, Topics) {
+    let (_, info) = RigFolder::join_at(&place.path("maulstick/studio")).expect("a rig");
+    let dial = Dial { name: "test".into(), listen: None, connect: vec![info.endpoint] };
+    let clock = RigClock::with_offset(info.clock_offset_ns);
+    (ZenohBus::open(&dial, clock).expect("joined"), Topics::new(&info.rig))
+}
+
+/// Cubic metres of paint on the canvas.
+fn on_canvas(place: &Place) -> f64 {
+    place.done(&["snapshot", "-o", "p.png", "--ledger", "l.json"]);
+    let ledger: serde_json::Value = serde_json::from_slice(&place.bytes("l.json")).expect("JSON");
+    assert_eq!(ledger["quanta_missing"], 0);
+    ledger["accounts_m3"]["canvas"].as_f64().expect("a number")
+}
+
+#[test]
+fn a_device_in_python_paints() {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("..");
+    let python = root.join("target/test-venv/bin/python");
+    assert!(python.exists(), "run ./test: it installs eclipse-zenoh for Python");
+    let place = Place::new();
+    let mut launcher = Launcher::start(place.maulstick(&["up", "--headless"]));
+    launcher.wait_says("is up");
+    let endpoint = place.done(&["endpoint", "--json"]);
+    let mut stylus = Command::new(python)
+        .arg(root.join("tests/python/stylus.py"))
+        .stdin(Stdio::piped())
+        .spawn()
+        .expect("started");
+    let mut stdin = stylus.stdin.take().expect("piped");
+    std::io::Write::write_all(&mut stdin, &endpoint.stdout).expect("written");
+    drop(stdin);
+    assert!(stylus.wait().expect("ended").success());
+    let painted = wait_for(PATIENCE, || (on_canvas(&place) > 0.0).then_some(()));
+    assert!(painted.is_some(), "{}", launcher.said());
+}
+
+#[test]
+fn hostile_messages_are_counted_and_dropped() {
+    let place = Place::new();
+    let mut launcher = Launcher::start(place.maulstick(&["up", "--headless"]));
+    launcher.wait_says("is up");
+    let before = place.processes();
+    let (bus, topics) = join(&place);
+    let wake = Wake::new();
+    let (topic, class) = (topics.paint_status(), Class::Background);
+    let mut status = Receiver::<PaintStatus>::new(&bus, &topic, class, Queue::Latest, &wake)
+        .expect("subscribed");
+    let origin = Origin { source: 9, epoch: 9 };
+    let mark = CommandRequest { client: 1, number: 1, after: None, command: Order::Mark };
+    let good = encode(&origin, Flags::NONE, 0, 1, 1, &mark).expect("encoded");
+    let mut hostile = vec![Vec::new(), vec![0; 7], vec![0xff; 5000]];
+    // An unknown schema, a wrong length, a hostile length inside the body, a cut, a surplus.
+    for (at, byte) in [(4, 0x55), (20, 0x01), (48 + 16 + 1, 0xff)] {
+        let mut bytes = good.clone();
+        bytes[at] ^= byte;
+        hostile.push(bytes);
+    }
+    hostile.push(good[..good.len() - 1].to_vec());
+    hostile.push([&good[..], &[0]].concat());
+    let targets = [topics.sample("evil"), topics.brush_state("main"), topics.contact_model("phantom"),
+        topics.scene(), topics.paint_consumed(), topics.brush_consumed("main"), topics.brush_def("x")];
+    let told = wait_for(PATIENCE, || {
+        for target in &targets {
+            let publisher = bus.publisher(target, Class::Data).expect("declared");
+            hostile.iter().for_each(|bytes| publisher.put(bytes.clone()).expect("sent"));
+        }
+        for topic in [topics.command("paint"), topics.frame(), topics.gap("brush/main/state")] {
+            for bytes in &hostile {
+                let limit = Duration::from_millis(50);
+                drop(bus.ask(&topic, bytes.clone(), limit, &wake).expect("asked"));
+            }
+        }
+        status.newest().filter(|status| status.message.refused > 10)
+    });
+    assert!(told.is_some(), "nothing was counted: {}", launcher.said());
+    assert_eq!(place.processes(), before, "a node fell: {}", launcher.said());
+    place.done(&["load", "Bone Black"]);
+    assert_eq!(on_canvas(&place), 0.0);
+    let said = launcher.said();
+    assert!(said.contains("schema") && said.contains("is not"), "{said}");
+    assert!(said.matches("is not").count() < 20, "it says it once: {said}");
+    bus.close();
+}
