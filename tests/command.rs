@@ -24,13 +24,29 @@ fn has(said: &str, words: &[&str]) {
 fn a_demo_becomes_a_picture_the_same_every_time() {
     let place = Place::new();
     place.done(&["demo", "-o", "demo.mcap"]);
-    let loads = ["--load", "Ultramarine Blue", "--load", "Yellow Ochre=0.5,Titanium White=0.5"];
+    let loads = [
+        "--load",
+        "Ultramarine Blue",
+        "--load",
+        "Yellow Ochre=0.5,Titanium White=0.5",
+    ];
     for picture in ["one.png", "two.png"] {
-        let mut args = vec!["render", "demo.mcap", "-o", picture, "--ledger", "ledger.json"];
+        let mut args = vec![
+            "render",
+            "demo.mcap",
+            "-o",
+            picture,
+            "--ledger",
+            "ledger.json",
+        ];
         args.extend(loads);
         place.done(&args);
     }
-    support::assert_same(&place.bytes("one.png"), &place.bytes("two.png"), "two renders");
+    support::assert_same(
+        &place.bytes("one.png"),
+        &place.bytes("two.png"),
+        "two renders",
+    );
     let ledger: serde_json::Value =
         serde_json::from_slice(&place.bytes("ledger.json")).expect("JSON");
     assert_eq!(ledger["quanta_missing"], 0);
@@ -41,7 +57,14 @@ fn a_demo_becomes_a_picture_the_same_every_time() {
     assert!(sum.abs() < 1e-18, "{sum}");
     assert!(ledger["paints_m3"]["Ultramarine Blue"]["canvas"].as_f64() > Some(0.0));
     // Another load is another picture.
-    place.done(&["render", "demo.mcap", "-o", "three.png", "--load", "Bone Black"]);
+    place.done(&[
+        "render",
+        "demo.mcap",
+        "-o",
+        "three.png",
+        "--load",
+        "Bone Black",
+    ]);
     assert!(place.bytes("one.png") != place.bytes("three.png"));
 }
 
@@ -51,7 +74,9 @@ fn the_canvas_has_the_size_that_is_asked_for() {
     place.short_demo("demo.mcap", 1.0);
     place.done(&["render", "demo.mcap", "-o", "p.png", "--size", "640x333"]);
     let picture = std::fs::File::open(place.path("p.png")).expect("there");
-    let reader = png::Decoder::new(std::io::BufReader::new(picture)).read_info().expect("a PNG");
+    let reader = png::Decoder::new(std::io::BufReader::new(picture))
+        .read_info()
+        .expect("a PNG");
     assert_eq!((reader.info().width, reader.info().height), (640, 333));
 }
 
@@ -64,15 +89,33 @@ fn bad_tables_are_refused_with_their_line() {
         assert!(!place.path("t.mcap").exists(), "half-written: {said}");
         said
     };
-    has(&import("0 1 2 0\n0.1 1 2\n"), &["t.dat:2", "pressure", "missing", "help:"]);
-    has(&import("0 1 2 0\n0.1 a 2 0\n"), &["t.dat:2", "'a' is not a number"]);
-    has(&import("0 1 2 0\n0.1 1 nan 0\n"), &["t.dat:2", "not finite"]);
-    has(&import("1 1 2 0\n0.5 1 2 0\n"), &["t.dat:2", "time runs backward"]);
+    has(
+        &import("0 1 2 0\n0.1 1 2\n"),
+        &["t.dat:2", "pressure", "missing", "help:"],
+    );
+    has(
+        &import("0 1 2 0\n0.1 a 2 0\n"),
+        &["t.dat:2", "'a' is not a number"],
+    );
+    has(
+        &import("0 1 2 0\n0.1 1 nan 0\n"),
+        &["t.dat:2", "not finite"],
+    );
+    has(
+        &import("1 1 2 0\n0.5 1 2 0\n"),
+        &["t.dat:2", "time runs backward"],
+    );
     has(&import("0 1 2 1.01\n"), &["t.dat:1", "1.01", "0 and 1"]);
     has(&import(""), &["no samples"]);
-    has(&fault(&place, &["import", "none.dat", "-o", "t.mcap"], 2), &["none.dat", "check the path"]);
+    has(
+        &fault(&place, &["import", "none.dat", "-o", "t.mcap"], 2),
+        &["none.dat", "check the path"],
+    );
     std::fs::write(place.path("t.dat"), "0 1 2 0\n").expect("written");
-    has(&fault(&place, &["import", "t.dat", "-o", "no/t.mcap"], 1), &["no/t.mcap", "folder"]);
+    has(
+        &fault(&place, &["import", "t.dat", "-o", "no/t.mcap"], 1),
+        &["no/t.mcap", "folder"],
+    );
 }
 
 #[test]
@@ -84,10 +127,16 @@ fn bad_takes_are_refused_and_damaged_ones_recovered() {
     let said = fault(&place, &["render", "cut.mcap", "-o", "p.png"], 2);
     has(&said, &["damaged", "cut.mcap", "maulstick take recover"]);
     assert!(!place.path("p.png").exists());
-    has(&fault(&place, &["up", "--headless", "--play", "cut.mcap"], 2), &["damaged"]);
+    has(
+        &fault(&place, &["up", "--headless", "--play", "cut.mcap"], 2),
+        &["damaged"],
+    );
     place.done(&["take", "recover", "cut.mcap", "-o", "saved.mcap"]);
     place.done(&["render", "saved.mcap", "-o", "p.png"]);
-    has(&fault(&place, &["render", "p.png", "-o", "q.png"], 2), &["no MCAP file"]);
+    has(
+        &fault(&place, &["render", "p.png", "-o", "q.png"], 2),
+        &["no MCAP file"],
+    );
     let info = place.done(&["take", "info", "demo.mcap", "--json"]);
     let info: serde_json::Value = serde_json::from_slice(&info.stdout).expect("JSON");
     assert_eq!(info["device"], "demo");
@@ -104,21 +153,46 @@ fn bad_options_are_refused_with_the_nearest_name() {
         assert!(!place.path("p.png").exists());
         said
     };
-    has(&render(&["--load", "Colbat Blue"]), &["'Colbat Blue'", "'Cobalt Blue'", "--load"]);
-    has(&render(&["--load", "Cobalt Blue=0.5,Bone Black=0.4"]), &["sum to 0.9"]);
+    has(
+        &render(&["--load", "Colbat Blue"]),
+        &["'Colbat Blue'", "'Cobalt Blue'", "--load"],
+    );
+    has(
+        &render(&["--load", "Cobalt Blue=0.5,Bone Black=0.4"]),
+        &["sum to 0.9"],
+    );
     has(&render(&["--brush", "ruond"]), &["'ruond'", "'round'"]);
     has(&render(&["--size", "0x4"]), &["0x4"]);
     has(&render(&["--rig", "none.toml"]), &["none.toml"]);
     let said = fault(&place, &["render", "d.mcap", "-o", "no/p.png"], 1);
     has(&said, &["no/p.png", "cannot write"]);
-    has(&fault(&place, &["render", "d.mcap", "-o", "."], 1), &["cannot write"]);
+    has(
+        &fault(&place, &["render", "d.mcap", "-o", "."], 1),
+        &["cannot write"],
+    );
     let seventeen = [
-        "Titanium White", "Hansa Yellow Opaque", "Bismuth Vanadate Yellow", "Diarylide Yellow",
-        "Cadmium Orange", "Pyrrole Orange", "Cadmium Red Light", "Pyrrole Red", "Quinacridone Red",
-        "Quinacridone Magenta", "Dioxazine Purple", "Ultramarine Blue", "Cobalt Blue",
-        "Cerulean Blue", "Phthalo Blue Red Shade", "Phthalo Green Blue Shade", "Bone Black",
+        "Titanium White",
+        "Hansa Yellow Opaque",
+        "Bismuth Vanadate Yellow",
+        "Diarylide Yellow",
+        "Cadmium Orange",
+        "Pyrrole Orange",
+        "Cadmium Red Light",
+        "Pyrrole Red",
+        "Quinacridone Red",
+        "Quinacridone Magenta",
+        "Dioxazine Purple",
+        "Ultramarine Blue",
+        "Cobalt Blue",
+        "Cerulean Blue",
+        "Phthalo Blue Red Shade",
+        "Phthalo Green Blue Shade",
+        "Bone Black",
     ];
-    let loads: Vec<&str> = seventeen.iter().flat_map(|paint| ["--load", paint]).collect();
+    let loads: Vec<&str> = seventeen
+        .iter()
+        .flat_map(|paint| ["--load", paint])
+        .collect();
     has(&render(&loads), &["paint 17", "at most 16"]);
 }
 
@@ -133,11 +207,26 @@ fn bad_settings_are_refused_with_their_line() {
         std::fs::write(place.path("rig.toml"), text.replace(change.0, change.1)).expect("written");
         fault(&place, &["up", "--headless", "--rig", "rig.toml"], 2)
     };
-    has(&rig(("cell_mm = 0.25 ", "cell_m = 0.25 ")), &["unknown key 'cell_m'", "'cell_mm'", "rig.toml:11"]);
-    has(&rig(("driver = \"simulated\"", "driver = \"phantom\"")), &["driver", "'simulated'", "rig.toml:28"]);
-    has(&rig(("kind = \"round\"", "kind = \"flatt\"")), &["'flatt'", "round"]);
-    has(&rig(("ground = \"gesso\"", "ground = \"gesoo\"")), &["gesoo", "gesso"]);
-    has(&rig(("\"Bone Black\"", "\"Bone Blak\"")), &["Bone Blak", "'Bone Black'"]);
+    has(
+        &rig(("cell_mm = 0.25 ", "cell_m = 0.25 ")),
+        &["unknown key 'cell_m'", "'cell_mm'", "rig.toml:11"],
+    );
+    has(
+        &rig(("driver = \"simulated\"", "driver = \"phantom\"")),
+        &["driver", "'simulated'", "rig.toml:28"],
+    );
+    has(
+        &rig(("kind = \"round\"", "kind = \"flatt\"")),
+        &["'flatt'", "round"],
+    );
+    has(
+        &rig(("ground = \"gesso\"", "ground = \"gesoo\"")),
+        &["gesoo", "gesso"],
+    );
+    has(
+        &rig(("\"Bone Black\"", "\"Bone Blak\"")),
+        &["Bone Blak", "'Bone Black'"],
+    );
 }
 
 #[test]
@@ -146,8 +235,15 @@ fn schemas_and_paints_are_listed() {
     let schema = place.done(&["schema", "--json"]);
     let schema: serde_json::Value = serde_json::from_slice(&schema.stdout).expect("JSON");
     let messages = schema["messages"].as_array().expect("messages");
-    assert!(messages.iter().any(|message| message["name"] == "StylusSample"));
-    has(&fault(&place, &["schema", "StylusSampel"], 2), &["'StylusSample'"]);
+    assert!(
+        messages
+            .iter()
+            .any(|message| message["name"] == "StylusSample")
+    );
+    has(
+        &fault(&place, &["schema", "StylusSampel"], 2),
+        &["'StylusSample'"],
+    );
     let paints = place.done(&["paints", "--json"]);
     let paints: serde_json::Value = serde_json::from_slice(&paints.stdout).expect("JSON");
     assert_eq!(paints["paints"].as_array().map(Vec::len), Some(28));
@@ -156,8 +252,16 @@ fn schemas_and_paints_are_listed() {
 #[test]
 fn without_a_rig_nothing_answers_and_says_so() {
     let place = Place::new();
-    for args in [&["endpoint"][..], &["undo"], &["load", "Bone Black"], &["snapshot", "-o", "p.png"]] {
+    for args in [
+        &["endpoint"][..],
+        &["undo"],
+        &["load", "Bone Black"],
+        &["snapshot", "-o", "p.png"],
+    ] {
         let said = fault(&place, args, 1);
-        has(&said, &["no rig called 'studio' is running", "maulstick up"]);
+        has(
+            &said,
+            &["no rig called 'studio' is running", "maulstick up"],
+        );
     }
 }

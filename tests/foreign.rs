@@ -17,9 +17,16 @@ use support::{Launcher, PATIENCE, Place, wait_for};
 /// A client of the rig in a place.
 fn join(place: &Place) -> (ZenohBus, Topics) {
     let (_, info) = RigFolder::join_at(&place.path("maulstick/studio")).expect("a rig");
-    let dial = Dial { name: "test".into(), listen: None, connect: vec![info.endpoint] };
+    let dial = Dial {
+        name: "test".into(),
+        listen: None,
+        connect: vec![info.endpoint],
+    };
     let clock = RigClock::with_offset(info.clock_offset_ns);
-    (ZenohBus::open(&dial, clock).expect("joined"), Topics::new(&info.rig))
+    (
+        ZenohBus::open(&dial, clock).expect("joined"),
+        Topics::new(&info.rig),
+    )
 }
 
 /// Cubic metres of paint on the canvas.
@@ -34,7 +41,10 @@ fn on_canvas(place: &Place) -> f64 {
 fn a_device_in_python_paints() {
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("..");
     let python = root.join("target/test-venv/bin/python");
-    assert!(python.exists(), "run ./test: it installs eclipse-zenoh for Python");
+    assert!(
+        python.exists(),
+        "run ./test: it installs eclipse-zenoh for Python"
+    );
     let place = Place::new();
     let mut launcher = Launcher::start(place.maulstick(&["up", "--headless"]));
     launcher.wait_says("is up");
@@ -63,8 +73,16 @@ fn hostile_messages_are_counted_and_dropped() {
     let (topic, class) = (topics.paint_status(), Class::Background);
     let mut status = Receiver::<PaintStatus>::new(&bus, &topic, class, Queue::Latest, &wake)
         .expect("subscribed");
-    let origin = Origin { source: 9, epoch: 9 };
-    let mark = CommandRequest { client: 1, number: 1, after: None, command: Order::Mark };
+    let origin = Origin {
+        source: 9,
+        epoch: 9,
+    };
+    let mark = CommandRequest {
+        client: 1,
+        number: 1,
+        after: None,
+        command: Order::Mark,
+    };
     let good = encode(&origin, Flags::NONE, 0, 1, 1, &mark).expect("encoded");
     let mut hostile = vec![Vec::new(), vec![0; 7], vec![0xff; 5000]];
     // An unknown schema, a wrong length, a hostile length inside the body, a cut, a surplus.
@@ -75,14 +93,27 @@ fn hostile_messages_are_counted_and_dropped() {
     }
     hostile.push(good[..good.len() - 1].to_vec());
     hostile.push([&good[..], &[0]].concat());
-    let targets = [topics.sample("evil"), topics.brush_state("main"), topics.contact_model("phantom"),
-        topics.scene(), topics.paint_consumed(), topics.brush_consumed("main"), topics.brush_def("x")];
+    let targets = [
+        topics.sample("evil"),
+        topics.brush_state("main"),
+        topics.contact_model("phantom"),
+        topics.scene(),
+        topics.paint_consumed(),
+        topics.brush_consumed("main"),
+        topics.brush_def("x"),
+    ];
     let told = wait_for(PATIENCE, || {
         for target in &targets {
             let publisher = bus.publisher(target, Class::Data).expect("declared");
-            hostile.iter().for_each(|bytes| publisher.put(bytes.clone()).expect("sent"));
+            hostile
+                .iter()
+                .for_each(|bytes| publisher.put(bytes.clone()).expect("sent"));
         }
-        for topic in [topics.command("paint"), topics.frame(), topics.gap("brush/main/state")] {
+        for topic in [
+            topics.command("paint"),
+            topics.frame(),
+            topics.gap("brush/main/state"),
+        ] {
             for bytes in &hostile {
                 let limit = Duration::from_millis(50);
                 drop(bus.ask(&topic, bytes.clone(), limit, &wake).expect("asked"));
@@ -91,11 +122,19 @@ fn hostile_messages_are_counted_and_dropped() {
         status.newest().filter(|status| status.message.refused > 10)
     });
     assert!(told.is_some(), "nothing was counted: {}", launcher.said());
-    assert_eq!(place.processes(), before, "a node fell: {}", launcher.said());
+    assert_eq!(
+        place.processes(),
+        before,
+        "a node fell: {}",
+        launcher.said()
+    );
     place.done(&["load", "Bone Black"]);
     assert_eq!(on_canvas(&place), 0.0);
     let said = launcher.said();
     assert!(said.contains("schema") && said.contains("is not"), "{said}");
-    assert!(said.matches("is not").count() < 20, "it says it once: {said}");
+    assert!(
+        said.matches("is not").count() < 20,
+        "it says it once: {said}"
+    );
     bus.close();
 }

@@ -8,7 +8,12 @@ use nix::sys::signal::Signal;
 use support::display::Display;
 use support::{Launcher, PATIENCE, Place, assert_same, signal, wait_for};
 
-const LOADS: [&str; 4] = ["--load", "Ultramarine Blue", "--load", "Pyrrole Red=0.6,Titanium White=0.4"];
+const LOADS: [&str; 4] = [
+    "--load",
+    "Ultramarine Blue",
+    "--load",
+    "Pyrrole Red=0.6,Titanium White=0.4",
+];
 
 /// Renders `take` as `offline.png`.
 fn render(place: &Place, take: &str) {
@@ -19,7 +24,15 @@ fn render(place: &Place, take: &str) {
 
 /// A rig that plays `take` and writes `live.png`.
 fn play(place: &Place, take: &str, extra: &[&str]) -> Launcher {
-    let mut args = vec!["up", "--play", take, "--snapshot", "live.png", "--ledger", "live.json"];
+    let mut args = vec![
+        "up",
+        "--play",
+        take,
+        "--snapshot",
+        "live.png",
+        "--ledger",
+        "live.json",
+    ];
     args.extend(LOADS);
     args.extend(extra);
     Launcher::start(place.maulstick(&args))
@@ -53,13 +66,24 @@ fn a_stopped_window_holds_nothing_up() {
     let place = Place::new();
     place.short_demo("take.mcap", 4.0);
     render(&place, "take.mcap");
-    let mut args = vec!["up", "--play", "take.mcap", "--snapshot", "live.png", "--ledger", "live.json"];
+    let mut args = vec![
+        "up",
+        "--play",
+        "take.mcap",
+        "--snapshot",
+        "live.png",
+        "--ledger",
+        "live.json",
+    ];
     args.extend(LOADS);
     let mut command = place.maulstick(&args);
     command.env("DISPLAY", &display.name);
     let mut launcher = Launcher::start(command);
     launcher.wait_says("is up");
-    signal(place.pid("maulstick-ui").expect("a window"), Signal::SIGSTOP);
+    signal(
+        place.pid("maulstick-ui").expect("a window"),
+        Signal::SIGSTOP,
+    );
     finish(&place, &mut launcher, "the window stopped");
 }
 
@@ -113,7 +137,11 @@ fn a_node_that_does_not_stay_up_ends_the_rig_with_words() {
     launcher.wait_says("is up");
     let mut last = None;
     for _ in 0..3 {
-        let pid = wait_for(PATIENCE, || place.pid("maulstick-paint").filter(|pid| Some(*pid) != last));
+        let pid = wait_for(PATIENCE, || {
+            place
+                .pid("maulstick-paint")
+                .filter(|pid| Some(*pid) != last)
+        });
         let pid = pid.expect("a paint node");
         last = Some(pid);
         signal(pid, Signal::SIGKILL);
@@ -121,7 +149,10 @@ fn a_node_that_does_not_stay_up_ends_the_rig_with_words() {
     let status = launcher.wait(PATIENCE);
     assert_eq!(status.code(), Some(1));
     let said = launcher.said();
-    assert!(said.contains("node 'paint' does not stay up") && said.contains("help:"), "{said}");
+    assert!(
+        said.contains("node 'paint' does not stay up") && said.contains("help:"),
+        "{said}"
+    );
     place.wait_empty(Duration::from_secs(2));
 }
 
@@ -143,7 +174,10 @@ fn a_stopped_node_does_not_survive_the_rig() {
     let place = Place::new();
     let mut launcher = Launcher::start(place.maulstick(&["up", "--headless"]));
     launcher.wait_says("is up");
-    signal(place.pid("maulstick-paint").expect("a node"), Signal::SIGSTOP);
+    signal(
+        place.pid("maulstick-paint").expect("a node"),
+        Signal::SIGSTOP,
+    );
     launcher.signal(Signal::SIGTERM);
     launcher.wait(PATIENCE);
     place.wait_empty(Duration::ZERO);
@@ -154,7 +188,10 @@ fn nothing_survives_a_killed_launcher() {
     let place = Place::new();
     let mut launcher = Launcher::start(place.maulstick(&["up", "--headless"]));
     launcher.wait_says("is up");
-    signal(place.pid("maulstick-paint").expect("a node"), Signal::SIGSTOP);
+    signal(
+        place.pid("maulstick-paint").expect("a node"),
+        Signal::SIGSTOP,
+    );
     launcher.signal(Signal::SIGKILL);
     launcher.wait(PATIENCE);
     place.wait_empty(PATIENCE);
@@ -173,7 +210,12 @@ fn a_closed_window_ends_the_rig_with_success() {
     launcher.wait_says("is up");
     let window = display.window("Maulstick");
     display.close(window);
-    assert_eq!(launcher.wait(PATIENCE).code(), Some(0), "{}", launcher.said());
+    assert_eq!(
+        launcher.wait(PATIENCE).code(),
+        Some(0),
+        "{}",
+        launcher.said()
+    );
     place.wait_empty(Duration::from_secs(2));
 }
 
@@ -185,7 +227,10 @@ fn a_rig_has_its_name_to_itself() {
     let second = place.run(&["up", "--headless", "--name", "one"]);
     let said = String::from_utf8_lossy(&second.stderr).into_owned();
     assert_eq!(second.status.code(), Some(1), "{said}");
-    assert!(said.contains("already running") && said.contains("pid"), "{said}");
+    assert!(
+        said.contains("already running") && said.contains("pid"),
+        "{said}"
+    );
     let mut other = Launcher::start(place.maulstick(&["up", "--headless", "--name", "two"]));
     other.wait_says("is up");
 }
@@ -207,7 +252,10 @@ fn commands_reach_a_running_rig() {
     assert!(ledger["accounts_m3"]["cleaner"].as_f64() > Some(0.0));
     let refused = place.run(&["snapshot", "-o", "no/p.png"]);
     let said = String::from_utf8_lossy(&refused.stderr).into_owned();
-    assert!(refused.status.code() != Some(0) && said.contains("no/p.png"), "{said}");
+    assert!(
+        refused.status.code() != Some(0) && said.contains("no/p.png"),
+        "{said}"
+    );
 }
 
 #[test]
@@ -222,16 +270,26 @@ fn a_mouse_stroke_in_the_window_is_painted_and_shown() {
     // The canvas is light before anything is painted.
     let light = |pixel: [u8; 3]| pixel.iter().all(|channel| *channel > 180);
     let dark = |pixel: [u8; 3]| pixel.iter().all(|channel| *channel < 140);
-    let shown = wait_for(PATIENCE, || light(display.pixel(window, 550, 500)).then_some(()));
+    let shown = wait_for(PATIENCE, || {
+        light(display.pixel(window, 550, 500)).then_some(())
+    });
     assert!(shown.is_some(), "the canvas is not shown");
-    display.drag(&(0..60).map(|i| [350 + 7 * i, 400 + 4 * i]).collect::<Vec<_>>());
+    display.drag(
+        &(0..60)
+            .map(|i| [350 + 7 * i, 400 + 4 * i])
+            .collect::<Vec<_>>(),
+    );
     let painted = wait_for(PATIENCE, || {
-        (400..700).any(|y| dark(display.pixel(window, 550, y))).then_some(())
+        (400..700)
+            .any(|y| dark(display.pixel(window, 550, y)))
+            .then_some(())
     });
     assert!(painted.is_some(), "the stroke is not shown");
     place.done(&["undo"]);
     let undone = wait_for(PATIENCE, || {
-        (400..700).all(|y| light(display.pixel(window, 550, y))).then_some(())
+        (400..700)
+            .all(|y| light(display.pixel(window, 550, y)))
+            .then_some(())
     });
     assert!(undone.is_some(), "the undone stroke is still shown");
 }

@@ -5,8 +5,8 @@ use std::path::PathBuf;
 use std::sync::Arc;
 
 use clap::Parser;
-use maulstick_bus::typed::random_epoch;
 use maulstick_bus::RigFolder;
+use maulstick_bus::typed::random_epoch;
 use maulstick_device::Take;
 use maulstick_device::player::{self, PlayerSettings, Rate};
 use maulstick_haptic::daemon::{self, HapticSettings};
@@ -60,7 +60,11 @@ impl NodeOptions {
             None => RigFolder::join(&self.name)?.0.path().to_owned(),
         };
         let node = self.node.clone().unwrap_or_else(|| node.to_owned());
-        Member::join(&MemberArgs { folder, node, guarded: self.guarded })
+        Member::join(&MemberArgs {
+            folder,
+            node,
+            guarded: self.guarded,
+        })
     }
 }
 
@@ -115,10 +119,16 @@ fn brush_settings(config: &RigConfig, brush: &str) -> Result<BrushSettings, Faul
 /// A [`Fault`].
 pub fn brush() -> Result<i32, Fault> {
     let options = BrushOptions::parse();
-    let mut member = options.node.join(&brush_node_name(&options.brush), Signal::SIGKILL)?;
+    let mut member = options
+        .node
+        .join(&brush_node_name(&options.brush), Signal::SIGKILL)?;
     let settings = brush_settings(&member.config, &options.brush)?;
-    let mut node =
-        BrushNode::new(Arc::clone(&member.bus), &member.topics, &member.wake, settings)?;
+    let mut node = BrushNode::new(
+        Arc::clone(&member.bus),
+        &member.topics,
+        &member.wake,
+        settings,
+    )?;
     member.ready()?;
     member.run(|| Ok(node.turn()?))?;
     member.leave();
@@ -144,8 +154,13 @@ pub fn paint() -> Result<i32, Fault> {
     let painting = Painting::new(&setup, library()?).map_err(refused)?;
     let origin = member.origin("paint");
     let bus = Arc::clone(&member.bus);
-    let mut node =
-        PaintNode::new(Arc::clone(&bus), &member.topics, &member.wake, origin, painting)?;
+    let mut node = PaintNode::new(
+        Arc::clone(&bus),
+        &member.topics,
+        &member.wake,
+        origin,
+        painting,
+    )?;
     let (topic, feed) = (member.topics.frame(), node.feed());
     let frames = FrameServer::new(bus, &topic, feed.clone(), &member.wake, origin)?;
     let stop = member.stop.clone();
@@ -184,14 +199,33 @@ pub fn haptic() -> Result<i32, Fault> {
     let options = HapticOptions::parse();
     // The servo takes its force back before it ends, so it is asked, not killed.
     let mut member = options.node.join(&options.device, Signal::SIGTERM)?;
-    let names = member.config.device.iter().map(|device| device.name.as_str());
-    let nearest = Fault::nearest(&options.device, names).unwrap_or_default().to_owned();
-    let device = member.config.device.iter().find(|device| device.name == options.device);
+    let names = member
+        .config
+        .device
+        .iter()
+        .map(|device| device.name.as_str());
+    let nearest = Fault::nearest(&options.device, names)
+        .unwrap_or_default()
+        .to_owned();
+    let device = member
+        .config
+        .device
+        .iter()
+        .find(|device| device.name == options.device);
     let device = device.cloned().ok_or_else(|| {
-        Fault::usage(format!("there is no device '{}' in rig.toml", options.device))
-            .help(format!("did you mean '{nearest}'?"))
+        Fault::usage(format!(
+            "there is no device '{}' in rig.toml",
+            options.device
+        ))
+        .help(format!("did you mean '{nearest}'?"))
     })?;
-    daemon::run(&mut member, &HapticSettings { device, hand: options.hand })?;
+    daemon::run(
+        &mut member,
+        &HapticSettings {
+            device,
+            hand: options.hand,
+        },
+    )?;
     member.leave();
     Ok(0)
 }
@@ -231,7 +265,10 @@ pub fn player() -> Result<i32, Fault> {
     let loads = options
         .load
         .iter()
-        .map(|text| text.parse::<Mixture>().map_err(|error| Fault::usage(error.to_string())))
+        .map(|text| {
+            text.parse::<Mixture>()
+                .map_err(|error| Fault::usage(error.to_string()))
+        })
         .collect::<Result<_, _>>()?;
     let settings = PlayerSettings {
         take: Take::read(&options.take)?,

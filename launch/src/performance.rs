@@ -6,8 +6,8 @@ use clap::Args;
 use maulstick_brush::BrushFile;
 use maulstick_optics::PaintLibrary;
 use maulstick_paint::{PaintRefusal, PaintingSetup};
-use maulstick_rig::config::{BrushSection, RigConfig};
 use maulstick_rig::Fault;
+use maulstick_rig::config::{BrushSection, RigConfig};
 use maulstick_types::Mixture;
 
 /// Options of a painting.
@@ -38,7 +38,9 @@ pub fn parse_size(text: &str) -> Result<[u32; 2], String> {
     let parse = |side: &str| side.trim().parse::<u32>().map_err(|_| wrong());
     let size = [parse(width)?, parse(height)?];
     if size.iter().any(|side| !(1..=65_536).contains(side)) {
-        return Err(format!("a canvas has 1 to 65536 cells either way, not {text}"));
+        return Err(format!(
+            "a canvas has 1 to 65536 cells either way, not {text}"
+        ));
     }
     Ok(size)
 }
@@ -57,11 +59,18 @@ impl PaintingOptions {
             None => config.brush[0].clone(),
             Some(name) => match config.brush_named(name) {
                 Some(section) => section.clone(),
-                None => BrushSection { kind: name.clone(), ..config.brush[0].clone() },
+                None => BrushSection {
+                    kind: name.clone(),
+                    ..config.brush[0].clone()
+                },
             },
         };
         brush_file(&section)?;
-        if let Some(place) = config.brush.iter().position(|brush| brush.name == section.name) {
+        if let Some(place) = config
+            .brush
+            .iter()
+            .position(|brush| brush.name == section.name)
+        {
             config.brush[place] = section.clone();
         }
         Ok(section)
@@ -76,9 +85,14 @@ impl PaintingOptions {
             .iter()
             .map(|text| {
                 let at = |refusal: PaintRefusal| refused(refusal).at(format!("--load {text:?}"));
-                let mixture: Mixture =
-                    text.parse().map_err(|error| at(PaintRefusal::paint(maulstick_optics::PaintError::Mixture(error))))?;
-                library.check(&mixture).map_err(|error| at(PaintRefusal::paint(error)))
+                let mixture: Mixture = text.parse().map_err(|error| {
+                    at(PaintRefusal::paint(maulstick_optics::PaintError::Mixture(
+                        error,
+                    )))
+                })?;
+                library
+                    .check(&mixture)
+                    .map_err(|error| at(PaintRefusal::paint(error)))
             })
             .collect()
     }
@@ -113,10 +127,13 @@ pub fn brush_file(section: &BrushSection) -> Result<BrushFile, Fault> {
         let text =
             std::fs::read_to_string(path).map_err(|error| Fault::file(path, &error, false))?;
         BrushFile::parse(&text).map_err(|error| {
-            Fault::usage(error.to_string()).at(section.kind.clone()).help("correct the brush file")
+            Fault::usage(error.to_string())
+                .at(section.kind.clone())
+                .help("correct the brush file")
         })?
     };
-    file.scaled_to(section.size_mm).map_err(|error| Fault::usage(error.to_string()))
+    file.scaled_to(section.size_mm)
+        .map_err(|error| Fault::usage(error.to_string()))
 }
 
 /// The painting that the rig's settings ask for.
@@ -159,12 +176,27 @@ mod tests {
     #[test]
     fn a_brush_may_come_from_the_rig_the_library_or_a_file() {
         let apply = |name: &str| {
-            let options = PaintingOptions { brush: Some(name.into()), ..Default::default() };
-            options.apply(&mut RigConfig::default()).map(|section| (section.name, section.kind))
+            let options = PaintingOptions {
+                brush: Some(name.into()),
+                ..Default::default()
+            };
+            options
+                .apply(&mut RigConfig::default())
+                .map(|section| (section.name, section.kind))
         };
         assert_eq!(apply("main"), Ok(("main".into(), "round".into())));
         assert_eq!(apply("round"), Ok(("main".into(), "round".into())));
-        assert!(apply("ruond").expect_err("misspelt").what.contains("'round'"));
-        assert!(apply("no/such.toml").expect_err("no file").what.contains("read"));
+        assert!(
+            apply("ruond")
+                .expect_err("misspelt")
+                .what
+                .contains("'round'")
+        );
+        assert!(
+            apply("no/such.toml")
+                .expect_err("no file")
+                .what
+                .contains("read")
+        );
     }
 }

@@ -26,18 +26,33 @@ impl Display {
     pub fn start() -> Self {
         // The server picks a free number and writes it to descriptor 1.
         let mut server = Command::new("Xvfb")
-            .args(["-displayfd", "1", "-screen", "0", "1280x1024x24", "-nolisten", "tcp"])
+            .args([
+                "-displayfd",
+                "1",
+                "-screen",
+                "0",
+                "1280x1024x24",
+                "-nolisten",
+                "tcp",
+            ])
             .stdout(Stdio::piped())
             .stderr(Stdio::null())
             .spawn()
             .expect("Xvfb is installed: ./test sees to it");
         let mut number = String::new();
         let out = server.stdout.take().expect("piped");
-        BufReader::new(out).read_line(&mut number).expect("a number");
+        BufReader::new(out)
+            .read_line(&mut number)
+            .expect("a number");
         let name = format!(":{}", number.trim());
         let (connection, screen) = x11rb::connect(Some(&name)).expect("a display");
         let root = connection.setup().roots[screen].root;
-        Self { server, name, connection, root }
+        Self {
+            server,
+            name,
+            connection,
+            root,
+        }
     }
 
     /// The window whose title begins with `title`, once it is there.
@@ -68,14 +83,21 @@ impl Display {
     }
 
     fn atom(&self, name: &str) -> u32 {
-        self.connection.intern_atom(false, name.as_bytes()).expect("sent").reply().expect("one").atom
+        self.connection
+            .intern_atom(false, name.as_bytes())
+            .expect("sent")
+            .reply()
+            .expect("one")
+            .atom
     }
 
     /// Asks a window to close, as a window manager does.
     pub fn close(&self, window: Window) {
         let data = [self.atom("WM_DELETE_WINDOW"), 0, 0, 0, 0];
         let event = ClientMessageEvent::new(32, window, self.atom("WM_PROTOCOLS"), data);
-        self.connection.send_event(false, window, EventMask::NO_EVENT, event).expect("sent");
+        self.connection
+            .send_event(false, window, EventMask::NO_EVENT, event)
+            .expect("sent");
         self.connection.flush().expect("flushed");
     }
 

@@ -1,6 +1,12 @@
 //! Real processes for whole-rig tests: rigs of their own names in folders of their own.
 
-#![allow(dead_code, unreachable_pub, missing_docs, reason = "shared by test programs, each of which uses a part")]
+#![allow(
+    clippy::panic,
+    dead_code,
+    unreachable_pub,
+    missing_docs,
+    reason = "shared by test programs, each of which uses a part"
+)]
 
 pub mod display;
 
@@ -26,7 +32,9 @@ pub struct Place {
 
 impl Place {
     pub fn new() -> Self {
-        Self { folder: tempfile::tempdir().expect("a temporary folder") }
+        Self {
+            folder: tempfile::tempdir().expect("a temporary folder"),
+        }
     }
 
     pub fn path(&self, name: &str) -> PathBuf {
@@ -36,7 +44,10 @@ impl Place {
     /// A command in this place.
     pub fn maulstick(&self, args: &[&str]) -> Command {
         let mut command = Command::new(MAULSTICK);
-        command.args(args).current_dir(self.folder.path()).env("XDG_RUNTIME_DIR", self.folder.path());
+        command
+            .args(args)
+            .current_dir(self.folder.path())
+            .env("XDG_RUNTIME_DIR", self.folder.path());
         command
     }
 
@@ -48,7 +59,11 @@ impl Place {
     /// Runs a command that must succeed.
     pub fn done(&self, args: &[&str]) -> Output {
         let output = self.run(args);
-        assert!(output.status.success(), "{args:?}: {}", String::from_utf8_lossy(&output.stderr));
+        assert!(
+            output.status.success(),
+            "{args:?}: {}",
+            String::from_utf8_lossy(&output.stderr)
+        );
         output
     }
 
@@ -56,8 +71,15 @@ impl Place {
     pub fn short_demo(&self, name: &str, seconds: f64) {
         let take = maulstick_device::demo::performance(3);
         let end = (seconds * 1e9) as u64;
-        let samples = take.samples.into_iter().filter(|sample| sample.time_ns <= end).collect();
-        let take = maulstick_device::Take { device: "demo".into(), samples };
+        let samples = take
+            .samples
+            .into_iter()
+            .filter(|sample| sample.time_ns <= end)
+            .collect();
+        let take = maulstick_device::Take {
+            device: "demo".into(),
+            samples,
+        };
         take.write(&self.path(name)).expect("written");
     }
 
@@ -70,8 +92,12 @@ impl Place {
         let mark = self.folder.path().display().to_string();
         let mut found = Vec::new();
         for entry in std::fs::read_dir("/proc").into_iter().flatten().flatten() {
-            let Ok(pid) = entry.file_name().to_string_lossy().parse::<u32>() else { continue };
-            let Ok(line) = std::fs::read(entry.path().join("cmdline")) else { continue };
+            let Ok(pid) = entry.file_name().to_string_lossy().parse::<u32>() else {
+                continue;
+            };
+            let Ok(line) = std::fs::read(entry.path().join("cmdline")) else {
+                continue;
+            };
             let line = String::from_utf8_lossy(&line).replace('\0', " ");
             if line.contains("maulstick-") && line.contains(&mark) {
                 found.push((pid, line));
@@ -83,7 +109,10 @@ impl Place {
     /// Process of a node of the rig, by its program.
     pub fn pid(&self, program: &str) -> Option<u32> {
         let name = format!("/{program} ");
-        self.processes().into_iter().find(|(_, line)| line.contains(&name)).map(|(pid, _)| pid)
+        self.processes()
+            .into_iter()
+            .find(|(_, line)| line.contains(&name))
+            .map(|(pid, _)| pid)
     }
 
     /// Waits until no process of a rig in this place is left.
@@ -121,8 +150,11 @@ pub struct Launcher {
 
 impl Launcher {
     pub fn start(mut command: Command) -> Self {
-        let mut child =
-            command.stdout(Stdio::null()).stderr(Stdio::piped()).spawn().expect("started");
+        let mut child = command
+            .stdout(Stdio::null())
+            .stderr(Stdio::piped())
+            .spawn()
+            .expect("started");
         let said = Arc::new(Mutex::new(String::new()));
         let (to, from) = (Arc::clone(&said), child.stderr.take().expect("piped"));
         std::thread::spawn(move || {
@@ -170,5 +202,10 @@ impl Drop for Launcher {
 /// Whether two files are the same, said in few words if not.
 pub fn assert_same(one: &[u8], two: &[u8], what: &str) {
     let differs = one.iter().zip(two).position(|(a, b)| a != b);
-    assert!(one == two, "{what}: {} and {} bytes, first difference at {differs:?}", one.len(), two.len());
+    assert!(
+        one == two,
+        "{what}: {} and {} bytes, first difference at {differs:?}",
+        one.len(),
+        two.len()
+    );
 }

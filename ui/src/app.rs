@@ -4,9 +4,7 @@ use std::sync::Arc;
 use std::thread::JoinHandle;
 use std::time::Duration;
 
-use eframe::egui::{
-    self, CentralPanel, Color32, Context, Event, Frame, PointerButton, Rect, pos2,
-};
+use eframe::egui::{self, CentralPanel, Color32, Context, Event, Frame, PointerButton, Rect, pos2};
 use maulstick_bus::typed::Receiver;
 use maulstick_bus::{Bus, Class, Queue};
 use maulstick_rig::{Fault, Member, Stop};
@@ -42,7 +40,11 @@ impl App {
     /// A [`Fault`] where the bus is closed.
     pub fn new(member: &Member, mouse: &str) -> Result<Self, Fault> {
         let (bus, topics) = (&member.bus, &member.topics);
-        let brush = member.config.brush.first().map_or("main", |brush| brush.name.as_str());
+        let brush = member
+            .config
+            .brush
+            .first()
+            .map_or("main", |brush| brush.name.as_str());
         Ok(Self {
             mouse: Mouse::new(&**bus, topics, mouse, brush, member.origin(mouse))?,
             scene: Receiver::new(
@@ -74,8 +76,11 @@ impl App {
 
     /// Starts to pull frames for a window.
     pub fn begin(&mut self, context: &Context) {
-        let (bus, topic, inbox) =
-            (Arc::clone(&self.bus), self.frame_topic.clone(), self.inbox.clone());
+        let (bus, topic, inbox) = (
+            Arc::clone(&self.bus),
+            self.frame_topic.clone(),
+            self.inbox.clone(),
+        );
         let (context, stop) = (context.clone(), self.stop.clone());
         let me = maulstick_types::Origin {
             source: maulstick_types::name_hash("ui"),
@@ -102,19 +107,29 @@ impl App {
 
     /// Where the pointer went since the last frame, on the desk.
     fn pointer(&mut self, context: &Context) -> Vec<Pointer> {
-        let Some(surface) = &self.surface else { return Vec::new() };
+        let Some(surface) = &self.surface else {
+            return Vec::new();
+        };
         let rect = self.rect;
         let mut pressed = self.pressed;
         let place = |at: egui::Pos2, pressed: bool| {
             let counts = rect.contains(at) || pressed;
-            counts.then(|| Pointer { at: to_desk(at, rect, surface).to_array(), pressed })
+            counts.then(|| Pointer {
+                at: to_desk(at, rect, surface).to_array(),
+                pressed,
+            })
         };
         let places = context.input(|input| {
             let mut places = Vec::new();
             for event in &input.events {
                 match event {
                     Event::PointerMoved(at) => places.extend(place(*at, pressed)),
-                    Event::PointerButton { pos, button: PointerButton::Primary, pressed: p, .. } => {
+                    Event::PointerButton {
+                        pos,
+                        button: PointerButton::Primary,
+                        pressed: p,
+                        ..
+                    } => {
                         pressed = *p && rect.contains(*pos);
                         places.extend(place(*pos, pressed));
                     }
@@ -148,21 +163,28 @@ impl eframe::App for App {
     }
 
     fn ui(&mut self, ui: &mut egui::Ui, _frame: &mut eframe::Frame) {
-        CentralPanel::default().frame(Frame::new().fill(DESK_COLOUR)).show(ui, |ui| {
-            let area = ui.max_rect();
-            let cells = self.surface.as_ref().map_or([1, 1], |surface| surface.cells);
-            self.rect = fit(area, cells);
-            self.inbox.want_level(level(cells, self.rect, ui.ctx().pixels_per_point()));
-            match self.canvas.texture() {
-                Some(texture) => {
-                    let whole = Rect::from_min_max(pos2(0.0, 0.0), pos2(1.0, 1.0));
-                    ui.painter().image(texture.id(), self.rect, whole, Color32::WHITE);
+        CentralPanel::default()
+            .frame(Frame::new().fill(DESK_COLOUR))
+            .show(ui, |ui| {
+                let area = ui.max_rect();
+                let cells = self
+                    .surface
+                    .as_ref()
+                    .map_or([1, 1], |surface| surface.cells);
+                self.rect = fit(area, cells);
+                self.inbox
+                    .want_level(level(cells, self.rect, ui.ctx().pixels_per_point()));
+                match self.canvas.texture() {
+                    Some(texture) => {
+                        let whole = Rect::from_min_max(pos2(0.0, 0.0), pos2(1.0, 1.0));
+                        ui.painter()
+                            .image(texture.id(), self.rect, whole, Color32::WHITE);
+                    }
+                    None => {
+                        ui.centered_and_justified(|ui| ui.label("waiting for the paint …"));
+                    }
                 }
-                None => {
-                    ui.centered_and_justified(|ui| ui.label("waiting for the paint …"));
-                }
-            }
-        });
+            });
     }
 
     fn on_exit(&mut self) {
@@ -178,6 +200,8 @@ impl eframe::App for App {
 
 impl std::fmt::Debug for App {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.debug_struct("App").field("canvas", &self.canvas).finish_non_exhaustive()
+        f.debug_struct("App")
+            .field("canvas", &self.canvas)
+            .finish_non_exhaustive()
     }
 }

@@ -37,7 +37,9 @@ impl Canvas {
                 self.texture = Some(context.load_texture("canvas", image, TextureOptions::LINEAR));
             }
         }
-        let Some(texture) = &mut self.texture else { return };
+        let Some(texture) = &mut self.texture else {
+            return;
+        };
         for tile in &shown.tiles {
             let left = tile.x as usize * TILE;
             let bottom = tile.y as usize * TILE;
@@ -52,7 +54,11 @@ impl Canvas {
                 pixels.extend_from_slice(&tile.pixels[row * TILE..][..size[0]]);
             }
             let top = height - bottom - size[1];
-            texture.set_partial([left, top], ColorImage::new(size, pixels), TextureOptions::LINEAR);
+            texture.set_partial(
+                [left, top],
+                ColorImage::new(size, pixels),
+                TextureOptions::LINEAR,
+            );
         }
     }
 
@@ -65,7 +71,9 @@ impl Canvas {
 
 impl std::fmt::Debug for Canvas {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.debug_struct("Canvas").field("cells", &self.cells).finish_non_exhaustive()
+        f.debug_struct("Canvas")
+            .field("cells", &self.cells)
+            .finish_non_exhaustive()
     }
 }
 
@@ -75,7 +83,9 @@ pub fn fit(area: Rect, cells: [u32; 2]) -> Rect {
     const MARGIN: f32 = 16.0;
     let area = area.shrink(MARGIN);
     let size = Vec2::new(cells[0].max(1) as f32, cells[1].max(1) as f32);
-    let scale = (area.width() / size.x).min(area.height() / size.y).max(1e-3);
+    let scale = (area.width() / size.x)
+        .min(area.height() / size.y)
+        .max(1e-3);
     Rect::from_center_size(area.center(), size * scale)
 }
 
@@ -83,7 +93,11 @@ pub fn fit(area: Rect, cells: [u32; 2]) -> Rect {
 #[must_use]
 pub fn level(cells: [u32; 2], rect: Rect, pixels_per_point: f32) -> u32 {
     let ratio = cells[0] as f32 / (rect.width() * pixels_per_point).max(1.0);
-    if ratio > 1.0 { ratio.log2().floor() as u32 } else { 0 }
+    if ratio > 1.0 {
+        ratio.log2().floor() as u32
+    } else {
+        0
+    }
 }
 
 /// The point of the desk under a point of the window, m.
@@ -105,7 +119,10 @@ mod tests {
     #[test]
     fn the_corners_of_the_picture_are_those_of_the_canvas() {
         let scene = PaintingSetup::default().scene();
-        let rect = fit(Rect::from_min_size(Pos2::ZERO, Vec2::new(900.0, 700.0)), [1024, 1024]);
+        let rect = fit(
+            Rect::from_min_size(Pos2::ZERO, Vec2::new(900.0, 700.0)),
+            [1024, 1024],
+        );
         assert!((rect.width() - rect.height()).abs() < 1e-3);
         let corner = to_desk(rect.left_bottom(), rect, &scene.surfaces[0]);
         assert!((corner - DVec3::new(-0.128, -0.128, 0.0)).length() < 1e-6);

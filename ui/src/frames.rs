@@ -63,7 +63,10 @@ impl FrameInbox {
     }
 
     fn push(&self, shown: Shown) {
-        self.replies.lock().unwrap_or_else(PoisonError::into_inner).push(shown);
+        self.replies
+            .lock()
+            .unwrap_or_else(PoisonError::into_inner)
+            .push(shown);
     }
 }
 
@@ -121,8 +124,17 @@ fn convert(reply: &FrameReply, table: &SrgbTable) -> Shown {
                 Color32::from_rgb(r, g, b)
             };
             let pixels = (0..shown.height.len()).map(pixel).collect();
-            Some(ShownTile { x: tile.x, y: tile.y, pixels })
+            Some(ShownTile {
+                x: tile.x,
+                y: tile.y,
+                pixels,
+            })
         })
         .collect();
-    Shown { cells: reply.cells, level: reply.level, epoch: reply.epoch, tiles }
+    Shown {
+        cells: reply.cells,
+        level: reply.level,
+        epoch: reply.epoch,
+        tiles,
+    }
 }

@@ -24,7 +24,10 @@ pub fn run(mut member: Member, mouse: &str) -> Result<(), Fault> {
         .with_title(format!("Maulstick · {}", member.config.rig.name))
         .with_app_id("maulstick")
         .with_inner_size([1100.0, 1000.0]);
-    let options = eframe::NativeOptions { viewport, ..Default::default() };
+    let options = eframe::NativeOptions {
+        viewport,
+        ..Default::default()
+    };
     let result = eframe::run_native(
         "maulstick",
         options,
@@ -35,7 +38,8 @@ pub fn run(mut member: Member, mouse: &str) -> Result<(), Fault> {
         }),
     );
     result.map_err(|error| {
-        Fault::failure(format!("the window cannot be opened: {error}"))
-            .help("set DISPLAY or WAYLAND_DISPLAY, and install a Vulkan driver: mesa-vulkan-drivers")
+        Fault::failure(format!("the window cannot be opened: {error}")).help(
+            "set DISPLAY or WAYLAND_DISPLAY, and install a Vulkan driver: mesa-vulkan-drivers",
+        )
     })
 }

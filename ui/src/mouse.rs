@@ -89,12 +89,20 @@ impl Mouse {
         }
         self.samples.forgive();
         self.samples.serve(now_ns)?;
-        let places = if now_ns < self.silent_until_ns { &[] } else { places };
+        let places = if now_ns < self.silent_until_ns {
+            &[]
+        } else {
+            places
+        };
         if places.is_empty() {
             if self.was_in_range {
                 self.was_in_range = false;
-                let stamp = Stamp { now_ns, event_ns: now_ns };
-                self.samples.send(Flags::NONE, stamp, &StylusSample::away())?;
+                let stamp = Stamp {
+                    now_ns,
+                    event_ns: now_ns,
+                };
+                self.samples
+                    .send(Flags::NONE, stamp, &StylusSample::away())?;
             }
             self.sent_ns = now_ns;
             return Ok(());
@@ -117,7 +125,8 @@ impl Mouse {
                 in_range: true,
                 ..StylusSample::away()
             };
-            self.samples.send(Flags::NONE, Stamp { now_ns, event_ns }, &sample)?;
+            self.samples
+                .send(Flags::NONE, Stamp { now_ns, event_ns }, &sample)?;
         }
         self.sent_ns = now_ns;
         Ok(())
@@ -126,7 +135,9 @@ impl Mouse {
 
 impl std::fmt::Debug for Mouse {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.debug_struct("Mouse").field("was_in_range", &self.was_in_range).finish_non_exhaustive()
+        f.debug_struct("Mouse")
+            .field("was_in_range", &self.was_in_range)
+            .finish_non_exhaustive()
     }
 }
 
@@ -142,24 +153,40 @@ mod tests {
     fn another_stylus_silences_the_mouse_for_a_second() {
         let net = MemoryNet::new(1, SECOND, Faults::default());
         let (bus, topics, wake) = (net.bus(), Topics::new("t"), Wake::new());
-        let me = Origin { source: 1, epoch: 1 };
+        let me = Origin {
+            source: 1,
+            epoch: 1,
+        };
         let mut mouse = Mouse::new(&bus, &topics, "mouse", "main", me).expect("a mouse");
         let (topic, class) = (topics.sample("mouse"), Class::RealTime);
         let mut heard = Receiver::<StylusSample>::new(&bus, &topic, class, Queue::Ring(64), &wake)
             .expect("a receiver");
-        let pen = Origin { source: 2, epoch: 1 };
+        let pen = Origin {
+            source: 2,
+            epoch: 1,
+        };
         let mut pen = Sender::new(&bus, &topics.sample("pen"), class, pen).expect("a pen");
-        let place = Pointer { at: [0.0; 3], pressed: true };
+        let place = Pointer {
+            at: [0.0; 3],
+            pressed: true,
+        };
         let mut turn = |mouse: &mut Mouse| {
             mouse.send(bus.now_ns(), &[place]).expect("sent");
             net.advance(SECOND / 10);
             heard.newest().map(|sample| sample.message.in_range)
         };
         assert_eq!(turn(&mut mouse), Some(true));
-        let near = StylusSample { in_range: true, ..StylusSample::away() };
+        let near = StylusSample {
+            in_range: true,
+            ..StylusSample::away()
+        };
         pen.send(0, 0, &near).expect("sent");
         turn(&mut mouse);
-        assert_eq!(turn(&mut mouse), Some(false), "it says that it is out of range");
+        assert_eq!(
+            turn(&mut mouse),
+            Some(false),
+            "it says that it is out of range"
+        );
         for _ in 0..9 {
             assert_eq!(turn(&mut mouse), None);
         }

@@ -26,8 +26,17 @@ impl Commander {
     /// A client with a number of its own.
     #[must_use]
     pub fn new(bus: Arc<dyn Bus>, topics: &Topics) -> Self {
-        let me = Origin { source: name_hash("commander"), epoch: random_epoch() };
-        Self { bus, topic: topics.command("paint"), client: random_u64(), number: 0, me }
+        let me = Origin {
+            source: name_hash("commander"),
+            epoch: random_epoch(),
+        };
+        Self {
+            bus,
+            topic: topics.command("paint"),
+            client: random_u64(),
+            number: 0,
+            me,
+        }
     }
 
     /// Sends a command and waits until it is done or refused, at most for `patience`; gives up
@@ -44,17 +53,31 @@ impl Commander {
     ) -> Result<String, Fault> {
         self.number += 1;
         let number = self.number;
-        let request = CommandRequest { client: self.client, number, after, command };
+        let request = CommandRequest {
+            client: self.client,
+            number,
+            after,
+            command,
+        };
         let give_up = Instant::now() + patience;
         loop {
             let asked = Instant::now();
             let limit = ASK.min(patience);
             match ask::<_, CommandReply>(&*self.bus, &self.topic, self.me, &request, limit) {
-                Ok(CommandReply { outcome: Outcome::Done { detail, .. }, .. }) => return Ok(detail),
-                Ok(CommandReply { outcome: Outcome::Refused { what, help }, .. }) => {
+                Ok(CommandReply {
+                    outcome: Outcome::Done { detail, .. },
+                    ..
+                }) => return Ok(detail),
+                Ok(CommandReply {
+                    outcome: Outcome::Refused { what, help },
+                    ..
+                }) => {
                     return Err(Fault::usage(what).at(self.topic.clone()).help(help));
                 }
-                Ok(CommandReply { outcome: Outcome::Waiting, .. })
+                Ok(CommandReply {
+                    outcome: Outcome::Waiting,
+                    ..
+                })
                 | Err(BusError::NoAnswer { .. }) => {}
                 Err(error) => return Err(error.into()),
             }
@@ -71,6 +94,8 @@ impl Commander {
 
 impl std::fmt::Debug for Commander {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.debug_struct("Commander").field("topic", &self.topic).finish_non_exhaustive()
+        f.debug_struct("Commander")
+            .field("topic", &self.topic)
+            .finish_non_exhaustive()
     }
 }

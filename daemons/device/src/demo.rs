@@ -40,7 +40,11 @@ impl Hand {
     }
 
     fn stroke(&mut self, points: Vec<[f64; 2]>, pressure: f64, seconds: f64) {
-        self.strokes.push(Stroke { points, pressure, seconds });
+        self.strokes.push(Stroke {
+            points,
+            pressure,
+            seconds,
+        });
     }
 
     /// Broad sweeps across the upper half.
@@ -63,7 +67,10 @@ impl Hand {
             let points = (0..7)
                 .map(|i| {
                     let t = f64::from(i) / 6.0;
-                    [-0.108 + 0.216 * t, base + 0.010 * sin(phase + 1.4 * TAU * t)]
+                    [
+                        -0.108 + 0.216 * t,
+                        base + 0.010 * sin(phase + 1.4 * TAU * t),
+                    ]
                 })
                 .collect();
             let pressure = self.about(0.72, 0.06);
@@ -95,9 +102,16 @@ impl Hand {
             let long = self.about(0.041, 0.003);
             let bend = self.about(0.18, 0.06);
             let at = |radius: f64, turn: f64| {
-                [head[0] + radius * cos(angle + turn), head[1] + radius * sin(angle + turn)]
+                [
+                    head[0] + radius * cos(angle + turn),
+                    head[1] + radius * sin(angle + turn),
+                ]
             };
-            let points = vec![at(long, bend), at(0.6 * long, 0.3 * bend), at(0.2 * long, 0.0)];
+            let points = vec![
+                at(long, bend),
+                at(0.6 * long, 0.3 * bend),
+                at(0.2 * long, 0.0),
+            ];
             let pressure = self.about(0.55, 0.08);
             self.stroke(points, pressure, 0.75);
         }
@@ -115,7 +129,10 @@ impl Hand {
 /// The performance of a seed.
 #[must_use]
 pub fn performance(seed: u64) -> Take {
-    let mut hand = Hand { random: Pcg32::new(seed, 0x6465_6d6f), strokes: Vec::new() };
+    let mut hand = Hand {
+        random: Pcg32::new(seed, 0x6465_6d6f),
+        strokes: Vec::new(),
+    };
     let head = [hand.about(0.0, 0.02), hand.about(0.042, 0.008)];
     hand.sky();
     hand.hills();
@@ -131,7 +148,10 @@ pub fn performance(seed: u64) -> Take {
         rest = *stroke.points.last().unwrap_or(&rest);
     }
     travel(&mut samples, time_s, rest, rest);
-    Take { device: "demo".into(), samples }
+    Take {
+        device: "demo".into(),
+        samples,
+    }
 }
 
 /// The minimum-jerk course from 0 to 1 (Flash and Hogan 1985).
@@ -143,7 +163,10 @@ fn travel(samples: &mut Vec<TakeSample>, start_s: f64, from: [f64; 2], to: [f64;
     let steps = (PAUSE_S * RATE_HZ) as usize;
     for step in 0..steps {
         let s = minimum_jerk(step as f64 / steps as f64);
-        let at = [from[0] + s * (to[0] - from[0]), from[1] + s * (to[1] - from[1])];
+        let at = [
+            from[0] + s * (to[0] - from[0]),
+            from[1] + s * (to[1] - from[1]),
+        ];
         samples.push(pen(start_s + step as f64 / RATE_HZ, at, 0.0));
     }
     start_s + steps as f64 / RATE_HZ
@@ -162,7 +185,11 @@ fn draw(hand: &mut Hand, samples: &mut Vec<TakeSample>, start_s: f64, stroke: &S
         // The brush is set down and lifted while it moves: a press at rest would leave a hook.
         let swell = (6.0 * s).min(1.0).min(4.0 * (1.0 - s)).max(0.0);
         let pressure = stroke.pressure * swell * (0.9 + 0.1 * cos(TAU * t));
-        samples.push(pen(start_s + step as f64 / RATE_HZ, at, pressure.clamp(0.0, 1.0)));
+        samples.push(pen(
+            start_s + step as f64 / RATE_HZ,
+            at,
+            pressure.clamp(0.0, 1.0),
+        ));
     }
     start_s + (steps + 1) as f64 / RATE_HZ
 }
@@ -198,7 +225,10 @@ fn pen(time_s: f64, at: [f64; 2], pressure: f64) -> TakeSample {
         in_range: true,
         ..StylusSample::away()
     };
-    TakeSample { time_ns: (time_s * 1e9).round() as u64, sample }
+    TakeSample {
+        time_ns: (time_s * 1e9).round() as u64,
+        sample,
+    }
 }
 
 #[cfg(test)]
@@ -210,7 +240,11 @@ mod tests {
         let take = performance(1);
         assert_eq!(take, performance(1));
         assert_ne!(take, performance(2));
-        assert!(take.samples.windows(2).all(|pair| pair[0].time_ns < pair[1].time_ns));
+        assert!(
+            take.samples
+                .windows(2)
+                .all(|pair| pair[0].time_ns < pair[1].time_ns)
+        );
         assert!(take.samples.iter().all(|s| s.sample.fault().is_none()));
         let seconds = take.length_ns() as f64 * 1e-9;
         assert!((20.0..40.0).contains(&seconds), "{seconds} s");
@@ -221,7 +255,10 @@ mod tests {
         for seed in 0..50 {
             for TakeSample { sample, .. } in performance(seed).samples {
                 if let StylusPose::Contact { point_m, .. } = sample.pose {
-                    assert!(point_m[0].abs() < 0.125 && point_m[1].abs() < 0.125, "{point_m:?}");
+                    assert!(
+                        point_m[0].abs() < 0.125 && point_m[1].abs() < 0.125,
+                        "{point_m:?}"
+                    );
                 }
             }
         }

@@ -89,7 +89,6 @@ pub fn run(member: &mut Member, settings: &PlayerSettings) -> Result<(), Fault> 
     };
     commander.send(announce, None, ANNOUNCE, &|| stop.requested())?;
     member.ready()?;
-    player.begin();
     member.run(|| {
         let wait = player.turn()?;
         if player.ended() && !settings.stay {
@@ -127,7 +126,11 @@ impl<'a> Player<'a> {
             driver: "player".into(),
             brush: settings.brush.clone(),
             priority: config::PLAYER_PRIORITY,
-            senses: settings.take.samples.iter().fold(axes::POSITION, |all, s| all | s.sample.senses),
+            senses: settings
+                .take
+                .samples
+                .iter()
+                .fold(axes::POSITION, |all, s| all | s.sample.senses),
             drives: 0,
             rate_hz: settings.take.samples.len() as f64 * 1e9
                 / settings.take.length_ns().max(1) as f64,
@@ -139,7 +142,13 @@ impl<'a> Player<'a> {
         Ok(Self {
             settings,
             samples: CreditSender::new(bus, topics, &topics.sample(node), origin, &member.wake)?,
-            credit: Receiver::new(bus, &consumed, Class::Control, Queue::Ring(256), &member.wake)?,
+            credit: Receiver::new(
+                bus,
+                &consumed,
+                Class::Control,
+                Queue::Ring(256),
+                &member.wake,
+            )?,
             status: Sender::new(bus, &topics.take_status(node), Class::Background, origin)?,
             _info: info,
             start_ns: 0,
@@ -150,10 +159,6 @@ impl<'a> Player<'a> {
             status_ns: 0,
             bus: member.bus.clone(),
         })
-    }
-
-    fn begin(&mut self) {
-        self.start_ns = self.bus.now_ns();
     }
 
     /// Take time of a sample since the first one, ns.
@@ -168,12 +173,19 @@ impl<'a> Player<'a> {
 
     fn turn(&mut self) -> Result<Duration, Fault> {
         let now_ns = self.bus.now_ns();
+        if self.sent == 0 {
+            self.start_ns = now_ns;
+        }
         let me = self.samples.origin();
         while let Some(credit) = self.credit.try_recv() {
             let told = credit.message;
             if told.device == me.source && told.device_epoch == me.epoch {
                 self.samples.consumed(told.device_epoch, told.next, now_ns);
-                if self.newest.as_ref().is_none_or(|newest| newest.next <= told.next) {
+                if self
+                    .newest
+                    .as_ref()
+                    .is_none_or(|newest| newest.next <= told.next)
+                {
                     self.newest = Some(told);
                 }
             }
@@ -187,7 +199,10 @@ impl<'a> Player<'a> {
                 wait = wait.min(Duration::from_nanos(due_ns - now_ns));
                 break;
             }
-            let stamp = Stamp { now_ns: self.bus.now_ns(), event_ns: self.start_ns + time_ns };
+            let stamp = Stamp {
+                now_ns: self.bus.now_ns(),
+                event_ns: self.start_ns + time_ns,
+            };
             let sample = &self.settings.take.samples[self.sent].sample;
             self.samples.send(Flags::REPLAY, stamp, sample)?;
             self.sent += 1;
@@ -199,7 +214,9 @@ impl<'a> Player<'a> {
 
     /// When the sample of a take time is due; none where it goes as soon as it can.
     fn due_ns(&mut self, time_ns: u64, now_ns: u64) -> Option<u64> {
-        let Rate::Times(rate) = self.settings.rate else { return None };
+        let Rate::Times(rate) = self.settings.rate else {
+            return None;
+        };
         if time_ns < self.settings.resume_ns {
             return None;
         }
@@ -213,13 +230,24 @@ impl<'a> Player<'a> {
         }
         self.status_ns = now_ns;
         let brush = name_hash(&self.settings.brush);
-        let end = self.newest.as_ref().filter(|_| self.ended()).map(|newest| TakeEnd {
-            after: After { brush, epoch: newest.brush_epoch, sequence: newest.state },
-            samples: self.sent as u64,
-        });
+        let end = self
+            .newest
+            .as_ref()
+            .filter(|_| self.ended())
+            .map(|newest| TakeEnd {
+                after: After {
+                    brush,
+                    epoch: newest.brush_epoch,
+                    sequence: newest.state,
+                },
+                samples: self.sent as u64,
+            });
         let status = TakeStatus {
             epoch: self.samples.origin().epoch,
-            position_ns: self.sent.checked_sub(1).map_or(0, |last| self.time_ns(last)),
+            position_ns: self
+                .sent
+                .checked_sub(1)
+                .map_or(0, |last| self.time_ns(last)),
             length_ns: self.settings.take.length_ns(),
             sent: self.sent as u64,
             consumed: self.sent as u64 - self.samples.outstanding(),

@@ -29,7 +29,10 @@ pub struct TableLayout {
 
 impl Default for TableLayout {
     fn default() -> Self {
-        Self { unit_mm: 0.25, size: [1024.0, 1024.0] }
+        Self {
+            unit_mm: 0.25,
+            size: [1024.0, 1024.0],
+        }
     }
 }
 
@@ -59,13 +62,21 @@ pub fn parse(text: &str, name: &str, layout: TableLayout, device: &str) -> Resul
             continue;
         }
         let place = format!("{name}:{line}");
-        let cells: Vec<&str> =
-            row.split([',', ' ', '\t', ';']).filter(|cell| !cell.is_empty()).collect();
+        let cells: Vec<&str> = row
+            .split([',', ' ', '\t', ';'])
+            .filter(|cell| !cell.is_empty())
+            .collect();
         let columns = match places {
             Some(columns) => columns,
             None => {
-                let words = cells.iter().any(|cell| COLUMNS.contains(&cell.to_lowercase().as_str()));
-                let columns = if words { header(&cells, &place)? } else { in_order(cells.len()) };
+                let words = cells
+                    .iter()
+                    .any(|cell| COLUMNS.contains(&cell.to_lowercase().as_str()));
+                let columns = if words {
+                    header(&cells, &place)?
+                } else {
+                    in_order(cells.len())
+                };
                 places = Some(columns);
                 if words {
                     continue;
@@ -80,8 +91,10 @@ pub fn parse(text: &str, name: &str, layout: TableLayout, device: &str) -> Resul
             return Err(Fault::usage(what).at(place).help("sort the table by time"));
         }
         let start = *start.get_or_insert(time);
-        let sample =
-            TakeSample { time_ns: ((time - start) * 1e9).round() as u64, sample: pen(&values, layout) };
+        let sample = TakeSample {
+            time_ns: ((time - start) * 1e9).round() as u64,
+            sample: pen(&values, layout),
+        };
         // Of samples of the same time the last one counts.
         if time == last {
             samples.pop();
@@ -94,7 +107,10 @@ pub fn parse(text: &str, name: &str, layout: TableLayout, device: &str) -> Resul
             .at(name)
             .help("each line is: t x y pressure [tilt_x tilt_y [twist]]"));
     }
-    Ok(Take { device: device.to_owned(), samples })
+    Ok(Take {
+        device: device.to_owned(),
+        samples,
+    })
 }
 
 fn in_order(count: usize) -> Places {
@@ -112,7 +128,10 @@ fn header(cells: &[&str], place: &str) -> Result<Places, Fault> {
                 let nearest = Fault::nearest(&word, COLUMNS).unwrap_or_default();
                 return Err(Fault::usage(format!("there is no column '{cell}'"))
                     .at(place)
-                    .help(format!("did you mean '{nearest}'? There are: {}", COLUMNS.join(", "))));
+                    .help(format!(
+                        "did you mean '{nearest}'? There are: {}",
+                        COLUMNS.join(", ")
+                    )));
             }
         }
     }
@@ -127,7 +146,9 @@ fn numbers(cells: &[&str], places: &Places, place: &str) -> Result<[f64; 7], Fau
         let Some(cell) = places[column].and_then(|at| cells.get(at)) else {
             if column < NEEDED || (places[column].is_some()) {
                 let what = format!("column {} ({}) is missing", column + 1, COLUMNS[column]);
-                return Err(fault(what).help("each line is: t x y pressure [tilt_x tilt_y [twist]]"));
+                return Err(
+                    fault(what).help("each line is: t x y pressure [tilt_x tilt_y [twist]]")
+                );
             }
             continue;
         };
@@ -146,8 +167,10 @@ fn numbers(cells: &[&str], places: &Places, place: &str) -> Result<[f64; 7], Fau
         if let Some((low, high)) = range
             && !(low..=high).contains(&number)
         {
-            return Err(fault(format!("{where_}: {number} is not within {low} and {high}"))
-                .help("scale the column"));
+            return Err(
+                fault(format!("{where_}: {number} is not within {low} and {high}"))
+                    .help("scale the column"),
+            );
         }
         *value = number;
     }
@@ -214,7 +237,9 @@ mod tests {
     fn tilt_twist_commas_and_headers_are_read() {
         let take = read("# by hand\npressure,t,x,y,tilt_x,tilt_y\n0.5,0,1,2,10,20\n").expect("one");
         match &take.samples[0].sample.pose {
-            StylusPose::Contact { tilt_rad, pressure, .. } => {
+            StylusPose::Contact {
+                tilt_rad, pressure, ..
+            } => {
                 assert_eq!(*pressure, 0.5);
                 assert!((tilt_rad[0].to_degrees() - 10.0).abs() < 1e-9);
                 assert!((tilt_rad[1].to_degrees() + 20.0).abs() < 1e-9);
@@ -228,9 +253,15 @@ mod tests {
     fn bad_tables_name_line_and_column() {
         let good = "0 1 1 0\n";
         let text = fault(&format!("{good}0.1 1 1\n"));
-        assert!(text.contains("strokes.dat:2") && text.contains("pressure) is missing"), "{text}");
+        assert!(
+            text.contains("strokes.dat:2") && text.contains("pressure) is missing"),
+            "{text}"
+        );
         let text = fault(&format!("{good}0.1 one 1 0\n"));
-        assert!(text.contains("column 2 (x): 'one' is not a number"), "{text}");
+        assert!(
+            text.contains("column 2 (x): 'one' is not a number"),
+            "{text}"
+        );
         assert!(fault(&format!("{good}0.1 1 1 NaN\n")).contains("'NaN' is not finite"));
         assert!(fault(&format!("{good}-1 1 1 0\n")).contains("time runs backward"));
         assert!(fault("0 1 1 1.5\n").contains("1.5 is not within 0 and 1"));

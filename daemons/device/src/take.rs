@@ -90,14 +90,19 @@ impl Take {
             let message = match message {
                 Ok(message) => message,
                 Err(mcap::McapError::BadMagic) if number == 0 => {
-                    return Err(fault("this is no MCAP file".into(), "`maulstick import` makes takes from tables of strokes"));
+                    return Err(fault(
+                        "this is no MCAP file".into(),
+                        "`maulstick import` makes takes from tables of strokes",
+                    ));
                 }
                 Err(error) => {
                     damage = Some(error.to_string());
                     break;
                 }
             };
-            let Some(device) = device_of(&message.channel.topic) else { continue };
+            let Some(device) = device_of(&message.channel.topic) else {
+                continue;
+            };
             let sample = match decode::<StylusSample>(&message.data) {
                 Ok((_, sample)) => sample,
                 Err(error) => {
@@ -114,10 +119,16 @@ impl Take {
                 damage = Some(format!("message {number}: {what}"));
                 break;
             }
-            let sample = TakeSample { time_ns: message.log_time, sample };
+            let sample = TakeSample {
+                time_ns: message.log_time,
+                sample,
+            };
             match devices.iter_mut().find(|take| take.device == device) {
                 Some(take) => take.samples.push(sample),
-                None => devices.push(Take { device: device.to_owned(), samples: vec![sample] }),
+                None => devices.push(Take {
+                    device: device.to_owned(),
+                    samples: vec![sample],
+                }),
             }
         }
         let mut devices = devices.into_iter();
@@ -134,7 +145,10 @@ impl Take {
                 ),
             }),
             (Some(one), Some(two)) => Err(fault(
-                format!("the take holds samples of '{}' and '{}'", one.device, two.device),
+                format!(
+                    "the take holds samples of '{}' and '{}'",
+                    one.device, two.device
+                ),
                 "play takes of one stylus",
             )),
         }
@@ -172,9 +186,16 @@ impl Take {
         let topic = format!("stylus/{}/sample", self.device);
         let no_metadata = std::collections::BTreeMap::new();
         let channel_id = writer.add_channel(schema, &topic, MESSAGE_ENCODING, &no_metadata)?;
-        let origin = Origin { source: name_hash(&self.device), epoch: 1 };
+        let origin = Origin {
+            source: name_hash(&self.device),
+            epoch: 1,
+        };
         for (number, TakeSample { time_ns, sample }) in self.samples.iter().enumerate() {
-            let flags = if number == 0 { Flags::FIRST } else { Flags::NONE };
+            let flags = if number == 0 {
+                Flags::FIRST
+            } else {
+                Flags::NONE
+            };
             let bytes = encode(&origin, flags, number as u64, *time_ns, *time_ns, sample)
                 .map_err(|error| mcap::McapError::Io(std::io::Error::other(error)))?;
             let header = MessageHeader {
@@ -206,9 +227,15 @@ mod tests {
     fn take() -> Take {
         let sample = |i: u64| TakeSample {
             time_ns: i * 8_000_000,
-            sample: StylusSample { switches: i as u32, ..StylusSample::away() },
+            sample: StylusSample {
+                switches: i as u32,
+                ..StylusSample::away()
+            },
         };
-        Take { device: "pen".into(), samples: (0..5000).map(sample).collect() }
+        Take {
+            device: "pen".into(),
+            samples: (0..5000).map(sample).collect(),
+        }
     }
 
     #[test]
@@ -232,7 +259,10 @@ mod tests {
         for keep in (1..whole.len()).step_by(whole.len() / 97) {
             std::fs::write(&path, &whole[..keep]).expect("cut");
             let fault = Take::read(&path).expect_err("cut").to_string();
-            assert!(fault.contains("a.mcap") && fault.contains("help"), "{keep}: {fault}");
+            assert!(
+                fault.contains("a.mcap") && fault.contains("help"),
+                "{keep}: {fault}"
+            );
         }
     }
 
@@ -241,9 +271,19 @@ mod tests {
         let folder = tempfile::tempdir().expect("a folder");
         let path = folder.path().join("a.mcap");
         std::fs::write(&path, "0.1 2 3 4\n".repeat(50)).expect("written");
-        assert!(Take::read(&path).expect_err("a table").what.contains("no MCAP"));
+        assert!(
+            Take::read(&path)
+                .expect_err("a table")
+                .what
+                .contains("no MCAP")
+        );
         std::fs::write(&path, "").expect("written");
         assert!(Take::read(&path).is_err());
-        assert!(Take::read(&folder.path().join("none")).expect_err("none").what.contains("read"));
+        assert!(
+            Take::read(&folder.path().join("none"))
+                .expect_err("none")
+                .what
+                .contains("read")
+        );
     }
 }

@@ -9,8 +9,8 @@ use maulstick_bus::credit::Stamp;
 use maulstick_bus::typed::{Receiver, Sender};
 use maulstick_bus::{Class, CreditSender, Queue};
 use maulstick_device::Take;
-use maulstick_haptics::contact::Contact;
 use maulstick_haptics::Limits;
+use maulstick_haptics::contact::Contact;
 use maulstick_num::geometry::{Rigid, canonical};
 use maulstick_rig::config::DeviceSection;
 use maulstick_rig::{Fault, Member};
@@ -65,7 +65,9 @@ struct Daemon {
 }
 
 fn driver(member: &Member, settings: &HapticSettings) -> Result<Box<dyn Driver>, Fault> {
-    let Some(path) = &settings.hand else { return Ok(Box::new(Simulated::at_rest())) };
+    let Some(path) = &settings.hand else {
+        return Ok(Box::new(Simulated::at_rest()));
+    };
     let take = Take::read(path)?;
     let section = member
         .config
@@ -74,7 +76,11 @@ fn driver(member: &Member, settings: &HapticSettings) -> Result<Box<dyn Driver>,
     let file = BrushFile::library(&section.kind)
         .and_then(|file| file.scaled_to(section.size_mm))
         .map_err(|error| Fault::usage(error.to_string()))?;
-    Ok(Box::new(Simulated::following(&take, file.length_m(), section.depth_share)))
+    Ok(Box::new(Simulated::following(
+        &take,
+        file.length_m(),
+        section.depth_share,
+    )))
 }
 
 impl Daemon {
@@ -95,7 +101,12 @@ impl Daemon {
         let (bus, topics) = (&*member.bus, &member.topics);
         let origin = member.origin(&device.name);
         let now = bus.now_ns();
-        let mut info = Sender::new(bus, &topics.stylus_info(&device.name), Class::Cached, origin)?;
+        let mut info = Sender::new(
+            bus,
+            &topics.stylus_info(&device.name),
+            Class::Cached,
+            origin,
+        )?;
         let told = StylusInfo {
             device: device.name.clone(),
             driver: device.driver.clone(),
@@ -110,7 +121,9 @@ impl Daemon {
         };
         info.send(now, now, &told)?;
         let monotonic = nix::time::clock_gettime(nix::time::ClockId::CLOCK_MONOTONIC)
-            .map_or(0, |t| t.tv_sec() as u64 * 1_000_000_000 + t.tv_nsec() as u64);
+            .map_or(0, |t| {
+                t.tv_sec() as u64 * 1_000_000_000 + t.tv_nsec() as u64
+            });
         let [x, y, z, w] = device.orientation;
         let topic = topics.contact_model(&device.name);
         Ok(Self {
@@ -120,9 +133,20 @@ impl Daemon {
             },
             senses: abilities.senses,
             brush: device.brush.clone(),
-            samples: CreditSender::new(bus, topics, &topics.sample(&device.name), origin, &member.wake)?,
+            samples: CreditSender::new(
+                bus,
+                topics,
+                &topics.sample(&device.name),
+                origin,
+                &member.wake,
+            )?,
             models: Receiver::new(bus, &topic, Class::RealTime, Queue::Latest, &member.wake)?,
-            status: Sender::new(bus, &topics.stylus_status(&device.name), Class::Background, origin)?,
+            status: Sender::new(
+                bus,
+                &topics.stylus_status(&device.name),
+                Class::Background,
+                origin,
+            )?,
             _info: info,
             offset_ns: bus.now_ns() - monotonic,
             told: StylusStatus {
@@ -161,9 +185,12 @@ impl Daemon {
 
     /// Hands the newest model to the servo, if it is meant for this device as it is now.
     fn deliver(&mut self) {
-        let Some(received) = self.models.newest() else { return };
+        let Some(received) = self.models.newest() else {
+            return;
+        };
         let (me, model) = (self.samples.origin(), received.message);
-        if model.device != me.source || model.device_epoch != me.epoch || model.brush != self.brush {
+        if model.device != me.source || model.device_epoch != me.epoch || model.brush != self.brush
+        {
             self.told.foreign_models += 1;
             return;
         }
@@ -190,7 +217,9 @@ impl Daemon {
         self.told.execution[bin(ticked.spent_ns)] += 1;
         self.told.force_n = ticked.force.length();
         if ticked.latched && self.told.faults.is_empty() {
-            self.told.faults.push("a reading was not finite: force is off until re-armed".into());
+            self.told
+                .faults
+                .push("a reading was not finite: force is off until re-armed".into());
         }
         let event_ns = ticked.monotonic_ns + self.offset_ns;
         let reading = &ticked.reading;
@@ -200,18 +229,23 @@ impl Daemon {
             return Ok(());
         }
         self.published_ns = event_ns;
-        let in_device =
-            Rigid { rotation: reading.held.orientation, translation: reading.held.position };
+        let in_device = Rigid {
+            rotation: reading.held.orientation,
+            translation: reading.held.position,
+        };
         let sample = StylusSample {
             senses: self.senses,
-            pose: StylusPose::Ferrule { pose: self.to_desk.after(&in_device).to_pose() },
+            pose: StylusPose::Ferrule {
+                pose: self.to_desk.after(&in_device).to_pose(),
+            },
             velocity_m_s: self.to_desk.vector(reading.held.velocity).to_array(),
             force_n: self.to_desk.vector(ticked.force).to_array(),
             switches: reading.switches,
             in_range: reading.in_range,
         };
         self.told.samples += 1;
-        self.samples.send(Flags::NONE, Stamp { now_ns, event_ns }, &sample)?;
+        self.samples
+            .send(Flags::NONE, Stamp { now_ns, event_ns }, &sample)?;
         Ok(())
     }
 }

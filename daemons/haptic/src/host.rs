@@ -71,8 +71,16 @@ fn monotonic_ns() -> u64 {
 }
 
 fn sleep_until(deadline_ns: u64) {
-    let time = TimeSpec::new((deadline_ns / 1_000_000_000) as i64, (deadline_ns % 1_000_000_000) as i64);
-    clock_nanosleep(ClockId::CLOCK_MONOTONIC, ClockNanosleepFlags::TIMER_ABSTIME, &time).ok();
+    let time = TimeSpec::new(
+        (deadline_ns / 1_000_000_000) as i64,
+        (deadline_ns % 1_000_000_000) as i64,
+    );
+    clock_nanosleep(
+        ClockId::CLOCK_MONOTONIC,
+        ClockNanosleepFlags::TIMER_ABSTIME,
+        &time,
+    )
+    .ok();
 }
 
 impl Host {
@@ -86,48 +94,56 @@ impl Host {
         let (tell, told) = std::sync::mpsc::channel();
         let stop = Arc::new(AtomicBool::new(false));
         let stopped = Arc::clone(&stop);
-        let thread = std::thread::Builder::new().name("servo".into()).spawn(move || {
-            tell.send(become_real_time()).ok();
-            let mut servo = Servo::new(limits);
-            let (mut seen, mut sender) = (0, None);
-            let mut last_ns = monotonic_ns();
-            let mut deadline_ns = last_ns + PERIOD_NS;
-            while !stopped.load(Ordering::Relaxed) {
-                sleep_until(deadline_ns);
-                let now_ns = monotonic_ns();
-                let dt = (now_ns - last_ns) as f64 * 1e-9;
-                last_ns = now_ns;
-                let delivery = *from_rig.read();
-                if delivery.number != seen
-                    && let Some(contact) = delivery.contact
-                {
-                    servo.receive(contact, delivery.sender != sender);
-                    (seen, sender) = (delivery.number, delivery.sender);
+        let thread = std::thread::Builder::new()
+            .name("servo".into())
+            .spawn(move || {
+                tell.send(become_real_time()).ok();
+                let mut servo = Servo::new(limits);
+                let (mut seen, mut sender) = (0, None);
+                let mut last_ns = monotonic_ns();
+                let mut deadline_ns = last_ns + PERIOD_NS;
+                while !stopped.load(Ordering::Relaxed) {
+                    sleep_until(deadline_ns);
+                    let now_ns = monotonic_ns();
+                    let dt = (now_ns - last_ns) as f64 * 1e-9;
+                    last_ns = now_ns;
+                    let delivery = *from_rig.read();
+                    if delivery.number != seen
+                        && let Some(contact) = delivery.contact
+                    {
+                        servo.receive(contact, delivery.sender != sender);
+                        (seen, sender) = (delivery.number, delivery.sender);
+                    }
+                    let reading = driver.read(dt);
+                    let (force, _) = servo.step(&reading.held, dt);
+                    driver.write(force);
+                    let ticked = Ticked {
+                        monotonic_ns: now_ns,
+                        reading,
+                        force,
+                        late_ns: now_ns.saturating_sub(deadline_ns),
+                        spent_ns: monotonic_ns() - now_ns,
+                        latched: servo.is_latched(),
+                    };
+                    // A full ring drops the tick; the publisher sees the gap in its times.
+                    to_publisher.push(ticked).ok();
+                    // After an overrun the next deadline is the next grid point: no burst to catch up.
+                    deadline_ns += PERIOD_NS;
+                    let now_ns = monotonic_ns();
+                    if deadline_ns <= now_ns {
+                        deadline_ns += (now_ns - deadline_ns).div_ceil(PERIOD_NS) * PERIOD_NS;
+                    }
                 }
-                let reading = driver.read(dt);
-                let (force, _) = servo.step(&reading.held, dt);
-                driver.write(force);
-                let ticked = Ticked {
-                    monotonic_ns: now_ns,
-                    reading,
-                    force,
-                    late_ns: now_ns.saturating_sub(deadline_ns),
-                    spent_ns: monotonic_ns() - now_ns,
-                    latched: servo.is_latched(),
-                };
-                // A full ring drops the tick; the publisher sees the gap in its times.
-                to_publisher.push(ticked).ok();
-                // After an overrun the next deadline is the next grid point: no burst to catch up.
-                deadline_ns += PERIOD_NS;
-                let now_ns = monotonic_ns();
-                if deadline_ns <= now_ns {
-                    deadline_ns += (now_ns - deadline_ns).div_ceil(PERIOD_NS) * PERIOD_NS;
-                }
-            }
-            driver.write(DVec3::ZERO);
-        })?;
+                driver.write(DVec3::ZERO);
+            })?;
         let warnings = told.recv().unwrap_or_default();
-        Ok(Self { ticks, models, warnings, stop, thread: Some(thread) })
+        Ok(Self {
+            ticks,
+            models,
+            warnings,
+            stop,
+            thread: Some(thread),
+        })
     }
 }
 
@@ -142,14 +158,17 @@ impl Drop for Host {
 
 impl std::fmt::Debug for Host {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.debug_struct("Host").field("warnings", &self.warnings).finish_non_exhaustive()
+        f.debug_struct("Host")
+            .field("warnings", &self.warnings)
+            .finish_non_exhaustive()
     }
 }
 
 /// Locks memory and asks for real-time scheduling; returns what was not permitted, with the fix.
 fn become_real_time() -> Vec<String> {
     let mut warnings = Vec::new();
-    let all = nix::sys::mman::MlockAllFlags::MCL_CURRENT | nix::sys::mman::MlockAllFlags::MCL_FUTURE;
+    let all =
+        nix::sys::mman::MlockAllFlags::MCL_CURRENT | nix::sys::mman::MlockAllFlags::MCL_FUTURE;
     if let Err(error) = nix::sys::mman::mlockall(all) {
         warnings.push(format!(
             "memory is not locked ({error}): add 'memlock unlimited' for your user to /etc/security/limits.conf"
@@ -157,14 +176,16 @@ fn become_real_time() -> Vec<String> {
     }
     let policy = ThreadSchedulePolicy::Realtime(RealtimeThreadSchedulePolicy::Fifo);
     let priority = ThreadPriorityValue::try_from(PRIORITY).map(ThreadPriority::Crossplatform);
-    let set = priority.map_err(|error| error.to_string()).and_then(|priority| {
-        thread_priority::set_thread_priority_and_policy(
-            thread_priority::thread_native_id(),
-            priority,
-            policy,
-        )
-        .map_err(|error| format!("{error:?}"))
-    });
+    let set = priority
+        .map_err(|error| error.to_string())
+        .and_then(|priority| {
+            thread_priority::set_thread_priority_and_policy(
+                thread_priority::thread_native_id(),
+                priority,
+                policy,
+            )
+            .map_err(|error| format!("{error:?}"))
+        });
     if let Err(error) = set {
         warnings.push(format!(
             "the servo has no real-time priority ({error}): add 'rtprio 99' for your user to /etc/security/limits.conf"
@@ -195,7 +216,10 @@ mod tests {
 
     #[test]
     fn bins_double() {
-        assert_eq!((bin(0), bin(49_999), bin(50_000), bin(99_999), bin(100_000)), (0, 0, 1, 1, 2));
+        assert_eq!(
+            (bin(0), bin(49_999), bin(50_000), bin(99_999), bin(100_000)),
+            (0, 0, 1, 1, 2)
+        );
         assert_eq!(bin(u64::MAX), BINS - 1);
     }
 

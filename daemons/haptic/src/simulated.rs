@@ -72,11 +72,15 @@ impl Simulated {
     }
 
     fn target(&mut self) -> Target {
-        while self.next + 1 < self.targets.len() && self.targets[self.next + 1].time_s <= self.time_s
+        while self.next + 1 < self.targets.len()
+            && self.targets[self.next + 1].time_s <= self.time_s
         {
             self.next += 1;
         }
-        let over = self.targets.last().is_none_or(|last| self.time_s > last.time_s);
+        let over = self
+            .targets
+            .last()
+            .is_none_or(|last| self.time_s > last.time_s);
         let rest = Target {
             time_s: 0.0,
             position: REST,
@@ -105,9 +109,9 @@ impl Driver for Simulated {
         self.time_s += dt;
         Reading {
             held: Held {
-                position: self.plant.position(),
+                position: self.plant.read_position(),
                 orientation: target.orientation,
-                velocity: self.plant.velocity(),
+                velocity: self.plant.read_velocity(),
             },
             switches: target.switches,
             in_range: target.in_range,
@@ -139,13 +143,20 @@ mod tests {
             }
         }
         // Damping over stiffness is 19 ms of lag, at about 0.1 m/s.
-        assert!(count > 9000 && sum / f64::from(count) < 0.01, "{} m", sum / f64::from(count));
+        assert!(
+            count > 9000 && sum / f64::from(count) < 0.01,
+            "{} m",
+            sum / f64::from(count)
+        );
     }
 
     #[test]
     fn without_a_take_it_rests_out_of_range() {
         let mut device = Simulated::at_rest();
-        let reading = (0..1000).map(|_| device.read(1e-3)).last().expect("a reading");
+        let reading = (0..1000)
+            .map(|_| device.read(1e-3))
+            .last()
+            .expect("a reading");
         assert!(!reading.in_range && (reading.held.position - REST).length() < 1e-3);
     }
 }

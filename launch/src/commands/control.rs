@@ -70,7 +70,11 @@ const PATIENCE: Duration = Duration::from_secs(10);
 /// Sends a command to the paint node of a rig; returns what it says.
 fn send(target: &Target, command: Command) -> Result<String, Fault> {
     let (folder, info) = RigFolder::join(&target.name)?;
-    let dial = Dial { name: "cli".into(), listen: None, connect: vec![info.endpoint] };
+    let dial = Dial {
+        name: "cli".into(),
+        listen: None,
+        connect: vec![info.endpoint],
+    };
     let session = ZenohBus::open(&dial, RigClock::with_offset(info.clock_offset_ns))?;
     let bus = Arc::new(session);
     let topics = Topics::new(folder.rig());
@@ -86,10 +90,20 @@ fn send(target: &Target, command: Command) -> Result<String, Fault> {
 /// A [`Fault`] for an unknown paint or brush, or where no rig runs.
 pub fn load(options: &LoadOptions) -> Result<i32, Fault> {
     let mixture = options.mixture.parse().map_err(|error| {
-        refused(PaintRefusal::paint(maulstick_optics::PaintError::Mixture(error)))
+        refused(PaintRefusal::paint(maulstick_optics::PaintError::Mixture(
+            error,
+        )))
     })?;
-    let mixture = library()?.check(&mixture).map_err(|e| refused(PaintRefusal::paint(e)))?;
-    send(&options.target, Command::Load { brush: options.brush.clone(), mixture })?;
+    let mixture = library()?
+        .check(&mixture)
+        .map_err(|e| refused(PaintRefusal::paint(e)))?;
+    send(
+        &options.target,
+        Command::Load {
+            brush: options.brush.clone(),
+            mixture,
+        },
+    )?;
     Ok(0)
 }
 
@@ -98,7 +112,12 @@ pub fn load(options: &LoadOptions) -> Result<i32, Fault> {
 /// # Errors
 /// A [`Fault`] for an unknown brush, or where no rig runs.
 pub fn clean(options: &CleanOptions) -> Result<i32, Fault> {
-    send(&options.target, Command::Clean { brush: options.brush.clone() })?;
+    send(
+        &options.target,
+        Command::Clean {
+            brush: options.brush.clone(),
+        },
+    )?;
     Ok(0)
 }
 
@@ -132,6 +151,9 @@ pub fn snapshot(options: &SnapshotOptions) -> Result<i32, Fault> {
     };
     let path = whole(&options.output)?;
     let ledger = options.ledger.as_ref().map(whole).transpose()?;
-    println!("{}", send(&options.target, Command::Snapshot { path, ledger })?);
+    println!(
+        "{}",
+        send(&options.target, Command::Snapshot { path, ledger })?
+    );
     Ok(0)
 }

@@ -33,7 +33,10 @@ pub fn run(options: &ImportOptions) -> Result<i32, Fault> {
         return Err(Fault::usage(format!("--unit-mm {}", options.unit_mm)).help("choose above 0"));
     }
     let size = options.size.map(f64::from);
-    let layout = TableLayout { unit_mm: options.unit_mm, size };
+    let layout = TableLayout {
+        unit_mm: options.unit_mm,
+        size,
+    };
     let take = import(&options.table, layout, "table")?;
     take.write(&options.output)?;
     println!(

@@ -19,8 +19,8 @@ use serde_json::Value;
 /// # Errors
 /// A [`Fault`] where it cannot be written as text.
 pub fn print_json(value: &Value) -> Result<(), Fault> {
-    let text = serde_json::to_string_pretty(value)
-        .map_err(|error| Fault::failure(error.to_string()))?;
+    let text =
+        serde_json::to_string_pretty(value).map_err(|error| Fault::failure(error.to_string()))?;
     println!("{text}");
     Ok(())
 }

@@ -31,7 +31,9 @@ pub fn run(options: &PaintsOptions) -> Result<i32, Fault> {
     let mut rows = Vec::new();
     for paint in library.paints() {
         let slot = studio.add(paint);
-        let linear = studio.colour(&[(slot, OPAQUE_M)], &black).map(|channel| channel as f32);
+        let linear = studio
+            .colour(&[(slot, OPAQUE_M)], &black)
+            .map(|channel| channel as f32);
         let srgb =
             clamp_chromaticity(linear).map(|c| (srgb_encode(f64::from(c)) * 255.0).round() as u8);
         if options.json {

@@ -41,19 +41,24 @@ pub fn run(options: &RenderOptions) -> Result<i32, Fault> {
     let library = library()?;
     let loads = options.painting.mixtures(&library)?;
     let take = Take::read(&options.take)?;
-    for path in [Some(&options.output), options.painting.ledger.as_ref()].into_iter().flatten() {
+    for path in [Some(&options.output), options.painting.ledger.as_ref()]
+        .into_iter()
+        .flatten()
+    {
         check_writable(path).map_err(|error| Fault::file(path, &error, true))?;
     }
     let painting = Painting::new(&painting_setup(&config)?, library).map_err(refused)?;
     let file = brush_file(&section)?;
-    let mut offline = Offline::new(painting, &section.name, file, section.depth_share, loads)
-        .map_err(refused)?;
+    let mut offline =
+        Offline::new(painting, &section.name, file, section.depth_share, loads).map_err(refused)?;
     let bar = progress_bar(take.length_ns()).with_message("painting");
     // The start does not matter to the painting; a live one has the clock's time here.
     let (start_ns, first_ns) = (1_000_000_000, take.samples[0].time_ns);
     for (number, sample) in take.samples.iter().enumerate() {
         let time_ns = sample.time_ns - first_ns;
-        offline.sample(start_ns + time_ns, &sample.sample).map_err(refused)?;
+        offline
+            .sample(start_ns + time_ns, &sample.sample)
+            .map_err(refused)?;
         if number % 64 == 0 {
             bar.set_position(time_ns / 1_000_000);
         }

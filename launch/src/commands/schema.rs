@@ -23,12 +23,22 @@ pub struct SchemaOptions {
 /// # Errors
 /// A [`Fault`] for an unknown message, with the nearest name.
 pub fn run(options: &SchemaOptions) -> Result<i32, Fault> {
-    let wanted = |name: &str| options.message.as_deref().is_none_or(|message| message == name);
-    let entries: Vec<_> = CATALOGUE.iter().filter(|entry| wanted(entry.name)).collect();
+    let wanted = |name: &str| {
+        options
+            .message
+            .as_deref()
+            .is_none_or(|message| message == name)
+    };
+    let entries: Vec<_> = CATALOGUE
+        .iter()
+        .filter(|entry| wanted(entry.name))
+        .collect();
     if let (true, Some(message)) = (entries.is_empty(), &options.message) {
         let nearest = Fault::nearest(message, CATALOGUE.iter().map(|entry| entry.name));
-        return Err(Fault::usage(format!("there is no message called '{message}'"))
-            .help(format!("did you mean '{}'?", nearest.unwrap_or_default())));
+        return Err(
+            Fault::usage(format!("there is no message called '{message}'"))
+                .help(format!("did you mean '{}'?", nearest.unwrap_or_default())),
+        );
     }
     if options.json {
         let messages: Vec<_> = entries

@@ -56,7 +56,10 @@ pub fn run(command: &TakeCommand) -> Result<i32, Fault> {
             } else {
                 let kind = if pens { "a pen" } else { "a 6-DOF stylus" };
                 println!("device   {} ({kind})", take.device);
-                println!("samples  {} over {seconds:.3} s, {rate:.1} a second", take.samples.len());
+                println!(
+                    "samples  {} over {seconds:.3} s, {rate:.1} a second",
+                    take.samples.len()
+                );
             }
             Ok(0)
         }
@@ -68,8 +71,14 @@ pub fn run(command: &TakeCommand) -> Result<i32, Fault> {
             }
             let salvage = Take::salvage(take)?;
             salvage.take.write(output)?;
-            let damage = salvage.damage.unwrap_or_else(|| "nothing was damaged".to_owned());
-            println!("{}: {} samples ({damage})", output.display(), salvage.take.samples.len());
+            let damage = salvage
+                .damage
+                .unwrap_or_else(|| "nothing was damaged".to_owned());
+            println!(
+                "{}: {} samples ({damage})",
+                output.display(),
+                salvage.take.samples.len()
+            );
             Ok(0)
         }
     }

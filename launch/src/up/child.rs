@@ -79,7 +79,13 @@ impl Node {
     #[must_use]
     pub fn new(spec: NodeSpec) -> Self {
         let failures = VecDeque::new();
-        Self { spec, state: State::Restarting, restarts: 0, process: None, failures }
+        Self {
+            spec,
+            state: State::Restarting,
+            restarts: 0,
+            process: None,
+            failures,
+        }
     }
 
     /// Starts the process.
@@ -97,8 +103,11 @@ impl Node {
             .process_group(0)
             .spawn()
             .map_err(|error| {
-                Fault::failure(format!("node '{}' cannot be started: {error}", self.spec.name))
-                    .at(self.spec.program.display().to_string())
+                Fault::failure(format!(
+                    "node '{}' cannot be started: {error}",
+                    self.spec.name
+                ))
+                .at(self.spec.program.display().to_string())
             })?;
         let stdin = child.stdin.take();
         self.process = Some((child, stdin));
@@ -124,11 +133,19 @@ impl Node {
     pub fn fail(&mut self) -> bool {
         let now = Instant::now();
         self.failures.push_back(now);
-        while self.failures.front().is_some_and(|first| now - *first > WINDOW) {
+        while self
+            .failures
+            .front()
+            .is_some_and(|first| now - *first > WINDOW)
+        {
             self.failures.pop_front();
         }
         let again = self.spec.restart == Restart::OnFailure && self.failures.len() < FAILURES;
-        self.state = if again { State::Restarting } else { State::Failed };
+        self.state = if again {
+            State::Restarting
+        } else {
+            State::Failed
+        };
         again
     }
 

@@ -9,8 +9,8 @@ use maulstick_bus::typed::Receiver;
 use maulstick_bus::{Bus, BusError, Class, Queue, Wake};
 use maulstick_device::commander::Commander;
 use maulstick_device::player::Rate;
-use maulstick_rig::config::RigConfig;
 use maulstick_rig::Fault;
+use maulstick_rig::config::RigConfig;
 use maulstick_types::command::Command;
 use maulstick_types::stylus::{TakeEnd, TakeStatus};
 use maulstick_types::topics::Topics;
@@ -136,7 +136,9 @@ impl Conductor {
     /// # Errors
     /// A [`Fault`] where it cannot be written.
     pub fn snapshot(&mut self, bus: &Arc<dyn Bus>, topics: &Topics) -> Result<bool, Fault> {
-        let Some(end) = &self.end else { return Ok(false) };
+        let Some(end) = &self.end else {
+            return Ok(false);
+        };
         if let Some(writing) = &self.writing {
             return match writing.outcome.try_recv() {
                 Ok(outcome) => outcome.map(|()| true),
@@ -162,7 +164,9 @@ impl Conductor {
                 let stop = || stop.load(Ordering::SeqCst);
                 let sent = commander.send(command, after, SNAPSHOT, &stop);
                 let code = maulstick_rig::fault::EXIT_FAILURE;
-                to_conductor.send(sent.map(|_| ()).map_err(|fault| Fault { code, ..fault })).ok();
+                to_conductor
+                    .send(sent.map(|_| ()).map_err(|fault| Fault { code, ..fault }))
+                    .ok();
             })
             .map_err(|error| Fault::failure(error.to_string()))?;
         self.writing = Some(Writing { outcome, given_up });

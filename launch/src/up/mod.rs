@@ -86,7 +86,10 @@ pub fn run(options: &UpOptions) -> Result<i32, Fault> {
         None => None,
         Some(path) => {
             let length_ns = Take::read(path)?.length_ns();
-            for file in [&options.snapshot, &options.painting.ledger].into_iter().flatten() {
+            for file in [&options.snapshot, &options.painting.ledger]
+                .into_iter()
+                .flatten()
+            {
                 check_writable(file).map_err(|error| Fault::file(file, &error, true))?;
             }
             Some(Performance {
@@ -95,7 +98,12 @@ pub fn run(options: &UpOptions) -> Result<i32, Fault> {
                 brush: section.name,
                 loads: loads.iter().map(ToString::to_string).collect(),
                 snapshot: options.snapshot.as_deref().map(absolute).transpose()?,
-                ledger: options.painting.ledger.as_deref().map(absolute).transpose()?,
+                ledger: options
+                    .painting
+                    .ledger
+                    .as_deref()
+                    .map(absolute)
+                    .transpose()?,
                 length_ns,
             })
         }
@@ -104,7 +112,9 @@ pub fn run(options: &UpOptions) -> Result<i32, Fault> {
     let nodes = plan::nodes(&config, options.headless, performance.is_some())?;
     let first_load = match loads.into_iter().next() {
         Some(mixture) => mixture,
-        None => FIRST_LOAD.parse().map_err(|error| Fault::failure(format!("{error}")))?,
+        None => FIRST_LOAD
+            .parse()
+            .map_err(|error| Fault::failure(format!("{error}")))?,
     };
     let mut supervisor = Supervisor::start(folder, &config, nodes, performance, first_load)?;
     supervisor.run()

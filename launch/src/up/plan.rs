@@ -2,8 +2,8 @@
 
 use std::path::PathBuf;
 
-use maulstick_rig::config::{Restart, RigConfig};
 use maulstick_rig::Fault;
+use maulstick_rig::config::{Restart, RigConfig};
 
 use crate::commands::bench::beside;
 use crate::nodes::brush_node_name;
@@ -51,15 +51,23 @@ pub fn node(
 ) -> Result<NodeSpec, Fault> {
     let program = beside(program)?;
     if !program.is_file() {
-        return Err(Fault::failure(format!("the program of node '{name}' is missing"))
-            .at(program.display().to_string())
-            .help("install the whole rig: cargo install --path launch"));
+        return Err(
+            Fault::failure(format!("the program of node '{name}' is missing"))
+                .at(program.display().to_string())
+                .help("install the whole rig: cargo install --path launch"),
+        );
     }
     // Settings are by the short name: `[node.brush]` holds for every brush.
     let short = name.split('-').next().unwrap_or(name);
     let section = config.node.get(name).or_else(|| config.node.get(short));
     let restart = section.map(|section| section.restart).unwrap_or_default();
-    Ok(NodeSpec { name: name.to_owned(), role, program, args, restart })
+    Ok(NodeSpec {
+        name: name.to_owned(),
+        role,
+        program,
+        args,
+        restart,
+    })
 }
 
 /// The nodes of a rig. A played take stands in for the devices.
@@ -67,7 +75,13 @@ pub fn node(
 /// # Errors
 /// A [`Fault`] where a program is missing.
 pub fn nodes(config: &RigConfig, headless: bool, played: bool) -> Result<Vec<NodeSpec>, Fault> {
-    let mut nodes = vec![node(config, "paint", Role::Paint, "maulstick-paint", Vec::new())?];
+    let mut nodes = vec![node(
+        config,
+        "paint",
+        Role::Paint,
+        "maulstick-paint",
+        Vec::new(),
+    )?];
     for brush in &config.brush {
         let args = vec!["--brush".to_owned(), brush.name.clone()];
         let name = brush_node_name(&brush.name);
@@ -76,11 +90,23 @@ pub fn nodes(config: &RigConfig, headless: bool, played: bool) -> Result<Vec<Nod
     if !played {
         for device in &config.device {
             let args = vec!["--device".to_owned(), device.name.clone()];
-            nodes.push(node(config, &device.name, Role::Device, "maulstick-haptic", args)?);
+            nodes.push(node(
+                config,
+                &device.name,
+                Role::Device,
+                "maulstick-haptic",
+                args,
+            )?);
         }
     }
     if !headless {
-        nodes.push(node(config, "ui", Role::Window, "maulstick-ui", Vec::new())?);
+        nodes.push(node(
+            config,
+            "ui",
+            Role::Window,
+            "maulstick-ui",
+            Vec::new(),
+        )?);
     }
     Ok(nodes)
 }

@@ -71,8 +71,11 @@ impl Supervisor {
         first_load: Mixture,
     ) -> Result<Self, Fault> {
         let clock = RigClock::start();
-        let dial =
-            Dial { name: HUB.into(), listen: Some(folder.locator(HUB)), connect: Vec::new() };
+        let dial = Dial {
+            name: HUB.into(),
+            listen: Some(folder.locator(HUB)),
+            connect: Vec::new(),
+        };
         let session = Arc::new(ZenohBus::open(&dial, clock)?);
         let bus: Arc<dyn Bus> = Arc::clone(&session) as Arc<dyn Bus>;
         let topics = Topics::new(folder.rig());
@@ -162,8 +165,10 @@ impl Supervisor {
 
     fn watch_tokens(&mut self) {
         while let Some(arrival) = self.tokens.try_recv() {
-            let Some(name) =
-                self.topics.relative(&arrival.key).and_then(|key| key.strip_prefix("node/"))
+            let Some(name) = self
+                .topics
+                .relative(&arrival.key)
+                .and_then(|key| key.strip_prefix("node/"))
             else {
                 continue;
             };
@@ -232,7 +237,9 @@ impl Supervisor {
 
     /// A take whose brush or paint died is played again from its start, on a new painting.
     fn replay_after(&mut self, role: Role) {
-        let Some(conductor) = &mut self.conductor else { return };
+        let Some(conductor) = &mut self.conductor else {
+            return;
+        };
         if matches!(role, Role::Device | Role::Window) {
             return;
         }
@@ -271,15 +278,25 @@ impl Supervisor {
     /// A node that shows no token in time is killed, and with that has failed.
     fn watch_starts(&mut self) -> Result<(), Fault> {
         let now = Instant::now();
-        for node in self.nodes.iter_mut().filter(|node| node.state == State::Starting) {
-            let since = self.started.iter().find(|(name, _)| *name == node.spec.name);
+        for node in self
+            .nodes
+            .iter_mut()
+            .filter(|node| node.state == State::Starting)
+        {
+            let since = self
+                .started
+                .iter()
+                .find(|(name, _)| *name == node.spec.name);
             if since.is_some_and(|(_, since)| now - *since > START_TIME) {
                 tracing::warn!("node '{}' does not get ready", node.spec.name);
                 node.terminate();
                 node.kill();
                 if !node.fail() {
-                    return Err(Fault::failure(format!("node '{}' does not get ready", node.spec.name))
-                        .help("its own messages above say why"));
+                    return Err(Fault::failure(format!(
+                        "node '{}' does not get ready",
+                        node.spec.name
+                    ))
+                    .help("its own messages above say why"));
                 }
                 self.due.push((node.spec.name.clone(), now));
             }
@@ -288,7 +305,9 @@ impl Supervisor {
     }
 
     fn ready(&self) -> bool {
-        self.nodes.iter().all(|node| node.state == State::Running || node.state == State::Ended)
+        self.nodes
+            .iter()
+            .all(|node| node.state == State::Running || node.state == State::Ended)
     }
 
     fn show_when_ready(&mut self) {
@@ -296,10 +315,19 @@ impl Supervisor {
             return;
         }
         self.shown = true;
-        eprintln!("rig '{}' is up: {}", self.folder.rig(), self.folder.locator(HUB));
+        eprintln!(
+            "rig '{}' is up: {}",
+            self.folder.rig(),
+            self.folder.locator(HUB)
+        );
         eprintln!("  {:<16} {:>8}  {:<10} program", "node", "pid", "state");
         for node in &self.nodes {
-            let program = node.spec.program.file_name().unwrap_or_default().to_string_lossy();
+            let program = node
+                .spec
+                .program
+                .file_name()
+                .unwrap_or_default()
+                .to_string_lossy();
             eprintln!(
                 "  {:<16} {:>8}  {:<10} {program}",
                 node.spec.name,
@@ -327,7 +355,10 @@ impl Supervisor {
         let load = move || {
             let mut commander = Commander::new(bus, &topics);
             for brush in brushes {
-                let command = Command::Load { brush, mixture: mixture.clone() };
+                let command = Command::Load {
+                    brush,
+                    mixture: mixture.clone(),
+                };
                 if let Err(fault) = commander.send(command, None, LOAD_TIME, &|| stop.requested()) {
                     tracing::warn!("{}", fault.what);
                 }
@@ -341,7 +372,9 @@ impl Supervisor {
     /// Starts the player when all others are ready; has the picture written at the take's end.
     fn conduct(&mut self) -> Result<Option<i32>, Fault> {
         let ready = self.ready();
-        let Some(conductor) = &mut self.conductor else { return Ok(None) };
+        let Some(conductor) = &mut self.conductor else {
+            return Ok(None);
+        };
         if !self.nodes.iter().any(|node| node.spec.role == Role::Player) {
             if ready {
                 let spec = conductor.player(&self.config)?;
@@ -372,7 +405,11 @@ impl Supervisor {
         let give_up = Instant::now() + GRACE;
         while Instant::now() < give_up {
             let left = self.nodes.iter_mut().filter(|node| node.pid().is_some());
-            if left.filter_map(|node| node.ended().is_none().then_some(())).count() == 0 {
+            if left
+                .filter_map(|node| node.ended().is_none().then_some(()))
+                .count()
+                == 0
+            {
                 break;
             }
             self.wake.wait(Duration::from_millis(5));
@@ -383,6 +420,8 @@ impl Supervisor {
 
 impl std::fmt::Debug for Supervisor {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.debug_struct("Supervisor").field("nodes", &self.nodes).finish_non_exhaustive()
+        f.debug_struct("Supervisor")
+            .field("nodes", &self.nodes)
+            .finish_non_exhaustive()
     }
 }

@@ -111,7 +111,9 @@ impl Subscription {
 
 impl fmt::Debug for Subscription {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.debug_struct("Subscription").field("inbox", &self.inbox).finish_non_exhaustive()
+        f.debug_struct("Subscription")
+            .field("inbox", &self.inbox)
+            .finish_non_exhaustive()
     }
 }
 
@@ -136,7 +138,9 @@ impl Request {
 
 impl fmt::Debug for Request {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.debug_struct("Request").field("key", &self.key).finish_non_exhaustive()
+        f.debug_struct("Request")
+            .field("key", &self.key)
+            .finish_non_exhaustive()
     }
 }
 

@@ -22,7 +22,9 @@ impl RigClock {
     #[must_use]
     pub fn start() -> Self {
         let wall = read(ClockId::CLOCK_REALTIME);
-        Self { offset_ns: wall.saturating_sub(read(ClockId::CLOCK_MONOTONIC)) }
+        Self {
+            offset_ns: wall.saturating_sub(read(ClockId::CLOCK_MONOTONIC)),
+        }
     }
 
     /// The clock of a rig that is already running.

@@ -76,7 +76,9 @@ struct InboxInner<T> {
 
 impl<T> Clone for Inbox<T> {
     fn clone(&self) -> Self {
-        Self { inner: Arc::clone(&self.inner) }
+        Self {
+            inner: Arc::clone(&self.inner),
+        }
     }
 }
 
@@ -124,13 +126,21 @@ impl<T> Inbox<T> {
     /// The oldest item, if there is one.
     #[must_use]
     pub fn try_recv(&self) -> Option<T> {
-        self.inner.items.lock().unwrap_or_else(PoisonError::into_inner).pop_front()
+        self.inner
+            .items
+            .lock()
+            .unwrap_or_else(PoisonError::into_inner)
+            .pop_front()
     }
 
     /// Whether nothing waits.
     #[must_use]
     pub fn is_empty(&self) -> bool {
-        self.inner.items.lock().unwrap_or_else(PoisonError::into_inner).is_empty()
+        self.inner
+            .items
+            .lock()
+            .unwrap_or_else(PoisonError::into_inner)
+            .is_empty()
     }
 
     /// What has gone through.
@@ -156,7 +166,10 @@ mod tests {
 
     #[test]
     fn each_queue_keeps_what_it_promises() {
-        let counts = |dropped| Counts { arrived: 5, dropped };
+        let counts = |dropped| Counts {
+            arrived: 5,
+            dropped,
+        };
         assert_eq!(fill(Queue::Latest), (vec![4], counts(4)));
         assert_eq!(fill(Queue::Ring(3)), (vec![2, 3, 4], counts(2)));
         assert_eq!(fill(Queue::Bounded(3)), (vec![0, 1, 2], counts(2)));

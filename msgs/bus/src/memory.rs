@@ -26,10 +26,24 @@ pub struct Faults {
 
 /// Something on its way.
 enum Parcel {
-    Message { key: String, bytes: Vec<u8>, present: bool, token: bool },
-    Question { key: String, bytes: Vec<u8>, answers: Inbox<Answer> },
-    Answer { bytes: Vec<u8>, answers: Inbox<Answer> },
-    End { answers: Inbox<Answer> },
+    Message {
+        key: String,
+        bytes: Vec<u8>,
+        present: bool,
+        token: bool,
+    },
+    Question {
+        key: String,
+        bytes: Vec<u8>,
+        answers: Inbox<Answer>,
+    },
+    Answer {
+        bytes: Vec<u8>,
+        answers: Inbox<Answer>,
+    },
+    End {
+        answers: Inbox<Answer>,
+    },
 }
 
 struct Listener {
@@ -109,12 +123,18 @@ impl Net {
         }
         let delay = self.chance() * self.faults.delay_ns as f64;
         self.next_id += 1;
-        self.parcels.insert((self.now_ns + delay as u64, self.next_id), parcel);
+        self.parcels
+            .insert((self.now_ns + delay as u64, self.next_id), parcel);
     }
 
     fn deliver(&mut self, this: &Arc<Mutex<Net>>, parcel: Parcel) {
         match parcel {
-            Parcel::Message { key, bytes, present, token } => {
+            Parcel::Message {
+                key,
+                bytes,
+                present,
+                token,
+            } => {
                 for listener in self.listeners.values() {
                     if listener.tokens == token && matches(&listener.expression, &key) {
                         listener.inbox.push(Arrival {
@@ -126,7 +146,11 @@ impl Net {
                     }
                 }
             }
-            Parcel::Question { key, bytes, answers } => {
+            Parcel::Question {
+                key,
+                bytes,
+                answers,
+            } => {
                 for (expression, inbox) in self.servers.values() {
                     if matches(expression, &key) {
                         let net = Arc::downgrade(this);
@@ -137,7 +161,11 @@ impl Net {
                             }
                             Ok(())
                         });
-                        inbox.push(Request { key: key.clone(), bytes: bytes.clone(), answer });
+                        inbox.push(Request {
+                            key: key.clone(),
+                            bytes: bytes.clone(),
+                            answer,
+                        });
                     }
                 }
             }
@@ -169,7 +197,9 @@ impl MemoryNet {
     /// A node's end.
     #[must_use]
     pub fn bus(&self) -> MemoryBus {
-        MemoryBus { net: Arc::clone(&self.net) }
+        MemoryBus {
+            net: Arc::clone(&self.net),
+        }
     }
 
     /// Changes what goes wrong from now on.
@@ -203,13 +233,20 @@ struct Leave {
 
 impl Drop for Leave {
     fn drop(&mut self) {
-        let Some(net) = self.net.upgrade() else { return };
+        let Some(net) = self.net.upgrade() else {
+            return;
+        };
         let mut net = lock(&net);
         net.listeners.remove(&self.id);
         net.servers.remove(&self.id);
         if let Some(key) = self.token.take() {
             net.tokens.remove(&key);
-            let gone = Parcel::Message { key, bytes: Vec::new(), present: false, token: true };
+            let gone = Parcel::Message {
+                key,
+                bytes: Vec::new(),
+                present: false,
+                token: true,
+            };
             net.send(gone, false);
         }
     }
@@ -229,7 +266,15 @@ impl Publish for MemoryPublisher {
             net.cached.insert(self.key.clone(), bytes.clone());
         }
         let key = self.key.clone();
-        net.send(Parcel::Message { key, bytes, present: true, token: false }, !cached);
+        net.send(
+            Parcel::Message {
+                key,
+                bytes,
+                present: true,
+                token: false,
+            },
+            !cached,
+        );
         Ok(())
     }
 }
@@ -240,16 +285,34 @@ impl MemoryBus {
         net.next_id += 1;
         let id = net.next_id;
         let inbox = Inbox::new(queue, wake);
-        let listener = Listener { expression: key.to_owned(), inbox: inbox.clone(), tokens };
+        let listener = Listener {
+            expression: key.to_owned(),
+            inbox: inbox.clone(),
+            tokens,
+        };
         net.listeners.insert(id, listener);
-        let keep = Leave { net: Arc::downgrade(&self.net), id, token: None };
-        (Subscription { inbox, _keep: Box::new(keep) }, id)
+        let keep = Leave {
+            net: Arc::downgrade(&self.net),
+            id,
+            token: None,
+        };
+        (
+            Subscription {
+                inbox,
+                _keep: Box::new(keep),
+            },
+            id,
+        )
     }
 }
 
 impl Bus for MemoryBus {
     fn publisher(&self, key: &str, class: Class) -> Result<Box<dyn Publish>, BusError> {
-        Ok(Box::new(MemoryPublisher { net: Arc::clone(&self.net), key: key.to_owned(), class }))
+        Ok(Box::new(MemoryPublisher {
+            net: Arc::clone(&self.net),
+            key: key.to_owned(),
+            class,
+        }))
     }
 
     fn subscribe(
@@ -282,8 +345,15 @@ impl Bus for MemoryBus {
         let id = net.next_id;
         let inbox = Inbox::new(Queue::Bounded(capacity), wake);
         net.servers.insert(id, (key.to_owned(), inbox.clone()));
-        let keep = Leave { net: Arc::downgrade(&self.net), id, token: None };
-        Ok(Server { inbox, _keep: Box::new(keep) })
+        let keep = Leave {
+            net: Arc::downgrade(&self.net),
+            id,
+            token: None,
+        };
+        Ok(Server {
+            inbox,
+            _keep: Box::new(keep),
+        })
     }
 
     fn ask(
@@ -296,21 +366,50 @@ impl Bus for MemoryBus {
         let inbox = Inbox::new(Queue::Ring(64), wake);
         let mut net = lock(&self.net);
         let answers = inbox.clone();
-        net.send(Parcel::Question { key: key.to_owned(), bytes, answers }, true);
+        net.send(
+            Parcel::Question {
+                key: key.to_owned(),
+                bytes,
+                answers,
+            },
+            true,
+        );
         net.next_id += 1;
-        let end = (net.now_ns + u64::try_from(limit.as_nanos()).unwrap_or(u64::MAX / 2), net.next_id);
-        net.parcels.insert(end, Parcel::End { answers: inbox.clone() });
-        Ok(Pending { inbox, topic: key.to_owned(), limit })
+        let end = (
+            net.now_ns + u64::try_from(limit.as_nanos()).unwrap_or(u64::MAX / 2),
+            net.next_id,
+        );
+        net.parcels.insert(
+            end,
+            Parcel::End {
+                answers: inbox.clone(),
+            },
+        );
+        Ok(Pending {
+            inbox,
+            topic: key.to_owned(),
+            limit,
+        })
     }
 
     fn token(&self, key: &str) -> Result<Token, BusError> {
         let mut net = lock(&self.net);
         net.tokens.insert(key.to_owned());
-        let appeared =
-            Parcel::Message { key: key.to_owned(), bytes: Vec::new(), present: true, token: true };
+        let appeared = Parcel::Message {
+            key: key.to_owned(),
+            bytes: Vec::new(),
+            present: true,
+            token: true,
+        };
         net.send(appeared, false);
-        let keep = Leave { net: Arc::downgrade(&self.net), id: 0, token: Some(key.to_owned()) };
-        Ok(Token { _keep: Box::new(keep) })
+        let keep = Leave {
+            net: Arc::downgrade(&self.net),
+            id: 0,
+            token: Some(key.to_owned()),
+        };
+        Ok(Token {
+            _keep: Box::new(keep),
+        })
     }
 
     fn watch(&self, key: &str, wake: &Wake) -> Result<Subscription, BusError> {
@@ -354,17 +453,36 @@ mod tests {
 
     #[test]
     fn nothing_arrives_before_its_time_and_late_joiners_get_cached_values() {
-        let net = MemoryNet::new(1, 0, Faults { loss: 0.0, delay_ns: 1000 });
+        let net = MemoryNet::new(
+            1,
+            0,
+            Faults {
+                loss: 0.0,
+                delay_ns: 1000,
+            },
+        );
         let wake = Wake::new();
         let bus = net.bus();
-        bus.publisher("a/def", Class::Cached).expect("a publisher").put(vec![7]).expect("sent");
-        let late = net.bus().subscribe("a/*", Class::Cached, Queue::Ring(4), &wake).expect("late");
+        bus.publisher("a/def", Class::Cached)
+            .expect("a publisher")
+            .put(vec![7])
+            .expect("sent");
+        let late = net
+            .bus()
+            .subscribe("a/*", Class::Cached, Queue::Ring(4), &wake)
+            .expect("late");
         assert_eq!(late.try_recv().map(|arrival| arrival.bytes), Some(vec![7]));
         let server = bus.serve("q", 4, &wake).expect("a server");
-        let pending = bus.ask("q", vec![1], Duration::from_millis(1), &wake).expect("asked");
+        let pending = bus
+            .ask("q", vec![1], Duration::from_millis(1), &wake)
+            .expect("asked");
         assert!(server.try_recv().is_none());
         net.advance(1000);
-        server.try_recv().expect("a question").answer(vec![2]).expect("answered");
+        server
+            .try_recv()
+            .expect("a question")
+            .answer(vec![2])
+            .expect("answered");
         net.advance(1000);
         assert_eq!(pending.try_recv(), Some(Answer::Bytes(vec![2])));
         net.advance(1_000_000);

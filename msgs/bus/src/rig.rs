@@ -40,7 +40,10 @@ pub struct RigFolder {
 }
 
 fn folder_error(reason: String, help: &str) -> BusError {
-    BusError::Folder { reason, help: help.to_owned() }
+    BusError::Folder {
+        reason,
+        help: help.to_owned(),
+    }
 }
 
 /// Where the folders of all rigs lie: the user's run-time folder, else one in the temporary folder.
@@ -52,11 +55,21 @@ fn base() -> PathBuf {
 }
 
 fn make_private(path: &Path) -> Result<(), BusError> {
-    DirBuilder::new().recursive(true).mode(0o700).create(path).map_err(|error| {
-        folder_error(format!("cannot make {}: {error}", path.display()), "check its permissions")
-    })?;
+    DirBuilder::new()
+        .recursive(true)
+        .mode(0o700)
+        .create(path)
+        .map_err(|error| {
+            folder_error(
+                format!("cannot make {}: {error}", path.display()),
+                "check its permissions",
+            )
+        })?;
     let meta = fs::metadata(path).map_err(|error| {
-        folder_error(format!("cannot read {}: {error}", path.display()), "check its permissions")
+        folder_error(
+            format!("cannot read {}: {error}", path.display()),
+            "check its permissions",
+        )
     })?;
     if meta.uid() != nix::unistd::getuid().as_raw() || meta.permissions().mode() & 0o077 != 0 {
         return Err(folder_error(
@@ -115,7 +128,12 @@ impl RigFolder {
         make_private(base)?;
         let path = base.join(rig);
         make_private(&path)?;
-        if path.join("0123456789abcdef0123456789abcdef.sock").as_os_str().len() > SOCKET_PATH_MAX {
+        if path
+            .join("0123456789abcdef0123456789abcdef.sock")
+            .as_os_str()
+            .len()
+            > SOCKET_PATH_MAX
+        {
             return Err(folder_error(
                 format!("{} is too long for a socket", path.display()),
                 "set XDG_RUNTIME_DIR to a shorter path",
@@ -141,7 +159,11 @@ impl RigFolder {
             )
         })?;
         clear(&path)?;
-        Ok(Self { path, rig: rig.to_owned(), _lock: Some(lock) })
+        Ok(Self {
+            path,
+            rig: rig.to_owned(),
+            _lock: Some(lock),
+        })
     }
 
     /// The folder of a running rig.
@@ -166,7 +188,14 @@ impl RigFolder {
                 "start one with `maulstick up`, or name another with `--name`",
             )
         })?;
-        Ok((Self { path: path.to_owned(), rig: info.rig.clone(), _lock: None }, info))
+        Ok((
+            Self {
+                path: path.to_owned(),
+                rig: info.rig.clone(),
+                _lock: None,
+            },
+            info,
+        ))
     }
 
     /// Path of the folder.
@@ -184,7 +213,10 @@ impl RigFolder {
     /// The zenoh locator of a node's socket.
     #[must_use]
     pub fn locator(&self, node: &str) -> String {
-        format!("unixsock-stream/{}", self.path.join(format!("{node}.sock")).display())
+        format!(
+            "unixsock-stream/{}",
+            self.path.join(format!("{node}.sock")).display()
+        )
     }
 
     /// Writes `rig.json`, by which others find the rig.
@@ -206,7 +238,10 @@ impl RigFolder {
             fs::rename(&beside, self.path.join("rig.json"))
         };
         write().map_err(|error| {
-            folder_error(format!("cannot write {}: {error}", beside.display()), "free some space")
+            folder_error(
+                format!("cannot write {}: {error}", beside.display()),
+                "free some space",
+            )
         })?;
         Ok(info)
     }
@@ -233,8 +268,13 @@ mod tests {
         let base = base.path().join("rigs");
         let first = RigFolder::create_in(&base, "studio").expect("first");
         first.announce("hub", RigClock::start()).expect("announced");
-        let error = RigFolder::create_in(&base, "studio").expect_err("second").to_string();
-        assert!(error.contains("already running") && error.contains("pid"), "{error}");
+        let error = RigFolder::create_in(&base, "studio")
+            .expect_err("second")
+            .to_string();
+        assert!(
+            error.contains("already running") && error.contains("pid"),
+            "{error}"
+        );
         assert!(RigFolder::create_in(&base, "other").is_ok());
         drop(first);
         assert!(RigFolder::create_in(&base, "studio").is_ok());
@@ -244,7 +284,9 @@ mod tests {
     fn others_may_not_read_the_folder() {
         let base = tempfile::tempdir().expect("a folder");
         fs::set_permissions(base.path(), fs::Permissions::from_mode(0o755)).expect("chmod");
-        let error = RigFolder::create_in(base.path(), "studio").expect_err("refused").to_string();
+        let error = RigFolder::create_in(base.path(), "studio")
+            .expect_err("refused")
+            .to_string();
         assert!(error.contains("yours alone"), "{error}");
     }
 

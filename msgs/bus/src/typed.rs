@@ -38,7 +38,13 @@ impl<M: Message> Sender<M> {
     /// [`BusError::Topic`].
     pub fn new(bus: &dyn Bus, topic: &str, class: Class, origin: Origin) -> Result<Self, BusError> {
         let publish = bus.publisher(topic, class)?;
-        Ok(Self { publish, topic: topic.to_owned(), origin, next: 0, message: PhantomData })
+        Ok(Self {
+            publish,
+            topic: topic.to_owned(),
+            origin,
+            next: 0,
+            message: PhantomData,
+        })
     }
 
     /// Sends a message; `event_ns` is when what it tells was so.
@@ -46,9 +52,17 @@ impl<M: Message> Sender<M> {
     /// # Errors
     /// [`BusError::Message`] where it exceeds its limit, [`BusError::Topic`].
     pub fn send(&mut self, now_ns: u64, event_ns: u64, message: &M) -> Result<(), BusError> {
-        let flags = if self.next == 0 { Flags::FIRST } else { Flags::NONE };
-        let bytes = encode(&self.origin, flags, self.next, event_ns, now_ns, message)
-            .map_err(|source| BusError::Message { topic: self.topic.clone(), source })?;
+        let flags = if self.next == 0 {
+            Flags::FIRST
+        } else {
+            Flags::NONE
+        };
+        let bytes = encode(&self.origin, flags, self.next, event_ns, now_ns, message).map_err(
+            |source| BusError::Message {
+                topic: self.topic.clone(),
+                source,
+            },
+        )?;
         self.next += 1;
         self.publish.put(bytes)
     }
@@ -56,7 +70,9 @@ impl<M: Message> Sender<M> {
 
 impl<M> std::fmt::Debug for Sender<M> {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.debug_struct("Sender").field("topic", &self.topic).finish_non_exhaustive()
+        f.debug_struct("Sender")
+            .field("topic", &self.topic)
+            .finish_non_exhaustive()
     }
 }
 
@@ -115,7 +131,11 @@ impl<M: Message> Receiver<M> {
         wake: &Wake,
     ) -> Result<Self, BusError> {
         let subscription = bus.subscribe(topic, class, queue, wake)?;
-        Ok(Self { subscription, reader: Reader::default(), message: PhantomData })
+        Ok(Self {
+            subscription,
+            reader: Reader::default(),
+            message: PhantomData,
+        })
     }
 
     /// The next message that waits and is understood.
@@ -123,7 +143,12 @@ impl<M: Message> Receiver<M> {
         while let Some(arrival) = self.subscription.try_recv() {
             if let Some((header, message)) = self.reader.read(&arrival.key, &arrival.bytes) {
                 let (key, arrived_ns) = (arrival.key, arrival.arrived_ns);
-                return Some(Received { key, arrived_ns, header, message });
+                return Some(Received {
+                    key,
+                    arrived_ns,
+                    header,
+                    message,
+                });
             }
         }
         None
@@ -143,7 +168,9 @@ impl<M: Message> Receiver<M> {
 
 impl<M> std::fmt::Debug for Receiver<M> {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.debug_struct("Receiver").field("subscription", &self.subscription).finish_non_exhaustive()
+        f.debug_struct("Receiver")
+            .field("subscription", &self.subscription)
+            .finish_non_exhaustive()
     }
 }
 
@@ -173,7 +200,10 @@ pub fn ask<Q: Message, A: Message>(
 ) -> Result<A, BusError> {
     let wake = Wake::new();
     let now = bus.now_ns();
-    let refused = |source| BusError::Message { topic: topic.to_owned(), source };
+    let refused = |source| BusError::Message {
+        topic: topic.to_owned(),
+        source,
+    };
     let bytes = encode(&origin, Flags::NONE, 0, now, now, question).map_err(refused)?;
     let answer = bus.ask(topic, bytes, limit, &wake)?.wait(&wake)?;
     Ok(decode::<A>(&answer).map_err(refused)?.1)

@@ -43,7 +43,10 @@ pub struct ZenohBus {
 }
 
 fn topic_error(topic: &str, error: impl std::fmt::Display) -> BusError {
-    BusError::Topic { topic: topic.to_owned(), reason: error.to_string() }
+    BusError::Topic {
+        topic: topic.to_owned(),
+        reason: error.to_string(),
+    }
 }
 
 fn priority(class: Class) -> Priority {
@@ -62,17 +65,37 @@ impl ZenohBus {
     /// # Errors
     /// [`BusError::Open`] where a locator cannot be used, or zenoh listens elsewhere than asked.
     pub fn open(dial: &Dial, clock: RigClock) -> Result<Self, BusError> {
-        let at = dial.listen.iter().chain(&dial.connect).cloned().collect::<Vec<_>>().join(", ");
-        let open_error = |error: String| BusError::Open { at: at.clone(), reason: error };
+        let at = dial
+            .listen
+            .iter()
+            .chain(&dial.connect)
+            .cloned()
+            .collect::<Vec<_>>()
+            .join(", ");
+        let open_error = |error: String| BusError::Open {
+            at: at.clone(),
+            reason: error,
+        };
         let config = config(dial).map_err(|error| open_error(error.to_string()))?;
-        let session = zenoh::open(config).wait().map_err(|error| open_error(error.to_string()))?;
+        let session = zenoh::open(config)
+            .wait()
+            .map_err(|error| open_error(error.to_string()))?;
         if let Some(listen) = &dial.listen {
             let locators = session.info().locators().wait();
-            if !locators.iter().any(|locator| locator.to_string() == *listen) {
+            if !locators
+                .iter()
+                .any(|locator| locator.to_string() == *listen)
+            {
                 return Err(open_error(format!("zenoh listens at {locators:?} instead")));
             }
         }
         Ok(Self { session, clock })
+    }
+
+    /// The session itself, for benchmarks that put a bare zenoh beside this bus.
+    #[must_use]
+    pub fn raw_session(&self) -> &zenoh::Session {
+        &self.session
     }
 
     /// Says goodbye to all peers.
@@ -87,12 +110,28 @@ fn config(dial: &Dial) -> zenoh::Result<zenoh::Config> {
     let json = |value: &serde_json::Value| value.to_string();
     let mut config = zenoh::Config::default();
     let settings = [
-        ("mode", serde_json::json!(if dial.listen.is_some() { "peer" } else { "client" })),
-        ("metadata", serde_json::json!({ "name": dial.name, "pid": std::process::id() })),
-        ("listen/endpoints", serde_json::json!(dial.listen.iter().collect::<Vec<_>>())),
+        (
+            "mode",
+            serde_json::json!(if dial.listen.is_some() {
+                "peer"
+            } else {
+                "client"
+            }),
+        ),
+        (
+            "metadata",
+            serde_json::json!({ "name": dial.name, "pid": std::process::id() }),
+        ),
+        (
+            "listen/endpoints",
+            serde_json::json!(dial.listen.iter().collect::<Vec<_>>()),
+        ),
         ("connect/endpoints", serde_json::json!(dial.connect)),
         ("connect/timeout_ms", serde_json::json!(2000)),
-        ("connect/exit_on_failure", serde_json::json!(!dial.connect.is_empty())),
+        (
+            "connect/exit_on_failure",
+            serde_json::json!(!dial.connect.is_empty()),
+        ),
         (
             "connect/retry",
             serde_json::json!({
@@ -107,13 +146,21 @@ fn config(dial: &Dial) -> zenoh::Result<zenoh::Config> {
         ),
         ("timestamping/enabled", serde_json::json!(true)),
         ("transport/link/tx/lease", serde_json::json!(LEASE_MS)),
-        ("transport/link/tx/queue/size/real_time", serde_json::json!(16)),
-        ("transport/link/rx/max_message_size", serde_json::json!(MAX_MESSAGE_BYTES)),
+        (
+            "transport/link/tx/queue/size/real_time",
+            serde_json::json!(16),
+        ),
+        (
+            "transport/link/rx/max_message_size",
+            serde_json::json!(MAX_MESSAGE_BYTES),
+        ),
         ("transport/unicast/lowlatency", serde_json::json!(false)),
         ("transport/shared_memory/enabled", serde_json::json!(false)),
     ];
     for (key, value) in settings {
-        config.insert_json5(key, &json(&value)).map_err(|error| format!("{key}: {error}"))?;
+        config
+            .insert_json5(key, &json(&value))
+            .map_err(|error| format!("{key}: {error}"))?;
     }
     Ok(config)
 }
@@ -160,7 +207,10 @@ impl Bus for ZenohBus {
             let publisher = builder.wait().map_err(|error| topic_error(key, error))?;
             Box::new(move |bytes| publisher.put(bytes).wait())
         };
-        Ok(Box::new(ZenohPublisher { topic: key.to_owned(), send }))
+        Ok(Box::new(ZenohPublisher {
+            topic: key.to_owned(),
+            send,
+        }))
     }
 
     fn subscribe(
@@ -178,7 +228,11 @@ impl Bus for ZenohBus {
             .callback(move |sample| arrive(&to, clock, &sample));
         let keep: Box<dyn std::any::Any + Send> = if class == Class::Cached {
             let subscriber = builder
-                .history(HistoryConfig::default().max_samples(1).detect_late_publishers())
+                .history(
+                    HistoryConfig::default()
+                        .max_samples(1)
+                        .detect_late_publishers(),
+                )
                 .recovery(RecoveryConfig::default().heartbeat())
                 .wait()
                 .map_err(|error| topic_error(key, error))?;
@@ -196,8 +250,10 @@ impl Bus for ZenohBus {
             .session
             .declare_queryable(key.to_owned())
             .callback(move |query| {
-                let bytes =
-                    query.payload().map(|p| p.to_bytes().into_owned()).unwrap_or_default();
+                let bytes = query
+                    .payload()
+                    .map(|p| p.to_bytes().into_owned())
+                    .unwrap_or_default();
                 let key = query.key_expr().as_str().to_owned();
                 let topic = key.clone();
                 let answer = Box::new(move |bytes: Vec<u8>| {
@@ -210,7 +266,10 @@ impl Bus for ZenohBus {
             })
             .wait()
             .map_err(|error| topic_error(key, error))?;
-        Ok(Server { inbox, _keep: Box::new(queryable) })
+        Ok(Server {
+            inbox,
+            _keep: Box::new(queryable),
+        })
     }
 
     fn ask(
@@ -240,7 +299,11 @@ impl Bus for ZenohBus {
             .with(callback)
             .wait()
             .map_err(|error| topic_error(key, error))?;
-        Ok(Pending { inbox, topic: key.to_owned(), limit })
+        Ok(Pending {
+            inbox,
+            topic: key.to_owned(),
+            limit,
+        })
     }
 
     fn token(&self, key: &str) -> Result<Token, BusError> {
@@ -250,7 +313,9 @@ impl Bus for ZenohBus {
             .declare_token(key.to_owned())
             .wait()
             .map_err(|error| topic_error(key, error))?;
-        Ok(Token { _keep: Box::new(token) })
+        Ok(Token {
+            _keep: Box::new(token),
+        })
     }
 
     fn watch(&self, key: &str, wake: &Wake) -> Result<Subscription, BusError> {
@@ -264,7 +329,10 @@ impl Bus for ZenohBus {
             .callback(move |sample| arrive(&to, clock, &sample))
             .wait()
             .map_err(|error| topic_error(key, error))?;
-        Ok(Subscription { inbox, _keep: Box::new(subscriber) })
+        Ok(Subscription {
+            inbox,
+            _keep: Box::new(subscriber),
+        })
     }
 
     fn now_ns(&self) -> u64 {

@@ -148,7 +148,10 @@ pub struct PaintSection {
 
 impl Default for PaintSection {
     fn default() -> Self {
-        Self { model: "deposit".into(), backend: "auto".into() }
+        Self {
+            model: "deposit".into(),
+            backend: "auto".into(),
+        }
     }
 }
 
@@ -199,7 +202,10 @@ pub struct RigConfig {
 
 impl Default for RigConfig {
     fn default() -> Self {
-        #[expect(clippy::expect_used, reason = "the file is part of the crate and tested")]
+        #[expect(
+            clippy::expect_used,
+            reason = "the file is part of the crate and tested"
+        )]
         Self::parse(DEFAULT, "default.toml").expect("the built-in default is valid")
     }
 }
@@ -262,28 +268,45 @@ impl RigConfig {
             })?;
         }
         for (place, device) in self.device.iter().enumerate() {
-            if self.device[..place].iter().any(|other| other.name == device.name) {
-                return Err(fault(format!("two devices are called '{}'", device.name), "name", &device.name)
-                    .help("give each its own name"));
+            if self.device[..place]
+                .iter()
+                .any(|other| other.name == device.name)
+            {
+                return Err(fault(
+                    format!("two devices are called '{}'", device.name),
+                    "name",
+                    &device.name,
+                )
+                .help("give each its own name"));
             }
-            choose("driver", &device.driver, &DRIVERS).map_err(|(what, help)| {
-                fault(what, "driver", &device.driver).help(help)
-            })?;
+            choose("driver", &device.driver, &DRIVERS)
+                .map_err(|(what, help)| fault(what, "driver", &device.driver).help(help))?;
             if self.brush_named(&device.brush).is_none() {
                 let names = self.brush.iter().map(|brush| brush.name.as_str());
                 let (what, help) = unknown("brush", &device.brush, names);
                 return Err(fault(what, "brush", &device.brush).help(help));
             }
             let numbers = device.position_m.iter().chain(&device.orientation);
-            if !numbers.chain([&device.max_force_n]).all(|value| value.is_finite()) {
-                return Err(fault(format!("a number of '{}' is not finite", device.name), "name", &device.name)
-                    .help("write plain numbers"));
+            if !numbers
+                .chain([&device.max_force_n])
+                .all(|value| value.is_finite())
+            {
+                return Err(fault(
+                    format!("a number of '{}' is not finite", device.name),
+                    "name",
+                    &device.name,
+                )
+                .help("write plain numbers"));
             }
         }
         for brush in &self.brush {
             if !(0.1..=300.0).contains(&brush.size_mm) {
-                return Err(fault(format!("size_mm = {} of '{}'", brush.size_mm, brush.name), "size_mm", "")
-                    .help("choose 0.1 to 300"));
+                return Err(fault(
+                    format!("size_mm = {} of '{}'", brush.size_mm, brush.name),
+                    "size_mm",
+                    "",
+                )
+                .help("choose 0.1 to 300"));
             }
             if !(0.0..=0.9).contains(&brush.depth_share) {
                 let what = format!("depth_share = {} of '{}'", brush.depth_share, brush.name);
@@ -291,11 +314,18 @@ impl RigConfig {
             }
         }
         let canvas = &self.canvas;
-        for (key, value) in [("width_mm", canvas.width_mm), ("height_mm", canvas.height_mm)] {
+        for (key, value) in [
+            ("width_mm", canvas.width_mm),
+            ("height_mm", canvas.height_mm),
+        ] {
             let cells = value / canvas.cell_mm;
             if !(canvas.cell_mm > 0.0 && (0.5..=65_536.0).contains(&cells)) {
-                return Err(fault(format!("{key} = {value} with cells of {} mm", canvas.cell_mm), key, "")
-                    .help("choose a size of 1 to 65536 cells"));
+                return Err(fault(
+                    format!("{key} = {value} with cells of {} mm", canvas.cell_mm),
+                    key,
+                    "",
+                )
+                .help("choose a size of 1 to 65536 cells"));
             }
         }
         choose("paint model", &self.paint.model, &MODELS)
@@ -318,7 +348,11 @@ fn unknown<'a>(
 }
 
 fn choose(kind: &str, name: &str, names: &[&'static str]) -> Result<(), (String, String)> {
-    if names.contains(&name) { Ok(()) } else { Err(unknown(kind, name, names.iter().copied())) }
+    if names.contains(&name) {
+        Ok(())
+    } else {
+        Err(unknown(kind, name, names.iter().copied()))
+    }
 }
 
 /// The line, from 1, on which `key` and `value` first stand together.
@@ -333,13 +367,20 @@ pub fn toml_fault(text: &str, name: &str, error: &toml::de::Error) -> Fault {
     let start = error.span().map_or(0, |span| span.start.min(text.len()));
     let line = text[..start].matches('\n').count() + 1;
     let message = error.message();
-    let fault = Fault::usage(message.lines().next().unwrap_or(message)).at(format!("{name}:{line}"));
+    let fault =
+        Fault::usage(message.lines().next().unwrap_or(message)).at(format!("{name}:{line}"));
     let quoted: Vec<&str> = message.split('`').skip(1).step_by(2).collect();
     match quoted.as_slice() {
         [key, keys @ ..] if message.starts_with("unknown field") && !keys.is_empty() => {
             let nearest = Fault::nearest(key, keys.iter().copied()).unwrap_or_default();
-            Fault { what: format!("unknown key '{key}'"), ..fault }
-                .help(format!("did you mean '{nearest}'? There are: {}", keys.join(", ")))
+            Fault {
+                what: format!("unknown key '{key}'"),
+                ..fault
+            }
+            .help(format!(
+                "did you mean '{nearest}'? There are: {}",
+                keys.join(", ")
+            ))
         }
         _ => fault.help("see the commented default: `maulstick up --print-config`"),
     }
@@ -351,7 +392,9 @@ mod tests {
 
     fn error(from: &str, to: &str) -> String {
         assert!(DEFAULT.contains(from), "{from}");
-        RigConfig::parse(&DEFAULT.replace(from, to), "rig.toml").expect_err(to).to_string()
+        RigConfig::parse(&DEFAULT.replace(from, to), "rig.toml")
+            .expect_err(to)
+            .to_string()
     }
 
     #[test]
@@ -366,11 +409,17 @@ mod tests {
     #[test]
     fn a_misspelt_key_or_name_gets_its_line_and_the_nearest_one() {
         let text = error("cell_mm = 0.25 ", "cel_mm = 0.25 ");
-        assert!(text.contains("unknown key 'cel_mm'") && text.contains("'cell_mm'"), "{text}");
+        assert!(
+            text.contains("unknown key 'cel_mm'") && text.contains("'cell_mm'"),
+            "{text}"
+        );
         assert!(text.contains("rig.toml:11"), "{text}");
         let text = error("driver = \"simulated\"", "driver = \"simulted\"");
         assert!(text.contains("no driver called 'simulted'"), "{text}");
-        assert!(text.contains("did you mean 'simulated'") && text.contains("rig.toml:28"), "{text}");
+        assert!(
+            text.contains("did you mean 'simulated'") && text.contains("rig.toml:28"),
+            "{text}"
+        );
         let text = error("brush = \"main\"", "brush = \"mian\"");
         assert!(text.contains("'mian'") && text.contains("'main'"), "{text}");
         assert!(error("model = \"deposit\"", "model = \"depsoit\"").contains("'deposit'"));

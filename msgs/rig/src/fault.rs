@@ -26,13 +26,23 @@ impl Fault {
     /// Bad usage or a bad input file.
     #[must_use]
     pub fn usage(what: impl Into<String>) -> Self {
-        Self { what: what.into(), place: None, help: None, code: EXIT_USAGE }
+        Self {
+            what: what.into(),
+            place: None,
+            help: None,
+            code: EXIT_USAGE,
+        }
     }
 
     /// A failure.
     #[must_use]
     pub fn failure(what: impl Into<String>) -> Self {
-        Self { what: what.into(), place: None, help: None, code: EXIT_FAILURE }
+        Self {
+            what: what.into(),
+            place: None,
+            help: None,
+            code: EXIT_FAILURE,
+        }
     }
 
     /// Says where.
@@ -52,8 +62,11 @@ impl Fault {
     /// A file that cannot be read (an input file) or written (a failure).
     #[must_use]
     pub fn file(path: &std::path::Path, error: &std::io::Error, writing: bool) -> Self {
-        let (verb, fault): (_, fn(String) -> Self) =
-            if writing { ("write", Self::failure) } else { ("read", Self::usage) };
+        let (verb, fault): (_, fn(String) -> Self) = if writing {
+            ("write", Self::failure)
+        } else {
+            ("read", Self::usage)
+        };
         let help = match error.kind() {
             std::io::ErrorKind::NotFound if writing => "the folder must exist",
             std::io::ErrorKind::NotFound => "check the path",
@@ -61,7 +74,9 @@ impl Fault {
             std::io::ErrorKind::StorageFull => "free some space",
             _ => "check the path and the disk",
         };
-        fault(format!("cannot {verb} the file: {error}")).at(path.display().to_string()).help(help)
+        fault(format!("cannot {verb} the file: {error}"))
+            .at(path.display().to_string())
+            .help(help)
     }
 
     /// The nearest of `names` to `name`.
@@ -91,9 +106,11 @@ impl std::error::Error for Fault {}
 impl From<BusError> for Fault {
     fn from(error: BusError) -> Self {
         match error {
-            BusError::Open { at, reason } => Self::failure(format!("cannot join the rig: {reason}"))
-                .at(at)
-                .help("see that the rig is running and that its folder is yours"),
+            BusError::Open { at, reason } => {
+                Self::failure(format!("cannot join the rig: {reason}"))
+                    .at(at)
+                    .help("see that the rig is running and that its folder is yours")
+            }
             BusError::Topic { topic, reason } => Self::failure(reason)
                 .at(topic)
                 .help("the node was restarted or the rig has stopped: look at `maulstick up`"),

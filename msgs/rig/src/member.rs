@@ -5,9 +5,9 @@ use std::path::PathBuf;
 use std::sync::Arc;
 use std::time::Duration;
 
+use maulstick_bus::bus::Token;
 use maulstick_bus::typed::random_epoch;
 use maulstick_bus::{Bus, Dial, RigClock, RigFolder, Wake, ZenohBus};
-use maulstick_bus::bus::Token;
 use maulstick_types::topics::Topics;
 use maulstick_types::{Origin, name_hash};
 
@@ -85,7 +85,10 @@ impl Member {
     /// Who this process is when it sends as `name`.
     #[must_use]
     pub fn origin(&self, name: &str) -> Origin {
-        Origin { source: name_hash(name), epoch: random_epoch() }
+        Origin {
+            source: name_hash(name),
+            epoch: random_epoch(),
+        }
     }
 
     /// Tells the rig that this node is ready.
@@ -102,10 +105,7 @@ impl Member {
     ///
     /// # Errors
     /// What `turn` returns.
-    pub fn run(
-        &self,
-        mut turn: impl FnMut() -> Result<Duration, Fault>,
-    ) -> Result<(), Fault> {
+    pub fn run(&self, mut turn: impl FnMut() -> Result<Duration, Fault>) -> Result<(), Fault> {
         while !self.stop.requested() {
             let wait = turn()?;
             self.wake.wait(wait);
@@ -122,7 +122,9 @@ impl Member {
 
 impl std::fmt::Debug for Member {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.debug_struct("Member").field("node", &self.node).finish_non_exhaustive()
+        f.debug_struct("Member")
+            .field("node", &self.node)
+            .finish_non_exhaustive()
     }
 }
 
@@ -132,7 +134,9 @@ pub fn log_to_stderr(level: &str) {
     let quiet = "zenoh=error,zenoh_transport=off,zenoh_link=off,wgpu=error,wgpu_core=error,\
                  wgpu_hal=error,winit=error,egui_winit=error,egui_wgpu=error,eframe=error,naga=error";
     tracing_subscriber::fmt()
-        .with_env_filter(tracing_subscriber::EnvFilter::new(format!("{quiet},{level}")))
+        .with_env_filter(tracing_subscriber::EnvFilter::new(format!(
+            "{quiet},{level}"
+        )))
         .with_writer(std::io::stderr)
         .with_ansi(std::io::stderr().is_terminal())
         .without_time()

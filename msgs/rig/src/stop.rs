@@ -25,15 +25,20 @@ impl Stop {
     pub fn on_signals(wake: &Wake) -> std::io::Result<Self> {
         let stop = Self::default();
         let mut signals = Signals::new([SIGTERM, SIGINT])?;
-        let (flag, signal, wake) =
-            (Arc::clone(&stop.flag), Arc::clone(&stop.signal), wake.clone());
-        std::thread::Builder::new().name("signals".into()).spawn(move || {
-            for number in signals.forever() {
-                signal.store(number, Ordering::SeqCst);
-                flag.store(true, Ordering::SeqCst);
-                wake.ring();
-            }
-        })?;
+        let (flag, signal, wake) = (
+            Arc::clone(&stop.flag),
+            Arc::clone(&stop.signal),
+            wake.clone(),
+        );
+        std::thread::Builder::new()
+            .name("signals".into())
+            .spawn(move || {
+                for number in signals.forever() {
+                    signal.store(number, Ordering::SeqCst);
+                    flag.store(true, Ordering::SeqCst);
+                    wake.ring();
+                }
+            })?;
         Ok(stop)
     }
 
@@ -44,14 +49,16 @@ impl Stop {
     /// What the system says where no thread can be started.
     pub fn on_launcher_end(&self, wake: &Wake) -> std::io::Result<()> {
         let (flag, wake) = (Arc::clone(&self.flag), wake.clone());
-        std::thread::Builder::new().name("launcher".into()).spawn(move || {
-            let mut byte = [0];
-            while matches!(std::io::stdin().read(&mut byte), Ok(n) if n > 0) {}
-            flag.store(true, Ordering::SeqCst);
-            wake.ring();
-            std::thread::sleep(Duration::from_millis(1500));
-            std::process::exit(crate::fault::EXIT_FAILURE);
-        })?;
+        std::thread::Builder::new()
+            .name("launcher".into())
+            .spawn(move || {
+                let mut byte = [0];
+                while matches!(std::io::stdin().read(&mut byte), Ok(n) if n > 0) {}
+                flag.store(true, Ordering::SeqCst);
+                wake.ring();
+                std::thread::sleep(Duration::from_millis(1500));
+                std::process::exit(crate::fault::EXIT_FAILURE);
+            })?;
         Ok(())
     }
 

@@ -69,7 +69,10 @@ mod tests {
 
     #[test]
     fn no_two_messages_share_a_hash() {
-        let hashes: BTreeSet<u32> = CATALOGUE.iter().map(|entry| (entry.schema)().hash).collect();
+        let hashes: BTreeSet<u32> = CATALOGUE
+            .iter()
+            .map(|entry| (entry.schema)().hash)
+            .collect();
         assert_eq!(hashes.len(), CATALOGUE.len());
     }
 }

@@ -42,11 +42,19 @@ pub fn encode<M: Message>(
 ) -> Result<Vec<u8>, DecodeError> {
     let mut bytes = vec![0; HEADER_BYTES];
     let config = bincode::config::standard().with_fixed_int_encoding();
-    bincode::serde::encode_into_std_write(message, &mut bytes, config)
-        .map_err(|error| DecodeError::Body { name: M::NAME, reason: error.to_string() })?;
+    bincode::serde::encode_into_std_write(message, &mut bytes, config).map_err(|error| {
+        DecodeError::Body {
+            name: M::NAME,
+            reason: error.to_string(),
+        }
+    })?;
     let length = bytes.len() - HEADER_BYTES;
     if length > M::MAX_BYTES {
-        return Err(DecodeError::TooLong { name: M::NAME, length, limit: M::MAX_BYTES });
+        return Err(DecodeError::TooLong {
+            name: M::NAME,
+            length,
+            limit: M::MAX_BYTES,
+        });
     }
     let header = Header {
         version: M::VERSION,
@@ -80,7 +88,11 @@ pub fn decode<M: Message>(bytes: &[u8]) -> Result<(Header, M), DecodeError> {
         });
     }
     if body.len() > M::MAX_BYTES {
-        return Err(DecodeError::TooLong { name: M::NAME, length: body.len(), limit: M::MAX_BYTES });
+        return Err(DecodeError::TooLong {
+            name: M::NAME,
+            length: body.len(),
+            limit: M::MAX_BYTES,
+        });
     }
     Ok((header, M::decode_body(body)?))
 }
@@ -93,11 +105,19 @@ pub(crate) fn decode_limited<M, const LIMIT: usize>(
 where
     M: DeserializeOwned + Serialize,
 {
-    let config = bincode::config::standard().with_fixed_int_encoding().with_limit::<LIMIT>();
-    let (message, used) = bincode::serde::decode_from_slice(body, config)
-        .map_err(|error| DecodeError::Body { name, reason: error.to_string() })?;
+    let config = bincode::config::standard()
+        .with_fixed_int_encoding()
+        .with_limit::<LIMIT>();
+    let (message, used) =
+        bincode::serde::decode_from_slice(body, config).map_err(|error| DecodeError::Body {
+            name,
+            reason: error.to_string(),
+        })?;
     if used != body.len() {
-        return Err(DecodeError::Trailing { name, left: body.len() - used });
+        return Err(DecodeError::Trailing {
+            name,
+            left: body.len() - used,
+        });
     }
     Ok(message)
 }

@@ -68,7 +68,10 @@ impl Header {
     /// The sender.
     #[must_use]
     pub fn origin(&self) -> Origin {
-        Origin { source: self.source, epoch: self.epoch }
+        Origin {
+            source: self.source,
+            epoch: self.epoch,
+        }
     }
 
     /// The bytes on the wire.
@@ -77,12 +80,20 @@ impl Header {
         let mut bytes = [0; HEADER_BYTES];
         bytes[0..2].copy_from_slice(&MAGIC.to_le_bytes());
         bytes[2..4].copy_from_slice(&self.version.to_le_bytes());
-        let words = [self.schema, self.source, self.epoch, self.flags.0, self.length];
+        let words = [
+            self.schema,
+            self.source,
+            self.epoch,
+            self.flags.0,
+            self.length,
+        ];
         for (place, word) in bytes[4..24].chunks_exact_mut(4).zip(words) {
             place.copy_from_slice(&word.to_le_bytes());
         }
         for (place, word) in
-            bytes[24..].chunks_exact_mut(8).zip([self.seq, self.event_ns, self.sent_ns])
+            bytes[24..]
+                .chunks_exact_mut(8)
+                .zip([self.seq, self.event_ns, self.sent_ns])
         {
             place.copy_from_slice(&word.to_le_bytes());
         }
@@ -95,7 +106,9 @@ impl Header {
     /// [`DecodeError::TooShort`], [`DecodeError::Magic`] or [`DecodeError::Length`].
     pub fn from_bytes(bytes: &[u8]) -> Result<Self, DecodeError> {
         if bytes.len() < HEADER_BYTES {
-            return Err(DecodeError::TooShort { length: bytes.len() });
+            return Err(DecodeError::TooShort {
+                length: bytes.len(),
+            });
         }
         let u16_at = |at: usize| u16::from_le_bytes([bytes[at], bytes[at + 1]]);
         let u32_at = |at: usize| u32::from_le_bytes(std::array::from_fn(|i| bytes[at + i]));

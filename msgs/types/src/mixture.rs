@@ -57,7 +57,12 @@ impl Mixture {
     /// One paint, pure.
     #[must_use]
     pub fn pure(paint: &str) -> Self {
-        Self { parts: vec![Part { paint: paint.to_owned(), share: 1.0 }] }
+        Self {
+            parts: vec![Part {
+                paint: paint.to_owned(),
+                share: 1.0,
+            }],
+        }
     }
 
     /// Checks shares and names.
@@ -75,13 +80,21 @@ impl Mixture {
                     share: part.share.to_string(),
                 });
             }
-            if self.parts[..place].iter().any(|other| other.paint == part.paint) {
-                return Err(MixtureError::Twice { paint: part.paint.clone() });
+            if self.parts[..place]
+                .iter()
+                .any(|other| other.paint == part.paint)
+            {
+                return Err(MixtureError::Twice {
+                    paint: part.paint.clone(),
+                });
             }
         }
         let sum: f64 = self.parts.iter().map(|part| part.share).sum();
         if (sum - 1.0).abs() > 1e-3 {
-            return Err(MixtureError::Sum { mixture: self.to_string(), sum });
+            return Err(MixtureError::Sum {
+                mixture: self.to_string(),
+                sum,
+            });
         }
         Ok(())
     }
@@ -106,7 +119,10 @@ impl FromStr for Mixture {
                     }
                 })?,
             };
-            parts.push(Part { paint: paint.to_owned(), share });
+            parts.push(Part {
+                paint: paint.to_owned(),
+                share,
+            });
         }
         let mixture = Self { parts };
         mixture.check()?;
@@ -131,7 +147,10 @@ mod tests {
     #[test]
     fn reads_and_writes_the_same_text() {
         let text = "Cobalt Blue=0.7,Titanium White=0.3";
-        assert_eq!(text.parse::<Mixture>().map(|m| m.to_string()), Ok(text.to_owned()));
+        assert_eq!(
+            text.parse::<Mixture>().map(|m| m.to_string()),
+            Ok(text.to_owned())
+        );
         assert_eq!("Bone Black".parse(), Ok(Mixture::pure("Bone Black")));
     }
 

@@ -14,7 +14,10 @@ wire_struct! {
 
 impl Pose {
     /// Parent and child coincide.
-    pub const IDENTITY: Self = Self { position_m: [0.0; 3], orientation: [0.0, 0.0, 0.0, 1.0] };
+    pub const IDENTITY: Self = Self {
+        position_m: [0.0; 3],
+        orientation: [0.0, 0.0, 0.0, 1.0],
+    };
 
     /// Whether all numbers are finite and the quaternion is a unit one within 1e-6.
     #[must_use]

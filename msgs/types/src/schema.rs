@@ -1,7 +1,6 @@
 //! Field tables: what a message holds, in a form that any language can read, and its hash.
 
 use std::collections::BTreeMap;
-use std::fmt::Write as _;
 
 use serde::Serialize;
 use serde::de::DeserializeOwned;
@@ -54,7 +53,8 @@ impl TypeTable {
     /// Adds a definition once; `shape` may add those it refers to.
     pub fn define(&mut self, name: &str, shape: impl FnOnce(&mut Self) -> Shape) {
         if !self.types.contains_key(name) {
-            self.types.insert(name.to_owned(), Shape::Struct(Vec::new()));
+            self.types
+                .insert(name.to_owned(), Shape::Struct(Vec::new()));
             let shape = shape(self);
             self.types.insert(name.to_owned(), shape);
         }
@@ -63,7 +63,10 @@ impl TypeTable {
     /// Describes `T` and returns a field of it.
     pub fn field<T: Wire>(&mut self, name: &str) -> Field {
         T::describe(self);
-        Field { name: name.to_owned(), ty: T::type_name() }
+        Field {
+            name: name.to_owned(),
+            ty: T::type_name(),
+        }
     }
 
     /// The definition called `name`.
@@ -105,17 +108,21 @@ impl Schema {
 fn canonical(name: &str, table: &TypeTable) -> String {
     let mut text = format!("{name};");
     let fields = |fields: &[Field]| {
-        fields.iter().map(|f| format!("{}:{}", f.name, f.ty)).collect::<Vec<_>>().join(",")
+        fields
+            .iter()
+            .map(|f| format!("{}:{}", f.name, f.ty))
+            .collect::<Vec<_>>()
+            .join(",")
     };
     for (name, shape) in &table.types {
         match shape {
             Shape::Struct(members) => {
-                let _ = write!(text, "{name}{{{}}}", fields(members));
+                text.push_str(&format!("{name}{{{}}}", fields(members)));
             }
             Shape::Enum(variants) => {
-                let _ = write!(text, "{name}<");
+                text.push_str(&format!("{name}<"));
                 for variant in variants {
-                    let _ = write!(text, "{}{{{}}}", variant.name, fields(&variant.fields));
+                    text.push_str(&format!("{}{{{}}}", variant.name, fields(&variant.fields)));
                 }
                 text.push('>');
             }
@@ -126,7 +133,9 @@ fn canonical(name: &str, table: &TypeTable) -> String {
 
 /// FNV-1a, 32 bits.
 pub(crate) fn fnv1a(bytes: &[u8]) -> u32 {
-    bytes.iter().fold(0x811c_9dc5, |hash, byte| (hash ^ u32::from(*byte)).wrapping_mul(0x0100_0193))
+    bytes.iter().fold(0x811c_9dc5, |hash, byte| {
+        (hash ^ u32::from(*byte)).wrapping_mul(0x0100_0193)
+    })
 }
 
 macro_rules! primitive {

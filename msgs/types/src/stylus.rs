@@ -101,7 +101,12 @@ impl StylusSample {
             StylusPose::Ferrule { pose } if !pose.is_valid() => {
                 Some("the ferrule pose is not finite or its quaternion is not a unit one")
             }
-            StylusPose::Contact { point_m, tilt_rad, twist_rad, pressure } => {
+            StylusPose::Contact {
+                point_m,
+                tilt_rad,
+                twist_rad,
+                pressure,
+            } => {
                 if !finite(point_m) || !twist_rad.is_finite() {
                     Some("the contact point or the twist is not finite")
                 } else if !tilt_rad.iter().all(|tilt| tilt.abs() <= 1.484) {

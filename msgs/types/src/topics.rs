@@ -13,7 +13,9 @@ pub struct Topics {
 pub fn check_name(name: &str) -> Result<(), String> {
     let fits = |c: char| c.is_ascii_alphanumeric() || c == '_' || c == '-';
     if name.is_empty() || name.len() > 32 || !name.chars().all(fits) {
-        return Err(format!("'{name}' is not 1 to 32 letters, digits, '_' or '-'"));
+        return Err(format!(
+            "'{name}' is not 1 to 32 letters, digits, '_' or '-'"
+        ));
     }
     Ok(())
 }
@@ -73,7 +75,9 @@ impl Topics {
     /// The topics of the rig called `rig`.
     #[must_use]
     pub fn new(rig: &str) -> Self {
-        Self { prefix: format!("maulstick/{rig}/") }
+        Self {
+            prefix: format!("maulstick/{rig}/"),
+        }
     }
 
     /// What every topic of the rig begins with.

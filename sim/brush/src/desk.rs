@@ -81,7 +81,10 @@ impl Desk {
     /// canvas, whose plane goes on.
     #[must_use]
     pub fn under(&self, in_desk: DVec3) -> Option<&Plane> {
-        self.planes.iter().find(|plane| plane.holds(in_desk)).or_else(|| self.plane(CANVAS))
+        self.planes
+            .iter()
+            .find(|plane| plane.holds(in_desk))
+            .or_else(|| self.plane(CANVAS))
     }
 }
 
@@ -119,14 +122,22 @@ pub fn ferrule(
 ) -> Rigid {
     match &sample.pose {
         StylusPose::Ferrule { pose } => Rigid::from(pose),
-        StylusPose::Contact { point_m, tilt_rad, twist_rad, pressure } => {
+        StylusPose::Contact {
+            point_m,
+            tilt_rad,
+            twist_rad,
+            pressure,
+        } => {
             let rotation = pen_orientation(*tilt_rad, *twist_rad);
             let axis = rotation * DVec3::Z;
             let hover = if *pressure > 0.0 { 0.0 } else { HOVER_M };
             let translation = DVec3::from_array(*point_m)
                 + axis * (head_length_m * (1.0 - depth_share * pressure))
                 + normal * hover;
-            Rigid { rotation, translation }
+            Rigid {
+                rotation,
+                translation,
+            }
         }
     }
 }
@@ -166,7 +177,10 @@ mod tests {
         };
         let contact = DVec3::new(0.01, 0.02, 0.0);
         assert!((at(0.0) - contact - DVec3::Z * HOVER_M).length() < 1e-12);
-        assert!((at(1e-12) - contact).length() < 1e-12, "a touch begins at the contact point");
+        assert!(
+            (at(1e-12) - contact).length() < 1e-12,
+            "a touch begins at the contact point"
+        );
         assert!((at(1.0).z + 0.5 * length * 0.75f64.sqrt()).abs() < 1e-12);
     }
 
@@ -174,12 +188,18 @@ mod tests {
     fn zoom_divides_lengths() {
         let plane = Plane {
             id: CANVAS,
-            to_desk: Rigid { translation: DVec3::new(-0.1, -0.1, 0.0), ..Rigid::IDENTITY },
+            to_desk: Rigid {
+                translation: DVec3::new(-0.1, -0.1, 0.0),
+                ..Rigid::IDENTITY
+            },
             zoom: 2.0,
             size_m: [0.1; 2],
             cell_m: 2.5e-4,
         };
-        let pose = Rigid { translation: DVec3::new(0.0, 0.0, 0.03), ..Rigid::IDENTITY };
+        let pose = Rigid {
+            translation: DVec3::new(0.0, 0.0, 0.03),
+            ..Rigid::IDENTITY
+        };
         let local = plane.to_surface(&pose).translation;
         assert!((local - DVec3::new(0.05, 0.05, 0.015)).length() < 1e-15);
     }

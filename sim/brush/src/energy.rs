@@ -28,7 +28,10 @@ pub fn spring(stiffness: f64, a: DVec3, b: DVec3) -> OfCosine {
     let beta = atan2(sine, cosine);
     let (ratio, second) = if beta < 1e-2 {
         let b2 = beta * beta;
-        (1.0 + b2 / 6.0 + 7.0 * b2 * b2 / 360.0, 1.0 / 3.0 + 4.0 * b2 / 15.0)
+        (
+            1.0 + b2 / 6.0 + 7.0 * b2 * b2 / 360.0,
+            1.0 / 3.0 + 4.0 * b2 / 15.0,
+        )
     } else {
         let sine = sine.max(1e-3);
         (beta / sine, (1.0 - beta * cosine / sine) / (sine * sine))
@@ -84,7 +87,10 @@ mod tests {
             }
             let f = |beta: f64| spring(2.0, DVec3::Z, unit(beta));
             let got = f(beta);
-            assert!((got.value - beta * beta).abs() <= 1e-13 * beta * beta, "{beta}");
+            assert!(
+                (got.value - beta * beta).abs() <= 1e-13 * beta * beta,
+                "{beta}"
+            );
             // d/dβ = −sin β·d/dc.
             let h = 1e-4 * beta;
             let numeric = (f(beta + h).value - f(beta - h).value) / (2.0 * h);
@@ -93,10 +99,16 @@ mod tests {
             let numeric = (f(beta + h).first - f(beta - h).first) / (2.0 * h);
             let analytic = -sin(beta) * got.second;
             let scale = analytic.abs().max(1e-7 / h);
-            assert!((numeric - analytic).abs() < 1e-4 * scale, "{beta}: {numeric} {analytic}");
+            assert!(
+                (numeric - analytic).abs() < 1e-4 * scale,
+                "{beta}: {numeric} {analytic}"
+            );
             let faulty = -sin(beta) * got.first * 1.00001;
             let numeric = (f(beta + h).value - f(beta - h).value) / (2.0 * h);
-            assert!((numeric - faulty).abs() > 1e-6 * faulty.abs(), "a fault would pass");
+            assert!(
+                (numeric - faulty).abs() > 1e-6 * faulty.abs(),
+                "a fault would pass"
+            );
         }
     }
 

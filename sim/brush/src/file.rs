@@ -108,7 +108,15 @@ fn within(
     range: std::ops::RangeInclusive<f64>,
     text: &'static str,
 ) -> Result<(), BrushError> {
-    if range.contains(&value) { Ok(()) } else { Err(BrushError::Range { field, value, range: text }) }
+    if range.contains(&value) {
+        Ok(())
+    } else {
+        Err(BrushError::Range {
+            field,
+            value,
+            range: text,
+        })
+    }
 }
 
 impl BrushFile {
@@ -134,11 +142,12 @@ impl BrushFile {
         let nearest = LIBRARY
             .iter()
             .map(|(name, _)| *name)
-            .max_by(|a, b| {
-                strsim::jaro_winkler(a, kind).total_cmp(&strsim::jaro_winkler(b, kind))
-            })
+            .max_by(|a, b| strsim::jaro_winkler(a, kind).total_cmp(&strsim::jaro_winkler(b, kind)))
             .unwrap_or_default();
-        Err(BrushError::Unknown { name: kind.to_owned(), nearest: nearest.to_owned() })
+        Err(BrushError::Unknown {
+            name: kind.to_owned(),
+            nearest: nearest.to_owned(),
+        })
     }
 
     /// The library's brush called `kind`.
@@ -158,12 +167,37 @@ impl BrushFile {
     }
 
     fn check(&self) -> Result<(), BrushError> {
-        within("head.width_mm", self.head.width_mm, 0.1..=300.0, "0.1 to 300")?;
-        within("head.length_mm", self.head.length_mm, 0.5..=500.0, "0.5 to 500")?;
-        within("spine.joints", self.spine.joints as f64, 1.0..=64.0, "1 to 64")?;
+        within(
+            "head.width_mm",
+            self.head.width_mm,
+            0.1..=300.0,
+            "0.1 to 300",
+        )?;
+        within(
+            "head.length_mm",
+            self.head.length_mm,
+            0.5..=500.0,
+            "0.5 to 500",
+        )?;
+        within(
+            "spine.joints",
+            self.spine.joints as f64,
+            1.0..=64.0,
+            "1 to 64",
+        )?;
         let stiffness = self.spine.bending_stiffness_n_mm2;
-        within("spine.bending_stiffness_n_mm2", stiffness, 1e-6..=1e9, "1e-6 to 1e9")?;
-        within("contact.friction", self.contact.friction, 0.0..=2.0, "0 to 2")?;
+        within(
+            "spine.bending_stiffness_n_mm2",
+            stiffness,
+            1e-6..=1e9,
+            "1e-6 to 1e9",
+        )?;
+        within(
+            "contact.friction",
+            self.contact.friction,
+            0.0..=2.0,
+            "0 to 2",
+        )?;
         within("load.film_um", self.load.film_um, 0.0..=5000.0, "0 to 5000")?;
         let mut last = -1.0;
         for [place, radius] in &self.head.profile {
@@ -171,14 +205,22 @@ impl BrushFile {
             within("head.profile (place)", *place, 0.0..=1.0, "0 to 1")?;
             if *place <= last {
                 let range = "in rising order";
-                return Err(BrushError::Range { field: "head.profile (place)", value: *place, range });
+                return Err(BrushError::Range {
+                    field: "head.profile (place)",
+                    value: *place,
+                    range,
+                });
             }
             last = *place;
         }
         if self.head.profile.len() < 2 {
             let value = self.head.profile.len() as f64;
             let range = "at least two points";
-            return Err(BrushError::Range { field: "head.profile (length)", value, range });
+            return Err(BrushError::Range {
+                field: "head.profile (length)",
+                value,
+                range,
+            });
         }
         Ok(())
     }
@@ -208,10 +250,17 @@ impl BrushFile {
     pub fn radius_m(&self, s: f64) -> f64 {
         let profile = &self.head.profile;
         let half = 0.5e-3 * self.head.width_mm;
-        let after = profile.iter().position(|[place, _]| *place >= s).unwrap_or(profile.len() - 1);
+        let after = profile
+            .iter()
+            .position(|[place, _]| *place >= s)
+            .unwrap_or(profile.len() - 1);
         let [p1, r1] = profile[after];
         let [p0, r0] = profile[after.saturating_sub(1)];
-        let t = if p1 > p0 { ((s - p0) / (p1 - p0)).clamp(0.0, 1.0) } else { 1.0 };
+        let t = if p1 > p0 {
+            ((s - p0) / (p1 - p0)).clamp(0.0, 1.0)
+        } else {
+            1.0
+        };
         half * (r0 + t * (r1 - r0))
     }
 
@@ -241,19 +290,29 @@ mod tests {
         for (name, _) in LIBRARY {
             let brush = BrushFile::library(name).expect(name);
             assert_eq!(brush.kind, name);
-            assert_eq!(BrushFile::parse(&brush.to_toml().expect("text")), Ok(brush.clone()));
+            assert_eq!(
+                BrushFile::parse(&brush.to_toml().expect("text")),
+                Ok(brush.clone())
+            );
             let double = brush.scaled_to(2.0 * brush.head.width_mm).expect("scaled");
             assert!((double.surface_m2() / brush.surface_m2() - 4.0).abs() < 1e-9);
             assert!((double.length_m() / brush.length_m() - 2.0).abs() < 1e-12);
         }
-        assert!(BrushFile::library("rond").expect_err("misspelt").to_string().contains("'round'"));
+        assert!(
+            BrushFile::library("rond")
+                .expect_err("misspelt")
+                .to_string()
+                .contains("'round'")
+        );
     }
 
     #[test]
     fn bad_files_name_their_field() {
         let text = BrushFile::library_text("round").expect("text");
         let error = |from: &str, to: &str| {
-            BrushFile::parse(&text.replace(from, to)).expect_err(to).to_string()
+            BrushFile::parse(&text.replace(from, to))
+                .expect_err(to)
+                .to_string()
         };
         assert!(error("friction = 0.25", "frictoin = 0.25").contains("frictoin"));
         assert!(error("joints = 3", "joints = 0").contains("spine.joints is 0"));

@@ -49,7 +49,10 @@ impl BrushModel {
     #[must_use]
     pub fn new(file: BrushFile, depth_share: f64) -> Self {
         let spine = file.spine();
-        let settings = Settings { friction: file.contact.friction, ..Settings::default() };
+        let settings = Settings {
+            friction: file.contact.friction,
+            ..Settings::default()
+        };
         Self {
             file,
             depth_share,
@@ -90,21 +93,33 @@ impl BrushModel {
     /// The normal force of all contacts now, N.
     #[must_use]
     pub fn force_n(&self) -> f64 {
-        self.held.iter().flat_map(|held| &held.touches).map(|touch| touch.force_n).sum()
+        self.held
+            .iter()
+            .flat_map(|held| &held.touches)
+            .map(|touch| touch.force_n)
+            .sum()
     }
 
     /// Follows one sample of the device `origin`; none while there is no scene.
     ///
     /// Another device, time that does not advance and a gap of over .1 s restart the solver at the
     /// new pose: the solve says so, and nothing is painted from the one before to it.
-    pub fn follow(&mut self, origin: Origin, event_ns: u64, sample: &StylusSample) -> Option<Solve> {
+    pub fn follow(
+        &mut self,
+        origin: Origin,
+        event_ns: u64,
+        sample: &StylusSample,
+    ) -> Option<Solve> {
         if self.follows != Some(origin) {
             self.follows = Some(origin);
             self.held = None;
         }
         let length = self.file.length_m();
         let desk = self.desk.as_ref()?;
-        let touching = self.held.as_ref().filter(|held| held.touches.iter().any(is_touching));
+        let touching = self
+            .held
+            .as_ref()
+            .filter(|held| held.touches.iter().any(is_touching));
         let kept = touching.and_then(|held| desk.plane(held.surface));
         let plane = *kept.or_else(|| desk.under(aim(sample, length)))?;
         let in_desk = ferrule(sample, length, self.depth_share, plane.normal());
@@ -122,12 +137,17 @@ impl BrushModel {
         let restarted = usable.is_none();
         let mut held = usable.unwrap_or_else(|| self.fresh(plane.id, &brush));
         held.event_ns = event_ns;
-        held.shape.turn(brush.rotation * held.brush.rotation.conjugate());
+        held.shape
+            .turn(brush.rotation * held.brush.rotation.conjugate());
         held.shape.base = brush.rotation * DVec3::NEG_Z;
         held.shape.root = brush.translation;
         held.brush = brush;
-        let solution =
-            self.solver.solve(&self.spine, &mut held.shape, &mut held.touches, &self.settings);
+        let solution = self.solver.solve(
+            &self.spine,
+            &mut held.shape,
+            &mut held.touches,
+            &self.settings,
+        );
         let mut flags = if restarted { solve_flags::RESTARTED } else { 0 };
         if !solution.converged {
             flags |= solve_flags::NOT_CONVERGED;
@@ -143,13 +163,25 @@ impl BrushModel {
                 force_n: touch.force_n as f32,
             })
             .collect();
-        let stroke = if contacts.is_empty() { 0 } else { self.stroke(event_ns) };
+        let stroke = if contacts.is_empty() {
+            0
+        } else {
+            self.stroke(event_ns)
+        };
         let mut angles_rad = Vec::with_capacity(self.spine.joints());
         held.shape.angles(brush.rotation, &mut angles_rad);
         let pose = brush.to_pose();
         let surface = held.surface;
         self.held = Some(held);
-        Some(Solve { event_ns, stroke, surface, flags, pose, angles_rad, contacts })
+        Some(Solve {
+            event_ns,
+            stroke,
+            surface,
+            flags,
+            pose,
+            angles_rad,
+            contacts,
+        })
     }
 
     /// As [`follow`](Self::follow), as a whole message.
@@ -204,13 +236,19 @@ mod tests {
 
     use super::*;
 
-    const DEVICE: Origin = Origin { source: 1, epoch: 1 };
+    const DEVICE: Origin = Origin {
+        source: 1,
+        epoch: 1,
+    };
     const MS: u64 = 1_000_000;
 
     fn scene() -> Scene {
         let canvas = Surface {
             id: 0,
-            pose: Pose { position_m: [-0.128, -0.128, 0.0], ..Pose::IDENTITY },
+            pose: Pose {
+                position_m: [-0.128, -0.128, 0.0],
+                ..Pose::IDENTITY
+            },
             zoom: 1.0,
             cells: [1024; 2],
             cell_m: 2.5e-4,
@@ -219,8 +257,17 @@ mod tests {
             tooth_seed: 1,
             wells: Vec::new(),
         };
-        let light = Light { direction: [0.0, 0.0, 1.0], intensity: 1.0, illuminant: "D65".into() };
-        Scene { version: 1, surfaces: vec![canvas], paints: Vec::new(), light }
+        let light = Light {
+            direction: [0.0, 0.0, 1.0],
+            intensity: 1.0,
+            illuminant: "D65".into(),
+        };
+        Scene {
+            version: 1,
+            surfaces: vec![canvas],
+            paints: Vec::new(),
+            light,
+        }
     }
 
     fn brush() -> BrushModel {
@@ -236,19 +283,30 @@ mod tests {
             twist_rad: 0.0,
             pressure,
         };
-        StylusSample { pose, in_range: true, ..StylusSample::away() }
+        StylusSample {
+            pose,
+            in_range: true,
+            ..StylusSample::away()
+        }
     }
 
     #[test]
     fn strokes_are_numbered_by_the_gap_rule() {
         let mut model = brush();
         let mut stroke = |ms: u64, pressure: f64| {
-            model.follow(DEVICE, ms * MS, &pen(0.0, 0.0, pressure)).expect("a solve").stroke
+            model
+                .follow(DEVICE, ms * MS, &pen(0.0, 0.0, pressure))
+                .expect("a solve")
+                .stroke
         };
         assert_eq!(stroke(1000, 0.0), 0);
         assert_eq!((stroke(1010, 0.3), stroke(1020, 0.3)), (1, 1));
         assert_eq!(stroke(1090, 0.0), 0);
-        assert_eq!(stroke(1169, 0.3), 1, "149 ms without contact is the same stroke");
+        assert_eq!(
+            stroke(1169, 0.3),
+            1,
+            "149 ms without contact is the same stroke"
+        );
         assert_eq!(stroke(1250, 0.0), 0);
         assert_eq!(stroke(1319, 0.3), 2, "150 ms is a new one");
     }
@@ -257,7 +315,9 @@ mod tests {
     fn time_that_stands_still_or_jumps_restarts_the_solver() {
         let mut model = brush();
         let mut restarted = |ms: u64| {
-            let solve = model.follow(DEVICE, ms * MS, &pen(0.0, 0.0, 0.3)).expect("a solve");
+            let solve = model
+                .follow(DEVICE, ms * MS, &pen(0.0, 0.0, 0.3))
+                .expect("a solve");
             solve.flags & solve_flags::RESTARTED != 0
         };
         assert!(restarted(1000));
@@ -271,11 +331,16 @@ mod tests {
     fn a_pressed_brush_bends_and_pushes_back() {
         let mut model = brush();
         let mut force = |ms: u64, pressure: f64| {
-            model.follow(DEVICE, ms * MS, &pen(0.0, 0.0, pressure)).expect("a solve");
+            model
+                .follow(DEVICE, ms * MS, &pen(0.0, 0.0, pressure))
+                .expect("a solve");
             model.force_n()
         };
         let (light, full) = (force(1000, 0.1), force(1010, 1.0));
-        assert!(light > 0.0 && full > light && full < 3.0, "{light} N, {full} N");
+        assert!(
+            light > 0.0 && full > light && full < 3.0,
+            "{light} N, {full} N"
+        );
         assert_eq!(force(1020, 0.0), 0.0);
     }
 

@@ -25,7 +25,7 @@ impl Cholesky {
                     sum -= self.l[rows_i + k] * self.l[rows_j + k];
                 }
                 if i == j {
-                    if !(sum > 0.0) {
+                    if sum.is_nan() || sum <= 0.0 {
                         return false;
                     }
                     self.l[rows_i + i] = sum.sqrt();
@@ -81,7 +81,12 @@ impl DualSolver {
             self.inner(g, r, floor.max(1e-14 * scale), lambda);
             let steepest = (0..m)
                 .filter(|i| !self.passive.contains(i))
-                .map(|i| (i, r[i] - (0..m).map(|j| g[i * m + j] * lambda[j]).sum::<f64>()))
+                .map(|i| {
+                    (
+                        i,
+                        r[i] - (0..m).map(|j| g[i * m + j] * lambda[j]).sum::<f64>(),
+                    )
+                })
                 .max_by(|a, b| a.1.total_cmp(&b.1));
             match steepest {
                 Some((i, slope)) if slope > slack => self.passive.push(i),
@@ -122,7 +127,8 @@ impl DualSolver {
         for &i in &self.passive {
             self.rhs.push(r[i]);
             for &j in &self.passive {
-                self.small.push(g[i * m + j] + if i == j { floor } else { 0.0 });
+                self.small
+                    .push(g[i * m + j] + if i == j { floor } else { 0.0 });
             }
         }
     }
@@ -132,7 +138,9 @@ impl DualSolver {
         let m = r.len();
         loop {
             let p = self.passive.len();
-            (0..m).filter(|i| !self.passive.contains(i)).for_each(|i| lambda[i] = 0.0);
+            (0..m)
+                .filter(|i| !self.passive.contains(i))
+                .for_each(|i| lambda[i] = 0.0);
             if p == 0 {
                 return;
             }

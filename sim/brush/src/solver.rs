@@ -32,7 +32,12 @@ pub struct Settings {
 
 impl Default for Settings {
     fn default() -> Self {
-        Self { friction: 0.25, epsilon_m: 2e-6, max_iterations: 60, tolerance: 1e-9 }
+        Self {
+            friction: 0.25,
+            epsilon_m: 2e-6,
+            max_iterations: 60,
+            tolerance: 1e-9,
+        }
     }
 }
 
@@ -128,25 +133,34 @@ impl Solver {
         self.before.clear();
         self.before.extend_from_slice(&shape.directions);
         self.multipliers.clear();
-        self.multipliers.extend(touches.iter().map(|touch| touch.force_n));
+        self.multipliers
+            .extend(touches.iter().map(|touch| touch.force_n));
         break_symmetry(shape);
         let mut solution = self.minimise(spine, shape, touches, settings);
         while solution.usable(spine) && self.release_lifted(touches) {
-            solution = self.minimise(spine, shape, touches, settings).after(&solution);
+            solution = self
+                .minimise(spine, shape, touches, settings)
+                .after(&solution);
         }
         if !solution.converged {
             shape.directions.fill(shape.base);
             touches.fill(Touch::default());
             self.multipliers.fill(0.0);
             break_symmetry(shape);
-            solution = self.minimise(spine, shape, touches, settings).after(&solution);
+            solution = self
+                .minimise(spine, shape, touches, settings)
+                .after(&solution);
         }
         if !solution.usable(spine) || !shape.directions.iter().all(|d| d.is_finite()) {
             shape.directions.copy_from_slice(&self.before);
             return solution;
         }
         for (i, touch) in touches.iter_mut().enumerate() {
-            touch.force_n = if self.touching(i) { self.multipliers[i] } else { 0.0 };
+            touch.force_n = if self.touching(i) {
+                self.multipliers[i]
+            } else {
+                0.0
+            };
             touch.anchor = self.touching(i).then(|| shape.joint(spine, i).truncate());
         }
         solution
@@ -225,7 +239,11 @@ impl Solver {
         let mut energy = Energy::default();
         let mut height = shape.root.z;
         for (i, d) in shape.directions.iter().enumerate() {
-            let above = if i == 0 { shape.base } else { shape.directions[i - 1] };
+            let above = if i == 0 {
+                shape.base
+            } else {
+                shape.directions[i - 1]
+            };
             let f = spring(spine.stiffness[i], above, *d);
             energy.spring += f.value;
             let own = self.tangents[i].map(|t| t.dot(above));
@@ -244,7 +262,8 @@ impl Solver {
             }
             height += spine.lengths_m[i] * d.z;
             self.gap.push(height);
-            self.rows.extend(self.tangents[i].map(|t| spine.lengths_m[i] * t.z));
+            self.rows
+                .extend(self.tangents[i].map(|t| spine.lengths_m[i] * t.z));
         }
         energy.friction = self.add_friction(spine, shape, touches, settings);
         energy
@@ -276,7 +295,11 @@ impl Solver {
         for j in (0..spine.joints()).rev() {
             if let Some(anchor) = touches[j].anchor {
                 let slip = shape.joint(spine, j).truncate() - anchor;
-                let f = friction(settings.friction * touches[j].force_n, slip, settings.epsilon_m);
+                let f = friction(
+                    settings.friction * touches[j].force_n,
+                    slip,
+                    settings.epsilon_m,
+                );
                 value += f.value;
                 force += f.force;
                 stiffness = [stiffness[0] + f.hessian[0], stiffness[1] + f.hessian[1]];
@@ -338,7 +361,9 @@ impl Solver {
             self.factor_with_springs(n);
             self.solve_dual(n);
             let pulls = |solver: &Self, i: usize| solver.springs[i] > 0.0 && solver.push(i) < 0.0;
-            let Some(wrong) = (0..n).find(|i| pulls(self, *i)) else { break };
+            let Some(wrong) = (0..n).find(|i| pulls(self, *i)) else {
+                break;
+            };
             self.springs[wrong] = 0.0;
         }
         for i in 0..n {
@@ -369,9 +394,15 @@ impl Solver {
             }
         }
         let mut shift = 0.0;
-        let scale = (0..size).map(|p| self.stiff[p * size + p].abs()).fold(1e-30, f64::max);
+        let scale = (0..size)
+            .map(|p| self.stiff[p * size + p].abs())
+            .fold(1e-30, f64::max);
         while !self.factor.factor(&self.stiff, size) && shift < 1e9 * scale {
-            let larger = if shift == 0.0 { 1e-6 * scale } else { 4.0 * shift };
+            let larger = if shift == 0.0 {
+                1e-6 * scale
+            } else {
+                4.0 * shift
+            };
             (0..size).for_each(|p| self.stiff[p * size + p] += larger - shift);
             shift = larger;
         }
@@ -394,15 +425,19 @@ impl Solver {
         for i in 0..n {
             for j in 0..n {
                 let column = &self.columns[j * size..(j + 1) * size];
-                self.dual.push((0..2 * (i + 1)).map(|p| self.rows[p] * column[p]).sum());
+                self.dual
+                    .push((0..2 * (i + 1)).map(|p| self.rows[p] * column[p]).sum());
             }
-            let moved: f64 = (0..2 * (i + 1)).map(|p| self.rows[p] * self.newton[p]).sum();
+            let moved: f64 = (0..2 * (i + 1))
+                .map(|p| self.rows[p] * self.newton[p])
+                .sum();
             self.rhs.push(-(self.gap[i] + moved));
         }
         self.lambda.clear();
         self.lambda.extend_from_slice(&self.multipliers);
         let floor = self.floor(n);
-        self.active_set.solve(&self.dual, &self.rhs, floor, &mut self.lambda);
+        self.active_set
+            .solve(&self.dual, &self.rhs, floor, &mut self.lambda);
         self.step.clear();
         self.step.extend_from_slice(&self.newton);
         for (i, value) in self.lambda.iter().enumerate() {
@@ -442,7 +477,12 @@ impl Solver {
             energy.total() + price * gaps.iter().map(|gap| (-gap).max(0.0)).sum::<f64>()
         };
         let start = merit(energy, &self.gap);
-        let slope: f64 = self.step.iter().zip(&self.gradient).map(|(d, g)| d * g).sum::<f64>()
+        let slope: f64 = self
+            .step
+            .iter()
+            .zip(&self.gradient)
+            .map(|(d, g)| d * g)
+            .sum::<f64>()
             - price * self.gap.iter().map(|gap| (-gap).max(0.0)).sum::<f64>();
         let turn = self
             .step
@@ -450,7 +490,11 @@ impl Solver {
             .map(|u| u[0] * u[0] + u[1] * u[1])
             .fold(0.0, f64::max)
             .sqrt();
-        let mut fraction = if turn > LONGEST_TURN { LONGEST_TURN / turn } else { 1.0 };
+        let mut fraction = if turn > LONGEST_TURN {
+            LONGEST_TURN / turn
+        } else {
+            1.0
+        };
         let noise = 1e-13 * start.abs().max(1e-12);
         for _ in 0..30 {
             self.try_step(shape, fraction, 0.0);
@@ -475,7 +519,9 @@ impl Solver {
     fn try_step(&mut self, shape: &SpineShape, fraction: f64, correction: f64) {
         let size = self.step.len();
         let correction_at = |p: usize| {
-            (0..size / 2).map(|i| self.lambda[i] * self.columns[i * size + p]).sum::<f64>()
+            (0..size / 2)
+                .map(|i| self.lambda[i] * self.columns[i * size + p])
+                .sum::<f64>()
         };
         self.trial.clear();
         for (j, d) in shape.directions.iter().enumerate() {
@@ -500,7 +546,10 @@ impl Solver {
         self.lambda.extend(self.trial_gap.iter().map(|gap| -gap));
         let multipliers = &self.multipliers;
         let binding = (0..n).filter(|i| multipliers[*i] > 0.0);
-        if !self.active_set.solve_equalities(&self.dual, binding, self.floor(n), &mut self.lambda) {
+        if !self
+            .active_set
+            .solve_equalities(&self.dual, binding, self.floor(n), &mut self.lambda)
+        {
             return false;
         }
         self.try_step(shape, fraction, 1.0);
@@ -524,7 +573,8 @@ impl Solver {
             self.trial_gap.push(p.z);
             if let Some(anchor) = touches[i].anchor {
                 let weight = settings.friction * touches[i].force_n;
-                energy.friction += friction(weight, p.truncate() - anchor, settings.epsilon_m).value;
+                energy.friction +=
+                    friction(weight, p.truncate() - anchor, settings.epsilon_m).value;
             }
             above = *d;
         }
@@ -535,7 +585,10 @@ impl Solver {
 /// A straight spine pressed along its own axis has no way to bend that is better than another, and
 /// no gradient: turn it a little toward the lower right of the surface.
 fn break_symmetry(shape: &mut SpineShape) {
-    let upright = shape.directions.iter().all(|d| d.truncate().length_squared() < 1e-10);
+    let upright = shape
+        .directions
+        .iter()
+        .all(|d| d.truncate().length_squared() < 1e-10);
     if upright && shape.root.z > 0.0 {
         for (i, d) in shape.directions.iter_mut().enumerate() {
             *d = (*d + DVec3::new(1.0, -1.0, 0.0) * (1e-3 * (i + 1) as f64)).normalize();

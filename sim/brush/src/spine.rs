@@ -26,7 +26,10 @@ impl Spine {
         let segment = length_m / joints as f64;
         let mut stiffness = vec![ei / segment; joints];
         stiffness[0] *= 2.0;
-        Self { lengths_m: vec![segment; joints], stiffness }
+        Self {
+            lengths_m: vec![segment; joints],
+            stiffness,
+        }
     }
 
     /// Number of joints, which is the number of segments.
@@ -67,7 +70,11 @@ impl SpineShape {
     #[must_use]
     pub fn straight(root: DVec3, brush: DQuat, joints: usize) -> Self {
         let base = brush * DVec3::NEG_Z;
-        Self { root, base, directions: vec![base; joints] }
+        Self {
+            root,
+            base,
+            directions: vec![base; joints],
+        }
     }
 
     /// The end of segment `i`: the root plus all segments up to it.
@@ -86,7 +93,9 @@ impl SpineShape {
     /// Turns all segments with the brush, which turned by `turn`.
     pub fn turn(&mut self, turn: DQuat) {
         self.base = turn * self.base;
-        self.directions.iter_mut().for_each(|d| *d = (turn * *d).normalize());
+        self.directions
+            .iter_mut()
+            .for_each(|d| *d = (turn * *d).normalize());
     }
 
     /// θ and φ of each joint, in a brush of orientation `brush`.
@@ -113,7 +122,11 @@ impl SpineShape {
                 frame * DVec3::Z
             })
             .collect();
-        Self { root, base, directions }
+        Self {
+            root,
+            base,
+            directions,
+        }
     }
 }
 

@@ -16,7 +16,10 @@ fn a_straight_spine_above_the_surface_stays_straight() {
     let mut shape = SpineShape::straight(DVec3::new(0.0, 0.0, 0.03), DQuat::IDENTITY, 3);
     let mut touches = vec![Touch::default(); 3];
     let solution = settle(&spine, &mut shape, &mut touches);
-    assert!(solution.converged && solution.spring_j < 1e-12, "{solution:?}");
+    assert!(
+        solution.converged && solution.spring_j < 1e-12,
+        "{solution:?}"
+    );
     assert!(touches.iter().all(|touch| touch.force_n == 0.0));
 }
 
@@ -27,17 +30,26 @@ fn buckling_loads() {
     for (joints, critical) in [(1, 1.0), (2, 1.527_864), (3, 1.782_560), (5, 2.025_351)] {
         let (length, ei) = (1.0, 1.0);
         let stiffness = vec![ei * joints as f64 / length; joints];
-        let spine = Spine { lengths_m: vec![length / joints as f64; joints], stiffness };
+        let spine = Spine {
+            lengths_m: vec![length / joints as f64; joints],
+            stiffness,
+        };
         let down = rotation(DVec3::X, 1e-4);
         let mut shape = SpineShape::straight(DVec3::new(0.0, 0.0, 0.997), down, joints);
         let mut touches = vec![Touch::default(); joints];
-        let settings = Settings { friction: 0.0, ..Settings::default() };
+        let settings = Settings {
+            friction: 0.0,
+            ..Settings::default()
+        };
         let solution = Solver::default().solve(&spine, &mut shape, &mut touches, &settings);
         let load = touches[joints - 1].force_n;
         println!("{joints}: {load:.6}, expected {critical}, {solution:?}");
         assert!(solution.converged);
         assert!((load - critical).abs() < 2e-3 * critical);
-        assert!((load * 1.02 - critical).abs() > 2e-3 * critical, "a fault would pass");
+        assert!(
+            (load * 1.02 - critical).abs() > 2e-3 * critical,
+            "a fault would pass"
+        );
     }
 }
 
@@ -48,12 +60,18 @@ fn a_dragged_spine_follows_the_tractrix() {
     let error = |steps: usize| {
         let height: f64 = 0.5;
         let length = (1.0 + height * height).sqrt();
-        let spine = Spine { lengths_m: vec![length], stiffness: vec![1.0] };
+        let spine = Spine {
+            lengths_m: vec![length],
+            stiffness: vec![1.0],
+        };
         let root = DVec3::new(0.0, 0.0, height);
         let mut shape = SpineShape::straight(root, DQuat::IDENTITY, 1);
         shape.directions[0] = DVec3::new(0.0, 1.0, -height) / length;
         let mut touches = vec![Touch::default()];
-        let settings = Settings { epsilon_m: 1e-7, ..Settings::default() };
+        let settings = Settings {
+            epsilon_m: 1e-7,
+            ..Settings::default()
+        };
         let mut solver = Solver::default();
         for step in 0..=steps {
             shape.root.x = 2.0 * step as f64 / steps as f64;

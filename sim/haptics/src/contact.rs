@@ -21,10 +21,22 @@ pub const KNOTS: usize = 5;
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Law {
     None,
-    Linear { k1_n: f64, k2_n: f64 },
-    Hermite { knots: [[f64; 3]; KNOTS], count: usize },
-    Local { at: DVec3, force: DVec3, stiffness: DMat3 },
-    Rigid { stiffness: f64 },
+    Linear {
+        k1_n: f64,
+        k2_n: f64,
+    },
+    Hermite {
+        knots: [[f64; 3]; KNOTS],
+        count: usize,
+    },
+    Local {
+        at: DVec3,
+        force: DVec3,
+        stiffness: DMat3,
+    },
+    Rigid {
+        stiffness: f64,
+    },
 }
 
 /// A contact model in the form that the servo evaluates.
@@ -90,8 +102,8 @@ impl Contact {
     fn depth(&self, held: &Held) -> (f64, f64) {
         let along = held.orientation * DVec3::NEG_Z;
         let tip = held.position + along * self.head_length;
-        let projected = (self.head_length * -along.dot(self.normal))
-            .max(LEAST_PROJECTION * self.head_length);
+        let projected =
+            (self.head_length * -along.dot(self.normal)).max(LEAST_PROJECTION * self.head_length);
         ((self.point - tip).dot(self.normal), projected)
     }
 
@@ -99,13 +111,25 @@ impl Contact {
     #[must_use]
     pub fn force(&self, held: &Held, max_stiffness: f64) -> DVec3 {
         let (depth, projected) = self.depth(held);
-        if let Law::Local { at, force, stiffness } = self.law {
-            return if depth > 0.0 { force + stiffness * (held.position - at) } else { DVec3::ZERO };
+        if let Law::Local {
+            at,
+            force,
+            stiffness,
+        } = self.law
+        {
+            return if depth > 0.0 {
+                force + stiffness * (held.position - at)
+            } else {
+                DVec3::ZERO
+            };
         }
         if depth <= 0.0 {
             return DVec3::ZERO;
         }
-        let normal_force = self.law.normal_force(depth, projected, max_stiffness).max(0.0);
+        let normal_force = self
+            .law
+            .normal_force(depth, projected, max_stiffness)
+            .max(0.0);
         let across = held.velocity - self.normal * held.velocity.dot(self.normal);
         let ramp = (depth / FRICTION_RAMP_M).min(1.0);
         let bound = self.friction * normal_force * ramp;
@@ -124,21 +148,30 @@ impl Law {
         let good = |values: &[f64]| values.iter().all(|v| v.is_finite() && *v >= 0.0);
         match law {
             ForceLaw::None => Ok(Self::None),
-            ForceLaw::Linear { k1_n, k2_n } if good(&[*k1_n, *k2_n]) => {
-                Ok(Self::Linear { k1_n: *k1_n, k2_n: *k2_n })
-            }
+            ForceLaw::Linear { k1_n, k2_n } if good(&[*k1_n, *k2_n]) => Ok(Self::Linear {
+                k1_n: *k1_n,
+                k2_n: *k2_n,
+            }),
             ForceLaw::Hermite { knots } => Self::hermite(knots),
-            ForceLaw::Local { pose, force_n, stiffness_n_m } => {
+            ForceLaw::Local {
+                pose,
+                force_n,
+                stiffness_n_m,
+            } => {
                 let force = DVec3::from_array(*force_n);
                 let stiffness = DMat3::from_cols_array_2d(stiffness_n_m).transpose();
                 if !(pose.is_valid() && force.is_finite() && stiffness.is_finite()) {
                     return Err("the local force is not finite");
                 }
-                Ok(Self::Local { at: DVec3::from_array(pose.position_m), force, stiffness })
+                Ok(Self::Local {
+                    at: DVec3::from_array(pose.position_m),
+                    force,
+                    stiffness,
+                })
             }
-            ForceLaw::Rigid { stiffness_n_m } if good(&[*stiffness_n_m]) => {
-                Ok(Self::Rigid { stiffness: *stiffness_n_m })
-            }
+            ForceLaw::Rigid { stiffness_n_m } if good(&[*stiffness_n_m]) => Ok(Self::Rigid {
+                stiffness: *stiffness_n_m,
+            }),
             _ => Err("a stiffness is negative or not finite"),
         }
     }
@@ -155,7 +188,10 @@ impl Law {
         if !rising || !table.iter().flatten().all(|value| value.is_finite()) {
             return Err("a Hermite curve's knots are not finite and in order of depth");
         }
-        Ok(Self::Hermite { knots: table, count: knots.len() })
+        Ok(Self::Hermite {
+            knots: table,
+            count: knots.len(),
+        })
     }
 
     /// Normal force at `depth` for a head of `projected` length along the normal.
@@ -212,7 +248,11 @@ pub(crate) mod tests {
             friction_static: 0.3,
             friction_kinetic: 0.2,
             viscous_n_s_m: 0.0,
-            grain: Grain { amplitude: 0.0, wavelength_m: 1e-3, seed: 1 },
+            grain: Grain {
+                amplitude: 0.0,
+                wavelength_m: 1e-3,
+                seed: 1,
+            },
             law,
             head_length_m: 0.025,
             time_to_live_ns: 50_000_000,
@@ -221,21 +261,32 @@ pub(crate) mod tests {
     }
 
     pub(crate) fn linear() -> ForceLaw {
-        ForceLaw::Linear { k1_n: 0.8, k2_n: 6.0 }
+        ForceLaw::Linear {
+            k1_n: 0.8,
+            k2_n: 6.0,
+        }
     }
 
     fn at(depth: f64, tilt: f64, velocity: DVec3) -> Held {
         let orientation = rotation(DVec3::Y, tilt);
         let tip = DVec3::new(0.0, 0.0, -depth);
-        Held { position: tip + orientation * DVec3::Z * 0.025, orientation, velocity }
+        Held {
+            position: tip + orientation * DVec3::Z * 0.025,
+            orientation,
+            velocity,
+        }
     }
 
     #[test]
     fn equation_8_1_has_its_two_straight_pieces() {
         let contact = Contact::new(&model(linear())).expect("a model");
-        for (depth, expected) in
-            [(-0.001, 0.0), (0.0, 0.0), (0.0125, 0.4), (0.025, 0.8), (0.0375, 0.8 + 3.0)]
-        {
+        for (depth, expected) in [
+            (-0.001, 0.0),
+            (0.0, 0.0),
+            (0.0125, 0.4),
+            (0.025, 0.8),
+            (0.0375, 0.8 + 3.0),
+        ] {
             let force = contact.force(&at(depth, 0.0, DVec3::ZERO), 1e9);
             println!("{depth}: {force}, expected {expected}");
             assert!((force - DVec3::Z * expected).length() < 1e-12);
@@ -246,13 +297,21 @@ pub(crate) mod tests {
     fn a_brush_laid_flat_does_not_become_a_wall() {
         let contact = Contact::new(&model(linear())).expect("a model");
         let force = contact.force(&at(0.001, 1.5, DVec3::ZERO), 1e9).z;
-        assert!((force - 0.8 / (0.2 * 0.025) * 0.001).abs() < 1e-9, "{force}");
+        assert!(
+            (force - 0.8 / (0.2 * 0.025) * 0.001).abs() < 1e-9,
+            "{force}"
+        );
         assert!((contact.force(&at(0.001, 0.0, DVec3::ZERO), 10.0).z - 0.01).abs() < 1e-12);
     }
 
     #[test]
     fn hermite_goes_through_its_knots() {
-        let knots = [[0.0, 0.0, 5.0], [0.1, 0.4, 0.0], [0.5, 0.5, 1.0], [1.0, 1.2, 2.0]];
+        let knots = [
+            [0.0, 0.0, 5.0],
+            [0.1, 0.4, 0.0],
+            [0.5, 0.5, 1.0],
+            [1.0, 1.2, 2.0],
+        ];
         for knot in knots {
             assert!((hermite(&knots, knot[0]) - knot[1]).abs() < 1e-12);
             let slope = (hermite(&knots, knot[0] + 1e-6) - hermite(&knots, knot[0] - 1e-6)) / 2e-6;
@@ -273,7 +332,9 @@ pub(crate) mod tests {
         assert!(refused(|m| m.plane_normal = [0.0, 0.0, 2.0]));
         assert!(refused(|m| m.friction_kinetic = -1.0));
         assert!(refused(|m| m.head_length_m = 0.0));
-        assert!(refused(|m| m.law = ForceLaw::Rigid { stiffness_n_m: f64::INFINITY }));
+        assert!(refused(|m| m.law = ForceLaw::Rigid {
+            stiffness_n_m: f64::INFINITY
+        }));
         assert!(refused(|m| m.law = ForceLaw::Hermite { knots: Vec::new() }));
         assert!(refused(|m| m.law = ForceLaw::Local {
             pose: Pose::IDENTITY,

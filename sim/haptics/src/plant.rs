@@ -19,11 +19,23 @@ pub struct Hand {
 
 impl Hand {
     /// A light fingertip: it damps nothing.
-    pub const FINGERTIP: Self = Self { mass_kg: 0.02, damping: 0.2, stiffness: 400.0 };
+    pub const FINGERTIP: Self = Self {
+        mass_kg: 0.02,
+        damping: 0.2,
+        stiffness: 400.0,
+    };
     /// A pen grip.
-    pub const PEN_GRIP: Self = Self { mass_kg: 0.2, damping: 3.5, stiffness: 200.0 };
+    pub const PEN_GRIP: Self = Self {
+        mass_kg: 0.2,
+        damping: 3.5,
+        stiffness: 200.0,
+    };
     /// A heavy arm.
-    pub const ARM: Self = Self { mass_kg: 0.7, damping: 10.0, stiffness: 100.0 };
+    pub const ARM: Self = Self {
+        mass_kg: 0.7,
+        damping: 10.0,
+        stiffness: 100.0,
+    };
 }
 
 /// Device and hand.
@@ -77,13 +89,13 @@ impl Plant {
 
     /// Position that the encoders read, m.
     #[must_use]
-    pub fn position(&self) -> DVec3 {
+    pub fn read_position(&self) -> DVec3 {
         self.read
     }
 
     /// Velocity from the encoders, filtered at 60 Hz, m/s.
     #[must_use]
-    pub fn velocity(&self) -> DVec3 {
+    pub fn read_velocity(&self) -> DVec3 {
         self.read_velocity
     }
 
@@ -96,7 +108,11 @@ impl Plant {
     /// Lets `dt` s pass with `force` from the motors on the hand, which wants to be at `target`.
     pub fn advance(&mut self, force: DVec3, target: DVec3, dt: f64) {
         let size = force.length();
-        let force = if size > self.max_force_n { force * (self.max_force_n / size) } else { force };
+        let force = if size > self.max_force_n {
+            force * (self.max_force_n / size)
+        } else {
+            force
+        };
         let mass = self.mass_kg + self.hand.mass_kg;
         let step = dt / SUBSTEPS as f64;
         for _ in 0..SUBSTEPS {
@@ -106,7 +122,11 @@ impl Plant {
             // Coulomb friction stops the tip, but does not turn it round.
             let lost = self.coulomb_n * step / mass;
             let speed = velocity.length();
-            velocity *= if speed > lost { (speed - lost) / speed } else { 0.0 };
+            velocity *= if speed > lost {
+                (speed - lost) / speed
+            } else {
+                0.0
+            };
             self.velocity = velocity;
             self.position += velocity * step;
         }
@@ -130,10 +150,16 @@ mod tests {
     /// Presses onto a wall of `stiffness` for two seconds; peak to peak over the last half second.
     /// With `hold` the force is computed anew only every so many ticks, as if it crossed a network.
     fn press(hand: Hand, stiffness: f64, hold: usize) -> f64 {
-        let mut law = model(ForceLaw::Rigid { stiffness_n_m: stiffness });
+        let mut law = model(ForceLaw::Rigid {
+            stiffness_n_m: stiffness,
+        });
         law.time_to_live_ns = u64::MAX;
         let contact = Contact::new(&law).expect("a model");
-        let limits = Limits { max_stiffness_n_m: 1e9, max_force_n: 3.3, ..Limits::default() };
+        let limits = Limits {
+            max_stiffness_n_m: 1e9,
+            max_force_n: 3.3,
+            ..Limits::default()
+        };
         let mut servo = Servo::new(limits);
         servo.receive(contact, false);
         let mut plant = Plant::omni(hand, DVec3::new(0.0, 0.0, 0.025));
@@ -141,9 +167,9 @@ mod tests {
         let mut force = DVec3::ZERO;
         for tick in 0..2000 {
             let held = Held {
-                position: plant.position(),
+                position: plant.read_position(),
                 orientation: DQuat::IDENTITY,
-                velocity: plant.velocity(),
+                velocity: plant.read_velocity(),
             };
             let (fresh, _) = servo.step(&held, 1e-3);
             if tick % hold == 0 {

@@ -36,6 +36,10 @@ impl Default for Limits {
 
 /// What happened in a tick.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[expect(
+    clippy::struct_excessive_bools,
+    reason = "each may be so without the others"
+)]
 pub struct Tick {
     /// A number that was not finite: the servo gives no force until it is re-armed.
     pub fault: bool,
@@ -85,7 +89,10 @@ impl Servo {
             self.engaged_s = 0.0;
         }
         self.before = self.model.take();
-        self.model = Some(Active { contact, age_s: 0.0 });
+        self.model = Some(Active {
+            contact,
+            age_s: 0.0,
+        });
     }
 
     /// Allows force again after a fault; it engages anew.
@@ -133,10 +140,18 @@ impl Servo {
         }
         let size = wanted.length();
         tick.clamped = size > self.limits.max_force_n;
-        let limited = if tick.clamped { wanted * (self.limits.max_force_n / size) } else { wanted };
+        let limited = if tick.clamped {
+            wanted * (self.limits.max_force_n / size)
+        } else {
+            wanted
+        };
         let change = limited - self.force;
         let most = self.limits.slew_n_s * dt;
-        let change = if change.length() > most { change.normalize_or_zero() * most } else { change };
+        let change = if change.length() > most {
+            change.normalize_or_zero() * most
+        } else {
+            change
+        };
         self.force += change;
         (self.force, tick)
     }
@@ -150,7 +165,9 @@ impl Servo {
 
     /// The force that the models ask for.
     fn wanted(&mut self, held: &Held, tick: &mut Tick) -> DVec3 {
-        let Some(model) = &self.model else { return DVec3::ZERO };
+        let Some(model) = &self.model else {
+            return DVec3::ZERO;
+        };
         let stiffest = self.limits.max_stiffness_n_m;
         let mut force = model.contact.force(held, stiffest);
         if let Some(before) = &self.before {
@@ -239,7 +256,11 @@ mod tests {
         servo.receive(Contact::new(&higher).expect("a model"), false);
         let before = servo.force.z;
         let (first, _) = servo.step(&held(0.0125), DT);
-        assert!(first.z - before < 0.12 * 0.32, "{} N at once", first.z - before);
+        assert!(
+            first.z - before < 0.12 * 0.32,
+            "{} N at once",
+            first.z - before
+        );
         for _ in 0..10 {
             servo.step(&held(0.0125), DT);
         }
@@ -249,7 +270,10 @@ mod tests {
     #[test]
     fn a_number_that_is_none_latches_the_fault() {
         let mut servo = engaged(0.0125);
-        let broken = Held { velocity: DVec3::new(f64::NAN, 0.0, 0.0), ..held(0.01) };
+        let broken = Held {
+            velocity: DVec3::new(f64::NAN, 0.0, 0.0),
+            ..held(0.01)
+        };
         assert!(servo.step(&broken, DT).1.fault);
         assert_eq!(servo.step(&held(0.0125), DT).0, DVec3::ZERO, "latched");
         servo.rearm();

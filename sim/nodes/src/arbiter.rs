@@ -36,8 +36,17 @@ impl Arbiter {
             (other.source != origin.source || *other == origin)
                 && now_ns < device.heard_ns.saturating_add(SILENCE_NS)
         });
-        self.devices.insert(origin, Device { priority, in_range, heard_ns: now_ns });
-        let held = self.active.filter(|active| self.devices.contains_key(active));
+        self.devices.insert(
+            origin,
+            Device {
+                priority,
+                in_range,
+                heard_ns: now_ns,
+            },
+        );
+        let held = self
+            .active
+            .filter(|active| self.devices.contains_key(active));
         let keeps = touching && held.is_some_and(|active| self.devices[&active].in_range);
         if !keeps {
             let best = self
@@ -62,8 +71,14 @@ impl Arbiter {
 mod tests {
     use super::*;
 
-    const MOUSE: Origin = Origin { source: 1, epoch: 1 };
-    const PEN: Origin = Origin { source: 2, epoch: 1 };
+    const MOUSE: Origin = Origin {
+        source: 1,
+        epoch: 1,
+    };
+    const PEN: Origin = Origin {
+        source: 2,
+        epoch: 1,
+    };
 
     #[test]
     fn the_highest_priority_in_range_paints() {
@@ -72,7 +87,9 @@ mod tests {
         assert!(!arbiter.hear(PEN, 10, false, 1, false), "out of range");
         assert!(arbiter.hear(PEN, 10, true, 2, false));
         assert!(!arbiter.hear(MOUSE, -100, true, 3, false));
-        assert!(arbiter.hear(PEN, 10, false, 4, false) || arbiter.hear(MOUSE, -100, true, 5, false));
+        assert!(
+            arbiter.hear(PEN, 10, false, 4, false) || arbiter.hear(MOUSE, -100, true, 5, false)
+        );
     }
 
     #[test]
@@ -81,7 +98,10 @@ mod tests {
         assert!(arbiter.hear(MOUSE, -100, true, 0, false));
         assert!(!arbiter.hear(PEN, 10, true, 1, true));
         assert!(arbiter.hear(MOUSE, -100, true, 2, true));
-        assert!(!arbiter.hear(MOUSE, -100, true, 3, false), "the stroke is over");
+        assert!(
+            !arbiter.hear(MOUSE, -100, true, 3, false),
+            "the stroke is over"
+        );
     }
 
     #[test]

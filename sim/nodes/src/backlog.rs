@@ -54,7 +54,11 @@ fn off_chord(p: [f64; 3], a: [f64; 3], b: [f64; 3]) -> f64 {
     let dot = |u: [f64; 3], v: [f64; 3]| u[0] * v[0] + u[1] * v[1] + u[2] * v[2];
     let (chord, to) = (sub(b, a), sub(p, a));
     let length = dot(chord, chord);
-    let t = if length > 0.0 { (dot(to, chord) / length).clamp(0.0, 1.0) } else { 0.0 };
+    let t = if length > 0.0 {
+        (dot(to, chord) / length).clamp(0.0, 1.0)
+    } else {
+        0.0
+    };
     let off = sub(to, chord.map(|c| c * t));
     dot(off, off)
 }
@@ -63,7 +67,10 @@ impl Backlog {
     /// Adds the newest sample.
     pub fn push(&mut self, waiting: Waiting) {
         let count = self.kept.len();
-        let same = self.kept.last().is_some_and(|last| last.origin == waiting.origin);
+        let same = self
+            .kept
+            .last()
+            .is_some_and(|last| last.origin == waiting.origin);
         if same && in_air(&self.kept[count - 1].sample) && in_air(&waiting.sample) {
             self.kept[count - 1] = waiting;
             self.joined.clear();
@@ -122,10 +129,17 @@ mod tests {
             pressure,
         };
         Waiting {
-            origin: Origin { source: 1, epoch: 1 },
+            origin: Origin {
+                source: 1,
+                epoch: 1,
+            },
             seq,
             event_ns: seq * 1_000_000,
-            sample: StylusSample { pose, in_range: true, ..StylusSample::away() },
+            sample: StylusSample {
+                pose,
+                in_range: true,
+                ..StylusSample::away()
+            },
         }
     }
 

@@ -84,7 +84,10 @@ impl BrushNode {
         wake: &Wake,
         settings: BrushSettings,
     ) -> Result<Self, BusError> {
-        let me = Origin { source: name_hash(&settings.name), epoch: settings.epoch };
+        let me = Origin {
+            source: name_hash(&settings.name),
+            epoch: settings.epoch,
+        };
         let b = &*bus;
         let name = settings.name.as_str();
         let mut def = Sender::new(b, &topics.brush_def(name), Class::Cached, me)?;
@@ -94,14 +97,34 @@ impl BrushNode {
         })?;
         let hash = name_hash(&toml);
         let now = b.now_ns();
-        def.send(now, now, &BrushDef { brush: name.to_owned(), toml, hash })?;
+        def.send(
+            now,
+            now,
+            &BrushDef {
+                brush: name.to_owned(),
+                toml,
+                hash,
+            },
+        )?;
         Ok(Self {
             samples: CreditReceiver::new(b, topics, &topics.sample("*"), me, wake)?,
             states: CreditSender::new(b, topics, &topics.brush_state(name), me, wake)?,
-            credit: Receiver::new(b, &topics.paint_consumed(), Class::Control, Queue::Ring(64), wake)?,
+            credit: Receiver::new(
+                b,
+                &topics.paint_consumed(),
+                Class::Control,
+                Queue::Ring(64),
+                wake,
+            )?,
             scene: Receiver::new(b, &topics.scene(), Class::Cached, Queue::Ring(16), wake)?,
             scene_version: 0,
-            infos: Receiver::new(b, &topics.stylus_info("*"), Class::Cached, Queue::Ring(64), wake)?,
+            infos: Receiver::new(
+                b,
+                &topics.stylus_info("*"),
+                Class::Cached,
+                Queue::Ring(64),
+                wake,
+            )?,
             consumed: Sender::new(b, &topics.brush_consumed(name), Class::Control, me)?,
             model: BrushModel::new(settings.file.clone(), settings.depth_share),
             drives_force: BTreeMap::new(),
@@ -164,13 +187,19 @@ impl BrushNode {
         }
         while let Some(credit) = self.credit.try_recv() {
             let me = self.states.origin();
-            for brush in credit.message.brushes.iter().filter(|b| b.brush == me.source) {
+            for brush in credit
+                .message
+                .brushes
+                .iter()
+                .filter(|b| b.brush == me.source)
+            {
                 self.states.consumed(brush.epoch, brush.next, now_ns);
             }
         }
         while let Some(info) = self.infos.try_recv() {
             let drives = info.message.drives & axes::FORCE != 0;
-            self.drives_force.insert(name_hash(&info.message.device), drives);
+            self.drives_force
+                .insert(name_hash(&info.message.device), drives);
         }
     }
 
@@ -185,14 +214,20 @@ impl BrushNode {
         if !self.model.has_scene() || (replayed && !self.states.has_credit()) {
             return None;
         }
-        self.samples.next()
+        self.samples.pop()
     }
 
     fn sample(&mut self, received: Received<StylusSample>, now_ns: u64) -> Result<(), BusError> {
         let origin = received.header.origin();
         let (seq, event_ns) = (received.header.seq, received.header.event_ns);
-        let device = self.topics.middle(&received.key).unwrap_or_default().to_owned();
-        let Some(priority) = self.priority(&device) else { return Ok(()) };
+        let device = self
+            .topics
+            .middle(&received.key)
+            .unwrap_or_default()
+            .to_owned();
+        let Some(priority) = self.priority(&device) else {
+            return Ok(());
+        };
         self.note(origin, seq);
         if let Some(fault) = received.message.fault() {
             self.bad += 1;
@@ -202,7 +237,10 @@ impl BrushNode {
             return Ok(());
         }
         let in_range = received.message.in_range;
-        if !self.arbiter.hear(origin, priority, in_range, now_ns, self.touching) {
+        if !self
+            .arbiter
+            .hear(origin, priority, in_range, now_ns, self.touching)
+        {
             return Ok(());
         }
         if received.header.flags.has(Flags::REPLAY) {
@@ -217,7 +255,12 @@ impl BrushNode {
             }
         } else {
             let sample = received.message;
-            self.backlog.push(Waiting { origin, seq, event_ns, sample });
+            self.backlog.push(Waiting {
+                origin,
+                seq,
+                event_ns,
+                sample,
+            });
             self.flush(now_ns)?;
         }
         self.feel(&device, origin, now_ns)
@@ -227,7 +270,11 @@ impl BrushNode {
         if self.settings.others.iter().any(|other| other == device) {
             return None;
         }
-        self.settings.devices.get(device).copied().or(self.settings.foreign_priority)
+        self.settings
+            .devices
+            .get(device)
+            .copied()
+            .or(self.settings.foreign_priority)
     }
 
     /// Sends what waits, if paint keeps up; what has waited is one message.
@@ -237,14 +284,20 @@ impl BrushNode {
             return Ok(());
         }
         let waiting = self.backlog.take();
-        let Some(last) = waiting.last().cloned() else { return Ok(()) };
+        let Some(last) = waiting.last().cloned() else {
+            return Ok(());
+        };
         let solves: Vec<Solve> = waiting
             .iter()
             .filter_map(|w| self.model.follow(w.origin, w.event_ns, &w.sample))
             .collect();
         let chunks = solves.chunks(SOLVES).count();
         for (place, solves) in solves.chunks(SOLVES).enumerate() {
-            let flags = if place + 1 < chunks { Flags::CONTINUES } else { Flags::NONE };
+            let flags = if place + 1 < chunks {
+                Flags::CONTINUES
+            } else {
+                Flags::NONE
+            };
             let state = BrushState {
                 device: last.origin.source,
                 device_epoch: last.origin.epoch,
@@ -257,11 +310,19 @@ impl BrushNode {
     }
 
     fn send(&mut self, flags: Flags, now_ns: u64, state: &BrushState) -> Result<(), BusError> {
-        let Some(last) = state.solves.last() else { return Ok(()) };
+        let Some(last) = state.solves.last() else {
+            return Ok(());
+        };
         self.touching = !last.contacts.is_empty();
-        let stamp = Stamp { now_ns, event_ns: last.event_ns };
+        let stamp = Stamp {
+            now_ns,
+            event_ns: last.event_ns,
+        };
         let number = self.states.send(flags, stamp, state)?;
-        let origin = Origin { source: state.device, epoch: state.device_epoch };
+        let origin = Origin {
+            source: state.device,
+            epoch: state.device_epoch,
+        };
         if let Some(progress) = self.progress.get_mut(&origin) {
             progress.state = number;
         }
@@ -271,8 +332,10 @@ impl BrushNode {
     /// A sample is consumed.
     fn note(&mut self, origin: Origin, seq: u64) {
         let me = self.states.origin();
-        self.progress.retain(|other, _| other.source != origin.source || *other == origin);
-        self.told.retain(|other, _| other.source != origin.source || *other == origin);
+        self.progress
+            .retain(|other, _| other.source != origin.source || *other == origin);
+        self.told
+            .retain(|other, _| other.source != origin.source || *other == origin);
         let progress = self.progress.entry(origin).or_insert(BrushConsumed {
             device: origin.source,
             device_epoch: origin.epoch,
@@ -299,8 +362,12 @@ impl BrushNode {
         if self.drives_force.get(&origin.source) != Some(&true) {
             return Ok(());
         }
-        let Some(desk) = self.model.desk() else { return Ok(()) };
-        let Some(plane) = desk.plane(maulstick_types::scene::CANVAS) else { return Ok(()) };
+        let Some(desk) = self.model.desk() else {
+            return Ok(());
+        };
+        let Some(plane) = desk.plane(maulstick_types::scene::CANVAS) else {
+            return Ok(());
+        };
         if !self.models.contains_key(device) {
             let topic = self.topics.contact_model(device);
             let me = self.states.origin();
@@ -320,6 +387,8 @@ impl BrushNode {
 
 impl std::fmt::Debug for BrushNode {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.debug_struct("BrushNode").field("states", &self.states).finish_non_exhaustive()
+        f.debug_struct("BrushNode")
+            .field("states", &self.states)
+            .finish_non_exhaustive()
     }
 }

@@ -30,8 +30,15 @@ pub fn contact_model(device: Origin, brush: &str, file: &BrushFile, plane: &Plan
         friction_static: STATIC_SHARE * friction,
         friction_kinetic: friction,
         viscous_n_s_m: 0.0,
-        grain: Grain { amplitude: 0.0, wavelength_m: 1e-3, seed: 1 },
-        law: ForceLaw::Linear { k1_n: K1_N, k2_n: K2_N },
+        grain: Grain {
+            amplitude: 0.0,
+            wavelength_m: 1e-3,
+            seed: 1,
+        },
+        law: ForceLaw::Linear {
+            k1_n: K1_N,
+            k2_n: K2_N,
+        },
         head_length_m: file.length_m(),
         time_to_live_ns: TIME_TO_LIVE_NS,
         recovery_ns: RECOVERY_NS,

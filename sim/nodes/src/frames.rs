@@ -90,7 +90,10 @@ impl Pyramid {
         if level == 0 {
             return surface.tiles.get(&id).map_or(0, |(version, _)| *version);
         }
-        (0..4).map(|quarter| Self::version(surface, level - 1, child(id, quarter))).max().unwrap_or(0)
+        (0..4)
+            .map(|quarter| Self::version(surface, level - 1, child(id, quarter)))
+            .max()
+            .unwrap_or(0)
     }
 
     fn tile(
@@ -102,9 +105,11 @@ impl Pyramid {
         id: TileId,
     ) -> Arc<DisplayTile> {
         let version = Self::version(surface, level, id);
-        let bare = Arc::clone(self.bare.entry(number).or_insert_with(|| {
-            Arc::new(DisplayTile::of(None, studio, &surface.ground))
-        }));
+        let bare = Arc::clone(
+            self.bare
+                .entry(number)
+                .or_insert_with(|| Arc::new(DisplayTile::of(None, studio, &surface.ground))),
+        );
         if version == 0 {
             return bare;
         }
@@ -118,20 +123,30 @@ impl Pyramid {
             DisplayTile::of(tile, studio, &surface.ground)
         } else {
             let children: [Arc<DisplayTile>; 4] = std::array::from_fn(|quarter| {
-                self.tile(studio, number, surface, level - 1, child(id, quarter as u32))
+                self.tile(
+                    studio,
+                    number,
+                    surface,
+                    level - 1,
+                    child(id, quarter as u32),
+                )
             });
             DisplayTile::coarser(std::array::from_fn(|i| Some(&*children[i])), &bare)
         });
         if self.kept.len() >= KEPT_TILES {
             self.kept.clear();
         }
-        self.kept.insert((number, level, id), (version, Arc::clone(&tile)));
+        self.kept
+            .insert((number, level, id), (version, Arc::clone(&tile)));
         tile
     }
 }
 
 fn child(id: TileId, quarter: u32) -> TileId {
-    TileId { x: 2 * id.x + quarter % 2, y: 2 * id.y + quarter / 2 }
+    TileId {
+        x: 2 * id.x + quarter % 2,
+        y: 2 * id.y + quarter / 2,
+    }
 }
 
 /// A view that waits.
@@ -182,11 +197,17 @@ impl FrameServer {
     pub fn turn(&mut self) -> Duration {
         let now_ns = self.bus.now_ns();
         while let Some(request) = self.server.try_recv() {
-            let read = self.reader.read::<FrameRequest>(&request.key, &request.bytes);
+            let read = self
+                .reader
+                .read::<FrameRequest>(&request.key, &request.bytes);
             if let Some((_, asked)) = read {
                 let wait_ms = asked.wait_ms.min(LONGEST_WAIT_MS);
                 let deadline_ns = now_ns + u64::from(wait_ms) * 1_000_000;
-                self.waiting.push(Waiting { request, asked, deadline_ns });
+                self.waiting.push(Waiting {
+                    request,
+                    asked,
+                    deadline_ns,
+                });
             }
         }
         let fed = self.feed.lock().clone_for(&self.waiting);
@@ -239,7 +260,11 @@ impl FrameServer {
         };
         let level = reply.level;
         reply.cells = surface.cells.map(|cells| cells.div_ceil(1 << level));
-        let since = if asked.epoch == self.me.epoch { asked.since } else { 0 };
+        let since = if asked.epoch == self.me.epoch {
+            asked.since
+        } else {
+            0
+        };
         let grid = surface.grid.map(|tiles| tiles.div_ceil(1 << level));
         let mut changed = Vec::new();
         for y in asked.tiles[1]..asked.tiles[3].min(grid[1]) {
@@ -254,12 +279,20 @@ impl FrameServer {
         changed.sort();
         let mut bytes = 0;
         for (place, (version, id)) in changed.iter().enumerate() {
-            let shown = self.pyramid.tile(studio, asked.surface, surface, level, *id);
+            let shown = self
+                .pyramid
+                .tile(studio, asked.surface, surface, level, *id);
             let planes = shown.to_bytes();
             bytes += planes.len();
-            reply.tiles.push(FrameTile { x: id.x, y: id.y, planes: planes.into() });
+            reply.tiles.push(FrameTile {
+                x: id.x,
+                y: id.y,
+                planes: planes.into(),
+            });
             // Tiles of one version go together, or the rest would never be asked for.
-            let next_differs = changed.get(place + 1).is_some_and(|(next, _)| next != version);
+            let next_differs = changed
+                .get(place + 1)
+                .is_some_and(|(next, _)| next != version);
             if bytes >= REPLY_BYTES && next_differs && *version > 0 {
                 (reply.more, reply.version) = (true, *version);
                 break;
@@ -272,13 +305,19 @@ impl FrameServer {
 impl Fed {
     /// A copy of what the waiting views may need.
     fn clone_for(&self, waiting: &[Waiting]) -> Self {
-        if waiting.is_empty() { Self::default() } else { self.clone() }
+        if waiting.is_empty() {
+            Self::default()
+        } else {
+            self.clone()
+        }
     }
 }
 
 impl std::fmt::Debug for FrameServer {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.debug_struct("FrameServer").field("waiting", &self.waiting.len()).finish_non_exhaustive()
+        f.debug_struct("FrameServer")
+            .field("waiting", &self.waiting.len())
+            .finish_non_exhaustive()
     }
 }
 
@@ -290,7 +329,10 @@ mod tests {
 
     use super::*;
 
-    const ME: Origin = Origin { source: 9, epoch: 5 };
+    const ME: Origin = Origin {
+        source: 9,
+        epoch: 5,
+    };
 
     struct Rig {
         net: MemoryNet,
@@ -305,8 +347,12 @@ mod tests {
         {
             let mut fed = feed.lock();
             let ground = vec![0.95; studio.wavelengths()];
-            let surface =
-                FedSurface { cells: [200, 130], grid: [4, 3], ground, tiles: BTreeMap::new() };
+            let surface = FedSurface {
+                cells: [200, 130],
+                grid: [4, 3],
+                ground,
+                tiles: BTreeMap::new(),
+            };
             fed.surfaces.insert(0, surface);
             fed.studio = Some(Arc::new(studio));
         }
@@ -318,7 +364,11 @@ mod tests {
     fn ask(rig: &mut Rig, asked: &FrameRequest) -> Option<FrameReply> {
         let bytes = encode(&ME, Flags::NONE, 0, 0, 0, asked).expect("encoded");
         let limit = Duration::from_secs(1);
-        let pending = rig.net.bus().ask("frame", bytes, limit, &Wake::new()).expect("asked");
+        let pending = rig
+            .net
+            .bus()
+            .ask("frame", bytes, limit, &Wake::new())
+            .expect("asked");
         rig.net.advance(1);
         rig.server.turn();
         rig.net.advance(1);
@@ -329,7 +379,14 @@ mod tests {
     }
 
     fn request(since: u64, epoch: u32, level: u32) -> FrameRequest {
-        FrameRequest { surface: 0, since, epoch, tiles: [0, 0, 100, 100], level, wait_ms: 300 }
+        FrameRequest {
+            surface: 0,
+            since,
+            epoch,
+            tiles: [0, 0, 100, 100],
+            level,
+            wait_ms: 300,
+        }
     }
 
     fn paint(rig: &Rig, id: TileId, version: u64) {
@@ -349,7 +406,10 @@ mod tests {
         assert_eq!(ask(&mut rig, &request(7, 5, 0)), None, "it waits for news");
         paint(&rig, TileId { x: 3, y: 0 }, 8);
         let news = ask(&mut rig, &request(7, 5, 0)).expect("news");
-        assert_eq!(news.tiles.iter().map(|t| (t.x, t.y)).collect::<Vec<_>>(), vec![(3, 0)]);
+        assert_eq!(
+            news.tiles.iter().map(|t| (t.x, t.y)).collect::<Vec<_>>(),
+            vec![(3, 0)]
+        );
     }
 
     #[test]
@@ -357,7 +417,11 @@ mod tests {
         let mut rig = rig();
         let all = ask(&mut rig, &request(0, 0, 0)).expect("at once");
         assert_eq!(all.tiles.len(), 12);
-        assert_eq!(ask(&mut rig, &request(all.version, 5, 0)), None, "it waits for news");
+        assert_eq!(
+            ask(&mut rig, &request(all.version, 5, 0)),
+            None,
+            "it waits for news"
+        );
     }
 
     #[test]
@@ -371,6 +435,9 @@ mod tests {
     #[test]
     fn a_view_of_an_earlier_epoch_gets_everything_anew() {
         let mut rig = rig();
-        assert_eq!(ask(&mut rig, &request(99, 4, 0)).map(|reply| reply.tiles.len()), Some(12));
+        assert_eq!(
+            ask(&mut rig, &request(99, 4, 0)).map(|reply| reply.tiles.len()),
+            Some(12)
+        );
     }
 }

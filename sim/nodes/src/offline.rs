@@ -37,8 +37,14 @@ impl Offline {
         model.set_scene(painting.scene());
         let mut sequencer = Sequencer::new(painting);
         sequencer.painting_mut().define_brush(brush, file);
-        let player = Origin { source: name_hash("player"), epoch: 1 };
-        let me = Origin { source: name_hash(brush), epoch: 1 };
+        let player = Origin {
+            source: name_hash("player"),
+            epoch: 1,
+        };
+        let me = Origin {
+            source: name_hash(brush),
+            epoch: 1,
+        };
         let mut offline = Self {
             model,
             sequencer,
@@ -50,7 +56,12 @@ impl Offline {
             commands: 0,
         };
         let (device, device_epoch) = (player.source, player.epoch);
-        offline.command(Command::Take { brush: brush.to_owned(), device, device_epoch, loads })?;
+        offline.command(Command::Take {
+            brush: brush.to_owned(),
+            device,
+            device_epoch,
+            loads,
+        })?;
         Ok(offline)
     }
 
@@ -60,7 +71,12 @@ impl Offline {
     /// [`PaintRefusal`] where the painting refuses it.
     pub fn command(&mut self, command: Command) -> Result<(), PaintRefusal> {
         self.commands += 1;
-        let request = CommandRequest { client: 1, number: self.commands, after: None, command };
+        let request = CommandRequest {
+            client: 1,
+            number: self.commands,
+            after: None,
+            command,
+        };
         match self.sequencer.command(request).outcome {
             Outcome::Refused { what, help } => Err(PaintRefusal { what, help }),
             _ => Ok(()),

@@ -72,7 +72,13 @@ impl PaintNode {
         sequencer.decide("backend cpu");
         let node = Self {
             states: CreditReceiver::new(b, topics, &topics.brush_state("*"), me, wake)?,
-            defs: Receiver::new(b, &topics.brush_def("*"), Class::Cached, Queue::Ring(64), wake)?,
+            defs: Receiver::new(
+                b,
+                &topics.brush_def("*"),
+                Class::Cached,
+                Queue::Ring(64),
+                wake,
+            )?,
             commands: b.serve(&topics.command("paint"), 256, wake)?,
             reader: Reader::default(),
             journal: Sender::new(b, &topics.journal(), Class::Data, me)?,
@@ -137,7 +143,11 @@ impl PaintNode {
         self.publish_scene(now_ns)?;
         self.hand_over(now_ns);
         self.publish_status(now_ns)?;
-        Ok(if left == 0 { Duration::ZERO } else { Duration::from_millis(10) })
+        Ok(if left == 0 {
+            Duration::ZERO
+        } else {
+            Duration::from_millis(10)
+        })
     }
 
     fn define(&mut self, def: &BrushDef) {
@@ -152,14 +162,19 @@ impl PaintNode {
 
     fn serve_commands(&mut self, now_ns: u64) -> Result<(), BusError> {
         while let Some(request) = self.commands.try_recv() {
-            let read = self.reader.read::<CommandRequest>(&request.key, &request.bytes);
+            let read = self
+                .reader
+                .read::<CommandRequest>(&request.key, &request.bytes);
             let Some((_, asked)) = read else { continue };
             let number = asked.number;
             let replied = self.sequencer.command(asked);
             let outcome = self.complete(replied);
             let reply = CommandReply { number, outcome };
             let bytes = encode(&self.me, Flags::NONE, 0, now_ns, self.bus.now_ns(), &reply)
-                .map_err(|source| BusError::Message { topic: request.key.clone(), source })?;
+                .map_err(|source| BusError::Message {
+                    topic: request.key.clone(),
+                    source,
+                })?;
             if let Err(error) = request.answer(bytes) {
                 tracing::debug!("a client is gone: {error}");
             }
@@ -169,13 +184,20 @@ impl PaintNode {
 
     /// Consumes one state; false where none can be consumed now.
     fn next_state(&mut self, now_ns: u64) -> Result<bool, BusError> {
-        let Some(next) = self.states.peek() else { return Ok(false) };
+        let Some(next) = self.states.peek() else {
+            return Ok(false);
+        };
         let brush = self.topics.middle(&next.key).unwrap_or_default().to_owned();
         if !self.sequencer.painting().knows_brush(&brush) {
             return Ok(false);
         }
-        let Some(received) = self.states.next() else { return Ok(false) };
-        match self.sequencer.state(&brush, &received.header, &received.message) {
+        let Some(received) = self.states.pop() else {
+            return Ok(false);
+        };
+        match self
+            .sequencer
+            .state(&brush, &received.header, &received.message)
+        {
             Ok(replies) => {
                 for replied in replies {
                     self.complete(replied);
@@ -208,14 +230,17 @@ impl PaintNode {
                 help: "check that the folder exists and can be written to".to_owned(),
             },
         };
-        self.sequencer.remember(replied.client, replied.number, outcome.clone());
+        self.sequencer
+            .remember(replied.client, replied.number, outcome.clone());
         outcome
     }
 
     /// Tells the brushes what is consumed.
     fn tell(&mut self, now_ns: u64) -> Result<(), BusError> {
         let holds = self.sequencer.consumed_all();
-        let news = holds.iter().any(|(origin, next)| self.told.get(origin) != Some(next));
+        let news = holds
+            .iter()
+            .any(|(origin, next)| self.told.get(origin) != Some(next));
         if !news && !self.tell_again {
             return Ok(());
         }
@@ -232,7 +257,8 @@ impl PaintNode {
                 viscosity_m2_s: 0.0,
             })
             .collect();
-        self.consumed.send(now_ns, now_ns, &PaintConsumed { brushes })
+        self.consumed
+            .send(now_ns, now_ns, &PaintConsumed { brushes })
     }
 
     fn publish_scene(&mut self, now_ns: u64) -> Result<(), BusError> {
@@ -252,11 +278,20 @@ impl PaintNode {
         let mut fed = self.feed.lock();
         fed.studio = Some(Arc::new(painting.studio().clone()));
         for surface in &painting.scene().surfaces {
-            let Some(store) = painting.store(surface.id) else { continue };
+            let Some(store) = painting.store(surface.id) else {
+                continue;
+            };
             let ground = painting.ground(surface.id).to_vec();
             let (cells, grid) = (store.cells(), store.grid());
-            fed.surfaces
-                .insert(surface.id, FedSurface { cells, grid, ground, tiles: BTreeMap::new() });
+            fed.surfaces.insert(
+                surface.id,
+                FedSurface {
+                    cells,
+                    grid,
+                    ground,
+                    tiles: BTreeMap::new(),
+                },
+            );
         }
     }
 
@@ -280,7 +315,11 @@ impl PaintNode {
             .sequencer
             .consumed_all()
             .into_iter()
-            .map(|(origin, next)| FrameHolds { brush: origin.source, epoch: origin.epoch, next })
+            .map(|(origin, next)| FrameHolds {
+                brush: origin.source,
+                epoch: origin.epoch,
+                next,
+            })
             .collect();
         if news {
             fed.wanted = false;
@@ -296,8 +335,10 @@ impl PaintNode {
         self.status_ns = now_ns;
         let (steps, footprint_cells) = self.sequencer.painting().work();
         let counts = self.states.counts();
-        let lag_ns =
-            self.states.peek().map_or(0, |next| now_ns.saturating_sub(next.header.event_ns));
+        let lag_ns = self
+            .states
+            .peek()
+            .map_or(0, |next| now_ns.saturating_sub(next.header.event_ns));
         let status = PaintStatus {
             journal: self.sequencer.journal_next(),
             steps,
@@ -305,7 +346,10 @@ impl PaintNode {
             lag_ns,
             memory_bytes: self.sequencer.painting().bytes() as u64,
             lost: counts.lost,
-            refused: self.refused + counts.refused + self.reader.refused() + self.sequencer.ignored(),
+            refused: self.refused
+                + counts.refused
+                + self.reader.refused()
+                + self.sequencer.ignored(),
         };
         self.status.send(now_ns, now_ns, &status)
     }
@@ -314,9 +358,13 @@ impl PaintNode {
 /// Adds the versions above `since` to what was fed.
 fn feed_versions(fed: &mut Fed, painting: &Painting, since: u64) {
     for (number, surface) in &mut fed.surfaces {
-        let Some(store) = painting.store(*number) else { continue };
+        let Some(store) = painting.store(*number) else {
+            continue;
+        };
         for (id, version) in store.iter().filter(|(_, version)| version.number > since) {
-            surface.tiles.insert(id, (version.number, version.tile.clone()));
+            surface
+                .tiles
+                .insert(id, (version.number, version.tile.clone()));
         }
     }
 }
@@ -333,14 +381,20 @@ pub fn write_snapshot(
     let name = |path: &Path| path.display().to_string();
     if let Some(ledger) = ledger {
         let report = painting.report();
-        write_whole(ledger, |file| Ok(serde_json::to_writer_pretty(file, &report)?))
-            .map_err(|error| (name(ledger), error))?;
+        write_whole(ledger, |file| {
+            Ok(serde_json::to_writer_pretty(file, &report)?)
+        })
+        .map_err(|error| (name(ledger), error))?;
     }
-    picture(painting, CANVAS).write_png(path).map_err(|error| (name(path), error))
+    picture(painting, CANVAS)
+        .write_png(path)
+        .map_err(|error| (name(path), error))
 }
 
 impl std::fmt::Debug for PaintNode {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.debug_struct("PaintNode").field("sequencer", &self.sequencer).finish_non_exhaustive()
+        f.debug_struct("PaintNode")
+            .field("sequencer", &self.sequencer)
+            .finish_non_exhaustive()
     }
 }

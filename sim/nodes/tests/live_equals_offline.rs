@@ -1,6 +1,8 @@
 //! A take played through the nodes, over a network that loses, delays and reorders, with nodes that
 //! turn in any order, paints what the same take paints offline: byte for byte.
 
+#![allow(clippy::panic, reason = "a test fails by it")]
+
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
@@ -22,12 +24,18 @@ use proptest::prelude::*;
 const START_NS: u64 = 1_000_000_000_000;
 
 fn painting() -> Painting {
-    let setup = PaintingSetup { cells: [256, 192], ..PaintingSetup::default() };
+    let setup = PaintingSetup {
+        cells: [256, 192],
+        ..PaintingSetup::default()
+    };
     Painting::new(&setup, PaintLibrary::measured().expect("whole")).expect("a painting")
 }
 
 fn file() -> BrushFile {
-    BrushFile::library("round").expect("round").scaled_to(4.0).expect("scaled")
+    BrushFile::library("round")
+        .expect("round")
+        .scaled_to(4.0)
+        .expect("scaled")
 }
 
 fn loads() -> Vec<Mixture> {
@@ -52,7 +60,11 @@ fn take() -> Vec<(u64, StylusSample)> {
     for i in 0..120u64 {
         let t = i as f64 / 60.0;
         let sample = match i {
-            0..50 => pen(-0.025 + 0.05 * t, -0.01 + 0.01 * t, (4.0 * t * (0.85 - t)).max(0.0)),
+            0..50 => pen(
+                -0.025 + 0.05 * t,
+                -0.01 + 0.01 * t,
+                (4.0 * t * (0.85 - t)).max(0.0),
+            ),
             50..80 => pen(0.0, 0.0, 0.0),
             80..110 => pen(0.01, 0.06 - 0.04 * t, 0.4),
             _ => pen(0.01, 0.06 - 0.04 * t, 0.0),
@@ -65,11 +77,16 @@ fn take() -> Vec<(u64, StylusSample)> {
 fn offline() -> Vec<u8> {
     let mut offline = Offline::new(painting(), "main", file(), 0.5, loads()).expect("set up");
     for (time_ns, sample) in take() {
-        offline.sample(START_NS + time_ns, &sample).expect("painted");
+        offline
+            .sample(START_NS + time_ns, &sample)
+            .expect("painted");
     }
     let report = offline.painting_mut().report();
     assert_eq!(report.quanta_missing, 0);
-    assert!(report.covered_cells > 500 && report.steps > 200, "{report:?}");
+    assert!(
+        report.covered_cells > 500 && report.steps > 200,
+        "{report:?}"
+    );
     picture(offline.painting_mut(), 0).rgb
 }
 
@@ -101,18 +118,33 @@ impl Live {
         let (topics, wake) = (Topics::new("t"), Wake::new());
         let bus: Arc<dyn Bus> = Arc::new(net.bus());
         let brush = BrushNode::new(Arc::clone(&bus), &topics, &wake, settings()).expect("a brush");
-        let origin = Origin { source: name_hash("player"), epoch: 3 };
+        let origin = Origin {
+            source: name_hash("player"),
+            epoch: 3,
+        };
         let topic = topics.sample("player");
         let player = CreditSender::new(&*bus, &topics, &topic, origin, &wake).expect("a player");
         let consumed = topics.brush_consumed("main");
         let credit =
             Receiver::new(&*bus, &consumed, Class::Control, Queue::Ring(64), &wake).expect("one");
         let paint = Self::paint_node(&bus, &topics, 5);
-        Self { net, topics, brush, paint, player, credit, sent: 0, epoch: 3 }
+        Self {
+            net,
+            topics,
+            brush,
+            paint,
+            player,
+            credit,
+            sent: 0,
+            epoch: 3,
+        }
     }
 
     fn paint_node(bus: &Arc<dyn Bus>, topics: &Topics, epoch: u32) -> PaintNode {
-        let me = Origin { source: name_hash("paint"), epoch };
+        let me = Origin {
+            source: name_hash("paint"),
+            epoch,
+        };
         let mut node =
             PaintNode::new(Arc::clone(bus), topics, &Wake::new(), me, painting()).expect("paint");
         node.painting_mut().define_brush("main", file());
@@ -121,13 +153,25 @@ impl Live {
 
     /// One command, asked again until it is answered.
     fn command(&mut self, number: u64, command: Command) {
-        let request = CommandRequest { client: 1, number, after: None, command };
+        let request = CommandRequest {
+            client: 1,
+            number,
+            after: None,
+            command,
+        };
         let topic = self.topics.command("paint");
-        let origin = Origin { source: 1, epoch: 1 };
+        let origin = Origin {
+            source: 1,
+            epoch: 1,
+        };
         for _ in 0..1000 {
             let bytes = encode(&origin, Flags::NONE, 0, 0, 0, &request).expect("encoded");
             let limit = std::time::Duration::from_millis(100);
-            let pending = self.net.bus().ask(&topic, bytes, limit, &Wake::new()).expect("asked");
+            let pending = self
+                .net
+                .bus()
+                .ask(&topic, bytes, limit, &Wake::new())
+                .expect("asked");
             for _ in 0..100 {
                 self.net.advance(1_000_000);
                 self.paint.turn().expect("turned");
@@ -144,7 +188,15 @@ impl Live {
     fn announce(&mut self, number: u64) {
         let (device, device_epoch) = (name_hash("player"), self.epoch);
         let brush = "main".to_owned();
-        self.command(number, Command::Take { brush, device, device_epoch, loads: loads() });
+        self.command(
+            number,
+            Command::Take {
+                brush,
+                device,
+                device_epoch,
+                loads: loads(),
+            },
+        );
     }
 
     fn player_turn(&mut self, samples: &[(u64, StylusSample)]) {
@@ -157,8 +209,13 @@ impl Live {
         }
         while self.sent < samples.len() && self.player.has_credit() {
             let (time_ns, sample) = &samples[self.sent];
-            let stamp = Stamp { now_ns, event_ns: START_NS + time_ns };
-            self.player.send(Flags::REPLAY, stamp, sample).expect("sent");
+            let stamp = Stamp {
+                now_ns,
+                event_ns: START_NS + time_ns,
+            };
+            self.player
+                .send(Flags::REPLAY, stamp, sample)
+                .expect("sent");
             self.sent += 1;
         }
         self.player.serve(now_ns).expect("served");
@@ -174,9 +231,13 @@ impl Live {
                 _ => drop(self.paint.turn().expect("turned")),
             }
             self.net.advance(700_000);
-            let brush = Origin { source: name_hash("main"), epoch: 77 };
+            let brush = Origin {
+                source: name_hash("main"),
+                epoch: 77,
+            };
             let painted = self.paint.consumed(brush);
-            if self.sent == samples.len() && self.player.outstanding() == 0
+            if self.sent == samples.len()
+                && self.player.outstanding() == 0
                 && painted == self.brush.sent()
             {
                 return;
@@ -188,7 +249,9 @@ impl Live {
 /// A small generator of turns: no clock, no hash, the same every time.
 fn turns(mut state: u64) -> impl FnMut() -> u8 {
     move || {
-        state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        state = state
+            .wrapping_mul(6_364_136_223_846_793_005)
+            .wrapping_add(1_442_695_040_888_963_407);
         (state >> 33) as u8
     }
 }
@@ -244,10 +307,13 @@ fn a_take_that_nobody_announced_paints_nothing() {
 
 #[test]
 fn a_single_sample_less_would_be_seen() {
-    let mut offline_painting = Offline::new(painting(), "main", file(), 0.5, loads()).expect("set up");
+    let mut offline_painting =
+        Offline::new(painting(), "main", file(), 0.5, loads()).expect("set up");
     for (i, (time_ns, sample)) in take().into_iter().enumerate() {
         if i != 30 {
-            offline_painting.sample(START_NS + time_ns, &sample).expect("painted");
+            offline_painting
+                .sample(START_NS + time_ns, &sample)
+                .expect("painted");
         }
     }
     assert!(picture(offline_painting.painting_mut(), 0).rgb != offline());

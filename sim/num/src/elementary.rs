@@ -51,7 +51,11 @@ pub fn powf(x: f64, y: f64) -> f64 {
 /// sin(x)/x, 1 at 0.
 #[must_use]
 pub fn sinc(x: f64) -> f64 {
-    if x.abs() < 1e-4 { 1.0 - x * x / 6.0 } else { sin(x) / x }
+    if x.abs() < 1e-4 {
+        1.0 - x * x / 6.0
+    } else {
+        sin(x) / x
+    }
 }
 
 /// e to the power `x` for −87 ≤ x ≤ 88, relative error below 1.2e-7; below −87 it is 0.
@@ -94,7 +98,10 @@ mod tests {
             worst = worst.max(((got - want) / want).abs());
         }
         assert!(worst < 1.2e-7, "{worst:e}");
-        assert_eq!((exp_f32(0.0), exp_f32(-100.0), exp_f32(f32::NEG_INFINITY)), (1.0, 0.0, 0.0));
+        assert_eq!(
+            (exp_f32(0.0), exp_f32(-100.0), exp_f32(f32::NEG_INFINITY)),
+            (1.0, 0.0, 0.0)
+        );
     }
 
     #[test]

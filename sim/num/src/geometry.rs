@@ -16,7 +16,10 @@ pub struct Rigid {
 
 impl Rigid {
     /// No motion.
-    pub const IDENTITY: Self = Self { rotation: DQuat::IDENTITY, translation: DVec3::ZERO };
+    pub const IDENTITY: Self = Self {
+        rotation: DQuat::IDENTITY,
+        translation: DVec3::ZERO,
+    };
 
     /// The image of a point.
     #[must_use]
@@ -34,7 +37,10 @@ impl Rigid {
     #[must_use]
     pub fn inverse(&self) -> Self {
         let rotation = self.rotation.conjugate();
-        Self { rotation, translation: -(rotation * self.translation) }
+        Self {
+            rotation,
+            translation: -(rotation * self.translation),
+        }
     }
 
     /// First `inner`, then this.

@@ -29,7 +29,10 @@ pub const ILLUMINANTS: [&str; 6] = ["A", "D50", "D65", "FL2", "FL8", "FL11"];
 /// Reads the columns of one of our own tables: comments, a header line, numbers.
 fn columns<const N: usize>(text: &str) -> [Vec<f64>; N] {
     let mut table: [Vec<f64>; N] = std::array::from_fn(|_| Vec::new());
-    for line in text.lines().filter(|line| line.starts_with(|c: char| c.is_ascii_digit())) {
+    for line in text
+        .lines()
+        .filter(|line| line.starts_with(|c: char| c.is_ascii_digit()))
+    {
         for (column, cell) in table.iter_mut().zip(line.split(',')) {
             column.push(cell.parse().unwrap_or(f64::NAN));
         }
@@ -63,16 +66,24 @@ impl Illuminant {
     /// One of [`ILLUMINANTS`].
     #[must_use]
     pub fn named(name: &str) -> Option<Self> {
-        let column = ILLUMINANTS.iter().position(|known| known.eq_ignore_ascii_case(name))?;
+        let column = ILLUMINANTS
+            .iter()
+            .position(|known| known.eq_ignore_ascii_case(name))?;
         let table = &illuminants()[column + 1];
         let power = Spectrum::from_fn(|nm| interpolate(table, (nm - 380.0) / 5.0));
-        Some(Self { name: ILLUMINANTS[column].to_owned(), power })
+        Some(Self {
+            name: ILLUMINANTS[column].to_owned(),
+            power,
+        })
     }
 
     /// Average daylight, the default.
     #[must_use]
     pub fn d65() -> Self {
-        Self::named("D65").unwrap_or_else(|| Self { name: "E".into(), power: Spectrum::flat(1.0) })
+        Self::named("D65").unwrap_or_else(|| Self {
+            name: "E".into(),
+            power: Spectrum::flat(1.0),
+        })
     }
 
     /// XYZ of a reflectance by the sum over the 101 samples, Y = 1 for the perfect diffuser
@@ -99,7 +110,11 @@ mod tests {
 
     /// XYZ of the perfect diffuser by sums at 5 nm.
     fn white(observer: Observer, name: &str) -> [f64; 3] {
-        let column = ILLUMINANTS.iter().position(|known| *known == name).expect("known") + 1;
+        let column = ILLUMINANTS
+            .iter()
+            .position(|known| *known == name)
+            .expect("known")
+            + 1;
         let mut sum = [0.0; 3];
         for (nm, power) in illuminants()[0].iter().zip(&illuminants()[column]) {
             for (total, value) in sum.iter_mut().zip(observer.at(*nm)) {
@@ -123,15 +138,24 @@ mod tests {
             let got = white(observer, name);
             println!("{name} {observer:?}: {got:?}, expected {x} {z}");
             assert!((got[0] - x).abs() < 1e-4 && (got[2] - z).abs() < 1e-4);
-            assert!((got[0] * 1.00001 - x).abs() > 1e-4, "a fault of 1e-5 would pass");
+            assert!(
+                (got[0] * 1.00001 - x).abs() > 1e-4,
+                "a fault of 1e-5 would pass"
+            );
         }
     }
 
     #[test]
     fn the_101_samples_see_nearly_the_same_white() {
         let xyz = Illuminant::d65().xyz(Observer::Cie1931, &Spectrum::flat(1.0));
-        assert!((xyz[0] - 0.950_430).abs() < 5e-4 && (xyz[2] - 1.088_801).abs() < 5e-4, "{xyz:?}");
-        assert_eq!(Illuminant::named("d50").map(|light| light.name), Some("D50".into()));
+        assert!(
+            (xyz[0] - 0.950_430).abs() < 5e-4 && (xyz[2] - 1.088_801).abs() < 5e-4,
+            "{xyz:?}"
+        );
+        assert_eq!(
+            Illuminant::named("d50").map(|light| light.name),
+            Some("D50".into())
+        );
         assert_eq!(Illuminant::named("candle"), None);
     }
 }

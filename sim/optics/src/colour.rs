@@ -130,7 +130,11 @@ pub fn clamp_chromaticity(rgb: [f32; 3]) -> [f32; 3] {
 pub fn lab(xyz: [f64; 3], white: [f64; 3]) -> [f64; 3] {
     const EDGE: f64 = 216.0 / 24389.0;
     let f = |t: f64| {
-        if t > EDGE { powf(t, 1.0 / 3.0) } else { (24389.0 / 27.0 * t + 16.0) / 116.0 }
+        if t > EDGE {
+            powf(t, 1.0 / 3.0)
+        } else {
+            (24389.0 / 27.0 * t + 16.0) / 116.0
+        }
     };
     let [x, y, z]: [f64; 3] = std::array::from_fn(|i| f(xyz[i] / white[i]));
     [116.0 * y - 16.0, 500.0 * (x - y), 200.0 * (y - z)]
@@ -140,7 +144,11 @@ pub fn lab(xyz: [f64; 3], white: [f64; 3]) -> [f64; 3] {
 #[must_use]
 pub fn delta_e_2000(one: [f64; 3], two: [f64; 3]) -> f64 {
     let degrees = |y: f64, x: f64| {
-        if x == 0.0 && y == 0.0 { 0.0 } else { atan2(y, x).to_degrees().rem_euclid(360.0) }
+        if x == 0.0 && y == 0.0 {
+            0.0
+        } else {
+            atan2(y, x).to_degrees().rem_euclid(360.0)
+        }
     };
     let chroma = |a: f64, b: f64| (a * a + b * b).sqrt();
     let seventh = |c: f64| {
@@ -198,7 +206,10 @@ mod tests {
     #[test]
     fn ciede2000_of_the_published_pairs() {
         for line in include_str!("../tests/data/ciede2000.csv").lines().skip(2) {
-            let v: Vec<f64> = line.split(',').map(|cell| cell.parse().expect("a number")).collect();
+            let v: Vec<f64> = line
+                .split(',')
+                .map(|cell| cell.parse().expect("a number"))
+                .collect();
             let got = delta_e_2000([v[0], v[1], v[2]], [v[3], v[4], v[5]]);
             let back = delta_e_2000([v[3], v[4], v[5]], [v[0], v[1], v[2]]);
             println!("{got:.4} expected {:.4}", v[6]);
@@ -211,10 +222,16 @@ mod tests {
     fn white_stays_white_and_srgb_has_its_published_matrix() {
         for white in [[0.950_43, 1.0, 1.0888], [1.098_49, 1.0, 0.355_825]] {
             let rgb = apply(&xyz_to_linear_srgb(white), white);
-            assert!(rgb.iter().all(|channel| (channel - 1.0).abs() < 1e-12), "{rgb:?}");
+            assert!(
+                rgb.iter().all(|channel| (channel - 1.0).abs() < 1e-12),
+                "{rgb:?}"
+            );
         }
         let m = xyz_to_linear_srgb(xyz_of_chromaticity(SRGB_WHITE));
-        assert!((m[0][0] - 3.2406).abs() < 5e-4 && (m[2][2] - 1.0570).abs() < 5e-4, "{m:?}");
+        assert!(
+            (m[0][0] - 3.2406).abs() < 5e-4 && (m[2][2] - 1.0570).abs() < 5e-4,
+            "{m:?}"
+        );
     }
 
     #[test]
@@ -223,9 +240,15 @@ mod tests {
         for i in 0..=100_000u32 {
             let linear = f64::from(i) / 1e5;
             let exact = srgb_encode(linear) * 255.0;
-            assert!((f64::from(table.byte(linear as f32)) - exact).abs() < 0.56, "{linear}");
+            assert!(
+                (f64::from(table.byte(linear as f32)) - exact).abs() < 0.56,
+                "{linear}"
+            );
         }
-        assert_eq!((table.byte(-1.0), table.byte(2.0), table.byte(f32::NAN)), (0, 255, 0));
+        assert_eq!(
+            (table.byte(-1.0), table.byte(2.0), table.byte(f32::NAN)),
+            (0, 255, 0)
+        );
         assert!((srgb_decode(srgb_encode(0.2)) - 0.2).abs() < 1e-12);
     }
 
@@ -236,7 +259,10 @@ mod tests {
         let clamped = clamp_chromaticity([-0.1, 0.5, 0.3]);
         assert_eq!(clamped[0], 0.0);
         assert!((clamped.iter().sum::<f32>() - 0.7).abs() < 1e-6);
-        assert!(clamped[1] > clamped[2], "the order of channels, and with it the hue, holds");
+        assert!(
+            clamped[1] > clamped[2],
+            "the order of channels, and with it the hue, holds"
+        );
     }
 
     #[test]
@@ -244,6 +270,9 @@ mod tests {
         let white = [0.9504, 1.0, 1.0888];
         assert!(lab(white, white)[0] - 100.0 < 1e-12);
         let grey = lab(white.map(|v| v * 0.184_186_5), white);
-        assert!((grey[0] - 50.0).abs() < 1e-4 && grey[1].abs() < 1e-9, "{grey:?}");
+        assert!(
+            (grey[0] - 50.0).abs() < 1e-4 && grey[1].abs() < 1e-9,
+            "{grey:?}"
+        );
     }
 }

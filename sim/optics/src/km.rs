@@ -26,7 +26,10 @@ pub fn film(kd: f64, sd: f64) -> Film<f64> {
     let c = 0.5 * (1.0 + e * e);
     let g = decay_mean(2.0 * t, e * e);
     let denominator = (kd + sd) * g + c;
-    Film { r: sd * g / denominator, t: e / denominator }
+    Film {
+        r: sd * g / denominator,
+        t: e / denominator,
+    }
 }
 
 /// (1 − e^(−u))/u, given e^(−u): by its series below ½, where the difference loses digits.
@@ -63,7 +66,10 @@ pub fn film_f32(kd: f32, sd: f32) -> Film<f32> {
     let series = 1.0 - u * series;
     let g = if u < 0.5 { series } else { (1.0 - square) / u };
     let scale = 1.0 / ((kd + sd) * g + c);
-    Film { r: sd * g * scale, t: e * scale }
+    Film {
+        r: sd * g * scale,
+        t: e * scale,
+    }
 }
 
 /// A film over a ground of reflectance `under` (Baxter 2004, eq. 7.11).
@@ -108,7 +114,9 @@ mod tests {
             println!("{k} {s} {d}: {got:?}, expected {r} {t}");
             assert!((got.r - r).abs() < 1e-9 && (got.t - t).abs() < 1e-9);
             let single = film_f32((k * d) as f32, (s * d) as f32);
-            assert!((f64::from(single.r) - r).abs() < 1e-6 && (f64::from(single.t) - t).abs() < 1e-6);
+            assert!(
+                (f64::from(single.r) - r).abs() < 1e-6 && (f64::from(single.t) - t).abs() < 1e-6
+            );
             assert!((got.r + 1e-8 - r).abs() > 1e-9, "a fault would pass");
         }
     }

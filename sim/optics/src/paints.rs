@@ -83,13 +83,17 @@ impl PaintLibrary {
                 continue;
             }
             if cells.len() != 4 + SAMPLES {
-                return Err(fault(format!("{} columns instead of {}", cells.len(), 4 + SAMPLES)));
+                return Err(fault(format!(
+                    "{} columns instead of {}",
+                    cells.len(),
+                    4 + SAMPLES
+                )));
             }
             let mut values = [0.0; SAMPLES];
             for (i, (value, cell)) in values.iter_mut().zip(&cells[4..]).enumerate() {
-                let number: f64 = cell.parse().map_err(|_| {
-                    fault(format!("column {}: '{cell}' is not a number", i + 5))
-                })?;
+                let number: f64 = cell
+                    .parse()
+                    .map_err(|_| fault(format!("column {}: '{cell}' is not a number", i + 5)))?;
                 if !(number >= 0.0 && number.is_finite()) {
                     return Err(fault(format!("column {}: {cell} is not 0 or more", i + 5)));
                 }
@@ -109,14 +113,29 @@ impl PaintLibrary {
         for (name, colour_index, source) in order {
             let Some([Some(k), Some(s)]) = found.remove(&name) else {
                 let what = format!("'{name}' lacks its row of K or of S");
-                return Err(PaintError::File { line: text.lines().count(), what });
+                return Err(PaintError::File {
+                    line: text.lines().count(),
+                    what,
+                });
             };
-            paints.push(Paint { name, colour_index, source, k, s });
+            paints.push(Paint {
+                name,
+                colour_index,
+                source,
+                k,
+                s,
+            });
         }
         if paints.is_empty() {
-            return Err(PaintError::File { line: 1, what: "the file holds no paint".into() });
+            return Err(PaintError::File {
+                line: 1,
+                what: "the file holds no paint".into(),
+            });
         }
-        Ok(Self { paints, hash: maulstick_types::name_hash(text) })
+        Ok(Self {
+            paints,
+            hash: maulstick_types::name_hash(text),
+        })
     }
 
     /// All paints, in the order of the file.
@@ -136,18 +155,24 @@ impl PaintLibrary {
     /// # Errors
     /// [`PaintError::Unknown`] with the nearest name.
     pub fn find(&self, name: &str) -> Result<&Paint, PaintError> {
-        if let Some(paint) = self.paints.iter().find(|p| p.name.eq_ignore_ascii_case(name)) {
+        if let Some(paint) = self
+            .paints
+            .iter()
+            .find(|p| p.name.eq_ignore_ascii_case(name))
+        {
             return Ok(paint);
         }
-        let likeness = |paint: &Paint| {
-            strsim::jaro_winkler(&paint.name.to_lowercase(), &name.to_lowercase())
-        };
+        let likeness =
+            |paint: &Paint| strsim::jaro_winkler(&paint.name.to_lowercase(), &name.to_lowercase());
         let nearest = self
             .paints
             .iter()
             .max_by(|a, b| likeness(a).total_cmp(&likeness(b)))
             .map_or_else(String::new, |paint| paint.name.clone());
-        Err(PaintError::Unknown { name: name.to_owned(), nearest })
+        Err(PaintError::Unknown {
+            name: name.to_owned(),
+            nearest,
+        })
     }
 
     /// Checks that a mixture's shares are right and its paints exist, and spells their names as the
@@ -174,7 +199,10 @@ mod tests {
         let library = PaintLibrary::measured().expect("the file is whole");
         assert_eq!(library.paints().len(), 28);
         let white = library.find("titanium white").expect("white");
-        assert_eq!((white.s.0[40], white.colour_index.as_str()), (WHITE_S_PER_M, "PW6"));
+        assert_eq!(
+            (white.s.0[40], white.colour_index.as_str()),
+            (WHITE_S_PER_M, "PW6")
+        );
     }
 
     #[test]

@@ -33,8 +33,12 @@ impl Recurrence {
         let mut norm_before = 0.0;
         for k in 0..n {
             let norm: f64 = now.iter().zip(weights).map(|(p, w)| p * p * w).sum();
-            let moment: f64 =
-                now.iter().zip(weights).zip(points).map(|((p, w), x)| p * p * w * x).sum();
+            let moment: f64 = now
+                .iter()
+                .zip(weights)
+                .zip(points)
+                .map(|((p, w), x)| p * p * w * x)
+                .sum();
             let a = moment / norm;
             let b = if k == 0 { norm } else { norm / norm_before };
             alpha.push(a);
@@ -77,7 +81,9 @@ fn symmetric_ql(diagonal: &mut [f64], off: &mut [f64], first: &mut [f64]) {
     for l in 0..n {
         for _ in 0..60 {
             let m = (l..n - 1)
-                .find(|&m| off[m].abs() <= f64::EPSILON * (diagonal[m].abs() + diagonal[m + 1].abs()))
+                .find(|&m| {
+                    off[m].abs() <= f64::EPSILON * (diagonal[m].abs() + diagonal[m + 1].abs())
+                })
                 .unwrap_or(n - 1);
             if m == l {
                 break;
@@ -130,7 +136,10 @@ mod tests {
                 .sum();
             2.0 / n as f64 * (1.0 - 2.0 * sum)
         };
-        ((0..n).map(|k| cos(angle(k))).collect(), (0..n).map(weight).collect())
+        (
+            (0..n).map(|k| cos(angle(k))).collect(),
+            (0..n).map(weight).collect(),
+        )
     }
 
     #[test]
@@ -139,17 +148,23 @@ mod tests {
         let rule = Recurrence::of_measure(&points, &weights, 8).gauss();
         // Abramowitz and Stegun, table 25.4.
         let expected = [
-            (0.183_434_642_495_649_8, 0.362_683_783_378_361_98),
-            (0.525_532_409_916_328_99, 0.313_706_645_877_887_29),
-            (0.796_666_477_413_626_74, 0.222_381_034_453_374_47),
-            (0.960_289_856_497_536_23, 0.101_228_536_290_376_26),
+            (0.183_434_642_495_649, 0.362_683_783_378_361),
+            (0.525_532_409_916_328, 0.313_706_645_877_887),
+            (0.796_666_477_413_626, 0.222_381_034_453_374),
+            (0.960_289_856_497_536, 0.101_228_536_290_376),
         ];
         for (k, (node, weight)) in expected.into_iter().enumerate() {
             for (place, sign) in [(3 - k, -1.0), (4 + k, 1.0)] {
                 let (x, w) = (rule.nodes[place], rule.weights[place]);
-                println!("{x} {w}, expected {node} {weight}, error {:e}", x - sign * node);
+                println!(
+                    "{x} {w}, expected {node} {weight}, error {:e}",
+                    x - sign * node
+                );
                 assert!((x - sign * node).abs() < 1e-13 && (w - weight).abs() < 1e-13);
-                assert!((x + 1e-12 - sign * node).abs() > 1e-13, "a fault would pass");
+                assert!(
+                    (x + 1e-12 - sign * node).abs() > 1e-13,
+                    "a fault would pass"
+                );
             }
         }
     }
@@ -157,8 +172,9 @@ mod tests {
     #[test]
     fn chebyshev_recurrence() {
         let n = 40;
-        let points: Vec<f64> =
-            (0..n).map(|k| cos(PI * (2 * k + 1) as f64 / (2 * n) as f64)).collect();
+        let points: Vec<f64> = (0..n)
+            .map(|k| cos(PI * (2 * k + 1) as f64 / (2 * n) as f64))
+            .collect();
         let weights = vec![PI / n as f64; n];
         let recurrence = Recurrence::of_measure(&points, &weights, 8);
         let expected = [PI, 0.5, 0.25, 0.25, 0.25, 0.25, 0.25, 0.25];
@@ -171,7 +187,10 @@ mod tests {
     #[test]
     fn nodes_interlace_and_a_custom_weight_is_exact_to_degree_fifteen() {
         let points: Vec<f64> = (0..101).map(|i| -1.0 + 0.02 * f64::from(i)).collect();
-        let weights: Vec<f64> = points.iter().map(|x| (1.0 + x) * (2.0 - x * x) + 0.1).collect();
+        let weights: Vec<f64> = points
+            .iter()
+            .map(|x| (1.0 + x) * (2.0 - x * x) + 0.1)
+            .collect();
         let rule = |n: usize| Recurrence::of_measure(&points, &weights, n).gauss();
         let (eight, nine) = (rule(8), rule(9));
         for i in 0..8 {
@@ -179,11 +198,22 @@ mod tests {
         }
         assert!(eight.weights.iter().all(|w| *w > 0.0));
         for degree in 0..=16i32 {
-            let exact: f64 = points.iter().zip(&weights).map(|(x, w)| w * x.powi(degree)).sum();
-            let got: f64 =
-                eight.nodes.iter().zip(&eight.weights).map(|(x, w)| w * x.powi(degree)).sum();
-            let scale: f64 =
-                points.iter().zip(&weights).map(|(x, w)| w * x.abs().powi(degree)).sum();
+            let exact: f64 = points
+                .iter()
+                .zip(&weights)
+                .map(|(x, w)| w * x.powi(degree))
+                .sum();
+            let got: f64 = eight
+                .nodes
+                .iter()
+                .zip(&eight.weights)
+                .map(|(x, w)| w * x.powi(degree))
+                .sum();
+            let scale: f64 = points
+                .iter()
+                .zip(&weights)
+                .map(|(x, w)| w * x.abs().powi(degree))
+                .sum();
             let error = (got - exact).abs() / scale;
             assert_eq!(error < 1e-12, degree <= 15, "degree {degree}: {error:e}");
         }

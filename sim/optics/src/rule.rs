@@ -20,8 +20,11 @@ impl SamplingRule {
     pub fn gauss(n: usize, observer: Observer, light: &Illuminant) -> Self {
         let points: Vec<f64> = (0..SAMPLES).map(wavelength).collect();
         let density = |nm: f64, power: f64| observer.at(nm).iter().sum::<f64>() * power;
-        let measure: Vec<f64> =
-            points.iter().zip(&light.power.0).map(|(nm, power)| density(*nm, *power)).collect();
+        let measure: Vec<f64> = points
+            .iter()
+            .zip(&light.power.0)
+            .map(|(nm, power)| density(*nm, *power))
+            .collect();
         let rule = Recurrence::of_measure(&points, &measure, n).gauss();
         let white = light.xyz(observer, &Spectrum::flat(1.0));
         let mut weights: Vec<[f64; 3]> = rule
@@ -36,9 +39,14 @@ impl SamplingRule {
             .collect();
         for channel in 0..3 {
             let sum: f64 = weights.iter().map(|weight| weight[channel]).sum();
-            weights.iter_mut().for_each(|weight| weight[channel] *= white[channel] / sum);
+            weights
+                .iter_mut()
+                .for_each(|weight| weight[channel] *= white[channel] / sum);
         }
-        Self { wavelengths_nm: rule.nodes, weights }
+        Self {
+            wavelengths_nm: rule.nodes,
+            weights,
+        }
     }
 
     /// All 101 samples.
@@ -55,7 +63,10 @@ impl SamplingRule {
             .zip(&light.power.0)
             .map(|(nm, power)| observer.at(*nm).map(|value| value * power / white))
             .collect();
-        Self { wavelengths_nm, weights }
+        Self {
+            wavelengths_nm,
+            weights,
+        }
     }
 
     /// Number of wavelengths.
@@ -96,7 +107,11 @@ mod tests {
             for (got, want) in rule.xyz(&[1.0; 8]).iter().zip(exact) {
                 assert!((got - want).abs() < 1e-12, "{name}");
             }
-            assert!(rule.wavelengths_nm.iter().all(|nm| (380.0..780.0).contains(nm)));
+            assert!(
+                rule.wavelengths_nm
+                    .iter()
+                    .all(|nm| (380.0..780.0).contains(nm))
+            );
         }
     }
 

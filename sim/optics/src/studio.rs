@@ -36,10 +36,20 @@ impl Studio {
     pub fn new(rule: SamplingRule, observer: Observer, light: &Illuminant) -> Self {
         let white = light.xyz(observer, &Spectrum::flat(1.0));
         let to_rgb = xyz_to_linear_srgb(white);
-        let rgb =
-            rule.weights.iter().map(|weight| apply(&to_rgb, *weight).map(|v| v as f32)).collect();
+        let rgb = rule
+            .weights
+            .iter()
+            .map(|weight| apply(&to_rgb, *weight).map(|v| v as f32))
+            .collect();
         let surface = SurfaceCorrection::default();
-        Self { rule, surface, white, to_rgb, paints: Vec::new(), rgb }
+        Self {
+            rule,
+            surface,
+            white,
+            to_rgb,
+            paints: Vec::new(),
+            rgb,
+        }
     }
 
     /// Baxter 2004, § 7.7: eight Gauss samples, under average daylight.
@@ -52,7 +62,8 @@ impl Studio {
     /// Adds a paint and returns its slot.
     pub fn add(&mut self, paint: &Paint) -> usize {
         let at = |nm: &f64| [paint.k.at(*nm) as f32, paint.s.at(*nm) as f32];
-        self.paints.push(self.rule.wavelengths_nm.iter().map(at).collect());
+        self.paints
+            .push(self.rule.wavelengths_nm.iter().map(at).collect());
         self.paints.len() - 1
     }
 
@@ -65,7 +76,11 @@ impl Studio {
     /// A spectrum at the rule's wavelengths.
     #[must_use]
     pub fn sample(&self, spectrum: &Spectrum) -> Vec<f32> {
-        self.rule.wavelengths_nm.iter().map(|nm| spectrum.at(*nm) as f32).collect()
+        self.rule
+            .wavelengths_nm
+            .iter()
+            .map(|nm| spectrum.at(*nm) as f32)
+            .collect()
     }
 
     /// XYZ of the perfect diffuser.
@@ -133,11 +148,18 @@ impl Studio {
     fn film_xyz(&self, films: &[(usize, f64)], ground: &[f32]) -> [f64; 3] {
         let reflectance = |sample: usize| {
             let sum = |which: usize| {
-                films.iter().map(|(slot, d)| f64::from(self.paints[*slot][sample][which]) * d).sum()
+                films
+                    .iter()
+                    .map(|(slot, d)| f64::from(self.paints[*slot][sample][which]) * d)
+                    .sum()
             };
-            self.surface.measured(km::over(km::film(sum(0), sum(1)), f64::from(ground[sample])))
+            self.surface.measured(km::over(
+                km::film(sum(0), sum(1)),
+                f64::from(ground[sample]),
+            ))
         };
-        self.rule.xyz(&(0..self.rule.len()).map(reflectance).collect::<Vec<_>>())
+        self.rule
+            .xyz(&(0..self.rule.len()).map(reflectance).collect::<Vec<_>>())
     }
 }
 
@@ -161,7 +183,13 @@ mod tests {
         let ground = vec![ground; studio.wavelengths()];
         let mut rgb = [const { [0.0f32; 130] }; 3];
         let [r, g, b] = &mut rgb;
-        studio.shade(&FilmPlanes { paints: &paints, ground: &ground }, [r, g, b]);
+        studio.shade(
+            &FilmPlanes {
+                paints: &paints,
+                ground: &ground,
+            },
+            [r, g, b],
+        );
         assert!(rgb.iter().all(|plane| plane.iter().all(|v| *v == plane[0])));
         rgb.map(|plane| plane[129])
     }
@@ -170,7 +198,13 @@ mod tests {
     fn planes_agree_with_the_plain_formula() {
         let studio = studio(&["Ultramarine Blue", "Yellow Ochre"]);
         let ground = vec![0.9f32; studio.wavelengths()];
-        for (a, b) in [(0.0, 0.0), (1e-6, 0.0), (2e-5, 1e-5), (1e-4, 3e-4), (0.0, 5e-3)] {
+        for (a, b) in [
+            (0.0, 0.0),
+            (1e-6, 0.0),
+            (2e-5, 1e-5),
+            (1e-4, 3e-4),
+            (0.0, 5e-3),
+        ] {
             let exact = studio.colour(&[(0, a), (1, b)], &ground);
             let got = shade(&studio, [a as f32, b as f32], 0.9);
             for (got, exact) in got.iter().zip(exact) {
@@ -183,19 +217,38 @@ mod tests {
 
     #[test]
     fn paints_look_like_their_names() {
-        let studio =
-            studio(&["Ultramarine Blue", "Hansa Yellow Opaque", "Yellow Ochre", "Titanium White"]);
+        let studio = studio(&[
+            "Ultramarine Blue",
+            "Hansa Yellow Opaque",
+            "Yellow Ochre",
+            "Titanium White",
+        ]);
         let black = vec![0.0f32; studio.wavelengths()];
         let opaque = |slot: usize| studio.colour(&[(slot, 0.01)], &black);
         let [r, g, b] = opaque(0);
-        assert!(b > 2.0 * r && b > 2.0 * g, "ultramarine is blue: {r} {g} {b}");
+        assert!(
+            b > 2.0 * r && b > 2.0 * g,
+            "ultramarine is blue: {r} {g} {b}"
+        );
         let [r, g, b] = opaque(1);
-        assert!(r > 4.0 * b && g > 4.0 * b, "hansa yellow is yellow: {r} {g} {b}");
+        assert!(
+            r > 4.0 * b && g > 4.0 * b,
+            "hansa yellow is yellow: {r} {g} {b}"
+        );
         let lightness = studio.lab(&[(2, 0.01)], &black)[0];
-        assert!((lightness - 55.0).abs() < 2.5, "yellow ochre's L* is 55, not {lightness}");
+        assert!(
+            (lightness - 55.0).abs() < 2.5,
+            "yellow ochre's L* is 55, not {lightness}"
+        );
         let [r, g, b] = opaque(3);
-        assert!(r > 0.85 && (r - b).abs() < 0.12 && (r - g).abs() < 0.05, "white: {r} {g} {b}");
+        assert!(
+            r > 0.85 && (r - b).abs() < 0.12 && (r - g).abs() < 0.05,
+            "white: {r} {g} {b}"
+        );
         let [r, g, b] = studio.colour(&[(0, 0.005), (1, 0.005)], &black);
-        assert!(g > 1.2 * r && g > 1.2 * b, "blue and yellow make green: {r} {g} {b}");
+        assert!(
+            g > 1.2 * r && g > 1.2 * b,
+            "blue and yellow make green: {r} {g} {b}"
+        );
     }
 }

@@ -47,12 +47,18 @@ mod tests {
     #[test]
     fn known_corrections_and_their_inverse() {
         let surface = SurfaceCorrection { k1: 0.04, k2: 0.6 };
-        for (r, reading) in
-            [(0.05, 0.059_793_814), (0.3, 0.180_487_805), (0.5, 0.314_285_714), (0.9, 0.791_304_348)]
-        {
+        for (r, reading) in [
+            (0.05, 0.059_793_814),
+            (0.3, 0.180_487_805),
+            (0.5, 0.314_285_714),
+            (0.9, 0.791_304_348),
+        ] {
             assert!((surface.measured(r) - reading).abs() < 1e-9);
             assert!((surface.internal(reading) - r).abs() < 1e-8);
-            assert!((surface.measured(r + 1e-7) - reading).abs() > 1e-9, "a fault would pass");
+            assert!(
+                (surface.measured(r + 1e-7) - reading).abs() > 1e-9,
+                "a fault would pass"
+            );
         }
         let default = SurfaceCorrection::default();
         assert!((default.internal(default.measured(0.37)) - 0.37).abs() < 1e-15);

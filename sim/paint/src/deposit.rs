@@ -23,7 +23,9 @@ impl PaintModel for Deposit {
             self.demand(step);
             self.grant(step);
         }
-        StepReport { footprint_cells: self.footprint.cells.len() as u64 }
+        StepReport {
+            footprint_cells: self.footprint.cells.len() as u64,
+        }
     }
 }
 
@@ -53,7 +55,11 @@ impl Deposit {
         if demanded == 0 || held == 0 {
             return;
         }
-        let scale = if demanded > held { held as f64 / demanded as f64 } else { 1.0 };
+        let scale = if demanded > held {
+            held as f64 / demanded as f64
+        } else {
+            1.0
+        };
         for slot in 0..SLOTS {
             let of_slot = step.load.counts()[slot];
             if of_slot == 0 {
@@ -85,14 +91,22 @@ mod tests {
     use crate::window::Window;
 
     fn head(x: f32) -> HeadPose {
-        let ball = |x: f32| Ball { at: [x, 32.0, 2.0], radius: 9.0 };
-        HeadPose { balls: vec![ball(x), ball(x + 10.0)] }
+        let ball = |x: f32| Ball {
+            at: [x, 32.0, 2.0],
+            radius: 9.0,
+        };
+        HeadPose {
+            balls: vec![ball(x), ball(x + 10.0)],
+        }
     }
 
     /// Strokes across a tile with a load of two paints; counts on brush and canvas after it.
     fn stroke(film_um: f64) -> ([u64; 2], [u64; 2], [u64; 2]) {
         let mut store = TileStore::new([128, 64]);
-        let rect = TileRect { from: [0, 0], to: [2, 1] };
+        let rect = TileRect {
+            from: [0, 0],
+            to: [2, 1],
+        };
         let mut window = Window::open(&mut store, rect).expect("free");
         let mut file = BrushFile::library("round").expect("round");
         file.load.film_um = film_um;
@@ -106,7 +120,10 @@ mod tests {
                 window: &mut window,
                 cells: [128, 64],
                 cell_m: 2.5e-4,
-                sweep: Sweep { from: &from, to: &to },
+                sweep: Sweep {
+                    from: &from,
+                    to: &to,
+                },
                 load: &mut load,
                 head_cells,
             });

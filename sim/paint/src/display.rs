@@ -29,22 +29,44 @@ impl DisplayTile {
             .unwrap_or_default()
             .iter()
             .map(|(slot, plane)| {
-                (*slot, plane.iter().map(|count| count * QUANTUM_M as f32).collect())
+                (
+                    *slot,
+                    plane.iter().map(|count| count * QUANTUM_M as f32).collect(),
+                )
             })
             .collect();
         let mut height = vec![0.0f32; TILE_CELLS];
         for (_, film) in &films {
-            height.iter_mut().zip(film).for_each(|(sum, thickness)| *sum += thickness);
+            height
+                .iter_mut()
+                .zip(film)
+                .for_each(|(sum, thickness)| *sum += thickness);
         }
         let mut rgb = [const { Vec::new() }; 3];
-        rgb.iter_mut().for_each(|plane| plane.resize(TILE_CELLS, 0.0));
+        rgb.iter_mut()
+            .for_each(|plane| plane.resize(TILE_CELLS, 0.0));
         let [red, green, blue] = &mut rgb;
-        let paints: Vec<(usize, &[f32])> =
-            films.iter().map(|(slot, film)| (*slot, film.as_slice())).collect();
-        studio.shade(&FilmPlanes { paints: &paints, ground }, [red, green, blue]);
-        let wetness: Vec<f32> =
-            height.iter().map(|thickness| f32::from(u8::from(*thickness > 0.0))).collect();
-        Self { rgb, gloss: wetness.clone(), wetness, height }
+        let paints: Vec<(usize, &[f32])> = films
+            .iter()
+            .map(|(slot, film)| (*slot, film.as_slice()))
+            .collect();
+        studio.shade(
+            &FilmPlanes {
+                paints: &paints,
+                ground,
+            },
+            [red, green, blue],
+        );
+        let wetness: Vec<f32> = height
+            .iter()
+            .map(|thickness| f32::from(u8::from(*thickness > 0.0)))
+            .collect();
+        Self {
+            rgb,
+            gloss: wetness.clone(),
+            wetness,
+            height,
+        }
     }
 
     /// The tile of the next level from its four children: lower left, lower right, upper left,
@@ -67,7 +89,11 @@ impl DisplayTile {
             out
         };
         Self {
-            rgb: [halve(&|t| &t.rgb[0]), halve(&|t| &t.rgb[1]), halve(&|t| &t.rgb[2])],
+            rgb: [
+                halve(&|t| &t.rgb[0]),
+                halve(&|t| &t.rgb[1]),
+                halve(&|t| &t.rgb[2]),
+            ],
             gloss: halve(&|t| &t.gloss),
             wetness: halve(&|t| &t.wetness),
             height: halve(&|t| &t.height),
@@ -105,7 +131,12 @@ impl DisplayTile {
             .chunks_exact(4)
             .map(|four| f32::from_le_bytes([four[0], four[1], four[2], four[3]]))
             .collect();
-        Some(Self { rgb: [half(0), half(1), half(2)], gloss: half(3), wetness: half(4), height })
+        Some(Self {
+            rgb: [half(0), half(1), half(2)],
+            gloss: half(3),
+            wetness: half(4),
+            height,
+        })
     }
 }
 
@@ -120,8 +151,9 @@ mod tests {
         let library = PaintLibrary::measured().expect("whole");
         studio.add(library.find("Ultramarine Blue").expect("known"));
         let ground = vec![0.95; studio.wavelengths()];
-        let plane: Box<[f32]> =
-            (0..TILE_CELLS).map(|i| if i % 2 == 0 { 33_000.0 } else { 0.0 }).collect();
+        let plane: Box<[f32]> = (0..TILE_CELLS)
+            .map(|i| if i % 2 == 0 { 33_000.0 } else { 0.0 })
+            .collect();
         let tile = Tile::new([(0, plane)].into_iter());
         let shown = DisplayTile::of(Some(&tile), &studio, &ground);
         (studio, ground, shown)
@@ -152,6 +184,9 @@ mod tests {
         let bare = DisplayTile::of(None, &studio, &ground);
         let coarse = DisplayTile::coarser([Some(&shown), None, None, None], &bare);
         assert!((coarse.height[0] - 0.5 * shown.height[0]).abs() < 1e-9);
-        assert_eq!(coarse.height[40], 0.0, "the right half lies beyond the edge");
+        assert_eq!(
+            coarse.height[40], 0.0,
+            "the right half lies beyond the edge"
+        );
     }
 }

@@ -92,17 +92,32 @@ mod tests {
     use crate::store::{TileRect, TileStore};
 
     fn head(x: f32, z: f32) -> HeadPose {
-        let ball = |x: f32, z: f32| Ball { at: [x, 32.0, z], radius: 6.0 };
-        HeadPose { balls: vec![ball(x, z), ball(x + 10.0, z)] }
+        let ball = |x: f32, z: f32| Ball {
+            at: [x, 32.0, z],
+            radius: 6.0,
+        };
+        HeadPose {
+            balls: vec![ball(x, z), ball(x + 10.0, z)],
+        }
     }
 
     fn footprint(z: f32) -> Footprint {
         let mut store = TileStore::new([64, 64]);
-        let rect = TileRect { from: [0, 0], to: [1, 1] };
+        let rect = TileRect {
+            from: [0, 0],
+            to: [1, 1],
+        };
         let window = Window::open(&mut store, rect).expect("free");
         let mut footprint = Footprint::default();
         let (from, to) = (head(20.0, z), head(21.0, z));
-        footprint.find(Sweep { from: &from, to: &to }, &window, [64, 64]);
+        footprint.find(
+            Sweep {
+                from: &from,
+                to: &to,
+            },
+            &window,
+            [64, 64],
+        );
         footprint
     }
 
@@ -110,7 +125,11 @@ mod tests {
     fn a_lying_capsule_covers_its_outline() {
         let found = footprint(0.0);
         let area = 12.0 * 10.0 + std::f32::consts::PI * 36.0;
-        assert!((found.cells.len() as f32 - area).abs() < 0.03 * area, "{}", found.cells.len());
+        assert!(
+            (found.cells.len() as f32 - area).abs() < 0.03 * area,
+            "{}",
+            found.cells.len()
+        );
         let deepest = found.penetration.iter().copied().fold(0.0, f32::max);
         assert!((deepest - 6.0).abs() < 0.1);
         assert!(found.travel.iter().all(|cells| (cells - 1.0).abs() < 1e-5));

@@ -39,7 +39,10 @@ impl Waypoint {
     /// The pose of a solve.
     #[must_use]
     pub fn of(solve: &Solve) -> Self {
-        Self { brush: Rigid::from(&solve.pose), angles: solve.angles_rad.clone() }
+        Self {
+            brush: Rigid::from(&solve.pose),
+            angles: solve.angles_rad.clone(),
+        }
     }
 
     /// A pose between this one and `other`, at `t` in 0..1.
@@ -83,7 +86,10 @@ impl HeadShape {
 
     /// The head at a pose, in cells of side `cell_m`.
     pub fn pose(&self, waypoint: &Waypoint, cell_m: f64, into: &mut HeadPose) {
-        let Rigid { rotation, translation } = waypoint.brush;
+        let Rigid {
+            rotation,
+            translation,
+        } = waypoint.brush;
         let shape = SpineShape::from_angles(translation, rotation, &waypoint.angles);
         into.balls.clear();
         let mut at: DVec3 = translation;
@@ -142,14 +148,20 @@ mod tests {
         let file = BrushFile::library("round").expect("round");
         let shape = HeadShape::of(&file);
         let waypoint = Waypoint {
-            brush: Rigid { translation: DVec3::new(0.01, 0.02, 0.03), ..Rigid::IDENTITY },
+            brush: Rigid {
+                translation: DVec3::new(0.01, 0.02, 0.03),
+                ..Rigid::IDENTITY
+            },
             angles: vec![[0.0; 2]; 3],
         };
         let mut pose = HeadPose::default();
         shape.pose(&waypoint, 2.5e-4, &mut pose);
         assert_eq!(pose.balls.len(), 4);
         let tip = pose.balls[3];
-        assert!((tip.at[0] - 40.0).abs() < 1e-4 && (tip.at[2] - 20.0).abs() < 1e-3, "{tip:?}");
+        assert!(
+            (tip.at[0] - 40.0).abs() < 1e-4 && (tip.at[2] - 20.0).abs() < 1e-3,
+            "{tip:?}"
+        );
         let (from, to) = pose.bounds();
         assert!(from[0] < 25 && to[0] > 55 && from[1] < 65 && to[1] > 95);
     }
@@ -157,7 +169,10 @@ mod tests {
     #[test]
     fn halfway_between_two_poses_is_halfway() {
         let at = |x: f64| Waypoint {
-            brush: Rigid { translation: DVec3::new(x, 0.0, 0.03), ..Rigid::IDENTITY },
+            brush: Rigid {
+                translation: DVec3::new(x, 0.0, 0.03),
+                ..Rigid::IDENTITY
+            },
             angles: vec![[0.2 * x as f32, 0.0]; 3],
         };
         assert_eq!(at(0.0).toward(&at(1.0), 0.5), at(0.5));

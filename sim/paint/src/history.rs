@@ -42,7 +42,11 @@ impl History {
     pub fn begin(&mut self, what: &str, rest: Rest) {
         self.end();
         self.redo.clear();
-        self.open = Some(UndoStep { what: what.to_owned(), tiles: BTreeMap::new(), rest });
+        self.open = Some(UndoStep {
+            what: what.to_owned(),
+            tiles: BTreeMap::new(),
+            rest,
+        });
     }
 
     /// Remembers a version that was replaced, the first one of each tile in the open step.
@@ -82,6 +86,9 @@ impl History {
     /// How many steps can be undone and redone.
     #[must_use]
     pub fn depth(&self) -> (usize, usize) {
-        (self.undo.len() + usize::from(self.open.is_some()), self.redo.len())
+        (
+            self.undo.len() + usize::from(self.open.is_some()),
+            self.redo.len(),
+        )
     }
 }

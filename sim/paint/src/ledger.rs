@@ -91,11 +91,19 @@ pub fn balance(
     let sum = |counts: &Counts| counts.iter().sum::<u64>();
     let negative = |count: u64| if count == 0 { 0.0 } else { -volume(count) };
     let mut accounts_m3 = BTreeMap::from([("tube", negative(sum(&ledger.tube)))]);
-    accounts_m3.extend(accounts.iter().map(|(name, counts)| (*name, volume(sum(counts)))));
+    accounts_m3.extend(
+        accounts
+            .iter()
+            .map(|(name, counts)| (*name, volume(sum(counts)))),
+    );
     let mut paints_m3 = BTreeMap::new();
     for (slot, name) in names.iter().enumerate().take(SLOTS) {
         let mut row = BTreeMap::from([("tube", negative(ledger.tube[slot]))]);
-        row.extend(accounts.iter().map(|(account, counts)| (*account, volume(counts[slot]))));
+        row.extend(
+            accounts
+                .iter()
+                .map(|(account, counts)| (*account, volume(counts[slot]))),
+        );
         paints_m3.insert(name.clone(), row);
     }
     // Slot by slot, so that too much of one paint cannot hide too little of another.
@@ -137,6 +145,10 @@ mod tests {
         stocks.canvas[0] -= 1;
         assert_eq!(report(&stocks).quanta_missing, 1);
         (stocks.canvas[0], stocks.palette[1]) = (601, 6);
-        assert_ne!(report(&stocks).quanta_missing, 0, "one paint does not stand in for another");
+        assert_ne!(
+            report(&stocks).quanta_missing,
+            0,
+            "one paint does not stand in for another"
+        );
     }
 }

@@ -70,5 +70,9 @@ pub fn by_slot<E>(
     mixture: &Mixture,
     mut slot: impl FnMut(&str) -> Result<usize, E>,
 ) -> Result<Vec<(usize, f64)>, E> {
-    mixture.parts.iter().map(|part| Ok((slot(&part.paint)?, part.share))).collect()
+    mixture
+        .parts
+        .iter()
+        .map(|part| Ok((slot(&part.paint)?, part.share)))
+        .collect()
 }

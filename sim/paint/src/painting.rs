@@ -38,7 +38,10 @@ impl PaintRefusal {
     /// A refusal.
     #[must_use]
     pub fn new(what: String, help: &str) -> Self {
-        Self { what, help: help.to_owned() }
+        Self {
+            what,
+            help: help.to_owned(),
+        }
     }
 
     /// A refusal because of a paint or a mixture.
@@ -48,7 +51,10 @@ impl PaintRefusal {
             PaintError::Unknown { .. } => "`maulstick paints` lists them all",
             _ => "write mixtures as \"Cobalt Blue=0.7,Titanium White=0.3\"",
         };
-        Self { what: error.to_string(), help: help.to_owned() }
+        Self {
+            what: error.to_string(),
+            help: help.to_owned(),
+        }
     }
 }
 
@@ -218,29 +224,48 @@ impl Painting {
             }
             if self.scene.paints.len() == SLOTS {
                 return Err(PaintRefusal::new(
-                    format!("'{}' would be paint {} of this painting", part.paint, SLOTS + 1),
+                    format!(
+                        "'{}' would be paint {} of this painting",
+                        part.paint,
+                        SLOTS + 1
+                    ),
                     "a painting has at most 16 paints: mix it from those in use",
                 ));
             }
-            let paint = self.library.find(&part.paint).map_err(PaintRefusal::paint)?;
+            let paint = self
+                .library
+                .find(&part.paint)
+                .map_err(PaintRefusal::paint)?;
             let slot = self.studio.add(paint);
             let black = vec![0.0; self.studio.wavelengths()];
             let opaque = |films: &[(usize, f64)]| {
-                self.studio.colour(films, &black).map(|channel| channel as f32)
+                self.studio
+                    .colour(films, &black)
+                    .map(|channel| channel as f32)
             };
             // A tint is one part in ten of the strongest white's scattering.
             let masstone = opaque(&[(slot, 0.01)]);
             let white = self.studio.sample(&maulstick_optics::Spectrum::flat(0.9));
-            let tint = self.studio.colour(&[(slot, 1e-5)], &white).map(|channel| channel as f32);
+            let tint = self
+                .studio
+                .colour(&[(slot, 1e-5)], &white)
+                .map(|channel| channel as f32);
             let file_hash = self.library.hash();
             let name = part.paint.clone();
-            self.scene.paints.push(PaintSlot { name, masstone, tint, file_hash });
+            self.scene.paints.push(PaintSlot {
+                name,
+                masstone,
+                tint,
+                file_hash,
+            });
             self.scene.version += 1;
         }
         let find = |name: &str| {
-            self.scene.paints.iter().position(|slot| slot.name == name).ok_or_else(|| {
-                PaintRefusal::new(format!("'{name}' has no slot"), "load it first")
-            })
+            self.scene
+                .paints
+                .iter()
+                .position(|slot| slot.name == name)
+                .ok_or_else(|| PaintRefusal::new(format!("'{name}' has no slot"), "load it first"))
         };
         by_slot(&mixture, find)
     }
@@ -321,7 +346,11 @@ impl Painting {
         }
         let (first, last) = self.span_ns.unwrap_or((solve.event_ns, solve.event_ns));
         self.span_ns = Some((first, last.max(solve.event_ns)));
-        let Some(sheet) = self.sheets.iter().position(|sheet| sheet.id == solve.surface) else {
+        let Some(sheet) = self
+            .sheets
+            .iter()
+            .position(|sheet| sheet.id == solve.surface)
+        else {
             return Ok(());
         };
         let track = self.brush(name)?;
@@ -338,7 +367,11 @@ impl Painting {
         let track = self.brush(name)?;
         let waypoint = Waypoint::of(solve);
         let restarted = solve.flags & solve_flags::RESTARTED != 0;
-        match track.path.take().filter(|(on, _)| *on == sheet && !restarted) {
+        match track
+            .path
+            .take()
+            .filter(|(on, _)| *on == sheet && !restarted)
+        {
             None => {
                 let path = PathStepper::begin(&track.shape, waypoint, cell_m);
                 track.path = Some((sheet, path));
@@ -373,8 +406,12 @@ impl Painting {
         if !self.reach(name, sheet, from, to) {
             return;
         }
-        let Some(track) = self.brushes.get_mut(name) else { return };
-        let Some((_, window)) = &mut track.window else { return };
+        let Some(track) = self.brushes.get_mut(name) else {
+            return;
+        };
+        let Some((_, window)) = &mut track.window else {
+            return;
+        };
         let cell_m = self.sheets[sheet].cell_m;
         let report = self.model.step(&mut Step {
             window,
@@ -390,8 +427,12 @@ impl Painting {
     /// Makes sure that the brush's window holds the cells `from`..`to`; false where they all lie
     /// beside the surface.
     fn reach(&mut self, name: &str, sheet: usize, from: [i64; 2], to: [i64; 2]) -> bool {
-        let Some(needed) = self.sheets[sheet].store.around(from, to) else { return false };
-        let Some(track) = self.brushes.get(name) else { return false };
+        let Some(needed) = self.sheets[sheet].store.around(from, to) else {
+            return false;
+        };
+        let Some(track) = self.brushes.get(name) else {
+            return false;
+        };
         if let Some((on, window)) = &track.window
             && *on == sheet
             && window.rect().holds(&needed)
@@ -448,8 +489,14 @@ impl Painting {
     }
 
     fn rest(&self) -> Rest {
-        let loads = self.brushes.iter().map(|(name, track)| (name.clone(), track.load.clone()));
-        Rest { loads: loads.collect(), ledger: self.ledger.clone() }
+        let loads = self
+            .brushes
+            .iter()
+            .map(|(name, track)| (name.clone(), track.load.clone()));
+        Rest {
+            loads: loads.collect(),
+            ledger: self.ledger.clone(),
+        }
     }
 
     fn begin_step(&mut self, what: &str) {
@@ -500,7 +547,10 @@ impl Painting {
                 continue;
             };
             self.versions += 1;
-            let restored = Version { number: self.versions, tile: version.tile };
+            let restored = Version {
+                number: self.versions,
+                tile: version.tile,
+            };
             tiles.insert((surface, id), sheet.store.replace(id, restored));
         }
         for (name, load) in step.rest.loads {
@@ -510,7 +560,11 @@ impl Painting {
             }
         }
         self.ledger = step.rest.ledger;
-        UndoStep { what: step.what, tiles, rest }
+        UndoStep {
+            what: step.what,
+            tiles,
+            rest,
+        }
     }
 
     /// How many steps can be undone and redone.
@@ -535,7 +589,11 @@ impl Painting {
                 "send a finite pose, a unit quaternion and a zoom of .01 to 100",
             ));
         }
-        let found = self.scene.surfaces.iter_mut().find(|found| found.id == surface);
+        let found = self
+            .scene
+            .surfaces
+            .iter_mut()
+            .find(|found| found.id == surface);
         let found = found.ok_or_else(|| {
             PaintRefusal::new(
                 format!("there is no surface {surface}"),
@@ -571,7 +629,12 @@ impl Painting {
                 _ => {}
             }
         }
-        let names: Vec<String> = self.scene.paints.iter().map(|slot| slot.name.clone()).collect();
+        let names: Vec<String> = self
+            .scene
+            .paints
+            .iter()
+            .map(|slot| slot.name.clone())
+            .collect();
         let (first, last) = self.span_ns.unwrap_or_default();
         let tallies = Tallies {
             steps: self.steps,
@@ -579,14 +642,23 @@ impl Painting {
             covered_cells,
             seconds: (last - first) as f64 * 1e-9,
         };
-        balance(&self.ledger, &stocks, &names, quantum_m3(self.sheets[0].cell_m), tallies)
+        balance(
+            &self.ledger,
+            &stocks,
+            &names,
+            quantum_m3(self.sheets[0].cell_m),
+            tallies,
+        )
     }
 }
 
 /// Cells with paint.
 fn covered(store: &TileStore) -> u64 {
     let mut count = 0;
-    for tile in store.iter().filter_map(|(_, version)| version.tile.as_ref()) {
+    for tile in store
+        .iter()
+        .filter_map(|(_, version)| version.tile.as_ref())
+    {
         let cells = tile.wet().first().map_or(0, |(_, plane)| plane.len());
         count += (0..cells)
             .filter(|cell| tile.wet().iter().any(|(_, plane)| plane[*cell] > 0.0))
@@ -597,6 +669,8 @@ fn covered(store: &TileStore) -> u64 {
 
 impl std::fmt::Debug for Painting {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.debug_struct("Painting").field("steps", &self.steps).finish_non_exhaustive()
+        f.debug_struct("Painting")
+            .field("steps", &self.steps)
+            .finish_non_exhaustive()
     }
 }

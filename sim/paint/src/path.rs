@@ -30,7 +30,13 @@ impl PathStepper {
     pub fn begin(shape: &HeadShape, at: Waypoint, cell_m: f64) -> Self {
         let mut here = HeadPose::default();
         shape.pose(&at, cell_m, &mut here);
-        Self { at, stepped: here.clone(), here, left_over: 0.0, cell_m }
+        Self {
+            at,
+            stepped: here.clone(),
+            here,
+            left_over: 0.0,
+            cell_m,
+        }
     }
 
     /// Moves on to `to` and calls `step` for each whole cell on the way.
@@ -44,7 +50,10 @@ impl PathStepper {
         while cells <= whole {
             let t = (cells - self.left_over) / motion;
             shape.pose(&self.at.toward(&to, t), self.cell_m, &mut pose);
-            step(Sweep { from: &self.stepped, to: &pose });
+            step(Sweep {
+                from: &self.stepped,
+                to: &pose,
+            });
             std::mem::swap(&mut self.stepped, &mut pose);
             cells += 1.0;
         }
@@ -75,7 +84,10 @@ mod tests {
             stroke: 1,
             surface: 0,
             flags: 0,
-            pose: Pose { position_m: [x, 0.1, 0.01], ..Pose::IDENTITY },
+            pose: Pose {
+                position_m: [x, 0.1, 0.01],
+                ..Pose::IDENTITY
+            },
             angles_rad: vec![[0.0, 0.4]; 3],
             contacts: Vec::new(),
         })

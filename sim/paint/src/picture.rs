@@ -25,7 +25,11 @@ pub struct Picture {
 pub fn picture(painting: &mut Painting, surface: u32) -> Picture {
     painting.commit();
     let Some(store) = painting.store(surface) else {
-        return Picture { width: 0, height: 0, rgb: Vec::new() };
+        return Picture {
+            width: 0,
+            height: 0,
+            rgb: Vec::new(),
+        };
     };
     let [width, height] = store.cells().map(|cells| cells as usize);
     let mut rgb = vec![0u8; width * height * 3];

@@ -110,7 +110,10 @@ impl Sequencer {
     /// What is consumed of every brush's states.
     #[must_use]
     pub fn consumed_all(&self) -> Vec<(Origin, u64)> {
-        self.consumed.iter().map(|(origin, next)| (*origin, *next)).collect()
+        self.consumed
+            .iter()
+            .map(|(origin, next)| (*origin, *next))
+            .collect()
     }
 
     /// Accepts a state, which must come in order, and then the commands that waited for it.
@@ -125,7 +128,10 @@ impl Sequencer {
         header: &Header,
         state: &BrushState,
     ) -> Result<Vec<Replied>, PaintRefusal> {
-        let from = Announced { device: state.device, epoch: state.device_epoch };
+        let from = Announced {
+            device: state.device,
+            epoch: state.device_epoch,
+        };
         let replayed = header.flags.has(Flags::REPLAY);
         let result = if replayed && self.announced.get(brush) != Some(&from) {
             self.ignored += 1;
@@ -134,17 +140,24 @@ impl Sequencer {
             self.enter_states(brush, header.epoch, header.seq);
             self.painting.state(brush, state)
         };
-        self.consumed.retain(|origin, _| {
-            origin.source != header.source || origin.epoch == header.epoch
-        });
+        self.consumed
+            .retain(|origin, _| origin.source != header.source || origin.epoch == header.epoch);
         self.consumed.insert(header.origin(), header.seq + 1);
         let replies = self.release();
         result.map(|()| replies)
     }
 
     fn enter_states(&mut self, brush: &str, epoch: u32, seq: u64) {
-        if let Some(JournalEntry { entry: Entry::States { brush: b, epoch: e, to, .. }, .. }) =
-            self.journal.last_mut()
+        if let Some(JournalEntry {
+            entry:
+                Entry::States {
+                    brush: b,
+                    epoch: e,
+                    to,
+                    ..
+                },
+            ..
+        }) = self.journal.last_mut()
             && b == brush
             && *e == epoch
             && *to + 1 == seq
@@ -152,7 +165,12 @@ impl Sequencer {
             *to = seq;
             return;
         }
-        self.enter(Entry::States { brush: brush.to_owned(), epoch, from: seq, to: seq });
+        self.enter(Entry::States {
+            brush: brush.to_owned(),
+            epoch,
+            from: seq,
+            to: seq,
+        });
     }
 
     fn enter(&mut self, entry: Entry) -> u64 {
@@ -164,13 +182,20 @@ impl Sequencer {
 
     /// Enters a decision of the node itself.
     pub fn decide(&mut self, what: &str) {
-        self.enter(Entry::Decision { what: what.to_owned() });
+        self.enter(Entry::Decision {
+            what: what.to_owned(),
+        });
     }
 
     /// Accepts a command, at once or when the state that it waits for has come.
     pub fn command(&mut self, request: CommandRequest) -> Replied {
         let (client, number) = (request.client, request.number);
-        let reply = |outcome| Replied { client, number, outcome, effect: None };
+        let reply = |outcome| Replied {
+            client,
+            number,
+            outcome,
+            effect: None,
+        };
         if let Some((answered, outcome)) = self.answered.get(&client) {
             if *answered == number {
                 return reply(outcome.clone());
@@ -182,11 +207,18 @@ impl Sequencer {
                 });
             }
         }
-        if self.waiting.iter().any(|w| w.client == client && w.number == number) {
+        if self
+            .waiting
+            .iter()
+            .any(|w| w.client == client && w.number == number)
+        {
             return reply(Outcome::Waiting);
         }
         let due = request.after.as_ref().is_none_or(|after| {
-            let origin = Origin { source: after.brush, epoch: after.epoch };
+            let origin = Origin {
+                source: after.brush,
+                epoch: after.epoch,
+            };
             self.consumed(origin) > after.sequence
         });
         if due {
@@ -202,7 +234,10 @@ impl Sequencer {
         let mut place = 0;
         while place < self.waiting.len() {
             let due = self.waiting[place].after.as_ref().is_none_or(|after| {
-                let origin = Origin { source: after.brush, epoch: after.epoch };
+                let origin = Origin {
+                    source: after.brush,
+                    epoch: after.epoch,
+                };
                 self.consumed(origin) > after.sequence
             });
             if due {
@@ -222,35 +257,58 @@ impl Sequencer {
                 self.painting.load(brush, mixture).map(|()| String::new())
             }
             Command::Clean { brush } => self.painting.clean(brush).map(|()| String::new()),
-            Command::Take { brush, device, device_epoch, loads } => {
-                self.painting.take(brush, loads).map(|()| {
-                    let take = Announced { device: *device, epoch: *device_epoch };
-                    self.announced.insert(brush.clone(), take);
-                    String::new()
-                })
-            }
+            Command::Take {
+                brush,
+                device,
+                device_epoch,
+                loads,
+            } => self.painting.take(brush, loads).map(|()| {
+                let take = Announced {
+                    device: *device,
+                    epoch: *device_epoch,
+                };
+                self.announced.insert(brush.clone(), take);
+                String::new()
+            }),
             Command::Undo => self.painting.undo(),
             Command::Redo => self.painting.redo(),
             Command::Snapshot { path, ledger } => {
-                effect = Some(Effect::Snapshot { path: path.clone(), ledger: ledger.clone() });
+                effect = Some(Effect::Snapshot {
+                    path: path.clone(),
+                    ledger: ledger.clone(),
+                });
                 Ok(path.clone())
             }
-            Command::Place { surface, pose, zoom } => {
-                self.painting.place(*surface, pose, *zoom).map(|()| String::new())
-            }
+            Command::Place {
+                surface,
+                pose,
+                zoom,
+            } => self
+                .painting
+                .place(*surface, pose, *zoom)
+                .map(|()| String::new()),
             Command::Mark => Ok(String::new()),
         };
         let (client, number) = (request.client, request.number);
         let outcome = match done {
             Ok(detail) => {
                 let command = request.command.clone();
-                let journal = self.enter(Entry::Command { client, number, command });
+                let journal = self.enter(Entry::Command {
+                    client,
+                    number,
+                    command,
+                });
                 Outcome::Done { journal, detail }
             }
             Err(PaintRefusal { what, help }) => Outcome::Refused { what, help },
         };
         self.remember(client, number, outcome.clone());
-        Replied { client, number, outcome, effect }
+        Replied {
+            client,
+            number,
+            outcome,
+            effect,
+        }
     }
 
     /// Keeps what became of a command, also when its effect failed after all.

@@ -56,7 +56,10 @@ impl Default for PaintingSetup {
             ground: "gesso".to_owned(),
             tooth: "linen".to_owned(),
             tooth_seed: 1,
-            wells: PALETTE_PAINTS.iter().map(|name| Mixture::pure(name)).collect(),
+            wells: PALETTE_PAINTS
+                .iter()
+                .map(|name| Mixture::pure(name))
+                .collect(),
         }
     }
 }
@@ -91,7 +94,10 @@ impl PaintingSetup {
     pub fn scene(&self) -> Scene {
         let size = self.cells.map(|cells| f64::from(cells) * self.cell_m);
         let palette = PALETTE_CELLS.map(|cells| f64::from(cells) * self.cell_m);
-        let at = |x: f64, y: f64| Pose { position_m: [x, y, 0.0], ..Pose::IDENTITY };
+        let at = |x: f64, y: f64| Pose {
+            position_m: [x, y, 0.0],
+            ..Pose::IDENTITY
+        };
         let surface = |id: u32, pose: Pose, cells: [u32; 2]| Surface {
             id,
             pose,
@@ -114,7 +120,12 @@ impl PaintingSetup {
             intensity: 1.0,
             illuminant: "D65".to_owned(),
         };
-        Scene { version: 1, surfaces: vec![canvas, board], paints: Vec::new(), light }
+        Scene {
+            version: 1,
+            surfaces: vec![canvas, board],
+            paints: Vec::new(),
+            light,
+        }
     }
 
     /// Wells along the left edge, the cleaner in the lower right corner.
@@ -132,11 +143,20 @@ impl PaintingSetup {
             .map(|(i, mixture)| Well {
                 center_m: place(i),
                 radius_m,
-                kind: WellKind::Paint { mixture: mixture.clone() },
+                kind: WellKind::Paint {
+                    mixture: mixture.clone(),
+                },
             })
             .collect();
-        let corner = [f64::from(PALETTE_CELLS[0]) * self.cell_m - 1.5 * radius_m, 1.5 * radius_m];
-        wells.push(Well { center_m: corner, radius_m, kind: WellKind::Cleaner });
+        let corner = [
+            f64::from(PALETTE_CELLS[0]) * self.cell_m - 1.5 * radius_m,
+            1.5 * radius_m,
+        ];
+        wells.push(Well {
+            center_m: corner,
+            radius_m,
+            kind: WellKind::Cleaner,
+        });
         wells
     }
 }
@@ -167,14 +187,18 @@ mod tests {
     fn canvas_and_palette_do_not_overlap_and_wells_lie_on_the_palette() {
         let setup = PaintingSetup::default();
         let scene = setup.scene();
-        let [canvas, palette] = &scene.surfaces[..] else { panic!("two surfaces") };
+        let [canvas, palette] = &scene.surfaces[..] else {
+            panic!("two surfaces")
+        };
         let right = palette.pose.position_m[0] + f64::from(palette.cells[0]) * palette.cell_m;
         assert!(right < canvas.pose.position_m[0]);
         assert_eq!(palette.wells.len(), 11);
         for well in &palette.wells {
             for i in 0..2 {
                 let size = f64::from(palette.cells[i]) * palette.cell_m;
-                assert!(well.center_m[i] > well.radius_m && well.center_m[i] < size - well.radius_m);
+                assert!(
+                    well.center_m[i] > well.radius_m && well.center_m[i] < size - well.radius_m
+                );
             }
         }
     }

@@ -53,7 +53,12 @@ impl TileStore {
     pub fn new(cells: [u32; 2]) -> Self {
         let grid = cells.map(|cells| cells.div_ceil(TILE as u32));
         let versions = vec![Version::default(); (grid[0] * grid[1]) as usize];
-        Self { cells, grid, versions, leased: BTreeSet::new() }
+        Self {
+            cells,
+            grid,
+            versions,
+            leased: BTreeSet::new(),
+        }
     }
 
     /// Cells across and up.
@@ -87,16 +92,28 @@ impl TileStore {
     /// All tiles with their versions, row after row from the bottom.
     pub fn iter(&self) -> impl Iterator<Item = (TileId, &Version)> {
         let across = self.grid[0];
-        self.versions.iter().enumerate().map(move |(place, version)| {
-            (TileId { x: place as u32 % across, y: place as u32 / across }, version)
-        })
+        self.versions
+            .iter()
+            .enumerate()
+            .map(move |(place, version)| {
+                (
+                    TileId {
+                        x: place as u32 % across,
+                        y: place as u32 / across,
+                    },
+                    version,
+                )
+            })
     }
 
     /// The tiles that touch the rectangle of cells `from`..`to`, cut to the surface; none where it
     /// lies beside.
     #[must_use]
     pub fn around(&self, from: [i64; 2], to: [i64; 2]) -> Option<TileRect> {
-        let mut rect = TileRect { from: [0; 2], to: [0; 2] };
+        let mut rect = TileRect {
+            from: [0; 2],
+            to: [0; 2],
+        };
         for i in 0..2 {
             let low = from[i].clamp(0, i64::from(self.cells[i]));
             let high = to[i].clamp(0, i64::from(self.cells[i]));
@@ -129,7 +146,11 @@ impl TileStore {
     #[must_use]
     pub fn counts(&self) -> Counts {
         let mut counts = [0; SLOTS];
-        for tile in self.versions.iter().filter_map(|version| version.tile.as_ref()) {
+        for tile in self
+            .versions
+            .iter()
+            .filter_map(|version| version.tile.as_ref())
+        {
             add(&mut counts, &tile.counts());
         }
         counts
@@ -138,13 +159,19 @@ impl TileStore {
     /// Bytes of all tiles.
     #[must_use]
     pub fn bytes(&self) -> usize {
-        self.versions.iter().filter_map(|v| v.tile.as_ref()).map(|tile| tile.bytes()).sum()
+        self.versions
+            .iter()
+            .filter_map(|v| v.tile.as_ref())
+            .map(|tile| tile.bytes())
+            .sum()
     }
 
     /// A copy of the newest versions that shares their tiles.
     #[must_use]
     pub fn snapshot(&self) -> Vec<(TileId, u64, Option<Arc<Tile>>)> {
-        self.iter().map(|(id, version)| (id, version.number, version.tile.clone())).collect()
+        self.iter()
+            .map(|(id, version)| (id, version.number, version.tile.clone()))
+            .collect()
     }
 }
 
@@ -157,7 +184,13 @@ mod tests {
         let store = TileStore::new([100, 200]);
         assert_eq!(store.grid(), [2, 4]);
         let rect = store.around([-5, 60], [70, 65]).expect("inside");
-        assert_eq!(rect, TileRect { from: [0, 0], to: [2, 2] });
+        assert_eq!(
+            rect,
+            TileRect {
+                from: [0, 0],
+                to: [2, 2]
+            }
+        );
         assert_eq!(store.around([100, 0], [120, 10]), None);
         assert_eq!(store.around([-9, 0], [0, 10]), None);
     }
@@ -166,8 +199,14 @@ mod tests {
     fn a_tile_is_leased_once() {
         let mut store = TileStore::new([256, 256]);
         let (left, right) = (
-            TileRect { from: [0, 0], to: [2, 2] },
-            TileRect { from: [1, 1], to: [3, 3] },
+            TileRect {
+                from: [0, 0],
+                to: [2, 2],
+            },
+            TileRect {
+                from: [1, 1],
+                to: [3, 3],
+            },
         );
         assert!(store.lease(&left) && !store.lease(&right));
         store.release(&left);

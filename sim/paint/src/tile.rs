@@ -28,7 +28,11 @@ impl Tile {
     /// A tile of wet planes; planes without paint are left out.
     #[must_use]
     pub fn new(planes: impl Iterator<Item = (usize, Box<[f32]>)>) -> Self {
-        Self { wet: planes.filter(|(_, plane)| plane.iter().any(|count| *count != 0.0)).collect() }
+        Self {
+            wet: planes
+                .filter(|(_, plane)| plane.iter().any(|count| *count != 0.0))
+                .collect(),
+        }
     }
 
     /// The wet planes, in order of slot.

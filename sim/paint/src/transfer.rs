@@ -21,7 +21,11 @@ pub const EQUAL_PAINT_CUTOFF: f32 = 1.0 / 30.0;
 pub fn transfer(on_brush: f32, on_canvas: f32, travel: f32) -> f32 {
     let difference = on_brush - on_canvas;
     let nearly_equal = (difference.abs() * (1.0 / EQUAL_PAINT_CUTOFF)).min(1.0);
-    let donor = if difference > 0.0 { on_brush } else { on_canvas };
+    let donor = if difference > 0.0 {
+        on_brush
+    } else {
+        on_canvas
+    };
     let share = 1.0 - exp_f32(LN_KEPT * travel);
     let amount = (donor * share * nearly_equal).min(MAX_TRANSFER * travel);
     if difference > 0.0 { amount } else { -amount }

@@ -24,10 +24,17 @@ impl Window {
         }
         let [width, height] = rect.cells();
         let tiles = rect.tiles().count();
-        let mut window =
-            Self { rect, width, height, wet: [const { None }; SLOTS], dirty: vec![false; tiles] };
+        let mut window = Self {
+            rect,
+            width,
+            height,
+            wet: [const { None }; SLOTS],
+            dirty: vec![false; tiles],
+        };
         for id in rect.tiles() {
-            let Some(tile) = &store.version(id).tile else { continue };
+            let Some(tile) = &store.version(id).tile else {
+                continue;
+            };
             let start = window.corner(id);
             for (slot, plane) in tile.wet() {
                 let to = window.wet[*slot].get_or_insert_with(|| vec![0.0; width * height]);
@@ -71,7 +78,10 @@ impl Window {
 
     /// The planes in use, in order of slot.
     pub fn planes(&self) -> impl Iterator<Item = (usize, &[f32])> {
-        self.wet.iter().enumerate().filter_map(|(slot, plane)| Some((slot, plane.as_deref()?)))
+        self.wet
+            .iter()
+            .enumerate()
+            .filter_map(|(slot, plane)| Some((slot, plane.as_deref()?)))
     }
 
     /// Counts of all paints in a cell.
@@ -113,7 +123,16 @@ impl Window {
             });
             let tile = Some(std::sync::Arc::new(Tile::new(planes)));
             *next += 1;
-            replaced(id, store.replace(id, Version { number: *next, tile }));
+            replaced(
+                id,
+                store.replace(
+                    id,
+                    Version {
+                        number: *next,
+                        tile,
+                    },
+                ),
+            );
         }
     }
 
@@ -137,7 +156,10 @@ mod tests {
     fn what_is_written_through_a_window_is_read_through_another() {
         let mut store = TileStore::new([200, 200]);
         let mut next = 0;
-        let rect = TileRect { from: [1, 0], to: [3, 2] };
+        let rect = TileRect {
+            from: [1, 0],
+            to: [3, 2],
+        };
         let mut window = Window::open(&mut store, rect).expect("free");
         let cell = 70 * window.width() + 65;
         window.plane_mut(3)[cell] = 5.0;
@@ -147,11 +169,17 @@ mod tests {
         assert_eq!(changed, vec![TileId { x: 2, y: 1 }]);
         window.close(&mut store);
         assert_eq!(store.counts()[3], 5);
-        let whole = TileRect { from: [0, 0], to: [4, 4] };
+        let whole = TileRect {
+            from: [0, 0],
+            to: [4, 4],
+        };
         let window = Window::open(&mut store, whole).expect("free again");
         let (slot, plane) = window.planes().next().expect("one plane");
         assert_eq!((slot, plane[70 * window.width() + 64 + 65]), (3, 5.0));
         assert_eq!(store.version(TileId { x: 2, y: 1 }).number, next);
-        assert!(Window::open(&mut store, whole).is_none(), "leases are exclusive");
+        assert!(
+            Window::open(&mut store, whole).is_none(),
+            "leases are exclusive"
+        );
     }
 }

@@ -101,13 +101,13 @@ impl<M: Message> CreditReceiver<M> {
     }
 
     /// The next message in order.
-    pub fn next(&mut self) -> Option<Received<M>> {
+    pub fn pop(&mut self) -> Option<Received<M>> {
         let next = self.ready.pop_front();
         self.counts.received += u64::from(next.is_some());
         next
     }
 
-    /// The message that [`next`](Self::next) would give.
+    /// The message that [`pop`](Self::pop) would give.
     #[must_use]
     pub fn peek(&self) -> Option<&Received<M>> {
         self.ready.front()
@@ -137,14 +137,18 @@ impl<M: Message> CreditReceiver<M> {
     }
 
     fn take_in(&mut self, key: &str, arrived_ns: u64, bytes: &[u8], recovered: bool) {
-        let Some((header, message)) = self.reader.read::<M>(key, bytes) else { return };
+        let Some((header, message)) = self.reader.read::<M>(key, bytes) else {
+            return;
+        };
         let origin = header.origin();
         let replay = header.flags.has(Flags::REPLAY);
         let first = header.flags.has(Flags::FIRST);
         if !self.streams.contains_key(&origin) {
             // The sender has started anew: what is left of its stream before means nothing now.
-            self.streams.retain(|other, _| other.source != origin.source);
-            self.ready.retain(|left| left.header.source != origin.source);
+            self.streams
+                .retain(|other, _| other.source != origin.source);
+            self.ready
+                .retain(|left| left.header.source != origin.source);
             let next = (first || !replay).then_some(header.seq);
             let topic = key.to_owned();
             let stream = Stream {
@@ -158,7 +162,9 @@ impl<M: Message> CreditReceiver<M> {
             };
             self.streams.insert(origin, stream);
         }
-        let Some(stream) = self.streams.get_mut(&origin) else { return };
+        let Some(stream) = self.streams.get_mut(&origin) else {
+            return;
+        };
         if stream.next.is_none() && first {
             stream.next = Some(header.seq);
             stream.held = stream.held.split_off(&header.seq);
@@ -170,7 +176,12 @@ impl<M: Message> CreditReceiver<M> {
             return;
         }
         let seq = header.seq;
-        let received = Received { key: key.to_owned(), arrived_ns, header, message };
+        let received = Received {
+            key: key.to_owned(),
+            arrived_ns,
+            header,
+            message,
+        };
         if stream.held.insert(seq, received).is_none() && recovered {
             self.counts.recovered += 1;
         }
@@ -179,7 +190,9 @@ impl<M: Message> CreditReceiver<M> {
 
     /// Follows up on a stream's gap.
     fn chase(&mut self, bus: &dyn Bus, origin: Origin, now_ns: u64) -> Result<(), BusError> {
-        let Some(stream) = self.streams.get_mut(&origin) else { return Ok(()) };
+        let Some(stream) = self.streams.get_mut(&origin) else {
+            return Ok(());
+        };
         let mut answers = Vec::new();
         for pending in &stream.asked {
             while let Some(Answer::Bytes(bytes)) = pending.try_recv() {
@@ -192,7 +205,9 @@ impl<M: Message> CreditReceiver<M> {
                 self.take_in(&topic, now_ns, message, true);
             }
         }
-        let Some(stream) = self.streams.get_mut(&origin) else { return Ok(()) };
+        let Some(stream) = self.streams.get_mut(&origin) else {
+            return Ok(());
+        };
         let Some((&seen, _)) = stream.held.first_key_value() else {
             stream.asked.clear();
             stream.askings = 0;
@@ -218,15 +233,28 @@ impl<M: Message> CreditReceiver<M> {
             stream.release(&mut self.ready);
             return Ok(());
         }
-        let request = GapRequest { epoch: origin.epoch, from, to: seen - 1 };
-        let gap_topic = self.topics.gap(self.topics.relative(&topic).unwrap_or(&topic));
-        let bytes = encode(&self.me, Flags::NONE, 0, now_ns, now_ns, &request)
-            .map_err(|source| BusError::Message { topic: gap_topic.clone(), source })?;
+        let request = GapRequest {
+            epoch: origin.epoch,
+            from,
+            to: seen - 1,
+        };
+        let gap_topic = self
+            .topics
+            .gap(self.topics.relative(&topic).unwrap_or(&topic));
+        let bytes =
+            encode(&self.me, Flags::NONE, 0, now_ns, now_ns, &request).map_err(|source| {
+                BusError::Message {
+                    topic: gap_topic.clone(),
+                    source,
+                }
+            })?;
         let limit = Duration::from_nanos(RETRY_NS * OPEN_QUESTIONS as u64);
         if stream.asked.len() == OPEN_QUESTIONS {
             stream.asked.pop_front();
         }
-        stream.asked.push_back(bus.ask(&gap_topic, bytes, limit, &self.wake)?);
+        stream
+            .asked
+            .push_back(bus.ask(&gap_topic, bytes, limit, &self.wake)?);
         stream.asked_ns = now_ns;
         stream.askings += 1;
         Ok(())
@@ -237,7 +265,9 @@ impl<M> Stream<M> {
     /// Moves what is in order to `ready`.
     fn release(&mut self, ready: &mut VecDeque<Received<M>>) {
         while let Some(next) = self.next {
-            let Some(received) = self.held.remove(&next) else { return };
+            let Some(received) = self.held.remove(&next) else {
+                return;
+            };
             ready.push_back(received);
             self.next = Some(next + 1);
         }
@@ -246,6 +276,8 @@ impl<M> Stream<M> {
 
 impl<M> std::fmt::Debug for CreditReceiver<M> {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.debug_struct("CreditReceiver").field("counts", &self.counts).finish_non_exhaustive()
+        f.debug_struct("CreditReceiver")
+            .field("counts", &self.counts)
+            .finish_non_exhaustive()
     }
 }

@@ -74,17 +74,30 @@ impl<M: Message> CreditSender<M> {
     /// [`BusError::Message`] where it exceeds its limit, [`BusError::Topic`].
     pub fn send(&mut self, flags: Flags, stamp: Stamp, message: &M) -> Result<u64, BusError> {
         let Stamp { now_ns, event_ns } = stamp;
-        let flags = if self.next == 0 { flags.with(Flags::FIRST) } else { flags };
+        let flags = if self.next == 0 {
+            flags.with(Flags::FIRST)
+        } else {
+            flags
+        };
         let seq = self.next;
-        let bytes = encode(&self.origin, flags, seq, event_ns, now_ns, message)
-            .map_err(|source| BusError::Message { topic: self.topic.clone(), source })?;
+        let bytes =
+            encode(&self.origin, flags, seq, event_ns, now_ns, message).map_err(|source| {
+                BusError::Message {
+                    topic: self.topic.clone(),
+                    source,
+                }
+            })?;
         if self.outstanding() == 0 {
             self.progress_ns = now_ns;
         }
         if self.ring.len() == RING {
             self.ring.pop_front();
         }
-        self.ring.push_back(Kept { seq, event_ns, bytes: bytes.clone() });
+        self.ring.push_back(Kept {
+            seq,
+            event_ns,
+            bytes: bytes.clone(),
+        });
         self.next += 1;
         self.publish.put(bytes)?;
         Ok(seq)

@@ -17,7 +17,10 @@ fn run(seed: u64, faults: Faults, total: u64, flags: Flags) -> Vec<u64> {
     let net = MemoryNet::new(seed, 1_000_000_000, faults);
     let (bus, topics, wake) = (net.bus(), Topics::new("t"), Wake::new());
     let topic = topics.sample("d");
-    let origin = Origin { source: 1, epoch: 7 };
+    let origin = Origin {
+        source: 1,
+        epoch: 7,
+    };
     let mut sender =
         CreditSender::<StylusSample>::new(&bus, &topics, &topic, origin, &wake).expect("a sender");
     let mut receiver =
@@ -26,11 +29,16 @@ fn run(seed: u64, faults: Faults, total: u64, flags: Flags) -> Vec<u64> {
     for _ in 0..200_000 {
         let now_ns = bus.now_ns();
         while sender.next_seq() < total && sender.has_credit() {
-            let stamp = Stamp { now_ns, event_ns: now_ns };
-            sender.send(flags, stamp, &StylusSample::away()).expect("sent");
+            let stamp = Stamp {
+                now_ns,
+                event_ns: now_ns,
+            };
+            sender
+                .send(flags, stamp, &StylusSample::away())
+                .expect("sent");
         }
         receiver.poll(&bus).expect("polled");
-        while let Some(received) = receiver.next() {
+        while let Some(received) = receiver.pop() {
             got.push(received.header.seq);
         }
         // Credit travels over the same bad network: lost with the same chance, told again when
@@ -65,17 +73,32 @@ proptest! {
 
 #[test]
 fn a_replay_that_is_joined_late_is_sought_from_its_first_message() {
-    let net = MemoryNet::new(3, 0, Faults { loss: 1.0, delay_ns: 0 });
+    let net = MemoryNet::new(
+        3,
+        0,
+        Faults {
+            loss: 1.0,
+            delay_ns: 0,
+        },
+    );
     let (bus, topics, wake) = (net.bus(), Topics::new("t"), Wake::new());
     let topic = topics.sample("d");
-    let origin = Origin { source: 1, epoch: 7 };
+    let origin = Origin {
+        source: 1,
+        epoch: 7,
+    };
     let mut sender =
         CreditSender::<StylusSample>::new(&bus, &topics, &topic, origin, &wake).expect("a sender");
     let mut receiver =
         CreditReceiver::<StylusSample>::new(&bus, &topics, &topic, origin, &wake).expect("one");
     for _ in 0..40 {
-        let stamp = Stamp { now_ns: 0, event_ns: 0 };
-        sender.send(Flags::REPLAY, stamp, &StylusSample::away()).expect("sent");
+        let stamp = Stamp {
+            now_ns: 0,
+            event_ns: 0,
+        };
+        sender
+            .send(Flags::REPLAY, stamp, &StylusSample::away())
+            .expect("sent");
     }
     net.set_faults(Faults::default());
     for step in 0..300 {
@@ -83,21 +106,36 @@ fn a_replay_that_is_joined_late_is_sought_from_its_first_message() {
         net.advance(STEP_NS);
         receiver.poll(&bus).expect("polled");
     }
-    let got: Vec<u64> = std::iter::from_fn(|| receiver.next()).map(|r| r.header.seq).collect();
+    let got: Vec<u64> = std::iter::from_fn(|| receiver.pop())
+        .map(|r| r.header.seq)
+        .collect();
     assert_eq!(got, (0..40).collect::<Vec<_>>());
 }
 
 #[test]
 fn a_live_gap_that_nobody_can_fill_is_given_up_and_counted() {
-    let net = MemoryNet::new(3, 0, Faults { loss: 1.0, delay_ns: 0 });
+    let net = MemoryNet::new(
+        3,
+        0,
+        Faults {
+            loss: 1.0,
+            delay_ns: 0,
+        },
+    );
     let (bus, topics, wake) = (net.bus(), Topics::new("t"), Wake::new());
     let topic = topics.sample("d");
-    let origin = Origin { source: 1, epoch: 7 };
+    let origin = Origin {
+        source: 1,
+        epoch: 7,
+    };
     let mut sender =
         CreditSender::<StylusSample>::new(&bus, &topics, &topic, origin, &wake).expect("a sender");
     let mut receiver =
         CreditReceiver::<StylusSample>::new(&bus, &topics, &topic, origin, &wake).expect("one");
-    let stamp = Stamp { now_ns: 0, event_ns: 0 };
+    let stamp = Stamp {
+        now_ns: 0,
+        event_ns: 0,
+    };
     let away = StylusSample::away();
     let send = |sender: &mut CreditSender<_>, loss: f64| {
         net.set_faults(Faults { loss, delay_ns: 0 });
@@ -112,7 +150,9 @@ fn a_live_gap_that_nobody_can_fill_is_given_up_and_counted() {
         receiver.poll(&bus).expect("polled");
         net.advance(STEP_NS);
     }
-    let got: Vec<u64> = std::iter::from_fn(|| receiver.next()).map(|r| r.header.seq).collect();
+    let got: Vec<u64> = std::iter::from_fn(|| receiver.pop())
+        .map(|r| r.header.seq)
+        .collect();
     assert_eq!(got, vec![0, 2]);
     assert_eq!(receiver.counts().lost, 1);
 }

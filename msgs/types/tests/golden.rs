@@ -1,0 +1,417 @@
+//! The bytes of every message, as they were when its version was fixed, and decoders that survive
+//! anything.
+
+use maulstick_types::brush::{BrushConsumed, BrushDef, BrushState, Contact, Solve};
+use maulstick_types::command::{After, Command, CommandReply, CommandRequest, GapRequest, Outcome};
+use maulstick_types::haptics::{ContactModel, FluidForce, ForceLaw, Grain, HermiteKnot};
+use maulstick_types::paint::{
+    BrushCredit, Entry, FrameHolds, FrameReply, FrameRequest, FrameTile, JournalEntry,
+    PaintConsumed, PaintStatus,
+};
+use maulstick_types::scene::{Light, PaintSlot, Scene, Surface, Well, WellKind};
+use maulstick_types::stylus::{
+    StylusInfo, StylusPose, StylusSample, StylusStatus, TakeEnd, TakeStatus,
+};
+use maulstick_types::{CATALOGUE, Flags, Message, Mixture, Origin, Pose, decode, encode};
+use proptest::prelude::*;
+
+fn pose() -> Pose {
+    Pose {
+        position_m: [0.1, -0.2, 0.3],
+        orientation: [0.0, 0.6, 0.0, 0.8],
+    }
+}
+
+fn after() -> After {
+    After {
+        brush: 7,
+        epoch: 8,
+        sequence: 9,
+    }
+}
+
+/// A line `Name/version hash hex` of a message, which must also come back from its bytes.
+fn line<M: Message + PartialEq + std::fmt::Debug>(message: &M) -> String {
+    let origin = Origin {
+        source: 0x0102_0304,
+        epoch: 0x0506_0708,
+    };
+    let flags = Flags::REPLAY.with(Flags::FIRST);
+    let bytes = encode(&origin, flags, 11, 12, 13, message).expect("within its limit");
+    let (header, back) = decode::<M>(&bytes).expect("its own bytes");
+    assert_eq!(
+        (&back, header.seq, header.event_ns, header.sent_ns),
+        (message, 11, 12, 13)
+    );
+    let hex: String = bytes.iter().map(|byte| format!("{byte:02x}")).collect();
+    format!(
+        "{}/{} {:08x} {hex}\n",
+        M::NAME,
+        M::VERSION,
+        M::schema().hash
+    )
+}
+
+fn all() -> String {
+    let mixture = Mixture::pure("Bone Black");
+    let sample = |pose: StylusPose| StylusSample {
+        senses: 5,
+        pose,
+        velocity_m_s: [1.0, 2.0, 3.0],
+        force_n: [0.5, 0.25, 0.125],
+        switches: 3,
+        in_range: true,
+    };
+    let pen = StylusPose::Contact {
+        point_m: [0.01, 0.02, 0.0],
+        tilt_rad: [0.1, -0.1],
+        twist_rad: 0.5,
+        pressure: 0.75,
+    };
+    let command = |command: Command| CommandRequest {
+        client: 1,
+        number: 2,
+        after: Some(after()),
+        command,
+    };
+    let model = |law: ForceLaw| ContactModel {
+        device: 1,
+        device_epoch: 2,
+        brush: "main".into(),
+        plane_point_m: [0.0; 3],
+        plane_normal: [0.0, 0.0, 1.0],
+        friction_static: 0.3,
+        friction_kinetic: 0.2,
+        viscous_n_s_m: 0.1,
+        grain: Grain {
+            amplitude: 0.01,
+            wavelength_m: 0.001,
+            seed: 4,
+        },
+        law,
+        head_length_m: 0.025,
+        time_to_live_ns: 5,
+        recovery_ns: 6,
+    };
+    let knot = HermiteKnot {
+        depth: 0.5,
+        force_n: 1.0,
+        slope_n: 2.0,
+    };
+    let local = ForceLaw::Local {
+        pose: pose(),
+        force_n: [1.0; 3],
+        stiffness_n_m: [[2.0; 3]; 3],
+    };
+    let well = |kind: WellKind| Well {
+        center_m: [0.1, 0.2],
+        radius_m: 0.01,
+        kind,
+    };
+    let entry = |entry: Entry| JournalEntry { index: 3, entry };
+    let reply = |outcome: Outcome| CommandReply { number: 4, outcome };
+    [
+        line(&sample(pen)),
+        line(&sample(StylusPose::Ferrule { pose: pose() })),
+        line(&StylusInfo {
+            device: "pen".into(),
+            driver: "hid".into(),
+            brush: "main".into(),
+            priority: -5,
+            senses: 1,
+            drives: 2,
+            rate_hz: 125.0,
+            max_force_n: 3.0,
+            max_stiffness_n_m: 400.0,
+            workspace_m: [1.0; 6],
+        }),
+        line(&StylusStatus {
+            samples: 1,
+            dropped: 2,
+            faults: vec!["late".into()],
+            lateness: vec![3, 4],
+            execution: vec![5],
+            force_n: 0.5,
+            foreign_models: 6,
+        }),
+        line(&TakeStatus {
+            epoch: 1,
+            position_ns: 2,
+            length_ns: 3,
+            sent: 4,
+            consumed: 5,
+            end: Some(TakeEnd {
+                after: after(),
+                samples: 6,
+            }),
+        }),
+        line(&model(ForceLaw::None)),
+        line(&model(ForceLaw::Linear {
+            k1_n: 0.8,
+            k2_n: 6.0,
+        })),
+        line(&model(ForceLaw::Hermite { knots: vec![knot] })),
+        line(&model(local)),
+        line(&model(ForceLaw::Rigid {
+            stiffness_n_m: 300.0,
+        })),
+        line(&FluidForce {
+            device: 1,
+            device_epoch: 2,
+            pose: pose(),
+            velocity: [1.0; 6],
+            wrench: [2.0; 6],
+            jacobian: [[3.0; 6]; 6],
+            time_to_live_ns: 4,
+            recovery_ns: 5,
+        }),
+        line(&BrushDef {
+            brush: "main".into(),
+            toml: "kind = 1".into(),
+            hash: 9,
+        }),
+        line(&BrushState {
+            device: 1,
+            device_epoch: 2,
+            device_seq: 3,
+            solves: vec![Solve {
+                event_ns: 4,
+                stroke: 5,
+                surface: 0,
+                flags: 1,
+                pose: pose(),
+                angles_rad: vec![[0.5, -0.5]],
+                contacts: vec![Contact {
+                    spine: 0,
+                    joint: 3,
+                    force_n: 0.25,
+                }],
+            }],
+        }),
+        line(&BrushConsumed {
+            device: 1,
+            device_epoch: 2,
+            next: 3,
+            brush_epoch: 4,
+            state: 5,
+        }),
+        line(&PaintConsumed {
+            brushes: vec![BrushCredit {
+                brush: 1,
+                epoch: 2,
+                next: 3,
+                wetness: 0.5,
+                film_m: 1e-4,
+                viscosity_m2_s: 0.01,
+            }],
+        }),
+        line(&Scene {
+            version: 1,
+            surfaces: vec![Surface {
+                id: 0,
+                pose: pose(),
+                zoom: 1.0,
+                cells: [64, 32],
+                cell_m: 2.5e-4,
+                ground: "gesso".into(),
+                tooth: "linen".into(),
+                tooth_seed: 2,
+                wells: vec![
+                    well(WellKind::Cleaner),
+                    well(WellKind::Paint {
+                        mixture: mixture.clone(),
+                    }),
+                ],
+            }],
+            paints: vec![PaintSlot {
+                name: "Bone Black".into(),
+                masstone: [0.01; 3],
+                tint: [0.5; 3],
+                file_hash: 3,
+            }],
+            light: Light {
+                direction: [0.0, 0.0, 1.0],
+                intensity: 1.0,
+                illuminant: "D65".into(),
+            },
+        }),
+        line(&entry(Entry::States {
+            brush: "main".into(),
+            epoch: 1,
+            from: 2,
+            to: 3,
+        })),
+        line(&entry(Entry::Command {
+            client: 1,
+            number: 2,
+            command: Command::Undo,
+        })),
+        line(&entry(Entry::Tick { count: 4 })),
+        line(&entry(Entry::Decision {
+            what: "backend cpu".into(),
+        })),
+        line(&FrameRequest {
+            surface: 0,
+            since: 1,
+            epoch: 2,
+            tiles: [0, 0, 4, 4],
+            level: 1,
+            wait_ms: 100,
+        }),
+        line(&FrameReply {
+            surface: 0,
+            epoch: 1,
+            version: 2,
+            level: 0,
+            cells: [64, 64],
+            journal: 3,
+            holds: vec![FrameHolds {
+                brush: 1,
+                epoch: 2,
+                next: 3,
+            }],
+            more: false,
+            tiles: vec![FrameTile {
+                x: 0,
+                y: 1,
+                planes: vec![1, 2, 3].into(),
+            }],
+        }),
+        line(&PaintStatus {
+            journal: 1,
+            steps: 2,
+            footprint_cells: 3,
+            lag_ns: 4,
+            memory_bytes: 5,
+            lost: 6,
+            refused: 7,
+        }),
+        line(&command(Command::Load {
+            brush: "main".into(),
+            mixture: mixture.clone(),
+        })),
+        line(&command(Command::Clean {
+            brush: "main".into(),
+        })),
+        line(&command(Command::Take {
+            brush: "main".into(),
+            device: 1,
+            device_epoch: 2,
+            loads: vec![mixture],
+        })),
+        line(&command(Command::Undo)),
+        line(&command(Command::Redo)),
+        line(&command(Command::Snapshot {
+            path: "p.png".into(),
+            ledger: Some("l.json".into()),
+        })),
+        line(&command(Command::Place {
+            surface: 1,
+            pose: pose(),
+            zoom: 2.0,
+        })),
+        line(&command(Command::Mark)),
+        line(&reply(Outcome::Done {
+            journal: 1,
+            detail: "done".into(),
+        })),
+        line(&reply(Outcome::Waiting)),
+        line(&reply(Outcome::Refused {
+            what: "no".into(),
+            help: "yes".into(),
+        })),
+        line(&GapRequest {
+            epoch: 1,
+            from: 2,
+            to: 3,
+        }),
+    ]
+    .concat()
+}
+
+/// The file holds the bytes of each version. A line that changes breaks every recorded take: add a
+/// field at the end, a version, and an upgrade instead.
+#[test]
+fn bytes_are_golden() {
+    let got = all();
+    let golden = include_str!("golden.txt");
+    for (got, golden) in got.lines().zip(golden.lines()) {
+        assert_eq!(got, golden);
+    }
+    assert_eq!(
+        got.lines().count(),
+        golden.lines().count(),
+        "print `all()` into golden.txt"
+    );
+    for entry in CATALOGUE {
+        let name = format!("{}/{} ", entry.name, entry.version);
+        assert!(golden.contains(&name), "{name} has no golden bytes");
+    }
+}
+
+#[test]
+fn a_header_has_the_documented_bytes() {
+    let bytes: Vec<u8> = {
+        let hex = include_str!("golden.txt")
+            .lines()
+            .next()
+            .and_then(|l| l.split(' ').nth(2));
+        let hex = hex.expect("a line");
+        (0..hex.len())
+            .step_by(2)
+            .map(|at| u8::from_str_radix(&hex[at..at + 2], 16).expect("hex"))
+            .collect()
+    };
+    assert_eq!(&bytes[..4], &[0x4c, 0x4d, 1, 0], "magic and version");
+    assert_eq!(
+        &bytes[8..20],
+        &[4, 3, 2, 1, 8, 7, 6, 5, 3, 0, 0, 0],
+        "source, epoch, flags"
+    );
+    assert_eq!(
+        &bytes[24..48],
+        &[
+            11, 0, 0, 0, 0, 0, 0, 0, 12, 0, 0, 0, 0, 0, 0, 0, 13, 0, 0, 0, 0, 0, 0, 0
+        ]
+    );
+}
+
+proptest! {
+    #[test]
+    fn no_bytes_make_a_decoder_panic(bytes in prop::collection::vec(any::<u8>(), 0..400)) {
+        for entry in CATALOGUE {
+            drop((entry.show)(&bytes));
+        }
+    }
+
+    #[test]
+    fn no_mutation_of_a_message_makes_a_decoder_panic(
+        place in any::<prop::sample::Index>(),
+        flips in prop::collection::vec((any::<prop::sample::Index>(), any::<u8>()), 1..4),
+        cut in any::<prop::sample::Index>(),
+    ) {
+        let golden: Vec<&str> = include_str!("golden.txt").lines().collect();
+        let hex = golden[place.index(golden.len())].split(' ').nth(2).unwrap_or_default();
+        let mut bytes: Vec<u8> = (48..hex.len() / 2)
+            .map(|at| u8::from_str_radix(&hex[2 * at..2 * at + 2], 16).unwrap_or(0))
+            .collect();
+        for (at, byte) in flips {
+            if !bytes.is_empty() {
+                let at = at.index(bytes.len());
+                bytes[at] = byte;
+            }
+        }
+        bytes.truncate(cut.index(bytes.len() + 1).max(bytes.len() / 2));
+        for entry in CATALOGUE {
+            drop((entry.show)(&bytes));
+        }
+    }
+}
+
+#[test]
+fn nine_hostile_bytes_do_not_claim_all_memory() {
+    let hostile = [0xff; 9];
+    for entry in CATALOGUE {
+        assert!((entry.show)(&hostile).is_err(), "{}", entry.name);
+    }
+}

@@ -1,0 +1,153 @@
+//! From a stylus sample to the first frame that holds it, for a puller without a window that asks
+//! again at once; a take is played at rate 1.
+
+use std::collections::BTreeMap;
+use std::path::PathBuf;
+use std::process::{Child, Command, Stdio};
+use std::time::{Duration, Instant};
+
+use maulstick_bus::typed::{Receiver, ask};
+use maulstick_bus::{Bus as _, BusError, Class, Dial, Queue, RigClock, RigFolder, Wake, ZenohBus};
+use maulstick_rig::Fault;
+use maulstick_types::Origin;
+use maulstick_types::brush::BrushState;
+use maulstick_types::paint::{FrameReply, FrameRequest};
+use maulstick_types::topics::Topics;
+
+use crate::render::performance;
+use crate::report::{Report, quantile, sorted};
+
+/// A rig that ends with this value.
+struct Rig(Child);
+
+impl Drop for Rig {
+    fn drop(&mut self) {
+        self.0.kill().ok();
+        self.0.wait().ok();
+    }
+}
+
+fn fault(error: impl std::fmt::Display) -> Fault {
+    Fault::failure(error.to_string())
+}
+
+/// The command beside this program.
+pub(crate) fn maulstick() -> Result<PathBuf, Fault> {
+    Ok(std::env::current_exe()
+        .map_err(fault)?
+        .with_file_name("maulstick"))
+}
+
+/// Measures and reports.
+pub(crate) fn run(report: &mut Report) -> Result<(), Fault> {
+    let place = tempfile::tempdir().map_err(fault)?;
+    let (take, seconds) = performance(place.path())?;
+    let child = Command::new(maulstick()?)
+        .args([
+            "up",
+            "--headless",
+            "--name",
+            "latency",
+            "--rate",
+            "1",
+            "--load",
+            "Bone Black",
+        ])
+        .args(["--snapshot", "end.png", "--play"])
+        .arg(&take)
+        .current_dir(place.path())
+        .env("XDG_RUNTIME_DIR", place.path())
+        .stdout(Stdio::null())
+        .stderr(Stdio::null())
+        .spawn()
+        .map_err(fault)?;
+    let mut rig = Rig(child);
+    let path = place.path().join("maulstick/latency");
+    let give_up = Instant::now() + Duration::from_secs(30);
+    let (folder, info) = loop {
+        match RigFolder::join_at(&path) {
+            Ok(joined) => break joined,
+            Err(error) if Instant::now() > give_up => return Err(error.into()),
+            Err(_) => std::thread::sleep(Duration::from_millis(5)),
+        }
+    };
+    let dial = Dial {
+        name: "puller".into(),
+        listen: Some(folder.locator("puller")),
+        connect: vec![info.endpoint.clone()],
+    };
+    let bus = ZenohBus::open(&dial, RigClock::with_offset(info.clock_offset_ns))?;
+    let latencies = pull(&bus, &Topics::new("latency"), seconds, &mut rig)?;
+    bus.close();
+    let all = sorted(latencies.milliseconds);
+    for (name, share) in [("frame.p50", 0.5), ("frame.p95", 0.95), ("frame.p99", 0.99)] {
+        report.row(name, quantile(&all, share), "ms");
+    }
+    report.row("frame.rate", latencies.frames as f64 / seconds, "1/s");
+    report.row(
+        "frame.lost",
+        latencies.lost as f64 / (all.len() + latencies.lost) as f64,
+        "share",
+    );
+    Ok(())
+}
+
+struct Latencies {
+    milliseconds: Vec<f64>,
+    frames: usize,
+    lost: usize,
+}
+
+fn pull(bus: &ZenohBus, topics: &Topics, seconds: f64, rig: &mut Rig) -> Result<Latencies, Fault> {
+    let wake = Wake::new();
+    let me = Origin {
+        source: 1,
+        epoch: 1,
+    };
+    let topic = topics.brush_state("main");
+    let class = Class::RealTime;
+    let mut states = Receiver::<BrushState>::new(bus, &topic, class, Queue::Ring(65_536), &wake)?;
+    let mut waiting: BTreeMap<u64, u64> = BTreeMap::new();
+    let mut latencies = Latencies {
+        milliseconds: Vec::new(),
+        frames: 0,
+        lost: 0,
+    };
+    let (mut since, mut epoch) = (0, 0);
+    let give_up = Instant::now() + Duration::from_secs_f64(seconds + 30.0);
+    while Instant::now() < give_up && rig.0.try_wait().map_err(fault)?.is_none() {
+        let request = FrameRequest {
+            surface: 0,
+            since,
+            epoch,
+            tiles: [0, 0, u32::MAX, u32::MAX],
+            level: 0,
+            wait_ms: 100,
+        };
+        let limit = Duration::from_millis(500);
+        let reply = match ask::<_, FrameReply>(bus, &topics.frame(), me, &request, limit) {
+            Ok(reply) => reply,
+            Err(BusError::NoAnswer { .. }) => continue,
+            Err(error) => return Err(error.into()),
+        };
+        let now_ns = bus.now_ns();
+        (since, epoch) = (reply.version, reply.epoch);
+        latencies.frames += usize::from(!reply.tiles.is_empty());
+        while let Some(state) = states.try_recv() {
+            if state.message.solves.iter().any(|solve| solve.stroke > 0) {
+                waiting.insert(state.header.seq, state.header.event_ns);
+            }
+        }
+        let Some(held) = reply.holds.first() else {
+            continue;
+        };
+        let rest = waiting.split_off(&held.next);
+        for event_ns in std::mem::replace(&mut waiting, rest).into_values() {
+            latencies
+                .milliseconds
+                .push(now_ns.saturating_sub(event_ns) as f64 * 1e-6);
+        }
+    }
+    latencies.lost = waiting.len();
+    Ok(latencies)
+}

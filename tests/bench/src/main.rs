@@ -1,0 +1,72 @@
+//! Benchmarks of Maulstick beside their peers.
+//!
+//! | module | area |
+//! | --- | --- |
+//! | [`bus`] | `bus`: a sample from a device to the brush node, beside a bare zenoh put |
+//! | [`latency`] | `latency`: from a stylus sample to the first frame that holds it |
+//! | [`render`] | `render`: the 30 s recording, offline |
+//! | [`report`] | rows and their table |
+
+mod bus;
+mod latency;
+mod render;
+mod report;
+
+use clap::Parser;
+use maulstick_rig::Fault;
+
+use crate::report::Report;
+
+/// Measures, beside peers
+#[derive(Parser)]
+#[command(name = "maulstick-bench", version)]
+struct Options {
+    /// What to measure: bus, latency, render; everything if absent
+    area: Option<String>,
+    /// As JSON
+    #[arg(long)]
+    json: bool,
+    /// The far end of the bus benchmark
+    #[arg(long, hide = true)]
+    far_end: Option<String>,
+}
+
+/// An area's name and what measures it.
+type Area = (&'static str, fn(&mut Report) -> Result<(), Fault>);
+
+const AREAS: [Area; 3] = [
+    ("bus", bus::run),
+    ("latency", latency::run),
+    ("render", render::run),
+];
+
+fn main() {
+    let options = Options::parse();
+    if let Err(fault) = measure(&options) {
+        eprintln!("{fault}");
+        std::process::exit(fault.code);
+    }
+}
+
+fn measure(options: &Options) -> Result<(), Fault> {
+    if let Some(locator) = &options.far_end {
+        return bus::far_end(locator);
+    }
+    let wanted = |name: &str| options.area.as_deref().is_none_or(|area| area == name);
+    let areas: Vec<&Area> = AREAS.iter().filter(|(name, _)| wanted(name)).collect();
+    if let (true, Some(area)) = (areas.is_empty(), &options.area) {
+        let names = AREAS.map(|(name, _)| name);
+        let nearest = Fault::nearest(area, names).unwrap_or_default();
+        return Err(
+            Fault::usage(format!("there is no benchmark called '{area}'")).help(format!(
+                "did you mean '{nearest}'? There are: {}",
+                names.join(", ")
+            )),
+        );
+    }
+    let mut report = Report::new();
+    for (_, run) in areas {
+        run(&mut report)?;
+    }
+    report.print(options.json)
+}

@@ -1,0 +1,108 @@
+//! Rows and their table.
+
+use maulstick_rig::Fault;
+use serde::Serialize;
+
+/// One measured number, with that of a peer measured in the same run.
+#[derive(Clone, Debug, Serialize)]
+pub(crate) struct Row {
+    name: String,
+    value: f64,
+    unit: &'static str,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    peer: Option<&'static str>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    peer_value: Option<f64>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    ratio: Option<f64>,
+}
+
+/// What was measured, and on what.
+#[derive(Clone, Debug, Serialize)]
+pub(crate) struct Report {
+    machine: String,
+    adapter: String,
+    rows: Vec<Row>,
+}
+
+impl Report {
+    /// An empty report of this machine.
+    pub(crate) fn new() -> Self {
+        let info = std::fs::read_to_string("/proc/cpuinfo").unwrap_or_default();
+        let model = info
+            .lines()
+            .find_map(|line| line.strip_prefix("model name"))
+            .unwrap_or("");
+        let model = model.trim_start_matches([' ', '\t', ':']);
+        let cores = std::thread::available_parallelism().map_or(1, usize::from);
+        Self {
+            machine: format!("{model}, {cores} cores, {}", std::env::consts::OS),
+            adapter: "cpu".to_owned(),
+            rows: Vec::new(),
+        }
+    }
+
+    /// A number alone.
+    pub(crate) fn row(&mut self, name: &str, value: f64, unit: &'static str) {
+        let name = name.to_owned();
+        self.rows.push(Row {
+            name,
+            value,
+            unit,
+            peer: None,
+            peer_value: None,
+            ratio: None,
+        });
+    }
+
+    /// A number and that of a peer; `ratio` is ours over theirs.
+    pub(crate) fn beside(
+        &mut self,
+        name: &str,
+        value: f64,
+        unit: &'static str,
+        peer: (&'static str, f64),
+    ) {
+        self.rows.push(Row {
+            name: name.to_owned(),
+            value,
+            unit,
+            peer: Some(peer.0),
+            peer_value: Some(peer.1),
+            ratio: Some(value / peer.1),
+        });
+    }
+
+    /// Prints the report as a table or as JSON.
+    pub(crate) fn print(&self, json: bool) -> Result<(), Fault> {
+        if json {
+            let text = serde_json::to_string_pretty(self)
+                .map_err(|error| Fault::failure(error.to_string()))?;
+            println!("{text}");
+            return Ok(());
+        }
+        println!("{}", self.machine);
+        for row in &self.rows {
+            print!("{:<28} {:>12.4} {:<8}", row.name, row.value, row.unit);
+            match (row.peer, row.peer_value, row.ratio) {
+                (Some(peer), Some(value), Some(ratio)) => {
+                    println!(" {peer} {value:.4}, ratio {ratio:.3}");
+                }
+                _ => println!(),
+            }
+        }
+        Ok(())
+    }
+}
+
+/// The value at a share of sorted ones.
+pub(crate) fn quantile(sorted: &[f64], share: f64) -> f64 {
+    let place = (share * (sorted.len().max(1) - 1) as f64).round() as usize;
+    sorted.get(place).copied().unwrap_or(f64::NAN)
+}
+
+/// Sorts.
+pub(crate) fn sorted(mut values: Vec<f64>) -> Vec<f64> {
+    values.sort_by(f64::total_cmp);
+    values
+}
