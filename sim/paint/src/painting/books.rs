@@ -1,0 +1,71 @@
+//! The painting's books.
+
+use maulstick_types::scene::{CANVAS, PALETTE};
+
+use super::Painting;
+use crate::ledger::{LedgerReport, Stocks, Tallies, balance};
+use crate::quantum::{add, quantum_m3};
+use crate::store::TileStore;
+
+impl Painting {
+    /// Bytes that the tiles take.
+    #[must_use]
+    pub fn bytes(&self) -> usize {
+        self.sheets.iter().map(|sheet| sheet.store.bytes()).sum()
+    }
+
+    /// Balances the books.
+    pub fn report(&mut self) -> LedgerReport {
+        self.commit();
+        let mut stocks = Stocks::default();
+        for track in self.brushes.values() {
+            add(&mut stocks.brush, track.load.counts());
+        }
+        let mut covered_cells = 0;
+        for sheet in &self.sheets {
+            match sheet.id {
+                CANVAS => {
+                    add(&mut stocks.canvas, &sheet.store.counts());
+                    covered_cells += covered(&sheet.store);
+                }
+                PALETTE => add(&mut stocks.palette, &sheet.store.counts()),
+                _ => {}
+            }
+        }
+        let names: Vec<String> = self
+            .scene
+            .paints
+            .iter()
+            .map(|slot| slot.name.clone())
+            .collect();
+        let (first, last) = self.span_ns.unwrap_or_default();
+        let tallies = Tallies {
+            steps: self.steps,
+            footprint_cells: self.footprint_cells,
+            covered_cells,
+            seconds: (last - first) as f64 * 1e-9,
+        };
+        balance(
+            &self.ledger,
+            &stocks,
+            &names,
+            quantum_m3(self.sheets[0].cell_m),
+            tallies,
+        )
+    }
+}
+
+/// Cells with paint.
+fn covered(store: &TileStore) -> u64 {
+    let mut count = 0;
+    for tile in store
+        .iter()
+        .filter_map(|(_, version)| version.tile.as_ref())
+    {
+        let cells = tile.wet().first().map_or(0, |(_, plane)| plane.len());
+        count += (0..cells)
+            .filter(|cell| tile.wet().iter().any(|(_, plane)| plane[*cell] > 0.0))
+            .count() as u64;
+    }
+    count
+}

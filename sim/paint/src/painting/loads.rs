@@ -1,0 +1,120 @@
+//! What brushes take up and lose: slots of paints, loads, cleaning, the loads of a take.
+
+use maulstick_types::Mixture;
+use maulstick_types::scene::PaintSlot;
+
+use super::{PaintRefusal, Painting};
+use crate::load::by_slot;
+use crate::quantum::SLOTS;
+
+impl Painting {
+    /// The slots of a mixture's paints; new paints get the next free ones.
+    pub(super) fn slots(&mut self, mixture: &Mixture) -> Result<Vec<(usize, f64)>, PaintRefusal> {
+        let mixture = self.library.check(mixture).map_err(PaintRefusal::paint)?;
+        for part in &mixture.parts {
+            if self.scene.paints.iter().any(|slot| slot.name == part.paint) {
+                continue;
+            }
+            if self.scene.paints.len() == SLOTS {
+                return Err(PaintRefusal::new(
+                    format!(
+                        "'{}' would be paint {} of this painting",
+                        part.paint,
+                        SLOTS + 1
+                    ),
+                    "a painting has at most 16 paints: mix it from those in use",
+                ));
+            }
+            let paint = self
+                .library
+                .find(&part.paint)
+                .map_err(PaintRefusal::paint)?;
+            let slot = self.studio.add(paint);
+            let black = vec![0.0; self.studio.wavelengths()];
+            let opaque = |films: &[(usize, f64)]| {
+                self.studio
+                    .colour(films, &black)
+                    .map(|channel| channel as f32)
+            };
+            // A tint is one part in ten of the strongest white's scattering.
+            let masstone = opaque(&[(slot, 0.01)]);
+            let white = self.studio.sample(&maulstick_optics::Spectrum::flat(0.9));
+            let tint = self
+                .studio
+                .colour(&[(slot, 1e-5)], &white)
+                .map(|channel| channel as f32);
+            let file_hash = self.library.hash();
+            let name = part.paint.clone();
+            self.scene.paints.push(PaintSlot {
+                name,
+                masstone,
+                tint,
+                file_hash,
+            });
+            self.scene.version += 1;
+        }
+        let find = |name: &str| {
+            self.scene
+                .paints
+                .iter()
+                .position(|slot| slot.name == name)
+                .ok_or_else(|| PaintRefusal::new(format!("'{name}' has no slot"), "load it first"))
+        };
+        by_slot(&mixture, find)
+    }
+
+    /// Loads a brush afresh.
+    ///
+    /// # Errors
+    /// [`PaintRefusal`] for an unknown brush or paint, or a 17th paint.
+    pub fn load(&mut self, brush: &str, mixture: &Mixture) -> Result<(), PaintRefusal> {
+        self.brush(brush)?;
+        let slots = self.slots(mixture)?;
+        self.begin_step(&format!("load {brush}"));
+        self.fill(brush, &slots)?;
+        self.history.end();
+        Ok(())
+    }
+
+    pub(super) fn fill(&mut self, brush: &str, slots: &[(usize, f64)]) -> Result<(), PaintRefusal> {
+        let cell_m = self.sheets[0].cell_m;
+        let track = self.brush(brush)?;
+        let left = track.load.take_all();
+        let file = track.file.clone();
+        let given = track.load.fill(&file, slots, cell_m);
+        self.ledger.to_cleaner(&left);
+        self.ledger.from_tube(&given);
+        Ok(())
+    }
+
+    /// Takes all paint off a brush.
+    ///
+    /// # Errors
+    /// [`PaintRefusal`] for an unknown brush.
+    pub fn clean(&mut self, brush: &str) -> Result<(), PaintRefusal> {
+        self.brush(brush)?;
+        self.begin_step(&format!("clean {brush}"));
+        let left = self.brush(brush)?.load.take_all();
+        self.ledger.to_cleaner(&left);
+        self.history.end();
+        Ok(())
+    }
+
+    /// Gives a brush the loads that its next strokes take in turn.
+    ///
+    /// # Errors
+    /// As [`load`](Self::load).
+    pub fn take(&mut self, brush: &str, loads: &[Mixture]) -> Result<(), PaintRefusal> {
+        self.brush(brush)?;
+        for mixture in loads {
+            self.slots(mixture)?;
+        }
+        self.close_windows();
+        let track = self.brush(brush)?;
+        track.loads = loads.to_vec();
+        track.next_load = 0;
+        track.stroke = 0;
+        track.path = None;
+        Ok(())
+    }
+}
