@@ -42,12 +42,24 @@ fn the_recording_ten_times_at_every_rate_is_the_rendered_picture() {
     place.done(&render);
     for (rate, runs) in [("max", 10), ("4", 10), ("1", 10), ("0.5", 10)] {
         for run in 0..runs {
-            let mut args = vec!["up", "--headless", "--play", "take.mcap", "--snapshot", "live.png"];
+            let mut args = vec![
+                "up",
+                "--headless",
+                "--play",
+                "take.mcap",
+                "--snapshot",
+                "live.png",
+            ];
             args.extend(["--ledger", "live.json", "--rate", rate]);
             args.extend(LOADS);
             let mut launcher = Launcher::start(place.maulstick(&args));
             let status = launcher.wait(support::PATIENCE);
-            assert_eq!(status.code(), Some(0), "rate {rate}, run {run}: {}", launcher.said());
+            assert_eq!(
+                status.code(),
+                Some(0),
+                "rate {rate}, run {run}: {}",
+                launcher.said()
+            );
             let what = format!("rate {rate}, run {run}");
             assert_same(&place.bytes("live.png"), &place.bytes("offline.png"), &what);
             let ledger: serde_json::Value =
