@@ -7,35 +7,11 @@ use std::process::{Command, Stdio};
 use std::time::Duration;
 
 use maulstick_bus::typed::Receiver;
-use maulstick_bus::{Bus, Class, Dial, Queue, RigClock, RigFolder, Wake, ZenohBus};
+use maulstick_bus::{Bus, Class, Queue, Wake};
 use maulstick_types::command::{Command as Order, CommandRequest};
 use maulstick_types::paint::PaintStatus;
-use maulstick_types::topics::Topics;
 use maulstick_types::{Flags, Origin, encode};
-use support::{Launcher, PATIENCE, Place, wait_for};
-
-/// A client of the rig in a place.
-fn join(place: &Place) -> (ZenohBus, Topics) {
-    let (_, info) = RigFolder::join_at(&place.path("maulstick/studio")).expect("a rig");
-    let dial = Dial {
-        name: "test".into(),
-        listen: None,
-        connect: vec![info.endpoint],
-    };
-    let clock = RigClock::with_offset(info.clock_offset_ns);
-    (
-        ZenohBus::open(&dial, clock).expect("joined"),
-        Topics::new(&info.rig),
-    )
-}
-
-/// Cubic metres of paint on the canvas.
-fn on_canvas(place: &Place) -> f64 {
-    place.done(&["snapshot", "-o", "p.png", "--ledger", "l.json"]);
-    let ledger: serde_json::Value = serde_json::from_slice(&place.bytes("l.json")).expect("JSON");
-    assert_eq!(ledger["quanta_missing"], 0);
-    ledger["accounts_m3"]["canvas"].as_f64().expect("a number")
-}
+use support::{Launcher, PATIENCE, Place, join, on_canvas, wait_for};
 
 #[test]
 fn a_device_in_python_paints() {

@@ -4,6 +4,9 @@ mod support;
 
 use std::time::{Duration, Instant};
 
+use maulstick_bus::typed::Receiver;
+use maulstick_bus::{Class, Queue, Wake};
+use maulstick_types::stylus::StylusSample;
 use nix::sys::signal::Signal;
 use support::display::Display;
 use support::{Launcher, PATIENCE, Place, assert_same, signal, wait_for};
@@ -292,4 +295,43 @@ fn a_mouse_stroke_in_the_window_is_painted_and_shown() {
             .then_some(())
     });
     assert!(undone.is_some(), "the undone stroke is still shown");
+}
+
+#[test]
+fn a_simulated_hand_paints_and_feels_the_canvas() {
+    let place = Place::new();
+    place.done(&["demo", "-o", "demo.mcap"]);
+    let config = String::from_utf8(place.done(&["up", "--print-config"]).stdout).expect("UTF-8");
+    let config = config.replace("# hand = ", "hand = ");
+    std::fs::write(place.path("rig.toml"), config).expect("written");
+    let mut launcher = Launcher::start(place.maulstick(&["up", "--headless", "--rig", "rig.toml"]));
+    launcher.wait_says("is up");
+    let (bus, topics) = support::join(&place);
+    let wake = Wake::new();
+    let (topic, class) = (topics.sample("phantom"), Class::RealTime);
+    let mut samples =
+        Receiver::<StylusSample>::new(&bus, &topic, class, Queue::Ring(1024), &wake).expect("one");
+    // The hand presses and the canvas presses back, upward and never above the limit.
+    let felt = wait_for(PATIENCE, || {
+        let force = samples.try_recv()?.message.force_n;
+        let size = force.iter().map(|f| f * f).sum::<f64>().sqrt();
+        assert!(size <= 3.0 + 1e-9, "{size} N");
+        (force[2] > 0.1).then_some(())
+    });
+    assert!(felt.is_some(), "no force: {}", launcher.said());
+    let painted = wait_for(PATIENCE, || {
+        (support::on_canvas(&place) > 0.0).then_some(())
+    });
+    assert!(painted.is_some(), "nothing painted");
+    // Without its brush the force fades, and comes back with it.
+    signal(
+        place.pid("maulstick-brush").expect("a brush"),
+        Signal::SIGKILL,
+    );
+    let faded = wait_for(PATIENCE, || {
+        let sample = samples.try_recv()?.message;
+        (sample.in_range && sample.force_n == [0.0; 3]).then_some(())
+    });
+    assert!(faded.is_some(), "the force is held");
+    bus.close();
 }

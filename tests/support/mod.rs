@@ -16,6 +16,8 @@ use std::process::{Child, Command, ExitStatus, Output, Stdio};
 use std::sync::{Arc, Mutex};
 use std::time::{Duration, Instant};
 
+use maulstick_bus::{Dial, RigClock, RigFolder, ZenohBus};
+use maulstick_types::topics::Topics;
 use nix::sys::signal::{Signal, kill};
 use nix::unistd::Pid;
 
@@ -208,4 +210,27 @@ pub fn assert_same(one: &[u8], two: &[u8], what: &str) {
         one.len(),
         two.len()
     );
+}
+
+/// A client of the rig in a place.
+pub fn join(place: &Place) -> (ZenohBus, Topics) {
+    let (_, info) = RigFolder::join_at(&place.path("maulstick/studio")).expect("a rig");
+    let dial = Dial {
+        name: "test".into(),
+        listen: None,
+        connect: vec![info.endpoint],
+    };
+    let clock = RigClock::with_offset(info.clock_offset_ns);
+    (
+        ZenohBus::open(&dial, clock).expect("joined"),
+        Topics::new(&info.rig),
+    )
+}
+
+/// Cubic metres of paint on the canvas.
+pub fn on_canvas(place: &Place) -> f64 {
+    place.done(&["snapshot", "-o", "p.png", "--ledger", "l.json"]);
+    let ledger: serde_json::Value = serde_json::from_slice(&place.bytes("l.json")).expect("JSON");
+    assert_eq!(ledger["quanta_missing"], 0);
+    ledger["accounts_m3"]["canvas"].as_f64().expect("a number")
 }

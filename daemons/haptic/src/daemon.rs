@@ -65,7 +65,7 @@ struct Daemon {
 }
 
 fn driver(member: &Member, settings: &HapticSettings) -> Result<Box<dyn Driver>, Fault> {
-    let Some(path) = &settings.hand else {
+    let Some(path) = settings.hand.as_ref().or(settings.device.hand.as_ref()) else {
         return Ok(Box::new(Simulated::at_rest()));
     };
     let take = Take::read(path)?;

@@ -108,6 +108,12 @@ pub fn run(options: &UpOptions) -> Result<i32, Fault> {
             })
         }
     };
+    for device in &mut config.device {
+        if let Some(hand) = &mut device.hand {
+            Take::read(hand)?;
+            *hand = absolute(hand)?;
+        }
+    }
     let folder = RigFolder::create(&config.rig.name)?;
     let nodes = plan::nodes(&config, options.headless, performance.is_some())?;
     let first_load = match loads.into_iter().next() {

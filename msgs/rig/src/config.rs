@@ -1,7 +1,7 @@
 //! The settings of a rig: `rig.toml`, with the defaults of `default.toml`.
 
 use std::collections::BTreeMap;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use maulstick_types::topics::check_name;
 use serde::{Deserialize, Serialize};
@@ -100,9 +100,9 @@ pub struct DeviceSection {
     /// Largest force, N.
     #[serde(default = "default_force")]
     pub max_force_n: f64,
-    /// Points of the pressure curve.
-    #[serde(default = "straight_curve")]
-    pub pressure_curve: Vec<[f64; 2]>,
+    /// A take that a simulated hand follows, feeling the canvas.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub hand: Option<PathBuf>,
 }
 
 fn no_turn() -> [f64; 4] {
@@ -111,10 +111,6 @@ fn no_turn() -> [f64; 4] {
 
 fn default_force() -> f64 {
     3.0
-}
-
-fn straight_curve() -> Vec<[f64; 2]> {
-    vec![[0.0, 0.0], [1.0, 1.0]]
 }
 
 /// `[[brush]]`.

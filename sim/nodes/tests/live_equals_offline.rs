@@ -318,3 +318,57 @@ fn a_single_sample_less_would_be_seen() {
     }
     assert!(picture(offline_painting.painting_mut(), 0).rgb != offline());
 }
+
+#[test]
+fn a_live_brush_merges_while_paint_is_busy_and_keeps_the_path() {
+    let mut live = Live::new(MemoryNet::new(1, START_NS, Faults::default()));
+    live.command(
+        1,
+        Command::Load {
+            brush: "main".into(),
+            mixture: loads()[0].clone(),
+        },
+    );
+    let samples = take();
+    let mut states = 0;
+    for (number, (time_ns, sample)) in samples.iter().enumerate() {
+        let now_ns = live.net.bus().now_ns();
+        let stamp = Stamp {
+            now_ns,
+            event_ns: now_ns,
+        };
+        assert!(*time_ns < u64::MAX);
+        live.player.forgive();
+        live.player.send(Flags::NONE, stamp, sample).expect("sent");
+        live.net.advance(8_000_000);
+        live.brush.turn().expect("turned");
+        // Paint has its turn only now and then.
+        if number % 12 == 0 {
+            live.paint.turn().expect("turned");
+        }
+        states = live.brush.sent();
+    }
+    for _ in 0..200 {
+        live.net.advance(5_000_000);
+        live.brush.turn().expect("turned");
+        live.paint.turn().expect("turned");
+    }
+    assert!(
+        states < samples.len() as u64 * 3 / 4,
+        "{states} states of {} samples",
+        samples.len()
+    );
+    let merged = live.paint.painting_mut().report();
+    let mut offline =
+        Offline::new(painting(), "main", file(), 0.5, vec![loads()[0].clone()]).expect("set up");
+    for (time_ns, sample) in &samples {
+        offline.sample(START_NS + time_ns, sample).expect("painted");
+    }
+    let whole = offline.painting_mut().report();
+    assert_eq!(merged.quanta_missing, 0);
+    let near = |a: u64, b: u64| (a as f64 / b as f64 - 1.0).abs() < 0.03;
+    assert!(
+        near(merged.covered_cells, whole.covered_cells),
+        "{merged:?} {whole:?}"
+    );
+}
