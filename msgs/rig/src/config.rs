@@ -13,7 +13,7 @@ pub const DEFAULT: &str = include_str!("default.toml");
 /// Drivers of devices.
 pub const DRIVERS: [&str; 1] = ["simulated"];
 /// Paint models.
-pub const MODELS: [&str; 1] = ["deposit"];
+pub const MODELS: [&str; 1] = ["impasto"];
 /// Backends of the paint model.
 pub const BACKENDS: [&str; 2] = ["auto", "cpu"];
 /// Priority of the mouse over the window.
@@ -145,7 +145,7 @@ pub struct PaintSection {
 impl Default for PaintSection {
     fn default() -> Self {
         Self {
-            model: "deposit".into(),
+            model: "impasto".into(),
             backend: "auto".into(),
         }
     }
@@ -418,7 +418,7 @@ mod tests {
         );
         let text = error("brush = \"main\"", "brush = \"mian\"");
         assert!(text.contains("'mian'") && text.contains("'main'"), "{text}");
-        assert!(error("model = \"deposit\"", "model = \"depsoit\"").contains("'deposit'"));
+        assert!(error("model = \"impasto\"", "model = \"impatso\"").contains("'impasto'"));
     }
 
     #[test]

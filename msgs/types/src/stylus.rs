@@ -90,6 +90,14 @@ impl StylusSample {
         }
     }
 
+    /// Whether the stylus says itself that it touches nothing: out of range, or a pen without
+    /// pressure.
+    #[must_use]
+    pub fn in_air(&self) -> bool {
+        let lifted = matches!(self.pose, StylusPose::Contact { pressure, .. } if pressure <= 0.0);
+        lifted || !self.in_range
+    }
+
     /// What is wrong with the numbers, if anything: a device in any language may send them.
     #[must_use]
     pub fn fault(&self) -> Option<&'static str> {

@@ -35,14 +35,6 @@ impl Plane {
         }
     }
 
-    /// A motion in desk lengths as the surface sees it: lengths are divided by the zoom.
-    #[must_use]
-    pub fn to_surface(&self, in_desk: &Rigid) -> Rigid {
-        let mut local = self.to_desk.inverse().after(in_desk);
-        local.translation /= self.zoom;
-        local
-    }
-
     /// Its normal toward the painter, desk frame.
     #[must_use]
     pub fn normal(&self) -> DVec3 {
@@ -182,25 +174,5 @@ mod tests {
             "a touch begins at the contact point"
         );
         assert!((at(1.0).z + 0.5 * length * 0.75f64.sqrt()).abs() < 1e-12);
-    }
-
-    #[test]
-    fn zoom_divides_lengths() {
-        let plane = Plane {
-            id: CANVAS,
-            to_desk: Rigid {
-                translation: DVec3::new(-0.1, -0.1, 0.0),
-                ..Rigid::IDENTITY
-            },
-            zoom: 2.0,
-            size_m: [0.1; 2],
-            cell_m: 2.5e-4,
-        };
-        let pose = Rigid {
-            translation: DVec3::new(0.0, 0.0, 0.03),
-            ..Rigid::IDENTITY
-        };
-        let local = plane.to_surface(&pose).translation;
-        assert!((local - DVec3::new(0.05, 0.05, 0.015)).length() < 1e-15);
     }
 }

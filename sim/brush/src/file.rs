@@ -6,18 +6,30 @@
 //! width_mm = 10.0          # widest
 //! length_mm = 25.0         # out of the ferrule
 //! profile = [[0.0, 0.8], [0.3, 1.0], [1.0, 0.1]]  # place along the head, share of half the width
-//! [spine]
+//! [spines]                 # that bend: one in the middle and a ring around it
+//! ring = 6
+//! ring_share = 0.7         # of the head's radius, where the ring stands
 //! joints = 3
 //! bending_stiffness_n_mm2 = 150.0   # of the whole head
+//! damping = 0.01           # torque of inner friction by that of a joint bent by 1 rad
+//! [strips]                 # that paint: bristles that follow the spines
+//! count = 384
+//! seed = 1                 # where they stand and how unruly each is
+//! width_mm = 0.25
+//! thickness_mm = 0.1
+//! lift_mm = 0.2            # the most unruly one keeps off the surface when hardly pressed
+//! sink_mm = 0.1            # deeper into the tooth when fully pressed
+//! open = 0.5               # width of the pressed point by that of the head
 //! [contact]
 //! friction = 0.25
 //! [load]
-//! film_um = 150.0          # of a freshly loaded head
+//! film_um = 200.0          # on the strips of a freshly loaded head
+//! inside_um = 200.0        # within them, as if spread over them
 //! ```
 
 use serde::{Deserialize, Serialize};
 
-use crate::spine::Spine;
+use crate::tuft::Tuft;
 
 /// The brushes of the library: name and file.
 pub const LIBRARY: [(&str, &str); 1] = [("round", include_str!("../library/round.toml"))];
@@ -60,14 +72,48 @@ pub struct Head {
     pub profile: Vec<[f64; 2]>,
 }
 
-/// The spine's springs.
+/// The spines, which bend.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct SpineSection {
-    /// Number of joints.
+pub struct SpinesSection {
+    /// Number of spines around the middle one.
+    pub ring: usize,
+    /// Where they stand, as a share of the head's radius.
+    pub ring_share: f64,
+    /// Number of joints of each.
     pub joints: usize,
     /// Bending stiffness EI of the whole head, N·mm².
     pub bending_stiffness_n_mm2: f64,
+    /// Torque of a joint's inner friction by its spring's torque at 1 rad.
+    pub damping: f64,
+}
+
+impl SpinesSection {
+    /// Number of spines.
+    #[must_use]
+    pub fn number(&self) -> usize {
+        self.ring + 1
+    }
+}
+
+/// The bristle strips, which paint.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct StripsSection {
+    /// How many.
+    pub count: usize,
+    /// Seed of their places and of how unruly each is.
+    pub seed: u64,
+    /// Width, mm.
+    pub width_mm: f64,
+    /// Thickness, mm.
+    pub thickness_mm: f64,
+    /// How far the most unruly one keeps off the surface while the head is hardly pressed, mm.
+    pub lift_mm: f64,
+    /// How much deeper the fully pressed head reaches into the tooth, mm.
+    pub sink_mm: f64,
+    /// Width of the fully pressed point by that of the head.
+    pub open: f64,
 }
 
 /// Contact with the surface.
@@ -82,8 +128,10 @@ pub struct ContactSection {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct LoadSection {
-    /// Film on a freshly loaded head, µm.
+    /// Film on the strips of a freshly loaded head, µm.
     pub film_um: f64,
+    /// Paint inside them, as thick as if it were spread over them, µm.
+    pub inside_um: f64,
 }
 
 /// A brush file.
@@ -94,8 +142,10 @@ pub struct BrushFile {
     pub kind: String,
     /// The head's shape.
     pub head: Head,
-    /// The spine's springs.
-    pub spine: SpineSection,
+    /// The spines, which bend.
+    pub spines: SpinesSection,
+    /// The bristle strips, which paint.
+    pub strips: StripsSection,
     /// Contact with the surface.
     pub contact: ContactSection,
     /// What the head carries.
@@ -167,38 +217,58 @@ impl BrushFile {
     }
 
     fn check(&self) -> Result<(), BrushError> {
+        let (head, spines, strips) = (&self.head, &self.spines, &self.strips);
+        within("head.width_mm", head.width_mm, 0.1..=300.0, "0.1 to 300")?;
+        within("head.length_mm", head.length_mm, 0.5..=500.0, "0.5 to 500")?;
+        within("spines.ring", spines.ring as f64, 3.0..=24.0, "3 to 24")?;
         within(
-            "head.width_mm",
-            self.head.width_mm,
-            0.1..=300.0,
-            "0.1 to 300",
+            "spines.ring_share",
+            spines.ring_share,
+            0.05..=1.0,
+            "0.05 to 1",
         )?;
+        within("spines.joints", spines.joints as f64, 1.0..=16.0, "1 to 16")?;
         within(
-            "head.length_mm",
-            self.head.length_mm,
-            0.5..=500.0,
-            "0.5 to 500",
-        )?;
-        within(
-            "spine.joints",
-            self.spine.joints as f64,
-            1.0..=64.0,
-            "1 to 64",
-        )?;
-        let stiffness = self.spine.bending_stiffness_n_mm2;
-        within(
-            "spine.bending_stiffness_n_mm2",
-            stiffness,
+            "spines.bending_stiffness_n_mm2",
+            spines.bending_stiffness_n_mm2,
             1e-6..=1e9,
             "1e-6 to 1e9",
         )?;
+        within("spines.damping", spines.damping, 0.0..=1.0, "0 to 1")?;
+        within(
+            "strips.count",
+            strips.count as f64,
+            1.0..=4096.0,
+            "1 to 4096",
+        )?;
+        within(
+            "strips.width_mm",
+            strips.width_mm,
+            0.01..=50.0,
+            "0.01 to 50",
+        )?;
+        within(
+            "strips.thickness_mm",
+            strips.thickness_mm,
+            0.0..=10.0,
+            "0 to 10",
+        )?;
+        within("strips.lift_mm", strips.lift_mm, 0.0..=10.0, "0 to 10")?;
+        within("strips.sink_mm", strips.sink_mm, 0.0..=10.0, "0 to 10")?;
+        within("strips.open", strips.open, 0.0..=2.0, "0 to 2")?;
         within(
             "contact.friction",
             self.contact.friction,
             0.0..=2.0,
             "0 to 2",
         )?;
-        within("load.film_um", self.load.film_um, 0.0..=5000.0, "0 to 5000")?;
+        within("load.film_um", self.load.film_um, 0.0..=2000.0, "0 to 2000")?;
+        within(
+            "load.inside_um",
+            self.load.inside_um,
+            0.0..=2000.0,
+            "0 to 2000",
+        )?;
         let mut last = -1.0;
         for [place, radius] in &self.head.profile {
             within("head.profile (radius)", *radius, 0.0..=1.0, "0 to 1")?;
@@ -235,7 +305,9 @@ impl BrushFile {
         let mut brush = self.clone();
         brush.head.width_mm = width_mm;
         brush.head.length_mm *= scale;
-        brush.spine.bending_stiffness_n_mm2 *= scale * scale;
+        brush.spines.bending_stiffness_n_mm2 *= scale * scale;
+        // Finer strips have fewer bristles each: a head has as many strips at any size.
+        brush.strips.width_mm *= scale;
         Ok(brush)
     }
 
@@ -264,20 +336,10 @@ impl BrushFile {
         half * (r0 + t * (r1 - r0))
     }
 
-    /// Area of the head's surface, m²: the sum of the rings along it.
+    /// The spines in their seats.
     #[must_use]
-    pub fn surface_m2(&self) -> f64 {
-        const RINGS: usize = 64;
-        let ring = |i: usize| self.radius_m((i as f64 + 0.5) / RINGS as f64);
-        (0..RINGS).map(ring).sum::<f64>() * 2.0 * std::f64::consts::PI * self.length_m()
-            / RINGS as f64
-    }
-
-    /// The spine.
-    #[must_use]
-    pub fn spine(&self) -> Spine {
-        let ei = self.spine.bending_stiffness_n_mm2 * 1e-6;
-        Spine::uniform(self.length_m(), self.spine.joints, ei)
+    pub fn tuft(&self) -> Tuft {
+        Tuft::of(self)
     }
 }
 
@@ -295,7 +357,7 @@ mod tests {
                 Ok(brush.clone())
             );
             let double = brush.scaled_to(2.0 * brush.head.width_mm).expect("scaled");
-            assert!((double.surface_m2() / brush.surface_m2() - 4.0).abs() < 1e-9);
+            assert!((double.radius_m(0.3) / brush.radius_m(0.3) - 2.0).abs() < 1e-12);
             assert!((double.length_m() / brush.length_m() - 2.0).abs() < 1e-12);
         }
         assert!(
@@ -315,8 +377,8 @@ mod tests {
                 .to_string()
         };
         assert!(error("friction = 0.25", "frictoin = 0.25").contains("frictoin"));
-        assert!(error("joints = 3", "joints = 0").contains("spine.joints is 0"));
-        assert!(error("joints = 3", "joints = 65").contains("spine.joints is 65"));
+        assert!(error("joints = 3", "joints = 0").contains("spines.joints is 0"));
+        assert!(error("count = 384", "count = 5000").contains("strips.count is 5000"));
         assert!(error("length_mm = 25.0", "length_mm = -1.0").contains("head.length_mm is -1"));
         assert!(error("friction = 0.25", "friction = nan").contains("contact.friction is NaN"));
         assert!(error("[0.25, 1.0]", "[0.95, 1.0]").contains("rising order"));

@@ -7,21 +7,27 @@
 //! | --- | --- |
 //! | [`file`] | the brush file and the library of brushes |
 //! | [`spine`] | a chain of segments: directions, joint angles, joints |
-//! | [`energy`] | spring and friction: value, gradient, Hessian |
+//! | [`tuft`] | where the spines stand in the ferrule |
+//! | [`energy`] | spring, friction, damping: value, gradient, Hessian |
 //! | [`qp`] | the quadratic program of one Newton step |
 //! | [`solver`] | the constrained minimum; a whole solve reads from top to bottom |
+//! | [`head`] | the bristle strips between the spines |
 //! | [`desk`] | surfaces, and where a stylus holds the ferrule |
 //! | [`model`] | the brush that follows a stylus |
 
 pub mod desk;
 pub mod energy;
 pub mod file;
+pub mod head;
 pub mod model;
 pub mod qp;
 pub mod solver;
 pub mod spine;
+pub mod tuft;
 
 pub use file::{BrushError, BrushFile};
+pub use head::{Head, HeadPose};
 pub use model::BrushModel;
 pub use solver::{Solution, Solver};
 pub use spine::{Spine, SpineShape};
+pub use tuft::{Seat, Tuft};

@@ -1,16 +1,17 @@
 //! The brush that follows a stylus: samples in, solved states out.
 
 use glam::DVec3;
-use maulstick_num::geometry::Rigid;
+use maulstick_num::geometry::{Rigid, nlerp};
 use maulstick_types::Origin;
 use maulstick_types::brush::{BrushState, Contact, Solve, solve_flags};
 use maulstick_types::scene::Scene;
 use maulstick_types::stylus::StylusSample;
 
-use crate::desk::{Desk, aim, ferrule};
+use crate::desk::{Desk, Plane, aim, ferrule};
 use crate::file::BrushFile;
 use crate::solver::{Settings, Solver, Touch};
-use crate::spine::{Spine, SpineShape};
+use crate::spine::SpineShape;
+use crate::tuft::{Seat, Tuft};
 
 /// Contacts less than this apart are one stroke, ns.
 pub const STROKE_GAP_NS: u64 = 150_000_000;
@@ -18,13 +19,17 @@ pub const STROKE_GAP_NS: u64 = 150_000_000;
 pub const RESTART_NS: u64 = 100_000_000;
 /// The handle is held off the surface by at least this share of the head's length.
 const LEAST_HEIGHT: f64 = 0.05;
+/// A brush in contact moves at most this far between two solves, cells.
+const SOLVE_CELLS: f64 = 2.0;
+/// Solves between two samples at most.
+const MOST_SOLVES: f64 = 64.0;
 
 /// A brush in the hand.
 #[derive(Debug)]
 pub struct BrushModel {
     file: BrushFile,
     depth_share: f64,
-    spine: Spine,
+    tuft: Tuft,
     settings: Settings,
     solver: Solver,
     desk: Option<Desk>,
@@ -34,21 +39,34 @@ pub struct BrushModel {
     last_contact_ns: u64,
 }
 
-/// The brush after a sample.
+/// A spine and what it touches.
+#[derive(Clone, Debug)]
+struct HeldSpine {
+    shape: SpineShape,
+    touches: Vec<Touch>,
+}
+
+/// The brush after a sample. Lengths are the desk's, axes those of the surface.
 #[derive(Clone, Debug)]
 struct Held {
     event_ns: u64,
     surface: u32,
     brush: Rigid,
-    shape: SpineShape,
-    touches: Vec<Touch>,
+    spines: Vec<HeldSpine>,
+}
+
+impl Held {
+    fn touches(&self) -> bool {
+        let mut touches = self.spines.iter().flat_map(|spine| &spine.touches);
+        touches.any(is_touching)
+    }
 }
 
 impl BrushModel {
     /// A brush; `depth_share` is the share of its head's length that full pressure presses in.
     #[must_use]
     pub fn new(file: BrushFile, depth_share: f64) -> Self {
-        let spine = file.spine();
+        let tuft = file.tuft();
         let settings = Settings {
             friction: file.contact.friction,
             ..Settings::default()
@@ -56,7 +74,7 @@ impl BrushModel {
         Self {
             file,
             depth_share,
-            spine,
+            tuft,
             settings,
             solver: Solver::default(),
             desk: None,
@@ -95,93 +113,142 @@ impl BrushModel {
     pub fn force_n(&self) -> f64 {
         self.held
             .iter()
-            .flat_map(|held| &held.touches)
+            .flat_map(|held| &held.spines)
+            .flat_map(|spine| &spine.touches)
             .map(|touch| touch.force_n)
             .sum()
     }
 
-    /// Follows one sample of the device `origin`; none while there is no scene.
+    /// Follows one sample of the device `origin`: none while there is no scene, else a solve for the
+    /// sample after as many on the way to it as keep a touching brush from moving more than two
+    /// cells at once. A pen that lands or lifts does so at its sample.
     ///
     /// Another device, time that does not advance and a gap of over .1 s restart the solver at the
     /// new pose: the solve says so, and nothing is painted from the one before to it.
-    pub fn follow(
-        &mut self,
-        origin: Origin,
-        event_ns: u64,
-        sample: &StylusSample,
-    ) -> Option<Solve> {
+    pub fn follow(&mut self, origin: Origin, event_ns: u64, sample: &StylusSample) -> Vec<Solve> {
         if self.follows != Some(origin) {
             self.follows = Some(origin);
             self.held = None;
         }
+        let Some(plane) = self.plane_under(sample) else {
+            return Vec::new();
+        };
         let length = self.file.length_m();
-        let desk = self.desk.as_ref()?;
-        let touching = self
-            .held
-            .as_ref()
-            .filter(|held| held.touches.iter().any(is_touching));
-        let kept = touching.and_then(|held| desk.plane(held.surface));
-        let plane = *kept.or_else(|| desk.under(aim(sample, length)))?;
         let in_desk = ferrule(sample, length, self.depth_share, plane.normal());
-        let mut brush = plane.to_surface(&in_desk);
+        let mut brush = plane.to_desk.inverse().after(&in_desk);
         if !sample.in_range {
             brush.translation.z = brush.translation.z.max(2.0 * length);
         }
-        let floor = LEAST_HEIGHT * length;
-        brush.translation.z = brush.translation.z.max(floor);
+        brush.translation.z = brush.translation.z.max(LEAST_HEIGHT * length);
         let usable = self.held.take().filter(|held| {
             event_ns > held.event_ns
                 && event_ns - held.event_ns <= RESTART_NS
                 && held.surface == plane.id
         });
-        let restarted = usable.is_none();
-        let mut held = usable.unwrap_or_else(|| self.fresh(plane.id, &brush));
-        held.event_ns = event_ns;
-        held.shape
-            .turn(brush.rotation * held.brush.rotation.conjugate());
-        held.shape.base = brush.rotation * DVec3::NEG_Z;
-        held.shape.root = brush.translation;
-        held.brush = brush;
-        let solution = self.solver.solve(
-            &self.spine,
-            &mut held.shape,
-            &mut held.touches,
-            &self.settings,
-        );
-        let mut flags = if restarted { solve_flags::RESTARTED } else { 0 };
-        if !solution.converged {
-            flags |= solve_flags::NOT_CONVERGED;
+        let Some(held) = usable else {
+            let held = self.fresh(plane.id, &brush);
+            let mut solve = self.solve(held, &brush, event_ns, plane.zoom);
+            solve.flags |= solve_flags::RESTARTED;
+            return vec![solve];
+        };
+        let parts = if held.touches() && !sample.in_air() {
+            self.parts(&held, &brush, plane.cell_m * plane.zoom)
+        } else {
+            1
+        };
+        let (start, start_ns) = (held.brush, held.event_ns);
+        let mut solves = Vec::with_capacity(parts as usize);
+        let mut next = Some(held);
+        for part in 1..=parts {
+            let t = part as f64 / parts as f64;
+            let at = Rigid {
+                rotation: nlerp(start.rotation, brush.rotation, t),
+                translation: start.translation.lerp(brush.translation, t),
+            };
+            let ns = start_ns + (event_ns - start_ns) * part / parts;
+            if let Some(held) = next.take() {
+                solves.push(self.solve(held, &at, ns, plane.zoom));
+            }
+            next = self.held.take();
         }
-        let contacts: Vec<Contact> = held
-            .touches
-            .iter()
-            .enumerate()
-            .filter(|(_, touch)| is_touching(touch))
-            .map(|(i, touch)| Contact {
-                spine: 0,
-                joint: u16::try_from(i + 1).unwrap_or(u16::MAX),
-                force_n: touch.force_n as f32,
-            })
-            .collect();
+        self.held = next;
+        solves
+    }
+
+    /// The surface that a sample is over; a touching brush stays on the one that it touches.
+    fn plane_under(&self, sample: &StylusSample) -> Option<Plane> {
+        let desk = self.desk.as_ref()?;
+        let touching = self.held.as_ref().filter(|held| held.touches());
+        let kept = touching.and_then(|held| desk.plane(held.surface));
+        kept.or_else(|| desk.under(aim(sample, self.file.length_m())))
+            .copied()
+    }
+
+    /// Into how many parts the motion to `brush` is cut, on cells of `cell_m`.
+    fn parts(&self, held: &Held, brush: &Rigid, cell_m: f64) -> u64 {
+        let tip = DVec3::NEG_Z * self.file.length_m();
+        let moved = |p: DVec3| (brush.point(p) - held.brush.point(p)).length();
+        let cells = moved(tip).max(moved(DVec3::ZERO)) / cell_m;
+        (cells / SOLVE_CELLS).ceil().clamp(1.0, MOST_SOLVES) as u64
+    }
+
+    /// Bends all spines of a brush that has moved to `brush`.
+    fn solve(&mut self, mut held: Held, brush: &Rigid, event_ns: u64, zoom: f64) -> Solve {
+        let turn = brush.rotation * held.brush.rotation.conjugate();
+        let mut flags = 0;
+        let mut contacts = Vec::new();
+        let joints = self.tuft.spine.joints();
+        let mut angles_rad = Vec::with_capacity(self.tuft.seats.len() * joints);
+        for (number, (spine, seat)) in held.spines.iter_mut().zip(&self.tuft.seats).enumerate() {
+            let frame = seat.held(brush);
+            spine.shape.turn(turn);
+            spine.shape.base = frame.rotation * DVec3::NEG_Z;
+            spine.shape.root = frame.translation;
+            let solution = self.solver.solve(
+                &self.tuft.spine,
+                &mut spine.shape,
+                &mut spine.touches,
+                &self.settings,
+            );
+            if !solution.converged {
+                flags |= solve_flags::NOT_CONVERGED;
+            }
+            for (i, touch) in spine
+                .touches
+                .iter()
+                .enumerate()
+                .filter(|(_, t)| is_touching(t))
+            {
+                contacts.push(Contact {
+                    spine: number as u16,
+                    joint: (i + 1) as u16,
+                    force_n: touch.force_n as f32,
+                });
+            }
+            spine.shape.angles(frame.rotation, &mut angles_rad);
+        }
+        held.event_ns = event_ns;
+        held.brush = *brush;
         let stroke = if contacts.is_empty() {
             0
         } else {
             self.stroke(event_ns)
         };
-        let mut angles_rad = Vec::with_capacity(self.spine.joints());
-        held.shape.angles(brush.rotation, &mut angles_rad);
-        let pose = brush.to_pose();
         let surface = held.surface;
         self.held = Some(held);
-        Some(Solve {
+        let in_surface = Rigid {
+            translation: brush.translation / zoom,
+            ..*brush
+        };
+        Solve {
             event_ns,
             stroke,
             surface,
             flags,
-            pose,
+            pose: in_surface.to_pose(),
             angles_rad,
             contacts,
-        })
+        }
     }
 
     /// As [`follow`](Self::follow), as a whole message.
@@ -192,12 +259,12 @@ impl BrushModel {
         event_ns: u64,
         sample: &StylusSample,
     ) -> Option<BrushState> {
-        let solve = self.follow(origin, event_ns, sample)?;
-        Some(BrushState {
+        let solves = self.follow(origin, event_ns, sample);
+        (!solves.is_empty()).then_some(BrushState {
             device: origin.source,
             device_epoch: origin.epoch,
             device_seq,
-            solves: vec![solve],
+            solves,
         })
     }
 
@@ -212,13 +279,19 @@ impl BrushModel {
     }
 
     fn fresh(&self, surface: u32, brush: &Rigid) -> Held {
-        let joints = self.spine.joints();
+        let joints = self.tuft.spine.joints();
+        let straight = |seat: &Seat| {
+            let frame = seat.held(brush);
+            HeldSpine {
+                shape: SpineShape::straight(frame.translation, frame.rotation, joints),
+                touches: vec![Touch::default(); joints],
+            }
+        };
         Held {
             event_ns: 0,
             surface,
             brush: *brush,
-            shape: SpineShape::straight(brush.translation, brush.rotation, joints),
-            touches: vec![Touch::default(); joints],
+            spines: self.tuft.seats.iter().map(straight).collect(),
         }
     }
 }
@@ -296,6 +369,7 @@ mod tests {
         let mut stroke = |ms: u64, pressure: f64| {
             model
                 .follow(DEVICE, ms * MS, &pen(0.0, 0.0, pressure))
+                .last()
                 .expect("a solve")
                 .stroke
         };
@@ -315,9 +389,8 @@ mod tests {
     fn time_that_stands_still_or_jumps_restarts_the_solver() {
         let mut model = brush();
         let mut restarted = |ms: u64| {
-            let solve = model
-                .follow(DEVICE, ms * MS, &pen(0.0, 0.0, 0.3))
-                .expect("a solve");
+            let solve = model.follow(DEVICE, ms * MS, &pen(0.0, 0.0, 0.3));
+            let solve = solve.last().expect("a solve");
             solve.flags & solve_flags::RESTARTED != 0
         };
         assert!(restarted(1000));
@@ -331,9 +404,7 @@ mod tests {
     fn a_pressed_brush_bends_and_pushes_back() {
         let mut model = brush();
         let mut force = |ms: u64, pressure: f64| {
-            model
-                .follow(DEVICE, ms * MS, &pen(0.0, 0.0, pressure))
-                .expect("a solve");
+            model.follow(DEVICE, ms * MS, &pen(0.0, 0.0, pressure));
             model.force_n()
         };
         let (light, full) = (force(1000, 0.1), force(1010, 1.0));
@@ -363,12 +434,15 @@ mod tests {
                     pressure,
                 };
                 let sample = StylusSample { pose, in_range, ..StylusSample::away() };
-                let solve = model.follow(DEVICE, ns, &sample).expect("a solve");
-                prop_assert!(solve.pose.is_valid());
-                prop_assert!(solve.angles_rad.iter().flatten().all(|angle| angle.is_finite()));
-                prop_assert!(solve.flags & solve_flags::NOT_CONVERGED == 0, "{solve:?}");
+                let solves = model.follow(DEVICE, ns, &sample);
+                prop_assert!(solves.last().is_some_and(|solve| solve.event_ns == ns));
+                for solve in &solves {
+                    prop_assert!(solve.pose.is_valid());
+                    prop_assert!(solve.angles_rad.iter().flatten().all(|angle| angle.is_finite()));
+                    prop_assert!(solve.flags & solve_flags::NOT_CONVERGED == 0, "{solve:?}");
+                }
                 if !in_range {
-                    prop_assert!(solve.contacts.is_empty());
+                    prop_assert!(solves.last().is_some_and(|solve| solve.contacts.is_empty()));
                 }
             }
         }

@@ -15,6 +15,8 @@ pub struct Spine {
     pub lengths_m: Vec<f64>,
     /// Stiffness K of the joint at the beginning of each segment, N·m/rad.
     pub stiffness: Vec<f64>,
+    /// Inner friction D of each joint (Baxter 2004, eq. 3.4), N·m.
+    pub damping: Vec<f64>,
 }
 
 impl Spine {
@@ -28,8 +30,16 @@ impl Spine {
         stiffness[0] *= 2.0;
         Self {
             lengths_m: vec![segment; joints],
+            damping: vec![0.0; joints],
             stiffness,
         }
+    }
+
+    /// With inner friction: `share` of the torque that the spring of a joint has at 1 rad.
+    #[must_use]
+    pub fn damped(mut self, share: f64) -> Self {
+        self.damping = self.stiffness.iter().map(|k| share * k).collect();
+        self
     }
 
     /// Number of joints, which is the number of segments.

@@ -33,6 +33,7 @@ fn buckling_loads() {
         let spine = Spine {
             lengths_m: vec![length / joints as f64; joints],
             stiffness,
+            damping: vec![0.0; joints],
         };
         let down = rotation(DVec3::X, 1e-4);
         let mut shape = SpineShape::straight(DVec3::new(0.0, 0.0, 0.997), down, joints);
@@ -63,6 +64,7 @@ fn a_dragged_spine_follows_the_tractrix() {
         let spine = Spine {
             lengths_m: vec![length],
             stiffness: vec![1.0],
+            damping: vec![0.0],
         };
         let root = DVec3::new(0.0, 0.0, height);
         let mut shape = SpineShape::straight(root, DQuat::IDENTITY, 1);

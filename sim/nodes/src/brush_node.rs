@@ -289,7 +289,7 @@ impl BrushNode {
         };
         let solves: Vec<Solve> = waiting
             .iter()
-            .filter_map(|w| self.model.follow(w.origin, w.event_ns, &w.sample))
+            .flat_map(|w| self.model.follow(w.origin, w.event_ns, &w.sample))
             .collect();
         let chunks = solves.chunks(SOLVES).count();
         for (place, solves) in solves.chunks(SOLVES).enumerate() {

@@ -1,32 +1,14 @@
-//! The head of a brush in the frame of a surface, as the paint sees it.
+//! The head of a brush on a surface: where it is, and how far it goes.
 
-use glam::DVec3;
-use maulstick_brush::{BrushFile, Spine, SpineShape};
+use maulstick_brush::head::STATIONS;
+use maulstick_brush::{Head, HeadPose};
 use maulstick_num::geometry::{Rigid, nlerp};
 use maulstick_types::brush::Solve;
 
-/// A point of the spine with the head's radius around it, in cells of the surface.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Ball {
-    /// Place, cells.
-    pub at: [f32; 3],
-    /// Radius, cells.
-    pub radius: f32,
-}
-
-/// A head: the balls at the root and at the end of each segment; between them it tapers.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct HeadPose {
-    /// From the ferrule to the point.
-    pub balls: Vec<Ball>,
-}
-
-/// What of a brush file the paint needs.
-#[derive(Clone, Debug)]
-pub struct HeadShape {
-    spine: Spine,
-    radii_m: Vec<f64>,
-}
+/// Cells around the strips that paint may be pushed to.
+const BORDER: i64 = 2;
+/// A strip lower than this may touch, cells.
+const NEAR: f32 = 3.0;
 
 /// A solved pose, between two of which the head moves.
 #[derive(Clone, Debug, PartialEq)]
@@ -35,12 +17,23 @@ pub struct Waypoint {
     angles: Vec<[f32; 2]>,
 }
 
+/// How a brush's lengths are seen on a surface.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Scale {
+    /// Side of a cell in the surface's own lengths, m.
+    pub cell_m: f64,
+    /// Desk lengths per surface length.
+    pub zoom: f64,
+}
+
 impl Waypoint {
-    /// The pose of a solve.
+    /// The pose of a solve on a surface; with the brush's lengths, not the surface's.
     #[must_use]
-    pub fn of(solve: &Solve) -> Self {
+    pub fn of(solve: &Solve, scale: Scale) -> Self {
+        let mut brush = Rigid::from(&solve.pose);
+        brush.translation *= scale.zoom;
         Self {
-            brush: Rigid::from(&solve.pose),
+            brush,
             angles: solve.angles_rad.clone(),
         }
     }
@@ -61,120 +54,59 @@ impl Waypoint {
         };
         Self { brush, angles }
     }
-}
 
-impl HeadShape {
-    /// The shape of a brush's head.
-    #[must_use]
-    pub fn of(file: &BrushFile) -> Self {
-        let spine = file.spine();
-        let whole = spine.length_m();
-        let mut radii_m = vec![file.radius_m(0.0)];
-        let mut along = 0.0;
-        for length in &spine.lengths_m {
-            along += length;
-            radii_m.push(file.radius_m(along / whole));
-        }
-        Self { spine, radii_m }
-    }
-
-    /// Whether a solve has as many joints as the brush.
-    #[must_use]
-    pub fn fits(&self, solve: &Solve) -> bool {
-        solve.angles_rad.len() == self.spine.joints()
-    }
-
-    /// The head at a pose, in cells of side `cell_m`.
-    pub fn pose(&self, waypoint: &Waypoint, cell_m: f64, into: &mut HeadPose) {
-        let Rigid {
-            rotation,
-            translation,
-        } = waypoint.brush;
-        let shape = SpineShape::from_angles(translation, rotation, &waypoint.angles);
-        into.balls.clear();
-        let mut at: DVec3 = translation;
-        let ends = shape.directions.iter().zip(&self.spine.lengths_m);
-        let mut ball = |at: DVec3, radius: f64| {
-            into.balls.push(Ball {
-                at: (at / cell_m).as_vec3().to_array(),
-                radius: (radius / cell_m) as f32,
-            });
-        };
-        ball(at, self.radii_m[0]);
-        for ((direction, length), radius) in ends.zip(&self.radii_m[1..]) {
-            at += *direction * *length;
-            ball(at, *radius);
-        }
+    /// The head there, in cells of the surface.
+    pub fn pose(&self, head: &Head, scale: Scale, into: &mut HeadPose) {
+        let per_m = 1.0 / (scale.cell_m * scale.zoom);
+        head.pose_scaled(&self.brush, &self.angles, per_m, into);
     }
 }
 
-impl HeadPose {
-    /// The cells that the head may cover, from the first up to but not with the second.
-    #[must_use]
-    pub fn bounds(&self) -> ([i64; 2], [i64; 2]) {
-        let (mut from, mut to) = ([i64::MAX; 2], [i64::MIN; 2]);
-        for ball in &self.balls {
-            for i in 0..2 {
-                from[i] = from[i].min((ball.at[i] - ball.radius).floor() as i64);
-                to[i] = to[i].max((ball.at[i] + ball.radius).ceil() as i64 + 1);
+/// The cells around all strips lower than `height` cells, from the first up to but not with the
+/// second; none where all are higher.
+#[must_use]
+pub fn low_bounds(head: &Head, pose: &HeadPose, height: f32) -> Option<([i64; 2], [i64; 2])> {
+    let strips = head.strips();
+    let (mut from, mut to) = ([f32::MAX; 2], [f32::MIN; 2]);
+    let row = |station: usize| station * strips..(station + 1) * strips;
+    let is_low = |station: usize| pose.z[row(station)].iter().any(|z| *z < height);
+    let mut reached = false;
+    for station in (0..STATIONS).rev() {
+        // A strip may come down between two stations, so the next one above counts as well.
+        let low = is_low(station);
+        if low || reached {
+            for (axis, plane) in [&pose.x, &pose.y].into_iter().enumerate() {
+                for at in &plane[row(station)] {
+                    from[axis] = from[axis].min(*at);
+                    to[axis] = to[axis].max(*at);
+                }
             }
         }
-        (from, to)
+        reached = low;
     }
-
-    /// The farthest that a ball in contact moves between two poses, cells: along the surface, or
-    /// deeper into it.
-    #[must_use]
-    pub fn motion(&self, next: &Self) -> f64 {
-        let low = |ball: &Ball| ball.at[2] < ball.radius;
-        self.balls
-            .iter()
-            .zip(&next.balls)
-            .filter(|(a, b)| low(a) || low(b))
-            .map(|(a, b)| {
-                let d: [f64; 3] = std::array::from_fn(|i| f64::from(b.at[i]) - f64::from(a.at[i]));
-                (d[0] * d[0] + d[1] * d[1]).sqrt().max(-d[2])
-            })
-            .fold(0.0, f64::max)
-    }
+    (from[0] <= to[0]).then(|| {
+        (
+            from.map(|v| v.floor() as i64 - BORDER),
+            to.map(|v| v.ceil() as i64 + BORDER + 1),
+        )
+    })
 }
 
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn a_straight_head_stands_under_its_ferrule() {
-        let file = BrushFile::library("round").expect("round");
-        let shape = HeadShape::of(&file);
-        let waypoint = Waypoint {
-            brush: Rigid {
-                translation: DVec3::new(0.01, 0.02, 0.03),
-                ..Rigid::IDENTITY
-            },
-            angles: vec![[0.0; 2]; 3],
-        };
-        let mut pose = HeadPose::default();
-        shape.pose(&waypoint, 2.5e-4, &mut pose);
-        assert_eq!(pose.balls.len(), 4);
-        let tip = pose.balls[3];
-        assert!(
-            (tip.at[0] - 40.0).abs() < 1e-4 && (tip.at[2] - 20.0).abs() < 1e-3,
-            "{tip:?}"
-        );
-        let (from, to) = pose.bounds();
-        assert!(from[0] < 25 && to[0] > 55 && from[1] < 65 && to[1] > 95);
+/// The farthest that a strip near the surface moves between two poses, cells: along the surface, or
+/// deeper into it.
+#[must_use]
+pub fn motion(from: &HeadPose, to: &HeadPose) -> f64 {
+    let mut farthest = 0.0f32;
+    for i in 0..from.z.len() {
+        let [dx, dy, dz] = [
+            to.x[i] - from.x[i],
+            to.y[i] - from.y[i],
+            to.z[i] - from.z[i],
+        ];
+        let deeper = dz.min(0.0);
+        let square = (dx * dx + dy * dy).max(deeper * deeper);
+        let near = from.z[i].min(to.z[i]) < NEAR;
+        farthest = farthest.max(if near { square } else { 0.0 });
     }
-
-    #[test]
-    fn halfway_between_two_poses_is_halfway() {
-        let at = |x: f64| Waypoint {
-            brush: Rigid {
-                translation: DVec3::new(x, 0.0, 0.03),
-                ..Rigid::IDENTITY
-            },
-            angles: vec![[0.2 * x as f32, 0.0]; 3],
-        };
-        assert_eq!(at(0.0).toward(&at(1.0), 0.5), at(0.5));
-    }
+    f64::from(farthest.sqrt())
 }

@@ -9,18 +9,18 @@
 //! | [`quantum`] | the unit in which paint is counted |
 //! | [`tile`], [`store`], [`window`] | tiles, their versions, and windows leased on them |
 //! | [`head`], [`path`] | the head of a brush in space, and its motion cut into steps |
-//! | [`footprint`], [`transfer`] | the cells under the head, and what each receives |
-//! | [`model`], [`deposit`] | paint models |
+//! | [`tooth`], [`relief`] | what catches paint |
+//! | [`model`], [`impasto`] | paint models |
+//! | [`transfer`] | how much goes between brush and canvas |
 //! | [`load`], [`ledger`], [`history`] | what a brush carries, the books, undo |
 //! | [`setup`] | the scene of a new painting |
 //! | [`painting`], [`sequencer`] | the painting and its journal |
 //! | [`display`], [`picture`] | unlit colour for the view, and pictures as files |
 
-pub mod deposit;
 pub mod display;
-pub mod footprint;
 pub mod head;
 pub mod history;
+pub mod impasto;
 pub mod ledger;
 pub mod load;
 pub mod model;
@@ -28,10 +28,12 @@ pub mod painting;
 pub mod path;
 pub mod picture;
 pub mod quantum;
+pub mod relief;
 pub mod sequencer;
 pub mod setup;
 pub mod store;
 pub mod tile;
+pub mod tooth;
 pub mod transfer;
 pub mod window;
 

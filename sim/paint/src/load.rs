@@ -1,68 +1,166 @@
-//! What a brush carries.
+//! What a brush carries: a texture over its strips, a film on their surface and paint inside.
 
-use maulstick_brush::BrushFile;
 use maulstick_types::Mixture;
 
-use crate::quantum::{Counts, QUANTUM_M, SLOTS};
+use crate::model::BrushTraits;
+use crate::quantum::{Counts, SLOTS};
 
-/// The paint on a brush: counts by slot, spread as one film over the head's surface.
+/// Texels along a strip.
+pub const ALONG: usize = 16;
+
+/// One paint on a brush: counts by texel, `strip · ALONG + along`, 0 at the ferrule.
+#[derive(Clone, Debug, PartialEq, Eq)]
+struct Held {
+    film: Vec<u32>,
+    inside: Vec<u32>,
+}
+
+/// The paint on a brush.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct BrushLoad {
-    counts: Counts,
+    texels: usize,
+    held: [Option<Box<Held>>; SLOTS],
+    /// Counts of all paints in each texel's film.
+    films: Vec<u32>,
 }
 
 impl BrushLoad {
-    /// A clean brush.
+    /// A clean brush with this many strips.
     #[must_use]
-    pub fn clean() -> Self {
-        Self { counts: [0; SLOTS] }
+    pub fn clean(strips: usize) -> Self {
+        let texels = strips * ALONG;
+        Self {
+            texels,
+            held: [const { None }; SLOTS],
+            films: vec![0; texels],
+        }
+    }
+
+    /// Number of texels.
+    #[must_use]
+    pub fn texels(&self) -> usize {
+        self.texels
     }
 
     /// Counts by slot.
     #[must_use]
-    pub fn counts(&self) -> &Counts {
-        &self.counts
+    pub fn counts(&self) -> Counts {
+        let sum = |plane: &[u32]| plane.iter().map(|count| u64::from(*count)).sum::<u64>();
+        std::array::from_fn(|slot| {
+            self.held[slot]
+                .as_ref()
+                .map_or(0, |held| sum(&held.film) + sum(&held.inside))
+        })
     }
 
     /// All counts.
     #[must_use]
     pub fn total(&self) -> u64 {
-        self.counts.iter().sum()
+        self.counts().iter().sum()
+    }
+
+    /// Counts of a texel's film.
+    #[must_use]
+    pub fn film(&self, texel: usize) -> u32 {
+        self.films[texel]
+    }
+
+    /// Counts of the thickest film.
+    #[must_use]
+    pub fn thickest(&self) -> u32 {
+        self.films.iter().copied().max().unwrap_or(0)
     }
 
     /// Takes all paint off.
     pub fn take_all(&mut self) -> Counts {
-        std::mem::replace(&mut self.counts, [0; SLOTS])
+        let counts = self.counts();
+        *self = Self::clean(self.texels / ALONG);
+        counts
     }
 
-    /// Takes `amount` of a slot off; the caller has seen that it is there.
-    pub fn take(&mut self, slot: usize, amount: u64) {
-        self.counts[slot] -= amount;
-    }
-
-    /// Fills a clean brush from tubes and returns what they gave: the film of the brush file over
-    /// the head's surface, divided by the mixture's shares, in cells of `cell_m`.
-    pub fn fill(&mut self, file: &BrushFile, mixture: &[(usize, f64)], cell_m: f64) -> Counts {
-        let whole = file.load.film_um * 1e-6 / QUANTUM_M * head_cells(file, cell_m);
-        let mut given = [0; SLOTS];
+    /// Fills a clean brush from tubes and returns what they gave: full films, and inside as much as
+    /// the brush takes, divided by the mixture's shares.
+    pub fn fill(&mut self, traits: &BrushTraits, mixture: &[(usize, f64)]) -> Counts {
         for (slot, share) in mixture {
-            given[*slot] += (whole * share) as u64;
+            let film = (traits.film_full * share) as u32;
+            let inside = (traits.inside_full * share) as u32;
+            let held = self.held_mut(*slot);
+            held.film.iter_mut().for_each(|count| *count += film);
+            held.inside.iter_mut().for_each(|count| *count += inside);
         }
-        crate::quantum::add(&mut self.counts, &given);
-        given
+        self.count_films();
+        self.counts()
     }
 
-    /// Thickness of the film, in units.
+    /// A brush of other strips that carries the same paint, spread evenly inside them.
     #[must_use]
-    pub fn film_units(&self, head_cells: f64) -> f64 {
-        self.total() as f64 / (crate::quantum::QUANTA_PER_UNIT * head_cells)
+    pub fn spread(strips: usize, counts: &Counts) -> Self {
+        let mut load = Self::clean(strips);
+        let texels = load.texels as u64;
+        for (slot, count) in counts.iter().enumerate().filter(|(_, count)| **count > 0) {
+            let held = load.held_mut(slot);
+            let each = count / texels;
+            held.inside.fill(each as u32);
+            held.inside[0] += (count - each * texels) as u32;
+        }
+        load
     }
-}
 
-/// The head's surface in cells.
-#[must_use]
-pub fn head_cells(file: &BrushFile, cell_m: f64) -> f64 {
-    file.surface_m2() / (cell_m * cell_m)
+    /// Whether any of a paint may be there.
+    #[must_use]
+    pub fn has(&self, slot: usize) -> bool {
+        self.held[slot].is_some()
+    }
+
+    /// A paint's films, and all paints' as last counted.
+    pub fn films_mut(&mut self, slot: usize) -> Option<(&mut [u32], &[u32])> {
+        let held = self.held[slot].as_mut()?;
+        Some((&mut held.film, &self.films))
+    }
+
+    /// A paint's films and what it has inside.
+    pub fn planes_mut(&mut self, slot: usize) -> Option<(&mut [u32], &mut [u32])> {
+        let held = self.held[slot].as_mut()?;
+        Some((&mut held.film, &mut held.inside))
+    }
+
+    /// What a paint has inside each texel.
+    #[must_use]
+    pub fn inside(&self, slot: usize) -> Option<&[u32]> {
+        self.held[slot].as_ref().map(|held| held.inside.as_slice())
+    }
+
+    /// A paint's films.
+    #[must_use]
+    pub fn film_of(&self, slot: usize) -> Option<&[u32]> {
+        self.held[slot].as_ref().map(|held| held.film.as_slice())
+    }
+
+    /// Adds paint to a texel's film.
+    pub fn add_film(&mut self, slot: usize, texel: usize, count: u32) {
+        self.held_mut(slot).film[texel] += count;
+    }
+
+    /// Counts the films of all paints afresh.
+    pub fn count_films(&mut self) {
+        self.films.fill(0);
+        for held in self.held.iter().flatten() {
+            self.films
+                .iter_mut()
+                .zip(&held.film)
+                .for_each(|(sum, count)| *sum += count);
+        }
+    }
+
+    fn held_mut(&mut self, slot: usize) -> &mut Held {
+        let texels = self.texels;
+        self.held[slot].get_or_insert_with(|| {
+            Box::new(Held {
+                film: vec![0; texels],
+                inside: vec![0; texels],
+            })
+        })
+    }
 }
 
 /// A mixture by slots.
@@ -75,4 +173,20 @@ pub fn by_slot<E>(
         .iter()
         .map(|part| Ok((slot(&part.paint)?, part.share)))
         .collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_is_spread_over_other_strips_is_all_there() {
+        let mut counts = [0; SLOTS];
+        (counts[0], counts[7]) = (1_000_003, 17);
+        let load = BrushLoad::spread(24, &counts);
+        assert_eq!(load.counts(), counts);
+        let mut load = BrushLoad::spread(300, &load.counts());
+        assert_eq!(load.take_all(), counts);
+        assert_eq!(load.total(), 0);
+    }
 }

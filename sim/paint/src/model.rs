@@ -1,30 +1,104 @@
 //! What a paint model does.
 
-use crate::load::BrushLoad;
-use crate::path::Sweep;
+use maulstick_brush::BrushFile;
+use maulstick_brush::head::{Head, HeadPose};
+use maulstick_num::exp;
+
+use crate::load::{ALONG, BrushLoad};
+use crate::quantum::{QUANTA_PER_UNIT, QUANTUM_M, REFERENCE_CELL_M};
 use crate::window::Window;
+
+/// The motion of a head in one step, in cells of the surface.
+#[derive(Clone, Copy, Debug)]
+pub struct Sweep<'a> {
+    /// Where it was at the step before.
+    pub from: &'a HeadPose,
+    /// Where it is now.
+    pub to: &'a HeadPose,
+}
+
+/// What a paint model needs to know of a brush, in cells of a surface and in quanta.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct BrushTraits {
+    /// Half the width of a strip, cells.
+    pub half_width: f32,
+    /// From the middle of a strip down to its lower side, cells.
+    pub half_thickness: f32,
+    /// How far the most unruly strip keeps off the surface while the head is hardly pressed, cells.
+    pub lift: f32,
+    /// How much deeper the pressed head reaches into the tooth, cells.
+    pub sink: f32,
+    /// Quanta of a texel's full film.
+    pub film_full: f64,
+    /// Quanta inside a texel of a fully loaded brush.
+    pub inside_full: f64,
+    /// Thickness of a texel's film by its count, units.
+    pub film_units_per_quantum: f32,
+    /// Thickness of a texel's film by its count, cells.
+    pub film_cells_per_quantum: f32,
+    /// Height of wet paint by its count, cells.
+    pub cells_per_quantum: f32,
+    /// Side of a cell by that of the reference cell.
+    pub cell_per_reference: f32,
+    /// Share of what a film lacks that comes from inside in a step.
+    pub refill: f64,
+    /// Share of the difference between texels that evens out in a step.
+    pub creep: f64,
+}
+
+impl BrushTraits {
+    /// A film takes up at most this many times its full thickness.
+    pub const FILM_OVER: f64 = 2.0;
+    /// Share of what a film lacks that comes from inside along a reference cell.
+    const REFILL: f64 = 0.03;
+    /// Share of the difference between texels that evens out along a reference cell.
+    const CREEP: f64 = 0.1;
+
+    /// The traits of a brush on a surface with cells of `cell_m` at `zoom`.
+    #[must_use]
+    pub fn of(file: &BrushFile, cell_m: f64, zoom: f64) -> Self {
+        let seen = 1e-3 / (cell_m * zoom);
+        let along_m = file.length_m() / ALONG as f64;
+        let texel_cells = file.strips.width_mm * 1e-3 * along_m / (cell_m * cell_m);
+        let quanta = |um: f64| um * 1e-6 / QUANTUM_M * texel_cells;
+        let steps = cell_m / REFERENCE_CELL_M;
+        let share = |of_reference: f64| 1.0 - exp(maulstick_num::ln(1.0 - of_reference) * steps);
+        Self {
+            half_width: (0.5 * file.strips.width_mm * seen) as f32,
+            half_thickness: (0.5 * file.strips.thickness_mm * seen) as f32,
+            lift: (file.strips.lift_mm * seen) as f32,
+            sink: (file.strips.sink_mm * seen) as f32,
+            film_full: quanta(file.load.film_um),
+            inside_full: quanta(file.load.inside_um),
+            film_units_per_quantum: (1.0 / (QUANTA_PER_UNIT * texel_cells)) as f32,
+            film_cells_per_quantum: (QUANTUM_M / (texel_cells * cell_m * zoom)) as f32,
+            cells_per_quantum: (QUANTUM_M / cell_m) as f32,
+            cell_per_reference: steps as f32,
+            refill: share(Self::REFILL),
+            creep: share(Self::CREEP),
+        }
+    }
+}
 
 /// One step of a brush on a surface.
 #[derive(Debug)]
 pub struct Step<'a> {
     /// The cells.
     pub window: &'a mut Window,
-    /// Size of the surface in cells.
-    pub cells: [u32; 2],
-    /// Side of a cell, m.
-    pub cell_m: f64,
-    /// The head before and after.
+    /// The head.
+    pub head: &'a Head,
+    /// What it does in this step.
     pub sweep: Sweep<'a>,
     /// What the brush carries.
     pub load: &'a mut BrushLoad,
-    /// The head's surface in cells.
-    pub head_cells: f64,
+    /// Its traits.
+    pub traits: BrushTraits,
 }
 
 /// What a step did.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct StepReport {
-    /// Cells under the head.
+    /// Cells that the head touched.
     pub footprint_cells: u64,
 }
 

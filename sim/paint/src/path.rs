@@ -3,7 +3,10 @@
 //! Motion adds up until the fastest point in contact has gone one cell, whatever the rate of
 //! samples; what is left over goes into the next motion.
 
-use crate::head::{HeadPose, HeadShape, Waypoint};
+use maulstick_brush::{Head, HeadPose};
+
+use crate::head::{Scale, Waypoint, motion};
+use crate::model::Sweep;
 
 /// Cuts the motion of one brush on one surface.
 #[derive(Debug)]
@@ -12,44 +15,41 @@ pub struct PathStepper {
     here: HeadPose,
     stepped: HeadPose,
     left_over: f64,
-    cell_m: f64,
-}
-
-/// The head before and after one step.
-#[derive(Clone, Copy, Debug)]
-pub struct Sweep<'a> {
-    /// Where it was at the step before.
-    pub from: &'a HeadPose,
-    /// Where it is now.
-    pub to: &'a HeadPose,
+    scale: Scale,
 }
 
 impl PathStepper {
-    /// A path that begins at `at`, on a surface with cells of `cell_m`.
+    /// A path that begins at `at`.
     #[must_use]
-    pub fn begin(shape: &HeadShape, at: Waypoint, cell_m: f64) -> Self {
+    pub fn begin(head: &Head, at: Waypoint, scale: Scale) -> Self {
         let mut here = HeadPose::default();
-        shape.pose(&at, cell_m, &mut here);
+        at.pose(head, scale, &mut here);
         Self {
             at,
             stepped: here.clone(),
             here,
             left_over: 0.0,
-            cell_m,
+            scale,
         }
     }
 
+    /// How the brush's lengths are seen.
+    #[must_use]
+    pub fn scale(&self) -> Scale {
+        self.scale
+    }
+
     /// Moves on to `to` and calls `step` for each whole cell on the way.
-    pub fn advance(&mut self, shape: &HeadShape, to: Waypoint, mut step: impl FnMut(Sweep<'_>)) {
+    pub fn advance(&mut self, head: &Head, to: Waypoint, mut step: impl FnMut(Sweep<'_>)) {
         let mut next = HeadPose::default();
-        shape.pose(&to, self.cell_m, &mut next);
-        let motion = self.here.motion(&next);
+        to.pose(head, self.scale, &mut next);
+        let motion = motion(&self.here, &next);
         let whole = self.left_over + motion;
         let mut pose = HeadPose::default();
         let mut cells = 1.0;
         while cells <= whole {
             let t = (cells - self.left_over) / motion;
-            shape.pose(&self.at.toward(&to, t), self.cell_m, &mut pose);
+            self.at.toward(&to, t).pose(head, self.scale, &mut pose);
             step(Sweep {
                 from: &self.stepped,
                 to: &pose,
@@ -60,12 +60,6 @@ impl PathStepper {
         self.left_over = whole - (cells - 1.0);
         self.at = to;
         self.here = next;
-    }
-
-    /// The head at its newest pose.
-    #[must_use]
-    pub fn head(&self) -> &HeadPose {
-        &self.here
     }
 }
 
@@ -78,8 +72,13 @@ mod tests {
 
     use super::*;
 
+    const SCALE: Scale = Scale {
+        cell_m: 2.5e-4,
+        zoom: 1.0,
+    };
+
     fn waypoint(x: f64) -> Waypoint {
-        Waypoint::of(&Solve {
+        let solve = Solve {
             event_ns: 0,
             stroke: 1,
             surface: 0,
@@ -88,24 +87,25 @@ mod tests {
                 position_m: [x, 0.1, 0.01],
                 ..Pose::IDENTITY
             },
-            angles_rad: vec![[0.0, 0.4]; 3],
+            angles_rad: vec![[0.0, 0.4]; 21],
             contacts: Vec::new(),
-        })
+        };
+        Waypoint::of(&solve, SCALE)
     }
 
     proptest! {
         /// However a motion of 10.4 cells is cut into samples, it is ten steps of one cell.
         #[test]
         fn steps_do_not_depend_on_samples(cuts in prop::collection::vec(0.0..1.0f64, 0..30)) {
-            let shape = HeadShape::of(&BrushFile::library("round").expect("round"));
+            let head = Head::of(&BrushFile::library("round").expect("round"));
             let mut cuts = cuts;
             cuts.sort_by(f64::total_cmp);
             cuts.push(1.0);
-            let mut path = PathStepper::begin(&shape, waypoint(0.1), 2.5e-4);
+            let mut path = PathStepper::begin(&head, waypoint(0.1), SCALE);
             let mut steps = Vec::new();
             for cut in cuts {
-                path.advance(&shape, waypoint(0.1 + cut * 10.4 * 2.5e-4), |sweep| {
-                    steps.push(sweep.from.motion(sweep.to));
+                path.advance(&head, waypoint(0.1 + cut * 10.4 * 2.5e-4), |sweep| {
+                    steps.push(motion(sweep.from, sweep.to));
                 });
             }
             prop_assert_eq!(steps.len(), 10);

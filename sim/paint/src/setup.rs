@@ -5,6 +5,7 @@ use maulstick_types::scene::{CANVAS, Light, PALETTE, Scene, Surface, Well, WellK
 use maulstick_types::{Mixture, Pose};
 
 use crate::painting::PaintRefusal;
+use crate::tooth::Tooth;
 
 /// Grounds by name: internal reflectance, the same at every wavelength. Acrylic gesso is titanium
 /// white and chalk in a lean binder.
@@ -83,6 +84,7 @@ impl PaintingSetup {
             ));
         }
         ground_reflectance(&self.ground)?;
+        tooth_called(&self.tooth, self.tooth_seed, self.cell_m)?;
         for mixture in &self.wells {
             library.check(mixture).map_err(PaintRefusal::paint)?;
         }
@@ -179,6 +181,19 @@ pub fn ground_reflectance(name: &str) -> Result<Spectrum, PaintRefusal> {
         })
 }
 
+/// The tooth called `name` on cells of `cell_m`.
+///
+/// # Errors
+/// [`PaintRefusal`] with the names that there are.
+pub fn tooth_called(name: &str, seed: u64, cell_m: f64) -> Result<Tooth, PaintRefusal> {
+    Tooth::new(name, seed, cell_m).ok_or_else(|| {
+        PaintRefusal::new(
+            format!("there is no tooth called '{name}'"),
+            &format!("choose one of {}", Tooth::names()),
+        )
+    })
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -216,6 +231,8 @@ mod tests {
         assert!(check(|s| s.cell_m = f64::NAN).is_err());
         let error = check(|s| s.ground = "gesoo".into()).expect_err("unknown");
         assert!(error.help.contains("gesso"));
+        let error = check(|s| s.tooth = "line".into()).expect_err("unknown");
+        assert!(error.help.contains("linen"));
         assert!(check(|s| s.wells = vec![Mixture::pure("Blue")]).is_err());
     }
 }

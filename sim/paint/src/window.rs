@@ -3,6 +3,7 @@
 use maulstick_types::paint::TILE;
 
 use crate::quantum::SLOTS;
+use crate::relief::Relief;
 use crate::store::{TileRect, TileStore};
 use crate::tile::{Tile, TileId, Version};
 
@@ -12,25 +13,43 @@ pub struct Window {
     rect: TileRect,
     width: usize,
     height: usize,
+    limit: [usize; 2],
     wet: [Option<Vec<f32>>; SLOTS],
+    base: Vec<f32>,
+    top: f32,
     dirty: Vec<bool>,
 }
 
 impl Window {
-    /// Leases `rect` and copies its tiles; none where it is leased already.
-    pub fn open(store: &mut TileStore, rect: TileRect) -> Option<Self> {
+    /// Leases `rect` and copies its tiles; none where it is leased already. `relief` gives the
+    /// heights of what catches paint, m.
+    pub fn open(store: &mut TileStore, rect: TileRect, relief: &Relief) -> Option<Self> {
         if !store.lease(&rect) {
             return None;
         }
         let [width, height] = rect.cells();
         let tiles = rect.tiles().count();
+        let surface = store.cells().map(|cells| cells as usize);
         let mut window = Self {
             rect,
             width,
             height,
+            limit: [0, 1].map(|i| rect.cells()[i].min(surface[i] - rect.from[i] as usize * TILE)),
             wet: [const { None }; SLOTS],
+            base: vec![0.0; width * height],
+            top: 0.0,
             dirty: vec![false; tiles],
         };
+        for id in rect.tiles() {
+            let start = window.corner(id);
+            let heights = relief.tile(id);
+            for (row, heights) in heights.chunks_exact(TILE).enumerate() {
+                let to = &mut window.base[start + row * width..][..TILE];
+                to.iter_mut()
+                    .zip(heights)
+                    .for_each(|(base, m)| *base = m * relief.cells_per_m());
+            }
+        }
         for id in rect.tiles() {
             let Some(tile) = &store.version(id).tile else {
                 continue;
@@ -43,7 +62,33 @@ impl Window {
                 }
             }
         }
+        window.top = (0..width * height)
+            .map(|cell| window.total(cell))
+            .fold(0.0, f32::max);
         Some(window)
+    }
+
+    /// Columns and rows, from the lower left corner, that lie on the surface.
+    #[must_use]
+    pub fn limit(&self) -> [usize; 2] {
+        self.limit
+    }
+
+    /// Height of what catches paint, tooth and dry relief, cells; at most 0 where nothing is dry.
+    #[must_use]
+    pub fn base(&self) -> &[f32] {
+        &self.base
+    }
+
+    /// Most quanta that a cell of the window has had since it was opened.
+    #[must_use]
+    pub fn top(&self) -> f32 {
+        self.top
+    }
+
+    /// Notes that a cell holds so many quanta.
+    pub fn note_top(&mut self, quanta: f32) {
+        self.top = self.top.max(quanta);
     }
 
     /// The tiles.
@@ -84,14 +129,36 @@ impl Window {
             .filter_map(|(slot, plane)| Some((slot, plane.as_deref()?)))
     }
 
+    /// The planes in use.
+    pub fn planes_mut(&mut self) -> impl Iterator<Item = (usize, &mut Vec<f32>)> {
+        self.wet
+            .iter_mut()
+            .enumerate()
+            .filter_map(|(slot, plane)| Some((slot, plane.as_mut()?)))
+    }
+
     /// Counts of all paints in a cell.
     #[must_use]
     pub fn total(&self, cell: usize) -> f32 {
         self.wet.iter().flatten().map(|plane| plane[cell]).sum()
     }
 
+    /// Whether any of a paint may be there.
+    #[must_use]
+    pub fn has(&self, slot: usize) -> bool {
+        self.wet[slot].is_some()
+    }
+
+    /// Remembers that single cells change.
+    pub fn touch_cells(&mut self, cells: &[usize]) {
+        let across = self.width / TILE;
+        for cell in cells {
+            self.dirty[cell / self.width / TILE * across + cell % self.width / TILE] = true;
+        }
+    }
+
     /// Remembers that cells `from`..`to` (of the window) change.
-    pub fn touch(&mut self, from: [usize; 2], to: [usize; 2]) {
+    pub fn touch(&mut self, (from, to): ([usize; 2], [usize; 2])) {
         let across = self.width / TILE;
         for y in from[1] / TILE..to[1].div_ceil(TILE) {
             for x in from[0] / TILE..to[0].div_ceil(TILE) {
@@ -155,15 +222,16 @@ mod tests {
     #[test]
     fn what_is_written_through_a_window_is_read_through_another() {
         let mut store = TileStore::new([200, 200]);
+        let relief = Relief::flat(2.5e-4);
         let mut next = 0;
         let rect = TileRect {
             from: [1, 0],
             to: [3, 2],
         };
-        let mut window = Window::open(&mut store, rect).expect("free");
+        let mut window = Window::open(&mut store, rect, &relief).expect("free");
         let cell = 70 * window.width() + 65;
         window.plane_mut(3)[cell] = 5.0;
-        window.touch([65, 70], [66, 71]);
+        window.touch(([65, 70], [66, 71]));
         let mut changed = Vec::new();
         window.commit(&mut store, &mut next, |id, _| changed.push(id));
         assert_eq!(changed, vec![TileId { x: 2, y: 1 }]);
@@ -173,12 +241,12 @@ mod tests {
             from: [0, 0],
             to: [4, 4],
         };
-        let window = Window::open(&mut store, whole).expect("free again");
+        let window = Window::open(&mut store, whole, &relief).expect("free again");
         let (slot, plane) = window.planes().next().expect("one plane");
         assert_eq!((slot, plane[70 * window.width() + 64 + 65]), (3, 5.0));
         assert_eq!(store.version(TileId { x: 2, y: 1 }).number, next);
         assert!(
-            Window::open(&mut store, whole).is_none(),
+            Window::open(&mut store, whole, &relief).is_none(),
             "leases are exclusive"
         );
     }

@@ -3,7 +3,7 @@
 use glam::DVec2;
 
 use super::{Energy, Settings, Solver, Touch};
-use crate::energy::{friction, spring};
+use crate::energy::{damping, friction, spring};
 use crate::spine::{Spine, SpineShape};
 
 impl Solver {
@@ -58,7 +58,40 @@ impl Solver {
                 .extend(self.tangents[i].map(|t| spine.lengths_m[i] * t.z));
         }
         energy.friction = self.add_friction(spine, shape, touches, settings);
+        if self.damped {
+            energy.damping = self.add_damping(spine, shape);
+        }
         energy
+    }
+
+    /// Adds inner friction, which acts between neighbours: v = d_i − d_{i−1} − the chord before.
+    fn add_damping(&mut self, spine: &Spine, shape: &SpineShape) -> f64 {
+        let size = self.gradient.len();
+        let mut value = 0.0;
+        for i in 0..spine.joints() {
+            let above = i.checked_sub(1);
+            let start = above.map_or(shape.base, |j| shape.directions[j]);
+            let v = shape.directions[i] - start - self.chords[i];
+            let f = damping(spine.damping[i], v);
+            value += f.value;
+            // Each segment that moves, with the sign of its part in v.
+            let parts = [(Some(i), 1.0), (above, -1.0)];
+            for (j, sign) in parts.into_iter().filter_map(|(j, sign)| Some((j?, sign))) {
+                let curved = sign * f.torque.dot(shape.directions[j]);
+                for (a, ta) in self.tangents[j].into_iter().enumerate() {
+                    let p = 2 * j + a;
+                    self.gradient[p] += sign * f.torque.dot(ta);
+                    self.hessian[p * size + p] -= curved;
+                    for (k, other) in parts.into_iter().filter_map(|(k, sign)| Some((k?, sign))) {
+                        for (b, tb) in self.tangents[k].into_iter().enumerate() {
+                            let bent = f.across * ta.dot(tb) - f.along * v.dot(ta) * v.dot(tb);
+                            self.hessian[p * size + 2 * k + b] += sign * other * bent;
+                        }
+                    }
+                }
+            }
+        }
+        value
     }
 
     /// Adds f(c) with δc = own·u to the gradient and Hessian of one segment.
@@ -152,6 +185,10 @@ impl Solver {
         let (mut above, mut p) = (shape.base, shape.root);
         for (i, d) in self.trial.iter().enumerate() {
             energy.spring += spring(spine.stiffness[i], above, *d).value;
+            if self.damped {
+                let v = *d - above - self.chords[i];
+                energy.damping += damping(spine.damping[i], v).value;
+            }
             p += *d * spine.lengths_m[i];
             self.trial_gap.push(p.z);
             if let Some(anchor) = touches[i].anchor {

@@ -57,8 +57,10 @@ pub struct Solution {
     pub penetration_m: f64,
     /// Spring energy, J.
     pub spring_j: f64,
-    /// Work against friction, J.
+    /// Work against friction with the surface, J.
     pub friction_j: f64,
+    /// Work against friction in the joints, J.
+    pub damping_j: f64,
 }
 
 impl Solution {
@@ -80,6 +82,9 @@ impl Solution {
 #[derive(Clone, Debug, Default)]
 pub struct Solver {
     before: Vec<DVec3>,
+    /// The chord of each joint when the step began.
+    chords: Vec<DVec3>,
+    damped: bool,
     tangents: Vec<[DVec3; 2]>,
     gradient: Vec<f64>,
     hessian: Vec<f64>,
@@ -107,11 +112,12 @@ pub struct Solver {
 struct Energy {
     spring: f64,
     friction: f64,
+    damping: f64,
 }
 
 impl Energy {
     fn total(self) -> f64 {
-        self.spring + self.friction
+        self.spring + self.friction + self.damping
     }
 }
 
@@ -132,6 +138,8 @@ impl Solver {
     ) -> Solution {
         self.before.clear();
         self.before.extend_from_slice(&shape.directions);
+        self.note_chords(shape);
+        self.damped = spine.damping.iter().any(|d| *d > 0.0);
         self.multipliers.clear();
         self.multipliers
             .extend(touches.iter().map(|touch| touch.force_n));
@@ -146,6 +154,7 @@ impl Solver {
             shape.directions.fill(shape.base);
             touches.fill(Touch::default());
             self.multipliers.fill(0.0);
+            self.damped = false;
             break_symmetry(shape);
             solution = self
                 .minimise(spine, shape, touches, settings)
@@ -195,7 +204,17 @@ impl Solver {
             energy = self.evaluate(spine, shape, touches, settings);
         }
         (solution.spring_j, solution.friction_j) = (energy.spring, energy.friction);
+        solution.damping_j = energy.damping;
         solution
+    }
+
+    fn note_chords(&mut self, shape: &SpineShape) {
+        let mut above = shape.base;
+        self.chords.clear();
+        for d in &shape.directions {
+            self.chords.push(*d - above);
+            above = *d;
+        }
     }
 
     /// Whether joint `i` is held by its constraint.

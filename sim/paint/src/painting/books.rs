@@ -19,7 +19,7 @@ impl Painting {
         self.commit();
         let mut stocks = Stocks::default();
         for track in self.brushes.values() {
-            add(&mut stocks.brush, track.load.counts());
+            add(&mut stocks.brush, &track.load.counts());
         }
         let mut covered_cells = 0;
         for sheet in &self.sheets {

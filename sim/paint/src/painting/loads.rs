@@ -1,34 +1,40 @@
 //! What brushes take up and lose: slots of paints, loads, cleaning, the loads of a take.
 
 use maulstick_types::Mixture;
-use maulstick_types::scene::PaintSlot;
+use maulstick_types::scene::{PaintSlot, Scene};
 
 use super::{PaintRefusal, Painting};
 use crate::load::by_slot;
+use crate::model::BrushTraits;
 use crate::quantum::SLOTS;
 
 impl Painting {
     /// The slots of a mixture's paints; new paints get the next free ones.
     pub(super) fn slots(&mut self, mixture: &Mixture) -> Result<Vec<(usize, f64)>, PaintRefusal> {
         let mixture = self.library.check(mixture).map_err(PaintRefusal::paint)?;
+        let known = |scene: &Scene, name: &str| scene.paints.iter().any(|slot| slot.name == name);
+        let mut new = Vec::new();
         for part in &mixture.parts {
-            if self.scene.paints.iter().any(|slot| slot.name == part.paint) {
-                continue;
+            if !known(&self.scene, &part.paint) {
+                new.push(
+                    self.library
+                        .find(&part.paint)
+                        .map_err(PaintRefusal::paint)?,
+                );
             }
-            if self.scene.paints.len() == SLOTS {
-                return Err(PaintRefusal::new(
-                    format!(
-                        "'{}' would be paint {} of this painting",
-                        part.paint,
-                        SLOTS + 1
-                    ),
-                    "a painting has at most 16 paints: mix it from those in use",
-                ));
-            }
-            let paint = self
-                .library
-                .find(&part.paint)
-                .map_err(PaintRefusal::paint)?;
+        }
+        // All or none: a refused mixture changes nothing.
+        if self.scene.paints.len() + new.len() > SLOTS {
+            return Err(PaintRefusal::new(
+                format!(
+                    "'{}' would be paint {} of this painting",
+                    new[SLOTS - self.scene.paints.len()].name,
+                    SLOTS + 1
+                ),
+                "a painting has at most 16 paints: mix it from those in use",
+            ));
+        }
+        for paint in new {
             let slot = self.studio.add(paint);
             let black = vec![0.0; self.studio.wavelengths()];
             let opaque = |films: &[(usize, f64)]| {
@@ -44,7 +50,7 @@ impl Painting {
                 .colour(&[(slot, 1e-5)], &white)
                 .map(|channel| channel as f32);
             let file_hash = self.library.hash();
-            let name = part.paint.clone();
+            let name = paint.name.clone();
             self.scene.paints.push(PaintSlot {
                 name,
                 masstone,
@@ -80,8 +86,8 @@ impl Painting {
         let cell_m = self.sheets[0].cell_m;
         let track = self.brush(brush)?;
         let left = track.load.take_all();
-        let file = track.file.clone();
-        let given = track.load.fill(&file, slots, cell_m);
+        let traits = BrushTraits::of(&track.file, cell_m, 1.0);
+        let given = track.load.fill(&traits, slots);
         self.ledger.to_cleaner(&left);
         self.ledger.from_tube(&given);
         Ok(())

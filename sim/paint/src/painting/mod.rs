@@ -4,22 +4,24 @@ mod books;
 mod loads;
 mod strokes;
 mod undo;
+mod wells;
 
 use std::collections::BTreeMap;
+use std::sync::Arc;
 
-use maulstick_brush::BrushFile;
+use maulstick_brush::{BrushFile, Head};
 use maulstick_optics::{PaintError, PaintLibrary, Studio};
 use maulstick_types::Mixture;
 use maulstick_types::scene::Scene;
 
-use crate::deposit::Deposit;
-use crate::head::HeadShape;
 use crate::history::History;
+use crate::impasto::Impasto;
 use crate::ledger::Ledger;
 use crate::load::BrushLoad;
 use crate::model::PaintModel;
 use crate::path::PathStepper;
-use crate::setup::{PaintingSetup, ground_reflectance};
+use crate::relief::Relief;
+use crate::setup::{PaintingSetup, ground_reflectance, tooth_called};
 use crate::store::TileStore;
 use crate::window::Window;
 
@@ -64,12 +66,15 @@ struct Sheet {
     cell_m: f64,
     store: TileStore,
     ground: Vec<f32>,
+    relief: Relief,
+    /// Most quanta that a cell ever had: how high strips may touch.
+    top: f32,
 }
 
 /// A brush as the painting knows it.
 struct BrushTrack {
     file: BrushFile,
-    shape: HeadShape,
+    head: Arc<Head>,
     load: BrushLoad,
     stroke: u64,
     path: Option<(usize, PathStepper)>,
@@ -110,6 +115,11 @@ impl Painting {
                 cell_m: surface.cell_m,
                 store: TileStore::new(surface.cells),
                 ground: studio.sample(&ground_reflectance(&surface.ground)?),
+                relief: Relief::new(
+                    tooth_called(&surface.tooth, surface.tooth_seed, surface.cell_m)?,
+                    surface.cell_m,
+                ),
+                top: 0.0,
             });
         }
         Ok(Self {
@@ -118,7 +128,7 @@ impl Painting {
             studio,
             sheets,
             brushes: BTreeMap::new(),
-            model: Box::new(Deposit::default()),
+            model: Box::new(Impasto::default()),
             ledger: Ledger::default(),
             history: History::default(),
             versions: 1,
@@ -174,19 +184,30 @@ impl Painting {
         (self.steps, self.footprint_cells)
     }
 
-    /// Introduces a brush, or gives a known one another file; what it carries it keeps.
+    /// Introduces a brush, or gives a known one another file; what it carries it keeps, spread anew
+    /// where the other has another number of strips.
     pub fn define_brush(&mut self, name: &str, file: BrushFile) {
-        let shape = HeadShape::of(&file);
+        if self
+            .brushes
+            .get(name)
+            .is_some_and(|track| track.file == file)
+        {
+            return;
+        }
+        let head = Arc::new(Head::of(&file));
         self.close_windows();
         match self.brushes.get_mut(name) {
             Some(track) => {
-                (track.file, track.shape, track.path) = (file, shape, None);
+                if head.strips() != track.head.strips() {
+                    track.load = BrushLoad::spread(head.strips(), &track.load.counts());
+                }
+                (track.file, track.head, track.path) = (file, head, None);
             }
             None => {
                 let track = BrushTrack {
+                    load: BrushLoad::clean(head.strips()),
                     file,
-                    shape,
-                    load: BrushLoad::clean(),
+                    head,
                     stroke: 0,
                     path: None,
                     window: None,

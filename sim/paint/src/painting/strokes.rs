@@ -1,12 +1,15 @@
 //! Strokes: states of a brush become steps of the paint model on windows of tiles.
 
+use std::sync::Arc;
+
 use maulstick_types::brush::{BrushState, Solve, solve_flags};
 
 use super::{PaintRefusal, Painting};
-use crate::head::Waypoint;
-use crate::load::head_cells;
-use crate::model::Step;
-use crate::path::{PathStepper, Sweep};
+use crate::head::{Scale, Waypoint, low_bounds};
+use crate::model::{BrushTraits, Step, Sweep};
+use crate::path::PathStepper;
+use crate::quantum::QUANTUM_M;
+use crate::store::TileRect;
 use crate::window::Window;
 
 /// A window reaches this many cells beyond the head, so that it is not opened anew at each step.
@@ -26,7 +29,7 @@ impl Painting {
 
     pub(super) fn solve(&mut self, name: &str, solve: &Solve) -> Result<(), PaintRefusal> {
         let track = self.brush(name)?;
-        if !track.shape.fits(solve) || !solve.pose.is_valid() {
+        if !track.head.fits(solve.angles_rad.len()) || !solve.pose.is_valid() {
             return Err(PaintRefusal::new(
                 format!("a state of brush '{name}' does not fit its brush file"),
                 "restart the brush node: it runs with another file",
@@ -51,28 +54,37 @@ impl Painting {
             track.path = None;
             self.begin_stroke(name)?;
         }
-        let cell_m = self.sheets[sheet].cell_m;
-        let track = self.brush(name)?;
-        let waypoint = Waypoint::of(solve);
+        let scale = self.scale(sheet);
+        let waypoint = Waypoint::of(solve, scale);
         let restarted = solve.flags & solve_flags::RESTARTED != 0;
-        match track
+        let track = self.brush(name)?;
+        let running = track
             .path
             .take()
-            .filter(|(on, _)| *on == sheet && !restarted)
-        {
-            None => {
-                let path = PathStepper::begin(&track.shape, waypoint, cell_m);
-                track.path = Some((sheet, path));
-            }
-            Some((_, mut path)) => {
-                let shape = track.shape.clone();
-                path.advance(&shape, waypoint, |sweep| self.step(name, sheet, sweep));
-                if let Some(track) = self.brushes.get_mut(name) {
-                    track.path = Some((sheet, path));
-                }
-            }
-        }
+            .filter(|(on, path)| *on == sheet && path.scale() == scale && !restarted);
+        let Some((_, mut path)) = running else {
+            let path = PathStepper::begin(&track.head, waypoint, scale);
+            track.path = Some((sheet, path));
+            return Ok(());
+        };
+        let head = Arc::clone(&track.head);
+        path.advance(&head, waypoint, |sweep| self.step(name, sheet, sweep));
+        self.brush(name)?.path = Some((sheet, path));
         Ok(())
+    }
+
+    /// How a brush's lengths are seen on a sheet.
+    fn scale(&self, sheet: usize) -> Scale {
+        let sheet = &self.sheets[sheet];
+        let surface = self
+            .scene
+            .surfaces
+            .iter()
+            .find(|surface| surface.id == sheet.id);
+        Scale {
+            cell_m: sheet.cell_m,
+            zoom: surface.map_or(1.0, |surface| surface.zoom),
+        }
     }
 
     pub(super) fn begin_stroke(&mut self, name: &str) -> Result<(), PaintRefusal> {
@@ -90,25 +102,35 @@ impl Painting {
     /// One step of the paint model.
     pub(super) fn step(&mut self, name: &str, sheet: usize, sweep: Sweep<'_>) {
         self.steps += 1;
-        let (from, to) = sweep.to.bounds();
+        let scale = self.scale(sheet);
+        let Some(track) = self.brushes.get(name) else {
+            return;
+        };
+        let traits = BrushTraits::of(&track.file, scale.cell_m, scale.zoom);
+        let wet = self.sheets[sheet].top * (QUANTUM_M / scale.cell_m) as f32;
+        let film = track.load.thickest() as f32 * traits.film_cells_per_quantum;
+        let height = wet + film + traits.half_thickness + traits.sink;
+        let Some((from, to)) = low_bounds(&track.head, sweep.to, height) else {
+            return;
+        };
         if !self.reach(name, sheet, from, to) {
             return;
         }
+        self.tend_wells(name, sheet, from, to);
         let Some(track) = self.brushes.get_mut(name) else {
             return;
         };
         let Some((_, window)) = &mut track.window else {
             return;
         };
-        let cell_m = self.sheets[sheet].cell_m;
         let report = self.model.step(&mut Step {
             window,
-            cells: self.sheets[sheet].store.cells(),
-            cell_m,
+            head: &track.head,
             sweep,
             load: &mut track.load,
-            head_cells: head_cells(&track.file, cell_m),
+            traits,
         });
+        self.sheets[sheet].top = self.sheets[sheet].top.max(window.top());
         self.footprint_cells += report.footprint_cells;
     }
 
@@ -133,16 +155,21 @@ impl Painting {
             .around(wide(from, -WINDOW_MARGIN), wide(to, WINDOW_MARGIN))
             .unwrap_or(needed);
         self.close_window(name);
-        let window = Window::open(&mut self.sheets[sheet].store, rect).or_else(|| {
+        let window = self.open_window(sheet, rect).or_else(|| {
             // Another brush holds some of these tiles: its paint is written back first.
             self.close_windows();
-            Window::open(&mut self.sheets[sheet].store, rect)
+            self.open_window(sheet, rect)
         });
         let opened = window.is_some();
         if let Some(track) = self.brushes.get_mut(name) {
             track.window = window.map(|window| (sheet, window));
         }
         opened
+    }
+
+    fn open_window(&mut self, sheet: usize, rect: TileRect) -> Option<Window> {
+        let sheet = &mut self.sheets[sheet];
+        Window::open(&mut sheet.store, rect, &sheet.relief)
     }
 
     /// Writes what the windows hold back to the tiles.

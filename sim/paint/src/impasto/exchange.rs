@@ -1,0 +1,135 @@
+//! Stages 4 and 5: paint goes from brush to canvas or from canvas to brush (Baxter 2004, § 6.5).
+//!
+//! Algorithm 3 decides for each cell, once for both sides. Cells that draw on one brush texel have
+//! their demands summed, scaled together where they exceed what it holds, and truncated once.
+
+use super::footprint::{Contact, Footprint};
+use crate::load::BrushLoad;
+use crate::model::{BrushTraits, Step};
+use crate::quantum::{CELL_MAX, QUANTA_PER_UNIT, SLOTS};
+use crate::transfer::transfer;
+use crate::window::Window;
+
+/// Room for a step.
+#[derive(Clone, Debug, Default)]
+pub struct Exchange {
+    /// Quanta that each contact wants from the brush (positive) or gives to it (negative).
+    wants: Vec<f32>,
+    /// Quanta wanted of each texel.
+    drawn: Vec<f32>,
+    /// Quanta offered to each texel.
+    offered: Vec<f32>,
+    /// Share of its wants that a texel grants, and of its offers that it takes.
+    granted: Vec<[f64; 2]>,
+    before: Vec<u32>,
+}
+
+/// Quanta that a contact wants from the brush (positive) or gives to it (negative).
+#[must_use]
+pub fn wanted(contact: &Contact, on_brush: f32, on_canvas: f32, traits: &BrushTraits) -> f32 {
+    let [u, v] = contact.moved;
+    let travel = (u * u + v * v).sqrt() * traits.cell_per_reference;
+    let units = transfer(on_brush, on_canvas * contact.fraction, travel);
+    units * contact.cover * QUANTA_PER_UNIT as f32
+}
+
+impl Exchange {
+    /// Exchanges the paint of one step.
+    pub fn run(&mut self, footprint: &Footprint, step: &mut Step<'_>) {
+        self.demand(footprint, step);
+        self.grant(step.load, &step.traits);
+        for slot in 0..SLOTS {
+            self.deposit(footprint, slot, step.load, step.window);
+        }
+        self.take_up(footprint, step.load, step.window);
+        step.load.count_films();
+    }
+
+    fn demand(&mut self, footprint: &Footprint, step: &Step<'_>) {
+        let texels = step.load.texels();
+        for plane in [&mut self.drawn, &mut self.offered] {
+            plane.clear();
+            plane.resize(texels, 0.0);
+        }
+        self.wants.clear();
+        let to_units = 1.0 / QUANTA_PER_UNIT as f32;
+        for contact in &footprint.contacts {
+            let texel = contact.texel as usize;
+            let film = step.load.film(texel) as f32 * step.traits.film_units_per_quantum;
+            let lying = step.window.total(contact.cell as usize);
+            let wants = wanted(contact, film, lying * to_units, &step.traits);
+            let room = CELL_MAX as f32 - lying;
+            let wants = wants.clamp(-lying, room).trunc();
+            if wants > 0.0 {
+                self.drawn[texel] += wants;
+            } else {
+                self.offered[texel] -= wants;
+            }
+            self.wants.push(wants);
+        }
+    }
+
+    fn grant(&mut self, load: &BrushLoad, traits: &BrushTraits) {
+        self.granted.clear();
+        let most = traits.film_full * BrushTraits::FILM_OVER;
+        let share = |wanted: f32, there: f64| {
+            let wanted = f64::from(wanted);
+            if wanted > there { there / wanted } else { 1.0 }
+        };
+        for (texel, (drawn, offered)) in self.drawn.iter().zip(&self.offered).enumerate() {
+            let film = f64::from(load.film(texel));
+            self.granted
+                .push([share(*drawn, film), share(*offered, (most - film).max(0.0))]);
+        }
+    }
+
+    /// Brush to canvas, one slot.
+    fn deposit(
+        &mut self,
+        footprint: &Footprint,
+        slot: usize,
+        load: &mut BrushLoad,
+        window: &mut Window,
+    ) {
+        let Some((film, totals)) = load.films_mut(slot) else {
+            return;
+        };
+        self.before.clear();
+        self.before.extend_from_slice(film);
+        let plane = window.plane_mut(slot);
+        for (contact, wants) in footprint.contacts.iter().zip(&self.wants) {
+            let texel = contact.texel as usize;
+            if *wants <= 0.0 || self.before[texel] == 0 {
+                continue;
+            }
+            // A share of what was there before the step, whatever other cells have drawn since.
+            let share =
+                f64::from(self.before[texel]) / f64::from(totals[texel]) * self.granted[texel][0];
+            let moved = ((f64::from(*wants) * share) as u32).min(film[texel]);
+            film[texel] -= moved;
+            plane[contact.cell as usize] += moved as f32;
+        }
+    }
+
+    /// Canvas to brush, all slots.
+    fn take_up(&self, footprint: &Footprint, load: &mut BrushLoad, window: &mut Window) {
+        for (contact, wants) in footprint.contacts.iter().zip(&self.wants) {
+            if *wants >= 0.0 {
+                continue;
+            }
+            let (cell, texel) = (contact.cell as usize, contact.texel as usize);
+            let total = window.total(cell);
+            if total <= 0.0 {
+                continue;
+            }
+            let share = f64::from(-*wants) * self.granted[texel][1] / f64::from(total);
+            for (slot, plane) in window.planes_mut() {
+                let moved = (f64::from(plane[cell]) * share) as u32;
+                if moved > 0 {
+                    plane[cell] -= moved as f32;
+                    load.add_film(slot, texel, moved);
+                }
+            }
+        }
+    }
+}

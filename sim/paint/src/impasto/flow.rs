@@ -1,0 +1,87 @@
+//! Paint within the head: what is inside a strip comes to its surface as the film there is used up,
+//! what the film takes up beyond its fill goes inside, and inside it creeps along the strip.
+
+use super::footprint::Footprint;
+use crate::load::{ALONG, BrushLoad};
+use crate::model::{BrushTraits, Step};
+use crate::quantum::SLOTS;
+
+/// Moves paint within the strips that touch.
+pub fn flow(footprint: &Footprint, step: &mut Step<'_>) {
+    let mut touched = vec![false; step.head.strips()];
+    for contact in &footprint.contacts {
+        touched[contact.texel as usize / ALONG] = true;
+    }
+    for (strip, _) in touched.iter().enumerate().filter(|(_, touched)| **touched) {
+        flow_in_strip(strip, step.load, &step.traits);
+    }
+    step.load.count_films();
+}
+
+/// Counts of all paints by texel of one strip.
+#[derive(Clone, Copy, Debug, Default)]
+struct Totals {
+    film: [f64; ALONG],
+    inside: [f64; ALONG],
+}
+
+fn totals(strip: usize, load: &BrushLoad) -> Totals {
+    let mut totals = Totals::default();
+    for slot in 0..SLOTS {
+        let (Some(film), Some(inside)) = (load.film_of(slot), load.inside(slot)) else {
+            continue;
+        };
+        for k in 0..ALONG {
+            totals.film[k] += f64::from(film[strip * ALONG + k]);
+            totals.inside[k] += f64::from(inside[strip * ALONG + k]);
+        }
+    }
+    totals
+}
+
+fn flow_in_strip(strip: usize, load: &mut BrushLoad, traits: &BrushTraits) {
+    let there = totals(strip, load);
+    // Shares of what is inside that go to the film, of the film that go inside, and of what is
+    // inside that go to the next texel and to the one before.
+    let mut out = [0.0; ALONG];
+    let mut inward = [0.0; ALONG];
+    let mut onward = [0.0; ALONG];
+    let mut back = [0.0; ALONG];
+    for k in 0..ALONG {
+        let missing = traits.film_full - there.film[k];
+        if missing > 0.0 && there.inside[k] > 0.0 {
+            out[k] = (traits.refill * missing / there.inside[k]).min(traits.refill);
+        } else if missing < 0.0 {
+            inward[k] = traits.refill * -missing / there.film[k];
+        }
+        if k + 1 < ALONG {
+            let fall = traits.creep * (there.inside[k] - there.inside[k + 1]);
+            if fall > 0.0 {
+                onward[k] = fall / there.inside[k];
+            } else if fall < 0.0 {
+                back[k + 1] = -fall / there.inside[k + 1];
+            }
+        }
+    }
+    for slot in 0..SLOTS {
+        let Some((film, inside)) = load.planes_mut(slot) else {
+            continue;
+        };
+        let run = strip * ALONG..(strip + 1) * ALONG;
+        let (film, inside) = (&mut film[run.clone()], &mut inside[run]);
+        let before: [u32; ALONG] = std::array::from_fn(|k| inside[k]);
+        for k in 0..ALONG {
+            let taken = |share: f64| (f64::from(before[k]) * share) as u32;
+            let (rises, goes_on, goes_back) = (taken(out[k]), taken(onward[k]), taken(back[k]));
+            let sinks = (f64::from(film[k]) * inward[k]) as u32;
+            film[k] = film[k] + rises - sinks;
+            inside[k] = inside[k] + sinks - rises - goes_on - goes_back;
+            if goes_on > 0 {
+                inside[k + 1] += goes_on;
+            }
+            if goes_back > 0 {
+                inside[k - 1] += goes_back;
+            }
+        }
+    }
+}

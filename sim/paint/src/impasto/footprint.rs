@@ -1,0 +1,290 @@
+//! Stage 1: the cells that the head touches, what touches them and how deep it reaches.
+//!
+//! Strips are ribbons that turn their flat side to the surface (Baxter 2004, § 3.5.2). In each cell
+//! the deepest one counts. It touches where it, with the film of paint that it carries, reaches the
+//! top of what lies there: tooth, dry relief and wet paint. All lengths are in cells.
+
+use maulstick_brush::head::STATIONS;
+
+use crate::head::low_bounds;
+use crate::load::ALONG;
+use crate::model::Step;
+use crate::window::Window;
+
+/// A ribbon that covers a cell only in part counts as higher by this much.
+const EDGE_PENALTY: f32 = 0.3;
+/// No strip here.
+const NOTHING: u32 = u32::MAX;
+
+/// A cell in contact.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Contact {
+    /// Its place in the window's planes.
+    pub cell: u32,
+    /// Its place in the footprint's own grid.
+    pub local: u32,
+    /// The brush texel that touches it: `strip · ALONG + along`.
+    pub texel: u32,
+    /// Share of the cell that is covered, 0 to 1.
+    pub cover: f32,
+    /// How far the strip went since the step before, cells.
+    pub moved: [f32; 2],
+    /// How deep it reaches below the top of the wet paint, cells; at most its thickness.
+    pub depth: f32,
+    /// `depth` by the thickness of the wet paint, 0 to 1.
+    pub fraction: f32,
+    /// Where the wet paint goes in this step, cells.
+    pub velocity: [f32; 2],
+}
+
+/// What of the head reaches a cell.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Fragment {
+    score: f32,
+    bottom: f32,
+    cover: f32,
+    texel: u32,
+    moved: [f32; 2],
+}
+
+const EMPTY: Fragment = Fragment {
+    score: f32::MAX,
+    bottom: f32::MAX,
+    cover: 0.0,
+    texel: NOTHING,
+    moved: [0.0; 2],
+};
+
+/// The footprint of one step.
+#[derive(Clone, Debug, Default)]
+pub struct Footprint {
+    /// The cells in contact, row after row.
+    pub contacts: Vec<Contact>,
+    /// Lowest column and row of the window that the footprint's grid holds.
+    pub from: [usize; 2],
+    /// Columns and rows of the grid.
+    pub size: [usize; 2],
+    /// The surface's coordinates of the grid's lower left corner.
+    offset: [f32; 2],
+    /// Room for the penetration of the grid.
+    pub(super) depth: Vec<f32>,
+    fragments: Vec<Fragment>,
+    wet: Vec<f32>,
+}
+
+/// A point of a ribbon's middle line.
+#[derive(Clone, Copy, Debug)]
+struct Point {
+    at: [f32; 3],
+    moved: [f32; 2],
+    /// Place along the strip in texels.
+    along: f32,
+}
+
+impl Point {
+    fn toward(&self, other: &Self, t: f32) -> Self {
+        let mix = |a: f32, b: f32| a + (b - a) * t;
+        Self {
+            at: [0, 1, 2].map(|i| mix(self.at[i], other.at[i])),
+            moved: [0, 1].map(|i| mix(self.moved[i], other.moved[i])),
+            along: mix(self.along, other.along),
+        }
+    }
+}
+
+impl Footprint {
+    /// Finds what the head touches after the step's motion.
+    pub fn find(&mut self, step: &mut Step<'_>) {
+        self.contacts.clear();
+        let head = step.head;
+        let thickest = step.load.thickest() as f32 * step.traits.film_cells_per_quantum;
+        let wet = step.window.top() * step.traits.cells_per_quantum;
+        let highest = wet + thickest;
+        let reach = highest + step.traits.half_thickness + step.traits.sink;
+        let Some((from, to)) = low_bounds(head, step.sweep.to, reach) else {
+            return;
+        };
+        self.lay_grid(step, from, to);
+        if self.size.contains(&0) {
+            return;
+        }
+        let (before, after) = (step.sweep.from, step.sweep.to);
+        let strips = head.strips();
+        let loose = step.traits.lift * (1.0 - after.press);
+        let pressed = step.traits.half_thickness + step.traits.sink * after.press;
+        for strip in 0..strips {
+            let bottom = loose * head.lift()[strip] - pressed;
+            let point = |station: usize| {
+                let i = station * strips + strip;
+                Point {
+                    at: [after.x[i], after.y[i], after.z[i]],
+                    moved: [after.x[i] - before.x[i], after.y[i] - before.y[i]],
+                    along: station as f32 * (ALONG as f32 / (STATIONS - 1) as f32),
+                }
+            };
+            let mut a = point(0);
+            for station in 1..STATIONS {
+                let b = point(station);
+                if a.at[2].min(b.at[2]) + bottom < highest {
+                    let (p, q) = below(&a, &b, highest - bottom);
+                    self.draw(strip, &p, &q, bottom, step.traits.half_width);
+                }
+                a = b;
+            }
+        }
+        self.touch(step);
+    }
+
+    /// The grid around the cells `from`..`to` of the surface, cut to the window and the surface.
+    fn lay_grid(&mut self, step: &Step<'_>, from: [i64; 2], to: [i64; 2]) {
+        let origin = step.window.origin();
+        let limit = step.window.limit();
+        let inside = |value: i64, i: usize| (value - origin[i]).clamp(0, limit[i] as i64) as usize;
+        self.from = [0, 1].map(|i| inside(from[i], i));
+        let to = [0, 1].map(|i| inside(to[i], i));
+        self.size = [0, 1].map(|i| to[i].saturating_sub(self.from[i]));
+        self.fragments.clear();
+        self.fragments.resize(self.size[0] * self.size[1], EMPTY);
+        // Strips are drawn in the coordinates of the surface.
+        self.offset = [0, 1].map(|i| (origin[i] + self.from[i] as i64) as f32);
+    }
+
+    /// Draws a ribbon from `a` to `b`, a column or a row of cells at a time.
+    fn draw(&mut self, strip: usize, a: &Point, b: &Point, bottom: f32, half_width: f32) {
+        let [ax, ay] = [0, 1].map(|i| a.at[i] - self.offset[i]);
+        let d = [b.at[0] - a.at[0], b.at[1] - a.at[1]];
+        let major = usize::from(d[1].abs() > d[0].abs());
+        let minor = 1 - major;
+        let start = [ax, ay];
+        let reach = half_width + 0.5;
+        let square = d[0] * d[0] + d[1] * d[1];
+        let inverse = if square > 1e-8 { 1.0 / square } else { 0.0 };
+        let (low, high) = if d[major] < 0.0 {
+            (start[major] + d[major], start[major])
+        } else {
+            (start[major], start[major] + d[major])
+        };
+        let slope = if d[major].abs() > 1e-4 {
+            d[minor] / d[major]
+        } else {
+            0.0
+        };
+        let across = reach * (1.0 + slope * slope).sqrt();
+        let last = self.size[major] as f32;
+        let (first, end) = (
+            (low - reach).floor().clamp(0.0, last) as usize,
+            (high + reach).ceil().clamp(0.0, last) as usize,
+        );
+        let stride = [1, self.size[0]];
+        for m in first..end {
+            let cm = m as f32 + 0.5;
+            let middle = start[minor] + (cm.clamp(low, high) - start[major]) * slope;
+            let edge = self.size[minor] as f32;
+            let from = (middle - across).floor().clamp(0.0, edge) as usize;
+            let to = (middle + across).ceil().clamp(0.0, edge) as usize;
+            for n in from..to {
+                let (em, en) = (cm - start[major], n as f32 + 0.5 - start[minor]);
+                let t = ((em * d[major] + en * d[minor]) * inverse).clamp(0.0, 1.0);
+                let (om, on) = (em - t * d[major], en - t * d[minor]);
+                let cover = (reach - (om * om + on * on).sqrt()).min(1.0);
+                if cover <= 0.0 {
+                    continue;
+                }
+                let z = a.at[2] + t * (b.at[2] - a.at[2]) + bottom;
+                let score = z + (1.0 - cover) * EDGE_PENALTY;
+                let fragment = &mut self.fragments[m * stride[major] + n * stride[minor]];
+                if score < fragment.score {
+                    let along = (a.along + t * (b.along - a.along)) as usize;
+                    *fragment = Fragment {
+                        score,
+                        bottom: z,
+                        cover,
+                        texel: (strip * ALONG + along.min(ALONG - 1)) as u32,
+                        moved: [0, 1].map(|i| a.moved[i] + t * (b.moved[i] - a.moved[i])),
+                    };
+                }
+            }
+        }
+    }
+
+    /// Wet quanta of all paints in the grid's cells.
+    fn weigh(&mut self, window: &Window) {
+        let [width, height] = self.size;
+        self.wet.clear();
+        self.wet.resize(width * height, 0.0);
+        for (_, plane) in window.planes() {
+            for (y, row) in self.wet.chunks_exact_mut(width).enumerate() {
+                let start = (self.from[1] + y) * window.width() + self.from[0];
+                row.iter_mut()
+                    .zip(&plane[start..start + width])
+                    .for_each(|(sum, count)| *sum += count);
+            }
+        }
+    }
+
+    /// Which of the covered cells are touched.
+    fn touch(&mut self, step: &mut Step<'_>) {
+        self.weigh(step.window);
+        let highest = self.wet.iter().copied().fold(0.0, f32::max);
+        step.window.note_top(highest);
+        let window: &Window = step.window;
+        let to_cells = step.traits.cells_per_quantum;
+        for y in 0..self.size[1] {
+            let row = (self.from[1] + y) * window.width() + self.from[0];
+            for x in 0..self.size[0] {
+                let local = y * self.size[0] + x;
+                let fragment = self.fragments[local];
+                if fragment.texel == NOTHING {
+                    continue;
+                }
+                let cell = row + x;
+                let wet = self.wet[local] * to_cells;
+                let film = step.load.film(fragment.texel as usize) as f32
+                    * step.traits.film_cells_per_quantum;
+                let reach = window.base()[cell] + wet - fragment.bottom;
+                if reach + film <= 0.0 {
+                    continue;
+                }
+                let depth = reach.clamp(0.0, wet);
+                self.contacts.push(Contact {
+                    cell: cell as u32,
+                    local: local as u32,
+                    texel: fragment.texel,
+                    cover: fragment.cover,
+                    moved: fragment.moved,
+                    depth,
+                    fraction: if wet > 0.0 { depth / wet } else { 0.0 },
+                    velocity: [0.0; 2],
+                });
+            }
+        }
+    }
+
+    /// The cells of the window that the step may have changed: from, up to but not with.
+    #[must_use]
+    pub fn reached(&self) -> ([usize; 2], [usize; 2]) {
+        let width = self.size[0];
+        let (mut from, mut to) = ([usize::MAX; 2], [0; 2]);
+        for contact in &self.contacts {
+            let local = contact.local as usize;
+            let at = [self.from[0] + local % width, self.from[1] + local / width];
+            for i in 0..2 {
+                from[i] = from[i].min(at[i].saturating_sub(1));
+                to[i] = to[i].max(at[i] + 2);
+            }
+        }
+        (from, to)
+    }
+}
+
+/// The part of a ribbon that lies below `height`.
+fn below(a: &Point, b: &Point, height: f32) -> (Point, Point) {
+    let (za, zb) = (a.at[2], b.at[2]);
+    if za > height {
+        (a.toward(b, (za - height) / (za - zb)), *b)
+    } else if zb > height {
+        (*a, a.toward(b, (height - za) / (zb - za)))
+    } else {
+        (*a, *b)
+    }
+}

@@ -1,0 +1,20 @@
+//! IMPaSTo (Baxter 2004, ch. 6): paint that the brush pushes, leaves and takes up.
+//!
+//! A whole step reads from top to bottom in [`step`]; each stage of fig. 6.3 is a file.
+//!
+//! | module | stage |
+//! | --- | --- |
+//! | [`footprint`] | 1: what of the head reaches which cell, and how deep |
+//! | [`velocity`] | 2: where the paint under it goes |
+//! | [`advection`] | 3: the paint goes there, counted |
+//! | [`exchange`] | 4 and 5: Algorithm 3, both ways |
+//! | [`flow`] | paint moves within the head |
+
+pub mod advection;
+pub mod exchange;
+pub mod flow;
+pub mod footprint;
+pub mod step;
+pub mod velocity;
+
+pub use step::Impasto;

@@ -1,0 +1,134 @@
+//! The wells of a palette: paint that never runs out, and the cleaner.
+//!
+//! Under the brush a well's cells hold its mixture, fresh: what was pushed into them goes to the
+//! cleaner, what was taken comes from the tubes. A brush that touches the cleaner is clean.
+
+use maulstick_types::Mixture;
+use maulstick_types::scene::{Well, WellKind};
+
+use super::Painting;
+use crate::ledger::Ledger;
+use crate::quantum::{QUANTUM_M, SLOTS};
+use crate::window::Window;
+
+/// How thick paint lies in a well, m.
+pub(super) const WELL_M: f64 = 2e-3;
+
+/// The cells of a window that lie in a well and in a rectangle.
+fn cells_within<'a>(
+    window: &'a Window,
+    well: &Well,
+    cell_m: f64,
+    (from, to): ([i64; 2], [i64; 2]),
+) -> impl Iterator<Item = usize> + use<'a> {
+    let origin = window.origin();
+    let limit = window.limit();
+    let center = well.center_m.map(|m| m / cell_m);
+    let radius = well.radius_m / cell_m;
+    let span = |i: usize| {
+        let low = (center[i] - radius).floor() as i64;
+        let high = (center[i] + radius).ceil() as i64;
+        let inside = |cell: i64| (cell - origin[i]).clamp(0, limit[i] as i64);
+        inside(low.max(from[i]))..inside(high.min(to[i])).max(inside(low.max(from[i])))
+    };
+    let (across, up) = (span(0), span(1));
+    let width = window.width();
+    up.flat_map(move |y| across.clone().map(move |x| (x, y)))
+        .filter(move |(x, y)| {
+            let dx = (origin[0] + x) as f64 + 0.5 - center[0];
+            let dy = (origin[1] + y) as f64 + 0.5 - center[1];
+            dx * dx + dy * dy < radius * radius
+        })
+        .map(move |(x, y)| y as usize * width + x as usize)
+}
+
+impl Painting {
+    /// Sees to the wells that lie in the cells `from`..`to` of a sheet before a brush steps there.
+    pub(super) fn tend_wells(&mut self, name: &str, sheet: usize, from: [i64; 2], to: [i64; 2]) {
+        let id = self.sheets[sheet].id;
+        let Some(surface) = self.scene.surfaces.iter().find(|surface| surface.id == id) else {
+            return;
+        };
+        if surface.wells.is_empty() {
+            return;
+        }
+        let cell_m = surface.cell_m;
+        let near = |well: &&Well| {
+            (0..2).all(|i| {
+                let low = (well.center_m[i] - well.radius_m) / cell_m;
+                let high = (well.center_m[i] + well.radius_m) / cell_m;
+                low < to[i] as f64 && high > from[i] as f64
+            })
+        };
+        let wells: Vec<Well> = surface.wells.iter().filter(near).cloned().collect();
+        for well in wells {
+            match &well.kind {
+                WellKind::Paint { mixture } => {
+                    self.fill_well(name, cell_m, &well, mixture, (from, to));
+                }
+                WellKind::Cleaner => self.clean_in(name, cell_m, &well, (from, to)),
+            }
+        }
+    }
+
+    fn fill_well(
+        &mut self,
+        name: &str,
+        cell_m: f64,
+        well: &Well,
+        mixture: &Mixture,
+        within: ([i64; 2], [i64; 2]),
+    ) {
+        // A 17th paint has no slot: its well stays dry, and a command says why.
+        let Ok(slots) = self.slots(mixture) else {
+            return;
+        };
+        let mut fresh = [0u32; SLOTS];
+        for (slot, share) in slots {
+            fresh[slot] += (share * WELL_M / QUANTUM_M) as u32;
+        }
+        let Some((_, window)) = self.brushes.get_mut(name).and_then(|t| t.window.as_mut()) else {
+            return;
+        };
+        let cells: Vec<usize> = cells_within(window, well, cell_m, within).collect();
+        renew(window, &cells, &fresh, &mut self.ledger);
+        window.note_top(fresh.iter().sum::<u32>() as f32);
+    }
+
+    fn clean_in(&mut self, name: &str, cell_m: f64, well: &Well, within: ([i64; 2], [i64; 2])) {
+        let Some(track) = self.brushes.get_mut(name) else {
+            return;
+        };
+        let Some((_, window)) = track.window.as_mut() else {
+            return;
+        };
+        let cells: Vec<usize> = cells_within(window, well, cell_m, within).collect();
+        if cells.is_empty() {
+            return;
+        }
+        renew(window, &cells, &[0; SLOTS], &mut self.ledger);
+        let left = track.load.take_all();
+        self.ledger.to_cleaner(&left);
+    }
+}
+
+/// Makes cells hold just `fresh`: the cleaner takes what is too much, the tubes give what is missing.
+fn renew(window: &mut Window, cells: &[usize], fresh: &[u32; SLOTS], ledger: &mut Ledger) {
+    let (mut given, mut taken) = ([0; SLOTS], [0; SLOTS]);
+    for slot in 0..SLOTS {
+        if fresh[slot] == 0 && !window.has(slot) {
+            continue;
+        }
+        let plane = window.plane_mut(slot);
+        for cell in cells {
+            let held = plane[*cell] as u64;
+            let wanted = u64::from(fresh[slot]);
+            given[slot] += wanted.saturating_sub(held);
+            taken[slot] += held.saturating_sub(wanted);
+            plane[*cell] = wanted as f32;
+        }
+    }
+    ledger.from_tube(&given);
+    ledger.to_cleaner(&taken);
+    window.touch_cells(cells);
+}

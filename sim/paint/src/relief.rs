@@ -1,0 +1,64 @@
+//! The relief under the wet paint: tooth, and later what has dried on it.
+
+use std::collections::BTreeMap;
+use std::sync::{Arc, Mutex, PoisonError};
+
+use crate::tile::{TILE_CELLS, TileId};
+use crate::tooth::Tooth;
+
+/// Heights that are kept; beyond that they are computed anew.
+const KEPT: usize = 1024;
+
+/// What catches paint on a surface.
+#[derive(Debug)]
+pub struct Relief {
+    tooth: Option<Tooth>,
+    cell_m: f64,
+    tiles: Mutex<BTreeMap<TileId, Arc<[f32]>>>,
+}
+
+impl Relief {
+    /// The relief of a bare ground.
+    #[must_use]
+    pub fn new(tooth: Tooth, cell_m: f64) -> Self {
+        Self {
+            tooth: Some(tooth),
+            cell_m,
+            tiles: Mutex::default(),
+        }
+    }
+
+    /// A surface without tooth.
+    #[must_use]
+    pub fn flat(cell_m: f64) -> Self {
+        Self {
+            tooth: None,
+            cell_m,
+            tiles: Mutex::default(),
+        }
+    }
+
+    /// Cells of a metre.
+    #[must_use]
+    pub fn cells_per_m(&self) -> f32 {
+        (1.0 / self.cell_m) as f32
+    }
+
+    /// Heights of a tile's cells, m; 0 is the level of the highest bare peaks.
+    #[must_use]
+    pub fn tile(&self, id: TileId) -> Arc<[f32]> {
+        let mut tiles = self.tiles.lock().unwrap_or_else(PoisonError::into_inner);
+        if let Some(heights) = tiles.get(&id) {
+            return Arc::clone(heights);
+        }
+        let heights: Arc<[f32]> = match &self.tooth {
+            Some(tooth) => tooth.tile(id).into(),
+            None => vec![0.0; TILE_CELLS].into(),
+        };
+        if tiles.len() >= KEPT {
+            tiles.pop_first();
+        }
+        tiles.insert(id, Arc::clone(&heights));
+        heights
+    }
+}
