@@ -8,6 +8,7 @@
 //! | [`rule`] | which wavelengths a painting computes, and their weights in XYZ |
 //! | [`km`] | Kubelka-Munk films |
 //! | [`surface`] | the surface correction |
+//! | [`light`] | a lamp on a relief |
 //! | [`colour`] | XYZ, Lab, ΔE₀₀, sRGB |
 //! | [`paints`] | the measured paints |
 //! | [`studio`] | all of the above for the paints, ground and light of one painting |
@@ -15,6 +16,7 @@
 pub mod cie;
 pub mod colour;
 pub mod km;
+pub mod light;
 pub mod paints;
 pub mod quadrature;
 pub mod rule;

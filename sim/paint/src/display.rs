@@ -20,28 +20,39 @@ pub struct DisplayTile {
     pub height: Vec<f32>,
 }
 
+/// Thickness of each paint of a tile, m, by slot.
+fn films(tile: Option<&Tile>) -> Vec<(usize, Vec<f32>)> {
+    let thickness = |plane: &[f32]| plane.iter().map(|count| count * QUANTUM_M as f32).collect();
+    tile.map(Tile::wet)
+        .unwrap_or_default()
+        .iter()
+        .map(|(slot, plane)| (*slot, thickness(plane)))
+        .collect()
+}
+
+fn height(films: &[(usize, Vec<f32>)]) -> Vec<f32> {
+    let mut height = vec![0.0f32; TILE_CELLS];
+    for (_, film) in films {
+        height
+            .iter_mut()
+            .zip(film)
+            .for_each(|(sum, thickness)| *sum += thickness);
+    }
+    height
+}
+
 impl DisplayTile {
+    /// The height of a tile alone, as in [`of`](Self::of), m.
+    #[must_use]
+    pub fn height_of(tile: Option<&Tile>) -> Vec<f32> {
+        height(&films(tile))
+    }
+
     /// The display of a tile over a ground; `tile` is none where nothing was painted.
     #[must_use]
     pub fn of(tile: Option<&Tile>, studio: &Studio, ground: &[f32]) -> Self {
-        let films: Vec<(usize, Vec<f32>)> = tile
-            .map(Tile::wet)
-            .unwrap_or_default()
-            .iter()
-            .map(|(slot, plane)| {
-                (
-                    *slot,
-                    plane.iter().map(|count| count * QUANTUM_M as f32).collect(),
-                )
-            })
-            .collect();
-        let mut height = vec![0.0f32; TILE_CELLS];
-        for (_, film) in &films {
-            height
-                .iter_mut()
-                .zip(film)
-                .for_each(|(sum, thickness)| *sum += thickness);
-        }
+        let films = films(tile);
+        let height = height(&films);
         let mut rgb = [const { Vec::new() }; 3];
         rgb.iter_mut()
             .for_each(|plane| plane.resize(TILE_CELLS, 0.0));

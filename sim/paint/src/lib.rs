@@ -15,12 +15,13 @@
 //! | [`load`], [`ledger`], [`history`] | what a brush carries, the books, undo |
 //! | [`setup`] | the scene of a new painting |
 //! | [`painting`], [`sequencer`] | the painting and its journal |
-//! | [`display`], [`picture`] | unlit colour for the view, and pictures as files |
+//! | [`display`], [`lamp`], [`picture`] | unlit colour for the view, the lamp over a surface, pictures as files |
 
 pub mod display;
 pub mod head;
 pub mod history;
 pub mod impasto;
+pub mod lamp;
 pub mod ledger;
 pub mod load;
 pub mod model;

@@ -71,6 +71,13 @@ impl BrushLoad {
         self.films.iter().copied().max().unwrap_or(0)
     }
 
+    /// Counts of the thickest film of a strip.
+    #[must_use]
+    pub fn thickest_of(&self, strip: usize) -> u32 {
+        let run = &self.films[strip * ALONG..(strip + 1) * ALONG];
+        run.iter().copied().max().unwrap_or(0)
+    }
+
     /// Takes all paint off.
     pub fn take_all(&mut self) -> Counts {
         let counts = self.counts();

@@ -49,7 +49,7 @@ impl Advection {
             // All shares are taken before any is given: order does not matter.
             for donor in &self.donors {
                 let held = plane[donor.cell as usize];
-                let sent = donor.share.map(|share| (held * share).trunc());
+                let sent = donor.share.map(|share| ((held * share) as i32) as f32);
                 plane[donor.cell as usize] = held - (sent[0] + sent[1] + sent[2]);
                 self.sent.push(sent);
             }
@@ -105,7 +105,7 @@ impl Advection {
                 for (to, share) in donor.to.iter().zip(donor.share) {
                     if !self.full[*to as usize] {
                         self.inflow[*to as usize] += held * share;
-                        self.inflow[donor.cell as usize] -= (held * share).floor() - 16.0;
+                        self.inflow[donor.cell as usize] -= ((held * share) as i32 - 16) as f32;
                     }
                 }
             }

@@ -59,7 +59,7 @@ impl Exchange {
             let lying = step.window.total(contact.cell as usize);
             let wants = wanted(contact, film, lying * to_units, &step.traits);
             let room = CELL_MAX as f32 - lying;
-            let wants = wants.clamp(-lying, room).trunc();
+            let wants = (wants.clamp(-lying, room) as i32) as f32;
             if wants > 0.0 {
                 self.drawn[texel] += wants;
             } else {

@@ -81,6 +81,17 @@ struct Point {
     along: f32,
 }
 
+/// What of a ribbon is the same along it.
+#[derive(Clone, Copy, Debug)]
+struct Ribbon {
+    strip: usize,
+    /// Its lower side above the middle line, cells.
+    bottom: f32,
+    half_width: f32,
+    /// How far it goes on past its end, cells.
+    past: f32,
+}
+
 impl Point {
     fn toward(&self, other: &Self, t: f32) -> Self {
         let mix = |a: f32, b: f32| a + (b - a) * t;
@@ -96,49 +107,64 @@ impl Footprint {
     /// Finds what the head touches after the step's motion.
     pub fn find(&mut self, step: &mut Step<'_>) {
         self.contacts.clear();
-        let head = step.head;
-        let thickest = step.load.thickest() as f32 * step.traits.film_cells_per_quantum;
-        let wet = step.window.top() * step.traits.cells_per_quantum;
-        let highest = wet + thickest;
-        let reach = highest + step.traits.half_thickness + step.traits.sink;
-        let Some((from, to)) = low_bounds(head, step.sweep.to, reach) else {
+        let (head, traits) = (step.head, step.traits);
+        let thickest = step.load.thickest() as f32 * traits.film_cells_per_quantum;
+        let pressed = traits.half_thickness + traits.sink * step.sweep.to.press;
+        let window_top = step.window.top() * traits.cells_per_quantum;
+        let Some((from, to)) = low_bounds(head, step.sweep.to, window_top + thickest + pressed)
+        else {
             return;
         };
-        self.lay_grid(step, from, to);
+        self.lay_grid(step.window, from, to);
         if self.size.contains(&0) {
             return;
         }
-        let (before, after) = (step.sweep.from, step.sweep.to);
-        let strips = head.strips();
-        let loose = step.traits.lift * (1.0 - after.press);
-        let pressed = step.traits.half_thickness + step.traits.sink * after.press;
-        for strip in 0..strips {
+        self.weigh(step.window);
+        let most = self.wet.iter().copied().fold(0.0, f32::max);
+        step.window.note_top(most);
+        let loose = traits.lift * (1.0 - step.sweep.to.press);
+        let top = most * traits.cells_per_quantum;
+        for strip in 0..head.strips() {
             let bottom = loose * head.lift()[strip] - pressed;
-            let point = |station: usize| {
-                let i = station * strips + strip;
-                Point {
-                    at: [after.x[i], after.y[i], after.z[i]],
-                    moved: [after.x[i] - before.x[i], after.y[i] - before.y[i]],
-                    along: station as f32 * (ALONG as f32 / (STATIONS - 1) as f32),
-                }
-            };
-            let mut a = point(0);
-            for station in 1..STATIONS {
-                let b = point(station);
-                if a.at[2].min(b.at[2]) + bottom < highest {
-                    let (p, q) = below(&a, &b, highest - bottom);
-                    self.draw(strip, &p, &q, bottom, step.traits.half_width);
-                }
-                a = b;
-            }
+            let film = step.load.thickest_of(strip) as f32 * traits.film_cells_per_quantum;
+            self.draw_strip(step, strip, bottom, top + film - bottom);
         }
         self.touch(step);
     }
 
+    /// Draws those segments of a strip that come below `height`.
+    fn draw_strip(&mut self, step: &Step<'_>, strip: usize, bottom: f32, height: f32) {
+        let (before, after) = (step.sweep.from, step.sweep.to);
+        let strips = step.head.strips();
+        let point = |station: usize| {
+            let i = station * strips + strip;
+            Point {
+                at: [after.x[i], after.y[i], after.z[i]],
+                moved: [after.x[i] - before.x[i], after.y[i] - before.y[i]],
+                along: station as f32 * (ALONG as f32 / (STATIONS - 1) as f32),
+            }
+        };
+        for station in 1..STATIONS {
+            let i = station * strips + strip;
+            if after.z[i - strips].min(after.z[i]) >= height {
+                continue;
+            }
+            let (p, q) = below(&point(station - 1), &point(station), height);
+            let past = if station == STATIONS - 1 { 0.5 } else { 0.0 };
+            let ribbon = Ribbon {
+                strip,
+                bottom,
+                half_width: step.traits.half_width,
+                past,
+            };
+            self.draw(&ribbon, &p, &q);
+        }
+    }
+
     /// The grid around the cells `from`..`to` of the surface, cut to the window and the surface.
-    fn lay_grid(&mut self, step: &Step<'_>, from: [i64; 2], to: [i64; 2]) {
-        let origin = step.window.origin();
-        let limit = step.window.limit();
+    fn lay_grid(&mut self, window: &Window, from: [i64; 2], to: [i64; 2]) {
+        let origin = window.origin();
+        let limit = window.limit();
         let inside = |value: i64, i: usize| (value - origin[i]).clamp(0, limit[i] as i64) as usize;
         self.from = [0, 1].map(|i| inside(from[i], i));
         let to = [0, 1].map(|i| inside(to[i], i));
@@ -149,58 +175,52 @@ impl Footprint {
         self.offset = [0, 1].map(|i| (origin[i] + self.from[i] as i64) as f32);
     }
 
-    /// Draws a ribbon from `a` to `b`, a column or a row of cells at a time.
-    fn draw(&mut self, strip: usize, a: &Point, b: &Point, bottom: f32, half_width: f32) {
-        let [ax, ay] = [0, 1].map(|i| a.at[i] - self.offset[i]);
+    /// Draws a ribbon from `a` to `b`: of each column of cells, or each row where it goes rather up
+    /// than across, those whose middle it covers, and with a soft edge half a cell to either side.
+    fn draw(&mut self, ribbon: &Ribbon, a: &Point, b: &Point) {
+        let start = [a.at[0] - self.offset[0], a.at[1] - self.offset[1]];
         let d = [b.at[0] - a.at[0], b.at[1] - a.at[1]];
         let major = usize::from(d[1].abs() > d[0].abs());
         let minor = 1 - major;
-        let start = [ax, ay];
-        let reach = half_width + 0.5;
-        let square = d[0] * d[0] + d[1] * d[1];
-        let inverse = if square > 1e-8 { 1.0 / square } else { 0.0 };
-        let (low, high) = if d[major] < 0.0 {
-            (start[major] + d[major], start[major])
+        let length = d[major].abs();
+        let inverse = if length > 1e-4 { 1.0 / d[major] } else { 0.0 };
+        let slope = d[minor] * inverse;
+        let cosine = 1.0 / (1.0 + slope * slope).sqrt();
+        let reach = ribbon.half_width + 0.5;
+        let across = reach / cosine;
+        // Segments of a strip share their ends: each has the columns from its first up to its last,
+        // and the last segment goes on past the tip.
+        let forward = d[major] >= 0.0;
+        let (low, high) = if forward {
+            (start[major], start[major] + length + ribbon.past)
         } else {
-            (start[major], start[major] + d[major])
+            (start[major] - length - ribbon.past, start[major])
         };
-        let slope = if d[major].abs() > 1e-4 {
-            d[minor] / d[major]
-        } else {
-            0.0
-        };
-        let across = reach * (1.0 + slope * slope).sqrt();
         let last = self.size[major] as f32;
-        let (first, end) = (
-            (low - reach).floor().clamp(0.0, last) as usize,
-            (high + reach).ceil().clamp(0.0, last) as usize,
-        );
+        let column = |edge: f32| ((edge + 0.5).clamp(0.0, last)) as usize;
         let stride = [1, self.size[0]];
-        for m in first..end {
-            let cm = m as f32 + 0.5;
-            let middle = start[minor] + (cm.clamp(low, high) - start[major]) * slope;
-            let edge = self.size[minor] as f32;
-            let from = (middle - across).floor().clamp(0.0, edge) as usize;
-            let to = (middle + across).ceil().clamp(0.0, edge) as usize;
+        let edge = self.size[minor] as f32;
+        for m in column(low)..column(high) {
+            let off = m as f32 + 0.5 - start[major];
+            let t = (off * inverse).clamp(0.0, 1.0);
+            let middle = start[minor] + off * slope - 0.5;
+            let from = (middle - across + 1.0).clamp(0.0, edge) as usize;
+            let to = (middle + across + 1.0).clamp(0.0, edge) as usize;
+            let z = a.at[2] + t * (b.at[2] - a.at[2]) + ribbon.bottom;
+            let along = (a.along + t * (b.along - a.along)) as usize;
+            let texel = (ribbon.strip * ALONG + along.min(ALONG - 1)) as u32;
+            let moved = [0, 1].map(|i| a.moved[i] + t * (b.moved[i] - a.moved[i]));
             for n in from..to {
-                let (em, en) = (cm - start[major], n as f32 + 0.5 - start[minor]);
-                let t = ((em * d[major] + en * d[minor]) * inverse).clamp(0.0, 1.0);
-                let (om, on) = (em - t * d[major], en - t * d[minor]);
-                let cover = (reach - (om * om + on * on).sqrt()).min(1.0);
-                if cover <= 0.0 {
-                    continue;
-                }
-                let z = a.at[2] + t * (b.at[2] - a.at[2]) + bottom;
+                let cover = (reach - (n as f32 - middle).abs() * cosine).min(1.0);
                 let score = z + (1.0 - cover) * EDGE_PENALTY;
                 let fragment = &mut self.fragments[m * stride[major] + n * stride[minor]];
-                if score < fragment.score {
-                    let along = (a.along + t * (b.along - a.along)) as usize;
+                if cover > 0.0 && score < fragment.score {
                     *fragment = Fragment {
                         score,
                         bottom: z,
                         cover,
-                        texel: (strip * ALONG + along.min(ALONG - 1)) as u32,
-                        moved: [0, 1].map(|i| a.moved[i] + t * (b.moved[i] - a.moved[i])),
+                        texel,
+                        moved,
                     };
                 }
             }
@@ -223,10 +243,7 @@ impl Footprint {
     }
 
     /// Which of the covered cells are touched.
-    fn touch(&mut self, step: &mut Step<'_>) {
-        self.weigh(step.window);
-        let highest = self.wet.iter().copied().fold(0.0, f32::max);
-        step.window.note_top(highest);
+    fn touch(&mut self, step: &Step<'_>) {
         let window: &Window = step.window;
         let to_cells = step.traits.cells_per_quantum;
         for y in 0..self.size[1] {
