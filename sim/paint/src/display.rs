@@ -16,7 +16,7 @@ pub struct DisplayTile {
     pub gloss: Vec<f32>,
     /// 1 where paint is wet.
     pub wetness: Vec<f32>,
-    /// Height above the bare surface, m.
+    /// Height of what lies there, tooth and paint, above the surface's highest bare peaks, m.
     pub height: Vec<f32>,
 }
 
@@ -48,7 +48,7 @@ impl DisplayTile {
         height(&films(tile))
     }
 
-    /// The display of a tile over a ground; `tile` is none where nothing was painted.
+    /// The display of a tile over a flat ground; `tile` is none where nothing was painted.
     #[must_use]
     pub fn of(tile: Option<&Tile>, studio: &Studio, ground: &[f32]) -> Self {
         let films = films(tile);
@@ -78,6 +78,16 @@ impl DisplayTile {
             wetness,
             height,
         }
+    }
+
+    /// The display of the tile on what lies under the paint.
+    #[must_use]
+    pub fn raised(mut self, relief: &[f32]) -> Self {
+        self.height
+            .iter_mut()
+            .zip(relief)
+            .for_each(|(height, base)| *height += base);
+        self
     }
 
     /// The tile of the next level from its four children: lower left, lower right, upper left,

@@ -1,5 +1,6 @@
 //! What a brush carries: a texture over its strips, a film on their surface and paint inside.
 
+use maulstick_brush::Head;
 use maulstick_types::Mixture;
 
 use crate::model::BrushTraits;
@@ -87,13 +88,15 @@ impl BrushLoad {
 
     /// Fills a clean brush from tubes and returns what they gave: full films, and inside as much as
     /// the brush takes, divided by the mixture's shares.
-    pub fn fill(&mut self, traits: &BrushTraits, mixture: &[(usize, f64)]) -> Counts {
+    pub fn fill(&mut self, head: &Head, traits: &BrushTraits, mixture: &[(usize, f64)]) -> Counts {
         for (slot, share) in mixture {
-            let film = (traits.film_full * share) as u32;
-            let inside = (traits.inside_full * share) as u32;
             let held = self.held_mut(*slot);
-            held.film.iter_mut().for_each(|count| *count += film);
-            held.inside.iter_mut().for_each(|count| *count += inside);
+            let texels = held.film.iter_mut().zip(&mut held.inside);
+            for (texel, (film, inside)) in texels.enumerate() {
+                let part = share * f64::from(head.capacity()[texel / ALONG]);
+                *film += (traits.film_full * part) as u32;
+                *inside += (traits.inside_full * part) as u32;
+            }
         }
         self.count_films();
         self.counts()

@@ -52,7 +52,7 @@ impl BrushTraits {
     /// Share of what a film lacks that comes from inside along a reference cell.
     const REFILL: f64 = 0.03;
     /// Share of the difference between texels that evens out along a reference cell.
-    const CREEP: f64 = 0.1;
+    const CREEP: f64 = 0.02;
 
     /// The traits of a brush on a surface with cells of `cell_m` at `zoom`.
     #[must_use]

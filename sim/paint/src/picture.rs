@@ -11,6 +11,7 @@ use maulstick_types::paint::TILE;
 use crate::display::DisplayTile;
 use crate::lamp::lamp_over;
 use crate::painting::Painting;
+use crate::relief::Relief;
 use crate::store::TileStore;
 use crate::tile::Tile;
 
@@ -45,7 +46,11 @@ fn under(painting: &mut Painting, surface: u32, light: Light<'_>) -> Picture {
     painting.commit();
     let surfaces = &painting.scene().surfaces;
     let found = surfaces.iter().find(|other| other.id == surface);
-    let (Some(cell_m), Some(store)) = (found.map(|s| s.cell_m), painting.store(surface)) else {
+    let (Some(cell_m), Some(store), Some(relief)) = (
+        found.map(|s| s.cell_m),
+        painting.store(surface),
+        painting.relief(surface),
+    ) else {
         return Picture {
             width: 0,
             height: 0,
@@ -54,23 +59,25 @@ fn under(painting: &mut Painting, surface: u32, light: Light<'_>) -> Picture {
     };
     let ground = painting.ground(surface);
     let shade = |tile: Option<&Tile>| DisplayTile::of(tile, painting.studio(), ground);
-    draw(store, cell_m, &shade, light)
+    draw(store, relief, cell_m, &shade, light)
 }
 
 /// The heights of a whole surface, m, row after row from the lowest: slopes reach over the borders
 /// of tiles.
-fn heights(store: &TileStore) -> Vec<f32> {
+fn heights(store: &TileStore, relief: &Relief) -> Vec<f32> {
     let [width, height] = store.cells().map(|cells| cells as usize);
     let mut heights = vec![0.0f32; width * height];
     for (id, version) in store.iter() {
-        if let Some(tile) = &version.tile {
-            let plane = DisplayTile::height_of(Some(tile));
-            let (left, bottom) = (id.x as usize * TILE, id.y as usize * TILE);
-            let across = TILE.min(width - left);
-            for y in 0..TILE.min(height - bottom) {
-                heights[(bottom + y) * width + left..][..across]
-                    .copy_from_slice(&plane[y * TILE..][..across]);
-            }
+        let plane = DisplayTile::height_of(version.tile.as_deref());
+        let base = relief.tile(id);
+        let (left, bottom) = (id.x as usize * TILE, id.y as usize * TILE);
+        let across = TILE.min(width - left);
+        for y in 0..TILE.min(height - bottom) {
+            let row = plane[y * TILE..].iter().zip(&base[y * TILE..]);
+            heights[(bottom + y) * width + left..][..across]
+                .iter_mut()
+                .zip(row)
+                .for_each(|(height, (paint, base))| *height = paint + base);
         }
     }
     heights
@@ -79,13 +86,14 @@ fn heights(store: &TileStore) -> Vec<f32> {
 /// Light first, then gamut and encoding.
 fn draw(
     store: &TileStore,
+    relief: &Relief,
     cell_m: f64,
     shade: &dyn Fn(Option<&Tile>) -> DisplayTile,
     light: Light<'_>,
 ) -> Picture {
     let [width, height] = store.cells().map(|cells| cells as usize);
-    let heights = heights(store);
-    let relief = HeightField {
+    let heights = heights(store, relief);
+    let field = HeightField {
         heights: &heights,
         cells: [width, height],
         cell_m: cell_m as f32,
@@ -104,7 +112,7 @@ fn draw(
             for x in 0..TILE.min(width - left) {
                 let cell = y * TILE + x;
                 let unlit = [0, 1, 2].map(|c| shown.rgb[c][cell]);
-                let slope = relief.slope(left + x, bottom + y);
+                let slope = field.slope(left + x, bottom + y);
                 let colour = clamp_chromaticity(light(unlit, shown.gloss[cell], slope));
                 let pixel = &mut rgb[(row * width + left + x) * 3..][..3];
                 pixel.copy_from_slice(&colour.map(|channel| table.byte(channel)));
@@ -214,7 +222,7 @@ mod tests {
         let studio = studio();
         let ground = vec![0.95; studio.wavelengths()];
         let shade = |tile: Option<&Tile>| DisplayTile::of(tile, &studio, &ground);
-        draw(store, CELL_M, &shade, light)
+        draw(store, &Relief::flat(CELL_M), CELL_M, &shade, light)
     }
 
     #[test]

@@ -79,6 +79,12 @@ impl Sequencer {
         &self.painting
     }
 
+    /// The painting, at the end of its journal.
+    #[must_use]
+    pub fn into_painting(self) -> Painting {
+        self.painting
+    }
+
     /// The painting, for what is not journalled: committing, counting, defining brushes.
     pub fn painting_mut(&mut self) -> &mut Painting {
         &mut self.painting

@@ -160,6 +160,7 @@ impl Window {
     /// Remembers that cells `from`..`to` (of the window) change.
     pub fn touch(&mut self, (from, to): ([usize; 2], [usize; 2])) {
         let across = self.width / TILE;
+        let to = [to[0].min(self.width), to[1].min(self.height)];
         for y in from[1] / TILE..to[1].div_ceil(TILE) {
             for x in from[0] / TILE..to[0].div_ceil(TILE) {
                 self.dirty[y * across + x] = true;

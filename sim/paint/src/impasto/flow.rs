@@ -13,7 +13,8 @@ pub fn flow(footprint: &Footprint, step: &mut Step<'_>) {
         touched[contact.texel as usize / ALONG] = true;
     }
     for (strip, _) in touched.iter().enumerate().filter(|(_, touched)| **touched) {
-        flow_in_strip(strip, step.load, &step.traits);
+        let film_full = step.traits.film_full * f64::from(step.head.capacity()[strip]);
+        flow_in_strip(strip, step.load, film_full, &step.traits);
     }
     step.load.count_films();
 }
@@ -39,7 +40,7 @@ fn totals(strip: usize, load: &BrushLoad) -> Totals {
     totals
 }
 
-fn flow_in_strip(strip: usize, load: &mut BrushLoad, traits: &BrushTraits) {
+fn flow_in_strip(strip: usize, load: &mut BrushLoad, film_full: f64, traits: &BrushTraits) {
     let there = totals(strip, load);
     // Shares of what is inside that go to the film, of the film that go inside, and of what is
     // inside that go to the next texel and to the one before.
@@ -48,7 +49,7 @@ fn flow_in_strip(strip: usize, load: &mut BrushLoad, traits: &BrushTraits) {
     let mut onward = [0.0; ALONG];
     let mut back = [0.0; ALONG];
     for k in 0..ALONG {
-        let missing = traits.film_full - there.film[k];
+        let missing = film_full - there.film[k];
         if missing > 0.0 && there.inside[k] > 0.0 {
             out[k] = (traits.refill * missing / there.inside[k]).min(traits.refill);
         } else if missing < 0.0 {

@@ -13,6 +13,10 @@ use crate::window::Window;
 
 /// A ribbon that covers a cell only in part counts as higher by this much.
 const EDGE_PENALTY: f32 = 0.3;
+/// Strips of the same depth lie over each other in a seeded order, the last this much higher, cells.
+const RANKS: f32 = 0.5;
+/// Contact begins softly over this depth, cells.
+const SOFT: f32 = 0.15;
 /// No strip here.
 const NOTHING: u32 = u32::MAX;
 
@@ -88,6 +92,8 @@ struct Ribbon {
     /// Its lower side above the middle line, cells.
     bottom: f32,
     half_width: f32,
+    /// Among strips of the same depth it counts as higher by this much, cells.
+    rank: f32,
     /// How far it goes on past its end, cells.
     past: f32,
 }
@@ -155,6 +161,7 @@ impl Footprint {
                 strip,
                 bottom,
                 half_width: step.traits.half_width,
+                rank: RANKS * step.head.lift()[strip],
                 past,
             };
             self.draw(&ribbon, &p, &q);
@@ -212,7 +219,7 @@ impl Footprint {
             let moved = [0, 1].map(|i| a.moved[i] + t * (b.moved[i] - a.moved[i]));
             for n in from..to {
                 let cover = (reach - (n as f32 - middle).abs() * cosine).min(1.0);
-                let score = z + (1.0 - cover) * EDGE_PENALTY;
+                let score = z + ribbon.rank + (1.0 - cover) * EDGE_PENALTY;
                 let fragment = &mut self.fragments[m * stride[major] + n * stride[minor]];
                 if cover > 0.0 && score < fragment.score {
                     *fragment = Fragment {
@@ -267,7 +274,7 @@ impl Footprint {
                     cell: cell as u32,
                     local: local as u32,
                     texel: fragment.texel,
-                    cover: fragment.cover,
+                    cover: fragment.cover * ((reach + film) / SOFT).min(1.0),
                     moved: fragment.moved,
                     depth,
                     fraction: if wet > 0.0 { depth / wet } else { 0.0 },

@@ -87,7 +87,7 @@ impl Painting {
         let track = self.brush(brush)?;
         let left = track.load.take_all();
         let traits = BrushTraits::of(&track.file, cell_m, 1.0);
-        let given = track.load.fill(&traits, slots);
+        let given = track.load.fill(&track.head, &traits, slots);
         self.ledger.to_cleaner(&left);
         self.ledger.from_tube(&given);
         Ok(())

@@ -66,7 +66,7 @@ struct Sheet {
     cell_m: f64,
     store: TileStore,
     ground: Vec<f32>,
-    relief: Relief,
+    relief: Arc<Relief>,
     /// Most quanta that a cell ever had: how high strips may touch.
     top: f32,
 }
@@ -115,10 +115,10 @@ impl Painting {
                 cell_m: surface.cell_m,
                 store: TileStore::new(surface.cells),
                 ground: studio.sample(&ground_reflectance(&surface.ground)?),
-                relief: Relief::new(
+                relief: Arc::new(Relief::new(
                     tooth_called(&surface.tooth, surface.tooth_seed, surface.cell_m)?,
                     surface.cell_m,
-                ),
+                )),
                 top: 0.0,
             });
         }
@@ -166,6 +166,12 @@ impl Painting {
     #[must_use]
     pub fn store(&self, surface: u32) -> Option<&TileStore> {
         self.sheet(surface).map(|sheet| &sheet.store)
+    }
+
+    /// What lies under the wet paint of a surface.
+    #[must_use]
+    pub fn relief(&self, surface: u32) -> Option<&Arc<Relief>> {
+        self.sheet(surface).map(|sheet| &sheet.relief)
     }
 
     fn sheet(&self, surface: u32) -> Option<&Sheet> {

@@ -44,6 +44,9 @@ impl Painting {
         else {
             return Ok(());
         };
+        if solve.flags & solve_flags::GLIMPSE != 0 {
+            return Ok(());
+        }
         let track = self.brush(name)?;
         if solve.stroke == 0 {
             track.path = None;

@@ -1,0 +1,163 @@
+//! The way of a handle from one sample to the next: the parabola through both and the one before,
+//! walked cell by cell.
+//!
+//! A hand moves smoothly; straight chords between samples would depend on how often it is sampled,
+//! the parabola does so only in third order.
+
+use glam::{DQuat, DVec3};
+use maulstick_num::geometry::{Rigid, canonical};
+
+/// Chords by which the length of the way is measured.
+const CHORDS: usize = 8;
+
+/// A sampled pose and its time.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Sampled {
+    /// Brush frame to surface axes.
+    pub pose: Rigid,
+    /// Rig clock, ns.
+    pub event_ns: u64,
+}
+
+/// The way between two samples.
+#[derive(Clone, Debug)]
+pub struct Way {
+    from: Rigid,
+    to: Rigid,
+    /// What bends it: the second difference of place and quaternion.
+    bend: (DVec3, DQuat),
+    /// Length up to each of the chords' ends, m.
+    lengths: [f64; CHORDS + 1],
+}
+
+impl Way {
+    /// The way from `from` to `to` of a hand that came from `before`; straight without it. Its length
+    /// is that of the farther of the ferrule and the point of a head of `head_m`.
+    #[must_use]
+    pub fn new(before: Option<&Sampled>, from: &Sampled, to: &Sampled, head_m: f64) -> Self {
+        let near = |of: DQuat, q: DQuat| if of.dot(q) < 0.0 { -q } else { q };
+        let end = Rigid {
+            rotation: near(from.pose.rotation, to.pose.rotation),
+            ..to.pose
+        };
+        let bend = before.map_or(
+            (DVec3::ZERO, DQuat::from_xyzw(0.0, 0.0, 0.0, 0.0)),
+            |before| {
+                let (h1, h2) = (
+                    from.event_ns.saturating_sub(before.event_ns).max(1) as f64,
+                    to.event_ns.saturating_sub(from.event_ns).max(1) as f64,
+                );
+                // The second divided difference of three samples, in the parameter of this way.
+                let (first, second) = (h2 * h2 / (h1 * (h1 + h2)), h2 / (h1 + h2));
+                let start = near(from.pose.rotation, before.pose.rotation);
+                let place = (end.translation - from.pose.translation) * second
+                    - (from.pose.translation - before.pose.translation) * first;
+                let turn = (end.rotation - from.pose.rotation) * second
+                    - (from.pose.rotation - start) * first;
+                (place, turn)
+            },
+        );
+        let mut way = Self {
+            from: from.pose,
+            to: end,
+            bend,
+            lengths: [0.0; CHORDS + 1],
+        };
+        let tip = DVec3::NEG_Z * head_m;
+        let mut last = way.at(0.0);
+        for chord in 1..=CHORDS {
+            let next = way.at(chord as f64 / CHORDS as f64);
+            let moved = |p: DVec3| (next.point(p) - last.point(p)).length();
+            way.lengths[chord] = way.lengths[chord - 1] + moved(tip).max(moved(DVec3::ZERO));
+            last = next;
+        }
+        way
+    }
+
+    /// Its length, m.
+    #[must_use]
+    pub fn length_m(&self) -> f64 {
+        self.lengths[CHORDS]
+    }
+
+    /// The pose at `s` from 0 to 1.
+    #[must_use]
+    pub fn at(&self, s: f64) -> Rigid {
+        let bent = s * (s - 1.0);
+        let straight = self.from.translation.lerp(self.to.translation, s);
+        let turned = self.from.rotation * (1.0 - s) + self.to.rotation * s + self.bend.1 * bent;
+        Rigid {
+            translation: straight + self.bend.0 * bent,
+            rotation: canonical(turned),
+        }
+    }
+
+    /// The parameter where the way is `length` long, m.
+    #[must_use]
+    pub fn after(&self, length: f64) -> f64 {
+        let chord = (1..CHORDS)
+            .find(|chord| self.lengths[*chord] >= length)
+            .unwrap_or(CHORDS);
+        let (start, end) = (self.lengths[chord - 1], self.lengths[chord]);
+        let part = if end > start {
+            (length - start) / (end - start)
+        } else {
+            1.0
+        };
+        ((chord - 1) as f64 + part.clamp(0.0, 1.0)) / CHORDS as f64
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use maulstick_num::geometry::rotation;
+    use maulstick_num::sin_cos;
+
+    use super::*;
+
+    fn sampled(t: f64) -> Sampled {
+        let (s, c) = sin_cos(t);
+        Sampled {
+            pose: Rigid {
+                rotation: rotation(DVec3::Z, 0.5 * t),
+                translation: DVec3::new(c, s, 0.0),
+            },
+            event_ns: 1_000 + (t * 1e9) as u64,
+        }
+    }
+
+    /// Farthest of the way from the circle that its samples lie on.
+    fn error(h: f64, before: Option<f64>) -> f64 {
+        let before = before.map(sampled);
+        let way = Way::new(before.as_ref(), &sampled(1.0), &sampled(1.0 + h), 0.1);
+        (0..=20)
+            .map(|i| (way.at(f64::from(i) / 20.0).translation.length() - 1.0).abs())
+            .fold(0.0, f64::max)
+    }
+
+    #[test]
+    fn it_follows_a_circle_in_third_order() {
+        let (coarse, fine) = (error(0.1, Some(0.9)), error(0.05, Some(0.95)));
+        assert!(coarse / fine > 7.0, "{coarse:e} {fine:e}");
+        assert!(
+            error(0.1, Some(0.93)) < 0.2 * error(0.1, None),
+            "samples need not be even"
+        );
+        let (coarse, fine) = (error(0.1, None), error(0.05, None));
+        assert!(coarse / fine < 5.0, "straight chords are of second order");
+    }
+
+    #[test]
+    fn its_ends_are_the_samples_and_its_length_is_walked_evenly() {
+        let way = Way::new(Some(&sampled(0.9)), &sampled(1.0), &sampled(1.2), 0.1);
+        for (s, t) in [(0.0, 1.0), (1.0, 1.2)] {
+            let pose = sampled(t).pose;
+            assert!((way.at(s).translation - pose.translation).length() < 1e-14);
+            assert!(way.at(s).rotation.dot(pose.rotation).abs() > 1.0 - 1e-12);
+        }
+        for part in [0.0, 0.3, 0.5, 1.0] {
+            let s = way.after(part * way.length_m());
+            assert!((s - part).abs() < 0.02, "{part}: {s}");
+        }
+    }
+}
