@@ -23,6 +23,8 @@ pub struct BrushLoad {
     held: [Option<Box<Held>>; SLOTS],
     /// Counts of all paints in each texel's film.
     films: Vec<u32>,
+    /// Steps with contact.
+    steps: u64,
 }
 
 impl BrushLoad {
@@ -34,6 +36,7 @@ impl BrushLoad {
             texels,
             held: [const { None }; SLOTS],
             films: vec![0; texels],
+            steps: 0,
         }
     }
 
@@ -114,6 +117,12 @@ impl BrushLoad {
             held.inside[0] += (count - each * texels) as u32;
         }
         load
+    }
+
+    /// Counts a step with contact; whether it is one in `every`.
+    pub fn is_due(&mut self, every: u64) -> bool {
+        self.steps += 1;
+        self.steps.is_multiple_of(every)
     }
 
     /// Whether any of a paint may be there.

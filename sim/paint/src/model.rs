@@ -40,15 +40,17 @@ pub struct BrushTraits {
     pub cells_per_quantum: f32,
     /// Side of a cell by that of the reference cell.
     pub cell_per_reference: f32,
-    /// Share of what a film lacks that comes from inside in a step.
+    /// Share of what a film lacks that comes from inside in [`FLOW_STEPS`](Self::FLOW_STEPS).
     pub refill: f64,
-    /// Share of the difference between texels that evens out in a step.
+    /// Share of the difference between texels that evens out in as many.
     pub creep: f64,
 }
 
 impl BrushTraits {
     /// A film takes up at most this many times its full thickness.
     pub const FILM_OVER: f64 = 2.0;
+    /// Paint flows within the head once in so many steps.
+    pub const FLOW_STEPS: u64 = 4;
     /// Share of what a film lacks that comes from inside along a reference cell.
     const REFILL: f64 = 0.03;
     /// Share of the difference between texels that evens out along a reference cell.
@@ -62,7 +64,8 @@ impl BrushTraits {
         let texel_cells = file.strips.width_mm * 1e-3 * along_m / (cell_m * cell_m);
         let quanta = |um: f64| um * 1e-6 / QUANTUM_M * texel_cells;
         let steps = cell_m / REFERENCE_CELL_M;
-        let share = |of_reference: f64| 1.0 - exp(maulstick_num::ln(1.0 - of_reference) * steps);
+        let flow = Self::FLOW_STEPS as f64 * steps;
+        let share = |of_reference: f64| 1.0 - exp(maulstick_num::ln(1.0 - of_reference) * flow);
         Self {
             half_width: (0.5 * file.strips.width_mm * seen) as f32,
             half_thickness: (0.5 * file.strips.thickness_mm * seen) as f32,
@@ -89,6 +92,8 @@ pub struct Step<'a> {
     pub head: &'a Head,
     /// What it does in this step.
     pub sweep: Sweep<'a>,
+    /// The cells of the surface that it may reach, from the first up to but not with the second.
+    pub bounds: ([i64; 2], [i64; 2]),
     /// What the brush carries.
     pub load: &'a mut BrushLoad,
     /// Its traits.

@@ -6,8 +6,11 @@ use crate::load::{ALONG, BrushLoad};
 use crate::model::{BrushTraits, Step};
 use crate::quantum::SLOTS;
 
-/// Moves paint within the strips that touch.
+/// Moves paint within the strips that touch, every few steps for as many.
 pub fn flow(footprint: &Footprint, step: &mut Step<'_>) {
+    if !step.load.is_due(BrushTraits::FLOW_STEPS) {
+        return;
+    }
     let mut touched = vec![false; step.head.strips()];
     for contact in &footprint.contacts {
         touched[contact.texel as usize / ALONG] = true;

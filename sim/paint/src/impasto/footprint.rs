@@ -6,7 +6,6 @@
 
 use maulstick_brush::head::STATIONS;
 
-use crate::head::low_bounds;
 use crate::load::ALONG;
 use crate::model::Step;
 use crate::window::Window;
@@ -114,14 +113,8 @@ impl Footprint {
     pub fn find(&mut self, step: &mut Step<'_>) {
         self.contacts.clear();
         let (head, traits) = (step.head, step.traits);
-        let thickest = step.load.thickest() as f32 * traits.film_cells_per_quantum;
         let pressed = traits.half_thickness + traits.sink * step.sweep.to.press;
-        let window_top = step.window.top() * traits.cells_per_quantum;
-        let Some((from, to)) = low_bounds(head, step.sweep.to, window_top + thickest + pressed)
-        else {
-            return;
-        };
-        self.lay_grid(step.window, from, to);
+        self.lay_grid(step.window, step.bounds.0, step.bounds.1);
         if self.size.contains(&0) {
             return;
         }

@@ -130,6 +130,7 @@ impl Painting {
             window,
             head: &track.head,
             sweep,
+            bounds: (from, to),
             load: &mut track.load,
             traits,
         });
