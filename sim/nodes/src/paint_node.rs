@@ -7,7 +7,7 @@ use std::time::Duration;
 
 use maulstick_brush::BrushFile;
 use maulstick_bus::typed::{Reader, Receiver, Sender};
-use maulstick_bus::{Bus, BusError, Class, CreditReceiver, Queue, Server, Wake};
+use maulstick_bus::{Bus, BusError, Class, CreditReceiver, Queue, Request, Server, Wake};
 use maulstick_paint::picture::{picture, write_whole};
 use maulstick_paint::sequencer::Replied;
 use maulstick_paint::{Effect, Painting, Sequencer};
@@ -15,7 +15,7 @@ use maulstick_types::brush::{BrushDef, BrushState};
 use maulstick_types::command::{CommandReply, CommandRequest, Outcome};
 use maulstick_types::paint::{BrushCredit, FrameHolds, JournalEntry, PaintConsumed, PaintStatus};
 use maulstick_types::scene::{CANVAS, Scene};
-use maulstick_types::topics::Topics;
+use maulstick_types::topics::{Topics, check_name};
 use maulstick_types::{Flags, Origin, encode};
 
 use crate::frames::{Fed, FedSurface, Feed};
@@ -127,9 +127,9 @@ impl PaintNode {
         let bus = Arc::clone(&self.bus);
         let now_ns = bus.now_ns();
         while let Some(def) = self.defs.try_recv() {
-            self.define(&def.message);
+            self.define(&def.key, &def.message);
         }
-        self.serve_commands(now_ns)?;
+        self.serve_commands(now_ns);
         self.states.poll(&*bus)?;
         let mut left = STATES_A_TURN;
         while left > 0 && self.next_state(now_ns)? {
@@ -150,17 +150,22 @@ impl PaintNode {
         })
     }
 
-    fn define(&mut self, def: &BrushDef) {
-        match BrushFile::parse(&def.toml) {
-            Ok(file) => self.sequencer.painting_mut().define_brush(&def.brush, file),
-            Err(error) => {
-                self.refused += 1;
-                tracing::warn!("the file of brush '{}' is refused: {error}", def.brush);
+    /// Takes in a brush file; its brush is the one of the topic, whose name is short.
+    fn define(&mut self, key: &str, def: &BrushDef) {
+        let brush = self.topics.middle(key).unwrap_or_default();
+        let refusal = match (check_name(brush), BrushFile::parse(&def.toml)) {
+            (Ok(()), Ok(file)) if def.brush == brush => {
+                return self.sequencer.painting_mut().define_brush(brush, file);
             }
-        }
+            (Ok(()), Ok(_)) => "it names another brush".to_owned(),
+            (Ok(()), Err(error)) => error.to_string(),
+            (Err(error), _) => error,
+        };
+        self.refused += 1;
+        tracing::warn!("{key}: the brush file is refused: {refusal}");
     }
 
-    fn serve_commands(&mut self, now_ns: u64) -> Result<(), BusError> {
+    fn serve_commands(&mut self, now_ns: u64) {
         while let Some(request) = self.commands.try_recv() {
             let read = self
                 .reader
@@ -169,17 +174,31 @@ impl PaintNode {
             let number = asked.number;
             let replied = self.sequencer.command(asked);
             let outcome = self.complete(replied);
-            let reply = CommandReply { number, outcome };
-            let bytes = encode(&self.me, Flags::NONE, 0, now_ns, self.bus.now_ns(), &reply)
-                .map_err(|source| BusError::Message {
-                    topic: request.key.clone(),
-                    source,
-                })?;
-            if let Err(error) = request.answer(bytes) {
-                tracing::debug!("a client is gone: {error}");
-            }
+            self.answer(request, now_ns, CommandReply { number, outcome });
         }
-        Ok(())
+    }
+
+    /// Answers a command. Nothing that a client sends may end the node: what cannot be told in
+    /// full is told in short.
+    fn answer(&self, request: Request, now_ns: u64, reply: CommandReply) {
+        let write = |reply: &CommandReply| {
+            encode(&self.me, Flags::NONE, 0, now_ns, self.bus.now_ns(), reply)
+        };
+        let bytes = write(&reply).or_else(|error| {
+            tracing::warn!("{}: {error}", request.key);
+            write(&CommandReply {
+                number: reply.number,
+                outcome: Outcome::Refused {
+                    what: "the answer to this command is too long".to_owned(),
+                    help: "send shorter names".to_owned(),
+                },
+            })
+        });
+        match bytes.map(|bytes| request.answer(bytes)) {
+            Ok(Ok(())) => {}
+            Ok(Err(error)) => tracing::debug!("a client is gone: {error}"),
+            Err(error) => tracing::error!("a command cannot be answered: {error}"),
+        }
     }
 
     /// Consumes one state; false where none can be consumed now.

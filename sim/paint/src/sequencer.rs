@@ -196,6 +196,11 @@ impl Sequencer {
             outcome,
             effect: None,
         };
+        // Whatever is answered may be quoted, and is journalled: it has to fit.
+        if let Err(what) = request.command.check() {
+            let help = "`maulstick paints` lists the paints, rig.toml the brushes".to_owned();
+            return reply(Outcome::Refused { what, help });
+        }
         if let Some((answered, outcome)) = self.answered.get(&client) {
             if *answered == number {
                 return reply(outcome.clone());
