@@ -11,7 +11,8 @@ use maulstick_device::Take;
 use maulstick_device::player::{self, PlayerSettings, Rate};
 use maulstick_haptic::daemon::{self, HapticSettings};
 use maulstick_nodes::frames::FrameServer;
-use maulstick_nodes::{BrushNode, BrushSettings, PaintNode};
+use maulstick_nodes::worker::Fallen;
+use maulstick_nodes::{BrushNode, BrushSettings, PaintNode, Worker};
 use maulstick_paint::Painting;
 use maulstick_rig::config::{FOREIGN_PRIORITY, MOUSE_PRIORITY, PLAYER_PRIORITY, RigConfig};
 use maulstick_rig::member::log_to_stderr;
@@ -164,17 +165,19 @@ pub fn paint() -> Result<i32, Fault> {
     let (topic, feed) = (member.topics.frame(), node.feed());
     let frames = FrameServer::new(bus, &topic, feed.clone(), &member.wake, origin)?;
     let stop = member.stop.clone();
-    let thread = std::thread::Builder::new()
-        .name("frames".into())
-        .spawn(move || frames.run(&stop))
+    let mut thread = Worker::start("frames", move || frames.run(&stop))
         .map_err(|error| Fault::failure(error.to_string()))?;
+    let fallen = |error: Fallen| Fault::failure(error.to_string());
     member.ready()?;
-    let result = member.run(|| Ok(node.turn()?));
+    let result = member.run(|| {
+        thread.check().map_err(fallen)?;
+        Ok(node.turn()?)
+    });
     member.stop.request();
     feed.ring();
-    thread.join().ok();
+    let ended = thread.join().map_err(fallen);
     member.leave();
-    result.map(|()| 0)
+    result.and(ended).map(|()| 0)
 }
 
 /// Drives a force-feedback stylus

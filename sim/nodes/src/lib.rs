@@ -10,6 +10,7 @@
 //! | [`paint_node`] | brush states and commands in, journal and credit out |
 //! | [`frames`] | pictures of what changed, for whoever asks |
 //! | [`offline`] | the same brush and paint in one process, without a bus |
+//! | [`worker`] | a thread that a node cannot do without |
 
 pub mod arbiter;
 pub mod backlog;
@@ -18,7 +19,9 @@ pub mod feel;
 pub mod frames;
 pub mod offline;
 pub mod paint_node;
+pub mod worker;
 
 pub use brush_node::{BrushNode, BrushSettings};
 pub use offline::Offline;
 pub use paint_node::PaintNode;
+pub use worker::Worker;

@@ -43,7 +43,8 @@ pub struct PaintNode {
     status: Sender<PaintStatus>,
     feed: Feed,
     fed_version: u64,
-    fed_scene: u64,
+    fed_studio: u64,
+    sent_scene: u64,
     fed_ns: u64,
     status_ns: u64,
     told: BTreeMap<Origin, u64>,
@@ -67,7 +68,7 @@ impl PaintNode {
         let mut scene = Sender::new(b, &topics.scene(), Class::Cached, me)?;
         let now = b.now_ns();
         scene.send(now, now, painting.scene())?;
-        let fed_scene = painting.scene().version;
+        let sent_scene = painting.scene().version;
         let mut sequencer = Sequencer::new(painting);
         sequencer.decide("backend cpu");
         let node = Self {
@@ -87,7 +88,8 @@ impl PaintNode {
             scene,
             feed: Feed::new(),
             fed_version: 1,
-            fed_scene,
+            fed_studio: sent_scene,
+            sent_scene,
             fed_ns: 0,
             status_ns: 0,
             told: BTreeMap::new(),
@@ -282,11 +284,9 @@ impl PaintNode {
 
     fn publish_scene(&mut self, now_ns: u64) -> Result<(), BusError> {
         let scene = self.sequencer.painting().scene();
-        if scene.version != self.fed_scene {
-            self.fed_scene = scene.version;
+        if scene.version != self.sent_scene {
+            self.sent_scene = scene.version;
             self.scene.send(now_ns, now_ns, scene)?;
-            let studio = Arc::new(self.sequencer.painting().studio().clone());
-            self.feed.lock().studio = Some(studio);
         }
         Ok(())
     }
@@ -324,6 +324,11 @@ impl PaintNode {
         let painting = self.sequencer.painting();
         let news = painting.versions() > self.fed_version;
         let mut fed = self.feed.lock();
+        // The tiles may hold paints that are new too: both are handed over in one piece.
+        if self.fed_studio != painting.scene().version {
+            self.fed_studio = painting.scene().version;
+            fed.studio = Some(Arc::new(painting.studio().clone()));
+        }
         if news {
             feed_versions(&mut fed, painting, self.fed_version);
             self.fed_version = painting.versions();
@@ -417,3 +422,6 @@ impl std::fmt::Debug for PaintNode {
             .finish_non_exhaustive()
     }
 }
+
+#[cfg(test)]
+mod tests;

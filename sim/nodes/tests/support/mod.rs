@@ -14,7 +14,7 @@ use std::sync::Arc;
 use maulstick_brush::BrushFile;
 use maulstick_bus::credit::Stamp;
 use maulstick_bus::typed::Receiver;
-use maulstick_bus::{Bus, Class, CreditSender, Faults, MemoryNet, Queue, Wake};
+use maulstick_bus::{Bus, Class, CreditSender, MemoryNet, Queue, Wake};
 use maulstick_nodes::{BrushNode, BrushSettings, Offline, PaintNode};
 use maulstick_optics::PaintLibrary;
 use maulstick_paint::picture::picture;
