@@ -1,13 +1,16 @@
 //! What the node hands to the frames and to its clients.
 
+#![allow(clippy::panic, reason = "a test fails by it")]
+
 use maulstick_brush::BrushModel;
+use maulstick_bus::bus::Answer;
 use maulstick_bus::{Faults, MemoryNet};
 use maulstick_optics::PaintLibrary;
 use maulstick_paint::PaintingSetup;
 use maulstick_paint::display::DisplayTile;
 use maulstick_types::command::Command;
 use maulstick_types::stylus::{DEFAULT_TILT_RAD, StylusPose, StylusSample};
-use maulstick_types::{Header, Mixture};
+use maulstick_types::{Header, Mixture, decode};
 
 use super::*;
 
@@ -101,4 +104,30 @@ fn the_frames_know_a_paint_as_soon_as_a_tile_has_it() {
     // Shading a paint that the studio does not have is out of bounds.
     let shown = painted.map(|tile| DisplayTile::of(Some(tile), studio, &surface.ground));
     assert!(shown.count() > 0, "nothing was painted");
+}
+
+#[test]
+fn an_answer_that_does_not_fit_is_given_in_short() {
+    let net = MemoryNet::new(1, 1_000_000_000, Faults::default());
+    let (node, _) = node(&net);
+    let wake = Wake::new();
+    let topic = node.topics.command("paint");
+    let pending = net
+        .bus()
+        .ask(&topic, Vec::new(), Duration::from_secs(1), &wake)
+        .expect("asked");
+    net.advance(1);
+    let request = node.commands.try_recv().expect("a question");
+    let outcome = Outcome::Done {
+        journal: 1,
+        detail: "x".repeat(70_000),
+    };
+    node.answer(request, 0, CommandReply { number: 5, outcome });
+    net.advance(1);
+    let Some(Answer::Bytes(bytes)) = pending.try_recv() else {
+        panic!("no answer");
+    };
+    let reply = decode::<CommandReply>(&bytes).expect("a reply").1;
+    assert_eq!(reply.number, 5);
+    assert!(matches!(reply.outcome, Outcome::Refused { .. }));
 }
