@@ -215,20 +215,16 @@ impl PaintNode {
         let Some(received) = self.states.pop() else {
             return Ok(false);
         };
-        match self
+        let (replies, painted) = self
             .sequencer
-            .state(&brush, &received.header, &received.message)
-        {
-            Ok(replies) => {
-                for replied in replies {
-                    self.complete(replied);
-                }
-            }
-            Err(error) => {
-                self.refused += 1;
-                if self.refused == 1 {
-                    tracing::warn!("{}: {error}: {}", received.key, error.help);
-                }
+            .state(&brush, &received.header, &received.message);
+        for replied in replies {
+            self.complete(replied);
+        }
+        if let Err(error) = painted {
+            self.refused += 1;
+            if self.refused == 1 {
+                tracing::warn!("{}: {error}: {}", received.key, error.help);
             }
         }
         if now_ns >= self.fed_ns + FEED_PERIOD_NS {

@@ -116,18 +116,18 @@ impl Sequencer {
             .collect()
     }
 
-    /// Accepts a state, which must come in order, and then the commands that waited for it.
+    /// Accepts a state, which must come in order, and then the commands that waited for it; returns
+    /// what became of these and of it. A state that does not fit is refused, and consumed all the
+    /// same.
     ///
     /// A state of a replayed take that nobody announced paints nothing.
-    ///
-    /// # Errors
-    /// [`PaintRefusal`] where the state does not fit; it is consumed all the same.
+    #[must_use = "effects of the commands are still to be done"]
     pub fn state(
         &mut self,
         brush: &str,
         header: &Header,
         state: &BrushState,
-    ) -> Result<Vec<Replied>, PaintRefusal> {
+    ) -> (Vec<Replied>, Result<(), PaintRefusal>) {
         let from = Announced {
             device: state.device,
             epoch: state.device_epoch,
@@ -143,8 +143,7 @@ impl Sequencer {
         self.consumed
             .retain(|origin, _| origin.source != header.source || origin.epoch == header.epoch);
         self.consumed.insert(header.origin(), header.seq + 1);
-        let replies = self.release();
-        result.map(|()| replies)
+        (self.release(), result)
     }
 
     fn enter_states(&mut self, brush: &str, epoch: u32, seq: u64) {

@@ -83,9 +83,8 @@ fn stroke(node: &mut PaintNode, model: &mut BrushModel) {
             event_ns,
             sent_ns: event_ns,
         };
-        node.sequencer
-            .state("main", &header, &state)
-            .expect("painted");
+        let (_, painted) = node.sequencer.state("main", &header, &state);
+        painted.expect("painted");
     }
 }
 

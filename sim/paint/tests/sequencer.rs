@@ -1,0 +1,88 @@
+//! What the sequencer owes to clients and brushes.
+
+use maulstick_brush::BrushFile;
+use maulstick_optics::PaintLibrary;
+use maulstick_paint::{Effect, Painting, PaintingSetup, Sequencer};
+use maulstick_types::brush::{BrushState, Solve};
+use maulstick_types::command::{After, Command, CommandRequest, Outcome};
+use maulstick_types::{Flags, Header, Mixture, Pose};
+
+const BRUSH: u32 = 3;
+
+fn sequencer() -> Sequencer {
+    let setup = PaintingSetup {
+        cells: [256, 192],
+        ..PaintingSetup::default()
+    };
+    let library = PaintLibrary::measured().expect("whole");
+    let mut sequencer = Sequencer::new(Painting::new(&setup, library).expect("a painting"));
+    let file = BrushFile::library("round").expect("round");
+    sequencer.painting_mut().define_brush("main", file);
+    sequencer
+}
+
+fn header(epoch: u32, seq: u64) -> Header {
+    Header {
+        version: 1,
+        schema: 0,
+        source: BRUSH,
+        epoch,
+        flags: Flags::NONE,
+        length: 0,
+        seq,
+        event_ns: seq,
+        sent_ns: seq,
+    }
+}
+
+/// A state without joints, which fits no brush file.
+fn misfit() -> BrushState {
+    let solve = Solve {
+        event_ns: 1,
+        stroke: 1,
+        surface: 0,
+        flags: 0,
+        pose: Pose::IDENTITY,
+        angles_rad: Vec::new(),
+        contacts: Vec::new(),
+    };
+    BrushState {
+        device: 1,
+        device_epoch: 1,
+        device_seq: 0,
+        solves: vec![solve],
+    }
+}
+
+fn request(client: u64, number: u64, command: Command) -> CommandRequest {
+    CommandRequest {
+        client,
+        number,
+        after: None,
+        command,
+    }
+}
+
+#[test]
+fn a_command_that_waits_for_a_refused_state_is_done_with_its_effect() {
+    let mut sequencer = sequencer();
+    let command = Command::Snapshot {
+        path: "p.png".into(),
+        ledger: None,
+    };
+    let snapshot = CommandRequest {
+        after: Some(After {
+            brush: BRUSH,
+            epoch: 1,
+            sequence: 0,
+        }),
+        ..request(1, 1, command)
+    };
+    assert_eq!(sequencer.command(snapshot).outcome, Outcome::Waiting);
+    let (replies, painted) = sequencer.state("main", &header(1, 0), &misfit());
+    assert!(painted.is_err(), "the state fits no brush file");
+    assert!(
+        matches!(&replies[..], [one] if matches!(one.effect, Some(Effect::Snapshot { .. }))),
+        "{replies:?}"
+    );
+}
