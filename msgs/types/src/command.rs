@@ -3,6 +3,7 @@
 use crate::define::{message, wire_enum, wire_struct};
 use crate::mixture::Mixture;
 use crate::pose::Pose;
+use crate::stylus::FARTHEST_M;
 use crate::topics::check_name;
 
 /// A path of a command has at most this many bytes; Linux takes no longer ones.
@@ -77,7 +78,8 @@ wire_enum! {
 }
 
 impl Command {
-    /// Checks names, paths and mixtures for their length, so that whoever answers may quote them.
+    /// Checks names, paths and mixtures for their length, so that whoever answers may quote them,
+    /// and that no surface is put out of reach.
     ///
     /// # Errors
     /// What is wrong, in few words.
@@ -97,7 +99,16 @@ impl Command {
                     None => Ok(()),
                 }
             }
-            Self::Undo | Self::Redo | Self::Place { .. } | Self::Mark => Ok(()),
+            Self::Place { pose, .. } => {
+                let near = |metres: &f64| metres.abs() <= FARTHEST_M;
+                match pose.position_m.iter().all(near) {
+                    true => Ok(()),
+                    false => Err(format!(
+                        "the surface's place is not within {FARTHEST_M} m of the desk's origin"
+                    )),
+                }
+            }
+            Self::Undo | Self::Redo | Self::Mark => Ok(()),
         }
     }
 }
@@ -188,7 +199,7 @@ mod tests {
     use crate::mixture::Part;
 
     #[test]
-    fn what_is_too_long_to_be_quoted_is_refused_in_few_words() {
+    fn what_is_too_long_or_too_far_is_refused_in_few_words() {
         let long = "x".repeat(70_000);
         let part = Part {
             paint: long.clone(),
@@ -225,6 +236,16 @@ mod tests {
             let what = command.check().expect_err("too long");
             assert!(what.len() < 200, "{what}");
         }
+        let place = |x: f64| Command::Place {
+            surface: 0,
+            pose: Pose {
+                position_m: [x, 0.0, 0.0],
+                ..Pose::IDENTITY
+            },
+            zoom: 1.0,
+        };
+        assert!(place(1e30).check().is_err() && place(f64::NAN).check().is_err());
+        assert_eq!(place(-0.1).check(), Ok(()));
         assert_eq!(load(Mixture::pure("Bone Black")).check(), Ok(()));
         assert_eq!(Command::Mark.check(), Ok(()));
     }

@@ -133,7 +133,12 @@ impl Sequencer {
             epoch: state.device_epoch,
         };
         let replayed = header.flags.has(Flags::REPLAY);
-        let result = if replayed && self.announced.get(brush) != Some(&from) {
+        let result = if let Some(fault) = state.fault() {
+            Err(PaintRefusal::new(
+                format!("a state of brush '{brush}' is wrong: {fault}"),
+                "restart the program that sends it, or report its fault",
+            ))
+        } else if replayed && self.announced.get(brush) != Some(&from) {
             self.ignored += 1;
             Ok(())
         } else {
@@ -197,7 +202,8 @@ impl Sequencer {
         };
         // Whatever is answered may be quoted, and is journalled: it has to fit.
         if let Err(what) = request.command.check() {
-            let help = "`maulstick paints` lists the paints, rig.toml the brushes".to_owned();
+            let help =
+                "see the messages of `maulstick schema` for what a command may say".to_owned();
             return reply(Outcome::Refused { what, help });
         }
         if let Some((answered, outcome)) = self.answered.get(&client) {

@@ -5,7 +5,7 @@ use maulstick_optics::PaintLibrary;
 use maulstick_paint::{Effect, Painting, PaintingSetup, Sequencer};
 use maulstick_types::brush::{BrushState, Solve};
 use maulstick_types::command::{After, Command, CommandRequest, Outcome};
-use maulstick_types::{Flags, Header, Mixture, Pose};
+use maulstick_types::{Flags, Header, Pose};
 
 const BRUSH: u32 = 3;
 
@@ -85,4 +85,20 @@ fn a_command_that_waits_for_a_refused_state_is_done_with_its_effect() {
         matches!(&replies[..], [one] if matches!(one.effect, Some(Effect::Snapshot { .. }))),
         "{replies:?}"
     );
+}
+
+#[test]
+fn a_state_beyond_every_surface_is_refused_before_it_is_followed() {
+    let mut sequencer = sequencer();
+    let file = BrushFile::library("round").expect("round");
+    let at = |x: f64| {
+        let mut state = misfit();
+        state.solves[0].angles_rad = vec![[0.0; 2]; file.spine.joints];
+        state.solves[0].pose.position_m = [x, 0.0, 0.0];
+        state
+    };
+    let (_, here) = sequencer.state("main", &header(1, 0), &at(0.01));
+    assert_eq!(here, Ok(()));
+    let (_, beyond) = sequencer.state("main", &header(1, 1), &at(1e30));
+    assert!(beyond.is_err());
 }
