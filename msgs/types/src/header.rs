@@ -32,10 +32,11 @@ impl Flags {
     }
 }
 
-/// Who sends: a name's hash, and a number drawn at random at each start.
+/// Who sends: a number of its own, and one drawn at random at each start. Streams are told apart by
+/// their topics: two devices may have chosen the same number.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct Origin {
-    /// [`name_hash`](crate::name_hash) of the device, brush or node.
+    /// [`name_hash`](crate::name_hash) of a brush or a node; a device may choose any number.
     pub source: u32,
     /// Random at each start of the sender.
     pub epoch: u32,

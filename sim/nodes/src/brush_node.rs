@@ -1,6 +1,6 @@
 //! The brush node: stylus samples in; brush states, credit and contact models out.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 use std::time::Duration;
 
@@ -16,7 +16,7 @@ use maulstick_types::stylus::{StylusInfo, StylusSample, axes};
 use maulstick_types::topics::Topics;
 use maulstick_types::{Flags, Origin, name_hash};
 
-use crate::arbiter::Arbiter;
+use crate::arbiter::{Arbiter, Range, Stroke};
 use crate::backlog::{Backlog, Waiting};
 use crate::feel::contact_model;
 
@@ -46,11 +46,24 @@ pub struct BrushSettings {
     pub epoch: u32,
 }
 
+impl BrushSettings {
+    /// Priority of a device, if it moves this brush: rig.toml and the device itself (`moves`: the
+    /// brush that each device says it moves) may say that it moves another one.
+    fn priority(&self, device: &str, moves: &BTreeMap<String, String>) -> Option<i32> {
+        let elsewhere = moves
+            .get(device)
+            .is_some_and(|brush| !brush.is_empty() && *brush != self.name);
+        if elsewhere || self.others.iter().any(|other| other == device) {
+            return None;
+        }
+        self.devices.get(device).copied().or(self.foreign_priority)
+    }
+}
+
 /// The brush node.
 pub struct BrushNode {
     bus: Arc<dyn Bus>,
     topics: Topics,
-    wake: Wake,
     settings: BrushSettings,
     model: BrushModel,
     samples: CreditReceiver<StylusSample>,
@@ -60,16 +73,21 @@ pub struct BrushNode {
     scene_version: u64,
     infos: Receiver<StylusInfo>,
     consumed: Sender<BrushConsumed>,
-    drives_force: BTreeMap<u32, bool>,
+    /// Devices, by name, that drive a force.
+    drives_force: BTreeSet<String>,
+    /// Devices, by name, and the brush that each says it moves.
+    moves: BTreeMap<String, String>,
     models: BTreeMap<String, (Sender<ContactModel>, u64)>,
     arbiter: Arbiter,
     backlog: Backlog,
-    progress: BTreeMap<Origin, BrushConsumed>,
-    told: BTreeMap<Origin, u64>,
+    /// What is consumed of each device, by name, and what of it was told.
+    progress: BTreeMap<String, BrushConsumed>,
+    told: BTreeMap<String, u64>,
     /// The take whose states are being sent.
     replayed: Option<Origin>,
     touching: bool,
-    bad: u64,
+    /// Devices of whose faulty samples it was said.
+    faulty: BTreeSet<String>,
     _def: Sender<BrushDef>,
 }
 
@@ -127,7 +145,8 @@ impl BrushNode {
             )?,
             consumed: Sender::new(b, &topics.brush_consumed(name), Class::Control, me)?,
             model: BrushModel::new(settings.file.clone(), settings.depth_share),
-            drives_force: BTreeMap::new(),
+            drives_force: BTreeSet::new(),
+            moves: BTreeMap::new(),
             models: BTreeMap::new(),
             arbiter: Arbiter::default(),
             backlog: Backlog::default(),
@@ -135,19 +154,12 @@ impl BrushNode {
             told: BTreeMap::new(),
             replayed: None,
             touching: false,
-            bad: 0,
+            faulty: BTreeSet::new(),
             _def: def,
             topics: topics.clone(),
-            wake: wake.clone(),
             settings,
             bus,
         })
-    }
-
-    /// What rings when there is something to do.
-    #[must_use]
-    pub fn wake(&self) -> &Wake {
-        &self.wake
     }
 
     /// How many states were sent.
@@ -170,8 +182,9 @@ impl BrushNode {
         }
         self.flush(now_ns)?;
         self.states.serve(now_ns)?;
-        for origin in self.samples.unheard() {
-            self.told.remove(&origin);
+        for topic in self.samples.unheard() {
+            let device = self.topics.middle(&topic).unwrap_or_default();
+            self.told.remove(device);
         }
         self.tell(now_ns)?;
         Ok(Duration::from_millis(20))
@@ -197,24 +210,38 @@ impl BrushNode {
             }
         }
         while let Some(info) = self.infos.try_recv() {
-            let drives = info.message.drives & axes::FORCE != 0;
-            self.drives_force
-                .insert(name_hash(&info.message.device), drives);
+            let device = self.topics.middle(&info.key).unwrap_or_default();
+            if info.message.drives & axes::FORCE != 0 {
+                self.drives_force.insert(device.to_owned());
+            } else {
+                self.drives_force.remove(device);
+            }
+            self.moves.insert(device.to_owned(), info.message.brush);
         }
     }
 
     /// The next sample that may be consumed: a replayed one waits for credit, and all wait for a
-    /// scene. A take that is played anew does not wait for what the one before is owed.
+    /// scene. None waits for another device's. A take that is played anew does not wait for what
+    /// the one before is owed.
     fn next_sample(&mut self) -> Option<Received<StylusSample>> {
-        let next = self.samples.peek()?;
-        let replayed = next.header.flags.has(Flags::REPLAY);
-        if replayed && next.header.flags.has(Flags::FIRST) {
+        let (topics, settings, moves) = (&self.topics, &self.settings, &self.moves);
+        let mine = |next: &Received<StylusSample>| {
+            let device = topics.middle(&next.key).unwrap_or_default();
+            settings.priority(device, moves).is_some()
+        };
+        let anew = Flags::REPLAY.with(Flags::FIRST);
+        if self
+            .samples
+            .heads()
+            .any(|next| next.header.flags.has(anew) && mine(next))
+        {
             self.states.forgive();
         }
-        if !self.model.has_scene() || (replayed && !self.states.has_credit()) {
-            return None;
-        }
-        self.samples.pop()
+        let (has_scene, has_credit) = (self.model.has_scene(), self.states.has_credit());
+        self.samples.pop_where(|next| {
+            let replayed = next.header.flags.has(Flags::REPLAY);
+            !mine(next) || (has_scene && (has_credit || !replayed))
+        })
     }
 
     fn sample(&mut self, received: Received<StylusSample>, now_ns: u64) -> Result<(), BusError> {
@@ -225,22 +252,25 @@ impl BrushNode {
             .middle(&received.key)
             .unwrap_or_default()
             .to_owned();
-        let Some(priority) = self.priority(&device) else {
+        let Some(priority) = self.settings.priority(&device, &self.moves) else {
             return Ok(());
         };
-        self.note(origin, seq);
+        self.note(&device, origin, seq);
         if let Some(fault) = received.message.fault() {
-            self.bad += 1;
-            if self.bad == 1 {
+            if self.faulty.insert(device) {
                 tracing::warn!("{}: sample {seq} is dropped: {fault}", received.key);
             }
             return Ok(());
         }
-        let in_range = received.message.in_range;
-        if !self
-            .arbiter
-            .hear(origin, priority, in_range, now_ns, self.touching)
-        {
+        let range = match received.message.in_range {
+            true => Range::Near,
+            false => Range::Away,
+        };
+        let stroke = match self.touching {
+            true => Stroke::GoesOn,
+            false => Stroke::None,
+        };
+        if !self.arbiter.hear(&device, priority, range, stroke, now_ns) {
             return Ok(());
         }
         if received.header.flags.has(Flags::REPLAY) {
@@ -264,17 +294,6 @@ impl BrushNode {
             self.flush(now_ns)?;
         }
         self.feel(&device, origin, now_ns)
-    }
-
-    fn priority(&self, device: &str) -> Option<i32> {
-        if self.settings.others.iter().any(|other| other == device) {
-            return None;
-        }
-        self.settings
-            .devices
-            .get(device)
-            .copied()
-            .or(self.settings.foreign_priority)
     }
 
     /// Sends what waits, if paint keeps up; what has waited is one message.
@@ -319,38 +338,39 @@ impl BrushNode {
             event_ns: last.event_ns,
         };
         let number = self.states.send(flags, stamp, state)?;
-        let origin = Origin {
-            source: state.device,
-            epoch: state.device_epoch,
-        };
-        if let Some(progress) = self.progress.get_mut(&origin) {
-            progress.state = number;
+        for progress in self.progress.values_mut() {
+            if (progress.device, progress.device_epoch) == (state.device, state.device_epoch) {
+                progress.state = number;
+            }
         }
         Ok(())
     }
 
     /// A sample is consumed.
-    fn note(&mut self, origin: Origin, seq: u64) {
-        let me = self.states.origin();
-        self.progress
-            .retain(|other, _| other.source != origin.source || *other == origin);
-        self.told
-            .retain(|other, _| other.source != origin.source || *other == origin);
-        let progress = self.progress.entry(origin).or_insert(BrushConsumed {
+    fn note(&mut self, device: &str, origin: Origin, seq: u64) {
+        let fresh = BrushConsumed {
             device: origin.source,
             device_epoch: origin.epoch,
             next: 0,
-            brush_epoch: me.epoch,
+            brush_epoch: self.states.origin().epoch,
             state: self.states.next_seq(),
-        });
-        progress.next = seq + 1;
+        };
+        let progress = self
+            .progress
+            .entry(device.to_owned())
+            .or_insert_with(|| fresh.clone());
+        if (progress.device, progress.device_epoch) != (origin.source, origin.epoch) {
+            *progress = fresh;
+            self.told.remove(device);
+        }
+        progress.next = seq.wrapping_add(1);
     }
 
     /// Tells devices what is consumed.
     fn tell(&mut self, now_ns: u64) -> Result<(), BusError> {
-        for (origin, progress) in &self.progress {
-            if self.told.get(origin) != Some(&progress.next) {
-                self.told.insert(*origin, progress.next);
+        for (device, progress) in &self.progress {
+            if self.told.get(device) != Some(&progress.next) {
+                self.told.insert(device.clone(), progress.next);
                 self.consumed.send(now_ns, now_ns, progress)?;
             }
         }
@@ -359,7 +379,7 @@ impl BrushNode {
 
     /// Gives a force-feedback device its contact model.
     fn feel(&mut self, device: &str, origin: Origin, now_ns: u64) -> Result<(), BusError> {
-        if self.drives_force.get(&origin.source) != Some(&true) {
+        if !self.drives_force.contains(device) {
             return Ok(());
         }
         let Some(desk) = self.model.desk() else {

@@ -1,12 +1,12 @@
 //! The paint node: brush states and commands in; journal, credit, scene and frames out.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 use std::sync::Arc;
 use std::time::Duration;
 
 use maulstick_brush::BrushFile;
-use maulstick_bus::typed::{Reader, Receiver, Sender};
+use maulstick_bus::typed::{Reader, Received, Receiver, Sender};
 use maulstick_bus::{Bus, BusError, Class, CreditReceiver, Queue, Request, Server, Wake};
 use maulstick_paint::picture::{picture, write_whole};
 use maulstick_paint::sequencer::Replied;
@@ -16,7 +16,7 @@ use maulstick_types::command::{CommandReply, CommandRequest, Outcome};
 use maulstick_types::paint::{BrushCredit, FrameHolds, JournalEntry, PaintConsumed, PaintStatus};
 use maulstick_types::scene::{CANVAS, Scene};
 use maulstick_types::topics::{Topics, check_name};
-use maulstick_types::{Flags, Origin, encode};
+use maulstick_types::{Flags, Origin, encode, name_hash};
 
 use crate::frames::{Fed, FedSurface, Feed};
 
@@ -50,6 +50,9 @@ pub struct PaintNode {
     told: BTreeMap<Origin, u64>,
     tell_again: bool,
     refused: u64,
+    /// Brushes without a file, and topics with a stranger on them, of which it was said.
+    unknown: BTreeSet<String>,
+    strangers: BTreeSet<String>,
 }
 
 impl PaintNode {
@@ -95,6 +98,8 @@ impl PaintNode {
             told: BTreeMap::new(),
             tell_again: false,
             refused: 0,
+            unknown: BTreeSet::new(),
+            strangers: BTreeSet::new(),
             topics: topics.clone(),
             me,
             sequencer,
@@ -203,18 +208,30 @@ impl PaintNode {
         }
     }
 
-    /// Consumes one state; false where none can be consumed now.
+    /// Consumes one state; false where none can be consumed now. A brush whose file has not come
+    /// waits, and holds up no other.
     fn next_state(&mut self, now_ns: u64) -> Result<bool, BusError> {
-        let Some(next) = self.states.peek() else {
+        let (painting, topics) = (self.sequencer.painting(), &self.topics);
+        let known = |next: &Received<BrushState>| {
+            let brush = topics.middle(&next.key);
+            brush.is_some_and(|brush| painting.knows_brush(brush))
+        };
+        let Some(received) = self.states.pop_where(known) else {
             return Ok(false);
         };
-        let brush = self.topics.middle(&next.key).unwrap_or_default().to_owned();
-        if !self.sequencer.painting().knows_brush(&brush) {
-            return Ok(false);
+        let brush = self
+            .topics
+            .middle(&received.key)
+            .unwrap_or_default()
+            .to_owned();
+        // Credit and places in the journal are by the hash of the brush's name.
+        if received.header.source != name_hash(&brush) {
+            self.refused += 1;
+            if self.strangers.insert(received.key.clone()) {
+                tracing::warn!("{}: a stranger's states are dropped", received.key);
+            }
+            return Ok(true);
         }
-        let Some(received) = self.states.pop() else {
-            return Ok(false);
-        };
         let (replies, painted) = self
             .sequencer
             .state(&brush, &received.header, &received.message);
@@ -348,6 +365,20 @@ impl PaintNode {
         }
     }
 
+    /// Says once of each brush that it moves without a brush file.
+    fn tell_unknown(&mut self, now_ns: u64) {
+        for next in self.states.heads() {
+            let brush = self.topics.middle(&next.key).unwrap_or_default();
+            let waits = now_ns.saturating_sub(next.arrived_ns) > STATUS_PERIOD_NS;
+            if waits
+                && !self.sequencer.painting().knows_brush(brush)
+                && self.unknown.insert(brush.to_owned())
+            {
+                tracing::warn!("{}: its brush file has not come, its states wait", next.key);
+            }
+        }
+    }
+
     fn publish_status(&mut self, now_ns: u64) -> Result<(), BusError> {
         if now_ns < self.status_ns + STATUS_PERIOD_NS {
             return Ok(());
@@ -355,10 +386,9 @@ impl PaintNode {
         self.status_ns = now_ns;
         let (steps, footprint_cells) = self.sequencer.painting().work();
         let counts = self.states.counts();
-        let lag_ns = self
-            .states
-            .peek()
-            .map_or(0, |next| now_ns.saturating_sub(next.header.event_ns));
+        self.tell_unknown(now_ns);
+        let oldest_ns = self.states.heads().map(|next| next.header.event_ns).min();
+        let lag_ns = oldest_ns.map_or(0, |oldest_ns| now_ns.saturating_sub(oldest_ns));
         let status = PaintStatus {
             journal: self.sequencer.journal_next(),
             steps,

@@ -48,9 +48,9 @@ pub fn loads() -> Vec<Mixture> {
         .to_vec()
 }
 
-/// Two crossing strokes and a dot.
-pub fn take() -> Vec<(u64, StylusSample)> {
-    let pen = |x: f64, y: f64, pressure: f64| StylusSample {
+/// A pen over the canvas.
+pub fn pen(x: f64, y: f64, pressure: f64) -> StylusSample {
+    StylusSample {
         pose: StylusPose::Contact {
             point_m: [x, y, 0.0],
             tilt_rad: DEFAULT_TILT_RAD,
@@ -59,7 +59,11 @@ pub fn take() -> Vec<(u64, StylusSample)> {
         },
         in_range: true,
         ..StylusSample::away()
-    };
+    }
+}
+
+/// Two crossing strokes and a dot.
+pub fn take() -> Vec<(u64, StylusSample)> {
     let mut samples = Vec::new();
     for i in 0..120u64 {
         let t = i as f64 / 60.0;
@@ -211,6 +215,20 @@ impl Live {
         );
     }
 
+    /// Another device of this rig.
+    pub fn device(&self, name: &str, source: u32) -> Device {
+        let (topics, wake) = (&self.topics, Wake::new());
+        let bus = self.net.bus();
+        let origin = Origin { source, epoch: 11 };
+        let (sample, consumed) = (topics.sample(name), topics.brush_consumed("main"));
+        let credit = Receiver::new(&bus, &consumed, Class::Control, Queue::Ring(64), &wake);
+        Device {
+            samples: CreditSender::new(&bus, topics, &sample, origin, &wake).expect("a device"),
+            credit: credit.expect("subscribed"),
+            net: self.net.clone(),
+        }
+    }
+
     pub fn player_turn(&mut self, samples: &[(u64, StylusSample)]) {
         let now_ns = self.net.bus().now_ns();
         while let Some(credit) = self.credit.try_recv() {
@@ -255,6 +273,38 @@ impl Live {
                 return;
             }
         }
+    }
+}
+
+/// A live device.
+pub struct Device {
+    pub samples: CreditSender<StylusSample>,
+    credit: Receiver<BrushConsumed>,
+    net: MemoryNet,
+}
+
+impl Device {
+    /// Sends a sample, whoever listens.
+    pub fn send(&mut self, sample: &StylusSample) {
+        let now_ns = self.net.bus().now_ns();
+        let stamp = Stamp {
+            now_ns,
+            event_ns: now_ns,
+        };
+        self.samples.forgive();
+        self.samples.serve(now_ns).expect("served");
+        self.samples.send(Flags::NONE, stamp, sample).expect("sent");
+    }
+
+    /// How many of its samples the brush has consumed.
+    pub fn consumed(&mut self) -> u64 {
+        let me = self.samples.origin();
+        std::iter::from_fn(|| self.credit.try_recv())
+            .map(|told| told.message)
+            .filter(|told| (told.device, told.device_epoch) == (me.source, me.epoch))
+            .map(|told| told.next)
+            .last()
+            .unwrap_or(0)
     }
 }
 
