@@ -61,6 +61,9 @@ message! {
 pub const FARTHEST_M: f64 = 100.0;
 
 impl BrushState {
+    /// Bytes of a message beside its solves.
+    pub const WIRE_BYTES: usize = 2 * 4 + 2 * 8;
+
     /// What is wrong with the numbers, if anything: a path over them would never end.
     #[must_use]
     pub fn fault(&self) -> Option<&'static str> {
@@ -69,6 +72,14 @@ impl BrushState {
 }
 
 impl Solve {
+    /// Bytes that it takes in a message.
+    #[must_use]
+    pub fn wire_bytes(&self) -> usize {
+        // Two times 8 for time and stroke, 4 for surface and flags, the pose, the two lengths.
+        let fixed = 2 * 8 + 2 * 4 + 7 * 8 + 2 * 8;
+        fixed + 8 * self.angles_rad.len() + 8 * self.contacts.len()
+    }
+
     fn fault(&self) -> Option<&'static str> {
         let near = |metres: &f64| metres.abs() <= FARTHEST_M;
         if !self.pose.is_valid() {
@@ -150,6 +161,23 @@ mod tests {
             device_seq: 1,
             solves: vec![solve],
         }
+    }
+
+    #[test]
+    fn a_message_is_as_long_as_its_parts_say() {
+        let origin = crate::Origin {
+            source: 1,
+            epoch: 1,
+        };
+        let mut state = state(1.0, 0.1, 0.1);
+        state.solves[0].angles_rad = vec![[0.0; 2]; 5];
+        state.solves.push(state.solves[0].clone());
+        let bytes = crate::encode(&origin, crate::Flags::NONE, 0, 0, 0, &state).expect("encoded");
+        let said: usize = state.solves.iter().map(Solve::wire_bytes).sum();
+        assert_eq!(
+            bytes.len() - crate::HEADER_BYTES,
+            BrushState::WIRE_BYTES + said
+        );
     }
 
     #[test]

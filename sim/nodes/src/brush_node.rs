@@ -19,13 +19,12 @@ use maulstick_types::{Flags, Origin, name_hash};
 use crate::arbiter::{Arbiter, Range, Stroke};
 use crate::backlog::{Backlog, Waiting};
 use crate::feel::contact_model;
+use crate::outbox::Outbox;
 
 /// Live, states older than this are not added to: the brush merges, ns.
 const OLDEST_NS: u64 = 50_000_000;
 /// Least time between two contact models, ns.
 const MODEL_PERIOD_NS: u64 = 4_000_000;
-/// Sub-solves of one message at most: below its 60 KiB.
-const SOLVES: usize = 200;
 
 /// What a brush node is told at its start.
 #[derive(Clone, Debug)]
@@ -80,6 +79,7 @@ pub struct BrushNode {
     models: BTreeMap<String, (Sender<ContactModel>, u64)>,
     arbiter: Arbiter,
     backlog: Backlog,
+    outbox: Outbox,
     /// What is consumed of each device, by name, and what of it was told.
     progress: BTreeMap<String, BrushConsumed>,
     told: BTreeMap<String, u64>,
@@ -150,6 +150,7 @@ impl BrushNode {
             models: BTreeMap::new(),
             arbiter: Arbiter::default(),
             backlog: Backlog::default(),
+            outbox: Outbox::default(),
             progress: BTreeMap::new(),
             told: BTreeMap::new(),
             replayed: None,
@@ -237,7 +238,8 @@ impl BrushNode {
         {
             self.states.forgive();
         }
-        let (has_scene, has_credit) = (self.model.has_scene(), self.states.has_credit());
+        let has_scene = self.model.has_scene();
+        let has_credit = self.outbox.is_empty() && self.states.has_credit();
         self.samples.pop_where(|next| {
             let replayed = next.header.flags.has(Flags::REPLAY);
             !mine(next) || (has_scene && (has_credit || !replayed))
@@ -274,14 +276,15 @@ impl BrushNode {
             return Ok(());
         }
         if received.header.flags.has(Flags::REPLAY) {
-            let mut flags = Flags::REPLAY;
+            let mut first = Flags::NONE;
             if self.replayed != Some(origin) {
                 self.replayed = Some(origin);
                 self.backlog.take();
-                flags = flags.with(Flags::FIRST);
+                first = Flags::FIRST;
             }
             if let Some(state) = self.model.state(origin, seq, event_ns, &received.message) {
-                self.send(flags, now_ns, &state)?;
+                self.post(Flags::REPLAY, first, state);
+                self.send(now_ns)?;
             }
         } else {
             let sample = received.message;
@@ -296,10 +299,13 @@ impl BrushNode {
         self.feel(&device, origin, now_ns)
     }
 
-    /// Sends what waits, if paint keeps up; what has waited is one message.
+    /// Sends what is solved while there is credit, and solves what waits, if paint keeps up: what
+    /// has waited is one state.
     fn flush(&mut self, now_ns: u64) -> Result<(), BusError> {
+        self.send(now_ns)?;
         let late = self.states.oldest_age_ns(now_ns) > OLDEST_NS;
-        if self.backlog.is_empty() || late || !self.states.has_credit() {
+        let busy = !self.outbox.is_empty() || !self.states.has_credit();
+        if self.backlog.is_empty() || late || busy {
             return Ok(());
         }
         let waiting = self.backlog.take();
@@ -310,38 +316,41 @@ impl BrushNode {
             .iter()
             .filter_map(|w| self.model.follow(w.origin, w.event_ns, &w.sample))
             .collect();
-        let chunks = solves.chunks(SOLVES).count();
-        for (place, solves) in solves.chunks(SOLVES).enumerate() {
-            let flags = if place + 1 < chunks {
-                Flags::CONTINUES
-            } else {
-                Flags::NONE
-            };
-            let state = BrushState {
-                device: last.origin.source,
-                device_epoch: last.origin.epoch,
-                device_seq: last.seq,
-                solves: solves.to_vec(),
-            };
-            self.send(flags, now_ns, &state)?;
-        }
-        Ok(())
+        let state = BrushState {
+            device: last.origin.source,
+            device_epoch: last.origin.epoch,
+            device_seq: last.seq,
+            solves,
+        };
+        self.post(Flags::NONE, Flags::NONE, state);
+        self.send(now_ns)
     }
 
-    fn send(&mut self, flags: Flags, now_ns: u64, state: &BrushState) -> Result<(), BusError> {
+    /// Puts a state into the outbox, and knows by which number it will go.
+    fn post(&mut self, flags: Flags, first: Flags, state: BrushState) {
         let Some(last) = state.solves.last() else {
-            return Ok(());
+            return;
         };
         self.touching = !last.contacts.is_empty();
-        let stamp = Stamp {
-            now_ns,
-            event_ns: last.event_ns,
-        };
-        let number = self.states.send(flags, stamp, state)?;
+        let device = (state.device, state.device_epoch);
+        self.outbox.push(flags, first, Flags::NONE, state);
+        let number = self.states.next_seq() + self.outbox.len() as u64 - 1;
         for progress in self.progress.values_mut() {
-            if (progress.device, progress.device_epoch) == (state.device, state.device_epoch) {
+            if (progress.device, progress.device_epoch) == device {
                 progress.state = number;
             }
+        }
+    }
+
+    /// Sends what waits in the outbox while there is credit.
+    fn send(&mut self, now_ns: u64) -> Result<(), BusError> {
+        while self.states.has_credit() {
+            let Some((flags, state)) = self.outbox.pop() else {
+                return Ok(());
+            };
+            let event_ns = state.solves.last().map_or(now_ns, |last| last.event_ns);
+            self.states
+                .send(flags, Stamp { now_ns, event_ns }, &state)?;
         }
         Ok(())
     }

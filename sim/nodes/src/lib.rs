@@ -6,6 +6,7 @@
 //! | [`brush_node`] | stylus samples in, brush states and contact models out |
 //! | [`arbiter`] | which of several devices moves the brush |
 //! | [`backlog`] | what a live brush does while it may not send |
+//! | [`outbox`] | states that are solved and wait for credit |
 //! | [`feel`] | the contact model for the hand |
 //! | [`paint_node`] | brush states and commands in, journal and credit out |
 //! | [`frames`] | pictures of what changed, for whoever asks |
@@ -18,6 +19,7 @@ pub mod brush_node;
 pub mod feel;
 pub mod frames;
 pub mod offline;
+pub mod outbox;
 pub mod paint_node;
 pub mod worker;
 

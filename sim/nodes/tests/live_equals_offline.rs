@@ -9,10 +9,10 @@ use maulstick_bus::credit::Stamp;
 use maulstick_bus::{Bus, Faults, MemoryNet};
 use maulstick_nodes::Offline;
 use maulstick_paint::picture::picture;
-use maulstick_types::Flags;
 use maulstick_types::command::Command;
+use maulstick_types::{Flags, Origin, name_hash};
 use proptest::prelude::*;
-use support::{Live, START_NS, file, loads, offline, painting, take, turns};
+use support::{Live, START_NS, file, loads, offline, painting, pen, settings, take, turns};
 
 proptest! {
     #![proptest_config(ProptestConfig { cases: 12, ..ProptestConfig::default() })]
@@ -129,4 +129,34 @@ fn a_live_brush_merges_while_paint_is_busy_and_keeps_the_path() {
         near(merged.covered_cells, whole.covered_cells),
         "{merged:?} {whole:?}"
     );
+}
+
+#[test]
+fn what_has_waited_long_is_sent_in_messages_that_fit() {
+    let mut settings = settings();
+    // So many joints that 200 solves exceed a message.
+    settings.file.spine.joints = 24;
+    let net = MemoryNet::new(1, START_NS, Faults::default());
+    let mut live = Live::with(net, settings);
+    let mut mouse = live.device("mouse", 5);
+    // The path turns at each sample, so that none may be joined; paint has no turn.
+    for step in 0..600 {
+        let y = 2e-3 * f64::from(step % 2);
+        mouse.send(&pen(1e-4 * f64::from(step), y, 0.4));
+        live.net.advance(1_000_000);
+        live.brush.turn().expect("turned");
+    }
+    let before = live.brush.sent();
+    for _ in 0..200 {
+        live.net.advance(5_000_000);
+        live.paint.turn().expect("turned");
+        live.brush.turn().expect("turned");
+    }
+    let brush = Origin {
+        source: name_hash("main"),
+        epoch: 77,
+    };
+    assert!(live.brush.sent() > before + 2, "the rest is one message");
+    assert_eq!(live.paint.consumed(brush), live.brush.sent());
+    assert_eq!(mouse.consumed(), 600);
 }

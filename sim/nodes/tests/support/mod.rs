@@ -123,9 +123,13 @@ pub fn settings() -> BrushSettings {
 
 impl Live {
     pub fn new(net: MemoryNet) -> Self {
+        Self::with(net, settings())
+    }
+
+    pub fn with(net: MemoryNet, settings: BrushSettings) -> Self {
         let (topics, wake) = (Topics::new("t"), Wake::new());
         let bus: Arc<dyn Bus> = Arc::new(net.bus());
-        let brush = BrushNode::new(Arc::clone(&bus), &topics, &wake, settings()).expect("a brush");
+        let brush = BrushNode::new(Arc::clone(&bus), &topics, &wake, settings).expect("a brush");
         let origin = Origin {
             source: name_hash("player"),
             epoch: 3,
