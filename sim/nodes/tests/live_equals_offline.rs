@@ -135,7 +135,7 @@ fn a_live_brush_merges_while_paint_is_busy_and_keeps_the_path() {
 fn what_has_waited_long_is_sent_in_messages_that_fit() {
     let mut settings = settings();
     // So many joints that 200 solves exceed a message.
-    settings.file.spine.joints = 24;
+    settings.file.spine.joints = 40;
     let net = MemoryNet::new(1, START_NS, Faults::default());
     let mut live = Live::with(net, settings);
     let mut mouse = live.device("mouse", 5);
