@@ -3,6 +3,7 @@
 use std::collections::BTreeMap;
 use std::path::PathBuf;
 use std::sync::Arc;
+use std::time::Duration;
 
 use clap::Parser;
 use maulstick_bus::RigFolder;
@@ -168,16 +169,34 @@ pub fn paint() -> Result<i32, Fault> {
     let mut thread = Worker::start("frames", move || frames.run(&stop))
         .map_err(|error| Fault::failure(error.to_string()))?;
     let fallen = |error: Fallen| Fault::failure(error.to_string());
-    member.ready()?;
-    let result = member.run(|| {
+    let mut turn = |node: &mut PaintNode| {
         thread.check().map_err(fallen)?;
         Ok(node.turn()?)
-    });
+    };
+    // Its token says that commands to the rig's brushes and takes of them are done: it has to know
+    // their files.
+    let result = wait_for_brushes(&member, &mut node, &mut turn)
+        .and_then(|()| member.ready())
+        .and_then(|()| member.run(|| turn(&mut node)));
     member.stop.request();
     feed.ring();
     let ended = thread.join().map_err(fallen);
     member.leave();
     result.and(ended).map(|()| 0)
+}
+
+/// Has the node take turns until it knows every brush of rig.toml, or it is time to stop.
+fn wait_for_brushes(
+    member: &Member,
+    node: &mut PaintNode,
+    turn: &mut impl FnMut(&mut PaintNode) -> Result<Duration, Fault>,
+) -> Result<(), Fault> {
+    let brushes = &member.config.brush;
+    while !brushes.iter().all(|brush| node.knows_brush(&brush.name)) && !member.stop.requested() {
+        let wait = turn(node)?;
+        member.wake.wait(wait);
+    }
+    Ok(())
 }
 
 /// Drives a force-feedback stylus

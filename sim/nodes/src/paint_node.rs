@@ -120,6 +120,12 @@ impl PaintNode {
         self.sequencer.painting_mut()
     }
 
+    /// Whether a brush's file has come: before, its states wait and commands to it are refused.
+    #[must_use]
+    pub fn knows_brush(&self, brush: &str) -> bool {
+        self.sequencer.painting().knows_brush(brush)
+    }
+
     /// How many of a brush's states are painted.
     #[must_use]
     pub fn consumed(&self, brush: Origin) -> u64 {

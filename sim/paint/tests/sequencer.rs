@@ -102,3 +102,21 @@ fn a_state_beyond_every_surface_is_refused_before_it_is_followed() {
     let (_, beyond) = sequencer.state("main", &header(1, 1), &at(1e30));
     assert!(beyond.is_err());
 }
+
+#[test]
+fn a_brush_file_that_comes_again_breaks_no_stroke() {
+    let mut sequencer = sequencer();
+    let file = BrushFile::library("round").expect("round");
+    let mut state = misfit();
+    state.solves[0].angles_rad = vec![[0.0; 2]; file.spine.joints];
+    for seq in 0..2 {
+        state.solves[0].pose.position_m = [0.02 + 0.005 * seq as f64, 0.02, 0.01];
+        let (_, painted) = sequencer.state("main", &header(1, seq), &state);
+        assert_eq!(painted, Ok(()));
+        sequencer.painting_mut().define_brush("main", file.clone());
+    }
+    assert!(
+        sequencer.painting().work().0 > 10,
+        "the stroke was broken off"
+    );
+}

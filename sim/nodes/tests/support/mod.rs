@@ -159,7 +159,9 @@ impl Live {
         };
         let mut node =
             PaintNode::new(Arc::clone(bus), topics, &Wake::new(), me, painting()).expect("paint");
-        node.painting_mut().define_brush("main", file());
+        while !node.knows_brush("main") {
+            node.turn().expect("turned");
+        }
         node
     }
 

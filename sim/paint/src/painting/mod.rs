@@ -174,8 +174,16 @@ impl Painting {
         (self.steps, self.footprint_cells)
     }
 
-    /// Introduces a brush, or gives a known one another file; what it carries it keeps.
+    /// Introduces a brush, or gives a known one another file; what it carries it keeps. The file
+    /// that it has already changes nothing, in the middle of a stroke too.
     pub fn define_brush(&mut self, name: &str, file: BrushFile) {
+        if self
+            .brushes
+            .get(name)
+            .is_some_and(|track| track.file == file)
+        {
+            return;
+        }
         let shape = HeadShape::of(&file);
         self.close_windows();
         match self.brushes.get_mut(name) {
