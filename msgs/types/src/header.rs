@@ -18,6 +18,8 @@ impl Flags {
     pub const FIRST: Self = Self(2);
     /// The next message continues this one.
     pub const CONTINUES: Self = Self(4);
+    /// The last message of a played take: until then the take has its brush to itself.
+    pub const LAST: Self = Self(8);
 
     /// Both sets of bits.
     #[must_use]
@@ -53,7 +55,7 @@ pub struct Header {
     pub source: u32,
     /// [`Origin::epoch`].
     pub epoch: u32,
-    /// Replay, first, continues.
+    /// Replay, first, continues, last.
     pub flags: Flags,
     /// Length of the body in bytes.
     pub length: u32,

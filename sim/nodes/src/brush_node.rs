@@ -1,13 +1,17 @@
 //! The brush node: stylus samples in; brush states, credit and contact models out.
 
+mod settings;
+
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 use std::time::Duration;
 
-use maulstick_brush::{BrushFile, BrushModel};
+use maulstick_brush::BrushModel;
 use maulstick_bus::credit::Stamp;
 use maulstick_bus::typed::{Received, Receiver, Sender};
-use maulstick_bus::{Bus, BusError, Class, CreditReceiver, CreditSender, Queue, Wake};
+use maulstick_bus::{
+    Bus, BusError, Class, CreditReceiver, CreditSender, Queue, Subscription, Wake,
+};
 use maulstick_types::brush::{BrushConsumed, BrushDef, BrushState, Solve};
 use maulstick_types::haptics::ContactModel;
 use maulstick_types::paint::PaintConsumed;
@@ -21,42 +25,19 @@ use crate::backlog::{Backlog, Waiting};
 use crate::feel::contact_model;
 use crate::outbox::Outbox;
 
+pub use settings::BrushSettings;
+
 /// Live, states older than this are not added to: the brush merges, ns.
 const OLDEST_NS: u64 = 50_000_000;
 /// Least time between two contact models, ns.
 const MODEL_PERIOD_NS: u64 = 4_000_000;
 
-/// What a brush node is told at its start.
-#[derive(Clone, Debug)]
-pub struct BrushSettings {
-    /// Name of the brush.
-    pub name: String,
-    /// Its file, at its size.
-    pub file: BrushFile,
-    /// Share of the head's length that full pressure presses in.
-    pub depth_share: f64,
-    /// The devices that move it, by name, with their priority.
-    pub devices: BTreeMap<String, i32>,
-    /// Devices that move other brushes.
-    pub others: Vec<String>,
-    /// Priority of a device that is in neither list, if it may move this brush.
-    pub foreign_priority: Option<i32>,
-    /// Epoch of this start.
-    pub epoch: u32,
-}
-
-impl BrushSettings {
-    /// Priority of a device, if it moves this brush: rig.toml and the device itself (`moves`: the
-    /// brush that each device says it moves) may say that it moves another one.
-    fn priority(&self, device: &str, moves: &BTreeMap<String, String>) -> Option<i32> {
-        let elsewhere = moves
-            .get(device)
-            .is_some_and(|brush| !brush.is_empty() && *brush != self.name);
-        if elsewhere || self.others.iter().any(|other| other == device) {
-            return None;
-        }
-        self.devices.get(device).copied().or(self.foreign_priority)
-    }
+/// A take being played, from its first sample to its last: no other device moves the brush
+/// meanwhile, however long it is silent.
+#[derive(Clone, Debug, PartialEq, Eq)]
+struct Take {
+    device: String,
+    origin: Origin,
 }
 
 /// The brush node.
@@ -83,8 +64,11 @@ pub struct BrushNode {
     /// What is consumed of each device, by name, and what of it was told.
     progress: BTreeMap<String, BrushConsumed>,
     told: BTreeMap<String, u64>,
-    /// The take whose states are being sent.
-    replayed: Option<Origin>,
+    /// The take that has this brush to itself.
+    take: Option<Take>,
+    /// Devices that are gone: their takes have ended.
+    gone: BTreeSet<String>,
+    tokens: Subscription,
     touching: bool,
     /// Devices of whose faulty samples it was said.
     faulty: BTreeSet<String>,
@@ -153,7 +137,9 @@ impl BrushNode {
             outbox: Outbox::default(),
             progress: BTreeMap::new(),
             told: BTreeMap::new(),
-            replayed: None,
+            take: None,
+            gone: BTreeSet::new(),
+            tokens: b.watch(&topics.node("*"), wake)?,
             touching: false,
             faulty: BTreeSet::new(),
             _def: def,
@@ -197,6 +183,14 @@ impl BrushNode {
             if scene.message.version >= self.scene_version {
                 self.scene_version = scene.message.version;
                 self.model.set_scene(&scene.message);
+            }
+        }
+        while let Some(token) = self.tokens.try_recv() {
+            let node = self.topics.node_of(&token.key).unwrap_or_default();
+            if token.present {
+                self.gone.remove(node);
+            } else {
+                self.gone.insert(node.to_owned());
             }
         }
         while let Some(credit) = self.credit.try_recv() {
@@ -258,35 +252,30 @@ impl BrushNode {
             return Ok(());
         };
         self.note(&device, origin, seq);
-        if let Some(fault) = received.message.fault() {
-            if self.faulty.insert(device) {
-                tracing::warn!("{}: sample {seq} is dropped: {fault}", received.key);
-            }
-            return Ok(());
+        if let Some(fault) = received.message.fault()
+            && self.faulty.insert(device.clone())
+        {
+            tracing::warn!("{}: sample {seq} is dropped: {fault}", received.key);
         }
-        let range = match received.message.in_range {
-            true => Range::Near,
-            false => Range::Away,
-        };
-        let stroke = match self.touching {
-            true => Stroke::GoesOn,
-            false => Stroke::None,
-        };
-        if !self.arbiter.hear(&device, priority, range, stroke, now_ns) {
-            return Ok(());
-        }
-        if received.header.flags.has(Flags::REPLAY) {
-            let mut first = Flags::NONE;
-            if self.replayed != Some(origin) {
-                self.replayed = Some(origin);
-                self.backlog.take();
-                first = Flags::FIRST;
-            }
-            if let Some(state) = self.model.state(origin, seq, event_ns, &received.message) {
-                self.post(Flags::REPLAY, first, state);
-                self.send(now_ns)?;
-            }
+        let moved = if received.header.flags.has(Flags::REPLAY) {
+            self.replay(&device, &received, now_ns)?
+        } else if received.message.fault().is_some() || self.is_held() {
+            false
         } else {
+            let range = match received.message.in_range {
+                true => Range::Near,
+                false => Range::Away,
+            };
+            let stroke = match self.touching {
+                true => Stroke::GoesOn,
+                false => Stroke::None,
+            };
+            self.arbiter.hear(&device, priority, range, stroke, now_ns)
+        };
+        if !moved {
+            return Ok(());
+        }
+        if !received.header.flags.has(Flags::REPLAY) {
             let sample = received.message;
             self.backlog.push(Waiting {
                 origin,
@@ -297,6 +286,58 @@ impl BrushNode {
             self.flush(now_ns)?;
         }
         self.feel(&device, origin, now_ns)
+    }
+
+    /// Whether a take has this brush to itself.
+    fn is_held(&self) -> bool {
+        let there = |take: &Take| !self.gone.contains(&take.device);
+        self.take.as_ref().is_some_and(there)
+    }
+
+    /// Follows a sample of a take; false where another take has the brush. The last one passes on
+    /// the end, whatever else is in it.
+    fn replay(
+        &mut self,
+        device: &str,
+        received: &Received<StylusSample>,
+        now_ns: u64,
+    ) -> Result<bool, BusError> {
+        let header = &received.header;
+        let take = Take {
+            device: device.to_owned(),
+            origin: header.origin(),
+        };
+        let mut first = Flags::NONE;
+        if self.take.as_ref() != Some(&take) {
+            if self.is_held() && !header.flags.has(Flags::FIRST) {
+                return Ok(false);
+            }
+            self.gone.remove(device);
+            self.backlog.take();
+            self.take = Some(take);
+            first = Flags::FIRST;
+        }
+        let (origin, sample) = (header.origin(), &received.message);
+        let state = match sample.fault() {
+            None => self
+                .model
+                .state(origin, header.seq, header.event_ns, sample),
+            Some(_) => None,
+        };
+        if header.flags.has(Flags::LAST) {
+            self.take = None;
+            let state = state.unwrap_or(BrushState {
+                device: origin.source,
+                device_epoch: origin.epoch,
+                device_seq: header.seq,
+                solves: Vec::new(),
+            });
+            self.post(Flags::REPLAY, first, Flags::LAST, state);
+        } else if let Some(state) = state {
+            self.post(Flags::REPLAY, first, Flags::NONE, state);
+        }
+        self.send(now_ns)?;
+        Ok(true)
     }
 
     /// Sends what is solved while there is credit, and solves what waits, if paint keeps up: what
@@ -322,18 +363,19 @@ impl BrushNode {
             device_seq: last.seq,
             solves,
         };
-        self.post(Flags::NONE, Flags::NONE, state);
+        if !state.solves.is_empty() {
+            self.post(Flags::NONE, Flags::NONE, Flags::NONE, state);
+        }
         self.send(now_ns)
     }
 
     /// Puts a state into the outbox, and knows by which number it will go.
-    fn post(&mut self, flags: Flags, first: Flags, state: BrushState) {
-        let Some(last) = state.solves.last() else {
-            return;
-        };
-        self.touching = !last.contacts.is_empty();
+    fn post(&mut self, flags: Flags, first: Flags, last: Flags, state: BrushState) {
+        if let Some(newest) = state.solves.last() {
+            self.touching = !newest.contacts.is_empty();
+        }
         let device = (state.device, state.device_epoch);
-        self.outbox.push(flags, first, Flags::NONE, state);
+        self.outbox.push(flags, first, last, state);
         let number = self.states.next_seq() + self.outbox.len() as u64 - 1;
         for progress in self.progress.values_mut() {
             if (progress.device, progress.device_epoch) == device {

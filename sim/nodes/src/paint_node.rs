@@ -7,7 +7,9 @@ use std::time::Duration;
 
 use maulstick_brush::BrushFile;
 use maulstick_bus::typed::{Reader, Received, Receiver, Sender};
-use maulstick_bus::{Bus, BusError, Class, CreditReceiver, Queue, Request, Server, Wake};
+use maulstick_bus::{
+    Arrival, Bus, BusError, Class, CreditReceiver, Queue, Request, Server, Subscription, Wake,
+};
 use maulstick_paint::picture::{picture, write_whole};
 use maulstick_paint::sequencer::Replied;
 use maulstick_paint::{Effect, Painting, Sequencer};
@@ -36,6 +38,7 @@ pub struct PaintNode {
     states: CreditReceiver<BrushState>,
     defs: Receiver<BrushDef>,
     commands: Server,
+    tokens: Subscription,
     reader: Reader,
     journal: Sender<JournalEntry>,
     consumed: Sender<PaintConsumed>,
@@ -84,6 +87,7 @@ impl PaintNode {
                 wake,
             )?,
             commands: b.serve(&topics.command("paint"), 256, wake)?,
+            tokens: b.watch(&topics.node("*"), wake)?,
             reader: Reader::default(),
             journal: Sender::new(b, &topics.journal(), Class::Data, me)?,
             consumed: Sender::new(b, &topics.paint_consumed(), Class::Control, me)?,
@@ -142,6 +146,9 @@ impl PaintNode {
         while let Some(def) = self.defs.try_recv() {
             self.define(&def.key, &def.message);
         }
+        while let Some(token) = self.tokens.try_recv() {
+            self.note_player(&token);
+        }
         self.serve_commands(now_ns);
         self.states.poll(&*bus)?;
         let mut left = STATES_A_TURN;
@@ -176,6 +183,16 @@ impl PaintNode {
         };
         self.refused += 1;
         tracing::warn!("{key}: the brush file is refused: {refusal}");
+    }
+
+    /// A take ends with its player, whatever it still had to play.
+    fn note_player(&mut self, token: &Arrival) {
+        let device = name_hash(self.topics.node_of(&token.key).unwrap_or_default());
+        if token.present {
+            self.sequencer.player_there(device);
+        } else {
+            self.sequencer.player_gone(device);
+        }
     }
 
     fn serve_commands(&mut self, now_ns: u64) {

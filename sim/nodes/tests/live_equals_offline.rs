@@ -12,7 +12,7 @@ use maulstick_paint::picture::picture;
 use maulstick_types::command::Command;
 use maulstick_types::{Flags, Origin, name_hash};
 use proptest::prelude::*;
-use support::{Live, START_NS, file, loads, offline, painting, pen, settings, take, turns};
+use support::{Device, Live, START_NS, file, loads, offline, painting, pen, settings, take, turns};
 
 proptest! {
     #![proptest_config(ProptestConfig { cases: 12, ..ProptestConfig::default() })]
@@ -53,6 +53,108 @@ proptest! {
         live.play(&mut order, 200_000);
         prop_assert!(picture(live.paint.painting_mut(), 0).rgb == offline());
     }
+}
+
+/// A second device that presses all over the canvas while a take is announced and played.
+struct Intruder {
+    mouse: Device,
+    step: u32,
+}
+
+impl Intruder {
+    fn of(live: &Live) -> Self {
+        Self {
+            mouse: live.device("mouse", 5),
+            step: 0,
+        }
+    }
+
+    fn press(&mut self) {
+        self.step += 1;
+        let angle = 0.1 * f64::from(self.step);
+        let (x, y) = (0.02 * libm::cos(angle), 0.02 * libm::sin(angle));
+        self.mouse.send(&pen(x, y, 0.6));
+    }
+}
+
+/// Turns of all, with the take up to sample `until` and, if there is one, the intruder.
+fn turns_of_all(
+    live: &mut Live,
+    mut intruder: Option<&mut Intruder>,
+    until: usize,
+    steps: usize,
+    order: &mut impl FnMut() -> u8,
+) {
+    let samples = take();
+    for _ in 0..steps {
+        match order() % 4 {
+            0 => live.player_turn(&samples[..until]),
+            1 => drop(live.brush.turn().expect("turned")),
+            2 => drop(live.paint.turn().expect("turned")),
+            _ => {
+                if let Some(intruder) = &mut intruder {
+                    intruder.press();
+                }
+            }
+        }
+        live.net.advance(700_000);
+    }
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 6, ..ProptestConfig::default() })]
+
+    #[test]
+    fn no_other_device_cuts_into_a_take_however_long_it_is_silent(
+        seed in any::<u64>(),
+        loss in 0.0..0.2f64,
+    ) {
+        let faults = Faults { loss, delay_ns: 5_000_000 };
+        let mut live = Live::new(MemoryNet::new(seed, START_NS, faults));
+        let mut intruder = Intruder::of(&live);
+        let mut order = turns(seed);
+        live.announce(1);
+        // Before the first sample, while it plays, and while the player is silent for a second.
+        turns_of_all(&mut live, Some(&mut intruder), 0, 300, &mut order);
+        turns_of_all(&mut live, Some(&mut intruder), 60, 600, &mut order);
+        turns_of_all(&mut live, Some(&mut intruder), 60, 1500, &mut order);
+        // Its last samples arrive, or are given up, before the take goes on.
+        turns_of_all(&mut live, None, 60, 4000, &mut order);
+        live.play(&mut order, 200_000);
+        prop_assert!(picture(live.paint.painting_mut(), 0).rgb == offline());
+    }
+}
+
+#[test]
+fn after_a_take_its_brush_is_free_again() {
+    let mut live = Live::new(MemoryNet::new(1, START_NS, Faults::default()));
+    let mut intruder = Intruder::of(&live);
+    let mut order = turns(1);
+    live.announce(1);
+    live.play(&mut order, 20_000);
+    let before = live.paint.painting_mut().report().steps;
+    turns_of_all(&mut live, Some(&mut intruder), 0, 1000, &mut order);
+    assert!(live.paint.painting_mut().report().steps > before);
+}
+
+#[test]
+fn a_take_whose_player_is_gone_holds_nothing() {
+    let mut live = Live::new(MemoryNet::new(1, START_NS, Faults::default()));
+    let mut intruder = Intruder::of(&live);
+    let mut order = turns(1);
+    let player = live
+        .net
+        .bus()
+        .token(&live.topics.node("player"))
+        .expect("one");
+    live.announce(1);
+    turns_of_all(&mut live, Some(&mut intruder), 20, 1000, &mut order);
+    let before = live.paint.painting_mut().report().steps;
+    turns_of_all(&mut live, Some(&mut intruder), 20, 1000, &mut order);
+    assert_eq!(live.paint.painting_mut().report().steps, before);
+    drop(player);
+    turns_of_all(&mut live, Some(&mut intruder), 20, 1000, &mut order);
+    assert!(live.paint.painting_mut().report().steps > before);
 }
 
 #[test]

@@ -1,6 +1,6 @@
 //! The sequencer: it decides what enters the journal and in which order; nothing else does.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use maulstick_types::brush::BrushState;
 use maulstick_types::command::{Command, CommandRequest, Outcome};
@@ -37,11 +37,13 @@ pub struct Replied {
     pub effect: Option<Effect>,
 }
 
-/// A take that may paint.
+/// A take that may paint, and until its end alone.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 struct Announced {
     device: u32,
     epoch: u32,
+    /// Whether its last state has come.
+    ended: bool,
 }
 
 /// Orders states and commands, keeps the journal, drives the painting.
@@ -51,6 +53,8 @@ pub struct Sequencer {
     next: u64,
     journal: Vec<JournalEntry>,
     announced: BTreeMap<String, Announced>,
+    /// Players that are gone: their takes hold no brush any more.
+    gone: BTreeSet<u32>,
     consumed: BTreeMap<Origin, u64>,
     waiting: Vec<CommandRequest>,
     answered: BTreeMap<u64, (u64, Outcome)>,
@@ -66,6 +70,7 @@ impl Sequencer {
             next: 0,
             journal: Vec::new(),
             announced: BTreeMap::new(),
+            gone: BTreeSet::new(),
             consumed: BTreeMap::new(),
             waiting: Vec::new(),
             answered: BTreeMap::new(),
@@ -90,7 +95,7 @@ impl Sequencer {
         self.next
     }
 
-    /// States that were dropped because their take was not announced.
+    /// States that were dropped: of takes that nobody announced, or live ones during a take.
     #[must_use]
     pub fn ignored(&self) -> u64 {
         self.ignored
@@ -120,7 +125,8 @@ impl Sequencer {
     /// what became of these and of it. A state that does not fit is refused, and consumed all the
     /// same.
     ///
-    /// A state of a replayed take that nobody announced paints nothing.
+    /// A state of a replayed take that nobody announced paints nothing, nor does a live one from
+    /// the announcement of a take to its last state: a take paints the same whoever else moves.
     #[must_use = "effects of the commands are still to be done"]
     pub fn state(
         &mut self,
@@ -128,27 +134,49 @@ impl Sequencer {
         header: &Header,
         state: &BrushState,
     ) -> (Vec<Replied>, Result<(), PaintRefusal>) {
-        let from = Announced {
-            device: state.device,
-            epoch: state.device_epoch,
-        };
-        let replayed = header.flags.has(Flags::REPLAY);
+        let may_paint = self.may_paint(brush, header, state);
         let result = if let Some(fault) = state.fault() {
             Err(PaintRefusal::new(
                 format!("a state of brush '{brush}' is wrong: {fault}"),
                 "restart the program that sends it, or report its fault",
             ))
-        } else if replayed && self.announced.get(brush) != Some(&from) {
+        } else if !may_paint {
             self.ignored += 1;
             Ok(())
         } else {
             self.enter_states(brush, header.epoch, header.seq);
             self.painting.state(brush, state)
         };
+        if may_paint
+            && header.flags.has(Flags::REPLAY.with(Flags::LAST))
+            && let Some(take) = self.announced.get_mut(brush)
+        {
+            take.ended = true;
+        }
         self.consumed
             .retain(|origin, _| origin.source != header.source || origin.epoch == header.epoch);
         self.consumed.insert(header.origin(), header.seq + 1);
         (self.release(), result)
+    }
+
+    /// Whether a state is of the announced take, or live while no take has its brush.
+    fn may_paint(&self, brush: &str, header: &Header, state: &BrushState) -> bool {
+        let take = self.announced.get(brush);
+        if header.flags.has(Flags::REPLAY) {
+            take.is_some_and(|t| (t.device, t.epoch) == (state.device, state.device_epoch))
+        } else {
+            take.is_none_or(|take| take.ended || self.gone.contains(&take.device))
+        }
+    }
+
+    /// A player is gone: its take, if it has not ended, holds its brush no more.
+    pub fn player_gone(&mut self, device: u32) {
+        self.gone.insert(device);
+    }
+
+    /// A player is there, or there again.
+    pub fn player_there(&mut self, device: u32) {
+        self.gone.remove(&device);
     }
 
     fn enter_states(&mut self, brush: &str, epoch: u32, seq: u64) {
@@ -276,7 +304,9 @@ impl Sequencer {
                 let take = Announced {
                     device: *device,
                     epoch: *device_epoch,
+                    ended: false,
                 };
+                self.gone.remove(device);
                 self.announced.insert(brush.clone(), take);
                 String::new()
             }),

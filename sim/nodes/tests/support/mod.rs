@@ -249,10 +249,13 @@ impl Live {
                 now_ns,
                 event_ns: START_NS + time_ns,
             };
-            self.player
-                .send(Flags::REPLAY, stamp, sample)
-                .expect("sent");
             self.sent += 1;
+            let flags = if self.sent == take().len() {
+                Flags::REPLAY.with(Flags::LAST)
+            } else {
+                Flags::REPLAY
+            };
+            self.player.send(flags, stamp, sample).expect("sent");
         }
         self.player.serve(now_ns).expect("served");
     }
