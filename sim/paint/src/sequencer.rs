@@ -9,8 +9,9 @@ use maulstick_types::{Flags, Header, Origin};
 
 use crate::painting::{PaintRefusal, Painting};
 
-/// Clients whose last reply is kept, so that a repeated command is done once.
-const CLIENTS: usize = 64;
+/// Clients whose last reply is kept, so that a repeated command is done once. A client repeats
+/// within seconds; of more clients than these the one that was answered longest ago is forgotten.
+const CLIENTS: usize = 256;
 
 /// What a command asks of the outside world; done by whoever runs the sequencer, at once.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -46,6 +47,15 @@ struct Announced {
     ended: bool,
 }
 
+/// The newest reply to a client.
+#[derive(Clone, Debug)]
+struct Answered {
+    number: u64,
+    outcome: Outcome,
+    /// Its place among all replies.
+    age: u64,
+}
+
 /// Orders states and commands, keeps the journal, drives the painting.
 #[derive(Debug)]
 pub struct Sequencer {
@@ -57,7 +67,8 @@ pub struct Sequencer {
     gone: BTreeSet<u32>,
     consumed: BTreeMap<Origin, u64>,
     waiting: Vec<CommandRequest>,
-    answered: BTreeMap<u64, (u64, Outcome)>,
+    answered: BTreeMap<u64, Answered>,
+    answers: u64,
     ignored: u64,
 }
 
@@ -74,6 +85,7 @@ impl Sequencer {
             consumed: BTreeMap::new(),
             waiting: Vec::new(),
             answered: BTreeMap::new(),
+            answers: 0,
             ignored: 0,
         }
     }
@@ -234,13 +246,13 @@ impl Sequencer {
                 "see the messages of `maulstick schema` for what a command may say".to_owned();
             return reply(Outcome::Refused { what, help });
         }
-        if let Some((answered, outcome)) = self.answered.get(&client) {
-            if *answered == number {
-                return reply(outcome.clone());
+        if let Some(answered) = self.answered.get(&client) {
+            if answered.number == number {
+                return reply(answered.outcome.clone());
             }
-            if *answered > number {
+            if answered.number > number {
                 return reply(Outcome::Refused {
-                    what: format!("command {number} comes after command {answered}"),
+                    what: format!("command {number} comes after command {}", answered.number),
                     help: "number commands upward".to_owned(),
                 });
             }
@@ -354,8 +366,18 @@ impl Sequencer {
     /// Keeps what became of a command, also when its effect failed after all.
     pub fn remember(&mut self, client: u64, number: u64, outcome: Outcome) {
         if self.answered.len() >= CLIENTS && !self.answered.contains_key(&client) {
-            self.answered.pop_first();
+            let oldest = self.answered.iter().min_by_key(|(_, reply)| reply.age);
+            if let Some(oldest) = oldest.map(|(client, _)| *client) {
+                self.answered.remove(&oldest);
+            }
         }
-        self.answered.insert(client, (number, outcome));
+        self.answers += 1;
+        let age = self.answers;
+        let reply = Answered {
+            number,
+            outcome,
+            age,
+        };
+        self.answered.insert(client, reply);
     }
 }

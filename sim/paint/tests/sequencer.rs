@@ -120,3 +120,27 @@ fn a_brush_file_that_comes_again_breaks_no_stroke() {
         "the stroke was broken off"
     );
 }
+
+#[test]
+fn a_repeated_command_is_done_once_among_many_clients() {
+    let mut sequencer = sequencer();
+    let mark = |client: u64| request(client, 1, Command::Mark);
+    for other in 1000..2000 {
+        sequencer.command(mark(other));
+    }
+    // Of all clients it has the least number, which says nothing about its age.
+    let clean = request(
+        1,
+        1,
+        Command::Clean {
+            brush: "main".into(),
+        },
+    );
+    let done = sequencer.command(clean.clone()).outcome;
+    assert!(matches!(done, Outcome::Done { .. }), "{done:?}");
+    for other in 2000..2200 {
+        sequencer.command(mark(other));
+    }
+    assert_eq!(sequencer.command(clean).outcome, done);
+    assert_eq!(sequencer.painting().history_depth().0, 1);
+}
