@@ -10,8 +10,58 @@ use maulstick_bus::typed::Receiver;
 use maulstick_bus::{Bus, Class, Queue, Wake};
 use maulstick_types::command::{Command as Order, CommandRequest};
 use maulstick_types::paint::PaintStatus;
+use maulstick_types::stylus::{DEFAULT_TILT_RAD, StylusPose, StylusSample};
 use maulstick_types::{Flags, Origin, encode};
 use support::{Launcher, PATIENCE, Place, join, on_canvas, wait_for};
+
+/// A pen that presses at `x`.
+fn pressing(x: f64) -> StylusSample {
+    StylusSample {
+        pose: StylusPose::Contact {
+            point_m: [x, 0.0, 0.0],
+            tilt_rad: DEFAULT_TILT_RAD,
+            twist_rad: 0.0,
+            pressure: 0.5,
+        },
+        in_range: true,
+        ..StylusSample::away()
+    }
+}
+
+#[test]
+fn a_sample_beyond_the_world_holds_nothing_up() {
+    let place = Place::new();
+    let mut launcher = Launcher::start(place.maulstick(&["up", "--headless"]));
+    launcher.wait_says("is up");
+    place.done(&["load", "Bone Black"]);
+    let (bus, topics) = join(&place);
+    let origin = Origin {
+        source: 9,
+        epoch: 9,
+    };
+    let topic = topics.sample("evil");
+    let publisher = bus.publisher(&topic, Class::RealTime).expect("declared");
+    let mut number = 0;
+    let mut send = |sample: StylusSample| {
+        let now_ns = bus.now_ns();
+        let bytes = encode(&origin, Flags::NONE, number, now_ns, now_ns, &sample).expect("encoded");
+        number += 1;
+        publisher.put(bytes).expect("sent");
+    };
+    // In contact, and within .1 s at the end of the world: followed cell by cell it would never end.
+    let mut painted = 0.0;
+    let patience = std::time::Instant::now() + PATIENCE;
+    while painted <= 0.0 && std::time::Instant::now() < patience {
+        for step in 0..20 {
+            send(pressing(1e-3 * f64::from(step)));
+            send(pressing(1e30));
+            wait_for(Duration::from_millis(4), || None::<()>);
+        }
+        painted = on_canvas(&place);
+    }
+    assert!(painted > 0.0, "nothing is painted: {}", launcher.said());
+    bus.close();
+}
 
 #[test]
 fn a_device_in_python_paints() {

@@ -3,6 +3,7 @@
 use std::collections::BTreeMap;
 use std::path::PathBuf;
 use std::sync::Arc;
+use std::time::Duration;
 
 use clap::Parser;
 use maulstick_bus::RigFolder;
@@ -11,7 +12,8 @@ use maulstick_device::Take;
 use maulstick_device::player::{self, PlayerSettings, Rate};
 use maulstick_haptic::daemon::{self, HapticSettings};
 use maulstick_nodes::frames::FrameServer;
-use maulstick_nodes::{BrushNode, BrushSettings, PaintNode};
+use maulstick_nodes::worker::Fallen;
+use maulstick_nodes::{BrushNode, BrushSettings, PaintNode, Worker};
 use maulstick_paint::Painting;
 use maulstick_rig::config::{FOREIGN_PRIORITY, MOUSE_PRIORITY, PLAYER_PRIORITY, RigConfig};
 use maulstick_rig::member::log_to_stderr;
@@ -164,17 +166,37 @@ pub fn paint() -> Result<i32, Fault> {
     let (topic, feed) = (member.topics.frame(), node.feed());
     let frames = FrameServer::new(bus, &topic, feed.clone(), &member.wake, origin)?;
     let stop = member.stop.clone();
-    let thread = std::thread::Builder::new()
-        .name("frames".into())
-        .spawn(move || frames.run(&stop))
+    let mut thread = Worker::start("frames", move || frames.run(&stop))
         .map_err(|error| Fault::failure(error.to_string()))?;
-    member.ready()?;
-    let result = member.run(|| Ok(node.turn()?));
+    let fallen = |error: Fallen| Fault::failure(error.to_string());
+    let mut turn = |node: &mut PaintNode| {
+        thread.check().map_err(fallen)?;
+        Ok(node.turn()?)
+    };
+    // Its token says that commands to the rig's brushes and takes of them are done: it has to know
+    // their files.
+    let result = wait_for_brushes(&member, &mut node, &mut turn)
+        .and_then(|()| member.ready())
+        .and_then(|()| member.run(|| turn(&mut node)));
     member.stop.request();
     feed.ring();
-    thread.join().ok();
+    let ended = thread.join().map_err(fallen);
     member.leave();
-    result.map(|()| 0)
+    result.and(ended).map(|()| 0)
+}
+
+/// Has the node take turns until it knows every brush of rig.toml, or it is time to stop.
+fn wait_for_brushes(
+    member: &Member,
+    node: &mut PaintNode,
+    turn: &mut impl FnMut(&mut PaintNode) -> Result<Duration, Fault>,
+) -> Result<(), Fault> {
+    let brushes = &member.config.brush;
+    while !brushes.iter().all(|brush| node.knows_brush(&brush.name)) && !member.stop.requested() {
+        let wait = turn(node)?;
+        member.wake.wait(wait);
+    }
+    Ok(())
 }
 
 /// Drives a force-feedback stylus

@@ -204,8 +204,13 @@ impl<'a> Player<'a> {
                 event_ns: self.start_ns + time_ns,
             };
             let sample = &self.settings.take.samples[self.sent].sample;
-            self.samples.send(Flags::REPLAY, stamp, sample)?;
             self.sent += 1;
+            let flags = if self.sent == self.settings.take.samples.len() {
+                Flags::REPLAY.with(Flags::LAST)
+            } else {
+                Flags::REPLAY
+            };
+            self.samples.send(flags, stamp, sample)?;
         }
         self.samples.serve(now_ns)?;
         self.tell(now_ns)?;

@@ -59,6 +59,54 @@ message! {
     }
 }
 
+/// No pose of a state is farther from its surface's origin than this, m.
+pub const FARTHEST_M: f64 = 100.0;
+
+impl BrushState {
+    /// Bytes of a message beside its solves.
+    pub const WIRE_BYTES: usize = 2 * 4 + 2 * 8;
+
+    /// What is wrong with the numbers, if anything: a path over them would never end.
+    #[must_use]
+    pub fn fault(&self) -> Option<&'static str> {
+        self.solves.iter().find_map(Solve::fault)
+    }
+}
+
+impl Solve {
+    /// Bytes that it takes in a message.
+    #[must_use]
+    pub fn wire_bytes(&self) -> usize {
+        // Two times 8 for time and stroke, 4 for surface and flags, the pose, the two lengths.
+        let fixed = 2 * 8 + 2 * 4 + 7 * 8 + 2 * 8;
+        fixed + 8 * self.angles_rad.len() + 8 * self.contacts.len()
+    }
+
+    fn fault(&self) -> Option<&'static str> {
+        let near = |metres: &f64| metres.abs() <= FARTHEST_M;
+        if !self.pose.is_valid() {
+            Some("a pose is not finite or its quaternion is not a unit one")
+        } else if !self.pose.position_m.iter().all(near) {
+            Some("a pose is more than 100 m away from its surface")
+        } else if !self
+            .angles_rad
+            .iter()
+            .flatten()
+            .all(|angle| angle.is_finite())
+        {
+            Some("an angle is not finite")
+        } else if !self
+            .contacts
+            .iter()
+            .all(|contact| contact.force_n.is_finite())
+        {
+            Some("a force is not finite")
+        } else {
+            None
+        }
+    }
+}
+
 message! {
     /// A brush file; cached for late joiners.
     pub struct BrushDef [version 1, at most 1048576 bytes] {
@@ -84,5 +132,62 @@ message! {
         pub brush_epoch: u32,
         /// The brush state that holds the newest of them.
         pub state: u64,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn state(x: f64, angle: f32, force_n: f32) -> BrushState {
+        let contact = Contact {
+            spine: 0,
+            joint: 1,
+            force_n,
+        };
+        let solve = Solve {
+            event_ns: 1,
+            stroke: 1,
+            surface: 0,
+            flags: 0,
+            pose: Pose {
+                position_m: [x, 0.0, 0.0],
+                ..Pose::IDENTITY
+            },
+            angles_rad: vec![[0.0, angle]],
+            contacts: vec![contact],
+        };
+        BrushState {
+            device: 1,
+            device_epoch: 1,
+            device_seq: 1,
+            solves: vec![solve],
+        }
+    }
+
+    #[test]
+    fn a_message_is_as_long_as_its_parts_say() {
+        let origin = crate::Origin {
+            source: 1,
+            epoch: 1,
+        };
+        let mut state = state(1.0, 0.1, 0.1);
+        state.solves[0].angles_rad = vec![[0.0; 2]; 5];
+        state.solves.push(state.solves[0].clone());
+        let bytes = crate::encode(&origin, crate::Flags::NONE, 0, 0, 0, &state).expect("encoded");
+        let said: usize = state.solves.iter().map(Solve::wire_bytes).sum();
+        assert_eq!(
+            bytes.len() - crate::HEADER_BYTES,
+            BrushState::WIRE_BYTES + said
+        );
+    }
+
+    #[test]
+    fn numbers_that_no_brush_has_are_a_fault() {
+        assert_eq!(state(1.0, 0.1, 0.1).fault(), None);
+        assert!(state(1e30, 0.1, 0.1).fault().is_some());
+        assert!(state(f64::NAN, 0.1, 0.1).fault().is_some());
+        assert!(state(1.0, f32::NAN, 0.1).fault().is_some());
+        assert!(state(1.0, 0.1, f32::INFINITY).fault().is_some());
     }
 }

@@ -3,6 +3,15 @@
 use crate::define::{message, wire_enum, wire_struct};
 use crate::mixture::Mixture;
 use crate::pose::Pose;
+use crate::stylus::FARTHEST_M;
+use crate::topics::check_name;
+
+/// A path of a command has at most this many bytes; Linux takes no longer ones.
+pub const PATH_MAX: usize = 4096;
+/// A mixture of a command has at most this many parts.
+pub const PARTS_MAX: usize = 64;
+/// The name of a paint has at most this many bytes.
+pub const PAINT_NAME_MAX: usize = 128;
 
 wire_struct! {
     /// A place in a brush's stream: a command with it enters the journal right after that state.
@@ -68,6 +77,64 @@ wire_enum! {
     }
 }
 
+impl Command {
+    /// Checks names, paths and mixtures for their length, so that whoever answers may quote them,
+    /// and that no surface is put out of reach.
+    ///
+    /// # Errors
+    /// What is wrong, in few words.
+    pub fn check(&self) -> Result<(), String> {
+        match self {
+            Self::Load { brush, mixture } => brush_name(brush).and_then(|()| short(mixture)),
+            Self::Clean { brush } => brush_name(brush),
+            Self::Take { brush, loads, .. } => {
+                brush_name(brush).and_then(|()| loads.iter().try_for_each(short))
+            }
+            Self::Snapshot { path, ledger } => {
+                let paths = std::iter::once(path).chain(ledger);
+                match paths.map(String::len).find(|length| *length > PATH_MAX) {
+                    Some(length) => Err(format!(
+                        "a path of {length} bytes is longer than {PATH_MAX}"
+                    )),
+                    None => Ok(()),
+                }
+            }
+            Self::Place { pose, .. } => {
+                let near = |metres: &f64| metres.abs() <= FARTHEST_M;
+                match pose.position_m.iter().all(near) {
+                    true => Ok(()),
+                    false => Err(format!(
+                        "the surface's place is not within {FARTHEST_M} m of the desk's origin"
+                    )),
+                }
+            }
+            Self::Undo | Self::Redo | Self::Mark => Ok(()),
+        }
+    }
+}
+
+fn brush_name(name: &str) -> Result<(), String> {
+    check_name(name).map_err(|what| {
+        if name.len() > 2 * PAINT_NAME_MAX {
+            format!("a brush's name of {} bytes is too long", name.len())
+        } else {
+            format!("the brush's name {what}")
+        }
+    })
+}
+
+fn short(mixture: &Mixture) -> Result<(), String> {
+    if mixture.parts.len() > PARTS_MAX {
+        let parts = mixture.parts.len();
+        return Err(format!("a mixture of {parts} paints has over {PARTS_MAX}"));
+    }
+    let longest = mixture.parts.iter().map(|part| part.paint.len()).max();
+    match longest.filter(|length| *length > PAINT_NAME_MAX) {
+        Some(length) => Err(format!("a paint's name of {length} bytes is too long")),
+        None => Ok(()),
+    }
+}
+
 message! {
     /// A command with its sender and number; sending it again with the same number is safe.
     pub struct CommandRequest [version 1, at most 1048576 bytes] {
@@ -123,5 +190,63 @@ message! {
         pub from: u64,
         /// Last number.
         pub to: u64,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::mixture::Part;
+
+    #[test]
+    fn what_is_too_long_or_too_far_is_refused_in_few_words() {
+        let long = "x".repeat(70_000);
+        let part = Part {
+            paint: long.clone(),
+            share: 1.0,
+        };
+        let load = |mixture: Mixture| Command::Load {
+            brush: "main".into(),
+            mixture,
+        };
+        let hostile = [
+            Command::Clean {
+                brush: long.clone(),
+            },
+            Command::Snapshot {
+                path: long.clone(),
+                ledger: None,
+            },
+            Command::Snapshot {
+                path: "p.png".into(),
+                ledger: Some(long.clone()),
+            },
+            load(Mixture { parts: vec![part] }),
+            load(Mixture {
+                parts: vec![Mixture::pure("A").parts[0].clone(); 5000],
+            }),
+            Command::Take {
+                brush: "main".into(),
+                device: 1,
+                device_epoch: 1,
+                loads: vec![Mixture::pure(&long)],
+            },
+        ];
+        for command in hostile {
+            let what = command.check().expect_err("too long");
+            assert!(what.len() < 200, "{what}");
+        }
+        let place = |x: f64| Command::Place {
+            surface: 0,
+            pose: Pose {
+                position_m: [x, 0.0, 0.0],
+                ..Pose::IDENTITY
+            },
+            zoom: 1.0,
+        };
+        assert!(place(1e30).check().is_err() && place(f64::NAN).check().is_err());
+        assert_eq!(place(-0.1).check(), Ok(()));
+        assert_eq!(load(Mixture::pure("Bone Black")).check(), Ok(()));
+        assert_eq!(Command::Mark.check(), Ok(()));
     }
 }

@@ -18,6 +18,8 @@ impl Flags {
     pub const FIRST: Self = Self(2);
     /// The next message continues this one.
     pub const CONTINUES: Self = Self(4);
+    /// The last message of a played take: until then the take has its brush to itself.
+    pub const LAST: Self = Self(8);
 
     /// Both sets of bits.
     #[must_use]
@@ -32,10 +34,11 @@ impl Flags {
     }
 }
 
-/// Who sends: a name's hash, and a number drawn at random at each start.
+/// Who sends: a number of its own, and one drawn at random at each start. Streams are told apart by
+/// their topics: two devices may have chosen the same number.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct Origin {
-    /// [`name_hash`](crate::name_hash) of the device, brush or node.
+    /// [`name_hash`](crate::name_hash) of a brush or a node; a device may choose any number.
     pub source: u32,
     /// Random at each start of the sender.
     pub epoch: u32,
@@ -52,7 +55,7 @@ pub struct Header {
     pub source: u32,
     /// [`Origin::epoch`].
     pub epoch: u32,
-    /// Replay, first, continues.
+    /// Replay, first, continues, last.
     pub flags: Flags,
     /// Length of the body in bytes.
     pub length: u32,

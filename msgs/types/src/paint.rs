@@ -71,8 +71,8 @@ wire_enum! {
 }
 
 message! {
-    /// An entry of the journal, in order.
-    pub struct JournalEntry [version 1, at most 1048576 bytes] {
+    /// An entry of the journal, in order; it has room for the largest command with its index.
+    pub struct JournalEntry [version 1, at most 1049600 bytes] {
         /// From 0, without gaps.
         pub index: u64,
         /// What was accepted.

@@ -30,6 +30,10 @@ pub mod axes {
 /// [`StylusPose::Contact`]: atan(tan 30° · cos 45°) and its negative.
 pub const DEFAULT_TILT_RAD: [f64; 2] = [0.387_596_686_655_180_66, -0.387_596_686_655_180_66];
 
+/// No coordinate of a sample is farther from the desk's origin than this, m: a motion over the
+/// whole of it can still be followed cell by cell.
+pub const FARTHEST_M: f64 = 10.0;
+
 wire_enum! {
     /// How a device says where the brush is, in the desk frame.
     pub enum StylusPose {
@@ -102,12 +106,16 @@ impl StylusSample {
     #[must_use]
     pub fn fault(&self) -> Option<&'static str> {
         let finite = |values: &[f64]| values.iter().all(|value| value.is_finite());
+        let near = |place: &[f64; 3]| place.iter().all(|metres| metres.abs() <= FARTHEST_M);
         if !finite(&self.velocity_m_s) || !finite(&self.force_n) {
             return Some("velocity or force is not finite");
         }
         match &self.pose {
             StylusPose::Ferrule { pose } if !pose.is_valid() => {
                 Some("the ferrule pose is not finite or its quaternion is not a unit one")
+            }
+            StylusPose::Ferrule { pose } if !near(&pose.position_m) => {
+                Some("the ferrule is more than 10 m away")
             }
             StylusPose::Contact {
                 point_m,
@@ -117,6 +125,8 @@ impl StylusSample {
             } => {
                 if !finite(point_m) || !twist_rad.is_finite() {
                     Some("the contact point or the twist is not finite")
+                } else if !near(point_m) {
+                    Some("the contact point is more than 10 m away")
                 } else if !tilt_rad.iter().all(|tilt| tilt.abs() <= 1.484) {
                     Some("the tilt is not within 85°")
                 } else if !(0.0..=1.0).contains(pressure) {
@@ -201,5 +211,45 @@ message! {
         pub consumed: u64,
         /// Set once the brush node has consumed the last sample.
         pub end: Option<TakeEnd>,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn contact(x: f64) -> StylusSample {
+        StylusSample {
+            pose: StylusPose::Contact {
+                point_m: [x, 0.0, 0.0],
+                tilt_rad: DEFAULT_TILT_RAD,
+                twist_rad: 0.0,
+                pressure: 0.5,
+            },
+            ..StylusSample::away()
+        }
+    }
+
+    fn ferrule(z: f64) -> StylusSample {
+        let pose = Pose {
+            position_m: [0.0, 0.0, z],
+            ..Pose::IDENTITY
+        };
+        StylusSample {
+            pose: StylusPose::Ferrule { pose },
+            ..StylusSample::away()
+        }
+    }
+
+    #[test]
+    fn a_finite_place_beyond_every_desk_is_a_fault() {
+        for metres in [10.1, -11.0, 1e30, f64::MAX, f64::INFINITY, f64::NAN] {
+            assert!(contact(metres).fault().is_some(), "{metres}");
+            assert!(ferrule(metres).fault().is_some(), "{metres}");
+        }
+        for metres in [0.0, -10.0, 10.0] {
+            assert_eq!(contact(metres).fault(), None);
+            assert_eq!(ferrule(metres).fault(), None);
+        }
     }
 }

@@ -92,6 +92,12 @@ impl Topics {
         key.strip_prefix(&self.prefix)
     }
 
+    /// The node of a token.
+    #[must_use]
+    pub fn node_of<'a>(&self, key: &'a str) -> Option<&'a str> {
+        self.relative(key)?.strip_prefix("node/")
+    }
+
     /// The middle of a three-part topic: `phantom` of `…/stylus/phantom/sample`.
     #[must_use]
     pub fn middle<'a>(&self, key: &'a str) -> Option<&'a str> {
@@ -114,6 +120,8 @@ mod tests {
         assert_eq!(key, "maulstick/studio/stylus/phantom/sample");
         assert_eq!(topics.middle(&key), Some("phantom"));
         assert_eq!(topics.middle(&topics.scene()), None);
+        assert_eq!(topics.node_of(&topics.node("paint")), Some("paint"));
+        assert_eq!(topics.node_of(&key), None);
         assert_eq!(Topics::new("other").middle(&key), None);
     }
 

@@ -3,118 +3,133 @@
 
 use std::collections::BTreeMap;
 
-use maulstick_types::Origin;
-
 /// A device that is silent for this long is out of range, ns.
 const SILENCE_NS: u64 = 500_000_000;
 
-/// The devices of a brush.
+/// Whether a stylus is near enough to count.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Range {
+    /// It is.
+    Near,
+    /// It is away.
+    Away,
+}
+
+/// What the brush does.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Stroke {
+    /// It is in the air.
+    None,
+    /// It touches: a stroke is going on.
+    GoesOn,
+}
+
+/// The devices of a brush, by name: a device that starts anew is the same device.
 #[derive(Clone, Debug, Default)]
 pub struct Arbiter {
-    devices: BTreeMap<Origin, Device>,
-    active: Option<Origin>,
+    devices: BTreeMap<String, Device>,
+    active: Option<String>,
 }
 
 #[derive(Clone, Copy, Debug)]
 struct Device {
     priority: i32,
-    in_range: bool,
+    range: Range,
     heard_ns: u64,
 }
 
 impl Arbiter {
-    /// A sample came; whether its device moves the brush. `touching` says that a stroke is going on.
+    /// A sample came; whether its device moves the brush.
     pub fn hear(
         &mut self,
-        origin: Origin,
+        name: &str,
         priority: i32,
-        in_range: bool,
+        range: Range,
+        stroke: Stroke,
         now_ns: u64,
-        touching: bool,
     ) -> bool {
-        self.devices.retain(|other, device| {
-            (other.source != origin.source || *other == origin)
-                && now_ns < device.heard_ns.saturating_add(SILENCE_NS)
-        });
-        self.devices.insert(
-            origin,
-            Device {
-                priority,
-                in_range,
-                heard_ns: now_ns,
-            },
-        );
+        self.devices
+            .retain(|_, device| now_ns < device.heard_ns.saturating_add(SILENCE_NS));
+        let device = Device {
+            priority,
+            range,
+            heard_ns: now_ns,
+        };
+        self.devices.insert(name.to_owned(), device);
         let held = self
             .active
+            .take()
             .filter(|active| self.devices.contains_key(active));
-        let keeps = touching && held.is_some_and(|active| self.devices[&active].in_range);
-        if !keeps {
+        let keeps = stroke == Stroke::GoesOn
+            && held
+                .as_ref()
+                .is_some_and(|active| self.devices[active].range == Range::Near);
+        self.active = if keeps {
+            held
+        } else {
             let best = self
                 .devices
                 .iter()
-                .filter(|(_, device)| device.in_range)
-                .max_by_key(|(other, device)| (device.priority, Some(**other) == self.active));
+                .filter(|(_, device)| device.range == Range::Near)
+                .max_by_key(|(other, device)| (device.priority, Some(*other) == held.as_ref()))
+                .map(|(other, _)| other.clone());
             // The last device stays until another one comes: it may still have to lift the brush.
-            self.active = best.map(|(other, _)| *other).or(held).or(Some(origin));
-        }
-        self.active == Some(origin)
-    }
-
-    /// The device that moves the brush.
-    #[must_use]
-    pub fn active(&self) -> Option<Origin> {
-        self.active
+            best.or(held).or_else(|| Some(name.to_owned()))
+        };
+        self.active.as_deref() == Some(name)
     }
 }
 
 #[cfg(test)]
 mod tests {
+    use super::Range::{Away, Near};
+    use super::Stroke::{GoesOn, None};
     use super::*;
 
-    const MOUSE: Origin = Origin {
-        source: 1,
-        epoch: 1,
-    };
-    const PEN: Origin = Origin {
-        source: 2,
-        epoch: 1,
-    };
+    const MOUSE: (&str, i32) = ("mouse", -100);
+    const PEN: (&str, i32) = ("pen", 10);
+
+    fn hear(
+        arbiter: &mut Arbiter,
+        (name, priority): (&str, i32),
+        range: Range,
+        stroke: Stroke,
+        ms: u64,
+    ) -> bool {
+        arbiter.hear(name, priority, range, stroke, ms * 1_000_000)
+    }
 
     #[test]
     fn the_highest_priority_in_range_paints() {
         let mut arbiter = Arbiter::default();
-        assert!(arbiter.hear(MOUSE, -100, true, 0, false));
-        assert!(!arbiter.hear(PEN, 10, false, 1, false), "out of range");
-        assert!(arbiter.hear(PEN, 10, true, 2, false));
-        assert!(!arbiter.hear(MOUSE, -100, true, 3, false));
-        assert!(
-            arbiter.hear(PEN, 10, false, 4, false) || arbiter.hear(MOUSE, -100, true, 5, false)
-        );
+        assert!(hear(&mut arbiter, MOUSE, Near, None, 0));
+        assert!(!hear(&mut arbiter, PEN, Away, None, 1), "out of range");
+        assert!(hear(&mut arbiter, PEN, Near, None, 2));
+        assert!(!hear(&mut arbiter, MOUSE, Near, None, 3));
+        hear(&mut arbiter, PEN, Away, None, 4);
+        assert!(hear(&mut arbiter, MOUSE, Near, None, 5), "the pen has left");
     }
 
     #[test]
     fn nobody_takes_over_in_a_stroke() {
         let mut arbiter = Arbiter::default();
-        assert!(arbiter.hear(MOUSE, -100, true, 0, false));
-        assert!(!arbiter.hear(PEN, 10, true, 1, true));
-        assert!(arbiter.hear(MOUSE, -100, true, 2, true));
-        assert!(
-            !arbiter.hear(MOUSE, -100, true, 3, false),
-            "the stroke is over"
-        );
+        assert!(hear(&mut arbiter, MOUSE, Near, None, 0));
+        assert!(!hear(&mut arbiter, PEN, Near, GoesOn, 1));
+        assert!(hear(&mut arbiter, MOUSE, Near, GoesOn, 2));
+        let after = hear(&mut arbiter, MOUSE, Near, None, 3);
+        assert!(!after, "the stroke is over");
     }
 
     #[test]
     fn a_silent_device_loses_the_brush() {
         let mut arbiter = Arbiter::default();
-        assert!(arbiter.hear(PEN, 10, true, 0, false));
-        assert!(arbiter.hear(MOUSE, -100, true, SILENCE_NS, true));
-    }
-
-    #[test]
-    fn a_restarted_device_is_the_same_device() {
-        let mut arbiter = Arbiter::default();
-        assert!(arbiter.hear(PEN, 10, true, 0, false));
-        assert!(arbiter.hear(Origin { epoch: 2, ..PEN }, 10, true, 1, true));
+        assert!(hear(&mut arbiter, PEN, Near, None, 0));
+        assert!(hear(
+            &mut arbiter,
+            MOUSE,
+            Near,
+            GoesOn,
+            SILENCE_NS / 1_000_000
+        ));
     }
 }

@@ -1,13 +1,17 @@
 //! The brush node: stylus samples in; brush states, credit and contact models out.
 
-use std::collections::BTreeMap;
+mod settings;
+
+use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 use std::time::Duration;
 
-use maulstick_brush::{BrushFile, BrushModel};
+use maulstick_brush::BrushModel;
 use maulstick_bus::credit::Stamp;
 use maulstick_bus::typed::{Received, Receiver, Sender};
-use maulstick_bus::{Bus, BusError, Class, CreditReceiver, CreditSender, Queue, Wake};
+use maulstick_bus::{
+    Bus, BusError, Class, CreditReceiver, CreditSender, Queue, Subscription, Wake,
+};
 use maulstick_types::brush::{BrushConsumed, BrushDef, BrushState, Solve};
 use maulstick_types::haptics::ContactModel;
 use maulstick_types::paint::PaintConsumed;
@@ -16,41 +20,30 @@ use maulstick_types::stylus::{StylusInfo, StylusSample, axes};
 use maulstick_types::topics::Topics;
 use maulstick_types::{Flags, Origin, name_hash};
 
-use crate::arbiter::Arbiter;
+use crate::arbiter::{Arbiter, Range, Stroke};
 use crate::backlog::{Backlog, Waiting};
 use crate::feel::contact_model;
+use crate::outbox::Outbox;
+
+pub use settings::BrushSettings;
 
 /// Live, states older than this are not added to: the brush merges, ns.
 const OLDEST_NS: u64 = 50_000_000;
 /// Least time between two contact models, ns.
 const MODEL_PERIOD_NS: u64 = 4_000_000;
-/// Sub-solves of one message at most: below its 60 KiB.
-const SOLVES: usize = 200;
 
-/// What a brush node is told at its start.
-#[derive(Clone, Debug)]
-pub struct BrushSettings {
-    /// Name of the brush.
-    pub name: String,
-    /// Its file, at its size.
-    pub file: BrushFile,
-    /// Share of the head's length that full pressure presses in.
-    pub depth_share: f64,
-    /// The devices that move it, by name, with their priority.
-    pub devices: BTreeMap<String, i32>,
-    /// Devices that move other brushes.
-    pub others: Vec<String>,
-    /// Priority of a device that is in neither list, if it may move this brush.
-    pub foreign_priority: Option<i32>,
-    /// Epoch of this start.
-    pub epoch: u32,
+/// A take being played, from its first sample to its last: no other device moves the brush
+/// meanwhile, however long it is silent.
+#[derive(Clone, Debug, PartialEq, Eq)]
+struct Take {
+    device: String,
+    origin: Origin,
 }
 
 /// The brush node.
 pub struct BrushNode {
     bus: Arc<dyn Bus>,
     topics: Topics,
-    wake: Wake,
     settings: BrushSettings,
     model: BrushModel,
     samples: CreditReceiver<StylusSample>,
@@ -60,16 +53,25 @@ pub struct BrushNode {
     scene_version: u64,
     infos: Receiver<StylusInfo>,
     consumed: Sender<BrushConsumed>,
-    drives_force: BTreeMap<u32, bool>,
+    /// Devices, by name, that drive a force.
+    drives_force: BTreeSet<String>,
+    /// Devices, by name, and the brush that each says it moves.
+    moves: BTreeMap<String, String>,
     models: BTreeMap<String, (Sender<ContactModel>, u64)>,
     arbiter: Arbiter,
     backlog: Backlog,
-    progress: BTreeMap<Origin, BrushConsumed>,
-    told: BTreeMap<Origin, u64>,
-    /// The take whose states are being sent.
-    replayed: Option<Origin>,
+    outbox: Outbox,
+    /// What is consumed of each device, by name, and what of it was told.
+    progress: BTreeMap<String, BrushConsumed>,
+    told: BTreeMap<String, u64>,
+    /// The take that has this brush to itself.
+    take: Option<Take>,
+    /// Devices that are gone: their takes have ended.
+    gone: BTreeSet<String>,
+    tokens: Subscription,
     touching: bool,
-    bad: u64,
+    /// Devices of whose faulty samples it was said.
+    faulty: BTreeSet<String>,
     _def: Sender<BrushDef>,
 }
 
@@ -127,27 +129,24 @@ impl BrushNode {
             )?,
             consumed: Sender::new(b, &topics.brush_consumed(name), Class::Control, me)?,
             model: BrushModel::new(settings.file.clone(), settings.depth_share),
-            drives_force: BTreeMap::new(),
+            drives_force: BTreeSet::new(),
+            moves: BTreeMap::new(),
             models: BTreeMap::new(),
             arbiter: Arbiter::default(),
             backlog: Backlog::default(),
+            outbox: Outbox::default(),
             progress: BTreeMap::new(),
             told: BTreeMap::new(),
-            replayed: None,
+            take: None,
+            gone: BTreeSet::new(),
+            tokens: b.watch(&topics.node("*"), wake)?,
             touching: false,
-            bad: 0,
+            faulty: BTreeSet::new(),
             _def: def,
             topics: topics.clone(),
-            wake: wake.clone(),
             settings,
             bus,
         })
-    }
-
-    /// What rings when there is something to do.
-    #[must_use]
-    pub fn wake(&self) -> &Wake {
-        &self.wake
     }
 
     /// How many states were sent.
@@ -170,8 +169,9 @@ impl BrushNode {
         }
         self.flush(now_ns)?;
         self.states.serve(now_ns)?;
-        for origin in self.samples.unheard() {
-            self.told.remove(&origin);
+        for topic in self.samples.unheard() {
+            let device = self.topics.middle(&topic).unwrap_or_default();
+            self.told.remove(device);
         }
         self.tell(now_ns)?;
         Ok(Duration::from_millis(20))
@@ -183,6 +183,14 @@ impl BrushNode {
             if scene.message.version >= self.scene_version {
                 self.scene_version = scene.message.version;
                 self.model.set_scene(&scene.message);
+            }
+        }
+        while let Some(token) = self.tokens.try_recv() {
+            let node = self.topics.node_of(&token.key).unwrap_or_default();
+            if token.present {
+                self.gone.remove(node);
+            } else {
+                self.gone.insert(node.to_owned());
             }
         }
         while let Some(credit) = self.credit.try_recv() {
@@ -197,24 +205,39 @@ impl BrushNode {
             }
         }
         while let Some(info) = self.infos.try_recv() {
-            let drives = info.message.drives & axes::FORCE != 0;
-            self.drives_force
-                .insert(name_hash(&info.message.device), drives);
+            let device = self.topics.middle(&info.key).unwrap_or_default();
+            if info.message.drives & axes::FORCE != 0 {
+                self.drives_force.insert(device.to_owned());
+            } else {
+                self.drives_force.remove(device);
+            }
+            self.moves.insert(device.to_owned(), info.message.brush);
         }
     }
 
     /// The next sample that may be consumed: a replayed one waits for credit, and all wait for a
-    /// scene. A take that is played anew does not wait for what the one before is owed.
+    /// scene. None waits for another device's. A take that is played anew does not wait for what
+    /// the one before is owed.
     fn next_sample(&mut self) -> Option<Received<StylusSample>> {
-        let next = self.samples.peek()?;
-        let replayed = next.header.flags.has(Flags::REPLAY);
-        if replayed && next.header.flags.has(Flags::FIRST) {
+        let (topics, settings, moves) = (&self.topics, &self.settings, &self.moves);
+        let mine = |next: &Received<StylusSample>| {
+            let device = topics.middle(&next.key).unwrap_or_default();
+            settings.priority(device, moves).is_some()
+        };
+        let anew = Flags::REPLAY.with(Flags::FIRST);
+        if self
+            .samples
+            .heads()
+            .any(|next| next.header.flags.has(anew) && mine(next))
+        {
             self.states.forgive();
         }
-        if !self.model.has_scene() || (replayed && !self.states.has_credit()) {
-            return None;
-        }
-        self.samples.pop()
+        let has_scene = self.model.has_scene();
+        let has_credit = self.outbox.is_empty() && self.states.has_credit();
+        self.samples.pop_where(|next| {
+            let replayed = next.header.flags.has(Flags::REPLAY);
+            !mine(next) || (has_scene && (has_credit || !replayed))
+        })
     }
 
     fn sample(&mut self, received: Received<StylusSample>, now_ns: u64) -> Result<(), BusError> {
@@ -225,35 +248,34 @@ impl BrushNode {
             .middle(&received.key)
             .unwrap_or_default()
             .to_owned();
-        let Some(priority) = self.priority(&device) else {
+        let Some(priority) = self.settings.priority(&device, &self.moves) else {
             return Ok(());
         };
-        self.note(origin, seq);
-        if let Some(fault) = received.message.fault() {
-            self.bad += 1;
-            if self.bad == 1 {
-                tracing::warn!("{}: sample {seq} is dropped: {fault}", received.key);
-            }
-            return Ok(());
-        }
-        let in_range = received.message.in_range;
-        if !self
-            .arbiter
-            .hear(origin, priority, in_range, now_ns, self.touching)
+        self.note(&device, origin, seq);
+        if let Some(fault) = received.message.fault()
+            && self.faulty.insert(device.clone())
         {
+            tracing::warn!("{}: sample {seq} is dropped: {fault}", received.key);
+        }
+        let moved = if received.header.flags.has(Flags::REPLAY) {
+            self.replay(&device, &received, now_ns)?
+        } else if received.message.fault().is_some() || self.is_held() {
+            false
+        } else {
+            let range = match received.message.in_range {
+                true => Range::Near,
+                false => Range::Away,
+            };
+            let stroke = match self.touching {
+                true => Stroke::GoesOn,
+                false => Stroke::None,
+            };
+            self.arbiter.hear(&device, priority, range, stroke, now_ns)
+        };
+        if !moved {
             return Ok(());
         }
-        if received.header.flags.has(Flags::REPLAY) {
-            let mut flags = Flags::REPLAY;
-            if self.replayed != Some(origin) {
-                self.replayed = Some(origin);
-                self.backlog.take();
-                flags = flags.with(Flags::FIRST);
-            }
-            if let Some(state) = self.model.state(origin, seq, event_ns, &received.message) {
-                self.send(flags, now_ns, &state)?;
-            }
-        } else {
+        if !received.header.flags.has(Flags::REPLAY) {
             let sample = received.message;
             self.backlog.push(Waiting {
                 origin,
@@ -266,21 +288,65 @@ impl BrushNode {
         self.feel(&device, origin, now_ns)
     }
 
-    fn priority(&self, device: &str) -> Option<i32> {
-        if self.settings.others.iter().any(|other| other == device) {
-            return None;
-        }
-        self.settings
-            .devices
-            .get(device)
-            .copied()
-            .or(self.settings.foreign_priority)
+    /// Whether a take has this brush to itself.
+    fn is_held(&self) -> bool {
+        let there = |take: &Take| !self.gone.contains(&take.device);
+        self.take.as_ref().is_some_and(there)
     }
 
-    /// Sends what waits, if paint keeps up; what has waited is one message.
+    /// Follows a sample of a take; false where another take has the brush. The last one passes on
+    /// the end, whatever else is in it.
+    fn replay(
+        &mut self,
+        device: &str,
+        received: &Received<StylusSample>,
+        now_ns: u64,
+    ) -> Result<bool, BusError> {
+        let header = &received.header;
+        let take = Take {
+            device: device.to_owned(),
+            origin: header.origin(),
+        };
+        let mut first = Flags::NONE;
+        if self.take.as_ref() != Some(&take) {
+            if self.is_held() && !header.flags.has(Flags::FIRST) {
+                return Ok(false);
+            }
+            self.gone.remove(device);
+            self.backlog.take();
+            self.take = Some(take);
+            first = Flags::FIRST;
+        }
+        let (origin, sample) = (header.origin(), &received.message);
+        let state = match sample.fault() {
+            None => self
+                .model
+                .state(origin, header.seq, header.event_ns, sample),
+            Some(_) => None,
+        };
+        if header.flags.has(Flags::LAST) {
+            self.take = None;
+            let state = state.unwrap_or(BrushState {
+                device: origin.source,
+                device_epoch: origin.epoch,
+                device_seq: header.seq,
+                solves: Vec::new(),
+            });
+            self.post(Flags::REPLAY, first, Flags::LAST, state);
+        } else if let Some(state) = state {
+            self.post(Flags::REPLAY, first, Flags::NONE, state);
+        }
+        self.send(now_ns)?;
+        Ok(true)
+    }
+
+    /// Sends what is solved while there is credit, and solves what waits, if paint keeps up: what
+    /// has waited is one state.
     fn flush(&mut self, now_ns: u64) -> Result<(), BusError> {
+        self.send(now_ns)?;
         let late = self.states.oldest_age_ns(now_ns) > OLDEST_NS;
-        if self.backlog.is_empty() || late || !self.states.has_credit() {
+        let busy = !self.outbox.is_empty() || !self.states.has_credit();
+        if self.backlog.is_empty() || late || busy {
             return Ok(());
         }
         let waiting = self.backlog.take();
@@ -291,66 +357,71 @@ impl BrushNode {
             .iter()
             .flat_map(|w| self.model.follow(w.origin, w.event_ns, &w.sample))
             .collect();
-        let chunks = solves.chunks(SOLVES).count();
-        for (place, solves) in solves.chunks(SOLVES).enumerate() {
-            let flags = if place + 1 < chunks {
-                Flags::CONTINUES
-            } else {
-                Flags::NONE
-            };
-            let state = BrushState {
-                device: last.origin.source,
-                device_epoch: last.origin.epoch,
-                device_seq: last.seq,
-                solves: solves.to_vec(),
-            };
-            self.send(flags, now_ns, &state)?;
+        let state = BrushState {
+            device: last.origin.source,
+            device_epoch: last.origin.epoch,
+            device_seq: last.seq,
+            solves,
+        };
+        if !state.solves.is_empty() {
+            self.post(Flags::NONE, Flags::NONE, Flags::NONE, state);
         }
-        Ok(())
+        self.send(now_ns)
     }
 
-    fn send(&mut self, flags: Flags, now_ns: u64, state: &BrushState) -> Result<(), BusError> {
-        let Some(last) = state.solves.last() else {
-            return Ok(());
-        };
-        self.touching = !last.contacts.is_empty();
-        let stamp = Stamp {
-            now_ns,
-            event_ns: last.event_ns,
-        };
-        let number = self.states.send(flags, stamp, state)?;
-        let origin = Origin {
-            source: state.device,
-            epoch: state.device_epoch,
-        };
-        if let Some(progress) = self.progress.get_mut(&origin) {
-            progress.state = number;
+    /// Puts a state into the outbox, and knows by which number it will go.
+    fn post(&mut self, flags: Flags, first: Flags, last: Flags, state: BrushState) {
+        if let Some(newest) = state.solves.last() {
+            self.touching = !newest.contacts.is_empty();
+        }
+        let device = (state.device, state.device_epoch);
+        self.outbox.push(flags, first, last, state);
+        let number = self.states.next_seq() + self.outbox.len() as u64 - 1;
+        for progress in self.progress.values_mut() {
+            if (progress.device, progress.device_epoch) == device {
+                progress.state = number;
+            }
+        }
+    }
+
+    /// Sends what waits in the outbox while there is credit.
+    fn send(&mut self, now_ns: u64) -> Result<(), BusError> {
+        while self.states.has_credit() {
+            let Some((flags, state)) = self.outbox.pop() else {
+                return Ok(());
+            };
+            let event_ns = state.solves.last().map_or(now_ns, |last| last.event_ns);
+            self.states
+                .send(flags, Stamp { now_ns, event_ns }, &state)?;
         }
         Ok(())
     }
 
     /// A sample is consumed.
-    fn note(&mut self, origin: Origin, seq: u64) {
-        let me = self.states.origin();
-        self.progress
-            .retain(|other, _| other.source != origin.source || *other == origin);
-        self.told
-            .retain(|other, _| other.source != origin.source || *other == origin);
-        let progress = self.progress.entry(origin).or_insert(BrushConsumed {
+    fn note(&mut self, device: &str, origin: Origin, seq: u64) {
+        let fresh = BrushConsumed {
             device: origin.source,
             device_epoch: origin.epoch,
             next: 0,
-            brush_epoch: me.epoch,
+            brush_epoch: self.states.origin().epoch,
             state: self.states.next_seq(),
-        });
-        progress.next = seq + 1;
+        };
+        let progress = self
+            .progress
+            .entry(device.to_owned())
+            .or_insert_with(|| fresh.clone());
+        if (progress.device, progress.device_epoch) != (origin.source, origin.epoch) {
+            *progress = fresh;
+            self.told.remove(device);
+        }
+        progress.next = seq.wrapping_add(1);
     }
 
     /// Tells devices what is consumed.
     fn tell(&mut self, now_ns: u64) -> Result<(), BusError> {
-        for (origin, progress) in &self.progress {
-            if self.told.get(origin) != Some(&progress.next) {
-                self.told.insert(*origin, progress.next);
+        for (device, progress) in &self.progress {
+            if self.told.get(device) != Some(&progress.next) {
+                self.told.insert(device.clone(), progress.next);
                 self.consumed.send(now_ns, now_ns, progress)?;
             }
         }
@@ -359,7 +430,7 @@ impl BrushNode {
 
     /// Gives a force-feedback device its contact model.
     fn feel(&mut self, device: &str, origin: Origin, now_ns: u64) -> Result<(), BusError> {
-        if self.drives_force.get(&origin.source) != Some(&true) {
+        if !self.drives_force.contains(device) {
             return Ok(());
         }
         let Some(desk) = self.model.desk() else {

@@ -6,10 +6,12 @@
 //! | [`brush_node`] | stylus samples in, brush states and contact models out |
 //! | [`arbiter`] | which of several devices moves the brush |
 //! | [`backlog`] | what a live brush does while it may not send |
+//! | [`outbox`] | states that are solved and wait for credit |
 //! | [`feel`] | the contact model for the hand |
 //! | [`paint_node`] | brush states and commands in, journal and credit out |
 //! | [`frames`] | pictures of what changed, for whoever asks |
 //! | [`offline`] | the same brush and paint in one process, without a bus |
+//! | [`worker`] | a thread that a node cannot do without |
 
 pub mod arbiter;
 pub mod backlog;
@@ -17,8 +19,11 @@ pub mod brush_node;
 pub mod feel;
 pub mod frames;
 pub mod offline;
+pub mod outbox;
 pub mod paint_node;
+pub mod worker;
 
 pub use brush_node::{BrushNode, BrushSettings};
 pub use offline::Offline;
 pub use paint_node::PaintNode;
+pub use worker::Worker;

@@ -108,9 +108,10 @@ impl Offline {
             sent_ns: event_ns,
         };
         self.next += 1;
-        self.sequencer.state(&self.brush, &header, &state)?;
+        // Offline no command waits for a state.
+        let (_, painted) = self.sequencer.state(&self.brush, &header, &state);
         self.sequencer.drain_journal();
-        Ok(())
+        painted
     }
 
     /// The painting, done.

@@ -1,13 +1,15 @@
 //! The paint node: brush states and commands in; journal, credit, scene and frames out.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 use std::sync::Arc;
 use std::time::Duration;
 
 use maulstick_brush::BrushFile;
-use maulstick_bus::typed::{Reader, Receiver, Sender};
-use maulstick_bus::{Bus, BusError, Class, CreditReceiver, Queue, Server, Wake};
+use maulstick_bus::typed::{Reader, Received, Receiver, Sender};
+use maulstick_bus::{
+    Arrival, Bus, BusError, Class, CreditReceiver, Queue, Request, Server, Subscription, Wake,
+};
 use maulstick_paint::picture::{picture, write_whole};
 use maulstick_paint::sequencer::Replied;
 use maulstick_paint::{Effect, Painting, Sequencer};
@@ -15,8 +17,8 @@ use maulstick_types::brush::{BrushDef, BrushState};
 use maulstick_types::command::{CommandReply, CommandRequest, Outcome};
 use maulstick_types::paint::{BrushCredit, FrameHolds, JournalEntry, PaintConsumed, PaintStatus};
 use maulstick_types::scene::{CANVAS, Scene};
-use maulstick_types::topics::Topics;
-use maulstick_types::{Flags, Origin, encode};
+use maulstick_types::topics::{Topics, check_name};
+use maulstick_types::{Flags, Origin, encode, name_hash};
 
 use crate::frames::{Fed, FedSurface, Feed};
 
@@ -36,6 +38,7 @@ pub struct PaintNode {
     states: CreditReceiver<BrushState>,
     defs: Receiver<BrushDef>,
     commands: Server,
+    tokens: Subscription,
     reader: Reader,
     journal: Sender<JournalEntry>,
     consumed: Sender<PaintConsumed>,
@@ -43,12 +46,16 @@ pub struct PaintNode {
     status: Sender<PaintStatus>,
     feed: Feed,
     fed_version: u64,
-    fed_scene: u64,
+    fed_studio: u64,
+    sent_scene: u64,
     fed_ns: u64,
     status_ns: u64,
     told: BTreeMap<Origin, u64>,
     tell_again: bool,
     refused: u64,
+    /// Brushes without a file, and topics with a stranger on them, of which it was said.
+    unknown: BTreeSet<String>,
+    strangers: BTreeSet<String>,
 }
 
 impl PaintNode {
@@ -67,7 +74,7 @@ impl PaintNode {
         let mut scene = Sender::new(b, &topics.scene(), Class::Cached, me)?;
         let now = b.now_ns();
         scene.send(now, now, painting.scene())?;
-        let fed_scene = painting.scene().version;
+        let sent_scene = painting.scene().version;
         let mut sequencer = Sequencer::new(painting);
         sequencer.decide("backend cpu");
         let node = Self {
@@ -80,6 +87,7 @@ impl PaintNode {
                 wake,
             )?,
             commands: b.serve(&topics.command("paint"), 256, wake)?,
+            tokens: b.watch(&topics.node("*"), wake)?,
             reader: Reader::default(),
             journal: Sender::new(b, &topics.journal(), Class::Data, me)?,
             consumed: Sender::new(b, &topics.paint_consumed(), Class::Control, me)?,
@@ -87,12 +95,15 @@ impl PaintNode {
             scene,
             feed: Feed::new(),
             fed_version: 1,
-            fed_scene,
+            fed_studio: sent_scene,
+            sent_scene,
             fed_ns: 0,
             status_ns: 0,
             told: BTreeMap::new(),
             tell_again: false,
             refused: 0,
+            unknown: BTreeSet::new(),
+            strangers: BTreeSet::new(),
             topics: topics.clone(),
             me,
             sequencer,
@@ -113,6 +124,12 @@ impl PaintNode {
         self.sequencer.painting_mut()
     }
 
+    /// Whether a brush's file has come: before, its states wait and commands to it are refused.
+    #[must_use]
+    pub fn knows_brush(&self, brush: &str) -> bool {
+        self.sequencer.painting().knows_brush(brush)
+    }
+
     /// How many of a brush's states are painted.
     #[must_use]
     pub fn consumed(&self, brush: Origin) -> u64 {
@@ -127,9 +144,12 @@ impl PaintNode {
         let bus = Arc::clone(&self.bus);
         let now_ns = bus.now_ns();
         while let Some(def) = self.defs.try_recv() {
-            self.define(&def.message);
+            self.define(&def.key, &def.message);
         }
-        self.serve_commands(now_ns)?;
+        while let Some(token) = self.tokens.try_recv() {
+            self.note_player(&token);
+        }
+        self.serve_commands(now_ns);
         self.states.poll(&*bus)?;
         let mut left = STATES_A_TURN;
         while left > 0 && self.next_state(now_ns)? {
@@ -150,17 +170,32 @@ impl PaintNode {
         })
     }
 
-    fn define(&mut self, def: &BrushDef) {
-        match BrushFile::parse(&def.toml) {
-            Ok(file) => self.sequencer.painting_mut().define_brush(&def.brush, file),
-            Err(error) => {
-                self.refused += 1;
-                tracing::warn!("the file of brush '{}' is refused: {error}", def.brush);
+    /// Takes in a brush file; its brush is the one of the topic, whose name is short.
+    fn define(&mut self, key: &str, def: &BrushDef) {
+        let brush = self.topics.middle(key).unwrap_or_default();
+        let refusal = match (check_name(brush), BrushFile::parse(&def.toml)) {
+            (Ok(()), Ok(file)) if def.brush == brush => {
+                return self.sequencer.painting_mut().define_brush(brush, file);
             }
+            (Ok(()), Ok(_)) => "it names another brush".to_owned(),
+            (Ok(()), Err(error)) => error.to_string(),
+            (Err(error), _) => error,
+        };
+        self.refused += 1;
+        tracing::warn!("{key}: the brush file is refused: {refusal}");
+    }
+
+    /// A take ends with its player, whatever it still had to play.
+    fn note_player(&mut self, token: &Arrival) {
+        let device = name_hash(self.topics.node_of(&token.key).unwrap_or_default());
+        if token.present {
+            self.sequencer.player_there(device);
+        } else {
+            self.sequencer.player_gone(device);
         }
     }
 
-    fn serve_commands(&mut self, now_ns: u64) -> Result<(), BusError> {
+    fn serve_commands(&mut self, now_ns: u64) {
         while let Some(request) = self.commands.try_recv() {
             let read = self
                 .reader
@@ -169,45 +204,67 @@ impl PaintNode {
             let number = asked.number;
             let replied = self.sequencer.command(asked);
             let outcome = self.complete(replied);
-            let reply = CommandReply { number, outcome };
-            let bytes = encode(&self.me, Flags::NONE, 0, now_ns, self.bus.now_ns(), &reply)
-                .map_err(|source| BusError::Message {
-                    topic: request.key.clone(),
-                    source,
-                })?;
-            if let Err(error) = request.answer(bytes) {
-                tracing::debug!("a client is gone: {error}");
-            }
+            self.answer(request, now_ns, CommandReply { number, outcome });
         }
-        Ok(())
     }
 
-    /// Consumes one state; false where none can be consumed now.
-    fn next_state(&mut self, now_ns: u64) -> Result<bool, BusError> {
-        let Some(next) = self.states.peek() else {
-            return Ok(false);
+    /// Answers a command. Nothing that a client sends may end the node: what cannot be told in
+    /// full is told in short.
+    fn answer(&self, request: Request, now_ns: u64, reply: CommandReply) {
+        let write = |reply: &CommandReply| {
+            encode(&self.me, Flags::NONE, 0, now_ns, self.bus.now_ns(), reply)
         };
-        let brush = self.topics.middle(&next.key).unwrap_or_default().to_owned();
-        if !self.sequencer.painting().knows_brush(&brush) {
-            return Ok(false);
+        let bytes = write(&reply).or_else(|error| {
+            tracing::warn!("{}: {error}", request.key);
+            write(&CommandReply {
+                number: reply.number,
+                outcome: Outcome::Refused {
+                    what: "the answer to this command is too long".to_owned(),
+                    help: "send shorter names".to_owned(),
+                },
+            })
+        });
+        match bytes.map(|bytes| request.answer(bytes)) {
+            Ok(Ok(())) => {}
+            Ok(Err(error)) => tracing::debug!("a client is gone: {error}"),
+            Err(error) => tracing::error!("a command cannot be answered: {error}"),
         }
-        let Some(received) = self.states.pop() else {
+    }
+
+    /// Consumes one state; false where none can be consumed now. A brush whose file has not come
+    /// waits, and holds up no other.
+    fn next_state(&mut self, now_ns: u64) -> Result<bool, BusError> {
+        let (painting, topics) = (self.sequencer.painting(), &self.topics);
+        let known = |next: &Received<BrushState>| {
+            let brush = topics.middle(&next.key);
+            brush.is_some_and(|brush| painting.knows_brush(brush))
+        };
+        let Some(received) = self.states.pop_where(known) else {
             return Ok(false);
         };
-        match self
-            .sequencer
-            .state(&brush, &received.header, &received.message)
-        {
-            Ok(replies) => {
-                for replied in replies {
-                    self.complete(replied);
-                }
+        let brush = self
+            .topics
+            .middle(&received.key)
+            .unwrap_or_default()
+            .to_owned();
+        // Credit and places in the journal are by the hash of the brush's name.
+        if received.header.source != name_hash(&brush) {
+            self.refused += 1;
+            if self.strangers.insert(received.key.clone()) {
+                tracing::warn!("{}: a stranger's states are dropped", received.key);
             }
-            Err(error) => {
-                self.refused += 1;
-                if self.refused == 1 {
-                    tracing::warn!("{}: {error}: {}", received.key, error.help);
-                }
+            return Ok(true);
+        }
+        let (replies, painted) = self
+            .sequencer
+            .state(&brush, &received.header, &received.message);
+        for replied in replies {
+            self.complete(replied);
+        }
+        if let Err(error) = painted {
+            self.refused += 1;
+            if self.refused == 1 {
+                tracing::warn!("{}: {error}: {}", received.key, error.help);
             }
         }
         if now_ns >= self.fed_ns + FEED_PERIOD_NS {
@@ -263,11 +320,9 @@ impl PaintNode {
 
     fn publish_scene(&mut self, now_ns: u64) -> Result<(), BusError> {
         let scene = self.sequencer.painting().scene();
-        if scene.version != self.fed_scene {
-            self.fed_scene = scene.version;
+        if scene.version != self.sent_scene {
+            self.sent_scene = scene.version;
             self.scene.send(now_ns, now_ns, scene)?;
-            let studio = Arc::new(self.sequencer.painting().studio().clone());
-            self.feed.lock().studio = Some(studio);
         }
         Ok(())
     }
@@ -305,6 +360,11 @@ impl PaintNode {
         let painting = self.sequencer.painting();
         let news = painting.versions() > self.fed_version;
         let mut fed = self.feed.lock();
+        // The tiles may hold paints that are new too: both are handed over in one piece.
+        if self.fed_studio != painting.scene().version {
+            self.fed_studio = painting.scene().version;
+            fed.studio = Some(Arc::new(painting.studio().clone()));
+        }
         if news {
             feed_versions(&mut fed, painting, self.fed_version);
             self.fed_version = painting.versions();
@@ -328,6 +388,20 @@ impl PaintNode {
         }
     }
 
+    /// Says once of each brush that it moves without a brush file.
+    fn tell_unknown(&mut self, now_ns: u64) {
+        for next in self.states.heads() {
+            let brush = self.topics.middle(&next.key).unwrap_or_default();
+            let waits = now_ns.saturating_sub(next.arrived_ns) > STATUS_PERIOD_NS;
+            if waits
+                && !self.sequencer.painting().knows_brush(brush)
+                && self.unknown.insert(brush.to_owned())
+            {
+                tracing::warn!("{}: its brush file has not come, its states wait", next.key);
+            }
+        }
+    }
+
     fn publish_status(&mut self, now_ns: u64) -> Result<(), BusError> {
         if now_ns < self.status_ns + STATUS_PERIOD_NS {
             return Ok(());
@@ -335,10 +409,9 @@ impl PaintNode {
         self.status_ns = now_ns;
         let (steps, footprint_cells) = self.sequencer.painting().work();
         let counts = self.states.counts();
-        let lag_ns = self
-            .states
-            .peek()
-            .map_or(0, |next| now_ns.saturating_sub(next.header.event_ns));
+        self.tell_unknown(now_ns);
+        let oldest_ns = self.states.heads().map(|next| next.header.event_ns).min();
+        let lag_ns = oldest_ns.map_or(0, |oldest_ns| now_ns.saturating_sub(oldest_ns));
         let status = PaintStatus {
             journal: self.sequencer.journal_next(),
             steps,
@@ -398,3 +471,6 @@ impl std::fmt::Debug for PaintNode {
             .finish_non_exhaustive()
     }
 }
+
+#[cfg(test)]
+mod tests;

@@ -1,260 +1,18 @@
 //! A take played through the nodes, over a network that loses, delays and reorders, with nodes that
 //! turn in any order, paints what the same take paints offline: byte for byte.
 
-#![allow(clippy::panic, reason = "a test fails by it")]
+mod support;
 
-use std::collections::BTreeMap;
 use std::sync::Arc;
 
-use maulstick_brush::BrushFile;
 use maulstick_bus::credit::Stamp;
-use maulstick_bus::typed::Receiver;
-use maulstick_bus::{Bus, Class, CreditSender, Faults, MemoryNet, Queue, Wake};
-use maulstick_nodes::{BrushNode, BrushSettings, Offline, PaintNode};
-use maulstick_optics::PaintLibrary;
+use maulstick_bus::{Bus, Faults, MemoryNet};
+use maulstick_nodes::Offline;
 use maulstick_paint::picture::picture;
-use maulstick_paint::{Painting, PaintingSetup};
-use maulstick_types::brush::BrushConsumed;
-use maulstick_types::command::{Command, CommandReply, CommandRequest, Outcome};
-use maulstick_types::stylus::{DEFAULT_TILT_RAD, StylusPose, StylusSample};
-use maulstick_types::topics::Topics;
-use maulstick_types::{Flags, Mixture, Origin, decode, encode, name_hash};
+use maulstick_types::command::Command;
+use maulstick_types::{Flags, Origin, name_hash};
 use proptest::prelude::*;
-
-const START_NS: u64 = 1_000_000_000_000;
-
-fn painting() -> Painting {
-    let setup = PaintingSetup {
-        cells: [256, 192],
-        ..PaintingSetup::default()
-    };
-    Painting::new(&setup, PaintLibrary::measured().expect("whole")).expect("a painting")
-}
-
-fn file() -> BrushFile {
-    BrushFile::library("round")
-        .expect("round")
-        .scaled_to(4.0)
-        .expect("scaled")
-}
-
-fn loads() -> Vec<Mixture> {
-    ["Ultramarine Blue", "Pyrrole Red=0.5,Titanium White=0.5"]
-        .map(|text| text.parse().expect("a mixture"))
-        .to_vec()
-}
-
-/// Two crossing strokes and a dot.
-fn take() -> Vec<(u64, StylusSample)> {
-    let pen = |x: f64, y: f64, pressure: f64| StylusSample {
-        pose: StylusPose::Contact {
-            point_m: [x, y, 0.0],
-            tilt_rad: DEFAULT_TILT_RAD,
-            twist_rad: 0.0,
-            pressure,
-        },
-        in_range: true,
-        ..StylusSample::away()
-    };
-    let mut samples = Vec::new();
-    for i in 0..120u64 {
-        let t = i as f64 / 60.0;
-        let sample = match i {
-            0..50 => pen(
-                -0.025 + 0.05 * t,
-                -0.01 + 0.01 * t,
-                (4.0 * t * (0.85 - t)).max(0.0),
-            ),
-            50..80 => pen(0.0, 0.0, 0.0),
-            80..110 => pen(0.01, 0.06 - 0.04 * t, 0.4),
-            _ => pen(0.01, 0.06 - 0.04 * t, 0.0),
-        };
-        samples.push((i * 8_000_000, sample));
-    }
-    samples
-}
-
-fn offline() -> Vec<u8> {
-    let mut offline = Offline::new(painting(), "main", file(), 0.5, loads()).expect("set up");
-    for (time_ns, sample) in take() {
-        offline
-            .sample(START_NS + time_ns, &sample)
-            .expect("painted");
-    }
-    let report = offline.painting_mut().report();
-    assert_eq!(report.quanta_missing, 0);
-    assert!(
-        report.covered_cells > 500 && report.steps > 200,
-        "{report:?}"
-    );
-    picture(offline.painting_mut(), 0).rgb
-}
-
-struct Live {
-    net: MemoryNet,
-    topics: Topics,
-    brush: BrushNode,
-    paint: PaintNode,
-    player: CreditSender<StylusSample>,
-    credit: Receiver<BrushConsumed>,
-    sent: usize,
-    epoch: u32,
-}
-
-fn settings() -> BrushSettings {
-    BrushSettings {
-        name: "main".into(),
-        file: file(),
-        depth_share: 0.5,
-        devices: BTreeMap::new(),
-        others: Vec::new(),
-        foreign_priority: Some(0),
-        epoch: 77,
-    }
-}
-
-impl Live {
-    fn new(net: MemoryNet) -> Self {
-        let (topics, wake) = (Topics::new("t"), Wake::new());
-        let bus: Arc<dyn Bus> = Arc::new(net.bus());
-        let brush = BrushNode::new(Arc::clone(&bus), &topics, &wake, settings()).expect("a brush");
-        let origin = Origin {
-            source: name_hash("player"),
-            epoch: 3,
-        };
-        let topic = topics.sample("player");
-        let player = CreditSender::new(&*bus, &topics, &topic, origin, &wake).expect("a player");
-        let consumed = topics.brush_consumed("main");
-        let credit =
-            Receiver::new(&*bus, &consumed, Class::Control, Queue::Ring(64), &wake).expect("one");
-        let paint = Self::paint_node(&bus, &topics, 5);
-        Self {
-            net,
-            topics,
-            brush,
-            paint,
-            player,
-            credit,
-            sent: 0,
-            epoch: 3,
-        }
-    }
-
-    fn paint_node(bus: &Arc<dyn Bus>, topics: &Topics, epoch: u32) -> PaintNode {
-        let me = Origin {
-            source: name_hash("paint"),
-            epoch,
-        };
-        let mut node =
-            PaintNode::new(Arc::clone(bus), topics, &Wake::new(), me, painting()).expect("paint");
-        node.painting_mut().define_brush("main", file());
-        node
-    }
-
-    /// One command, asked again until it is answered.
-    fn command(&mut self, number: u64, command: Command) {
-        let request = CommandRequest {
-            client: 1,
-            number,
-            after: None,
-            command,
-        };
-        let topic = self.topics.command("paint");
-        let origin = Origin {
-            source: 1,
-            epoch: 1,
-        };
-        for _ in 0..1000 {
-            let bytes = encode(&origin, Flags::NONE, 0, 0, 0, &request).expect("encoded");
-            let limit = std::time::Duration::from_millis(100);
-            let pending = self
-                .net
-                .bus()
-                .ask(&topic, bytes, limit, &Wake::new())
-                .expect("asked");
-            for _ in 0..100 {
-                self.net.advance(1_000_000);
-                self.paint.turn().expect("turned");
-                if let Some(maulstick_bus::bus::Answer::Bytes(bytes)) = pending.try_recv() {
-                    let reply: CommandReply = decode(&bytes).expect("a reply").1;
-                    assert!(matches!(reply.outcome, Outcome::Done { .. }), "{reply:?}");
-                    return;
-                }
-            }
-        }
-        panic!("no answer to the command");
-    }
-
-    fn announce(&mut self, number: u64) {
-        let (device, device_epoch) = (name_hash("player"), self.epoch);
-        let brush = "main".to_owned();
-        self.command(
-            number,
-            Command::Take {
-                brush,
-                device,
-                device_epoch,
-                loads: loads(),
-            },
-        );
-    }
-
-    fn player_turn(&mut self, samples: &[(u64, StylusSample)]) {
-        let now_ns = self.net.bus().now_ns();
-        while let Some(credit) = self.credit.try_recv() {
-            let told = credit.message;
-            if told.device == name_hash("player") {
-                self.player.consumed(told.device_epoch, told.next, now_ns);
-            }
-        }
-        while self.sent < samples.len() && self.player.has_credit() {
-            let (time_ns, sample) = &samples[self.sent];
-            let stamp = Stamp {
-                now_ns,
-                event_ns: START_NS + time_ns,
-            };
-            self.player
-                .send(Flags::REPLAY, stamp, sample)
-                .expect("sent");
-            self.sent += 1;
-        }
-        self.player.serve(now_ns).expect("served");
-    }
-
-    /// Plays until all is painted; `order` decides who turns when. Stops early after `limit` turns.
-    fn play(&mut self, order: &mut impl FnMut() -> u8, limit: usize) {
-        let samples = take();
-        for _ in 0..limit {
-            match order() % 3 {
-                0 => self.player_turn(&samples),
-                1 => drop(self.brush.turn().expect("turned")),
-                _ => drop(self.paint.turn().expect("turned")),
-            }
-            self.net.advance(700_000);
-            let brush = Origin {
-                source: name_hash("main"),
-                epoch: 77,
-            };
-            let painted = self.paint.consumed(brush);
-            if self.sent == samples.len()
-                && self.player.outstanding() == 0
-                && painted == self.brush.sent()
-            {
-                return;
-            }
-        }
-    }
-}
-
-/// A small generator of turns: no clock, no hash, the same every time.
-fn turns(mut state: u64) -> impl FnMut() -> u8 {
-    move || {
-        state = state
-            .wrapping_mul(6_364_136_223_846_793_005)
-            .wrapping_add(1_442_695_040_888_963_407);
-        (state >> 33) as u8
-    }
-}
+use support::{Device, Live, START_NS, file, loads, offline, painting, pen, settings, take, turns};
 
 proptest! {
     #![proptest_config(ProptestConfig { cases: 12, ..ProptestConfig::default() })]
@@ -295,6 +53,108 @@ proptest! {
         live.play(&mut order, 200_000);
         prop_assert!(picture(live.paint.painting_mut(), 0).rgb == offline());
     }
+}
+
+/// A second device that presses all over the canvas while a take is announced and played.
+struct Intruder {
+    mouse: Device,
+    step: u32,
+}
+
+impl Intruder {
+    fn of(live: &Live) -> Self {
+        Self {
+            mouse: live.device("mouse", 5),
+            step: 0,
+        }
+    }
+
+    fn press(&mut self) {
+        self.step += 1;
+        let angle = 0.1 * f64::from(self.step);
+        let (x, y) = (0.02 * libm::cos(angle), 0.02 * libm::sin(angle));
+        self.mouse.send(&pen(x, y, 0.6));
+    }
+}
+
+/// Turns of all, with the take up to sample `until` and, if there is one, the intruder.
+fn turns_of_all(
+    live: &mut Live,
+    mut intruder: Option<&mut Intruder>,
+    until: usize,
+    steps: usize,
+    order: &mut impl FnMut() -> u8,
+) {
+    let samples = take();
+    for _ in 0..steps {
+        match order() % 4 {
+            0 => live.player_turn(&samples[..until]),
+            1 => drop(live.brush.turn().expect("turned")),
+            2 => drop(live.paint.turn().expect("turned")),
+            _ => {
+                if let Some(intruder) = &mut intruder {
+                    intruder.press();
+                }
+            }
+        }
+        live.net.advance(700_000);
+    }
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 6, ..ProptestConfig::default() })]
+
+    #[test]
+    fn no_other_device_cuts_into_a_take_however_long_it_is_silent(
+        seed in any::<u64>(),
+        loss in 0.0..0.2f64,
+    ) {
+        let faults = Faults { loss, delay_ns: 5_000_000 };
+        let mut live = Live::new(MemoryNet::new(seed, START_NS, faults));
+        let mut intruder = Intruder::of(&live);
+        let mut order = turns(seed);
+        live.announce(1);
+        // Before the first sample, while it plays, and while the player is silent for a second.
+        turns_of_all(&mut live, Some(&mut intruder), 0, 300, &mut order);
+        turns_of_all(&mut live, Some(&mut intruder), 60, 600, &mut order);
+        turns_of_all(&mut live, Some(&mut intruder), 60, 1500, &mut order);
+        // Its last samples arrive, or are given up, before the take goes on.
+        turns_of_all(&mut live, None, 60, 4000, &mut order);
+        live.play(&mut order, 200_000);
+        prop_assert!(picture(live.paint.painting_mut(), 0).rgb == offline());
+    }
+}
+
+#[test]
+fn after_a_take_its_brush_is_free_again() {
+    let mut live = Live::new(MemoryNet::new(1, START_NS, Faults::default()));
+    let mut intruder = Intruder::of(&live);
+    let mut order = turns(1);
+    live.announce(1);
+    live.play(&mut order, 20_000);
+    let before = live.paint.painting_mut().report().steps;
+    turns_of_all(&mut live, Some(&mut intruder), 0, 1000, &mut order);
+    assert!(live.paint.painting_mut().report().steps > before);
+}
+
+#[test]
+fn a_take_whose_player_is_gone_holds_nothing() {
+    let mut live = Live::new(MemoryNet::new(1, START_NS, Faults::default()));
+    let mut intruder = Intruder::of(&live);
+    let mut order = turns(1);
+    let player = live
+        .net
+        .bus()
+        .token(&live.topics.node("player"))
+        .expect("one");
+    live.announce(1);
+    turns_of_all(&mut live, Some(&mut intruder), 20, 1000, &mut order);
+    let before = live.paint.painting_mut().report().steps;
+    turns_of_all(&mut live, Some(&mut intruder), 20, 1000, &mut order);
+    assert_eq!(live.paint.painting_mut().report().steps, before);
+    drop(player);
+    turns_of_all(&mut live, Some(&mut intruder), 20, 1000, &mut order);
+    assert!(live.paint.painting_mut().report().steps > before);
 }
 
 #[test]
@@ -371,4 +231,34 @@ fn a_live_brush_merges_while_paint_is_busy_and_keeps_the_path() {
         near(merged.covered_cells, whole.covered_cells),
         "{merged:?} {whole:?}"
     );
+}
+
+#[test]
+fn what_has_waited_long_is_sent_in_messages_that_fit() {
+    let mut settings = settings();
+    // So many joints that 200 solves exceed a message.
+    settings.file.spines.joints = 16;
+    let net = MemoryNet::new(1, START_NS, Faults::default());
+    let mut live = Live::with(net, settings);
+    let mut mouse = live.device("mouse", 5);
+    // The path turns at each sample, so that none may be joined; paint has no turn.
+    for step in 0..600 {
+        let y = 2e-3 * f64::from(step % 2);
+        mouse.send(&pen(1e-4 * f64::from(step), y, 0.4));
+        live.net.advance(1_000_000);
+        live.brush.turn().expect("turned");
+    }
+    let before = live.brush.sent();
+    for _ in 0..200 {
+        live.net.advance(5_000_000);
+        live.paint.turn().expect("turned");
+        live.brush.turn().expect("turned");
+    }
+    let brush = Origin {
+        source: name_hash("main"),
+        epoch: 77,
+    };
+    assert!(live.brush.sent() > before + 2, "the rest is one message");
+    assert_eq!(live.paint.consumed(brush), live.brush.sent());
+    assert_eq!(mouse.consumed(), 600);
 }

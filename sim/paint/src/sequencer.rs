@@ -1,6 +1,6 @@
 //! The sequencer: it decides what enters the journal and in which order; nothing else does.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use maulstick_types::brush::BrushState;
 use maulstick_types::command::{Command, CommandRequest, Outcome};
@@ -9,8 +9,9 @@ use maulstick_types::{Flags, Header, Origin};
 
 use crate::painting::{PaintRefusal, Painting};
 
-/// Clients whose last reply is kept, so that a repeated command is done once.
-const CLIENTS: usize = 64;
+/// Clients whose last reply is kept, so that a repeated command is done once. A client repeats
+/// within seconds; of more clients than these the one that was answered longest ago is forgotten.
+const CLIENTS: usize = 256;
 
 /// What a command asks of the outside world; done by whoever runs the sequencer, at once.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -37,11 +38,22 @@ pub struct Replied {
     pub effect: Option<Effect>,
 }
 
-/// A take that may paint.
+/// A take that may paint, and until its end alone.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 struct Announced {
     device: u32,
     epoch: u32,
+    /// Whether its last state has come.
+    ended: bool,
+}
+
+/// The newest reply to a client.
+#[derive(Clone, Debug)]
+struct Answered {
+    number: u64,
+    outcome: Outcome,
+    /// Its place among all replies.
+    age: u64,
 }
 
 /// Orders states and commands, keeps the journal, drives the painting.
@@ -51,9 +63,12 @@ pub struct Sequencer {
     next: u64,
     journal: Vec<JournalEntry>,
     announced: BTreeMap<String, Announced>,
+    /// Players that are gone: their takes hold no brush any more.
+    gone: BTreeSet<u32>,
     consumed: BTreeMap<Origin, u64>,
     waiting: Vec<CommandRequest>,
-    answered: BTreeMap<u64, (u64, Outcome)>,
+    answered: BTreeMap<u64, Answered>,
+    answers: u64,
     ignored: u64,
 }
 
@@ -66,9 +81,11 @@ impl Sequencer {
             next: 0,
             journal: Vec::new(),
             announced: BTreeMap::new(),
+            gone: BTreeSet::new(),
             consumed: BTreeMap::new(),
             waiting: Vec::new(),
             answered: BTreeMap::new(),
+            answers: 0,
             ignored: 0,
         }
     }
@@ -96,7 +113,7 @@ impl Sequencer {
         self.next
     }
 
-    /// States that were dropped because their take was not announced.
+    /// States that were dropped: of takes that nobody announced, or live ones during a take.
     #[must_use]
     pub fn ignored(&self) -> u64 {
         self.ignored
@@ -122,35 +139,62 @@ impl Sequencer {
             .collect()
     }
 
-    /// Accepts a state, which must come in order, and then the commands that waited for it.
+    /// Accepts a state, which must come in order, and then the commands that waited for it; returns
+    /// what became of these and of it. A state that does not fit is refused, and consumed all the
+    /// same.
     ///
-    /// A state of a replayed take that nobody announced paints nothing.
-    ///
-    /// # Errors
-    /// [`PaintRefusal`] where the state does not fit; it is consumed all the same.
+    /// A state of a replayed take that nobody announced paints nothing, nor does a live one from
+    /// the announcement of a take to its last state: a take paints the same whoever else moves.
+    #[must_use = "effects of the commands are still to be done"]
     pub fn state(
         &mut self,
         brush: &str,
         header: &Header,
         state: &BrushState,
-    ) -> Result<Vec<Replied>, PaintRefusal> {
-        let from = Announced {
-            device: state.device,
-            epoch: state.device_epoch,
-        };
-        let replayed = header.flags.has(Flags::REPLAY);
-        let result = if replayed && self.announced.get(brush) != Some(&from) {
+    ) -> (Vec<Replied>, Result<(), PaintRefusal>) {
+        let may_paint = self.may_paint(brush, header, state);
+        let result = if let Some(fault) = state.fault() {
+            Err(PaintRefusal::new(
+                format!("a state of brush '{brush}' is wrong: {fault}"),
+                "restart the program that sends it, or report its fault",
+            ))
+        } else if !may_paint {
             self.ignored += 1;
             Ok(())
         } else {
             self.enter_states(brush, header.epoch, header.seq);
             self.painting.state(brush, state)
         };
+        if may_paint
+            && header.flags.has(Flags::REPLAY.with(Flags::LAST))
+            && let Some(take) = self.announced.get_mut(brush)
+        {
+            take.ended = true;
+        }
         self.consumed
             .retain(|origin, _| origin.source != header.source || origin.epoch == header.epoch);
         self.consumed.insert(header.origin(), header.seq + 1);
-        let replies = self.release();
-        result.map(|()| replies)
+        (self.release(), result)
+    }
+
+    /// Whether a state is of the announced take, or live while no take has its brush.
+    fn may_paint(&self, brush: &str, header: &Header, state: &BrushState) -> bool {
+        let take = self.announced.get(brush);
+        if header.flags.has(Flags::REPLAY) {
+            take.is_some_and(|t| (t.device, t.epoch) == (state.device, state.device_epoch))
+        } else {
+            take.is_none_or(|take| take.ended || self.gone.contains(&take.device))
+        }
+    }
+
+    /// A player is gone: its take, if it has not ended, holds its brush no more.
+    pub fn player_gone(&mut self, device: u32) {
+        self.gone.insert(device);
+    }
+
+    /// A player is there, or there again.
+    pub fn player_there(&mut self, device: u32) {
+        self.gone.remove(&device);
     }
 
     fn enter_states(&mut self, brush: &str, epoch: u32, seq: u64) {
@@ -202,13 +246,19 @@ impl Sequencer {
             outcome,
             effect: None,
         };
-        if let Some((answered, outcome)) = self.answered.get(&client) {
-            if *answered == number {
-                return reply(outcome.clone());
+        // Whatever is answered may be quoted, and is journalled: it has to fit.
+        if let Err(what) = request.command.check() {
+            let help =
+                "see the messages of `maulstick schema` for what a command may say".to_owned();
+            return reply(Outcome::Refused { what, help });
+        }
+        if let Some(answered) = self.answered.get(&client) {
+            if answered.number == number {
+                return reply(answered.outcome.clone());
             }
-            if *answered > number {
+            if answered.number > number {
                 return reply(Outcome::Refused {
-                    what: format!("command {number} comes after command {answered}"),
+                    what: format!("command {number} comes after command {}", answered.number),
                     help: "number commands upward".to_owned(),
                 });
             }
@@ -272,7 +322,9 @@ impl Sequencer {
                 let take = Announced {
                     device: *device,
                     epoch: *device_epoch,
+                    ended: false,
                 };
+                self.gone.remove(device);
                 self.announced.insert(brush.clone(), take);
                 String::new()
             }),
@@ -320,8 +372,18 @@ impl Sequencer {
     /// Keeps what became of a command, also when its effect failed after all.
     pub fn remember(&mut self, client: u64, number: u64, outcome: Outcome) {
         if self.answered.len() >= CLIENTS && !self.answered.contains_key(&client) {
-            self.answered.pop_first();
+            let oldest = self.answered.iter().min_by_key(|(_, reply)| reply.age);
+            if let Some(oldest) = oldest.map(|(client, _)| *client) {
+                self.answered.remove(&oldest);
+            }
         }
-        self.answered.insert(client, (number, outcome));
+        self.answers += 1;
+        let age = self.answers;
+        let reply = Answered {
+            number,
+            outcome,
+            age,
+        };
+        self.answered.insert(client, reply);
     }
 }

@@ -2,13 +2,14 @@
 
 use maulstick_types::stylus::StylusSample;
 use maulstick_types::topics::Topics;
-use maulstick_types::{Flags, Origin};
+use maulstick_types::{Flags, Origin, encode};
 use proptest::prelude::*;
 
 use super::{CreditReceiver, CreditSender, Stamp};
-use crate::bus::Bus;
+use crate::bus::{Bus, Class};
 use crate::inbox::Wake;
-use crate::memory::{Faults, MemoryNet};
+use crate::memory::{Faults, MemoryBus, MemoryNet};
+use crate::typed::Received;
 
 const STEP_NS: u64 = 1_000_000;
 
@@ -71,88 +72,143 @@ proptest! {
     }
 }
 
-#[test]
-fn a_replay_that_is_joined_late_is_sought_from_its_first_message() {
-    let net = MemoryNet::new(
-        3,
-        0,
-        Faults {
-            loss: 1.0,
-            delay_ns: 0,
-        },
-    );
+/// A device's stream on a network that loses everything until it is told otherwise.
+struct Stream {
+    net: MemoryNet,
+    bus: MemoryBus,
+    sender: CreditSender<StylusSample>,
+    receiver: CreditReceiver<StylusSample>,
+}
+
+const ORIGIN: Origin = Origin {
+    source: 1,
+    epoch: 7,
+};
+const STAMP: Stamp = Stamp {
+    now_ns: 0,
+    event_ns: 0,
+};
+
+fn stream() -> Stream {
+    let lost = Faults {
+        loss: 1.0,
+        delay_ns: 0,
+    };
+    let net = MemoryNet::new(3, 0, lost);
     let (bus, topics, wake) = (net.bus(), Topics::new("t"), Wake::new());
     let topic = topics.sample("d");
-    let origin = Origin {
-        source: 1,
-        epoch: 7,
-    };
-    let mut sender =
-        CreditSender::<StylusSample>::new(&bus, &topics, &topic, origin, &wake).expect("a sender");
-    let mut receiver =
-        CreditReceiver::<StylusSample>::new(&bus, &topics, &topic, origin, &wake).expect("one");
+    let sender = CreditSender::new(&bus, &topics, &topic, ORIGIN, &wake).expect("a sender");
+    let receiver = CreditReceiver::new(&bus, &topics, &topics.sample("*"), ORIGIN, &wake);
+    Stream {
+        receiver: receiver.expect("a receiver"),
+        net,
+        bus,
+        sender,
+    }
+}
+
+impl Stream {
+    fn got(&mut self) -> Vec<u64> {
+        std::iter::from_fn(|| self.receiver.pop())
+            .map(|received| received.header.seq)
+            .collect()
+    }
+
+    /// Sends one message of any device as it would come over the bus.
+    fn put(&self, device: &str, origin: Origin, flags: Flags, seq: u64, sent_ns: u64) {
+        self.net.set_faults(Faults::default());
+        let away = StylusSample::away();
+        let bytes = encode(&origin, flags, seq, sent_ns, sent_ns, &away).expect("encoded");
+        let topic = Topics::new("t").sample(device);
+        let publisher = self.bus.publisher(&topic, Class::RealTime);
+        publisher.expect("declared").put(bytes).expect("sent");
+        self.net.advance(STEP_NS);
+    }
+}
+
+#[test]
+fn a_replay_that_is_joined_late_is_sought_from_its_first_message() {
+    let mut stream = stream();
     for _ in 0..40 {
-        let stamp = Stamp {
-            now_ns: 0,
-            event_ns: 0,
-        };
-        sender
-            .send(Flags::REPLAY, stamp, &StylusSample::away())
+        stream
+            .sender
+            .send(Flags::REPLAY, STAMP, &StylusSample::away())
             .expect("sent");
     }
-    net.set_faults(Faults::default());
+    stream.net.set_faults(Faults::default());
     for step in 0..300 {
-        sender.serve(step * STEP_NS).expect("served");
-        net.advance(STEP_NS);
-        receiver.poll(&bus).expect("polled");
+        stream.sender.serve(step * STEP_NS).expect("served");
+        stream.net.advance(STEP_NS);
+        stream.receiver.poll(&stream.bus).expect("polled");
     }
-    let got: Vec<u64> = std::iter::from_fn(|| receiver.pop())
-        .map(|r| r.header.seq)
-        .collect();
-    assert_eq!(got, (0..40).collect::<Vec<_>>());
+    assert_eq!(stream.got(), (0..40).collect::<Vec<_>>());
 }
 
 #[test]
 fn a_live_gap_that_nobody_can_fill_is_given_up_and_counted() {
-    let net = MemoryNet::new(
-        3,
-        0,
-        Faults {
-            loss: 1.0,
-            delay_ns: 0,
-        },
-    );
-    let (bus, topics, wake) = (net.bus(), Topics::new("t"), Wake::new());
-    let topic = topics.sample("d");
-    let origin = Origin {
-        source: 1,
-        epoch: 7,
-    };
-    let mut sender =
-        CreditSender::<StylusSample>::new(&bus, &topics, &topic, origin, &wake).expect("a sender");
-    let mut receiver =
-        CreditReceiver::<StylusSample>::new(&bus, &topics, &topic, origin, &wake).expect("one");
-    let stamp = Stamp {
-        now_ns: 0,
-        event_ns: 0,
-    };
-    let away = StylusSample::away();
-    let send = |sender: &mut CreditSender<_>, loss: f64| {
-        net.set_faults(Faults { loss, delay_ns: 0 });
-        sender.send(Flags::NONE, stamp, &away).expect("sent");
-        net.advance(STEP_NS);
-    };
-    send(&mut sender, 0.0);
-    send(&mut sender, 1.0);
-    send(&mut sender, 0.0);
-    drop(sender);
-    for _ in 0..3000 {
-        receiver.poll(&bus).expect("polled");
-        net.advance(STEP_NS);
+    let mut stream = stream();
+    for seq in [0, 2] {
+        stream.put("d", ORIGIN, Flags::NONE, seq, 0);
     }
-    let got: Vec<u64> = std::iter::from_fn(|| receiver.pop())
-        .map(|r| r.header.seq)
+    for _ in 0..3000 {
+        stream.receiver.poll(&stream.bus).expect("polled");
+        stream.net.advance(STEP_NS);
+    }
+    assert_eq!(stream.got(), vec![0, 2]);
+    assert_eq!(stream.receiver.counts().lost, 1);
+}
+
+#[test]
+fn two_devices_of_one_source_do_not_disturb_each_other() {
+    let mut stream = stream();
+    let other = Origin { epoch: 8, ..ORIGIN };
+    for seq in 0..4 {
+        stream.put("d", ORIGIN, Flags::NONE, seq, 1);
+        stream.put("e", other, Flags::NONE, seq, 1);
+    }
+    stream.receiver.poll(&stream.bus).expect("polled");
+    assert_eq!(stream.got(), vec![0, 0, 1, 1, 2, 2, 3, 3]);
+}
+
+#[test]
+fn a_late_message_of_an_earlier_epoch_ends_nothing() {
+    let mut stream = stream();
+    let again = Origin { epoch: 8, ..ORIGIN };
+    stream.put("d", ORIGIN, Flags::FIRST, 0, 1);
+    stream.put("d", again, Flags::FIRST, 0, 10);
+    stream.put("d", again, Flags::NONE, 1, 11);
+    stream.put("d", ORIGIN, Flags::NONE, 1, 2);
+    stream.put("d", again, Flags::NONE, 2, 12);
+    stream.receiver.poll(&stream.bus).expect("polled");
+    let got: Vec<(u32, u64)> = std::iter::from_fn(|| stream.receiver.pop())
+        .map(|received| (received.header.epoch, received.header.seq))
         .collect();
-    assert_eq!(got, vec![0, 2]);
-    assert_eq!(receiver.counts().lost, 1);
+    assert_eq!(got, vec![(8, 0), (8, 1), (8, 2)]);
+}
+
+#[test]
+fn a_late_message_of_an_epoch_never_seen_ends_nothing_either() {
+    let mut stream = stream();
+    let again = Origin { epoch: 8, ..ORIGIN };
+    stream.put("d", again, Flags::NONE, 5, 10);
+    stream.put("d", ORIGIN, Flags::NONE, 9, 2);
+    stream.put("d", again, Flags::NONE, 6, 11);
+    stream.receiver.poll(&stream.bus).expect("polled");
+    assert_eq!(stream.got(), vec![5, 6]);
+}
+
+#[test]
+fn a_message_that_may_not_go_holds_up_its_own_sender_alone() {
+    let mut stream = stream();
+    for seq in 0..3 {
+        stream.put("d", ORIGIN, Flags::NONE, seq, 1);
+        stream.put("e", ORIGIN, Flags::NONE, seq + 10, 1);
+    }
+    stream.receiver.poll(&stream.bus).expect("polled");
+    let others = |received: &Received<StylusSample>| received.key.ends_with("e/sample");
+    let got: Vec<u64> = std::iter::from_fn(|| stream.receiver.pop_where(others))
+        .map(|received| received.header.seq)
+        .collect();
+    assert_eq!(got, vec![10, 11, 12]);
+    assert_eq!(stream.got(), vec![0, 1, 2]);
 }

@@ -1,0 +1,38 @@
+//! What a brush node is told at its start.
+
+use std::collections::BTreeMap;
+
+use maulstick_brush::BrushFile;
+
+/// What a brush node is told at its start.
+#[derive(Clone, Debug)]
+pub struct BrushSettings {
+    /// Name of the brush.
+    pub name: String,
+    /// Its file, at its size.
+    pub file: BrushFile,
+    /// Share of the head's length that full pressure presses in.
+    pub depth_share: f64,
+    /// The devices that move it, by name, with their priority.
+    pub devices: BTreeMap<String, i32>,
+    /// Devices that move other brushes.
+    pub others: Vec<String>,
+    /// Priority of a device that is in neither list, if it may move this brush.
+    pub foreign_priority: Option<i32>,
+    /// Epoch of this start.
+    pub epoch: u32,
+}
+
+impl BrushSettings {
+    /// Priority of a device, if it moves this brush: rig.toml and the device itself (`moves`: the
+    /// brush that each device says it moves) may say that it moves another one.
+    pub(super) fn priority(&self, device: &str, moves: &BTreeMap<String, String>) -> Option<i32> {
+        let elsewhere = moves
+            .get(device)
+            .is_some_and(|brush| !brush.is_empty() && *brush != self.name);
+        if elsewhere || self.others.iter().any(|other| other == device) {
+            return None;
+        }
+        self.devices.get(device).copied().or(self.foreign_priority)
+    }
+}

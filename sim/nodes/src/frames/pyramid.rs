@@ -1,0 +1,112 @@
+//! Display tiles at every level of detail, made of those below and kept for the next request.
+
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
+use maulstick_optics::Studio;
+use maulstick_paint::display::DisplayTile;
+use maulstick_paint::tile::TileId;
+
+use super::FedSurface;
+
+/// Display tiles that are kept for the next request.
+const KEPT_TILES: usize = 1024;
+
+/// The coarsest level: a single tile shows the whole surface.
+pub(super) fn coarsest(surface: &FedSurface) -> u32 {
+    let [across, up] = surface.grid;
+    across.max(up).max(1).next_power_of_two().trailing_zeros()
+}
+
+/// Tiles across and up at a level.
+pub(super) fn grid(surface: &FedSurface, level: u32) -> [u32; 2] {
+    surface.grid.map(|tiles| tiles.div_ceil(1 << level))
+}
+
+/// Versions of bare tiles lie below this, those of painted ones above: a surface has no more tiles.
+pub(super) const BARE_VERSIONS: u64 = 1 << 32;
+
+/// Display tiles by level and place, with the version that they show.
+#[derive(Debug, Default)]
+pub(super) struct Pyramid {
+    kept: BTreeMap<(u32, u32, TileId), (u64, Arc<DisplayTile>)>,
+    bare: BTreeMap<u32, Arc<DisplayTile>>,
+}
+
+impl Pyramid {
+    /// Version of a tile of a level: the newest of what lies in it; 0 where nothing was painted.
+    fn painted(surface: &FedSurface, level: u32, id: TileId) -> u64 {
+        let [across, up] = grid(surface, level);
+        if id.x >= across || id.y >= up {
+            return 0;
+        }
+        if level == 0 {
+            return surface.tiles.get(&id).map_or(0, |(version, _)| *version);
+        }
+        (0..4)
+            .map(|quarter| Self::painted(surface, level - 1, child(id, quarter)))
+            .max()
+            .unwrap_or(0)
+    }
+
+    /// Version of a tile as views count them: no two tiles of a level share one, and bare tiles
+    /// come first, one after the other, so that any number of tiles is told in parts.
+    pub(super) fn version(surface: &FedSurface, level: u32, id: TileId) -> u64 {
+        match Self::painted(surface, level, id) {
+            0 => u64::from(id.y) * u64::from(grid(surface, level)[0]) + u64::from(id.x) + 1,
+            painted => BARE_VERSIONS + painted,
+        }
+    }
+
+    pub(super) fn tile(
+        &mut self,
+        studio: &Studio,
+        number: u32,
+        surface: &FedSurface,
+        level: u32,
+        id: TileId,
+    ) -> Arc<DisplayTile> {
+        let version = Self::painted(surface, level, id);
+        let bare = Arc::clone(
+            self.bare
+                .entry(number)
+                .or_insert_with(|| Arc::new(DisplayTile::of(None, studio, &surface.ground))),
+        );
+        if version == 0 {
+            return bare;
+        }
+        if let Some((kept, tile)) = self.kept.get(&(number, level, id))
+            && *kept == version
+        {
+            return Arc::clone(tile);
+        }
+        let tile = Arc::new(if level == 0 {
+            let tile = surface.tiles.get(&id).and_then(|(_, tile)| tile.as_deref());
+            DisplayTile::of(tile, studio, &surface.ground)
+        } else {
+            let children: [Arc<DisplayTile>; 4] = std::array::from_fn(|quarter| {
+                self.tile(
+                    studio,
+                    number,
+                    surface,
+                    level - 1,
+                    child(id, quarter as u32),
+                )
+            });
+            DisplayTile::coarser(std::array::from_fn(|i| Some(&*children[i])), &bare)
+        });
+        if self.kept.len() >= KEPT_TILES {
+            self.kept.clear();
+        }
+        self.kept
+            .insert((number, level, id), (version, Arc::clone(&tile)));
+        tile
+    }
+}
+
+fn child(id: TileId, quarter: u32) -> TileId {
+    TileId {
+        x: 2 * id.x + quarter % 2,
+        y: 2 * id.y + quarter / 2,
+    }
+}

@@ -1,0 +1,122 @@
+//! States that are solved and wait for credit, cut into messages that fit.
+
+use std::collections::VecDeque;
+
+use maulstick_types::brush::{BrushState, Solve};
+use maulstick_types::{Flags, Message as _};
+
+/// States in order of sending.
+#[derive(Clone, Debug, Default)]
+pub struct Outbox {
+    waiting: VecDeque<(Flags, BrushState)>,
+}
+
+impl Outbox {
+    /// Adds a state of any length; returns how many messages it takes. `first` and `last` are flags
+    /// that its first and its last message have beside `flags`.
+    pub fn push(&mut self, flags: Flags, first: Flags, last: Flags, state: BrushState) -> usize {
+        let parts = cut(state.solves);
+        let count = parts.len();
+        for (place, solves) in parts.into_iter().enumerate() {
+            let mut flags = flags;
+            if place == 0 {
+                flags = flags.with(first);
+            }
+            flags = flags.with(match place + 1 == count {
+                true => last,
+                false => Flags::CONTINUES,
+            });
+            let part = BrushState { solves, ..state };
+            self.waiting.push_back((flags, part));
+        }
+        count
+    }
+
+    /// The next message.
+    pub fn pop(&mut self) -> Option<(Flags, BrushState)> {
+        self.waiting.pop_front()
+    }
+
+    /// Whether nothing waits.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        self.waiting.is_empty()
+    }
+
+    /// Messages that wait.
+    #[must_use]
+    pub fn len(&self) -> usize {
+        self.waiting.len()
+    }
+}
+
+/// Cuts solves into runs that each fit into one message; at least one run, which may be empty.
+fn cut(solves: Vec<Solve>) -> Vec<Vec<Solve>> {
+    let (mut runs, mut run) = (Vec::new(), Vec::new());
+    let mut bytes = BrushState::WIRE_BYTES;
+    for solve in solves {
+        let more = solve.wire_bytes();
+        if bytes + more > BrushState::MAX_BYTES && !run.is_empty() {
+            runs.push(std::mem::take(&mut run));
+            bytes = BrushState::WIRE_BYTES;
+        }
+        bytes += more;
+        run.push(solve);
+    }
+    runs.push(run);
+    runs
+}
+
+#[cfg(test)]
+mod tests {
+    use maulstick_types::brush::Contact;
+    use maulstick_types::{Origin, Pose, encode};
+    use proptest::prelude::*;
+
+    use super::*;
+
+    fn solve(number: u64, joints: usize, contacts: usize) -> Solve {
+        let contact = Contact {
+            spine: 0,
+            joint: 1,
+            force_n: 0.1,
+        };
+        Solve {
+            event_ns: number,
+            stroke: 1,
+            surface: 0,
+            flags: 0,
+            pose: Pose::IDENTITY,
+            angles_rad: vec![[0.0; 2]; joints],
+            contacts: vec![contact; contacts],
+        }
+    }
+
+    proptest! {
+        #[test]
+        fn every_part_fits_and_none_is_lost(
+            sizes in prop::collection::vec((0usize..60, 0usize..60), 0..400),
+        ) {
+            let solves: Vec<Solve> = sizes
+                .iter()
+                .enumerate()
+                .map(|(i, (joints, contacts))| solve(i as u64, *joints, *contacts))
+                .collect();
+            let state = BrushState { device: 1, device_epoch: 2, device_seq: 3, solves };
+            let mut outbox = Outbox::default();
+            let count = outbox.push(Flags::REPLAY, Flags::FIRST, Flags::NONE, state);
+            prop_assert_eq!(count, outbox.len());
+            let origin = Origin { source: 1, epoch: 1 };
+            let mut times = Vec::new();
+            for place in 0..count {
+                let (flags, part) = outbox.pop().expect("as counted");
+                prop_assert!(encode(&origin, flags, 0, 0, 0, &part).is_ok());
+                prop_assert_eq!(flags.has(Flags::FIRST), place == 0);
+                prop_assert_eq!(flags.has(Flags::CONTINUES), place + 1 < count);
+                times.extend(part.solves.iter().map(|solve| solve.event_ns));
+            }
+            prop_assert!(outbox.is_empty());
+            prop_assert_eq!(times, (0..sizes.len() as u64).collect::<Vec<_>>());
+        }
+    }
+}

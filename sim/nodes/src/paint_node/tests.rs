@@ -1,0 +1,132 @@
+//! What the node hands to the frames and to its clients.
+
+#![allow(clippy::panic, reason = "a test fails by it")]
+
+use maulstick_brush::BrushModel;
+use maulstick_bus::bus::Answer;
+use maulstick_bus::{Faults, MemoryNet};
+use maulstick_optics::PaintLibrary;
+use maulstick_paint::PaintingSetup;
+use maulstick_paint::display::DisplayTile;
+use maulstick_types::command::Command;
+use maulstick_types::stylus::{DEFAULT_TILT_RAD, StylusPose, StylusSample};
+use maulstick_types::{Header, Mixture, decode};
+
+use super::*;
+
+const BRUSH: Origin = Origin {
+    source: 3,
+    epoch: 4,
+};
+
+fn node(net: &MemoryNet) -> (PaintNode, BrushModel) {
+    let bus: Arc<dyn Bus> = Arc::new(net.bus());
+    let setup = PaintingSetup {
+        cells: [256, 192],
+        ..PaintingSetup::default()
+    };
+    let library = PaintLibrary::measured().expect("whole");
+    let painting = Painting::new(&setup, library).expect("a painting");
+    let file = BrushFile::library("round").expect("round");
+    let mut model = BrushModel::new(file.clone(), 0.5);
+    model.set_scene(painting.scene());
+    let me = Origin {
+        source: 1,
+        epoch: 1,
+    };
+    let topics = Topics::new("t");
+    let mut node = PaintNode::new(bus, &topics, &Wake::new(), me, painting).expect("a node");
+    node.painting_mut().define_brush("main", file);
+    (node, model)
+}
+
+fn load(node: &mut PaintNode, number: u64, paint: &str) {
+    let command = Command::Load {
+        brush: "main".into(),
+        mixture: Mixture::pure(paint),
+    };
+    let request = CommandRequest {
+        client: 1,
+        number,
+        after: None,
+        command,
+    };
+    let outcome = node.sequencer.command(request).outcome;
+    assert!(matches!(outcome, Outcome::Done { .. }), "{outcome:?}");
+}
+
+/// A short stroke, as states that the sequencer accepts.
+fn stroke(node: &mut PaintNode, model: &mut BrushModel) {
+    for number in 0..20u64 {
+        let sample = StylusSample {
+            pose: StylusPose::Contact {
+                point_m: [1e-3 * number as f64, 0.0, 0.0],
+                tilt_rad: DEFAULT_TILT_RAD,
+                twist_rad: 0.0,
+                pressure: 0.5,
+            },
+            in_range: true,
+            ..StylusSample::away()
+        };
+        let event_ns = 1_000_000_000 + number * 8_000_000;
+        let state = model
+            .state(BRUSH, number, event_ns, &sample)
+            .expect("a state");
+        let header = Header {
+            version: 1,
+            schema: 0,
+            source: BRUSH.source,
+            epoch: BRUSH.epoch,
+            flags: Flags::NONE,
+            length: 0,
+            seq: number,
+            event_ns,
+            sent_ns: event_ns,
+        };
+        let (_, painted) = node.sequencer.state("main", &header, &state);
+        painted.expect("painted");
+    }
+}
+
+#[test]
+fn the_frames_know_a_paint_as_soon_as_a_tile_has_it() {
+    let net = MemoryNet::new(1, 1_000_000_000, Faults::default());
+    let (mut node, mut model) = node(&net);
+    load(&mut node, 1, "Bone Black");
+    stroke(&mut node, &mut model);
+    node.feed.lock().wanted = true;
+    node.hand_over(2_000_000_000);
+    let fed = node.feed.lock();
+    let studio = fed.studio.as_ref().expect("optics");
+    let surface = &fed.surfaces[&CANVAS];
+    let painted = surface.tiles.values().filter_map(|(_, tile)| tile.as_ref());
+    // Shading a paint that the studio does not have is out of bounds.
+    let shown = painted.map(|tile| DisplayTile::of(Some(tile), studio, &surface.ground));
+    assert!(shown.count() > 0, "nothing was painted");
+}
+
+#[test]
+fn an_answer_that_does_not_fit_is_given_in_short() {
+    let net = MemoryNet::new(1, 1_000_000_000, Faults::default());
+    let (node, _) = node(&net);
+    let wake = Wake::new();
+    let topic = node.topics.command("paint");
+    let pending = net
+        .bus()
+        .ask(&topic, Vec::new(), Duration::from_secs(1), &wake)
+        .expect("asked");
+    net.advance(1);
+    let request = node.commands.try_recv().expect("a question");
+    let outcome = Outcome::Done {
+        journal: 1,
+        detail: "x".repeat(70_000),
+    };
+    node.answer(request, 0, CommandReply { number: 5, outcome });
+    net.advance(1);
+    let Some(Answer::Bytes(bytes)) = pending.try_recv() else {
+        panic!("no answer");
+    };
+    let reply = decode::<CommandReply>(&bytes).expect("a reply").1;
+    assert_eq!(reply.number, 5);
+    assert!(matches!(reply.outcome, Outcome::Refused { .. }));
+}

@@ -1,0 +1,127 @@
+//! Devices and brushes side by side: none takes from another, and none waits for another.
+
+mod support;
+
+use maulstick_bus::credit::Stamp;
+use maulstick_bus::typed::{Receiver, Sender};
+use maulstick_bus::{Class, CreditSender, Faults, MemoryNet, Queue, Wake};
+use maulstick_types::brush::BrushState;
+use maulstick_types::command::Command;
+use maulstick_types::haptics::ContactModel;
+use maulstick_types::stylus::{StylusInfo, axes};
+use maulstick_types::{Flags, Origin, name_hash};
+use support::{Live, START_NS, loads, pen, take};
+
+fn live() -> Live {
+    Live::new(MemoryNet::new(1, START_NS, Faults::default()))
+}
+
+/// Lets everybody have a few turns.
+fn turn(live: &mut Live) {
+    for _ in 0..4 {
+        live.net.advance(1_000_000);
+        live.brush.turn().expect("turned");
+        live.net.advance(1_000_000);
+        live.paint.turn().expect("turned");
+    }
+}
+
+#[test]
+fn a_force_device_with_a_number_of_its_own_gets_its_model() {
+    let mut live = live();
+    let (bus, wake) = (live.net.bus(), Wake::new());
+    let topic = live.topics.contact_model("arm");
+    let mut models =
+        Receiver::<ContactModel>::new(&bus, &topic, Class::RealTime, Queue::Ring(8), &wake)
+            .expect("subscribed");
+    let mut arm = live.device("arm", 42);
+    let topic = live.topics.stylus_info("arm");
+    let mut info = Sender::new(&bus, &topic, Class::Cached, arm.samples.origin()).expect("one");
+    let told = StylusInfo {
+        device: "arm".into(),
+        driver: "foreign".into(),
+        brush: "main".into(),
+        priority: 0,
+        senses: axes::POSITION,
+        drives: axes::FORCE,
+        rate_hz: 1000.0,
+        max_force_n: 3.0,
+        max_stiffness_n_m: 800.0,
+        workspace_m: [0.0; 6],
+    };
+    info.send(0, 0, &told).expect("sent");
+    turn(&mut live);
+    arm.send(&pen(0.0, 0.0, 0.3));
+    turn(&mut live);
+    let model = models.try_recv().expect("a model").message;
+    assert_eq!((model.device, model.device_epoch), (42, 11));
+}
+
+#[test]
+fn two_devices_of_one_number_are_two_devices() {
+    let mut live = live();
+    let (mut one, mut two) = (live.device("one", 7), live.device("two", 7));
+    two.samples.restart(12);
+    for _ in 0..5 {
+        one.send(&pen(0.0, 0.0, 0.0));
+        two.send(&pen(0.0, 0.0, 0.0));
+        turn(&mut live);
+    }
+    assert_eq!((one.consumed(), two.consumed()), (5, 5));
+}
+
+#[test]
+fn a_brush_without_a_file_holds_up_no_other() {
+    let mut live = live();
+    let load = Command::Load {
+        brush: "main".into(),
+        mixture: loads()[0].clone(),
+    };
+    live.command(1, load);
+    let (bus, wake) = (live.net.bus(), Wake::new());
+    let origin = Origin {
+        source: name_hash("ghost"),
+        epoch: 1,
+    };
+    let topic = live.topics.brush_state("ghost");
+    let mut ghost = CreditSender::new(&bus, &live.topics, &topic, origin, &wake).expect("a sender");
+    let state = BrushState {
+        device: 1,
+        device_epoch: 1,
+        device_seq: 0,
+        solves: Vec::new(),
+    };
+    let stamp = Stamp {
+        now_ns: START_NS,
+        event_ns: START_NS,
+    };
+    ghost.send(Flags::NONE, stamp, &state).expect("sent");
+    turn(&mut live);
+    let mut mouse = live.device("mouse", 5);
+    for step in 0..20 {
+        mouse.send(&pen(1e-3 * f64::from(step), 0.0, 0.5));
+        turn(&mut live);
+    }
+    assert!(live.paint.painting_mut().report().steps > 0);
+}
+
+#[test]
+fn a_take_without_credit_holds_up_no_other_device() {
+    let mut live = live();
+    live.announce(1);
+    let samples = take();
+    // Paint has no turn: the brush may send no more than 64 states.
+    for _ in 0..100 {
+        live.player_turn(&samples);
+        live.net.advance(1_000_000);
+        live.brush.turn().expect("turned");
+    }
+    assert_eq!(live.brush.sent(), 64);
+    let mut mouse = live.device("mouse", 5);
+    mouse.send(&pen(0.0, 0.0, 0.5));
+    for _ in 0..4 {
+        live.net.advance(1_000_000);
+        live.brush.turn().expect("turned");
+    }
+    assert_eq!(mouse.consumed(), 1);
+}
