@@ -18,7 +18,7 @@ use maulstick_types::Flags;
 use maulstick_types::haptics::ContactModel;
 use maulstick_types::stylus::{StylusInfo, StylusPose, StylusSample, StylusStatus};
 
-use crate::driver::Driver;
+use crate::driver::{Driver, Placed};
 use crate::host::{BINS, Delivery, Host, Ticked, bin};
 use crate::simulated::Simulated;
 
@@ -49,7 +49,6 @@ pub fn run(member: &mut Member, settings: &HapticSettings) -> Result<(), Fault> 
 struct Daemon {
     bus: std::sync::Arc<dyn maulstick_bus::Bus>,
     host: Host,
-    to_desk: Rigid,
     senses: u32,
     brush: String,
     samples: CreditSender<StylusSample>,
@@ -62,6 +61,14 @@ struct Daemon {
     status_ns: u64,
     published_ns: u64,
     was_in_range: bool,
+}
+
+/// Device frame to desk frame.
+fn to_desk(device: &DeviceSection) -> Rigid {
+    Rigid {
+        rotation: canonical(DQuat::from_array(device.orientation)),
+        translation: device.position_m.into(),
+    }
 }
 
 fn driver(member: &Member, settings: &HapticSettings) -> Result<Box<dyn Driver>, Fault> {
@@ -80,20 +87,21 @@ fn driver(member: &Member, settings: &HapticSettings) -> Result<Box<dyn Driver>,
         &take,
         file.length_m(),
         section.depth_share,
+        &to_desk(&settings.device),
     )))
 }
 
 impl Daemon {
     fn new(member: &Member, settings: &HapticSettings) -> Result<Self, Fault> {
         let device = &settings.device;
-        let driver = driver(member, settings)?;
-        let abilities = driver.abilities();
+        let placed = Placed::new(driver(member, settings)?, to_desk(device));
+        let abilities = placed.abilities();
         let limits = Limits {
             max_force_n: device.max_force_n.min(abilities.max_force_n),
             max_stiffness_n_m: abilities.max_stiffness_n_m,
             ..Limits::default()
         };
-        let host = Host::start(driver, limits)
+        let host = Host::start(placed, limits)
             .map_err(|error| Fault::failure(format!("the servo cannot start: {error}")))?;
         for warning in &host.warnings {
             tracing::warn!("{}: {warning}", device.name);
@@ -124,13 +132,8 @@ impl Daemon {
             .map_or(0, |t| {
                 t.tv_sec() as u64 * 1_000_000_000 + t.tv_nsec() as u64
             });
-        let [x, y, z, w] = device.orientation;
         let topic = topics.contact_model(&device.name);
         Ok(Self {
-            to_desk: Rigid {
-                rotation: canonical(DQuat::from_xyzw(x, y, z, w)),
-                translation: device.position_m.into(),
-            },
             senses: abilities.senses,
             brush: device.brush.clone(),
             samples: CreditSender::new(
@@ -229,17 +232,17 @@ impl Daemon {
             return Ok(());
         }
         self.published_ns = event_ns;
-        let in_device = Rigid {
+        let held = Rigid {
             rotation: reading.held.orientation,
             translation: reading.held.position,
         };
         let sample = StylusSample {
             senses: self.senses,
             pose: StylusPose::Ferrule {
-                pose: self.to_desk.after(&in_device).to_pose(),
+                pose: held.to_pose(),
             },
-            velocity_m_s: self.to_desk.vector(reading.held.velocity).to_array(),
-            force_n: self.to_desk.vector(ticked.force).to_array(),
+            velocity_m_s: reading.held.velocity.to_array(),
+            force_n: ticked.force.to_array(),
             switches: reading.switches,
             in_range: reading.in_range,
         };

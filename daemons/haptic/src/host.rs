@@ -13,7 +13,7 @@ use nix::time::{ClockId, ClockNanosleepFlags, clock_gettime, clock_nanosleep};
 use thread_priority::unix::{RealtimeThreadSchedulePolicy, ThreadSchedulePolicy};
 use thread_priority::{ThreadPriority, ThreadPriorityValue};
 
-use crate::driver::{Driver, Reading};
+use crate::driver::{Placed, Reading};
 
 /// Period of the servo, ns.
 pub const PERIOD_NS: u64 = 1_000_000;
@@ -29,9 +29,9 @@ const PRIORITY: u8 = 80;
 pub struct Ticked {
     /// When the device was read, `CLOCK_MONOTONIC`, ns.
     pub monotonic_ns: u64,
-    /// What was read.
+    /// What was read, desk frame.
     pub reading: Reading,
-    /// The force applied, N.
+    /// The force applied, N, desk frame.
     pub force: DVec3,
     /// How late the wake-up was, ns.
     pub late_ns: u64,
@@ -84,11 +84,11 @@ fn sleep_until(deadline_ns: u64) {
 }
 
 impl Host {
-    /// Starts the servo over `driver`.
+    /// Starts the servo over `device`.
     ///
     /// # Errors
     /// What the system says where no thread can be started.
-    pub fn start(mut driver: Box<dyn Driver>, limits: Limits) -> std::io::Result<Self> {
+    pub fn start(mut device: Placed, limits: Limits) -> std::io::Result<Self> {
         let (mut to_publisher, ticks) = rtrb::RingBuffer::new(RING);
         let (models, mut from_rig) = triple_buffer::triple_buffer(&Delivery::default());
         let (tell, told) = std::sync::mpsc::channel();
@@ -114,9 +114,9 @@ impl Host {
                         servo.receive(contact, delivery.sender != sender);
                         (seen, sender) = (delivery.number, delivery.sender);
                     }
-                    let reading = driver.read(dt);
+                    let reading = device.read(dt);
                     let (force, _) = servo.step(&reading.held, dt);
-                    driver.write(force);
+                    device.write(force);
                     let ticked = Ticked {
                         monotonic_ns: now_ns,
                         reading,
@@ -134,7 +134,7 @@ impl Host {
                         deadline_ns += (now_ns - deadline_ns).div_ceil(PERIOD_NS) * PERIOD_NS;
                     }
                 }
-                driver.write(DVec3::ZERO);
+                device.write(DVec3::ZERO);
             })?;
         let warnings = told.recv().unwrap_or_default();
         Ok(Self {
@@ -209,9 +209,16 @@ pub fn bin(ns: u64) -> usize {
 
 #[cfg(test)]
 mod tests {
+    use std::sync::atomic::AtomicU64;
     use std::time::{Duration, Instant};
 
+    use glam::DQuat;
+    use maulstick_haptics::contact::Held;
+    use maulstick_num::geometry::{Rigid, canonical, rotation};
+    use maulstick_types::haptics::{ContactModel, ForceLaw, Grain};
+
     use super::*;
+    use crate::driver::{Abilities, Driver};
     use crate::simulated::Simulated;
 
     #[test]
@@ -223,20 +230,148 @@ mod tests {
         assert_eq!(bin(u64::MAX), BINS - 1);
     }
 
-    #[test]
-    fn the_servo_ticks_and_its_ticks_come_out_in_order() {
-        let driver = Box::new(Simulated::at_rest());
-        let mut host = Host::start(driver, Limits::default()).expect("started");
+    /// The first tick that `look` accepts.
+    fn tick(host: &mut Host, mut look: impl FnMut(&Ticked) -> bool) -> Option<Ticked> {
         let give_up = Instant::now() + Duration::from_secs(20);
-        let (mut count, mut last_ns) = (0, 0);
-        while count < 200 && Instant::now() < give_up {
+        while Instant::now() < give_up {
             while let Ok(ticked) = host.ticks.pop() {
-                assert!(ticked.monotonic_ns > last_ns);
-                last_ns = ticked.monotonic_ns;
-                count += 1;
+                if look(&ticked) {
+                    return Some(ticked);
+                }
             }
             std::thread::yield_now();
         }
-        assert!(count >= 200);
+        None
+    }
+
+    #[test]
+    fn the_servo_ticks_and_its_ticks_come_out_in_order() {
+        let device = Placed::new(Box::new(Simulated::at_rest()), Rigid::IDENTITY);
+        let mut host = Host::start(device, Limits::default()).expect("started");
+        let (mut count, mut last_ns) = (0, 0);
+        let enough = tick(&mut host, |ticked| {
+            assert!(ticked.monotonic_ns > last_ns);
+            last_ns = ticked.monotonic_ns;
+            count += 1;
+            count == 200
+        });
+        assert!(enough.is_some());
+    }
+
+    /// A device that stands still and remembers the newest force written to it.
+    struct Still {
+        held: Held,
+        written: Arc<[AtomicU64; 3]>,
+    }
+
+    impl Driver for Still {
+        fn abilities(&self) -> Abilities {
+            Simulated::at_rest().abilities()
+        }
+
+        fn read(&mut self, _: f64) -> Reading {
+            Reading {
+                held: self.held,
+                switches: 0,
+                in_range: true,
+            }
+        }
+
+        fn write(&mut self, force: DVec3) {
+            for (cell, part) in self.written.iter().zip(force.to_array()) {
+                cell.store(part.to_bits(), Ordering::Relaxed);
+            }
+        }
+    }
+
+    /// A rigid wall of 100 N/m at the desk's z = 0, for a head of 25 mm.
+    fn wall() -> Contact {
+        Contact::new(&ContactModel {
+            device: 1,
+            device_epoch: 1,
+            brush: "main".into(),
+            plane_point_m: [0.0; 3],
+            plane_normal: [0.0, 0.0, 1.0],
+            friction_static: 0.0,
+            friction_kinetic: 0.0,
+            viscous_n_s_m: 2.0,
+            grain: Grain {
+                amplitude: 0.0,
+                wavelength_m: 1e-3,
+                seed: 1,
+            },
+            law: ForceLaw::Rigid {
+                stiffness_n_m: 100.0,
+            },
+            head_length_m: 0.025,
+            time_to_live_ns: u64::MAX,
+            recovery_ns: 0,
+        })
+        .expect("a model")
+    }
+
+    #[test]
+    fn a_turned_and_shifted_device_feels_the_desk_where_it_is() {
+        // What the hand does on the desk: the tip 4 mm below the wall, sliding along x.
+        let on_desk = Held {
+            position: DVec3::new(0.01, -0.02, 0.021),
+            orientation: DQuat::IDENTITY,
+            velocity: DVec3::new(0.1, 0.0, 0.0),
+        };
+        let expected = DVec3::new(-0.2, 0.0, 0.4);
+        let turn = rotation(DVec3::new(0.6, 0.0, 0.8), 2.0);
+        for to_desk in [
+            Rigid::IDENTITY,
+            Rigid {
+                rotation: turn,
+                translation: DVec3::new(0.3, -0.1, 0.2),
+            },
+        ] {
+            let to_device = to_desk.inverse();
+            let written = Arc::new([const { AtomicU64::new(0) }; 3]);
+            let still = Still {
+                held: Held {
+                    position: to_device.point(on_desk.position),
+                    orientation: canonical(to_device.rotation * on_desk.orientation),
+                    velocity: to_device.vector(on_desk.velocity),
+                },
+                written: Arc::clone(&written),
+            };
+            // However late the ticks of a busy machine come, the force comes up.
+            let limits = Limits {
+                engage_s: 1e-3,
+                longest_tick_s: 1e3,
+                ..Limits::default()
+            };
+            let mut host =
+                Host::start(Placed::new(Box::new(still), to_desk), limits).expect("started");
+            host.models.write(Delivery {
+                contact: Some(wall()),
+                sender: None,
+                number: 1,
+            });
+            // The tick after the first is there once the force of the first is written.
+            let mut seen = 0;
+            let felt = tick(&mut host, |ticked| {
+                seen += u32::from((ticked.force - expected).length() < 1e-12);
+                seen == 2
+            });
+            let felt = felt.expect("the force in the desk frame");
+            let off = (felt.reading.held.position - on_desk.position).length()
+                + (felt.reading.held.velocity - on_desk.velocity).length()
+                + felt
+                    .reading
+                    .held
+                    .orientation
+                    .angle_between(on_desk.orientation);
+            assert!(off < 1e-7, "{:?}", felt.reading.held);
+            let written = DVec3::from_array(
+                [0, 1, 2].map(|i| f64::from_bits(written[i].load(Ordering::Relaxed))),
+            );
+            assert!(
+                (written - to_device.vector(expected)).length() < 1e-12,
+                "{written} in the device frame"
+            );
+        }
     }
 }
