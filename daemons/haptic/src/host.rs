@@ -6,7 +6,7 @@ use std::thread::JoinHandle;
 
 use glam::DVec3;
 use maulstick_haptics::contact::Contact;
-use maulstick_haptics::{Limits, Servo};
+use maulstick_haptics::{Limits, Sender, Servo};
 use maulstick_types::Origin;
 use nix::sys::time::TimeSpec;
 use nix::time::{ClockId, ClockNanosleepFlags, clock_gettime, clock_nanosleep};
@@ -111,7 +111,12 @@ impl Host {
                     if delivery.number != seen
                         && let Some(contact) = delivery.contact
                     {
-                        servo.receive(contact, delivery.sender != sender);
+                        let whose = if delivery.sender == sender {
+                            Sender::Same
+                        } else {
+                            Sender::Another
+                        };
+                        servo.receive(contact, whose);
                         (seen, sender) = (delivery.number, delivery.sender);
                     }
                     let reading = device.read(dt);
