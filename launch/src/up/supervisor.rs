@@ -1,6 +1,5 @@
 //! All processes of the rig: their tokens, their restarts, the table, the end.
 
-use std::collections::BTreeSet;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
@@ -15,7 +14,7 @@ use maulstick_types::topics::Topics;
 
 use crate::EXIT_INTERRUPTED;
 use crate::commands::progress_bar;
-use crate::up::child::{Ended, Node, State};
+use crate::up::child::{Ended, Failures, Node, State};
 use crate::up::conductor::{Conductor, Performance};
 use crate::up::plan::{NodeSpec, Role};
 
@@ -40,8 +39,8 @@ pub struct Supervisor {
     wake: Wake,
     stop: Stop,
     tokens: Subscription,
-    present: BTreeSet<String>,
     nodes: Vec<Node>,
+    failures: Failures,
     due: Vec<(String, Instant)>,
     started: Vec<(String, Instant)>,
     conductor: Option<Conductor>,
@@ -100,7 +99,7 @@ impl Supervisor {
             wake,
             stop,
             tokens,
-            present: BTreeSet::new(),
+            failures: Failures::default(),
             due: Vec::new(),
             started: Vec::new(),
             conductor,
@@ -172,11 +171,6 @@ impl Supervisor {
             else {
                 continue;
             };
-            if arrival.present {
-                self.present.insert(name.to_owned());
-            } else {
-                self.present.remove(name);
-            }
             let node = self.nodes.iter_mut().find(|node| node.spec.name == name);
             if let Some(node) = node.filter(|node| node.state == State::Starting)
                 && arrival.present
@@ -198,9 +192,8 @@ impl Supervisor {
                 continue;
             };
             let role = self.nodes[place].spec.role;
-            self.present.remove(&name);
             match ended {
-                Ended::Well => {
+                Ended::Well if self.may_end(role) => {
                     self.nodes[place].state = State::Ended;
                     if role == Role::Window {
                         return Ok(Some(0));
@@ -211,8 +204,9 @@ impl Supervisor {
                     self.nodes[place].state = State::Failed;
                     return Err(self.failed(&name));
                 }
-                Ended::Badly => {
-                    let again = self.nodes[place].fail();
+                // A node that somebody stopped is missed like one that crashed.
+                Ended::Well | Ended::Badly => {
+                    let again = self.nodes[place].fail(&mut self.failures);
                     if !again {
                         if role == Role::Device {
                             tracing::error!("node '{name}' failed and is not started again");
@@ -227,6 +221,16 @@ impl Supervisor {
             }
         }
         Ok(None)
+    }
+
+    /// Whether the rig can do without a node that ended with success.
+    fn may_end(&self, role: Role) -> bool {
+        match role {
+            Role::Paint | Role::Brush => false,
+            // While its take is conducted it stays, even after the take's end.
+            Role::Player => self.conductor.is_none(),
+            Role::Device | Role::Window => true,
+        }
     }
 
     fn failed(&self, name: &str) -> Fault {
@@ -249,7 +253,6 @@ impl Supervisor {
             if node.pid().is_some() {
                 node.kill();
                 node.state = State::Restarting;
-                self.present.remove(&node.spec.name);
                 self.due.push((node.spec.name.clone(), Instant::now()));
             }
         }
@@ -291,7 +294,7 @@ impl Supervisor {
                 tracing::warn!("node '{}' does not get ready", node.spec.name);
                 node.terminate();
                 node.kill();
-                if !node.fail() {
+                if !node.fail(&mut self.failures) {
                     return Err(Fault::failure(format!(
                         "node '{}' does not get ready",
                         node.spec.name
