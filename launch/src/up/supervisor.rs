@@ -47,6 +47,8 @@ pub struct Supervisor {
     first_load: Mixture,
     bar: Option<ProgressBar>,
     shown: bool,
+    /// Paint starts with clean brushes: the painter's are to be loaded.
+    unloaded: bool,
 }
 
 /// Why the rig ends.
@@ -106,6 +108,7 @@ impl Supervisor {
             first_load,
             bar: None,
             shown: false,
+            unloaded: true,
         };
         for place in 0..supervisor.nodes.len() {
             supervisor.start_node(place)?;
@@ -159,6 +162,7 @@ impl Supervisor {
         self.restart_due()?;
         self.watch_starts()?;
         self.show_when_ready();
+        self.load_when_ready();
         self.conduct()
     }
 
@@ -214,7 +218,12 @@ impl Supervisor {
                         }
                         return Err(self.failed(&name));
                     }
-                    tracing::warn!("node '{name}' failed and is started again");
+                    let how = if ended == Ended::Well {
+                        "ended"
+                    } else {
+                        "failed"
+                    };
+                    tracing::warn!("node '{name}' {how} and is started again");
                     self.due.push((name, Instant::now() + RESTART_PAUSE));
                     self.replay_after(role);
                 }
@@ -272,6 +281,7 @@ impl Supervisor {
         for name in due {
             if let Some(place) = self.nodes.iter().position(|node| node.spec.name == name) {
                 self.nodes[place].restarts += 1;
+                self.unloaded |= self.nodes[place].spec.role == Role::Paint;
                 self.start_node(place)?;
             }
         }
@@ -307,10 +317,11 @@ impl Supervisor {
         Ok(())
     }
 
+    /// Whether no node is still to come; a device that failed for good holds nothing up.
     fn ready(&self) -> bool {
         self.nodes
             .iter()
-            .all(|node| node.state == State::Running || node.state == State::Ended)
+            .all(|node| !matches!(node.state, State::Starting | State::Restarting))
     }
 
     fn show_when_ready(&mut self) {
@@ -339,13 +350,21 @@ impl Supervisor {
             );
         }
         match &self.conductor {
-            None => {
-                eprintln!("Ctrl-C stops it");
-                self.load_brushes();
-            }
+            None => eprintln!("Ctrl-C stops it"),
             Some(conductor) => {
                 let bar = progress_bar(conductor.performance.length_ns);
                 self.bar = Some(bar.with_message("playing"));
+            }
+        }
+    }
+
+    /// Loads the brushes as soon as paint and all brushes are there, at the start and whenever paint
+    /// was started again. A take that is played brings its own loads.
+    fn load_when_ready(&mut self) {
+        if self.unloaded && self.ready() {
+            self.unloaded = false;
+            if self.conductor.is_none() {
+                self.load_brushes();
             }
         }
     }
