@@ -126,7 +126,8 @@ pub fn run(options: &UpOptions) -> Result<i32, Fault> {
     supervisor.run()
 }
 
-/// The nodes run elsewhere: they need whole paths.
+/// A path that holds wherever it is read: nodes may be started by hand from another folder, and the
+/// paint node writes what it is told by name.
 fn absolute(path: &std::path::Path) -> Result<PathBuf, Fault> {
     std::path::absolute(path).map_err(|error| Fault::file(path, &error, false))
 }
