@@ -87,9 +87,8 @@ impl RigConfig {
             let help = "write three plain numbers, in metres";
             return Err(Wrong::value(name, "position_m", device.position_m, help));
         }
-        let off = (length(&device.orientation) - 1.0).abs();
-        // As NaN compares to nothing, it is refused too.
-        if !(off <= UNIT_TOLERANCE) {
+        let unit = 1.0 - UNIT_TOLERANCE..=1.0 + UNIT_TOLERANCE;
+        if !unit.contains(&length(&device.orientation)) {
             let help = "write a quaternion x, y, z, w of length 1; no turn is [0, 0, 0, 1]";
             return Err(Wrong::value(name, "orientation", device.orientation, help));
         }
