@@ -4,11 +4,10 @@ use std::path::PathBuf;
 use std::time::Duration;
 
 use glam::DQuat;
-use maulstick_brush::BrushFile;
 use maulstick_bus::credit::Stamp;
 use maulstick_bus::typed::{Receiver, Sender};
 use maulstick_bus::{Class, CreditSender, Queue};
-use maulstick_device::Take;
+use maulstick_device::{Take, brush_file};
 use maulstick_haptics::Limits;
 use maulstick_haptics::contact::Contact;
 use maulstick_num::geometry::{Rigid, canonical};
@@ -55,12 +54,15 @@ struct Daemon {
     models: Receiver<ContactModel>,
     status: Sender<StylusStatus>,
     _info: Sender<StylusInfo>,
+    /// From `CLOCK_MONOTONIC`, which stamps the ticks, to the rig's clock, ns.
     offset_ns: u64,
     told: StylusStatus,
     deliveries: u64,
     status_ns: u64,
     published_ns: u64,
     was_in_range: bool,
+    /// Whether a bad model was told of.
+    warned: bool,
 }
 
 /// Device frame to desk frame.
@@ -80,9 +82,7 @@ fn driver(member: &Member, settings: &HapticSettings) -> Result<Box<dyn Driver>,
         .config
         .brush_named(&settings.device.brush)
         .ok_or_else(|| Fault::usage(format!("no brush '{}'", settings.device.brush)))?;
-    let file = BrushFile::library(&section.kind)
-        .and_then(|file| file.scaled_to(section.size_mm))
-        .map_err(|error| Fault::usage(error.to_string()))?;
+    let file = brush_file(section)?;
     Ok(Box::new(Simulated::following(
         &take,
         file.length_m(),
@@ -128,10 +128,6 @@ impl Daemon {
             workspace_m: abilities.workspace_m,
         };
         info.send(now, now, &told)?;
-        let monotonic = nix::time::clock_gettime(nix::time::ClockId::CLOCK_MONOTONIC)
-            .map_or(0, |t| {
-                t.tv_sec() as u64 * 1_000_000_000 + t.tv_nsec() as u64
-            });
         let topic = topics.contact_model(&device.name);
         Ok(Self {
             senses: abilities.senses,
@@ -151,7 +147,7 @@ impl Daemon {
                 origin,
             )?,
             _info: info,
-            offset_ns: bus.now_ns() - monotonic,
+            offset_ns: member.clock.offset_ns(),
             told: StylusStatus {
                 samples: 0,
                 dropped: 0,
@@ -165,6 +161,7 @@ impl Daemon {
             status_ns: 0,
             published_ns: 0,
             was_in_range: false,
+            warned: false,
             host,
             bus: member.bus.clone(),
         })
@@ -181,6 +178,7 @@ impl Daemon {
         self.samples.serve(now_ns)?;
         if now_ns >= self.status_ns + STATUS_PERIOD_NS {
             self.status_ns = now_ns;
+            self.told.dropped = self.host.dropped();
             self.status.send(now_ns, now_ns, &self.told)?;
         }
         Ok(Duration::from_millis(1))
@@ -208,7 +206,8 @@ impl Daemon {
             }
             Err(what) => {
                 self.told.foreign_models += 1;
-                if self.told.foreign_models == 1 {
+                if !self.warned {
+                    self.warned = true;
                     tracing::warn!("{}: a contact model is dropped: {what}", received.key);
                 }
             }

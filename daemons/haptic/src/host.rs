@@ -1,7 +1,7 @@
 //! The real-time thread: absolute deadlines a millisecond apart, the measured time goes to the law.
 
 use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::thread::JoinHandle;
 
 use glam::DVec3;
@@ -61,6 +61,7 @@ pub struct Host {
     /// What hindered real-time scheduling, if anything did.
     pub warnings: Vec<String>,
     stop: Arc<AtomicBool>,
+    dropped: Arc<AtomicU64>,
     thread: Option<JoinHandle<()>>,
 }
 
@@ -88,12 +89,24 @@ impl Host {
     ///
     /// # Errors
     /// What the system says where no thread can be started.
-    pub fn start(mut device: Placed, limits: Limits) -> std::io::Result<Self> {
-        let (mut to_publisher, ticks) = rtrb::RingBuffer::new(RING);
+    pub fn start(device: Placed, limits: Limits) -> std::io::Result<Self> {
+        Self::with_ring(device, limits, RING)
+    }
+
+    /// How many ticks did not fit into the ring, as the publisher was late.
+    #[must_use]
+    pub fn dropped(&self) -> u64 {
+        self.dropped.load(Ordering::Relaxed)
+    }
+
+    fn with_ring(mut device: Placed, limits: Limits, ring: usize) -> std::io::Result<Self> {
+        let (mut to_publisher, ticks) = rtrb::RingBuffer::new(ring);
         let (models, mut from_rig) = triple_buffer::triple_buffer(&Delivery::default());
         let (tell, told) = std::sync::mpsc::channel();
         let stop = Arc::new(AtomicBool::new(false));
         let stopped = Arc::clone(&stop);
+        let dropped = Arc::new(AtomicU64::new(0));
+        let drops = Arc::clone(&dropped);
         let thread = std::thread::Builder::new()
             .name("servo".into())
             .spawn(move || {
@@ -130,8 +143,9 @@ impl Host {
                         spent_ns: monotonic_ns() - now_ns,
                         latched: servo.is_latched(),
                     };
-                    // A full ring drops the tick; the publisher sees the gap in its times.
-                    to_publisher.push(ticked).ok();
+                    if to_publisher.push(ticked).is_err() {
+                        drops.fetch_add(1, Ordering::Relaxed);
+                    }
                     // After an overrun the next deadline is the next grid point: no burst to catch up.
                     deadline_ns += PERIOD_NS;
                     let now_ns = monotonic_ns();
@@ -147,6 +161,7 @@ impl Host {
             models,
             warnings,
             stop,
+            dropped,
             thread: Some(thread),
         })
     }
@@ -214,7 +229,6 @@ pub fn bin(ns: u64) -> usize {
 
 #[cfg(test)]
 mod tests {
-    use std::sync::atomic::AtomicU64;
     use std::time::{Duration, Instant};
 
     use glam::DQuat;
@@ -261,6 +275,21 @@ mod tests {
             count == 200
         });
         assert!(enough.is_some());
+    }
+
+    #[test]
+    fn ticks_that_do_not_fit_are_counted() {
+        let device = Placed::new(Box::new(Simulated::at_rest()), Rigid::IDENTITY);
+        let mut host = Host::with_ring(device, Limits::default(), 4).expect("started");
+        let give_up = Instant::now() + Duration::from_secs(20);
+        while host.dropped() < 3 && Instant::now() < give_up {
+            std::thread::yield_now();
+        }
+        assert!(host.dropped() >= 3);
+        assert_eq!(
+            std::iter::from_fn(|| host.ticks.pop().ok()).take(4).count(),
+            4
+        );
     }
 
     /// A device that stands still and remembers the newest force written to it.
