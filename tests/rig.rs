@@ -3,6 +3,7 @@
 mod support;
 
 use std::path::Path;
+use std::process::Command;
 use std::time::Duration;
 
 use maulstick_brush::BrushFile;
@@ -30,8 +31,8 @@ fn render(place: &Place, take: &str) {
     place.done(&args);
 }
 
-/// A rig that plays `take` and writes `live.png`.
-fn play(place: &Place, take: &str, extra: &[&str]) -> Launcher {
+/// The command of a rig that plays `take` and writes `live.png`.
+fn playing(place: &Place, take: &str, extra: &[&str]) -> Command {
     let mut args = vec![
         "up",
         "--play",
@@ -43,7 +44,12 @@ fn play(place: &Place, take: &str, extra: &[&str]) -> Launcher {
     ];
     args.extend(LOADS);
     args.extend(extra);
-    Launcher::start(place.maulstick(&args))
+    place.maulstick(&args)
+}
+
+/// That rig without a window.
+fn play(place: &Place, take: &str, rate: &str) -> Launcher {
+    Launcher::start(playing(place, take, &["--headless", "--rate", rate]))
 }
 
 /// Waits for a rig that plays, and compares its picture with the rendered one.
@@ -63,7 +69,7 @@ fn playing_paints_what_rendering_paints_at_every_rate() {
     place.short_demo("take.mcap", 4.0);
     render(&place, "take.mcap");
     for rate in ["0.5", "1", "4", "max"] {
-        let mut launcher = play(&place, "take.mcap", &["--headless", "--rate", rate]);
+        let mut launcher = play(&place, "take.mcap", rate);
         finish(&place, &mut launcher, &format!("rate {rate}"));
     }
 }
@@ -74,17 +80,7 @@ fn a_stopped_window_holds_nothing_up() {
     let place = Place::new();
     place.short_demo("take.mcap", 4.0);
     render(&place, "take.mcap");
-    let mut args = vec![
-        "up",
-        "--play",
-        "take.mcap",
-        "--snapshot",
-        "live.png",
-        "--ledger",
-        "live.json",
-    ];
-    args.extend(LOADS);
-    let mut command = place.maulstick(&args);
+    let mut command = playing(&place, "take.mcap", &[]);
     command.env("DISPLAY", &display.name);
     let mut launcher = Launcher::start(command);
     launcher.wait_says("is up");
@@ -101,7 +97,7 @@ fn a_node_that_runs_by_fits_and_starts_changes_nothing() {
     place.short_demo("take.mcap", 5.0);
     render(&place, "take.mcap");
     for program in ["maulstick-paint", "maulstick-brush", "maulstick-player"] {
-        let mut launcher = play(&place, "take.mcap", &["--headless", "--rate", "1"]);
+        let mut launcher = play(&place, "take.mcap", "1");
         launcher.wait_says("is up");
         let (bus, topics) = support::join(&place);
         let class = Class::Background;
@@ -150,7 +146,7 @@ fn a_take_is_played_again_when_a_node_ends_in_mid_stroke() {
         ("maulstick-brush", Signal::SIGTERM),
         ("maulstick-player", Signal::SIGTERM),
     ] {
-        let mut launcher = play(&place, "take.mcap", &["--headless", "--rate", "4"]);
+        let mut launcher = play(&place, "take.mcap", "4");
         launcher.wait_says("is up");
         let (bus, topics) = support::join(&place);
         let class = Class::Background;
@@ -173,8 +169,7 @@ fn a_take_is_played_again_when_a_node_ends_in_mid_stroke() {
 #[test]
 fn a_stopped_paint_node_comes_back_with_loaded_brushes() {
     let place = Place::new();
-    let mut launcher = Launcher::start(place.maulstick(&["up", "--headless"]));
-    launcher.wait_says("is up");
+    let mut launcher = Launcher::up(&place, &[]);
     let loaded = || wait_for(PATIENCE, || (account(&place, "brush") > 0.0).then_some(()));
     assert!(
         loaded().is_some(),
@@ -218,8 +213,7 @@ fn kill_until_the_rig_gives_up(place: &Place, launcher: &mut Launcher, program: 
 #[test]
 fn a_node_that_does_not_stay_up_ends_the_rig_with_words() {
     let place = Place::new();
-    let mut launcher = Launcher::start(place.maulstick(&["up", "--headless"]));
-    launcher.wait_says("is up");
+    let mut launcher = Launcher::up(&place, &[]);
     kill_until_the_rig_gives_up(&place, &mut launcher, "maulstick-paint", "paint");
 }
 
@@ -227,7 +221,7 @@ fn a_node_that_does_not_stay_up_ends_the_rig_with_words() {
 fn a_player_that_does_not_stay_up_ends_the_rig_with_words() {
     let place = Place::new();
     place.short_demo("take.mcap", 5.0);
-    let mut launcher = play(&place, "take.mcap", &["--headless"]);
+    let mut launcher = play(&place, "take.mcap", "1");
     launcher.wait_says("is up");
     kill_until_the_rig_gives_up(&place, &mut launcher, "maulstick-player", "player");
 }
@@ -236,8 +230,7 @@ fn a_player_that_does_not_stay_up_ends_the_rig_with_words() {
 fn signals_stop_everything_with_the_right_code() {
     let place = Place::new();
     for (which, code) in [(Signal::SIGINT, 130), (Signal::SIGTERM, 143)] {
-        let mut launcher = Launcher::start(place.maulstick(&["up", "--headless"]));
-        launcher.wait_says("is up");
+        let mut launcher = Launcher::up(&place, &[]);
         assert!(place.processes().len() >= 3);
         launcher.signal(which);
         assert_eq!(launcher.wait(PATIENCE).code(), Some(code));
@@ -245,15 +238,18 @@ fn signals_stop_everything_with_the_right_code() {
     }
 }
 
+/// A rig whose paint node hears nothing any more.
+fn rig_with_a_stopped_node(place: &Place) -> Launcher {
+    let launcher = Launcher::up(place, &[]);
+    let paint = place.pid("maulstick-paint").expect("a node");
+    signal(paint, Signal::SIGSTOP);
+    launcher
+}
+
 #[test]
 fn a_stopped_node_does_not_survive_the_rig() {
     let place = Place::new();
-    let mut launcher = Launcher::start(place.maulstick(&["up", "--headless"]));
-    launcher.wait_says("is up");
-    signal(
-        place.pid("maulstick-paint").expect("a node"),
-        Signal::SIGSTOP,
-    );
+    let mut launcher = rig_with_a_stopped_node(&place);
     launcher.signal(Signal::SIGTERM);
     launcher.wait(PATIENCE);
     place.wait_empty(Duration::ZERO);
@@ -262,18 +258,12 @@ fn a_stopped_node_does_not_survive_the_rig() {
 #[test]
 fn nothing_survives_a_killed_launcher() {
     let place = Place::new();
-    let mut launcher = Launcher::start(place.maulstick(&["up", "--headless"]));
-    launcher.wait_says("is up");
-    signal(
-        place.pid("maulstick-paint").expect("a node"),
-        Signal::SIGSTOP,
-    );
+    let mut launcher = rig_with_a_stopped_node(&place);
     launcher.signal(Signal::SIGKILL);
     launcher.wait(PATIENCE);
     place.wait_empty(PATIENCE);
     // Its name is free again.
-    let mut again = Launcher::start(place.maulstick(&["up", "--headless"]));
-    again.wait_says("is up");
+    Launcher::up(&place, &[]);
 }
 
 #[test]
@@ -298,8 +288,7 @@ fn a_closed_window_ends_the_rig_with_success() {
 #[test]
 fn a_rig_has_its_name_to_itself() {
     let place = Place::new();
-    let mut launcher = Launcher::start(place.maulstick(&["up", "--headless", "--name", "one"]));
-    launcher.wait_says("is up");
+    let _first = Launcher::up(&place, &["--name", "one"]);
     let second = place.run(&["up", "--headless", "--name", "one"]);
     let said = String::from_utf8_lossy(&second.stderr).into_owned();
     assert_eq!(second.status.code(), Some(1), "{said}");
@@ -307,15 +296,13 @@ fn a_rig_has_its_name_to_itself() {
         said.contains("already running") && said.contains("pid"),
         "{said}"
     );
-    let mut other = Launcher::start(place.maulstick(&["up", "--headless", "--name", "two"]));
-    other.wait_says("is up");
+    Launcher::up(&place, &["--name", "two"]);
 }
 
 #[test]
 fn commands_reach_a_running_rig() {
     let place = Place::new();
-    let mut launcher = Launcher::start(place.maulstick(&["up", "--headless"]));
-    launcher.wait_says("is up");
+    let _rig = Launcher::up(&place, &[]);
     place.done(&["load", "Cobalt Blue=0.5,Titanium White=0.5"]);
     let unknown = place.run(&["load", "Cobalt Bleu"]);
     assert_eq!(unknown.status.code(), Some(2));
@@ -423,8 +410,7 @@ fn a_simulated_hand_paints_and_feels_the_canvas() {
         config = config.replace(from, to);
     }
     std::fs::write(place.path("rig.toml"), config).expect("written");
-    let mut launcher = Launcher::start(place.maulstick(&["up", "--headless", "--rig", "rig.toml"]));
-    launcher.wait_says("is up");
+    let mut launcher = Launcher::up(&place, &["--rig", "rig.toml"]);
     let (bus, topics) = support::join(&place);
     let mut samples = listen::<StylusSample>(&bus, &topics.sample("phantom"), Class::RealTime);
     // The hand presses and the canvas presses back, upward and never above the limit.

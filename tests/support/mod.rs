@@ -171,6 +171,13 @@ impl Launcher {
         Self { child, said }
     }
 
+    /// A rig without a window in a place, once it is up.
+    pub fn up(place: &Place, args: &[&str]) -> Self {
+        let mut launcher = Self::start(place.maulstick(&[&["up", "--headless"], args].concat()));
+        launcher.wait_says("is up");
+        launcher
+    }
+
     pub fn pid(&self) -> u32 {
         self.child.id()
     }
