@@ -18,8 +18,7 @@ pub fn brush_file(section: &BrushSection) -> Result<BrushFile, Fault> {
             Fault::usage(error.to_string()).help("`--brush FILE.toml` takes a brush file")
         })?
     } else {
-        let text =
-            std::fs::read_to_string(path).map_err(|error| Fault::file(path, &error, false))?;
+        let text = std::fs::read_to_string(path).map_err(|error| Fault::reading(path, &error))?;
         BrushFile::parse(&text).map_err(|error| {
             Fault::usage(error.to_string())
                 .at(section.kind.clone())

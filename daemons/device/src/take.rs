@@ -80,7 +80,7 @@ impl Take {
     pub fn salvage(path: &Path) -> Result<Salvage, Fault> {
         let place = path.display().to_string();
         let fault = |what: String, help: &str| Fault::usage(what).at(place.clone()).help(help);
-        let file = File::open(path).map_err(|error| Fault::file(path, &error, false))?;
+        let file = File::open(path).map_err(|error| Fault::reading(path, &error))?;
         let options = LinearReaderOptions::default();
         let reader = mcap::io::MessageReader::new_with_options(BufReader::new(file), options);
         let mut devices: Vec<Take> = Vec::new();
@@ -170,7 +170,7 @@ impl Take {
         };
         write().map_err(|error| {
             std::fs::remove_file(&beside).ok();
-            Fault::file(path, &error, true)
+            Fault::writing(path, &error)
         })
     }
 

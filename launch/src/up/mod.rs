@@ -24,6 +24,7 @@ use maulstick_rig::{Fault, member};
 
 use crate::performance::{PaintingOptions, library, painting_setup, refused};
 use crate::up::conductor::Performance;
+use crate::up::plan::{Hands, Window};
 use crate::up::supervisor::Supervisor;
 
 /// What the brush carries at the start, where nothing else is asked for.
@@ -90,7 +91,7 @@ pub fn run(options: &UpOptions) -> Result<i32, Fault> {
                 .into_iter()
                 .flatten()
             {
-                check_writable(file).map_err(|error| Fault::file(file, &error, true))?;
+                check_writable(file).map_err(|error| Fault::writing(file, &error))?;
             }
             Some(Performance {
                 take: absolute(path)?,
@@ -115,7 +116,15 @@ pub fn run(options: &UpOptions) -> Result<i32, Fault> {
         }
     }
     let folder = RigFolder::create(&config.rig.name)?;
-    let nodes = plan::nodes(&config, options.headless, performance.is_some())?;
+    let window = match options.headless {
+        true => Window::Headless,
+        false => Window::Shown,
+    };
+    let hands = match performance {
+        Some(_) => Hands::Take,
+        None => Hands::Devices,
+    };
+    let nodes = plan::nodes(&config, window, hands)?;
     let first_load = match loads.into_iter().next() {
         Some(mixture) => mixture,
         None => FIRST_LOAD
@@ -129,5 +138,5 @@ pub fn run(options: &UpOptions) -> Result<i32, Fault> {
 /// A path that holds wherever it is read: nodes may be started by hand from another folder, and the
 /// paint node writes what it is told by name.
 fn absolute(path: &std::path::Path) -> Result<PathBuf, Fault> {
-    std::path::absolute(path).map_err(|error| Fault::file(path, &error, false))
+    std::path::absolute(path).map_err(|error| Fault::reading(path, &error))
 }

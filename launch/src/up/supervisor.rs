@@ -84,8 +84,7 @@ impl Supervisor {
         let stop = Stop::on_signals(&wake).map_err(|error| Fault::failure(error.to_string()))?;
         let tokens = bus.watch(&topics.node("*"), &wake)?;
         let path = folder.path().join(CONFIG_FILE);
-        std::fs::write(&path, config.to_toml()?)
-            .map_err(|error| Fault::file(&path, &error, true))?;
+        std::fs::write(&path, config.to_toml()?).map_err(|error| Fault::writing(&path, &error))?;
         folder.announce(HUB, clock)?;
         let conductor = match performance {
             Some(performance) => Some(Conductor::new(&*bus, &topics, performance, &wake)?),

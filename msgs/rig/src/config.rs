@@ -218,8 +218,7 @@ impl RigConfig {
     /// # Errors
     /// A [`Fault`] with the line.
     pub fn read(path: &Path) -> Result<Self, Fault> {
-        let text =
-            std::fs::read_to_string(path).map_err(|error| Fault::file(path, &error, false))?;
+        let text = std::fs::read_to_string(path).map_err(|error| Fault::reading(path, &error))?;
         Self::parse(&text, &path.display().to_string())
     }
 
