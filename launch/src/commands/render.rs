@@ -7,7 +7,7 @@ use maulstick_device::Take;
 use maulstick_nodes::Offline;
 use maulstick_nodes::paint_node::write_snapshot;
 use maulstick_paint::Painting;
-use maulstick_paint::picture::check_writable;
+use maulstick_rig::files::check_writable;
 use maulstick_rig::{Fault, RigConfig};
 
 use crate::commands::progress_bar;

@@ -18,8 +18,8 @@ use clap::Args;
 use maulstick_bus::RigFolder;
 use maulstick_device::Take;
 use maulstick_device::player::Rate;
-use maulstick_paint::picture::check_writable;
 use maulstick_rig::config::{DEFAULT, RigConfig};
+use maulstick_rig::files::check_writable;
 use maulstick_rig::{Fault, member};
 
 use crate::performance::{PaintingOptions, library, painting_setup, refused};

@@ -14,7 +14,7 @@
 //! | [`load`], [`ledger`], [`history`] | what a brush carries, the books, undo |
 //! | [`setup`] | the scene of a new painting |
 //! | [`painting`], [`sequencer`] | the painting and its journal |
-//! | [`display`], [`picture`] | unlit colour for the view, and pictures as files |
+//! | [`display`], [`picture`] | unlit colour for the view, and pictures |
 
 pub mod deposit;
 pub mod display;
