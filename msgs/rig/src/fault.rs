@@ -88,9 +88,7 @@ impl Fault {
     /// The nearest of `names` to `name`.
     #[must_use]
     pub fn nearest<'a>(name: &str, names: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
-        names
-            .into_iter()
-            .max_by(|a, b| strsim::jaro_winkler(a, name).total_cmp(&strsim::jaro_winkler(b, name)))
+        maulstick_types::nearest(name, names)
     }
 }
 
