@@ -72,8 +72,7 @@ fn a_device_in_python_paints() {
         "run ./test: it installs eclipse-zenoh for Python"
     );
     let place = Place::new();
-    let mut launcher = Launcher::start(place.maulstick(&["up", "--headless"]));
-    launcher.wait_says("is up");
+    let launcher = Launcher::up(&place, &[]);
     let endpoint = place.done(&["endpoint", "--json"]);
     let mut stylus = Command::new(python)
         .arg(root.join("tests/python/stylus.py"))
@@ -91,8 +90,7 @@ fn a_device_in_python_paints() {
 #[test]
 fn hostile_messages_are_counted_and_dropped() {
     let place = Place::new();
-    let mut launcher = Launcher::start(place.maulstick(&["up", "--headless"]));
-    launcher.wait_says("is up");
+    let launcher = Launcher::up(&place, &[]);
     let before = place.processes();
     let (bus, topics) = join(&place);
     let wake = Wake::new();

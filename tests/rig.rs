@@ -2,14 +2,20 @@
 
 mod support;
 
-use std::time::{Duration, Instant};
+use std::path::Path;
+use std::process::Command;
+use std::time::Duration;
 
-use maulstick_bus::typed::Receiver;
-use maulstick_bus::{Class, Queue, Wake};
-use maulstick_types::stylus::StylusSample;
+use maulstick_brush::BrushFile;
+use maulstick_bus::Class;
+use maulstick_device::{Take, TakeSample};
+use maulstick_types::paint::PaintStatus;
+use maulstick_types::stylus::{DEFAULT_TILT_RAD, StylusPose, StylusSample, TakeStatus, axes};
 use nix::sys::signal::Signal;
 use support::display::Display;
-use support::{Launcher, PATIENCE, Place, assert_same, signal, wait_for};
+use support::{
+    Launcher, PATIENCE, Place, account, assert_same, drain, hear, listen, signal, wait_for,
+};
 
 const LOADS: [&str; 4] = [
     "--load",
@@ -25,8 +31,8 @@ fn render(place: &Place, take: &str) {
     place.done(&args);
 }
 
-/// A rig that plays `take` and writes `live.png`.
-fn play(place: &Place, take: &str, extra: &[&str]) -> Launcher {
+/// The command of a rig that plays `take` and writes `live.png`.
+fn playing(place: &Place, take: &str, extra: &[&str]) -> Command {
     let mut args = vec![
         "up",
         "--play",
@@ -38,7 +44,12 @@ fn play(place: &Place, take: &str, extra: &[&str]) -> Launcher {
     ];
     args.extend(LOADS);
     args.extend(extra);
-    Launcher::start(place.maulstick(&args))
+    place.maulstick(&args)
+}
+
+/// That rig without a window.
+fn play(place: &Place, take: &str, rate: &str) -> Launcher {
+    Launcher::start(playing(place, take, &["--headless", "--rate", rate]))
 }
 
 /// Waits for a rig that plays, and compares its picture with the rendered one.
@@ -58,7 +69,7 @@ fn playing_paints_what_rendering_paints_at_every_rate() {
     place.short_demo("take.mcap", 4.0);
     render(&place, "take.mcap");
     for rate in ["0.5", "1", "4", "max"] {
-        let mut launcher = play(&place, "take.mcap", &["--headless", "--rate", rate]);
+        let mut launcher = play(&place, "take.mcap", rate);
         finish(&place, &mut launcher, &format!("rate {rate}"));
     }
 }
@@ -69,17 +80,7 @@ fn a_stopped_window_holds_nothing_up() {
     let place = Place::new();
     place.short_demo("take.mcap", 4.0);
     render(&place, "take.mcap");
-    let mut args = vec![
-        "up",
-        "--play",
-        "take.mcap",
-        "--snapshot",
-        "live.png",
-        "--ledger",
-        "live.json",
-    ];
-    args.extend(LOADS);
-    let mut command = place.maulstick(&args);
+    let mut command = playing(&place, "take.mcap", &[]);
     command.env("DISPLAY", &display.name);
     let mut launcher = Launcher::start(command);
     launcher.wait_says("is up");
@@ -93,78 +94,143 @@ fn a_stopped_window_holds_nothing_up() {
 #[test]
 fn a_node_that_runs_by_fits_and_starts_changes_nothing() {
     let place = Place::new();
-    place.short_demo("take.mcap", 3.0);
-    render(&place, "take.mcap");
-    for program in ["maulstick-paint", "maulstick-brush", "maulstick-player"] {
-        let mut launcher = play(&place, "take.mcap", &["--headless", "--rate", "4"]);
-        launcher.wait_says("is up");
-        let pid = wait_for(PATIENCE, || place.pid(program)).expect("the node");
-        for _ in 0..5 {
-            let stopped = Instant::now();
-            if place.pid(program) != Some(pid) {
-                break;
-            }
-            signal(pid, Signal::SIGSTOP);
-            wait_for(Duration::from_millis(120), || None::<()>);
-            assert!(stopped.elapsed() >= Duration::from_millis(100));
-            signal(pid, Signal::SIGCONT);
-            wait_for(Duration::from_millis(60), || None::<()>);
-        }
-        finish(&place, &mut launcher, program);
-    }
-}
-
-#[test]
-fn a_take_is_played_again_when_a_node_is_killed_in_mid_stroke() {
-    let place = Place::new();
     place.short_demo("take.mcap", 5.0);
     render(&place, "take.mcap");
     for program in ["maulstick-paint", "maulstick-brush", "maulstick-player"] {
-        let mut launcher = play(&place, "take.mcap", &["--headless", "--rate", "4"]);
+        let mut launcher = play(&place, "take.mcap", "1");
         launcher.wait_says("is up");
-        let player = wait_for(PATIENCE, || place.pid("maulstick-player")).expect("a player");
-        // Half a second into a take at rate 4 it is in its first stroke.
-        wait_for(Duration::from_millis(500), || None::<()>);
-        let pid = place.pid(program).expect("the node");
-        signal(pid, Signal::SIGKILL);
-        launcher.wait_says("is started again");
+        let (bus, topics) = support::join(&place);
+        let class = Class::Background;
+        let mut take = listen::<TakeStatus>(&bus, &topics.take_status("player"), class);
+        let mut paint = listen::<PaintStatus>(&bus, &topics.paint_status(), class);
+        let pid = wait_for(PATIENCE, || place.pid(program)).expect("the node");
+        let (mut stops, mut position_ns) = (0, 0);
+        // Each time until the take goes on, and five times at most.
+        while stops < 5 {
+            let told = hear(&mut take, |told| told.position_ns > position_ns).expect("a take");
+            position_ns = told.position_ns;
+            if position_ns + 1_000_000_000 > told.length_ns {
+                break;
+            }
+            signal(pid, Signal::SIGSTOP);
+            stops += 1;
+            // Another node says three times, a tenth of a second apart, how it fares.
+            drain(&mut take);
+            drain(&mut paint);
+            for _ in 0..3 {
+                let alive = if program == "maulstick-paint" {
+                    hear(&mut take, |_| true).is_some()
+                } else {
+                    hear(&mut paint, |_| true).is_some()
+                };
+                assert!(alive, "all stand still: {}", launcher.said());
+            }
+            signal(pid, Signal::SIGCONT);
+        }
+        assert!(stops > 0, "{program} was never stopped");
+        bus.close();
         finish(&place, &mut launcher, program);
-        assert_ne!(place.pid("maulstick-player"), Some(player));
     }
 }
 
 #[test]
-fn a_node_that_does_not_stay_up_ends_the_rig_with_words() {
+fn a_take_is_played_again_when_a_node_ends_in_mid_stroke() {
     let place = Place::new();
-    let mut launcher = Launcher::start(place.maulstick(&["up", "--headless"]));
-    launcher.wait_says("is up");
+    place.short_demo("take.mcap", 5.0);
+    render(&place, "take.mcap");
+    for (program, which) in [
+        ("maulstick-paint", Signal::SIGKILL),
+        ("maulstick-brush", Signal::SIGKILL),
+        ("maulstick-player", Signal::SIGKILL),
+        ("maulstick-paint", Signal::SIGTERM),
+        ("maulstick-brush", Signal::SIGTERM),
+        ("maulstick-player", Signal::SIGTERM),
+    ] {
+        let mut launcher = play(&place, "take.mcap", "4");
+        launcher.wait_says("is up");
+        let (bus, topics) = support::join(&place);
+        let class = Class::Background;
+        let mut take = listen::<TakeStatus>(&bus, &topics.take_status("player"), class);
+        // After half a second the take is in its first stroke.
+        let told = hear(&mut take, |told| told.position_ns > 500_000_000).expect("a take");
+        assert!(told.end.is_none(), "it is over already");
+        let player = place.pid("maulstick-player").expect("a player");
+        signal(place.pid(program).expect("the node"), which);
+        launcher.wait_says("is started again");
+        let anew = wait_for(PATIENCE, || {
+            place.pid("maulstick-player").filter(|anew| *anew != player)
+        });
+        assert!(anew.is_some(), "no other player: {}", launcher.said());
+        bus.close();
+        finish(&place, &mut launcher, &format!("{program} {which}"));
+    }
+}
+
+#[test]
+fn a_stopped_paint_node_comes_back_with_loaded_brushes() {
+    let place = Place::new();
+    let mut launcher = Launcher::up(&place, &[]);
+    let loaded = || wait_for(PATIENCE, || (account(&place, "brush") > 0.0).then_some(()));
+    assert!(
+        loaded().is_some(),
+        "the brush is clean: {}",
+        launcher.said()
+    );
+    let pid = place.pid("maulstick-paint").expect("a paint node");
+    signal(pid, Signal::SIGTERM);
+    launcher.wait_says("is started again");
+    let anew = wait_for(PATIENCE, || {
+        place.pid("maulstick-paint").filter(|anew| *anew != pid)
+    });
+    assert!(anew.is_some(), "no paint node: {}", launcher.said());
+    assert!(
+        loaded().is_some(),
+        "the brush is clean: {}",
+        launcher.said()
+    );
+}
+
+/// Kills a node as often as the rig starts it, and sees that the rig gives up with words.
+fn kill_until_the_rig_gives_up(place: &Place, launcher: &mut Launcher, program: &str, node: &str) {
     let mut last = None;
     for _ in 0..3 {
         let pid = wait_for(PATIENCE, || {
-            place
-                .pid("maulstick-paint")
-                .filter(|pid| Some(*pid) != last)
+            place.pid(program).filter(|pid| Some(*pid) != last)
         });
-        let pid = pid.expect("a paint node");
-        last = Some(pid);
-        signal(pid, Signal::SIGKILL);
+        last = pid;
+        signal(pid.expect("a node"), Signal::SIGKILL);
     }
     let status = launcher.wait(PATIENCE);
-    assert_eq!(status.code(), Some(1));
+    assert_eq!(status.code(), Some(1), "{}", launcher.said());
     let said = launcher.said();
     assert!(
-        said.contains("node 'paint' does not stay up") && said.contains("help:"),
+        said.contains(&format!("node '{node}' does not stay up")) && said.contains("help:"),
         "{said}"
     );
     place.wait_empty(Duration::from_secs(2));
 }
 
 #[test]
+fn a_node_that_does_not_stay_up_ends_the_rig_with_words() {
+    let place = Place::new();
+    let mut launcher = Launcher::up(&place, &[]);
+    kill_until_the_rig_gives_up(&place, &mut launcher, "maulstick-paint", "paint");
+}
+
+#[test]
+fn a_player_that_does_not_stay_up_ends_the_rig_with_words() {
+    let place = Place::new();
+    place.short_demo("take.mcap", 5.0);
+    let mut launcher = play(&place, "take.mcap", "1");
+    launcher.wait_says("is up");
+    kill_until_the_rig_gives_up(&place, &mut launcher, "maulstick-player", "player");
+}
+
+#[test]
 fn signals_stop_everything_with_the_right_code() {
     let place = Place::new();
     for (which, code) in [(Signal::SIGINT, 130), (Signal::SIGTERM, 143)] {
-        let mut launcher = Launcher::start(place.maulstick(&["up", "--headless"]));
-        launcher.wait_says("is up");
+        let mut launcher = Launcher::up(&place, &[]);
         assert!(place.processes().len() >= 3);
         launcher.signal(which);
         assert_eq!(launcher.wait(PATIENCE).code(), Some(code));
@@ -172,15 +238,18 @@ fn signals_stop_everything_with_the_right_code() {
     }
 }
 
+/// A rig whose paint node hears nothing any more.
+fn rig_with_a_stopped_node(place: &Place) -> Launcher {
+    let launcher = Launcher::up(place, &[]);
+    let paint = place.pid("maulstick-paint").expect("a node");
+    signal(paint, Signal::SIGSTOP);
+    launcher
+}
+
 #[test]
 fn a_stopped_node_does_not_survive_the_rig() {
     let place = Place::new();
-    let mut launcher = Launcher::start(place.maulstick(&["up", "--headless"]));
-    launcher.wait_says("is up");
-    signal(
-        place.pid("maulstick-paint").expect("a node"),
-        Signal::SIGSTOP,
-    );
+    let mut launcher = rig_with_a_stopped_node(&place);
     launcher.signal(Signal::SIGTERM);
     launcher.wait(PATIENCE);
     place.wait_empty(Duration::ZERO);
@@ -189,18 +258,12 @@ fn a_stopped_node_does_not_survive_the_rig() {
 #[test]
 fn nothing_survives_a_killed_launcher() {
     let place = Place::new();
-    let mut launcher = Launcher::start(place.maulstick(&["up", "--headless"]));
-    launcher.wait_says("is up");
-    signal(
-        place.pid("maulstick-paint").expect("a node"),
-        Signal::SIGSTOP,
-    );
+    let mut launcher = rig_with_a_stopped_node(&place);
     launcher.signal(Signal::SIGKILL);
     launcher.wait(PATIENCE);
     place.wait_empty(PATIENCE);
     // Its name is free again.
-    let mut again = Launcher::start(place.maulstick(&["up", "--headless"]));
-    again.wait_says("is up");
+    Launcher::up(&place, &[]);
 }
 
 #[test]
@@ -225,8 +288,7 @@ fn a_closed_window_ends_the_rig_with_success() {
 #[test]
 fn a_rig_has_its_name_to_itself() {
     let place = Place::new();
-    let mut launcher = Launcher::start(place.maulstick(&["up", "--headless", "--name", "one"]));
-    launcher.wait_says("is up");
+    let _first = Launcher::up(&place, &["--name", "one"]);
     let second = place.run(&["up", "--headless", "--name", "one"]);
     let said = String::from_utf8_lossy(&second.stderr).into_owned();
     assert_eq!(second.status.code(), Some(1), "{said}");
@@ -234,15 +296,13 @@ fn a_rig_has_its_name_to_itself() {
         said.contains("already running") && said.contains("pid"),
         "{said}"
     );
-    let mut other = Launcher::start(place.maulstick(&["up", "--headless", "--name", "two"]));
-    other.wait_says("is up");
+    Launcher::up(&place, &["--name", "two"]);
 }
 
 #[test]
 fn commands_reach_a_running_rig() {
     let place = Place::new();
-    let mut launcher = Launcher::start(place.maulstick(&["up", "--headless"]));
-    launcher.wait_says("is up");
+    let _rig = Launcher::up(&place, &[]);
     place.done(&["load", "Cobalt Blue=0.5,Titanium White=0.5"]);
     let unknown = place.run(&["load", "Cobalt Bleu"]);
     assert_eq!(unknown.status.code(), Some(2));
@@ -255,10 +315,8 @@ fn commands_reach_a_running_rig() {
     assert!(ledger["accounts_m3"]["cleaner"].as_f64() > Some(0.0));
     let refused = place.run(&["snapshot", "-o", "no/p.png"]);
     let said = String::from_utf8_lossy(&refused.stderr).into_owned();
-    assert!(
-        refused.status.code() != Some(0) && said.contains("no/p.png"),
-        "{said}"
-    );
+    assert_eq!(refused.status.code(), Some(1), "{said}");
+    assert!(said.contains("no/p.png"), "{said}");
 }
 
 #[test]
@@ -277,61 +335,114 @@ fn a_mouse_stroke_in_the_window_is_painted_and_shown() {
         light(display.pixel(window, 550, 500)).then_some(())
     });
     assert!(shown.is_some(), "the canvas is not shown");
-    display.drag(
-        &(0..60)
-            .map(|i| [350 + 7 * i, 400 + 4 * i])
-            .collect::<Vec<_>>(),
-    );
-    let painted = wait_for(PATIENCE, || {
-        (400..700)
-            .any(|y| dark(display.pixel(window, 550, y)))
-            .then_some(())
-    });
+    let (bus, topics) = support::join(&place);
+    let mut mouse = listen::<StylusSample>(&bus, &topics.sample("mouse"), Class::RealTime);
+    let points: Vec<_> = (0..60).map(|i| [350 + 7 * i, 400 + 4 * i]).collect();
+    display.drag(&points, &mut mouse);
+    bus.close();
+    // The tip trails behind the pointer: the stroke crosses this column somewhere.
+    let column = || (400..700).map(|y| display.pixel(window, 550, y));
+    let painted = wait_for(PATIENCE, || column().any(dark).then_some(()));
     assert!(painted.is_some(), "the stroke is not shown");
     place.done(&["undo"]);
-    let undone = wait_for(PATIENCE, || {
-        (400..700)
-            .all(|y| light(display.pixel(window, 550, y)))
-            .then_some(())
-    });
+    let undone = wait_for(PATIENCE, || column().all(light).then_some(()));
     assert!(undone.is_some(), "the undone stroke is still shown");
+}
+
+/// A take of a hand that moves to and fro on the canvas, fully pressed, for three minutes.
+fn press_for_minutes(path: &Path) {
+    let samples = (0..18_000u64).map(|number| {
+        let way = (number % 400) as f64 / 400.0;
+        let x = 0.2 * (way - 0.5).abs() - 0.05;
+        TakeSample {
+            time_ns: number * 10_000_000,
+            sample: StylusSample {
+                senses: axes::POSITION | axes::PRESSURE | axes::TILT,
+                pose: StylusPose::Contact {
+                    point_m: [x, 0.0, 0.0],
+                    tilt_rad: DEFAULT_TILT_RAD,
+                    twist_rad: 0.0,
+                    pressure: 1.0,
+                },
+                in_range: true,
+                ..StylusSample::away()
+            },
+        }
+    });
+    let take = Take {
+        device: "hand".into(),
+        samples: samples.collect(),
+    };
+    take.write(path).expect("written");
+}
+
+/// Whether the tip of the undeformed head is a millimetre below the canvas at the least.
+fn pressed(sample: &StylusSample, head_length_m: f64) -> bool {
+    let StylusPose::Ferrule { pose } = &sample.pose else {
+        return false;
+    };
+    // The bristles lie along −z of the brush.
+    let [x, y, ..] = pose.orientation;
+    let tip_z = pose.position_m[2] - head_length_m * (1.0 - 2.0 * (x * x + y * y));
+    sample.in_range && tip_z < -1e-3
 }
 
 #[test]
 fn a_simulated_hand_paints_and_feels_the_canvas() {
     let place = Place::new();
-    place.done(&["demo", "-o", "demo.mcap"]);
-    let config = String::from_utf8(place.done(&["up", "--print-config"]).stdout).expect("UTF-8");
-    let config = config.replace("# hand = ", "hand = ");
+    press_for_minutes(&place.path("press.mcap"));
+    let brush = BrushFile::library("round").expect("a brush");
+    std::fs::write(place.path("file.toml"), brush.to_toml().expect("a file")).expect("written");
+    let head_length_m = brush.scaled_to(10.0).expect("a size").length_m();
+    let mut config =
+        String::from_utf8(place.done(&["up", "--print-config"]).stdout).expect("UTF-8");
+    // The device stands turned and beside the desk, and its brush comes from a file.
+    for (from, to) in [
+        ("# hand = \"demo.mcap\"", "hand = \"press.mcap\""),
+        ("position_m = [0, 0, 0]", "position_m = [0.1, -0.2, 0.15]"),
+        (
+            "orientation = [0, 0, 0, 1]",
+            "orientation = [0.48, 0.36, 0, 0.8]",
+        ),
+        ("kind = \"round\"", "kind = \"file.toml\""),
+    ] {
+        assert!(config.contains(from), "{from}");
+        config = config.replace(from, to);
+    }
     std::fs::write(place.path("rig.toml"), config).expect("written");
-    let mut launcher = Launcher::start(place.maulstick(&["up", "--headless", "--rig", "rig.toml"]));
-    launcher.wait_says("is up");
+    let mut launcher = Launcher::up(&place, &["--rig", "rig.toml"]);
     let (bus, topics) = support::join(&place);
-    let wake = Wake::new();
-    let (topic, class) = (topics.sample("phantom"), Class::RealTime);
-    let mut samples =
-        Receiver::<StylusSample>::new(&bus, &topic, class, Queue::Ring(1024), &wake).expect("one");
+    let mut samples = listen::<StylusSample>(&bus, &topics.sample("phantom"), Class::RealTime);
     // The hand presses and the canvas presses back, upward and never above the limit.
-    let felt = wait_for(PATIENCE, || {
-        let force = samples.try_recv()?.message.force_n;
-        let size = force.iter().map(|f| f * f).sum::<f64>().sqrt();
+    let presses_back = |sample: &StylusSample| {
+        let size = sample.force_n.iter().map(|f| f * f).sum::<f64>().sqrt();
         assert!(size <= 3.0 + 1e-9, "{size} N");
-        (force[2] > 0.1).then_some(())
-    });
+        pressed(sample, head_length_m) && sample.force_n[2] > 0.1
+    };
+    let felt = hear(&mut samples, presses_back);
     assert!(felt.is_some(), "no force: {}", launcher.said());
     let painted = wait_for(PATIENCE, || {
         (support::on_canvas(&place) > 0.0).then_some(())
     });
     assert!(painted.is_some(), "nothing painted");
-    // Without its brush the force fades, and comes back with it.
-    signal(
-        place.pid("maulstick-brush").expect("a brush"),
-        Signal::SIGKILL,
-    );
+    // Without its brush the force fades though the hand still presses, and comes back with it.
+    let brush = place.pid("maulstick-brush").expect("a brush");
+    signal(brush, Signal::SIGSTOP);
+    drain(&mut samples);
+    let mut without = 0;
     let faded = wait_for(PATIENCE, || {
-        let sample = samples.try_recv()?.message;
-        (sample.in_range && sample.force_n == [0.0; 3]).then_some(())
+        while let Some(received) = samples.try_recv() {
+            let sample = received.message;
+            assert!(pressed(&sample, head_length_m), "the hand has let go");
+            let none = sample.force_n == [0.0; 3];
+            without = if none { without + 1 } else { 0 };
+        }
+        (without >= 50).then_some(())
     });
     assert!(faded.is_some(), "the force is held");
+    signal(brush, Signal::SIGKILL);
+    launcher.wait_says("is started again");
+    let again = hear(&mut samples, presses_back);
+    assert!(again.is_some(), "no force any more: {}", launcher.said());
     bus.close();
 }

@@ -1,9 +1,9 @@
 //! What `render` and `up --play` share: the take, the brush, the loads, the canvas.
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use clap::Args;
-use maulstick_brush::BrushFile;
+pub use maulstick_device::brush_file;
 use maulstick_optics::PaintLibrary;
 use maulstick_paint::{PaintRefusal, PaintingSetup};
 use maulstick_rig::Fault;
@@ -110,30 +110,6 @@ pub fn refused(refusal: PaintRefusal) -> Fault {
 /// None in practice: they are part of the program.
 pub fn library() -> Result<PaintLibrary, Fault> {
     PaintLibrary::measured().map_err(|error| Fault::failure(error.to_string()))
-}
-
-/// The brush file of a section, at its size.
-///
-/// # Errors
-/// A [`Fault`] for an unknown kind or a bad file.
-pub fn brush_file(section: &BrushSection) -> Result<BrushFile, Fault> {
-    let path = Path::new(&section.kind);
-    let named = path.components().count() == 1 && path.extension().is_none();
-    let file = if named {
-        BrushFile::library(&section.kind).map_err(|error| {
-            Fault::usage(error.to_string()).help("`--brush FILE.toml` takes a brush file")
-        })?
-    } else {
-        let text =
-            std::fs::read_to_string(path).map_err(|error| Fault::file(path, &error, false))?;
-        BrushFile::parse(&text).map_err(|error| {
-            Fault::usage(error.to_string())
-                .at(section.kind.clone())
-                .help("correct the brush file")
-        })?
-    };
-    file.scaled_to(section.size_mm)
-        .map_err(|error| Fault::usage(error.to_string()))
 }
 
 /// The painting that the rig's settings ask for.

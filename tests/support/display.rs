@@ -3,6 +3,8 @@
 use std::io::{BufRead as _, BufReader};
 use std::process::{Child, Command, Stdio};
 
+use maulstick_bus::typed::Receiver;
+use maulstick_types::stylus::StylusSample;
 use x11rb::connection::Connection as _;
 use x11rb::protocol::xproto::{
     AtomEnum, BUTTON_PRESS_EVENT, BUTTON_RELEASE_EVENT, ClientMessageEvent, ConnectionExt as _,
@@ -11,7 +13,7 @@ use x11rb::protocol::xproto::{
 use x11rb::protocol::xtest::ConnectionExt as _;
 use x11rb::rust_connection::RustConnection;
 
-use super::{PATIENCE, wait_for};
+use super::{PATIENCE, hear, wait_for};
 
 /// An X server without a screen.
 pub struct Display {
@@ -109,17 +111,26 @@ impl Display {
             .expect("accepted");
     }
 
-    /// Drags the pressed mouse through points of the screen.
-    pub fn drag(&self, points: &[[i16; 2]]) {
-        let pause = || wait_for(std::time::Duration::from_millis(12), || None::<()>);
-        self.fake(MOTION_NOTIFY_EVENT, 0, points[0]);
-        pause();
+    /// Drags the pressed mouse through points of the screen in one go, and waits until the rig has
+    /// heard it all as samples of `mouse`. One go is one stroke: a window that draws slowly sends
+    /// what it finds in a frame together.
+    pub fn drag(&self, points: &[[i16; 2]], mouse: &mut Receiver<StylusSample>) {
+        // The pointer stirs until it is heard: the window may not have a frame to look at it yet.
+        let mut stirred = 0;
+        let heard = wait_for(PATIENCE, || {
+            stirred += 1;
+            let [x, y] = points[0];
+            self.fake(MOTION_NOTIFY_EVENT, 0, [x + stirred % 2, y]);
+            mouse.try_recv()
+        });
+        assert!(heard.is_some(), "the pointer is not heard");
         self.fake(BUTTON_PRESS_EVENT, 1, points[0]);
         for point in points {
             self.fake(MOTION_NOTIFY_EVENT, 0, *point);
-            pause();
         }
         self.fake(BUTTON_RELEASE_EVENT, 1, points[points.len() - 1]);
+        hear(mouse, |sample| sample.switches == 1).expect("the press is heard");
+        hear(mouse, |sample| sample.switches == 0).expect("the release is heard");
     }
 
     /// A pixel of a window.

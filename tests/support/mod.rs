@@ -16,7 +16,9 @@ use std::process::{Child, Command, ExitStatus, Output, Stdio};
 use std::sync::{Arc, Mutex};
 use std::time::{Duration, Instant};
 
-use maulstick_bus::{Dial, RigClock, RigFolder, ZenohBus};
+use maulstick_bus::typed::Receiver;
+use maulstick_bus::{Class, Dial, Queue, RigClock, RigFolder, Wake, ZenohBus};
+use maulstick_types::Message;
 use maulstick_types::topics::Topics;
 use nix::sys::signal::{Signal, kill};
 use nix::unistd::Pid;
@@ -169,6 +171,13 @@ impl Launcher {
         Self { child, said }
     }
 
+    /// A rig without a window in a place, once it is up.
+    pub fn up(place: &Place, args: &[&str]) -> Self {
+        let mut launcher = Self::start(place.maulstick(&[&["up", "--headless"], args].concat()));
+        launcher.wait_says("is up");
+        launcher
+    }
+
     pub fn pid(&self) -> u32 {
         self.child.id()
     }
@@ -227,10 +236,37 @@ pub fn join(place: &Place) -> (ZenohBus, Topics) {
     )
 }
 
+/// Hears a topic from now on.
+pub fn listen<M: Message>(bus: &ZenohBus, topic: &str, class: Class) -> Receiver<M> {
+    Receiver::new(bus, topic, class, Queue::Ring(1024), &Wake::new()).expect("subscribed")
+}
+
+/// The next message that `wanted` accepts.
+pub fn hear<M: Message>(heard: &mut Receiver<M>, wanted: impl Fn(&M) -> bool) -> Option<M> {
+    wait_for(PATIENCE, || {
+        while let Some(received) = heard.try_recv() {
+            if wanted(&received.message) {
+                return Some(received.message);
+            }
+        }
+        None
+    })
+}
+
+/// Forgets what was heard until now.
+pub fn drain<M: Message>(heard: &mut Receiver<M>) {
+    while heard.try_recv().is_some() {}
+}
+
 /// Cubic metres of paint on the canvas.
 pub fn on_canvas(place: &Place) -> f64 {
+    account(place, "canvas")
+}
+
+/// Cubic metres of paint in an account of the ledger.
+pub fn account(place: &Place, name: &str) -> f64 {
     place.done(&["snapshot", "-o", "p.png", "--ledger", "l.json"]);
     let ledger: serde_json::Value = serde_json::from_slice(&place.bytes("l.json")).expect("JSON");
     assert_eq!(ledger["quanta_missing"], 0);
-    ledger["accounts_m3"]["canvas"].as_f64().expect("a number")
+    ledger["accounts_m3"][name].as_f64().expect("a number")
 }

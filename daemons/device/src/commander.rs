@@ -51,6 +51,11 @@ impl Commander {
         patience: Duration,
         stop: &dyn Fn() -> bool,
     ) -> Result<String, Fault> {
+        // What fails at the end of a take, or as a file is written, is no wrong usage.
+        let refusal: fn(String) -> Fault = match &command {
+            Command::Snapshot { .. } | Command::Mark => Fault::failure,
+            _ => Fault::usage,
+        };
         self.number += 1;
         let number = self.number;
         let request = CommandRequest {
@@ -72,7 +77,7 @@ impl Commander {
                     outcome: Outcome::Refused { what, help },
                     ..
                 }) => {
-                    return Err(Fault::usage(what).at(self.topic.clone()).help(help));
+                    return Err(refusal(what).at(self.topic.clone()).help(help));
                 }
                 Ok(CommandReply {
                     outcome: Outcome::Waiting,

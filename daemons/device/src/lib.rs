@@ -6,12 +6,15 @@
 //! | [`table`] | tables of strokes, imported as takes |
 //! | [`demo`] | a performance made from a seed |
 //! | [`player`] | a device that plays a take |
+//! | [`brush`] | the brush that a section of `rig.toml` asks for |
 //! | [`commander`] | commands to the paint node, repeated until answered |
 
+pub mod brush;
 pub mod commander;
 pub mod demo;
 pub mod player;
 pub mod table;
 pub mod take;
 
+pub use brush::brush_file;
 pub use take::{Take, TakeSample};

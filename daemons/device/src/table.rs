@@ -44,7 +44,7 @@ type Places = [Option<usize>; COLUMNS.len()];
 /// # Errors
 /// A [`Fault`] with the line and the column.
 pub fn import(path: &Path, layout: TableLayout, device: &str) -> Result<Take, Fault> {
-    let text = std::fs::read_to_string(path).map_err(|error| Fault::file(path, &error, false))?;
+    let text = std::fs::read_to_string(path).map_err(|error| Fault::reading(path, &error))?;
     parse(&text, &path.display().to_string(), layout, device)
 }
 

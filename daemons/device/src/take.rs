@@ -6,6 +6,7 @@ use std::io::{BufReader, BufWriter};
 use std::path::Path;
 
 use maulstick_rig::Fault;
+use maulstick_rig::files::write_whole;
 use maulstick_types::stylus::StylusSample;
 use maulstick_types::{Flags, Message as _, Origin, decode, encode, name_hash};
 use mcap::records::MessageHeader;
@@ -80,7 +81,7 @@ impl Take {
     pub fn salvage(path: &Path) -> Result<Salvage, Fault> {
         let place = path.display().to_string();
         let fault = |what: String, help: &str| Fault::usage(what).at(place.clone()).help(help);
-        let file = File::open(path).map_err(|error| Fault::file(path, &error, false))?;
+        let file = File::open(path).map_err(|error| Fault::reading(path, &error))?;
         let options = LinearReaderOptions::default();
         let reader = mcap::io::MessageReader::new_with_options(BufReader::new(file), options);
         let mut devices: Vec<Take> = Vec::new();
@@ -159,22 +160,13 @@ impl Take {
     /// # Errors
     /// A [`Fault`] where the file cannot be written.
     pub fn write(&self, path: &Path) -> Result<(), Fault> {
-        let mut beside = path.file_name().unwrap_or_default().to_os_string();
-        beside.push(format!(".{}.tmp", std::process::id()));
-        let beside = path.with_file_name(beside);
-        let write = || -> Result<(), std::io::Error> {
-            let file = BufWriter::new(File::create(&beside)?);
-            self.write_to(file).map_err(std::io::Error::other)?;
-            File::open(&beside)?.sync_all()?;
-            std::fs::rename(&beside, path)
-        };
-        write().map_err(|error| {
-            std::fs::remove_file(&beside).ok();
-            Fault::file(path, &error, true)
+        write_whole(path, |file| {
+            self.write_to(file).map_err(std::io::Error::other)
         })
+        .map_err(|error| Fault::writing(path, &error))
     }
 
-    fn write_to(&self, file: BufWriter<File>) -> mcap::McapResult<()> {
+    fn write_to(&self, file: &mut BufWriter<File>) -> mcap::McapResult<()> {
         let mut writer = mcap::WriteOptions::new()
             .profile("maulstick")
             .library(concat!("maulstick ", env!("CARGO_PKG_VERSION")))

@@ -4,11 +4,10 @@ use std::path::PathBuf;
 use std::time::Duration;
 
 use glam::DQuat;
-use maulstick_brush::BrushFile;
 use maulstick_bus::credit::Stamp;
 use maulstick_bus::typed::{Receiver, Sender};
 use maulstick_bus::{Class, CreditSender, Queue};
-use maulstick_device::Take;
+use maulstick_device::{Take, brush_file};
 use maulstick_haptics::Limits;
 use maulstick_haptics::contact::Contact;
 use maulstick_num::geometry::{Rigid, canonical};
@@ -18,7 +17,7 @@ use maulstick_types::Flags;
 use maulstick_types::haptics::ContactModel;
 use maulstick_types::stylus::{StylusInfo, StylusPose, StylusSample, StylusStatus};
 
-use crate::driver::Driver;
+use crate::driver::{Driver, Placed};
 use crate::host::{BINS, Delivery, Host, Ticked, bin};
 use crate::simulated::Simulated;
 
@@ -49,19 +48,29 @@ pub fn run(member: &mut Member, settings: &HapticSettings) -> Result<(), Fault> 
 struct Daemon {
     bus: std::sync::Arc<dyn maulstick_bus::Bus>,
     host: Host,
-    to_desk: Rigid,
     senses: u32,
     brush: String,
     samples: CreditSender<StylusSample>,
     models: Receiver<ContactModel>,
     status: Sender<StylusStatus>,
     _info: Sender<StylusInfo>,
+    /// From `CLOCK_MONOTONIC`, which stamps the ticks, to the rig's clock, ns.
     offset_ns: u64,
     told: StylusStatus,
     deliveries: u64,
     status_ns: u64,
     published_ns: u64,
     was_in_range: bool,
+    /// Whether a bad model was told of.
+    warned: bool,
+}
+
+/// Device frame to desk frame.
+fn to_desk(device: &DeviceSection) -> Rigid {
+    Rigid {
+        rotation: canonical(DQuat::from_array(device.orientation)),
+        translation: device.position_m.into(),
+    }
 }
 
 fn driver(member: &Member, settings: &HapticSettings) -> Result<Box<dyn Driver>, Fault> {
@@ -73,27 +82,26 @@ fn driver(member: &Member, settings: &HapticSettings) -> Result<Box<dyn Driver>,
         .config
         .brush_named(&settings.device.brush)
         .ok_or_else(|| Fault::usage(format!("no brush '{}'", settings.device.brush)))?;
-    let file = BrushFile::library(&section.kind)
-        .and_then(|file| file.scaled_to(section.size_mm))
-        .map_err(|error| Fault::usage(error.to_string()))?;
+    let file = brush_file(section)?;
     Ok(Box::new(Simulated::following(
         &take,
         file.length_m(),
         section.depth_share,
+        &to_desk(&settings.device),
     )))
 }
 
 impl Daemon {
     fn new(member: &Member, settings: &HapticSettings) -> Result<Self, Fault> {
         let device = &settings.device;
-        let driver = driver(member, settings)?;
-        let abilities = driver.abilities();
+        let placed = Placed::new(driver(member, settings)?, to_desk(device));
+        let abilities = placed.abilities();
         let limits = Limits {
             max_force_n: device.max_force_n.min(abilities.max_force_n),
             max_stiffness_n_m: abilities.max_stiffness_n_m,
             ..Limits::default()
         };
-        let host = Host::start(driver, limits)
+        let host = Host::start(placed, limits)
             .map_err(|error| Fault::failure(format!("the servo cannot start: {error}")))?;
         for warning in &host.warnings {
             tracing::warn!("{}: {warning}", device.name);
@@ -120,17 +128,8 @@ impl Daemon {
             workspace_m: abilities.workspace_m,
         };
         info.send(now, now, &told)?;
-        let monotonic = nix::time::clock_gettime(nix::time::ClockId::CLOCK_MONOTONIC)
-            .map_or(0, |t| {
-                t.tv_sec() as u64 * 1_000_000_000 + t.tv_nsec() as u64
-            });
-        let [x, y, z, w] = device.orientation;
         let topic = topics.contact_model(&device.name);
         Ok(Self {
-            to_desk: Rigid {
-                rotation: canonical(DQuat::from_xyzw(x, y, z, w)),
-                translation: device.position_m.into(),
-            },
             senses: abilities.senses,
             brush: device.brush.clone(),
             samples: CreditSender::new(
@@ -148,7 +147,7 @@ impl Daemon {
                 origin,
             )?,
             _info: info,
-            offset_ns: bus.now_ns() - monotonic,
+            offset_ns: member.clock.offset_ns(),
             told: StylusStatus {
                 samples: 0,
                 dropped: 0,
@@ -162,6 +161,7 @@ impl Daemon {
             status_ns: 0,
             published_ns: 0,
             was_in_range: false,
+            warned: false,
             host,
             bus: member.bus.clone(),
         })
@@ -178,6 +178,7 @@ impl Daemon {
         self.samples.serve(now_ns)?;
         if now_ns >= self.status_ns + STATUS_PERIOD_NS {
             self.status_ns = now_ns;
+            self.told.dropped = self.host.dropped();
             self.status.send(now_ns, now_ns, &self.told)?;
         }
         Ok(Duration::from_millis(1))
@@ -205,7 +206,8 @@ impl Daemon {
             }
             Err(what) => {
                 self.told.foreign_models += 1;
-                if self.told.foreign_models == 1 {
+                if !self.warned {
+                    self.warned = true;
                     tracing::warn!("{}: a contact model is dropped: {what}", received.key);
                 }
             }
@@ -229,17 +231,17 @@ impl Daemon {
             return Ok(());
         }
         self.published_ns = event_ns;
-        let in_device = Rigid {
+        let held = Rigid {
             rotation: reading.held.orientation,
             translation: reading.held.position,
         };
         let sample = StylusSample {
             senses: self.senses,
             pose: StylusPose::Ferrule {
-                pose: self.to_desk.after(&in_device).to_pose(),
+                pose: held.to_pose(),
             },
-            velocity_m_s: self.to_desk.vector(reading.held.velocity).to_array(),
-            force_n: self.to_desk.vector(ticked.force).to_array(),
+            velocity_m_s: reading.held.velocity.to_array(),
+            force_n: ticked.force.to_array(),
             switches: reading.switches,
             in_range: reading.in_range,
         };

@@ -6,11 +6,12 @@ use maulstick_brush::desk::{ferrule, pen_orientation};
 use maulstick_device::Take;
 use maulstick_haptics::contact::Held;
 use maulstick_haptics::{Hand, Plant};
+use maulstick_num::geometry::Rigid;
 use maulstick_types::stylus::{DEFAULT_TILT_RAD, axes};
 
 use crate::driver::{Abilities, Driver, Reading};
 
-/// Where the hand rests, desk frame, m.
+/// Where the hand rests, device frame, m.
 const REST: DVec3 = DVec3::new(0.2, -0.2, 0.1);
 
 /// Where the hand wants to be at a time.
@@ -46,15 +47,18 @@ impl Simulated {
         }
     }
 
-    /// A hand that follows a take with a brush whose head is `head_length_m` long.
+    /// A hand that follows a take with a brush whose head is `head_length_m` long. A take is in the
+    /// desk frame; `to_desk` says where the device stands.
     #[must_use]
-    pub fn following(take: &Take, head_length_m: f64, depth_share: f64) -> Self {
+    pub fn following(take: &Take, head_length_m: f64, depth_share: f64, to_desk: &Rigid) -> Self {
+        let to_device = to_desk.inverse();
         let start_ns = take.samples.first().map_or(0, |first| first.time_ns);
         let targets: Vec<Target> = take
             .samples
             .iter()
             .map(|s| {
-                let rigid = ferrule(&s.sample, head_length_m, depth_share, DVec3::Z);
+                let on_desk = ferrule(&s.sample, head_length_m, depth_share, DVec3::Z);
+                let rigid = to_device.after(&on_desk);
                 Target {
                     time_s: (s.time_ns - start_ns) as f64 * 1e-9,
                     position: rigid.translation,
@@ -127,12 +131,15 @@ impl Driver for Simulated {
 mod tests {
     use maulstick_device::demo::performance;
 
+    use maulstick_num::geometry::rotation;
+
     use super::*;
+    use crate::driver::Placed;
 
     #[test]
     fn a_free_hand_follows_its_take_with_the_lag_of_its_grip() {
         let take = performance(1);
-        let mut device = Simulated::following(&take, 0.025, 0.5);
+        let mut device = Simulated::following(&take, 0.025, 0.5, &Rigid::IDENTITY);
         let (mut sum, mut count) = (0.0, 0);
         for tick in 0..10_000 {
             let reading = device.read(1e-3);
@@ -148,6 +155,24 @@ mod tests {
             "{} m",
             sum / f64::from(count)
         );
+    }
+
+    #[test]
+    fn a_take_is_followed_on_the_desk_wherever_the_device_stands() {
+        let take = performance(1);
+        let to_desk = Rigid {
+            rotation: rotation(DVec3::new(0.0, 0.6, 0.8), 1.2),
+            translation: DVec3::new(0.3, -0.1, 0.2),
+        };
+        let mut plain = Simulated::following(&take, 0.025, 0.5, &Rigid::IDENTITY);
+        let turned = Simulated::following(&take, 0.025, 0.5, &to_desk);
+        let mut turned = Placed::new(Box::new(turned), to_desk);
+        for _ in 0..3000 {
+            let (plain, turned) = (plain.read(1e-3).held, turned.read(1e-3).held);
+            // The encoders' steps lie along the device's own axes, and friction follows them.
+            assert!((plain.position - turned.position).length() < 1e-3);
+            assert!(plain.orientation.angle_between(turned.orientation) < 1e-6);
+        }
     }
 
     #[test]

@@ -147,7 +147,7 @@ pub fn snapshot(options: &SnapshotOptions) -> Result<i32, Fault> {
     let whole = |path: &PathBuf| {
         std::path::absolute(path)
             .map(|path| path.display().to_string())
-            .map_err(|error| Fault::file(path, &error, true))
+            .map_err(|error| Fault::writing(path, &error))
     };
     let path = whole(&options.output)?;
     let ledger = options.ledger.as_ref().map(whole).transpose()?;

@@ -6,6 +6,8 @@ use clap::Args;
 use maulstick_device::demo::performance;
 use maulstick_rig::Fault;
 
+use crate::commands::write_take;
+
 /// Options of `maulstick demo`.
 #[derive(Args, Clone, Debug)]
 pub struct DemoOptions {
@@ -22,13 +24,6 @@ pub struct DemoOptions {
 /// # Errors
 /// A [`Fault`] where the take cannot be written.
 pub fn run(options: &DemoOptions) -> Result<i32, Fault> {
-    let take = performance(options.seed);
-    take.write(&options.output)?;
-    println!(
-        "{}: {} samples, {:.1} s",
-        options.output.display(),
-        take.samples.len(),
-        take.length_ns() as f64 * 1e-9
-    );
+    write_take(&performance(options.seed), &options.output)?;
     Ok(0)
 }

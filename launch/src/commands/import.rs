@@ -6,6 +6,7 @@ use clap::Args;
 use maulstick_device::table::{TableLayout, import};
 use maulstick_rig::Fault;
 
+use crate::commands::write_take;
 use crate::performance::parse_size;
 
 /// Options of `maulstick import`.
@@ -38,12 +39,6 @@ pub fn run(options: &ImportOptions) -> Result<i32, Fault> {
         size,
     };
     let take = import(&options.table, layout, "table")?;
-    take.write(&options.output)?;
-    println!(
-        "{}: {} samples, {:.1} s",
-        options.output.display(),
-        take.samples.len(),
-        take.length_ns() as f64 * 1e-9
-    );
+    write_take(&take, &options.output)?;
     Ok(0)
 }

@@ -10,7 +10,10 @@ pub mod render;
 pub mod schema;
 pub mod take;
 
+use std::path::Path;
+
 use indicatif::{ProgressBar, ProgressStyle};
+use maulstick_device::Take;
 use maulstick_rig::Fault;
 use serde_json::Value;
 
@@ -22,6 +25,21 @@ pub fn print_json(value: &Value) -> Result<(), Fault> {
     let text =
         serde_json::to_string_pretty(value).map_err(|error| Fault::failure(error.to_string()))?;
     println!("{text}");
+    Ok(())
+}
+
+/// Writes a take and says what it holds.
+///
+/// # Errors
+/// A [`Fault`] where the file cannot be written.
+pub fn write_take(take: &Take, path: &Path) -> Result<(), Fault> {
+    take.write(path)?;
+    println!(
+        "{}: {} samples, {:.1} s",
+        path.display(),
+        take.samples.len(),
+        take.length_ns() as f64 * 1e-9
+    );
     Ok(())
 }
 

@@ -7,7 +7,7 @@ use maulstick_device::Take;
 use maulstick_nodes::Offline;
 use maulstick_nodes::paint_node::write_snapshot;
 use maulstick_paint::Painting;
-use maulstick_paint::picture::check_writable;
+use maulstick_rig::files::check_writable;
 use maulstick_rig::{Fault, RigConfig};
 
 use crate::commands::progress_bar;
@@ -45,7 +45,7 @@ pub fn run(options: &RenderOptions) -> Result<i32, Fault> {
         .into_iter()
         .flatten()
     {
-        check_writable(path).map_err(|error| Fault::file(path, &error, true))?;
+        check_writable(path).map_err(|error| Fault::writing(path, &error))?;
     }
     let painting = Painting::new(&painting_setup(&config)?, library).map_err(refused)?;
     let file = brush_file(&section)?;
@@ -66,6 +66,6 @@ pub fn run(options: &RenderOptions) -> Result<i32, Fault> {
     bar.finish_and_clear();
     let ledger = options.painting.ledger.as_deref();
     write_snapshot(offline.painting_mut(), &options.output, ledger)
-        .map_err(|(path, error)| Fault::file(path.as_ref(), &error, true))?;
+        .map_err(|(path, error)| Fault::writing(path.as_ref(), &error))?;
     Ok(0)
 }

@@ -3,7 +3,7 @@
 //! It cannot outlive its launcher: the launcher holds its standard input open and it ends when that
 //! ends; besides, the kernel signals it when the launcher dies.
 
-use std::collections::VecDeque;
+use std::collections::{BTreeMap, VecDeque};
 use std::os::unix::process::CommandExt as _;
 use std::path::Path;
 use std::process::{Child, ChildStdin, Command, ExitStatus, Stdio};
@@ -60,7 +60,20 @@ pub struct Node {
     /// How often it was started again.
     pub restarts: u32,
     process: Option<(Child, Option<ChildStdin>)>,
-    failures: VecDeque<Instant>,
+}
+
+/// When which node failed, by name: a node that is made anew is not forgiven what it did before.
+#[derive(Debug, Default)]
+pub struct Failures(BTreeMap<String, VecDeque<Instant>>);
+
+impl Failures {
+    /// Counts a failure of the node called `name`; true where it has failed too often.
+    pub fn count(&mut self, name: &str, now: Instant) -> bool {
+        let failures = self.0.entry(name.to_owned()).or_default();
+        failures.push_back(now);
+        failures.retain(|when| now.duration_since(*when) <= WINDOW);
+        failures.len() >= FAILURES
+    }
 }
 
 /// How a process ended.
@@ -78,13 +91,11 @@ impl Node {
     /// A node that is not started.
     #[must_use]
     pub fn new(spec: NodeSpec) -> Self {
-        let failures = VecDeque::new();
         Self {
             spec,
             state: State::Restarting,
             restarts: 0,
             process: None,
-            failures,
         }
     }
 
@@ -130,17 +141,9 @@ impl Node {
     }
 
     /// Counts a failure and says whether the node may be started again.
-    pub fn fail(&mut self) -> bool {
-        let now = Instant::now();
-        self.failures.push_back(now);
-        while self
-            .failures
-            .front()
-            .is_some_and(|first| now - *first > WINDOW)
-        {
-            self.failures.pop_front();
-        }
-        let again = self.spec.restart == Restart::OnFailure && self.failures.len() < FAILURES;
+    pub fn fail(&mut self, failures: &mut Failures) -> bool {
+        let too_often = failures.count(&self.spec.name, Instant::now());
+        let again = self.spec.restart == Restart::OnFailure && !too_often;
         self.state = if again {
             State::Restarting
         } else {
@@ -185,5 +188,24 @@ fn judge(status: ExitStatus) -> Ended {
         Some(0) => Ended::Well,
         Some(code) if code == maulstick_rig::fault::EXIT_USAGE => Ended::Refused(code),
         _ => Ended::Badly,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn three_failures_in_ten_seconds_are_too_many_whoever_else_fails() {
+        let (mut failures, start) = (Failures::default(), Instant::now());
+        let mut fails =
+            |name: &str, second: u64| failures.count(name, start + Duration::from_secs(second));
+        assert!(!fails("player", 0) && !fails("paint", 1) && !fails("player", 2));
+        // The first is 11 s ago, so these are two again.
+        assert!(!fails("player", 11));
+        assert!(!fails("paint", 11));
+        assert!(fails("player", 12));
+        assert!(fails("player", 13));
+        assert!(!fails("player", 30));
     }
 }

@@ -163,10 +163,7 @@ impl Conductor {
             .spawn(move || {
                 let stop = || stop.load(Ordering::SeqCst);
                 let sent = commander.send(command, after, SNAPSHOT, &stop);
-                let code = maulstick_rig::fault::EXIT_FAILURE;
-                to_conductor
-                    .send(sent.map(|_| ()).map_err(|fault| Fault { code, ..fault }))
-                    .ok();
+                to_conductor.send(sent.map(|_| ())).ok();
             })
             .map_err(|error| Fault::failure(error.to_string()))?;
         self.writing = Some(Writing { outcome, given_up });

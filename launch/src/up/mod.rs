@@ -18,12 +18,13 @@ use clap::Args;
 use maulstick_bus::RigFolder;
 use maulstick_device::Take;
 use maulstick_device::player::Rate;
-use maulstick_paint::picture::check_writable;
 use maulstick_rig::config::{DEFAULT, RigConfig};
+use maulstick_rig::files::check_writable;
 use maulstick_rig::{Fault, member};
 
 use crate::performance::{PaintingOptions, library, painting_setup, refused};
 use crate::up::conductor::Performance;
+use crate::up::plan::{Hands, Window};
 use crate::up::supervisor::Supervisor;
 
 /// What the brush carries at the start, where nothing else is asked for.
@@ -90,7 +91,7 @@ pub fn run(options: &UpOptions) -> Result<i32, Fault> {
                 .into_iter()
                 .flatten()
             {
-                check_writable(file).map_err(|error| Fault::file(file, &error, true))?;
+                check_writable(file).map_err(|error| Fault::writing(file, &error))?;
             }
             Some(Performance {
                 take: absolute(path)?,
@@ -115,7 +116,15 @@ pub fn run(options: &UpOptions) -> Result<i32, Fault> {
         }
     }
     let folder = RigFolder::create(&config.rig.name)?;
-    let nodes = plan::nodes(&config, options.headless, performance.is_some())?;
+    let window = match options.headless {
+        true => Window::Headless,
+        false => Window::Shown,
+    };
+    let hands = match performance {
+        Some(_) => Hands::Take,
+        None => Hands::Devices,
+    };
+    let nodes = plan::nodes(&config, window, hands)?;
     let first_load = match loads.into_iter().next() {
         Some(mixture) => mixture,
         None => FIRST_LOAD
@@ -126,7 +135,8 @@ pub fn run(options: &UpOptions) -> Result<i32, Fault> {
     supervisor.run()
 }
 
-/// The nodes run elsewhere: they need whole paths.
+/// A path that holds wherever it is read: nodes may be started by hand from another folder, and the
+/// paint node writes what it is told by name.
 fn absolute(path: &std::path::Path) -> Result<PathBuf, Fault> {
-    std::path::absolute(path).map_err(|error| Fault::file(path, &error, false))
+    std::path::absolute(path).map_err(|error| Fault::reading(path, &error))
 }

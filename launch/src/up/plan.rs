@@ -70,11 +70,29 @@ pub fn node(
     })
 }
 
-/// The nodes of a rig. A played take stands in for the devices.
+/// Whether a rig has a window.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Window {
+    /// One that shows the painting.
+    Shown,
+    /// None.
+    Headless,
+}
+
+/// Who moves the brushes of a rig.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Hands {
+    /// Its devices.
+    Devices,
+    /// A take, in their place.
+    Take,
+}
+
+/// The nodes of a rig.
 ///
 /// # Errors
 /// A [`Fault`] where a program is missing.
-pub fn nodes(config: &RigConfig, headless: bool, played: bool) -> Result<Vec<NodeSpec>, Fault> {
+pub fn nodes(config: &RigConfig, window: Window, hands: Hands) -> Result<Vec<NodeSpec>, Fault> {
     let mut nodes = vec![node(
         config,
         "paint",
@@ -87,7 +105,7 @@ pub fn nodes(config: &RigConfig, headless: bool, played: bool) -> Result<Vec<Nod
         let name = brush_node_name(&brush.name);
         nodes.push(node(config, &name, Role::Brush, "maulstick-brush", args)?);
     }
-    if !played {
+    if hands == Hands::Devices {
         for device in &config.device {
             let args = vec!["--device".to_owned(), device.name.clone()];
             nodes.push(node(
@@ -99,7 +117,7 @@ pub fn nodes(config: &RigConfig, headless: bool, played: bool) -> Result<Vec<Nod
             )?);
         }
     }
-    if !headless {
+    if window == Window::Shown {
         nodes.push(node(
             config,
             "ui",

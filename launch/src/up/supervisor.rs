@@ -1,6 +1,5 @@
 //! All processes of the rig: their tokens, their restarts, the table, the end.
 
-use std::collections::BTreeSet;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
@@ -15,7 +14,7 @@ use maulstick_types::topics::Topics;
 
 use crate::EXIT_INTERRUPTED;
 use crate::commands::progress_bar;
-use crate::up::child::{Ended, Node, State};
+use crate::up::child::{Ended, Failures, Node, State};
 use crate::up::conductor::{Conductor, Performance};
 use crate::up::plan::{NodeSpec, Role};
 
@@ -40,14 +39,16 @@ pub struct Supervisor {
     wake: Wake,
     stop: Stop,
     tokens: Subscription,
-    present: BTreeSet<String>,
     nodes: Vec<Node>,
+    failures: Failures,
     due: Vec<(String, Instant)>,
     started: Vec<(String, Instant)>,
     conductor: Option<Conductor>,
     first_load: Mixture,
     bar: Option<ProgressBar>,
     shown: bool,
+    /// Paint starts with clean brushes: the painter's are to be loaded.
+    unloaded: bool,
 }
 
 /// Why the rig ends.
@@ -83,8 +84,7 @@ impl Supervisor {
         let stop = Stop::on_signals(&wake).map_err(|error| Fault::failure(error.to_string()))?;
         let tokens = bus.watch(&topics.node("*"), &wake)?;
         let path = folder.path().join(CONFIG_FILE);
-        std::fs::write(&path, config.to_toml()?)
-            .map_err(|error| Fault::file(&path, &error, true))?;
+        std::fs::write(&path, config.to_toml()?).map_err(|error| Fault::writing(&path, &error))?;
         folder.announce(HUB, clock)?;
         let conductor = match performance {
             Some(performance) => Some(Conductor::new(&*bus, &topics, performance, &wake)?),
@@ -100,13 +100,14 @@ impl Supervisor {
             wake,
             stop,
             tokens,
-            present: BTreeSet::new(),
+            failures: Failures::default(),
             due: Vec::new(),
             started: Vec::new(),
             conductor,
             first_load,
             bar: None,
             shown: false,
+            unloaded: true,
         };
         for place in 0..supervisor.nodes.len() {
             supervisor.start_node(place)?;
@@ -160,6 +161,7 @@ impl Supervisor {
         self.restart_due()?;
         self.watch_starts()?;
         self.show_when_ready();
+        self.load_when_ready();
         self.conduct()
     }
 
@@ -172,11 +174,6 @@ impl Supervisor {
             else {
                 continue;
             };
-            if arrival.present {
-                self.present.insert(name.to_owned());
-            } else {
-                self.present.remove(name);
-            }
             let node = self.nodes.iter_mut().find(|node| node.spec.name == name);
             if let Some(node) = node.filter(|node| node.state == State::Starting)
                 && arrival.present
@@ -198,9 +195,8 @@ impl Supervisor {
                 continue;
             };
             let role = self.nodes[place].spec.role;
-            self.present.remove(&name);
             match ended {
-                Ended::Well => {
+                Ended::Well if self.may_end(role) => {
                     self.nodes[place].state = State::Ended;
                     if role == Role::Window {
                         return Ok(Some(0));
@@ -211,8 +207,9 @@ impl Supervisor {
                     self.nodes[place].state = State::Failed;
                     return Err(self.failed(&name));
                 }
-                Ended::Badly => {
-                    let again = self.nodes[place].fail();
+                // A node that somebody stopped is missed like one that crashed.
+                Ended::Well | Ended::Badly => {
+                    let again = self.nodes[place].fail(&mut self.failures);
                     if !again {
                         if role == Role::Device {
                             tracing::error!("node '{name}' failed and is not started again");
@@ -220,13 +217,28 @@ impl Supervisor {
                         }
                         return Err(self.failed(&name));
                     }
-                    tracing::warn!("node '{name}' failed and is started again");
+                    let how = if ended == Ended::Well {
+                        "ended"
+                    } else {
+                        "failed"
+                    };
+                    tracing::warn!("node '{name}' {how} and is started again");
                     self.due.push((name, Instant::now() + RESTART_PAUSE));
                     self.replay_after(role);
                 }
             }
         }
         Ok(None)
+    }
+
+    /// Whether the rig can do without a node that ended with success.
+    fn may_end(&self, role: Role) -> bool {
+        match role {
+            Role::Paint | Role::Brush => false,
+            // While its take is conducted it stays, even after the take's end.
+            Role::Player => self.conductor.is_none(),
+            Role::Device | Role::Window => true,
+        }
     }
 
     fn failed(&self, name: &str) -> Fault {
@@ -249,7 +261,6 @@ impl Supervisor {
             if node.pid().is_some() {
                 node.kill();
                 node.state = State::Restarting;
-                self.present.remove(&node.spec.name);
                 self.due.push((node.spec.name.clone(), Instant::now()));
             }
         }
@@ -269,6 +280,7 @@ impl Supervisor {
         for name in due {
             if let Some(place) = self.nodes.iter().position(|node| node.spec.name == name) {
                 self.nodes[place].restarts += 1;
+                self.unloaded |= self.nodes[place].spec.role == Role::Paint;
                 self.start_node(place)?;
             }
         }
@@ -291,7 +303,7 @@ impl Supervisor {
                 tracing::warn!("node '{}' does not get ready", node.spec.name);
                 node.terminate();
                 node.kill();
-                if !node.fail() {
+                if !node.fail(&mut self.failures) {
                     return Err(Fault::failure(format!(
                         "node '{}' does not get ready",
                         node.spec.name
@@ -304,10 +316,11 @@ impl Supervisor {
         Ok(())
     }
 
+    /// Whether no node is still to come; a device that failed for good holds nothing up.
     fn ready(&self) -> bool {
         self.nodes
             .iter()
-            .all(|node| node.state == State::Running || node.state == State::Ended)
+            .all(|node| !matches!(node.state, State::Starting | State::Restarting))
     }
 
     fn show_when_ready(&mut self) {
@@ -336,13 +349,21 @@ impl Supervisor {
             );
         }
         match &self.conductor {
-            None => {
-                eprintln!("Ctrl-C stops it");
-                self.load_brushes();
-            }
+            None => eprintln!("Ctrl-C stops it"),
             Some(conductor) => {
                 let bar = progress_bar(conductor.performance.length_ns);
                 self.bar = Some(bar.with_message("playing"));
+            }
+        }
+    }
+
+    /// Loads the brushes as soon as paint and all brushes are there, at the start and whenever paint
+    /// was started again. A take that is played brings its own loads.
+    fn load_when_ready(&mut self) {
+        if self.unloaded && self.ready() {
+            self.unloaded = false;
+            if self.conductor.is_none() {
+                self.load_brushes();
             }
         }
     }

@@ -59,32 +59,36 @@ impl Fault {
         self
     }
 
-    /// A file that cannot be read (an input file) or written (a failure).
+    /// An input file that cannot be read.
     #[must_use]
-    pub fn file(path: &std::path::Path, error: &std::io::Error, writing: bool) -> Self {
-        let (verb, fault): (_, fn(String) -> Self) = if writing {
-            ("write", Self::failure)
-        } else {
-            ("read", Self::usage)
-        };
+    pub fn reading(path: &std::path::Path, error: &std::io::Error) -> Self {
+        Self::usage(format!("cannot read the file: {error}")).on_disk(path, error, "check the path")
+    }
+
+    /// A file that cannot be written.
+    #[must_use]
+    pub fn writing(path: &std::path::Path, error: &std::io::Error) -> Self {
+        Self::failure(format!("cannot write the file: {error}")).on_disk(
+            path,
+            error,
+            "the folder must exist",
+        )
+    }
+
+    fn on_disk(self, path: &std::path::Path, error: &std::io::Error, not_found: &str) -> Self {
         let help = match error.kind() {
-            std::io::ErrorKind::NotFound if writing => "the folder must exist",
-            std::io::ErrorKind::NotFound => "check the path",
+            std::io::ErrorKind::NotFound => not_found,
             std::io::ErrorKind::PermissionDenied => "check the permissions",
             std::io::ErrorKind::StorageFull => "free some space",
             _ => "check the path and the disk",
         };
-        fault(format!("cannot {verb} the file: {error}"))
-            .at(path.display().to_string())
-            .help(help)
+        self.at(path.display().to_string()).help(help)
     }
 
     /// The nearest of `names` to `name`.
     #[must_use]
     pub fn nearest<'a>(name: &str, names: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
-        names
-            .into_iter()
-            .max_by(|a, b| strsim::jaro_winkler(a, name).total_cmp(&strsim::jaro_winkler(b, name)))
+        maulstick_types::nearest(name, names)
     }
 }
 

@@ -41,6 +41,8 @@ pub struct Member {
     pub topics: Topics,
     /// The rig's settings.
     pub config: RigConfig,
+    /// The rig's clock.
+    pub clock: RigClock,
     /// What rings when there is something to do.
     pub wake: Wake,
     /// Whether to stop.
@@ -62,7 +64,8 @@ impl Member {
             listen: Some(folder.locator(&args.node)),
             connect: vec![info.endpoint.clone()],
         };
-        let session = ZenohBus::open(&dial, RigClock::with_offset(info.clock_offset_ns))?;
+        let clock = RigClock::with_offset(info.clock_offset_ns);
+        let session = ZenohBus::open(&dial, clock)?;
         let session = Arc::new(session);
         let wake = Wake::new();
         let system = |error: std::io::Error| Fault::failure(error.to_string());
@@ -75,6 +78,7 @@ impl Member {
             bus: Arc::clone(&session) as Arc<dyn Bus>,
             topics: Topics::new(&info.rig),
             config,
+            clock,
             wake,
             stop,
             session,

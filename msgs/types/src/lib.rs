@@ -13,6 +13,7 @@
 
 mod codec;
 mod define;
+mod nearest;
 
 pub mod brush;
 pub mod catalogue;
@@ -31,6 +32,7 @@ pub use catalogue::{CATALOGUE, CatalogueEntry};
 pub use codec::{Message, decode, encode};
 pub use header::{DecodeError, Flags, HEADER_BYTES, Header, Origin};
 pub use mixture::{Mixture, MixtureError};
+pub use nearest::nearest;
 pub use pose::Pose;
 
 /// The FNV-1a hash of `text`, by which sources, schemas and files are named.

@@ -192,11 +192,8 @@ impl BrushFile {
         if let Some((_, text)) = LIBRARY.iter().find(|(name, _)| *name == kind) {
             return Ok(text);
         }
-        let nearest = LIBRARY
-            .iter()
-            .map(|(name, _)| *name)
-            .max_by(|a, b| strsim::jaro_winkler(a, kind).total_cmp(&strsim::jaro_winkler(b, kind)))
-            .unwrap_or_default();
+        let names = LIBRARY.iter().map(|(name, _)| *name);
+        let nearest = maulstick_types::nearest(kind, names).unwrap_or_default();
         Err(BrushError::Unknown {
             name: kind.to_owned(),
             nearest: nearest.to_owned(),

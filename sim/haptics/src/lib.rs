@@ -11,7 +11,9 @@
 pub mod contact;
 pub mod plant;
 pub mod servo;
+#[cfg(test)]
+mod stability;
 
 pub use contact::Contact;
 pub use plant::{Hand, Plant};
-pub use servo::{Limits, Servo, Tick};
+pub use servo::{Limits, Sender, Servo, Tick};

@@ -139,62 +139,7 @@ impl Plant {
 
 #[cfg(test)]
 mod tests {
-    use glam::DQuat;
-    use maulstick_types::haptics::ForceLaw;
-
     use super::*;
-    use crate::contact::tests::model;
-    use crate::contact::{Contact, Held};
-    use crate::servo::{Limits, Servo};
-
-    /// Presses onto a wall of `stiffness` for two seconds; peak to peak over the last half second.
-    /// With `hold` the force is computed anew only every so many ticks, as if it crossed a network.
-    fn press(hand: Hand, stiffness: f64, hold: usize) -> f64 {
-        let mut law = model(ForceLaw::Rigid {
-            stiffness_n_m: stiffness,
-        });
-        law.time_to_live_ns = u64::MAX;
-        let contact = Contact::new(&law).expect("a model");
-        let limits = Limits {
-            max_stiffness_n_m: 1e9,
-            max_force_n: 3.3,
-            ..Limits::default()
-        };
-        let mut servo = Servo::new(limits);
-        servo.receive(contact, false);
-        let mut plant = Plant::omni(hand, DVec3::new(0.0, 0.0, 0.025));
-        let (mut low, mut high) = (f64::MAX, f64::MIN);
-        let mut force = DVec3::ZERO;
-        for tick in 0..2000 {
-            let held = Held {
-                position: plant.read_position(),
-                orientation: DQuat::IDENTITY,
-                velocity: plant.read_velocity(),
-            };
-            let (fresh, _) = servo.step(&held, 1e-3);
-            if tick % hold == 0 {
-                force = fresh;
-            }
-            plant.advance(force, DVec3::new(0.0, 0.0, 0.022), 1e-3);
-            if tick >= 1500 {
-                low = low.min(plant.true_position().z);
-                high = high.max(plant.true_position().z);
-            }
-        }
-        high - low
-    }
-
-    #[test]
-    fn a_model_evaluated_at_1_khz_is_stable_and_a_force_sent_at_60_hz_is_not() {
-        for hand in [Hand::FINGERTIP, Hand::PEN_GRIP, Hand::ARM] {
-            for stiffness in [100.0, 300.0, 500.0] {
-                let wobble = press(hand, stiffness, 1);
-                assert!(wobble < 1e-4, "{hand:?} {stiffness} N/m: {wobble} m");
-            }
-        }
-        // The seeded fault, which only a hand without damping shows.
-        assert!(press(Hand::FINGERTIP, 400.0, 16) > 2e-3);
-    }
 
     #[test]
     fn a_free_hand_reaches_its_target() {

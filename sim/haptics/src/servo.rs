@@ -1,4 +1,10 @@
 //! One tick of the servo: evaluate the newest model, age it, limit the force.
+//!
+//! A model takes the place of the one before without a jump (the recovery time of Mark et al. 1996):
+//! at its first tick both are evaluated at the same pose, and their difference, kept as a
+//! correction, shrinks to nothing over the recovery time, however many models come meanwhile. As
+//! the pose is the same, a model that says the same as the one before corrects nothing: the force
+//! follows the hand without lag.
 
 use glam::DVec3;
 
@@ -51,12 +57,26 @@ pub struct Tick {
     pub stale: bool,
 }
 
+/// Who sent a model.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Sender {
+    /// Who sent the model before.
+    Same,
+    /// Another, or the same one started anew: the force engages anew.
+    Another,
+}
+
 /// The servo's state.
 #[derive(Clone, Copy, Debug)]
 pub struct Servo {
     limits: Limits,
     model: Option<Active>,
-    before: Option<Active>,
+    /// Received since the last step.
+    arrived: Option<Contact>,
+    /// What the force still keeps of the models before, N.
+    correction: DVec3,
+    /// How fast the correction shrinks, N/s.
+    correction_speed: f64,
     engaged_s: f64,
     force: DVec3,
     latched: bool,
@@ -76,31 +96,35 @@ impl Servo {
         Self {
             limits,
             model: None,
-            before: None,
+            arrived: None,
+            correction: DVec3::ZERO,
+            correction_speed: 0.0,
             engaged_s: 0.0,
             force: DVec3::ZERO,
             latched: false,
         }
     }
 
-    /// A new model has arrived. From `another_sender` the force engages anew.
-    pub fn receive(&mut self, contact: Contact, another_sender: bool) {
-        if another_sender {
-            self.engaged_s = 0.0;
+    /// A new model has arrived; the next step evaluates it.
+    pub fn receive(&mut self, contact: Contact, sender: Sender) {
+        if sender == Sender::Another {
+            self.engage_anew();
         }
-        self.before = self.model.take();
-        self.model = Some(Active {
-            contact,
-            age_s: 0.0,
-        });
+        self.arrived = Some(contact);
     }
 
     /// Allows force again after a fault; it engages anew.
     pub fn rearm(&mut self) {
         self.latched = false;
+        self.engage_anew();
+    }
+
+    /// Nothing of what was felt holds any more.
+    fn engage_anew(&mut self) {
         self.engaged_s = 0.0;
         self.model = None;
-        self.before = None;
+        self.arrived = None;
+        self.correction = DVec3::ZERO;
     }
 
     /// Whether a fault holds the force at zero.
@@ -131,13 +155,8 @@ impl Servo {
         }
         let dt = dt.clamp(0.0, self.limits.longest_tick_s);
         self.age(dt);
+        self.take_in(held, dt);
         let wanted = self.wanted(held, &mut tick);
-        if !wanted.is_finite() {
-            self.latched = true;
-            self.force = DVec3::ZERO;
-            tick.fault = true;
-            return (self.force, tick);
-        }
         let size = wanted.length();
         tick.clamped = size > self.limits.max_force_n;
         let limited = if tick.clamped {
@@ -153,165 +172,70 @@ impl Servo {
             change
         };
         self.force += change;
+        // Last of all: whatever went wrong above, no such number reaches the motors.
+        if !self.force.is_finite() {
+            self.latched = true;
+            self.force = DVec3::ZERO;
+            tick.fault = true;
+        }
         (self.force, tick)
     }
 
     fn age(&mut self, dt: f64) {
         self.engaged_s += dt;
-        for active in [&mut self.model, &mut self.before].into_iter().flatten() {
-            active.age_s += dt;
+        if let Some(model) = &mut self.model {
+            model.age_s += dt;
+        }
+        let (size, shrunk) = (self.correction.length(), self.correction_speed * dt);
+        if size > shrunk {
+            self.correction *= (size - shrunk) / size;
+        } else {
+            self.correction = DVec3::ZERO;
+            self.correction_speed = 0.0;
         }
     }
 
+    /// Evaluates the model that has arrived, if one has, in the place of the one before.
+    fn take_in(&mut self, held: &Held, dt: f64) {
+        let Some(contact) = self.arrived.take() else {
+            return;
+        };
+        let before = self.model.as_ref().map(|model| self.felt(model, held));
+        let arrived = Active { contact, age_s: dt };
+        self.model = Some(arrived);
+        if let Some(before) = before
+            && contact.recovery_s > 0.0
+            && before != self.felt(&arrived, held)
+        {
+            self.correction = before - contact.force(held, self.limits.max_stiffness_n_m);
+            // An earlier, larger jump still ends in its own time.
+            let speed = self.correction.length() / contact.recovery_s;
+            self.correction_speed = self.correction_speed.max(speed);
+        }
+    }
+
+    /// What a model makes the hand feel, with what is left of those before it.
+    fn felt(&self, model: &Active, held: &Held) -> DVec3 {
+        let fading = (1.0 - model.overdue_s().max(0.0) / self.limits.fade_s).max(0.0);
+        (model.contact.force(held, self.limits.max_stiffness_n_m) + self.correction) * fading
+    }
+
     /// The force that the models ask for.
-    fn wanted(&mut self, held: &Held, tick: &mut Tick) -> DVec3 {
+    fn wanted(&self, held: &Held, tick: &mut Tick) -> DVec3 {
         let Some(model) = &self.model else {
             return DVec3::ZERO;
         };
-        let stiffest = self.limits.max_stiffness_n_m;
-        let mut force = model.contact.force(held, stiffest);
-        if let Some(before) = &self.before {
-            let recovery = model.contact.recovery_s;
-            if model.age_s < recovery {
-                let share = model.age_s / recovery;
-                force = before.contact.force(held, stiffest).lerp(force, share);
-            } else {
-                self.before = None;
-            }
-        }
-        let overdue = model.age_s - model.contact.time_to_live_s;
-        tick.stale = overdue > 0.0;
-        let fading = (1.0 - overdue.max(0.0) / self.limits.fade_s).max(0.0);
-        force * (fading * (self.engaged_s / self.limits.engage_s).min(1.0))
+        tick.stale = model.overdue_s() > 0.0;
+        self.felt(model, held) * (self.engaged_s / self.limits.engage_s).min(1.0)
+    }
+}
+
+impl Active {
+    /// Time since the end of its time to live, s; negative before.
+    fn overdue_s(&self) -> f64 {
+        self.age_s - self.contact.time_to_live_s
     }
 }
 
 #[cfg(test)]
-mod tests {
-    use glam::DQuat;
-    use maulstick_types::haptics::ForceLaw;
-    use proptest::prelude::*;
-
-    use super::*;
-    use crate::contact::tests::{linear, model};
-
-    const DT: f64 = 1e-3;
-
-    fn held(depth: f64) -> Held {
-        Held {
-            position: DVec3::new(0.0, 0.0, 0.025 - depth),
-            orientation: DQuat::IDENTITY,
-            velocity: DVec3::ZERO,
-        }
-    }
-
-    fn contact(law: ForceLaw) -> Contact {
-        Contact::new(&model(law)).expect("a model")
-    }
-
-    /// A servo whose force has come up at `depth`, kept alive by a model a tick.
-    fn engaged(depth: f64) -> Servo {
-        let mut servo = Servo::new(Limits::default());
-        for _ in 0..1000 {
-            servo.receive(contact(linear()), false);
-            servo.step(&held(depth), DT);
-        }
-        servo
-    }
-
-    #[test]
-    fn the_force_comes_up_over_the_ramp_and_reaches_the_model() {
-        let mut servo = Servo::new(Limits::default());
-        let mut last = 0.0;
-        for tick in 1..=600 {
-            servo.receive(contact(linear()), tick == 1);
-            let (force, _) = servo.step(&held(0.0125), DT);
-            assert!(force.z >= last - 1e-12 && force.z <= 0.4 * f64::from(tick) * DT / 0.5 + 1e-9);
-            last = force.z;
-        }
-        assert!((last - 0.4).abs() < 1e-9);
-    }
-
-    #[test]
-    fn a_silent_sender_loses_its_force_within_time_to_live_and_fade() {
-        let mut servo = engaged(0.0125);
-        let mut ticks = 0;
-        loop {
-            ticks += 1;
-            let (force, tick) = servo.step(&held(0.0125), DT);
-            // The newest model came a tick before the first of these, so the 49th ends its 50 ms.
-            assert!(ticks == 49 || tick.stale == (ticks > 49), "{ticks}");
-            if force == DVec3::ZERO {
-                break;
-            }
-        }
-        assert!(ticks <= 126, "{ticks} ms");
-    }
-
-    #[test]
-    fn a_jump_of_the_plane_is_spread_over_the_recovery_time() {
-        let mut servo = engaged(0.0125);
-        let mut higher = model(linear());
-        higher.plane_point_m[2] = 0.01;
-        servo.receive(Contact::new(&higher).expect("a model"), false);
-        let before = servo.force.z;
-        let (first, _) = servo.step(&held(0.0125), DT);
-        assert!(
-            first.z - before < 0.12 * 0.32,
-            "{} N at once",
-            first.z - before
-        );
-        for _ in 0..10 {
-            servo.step(&held(0.0125), DT);
-        }
-        assert!((servo.force.z - 0.72).abs() < 1e-9, "{}", servo.force.z);
-    }
-
-    #[test]
-    fn a_number_that_is_none_latches_the_fault() {
-        let mut servo = engaged(0.0125);
-        let broken = Held {
-            velocity: DVec3::new(f64::NAN, 0.0, 0.0),
-            ..held(0.01)
-        };
-        assert!(servo.step(&broken, DT).1.fault);
-        assert_eq!(servo.step(&held(0.0125), DT).0, DVec3::ZERO, "latched");
-        servo.rearm();
-        servo.receive(contact(linear()), true);
-        assert!(servo.step(&held(0.0125), DT).0.z < 0.01, "and engages anew");
-    }
-
-    #[test]
-    fn a_long_tick_drops_the_force() {
-        let mut servo = engaged(0.0125);
-        let (force, tick) = servo.step(&held(0.0125), 0.2);
-        assert!(tick.late && force.length() < 0.01, "{force}");
-    }
-
-    proptest! {
-        #[test]
-        fn force_and_its_change_stay_within_their_limits(
-            moves in prop::collection::vec(
-                (-0.06..0.06f64, -3.0..3.0f64, 0.0..0.02f64, 0u8..4, 0.0..2000.0f64), 1..200),
-        ) {
-            let limits = Limits::default();
-            let mut servo = Servo::new(limits);
-            let mut last = DVec3::ZERO;
-            for (depth, speed, dt, kind, stiffness) in moves {
-                match kind {
-                    0 => servo.receive(contact(ForceLaw::Rigid { stiffness_n_m: stiffness }), false),
-                    1 => servo.receive(contact(linear()), true),
-                    _ => {}
-                }
-                let held = Held { velocity: DVec3::splat(speed), ..held(depth) };
-                let (force, tick) = servo.step(&held, dt);
-                prop_assert!(force.length() <= limits.max_force_n * (1.0 + 1e-12));
-                if !tick.late {
-                    let change = (force - last).length();
-                    prop_assert!(change <= limits.slew_n_s * dt * (1.0 + 1e-9) + 1e-12);
-                }
-                last = force;
-            }
-        }
-    }
-}
+mod tests;

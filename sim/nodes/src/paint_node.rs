@@ -10,9 +10,10 @@ use maulstick_bus::typed::{Reader, Received, Receiver, Sender};
 use maulstick_bus::{
     Arrival, Bus, BusError, Class, CreditReceiver, Queue, Request, Server, Subscription, Wake,
 };
-use maulstick_paint::picture::{picture, write_whole};
+use maulstick_paint::picture::picture;
 use maulstick_paint::sequencer::Replied;
 use maulstick_paint::{Effect, Painting, Sequencer};
+use maulstick_rig::files::write_whole;
 use maulstick_types::brush::{BrushDef, BrushState};
 use maulstick_types::command::{CommandReply, CommandRequest, Outcome};
 use maulstick_types::paint::{BrushCredit, FrameHolds, JournalEntry, PaintConsumed, PaintStatus};
@@ -459,9 +460,8 @@ pub fn write_snapshot(
         })
         .map_err(|error| (name(ledger), error))?;
     }
-    picture(painting, CANVAS)
-        .write_png(path)
-        .map_err(|error| (name(path), error))
+    let picture = picture(painting, CANVAS);
+    write_whole(path, |file| picture.encode_png(file)).map_err(|error| (name(path), error))
 }
 
 impl std::fmt::Debug for PaintNode {

@@ -8,4 +8,4 @@
 mod elementary;
 pub mod geometry;
 
-pub use elementary::{acos, atan2, cos, exp, exp_f32, ln, powf, sin, sin_cos, sinc};
+pub use elementary::{acos, atan2, cos, exp, exp_f32, ln, powf, sin, sin_cos};

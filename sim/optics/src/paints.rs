@@ -162,13 +162,10 @@ impl PaintLibrary {
         {
             return Ok(paint);
         }
-        let likeness =
-            |paint: &Paint| strsim::jaro_winkler(&paint.name.to_lowercase(), &name.to_lowercase());
-        let nearest = self
-            .paints
-            .iter()
-            .max_by(|a, b| likeness(a).total_cmp(&likeness(b)))
-            .map_or_else(String::new, |paint| paint.name.clone());
+        let names = self.paints.iter().map(|paint| paint.name.as_str());
+        let nearest = maulstick_types::nearest(name, names)
+            .unwrap_or_default()
+            .to_owned();
         Err(PaintError::Unknown {
             name: name.to_owned(),
             nearest,

@@ -15,7 +15,7 @@
 //! | [`load`], [`ledger`], [`history`] | what a brush carries, the books, undo |
 //! | [`setup`] | the scene of a new painting |
 //! | [`painting`], [`sequencer`] | the painting and its journal |
-//! | [`display`], [`lamp`], [`picture`] | unlit colour for the view, the lamp over a surface, pictures as files |
+//! | [`display`], [`lamp`], [`picture`] | unlit colour for the view, the lamp, pictures |
 
 pub mod display;
 pub mod head;

@@ -1,8 +1,6 @@
-//! Pictures and ledgers as files, written beside and renamed.
+//! Pictures of a surface.
 
-use std::fs::File;
-use std::io::{BufWriter, Error, Write as _};
-use std::path::{Path, PathBuf};
+use std::io::{Error, Write};
 
 use maulstick_optics::colour::{SrgbTable, clamp_chromaticity};
 use maulstick_optics::light::{HeightField, lit};
@@ -122,61 +120,18 @@ fn draw(
     Picture { width, height, rgb }
 }
 
-/// The name under which a file is written before it takes its own.
-fn beside(path: &Path) -> PathBuf {
-    let mut name = path.file_name().unwrap_or_default().to_os_string();
-    name.push(format!(".{}.tmp", std::process::id()));
-    path.with_file_name(name)
-}
-
-/// Writes a file through `fill`: whole under its name, or not at all.
-///
-/// # Errors
-/// What the file system says; no half-written file is left.
-pub fn write_whole(
-    path: &Path,
-    fill: impl FnOnce(&mut BufWriter<File>) -> Result<(), Error>,
-) -> Result<(), Error> {
-    let beside = beside(path);
-    let write = || {
-        let mut file = BufWriter::new(File::create(&beside)?);
-        fill(&mut file)?;
-        file.flush()?;
-        file.get_ref().sync_all()?;
-        std::fs::rename(&beside, path)
-    };
-    write().inspect_err(|_| {
-        std::fs::remove_file(&beside).ok();
-    })
-}
-
-/// Sees, before the work that fills it, whether a file can be written.
-///
-/// # Errors
-/// What the file system says.
-pub fn check_writable(path: &Path) -> Result<(), Error> {
-    if path.is_dir() {
-        return Err(Error::from(std::io::ErrorKind::IsADirectory));
-    }
-    let beside = beside(path);
-    File::create(&beside)?;
-    std::fs::remove_file(&beside)
-}
-
 impl Picture {
     /// Writes a PNG: 8 bits a channel, marked as sRGB.
     ///
     /// # Errors
-    /// As [`write_whole`].
-    pub fn write_png(&self, path: &Path) -> Result<(), Error> {
-        write_whole(path, |file| {
-            let mut encoder = png::Encoder::new(file, self.width as u32, self.height as u32);
-            encoder.set_color(png::ColorType::Rgb);
-            encoder.set_depth(png::BitDepth::Eight);
-            encoder.set_source_srgb(png::SrgbRenderingIntent::RelativeColorimetric);
-            encoder.write_header()?.write_image_data(&self.rgb)?;
-            Ok(())
-        })
+    /// What `to` says.
+    pub fn encode_png(&self, to: impl Write) -> Result<(), Error> {
+        let mut encoder = png::Encoder::new(to, self.width as u32, self.height as u32);
+        encoder.set_color(png::ColorType::Rgb);
+        encoder.set_depth(png::BitDepth::Eight);
+        encoder.set_source_srgb(png::SrgbRenderingIntent::RelativeColorimetric);
+        encoder.write_header()?.write_image_data(&self.rgb)?;
+        Ok(())
     }
 }
 

@@ -68,5 +68,10 @@ fn measure(options: &Options) -> Result<(), Fault> {
     for (_, run) in areas {
         run(&mut report)?;
     }
-    report.print(options.json)
+    if options.json {
+        report.print_json()
+    } else {
+        report.print_table();
+        Ok(())
+    }
 }

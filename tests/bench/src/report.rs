@@ -73,14 +73,16 @@ impl Report {
         });
     }
 
-    /// Prints the report as a table or as JSON.
-    pub(crate) fn print(&self, json: bool) -> Result<(), Fault> {
-        if json {
-            let text = serde_json::to_string_pretty(self)
-                .map_err(|error| Fault::failure(error.to_string()))?;
-            println!("{text}");
-            return Ok(());
-        }
+    /// Prints the report as JSON.
+    pub(crate) fn print_json(&self) -> Result<(), Fault> {
+        let text = serde_json::to_string_pretty(self)
+            .map_err(|error| Fault::failure(error.to_string()))?;
+        println!("{text}");
+        Ok(())
+    }
+
+    /// Prints the report as a table.
+    pub(crate) fn print_table(&self) {
         println!("{}", self.machine);
         for row in &self.rows {
             print!("{:<28} {:>12.4} {:<8}", row.name, row.value, row.unit);
@@ -91,7 +93,6 @@ impl Report {
                 _ => println!(),
             }
         }
-        Ok(())
     }
 }
 

@@ -1,0 +1,283 @@
+//! What values the settings of a rig may have.
+
+use maulstick_types::topics::check_name;
+
+use super::{
+    BACKENDS, BRUSH_NODE, BrushSection, DRIVERS, DeviceSection, MODELS, RESERVED, RigConfig,
+};
+use crate::fault::Fault;
+
+/// A quaternion written by hand counts as a unit one within this.
+const UNIT_TOLERANCE: f64 = 1e-3;
+
+impl RigConfig {
+    pub(super) fn check(&self, text: &str, name: &str) -> Result<(), Fault> {
+        let fault = |what: String, key: &str, value: &str| {
+            Fault::usage(what).at(format!("{name}:{}", line_of(text, key, value)))
+        };
+        let names = [&self.rig.name]
+            .into_iter()
+            .chain(self.device.iter().map(|device| &device.name))
+            .chain(self.brush.iter().map(|brush| &brush.name));
+        for word in names {
+            check_name(word).map_err(|what| {
+                fault(format!("the name {what}"), "name", word).help("choose another name")
+            })?;
+        }
+        for (place, device) in self.device.iter().enumerate() {
+            let others = self.device[..place].iter().map(|other| &other.name);
+            unique("devices", &device.name, others)
+                .and_then(|()| self.check_device(device))
+                .map_err(|wrong| wrong.fault(text, name))?;
+        }
+        for (place, brush) in self.brush.iter().enumerate() {
+            let others = self.brush[..place].iter().map(|other| &other.name);
+            unique("brushes", &brush.name, others)
+                .and_then(|()| check_brush(brush))
+                .map_err(|wrong| wrong.fault(text, name))?;
+        }
+        let canvas = &self.canvas;
+        for (key, value) in [
+            ("width_mm", canvas.width_mm),
+            ("height_mm", canvas.height_mm),
+        ] {
+            let cells = value / canvas.cell_mm;
+            if !(canvas.cell_mm > 0.0 && (0.5..=65_536.0).contains(&cells)) {
+                return Err(fault(
+                    format!("{key} = {value} with cells of {} mm", canvas.cell_mm),
+                    key,
+                    "",
+                )
+                .help("choose a size of 1 to 65536 cells"));
+            }
+        }
+        choose("paint model", &self.paint.model, &MODELS)
+            .and_then(|()| choose("backend", &self.paint.backend, &BACKENDS))
+            .map_err(|(what, help)| fault(what, "[paint]", "").help(help))
+    }
+
+    /// What a device may be: its motors follow these numbers.
+    fn check_device(&self, device: &DeviceSection) -> Result<(), Wrong> {
+        let name = &device.name;
+        if RESERVED.contains(&name.as_str()) || name.starts_with(BRUSH_NODE) {
+            return Err(Wrong {
+                what: format!("the rig itself has something called '{name}'"),
+                key: "name",
+                value: name.clone(),
+                help: format!(
+                    "a device is not called {} or {BRUSH_NODE}…",
+                    RESERVED.join(", ")
+                ),
+            });
+        }
+        let wrong = |(what, help), key, value: &str| Wrong {
+            what,
+            key,
+            value: value.to_owned(),
+            help,
+        };
+        choose("driver", &device.driver, &DRIVERS)
+            .map_err(|told| wrong(told, "driver", &device.driver))?;
+        if self.brush_named(&device.brush).is_none() {
+            let names = self.brush.iter().map(|brush| brush.name.as_str());
+            let told = unknown("brush", &device.brush, names);
+            return Err(wrong(told, "brush", &device.brush));
+        }
+        if !device.position_m.iter().all(|value| value.is_finite()) {
+            let help = "write three plain numbers, in metres";
+            return Err(Wrong::value(name, "position_m", device.position_m, help));
+        }
+        let unit = 1.0 - UNIT_TOLERANCE..=1.0 + UNIT_TOLERANCE;
+        if !unit.contains(&length(&device.orientation)) {
+            let help = "write a quaternion x, y, z, w of length 1; no turn is [0, 0, 0, 1]";
+            return Err(Wrong::value(name, "orientation", device.orientation, help));
+        }
+        if !(device.max_force_n.is_finite() && device.max_force_n >= 0.0) {
+            let help = "choose 0 or more newtons; the device's own limit holds too";
+            return Err(Wrong::value(name, "max_force_n", device.max_force_n, help));
+        }
+        Ok(())
+    }
+}
+
+/// A wrong value: what is wrong, the key and value by which its line is found, what to do.
+struct Wrong {
+    what: String,
+    key: &'static str,
+    value: String,
+    help: String,
+}
+
+impl Wrong {
+    fn fault(self, text: &str, name: &str) -> Fault {
+        Fault::usage(self.what)
+            .at(format!("{name}:{}", line_of(text, self.key, &self.value)))
+            .help(self.help)
+    }
+
+    /// The value of `key` in the section called `owner`.
+    fn value(owner: &str, key: &'static str, value: impl std::fmt::Debug, help: &str) -> Self {
+        Self {
+            what: format!("{key} = {value:?} of '{owner}'"),
+            key,
+            value: String::new(),
+            help: help.into(),
+        }
+    }
+}
+
+fn unique<'a>(
+    kind: &str,
+    name: &str,
+    mut others: impl Iterator<Item = &'a String>,
+) -> Result<(), Wrong> {
+    if others.any(|other| other == name) {
+        return Err(Wrong {
+            what: format!("two {kind} are called '{name}'"),
+            key: "name",
+            value: name.to_owned(),
+            help: "give each its own name".into(),
+        });
+    }
+    Ok(())
+}
+
+pub(super) fn length(quaternion: &[f64; 4]) -> f64 {
+    quaternion
+        .iter()
+        .map(|part| part * part)
+        .sum::<f64>()
+        .sqrt()
+}
+
+fn check_brush(brush: &BrushSection) -> Result<(), Wrong> {
+    if !(0.1..=300.0).contains(&brush.size_mm) {
+        let help = "choose 0.1 to 300";
+        return Err(Wrong::value(&brush.name, "size_mm", brush.size_mm, help));
+    }
+    if !(0.0..=0.9).contains(&brush.depth_share) {
+        let (share, help) = (brush.depth_share, "choose 0 to 0.9");
+        return Err(Wrong::value(&brush.name, "depth_share", share, help));
+    }
+    Ok(())
+}
+
+fn unknown<'a>(
+    kind: &str,
+    name: &str,
+    names: impl Iterator<Item = &'a str> + Clone,
+) -> (String, String) {
+    let all = names.clone().collect::<Vec<_>>().join(", ");
+    let nearest = Fault::nearest(name, names).unwrap_or_default();
+    (
+        format!("there is no {kind} called '{name}'"),
+        format!("did you mean '{nearest}'? There are: {all}"),
+    )
+}
+
+fn choose(kind: &str, name: &str, names: &[&'static str]) -> Result<(), (String, String)> {
+    if names.contains(&name) {
+        Ok(())
+    } else {
+        Err(unknown(kind, name, names.iter().copied()))
+    }
+}
+
+/// The line, from 1, on which `key` and `value` first stand together.
+fn line_of(text: &str, key: &str, value: &str) -> usize {
+    let holds = |line: &str| line.contains(key) && line.contains(value);
+    text.lines().position(holds).map_or(1, |place| place + 1)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::config::DEFAULT;
+
+    fn error(from: &str, to: &str) -> String {
+        assert!(DEFAULT.contains(from), "{from}");
+        RigConfig::parse(&DEFAULT.replace(from, to), "rig.toml")
+            .expect_err(to)
+            .to_string()
+    }
+
+    #[test]
+    fn impossible_numbers_are_refused() {
+        assert!(error("width_mm = 256", "width_mm = -1").contains("width_mm"));
+        assert!(error("cell_mm = 0.25", "cell_mm = 0").contains("cells"));
+        assert!(error("size_mm = 10", "size_mm = nan").contains("size_mm"));
+        assert!(error("name = \"studio\"", "name = \"my studio\"").contains("my studio"));
+        assert!(error("width_mm = 256", "width_mm = \"wide\"").contains("rig.toml:9"));
+        assert!(error("[rig]", "[rig").contains("rig.toml:4"));
+    }
+
+    #[test]
+    fn numbers_that_no_motor_may_get_are_refused_with_their_line() {
+        for force in ["-1", "-1e-9", "nan", "inf"] {
+            let text = error("max_force_n = 3.0", &format!("max_force_n = {force}"));
+            assert!(
+                text.contains("max_force_n") && text.contains("rig.toml:33"),
+                "{text}"
+            );
+        }
+        for turn in [
+            "0, 0, 0, 0",
+            "0, 0, 0, 2",
+            "1, 0, 0, 1",
+            "nan, 0, 0, 1",
+            "0, 0, 0, inf",
+        ] {
+            let text = error(
+                "orientation = [0, 0, 0, 1]",
+                &format!("orientation = [{turn}]"),
+            );
+            assert!(
+                text.contains("orientation") && text.contains("rig.toml:32"),
+                "{text}"
+            );
+        }
+        for place in ["nan, 0, 0", "0, inf, 0", "0, 0, -inf"] {
+            let text = error("position_m = [0, 0, 0]", &format!("position_m = [{place}]"));
+            assert!(
+                text.contains("position_m") && text.contains("rig.toml:31"),
+                "{text}"
+            );
+        }
+    }
+
+    #[test]
+    fn a_turn_written_with_few_digits_becomes_a_unit_one() {
+        let turned = DEFAULT.replace("[0, 0, 0, 1]", "[0.7071, 0, 0, 0.7071]");
+        let config = RigConfig::parse(&turned, "rig.toml").expect("valid");
+        assert!((length(&config.device[0].orientation) - 1.0).abs() < 1e-15);
+    }
+
+    #[test]
+    fn names_that_would_collide_in_the_rig_are_refused() {
+        for name in [
+            "hub",
+            "paint",
+            "ui",
+            "player",
+            "mouse",
+            "brush-main",
+            "brush-x",
+        ] {
+            let text = error("name = \"phantom\"", &format!("name = \"{name}\""));
+            assert!(
+                text.contains(&format!("'{name}'")) && text.contains("rig.toml:27"),
+                "{text}"
+            );
+        }
+        let twice = |section: &str| {
+            let start = DEFAULT.find(section).expect("a section");
+            let end = DEFAULT[start..]
+                .find("\n\n")
+                .map_or(DEFAULT.len(), |end| start + end);
+            let text = format!("{DEFAULT}\n{}\n", &DEFAULT[start..end]);
+            RigConfig::parse(&text, "rig.toml").expect_err(section).what
+        };
+        assert_eq!(twice("[[device]]"), "two devices are called 'phantom'");
+        assert_eq!(twice("[[brush]]"), "two brushes are called 'main'");
+    }
+}

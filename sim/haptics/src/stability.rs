@@ -1,0 +1,151 @@
+//! The servo presses a device and a hand onto a wall: what shakes and what does not.
+//!
+//! A soft press hides a fault, as Coulomb friction holds the tip: here the wall jumps, so each run
+//! has been kicked. Bounds are those of Colgate and Schenkel (1997) with the delay of Gil et al.
+//! (2009): a wall of stiffness K, felt `delay` late at a period T, needs damping
+//! b > K·(T/2 + delay).
+
+use glam::{DQuat, DVec3};
+use maulstick_types::haptics::ForceLaw;
+
+use crate::contact::tests::model;
+use crate::contact::{Contact, Held};
+use crate::plant::{Hand, Plant};
+use crate::servo::{Limits, Sender, Servo};
+
+const DT: f64 = 1e-3;
+/// Ticks between two models: those of the brush node come 4 ms apart.
+const MODEL_TICKS: usize = 4;
+/// Wobble that no hand feels, m.
+const STILL: f64 = 1e-4;
+const HANDS: [Hand; 3] = [Hand::FINGERTIP, Hand::PEN_GRIP, Hand::ARM];
+
+/// A hand pressed 3 mm into a wall.
+#[derive(Clone, Copy, Debug)]
+struct Press {
+    hand: Hand,
+    stiffness: f64,
+    /// Ticks from the reading to the force.
+    delay: usize,
+    /// The force is set anew only every so many ticks, as if it crossed a network.
+    hold: usize,
+}
+
+impl Press {
+    fn wall(&self, z: f64) -> Contact {
+        let mut law = model(ForceLaw::Rigid {
+            stiffness_n_m: self.stiffness,
+        });
+        law.plane_point_m[2] = z;
+        law.recovery_ns = 15_000_000;
+        Contact::new(&law).expect("a model")
+    }
+
+    /// For 1.4 s the wall jumps by 3 mm every 100 ms. How far the tip moves, peak to peak, in the
+    /// last half second of five, m.
+    fn wobble(&self) -> f64 {
+        let mut servo = Servo::new(Limits {
+            max_stiffness_n_m: 1e9,
+            max_force_n: 3.3,
+            ..Limits::default()
+        });
+        let mut plant = Plant::omni(self.hand, DVec3::new(0.0, 0.0, 0.025));
+        let mut under_way = vec![DVec3::ZERO; self.delay + 1];
+        let mut force = DVec3::ZERO;
+        let (mut low, mut high) = (f64::MAX, f64::MIN);
+        for tick in 0..5000 {
+            if tick % MODEL_TICKS == 0 {
+                let up = tick < 1400 && (tick / 100) % 2 == 1;
+                servo.receive(self.wall(if up { 0.003 } else { 0.0 }), Sender::Same);
+            }
+            let held = Held {
+                position: plant.read_position(),
+                orientation: DQuat::IDENTITY,
+                velocity: plant.read_velocity(),
+            };
+            under_way.rotate_left(1);
+            under_way[self.delay] = servo.step(&held, DT).0;
+            if tick % self.hold == 0 {
+                force = under_way[0];
+            }
+            plant.advance(force, DVec3::new(0.0, 0.0, 0.022), DT);
+            if tick >= 4500 {
+                low = low.min(plant.true_position().z);
+                high = high.max(plant.true_position().z);
+            }
+        }
+        high - low
+    }
+}
+
+#[test]
+fn every_hand_is_still_at_every_stiffness_that_a_device_may_have() {
+    for hand in HANDS {
+        for delay in [0, 1] {
+            for stiffness in [50.0, 100.0, 200.0, 300.0, 400.0, 500.0] {
+                let press = Press {
+                    hand,
+                    stiffness,
+                    delay,
+                    hold: 1,
+                };
+                let wobble = press.wobble();
+                assert!(wobble < STILL, "{press:?}: {wobble} m");
+            }
+        }
+    }
+}
+
+#[test]
+fn within_the_bound_of_its_damping_a_wall_is_still_at_any_delay() {
+    let plant = Plant::omni(Hand::FINGERTIP, DVec3::ZERO);
+    for hand in HANDS {
+        for delay in [0, 1, 2, 3, 4, 8, 15] {
+            let bound = (plant.damping + hand.damping) / (DT * (0.5 + delay as f64));
+            for share in [0.25, 0.5, 0.75, 0.95] {
+                let stiffness = share * bound;
+                let press = Press {
+                    hand,
+                    stiffness,
+                    delay,
+                    hold: 1,
+                };
+                let wobble = press.wobble();
+                assert!(wobble < STILL, "{press:?}: {wobble} m");
+            }
+        }
+    }
+}
+
+/// The seeded faults: were these still, the tests above could not fail. A hand with damping hides
+/// them.
+#[test]
+fn beyond_the_bound_or_with_a_force_sent_over_a_network_a_fingertip_shakes() {
+    let press = |stiffness, delay, hold| Press {
+        hand: Hand::FINGERTIP,
+        stiffness,
+        delay,
+        hold,
+    };
+    for shaking in [
+        press(1200.0, 0, 1),
+        press(800.0, 1, 1),
+        press(400.0, 2, 1),
+        press(200.0, 4, 1),
+        // Forces at 200 Hz and at 60 Hz.
+        press(400.0, 0, 5),
+        press(400.0, 0, 16),
+    ] {
+        let wobble = shaking.wobble();
+        assert!(wobble > 2e-3, "{shaking:?}: {wobble} m");
+        println!("{shaking:?}: {:.1} mm", wobble * 1e3);
+    }
+    assert!(
+        Press {
+            hand: Hand::PEN_GRIP,
+            ..press(400.0, 0, 16)
+        }
+        .wobble()
+            < STILL
+    );
+}
