@@ -12,6 +12,7 @@ use std::time::Duration;
 use maulstick_bus::typed::Reader;
 use maulstick_bus::{Bus, BusError, Request, Server, Wake};
 use maulstick_optics::Studio;
+use maulstick_paint::bare::Bare;
 use maulstick_paint::tile::{Tile, TileId};
 use maulstick_types::paint::{FrameHolds, FrameReply, FrameRequest, FrameTile};
 use maulstick_types::{Flags, Origin, encode};
@@ -24,14 +25,14 @@ const REPLY_BYTES: usize = 16 << 20;
 const LONGEST_WAIT_MS: u32 = 400;
 
 /// A surface as its views see it.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug)]
 pub struct FedSurface {
     /// Cells across and up.
     pub cells: [u32; 2],
     /// Tiles across and up.
     pub grid: [u32; 2],
-    /// Reflectance of the ground at the studio's wavelengths.
-    pub ground: Vec<f32>,
+    /// What it shows where nothing was painted.
+    pub bare: Arc<Bare>,
     /// Tiles on which something was painted, with the number of their version.
     pub tiles: BTreeMap<TileId, (u64, Option<Arc<Tile>>)>,
 }

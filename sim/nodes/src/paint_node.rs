@@ -334,17 +334,17 @@ impl PaintNode {
         let mut fed = self.feed.lock();
         fed.studio = Some(Arc::new(painting.studio().clone()));
         for surface in &painting.scene().surfaces {
-            let Some(store) = painting.store(surface.id) else {
+            let (Some(store), Some(bare)) = (painting.store(surface.id), painting.bare(surface.id))
+            else {
                 continue;
             };
-            let ground = painting.ground(surface.id).to_vec();
             let (cells, grid) = (store.cells(), store.grid());
             fed.surfaces.insert(
                 surface.id,
                 FedSurface {
                     cells,
                     grid,
-                    ground,
+                    bare: Arc::clone(bare),
                     tiles: BTreeMap::new(),
                 },
             );

@@ -4,8 +4,9 @@ use half::f16;
 use half::slice::HalfFloatSliceExt as _;
 use maulstick_optics::{FilmPlanes, Studio};
 
+use crate::bare::Bare;
 use crate::quantum::QUANTUM_M;
-use crate::tile::{TILE_CELLS, Tile};
+use crate::tile::{TILE_CELLS, Tile, TileId};
 
 /// A tile as it is shown, before light.
 #[derive(Clone, Debug, PartialEq)]
@@ -42,10 +43,37 @@ fn height(films: &[(usize, Vec<f32>)]) -> Vec<f32> {
 }
 
 impl DisplayTile {
-    /// The height of a tile alone, as in [`of`](Self::of), m.
+    /// Height of a tile of a surface alone, as in [`on`](Self::on), m.
     #[must_use]
-    pub fn height_of(tile: Option<&Tile>) -> Vec<f32> {
-        height(&films(tile))
+    pub fn height_on(bare: &Bare, id: TileId, tile: Option<&Tile>) -> Vec<f32> {
+        let mut heights = height(&films(tile));
+        for (cell, well) in bare.in_wells(id) {
+            if heights[cell] == 0.0 {
+                heights[cell] = well.height_m;
+            }
+        }
+        let relief = bare.relief.tile(id);
+        heights
+            .iter_mut()
+            .zip(&*relief)
+            .for_each(|(height, base)| *height += base);
+        heights
+    }
+
+    /// The display of a tile of a surface; `tile` is none where nothing was painted.
+    #[must_use]
+    pub fn on(bare: &Bare, id: TileId, tile: Option<&Tile>, studio: &Studio) -> Self {
+        let mut shown = Self::of(tile, studio, &bare.ground);
+        for (cell, well) in bare.in_wells(id) {
+            if shown.wetness[cell] == 0.0 {
+                for (plane, channel) in shown.rgb.iter_mut().zip(well.rgb) {
+                    plane[cell] = channel;
+                }
+                (shown.gloss[cell], shown.wetness[cell]) = (1.0, 1.0);
+            }
+        }
+        shown.height = Self::height_on(bare, id, tile);
+        shown
     }
 
     /// The display of a tile over a flat ground; `tile` is none where nothing was painted.
@@ -78,16 +106,6 @@ impl DisplayTile {
             wetness,
             height,
         }
-    }
-
-    /// The display of the tile on what lies under the paint.
-    #[must_use]
-    pub fn raised(mut self, relief: &[f32]) -> Self {
-        self.height
-            .iter_mut()
-            .zip(relief)
-            .for_each(|(height, base)| *height += base);
-        self
     }
 
     /// The tile of the next level from its four children: lower left, lower right, upper left,

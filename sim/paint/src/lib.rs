@@ -15,8 +15,9 @@
 //! | [`load`], [`ledger`], [`history`] | what a brush carries, the books, undo |
 //! | [`setup`] | the scene of a new painting |
 //! | [`painting`], [`sequencer`] | the painting and its journal |
-//! | [`display`], [`lamp`], [`picture`] | unlit colour for the view, the lamp, pictures |
+//! | [`bare`], [`display`], [`lamp`], [`picture`] | what is shown: bare, unlit, lit, as a picture |
 
+pub mod bare;
 pub mod display;
 pub mod head;
 pub mod history;

@@ -2,16 +2,16 @@
 
 use std::io::{Error, Write};
 
+use maulstick_optics::Studio;
 use maulstick_optics::colour::{SrgbTable, clamp_chromaticity};
 use maulstick_optics::light::{HeightField, lit};
 use maulstick_types::paint::TILE;
 
+use crate::bare::Bare;
 use crate::display::DisplayTile;
 use crate::lamp::lamp_over;
 use crate::painting::Painting;
-use crate::relief::Relief;
 use crate::store::TileStore;
-use crate::tile::Tile;
 
 /// An sRGB picture, three bytes a pixel from the top row.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -44,10 +44,10 @@ fn under(painting: &mut Painting, surface: u32, light: Light<'_>) -> Picture {
     painting.commit();
     let surfaces = &painting.scene().surfaces;
     let found = surfaces.iter().find(|other| other.id == surface);
-    let (Some(cell_m), Some(store), Some(relief)) = (
+    let (Some(cell_m), Some(store), Some(bare)) = (
         found.map(|s| s.cell_m),
         painting.store(surface),
-        painting.relief(surface),
+        painting.bare(surface),
     ) else {
         return Picture {
             width: 0,
@@ -55,42 +55,30 @@ fn under(painting: &mut Painting, surface: u32, light: Light<'_>) -> Picture {
             rgb: Vec::new(),
         };
     };
-    let ground = painting.ground(surface);
-    let shade = |tile: Option<&Tile>| DisplayTile::of(tile, painting.studio(), ground);
-    draw(store, relief, cell_m, &shade, light)
+    draw(store, bare, painting.studio(), cell_m, light)
 }
 
 /// The heights of a whole surface, m, row after row from the lowest: slopes reach over the borders
 /// of tiles.
-fn heights(store: &TileStore, relief: &Relief) -> Vec<f32> {
+fn heights(store: &TileStore, bare: &Bare) -> Vec<f32> {
     let [width, height] = store.cells().map(|cells| cells as usize);
     let mut heights = vec![0.0f32; width * height];
     for (id, version) in store.iter() {
-        let plane = DisplayTile::height_of(version.tile.as_deref());
-        let base = relief.tile(id);
+        let plane = DisplayTile::height_on(bare, id, version.tile.as_deref());
         let (left, bottom) = (id.x as usize * TILE, id.y as usize * TILE);
         let across = TILE.min(width - left);
         for y in 0..TILE.min(height - bottom) {
-            let row = plane[y * TILE..].iter().zip(&base[y * TILE..]);
             heights[(bottom + y) * width + left..][..across]
-                .iter_mut()
-                .zip(row)
-                .for_each(|(height, (paint, base))| *height = paint + base);
+                .copy_from_slice(&plane[y * TILE..][..across]);
         }
     }
     heights
 }
 
 /// Light first, then gamut and encoding.
-fn draw(
-    store: &TileStore,
-    relief: &Relief,
-    cell_m: f64,
-    shade: &dyn Fn(Option<&Tile>) -> DisplayTile,
-    light: Light<'_>,
-) -> Picture {
+fn draw(store: &TileStore, bare: &Bare, studio: &Studio, cell_m: f64, light: Light<'_>) -> Picture {
     let [width, height] = store.cells().map(|cells| cells as usize);
-    let heights = heights(store, relief);
+    let heights = heights(store, bare);
     let field = HeightField {
         heights: &heights,
         cells: [width, height],
@@ -98,12 +86,8 @@ fn draw(
     };
     let mut rgb = vec![0u8; width * height * 3];
     let table = SrgbTable::default();
-    let bare = shade(None);
     for (id, version) in store.iter() {
-        let shown = match &version.tile {
-            Some(tile) => &shade(Some(tile)),
-            None => &bare,
-        };
+        let shown = DisplayTile::on(bare, id, version.tile.as_deref(), studio);
         let (left, bottom) = (id.x as usize * TILE, id.y as usize * TILE);
         for y in 0..TILE.min(height - bottom) {
             let row = height - 1 - (bottom + y);
@@ -139,11 +123,12 @@ impl Picture {
 mod tests {
     use std::sync::Arc;
 
-    use maulstick_optics::{PaintLibrary, Studio};
+    use maulstick_optics::PaintLibrary;
 
     use super::*;
     use crate::quantum::QUANTUM_M;
-    use crate::tile::Version;
+    use crate::relief::Relief;
+    use crate::tile::{Tile, Version};
 
     const CELLS: [u32; 2] = [150, 70];
     const CELL_M: f64 = 2.5e-4;
@@ -176,8 +161,12 @@ mod tests {
     fn drawn(store: &TileStore, light: Light<'_>) -> Picture {
         let studio = studio();
         let ground = vec![0.95; studio.wavelengths()];
-        let shade = |tile: Option<&Tile>| DisplayTile::of(tile, &studio, &ground);
-        draw(store, &Relief::flat(CELL_M), CELL_M, &shade, light)
+        let bare = Bare {
+            ground,
+            relief: Arc::new(Relief::flat(CELL_M)),
+            wells: Vec::new(),
+        };
+        draw(store, &bare, &studio, CELL_M, light)
     }
 
     #[test]

@@ -30,7 +30,8 @@ pub(super) const BARE_VERSIONS: u64 = 1 << 32;
 #[derive(Debug, Default)]
 pub(super) struct Pyramid {
     kept: BTreeMap<(u32, u32, TileId), (u64, Arc<DisplayTile>)>,
-    bare: BTreeMap<u32, Arc<DisplayTile>>,
+    /// What lies beyond the edge of a surface.
+    outside: BTreeMap<u32, Arc<DisplayTile>>,
 }
 
 impl Pyramid {
@@ -67,14 +68,6 @@ impl Pyramid {
         id: TileId,
     ) -> Arc<DisplayTile> {
         let version = Self::painted(surface, level, id);
-        let bare = Arc::clone(
-            self.bare
-                .entry(number)
-                .or_insert_with(|| Arc::new(DisplayTile::of(None, studio, &surface.ground))),
-        );
-        if version == 0 {
-            return bare;
-        }
         if let Some((kept, tile)) = self.kept.get(&(number, level, id))
             && *kept == version
         {
@@ -82,18 +75,19 @@ impl Pyramid {
         }
         let tile = Arc::new(if level == 0 {
             let tile = surface.tiles.get(&id).and_then(|(_, tile)| tile.as_deref());
-            DisplayTile::of(tile, studio, &surface.ground)
+            DisplayTile::on(&surface.bare, id, tile, studio)
         } else {
-            let children: [Arc<DisplayTile>; 4] = std::array::from_fn(|quarter| {
-                self.tile(
-                    studio,
-                    number,
-                    surface,
-                    level - 1,
-                    child(id, quarter as u32),
-                )
+            let outside =
+                Arc::clone(self.outside.entry(number).or_insert_with(|| {
+                    Arc::new(DisplayTile::of(None, studio, &surface.bare.ground))
+                }));
+            let [across, up] = grid(surface, level - 1);
+            let children: [Option<Arc<DisplayTile>>; 4] = std::array::from_fn(|quarter| {
+                let child = child(id, quarter as u32);
+                let inside = child.x < across && child.y < up;
+                inside.then(|| self.tile(studio, number, surface, level - 1, child))
             });
-            DisplayTile::coarser(std::array::from_fn(|i| Some(&*children[i])), &bare)
+            DisplayTile::coarser(children.each_ref().map(|child| child.as_deref()), &outside)
         });
         if self.kept.len() >= KEPT_TILES {
             self.kept.clear();

@@ -6,6 +6,8 @@ use maulstick_bus::bus::Answer;
 use maulstick_bus::{Faults, MemoryNet};
 use maulstick_types::decode;
 
+use maulstick_paint::relief::Relief;
+
 use super::*;
 
 const ME: Origin = Origin {
@@ -29,11 +31,15 @@ fn rig_of(cells: [u32; 2]) -> Rig {
     let studio = Studio::daylight();
     {
         let mut fed = feed.lock();
-        let ground = vec![0.95; studio.wavelengths()];
+        let bare = Arc::new(Bare {
+            ground: vec![0.95; studio.wavelengths()],
+            relief: Arc::new(Relief::flat(2.5e-4)),
+            wells: Vec::new(),
+        });
         let surface = FedSurface {
             cells,
             grid: cells.map(|cells| cells.div_ceil(64)),
-            ground,
+            bare,
             tiles: BTreeMap::new(),
         };
         fed.surfaces.insert(0, surface);

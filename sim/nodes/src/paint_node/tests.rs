@@ -101,7 +101,7 @@ fn the_frames_know_a_paint_as_soon_as_a_tile_has_it() {
     let surface = &fed.surfaces[&CANVAS];
     let painted = surface.tiles.values().filter_map(|(_, tile)| tile.as_ref());
     // Shading a paint that the studio does not have is out of bounds.
-    let shown = painted.map(|tile| DisplayTile::of(Some(tile), studio, &surface.ground));
+    let shown = painted.map(|tile| DisplayTile::of(Some(tile), studio, &surface.bare.ground));
     assert!(shown.count() > 0, "nothing was painted");
 }
 

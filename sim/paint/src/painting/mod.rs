@@ -6,14 +6,17 @@ mod strokes;
 mod undo;
 mod wells;
 
+pub use wells::WELL_M;
+
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use maulstick_brush::{BrushFile, Head};
 use maulstick_optics::{PaintError, PaintLibrary, Studio};
 use maulstick_types::Mixture;
-use maulstick_types::scene::Scene;
+use maulstick_types::scene::{Scene, Surface, WellKind};
 
+use crate::bare::{Bare, CLEANER_RGB, WellLook, well_colour};
 use crate::history::History;
 use crate::impasto::Impasto;
 use crate::ledger::Ledger;
@@ -65,8 +68,7 @@ struct Sheet {
     id: u32,
     cell_m: f64,
     store: TileStore,
-    ground: Vec<f32>,
-    relief: Arc<Relief>,
+    bare: Arc<Bare>,
     /// Most quanta that a cell ever had: how high strips may touch.
     top: f32,
 }
@@ -114,11 +116,7 @@ impl Painting {
                 id: surface.id,
                 cell_m: surface.cell_m,
                 store: TileStore::new(surface.cells),
-                ground: studio.sample(&ground_reflectance(&surface.ground)?),
-                relief: Arc::new(Relief::new(
-                    tooth_called(&surface.tooth, surface.tooth_seed, surface.cell_m)?,
-                    surface.cell_m,
-                )),
+                bare: Arc::new(bare(surface, &studio, &library)?),
                 top: 0.0,
             });
         }
@@ -156,22 +154,16 @@ impl Painting {
         &self.studio
     }
 
-    /// Internal reflectance of a surface's ground at the studio's wavelengths.
+    /// A surface without what was painted on it.
     #[must_use]
-    pub fn ground(&self, surface: u32) -> &[f32] {
-        self.sheet(surface).map_or(&[], |sheet| &sheet.ground)
+    pub fn bare(&self, surface: u32) -> Option<&Arc<Bare>> {
+        self.sheet(surface).map(|sheet| &sheet.bare)
     }
 
     /// The tiles of a surface.
     #[must_use]
     pub fn store(&self, surface: u32) -> Option<&TileStore> {
         self.sheet(surface).map(|sheet| &sheet.store)
-    }
-
-    /// What lies under the wet paint of a surface.
-    #[must_use]
-    pub fn relief(&self, surface: u32) -> Option<&Arc<Relief>> {
-        self.sheet(surface).map(|sheet| &sheet.relief)
     }
 
     fn sheet(&self, surface: u32) -> Option<&Sheet> {
@@ -272,6 +264,44 @@ impl Painting {
         self.scene.version += 1;
         Ok(())
     }
+}
+
+/// A surface before anything is painted on it.
+fn bare(surface: &Surface, studio: &Studio, library: &PaintLibrary) -> Result<Bare, PaintRefusal> {
+    let ground = studio.sample(&ground_reflectance(&surface.ground)?);
+    let tooth = tooth_called(&surface.tooth, surface.tooth_seed, surface.cell_m)?;
+    let mut wells = Vec::new();
+    for well in &surface.wells {
+        let center = well.center_m.map(|m| m / surface.cell_m);
+        let radius = well.radius_m / surface.cell_m;
+        let WellKind::Paint { mixture } = &well.kind else {
+            wells.push(WellLook {
+                center,
+                radius,
+                rgb: CLEANER_RGB,
+                height_m: 0.0,
+            });
+            continue;
+        };
+        let mixture = library.check(mixture).map_err(PaintRefusal::paint)?;
+        let mut mixed = studio.clone();
+        let mut shares = Vec::new();
+        for part in &mixture.parts {
+            let paint = library.find(&part.paint).map_err(PaintRefusal::paint)?;
+            shares.push((mixed.add(paint), part.share));
+        }
+        wells.push(WellLook {
+            center,
+            radius,
+            rgb: well_colour(&mixed, &shares, &ground),
+            height_m: WELL_M as f32,
+        });
+    }
+    Ok(Bare {
+        ground,
+        relief: Arc::new(Relief::new(tooth, surface.cell_m)),
+        wells,
+    })
 }
 
 impl std::fmt::Debug for Painting {

@@ -173,7 +173,7 @@ impl Painting {
 
     fn open_window(&mut self, sheet: usize, rect: TileRect) -> Option<Window> {
         let sheet = &mut self.sheets[sheet];
-        Window::open(&mut sheet.store, rect, &sheet.relief)
+        Window::open(&mut sheet.store, rect, &sheet.bare.relief)
     }
 
     /// Writes what the windows hold back to the tiles.

@@ -12,7 +12,7 @@ use crate::quantum::{QUANTUM_M, SLOTS};
 use crate::window::Window;
 
 /// How thick paint lies in a well, m.
-pub(super) const WELL_M: f64 = 2e-3;
+pub const WELL_M: f64 = 2e-3;
 
 /// The cells of a window that lie in a well and in a rectangle.
 fn cells_within<'a>(
