@@ -7,7 +7,7 @@ use std::process::Command;
 use std::time::Duration;
 
 use maulstick_brush::BrushFile;
-use maulstick_bus::Class;
+use maulstick_bus::{Bus as _, Class};
 use maulstick_device::{Take, TakeSample};
 use maulstick_types::paint::PaintStatus;
 use maulstick_types::stylus::{DEFAULT_TILT_RAD, StylusPose, StylusSample, TakeStatus, axes};
@@ -432,7 +432,8 @@ fn a_simulated_hand_paints_and_feels_the_canvas() {
     let mut without = 0;
     let faded = wait_for(PATIENCE, || {
         while let Some(received) = samples.try_recv() {
-            let sample = received.message;
+            let (stamp_ns, sample) = (received.header.event_ns, received.message);
+            assert!(stamp_ns <= bus.now_ns(), "a stamp from the future");
             assert!(pressed(&sample, head_length_m), "the hand has let go");
             let none = sample.force_n == [0.0; 3];
             without = if none { without + 1 } else { 0 };
