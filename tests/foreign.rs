@@ -140,7 +140,10 @@ fn hostile_messages_are_counted_and_dropped() {
         ] {
             for bytes in &hostile {
                 let limit = Duration::from_millis(50);
-                drop(bus.ask(&topic, bytes.clone(), limit, &wake).expect("asked"));
+                drop(
+                    bus.ask(&topic, Class::Control, bytes.clone(), limit, &wake)
+                        .expect("asked"),
+                );
             }
         }
         status.newest().filter(|status| status.message.refused > 10)

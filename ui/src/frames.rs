@@ -6,7 +6,7 @@ use std::time::Duration;
 
 use eframe::egui::{Color32, Context};
 use maulstick_bus::typed::ask;
-use maulstick_bus::{Bus, BusError};
+use maulstick_bus::{Bus, BusError, Class};
 use maulstick_optics::colour::{SrgbTable, clamp_chromaticity};
 use maulstick_paint::display::DisplayTile;
 use maulstick_rig::Stop;
@@ -94,7 +94,7 @@ pub fn pull(
             level,
             wait_ms: WAIT_MS,
         };
-        match ask::<_, FrameReply>(bus, topic, me, &request, LIMIT) {
+        match ask::<_, FrameReply>(bus, topic, Class::Data, me, &request, LIMIT) {
             Ok(reply) => {
                 (since, epoch) = (reply.version, reply.epoch);
                 if !reply.tiles.is_empty() {

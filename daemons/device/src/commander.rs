@@ -4,7 +4,7 @@ use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 use maulstick_bus::typed::{ask, random_epoch, random_u64};
-use maulstick_bus::{Bus, BusError};
+use maulstick_bus::{Bus, BusError, Class};
 use maulstick_rig::Fault;
 use maulstick_types::command::{After, Command, CommandReply, CommandRequest, Outcome};
 use maulstick_types::topics::Topics;
@@ -68,7 +68,14 @@ impl Commander {
         loop {
             let asked = Instant::now();
             let limit = ASK.min(patience);
-            match ask::<_, CommandReply>(&*self.bus, &self.topic, self.me, &request, limit) {
+            match ask::<_, CommandReply>(
+                &*self.bus,
+                &self.topic,
+                Class::Control,
+                self.me,
+                &request,
+                limit,
+            ) {
                 Ok(CommandReply {
                     outcome: Outcome::Done { detail, .. },
                     ..

@@ -56,7 +56,7 @@ pub enum BusError {
 pub enum Class {
     /// Samples, states and contact models.
     RealTime,
-    /// Credits, commands and replies.
+    /// Credits, commands, lost messages, and the replies to them.
     Control,
     /// Rare values that late joiners need: the last one is kept for them, and a loss is repaired.
     Cached,
@@ -250,13 +250,15 @@ pub trait Bus: Send + Sync {
     /// [`BusError::Topic`].
     fn serve(&self, key: &str, capacity: usize, wake: &Wake) -> Result<Server, BusError>;
 
-    /// Asks `key`; answers and the end arrive in the result and ring `wake`.
+    /// Asks `key`; answers and the end arrive in the result and ring `wake`. The answer travels in
+    /// the class of the question.
     ///
     /// # Errors
     /// [`BusError::Topic`].
     fn ask(
         &self,
         key: &str,
+        class: Class,
         bytes: Vec<u8>,
         limit: Duration,
         wake: &Wake,

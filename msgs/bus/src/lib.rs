@@ -3,7 +3,7 @@
 //! [`Bus`] is what a node sees: publishers, bounded subscriptions, queries, liveliness tokens and
 //! the rig's clock. [`ZenohBus`] carries it between processes; [`MemoryNet`] carries it inside one
 //! process under a virtual clock, and loses, delays and reorders what a test tells it to. No other
-//! crate names zenoh.
+//! crate of the rig names zenoh; the benchmarks do, to put a bare zenoh beside this bus.
 //!
 //! | module | holds |
 //! | --- | --- |

@@ -30,7 +30,7 @@ enum Parcel {
         key: String,
         bytes: Vec<u8>,
         present: bool,
-        token: bool,
+        kind: Kind,
     },
     Question {
         key: String,
@@ -49,7 +49,14 @@ enum Parcel {
 struct Listener {
     expression: String,
     inbox: Inbox<Arrival>,
-    tokens: bool,
+    to: Kind,
+}
+
+/// What a message or a listener is about.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Kind {
+    Topics,
+    Tokens,
 }
 
 struct Net {
@@ -117,10 +124,15 @@ impl Net {
         f64::from(self.random.next_u32()) / f64::from(u32::MAX)
     }
 
-    fn send(&mut self, parcel: Parcel, may_be_lost: bool) {
-        if may_be_lost && self.chance() < self.faults.loss {
-            return;
+    /// Sends what may be lost.
+    fn send(&mut self, parcel: Parcel) {
+        if self.chance() >= self.faults.loss {
+            self.send_surely(parcel);
         }
+    }
+
+    /// Sends what is repaired when it is lost.
+    fn send_surely(&mut self, parcel: Parcel) {
         let delay = self.chance() * self.faults.delay_ns as f64;
         self.next_id += 1;
         self.parcels
@@ -133,10 +145,10 @@ impl Net {
                 key,
                 bytes,
                 present,
-                token,
+                kind,
             } => {
                 for listener in self.listeners.values() {
-                    if listener.tokens == token && matches(&listener.expression, &key) {
+                    if listener.to == kind && matches(&listener.expression, &key) {
                         listener.inbox.push(Arrival {
                             key: key.clone(),
                             bytes: bytes.clone(),
@@ -157,7 +169,7 @@ impl Net {
                         let answers = answers.clone();
                         let answer = Box::new(move |bytes: Vec<u8>| {
                             if let Some(net) = Weak::upgrade(&net) {
-                                lock(&net).send(Parcel::Answer { bytes, answers }, true);
+                                lock(&net).send(Parcel::Answer { bytes, answers });
                             }
                             Ok(())
                         });
@@ -245,9 +257,9 @@ impl Drop for Leave {
                 key,
                 bytes: Vec::new(),
                 present: false,
-                token: true,
+                kind: Kind::Tokens,
             };
-            net.send(gone, false);
+            net.send_surely(gone);
         }
     }
 }
@@ -266,21 +278,23 @@ impl Publish for MemoryPublisher {
             net.cached.insert(self.key.clone(), bytes.clone());
         }
         let key = self.key.clone();
-        net.send(
-            Parcel::Message {
-                key,
-                bytes,
-                present: true,
-                token: false,
-            },
-            !cached,
-        );
+        let parcel = Parcel::Message {
+            key,
+            bytes,
+            present: true,
+            kind: Kind::Topics,
+        };
+        if cached {
+            net.send_surely(parcel);
+        } else {
+            net.send(parcel);
+        }
         Ok(())
     }
 }
 
 impl MemoryBus {
-    fn listen(&self, key: &str, queue: Queue, wake: &Wake, tokens: bool) -> (Subscription, u64) {
+    fn listen(&self, key: &str, queue: Queue, wake: &Wake, to: Kind) -> Subscription {
         let mut net = lock(&self.net);
         net.next_id += 1;
         let id = net.next_id;
@@ -288,7 +302,7 @@ impl MemoryBus {
         let listener = Listener {
             expression: key.to_owned(),
             inbox: inbox.clone(),
-            tokens,
+            to,
         };
         net.listeners.insert(id, listener);
         let keep = Leave {
@@ -296,13 +310,10 @@ impl MemoryBus {
             id,
             token: None,
         };
-        (
-            Subscription {
-                inbox,
-                _keep: Box::new(keep),
-            },
-            id,
-        )
+        Subscription {
+            inbox,
+            _keep: Box::new(keep),
+        }
     }
 }
 
@@ -322,7 +333,7 @@ impl Bus for MemoryBus {
         queue: Queue,
         wake: &Wake,
     ) -> Result<Subscription, BusError> {
-        let (subscription, _) = self.listen(key, queue, wake, false);
+        let subscription = self.listen(key, queue, wake, Kind::Topics);
         if class == Class::Cached {
             let net = lock(&self.net);
             for (cached, bytes) in &net.cached {
@@ -359,6 +370,7 @@ impl Bus for MemoryBus {
     fn ask(
         &self,
         key: &str,
+        _class: Class,
         bytes: Vec<u8>,
         limit: Duration,
         wake: &Wake,
@@ -366,14 +378,11 @@ impl Bus for MemoryBus {
         let inbox = Inbox::new(Queue::Ring(64), wake);
         let mut net = lock(&self.net);
         let answers = inbox.clone();
-        net.send(
-            Parcel::Question {
-                key: key.to_owned(),
-                bytes,
-                answers,
-            },
-            true,
-        );
+        net.send(Parcel::Question {
+            key: key.to_owned(),
+            bytes,
+            answers,
+        });
         net.next_id += 1;
         let end = (
             net.now_ns + u64::try_from(limit.as_nanos()).unwrap_or(u64::MAX / 2),
@@ -399,9 +408,9 @@ impl Bus for MemoryBus {
             key: key.to_owned(),
             bytes: Vec::new(),
             present: true,
-            token: true,
+            kind: Kind::Tokens,
         };
-        net.send(appeared, false);
+        net.send_surely(appeared);
         let keep = Leave {
             net: Arc::downgrade(&self.net),
             id: 0,
@@ -413,7 +422,7 @@ impl Bus for MemoryBus {
     }
 
     fn watch(&self, key: &str, wake: &Wake) -> Result<Subscription, BusError> {
-        let (subscription, _) = self.listen(key, Queue::Ring(1024), wake, true);
+        let subscription = self.listen(key, Queue::Ring(1024), wake, Kind::Tokens);
         let net = lock(&self.net);
         for token in net.tokens.iter().filter(|token| matches(key, token)) {
             subscription.inbox.push(Arrival {
@@ -432,60 +441,4 @@ impl Bus for MemoryBus {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn expressions_match_as_zenoh_does() {
-        for (expression, key, expected) in [
-            ("a/b", "a/b", true),
-            ("a/*", "a/b", true),
-            ("a/*/c", "a/b/c", true),
-            ("a/*", "a/b/c", false),
-            ("a/**", "a", true),
-            ("a/**", "a/b/c", true),
-            ("**/c", "a/b/c", true),
-            ("a/b", "a/c", false),
-        ] {
-            assert_eq!(matches(expression, key), expected, "{expression} {key}");
-        }
-    }
-
-    #[test]
-    fn nothing_arrives_before_its_time_and_late_joiners_get_cached_values() {
-        let net = MemoryNet::new(
-            1,
-            0,
-            Faults {
-                loss: 0.0,
-                delay_ns: 1000,
-            },
-        );
-        let wake = Wake::new();
-        let bus = net.bus();
-        bus.publisher("a/def", Class::Cached)
-            .expect("a publisher")
-            .put(vec![7])
-            .expect("sent");
-        let late = net
-            .bus()
-            .subscribe("a/*", Class::Cached, Queue::Ring(4), &wake)
-            .expect("late");
-        assert_eq!(late.try_recv().map(|arrival| arrival.bytes), Some(vec![7]));
-        let server = bus.serve("q", 4, &wake).expect("a server");
-        let pending = bus
-            .ask("q", vec![1], Duration::from_millis(1), &wake)
-            .expect("asked");
-        assert!(server.try_recv().is_none());
-        net.advance(1000);
-        server
-            .try_recv()
-            .expect("a question")
-            .answer(vec![2])
-            .expect("answered");
-        net.advance(1000);
-        assert_eq!(pending.try_recv(), Some(Answer::Bytes(vec![2])));
-        net.advance(1_000_000);
-        assert_eq!(pending.try_recv(), Some(Answer::Ended));
-    }
-}
+mod tests;

@@ -194,6 +194,7 @@ pub struct Received<M> {
 pub fn ask<Q: Message, A: Message>(
     bus: &dyn Bus,
     topic: &str,
+    class: Class,
     origin: Origin,
     question: &Q,
     limit: Duration,
@@ -205,6 +206,6 @@ pub fn ask<Q: Message, A: Message>(
         source,
     };
     let bytes = encode(&origin, Flags::NONE, 0, now, now, question).map_err(refused)?;
-    let answer = bus.ask(topic, bytes, limit, &wake)?.wait(&wake)?;
+    let answer = bus.ask(topic, class, bytes, limit, &wake)?.wait(&wake)?;
     Ok(decode::<A>(&answer).map_err(refused)?.1)
 }

@@ -275,6 +275,7 @@ impl Bus for ZenohBus {
     fn ask(
         &self,
         key: &str,
+        class: Class,
         bytes: Vec<u8>,
         limit: Duration,
         wake: &Wake,
@@ -294,7 +295,7 @@ impl Bus for ZenohBus {
             .payload(bytes)
             .timeout(limit)
             .congestion_control(CongestionControl::Drop)
-            .priority(Priority::InteractiveHigh)
+            .priority(priority(class))
             .consolidation(ConsolidationMode::None)
             .with(callback)
             .wait()

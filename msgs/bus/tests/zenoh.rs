@@ -2,6 +2,9 @@
 
 use std::time::{Duration, Instant};
 
+use zenoh::Wait as _;
+use zenoh::qos::Priority;
+
 use maulstick_bus::bus::Answer;
 use maulstick_bus::{Bus, BusError, Class, Dial, Queue, RigClock, RigFolder, Wake, ZenohBus};
 
@@ -118,7 +121,9 @@ fn queries_are_answered_or_end() {
     let server = one.serve("t/q", 4, &wake).expect("serving");
     let answer = until(&wake, || {
         let limit = Duration::from_millis(500);
-        let pending = two.ask("t/q", vec![7], limit, &wake).expect("asked");
+        let pending = two
+            .ask("t/q", Class::Control, vec![7], limit, &wake)
+            .expect("asked");
         until(&wake, || {
             if let Some(request) = server.try_recv() {
                 let doubled = [&request.bytes[..], &request.bytes[..]].concat();
@@ -131,13 +136,43 @@ fn queries_are_answered_or_end() {
     assert_eq!(answer, vec![7, 7]);
     let limit = Duration::from_millis(50);
     let nobody = two
-        .ask("t/nobody", vec![], limit, &wake)
+        .ask("t/nobody", Class::Control, vec![], limit, &wake)
         .expect("asked")
         .wait(&wake);
     assert!(
         matches!(nobody, Err(BusError::NoAnswer { .. })),
         "{nobody:?}"
     );
+}
+
+#[test]
+fn a_question_travels_in_its_class() {
+    let rig = rig();
+    let (one, two) = (rig.node("one"), rig.client());
+    let wake = Wake::new();
+    let classes = [
+        ("t/frame", Class::Data, Priority::Data),
+        ("t/command", Class::Control, Priority::InteractiveHigh),
+    ];
+    for (key, class, priority) in classes {
+        let (to, heard) = std::sync::mpsc::channel();
+        let queryable = one
+            .raw_session()
+            .declare_queryable(key)
+            .callback(move |query| {
+                to.send(query.priority()).ok();
+            })
+            .wait()
+            .expect("declared");
+        let limit = Duration::from_millis(50);
+        let came = until(&wake, || {
+            let asked = two.ask(key, class, Vec::new(), limit, &wake);
+            drop(asked.expect("asked").wait(&wake));
+            heard.try_recv().ok()
+        });
+        assert_eq!(came, priority);
+        drop(queryable);
+    }
 }
 
 trait IntoBytes {

@@ -6,7 +6,9 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 use std::time::Duration;
 
+use glam::DVec3;
 use maulstick_brush::BrushModel;
+use maulstick_brush::desk::aim;
 use maulstick_bus::credit::Stamp;
 use maulstick_bus::typed::{Received, Receiver, Sender};
 use maulstick_bus::{
@@ -16,12 +18,12 @@ use maulstick_types::brush::{BrushConsumed, BrushDef, BrushState, Solve};
 use maulstick_types::haptics::ContactModel;
 use maulstick_types::paint::PaintConsumed;
 use maulstick_types::scene::Scene;
-use maulstick_types::stylus::{StylusInfo, StylusSample, axes};
+use maulstick_types::stylus::{StylusInfo, StylusPose, StylusSample, axes};
 use maulstick_types::topics::Topics;
 use maulstick_types::{Flags, Origin, name_hash};
 
 use crate::arbiter::{Arbiter, Range, Stroke};
-use crate::backlog::{Backlog, Waiting};
+use crate::backlog::{Backlog, Place, Waiting};
 use crate::feel::contact_model;
 use crate::outbox::Outbox;
 
@@ -133,7 +135,7 @@ impl BrushNode {
             moves: BTreeMap::new(),
             models: BTreeMap::new(),
             arbiter: Arbiter::default(),
-            backlog: Backlog::default(),
+            backlog: Backlog::new(settings.file.length_m()),
             outbox: Outbox::default(),
             progress: BTreeMap::new(),
             told: BTreeMap::new(),
@@ -277,15 +279,40 @@ impl BrushNode {
         }
         if !received.header.flags.has(Flags::REPLAY) {
             let sample = received.message;
+            let place = self.place(&sample);
             self.backlog.push(Waiting {
                 origin,
                 seq,
                 event_ns,
                 sample,
+                place,
             });
             self.flush(now_ns)?;
         }
         self.feel(&device, origin, now_ns)
+    }
+
+    /// Whether a sample puts the brush clear of the surface: a pen without pressure hovers, a head
+    /// that is higher than it is long does not reach.
+    fn place(&self, sample: &StylusSample) -> Place {
+        let clear = !sample.in_range
+            || match &sample.pose {
+                StylusPose::Contact { pressure, .. } => *pressure == 0.0,
+                StylusPose::Ferrule { pose } => {
+                    let length_m = self.model.file().length_m();
+                    let desk = self.model.desk();
+                    let plane = desk.and_then(|desk| desk.under(aim(sample, length_m)));
+                    plane.is_some_and(|plane| {
+                        let above =
+                            DVec3::from_array(pose.position_m) - plane.to_desk.point(DVec3::ZERO);
+                        above.dot(plane.normal()) > 1.5 * length_m
+                    })
+                }
+            };
+        match clear {
+            true => Place::Air,
+            false => Place::Surface,
+        }
     }
 
     /// Whether a take has this brush to itself.

@@ -54,8 +54,9 @@ pub struct PaintNode {
     told: BTreeMap<Origin, u64>,
     tell_again: bool,
     refused: u64,
-    /// Brushes without a file, and topics with a stranger on them, of which it was said.
+    /// Brushes without a file, and topics with misfits or a stranger on them, of which it was said.
     unknown: BTreeSet<String>,
+    misfits: BTreeSet<String>,
     strangers: BTreeSet<String>,
 }
 
@@ -104,6 +105,7 @@ impl PaintNode {
             tell_again: false,
             refused: 0,
             unknown: BTreeSet::new(),
+            misfits: BTreeSet::new(),
             strangers: BTreeSet::new(),
             topics: topics.clone(),
             me,
@@ -264,7 +266,7 @@ impl PaintNode {
         }
         if let Err(error) = painted {
             self.refused += 1;
-            if self.refused == 1 {
+            if self.misfits.insert(received.key.clone()) {
                 tracing::warn!("{}: {error}: {}", received.key, error.help);
             }
         }

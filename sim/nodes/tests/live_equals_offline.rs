@@ -59,6 +59,8 @@ proptest! {
 struct Intruder {
     mouse: Device,
     step: u32,
+    /// It sends nothing new, but answers for what was lost.
+    rests: bool,
 }
 
 impl Intruder {
@@ -66,10 +68,14 @@ impl Intruder {
         Self {
             mouse: live.device("mouse", 5),
             step: 0,
+            rests: false,
         }
     }
 
-    fn press(&mut self) {
+    fn turn(&mut self) {
+        if self.rests {
+            return self.mouse.serve();
+        }
         self.step += 1;
         let angle = 0.1 * f64::from(self.step);
         let (x, y) = (0.02 * libm::cos(angle), 0.02 * libm::sin(angle));
@@ -77,10 +83,10 @@ impl Intruder {
     }
 }
 
-/// Turns of all, with the take up to sample `until` and, if there is one, the intruder.
+/// Turns of all, with the take up to sample `until`.
 fn turns_of_all(
     live: &mut Live,
-    mut intruder: Option<&mut Intruder>,
+    intruder: &mut Intruder,
     until: usize,
     steps: usize,
     order: &mut impl FnMut() -> u8,
@@ -91,11 +97,7 @@ fn turns_of_all(
             0 => live.player_turn(&samples[..until]),
             1 => drop(live.brush.turn().expect("turned")),
             2 => drop(live.paint.turn().expect("turned")),
-            _ => {
-                if let Some(intruder) = &mut intruder {
-                    intruder.press();
-                }
-            }
+            _ => intruder.turn(),
         }
         live.net.advance(700_000);
     }
@@ -115,11 +117,12 @@ proptest! {
         let mut order = turns(seed);
         live.announce(1);
         // Before the first sample, while it plays, and while the player is silent for a second.
-        turns_of_all(&mut live, Some(&mut intruder), 0, 300, &mut order);
-        turns_of_all(&mut live, Some(&mut intruder), 60, 600, &mut order);
-        turns_of_all(&mut live, Some(&mut intruder), 60, 1500, &mut order);
-        // Its last samples arrive, or are given up, before the take goes on.
-        turns_of_all(&mut live, None, 60, 4000, &mut order);
+        turns_of_all(&mut live, &mut intruder, 0, 300, &mut order);
+        turns_of_all(&mut live, &mut intruder, 60, 600, &mut order);
+        turns_of_all(&mut live, &mut intruder, 60, 1500, &mut order);
+        // Its last samples arrive before the take goes on: after the take they may paint.
+        intruder.rests = true;
+        turns_of_all(&mut live, &mut intruder, 60, 4000, &mut order);
         live.play(&mut order, 200_000);
         prop_assert!(picture(live.paint.painting_mut(), 0).rgb == offline());
     }
@@ -133,7 +136,7 @@ fn after_a_take_its_brush_is_free_again() {
     live.announce(1);
     live.play(&mut order, 20_000);
     let before = live.paint.painting_mut().report().steps;
-    turns_of_all(&mut live, Some(&mut intruder), 0, 1000, &mut order);
+    turns_of_all(&mut live, &mut intruder, 0, 1000, &mut order);
     assert!(live.paint.painting_mut().report().steps > before);
 }
 
@@ -148,12 +151,12 @@ fn a_take_whose_player_is_gone_holds_nothing() {
         .token(&live.topics.node("player"))
         .expect("one");
     live.announce(1);
-    turns_of_all(&mut live, Some(&mut intruder), 20, 1000, &mut order);
+    turns_of_all(&mut live, &mut intruder, 20, 1000, &mut order);
     let before = live.paint.painting_mut().report().steps;
-    turns_of_all(&mut live, Some(&mut intruder), 20, 1000, &mut order);
+    turns_of_all(&mut live, &mut intruder, 20, 1000, &mut order);
     assert_eq!(live.paint.painting_mut().report().steps, before);
     drop(player);
-    turns_of_all(&mut live, Some(&mut intruder), 20, 1000, &mut order);
+    turns_of_all(&mut live, &mut intruder, 20, 1000, &mut order);
     assert!(live.paint.painting_mut().report().steps > before);
 }
 

@@ -90,7 +90,7 @@ impl Hand {
 
     fn report(&mut self) -> LedgerReport {
         let report = self.offline.painting_mut().report();
-        assert_eq!(report.quanta_missing, 0);
+        assert_eq!(report.quanta_missing, 0, "{report:#?}");
         report
     }
 }

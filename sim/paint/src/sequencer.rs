@@ -163,7 +163,7 @@ impl Sequencer {
             Ok(())
         } else {
             self.enter_states(brush, header.epoch, header.seq);
-            self.painting.state(brush, state)
+            self.painting.state(brush, header.epoch, state)
         };
         if may_paint
             && header.flags.has(Flags::REPLAY.with(Flags::LAST))

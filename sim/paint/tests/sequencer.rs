@@ -144,3 +144,17 @@ fn a_repeated_command_is_done_once_among_many_clients() {
     assert_eq!(sequencer.command(clean).outcome, done);
     assert_eq!(sequencer.painting().history_depth().0, 1);
 }
+
+#[test]
+fn a_restarted_brush_paints_strokes_of_its_own() {
+    let mut sequencer = sequencer();
+    let file = BrushFile::library("round").expect("round");
+    let mut state = misfit();
+    state.solves[0].angles_rad = vec![[0.0; 2]; file.spines.joints * file.spines.number()];
+    // Both epochs number their first stroke 1.
+    for (epoch, strokes) in [(1, 1), (1, 1), (2, 2)] {
+        let (_, painted) = sequencer.state("main", &header(epoch, 0), &state);
+        assert_eq!(painted, Ok(()));
+        assert_eq!(sequencer.painting().history_depth().0, strokes);
+    }
+}

@@ -125,11 +125,12 @@ fn pull(bus: &ZenohBus, topics: &Topics, seconds: f64, rig: &mut Rig) -> Result<
             wait_ms: 100,
         };
         let limit = Duration::from_millis(500);
-        let reply = match ask::<_, FrameReply>(bus, &topics.frame(), me, &request, limit) {
-            Ok(reply) => reply,
-            Err(BusError::NoAnswer { .. }) => continue,
-            Err(error) => return Err(error.into()),
-        };
+        let reply =
+            match ask::<_, FrameReply>(bus, &topics.frame(), Class::Data, me, &request, limit) {
+                Ok(reply) => reply,
+                Err(BusError::NoAnswer { .. }) => continue,
+                Err(error) => return Err(error.into()),
+            };
         let now_ns = bus.now_ns();
         (since, epoch) = (reply.version, reply.epoch);
         latencies.frames += usize::from(!reply.tiles.is_empty());

@@ -63,7 +63,9 @@ struct Stream<M> {
     /// The newest questions for the gap; an answer to any of them will do.
     asked: VecDeque<Pending>,
     asked_ns: u64,
+    /// Questions for the gap that begins at `next`.
     askings: u32,
+    /// Whether the newest message in order is played from a take.
     replay: bool,
 }
 
@@ -223,7 +225,7 @@ impl<M: Message> CreditReceiver<M> {
         if waits && answered == 0 {
             return Ok(());
         }
-        if stream.askings >= PATIENCE && !stream.replay {
+        if stream.askings >= PATIENCE && !stream.is_replayed() {
             self.counts.lost += stream.give_up(gap, &mut self.ordered);
             tracing::warn!(
                 "{}: messages {} to {} are lost",
@@ -285,7 +287,7 @@ impl<M: Message> CreditReceiver<M> {
         }
         stream
             .asked
-            .push_back(bus.ask(&topic, bytes, limit, &self.wake)?);
+            .push_back(bus.ask(&topic, Class::Control, bytes, limit, &self.wake)?);
         stream.asked_ns = now_ns;
         stream.askings += 1;
         Ok(())
@@ -337,10 +339,19 @@ impl<M> Stream<M> {
             let Some(received) = self.held.remove(&next) else {
                 return;
             };
+            self.replay = received.header.flags.has(Flags::REPLAY);
+            self.askings = 0;
             self.ready.push_back((*ordered, received));
             *ordered += 1;
             self.next = Some(next.wrapping_add(1));
         }
+    }
+
+    /// Whether a take is played on either side of the gap: live and played messages of a brush are
+    /// one stream.
+    fn is_replayed(&self) -> bool {
+        let behind = self.held.first_key_value();
+        self.replay || behind.is_some_and(|(_, held)| held.header.flags.has(Flags::REPLAY))
     }
 
     /// What is missing before the first message held.

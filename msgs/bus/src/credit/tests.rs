@@ -212,3 +212,36 @@ fn a_message_that_may_not_go_holds_up_its_own_sender_alone() {
     assert_eq!(got, vec![10, 11, 12]);
     assert_eq!(stream.got(), vec![0, 1, 2]);
 }
+
+#[test]
+fn a_take_in_a_stream_that_began_live_has_no_hole() {
+    let mut stream = stream();
+    stream.put("d", ORIGIN, Flags::NONE, 0, 0);
+    stream.put("d", ORIGIN, Flags::REPLAY, 2, 0);
+    for _ in 0..3000 {
+        stream.receiver.poll(&stream.bus).expect("polled");
+        stream.net.advance(STEP_NS);
+    }
+    assert_eq!((stream.got(), stream.receiver.counts().lost), (vec![0], 0));
+    stream.put("d", ORIGIN, Flags::REPLAY, 1, 0);
+    stream.receiver.poll(&stream.bus).expect("polled");
+    assert_eq!(stream.got(), vec![1, 2]);
+}
+
+#[test]
+fn a_gap_that_is_being_filled_is_not_given_up() {
+    let mut stream = stream();
+    stream.put("d", ORIGIN, Flags::NONE, 0, 0);
+    stream.put("d", ORIGIN, Flags::NONE, 50, 0);
+    // One of the missing messages comes each half of the patience.
+    for seq in 1..50 {
+        for _ in 0..500 {
+            stream.receiver.poll(&stream.bus).expect("polled");
+            stream.net.advance(STEP_NS);
+        }
+        stream.put("d", ORIGIN, Flags::NONE, seq, 0);
+    }
+    stream.receiver.poll(&stream.bus).expect("polled");
+    assert_eq!(stream.got(), (0..51).collect::<Vec<_>>());
+    assert_eq!(stream.receiver.counts().lost, 0);
+}

@@ -3,7 +3,7 @@
 use std::collections::BTreeSet;
 
 use maulstick_bus::bus::Answer;
-use maulstick_bus::{Faults, MemoryNet};
+use maulstick_bus::{Class, Faults, MemoryNet};
 use maulstick_types::decode;
 
 use maulstick_paint::relief::Relief;
@@ -56,7 +56,7 @@ fn ask(rig: &mut Rig, asked: &FrameRequest) -> Option<FrameReply> {
     let pending = rig
         .net
         .bus()
-        .ask("frame", bytes, limit, &Wake::new())
+        .ask("frame", Class::Data, bytes, limit, &Wake::new())
         .expect("asked");
     rig.net.advance(1);
     rig.server.turn();

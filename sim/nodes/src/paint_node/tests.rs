@@ -113,7 +113,13 @@ fn an_answer_that_does_not_fit_is_given_in_short() {
     let topic = node.topics.command("paint");
     let pending = net
         .bus()
-        .ask(&topic, Vec::new(), Duration::from_secs(1), &wake)
+        .ask(
+            &topic,
+            Class::Control,
+            Vec::new(),
+            Duration::from_secs(1),
+            &wake,
+        )
         .expect("asked");
     net.advance(1);
     let request = node.commands.try_recv().expect("a question");

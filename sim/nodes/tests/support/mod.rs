@@ -190,7 +190,7 @@ impl Live {
             let pending = self
                 .net
                 .bus()
-                .ask(&topic, bytes, limit, &Wake::new())
+                .ask(&topic, Class::Control, bytes, limit, &Wake::new())
                 .expect("asked");
             for _ in 0..100 {
                 self.net.advance(1_000_000);
@@ -303,6 +303,13 @@ impl Device {
         self.samples.forgive();
         self.samples.serve(now_ns).expect("served");
         self.samples.send(Flags::NONE, stamp, sample).expect("sent");
+    }
+
+    /// Answers for what was lost.
+    pub fn serve(&mut self) {
+        let now_ns = self.net.bus().now_ns();
+        self.samples.forgive();
+        self.samples.serve(now_ns).expect("served");
     }
 
     /// How many of its samples the brush has consumed.

@@ -37,10 +37,8 @@ impl Advection {
         if self.donors.is_empty() {
             return;
         }
-        let thick = self
-            .donors
-            .iter()
-            .any(|donor| window.total(donor.cell as usize) > 0.1 * CELL_MAX as f32);
+        // A cell has at most nine donors: below a tenth of its most there is room for all of them.
+        let thick = window.top() > 0.1 * CELL_MAX as f32;
         if thick {
             self.leave_out_what_has_no_room(window);
         }

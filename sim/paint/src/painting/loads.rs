@@ -119,7 +119,7 @@ impl Painting {
         let track = self.brush(brush)?;
         track.loads = loads.to_vec();
         track.next_load = 0;
-        track.stroke = 0;
+        track.stroke = None;
         track.path = None;
         Ok(())
     }

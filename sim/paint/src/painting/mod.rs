@@ -78,7 +78,8 @@ struct BrushTrack {
     file: BrushFile,
     head: Arc<Head>,
     load: BrushLoad,
-    stroke: u64,
+    /// Epoch of the brush and number of the newest stroke.
+    stroke: Option<(u32, u64)>,
     path: Option<(usize, PathStepper)>,
     window: Option<(usize, Window)>,
     loads: Vec<Mixture>,
@@ -206,7 +207,7 @@ impl Painting {
                     load: BrushLoad::clean(head.strips()),
                     file,
                     head,
-                    stroke: 0,
+                    stroke: None,
                     path: None,
                     window: None,
                     loads: Vec::new(),

@@ -16,18 +16,28 @@ use crate::window::Window;
 const WINDOW_MARGIN: i64 = 32;
 
 impl Painting {
-    /// Paints what a brush did.
+    /// Paints what a brush did in its epoch: strokes are numbered from 1 in each.
     ///
     /// # Errors
     /// [`PaintRefusal`] for an unknown brush, or a state that does not fit its brush file.
-    pub fn state(&mut self, brush: &str, state: &BrushState) -> Result<(), PaintRefusal> {
+    pub fn state(
+        &mut self,
+        brush: &str,
+        epoch: u32,
+        state: &BrushState,
+    ) -> Result<(), PaintRefusal> {
         for solve in &state.solves {
-            self.solve(brush, solve)?;
+            self.solve(brush, epoch, solve)?;
         }
         Ok(())
     }
 
-    pub(super) fn solve(&mut self, name: &str, solve: &Solve) -> Result<(), PaintRefusal> {
+    pub(super) fn solve(
+        &mut self,
+        name: &str,
+        epoch: u32,
+        solve: &Solve,
+    ) -> Result<(), PaintRefusal> {
         let track = self.brush(name)?;
         if !track.head.fits(solve.angles_rad.len()) || !solve.pose.is_valid() {
             return Err(PaintRefusal::new(
@@ -52,8 +62,8 @@ impl Painting {
             track.path = None;
             return Ok(());
         }
-        if solve.stroke != track.stroke {
-            track.stroke = solve.stroke;
+        if track.stroke != Some((epoch, solve.stroke)) {
+            track.stroke = Some((epoch, solve.stroke));
             track.path = None;
             self.begin_stroke(name)?;
         }
