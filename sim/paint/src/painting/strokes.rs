@@ -113,7 +113,7 @@ impl Painting {
         let wet = self.sheets[sheet].top * (QUANTUM_M / scale.cell_m) as f32;
         let film = track.load.thickest() as f32 * traits.film_cells_per_quantum;
         let height = wet + film + traits.half_thickness + traits.sink;
-        let Some((from, to)) = low_bounds(&track.head, sweep.to, height) else {
+        let Some((from, to)) = low_bounds(&track.head, sweep.to, traits.half_width, height) else {
             return;
         };
         if !self.reach(name, sheet, from, to) {
