@@ -116,6 +116,10 @@ impl Painting {
         let Some((from, to)) = low_bounds(&track.head, sweep.to, traits.half_width, height) else {
             return;
         };
+        if !self.history.is_open() {
+            // A command ended the stroke's undo step: the rest of the stroke is one of its own.
+            self.begin_step("stroke");
+        }
         if !self.reach(name, sheet, from, to) {
             return;
         }
