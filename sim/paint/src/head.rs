@@ -5,8 +5,6 @@ use maulstick_brush::{Head, HeadPose};
 use maulstick_num::geometry::{Rigid, nlerp};
 use maulstick_types::brush::Solve;
 
-/// Cells around the strips that paint may be pushed to.
-const BORDER: i64 = 2;
 /// A strip lower than this may touch, cells.
 const NEAR: f32 = 3.0;
 
@@ -62,19 +60,27 @@ impl Waypoint {
     }
 }
 
-/// The cells around all strips lower than `height` cells, from the first up to but not with the
-/// second; none where all are higher.
+/// The cells that strips of `half_width` cells lower than `height` cells cover, and those beside
+/// them that paint may be pushed to, from the first up to but not with the second; none where all
+/// strips are higher.
 #[must_use]
-pub fn low_bounds(head: &Head, pose: &HeadPose, height: f32) -> Option<([i64; 2], [i64; 2])> {
+pub fn low_bounds(
+    head: &Head,
+    pose: &HeadPose,
+    half_width: f32,
+    height: f32,
+) -> Option<([i64; 2], [i64; 2])> {
     let strips = head.strips();
+    // A ribbon covers half a cell beyond its edge, seen across at most √2 times as far.
+    let border = (std::f32::consts::SQRT_2 * (half_width + 0.5) + 0.5).ceil() as i64;
     let (mut from, mut to) = ([f32::MAX; 2], [f32::MIN; 2]);
     let row = |station: usize| station * strips..(station + 1) * strips;
     let is_low = |station: usize| pose.z[row(station)].iter().any(|z| *z < height);
-    let mut reached = false;
-    for station in (0..STATIONS).rev() {
-        // A strip may come down between two stations, so the next one above counts as well.
-        let low = is_low(station);
-        if low || reached {
+    let low: [bool; STATIONS] = std::array::from_fn(is_low);
+    for station in 0..STATIONS {
+        // A strip may come down and rise again between two stations, so those beside count as well.
+        let beside = station.saturating_sub(1)..(station + 2).min(STATIONS);
+        if low[beside].contains(&true) {
             for (axis, plane) in [&pose.x, &pose.y].into_iter().enumerate() {
                 for at in &plane[row(station)] {
                     from[axis] = from[axis].min(*at);
@@ -82,12 +88,11 @@ pub fn low_bounds(head: &Head, pose: &HeadPose, height: f32) -> Option<([i64; 2]
                 }
             }
         }
-        reached = low;
     }
     (from[0] <= to[0]).then(|| {
         (
-            from.map(|v| v.floor() as i64 - BORDER),
-            to.map(|v| v.ceil() as i64 + BORDER + 1),
+            from.map(|v| v.floor() as i64 - border),
+            to.map(|v| v.ceil() as i64 + border + 1),
         )
     })
 }

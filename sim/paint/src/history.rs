@@ -49,6 +49,12 @@ impl History {
         });
     }
 
+    /// Whether a step is open.
+    #[must_use]
+    pub fn is_open(&self) -> bool {
+        self.open.is_some()
+    }
+
     /// Remembers a version that was replaced, the first one of each tile in the open step.
     pub fn replaced(&mut self, place: Place, version: Version) {
         if let Some(open) = &mut self.open {

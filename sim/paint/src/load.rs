@@ -119,6 +119,15 @@ impl BrushLoad {
         load
     }
 
+    /// This load on so many strips: spread where it was on others.
+    #[must_use]
+    pub fn onto(self, strips: usize) -> Self {
+        if self.texels == strips * ALONG {
+            return self;
+        }
+        Self::spread(strips, &self.counts())
+    }
+
     /// Counts a step with contact; whether it is one in `every`.
     pub fn is_due(&mut self, every: u64) -> bool {
         self.steps += 1;

@@ -37,9 +37,8 @@ impl Advection {
         if self.donors.is_empty() {
             return;
         }
-        // A cell has at most nine donors: below a tenth of its most there is room for all of them.
-        let thick = window.top() > 0.1 * CELL_MAX as f32;
-        if thick {
+        // A cell and its eight neighbours with a tenth of the most each always fit.
+        if self.most_of_any(window) > 0.1 * CELL_MAX as f32 {
             self.leave_out_what_has_no_room(window);
         }
         for (_, plane) in window.planes_mut() {
@@ -87,6 +86,20 @@ impl Advection {
                 share: [u * (1.0 - v), v * (1.0 - u), u * v].map(|share| share * loose),
             });
         }
+    }
+
+    /// At least as many quanta as the fullest of the cells that give or receive holds.
+    fn most_of_any(&self, window: &Window) -> f32 {
+        let most_of = |plane: &[f32]| {
+            self.donors.iter().fold(0.0f32, |most, donor| {
+                let [beside, above, across] = donor.to.map(|to| plane[to as usize]);
+                most.max(plane[donor.cell as usize])
+                    .max(beside)
+                    .max(above)
+                    .max(across)
+            })
+        };
+        window.planes().map(|(_, plane)| most_of(plane)).sum()
     }
 
     /// A cell holds at most one unit: inflow beyond it stays with its donors. A donor that keeps its

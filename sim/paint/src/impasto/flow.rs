@@ -67,6 +67,15 @@ fn flow_in_strip(strip: usize, load: &mut BrushLoad, film_full: f64, traits: &Br
             }
         }
     }
+    // On coarse cells a step is a long way: what would leave beyond what is there stays.
+    for k in 0..ALONG {
+        let leaves = out[k] + onward[k] + back[k];
+        if leaves > 1.0 {
+            for share in [&mut out[k], &mut onward[k], &mut back[k]] {
+                *share /= leaves;
+            }
+        }
+    }
     for slot in 0..SLOTS {
         let Some((film, inside)) = load.planes_mut(slot) else {
             continue;

@@ -123,9 +123,13 @@ impl Painting {
         let wet = self.sheets[sheet].top * (QUANTUM_M / scale.cell_m) as f32;
         let film = track.load.thickest() as f32 * traits.film_cells_per_quantum;
         let height = wet + film + traits.half_thickness + traits.sink;
-        let Some((from, to)) = low_bounds(&track.head, sweep.to, height) else {
+        let Some((from, to)) = low_bounds(&track.head, sweep.to, traits.half_width, height) else {
             return;
         };
+        if !self.history.is_open() {
+            // A command ended the stroke's undo step: the rest of the stroke is one of its own.
+            self.begin_step("stroke");
+        }
         if !self.reach(name, sheet, from, to) {
             return;
         }

@@ -74,7 +74,7 @@ impl Painting {
         }
         for (name, load) in step.rest.loads {
             if let Some(track) = self.brushes.get_mut(&name) {
-                track.load = load;
+                track.load = load.onto(track.head.strips());
                 track.path = None;
             }
         }
