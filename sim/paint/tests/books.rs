@@ -1,0 +1,321 @@
+//! Whatever is done to a painting in whatever order, the tubes gave just what is found.
+
+use maulstick_brush::BrushFile;
+use maulstick_optics::PaintLibrary;
+use maulstick_paint::quantum::CELL_MAX;
+use maulstick_paint::{Painting, PaintingSetup};
+use maulstick_types::brush::{BrushState, Solve, solve_flags};
+use maulstick_types::scene::{CANVAS, PALETTE};
+use maulstick_types::{Mixture, Pose};
+use proptest::prelude::*;
+
+const BRUSHES: [&str; 2] = ["main", "other"];
+const MIXTURES: [&str; 3] = [
+    "Titanium White",
+    "Ultramarine Blue=0.6,Titanium White=0.4",
+    "Yellow Ochre=0.5,Pyrrole Red=0.25,Bone Black=0.25",
+];
+
+/// The library's round brush at a size, with so many strips, for speed.
+fn brush(size_mm: f64, strips: usize) -> BrushFile {
+    let mut file = BrushFile::library("round").expect("round");
+    file.strips.count = strips;
+    file.scaled_to(size_mm).expect("a size")
+}
+
+/// A canvas of 16 mm and a palette with three wells.
+fn painting(size_mm: f64) -> Painting {
+    let setup = PaintingSetup {
+        cells: [64, 64],
+        wells: MIXTURES.map(mixture).to_vec(),
+        ..PaintingSetup::default()
+    };
+    let library = PaintLibrary::measured().expect("whole");
+    let mut painting = Painting::new(&setup, library).expect("a painting");
+    for name in BRUSHES {
+        painting.define_brush(name, brush(size_mm, 48));
+    }
+    painting
+}
+
+fn mixture(text: &str) -> Mixture {
+    text.parse().expect("a mixture")
+}
+
+/// Where a brush is: ferrule, bend of its joints, turn.
+#[derive(Clone, Copy, Debug)]
+struct Place {
+    surface: u32,
+    /// Of the ferrule, mm.
+    at_mm: [f64; 2],
+    /// Of the ferrule, by the head's length.
+    height: f64,
+    bend: [f32; 2],
+    turn: f64,
+}
+
+fn solve(file: &BrushFile, stroke: u64, flags: u32, place: &Place) -> Solve {
+    let [x, y] = place.at_mm.map(|mm| mm * 1e-3);
+    let (sine, cosine) = maulstick_num::sin_cos(0.5 * place.turn);
+    let joint = |i: usize| place.bend.map(|angle| angle * (0.7 + 0.1 * (i % 5) as f32));
+    Solve {
+        event_ns: 0,
+        stroke,
+        surface: place.surface,
+        flags,
+        pose: Pose {
+            position_m: [x, y, place.height * file.length_m()],
+            orientation: [0.0, 0.0, sine, cosine],
+        },
+        angles_rad: (0..file.spines.number() * file.spines.joints)
+            .map(joint)
+            .collect(),
+        contacts: Vec::new(),
+    }
+}
+
+fn paint(painting: &mut Painting, name: &str, size_mm: f64, stroke: u64, places: &[Place]) {
+    let file = brush(size_mm, 48);
+    let state = BrushState {
+        device: 1,
+        device_epoch: 1,
+        device_seq: 0,
+        solves: places
+            .iter()
+            .map(|place| solve(&file, stroke, 0, place))
+            .collect(),
+    };
+    painting.state(name, &state).expect("it fits");
+}
+
+/// The books balance, and every cell holds a whole number of quanta that it can hold.
+fn check(painting: &mut Painting) -> Result<(), TestCaseError> {
+    let report = painting.report();
+    prop_assert_eq!(report.quanta_missing, 0);
+    for surface in [CANVAS, PALETTE] {
+        let store = painting.store(surface).expect("a surface");
+        for (id, version) in store.iter() {
+            let Some(tile) = &version.tile else { continue };
+            for (_, plane) in tile.wet() {
+                for count in plane.iter() {
+                    let fine = (0.0..=CELL_MAX as f32).contains(count) && count.fract() == 0.0;
+                    prop_assert!(fine, "{count} quanta in tile {id:?} of surface {surface}");
+                }
+            }
+        }
+    }
+    Ok(())
+}
+
+/// Places over a surface that hang together, some far off, in and beside it, high and low.
+fn way(surface: u32, around: [f64; 2], spread: f64) -> impl Strategy<Value = Vec<Place>> {
+    let place = (
+        (-spread..spread, -spread..spread),
+        0.25..1.15f64,
+        (-0.5..0.5f32, -0.5..0.5f32),
+        -0.6..0.6f64,
+    );
+    let place = place.prop_map(move |((x, y), height, bend, turn)| Place {
+        surface,
+        at_mm: [around[0] + x, around[1] + y],
+        height,
+        bend: bend.into(),
+        turn,
+    });
+    prop::collection::vec(place, 2..5)
+}
+
+/// What a painter does.
+#[derive(Clone, Debug)]
+enum Act {
+    Paint(usize, Vec<Place>),
+    NextStroke(usize),
+    Load(usize, usize),
+    Clean(usize),
+    Take(usize, Vec<usize>),
+    Redefine(usize, usize),
+    Undo,
+    Redo,
+}
+
+fn act() -> impl Strategy<Value = Act> {
+    let brush = 0..BRUSHES.len();
+    let load = 0..MIXTURES.len();
+    // The canvas's middle, an edge of it, two wells, the cleaner, the palette's board.
+    let somewhere = prop_oneof![
+        3 => way(CANVAS, [8.0, 8.0], 4.0),
+        1 => way(CANVAS, [15.0, 1.0], 6.0),
+        1 => way(PALETTE, [18.0, 42.0], 8.0),
+        1 => way(PALETTE, [18.0, 128.0], 8.0),
+        1 => way(PALETTE, [114.0, 14.0], 9.0),
+        1 => way(PALETTE, [60.0, 60.0], 6.0),
+    ];
+    prop_oneof![
+        8 => (brush.clone(), somewhere).prop_map(|(b, way)| Act::Paint(b, way)),
+        2 => brush.clone().prop_map(Act::NextStroke),
+        2 => (brush.clone(), load.clone()).prop_map(|(b, l)| Act::Load(b, l)),
+        1 => brush.clone().prop_map(Act::Clean),
+        1 => (brush.clone(), prop::collection::vec(load, 0..3)).prop_map(|(b, l)| Act::Take(b, l)),
+        2 => (brush, prop_oneof![Just(31usize), Just(48), Just(60)])
+            .prop_map(|(b, strips)| Act::Redefine(b, strips)),
+        3 => Just(Act::Undo),
+        2 => Just(Act::Redo),
+    ]
+}
+
+fn perform(painting: &mut Painting, strokes: &mut [u64; 2], act: &Act) {
+    match act {
+        Act::Paint(b, places) => paint(painting, BRUSHES[*b], 10.0, strokes[*b], places),
+        Act::NextStroke(b) => strokes[*b] += 1,
+        Act::Load(b, l) => painting
+            .load(BRUSHES[*b], &mixture(MIXTURES[*l]))
+            .expect("known"),
+        Act::Clean(b) => painting.clean(BRUSHES[*b]).expect("known"),
+        Act::Take(b, loads) => {
+            let loads: Vec<Mixture> = loads.iter().map(|l| mixture(MIXTURES[*l])).collect();
+            painting.take(BRUSHES[*b], &loads).expect("known");
+        }
+        Act::Redefine(b, strips) => painting.define_brush(BRUSHES[*b], brush(10.0, *strips)),
+        // There may be nothing to undo or redo.
+        Act::Undo => drop(painting.undo()),
+        Act::Redo => drop(painting.redo()),
+    }
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(32))]
+
+    #[test]
+    fn the_books_balance_whatever_is_done(acts in prop::collection::vec(act(), 1..24)) {
+        let mut painting = painting(10.0);
+        let mut strokes = [1, 1];
+        for act in &acts {
+            perform(&mut painting, &mut strokes, act);
+            check(&mut painting)?;
+        }
+        while painting.undo().is_ok() {
+            check(&mut painting)?;
+        }
+        let store = painting.store(CANVAS).expect("a canvas");
+        prop_assert_eq!(store.counts(), [0; 16], "all that was done is undone");
+    }
+
+    /// Strokes that leave the canvas and come back, jump, hover and turn, with full and empty
+    /// brushes, also wider than the canvas.
+    #[test]
+    fn no_stroke_makes_or_loses_paint(
+        ways in prop::collection::vec((way(CANVAS, [8.0, 8.0], 14.0), 0..4usize), 1..6),
+        wide in any::<bool>(),
+    ) {
+        let size_mm = if wide { 60.0 } else { 10.0 };
+        let mut painting = painting(size_mm);
+        for (i, (places, load)) in ways.iter().enumerate() {
+            if let Some(text) = MIXTURES.get(*load) {
+                painting.load("main", &mixture(text)).expect("known");
+            }
+            paint(&mut painting, "main", size_mm, i as u64 + 1, places);
+            check(&mut painting)?;
+        }
+    }
+}
+
+const LOW: Place = Place {
+    surface: CANVAS,
+    at_mm: [4.0, 8.0],
+    height: 0.6,
+    bend: [0.2, 0.3],
+    turn: 0.0,
+};
+
+/// A way of 8 mm across the canvas, from `from_mm` to `to_mm`.
+fn across(from_mm: f64, to_mm: f64) -> Vec<Place> {
+    let at = |x| Place {
+        at_mm: [x, 8.0],
+        ..LOW
+    };
+    vec![at(from_mm), at(to_mm)]
+}
+
+/// A load in the middle of a stroke ends its undo step: the rest of the stroke is one of its own.
+#[test]
+fn what_is_painted_after_a_command_within_a_stroke_is_undone_too() {
+    let commands: [fn(&mut Painting); 4] = [
+        |painting| painting.load("main", &mixture(MIXTURES[0])).expect("known"),
+        |painting| painting.clean("other").expect("known"),
+        |painting| drop(painting.undo().expect("a stroke")),
+        |painting| {
+            painting.undo().expect("a stroke");
+            painting.redo().expect("the stroke");
+        },
+    ];
+    for command in commands {
+        let mut painting = painting(10.0);
+        painting.load("main", &mixture(MIXTURES[1])).expect("known");
+        paint(&mut painting, "main", 10.0, 1, &across(4.0, 8.0));
+        command(&mut painting);
+        paint(&mut painting, "main", 10.0, 1, &across(8.0, 12.0));
+        painting.commit();
+        let painted = painting.store(CANVAS).expect("a canvas").counts();
+        assert!(painted[0] > 0, "{painted:?}");
+        let (steps, _) = painting.history_depth();
+        for _ in 0..steps {
+            painting.undo().expect("a step");
+            assert_eq!(painting.report().quanta_missing, 0);
+        }
+        assert_eq!(painting.store(CANVAS).expect("a canvas").counts(), [0; 16]);
+        while painting.redo().is_ok() {
+            assert_eq!(painting.report().quanta_missing, 0);
+        }
+        assert_eq!(painting.store(CANVAS).expect("a canvas").counts(), painted);
+    }
+}
+
+/// What a brush carried before it got more or fewer strips goes on those that it has now.
+#[test]
+fn a_load_from_before_a_brush_had_other_strips_comes_back() {
+    for strips in [31, 60] {
+        let mut painting = painting(10.0);
+        painting.load("main", &mixture(MIXTURES[0])).expect("known");
+        painting.load("main", &mixture(MIXTURES[1])).expect("known");
+        painting.define_brush("main", brush(10.0, strips));
+        painting.undo().expect("the second load");
+        assert_eq!(painting.report().quanta_missing, 0);
+        paint(&mut painting, "main", 10.0, 1, &across(4.0, 12.0));
+        assert_eq!(painting.report().quanta_missing, 0);
+    }
+}
+
+#[test]
+fn a_head_in_the_air_and_a_clean_one_leave_nothing() {
+    let mut painting = painting(10.0);
+    paint(&mut painting, "main", 10.0, 1, &across(4.0, 12.0));
+    painting.load("main", &mixture(MIXTURES[0])).expect("known");
+    let high = |place: Place| Place {
+        height: 1.3,
+        bend: [0.0; 2],
+        ..place
+    };
+    let hover: Vec<Place> = across(4.0, 12.0).into_iter().map(high).collect();
+    paint(&mut painting, "main", 10.0, 2, &hover);
+    assert_eq!(painting.report().quanta_missing, 0);
+    assert_eq!(painting.store(CANVAS).expect("a canvas").counts(), [0; 16]);
+}
+
+/// Nothing is painted between two poses where the solver began anew.
+#[test]
+fn a_restart_paints_nothing_on_its_way() {
+    let mut painting = painting(10.0);
+    painting.load("main", &mixture(MIXTURES[0])).expect("known");
+    let file = brush(10.0, 48);
+    for place in across(4.0, 12.0) {
+        let state = BrushState {
+            device: 1,
+            device_epoch: 1,
+            device_seq: 0,
+            solves: vec![solve(&file, 1, solve_flags::RESTARTED, &place)],
+        };
+        painting.state("main", &state).expect("it fits");
+    }
+    painting.commit();
+    assert_eq!(painting.store(CANVAS).expect("a canvas").counts(), [0; 16]);
+}

@@ -1,0 +1,218 @@
+//! Stages 4 and 5: Algorithm 3 by path length, both ways.
+
+use std::collections::BTreeMap;
+
+use maulstick_paint::impasto::exchange::Exchange;
+use maulstick_paint::impasto::footprint::{Contact, Footprint};
+use maulstick_paint::load::BrushLoad;
+use maulstick_paint::model::BrushTraits;
+use maulstick_paint::quantum::{QUANTA_PER_UNIT, SLOTS};
+use maulstick_paint::window::Window;
+
+use crate::scene::{Scene, lying};
+
+/// Baxter 2004, Algorithm 3, as item 19 of the reading guide has it: units to the canvas.
+fn algorithm_3(a_b: f64, a_c: f64, travel: f64) -> f64 {
+    let difference = a_b - a_c;
+    let cutoff = (difference.abs() / (1.0 / 30.0)).clamp(0.0, 1.0);
+    let share = 1.0 - maulstick_num::powf(0.9, travel);
+    let amount = (a_b.max(a_c) * share * cutoff).clamp(0.0, 0.001 * travel);
+    if difference > 0.0 { amount } else { -amount }
+}
+
+/// What should lie on cells and films, and by how many quanta each may be off.
+#[derive(Default)]
+struct Expected {
+    cells: BTreeMap<(usize, usize), [f64; 2]>,
+    films: BTreeMap<(usize, usize), [f64; 2]>,
+    deposits: usize,
+    uptakes: usize,
+    overdrawn: usize,
+    overfilled: usize,
+}
+
+fn film(load: &BrushLoad, texel: usize) -> f64 {
+    let films = (0..SLOTS).filter_map(|slot| load.film_of(slot));
+    films.map(|film| f64::from(film[texel])).sum()
+}
+
+fn on(window: &Window, slot: usize, cell: usize) -> f64 {
+    let plane = window.planes().find(|(of, _)| *of == slot);
+    plane.map_or(0.0, |(_, plane)| f64::from(plane[cell]))
+}
+
+/// Quanta that a cell wants of its texel.
+fn wants(c: &Contact, window: &Window, load: &BrushLoad, traits: &BrushTraits) -> f64 {
+    let cell = c.cell as usize;
+    let lying: f64 = (0..SLOTS).map(|slot| on(window, slot, cell)).sum();
+    let [u, v] = c.moved.map(f64::from);
+    let travel = (u * u + v * v).sqrt() * f64::from(traits.cell_per_reference);
+    let a_b = film(load, c.texel as usize) * f64::from(traits.film_units_per_quantum);
+    let a_c = lying / QUANTA_PER_UNIT * f64::from(c.fraction);
+    let units = algorithm_3(a_b, a_c, travel) * f64::from(c.cover);
+    (units * QUANTA_PER_UNIT).clamp(-lying, QUANTA_PER_UNIT - lying)
+}
+
+fn oracle(contacts: &[Contact], scene: &Scene) -> Expected {
+    let (window, load, traits) = (&scene.window, &scene.load, &scene.traits);
+    let wants: Vec<f64> = contacts
+        .iter()
+        .map(|c| wants(c, window, load, traits))
+        .collect();
+    // Demand and offer of each texel, and from how many cells they come.
+    let mut demand = BTreeMap::<u32, [f64; 3]>::new();
+    for (c, wants) in contacts.iter().zip(&wants) {
+        let sums = demand.entry(c.texel).or_default();
+        sums[0] += wants.max(0.0);
+        sums[1] += (-wants).max(0.0);
+        sums[2] += 1.0;
+    }
+    let mut expected = Expected::default();
+    for (c, wants) in contacts.iter().zip(&wants) {
+        let (cell, texel) = (c.cell as usize, c.texel as usize);
+        let [drawn, offered, sharers] = demand[&c.texel];
+        let there = film(load, texel);
+        let room = (traits.film_full * BrushTraits::FILM_OVER - there).max(0.0);
+        let (sum, limit) = if *wants > 0.0 {
+            (drawn, there)
+        } else {
+            (offered, room)
+        };
+        let granted = if sum > limit { limit / sum } else { 1.0 };
+        expected.deposits += usize::from(*wants > 1.0);
+        expected.uptakes += usize::from(*wants < -1.0);
+        expected.overdrawn += usize::from(*wants > 1.0 && granted < 1.0 && there > 0.0);
+        expected.overfilled += usize::from(*wants < -1.0 && granted < 1.0 && room > 0.0);
+        let lying: f64 = (0..SLOTS).map(|slot| on(window, slot, cell)).sum();
+        for slot in 0..SLOTS {
+            let of_film = load
+                .film_of(slot)
+                .map_or(0.0, |film| f64::from(film[texel]));
+            let of_cell = on(window, slot, cell);
+            let share = if *wants > 0.0 {
+                of_film / there.max(1.0)
+            } else {
+                of_cell / lying.max(1.0)
+            };
+            let moved = wants * granted * share;
+            // The demand is truncated and so is what moves; a sum of truncated demands is short of
+            // up to a quantum from each cell that shares the texel. Single precision adds 10⁻⁶.
+            let shared = if granted < 1.0 {
+                sharers / sum * wants.abs()
+            } else {
+                0.0
+            };
+            let bound = if share > 0.0 {
+                2.0 + shared + 2e-6 * moved.abs()
+            } else {
+                0.0
+            };
+            let put =
+                |to: &mut [f64; 2], moved: f64| (to[0], to[1]) = (to[0] + moved, to[1] + bound);
+            put(
+                expected.cells.entry((slot, cell)).or_insert([of_cell, 0.0]),
+                moved,
+            );
+            put(
+                expected
+                    .films
+                    .entry((slot, texel))
+                    .or_insert([of_film, 0.0]),
+                -moved,
+            );
+        }
+    }
+    expected
+}
+
+fn agrees(scene: &Scene, expected: &Expected) -> bool {
+    let near = |got: f64, [want, bound]: &[f64; 2]| (got - want).abs() <= *bound;
+    let film = |slot: usize, texel: usize| {
+        let film = scene.load.film_of(slot);
+        film.map_or(0.0, |film| f64::from(film[texel]))
+    };
+    let mut cells = expected.cells.iter();
+    let mut films = expected.films.iter();
+    cells.all(|((slot, cell), want)| near(on(&scene.window, *slot, *cell), want))
+        && films.all(|((slot, texel), want)| near(film(*slot, *texel), want))
+}
+
+/// All cells draw on two texels, and for a long way.
+fn crowd(contacts: &mut [Contact]) {
+    for contact in contacts {
+        contact.texel %= 2;
+        contact.moved = contact.moved.map(|cells| 8.0 * cells);
+    }
+}
+
+#[test]
+fn paint_goes_both_ways_as_algorithm_3_says() {
+    let mut seen = Expected::default();
+    for seed in 0..24 {
+        let mut scene = Scene::new(seed);
+        let mut footprint = Footprint::default();
+        footprint.find(&mut scene.step());
+        if seed % 2 == 1 {
+            crowd(&mut footprint.contacts);
+            scene.traits.film_full *= 0.05;
+        }
+        let before = scene.counts();
+        let expected = oracle(&footprint.contacts, &scene);
+        Exchange::default().run(&footprint, &mut scene.step());
+        assert_eq!(scene.counts(), before, "scene {seed}");
+        lying(&scene.window);
+        assert!(agrees(&scene, &expected), "scene {seed}");
+        for texel in 0..scene.load.texels() {
+            let counted = f64::from(scene.load.film(texel));
+            assert_eq!(counted, film(&scene.load, texel), "counted afresh");
+        }
+        seen.deposits += expected.deposits;
+        seen.uptakes += expected.uptakes;
+        seen.overdrawn += expected.overdrawn;
+        seen.overfilled += expected.overfilled;
+        let most = expected
+            .cells
+            .iter()
+            .max_by(|a, b| a.1[1].total_cmp(&b.1[1]));
+        let (&(slot, cell), [_, bound]) = most.expect("contacts");
+        let fault = 10.0 * bound.ceil() as f32;
+        scene.window.plane_mut(slot)[cell] += fault;
+        assert!(!agrees(&scene, &expected), "a fault in scene {seed} passes");
+    }
+    assert!(
+        seen.deposits > 1000 && seen.uptakes > 1000,
+        "{} {}",
+        seen.deposits,
+        seen.uptakes
+    );
+    assert!(
+        seen.overdrawn > 20 && seen.overfilled > 20,
+        "{} {}",
+        seen.overdrawn,
+        seen.overfilled
+    );
+}
+
+/// A cell that is nearly full takes no more than it has room for.
+#[test]
+fn a_full_cell_takes_nothing() {
+    for missing in [0.0, 1.0, 500.0] {
+        let mut scene = Scene::new(3);
+        let mut footprint = Footprint::default();
+        footprint.find(&mut scene.step());
+        for contact in &mut footprint.contacts {
+            contact.fraction = 0.0;
+            let cell = contact.cell as usize;
+            let room = QUANTA_PER_UNIT as f32 - scene.window.total(cell) - missing;
+            scene.window.plane_mut(9)[cell] += room;
+        }
+        let before = scene.counts();
+        Exchange::default().run(&footprint, &mut scene.step());
+        assert_eq!(scene.counts(), before);
+        for contact in &footprint.contacts {
+            let cell = contact.cell as usize;
+            let total: u64 = scene.window.planes().map(|(_, p)| p[cell] as u64).sum();
+            assert!(total <= QUANTA_PER_UNIT as u64, "{total}");
+        }
+    }
+}

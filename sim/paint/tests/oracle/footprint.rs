@@ -1,0 +1,396 @@
+//! Stage 1: every cell asks every segment of every strip whether it covers the cell.
+
+use maulstick_brush::head::STATIONS;
+use maulstick_paint::head::low_bounds;
+use maulstick_paint::impasto::footprint::{Contact, Footprint};
+use maulstick_paint::load::ALONG;
+
+use crate::scene::{CELLS, Scene};
+
+/// The constants of the stage.
+const EDGE_PENALTY: f64 = 0.3;
+const RANKS: f64 = 0.5;
+const SOFT: f64 = 0.15;
+/// Sixteen roundings of a place below 128 cells in f32.
+const ROUNDING: f64 = 16.0 * 128.0 / 33_554_432.0;
+
+/// A segment that covers a cell.
+#[derive(Clone, Copy, Debug)]
+struct Candidate {
+    score: f64,
+    bottom: f64,
+    cover: f64,
+    strip: usize,
+    along: f64,
+    moved: [f64; 2],
+    /// By how much its values may be off.
+    off: f64,
+    /// Whether it covers the cell beyond doubt.
+    sure: bool,
+}
+
+/// What a cell may be: contacts, or none.
+#[derive(Clone, Debug, Default)]
+struct Cell {
+    contacts: Vec<(Contact, f64)>,
+    none: bool,
+}
+
+/// The segment from station `station − 1` of a strip, in f64.
+struct Segment {
+    a: [f64; 3],
+    b: [f64; 3],
+    moved: [[f64; 2]; 2],
+    is_last: bool,
+}
+
+fn segment(scene: &Scene, strip: usize, station: usize) -> Segment {
+    let point = |station: usize| {
+        let i = station * scene.head.strips() + strip;
+        let to = &scene.to;
+        // Motion is a difference of places in f32, as the stage's input is.
+        let moved = [to.x[i] - scene.from.x[i], to.y[i] - scene.from.y[i]];
+        (
+            [to.x[i], to.y[i], to.z[i]].map(f64::from),
+            moved.map(f64::from),
+        )
+    };
+    let ((a, from), (b, to)) = (point(station - 1), point(station));
+    Segment {
+        a,
+        b,
+        moved: [from, to],
+        is_last: station == STATIONS - 1,
+    }
+}
+
+/// Whether and how a segment covers the cell with this middle; `reach` is half the ribbon's width
+/// and half a cell, and nothing above `height` counts.
+fn cover(s: &Segment, middle: [f64; 2], reach: f64, height: f64) -> Option<Candidate> {
+    let d = [0, 1, 2].map(|i| s.b[i] - s.a[i]);
+    let major = usize::from(d[1].abs() > d[0].abs());
+    let minor = 1 - major;
+    let length = d[major].abs();
+    let (slope, steep) = if length > 1e-4 {
+        (d[minor] / d[major], d[2] / length)
+    } else {
+        (0.0, 0.0)
+    };
+    let past = if s.is_last { 0.5 } else { 0.0 };
+    // How far along the segment the cell's middle lies; a segment owns the cells up to its end.
+    let way = (middle[major] - s.a[major]) * d[major].signum();
+    // Only what lies below the height counts; a short rest has a rough direction.
+    if s.a[2].min(s.b[2]) >= height {
+        return None;
+    }
+    let cut = s.a[2].max(s.b[2]) > height;
+    let visible = if cut {
+        ((height - s.a[2]) / d[2]).clamp(0.0, 1.0) * length
+    } else {
+        length
+    };
+    let short = if s.a[2] > height {
+        length - visible
+    } else {
+        visible
+    };
+    let off = ROUNDING * (1.0 + steep.abs() + (1.0 + past) / short.max(1e-9)).min(1e4);
+    let end = length + past;
+    if way < -off || way > end + off {
+        return None;
+    }
+    let t = if length > 1e-4 {
+        (way / length).clamp(0.0, 1.0)
+    } else {
+        0.0
+    };
+    let line = s.a[minor] + (middle[major] - s.a[major]) * slope;
+    let cosine = 1.0 / (1.0 + slope * slope).sqrt();
+    let cover = reach - (middle[minor] - line).abs() * cosine;
+    let mut z = s.a[2] + t * d[2];
+    // A tip above the height is cut off, and the rest goes on past the cut.
+    let beyond_cut = s.is_last && s.b[2] > height && way <= visible + past + off;
+    if cover < -off || (z > height + off && !beyond_cut) {
+        return None;
+    }
+    let near = |value: f64| value.abs() <= off;
+    let diagonal = near(d[0].abs() - d[1].abs());
+    let sure = !(near(way) || near(way - end) || near(cover) || diagonal)
+        && z < height - off
+        && length > 1e-3;
+    if z > height {
+        z = height;
+    }
+    let cover = cover.clamp(0.0, 1.0);
+    Some(Candidate {
+        score: z + (1.0 - cover) * EDGE_PENALTY,
+        bottom: z,
+        cover,
+        strip: 0,
+        along: t,
+        moved: [0, 1].map(|i| s.moved[0][i] + t * (s.moved[1][i] - s.moved[0][i])),
+        off,
+        sure,
+    })
+}
+
+/// All that covers a cell of the surface.
+fn candidates(scene: &Scene, at: [usize; 2], most: f64) -> Vec<Candidate> {
+    let traits = &scene.traits;
+    let press = f64::from(scene.to.press);
+    let pressed = f64::from(traits.half_thickness) + f64::from(traits.sink) * press;
+    let reach = f64::from(traits.half_width) + 0.5;
+    let middle = at.map(|cell| cell as f64 + 0.5);
+    let mut found = Vec::new();
+    for strip in 0..scene.head.strips() {
+        let unruly = f64::from(scene.head.lift()[strip]);
+        let bottom = f64::from(traits.lift) * (1.0 - press) * unruly - pressed;
+        let film =
+            f64::from(scene.load.thickest_of(strip)) * f64::from(traits.film_cells_per_quantum);
+        let height = most + film - bottom;
+        for station in 1..STATIONS {
+            let s = segment(scene, strip, station);
+            found.extend(cover(&s, middle, reach, height).map(|c| Candidate {
+                score: c.score + bottom + RANKS * unruly,
+                bottom: c.bottom + bottom,
+                strip,
+                along: (station as f64 - 1.0 + c.along) * (ALONG / (STATIONS - 1)) as f64,
+                ..c
+            }));
+        }
+    }
+    found
+}
+
+/// What the deepest candidates make of a cell.
+fn cell(scene: &Scene, at: [usize; 2], candidates: &[Candidate]) -> Cell {
+    let mut cell = Cell::default();
+    let sure = candidates.iter().filter(|c| c.sure);
+    let best = sure.map(|c| c.score + c.off).fold(f64::MAX, f64::min);
+    cell.none = best == f64::MAX;
+    let place = at[1] * scene.window.width() + at[0];
+    let wet: f64 = scene
+        .window
+        .planes()
+        .map(|(_, p)| f64::from(p[place]))
+        .sum();
+    let wet = wet * f64::from(scene.traits.cells_per_quantum);
+    for c in candidates.iter().filter(|c| c.score - c.off <= best) {
+        let last = (ALONG - 1) as f64;
+        let texels =
+            [c.along - 2.0 * c.off, c.along + 2.0 * c.off].map(|k| k.clamp(0.0, last) as usize);
+        for along in texels[0]..=texels[1] {
+            let texel = c.strip * ALONG + along;
+            let film =
+                f64::from(scene.load.film(texel)) * f64::from(scene.traits.film_cells_per_quantum);
+            let reach = f64::from(scene.window.base()[place]) + wet - c.bottom;
+            cell.none |= reach + film <= c.off;
+            if reach + film < -c.off {
+                continue;
+            }
+            let depth = reach.clamp(0.0, wet);
+            let contact = Contact {
+                cell: place as u32,
+                texel: texel as u32,
+                cover: (c.cover * ((reach + film) / SOFT).clamp(0.0, 1.0)) as f32,
+                moved: c.moved.map(|v| v as f32),
+                depth: depth as f32,
+                fraction: if wet > 0.0 { (depth / wet) as f32 } else { 0.0 },
+                ..Contact::default()
+            };
+            cell.contacts.push((contact, c.off));
+        }
+    }
+    cell
+}
+
+/// Tolerances of cover, motion, depth and fraction, where places are off by `off`.
+fn tolerances(off: f64, want: &Contact) -> [f64; 5] {
+    let wet = f64::from(want.depth) / f64::from(want.fraction).max(1e-9);
+    let fraction = if want.fraction > 0.0 {
+        off / wet.max(off)
+    } else {
+        1.0
+    };
+    [off * (1.0 + 1.0 / SOFT), off, off, off, fraction.max(1e-6)]
+}
+
+fn values(c: &Contact) -> [f64; 5] {
+    [c.cover, c.moved[0], c.moved[1], c.depth, c.fraction].map(f64::from)
+}
+
+fn is(got: &Contact, (want, off): &(Contact, f64)) -> bool {
+    let pairs = values(got).into_iter().zip(values(want));
+    got.texel == want.texel
+        && pairs
+            .zip(tolerances(*off, want))
+            .all(|((a, b), tolerance)| (a - b).abs() <= tolerance)
+}
+
+/// What every cell of the surface may be, row after row.
+fn oracle(scene: &Scene) -> Vec<Cell> {
+    let [right, top] = CELLS.map(|cells| cells as usize);
+    let (low, high) = scene.bounds;
+    let inside = |x: usize, y: usize| {
+        let at = [x as i64, y as i64];
+        (0..2).all(|i| (low[i]..high[i]).contains(&at[i]))
+    };
+    let cells = (0..top).flat_map(|y| (0..right).map(move |x| [x, y]));
+    let total = |[x, y]: [usize; 2]| {
+        let place = y * scene.window.width() + x;
+        scene
+            .window
+            .planes()
+            .map(|(_, p)| f64::from(p[place]))
+            .sum::<f64>()
+    };
+    let grid = cells.clone().filter(|[x, y]| inside(*x, *y));
+    let most = grid.map(total).fold(0.0, f64::max) * f64::from(scene.traits.cells_per_quantum);
+    cells
+        .map(|[x, y]| {
+            if inside(x, y) {
+                cell(scene, [x, y], &candidates(scene, [x, y], most))
+            } else {
+                Cell {
+                    none: true,
+                    ..Cell::default()
+                }
+            }
+        })
+        .collect()
+}
+
+/// The first cell that is not as it should be.
+fn compare(scene: &Scene, contacts: &[Contact], oracle: &[Cell]) -> Result<(), String> {
+    let mut got = vec![None; oracle.len()];
+    let across = CELLS[0] as usize;
+    for c in contacts {
+        let (x, y) = (
+            c.cell as usize % scene.window.width(),
+            c.cell as usize / scene.window.width(),
+        );
+        if x >= across || got[y * across + x].replace(*c).is_some() {
+            return Err(format!("{c:?} beside the surface, or twice"));
+        }
+    }
+    for (place, (got, want)) in got.iter().zip(oracle).enumerate() {
+        let fine = got.map_or(want.none, |got| {
+            want.contacts.iter().any(|want| is(&got, want))
+        });
+        if !fine {
+            return Err(format!(
+                "cell {}, {}: {got:?}, not {want:?}",
+                place % across,
+                place / across
+            ));
+        }
+    }
+    Ok(())
+}
+
+fn found(scene: &mut Scene) -> Footprint {
+    let mut footprint = Footprint::default();
+    footprint.find(&mut scene.step());
+    footprint
+}
+
+#[test]
+fn the_deepest_strip_touches_where_it_reaches() {
+    let (mut touched, mut doubtful) = (0, 0);
+    for seed in 0..24 {
+        let mut scene = Scene::new(seed);
+        let contacts = found(&mut scene).contacts;
+        let oracle = oracle(&scene);
+        compare(&scene, &contacts, &oracle).unwrap_or_else(|error| panic!("scene {seed}: {error}"));
+        touched += contacts.len();
+        let doubts = |cell: &&Cell| cell.contacts.len() + usize::from(cell.none) > 1;
+        doubtful += oracle.iter().filter(doubts).count();
+    }
+    println!("{touched} cells touched, {doubtful} in doubt");
+    assert!(
+        touched > 5000 && doubtful * 50 < touched,
+        "{doubtful} of {touched}"
+    );
+}
+
+#[test]
+fn faults_in_a_footprint_are_found() {
+    let mut scene = Scene::new(2);
+    let contacts = found(&mut scene).contacts;
+    let oracle = oracle(&scene);
+    let across = CELLS[0] as usize;
+    let of = |c: &Contact| {
+        let (x, y) = (
+            c.cell as usize % scene.window.width(),
+            c.cell as usize / scene.window.width(),
+        );
+        &oracle[y * across + x]
+    };
+    let clear = |c: &Contact| of(c).contacts.len() == 1 && !of(c).none && c.fraction > 0.01;
+    let at = contacts.iter().position(clear).expect("a clear contact");
+    let (want, off) = of(&contacts[at]).contacts[0];
+    let tolerances = tolerances(off, &want).map(|tolerance| 10.0 * tolerance as f32);
+    let faults: [fn(&mut Contact, [f32; 5]); 6] = [
+        |c, by| c.cover += by[0],
+        |c, by| c.moved[0] += by[1],
+        |c, by| c.moved[1] -= by[2],
+        |c, by| c.depth += by[3],
+        |c, by| c.fraction -= by[4],
+        |c, _| c.texel += 1,
+    ];
+    assert_eq!(compare(&scene, &contacts, &oracle), Ok(()));
+    for (number, fault) in faults.iter().enumerate() {
+        let mut faulty = contacts.clone();
+        fault(&mut faulty[at], tolerances);
+        assert!(
+            compare(&scene, &faulty, &oracle).is_err(),
+            "fault {number} passes"
+        );
+    }
+    let mut missing = contacts.clone();
+    missing.remove(at);
+    assert!(
+        compare(&scene, &missing, &oracle).is_err(),
+        "a missing cell passes"
+    );
+    let touched = |cell: u32| contacts.iter().any(|c| c.cell == cell);
+    let bare = (0..across as u32)
+        .find(|cell| !touched(*cell))
+        .expect("a bare cell");
+    let mut added = contacts.clone();
+    added.push(Contact {
+        cell: bare,
+        ..contacts[at]
+    });
+    assert!(
+        compare(&scene, &added, &oracle).is_err(),
+        "one cell too many passes"
+    );
+}
+
+/// The bounds that a painting cuts its search to hold all cells that the head touches, and those
+/// beside them that paint may be pushed to.
+#[test]
+fn the_bounds_hold_all_that_is_touched() {
+    let mut touched = 0;
+    for seed in 0..40 {
+        let mut scene = Scene::new(seed);
+        for slot in 0..16 {
+            scene.window.plane_mut(slot).fill(0.0);
+        }
+        scene.bounds = ([-200; 2], [300; 2]);
+        let contacts = found(&mut scene).contacts;
+        let film = scene.load.thickest() as f32 * scene.traits.film_cells_per_quantum;
+        let height = film + scene.traits.half_thickness + scene.traits.sink;
+        let bounds = low_bounds(&scene.head, &scene.to, scene.traits.half_width, height);
+        for c in &contacts {
+            let width = scene.window.width();
+            let at = [c.cell as usize % width, c.cell as usize / width].map(|cell| cell as i64);
+            let (from, to) = bounds.expect("something is touched");
+            let held = (0..2).all(|i| from[i] < at[i] && at[i] + 1 < to[i]);
+            assert!(held, "scene {seed}: {at:?} in {from:?}..{to:?}");
+        }
+        touched += contacts.len();
+    }
+    assert!(touched > 1000, "{touched}");
+}

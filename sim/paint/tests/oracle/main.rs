@@ -1,0 +1,11 @@
+//! Each stage of the impasto step against a plain oracle in f64 that follows its documentation, and
+//! the whole step against what must hold of it. Beside each comparison stands a seeded fault that it
+//! must find.
+
+mod advection;
+mod exchange;
+mod flow;
+mod footprint;
+mod scene;
+mod stroke;
+mod velocity;
