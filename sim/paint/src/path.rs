@@ -11,6 +11,8 @@ use crate::model::Sweep;
 
 /// A shorter motion waits for the next, cells.
 const STILL: f64 = 0.02;
+/// A longer motion is no motion of a hand: nothing is painted on its way, cells.
+const LEAP: f64 = 8192.0;
 /// A motion longer than one cell by less than this is still one step.
 const ROUNDING: f64 = 1e-6;
 
@@ -43,6 +45,10 @@ impl PathStepper {
         to.pose(head, self.scale, &mut next);
         let motion = motion(&self.stepped, &next);
         if motion < STILL {
+            return;
+        }
+        if motion > LEAP {
+            *self = Self::begin(head, to, self.scale);
             return;
         }
         let parts = (motion - ROUNDING).ceil().max(1.0) as u64;

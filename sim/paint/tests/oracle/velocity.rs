@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use maulstick_paint::impasto::footprint::Footprint;
-use maulstick_paint::impasto::velocity::{FOLLOWS, SQUISH, velocity};
+use maulstick_paint::impasto::velocity::{FOLLOWS, SQUISH, STABLE, velocity};
 
 use crate::scene::Scene;
 
@@ -32,9 +32,11 @@ fn oracle(footprint: &Footprint) -> Vec<[f64; 2]> {
             (p(x + 1, y) - p(x - 1, y)) / 2.0,
             (p(x, y + 1) - p(x, y - 1)) / 2.0,
         ];
+        let wet = f64::from(c.depth) / f64::from(c.fraction).max(1e-30);
+        let c_of_squish = f64::from(SQUISH).min(f64::from(STABLE) / wet.max(1e-6));
         [0, 1].map(|i| {
             let brush = f64::from(FOLLOWS) * f64::from(c.cover) * f64::from(c.moved[i]);
-            (brush - f64::from(SQUISH) * gradient[i]).clamp(-1.0, 1.0)
+            (brush - c_of_squish * gradient[i]).clamp(-1.0, 1.0)
         })
     };
     footprint.contacts.iter().map(velocity).collect()
