@@ -54,6 +54,12 @@ fn paint_goes_half_as_far_as_the_brush_and_out_of_its_way() {
         let mut scene = Scene::new(seed);
         let mut footprint = Footprint::default();
         footprint.find(&mut scene.step());
+        if seed % 2 == 0 {
+            // Faster than steps are, so that the clamp is seen at work.
+            for contact in &mut footprint.contacts {
+                contact.moved = contact.moved.map(|cells| 3.0 * cells);
+            }
+        }
         velocity(&mut footprint);
         let want = oracle(&footprint);
         assert!(agrees(&footprint, &want), "scene {seed}");
