@@ -73,7 +73,7 @@ impl Place {
 
     /// A demo of the first `seconds`, as `name`.
     pub fn short_demo(&self, name: &str, seconds: f64) {
-        let take = maulstick_device::demo::performance(3);
+        let take = maulstick_device::demo::performance(maulstick_device::demo::Subject::Flower, 3);
         let end = (seconds * 1e9) as u64;
         let samples = take
             .samples

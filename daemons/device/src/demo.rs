@@ -8,6 +8,7 @@ use maulstick_types::stylus::{DEFAULT_TILT_RAD, StylusPose, StylusSample, axes};
 use rand_pcg::Pcg32;
 use rand_pcg::rand_core::Rng as _;
 
+use crate::sheet;
 use crate::take::{Take, TakeSample};
 
 /// Samples a second.
@@ -15,15 +16,25 @@ const RATE_HZ: f64 = 250.0;
 /// Pause between strokes, s: longer than the 150 ms that join them.
 const PAUSE_S: f64 = 0.26;
 
+/// How the pressure of a stroke goes.
+#[derive(Clone, Copy, PartialEq)]
+pub(crate) enum Press {
+    /// It swells and fades.
+    Swell,
+    /// It grows from a touch to the whole.
+    Grow,
+}
+
 /// A stroke: a curve through points on the desk (m), how hard it is pressed, how long it takes.
-struct Stroke {
-    points: Vec<[f64; 2]>,
-    pressure: f64,
-    seconds: f64,
+pub(crate) struct Stroke {
+    pub(crate) points: Vec<[f64; 2]>,
+    pub(crate) pressure: f64,
+    pub(crate) press: Press,
+    pub(crate) seconds: f64,
 }
 
 /// Draws numbers and collects strokes.
-struct Hand {
+pub(crate) struct Hand {
     random: Pcg32,
     strokes: Vec<Stroke>,
 }
@@ -35,16 +46,30 @@ impl Hand {
     }
 
     /// A number within `spread` of `middle`.
-    fn about(&mut self, middle: f64, spread: f64) -> f64 {
+    pub(crate) fn about(&mut self, middle: f64, spread: f64) -> f64 {
         middle + spread * (2.0 * self.chance() - 1.0)
     }
 
-    fn stroke(&mut self, points: Vec<[f64; 2]>, pressure: f64, seconds: f64) {
+    /// The strokes so far.
+    pub(crate) fn strokes_mut(&mut self) -> &mut Vec<Stroke> {
+        &mut self.strokes
+    }
+
+    pub(crate) fn stroke(&mut self, points: Vec<[f64; 2]>, pressure: f64, seconds: f64) {
         self.strokes.push(Stroke {
             points,
             pressure,
+            press: Press::Swell,
             seconds,
         });
+    }
+
+    fn flower(&mut self) {
+        let head = [self.about(0.0, 0.02), self.about(0.042, 0.008)];
+        self.sky();
+        self.hills();
+        self.stem(head);
+        self.petals(head);
     }
 
     /// Broad sweeps across the upper half.
@@ -126,18 +151,26 @@ impl Hand {
     }
 }
 
+/// What a demo paints.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Subject {
+    /// A flower before hills.
+    Flower,
+    /// A sheet of marks: what brush and paint can do.
+    Sheet,
+}
+
 /// The performance of a seed.
 #[must_use]
-pub fn performance(seed: u64) -> Take {
+pub fn performance(subject: Subject, seed: u64) -> Take {
     let mut hand = Hand {
         random: Pcg32::new(seed, 0x6465_6d6f),
         strokes: Vec::new(),
     };
-    let head = [hand.about(0.0, 0.02), hand.about(0.042, 0.008)];
-    hand.sky();
-    hand.hills();
-    hand.stem(head);
-    hand.petals(head);
+    match subject {
+        Subject::Flower => hand.flower(),
+        Subject::Sheet => sheet::marks(&mut hand),
+    }
     let mut samples = Vec::new();
     let mut time_s = 0.0;
     let strokes = std::mem::take(&mut hand.strokes);
@@ -183,7 +216,11 @@ fn draw(hand: &mut Hand, samples: &mut Vec<TakeSample>, start_s: f64, stroke: &S
         let tremor = |phase: f64| 1e-4 * sin(phase + TAU * 9.0 * step as f64 / RATE_HZ);
         let at = [at[0] + tremor(phases[0]), at[1] + tremor(phases[1])];
         // The brush is set down and lifted while it moves: a press at rest would leave a hook.
-        let swell = (6.0 * s).min(1.0).min(4.0 * (1.0 - s)).max(0.0);
+        let shape = match stroke.press {
+            Press::Swell => (6.0 * s).min(1.0),
+            Press::Grow => s,
+        };
+        let swell = shape.min(4.0 * (1.0 - s)).max(0.0);
         let pressure = stroke.pressure * swell * (0.9 + 0.1 * cos(TAU * t));
         samples.push(pen(
             start_s + step as f64 / RATE_HZ,
@@ -237,9 +274,9 @@ mod tests {
 
     #[test]
     fn a_seed_always_gives_the_same_valid_performance() {
-        let take = performance(1);
-        assert_eq!(take, performance(1));
-        assert_ne!(take, performance(2));
+        let take = performance(Subject::Flower, 1);
+        assert_eq!(take, performance(Subject::Flower, 1));
+        assert_ne!(take, performance(Subject::Flower, 2));
         assert!(
             take.samples
                 .windows(2)
@@ -252,8 +289,9 @@ mod tests {
 
     #[test]
     fn it_stays_on_the_default_canvas() {
-        for seed in 0..50 {
-            for TakeSample { sample, .. } in performance(seed).samples {
+        let flowers = (0..50).map(|seed| performance(Subject::Flower, seed));
+        for take in flowers.chain([performance(Subject::Sheet, 1)]) {
+            for TakeSample { sample, .. } in take.samples {
                 if let StylusPose::Contact { point_m, .. } = sample.pose {
                     assert!(
                         point_m[0].abs() < 0.125 && point_m[1].abs() < 0.125,

@@ -4,7 +4,7 @@
 //! | --- | --- |
 //! | [`take`] | recorded samples as MCAP files |
 //! | [`table`] | tables of strokes, imported as takes |
-//! | [`demo`] | a performance made from a seed |
+//! | [`demo`], [`sheet`] | performances made from a seed |
 //! | [`player`] | a device that plays a take |
 //! | [`brush`] | the brush that a section of `rig.toml` asks for |
 //! | [`commander`] | commands to the paint node, repeated until answered |
@@ -13,6 +13,7 @@ pub mod brush;
 pub mod commander;
 pub mod demo;
 pub mod player;
+pub mod sheet;
 pub mod table;
 pub mod take;
 

@@ -129,7 +129,7 @@ impl Driver for Simulated {
 
 #[cfg(test)]
 mod tests {
-    use maulstick_device::demo::performance;
+    use maulstick_device::demo::{Subject, performance};
 
     use maulstick_num::geometry::rotation;
 
@@ -138,7 +138,7 @@ mod tests {
 
     #[test]
     fn a_free_hand_follows_its_take_with_the_lag_of_its_grip() {
-        let take = performance(1);
+        let take = performance(Subject::Flower, 1);
         let mut device = Simulated::following(&take, 0.025, 0.5, &Rigid::IDENTITY);
         let (mut sum, mut count) = (0.0, 0);
         for tick in 0..10_000 {
@@ -159,7 +159,7 @@ mod tests {
 
     #[test]
     fn a_take_is_followed_on_the_desk_wherever_the_device_stands() {
-        let take = performance(1);
+        let take = performance(Subject::Flower, 1);
         let to_desk = Rigid {
             rotation: rotation(DVec3::new(0.0, 0.6, 0.8), 1.2),
             translation: DVec3::new(0.3, -0.1, 0.2),

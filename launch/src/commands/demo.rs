@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use clap::Args;
-use maulstick_device::demo::performance;
+use maulstick_device::demo::{Subject, performance};
 use maulstick_rig::Fault;
 
 use crate::commands::write_take;
@@ -14,6 +14,9 @@ pub struct DemoOptions {
     /// The take to write
     #[arg(short, long, value_name = "TAKE")]
     output: PathBuf,
+    /// A sheet of marks instead of the flower
+    #[arg(long)]
+    sheet: bool,
     /// The same seed gives the same performance
     #[arg(long, default_value_t = 1)]
     seed: u64,
@@ -24,6 +27,11 @@ pub struct DemoOptions {
 /// # Errors
 /// A [`Fault`] where the take cannot be written.
 pub fn run(options: &DemoOptions) -> Result<i32, Fault> {
-    write_take(&performance(options.seed), &options.output)?;
+    let subject = if options.sheet {
+        Subject::Sheet
+    } else {
+        Subject::Flower
+    };
+    write_take(&performance(subject, options.seed), &options.output)?;
     Ok(0)
 }

@@ -31,7 +31,7 @@ pub(crate) fn performance(place: &Path) -> Result<(PathBuf, f64), Fault> {
         import(&table, TableLayout::default(), "table")?
     } else {
         eprintln!("the 30 s recording is not there: the demo takes its place");
-        demo::performance(1)
+        demo::performance(demo::Subject::Flower, 1)
     };
     let path = place.join("take.mcap");
     take.write(&path)?;
