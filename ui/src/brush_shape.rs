@@ -3,9 +3,8 @@
 //! Lengths are desk lengths in the frame of the surface below, m; z is the height above it.
 
 use glam::{DVec2, DVec3};
+use maulstick_brush::HeadPose;
 use maulstick_num::geometry::Rigid;
-
-use crate::head::HeadPose;
 
 /// Length of the handle, m.
 const HANDLE_M: f64 = 0.15;
@@ -14,8 +13,8 @@ const FERRULE: f64 = 2.3;
 /// Half the angle under which the lamp is seen, as a slope: by it a shadow blurs with height.
 const LAMP_SIZE: f64 = 0.09;
 /// How dark a shadow is, and how much darker under what touches.
-const SHADOW: f64 = 0.34;
-const TOUCH: f64 = 0.22;
+const SHADOW: f64 = 0.3;
+const TOUCH: f64 = 0.2;
 /// Height at which the darkness of touching has halved, m.
 const NEAR_M: f64 = 1.5e-3;
 /// Height at which a shadow has faded to half, m.
@@ -26,6 +25,8 @@ const FAR_M: f64 = 0.12;
 pub enum Material {
     /// The ferrule.
     Metal,
+    /// A groove of the ferrule, which crimps it to the handle.
+    Groove,
     /// The handle.
     Wood,
 }
@@ -58,25 +59,22 @@ pub struct Shade {
 /// wide and leaves the ferrule with `root_m` radius: from the head upward.
 #[must_use]
 pub fn sections(brush: &Rigid, width_m: f64, root_m: f64) -> Vec<Section> {
-    use Material::{Metal, Wood};
+    use Material::{Groove, Metal, Wood};
     let top = 0.36 * width_m;
-    let metal = |place: f64, over: f64| {
+    let metal = |place: f64, material: Material| {
         let radius = root_m * 1.04 + (top - root_m * 1.04) * place;
-        (place * FERRULE * width_m, radius + over * width_m, Metal)
+        (place * FERRULE * width_m, radius, material)
     };
     let wood = |place: f64, radius: f64| {
         let z = FERRULE * width_m + place * HANDLE_M;
         (z, radius * width_m, Wood)
     };
-    let ridge = 0.035;
     [
-        metal(0.0, 0.0),
-        metal(0.62, 0.0),
-        metal(0.65, ridge),
-        metal(0.68, 0.0),
-        metal(0.78, 0.0),
-        metal(0.81, ridge),
-        metal(0.84, 0.0),
+        metal(0.0, Metal),
+        metal(0.66, Groove),
+        metal(0.71, Metal),
+        metal(0.8, Groove),
+        metal(0.85, Metal),
         wood(0.0, 0.36),
         wood(0.05, 0.44),
         wood(0.14, 0.5),
@@ -92,24 +90,28 @@ pub fn sections(brush: &Rigid, width_m: f64, root_m: f64) -> Vec<Section> {
     .to_vec()
 }
 
-/// The middle of the head at each station and the radius of an even disc that spreads as widely.
+/// The middle of the head at each station, and its radius across the way that it goes along the
+/// surface: half the width of an even disc that spreads as far.
 #[must_use]
 pub fn head_discs(pose: &HeadPose, strips: usize) -> Vec<(DVec3, f64)> {
-    let rows = pose.x.chunks_exact(strips.max(1));
-    rows.zip(pose.y.chunks_exact(strips.max(1)))
-        .zip(pose.z.chunks_exact(strips.max(1)))
-        .map(|((x, y), z)| {
-            let mean = |plane: &[f32]| {
-                plane.iter().map(|v| f64::from(*v)).sum::<f64>() / plane.len() as f64
-            };
-            let (mx, my) = (mean(x), mean(y));
-            let spread = |plane: &[f32], middle: f64| {
-                let squares = plane.iter().map(|v| (f64::from(*v) - middle).powi(2));
-                squares.sum::<f64>() / plane.len() as f64
-            };
-            // Both axes together: an even disc of radius R has R²/2.
-            let radius = (2.0 * (spread(x, mx) + spread(y, my))).sqrt();
-            (DVec3::new(mx, my, mean(z)), radius)
+    let strips = strips.max(1);
+    let at = |i: usize| {
+        let [x, y, z] = [&pose.x, &pose.y, &pose.z].map(|plane| f64::from(plane[i]));
+        DVec3::new(x, y, z)
+    };
+    let rows = |station: usize| (station * strips..(station + 1) * strips).map(at);
+    let stations = pose.x.len() / strips;
+    let middle = |station: usize| rows(station).sum::<DVec3>() / strips as f64;
+    let middles: Vec<DVec3> = (0..stations).map(middle).collect();
+    (0..stations)
+        .map(|station| {
+            let before = middles[station.saturating_sub(1)];
+            let after = middles[(station + 1).min(stations - 1)];
+            let ahead = (after - before).truncate().normalize_or(DVec2::X);
+            let off = |p: DVec3| (p - middles[station]).truncate().perp_dot(ahead);
+            let square = rows(station).map(|p| off(p) * off(p)).sum::<f64>() / strips as f64;
+            // An even disc of radius R has the variance R²/4 along each axis.
+            (middles[station], 2.0 * square.sqrt())
         })
         .collect()
 }
@@ -197,6 +199,7 @@ mod tests {
             x: place(maulstick_num::cos).map(|x| x + 0.1).collect(),
             y: place(maulstick_num::sin).collect(),
             z: vec![0.02; strips],
+            press: 0.0,
         };
         let [(middle, found)] = head_discs(&pose, strips)[..] else {
             panic!("one station")

@@ -115,6 +115,7 @@ impl Chain {
         for section in sections {
             let (colour, metal) = match section.material {
                 Material::Metal => (NICKEL, 1.0),
+                Material::Groove => (NICKEL.map(|channel| 0.35 * channel), 1.0),
                 Material::Wood => (LACQUER, 0.0),
             };
             let fade = (section.at.z - FADES_M[0]) / (FADES_M[1] - FADES_M[0]);
@@ -243,7 +244,6 @@ impl Drawn {
     }
 
     /// As a shape of the window that fills the view.
-    #[must_use]
     pub fn shape(self, view: &View) -> Shape {
         egui_wgpu::Callback::new_paint_callback(view.area, self).into()
     }

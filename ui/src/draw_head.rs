@@ -1,14 +1,11 @@
 //! Draws the bristle strips of a head: thin ribbons, the lower ones first.
 
 use eframe::egui::{Color32, Mesh, Pos2, Vec2, vec2};
-
-use crate::head::HeadPose;
+use maulstick_brush::HeadPose;
 
 /// Hog bristle in the light and in the depth of the tuft, sRGB.
 const LIGHT: [f32; 3] = [238.0, 214.0, 170.0];
 const DARK: [f32; 3] = [112.0, 82.0, 52.0];
-/// Width of a bristle, m.
-const BRISTLE_M: f32 = 2.2e-4;
 /// Half the width of the soft edge of a ribbon, points.
 const SOFT: f32 = 0.5;
 
@@ -18,6 +15,8 @@ pub struct HeadView<'a> {
     pub to_window: &'a dyn Fn([f32; 3]) -> Pos2,
     /// Points a metre.
     pub scale: f32,
+    /// Width of a strip, m.
+    pub bristle_m: f32,
     /// Unit vector toward the lamp, surface frame.
     pub toward: [f32; 3],
 }
@@ -40,7 +39,7 @@ pub fn ribbons(pose: &HeadPose, strips: usize, view: &HeadView<'_>) -> Mesh {
     let height = |strip: usize| (0..stations).map(|s| at(s, strip)[2]).sum::<f32>();
     let mut order: Vec<usize> = (0..strips).collect();
     order.sort_by(|a, b| height(*a).total_cmp(&height(*b)));
-    let half = 0.5 * BRISTLE_M * view.scale;
+    let half = 0.5 * view.bristle_m * view.scale;
     let cover = (2.0 * half).clamp(0.3, 1.0);
     let columns = [
         -half - SOFT,
@@ -148,6 +147,7 @@ mod tests {
             x: vec![0.0, 0.0, 0.01, 0.01, 0.02, 0.02],
             y: vec![0.0, 1e-3, 0.0, 1e-3, 0.0, 1e-3],
             z: vec![0.0, 2e-3, 0.0, 2e-3, 0.0, 2e-3],
+            press: 0.0,
         }
     }
 
@@ -156,6 +156,7 @@ mod tests {
         let view = HeadView {
             to_window: &to_window,
             scale: 1000.0,
+            bristle_m: 2e-4,
             toward,
         };
         ribbons(pose, 2, &view)

@@ -7,16 +7,14 @@
 use std::collections::BTreeMap;
 
 use glam::DVec3;
-use maulstick_brush::BrushFile;
 use maulstick_brush::desk::{Desk, Plane, aim, ferrule};
+use maulstick_brush::{BrushFile, Head};
 use maulstick_bus::typed::Receiver;
 use maulstick_bus::{Bus, BusError, Class, Queue, Wake};
 use maulstick_num::geometry::Rigid;
 use maulstick_types::brush::{BrushDef, BrushState};
 use maulstick_types::stylus::StylusSample;
 use maulstick_types::topics::Topics;
-
-use crate::head::Head;
 
 /// A device that is silent for this long holds no brush, ns.
 const SILENCE_NS: u64 = 1_000_000_000;
@@ -313,7 +311,8 @@ mod tests {
         rig.sample(&pen(0.01, 0.4));
         let (shown, surface, angles) = rig.turn().expect("a brush");
         let second = rig.solve(1, &pen(0.01, 0.4));
-        let (solved, old) = (&second.solves[0], &first.solves[0]);
+        let newest = |state: &BrushState| state.solves.last().cloned().expect("a solve");
+        let (solved, old) = (&newest(&second), &newest(&first));
         let off = |solve: &maulstick_types::brush::Solve| {
             (shown.translation - Rigid::from(&solve.pose).translation).length()
         };

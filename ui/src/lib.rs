@@ -8,7 +8,7 @@
 //! | [`surface`] | a surface on the graphics device |
 //! | [`light_surface`], [`show_surface`] | the passes that it goes through |
 //! | [`follow`] | the brushes as they are now: newest sample, newest bend |
-//! | [`head`], [`brush_shape`] | the shape of a brush, and of its shadow |
+//! | [`brush_shape`] | ferrule, handle and shadow |
 //! | [`brushes`], [`draw_head`], [`draw_brush`] | how it is drawn |
 //! | [`gpu`] | the graphics device |
 //! | [`mouse`] | the mouse as a stylus |
@@ -21,7 +21,6 @@ pub mod draw_head;
 pub mod follow;
 pub mod frames;
 pub mod gpu;
-pub mod head;
 pub mod light_surface;
 pub mod mouse;
 pub mod show_surface;

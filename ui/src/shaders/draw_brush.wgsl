@@ -75,10 +75,12 @@ fn srgb(linear: vec3<f32>) -> vec3<f32> {
 fn finished(colour: vec3<f32>, metal: f32, n: vec3<f32>) -> vec3<f32> {
     let facing = dot(n, chain.toward.xyz);
     let lacquer = colour * (0.3 + 0.8 * max(facing, 0.0));
-    // Metal shows the room: dark below, the window on the lamp's side.
-    let polished = colour * (0.18 + 0.95 * smoothstep(-0.1, 0.95, facing));
+    // Metal shows the room: a window on the lamp's side, its dark frame, and the grey desk.
+    let window = smoothstep(0.72, 0.9, facing);
+    let frame = smoothstep(0.2, 0.5, facing) - smoothstep(0.5, 0.75, facing);
+    let polished = colour * (0.42 - 0.26 * frame + 0.75 * window + 0.2 * facing);
     let gleam = pow(max(dot(n, chain.half.xyz), 0.0), 48.0);
-    return mix(lacquer + 0.25 * gleam, polished + 0.5 * gleam, metal);
+    return mix(lacquer + 0.25 * gleam, polished + 0.2 * gleam, metal);
 }
 
 @fragment
@@ -109,7 +111,8 @@ fn solid(in: Corner) -> @location(0) vec4<f32> {
         }
         // Of the spheres along the axis, the highest at this pixel says how the surface faces.
         let touch = clamp((along + bulge * rise / slant) / max(long, 1e-3), 0.0, 1.0);
-        let off_axis = vec2<f32>(along - touch * long, off) / r;
+        // A pixel beyond the edge, where it would face away.
+        let off_axis = vec2<f32>(along - touch * long, off) / (r + 1.0);
         let flat = min(dot(off_axis, off_axis), 1.0);
         let across = off_axis * inverseSqrt(max(dot(off_axis, off_axis), 1.0));
         let n = vec3<f32>(
