@@ -5,18 +5,18 @@ use std::thread::JoinHandle;
 use std::time::Duration;
 
 use eframe::egui::{
-    self, CentralPanel, Color32, Context, CursorIcon, Event, Frame, PointerButton, Shape, Stroke,
+    self, CentralPanel, Context, CursorIcon, Event, Frame, PointerButton, Shape, Visuals,
 };
-use eframe::egui_wgpu::RenderState;
+use eframe::egui_wgpu::{RenderState, wgpu};
 use maulstick_brush::desk::Desk;
 use maulstick_bus::typed::{Receiver, random_epoch};
 use maulstick_bus::{Bus, Class, Queue, Wake};
-use maulstick_num::geometry::Rigid;
 use maulstick_paint::lamp::lamp_over;
 use maulstick_rig::{Fault, Member, Stop};
 use maulstick_types::scene::{CANVAS, PALETTE, Scene, Surface};
 use maulstick_types::{Origin, name_hash};
 
+use crate::backdrop::Backdrop;
 use crate::brushes::Brushes;
 use crate::follow::Follower;
 use crate::frames::{FrameInbox, FrameSource, pull};
@@ -28,8 +28,10 @@ use crate::view::{DESK_COLOUR, View, level};
 
 /// A pressed pointer that stands still is told this often: a longer silence would lift the brush.
 const STILL: Duration = Duration::from_millis(30);
-/// The window is drawn anew at most this often for samples: a device sends up to 1,000 a second.
+/// The window is drawn anew at most this often for samples, of which a device sends up to 1,000 a
+/// second; where the processor draws, less often, for the paint needs it too.
 const REPAINT: Duration = Duration::from_millis(16);
+const REPAINT_BY_PROCESSOR: Duration = Duration::from_millis(40);
 /// The surfaces that are shown, the lowest first.
 const SURFACES: [u32; 2] = [CANVAS, PALETTE];
 
@@ -45,6 +47,7 @@ struct Pulled {
 struct Painter {
     gpu: Gpu,
     passes: Passes,
+    backdrop: Backdrop,
     brushes: Brushes,
 }
 
@@ -124,6 +127,7 @@ impl App {
         };
         self.painter = Some(Painter {
             passes: Passes::new(&gpu),
+            backdrop: Backdrop::new(&gpu),
             brushes: Brushes::new(&gpu),
             gpu,
         });
@@ -144,7 +148,11 @@ impl App {
             self.threads.extend(thread("frames", run));
         }
         let (wake, context, stop) = (self.wake.clone(), context.clone(), self.stop.clone());
-        let run = move || repaint(&wake, &context, &stop);
+        let rest = match state.adapter.get_info().device_type {
+            wgpu::DeviceType::Cpu => REPAINT_BY_PROCESSOR,
+            _ => REPAINT,
+        };
+        let run = move || repaint(&wake, &context, &stop, rest);
         self.threads.extend(thread("repaint", run));
     }
 
@@ -209,25 +217,25 @@ impl App {
         places
     }
 
-    /// The desk from the bottom: surfaces, wells, brushes.
+    /// The desk from the bottom: surfaces, brushes.
     fn shapes(&mut self, view: &View, pixels_per_point: f32) -> Vec<Shape> {
         let (Some(painter), Some((scene, desk))) = (&mut self.painter, &self.scene) else {
             return Vec::new();
         };
-        let mut shapes = Vec::new();
-        for (pulled, id) in self.surfaces.iter().zip(SURFACES) {
+        let mut laid = Vec::new();
+        for (pulled, id) in self.surfaces.iter_mut().zip(SURFACES) {
             let Some(surface) = find(scene, id) else {
                 continue;
             };
             let [across, _] = Place::pixels(surface, view, pixels_per_point);
             pulled.inbox.want_level(level(surface.cells[0], across));
-            let (gpu, passes) = (&painter.gpu, &painter.passes);
-            let laid = pulled
-                .view
-                .lay(gpu, passes, surface, view, pixels_per_point);
-            shapes.extend(laid.map(|laid| laid.shape(view)));
-            shapes.extend(wells(surface, view));
+            let gpu = &painter.gpu;
+            laid.extend(pulled.view.lay(gpu, surface, view, pixels_per_point));
         }
+        let size = view.pixels(pixels_per_point);
+        let (gpu, passes) = (&painter.gpu, &painter.passes);
+        painter.backdrop.update(gpu, passes, size, &laid);
+        let mut shapes: Vec<Shape> = painter.backdrop.shape(view).into_iter().collect();
         for held in self.follower.held(desk) {
             if let Some(head) = self.follower.head(held.name) {
                 let lamp = lamp_over(scene, held.plane.id);
@@ -247,11 +255,11 @@ impl App {
 }
 
 /// Draws the window anew when something has come, but not too often.
-fn repaint(wake: &Wake, context: &Context, stop: &Stop) {
+fn repaint(wake: &Wake, context: &Context, stop: &Stop, rest: Duration) {
     while !stop.requested() {
         if wake.wait(Duration::from_millis(200)) {
             context.request_repaint();
-            std::thread::sleep(REPAINT);
+            std::thread::sleep(rest);
         }
     }
     context.request_repaint();
@@ -266,21 +274,6 @@ fn thread(name: &str, run: impl FnOnce() + Send + 'static) -> Option<JoinHandle<
 
 fn find(scene: &Scene, id: u32) -> Option<&Surface> {
     scene.surfaces.iter().find(|surface| surface.id == id)
-}
-
-/// The rims of a surface's wells.
-fn wells(surface: &Surface, view: &View) -> impl Iterator<Item = Shape> {
-    let pose = Rigid::from(&surface.pose);
-    surface.wells.iter().map(move |well| {
-        let [x, y] = well.center_m.map(|at| at * surface.zoom);
-        let middle = view.to_window(pose.point(glam::DVec3::new(x, y, 0.0)));
-        let radius = (well.radius_m * surface.zoom * view.scale) as f32;
-        Shape::circle_stroke(
-            middle,
-            radius,
-            Stroke::new(1.0, Color32::from_white_alpha(40)),
-        )
-    })
 }
 
 impl eframe::App for App {
@@ -301,24 +294,26 @@ impl eframe::App for App {
     }
 
     fn ui(&mut self, ui: &mut egui::Ui, _frame: &mut eframe::Frame) {
-        CentralPanel::default()
-            .frame(Frame::new().fill(DESK_COLOUR))
-            .show(ui, |ui| {
-                let area = ui.max_rect();
-                let surfaces = self.scene.as_ref().map(|(scene, _)| &scene.surfaces[..]);
-                self.view = View::fit(area, surfaces.unwrap_or_default());
-                match self.view {
-                    Some(view) => {
-                        ui.ctx().set_cursor_icon(CursorIcon::Crosshair);
-                        let pixels_per_point = ui.ctx().pixels_per_point();
-                        let shapes = self.shapes(&view, pixels_per_point);
-                        ui.painter().extend(shapes);
-                    }
-                    None => {
-                        ui.centered_and_justified(|ui| ui.label("waiting for the paint …"));
-                    }
+        CentralPanel::default().frame(Frame::NONE).show(ui, |ui| {
+            let area = ui.max_rect();
+            let surfaces = self.scene.as_ref().map(|(scene, _)| &scene.surfaces[..]);
+            self.view = View::fit(area, surfaces.unwrap_or_default());
+            match self.view {
+                Some(view) => {
+                    ui.ctx().set_cursor_icon(CursorIcon::Crosshair);
+                    let pixels_per_point = ui.ctx().pixels_per_point();
+                    let shapes = self.shapes(&view, pixels_per_point);
+                    ui.painter().extend(shapes);
                 }
-            });
+                None => {
+                    ui.centered_and_justified(|ui| ui.label("waiting for the paint …"));
+                }
+            }
+        });
+    }
+
+    fn clear_color(&self, _visuals: &Visuals) -> [f32; 4] {
+        DESK_COLOUR.to_normalized_gamma_f32()
     }
 
     fn on_exit(&mut self) {

@@ -20,6 +20,9 @@ const NEAR_M: f64 = 1.5e-3;
 /// Height at which a shadow has faded to half, m.
 const FAR_M: f64 = 0.12;
 
+/// Cross-sections of ferrule and handle.
+pub const SECTIONS: usize = 11;
+
 /// What a part is made of.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Material {
@@ -58,7 +61,7 @@ pub struct Shade {
 /// Ferrule and handle of a brush at `brush` (brush frame to surface frame) whose head is `width_m`
 /// wide and leaves the ferrule with `root_m` radius: from the head upward.
 #[must_use]
-pub fn sections(brush: &Rigid, width_m: f64, root_m: f64) -> Vec<Section> {
+pub fn sections(brush: &Rigid, width_m: f64, root_m: f64) -> [Section; SECTIONS] {
     use Material::{Groove, Metal, Wood};
     let top = 0.36 * width_m;
     let metal = |place: f64, material: Material| {
@@ -87,7 +90,6 @@ pub fn sections(brush: &Rigid, width_m: f64, root_m: f64) -> Vec<Section> {
         radius,
         material,
     })
-    .to_vec()
 }
 
 /// The middle of the head at each station, and its radius across the way that it goes along the

@@ -3,6 +3,7 @@
 use std::collections::BTreeMap;
 
 use eframe::egui::{Pos2, Shape};
+use maulstick_brush::{Head, HeadPose};
 use maulstick_optics::light::Lamp;
 
 use crate::brush_shape::{head_discs, sections, shadow};
@@ -10,7 +11,6 @@ use crate::draw_brush::{Chain, ChainSlot, DrawBrush, Frame};
 use crate::draw_head::{HeadView, ribbons};
 use crate::follow::Held;
 use crate::gpu::Gpu;
-use crate::head::{Head, HeadPose};
 use crate::view::View;
 
 /// Places on the device for a brush.
@@ -67,6 +67,7 @@ impl Brushes {
         let strips = HeadView {
             to_window: &|local| to_window(local.map(f64::from)),
             scale: view.scale as f32,
+            bristle_m: held.file.strips.width_mm as f32 * 1e-3,
             toward: lamp.toward,
         };
         let slots = self

@@ -3,13 +3,17 @@
 use bytemuck::{Pod, Zeroable};
 use eframe::egui::{PaintCallbackInfo, Pos2, Shape};
 use eframe::egui_wgpu::{self, CallbackResources, CallbackTrait, wgpu};
+use glam::Vec2;
+use maulstick_brush::head::STATIONS;
 
-use crate::brush_shape::{Material, Section, Shade};
+use crate::brush_shape::{Material, SECTIONS, Section, Shade};
 use crate::gpu::{Gpu, Pass, UNIFORM};
 use crate::view::View;
 
 /// Nodes of a chain at most, as in the shader.
 const NODES: usize = 24;
+/// Discs of a shadow: those of the head's stations, then those of ferrule and handle.
+pub const SHADES: usize = STATIONS + SECTIONS;
 /// Softness that keeps an edge from being jagged, pixels.
 const EDGE: f32 = 0.7;
 /// Linear colour of nickel and of lacquered wood.
@@ -17,18 +21,28 @@ const NICKEL: [f32; 3] = [0.62, 0.62, 0.60];
 const LACQUER: [f32; 3] = [0.60, 0.19, 0.05];
 /// Heights between which the handle fades, so that it does not hide the painting, and what is left
 /// of it above, m.
-const FADES_M: [f64; 2] = [0.03, 0.13];
+const FADES_M: [f64; 2] = [0.06, 0.16];
 const FADED: f32 = 0.35;
+
+/// A node of a chain.
+#[derive(Clone, Copy, Debug, Default)]
+struct Node {
+    /// x, y, radius; then height or softness, pixels.
+    disc: [f32; 4],
+    /// Of what begins here; then opacity or darkness.
+    colour: [f32; 4],
+    /// 1 for metal.
+    metal: f32,
+}
 
 /// A chain of discs as the shader takes it.
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
 #[repr(C)]
 pub struct Chain {
     view: [f32; 2],
-    count: u32,
-    _pad: u32,
-    low: [f32; 2],
-    high: [f32; 2],
+    _pad: [f32; 2],
+    corner: [f32; 4],
+    sides: [f32; 4],
     toward: [f32; 4],
     half: [f32; 4],
     nodes: [[f32; 4]; NODES],
@@ -70,89 +84,98 @@ impl Frame<'_> {
 }
 
 impl Chain {
-    fn new(frame: &Frame<'_>) -> Self {
+    fn new(frame: &Frame<'_>, nodes: &[Node]) -> Self {
         let toward = frame.direction(frame.toward);
         let [x, y, z, _] = toward;
         let length = (x * x + y * y + (z + 1.0) * (z + 1.0)).sqrt();
-        Self {
+        let mut chain = Self {
             view: (frame.view.area.size() * frame.pixels_per_point).into(),
-            low: [f32::MAX; 2],
-            high: [f32::MIN; 2],
             toward,
             half: [x / length, y / length, (z + 1.0) / length, 0.0],
             ..Self::zeroed()
+        };
+        // The shader takes all nodes of its kind of chain: a short one goes on where it ends.
+        let mut last = Node::default();
+        for i in 0..NODES {
+            last = nodes.get(i).copied().unwrap_or(last);
+            chain.nodes[i] = last.disc;
+            chain.colours[i] = last.colour;
+            chain.finishes[i] = [last.metal, 0.0, 0.0, 0.0];
         }
+        chain
     }
 
-    fn push(&mut self, at: [f32; 2], radius: f32, last: f32, colour: [f32; 4], metal: f32) {
-        let i = self.count as usize;
-        if i == NODES {
-            return;
-        }
-        self.nodes[i] = [at[0], at[1], radius, last];
-        self.colours[i] = colour;
-        self.finishes[i] = [metal, 0.0, 0.0, 0.0];
-        self.count += 1;
-    }
-
-    /// Makes the chain cover its discs with `margin(node)` around each.
+    /// Gives the chain the box that holds its discs with `margin(disc)` around each, along the way
+    /// from its first node to its last: a slanting one would fill little of an upright box.
     fn bounded(mut self, margin: impl Fn(&[f32; 4]) -> f32) -> Self {
-        for node in &self.nodes[..self.count as usize] {
-            let reach = node[2] + margin(node);
+        let place = |disc: &[f32; 4]| Vec2::new(disc[0], disc[1]);
+        let (first, last) = (place(&self.nodes[0]), place(&self.nodes[NODES - 1]));
+        let ahead = (last - first).normalize_or(Vec2::X);
+        let axes = [ahead, ahead.perp()];
+        let (mut low, mut high) = ([f32::MAX; 2], [f32::MIN; 2]);
+        for disc in &self.nodes {
+            let reach = disc[2] + margin(disc);
             for i in 0..2 {
-                self.low[i] = self.low[i].min((node[i] - reach).floor()).max(0.0);
-                self.high[i] = self.high[i].max((node[i] + reach).ceil()).min(self.view[i]);
+                let at = place(disc).dot(axes[i]);
+                (low[i], high[i]) = (low[i].min(at - reach), high[i].max(at + reach));
             }
         }
+        let corner = axes[0] * low[0] + axes[1] * low[1];
+        let [along, across] = [0, 1].map(|i| axes[i] * (high[i] - low[i]));
+        self.corner = [corner.x, corner.y, 0.0, 0.0];
+        self.sides = [along.x, along.y, across.x, across.y];
         self
     }
 
     /// Ferrule and handle.
     #[must_use]
-    pub fn solid(sections: &[Section], frame: &Frame<'_>) -> Self {
+    pub fn solid(sections: &[Section; SECTIONS], frame: &Frame<'_>) -> Self {
         let scale = frame.pixels_per_m();
-        let mut chain = Self::new(frame);
-        for section in sections {
-            let (colour, metal) = match section.material {
+        let node = |section: &Section| {
+            let [x, y] = frame.pixels(section.at.to_array());
+            let ([r, g, b], metal) = match section.material {
                 Material::Metal => (NICKEL, 1.0),
                 Material::Groove => (NICKEL.map(|channel| 0.35 * channel), 1.0),
                 Material::Wood => (LACQUER, 0.0),
             };
             let fade = (section.at.z - FADES_M[0]) / (FADES_M[1] - FADES_M[0]);
             let opacity = 1.0 - (1.0 - FADED) * fade.clamp(0.0, 1.0) as f32;
-            chain.push(
-                frame.pixels(section.at.to_array()),
-                (section.radius * scale) as f32,
-                (section.at.z * scale) as f32,
-                [colour[0], colour[1], colour[2], opacity],
+            let [radius, height] = [section.radius, section.at.z].map(|m| (m * scale) as f32);
+            Node {
+                disc: [x, y, radius, height],
+                colour: [r, g, b, opacity],
                 metal,
-            );
-        }
-        chain.bounded(|_| 1.0)
+            }
+        };
+        Self::new(frame, &sections.each_ref().map(node)).bounded(|_| 1.0)
     }
 
-    /// A shadow.
+    /// The shadow of at most [`SHADES`] discs.
     #[must_use]
     pub fn shadow(shades: &[Shade], frame: &Frame<'_>) -> Self {
         let scale = frame.pixels_per_m();
-        let mut chain = Self::new(frame);
-        for shade in shades {
-            let darkness = shade.darkness as f32;
-            chain.push(
-                frame.pixels(shade.at.extend(0.0).to_array()),
-                (shade.radius * scale) as f32,
-                (shade.softness * scale) as f32 + EDGE,
-                [0.0, 0.0, 0.0, darkness],
-                0.0,
-            );
-        }
-        chain.bounded(|node| node[3])
+        let node = |shade: &Shade| {
+            let [x, y] = frame.pixels(shade.at.extend(0.0).to_array());
+            let [radius, softness] = [shade.radius, shade.softness].map(|m| (m * scale) as f32);
+            Node {
+                disc: [x, y, radius, softness + EDGE],
+                colour: [0.0, 0.0, 0.0, shade.darkness as f32],
+                metal: 0.0,
+            }
+        };
+        let nodes: Vec<Node> = shades.iter().take(SHADES).map(node).collect();
+        Self::new(frame, &nodes).bounded(|disc| disc[3])
     }
 
-    /// Whether any of it is in the view.
+    /// Whether any of its box may be in the view.
     #[must_use]
     pub fn is_visible(&self) -> bool {
-        (0..2).all(|i| self.low[i] < self.high[i])
+        (0..2).all(|i| {
+            let (a, b) = (self.sides[i], self.sides[i + 2]);
+            let low = self.corner[i] + a.min(0.0) + b.min(0.0);
+            let high = self.corner[i] + a.max(0.0) + b.max(0.0);
+            low < self.view[i] && high > 0.0
+        })
     }
 }
 
@@ -170,21 +193,21 @@ impl DrawBrush {
     pub fn new(gpu: &Gpu) -> Self {
         let layout = gpu.layout("draw_brush", &[UNIFORM]);
         let shader = gpu.shader("draw_brush", include_str!("shaders/draw_brush.wgsl"));
-        let pipeline = |fragment: &'static str| {
+        let pipeline = |fragment: &'static str, count: usize| {
             gpu.pipeline(&Pass {
                 name: "draw_brush",
                 layout: &layout,
                 shader: &shader,
                 vertex: "cover",
                 fragment,
-                constants: &gpu.encoding(),
+                constants: &[gpu.encoding(), ("count", count as f64)],
                 target: gpu.target,
                 blend: Some(wgpu::BlendState::PREMULTIPLIED_ALPHA_BLENDING),
             })
         };
         Self {
-            cast: pipeline("shadow"),
-            solid: pipeline("solid"),
+            cast: pipeline("shadow", SHADES),
+            solid: pipeline("solid", SECTIONS),
             layout,
         }
     }
@@ -284,7 +307,7 @@ mod tests {
             gpu: &Gpu,
             lean: DVec2,
             toward: [f32; 3],
-            which: fn(&DrawBrush, &Gpu, &ChainSlot, &[Section], &Frame<'_>) -> Drawn,
+            which: fn(&DrawBrush, &Gpu, &ChainSlot, &[Section; SECTIONS], &Frame<'_>) -> Drawn,
         ) -> Self {
             let view = View {
                 area: Rect::from_min_size(pos2(0.0, 0.0), vec2(SIDE as f32, SIDE as f32)),
@@ -336,7 +359,7 @@ mod tests {
         passes: &DrawBrush,
         gpu: &Gpu,
         slot: &ChainSlot,
-        sections: &[Section],
+        sections: &[Section; SECTIONS],
         frame: &Frame<'_>,
     ) -> Drawn {
         let discs: Vec<_> = sections.iter().map(|s| (s.at, s.radius)).collect();
@@ -351,7 +374,7 @@ mod tests {
         passes: &DrawBrush,
         gpu: &Gpu,
         slot: &ChainSlot,
-        sections: &[Section],
+        sections: &[Section; SECTIONS],
         frame: &Frame<'_>,
     ) -> Drawn {
         passes.solid(gpu, slot, &Chain::solid(sections, frame))
@@ -385,7 +408,7 @@ mod tests {
             (away.at(0, -20), away.at(14, 20), away.at(-14, 20)),
             (255, 255, 255)
         );
-        assert!(away.at(-5, 15) > away.at(5, 15) + 20, "lit from the left");
+        assert!(away.at(-5, 50) > away.at(5, 50) + 20, "lit from the left");
         let other = Picture::of(&gpu, DVec2::new(0.0, 0.6), RIGHT, solid).mirrored();
         assert!(away.differs(&other) <= 2, "{}", away.differs(&other));
         assert!(away.differs(&away.mirrored()) > 20, "a fault would pass");

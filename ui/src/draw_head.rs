@@ -6,6 +6,8 @@ use maulstick_brush::HeadPose;
 /// Hog bristle in the light and in the depth of the tuft, sRGB.
 const LIGHT: [f32; 3] = [238.0, 214.0, 170.0];
 const DARK: [f32; 3] = [112.0, 82.0, 52.0];
+/// Bristles farther below the middle of the tuft than this, by its radius, are under others.
+const UNDER: f32 = -0.5;
 /// Half the width of the soft edge of a ribbon, points.
 const SOFT: f32 = 0.5;
 
@@ -41,12 +43,20 @@ pub fn ribbons(pose: &HeadPose, strips: usize, view: &HeadView<'_>) -> Mesh {
     order.sort_by(|a, b| height(*a).total_cmp(&height(*b)));
     let half = 0.5 * view.bristle_m * view.scale;
     let cover = (2.0 * half).clamp(0.3, 1.0);
-    let columns = [
-        -half - SOFT,
-        SOFT.min(half) - half,
-        half - SOFT.min(half),
-        half + SOFT,
-    ];
+    let columns: &[(f32, f32)] = if half > 2.0 * SOFT {
+        &[
+            (-half - SOFT, 0.0),
+            (SOFT - half, cover),
+            (half - SOFT, cover),
+            (half + SOFT, 0.0),
+        ]
+    } else {
+        &[(-half - SOFT, 0.0), (0.0, cover), (half + SOFT, 0.0)]
+    };
+    let width = columns.len() as u32;
+    // Of a tuft that stands free the underside is not seen.
+    let below = |s: usize, strip: usize| middles[s].height(at(s, strip)) < UNDER;
+    order.retain(|strip| (1..stations).any(|station| !below(station, *strip)));
     for strip in order {
         let points: Vec<Pos2> = (0..stations)
             .map(|station| (view.to_window)(at(station, strip)))
@@ -57,20 +67,16 @@ pub fn ribbons(pose: &HeadPose, strips: usize, view: &HeadView<'_>) -> Mesh {
             let along = station as f32 / (stations - 1) as f32;
             let light = middles[station].light(at(station, strip), view.toward);
             let colour = shade(light, along, unruly(strip));
-            for (column, reach) in columns.iter().enumerate() {
-                let alpha = if column == 1 || column == 2 {
-                    cover
-                } else {
-                    0.0
-                };
-                mesh.colored_vertex(points[station] + normal * *reach, with_alpha(colour, alpha));
+            for (reach, alpha) in columns {
+                let place = points[station] + normal * *reach;
+                mesh.colored_vertex(place, with_alpha(colour, *alpha));
             }
         }
         for station in 0..stations as u32 - 1 {
-            for column in 0..3 {
-                let a = first + 4 * station + column;
-                mesh.add_triangle(a, a + 1, a + 4);
-                mesh.add_triangle(a + 1, a + 5, a + 4);
+            for column in 0..width - 1 {
+                let a = first + width * station + column;
+                mesh.add_triangle(a, a + 1, a + width);
+                mesh.add_triangle(a + 1, a + width + 1, a + width);
             }
         }
     }
@@ -98,6 +104,11 @@ impl Middle {
         };
         let radius = points.map(far).fold(1e-12, f32::max).sqrt();
         Self { at, radius }
+    }
+
+    /// How high a point is above the middle, by the radius.
+    fn height(&self, p: [f32; 3]) -> f32 {
+        (p[2] - self.at[2]) / self.radius
     }
 
     /// How much light a bristle at `p` gets: the tuft is round, and dark within.
@@ -146,7 +157,7 @@ mod tests {
         HeadPose {
             x: vec![0.0, 0.0, 0.01, 0.01, 0.02, 0.02],
             y: vec![0.0, 1e-3, 0.0, 1e-3, 0.0, 1e-3],
-            z: vec![0.0, 2e-3, 0.0, 2e-3, 0.0, 2e-3],
+            z: vec![0.0, 2e-4, 0.0, 2e-4, 0.0, 2e-4],
             press: 0.0,
         }
     }
@@ -156,7 +167,7 @@ mod tests {
         let view = HeadView {
             to_window: &to_window,
             scale: 1000.0,
-            bristle_m: 2e-4,
+            bristle_m: 4e-3,
             toward,
         };
         ribbons(pose, 2, &view)

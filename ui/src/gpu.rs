@@ -121,11 +121,11 @@ impl Gpu {
             })
     }
 
-    /// The constants of a shader that draws into the window: it encodes where the window's pixels
-    /// do not encode by themselves.
+    /// The constant of a shader that draws into the window: it encodes where the window's pixels do
+    /// not encode by themselves.
     #[must_use]
-    pub fn encoding(&self) -> [(&'static str, f64); 1] {
-        [("encoded", f64::from(u8::from(!self.target.is_srgb())))]
+    pub fn encoding(&self) -> (&'static str, f64) {
+        ("encoded", f64::from(u8::from(!self.target.is_srgb())))
     }
 }
 

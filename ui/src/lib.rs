@@ -7,6 +7,7 @@
 //! | [`frames`] | the threads that pull frames |
 //! | [`surface`] | a surface on the graphics device |
 //! | [`light_surface`], [`show_surface`] | the passes that it goes through |
+//! | [`backdrop`] | desk and surfaces as pixels of the window |
 //! | [`follow`] | the brushes as they are now: newest sample, newest bend |
 //! | [`brush_shape`] | ferrule, handle and shadow |
 //! | [`brushes`], [`draw_head`], [`draw_brush`] | how it is drawn |
@@ -14,6 +15,7 @@
 //! | [`mouse`] | the mouse as a stylus |
 
 pub mod app;
+pub mod backdrop;
 pub mod brush_shape;
 pub mod brushes;
 pub mod draw_brush;

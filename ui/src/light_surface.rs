@@ -22,9 +22,8 @@ pub struct LampUniform {
     half: [f32; 3],
     peak: f32,
     flat: f32,
-    ambient: f32,
-    sharpness: u32,
     cell_m: f32,
+    _pad: [f32; 2],
 }
 
 impl LampUniform {
@@ -37,9 +36,8 @@ impl LampUniform {
             half: lamp.half,
             peak: lamp.peak,
             flat: lamp.flat,
-            ambient: AMBIENT,
-            sharpness: SHARPNESS,
             cell_m,
+            _pad: [0.0; 2],
         }
     }
 }
@@ -86,7 +84,10 @@ impl LightSurface {
             shader: &shader,
             vertex: "cover",
             fragment: "light",
-            constants: &[],
+            constants: &[
+                ("ambient", f64::from(AMBIENT)),
+                ("sharpness", f64::from(SHARPNESS)),
+            ],
             target: LIT,
             blend: None,
         });

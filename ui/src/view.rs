@@ -61,6 +61,14 @@ impl View {
         })
     }
 
+    /// Pixels of the view, as the window rounds them.
+    #[must_use]
+    pub fn pixels(&self, pixels_per_point: f32) -> [u32; 2] {
+        let round = |at: f32| (at * pixels_per_point).round();
+        let (from, to) = (self.area.min, self.area.max);
+        [(from.x, to.x), (from.y, to.y)].map(|(from, to)| (round(to) - round(from)).max(0.0) as u32)
+    }
+
     /// Where a point of the desk is in the window.
     #[must_use]
     pub fn to_window(&self, desk: DVec3) -> Pos2 {

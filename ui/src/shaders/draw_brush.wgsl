@@ -6,10 +6,9 @@ const NODES: u32 = 24u;
 struct Chain {
     // Pixels of the view.
     view: vec2<f32>,
-    count: u32,
-    // What the chain covers, pixels.
-    low: vec2<f32>,
-    high: vec2<f32>,
+    // The box that the chain covers: a corner and its two sides, pixels.
+    corner: vec4<f32>,
+    sides: vec4<f32>,
     // Unit vectors in the view (x right, y down, z to the viewer): to the lamp, and halfway to it.
     toward: vec4<f32>,
     half: vec4<f32>,
@@ -23,6 +22,9 @@ struct Chain {
 
 // Whether the target takes encoded values; one that encodes by itself takes linear light.
 override encoded: bool = true;
+// Nodes of the chain, the same for each: a loop to a uniform makes some drivers compile the shader
+// anew for every draw.
+override count: u32;
 
 @group(0) @binding(0) var<uniform> chain: Chain;
 
@@ -35,7 +37,7 @@ struct Corner {
 @vertex
 fn cover(@builtin(vertex_index) corner: u32) -> Corner {
     let unit = vec2<f32>(f32(corner & 1u), f32(corner >> 1u));
-    let at = mix(chain.low, chain.high, unit);
+    let at = chain.corner.xy + unit.x * chain.sides.xy + unit.y * chain.sides.zw;
     let clip = at / chain.view * vec2<f32>(2.0, -2.0) + vec2<f32>(-1.0, 1.0);
     return Corner(vec4<f32>(clip, 0.0, 1.0), at);
 }
@@ -48,15 +50,15 @@ fn shaded(x: f32, r: f32, soft: f32) -> f32 {
 @fragment
 fn shadow(in: Corner) -> @location(0) vec4<f32> {
     var dark = 0.0;
-    for (var i = 0u; i < chain.count; i += 1u) {
+    for (var i = 0u; i < count; i += 1u) {
         let a = chain.nodes[i];
-        let b = chain.nodes[min(i + 1u, chain.count - 1u)];
+        let b = chain.nodes[min(i + 1u, count - 1u)];
         let ab = b.xy - a.xy;
         let square = dot(ab, ab);
         // Where neighbours fall together, each is a disc.
         let t = select(0.0, clamp(dot(in.at - a.xy, ab) / max(square, 1e-6), 0.0, 1.0), square > 1e-6);
         let node = mix(a, b, t);
-        let darkness = mix(chain.colours[i].w, chain.colours[min(i + 1u, chain.count - 1u)].w, t);
+        let darkness = mix(chain.colours[i].w, chain.colours[min(i + 1u, count - 1u)].w, t);
         dark = max(dark, darkness * shaded(distance(in.at, node.xy), node.z, node.w));
     }
     if encoded {
@@ -74,11 +76,11 @@ fn srgb(linear: vec3<f32>) -> vec3<f32> {
 
 fn finished(colour: vec3<f32>, metal: f32, n: vec3<f32>) -> vec3<f32> {
     let facing = dot(n, chain.toward.xyz);
-    let lacquer = colour * (0.3 + 0.8 * max(facing, 0.0));
+    let lacquer = colour * (0.42 + 0.65 * max(facing, 0.0));
     // Metal shows the room: a window on the lamp's side, its dark frame, and the grey desk.
     let window = smoothstep(0.72, 0.9, facing);
     let frame = smoothstep(0.2, 0.5, facing) - smoothstep(0.5, 0.75, facing);
-    let polished = colour * (0.42 - 0.26 * frame + 0.75 * window + 0.2 * facing);
+    let polished = colour * (0.42 - 0.26 * frame + 0.6 * window + 0.2 * facing);
     let gleam = pow(max(dot(n, chain.half.xyz), 0.0), 48.0);
     return mix(lacquer + 0.25 * gleam, polished + 0.2 * gleam, metal);
 }
@@ -88,7 +90,7 @@ fn solid(in: Corner) -> @location(0) vec4<f32> {
     var colour = vec3<f32>(0.0);
     var cover = 0.0;
     var opacity = 1.0;
-    for (var i = 0u; i + 1u < chain.count; i += 1u) {
+    for (var i = 0u; i + 1u < count; i += 1u) {
         let a = chain.nodes[i];
         let b = chain.nodes[i + 1u];
         let ab = b.xy - a.xy;

@@ -9,10 +9,14 @@ struct Lamp {
     half: vec3<f32>,
     peak: f32,
     flat: f32,
-    ambient: f32,
-    sharpness: u32,
     cell_m: f32,
 }
+
+// Share of the light that comes from all around.
+override ambient: f32;
+// Exponent of the highlight, as a power of two. No uniform: a loop to one makes some drivers compile
+// the shader anew for every draw.
+override sharpness: u32;
 
 @group(0) @binding(0) var<uniform> lamp: Lamp;
 // Linear red, green, blue, and gloss.
@@ -44,7 +48,7 @@ fn slope(cell: vec2<i32>) -> vec2<f32> {
 
 fn sharpened(x: f32) -> f32 {
     var power = max(x, 0.0);
-    for (var i = 0u; i < lamp.sharpness; i += 1u) {
+    for (var i = 0u; i < sharpness; i += 1u) {
         power *= power;
     }
     return power;
@@ -53,7 +57,7 @@ fn sharpened(x: f32) -> f32 {
 fn lit(unlit: vec3<f32>, gloss: f32, rise: vec2<f32>) -> vec3<f32> {
     let n = vec3<f32>(-rise, 1.0) / sqrt(dot(rise, rise) + 1.0);
     let incidence = max(dot(n, lamp.toward), 0.0) / lamp.toward.z;
-    let diffuse = lamp.ambient + (1.0 - lamp.ambient) * incidence;
+    let diffuse = ambient + (1.0 - ambient) * incidence;
     let lobe = max(sharpened(dot(n, lamp.half)) - lamp.flat, 0.0);
     let highlight = gloss * lamp.peak * lobe * incidence;
     return (diffuse * unlit + highlight) * lamp.intensity;

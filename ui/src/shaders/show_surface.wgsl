@@ -1,4 +1,5 @@
-// Shows a lit surface where it lies on the desk: linear light is filtered first, then encoded.
+// Shows the desk, and a lit surface where it lies on it: linear light is filtered first, then
+// encoded.
 
 struct Place {
     // Pixels of the view: the surface's lower left corner, and its sides from there.
@@ -14,6 +15,8 @@ struct Place {
 
 // Whether the target takes encoded values; one that encodes by itself takes linear light.
 override encoded: bool = true;
+// Grey of the desk, as the target takes it.
+override grey: f32 = 0.0;
 
 @group(0) @binding(0) var<uniform> place: Place;
 @group(0) @binding(1) var surface: texture_2d<f32>;
@@ -42,6 +45,16 @@ fn lay(@builtin(vertex_index) corner: u32) -> Corner {
 fn sampled(at: vec2<f32>) -> vec3<f32> {
     let inside = clamp(at, vec2<f32>(0.0), vec2<f32>(1.0)) * place.share;
     return textureSampleLevel(surface, smooth_sampler, inside, 0.0).rgb;
+}
+
+@vertex
+fn cover(@builtin(vertex_index) corner: u32) -> @builtin(position) vec4<f32> {
+    return vec4<f32>(vec2<f32>(f32(corner & 1u), f32(corner >> 1u)) * 2.0 - 1.0, 0.0, 1.0);
+}
+
+@fragment
+fn fill() -> @location(0) vec4<f32> {
+    return vec4<f32>(grey, grey, grey, 1.0);
 }
 
 // IEC 61966-2-1.
