@@ -337,7 +337,8 @@ fn a_mouse_stroke_in_the_window_is_painted_and_shown() {
     assert!(shown.is_some(), "the canvas is not shown");
     let (bus, topics) = support::join(&place);
     let mut mouse = listen::<StylusSample>(&bus, &topics.sample("mouse"), Class::RealTime);
-    let points: Vec<_> = (0..60).map(|i| [350 + 7 * i, 400 + 4 * i]).collect();
+    // On the canvas, which lies to the right of the palette, from 390 to 1084.
+    let points: Vec<_> = (0..60).map(|i| [420 + 6 * i, 400 + 4 * i]).collect();
     display.drag(&points, &mut mouse);
     bus.close();
     // The tip trails behind the pointer: the stroke crosses this column somewhere.

@@ -4,32 +4,68 @@ use std::sync::Arc;
 use std::thread::JoinHandle;
 use std::time::Duration;
 
-use eframe::egui::{self, CentralPanel, Color32, Context, Event, Frame, PointerButton, Rect, pos2};
-use maulstick_bus::typed::Receiver;
-use maulstick_bus::{Bus, Class, Queue};
+use eframe::egui::{
+    self, CentralPanel, Context, CursorIcon, Event, Frame, PointerButton, Shape, Visuals,
+};
+use eframe::egui_wgpu::{RenderState, wgpu};
+use maulstick_brush::desk::Desk;
+use maulstick_bus::typed::{Receiver, random_epoch};
+use maulstick_bus::{Bus, Class, Queue, Wake};
+use maulstick_paint::lamp::lamp_over;
 use maulstick_rig::{Fault, Member, Stop};
-use maulstick_types::scene::{CANVAS, Scene, Surface};
+use maulstick_types::scene::{CANVAS, PALETTE, Scene, Surface};
+use maulstick_types::{Origin, name_hash};
 
-use crate::canvas::{Canvas, DESK_COLOUR, fit, level, to_desk};
-use crate::frames::{FrameInbox, pull};
+use crate::backdrop::Backdrop;
+use crate::brushes::Brushes;
+use crate::follow::Follower;
+use crate::frames::{FrameInbox, FrameSource, pull};
+use crate::gpu::Gpu;
 use crate::mouse::{Mouse, Pointer};
+use crate::show_surface::Place;
+use crate::surface::{Passes, SurfaceView};
+use crate::view::{DESK_COLOUR, View, level};
 
 /// A pressed pointer that stands still is told this often: a longer silence would lift the brush.
 const STILL: Duration = Duration::from_millis(30);
+/// The window is drawn anew at most this often for samples, of which a device sends up to 1,000 a
+/// second; where the processor draws, less often, for the paint needs it too.
+const REPAINT: Duration = Duration::from_millis(16);
+const REPAINT_BY_PROCESSOR: Duration = Duration::from_millis(40);
+/// The surfaces that are shown, the lowest first.
+const SURFACES: [u32; 2] = [CANVAS, PALETTE];
+
+/// Frames of a surface and what they make.
+#[derive(Debug, Default)]
+struct Pulled {
+    inbox: FrameInbox,
+    view: SurfaceView,
+}
+
+/// What draws.
+#[derive(Debug)]
+struct Painter {
+    gpu: Gpu,
+    passes: Passes,
+    backdrop: Backdrop,
+    brushes: Brushes,
+}
 
 /// The painter's view.
 pub struct App {
     bus: Arc<dyn Bus>,
     stop: Stop,
+    wake: Wake,
     frame_topic: String,
-    inbox: FrameInbox,
-    scene: Receiver<Scene>,
-    surface: Option<Surface>,
-    canvas: Canvas,
+    scenes: Receiver<Scene>,
+    scene: Option<(Scene, Desk)>,
+    surfaces: [Pulled; SURFACES.len()],
+    follower: Follower,
     mouse: Mouse,
-    rect: Rect,
+    view: Option<View>,
     pressed: bool,
-    puller: Option<JoinHandle<()>>,
+    painter: Option<Painter>,
+    threads: Vec<JoinHandle<()>>,
     member: Option<Member>,
 }
 
@@ -39,15 +75,22 @@ impl App {
     /// # Errors
     /// A [`Fault`] where the bus is closed.
     pub fn new(member: &Member, mouse: &str) -> Result<Self, Fault> {
-        let (bus, topics) = (&member.bus, &member.topics);
-        let brush = member
-            .config
-            .brush
-            .first()
-            .map_or("main", |brush| brush.name.as_str());
+        let (bus, topics, brushes) = (&member.bus, &member.topics, &member.config.brush);
+        let brush = brushes.first().map_or("main", |brush| brush.name.as_str());
+        let depth_shares = brushes
+            .iter()
+            .map(|brush| (brush.name.clone(), brush.depth_share));
+        let me = member.origin(mouse);
         Ok(Self {
-            mouse: Mouse::new(&**bus, topics, mouse, brush, member.origin(mouse))?,
-            scene: Receiver::new(
+            mouse: Mouse::new(&**bus, topics, mouse, brush, me)?,
+            follower: Follower::new(
+                &**bus,
+                topics,
+                &member.wake,
+                depth_shares.collect(),
+                me.source,
+            )?,
+            scenes: Receiver::new(
                 &**bus,
                 &topics.scene(),
                 Class::Cached,
@@ -56,13 +99,14 @@ impl App {
             )?,
             bus: Arc::clone(bus),
             stop: member.stop.clone(),
+            wake: member.wake.clone(),
             frame_topic: topics.frame(),
-            inbox: FrameInbox::default(),
-            surface: None,
-            canvas: Canvas::default(),
-            rect: Rect::ZERO,
+            scene: None,
+            surfaces: Default::default(),
+            view: None,
             pressed: false,
-            puller: None,
+            painter: None,
+            threads: Vec::new(),
             member: None,
         })
     }
@@ -74,48 +118,75 @@ impl App {
         self
     }
 
-    /// Starts to pull frames for a window.
-    pub fn begin(&mut self, context: &Context) {
-        let (bus, topic, inbox) = (
-            Arc::clone(&self.bus),
-            self.frame_topic.clone(),
-            self.inbox.clone(),
-        );
-        let (context, stop) = (context.clone(), self.stop.clone());
-        let me = maulstick_types::Origin {
-            source: maulstick_types::name_hash("ui"),
-            epoch: maulstick_bus::typed::random_epoch(),
+    /// Starts to pull frames and to draw them, for a window.
+    pub fn begin(&mut self, context: &Context, state: &RenderState) {
+        let gpu = Gpu {
+            device: state.device.clone(),
+            queue: state.queue.clone(),
+            target: state.target_format,
         };
-        let thread = std::thread::Builder::new()
-            .name("frames".into())
-            .spawn(move || pull(&*bus, &topic, me, &inbox, &context, &stop));
-        match thread {
-            Ok(thread) => self.puller = Some(thread),
-            Err(error) => tracing::error!("frames cannot be pulled: {error}"),
+        self.painter = Some(Painter {
+            passes: Passes::new(&gpu),
+            backdrop: Backdrop::new(&gpu),
+            brushes: Brushes::new(&gpu),
+            gpu,
+        });
+        let me = Origin {
+            source: name_hash("ui"),
+            epoch: random_epoch(),
+        };
+        for (pulled, surface) in self.surfaces.iter().zip(SURFACES) {
+            let source = FrameSource {
+                bus: Arc::clone(&self.bus),
+                topic: self.frame_topic.clone(),
+                me,
+                surface,
+            };
+            let inbox = pulled.inbox.clone();
+            let (context, stop) = (context.clone(), self.stop.clone());
+            let run = move || pull(&source, &inbox, &context, &stop);
+            self.threads.extend(thread("frames", run));
         }
+        let (wake, context, stop) = (self.wake.clone(), context.clone(), self.stop.clone());
+        let rest = match state.adapter.get_info().device_type {
+            wgpu::DeviceType::Cpu => REPAINT_BY_PROCESSOR,
+            _ => REPAINT,
+        };
+        let run = move || repaint(&wake, &context, &stop, rest);
+        self.threads.extend(thread("repaint", run));
     }
 
-    fn take_in(&mut self, context: &Context) {
-        while let Some(scene) = self.scene.try_recv() {
-            let mut surfaces = scene.message.surfaces.into_iter();
-            self.surface = surfaces.find(|surface| surface.id == CANVAS);
+    fn take_in(&mut self, now_ns: u64) {
+        while let Some(scene) = self.scenes.try_recv() {
+            let desk = Desk::of(&scene.message);
+            self.scene = Some((scene.message, desk));
         }
-        for shown in self.inbox.take() {
-            self.canvas.update(context, &shown);
+        self.follower.take_in(now_ns);
+        let (Some(painter), Some((scene, _))) = (&self.painter, &self.scene) else {
+            return;
+        };
+        for (pulled, id) in self.surfaces.iter_mut().zip(SURFACES) {
+            for shown in pulled.inbox.take() {
+                pulled.view.update(&painter.gpu, &painter.passes, &shown);
+            }
+            if let Some(surface) = find(scene, id) {
+                let lamp = lamp_over(scene, id);
+                let (gpu, passes) = (&painter.gpu, &painter.passes);
+                pulled.view.light(gpu, passes, &lamp, surface.cell_m);
+            }
         }
     }
 
     /// Where the pointer went since the last frame, on the desk.
     fn pointer(&mut self, context: &Context) -> Vec<Pointer> {
-        let Some(surface) = &self.surface else {
+        let (Some((scene, _)), Some(view)) = (&self.scene, &self.view) else {
             return Vec::new();
         };
-        let rect = self.rect;
         let mut pressed = self.pressed;
         let place = |at: egui::Pos2, pressed: bool| {
-            let counts = rect.contains(at) || pressed;
+            let counts = view.area.contains(at) || pressed;
             counts.then(|| Pointer {
-                at: to_desk(at, rect, surface).to_array(),
+                at: view.to_desk(at, &scene.surfaces).to_array(),
                 pressed,
             })
         };
@@ -130,7 +201,7 @@ impl App {
                         pressed: p,
                         ..
                     } => {
-                        pressed = *p && rect.contains(*pos);
+                        pressed = *p && view.area.contains(*pos);
                         places.extend(place(*pos, pressed));
                     }
                     _ => {}
@@ -145,6 +216,64 @@ impl App {
         self.pressed = pressed;
         places
     }
+
+    /// The desk from the bottom: surfaces, brushes.
+    fn shapes(&mut self, view: &View, pixels_per_point: f32) -> Vec<Shape> {
+        let (Some(painter), Some((scene, desk))) = (&mut self.painter, &self.scene) else {
+            return Vec::new();
+        };
+        let mut laid = Vec::new();
+        for (pulled, id) in self.surfaces.iter_mut().zip(SURFACES) {
+            let Some(surface) = find(scene, id) else {
+                continue;
+            };
+            let [across, _] = Place::pixels(surface, view, pixels_per_point);
+            pulled.inbox.want_level(level(surface.cells[0], across));
+            let gpu = &painter.gpu;
+            laid.extend(pulled.view.lay(gpu, surface, view, pixels_per_point));
+        }
+        let size = view.pixels(pixels_per_point);
+        let (gpu, passes) = (&painter.gpu, &painter.passes);
+        painter.backdrop.update(gpu, passes, size, &laid);
+        let mut shapes: Vec<Shape> = painter.backdrop.shape(view).into_iter().collect();
+        for held in self.follower.held(desk) {
+            if let Some(head) = self.follower.head(held.name) {
+                let lamp = lamp_over(scene, held.plane.id);
+                let brushes = &mut painter.brushes;
+                shapes.extend(brushes.shapes(
+                    &painter.gpu,
+                    &held,
+                    head,
+                    &lamp,
+                    view,
+                    pixels_per_point,
+                ));
+            }
+        }
+        shapes
+    }
+}
+
+/// Draws the window anew when something has come, but not too often.
+fn repaint(wake: &Wake, context: &Context, stop: &Stop, rest: Duration) {
+    while !stop.requested() {
+        if wake.wait(Duration::from_millis(200)) {
+            context.request_repaint();
+            std::thread::sleep(rest);
+        }
+    }
+    context.request_repaint();
+}
+
+fn thread(name: &str, run: impl FnOnce() + Send + 'static) -> Option<JoinHandle<()>> {
+    let thread = std::thread::Builder::new().name(name.into()).spawn(run);
+    thread
+        .inspect_err(|error| tracing::error!("the thread '{name}' cannot be started: {error}"))
+        .ok()
+}
+
+fn find(scene: &Scene, id: u32) -> Option<&Surface> {
+    scene.surfaces.iter().find(|surface| surface.id == id)
 }
 
 impl eframe::App for App {
@@ -152,45 +281,46 @@ impl eframe::App for App {
         if self.stop.requested() {
             context.send_viewport_cmd(egui::ViewportCommand::Close);
         }
-        self.take_in(context);
         let places = self.pointer(context);
-        if let Err(error) = self.mouse.send(self.bus.now_ns(), &places) {
+        let now_ns = self.bus.now_ns();
+        if let Err(error) = self.mouse.send(now_ns, &places) {
             tracing::warn!("the mouse: {error}");
         }
+        // After the mouse has told where it is: its brush is drawn there.
+        self.take_in(now_ns);
         if self.pressed {
             context.request_repaint_after(STILL);
         }
     }
 
     fn ui(&mut self, ui: &mut egui::Ui, _frame: &mut eframe::Frame) {
-        CentralPanel::default()
-            .frame(Frame::new().fill(DESK_COLOUR))
-            .show(ui, |ui| {
-                let area = ui.max_rect();
-                let cells = self
-                    .surface
-                    .as_ref()
-                    .map_or([1, 1], |surface| surface.cells);
-                self.rect = fit(area, cells);
-                self.inbox
-                    .want_level(level(cells, self.rect, ui.ctx().pixels_per_point()));
-                match self.canvas.texture() {
-                    Some(texture) => {
-                        let whole = Rect::from_min_max(pos2(0.0, 0.0), pos2(1.0, 1.0));
-                        ui.painter()
-                            .image(texture.id(), self.rect, whole, Color32::WHITE);
-                    }
-                    None => {
-                        ui.centered_and_justified(|ui| ui.label("waiting for the paint …"));
-                    }
+        CentralPanel::default().frame(Frame::NONE).show(ui, |ui| {
+            let area = ui.max_rect();
+            let surfaces = self.scene.as_ref().map(|(scene, _)| &scene.surfaces[..]);
+            self.view = View::fit(area, surfaces.unwrap_or_default());
+            match self.view {
+                Some(view) => {
+                    ui.ctx().set_cursor_icon(CursorIcon::Crosshair);
+                    let pixels_per_point = ui.ctx().pixels_per_point();
+                    let shapes = self.shapes(&view, pixels_per_point);
+                    ui.painter().extend(shapes);
                 }
-            });
+                None => {
+                    ui.centered_and_justified(|ui| ui.label("waiting for the paint …"));
+                }
+            }
+        });
+    }
+
+    fn clear_color(&self, _visuals: &Visuals) -> [f32; 4] {
+        DESK_COLOUR.to_normalized_gamma_f32()
     }
 
     fn on_exit(&mut self) {
         self.stop.request();
-        if let Some(puller) = self.puller.take() {
-            puller.join().ok();
+        self.wake.ring();
+        for thread in self.threads.drain(..) {
+            thread.join().ok();
         }
         if let Some(member) = self.member.take() {
             member.leave();
@@ -201,7 +331,8 @@ impl eframe::App for App {
 impl std::fmt::Debug for App {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         f.debug_struct("App")
-            .field("canvas", &self.canvas)
+            .field("view", &self.view)
+            .field("follower", &self.follower)
             .finish_non_exhaustive()
     }
 }

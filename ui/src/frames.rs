@@ -1,44 +1,51 @@
-//! The thread that pulls frames: one query in flight, asked again as soon as it is answered.
+//! The threads that pull frames: for each surface one query in flight, asked again as soon as it is
+//! answered.
 
 use std::sync::atomic::{AtomicU32, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::Duration;
 
-use eframe::egui::{Color32, Context};
+use eframe::egui::Context;
 use maulstick_bus::typed::ask;
 use maulstick_bus::{Bus, BusError, Class};
-use maulstick_optics::colour::{SrgbTable, clamp_chromaticity};
-use maulstick_paint::display::DisplayTile;
+use maulstick_paint::tile::TILE_CELLS;
 use maulstick_rig::Stop;
 use maulstick_types::Origin;
 use maulstick_types::paint::{FrameReply, FrameRequest};
-use maulstick_types::scene::CANVAS;
 
 /// A frame that does not come within this time is asked for again.
 const LIMIT: Duration = Duration::from_millis(500);
 /// How long the paint node may wait for something to change, ms.
 const WAIT_MS: u32 = 200;
+/// Bytes of a plane of half floats.
+const HALVES: usize = 2 * TILE_CELLS;
+/// Where the heights begin in a tile's planes: behind red, green, blue, gloss and wetness.
+const HEIGHTS: usize = 5 * HALVES;
 
-/// A tile ready for the screen: rows upward from the lowest.
+/// A tile as the textures take it: rows upward from the lowest, 64×64 texels.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ShownTile {
     /// Column.
     pub x: u32,
     /// Row, 0 at the bottom.
     pub y: u32,
-    /// 64×64 pixels.
-    pub pixels: Vec<Color32>,
+    /// Linear red, green, blue, and gloss: four half floats a texel.
+    pub colour: Vec<u8>,
+    /// m, a float a texel.
+    pub height: Vec<u8>,
 }
 
 /// What a reply brought.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Shown {
-    /// Cells of the canvas at this level.
+    /// Cells of the surface at this level.
     pub cells: [u32; 2],
     /// The level.
     pub level: u32,
     /// Epoch of the paint node.
     pub epoch: u32,
+    /// Whether further tiles come with the next reply.
+    pub more: bool,
     /// Changed tiles.
     pub tiles: Vec<ShownTile>,
 }
@@ -70,16 +77,21 @@ impl FrameInbox {
     }
 }
 
+/// Where frames come from.
+#[derive(Clone)]
+pub struct FrameSource {
+    /// The bus.
+    pub bus: Arc<dyn Bus>,
+    /// The query.
+    pub topic: String,
+    /// Who asks.
+    pub me: Origin,
+    /// The surface.
+    pub surface: u32,
+}
+
 /// Pulls frames until `stop` says so.
-pub fn pull(
-    bus: &dyn Bus,
-    topic: &str,
-    me: Origin,
-    inbox: &FrameInbox,
-    context: &Context,
-    stop: &Stop,
-) {
-    let table = SrgbTable::default();
+pub fn pull(source: &FrameSource, inbox: &FrameInbox, context: &Context, stop: &Stop) {
     let (mut since, mut epoch, mut level) = (0, 0, u32::MAX);
     while !stop.requested() {
         let wanted = inbox.level.load(Ordering::Relaxed);
@@ -87,18 +99,19 @@ pub fn pull(
             (since, epoch, level) = (0, 0, wanted);
         }
         let request = FrameRequest {
-            surface: CANVAS,
+            surface: source.surface,
             since,
             epoch,
             tiles: [0, 0, u32::MAX, u32::MAX],
             level,
             wait_ms: WAIT_MS,
         };
-        match ask::<_, FrameReply>(bus, topic, Class::Data, me, &request, LIMIT) {
+        let FrameSource { bus, topic, me, .. } = source;
+        match ask::<_, FrameReply>(&**bus, topic, Class::Data, *me, &request, LIMIT) {
             Ok(reply) => {
                 (since, epoch) = (reply.version, reply.epoch);
                 if !reply.tiles.is_empty() {
-                    inbox.push(convert(&reply, &table));
+                    inbox.push(convert(&reply));
                     context.request_repaint();
                 }
             }
@@ -112,29 +125,67 @@ pub fn pull(
     context.request_repaint();
 }
 
-fn convert(reply: &FrameReply, table: &SrgbTable) -> Shown {
-    let tiles = reply
-        .tiles
-        .iter()
-        .filter_map(|tile| {
-            let shown = DisplayTile::from_bytes(&tile.planes)?;
-            let pixel = |cell: usize| {
-                let rgb = clamp_chromaticity([0, 1, 2].map(|channel| shown.rgb[channel][cell]));
-                let [r, g, b] = rgb.map(|channel| table.byte(channel));
-                Color32::from_rgb(r, g, b)
-            };
-            let pixels = (0..shown.height.len()).map(pixel).collect();
-            Some(ShownTile {
-                x: tile.x,
-                y: tile.y,
-                pixels,
-            })
+fn convert(reply: &FrameReply) -> Shown {
+    let tiles = reply.tiles.iter().filter_map(|tile| {
+        let (colour, height) = texels(&tile.planes)?;
+        Some(ShownTile {
+            x: tile.x,
+            y: tile.y,
+            colour,
+            height,
         })
-        .collect();
+    });
     Shown {
         cells: reply.cells,
         level: reply.level,
         epoch: reply.epoch,
-        tiles,
+        more: reply.more,
+        tiles: tiles.collect(),
+    }
+}
+
+/// The planes of a tile as texels of colour and gloss, and of height; none where the length is
+/// wrong. See [`DisplayTile::to_bytes`](maulstick_paint::display::DisplayTile::to_bytes).
+#[must_use]
+pub fn texels(planes: &[u8]) -> Option<(Vec<u8>, Vec<u8>)> {
+    if planes.len() != HEIGHTS + 4 * TILE_CELLS {
+        return None;
+    }
+    let mut colour = Vec::with_capacity(4 * HALVES);
+    for cell in 0..TILE_CELLS {
+        for plane in 0..4 {
+            colour.extend_from_slice(&planes[plane * HALVES + 2 * cell..][..2]);
+        }
+    }
+    Some((colour, planes[HEIGHTS..].to_vec()))
+}
+
+#[cfg(test)]
+mod tests {
+    use half::f16;
+    use maulstick_paint::display::DisplayTile;
+
+    use super::*;
+
+    #[test]
+    fn texels_are_the_planes_of_a_tile() {
+        let plane = |from: f32| (0..TILE_CELLS).map(|i| from + i as f32 / 8192.0).collect();
+        let tile = DisplayTile {
+            rgb: [plane(0.0), plane(1.0), plane(2.0)],
+            gloss: plane(0.5),
+            wetness: plane(7.0),
+            height: plane(0.25),
+        };
+        let (colour, height) = texels(&tile.to_bytes()).expect("whole");
+        let half = |place: usize| f16::from_le_bytes([colour[2 * place], colour[2 * place + 1]]);
+        for cell in [0, 1, 64, 4095] {
+            let texel = [0, 1, 2, 3].map(|channel| half(4 * cell + channel).to_f32());
+            let planes = [&tile.rgb[0], &tile.rgb[1], &tile.rgb[2], &tile.gloss];
+            for (got, plane) in texel.iter().zip(planes) {
+                assert!((got - plane[cell]).abs() < 2e-3, "{cell}: {texel:?}");
+            }
+            assert_eq!(height[4 * cell..][..4], tile.height[cell].to_le_bytes());
+        }
+        assert_eq!(texels(&tile.to_bytes()[1..]), None);
     }
 }

@@ -3,14 +3,31 @@
 //! | module | holds |
 //! | --- | --- |
 //! | [`app`] | the window |
-//! | [`canvas`] | the picture of the canvas, and where on the desk a point of it is |
-//! | [`frames`] | the thread that pulls frames |
+//! | [`view`] | the desk from above: its points in the window, and the way back |
+//! | [`frames`] | the threads that pull frames |
+//! | [`surface`] | a surface on the graphics device |
+//! | [`light_surface`], [`show_surface`] | the passes that it goes through |
+//! | [`backdrop`] | desk and surfaces as pixels of the window |
+//! | [`follow`] | the brushes as they are now: newest sample, newest bend |
+//! | [`brush_shape`] | ferrule, handle and shadow |
+//! | [`brushes`], [`draw_head`], [`draw_brush`] | how it is drawn |
+//! | [`gpu`] | the graphics device |
 //! | [`mouse`] | the mouse as a stylus |
 
 pub mod app;
-pub mod canvas;
+pub mod backdrop;
+pub mod brush_shape;
+pub mod brushes;
+pub mod draw_brush;
+pub mod draw_head;
+pub mod follow;
 pub mod frames;
+pub mod gpu;
+pub mod light_surface;
 pub mod mouse;
+pub mod show_surface;
+pub mod surface;
+pub mod view;
 
 use maulstick_rig::{Fault, Member};
 
@@ -32,7 +49,11 @@ pub fn run(mut member: Member, mouse: &str) -> Result<(), Fault> {
         "maulstick",
         options,
         Box::new(move |creation| {
-            app.begin(&creation.egui_ctx);
+            let state = creation
+                .wgpu_render_state
+                .as_ref()
+                .ok_or("no graphics device")?;
+            app.begin(&creation.egui_ctx, state);
             member.ready()?;
             Ok(Box::new(app.with_member(member)))
         }),

@@ -1,0 +1,92 @@
+//! The brushes over the surfaces: shadow, head, ferrule and handle of each.
+
+use std::collections::BTreeMap;
+
+use eframe::egui::{Pos2, Shape};
+use maulstick_brush::{Head, HeadPose};
+use maulstick_optics::light::Lamp;
+
+use crate::brush_shape::{head_discs, sections, shadow};
+use crate::draw_brush::{Chain, ChainSlot, DrawBrush, Frame};
+use crate::draw_head::{HeadView, ribbons};
+use crate::follow::Held;
+use crate::gpu::Gpu;
+use crate::view::View;
+
+/// Places on the device for a brush.
+#[derive(Debug)]
+struct Slots {
+    shadow: ChainSlot,
+    solid: ChainSlot,
+}
+
+/// Draws brushes.
+#[derive(Debug)]
+pub struct Brushes {
+    passes: DrawBrush,
+    slots: BTreeMap<String, Slots>,
+    pose: HeadPose,
+}
+
+impl Brushes {
+    /// Draws on a device.
+    #[must_use]
+    pub fn new(gpu: &Gpu) -> Self {
+        Self {
+            passes: DrawBrush::new(gpu),
+            slots: BTreeMap::new(),
+            pose: HeadPose::default(),
+        }
+    }
+
+    /// The shapes of a brush, from the lowest: under `lamp`, in the frame of the surface below it.
+    #[must_use]
+    pub fn shapes(
+        &mut self,
+        gpu: &Gpu,
+        held: &Held<'_>,
+        head: &Head,
+        lamp: &Lamp,
+        view: &View,
+        pixels_per_point: f32,
+    ) -> Vec<Shape> {
+        let to_window = |local: [f64; 3]| -> Pos2 { view.to_window(held.on_desk(local)) };
+        head.pose(&held.brush, &held.angles, &mut self.pose);
+        let width_m = held.file.head.width_mm * 1e-3;
+        let sections = sections(&held.brush, width_m, held.file.radius_m(0.0));
+        // The shadow goes from the point of the head to the end of the handle.
+        let mut discs = head_discs(&self.pose, head.strips());
+        discs.reverse();
+        discs.extend(sections.iter().map(|section| (section.at, section.radius)));
+        let frame = Frame {
+            view,
+            pixels_per_point,
+            to_window: &to_window,
+            toward: lamp.toward,
+        };
+        let strips = HeadView {
+            to_window: &|local| to_window(local.map(f64::from)),
+            scale: view.scale as f32,
+            bristle_m: held.file.strips.width_mm as f32 * 1e-3,
+            toward: lamp.toward,
+        };
+        let slots = self
+            .slots
+            .entry(held.name.to_owned())
+            .or_insert_with(|| Slots {
+                shadow: self.passes.slot(gpu),
+                solid: self.passes.slot(gpu),
+            });
+        let mut shapes = Vec::new();
+        let chain = Chain::shadow(&shadow(&discs, lamp.toward), &frame);
+        if chain.is_visible() {
+            shapes.push(self.passes.cast(gpu, &slots.shadow, &chain).shape(view));
+        }
+        shapes.push(ribbons(&self.pose, head.strips(), &strips).into());
+        let chain = Chain::solid(&sections, &frame);
+        if chain.is_visible() {
+            shapes.push(self.passes.solid(gpu, &slots.solid, &chain).shape(view));
+        }
+        shapes
+    }
+}

@@ -1,0 +1,359 @@
+//! The brushes as they are now: where the newest sample of its stylus holds each, bent as in its
+//! newest state.
+//!
+//! A state follows its sample by the time of a solve; the hand sees the difference, so the pose comes
+//! from the sample, by the same functions as in the brush node, and only the bend from the state.
+
+use std::collections::BTreeMap;
+
+use glam::DVec3;
+use maulstick_brush::desk::{Desk, Plane, aim, ferrule};
+use maulstick_brush::{BrushFile, Head};
+use maulstick_bus::typed::Receiver;
+use maulstick_bus::{Bus, BusError, Class, Queue, Wake};
+use maulstick_num::geometry::Rigid;
+use maulstick_types::brush::{BrushDef, BrushState};
+use maulstick_types::stylus::StylusSample;
+use maulstick_types::topics::Topics;
+
+/// A device that is silent for this long holds no brush, ns.
+const SILENCE_NS: u64 = 1_000_000_000;
+
+/// A sample and when it came.
+#[derive(Clone, Debug)]
+struct Heard {
+    sample: StylusSample,
+    arrived_ns: u64,
+}
+
+/// A brush that made itself known.
+#[derive(Debug)]
+struct Known {
+    file: BrushFile,
+    head: Head,
+    /// The device that it follows.
+    device: Option<u32>,
+    angles: Vec<[f32; 2]>,
+    /// The surface that it touches.
+    touches: Option<u32>,
+}
+
+/// A brush in the hand.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Held<'a> {
+    /// Its name.
+    pub name: &'a str,
+    /// Its file.
+    pub file: &'a BrushFile,
+    /// The surface below.
+    pub plane: Plane,
+    /// Brush frame to the frame of that surface, in desk lengths.
+    pub brush: Rigid,
+    /// Its joints, as its newest state has them; straight before the first.
+    pub angles: Vec<[f32; 2]>,
+}
+
+/// Follows all brushes of a rig.
+pub struct Follower {
+    topics: Topics,
+    samples: Receiver<StylusSample>,
+    states: Receiver<BrushState>,
+    defs: Receiver<BrushDef>,
+    depth_shares: BTreeMap<String, f64>,
+    /// The source that is only heard when it moves.
+    quiet: u32,
+    newest: BTreeMap<u32, Heard>,
+    known: BTreeMap<String, Known>,
+}
+
+impl Follower {
+    /// Follows the brushes on `bus`, each with the depth share of its name; `quiet` is the source of
+    /// the window's own mouse, which says nothing while it keeps still.
+    ///
+    /// # Errors
+    /// [`BusError::Topic`].
+    pub fn new(
+        bus: &dyn Bus,
+        topics: &Topics,
+        wake: &Wake,
+        depth_shares: BTreeMap<String, f64>,
+        quiet: u32,
+    ) -> Result<Self, BusError> {
+        let (samples, states, defs) = (
+            topics.sample("*"),
+            topics.brush_state("*"),
+            topics.brush_def("*"),
+        );
+        Ok(Self {
+            samples: Receiver::new(bus, &samples, Class::RealTime, Queue::Ring(256), wake)?,
+            states: Receiver::new(bus, &states, Class::RealTime, Queue::Ring(64), wake)?,
+            defs: Receiver::new(bus, &defs, Class::Cached, Queue::Ring(16), wake)?,
+            topics: topics.clone(),
+            depth_shares,
+            quiet,
+            newest: BTreeMap::new(),
+            known: BTreeMap::new(),
+        })
+    }
+
+    /// Takes in what has come.
+    pub fn take_in(&mut self, now_ns: u64) {
+        while let Some(def) = self.defs.try_recv() {
+            match BrushFile::parse(&def.message.toml) {
+                Ok(file) => {
+                    let known = Known {
+                        head: Head::of(&file),
+                        file,
+                        device: None,
+                        angles: Vec::new(),
+                        touches: None,
+                    };
+                    self.known.insert(def.message.brush, known);
+                }
+                Err(error) => tracing::warn!("{}: {error}", def.key),
+            }
+        }
+        while let Some(sample) = self.samples.try_recv() {
+            if sample.message.fault().is_none() {
+                let heard = Heard {
+                    sample: sample.message,
+                    arrived_ns: sample.arrived_ns,
+                };
+                self.newest.insert(sample.header.source, heard);
+            }
+        }
+        let quiet = self.quiet;
+        self.newest.retain(|source, heard| {
+            *source == quiet || now_ns < heard.arrived_ns.saturating_add(SILENCE_NS)
+        });
+        while let Some(state) = self.states.try_recv() {
+            let name = self.topics.middle(&state.key).unwrap_or_default();
+            let known = self.known.get_mut(name);
+            if let (Some(known), Some(solve)) = (known, state.message.solves.last())
+                && known.head.fits(solve.angles_rad.len())
+            {
+                known.device = Some(state.message.device);
+                known.touches = (!solve.contacts.is_empty()).then_some(solve.surface);
+                known.angles.clone_from(&solve.angles_rad);
+            }
+        }
+    }
+
+    /// The brushes that are held over a desk, by name.
+    pub fn held<'a>(&'a self, desk: &'a Desk) -> impl Iterator<Item = Held<'a>> {
+        self.known.iter().filter_map(|(name, known)| {
+            let heard = self.newest.get(&known.device?)?;
+            if !heard.sample.in_range {
+                return None;
+            }
+            let depth_share = self.depth_shares.get(name).copied().unwrap_or_default();
+            known.held(name, &heard.sample, depth_share, desk)
+        })
+    }
+
+    /// The head of a brush.
+    #[must_use]
+    pub fn head(&self, name: &str) -> Option<&Head> {
+        self.known.get(name).map(|known| &known.head)
+    }
+}
+
+impl Known {
+    fn held<'a>(
+        &'a self,
+        name: &'a str,
+        sample: &StylusSample,
+        depth_share: f64,
+        desk: &Desk,
+    ) -> Option<Held<'a>> {
+        let length = self.file.length_m();
+        // A stroke stays on its surface.
+        let touched = self.touches.and_then(|surface| desk.plane(surface));
+        let plane = *touched.or_else(|| desk.under(aim(sample, length)))?;
+        let on_desk = ferrule(sample, length, depth_share, plane.normal());
+        let brush = plane.to_desk.inverse().after(&on_desk);
+        let far = brush.translation.abs().max_element();
+        (far < 100.0).then(|| Held {
+            name,
+            file: &self.file,
+            plane,
+            brush,
+            angles: self.angles.clone(),
+        })
+    }
+}
+
+impl Held<'_> {
+    /// A point of the surface's frame, in desk lengths, on the desk.
+    #[must_use]
+    pub fn on_desk(&self, local: [f64; 3]) -> DVec3 {
+        self.plane.to_desk.point(DVec3::from_array(local))
+    }
+}
+
+impl std::fmt::Debug for Follower {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("Follower")
+            .field("known", &self.known.keys())
+            .finish_non_exhaustive()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use maulstick_brush::BrushModel;
+    use maulstick_bus::typed::Sender;
+    use maulstick_bus::{Faults, MemoryBus, MemoryNet};
+    use maulstick_paint::PaintingSetup;
+    use maulstick_types::Origin;
+    use maulstick_types::stylus::{DEFAULT_TILT_RAD, StylusPose};
+
+    use super::*;
+
+    const PEN: Origin = Origin {
+        source: 1,
+        epoch: 1,
+    };
+    const BRUSH: Origin = Origin {
+        source: 2,
+        epoch: 1,
+    };
+    const DEPTH: f64 = 0.5;
+
+    /// A pen, a brush node's topics, and who follows them.
+    struct Rig {
+        net: MemoryNet,
+        bus: MemoryBus,
+        pen: Sender<StylusSample>,
+        states: Sender<BrushState>,
+        _def: Sender<BrushDef>,
+        model: BrushModel,
+        follower: Follower,
+        desk: Desk,
+    }
+
+    impl Rig {
+        fn new(quiet: u32) -> Self {
+            let net = MemoryNet::new(1, 1_000_000_000, Faults::default());
+            let (bus, topics) = (net.bus(), Topics::new("t"));
+            let toml = BrushFile::library_text("round").expect("text");
+            let file = BrushFile::parse(toml).expect("round");
+            let mut def = Sender::new(&bus, &topics.brush_def("main"), Class::Cached, BRUSH)
+                .expect("a sender");
+            let told = BrushDef {
+                brush: "main".into(),
+                toml: toml.into(),
+                hash: 0,
+            };
+            def.send(0, 0, &told).expect("sent");
+            let scene = PaintingSetup::default().scene();
+            let mut model = BrushModel::new(file, DEPTH);
+            model.set_scene(&scene);
+            let shares = BTreeMap::from([("main".to_owned(), DEPTH)]);
+            let real_time = Class::RealTime;
+            Self {
+                pen: Sender::new(&bus, &topics.sample("pen"), real_time, PEN).expect("a pen"),
+                states: Sender::new(&bus, &topics.brush_state("main"), real_time, BRUSH)
+                    .expect("states"),
+                follower: Follower::new(&bus, &topics, &Wake::new(), shares, quiet)
+                    .expect("a follower"),
+                _def: def,
+                desk: Desk::of(&scene),
+                model,
+                net,
+                bus,
+            }
+        }
+
+        fn sample(&mut self, sample: &StylusSample) {
+            let now = self.bus.now_ns();
+            self.pen.send(now, now, sample).expect("sent");
+        }
+
+        fn solve(&mut self, seq: u64, sample: &StylusSample) -> BrushState {
+            let now = self.bus.now_ns();
+            let state = self.model.state(PEN, seq, now, sample).expect("a state");
+            self.states.send(now, now, &state).expect("sent");
+            state
+        }
+
+        fn turn(&mut self) -> Option<(Rigid, u32, Vec<[f32; 2]>)> {
+            self.net.advance(5_000_000);
+            self.follower.take_in(self.bus.now_ns());
+            let held = self.follower.held(&self.desk).next()?;
+            Some((held.brush, held.plane.id, held.angles))
+        }
+    }
+
+    fn pen(x: f64, pressure: f64) -> StylusSample {
+        StylusSample {
+            pose: StylusPose::Contact {
+                point_m: [x, 0.0, 0.0],
+                tilt_rad: DEFAULT_TILT_RAD,
+                twist_rad: 0.0,
+                pressure,
+            },
+            in_range: true,
+            ..StylusSample::away()
+        }
+    }
+
+    #[test]
+    fn the_pose_is_that_of_the_newest_sample_and_the_bend_that_of_the_newest_state() {
+        let mut rig = Rig::new(0);
+        rig.sample(&pen(0.0, 0.4));
+        assert_eq!(
+            rig.turn(),
+            None,
+            "whose brush it is comes with the first state"
+        );
+        let first = rig.solve(0, &pen(0.0, 0.4));
+        rig.sample(&pen(0.01, 0.4));
+        let (shown, surface, angles) = rig.turn().expect("a brush");
+        let second = rig.solve(1, &pen(0.01, 0.4));
+        let newest = |state: &BrushState| state.solves.last().cloned().expect("a solve");
+        let (solved, old) = (&newest(&second), &newest(&first));
+        let off = |solve: &maulstick_types::brush::Solve| {
+            (shown.translation - Rigid::from(&solve.pose).translation).length()
+        };
+        assert!(
+            off(solved) < 1e-12 && surface == solved.surface,
+            "{}",
+            off(solved)
+        );
+        assert!(off(old) > 5e-3, "a fault would pass");
+        assert_eq!(angles, old.angles_rad);
+        let (_, _, angles) = rig.turn().expect("a brush");
+        assert_eq!(angles, solved.angles_rad);
+        assert_ne!(angles, old.angles_rad);
+    }
+
+    #[test]
+    fn a_stroke_stays_on_its_surface_and_a_hovering_brush_changes_it() {
+        let mut rig = Rig::new(0);
+        let (canvas, palette) = (0.0, -0.2);
+        rig.sample(&pen(canvas, 0.4));
+        rig.solve(0, &pen(canvas, 0.4));
+        rig.sample(&pen(palette, 0.4));
+        assert_eq!(rig.turn().map(|held| held.1), Some(0));
+        rig.solve(1, &pen(canvas, 0.0));
+        rig.sample(&pen(palette, 0.0));
+        assert_eq!(rig.turn().map(|held| held.1), Some(1));
+    }
+
+    #[test]
+    fn a_device_out_of_range_or_silent_holds_no_brush_but_a_still_mouse_does() {
+        for (quiet, shown) in [(0, false), (PEN.source, true)] {
+            let mut rig = Rig::new(quiet);
+            rig.sample(&pen(0.0, 0.0));
+            rig.solve(0, &pen(0.0, 0.0));
+            assert!(rig.turn().is_some());
+            rig.net.advance(SILENCE_NS);
+            assert_eq!(rig.turn().is_some(), shown);
+            rig.sample(&pen(0.0, 0.0));
+            assert!(rig.turn().is_some());
+            rig.sample(&StylusSample::away());
+            assert!(rig.turn().is_none());
+        }
+    }
+}

@@ -1,0 +1,81 @@
+// Shows the desk, and a lit surface where it lies on it: linear light is filtered first, then
+// encoded.
+
+struct Place {
+    // Pixels of the view: the surface's lower left corner, and its sides from there.
+    corner: vec2<f32>,
+    right: vec2<f32>,
+    up: vec2<f32>,
+    view: vec2<f32>,
+    // Share of the texture that the surface takes: a coarse level's last cells reach beyond it.
+    share: vec2<f32>,
+    // Half the distance of the samples of a pixel, in shares of the surface; 0 for one sample.
+    spread: vec2<f32>,
+}
+
+// Whether the target takes encoded values; one that encodes by itself takes linear light.
+override encoded: bool = true;
+// Grey of the desk, as the target takes it.
+override grey: f32 = 0.0;
+
+@group(0) @binding(0) var<uniform> place: Place;
+@group(0) @binding(1) var surface: texture_2d<f32>;
+@group(0) @binding(2) var smooth_sampler: sampler;
+
+struct Corner {
+    @builtin(position) position: vec4<f32>,
+    // From the lower left corner, in shares of the surface.
+    @location(0) at: vec2<f32>,
+}
+
+fn pixels() -> vec2<f32> {
+    return vec2<f32>(length(place.right), length(place.up));
+}
+
+@vertex
+fn lay(@builtin(vertex_index) corner: u32) -> Corner {
+    // A pixel wider than the surface, for its soft edge.
+    let unit = vec2<f32>(f32(corner & 1u), f32(corner >> 1u));
+    let at = unit + (2.0 * unit - 1.0) / max(pixels(), vec2<f32>(1.0));
+    let pixel = place.corner + at.x * place.right + at.y * place.up;
+    let clip = pixel / place.view * vec2<f32>(2.0, -2.0) + vec2<f32>(-1.0, 1.0);
+    return Corner(vec4<f32>(clip, 0.0, 1.0), at);
+}
+
+fn sampled(at: vec2<f32>) -> vec3<f32> {
+    let inside = clamp(at, vec2<f32>(0.0), vec2<f32>(1.0)) * place.share;
+    return textureSampleLevel(surface, smooth_sampler, inside, 0.0).rgb;
+}
+
+@vertex
+fn cover(@builtin(vertex_index) corner: u32) -> @builtin(position) vec4<f32> {
+    return vec4<f32>(vec2<f32>(f32(corner & 1u), f32(corner >> 1u)) * 2.0 - 1.0, 0.0, 1.0);
+}
+
+@fragment
+fn fill() -> @location(0) vec4<f32> {
+    return vec4<f32>(grey, grey, grey, 1.0);
+}
+
+// IEC 61966-2-1.
+fn srgb(linear: vec3<f32>) -> vec3<f32> {
+    let inside = clamp(linear, vec3<f32>(0.0), vec3<f32>(1.0));
+    let high = 1.055 * pow(inside, vec3<f32>(1.0 / 2.4)) - 0.055;
+    return select(high, 12.92 * inside, inside <= vec3<f32>(0.0031308));
+}
+
+@fragment
+fn show(in: Corner) -> @location(0) vec4<f32> {
+    var light = sampled(in.at);
+    if place.spread.x > 0.0 {
+        let s = place.spread;
+        light = 0.25 * (sampled(in.at - s) + sampled(in.at + s)
+            + sampled(in.at + vec2<f32>(s.x, -s.y)) + sampled(in.at + vec2<f32>(-s.x, s.y)));
+    }
+    let inner = clamp(min(in.at, 1.0 - in.at) * pixels() + 0.5, vec2<f32>(0.0), vec2<f32>(1.0));
+    let cover = inner.x * inner.y;
+    if encoded {
+        return vec4<f32>(srgb(light) * cover, cover);
+    }
+    return vec4<f32>(light * cover, cover);
+}

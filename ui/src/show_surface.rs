@@ -1,0 +1,209 @@
+//! Shows the desk, and lit surfaces where they lie on it.
+
+use bytemuck::{Pod, Zeroable};
+use eframe::egui::{Pos2, Vec2};
+use eframe::egui_wgpu::wgpu;
+use maulstick_optics::colour::srgb_decode;
+use maulstick_types::scene::Surface;
+
+use crate::gpu::{Filterable, Gpu, Pass, UNIFORM, texture_binding};
+use crate::light_surface::CellRect;
+use crate::view::{DESK_COLOUR, View, corners};
+
+/// Where a surface is in the view, as the shader takes it: pixels, from the view's upper left.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
+#[repr(C)]
+pub struct Place {
+    corner: [f32; 2],
+    right: [f32; 2],
+    up: [f32; 2],
+    view: [f32; 2],
+    share: [f32; 2],
+    spread: [f32; 2],
+}
+
+/// The cells that a texture has for a surface.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Detail {
+    /// Texels across and up.
+    pub cells: [u32; 2],
+    /// Level of detail: 2 to this power cells of the surface a texel, each way.
+    pub level: u32,
+}
+
+impl Place {
+    /// The place of a surface.
+    #[must_use]
+    pub fn of(surface: &Surface, view: &View, pixels_per_point: f32, detail: Detail) -> Self {
+        let at = corners(surface).map(|corner| view.to_window(corner));
+        let pixels = |v: Vec2| (v * pixels_per_point).into();
+        let (right, up) = (at[1] - at[0], at[2] - at[0]);
+        let sides = [right, up].map(|side| side.length() * pixels_per_point);
+        let whole = detail.cells.map(|cells| (cells << detail.level) as f32);
+        let share = [0, 1].map(|i| (surface.cells[i] as f32 / whole[i].max(1.0)).min(1.0));
+        let texels = [0, 1].map(|i| share[i] * detail.cells[i] as f32);
+        // Below one texel a pixel the sampler's own interpolation is all there is to do.
+        let minified = (0..2).any(|i| texels[i] > 1.01 * sides[i]);
+        let spread = sides.map(|side| if minified { 0.25 / side.max(1.0) } else { 0.0 });
+        Self {
+            corner: pixels(at[0] - view.area.min),
+            right: pixels(right),
+            up: pixels(up),
+            view: pixels(view.area.size()),
+            share,
+            spread,
+        }
+    }
+
+    /// The pixels of the view that cells of a texture of `detail` touch, with those that their
+    /// filtered edges reach.
+    #[must_use]
+    pub fn covered(&self, area: &CellRect, detail: Detail) -> PixelRect {
+        const REACH: f32 = 3.0;
+        let mut rect = PixelRect::NOTHING;
+        for corner in 0..4u32 {
+            let [across, up] = [0, 1].map(|i| {
+                let end = area.from[i] + ((corner >> i) & 1) * area.size[i];
+                end as f32 / (detail.cells[i] as f32 * self.share[i])
+            });
+            let pixel = [0, 1].map(|i| self.corner[i] + across * self.right[i] + up * self.up[i]);
+            let around = PixelRect {
+                from: pixel.map(|at| (at - REACH).floor().max(0.0) as u32),
+                to: pixel.map(|at| (at + REACH).ceil().max(0.0) as u32),
+            };
+            rect = rect.with(&around);
+        }
+        rect
+    }
+
+    /// Pixels of the surface's sides, across and up.
+    #[must_use]
+    pub fn pixels(surface: &Surface, view: &View, pixels_per_point: f32) -> [f32; 2] {
+        let at: [Pos2; 4] = corners(surface).map(|corner| view.to_window(corner));
+        [at[1], at[2]].map(|end| (end - at[0]).length() * pixels_per_point)
+    }
+}
+
+/// A rectangle of pixels, from the upper left.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct PixelRect {
+    /// First column and row.
+    pub from: [u32; 2],
+    /// One past the last.
+    pub to: [u32; 2],
+}
+
+impl PixelRect {
+    /// No pixel.
+    pub const NOTHING: Self = Self {
+        from: [u32::MAX; 2],
+        to: [0; 2],
+    };
+
+    /// All pixels.
+    pub const EVERYTHING: Self = Self {
+        from: [0; 2],
+        to: [u32::MAX; 2],
+    };
+
+    /// The smallest rectangle around this one and another.
+    #[must_use]
+    pub fn with(&self, other: &Self) -> Self {
+        Self {
+            from: [0, 1].map(|i| self.from[i].min(other.from[i])),
+            to: [0, 1].map(|i| self.to[i].max(other.to[i])),
+        }
+    }
+
+    /// What of it lies in a picture of `size`: corner and size; none if nothing does.
+    #[must_use]
+    pub fn within(&self, size: [u32; 2]) -> Option<([u32; 2], [u32; 2])> {
+        let to = [0, 1].map(|i| self.to[i].min(size[i]));
+        let inside = (0..2).all(|i| self.from[i] < to[i]);
+        inside.then(|| (self.from, [0, 1].map(|i| to[i] - self.from[i])))
+    }
+}
+
+/// The passes.
+#[derive(Clone, Debug)]
+pub struct ShowSurface {
+    layout: wgpu::BindGroupLayout,
+    fill: wgpu::RenderPipeline,
+    show: wgpu::RenderPipeline,
+    sampler: wgpu::Sampler,
+}
+
+impl ShowSurface {
+    /// The passes on a device.
+    #[must_use]
+    pub fn new(gpu: &Gpu) -> Self {
+        let sampler = wgpu::BindingType::Sampler(wgpu::SamplerBindingType::Filtering);
+        let bindings = [UNIFORM, texture_binding(Filterable::Yes), sampler];
+        let layout = gpu.layout("show_surface", &bindings);
+        let shader = gpu.shader("show_surface", include_str!("shaders/show_surface.wgsl"));
+        let encoded = f64::from(DESK_COLOUR.r()) / 255.0;
+        let grey = if gpu.target.is_srgb() {
+            srgb_decode(encoded)
+        } else {
+            encoded
+        };
+        let pipeline = |vertex: &'static str, fragment: &'static str, blend| {
+            gpu.pipeline(&Pass {
+                name: "show_surface",
+                layout: &layout,
+                shader: &shader,
+                vertex,
+                fragment,
+                constants: &[gpu.encoding(), ("grey", grey)],
+                target: gpu.target,
+                blend,
+            })
+        };
+        let over = wgpu::BlendState::PREMULTIPLIED_ALPHA_BLENDING;
+        let sampler = gpu.device.create_sampler(&wgpu::SamplerDescriptor {
+            label: Some("show_surface"),
+            mag_filter: wgpu::FilterMode::Linear,
+            min_filter: wgpu::FilterMode::Linear,
+            ..Default::default()
+        });
+        Self {
+            fill: pipeline("cover", "fill", None),
+            show: pipeline("lay", "show", Some(over)),
+            layout,
+            sampler,
+        }
+    }
+
+    /// Binds a [`Place`] and the lit surface.
+    #[must_use]
+    pub fn bind(
+        &self,
+        gpu: &Gpu,
+        place: &wgpu::Buffer,
+        lit: &wgpu::TextureView,
+    ) -> wgpu::BindGroup {
+        let resources = [
+            place.as_entire_binding(),
+            wgpu::BindingResource::TextureView(lit),
+            wgpu::BindingResource::Sampler(&self.sampler),
+        ];
+        gpu.bind(&self.layout, &resources)
+    }
+
+    /// Draws the desk and, over it, surfaces from the lowest.
+    pub fn draw<'a>(
+        &self,
+        pass: &mut wgpu::RenderPass<'_>,
+        bound: impl Iterator<Item = &'a wgpu::BindGroup>,
+    ) {
+        for (i, bound) in bound.enumerate() {
+            pass.set_bind_group(0, bound, &[]);
+            if i == 0 {
+                pass.set_pipeline(&self.fill);
+                pass.draw(0..4, 0..1);
+                pass.set_pipeline(&self.show);
+            }
+            pass.draw(0..4, 0..1);
+        }
+    }
+}
