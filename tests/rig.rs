@@ -319,6 +319,42 @@ fn commands_reach_a_running_rig() {
     assert!(said.contains("no/p.png"), "{said}");
 }
 
+/// Waits until the window shows the wood of a handle to the lower right of a point of it, which is
+/// where a mouse holds a brush; whether it did.
+fn shows_brush(display: &Display, window: u32, [x, y]: [i16; 2]) -> bool {
+    let wood = |[red, _, blue]: [u8; 3]| red > blue.saturating_add(60);
+    let along = || (40..90).map(|i| display.pixel(window, x + i, y + i));
+    wait_for(PATIENCE, || along().any(wood).then_some(())).is_some()
+}
+
+#[test]
+fn the_mouse_paints_on_the_palette_with_the_brush_that_is_shown() {
+    let display = Display::start();
+    let place = Place::new();
+    let mut command = place.maulstick(&["up", "--load", "Titanium White"]);
+    command.env("DISPLAY", &display.name);
+    let mut launcher = Launcher::start(command);
+    launcher.wait_says("is up");
+    let window = display.window("Maulstick");
+    let (bus, topics) = support::join(&place);
+    let mut mouse = listen::<StylusSample>(&bus, &topics.sample("mouse"), Class::RealTime);
+    // On the palette, which lies to the left of the canvas, from 16 to 363.
+    let points: Vec<_> = (0..40).map(|i| [150 + 4 * i, 500 + i]).collect();
+    let column = || (480..560).map(|y| display.pixel(window, 220, y));
+    let white = |pixel: [u8; 3]| pixel.iter().all(|channel| *channel > 180);
+    let grey = |pixel: [u8; 3]| pixel.iter().all(|channel| (90..140).contains(channel));
+    let bare = wait_for(PATIENCE, || column().all(grey).then_some(()));
+    assert!(bare.is_some(), "the palette is not shown");
+    display.drag(&points, &mut mouse);
+    bus.close();
+    assert!(
+        shows_brush(&display, window, points[39]),
+        "the brush is not shown"
+    );
+    let painted = wait_for(PATIENCE, || column().any(white).then_some(()));
+    assert!(painted.is_some(), "the stroke is not shown");
+}
+
 #[test]
 fn a_mouse_stroke_in_the_window_is_painted_and_shown() {
     let display = Display::start();
@@ -341,6 +377,10 @@ fn a_mouse_stroke_in_the_window_is_painted_and_shown() {
     let points: Vec<_> = (0..60).map(|i| [420 + 6 * i, 400 + 4 * i]).collect();
     display.drag(&points, &mut mouse);
     bus.close();
+    assert!(
+        shows_brush(&display, window, points[59]),
+        "the brush is not shown"
+    );
     // The tip trails behind the pointer: the stroke crosses this column somewhere.
     let column = || (400..700).map(|y| display.pixel(window, 550, y));
     let painted = wait_for(PATIENCE, || column().any(dark).then_some(()));

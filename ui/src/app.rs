@@ -18,7 +18,7 @@ use maulstick_types::{Origin, name_hash};
 
 use crate::backdrop::Backdrop;
 use crate::brushes::Brushes;
-use crate::follow::Follower;
+use crate::follow::{Follower, SILENCE_NS};
 use crate::frames::{FrameInbox, FrameSource, pull};
 use crate::gpu::Gpu;
 use crate::mouse::{Mouse, Pointer};
@@ -28,8 +28,8 @@ use crate::view::{DESK_COLOUR, View, level};
 
 /// A pressed pointer that stands still is told this often: a longer silence would lift the brush.
 const STILL: Duration = Duration::from_millis(30);
-/// The window is drawn anew at most this often for samples, of which a device sends up to 1,000 a
-/// second; where the processor draws, less often, for the paint needs it too.
+/// The window is drawn anew at most this often for frames and samples, of which a device sends up to
+/// 1,000 a second; where the processor draws, less often, for the paint needs it too.
 const REPAINT: Duration = Duration::from_millis(16);
 const REPAINT_BY_PROCESSOR: Duration = Duration::from_millis(40);
 /// The surfaces that are shown, the lowest first.
@@ -143,8 +143,8 @@ impl App {
                 surface,
             };
             let inbox = pulled.inbox.clone();
-            let (context, stop) = (context.clone(), self.stop.clone());
-            let run = move || pull(&source, &inbox, &context, &stop);
+            let (wake, stop) = (self.wake.clone(), self.stop.clone());
+            let run = move || pull(&source, &inbox, &wake, &stop);
             self.threads.extend(thread("frames", run));
         }
         let (wake, context, stop) = (self.wake.clone(), context.clone(), self.stop.clone());
@@ -304,6 +304,9 @@ impl eframe::App for App {
                     let pixels_per_point = ui.ctx().pixels_per_point();
                     let shapes = self.shapes(&view, pixels_per_point);
                     ui.painter().extend(shapes);
+                    // Nothing tells when a device falls silent.
+                    let silence = Duration::from_nanos(SILENCE_NS);
+                    ui.ctx().request_repaint_after(silence);
                 }
                 None => {
                     ui.centered_and_justified(|ui| ui.label("waiting for the paint …"));

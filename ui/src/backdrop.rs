@@ -12,7 +12,7 @@ use crate::show_surface::PixelRect;
 use crate::surface::{Laid, Passes};
 use crate::view::View;
 
-/// The pass that copies the backdrop into the window, and the backdrop.
+/// The backdrop, and the pass that copies it into the window.
 #[derive(Debug)]
 pub struct Backdrop {
     layout: wgpu::BindGroupLayout,
@@ -52,9 +52,13 @@ impl Backdrop {
         }
     }
 
-    /// Draws what has changed of surfaces that lie in a view of `size` pixels; from how many pixels
-    /// on, for tests.
+    /// Draws what has changed of the surfaces in a view of `size` pixels, from the lowest; returns
+    /// how many pixels that were.
     pub fn update(&mut self, gpu: &Gpu, passes: &Passes, size: [u32; 2], laid: &[Laid]) -> u64 {
+        if laid.is_empty() {
+            self.drawn = None;
+            return 0;
+        }
         let same = |drawn: &Drawn| (drawn.size, drawn.surfaces) == (size, laid.len());
         let mut changed = laid
             .iter()
@@ -112,7 +116,7 @@ impl Backdrop {
         u64::from(extent[0]) * u64::from(extent[1])
     }
 
-    /// As a shape of the window that fills the view; none before the first update.
+    /// As a shape of the window that fills the view; none before there is a surface.
     #[must_use]
     pub fn shape(&self, view: &View) -> Option<Shape> {
         let copy = Copy {

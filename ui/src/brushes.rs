@@ -7,7 +7,7 @@ use maulstick_brush::{Head, HeadPose};
 use maulstick_optics::light::Lamp;
 
 use crate::brush_shape::{head_discs, sections, shadow};
-use crate::draw_brush::{Chain, ChainSlot, DrawBrush, Frame};
+use crate::draw_brush::{Chain, ChainSlot, DrawBrush, Projection};
 use crate::draw_head::{HeadView, ribbons};
 use crate::follow::Held;
 use crate::gpu::Gpu;
@@ -39,7 +39,7 @@ impl Brushes {
         }
     }
 
-    /// The shapes of a brush, from the lowest: under `lamp`, in the frame of the surface below it.
+    /// The shapes of a brush, from the lowest: under `lamp`, in the projection of the surface below it.
     #[must_use]
     pub fn shapes(
         &mut self,
@@ -58,7 +58,7 @@ impl Brushes {
         let mut discs = head_discs(&self.pose, head.strips());
         discs.reverse();
         discs.extend(sections.iter().map(|section| (section.at, section.radius)));
-        let frame = Frame {
+        let projection = Projection {
             view,
             pixels_per_point,
             to_window: &to_window,
@@ -78,12 +78,12 @@ impl Brushes {
                 solid: self.passes.slot(gpu),
             });
         let mut shapes = Vec::new();
-        let chain = Chain::shadow(&shadow(&discs, lamp.toward), &frame);
+        let chain = Chain::shadow(&shadow(&discs, lamp.toward), &projection);
         if chain.is_visible() {
             shapes.push(self.passes.cast(gpu, &slots.shadow, &chain).shape(view));
         }
         shapes.push(ribbons(&self.pose, head.strips(), &strips).into());
-        let chain = Chain::solid(&sections, &frame);
+        let chain = Chain::solid(&sections, &projection);
         if chain.is_visible() {
             shapes.push(self.passes.solid(gpu, &slots.solid, &chain).shape(view));
         }

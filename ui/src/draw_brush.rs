@@ -50,19 +50,19 @@ pub struct Chain {
     finishes: [[f32; 4]; NODES],
 }
 
-/// From the frame of a surface to pixels of the view.
-pub struct Frame<'a> {
+/// From the projection of a surface to pixels of the view.
+pub struct Projection<'a> {
     /// The view.
     pub view: &'a View,
     /// Pixels a point.
     pub pixels_per_point: f32,
-    /// From the surface's frame to the window, points.
+    /// From the surface's projection to the window, points.
     pub to_window: &'a dyn Fn([f64; 3]) -> Pos2,
-    /// Unit vector toward the lamp, surface frame.
+    /// Unit vector toward the lamp, surface projection.
     pub toward: [f32; 3],
 }
 
-impl Frame<'_> {
+impl Projection<'_> {
     fn pixels(&self, at: [f64; 3]) -> [f32; 2] {
         let off = ((self.to_window)(at) - self.view.area.min) * self.pixels_per_point;
         off.into()
@@ -84,12 +84,12 @@ impl Frame<'_> {
 }
 
 impl Chain {
-    fn new(frame: &Frame<'_>, nodes: &[Node]) -> Self {
-        let toward = frame.direction(frame.toward);
+    fn new(projection: &Projection<'_>, nodes: &[Node]) -> Self {
+        let toward = projection.direction(projection.toward);
         let [x, y, z, _] = toward;
         let length = (x * x + y * y + (z + 1.0) * (z + 1.0)).sqrt();
         let mut chain = Self {
-            view: (frame.view.area.size() * frame.pixels_per_point).into(),
+            view: (projection.view.area.size() * projection.pixels_per_point).into(),
             toward,
             half: [x / length, y / length, (z + 1.0) / length, 0.0],
             ..Self::zeroed()
@@ -129,10 +129,10 @@ impl Chain {
 
     /// Ferrule and handle.
     #[must_use]
-    pub fn solid(sections: &[Section; SECTIONS], frame: &Frame<'_>) -> Self {
-        let scale = frame.pixels_per_m();
+    pub fn solid(sections: &[Section; SECTIONS], projection: &Projection<'_>) -> Self {
+        let scale = projection.pixels_per_m();
         let node = |section: &Section| {
-            let [x, y] = frame.pixels(section.at.to_array());
+            let [x, y] = projection.pixels(section.at.to_array());
             let ([r, g, b], metal) = match section.material {
                 Material::Metal => (NICKEL, 1.0),
                 Material::Groove => (NICKEL.map(|channel| 0.35 * channel), 1.0),
@@ -147,15 +147,15 @@ impl Chain {
                 metal,
             }
         };
-        Self::new(frame, &sections.each_ref().map(node)).bounded(|_| 1.0)
+        Self::new(projection, &sections.each_ref().map(node)).bounded(|_| 1.0)
     }
 
     /// The shadow of at most [`SHADES`] discs.
     #[must_use]
-    pub fn shadow(shades: &[Shade], frame: &Frame<'_>) -> Self {
-        let scale = frame.pixels_per_m();
+    pub fn shadow(shades: &[Shade], projection: &Projection<'_>) -> Self {
+        let scale = projection.pixels_per_m();
         let node = |shade: &Shade| {
-            let [x, y] = frame.pixels(shade.at.extend(0.0).to_array());
+            let [x, y] = projection.pixels(shade.at.extend(0.0).to_array());
             let [radius, softness] = [shade.radius, shade.softness].map(|m| (m * scale) as f32);
             Node {
                 disc: [x, y, radius, softness + EDGE],
@@ -164,7 +164,7 @@ impl Chain {
             }
         };
         let nodes: Vec<Node> = shades.iter().take(SHADES).map(node).collect();
-        Self::new(frame, &nodes).bounded(|disc| disc[3])
+        Self::new(projection, &nodes).bounded(|disc| disc[3])
     }
 
     /// Whether any of its box may be in the view.
@@ -307,7 +307,7 @@ mod tests {
             gpu: &Gpu,
             lean: DVec2,
             toward: [f32; 3],
-            which: fn(&DrawBrush, &Gpu, &ChainSlot, &[Section; SECTIONS], &Frame<'_>) -> Drawn,
+            which: fn(&DrawBrush, &Gpu, &ChainSlot, &[Section; SECTIONS], &Projection<'_>) -> Drawn,
         ) -> Self {
             let view = View {
                 area: Rect::from_min_size(pos2(0.0, 0.0), vec2(SIDE as f32, SIDE as f32)),
@@ -315,7 +315,7 @@ mod tests {
                 scale: 1000.0,
             };
             let to_window = |at: [f64; 3]| view.to_window(DVec3::from_array(at));
-            let frame = Frame {
+            let projection = Projection {
                 view: &view,
                 pixels_per_point: 1.0,
                 to_window: &to_window,
@@ -327,7 +327,13 @@ mod tests {
             };
             let passes = DrawBrush::new(gpu);
             let slot = passes.slot(gpu);
-            let drawn = which(&passes, gpu, &slot, &sections(&brush, 0.02, 0.0082), &frame);
+            let drawn = which(
+                &passes,
+                gpu,
+                &slot,
+                &sections(&brush, 0.02, 0.0082),
+                &projection,
+            );
             let target = target(gpu, [SIDE; 2]);
             draw(gpu, &target, WHITE, |pass| drawn.draw(pass));
             let bytes = read(gpu, &target);
@@ -360,13 +366,13 @@ mod tests {
         gpu: &Gpu,
         slot: &ChainSlot,
         sections: &[Section; SECTIONS],
-        frame: &Frame<'_>,
+        projection: &Projection<'_>,
     ) -> Drawn {
         let discs: Vec<_> = sections.iter().map(|s| (s.at, s.radius)).collect();
         passes.cast(
             gpu,
             slot,
-            &Chain::shadow(&shadow(&discs, frame.toward), frame),
+            &Chain::shadow(&shadow(&discs, projection.toward), projection),
         )
     }
 
@@ -375,9 +381,9 @@ mod tests {
         gpu: &Gpu,
         slot: &ChainSlot,
         sections: &[Section; SECTIONS],
-        frame: &Frame<'_>,
+        projection: &Projection<'_>,
     ) -> Drawn {
-        passes.solid(gpu, slot, &Chain::solid(sections, frame))
+        passes.solid(gpu, slot, &Chain::solid(sections, projection))
     }
 
     const LEFT: [f32; 3] = [-0.6, 0.0, 0.8];
@@ -427,7 +433,7 @@ mod tests {
             scale: 1000.0,
         };
         let to_window = |at: [f64; 3]| view.to_window(DVec3::from_array(at));
-        let frame = Frame {
+        let projection = Projection {
             view: &view,
             pixels_per_point: 1.0,
             to_window: &to_window,
@@ -437,7 +443,8 @@ mod tests {
             translation: DVec3::new(x, 0.0, 0.01),
             ..Rigid::IDENTITY
         };
-        let visible = |x: f64| Chain::solid(&sections(&at(x), 0.01, 4e-3), &frame).is_visible();
+        let visible =
+            |x: f64| Chain::solid(&sections(&at(x), 0.01, 4e-3), &projection).is_visible();
         assert!(visible(0.0) && visible(0.05) && !visible(0.06));
     }
 }

@@ -17,7 +17,7 @@ use maulstick_types::stylus::StylusSample;
 use maulstick_types::topics::Topics;
 
 /// A device that is silent for this long holds no brush, ns.
-const SILENCE_NS: u64 = 1_000_000_000;
+pub const SILENCE_NS: u64 = 1_000_000_000;
 
 /// A sample and when it came.
 #[derive(Clone, Debug)]

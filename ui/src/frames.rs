@@ -5,9 +5,8 @@ use std::sync::atomic::{AtomicU32, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::Duration;
 
-use eframe::egui::Context;
 use maulstick_bus::typed::ask;
-use maulstick_bus::{Bus, BusError, Class};
+use maulstick_bus::{Bus, BusError, Class, Wake};
 use maulstick_paint::tile::TILE_CELLS;
 use maulstick_rig::Stop;
 use maulstick_types::Origin;
@@ -90,8 +89,8 @@ pub struct FrameSource {
     pub surface: u32,
 }
 
-/// Pulls frames until `stop` says so.
-pub fn pull(source: &FrameSource, inbox: &FrameInbox, context: &Context, stop: &Stop) {
+/// Pulls frames until `stop` says so; rings `wake` when one has come.
+pub fn pull(source: &FrameSource, inbox: &FrameInbox, wake: &Wake, stop: &Stop) {
     let (mut since, mut epoch, mut level) = (0, 0, u32::MAX);
     while !stop.requested() {
         let wanted = inbox.level.load(Ordering::Relaxed);
@@ -112,7 +111,7 @@ pub fn pull(source: &FrameSource, inbox: &FrameInbox, context: &Context, stop: &
                 (since, epoch) = (reply.version, reply.epoch);
                 if !reply.tiles.is_empty() {
                     inbox.push(convert(&reply));
-                    context.request_repaint();
+                    wake.ring();
                 }
             }
             Err(BusError::NoAnswer { .. }) => {
@@ -122,7 +121,6 @@ pub fn pull(source: &FrameSource, inbox: &FrameInbox, context: &Context, stop: &
             Err(error) => tracing::warn!("{error}"),
         }
     }
-    context.request_repaint();
 }
 
 fn convert(reply: &FrameReply) -> Shown {

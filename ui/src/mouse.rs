@@ -77,7 +77,7 @@ impl Mouse {
     }
 
     /// Sends what the pointer did since the last call: its places in order, evenly spread over that
-    /// time; none where it is not over the canvas.
+    /// time; none where it is not over the desk.
     ///
     /// # Errors
     /// [`BusError::Topic`].
