@@ -38,7 +38,7 @@ pub enum MixtureError {
         share: String,
     },
     /// The shares do not sum to 1.
-    #[error("the shares of '{mixture}' sum to {sum}, not to 1")]
+    #[error("the shares of '{mixture}' sum to {sum:.4}, not to 1")]
     Sum {
         /// The text.
         mixture: String,
