@@ -29,6 +29,8 @@ enum Command {
     Take(take::TakeCommand),
     /// Loads a brush of a running rig
     Load(control::LoadOptions),
+    /// Makes a brush of a running rig stiffer or softer
+    Tune(control::TuneOptions),
     /// Takes all paint off a brush of a running rig
     Clean(control::CleanOptions),
     /// Takes the newest step in a running rig back
@@ -59,6 +61,7 @@ pub fn run() -> Result<i32, Fault> {
         Command::Demo(options) => demo::run(&options),
         Command::Take(command) => take::run(&command),
         Command::Load(options) => control::load(&options),
+        Command::Tune(options) => control::tune(&options),
         Command::Clean(options) => control::clean(&options),
         Command::Undo(options) => control::undo(&options),
         Command::Redo(options) => control::redo(&options),

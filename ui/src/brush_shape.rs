@@ -201,7 +201,7 @@ mod tests {
             x: place(maulstick_num::cos).map(|x| x + 0.1).collect(),
             y: place(maulstick_num::sin).collect(),
             z: vec![0.02; strips],
-            press: 0.0,
+            ..HeadPose::default()
         };
         let [(middle, found)] = head_discs(&pose, strips)[..] else {
             panic!("one station")

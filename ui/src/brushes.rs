@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use eframe::egui::{Pos2, Shape};
-use maulstick_brush::{Head, HeadPose};
+use maulstick_brush::{Head, HeadPose, Hold};
 use maulstick_optics::light::Lamp;
 
 use crate::brush_shape::{head_discs, sections, shadow};
@@ -12,6 +12,9 @@ use crate::draw_head::{HeadView, ribbons};
 use crate::follow::Held;
 use crate::gpu::Gpu;
 use crate::view::View;
+
+/// How wet a head looks: no message says how full it is.
+const WETNESS: f32 = 0.6;
 
 /// Places on the device for a brush.
 #[derive(Debug)]
@@ -51,7 +54,13 @@ impl Brushes {
         pixels_per_point: f32,
     ) -> Vec<Shape> {
         let to_window = |local: [f64; 3]| -> Pos2 { view.to_window(held.on_desk(local)) };
-        head.pose(&held.brush, &held.angles, &mut self.pose);
+        let hold = Hold {
+            brush: &held.brush,
+            angles: &held.angles,
+            per_m: 1.0,
+            wetness: WETNESS,
+        };
+        head.pose(&hold, &mut self.pose);
         let width_m = held.file.head.width_mm * 1e-3;
         let sections = sections(&held.brush, width_m, held.file.radius_m(0.0));
         // The shadow goes from the point of the head to the end of the handle.

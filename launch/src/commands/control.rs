@@ -7,9 +7,12 @@ use std::time::Duration;
 use clap::Args;
 use maulstick_bus::{Bus, Dial, RigClock, RigFolder, ZenohBus};
 use maulstick_device::commander::Commander;
+use maulstick_optics::{PaintError, PaintLibrary};
 use maulstick_paint::PaintRefusal;
 use maulstick_rig::Fault;
+use maulstick_types::Mixture;
 use maulstick_types::command::Command;
+use maulstick_types::scene::Tuning;
 use maulstick_types::topics::Topics;
 
 use crate::performance::{library, refused};
@@ -27,6 +30,25 @@ pub struct Target {
 pub struct LoadOptions {
     /// What the brush takes up: "Cobalt Blue=0.7,Titanium White=0.3"
     mixture: String,
+    /// Double loading: the first mixture goes to the brush's left half, this one to the right
+    #[arg(long, value_name = "MIXTURE")]
+    beside: Option<String>,
+    /// The brush
+    #[arg(long, default_value = "main")]
+    brush: String,
+    #[command(flatten)]
+    target: Target,
+}
+
+/// Options of `maulstick tune`.
+#[derive(Args, Clone, Debug)]
+pub struct TuneOptions {
+    /// Factor on the stiffness of its file
+    #[arg(long, default_value_t = 1.0)]
+    stiffness: f64,
+    /// 0 as in its file to 1 soaked: half as stiff
+    #[arg(long, default_value_t = 0.0)]
+    wetness: f64,
     /// The brush
     #[arg(long, default_value = "main")]
     brush: String,
@@ -89,21 +111,44 @@ fn send(target: &Target, command: Command) -> Result<String, Fault> {
 /// # Errors
 /// A [`Fault`] for an unknown paint or brush, or where no rig runs.
 pub fn load(options: &LoadOptions) -> Result<i32, Fault> {
-    let mixture = options.mixture.parse().map_err(|error| {
-        refused(PaintRefusal::paint(maulstick_optics::PaintError::Mixture(
-            error,
-        )))
-    })?;
-    let mixture = library()?
-        .check(&mixture)
-        .map_err(|e| refused(PaintRefusal::paint(e)))?;
-    send(
-        &options.target,
-        Command::Load {
-            brush: options.brush.clone(),
-            mixture,
+    let (library, brush) = (library()?, options.brush.clone());
+    let mixture = checked(&library, &options.mixture)?;
+    let command = match &options.beside {
+        None => Command::Load { brush, mixture },
+        Some(beside) => Command::LoadBeside {
+            brush,
+            left: mixture,
+            right: checked(&library, beside)?,
         },
-    )?;
+    };
+    send(&options.target, command)?;
+    Ok(0)
+}
+
+/// A mixture of paints that there are.
+fn checked(library: &PaintLibrary, text: &str) -> Result<Mixture, Fault> {
+    let mixture = text
+        .parse()
+        .map_err(|error| refused(PaintRefusal::paint(PaintError::Mixture(error))))?;
+    library
+        .check(&mixture)
+        .map_err(|error| refused(PaintRefusal::paint(error)))
+}
+
+/// Makes a brush stiffer or softer.
+///
+/// # Errors
+/// A [`Fault`] for an unknown brush or numbers out of range, or where no rig runs.
+pub fn tune(options: &TuneOptions) -> Result<i32, Fault> {
+    let command = Command::Tune {
+        tuning: Tuning {
+            brush: options.brush.clone(),
+            stiffness: options.stiffness,
+            wetness: options.wetness,
+        },
+    };
+    command.check().map_err(Fault::usage)?;
+    send(&options.target, command)?;
     Ok(0)
 }
 

@@ -3,6 +3,7 @@
 use crate::define::{message, wire_enum, wire_struct};
 use crate::mixture::Mixture;
 use crate::pose::Pose;
+use crate::scene::Tuning;
 use crate::stylus::FARTHEST_M;
 use crate::topics::check_name;
 
@@ -12,6 +13,8 @@ pub const PATH_MAX: usize = 4096;
 pub const PARTS_MAX: usize = 64;
 /// The name of a paint has at most this many bytes.
 pub const PAINT_NAME_MAX: usize = 128;
+/// Factors on the stiffness of a brush.
+pub const STIFFNESS: std::ops::RangeInclusive<f64> = 0.05..=20.0;
 
 wire_struct! {
     /// A place in a brush's stream: a command with it enters the journal right after that state.
@@ -74,6 +77,20 @@ wire_enum! {
         },
         /// Ends nothing and changes nothing: its reply says that the place it names is reached.
         Mark,
+        /// Loads a brush afresh with a mixture on either half of its width.
+        LoadBeside {
+            /// Name of the brush.
+            brush: String,
+            /// What the half toward −x of the brush takes up.
+            left: Mixture,
+            /// What the other half takes up.
+            right: Mixture,
+        },
+        /// Makes a brush stiffer or softer than its file says.
+        Tune {
+            /// How it is from now on.
+            tuning: Tuning,
+        },
     }
 }
 
@@ -87,6 +104,17 @@ impl Command {
         match self {
             Self::Load { brush, mixture } => brush_name(brush).and_then(|()| short(mixture)),
             Self::Clean { brush } => brush_name(brush),
+            Self::LoadBeside { brush, left, right } => {
+                brush_name(brush).and_then(|()| [left, right].into_iter().try_for_each(short))
+            }
+            Self::Tune { tuning } => brush_name(&tuning.brush).and_then(|()| {
+                let good =
+                    STIFFNESS.contains(&tuning.stiffness) && (0.0..=1.0).contains(&tuning.wetness);
+                match good {
+                    true => Ok(()),
+                    false => Err("stiffness must be 0.05 to 20 and wetness 0 to 1".to_owned()),
+                }
+            }),
             Self::Take { brush, loads, .. } => {
                 brush_name(brush).and_then(|()| loads.iter().try_for_each(short))
             }
@@ -137,7 +165,7 @@ fn short(mixture: &Mixture) -> Result<(), String> {
 
 message! {
     /// A command with its sender and number; sending it again with the same number is safe.
-    pub struct CommandRequest [version 1, at most 1048576 bytes] {
+    pub struct CommandRequest [version 2, at most 1048576 bytes] {
         /// A number that the client drew at random.
         pub client: u64,
         /// Counts the client's commands.

@@ -85,9 +85,29 @@ wire_struct! {
     }
 }
 
+wire_struct! {
+    /// How a brush was changed while painting.
+    pub struct Tuning {
+        /// Name of the brush.
+        pub brush: String,
+        /// Factor on the stiffness of its file.
+        pub stiffness: f64,
+        /// From 0, as in its file, to 1, soaked: a soaked head is half as stiff.
+        pub wetness: f64,
+    }
+}
+
+impl Tuning {
+    /// Factor on the stiffness of a head.
+    #[must_use]
+    pub fn factor(&self) -> f64 {
+        self.stiffness * (1.0 - 0.5 * self.wetness)
+    }
+}
+
 message! {
     /// The desk; cached for late joiners.
-    pub struct Scene [version 1, at most 262144 bytes] {
+    pub struct Scene [version 2, at most 262144 bytes] {
         /// Grows with every change.
         pub version: u64,
         /// The canvas first.
@@ -96,5 +116,18 @@ message! {
         pub paints: Vec<PaintSlot>,
         /// The lamp.
         pub light: Light,
+        /// Brushes that are not as in their files.
+        pub tunings: Vec<Tuning>,
+    }
+}
+
+impl Scene {
+    /// Factor on the stiffness of the brush called `brush`.
+    #[must_use]
+    pub fn tuning(&self, brush: &str) -> f64 {
+        let mut tunings = self.tunings.iter();
+        tunings
+            .find(|tuning| tuning.brush == brush)
+            .map_or(1.0, Tuning::factor)
     }
 }

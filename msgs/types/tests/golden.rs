@@ -8,7 +8,7 @@ use maulstick_types::paint::{
     BrushCredit, Entry, FrameHolds, FrameReply, FrameRequest, FrameTile, JournalEntry,
     PaintConsumed, PaintStatus,
 };
-use maulstick_types::scene::{Light, PaintSlot, Scene, Surface, Well, WellKind};
+use maulstick_types::scene::{Light, PaintSlot, Scene, Surface, Tuning, Well, WellKind};
 use maulstick_types::stylus::{
     StylusInfo, StylusPose, StylusSample, StylusStatus, TakeEnd, TakeStatus,
 };
@@ -234,6 +234,11 @@ fn all() -> String {
                 intensity: 1.0,
                 illuminant: "D65".into(),
             },
+            tunings: vec![Tuning {
+                brush: "main".into(),
+                stiffness: 1.5,
+                wetness: 0.5,
+            }],
         }),
         line(&entry(Entry::States {
             brush: "main".into(),
@@ -297,7 +302,7 @@ fn all() -> String {
             brush: "main".into(),
             device: 1,
             device_epoch: 2,
-            loads: vec![mixture],
+            loads: vec![mixture.clone()],
         })),
         line(&command(Command::Undo)),
         line(&command(Command::Redo)),
@@ -311,6 +316,18 @@ fn all() -> String {
             zoom: 2.0,
         })),
         line(&command(Command::Mark)),
+        line(&command(Command::LoadBeside {
+            brush: "main".into(),
+            left: mixture.clone(),
+            right: mixture.clone(),
+        })),
+        line(&command(Command::Tune {
+            tuning: Tuning {
+                brush: "main".into(),
+                stiffness: 1.5,
+                wetness: 0.5,
+            },
+        })),
         line(&reply(Outcome::Done {
             journal: 1,
             detail: "done".into(),

@@ -6,8 +6,13 @@ use maulstick_num::sin_cos;
 use maulstick_types::scene::{CANVAS, Scene, Surface};
 use maulstick_types::stylus::{StylusPose, StylusSample};
 
+use crate::solver::Wall;
+
 /// A pen without pressure holds the point of the head this far above the surface, m.
 pub const HOVER_M: f64 = 5e-3;
+
+/// Surfaces whose heights differ by less than this are even, m.
+const EVEN_M: f64 = 1e-6;
 
 /// A surface as the brush sees it.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -48,6 +53,61 @@ impl Plane {
     }
 }
 
+/// What a brush may not enter, as seen from a surface: convex, so that a joint is outside of at
+/// least one of its faces. Lengths are the desk's, axes those of the surface.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Obstacle {
+    faces: Vec<Wall>,
+}
+
+impl Obstacle {
+    /// The surface z = 0, which goes on beside its edge.
+    #[must_use]
+    pub fn ground() -> Self {
+        Self {
+            faces: vec![Wall::SURFACE],
+        }
+    }
+
+    /// The face that a point is most outside of, or least within.
+    #[must_use]
+    pub fn face_toward(&self, p: DVec3) -> Wall {
+        let mut best = self.faces[0];
+        for face in &self.faces[1..] {
+            if face.gap(p) > best.gap(p) {
+                best = *face;
+            }
+        }
+        best
+    }
+
+    /// Whether a ball reaches it.
+    fn is_near(&self, p: DVec3, radius: f64) -> bool {
+        self.face_toward(p).gap(p) < radius
+    }
+
+    /// A plane as seen from another: the canvas is all that lies under it, a palette a board.
+    fn of(plane: &Plane, seen_from: &Plane) -> Self {
+        let place = seen_from.to_desk.inverse().after(&plane.to_desk);
+        let wall = |normal: DVec3, through: DVec3| {
+            let normal = place.vector(normal);
+            Wall {
+                normal,
+                offset_m: normal.dot(place.point(through)),
+            }
+        };
+        let far = DVec3::new(plane.size_m[0], plane.size_m[1], 0.0) * plane.zoom;
+        let mut faces = vec![wall(DVec3::Z, DVec3::ZERO)];
+        if plane.id != CANVAS {
+            faces.push(wall(DVec3::NEG_X, DVec3::ZERO));
+            faces.push(wall(DVec3::NEG_Y, DVec3::ZERO));
+            faces.push(wall(DVec3::X, far));
+            faces.push(wall(DVec3::Y, far));
+        }
+        Self { faces }
+    }
+}
+
 /// The surfaces of a scene.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Desk {
@@ -61,6 +121,28 @@ impl Desk {
         let mut planes: Vec<Plane> = scene.surfaces.iter().map(Plane::of).collect();
         planes.sort_by_key(|plane| std::cmp::Reverse(plane.id));
         Self { planes }
+    }
+
+    /// What a brush with a head of `head_m` and its ferrule at `ferrule` may not enter, in the frame
+    /// of `surface`: that first, then the others that it might reach.
+    ///
+    /// Surfaces in one plane are one: none has an edge there.
+    #[must_use]
+    pub fn obstacles(&self, surface: &Plane, ferrule: DVec3, head_m: f64) -> Vec<Obstacle> {
+        let same = |plane: &&Plane| {
+            let place = surface.to_desk.inverse().after(&plane.to_desk);
+            let upright = place.vector(DVec3::Z).z > 1.0 - 1e-9;
+            plane.id == surface.id || (upright && place.translation.z.abs() < EVEN_M)
+        };
+        let own = match self.planes.iter().all(|plane| same(&plane)) {
+            true => Obstacle::ground(),
+            false => Obstacle::of(surface, surface),
+        };
+        let others = self.planes.iter().filter(|plane| !same(plane));
+        let others = others
+            .map(|plane| Obstacle::of(plane, surface))
+            .filter(|obstacle| obstacle.is_near(ferrule, 1.1 * head_m));
+        std::iter::once(own).chain(others).collect()
     }
 
     /// The surface called `id`.
@@ -158,6 +240,47 @@ mod tests {
         let axis = pen_orientation(DEFAULT_TILT_RAD, 0.4) * DVec3::Z;
         assert!((axis.z - 0.75f64.sqrt()).abs() < 1e-12, "{axis}");
         assert!((axis.x - 0.125f64.sqrt()).abs() < 1e-12 && (axis.x + axis.y).abs() < 1e-12);
+    }
+
+    fn plane(id: u32, x: f64, z: f64) -> Plane {
+        Plane {
+            id,
+            to_desk: Rigid {
+                translation: DVec3::new(x, 0.0, z),
+                ..Rigid::IDENTITY
+            },
+            zoom: 1.0,
+            size_m: [0.1, 0.2],
+            cell_m: 2.5e-4,
+        }
+    }
+
+    #[test]
+    fn a_raised_palette_is_a_board_and_an_even_one_is_none() {
+        let (canvas, raised) = (plane(CANVAS, 0.0, 0.0), plane(1, -0.15, 0.01));
+        let desk = Desk {
+            planes: vec![raised, canvas],
+        };
+        let over_gap = DVec3::new(-0.045, 0.1, 0.02);
+        let [own, board] = &desk.obstacles(&canvas, over_gap, 0.03)[..] else {
+            panic!("two obstacles");
+        };
+        assert_eq!(own.face_toward(over_gap).normal, DVec3::Z);
+        // Beside the board its edge stops a joint, over it its top.
+        let edge = board.face_toward(DVec3::new(-0.045, 0.1, 0.001));
+        assert!((edge.normal - DVec3::X).length() < 1e-12);
+        assert!((edge.gap(DVec3::new(-0.045, 0.1, 0.001)) - 0.005).abs() < 1e-12);
+        let top = board.face_toward(DVec3::new(-0.1, 0.1, 0.02));
+        assert!((top.normal - DVec3::Z).length() < 1e-12 && (top.offset_m - 0.01).abs() < 1e-12);
+        let far = DVec3::new(0.05, 0.1, 0.02);
+        assert_eq!(desk.obstacles(&canvas, far, 0.03).len(), 1, "out of reach");
+        let even = Desk {
+            planes: vec![plane(1, -0.15, 0.0), canvas],
+        };
+        assert_eq!(
+            even.obstacles(&canvas, over_gap, 0.03),
+            [Obstacle::ground()]
+        );
     }
 
     #[test]

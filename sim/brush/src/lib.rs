@@ -8,27 +8,35 @@
 //! | [`file`] | the brush file and the library of brushes |
 //! | [`spine`] | a chain of segments: directions, joint angles, joints |
 //! | [`tuft`] | where the spines stand in the ferrule |
-//! | [`energy`] | spring, friction, damping: value, gradient, Hessian |
+//! | [`energy`] | spring, friction, damping, crowd: value, gradient, Hessian |
 //! | [`qp`] | the quadratic program of one Newton step |
 //! | [`solver`] | the constrained minimum; a whole solve reads from top to bottom |
 //! | [`head`] | the bristle strips between the spines |
+//! | [`skin`] | the surface around them |
+//! | [`subdivide`] | Catmull-Clark subdivision |
 //! | [`desk`] | surfaces, and where a stylus holds the ferrule |
 //! | [`way`] | the handle's way between samples |
+//! | [`held`] | the spines of a brush in the hand, among walls and each other |
+//! | [`feel`] | what the hand feels of it |
 //! | [`model`] | the brush that follows a stylus |
 
 pub mod desk;
 pub mod energy;
+pub mod feel;
 pub mod file;
 pub mod head;
+pub mod held;
 pub mod model;
 pub mod qp;
+pub mod skin;
 pub mod solver;
 pub mod spine;
+pub mod subdivide;
 pub mod tuft;
 pub mod way;
 
 pub use file::{BrushError, BrushFile};
-pub use head::{Head, HeadPose};
+pub use head::{Head, HeadPose, Hold};
 pub use model::BrushModel;
 pub use solver::{Solution, Solver};
 pub use spine::{Spine, SpineShape};

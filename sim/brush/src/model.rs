@@ -1,18 +1,19 @@
 //! The brush that follows a stylus: samples in, solved states out.
 
-use glam::DVec3;
 use maulstick_num::geometry::Rigid;
 use maulstick_types::Origin;
-use maulstick_types::brush::{BrushState, Contact, Solve, solve_flags};
+use maulstick_types::brush::{BrushState, Solve, solve_flags};
 use maulstick_types::scene::Scene;
 use maulstick_types::stylus::StylusSample;
 
-use crate::desk::{Desk, Plane, aim, ferrule};
+use crate::desk::{Desk, Obstacle, Plane, aim, ferrule};
+use crate::energy::friction::Anisotropy;
+use crate::feel::Feel;
 use crate::file::BrushFile;
-use crate::solver::{Settings, Solver, Touch};
-use crate::spine::SpineShape;
-use crate::tuft::{Seat, Tuft};
-use crate::way::{Sampled, Way};
+use crate::held::{HeadSolver, HeldHead};
+use crate::solver::Settings;
+use crate::tuft::Tuft;
+use crate::way::{Piece, Sampled, Way};
 
 /// Contacts less than this apart are one stroke, ns.
 pub const STROKE_GAP_NS: u64 = 150_000_000;
@@ -22,9 +23,11 @@ pub const RESTART_NS: u64 = 100_000_000;
 const LEAST_HEIGHT: f64 = 0.05;
 /// A touching brush is solved each time its handle has moved so far, cells: a little less than one,
 /// so that the strips, which may overtake it, seldom move more than one.
-const SOLVE_CELLS: f64 = 0.9;
+const SOLVE_CELLS: f64 = 0.7;
 /// Solves between two samples at most: a hand is seldom that fast.
 const MOST_SOLVES: f64 = 64.0;
+/// Times that a piece of the way is halved at most.
+const SPLITS: u32 = 2;
 
 /// A brush in the hand.
 #[derive(Debug)]
@@ -33,40 +36,26 @@ pub struct BrushModel {
     depth_share: f64,
     tuft: Tuft,
     settings: Settings,
-    solver: Solver,
+    solver: HeadSolver,
     desk: Option<Desk>,
     follows: Option<Origin>,
     held: Option<Held>,
     strokes: u64,
     last_contact_ns: u64,
-}
-
-/// A spine and what it touches.
-#[derive(Clone, Debug)]
-struct HeldSpine {
-    shape: SpineShape,
-    touches: Vec<Touch>,
+    /// Factor on the stiffness of the file.
+    tuned: f64,
 }
 
 /// The brush after a sample. Lengths are the desk's, axes those of the surface.
 #[derive(Clone, Debug)]
 struct Held {
     surface: u32,
-    /// Where the spines were solved last.
-    brush: Rigid,
-    spines: Vec<HeldSpine>,
+    head: HeldHead,
     newest: Sampled,
     /// The sample before the newest one, if the brush touched there and has since.
     before: Option<Sampled>,
-    /// Cells from the newest sample back to `brush`.
+    /// Cells from the newest sample back to where the head was solved last.
     left_over: f64,
-}
-
-impl Held {
-    fn touches(&self) -> bool {
-        let mut touches = self.spines.iter().flat_map(|spine| &spine.touches);
-        touches.any(is_touching)
-    }
 }
 
 impl BrushModel {
@@ -74,21 +63,19 @@ impl BrushModel {
     #[must_use]
     pub fn new(file: BrushFile, depth_share: f64) -> Self {
         let tuft = file.tuft();
-        let settings = Settings {
-            friction: file.contact.friction,
-            ..Settings::default()
-        };
+        let settings = settings_of(&file, &tuft);
         Self {
             file,
             depth_share,
             tuft,
             settings,
-            solver: Solver::default(),
+            solver: HeadSolver::default(),
             desk: None,
             follows: None,
             held: None,
             strokes: 0,
             last_contact_ns: 0,
+            tuned: 1.0,
         }
     }
 
@@ -101,6 +88,26 @@ impl BrushModel {
     /// Puts the brush over another scene; before the first, samples give no state.
     pub fn set_scene(&mut self, scene: &Scene) {
         self.desk = Some(Desk::of(scene));
+    }
+
+    /// Makes the head stiffer than its file says by this factor, or softer; it keeps its shape.
+    pub fn tune(&mut self, factor: f64) {
+        let changed = factor / self.tuned;
+        if changed != 1.0 && changed.is_finite() && changed > 0.0 {
+            self.tuned = factor;
+            self.tuft.stiffen(changed);
+            self.settings.crowd_n_m = self.tuft.crowd_n_m;
+        }
+    }
+
+    /// What the hand feels of the head as it is bent now.
+    #[must_use]
+    pub fn feel(&self) -> Feel {
+        let length = self.file.length_m();
+        match &self.held {
+            Some(held) => Feel::bent(&self.tuft, length, &held.newest.pose, held.head.force_n()),
+            None => Feel::at_rest(&self.tuft, length),
+        }
     }
 
     /// Whether there is a scene.
@@ -118,12 +125,7 @@ impl BrushModel {
     /// The normal force of all contacts now, N.
     #[must_use]
     pub fn force_n(&self) -> f64 {
-        self.held
-            .iter()
-            .flat_map(|held| &held.spines)
-            .flat_map(|spine| &spine.touches)
-            .map(|touch| touch.force_n)
-            .sum()
+        self.held.as_ref().map_or(0.0, |held| held.head.force_n())
     }
 
     /// Follows one sample of the device `origin`: none while there is no scene, else the solves on
@@ -160,18 +162,18 @@ impl BrushModel {
         });
         let Some(mut held) = usable else {
             let mut held = self.fresh(plane.id, here);
-            let mut solve = self.solve(&mut held, here, plane.zoom);
+            let mut solve = self.solve(&mut held, here, &plane);
             solve.flags |= solve_flags::RESTARTED;
             self.held = Some(held);
             return vec![solve];
         };
-        let solves = if held.touches() && !sample.in_air() {
+        let solves = if held.head.touches() && !sample.in_air() {
             let solves = self.go(&mut held, here, &plane);
             held.before = Some(held.newest);
             solves
         } else {
             (held.before, held.left_over) = (None, 0.0);
-            vec![self.solve(&mut held, here, plane.zoom)]
+            vec![self.solve(&mut held, here, &plane)]
         };
         held.newest = here;
         self.held = Some(held);
@@ -192,85 +194,97 @@ impl BrushModel {
         let part = (motion / MOST_SOLVES).max(SOLVE_CELLS);
         let whole = held.left_over + motion;
         let mut solves = Vec::new();
-        let mut cells = part;
+        let (mut cells, mut at) = (part, 0.0);
         while cells <= whole {
             let s = way.after((cells - held.left_over) * cell_m);
-            let mut pose = way.at(s);
-            pose.translation.z = pose.translation.z.max(LEAST_HEIGHT * self.file.length_m());
-            let event_ns = start_ns + ((here.event_ns - start_ns) as f64 * s) as u64;
-            solves.push(self.solve(held, Sampled { pose, event_ns }, plane.zoom));
-            cells += part;
+            let piece = Piece {
+                way: &way,
+                from: at,
+                to: s,
+                start_ns,
+                end_ns: here.event_ns,
+            };
+            self.walk(held, &piece, plane, SPLITS, &mut solves);
+            (cells, at) = (cells + part, s);
         }
         held.left_over = whole - (cells - part);
-        let mut glimpse = self.solve(&mut held.clone(), here, plane.zoom);
+        let mut glimpse = self.solve(&mut held.clone(), here, plane);
         glimpse.flags |= solve_flags::GLIMPSE;
         solves.push(glimpse);
         solves
     }
 
+    /// Solves the end of a piece of the way, and first its middle where a joint in contact would move
+    /// more than a cell.
+    fn walk(
+        &mut self,
+        held: &mut Held,
+        piece: &Piece<'_>,
+        plane: &Plane,
+        splits: u32,
+        solves: &mut Vec<Solve>,
+    ) {
+        let mut tried = held.clone();
+        let strokes = (self.strokes, self.last_contact_ns);
+        let least = LEAST_HEIGHT * self.file.length_m();
+        let solve = self.solve(&mut tried, piece.end(least), plane);
+        let moved = tried.head.moved_in_contact(&held.head);
+        if splits > 0 && moved > plane.cell_m * plane.zoom {
+            (self.strokes, self.last_contact_ns) = strokes;
+            let [first, second] = piece.halves();
+            self.walk(held, &first, plane, splits - 1, solves);
+            self.walk(held, &second, plane, splits - 1, solves);
+            return;
+        }
+        *held = tried;
+        solves.push(solve);
+    }
+
     /// The surface that a sample is over; a touching brush stays on the one that it touches.
     fn plane_under(&self, sample: &StylusSample) -> Option<Plane> {
         let desk = self.desk.as_ref()?;
-        let touching = self.held.as_ref().filter(|held| held.touches());
+        let touching = self.held.as_ref().filter(|held| held.head.touches());
         let kept = touching.and_then(|held| desk.plane(held.surface));
         kept.or_else(|| desk.under(aim(sample, self.file.length_m())))
             .copied()
     }
 
-    /// Bends all spines of a brush that has moved to `brush`.
-    fn solve(&mut self, held: &mut Held, at: Sampled, zoom: f64) -> Solve {
-        let (brush, event_ns) = (&at.pose, at.event_ns);
-        let turn = brush.rotation * held.brush.rotation.conjugate();
-        let mut flags = 0;
-        let mut contacts = Vec::new();
-        let joints = self.tuft.spine.joints();
-        let mut angles_rad = Vec::with_capacity(self.tuft.seats.len() * joints);
-        for (number, (spine, seat)) in held.spines.iter_mut().zip(&self.tuft.seats).enumerate() {
-            let frame = seat.held(brush);
-            spine.shape.turn(turn);
-            spine.shape.base = frame.rotation * DVec3::NEG_Z;
-            spine.shape.root = frame.translation;
-            let solution = self.solver.solve(
-                &self.tuft.spine,
-                &mut spine.shape,
-                &mut spine.touches,
-                &self.settings,
-            );
-            if !solution.converged {
-                flags |= solve_flags::NOT_CONVERGED;
-            }
-            for (i, touch) in spine
-                .touches
-                .iter()
-                .enumerate()
-                .filter(|(_, t)| is_touching(t))
-            {
-                contacts.push(Contact {
-                    spine: number as u16,
-                    joint: (i + 1) as u16,
-                    force_n: touch.force_n as f32,
-                });
-            }
-            spine.shape.angles(frame.rotation, &mut angles_rad);
-        }
-        held.brush = *brush;
+    /// Bends all spines of a brush that has moved.
+    fn solve(&mut self, held: &mut Held, at: Sampled, plane: &Plane) -> Solve {
+        let brush = &at.pose;
+        let length = self.file.length_m();
+        let obstacles = match &self.desk {
+            Some(desk) => desk.obstacles(plane, brush.translation, length),
+            None => vec![Obstacle::ground()],
+        };
+        let converged = held.head.solve(
+            &mut self.solver,
+            &self.tuft,
+            brush,
+            &obstacles,
+            &self.settings,
+        );
+        let contacts = held.head.contacts();
         let stroke = if contacts.is_empty() {
             0
         } else {
-            self.stroke(event_ns)
+            self.stroke(at.event_ns)
         };
-        let surface = held.surface;
         let in_surface = Rigid {
-            translation: brush.translation / zoom,
+            translation: brush.translation / plane.zoom,
             ..*brush
         };
         Solve {
-            event_ns,
+            event_ns: at.event_ns,
             stroke,
-            surface,
-            flags,
+            surface: held.surface,
+            flags: if converged {
+                0
+            } else {
+                solve_flags::NOT_CONVERGED
+            },
             pose: in_surface.to_pose(),
-            angles_rad,
+            angles_rad: held.head.angles(),
             contacts,
         }
     }
@@ -303,18 +317,9 @@ impl BrushModel {
     }
 
     fn fresh(&self, surface: u32, here: Sampled) -> Held {
-        let joints = self.tuft.spine.joints();
-        let straight = |seat: &Seat| {
-            let frame = seat.held(&here.pose);
-            HeldSpine {
-                shape: SpineShape::straight(frame.translation, frame.rotation, joints),
-                touches: vec![Touch::default(); joints],
-            }
-        };
         Held {
             surface,
-            brush: here.pose,
-            spines: self.tuft.seats.iter().map(straight).collect(),
+            head: HeldHead::at_rest(&self.tuft, &here.pose),
             newest: here,
             before: None,
             left_over: 0.0,
@@ -322,8 +327,20 @@ impl BrushModel {
     }
 }
 
-fn is_touching(touch: &Touch) -> bool {
-    touch.force_n > 0.0
+/// What the solver is asked for by a brush file.
+fn settings_of(file: &BrushFile, tuft: &Tuft) -> Settings {
+    let contact = &file.contact;
+    Settings {
+        friction: contact.friction,
+        friction_static: contact.friction_static.unwrap_or(contact.friction),
+        anisotropy: Anisotropy {
+            share: contact.anisotropy,
+            focus: contact.focus,
+            ..Anisotropy::default()
+        },
+        crowd_n_m: tuft.crowd_n_m,
+        ..Settings::for_length(file.length_m())
+    }
 }
 
 #[cfg(test)]
@@ -365,6 +382,7 @@ mod tests {
             version: 1,
             surfaces: vec![canvas],
             paints: Vec::new(),
+            tunings: Vec::new(),
             light,
         }
     }

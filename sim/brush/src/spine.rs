@@ -6,7 +6,10 @@
 //! are how a shape travels in messages.
 
 use glam::{DQuat, DVec3};
+use maulstick_num::geometry::shortest_arc;
 use maulstick_num::{acos, atan2, sin_cos};
+
+use crate::energy::spring::rest_after;
 
 /// What a spine is made of.
 #[derive(Clone, Debug, PartialEq)]
@@ -17,6 +20,9 @@ pub struct Spine {
     pub stiffness: Vec<f64>,
     /// Inner friction D of each joint (Baxter 2004, eq. 3.4), N·m.
     pub damping: Vec<f64>,
+    /// Where each segment rests if the one before goes along −z of the spine's frame, unit vectors;
+    /// empty for a spine that is straight at rest.
+    pub rest: Vec<DVec3>,
 }
 
 impl Spine {
@@ -32,7 +38,21 @@ impl Spine {
             lengths_m: vec![segment; joints],
             damping: vec![0.0; joints],
             stiffness,
+            rest: Vec::new(),
         }
+    }
+
+    /// With this shape at rest: the direction of each segment in the spine's frame.
+    #[must_use]
+    pub fn resting(mut self, directions: &[DVec3]) -> Self {
+        self.rest.clear();
+        let mut before = DVec3::NEG_Z;
+        for direction in directions {
+            self.rest
+                .push(shortest_arc(before, DVec3::NEG_Z) * *direction);
+            before = *direction;
+        }
+        self
     }
 
     /// With inner friction: `share` of the torque that the spring of a joint has at 1 rad.
@@ -66,8 +86,8 @@ impl Spine {
 pub struct SpineShape {
     /// Where it begins.
     pub root: DVec3,
-    /// Unit direction in which it would go unbent.
-    pub base: DVec3,
+    /// Its frame: unbent it would go along −z.
+    pub frame: DQuat,
     /// Unit direction of each segment.
     pub directions: Vec<DVec3>,
 }
@@ -76,15 +96,41 @@ pub struct SpineShape {
 const BRUSH_TO_SPINE: DQuat = DQuat::from_xyzw(1.0, 0.0, 0.0, 0.0);
 
 impl SpineShape {
-    /// A straight spine in a brush of orientation `brush`.
+    /// A straight spine in a frame of orientation `frame`.
     #[must_use]
-    pub fn straight(root: DVec3, brush: DQuat, joints: usize) -> Self {
-        let base = brush * DVec3::NEG_Z;
+    pub fn straight(root: DVec3, frame: DQuat, joints: usize) -> Self {
         Self {
             root,
-            base,
-            directions: vec![base; joints],
+            frame,
+            directions: vec![frame * DVec3::NEG_Z; joints],
         }
+    }
+
+    /// A spine as it rests in a frame.
+    #[must_use]
+    pub fn at_rest(root: DVec3, frame: DQuat, spine: &Spine) -> Self {
+        let mut shape = Self::straight(root, frame, spine.joints());
+        shape.relax(spine);
+        shape
+    }
+
+    /// Lets all joints go.
+    pub fn relax(&mut self, spine: &Spine) {
+        let base = self.base();
+        let mut before = base;
+        for (i, direction) in self.directions.iter_mut().enumerate() {
+            *direction = match spine.rest.get(i) {
+                Some(rest) => rest_after(base, self.frame * *rest, before).normalize(),
+                None => base,
+            };
+            before = *direction;
+        }
+    }
+
+    /// Unit direction in which it would go if it were straight.
+    #[must_use]
+    pub fn base(&self) -> DVec3 {
+        self.frame * DVec3::NEG_Z
     }
 
     /// The end of segment `i`: the root plus all segments up to it.
@@ -94,37 +140,52 @@ impl SpineShape {
         ends.fold(self.root, |p, (direction, length)| p + *direction * *length)
     }
 
+    /// The ends of all segments.
+    pub fn joints(&self, spine: &Spine, into: &mut Vec<DVec3>) {
+        into.clear();
+        let mut p = self.root;
+        for (direction, length) in self.directions.iter().zip(&spine.lengths_m) {
+            p += *direction * *length;
+            into.push(p);
+        }
+    }
+
     /// The tip.
     #[must_use]
     pub fn tip(&self, spine: &Spine) -> DVec3 {
         self.joint(spine, spine.joints() - 1)
     }
 
-    /// Turns all segments with the brush, which turned by `turn`.
-    pub fn turn(&mut self, turn: DQuat) {
-        self.base = turn * self.base;
+    /// Moves rigidly, without bending, to another root and frame.
+    pub fn carry(&mut self, root: DVec3, frame: DQuat) {
+        let turn = frame * self.frame.conjugate();
+        (self.root, self.frame) = (root, frame);
         self.directions
             .iter_mut()
             .for_each(|d| *d = (turn * *d).normalize());
     }
 
-    /// θ and φ of each joint, in a brush of orientation `brush`.
-    pub fn angles(&self, brush: DQuat, into: &mut Vec<[f32; 2]>) {
-        let mut frame = brush * BRUSH_TO_SPINE;
-        for direction in &self.directions {
+    /// θ and φ of each joint.
+    pub fn angles(&self, into: &mut Vec<[f32; 2]>) {
+        into.extend(self.exact_angles().map(|angles| angles.map(|v| v as f32)));
+    }
+
+    /// θ and φ of each joint, rad.
+    pub fn exact_angles(&self) -> impl Iterator<Item = [f64; 2]> {
+        let mut frame = self.frame * BRUSH_TO_SPINE;
+        self.directions.iter().map(move |direction| {
             let local = frame.conjugate() * *direction;
             let theta = std::f64::consts::FRAC_PI_2 - acos(-local.y);
             let phi = atan2(local.x, local.z);
-            into.push([theta as f32, phi as f32]);
             frame *= bend([theta, phi]);
-        }
+            [theta, phi]
+        })
     }
 
-    /// The shape of given angles.
+    /// The shape of given angles in a frame of orientation `orientation`.
     #[must_use]
-    pub fn from_angles(root: DVec3, brush: DQuat, angles: &[[f32; 2]]) -> Self {
-        let mut frame = brush * BRUSH_TO_SPINE;
-        let base = frame * DVec3::Z;
+    pub fn from_angles(root: DVec3, orientation: DQuat, angles: &[[f32; 2]]) -> Self {
+        let mut frame = orientation * BRUSH_TO_SPINE;
         let directions = angles
             .iter()
             .map(|angles| {
@@ -134,7 +195,7 @@ impl SpineShape {
             .collect();
         Self {
             root,
-            base,
+            frame: orientation,
             directions,
         }
     }
@@ -166,7 +227,7 @@ mod tests {
             let brush = rotation(DVec3::new(0.6, 0.0, 0.8), turn);
             let shape = SpineShape::from_angles(DVec3::ZERO, brush, &angles);
             let mut back = Vec::new();
-            shape.angles(brush, &mut back);
+            shape.angles(&mut back);
             for (one, two) in angles.iter().zip(&back) {
                 prop_assert!((one[0] - two[0]).abs() < 1e-5 && (one[1] - two[1]).abs() < 1e-5);
             }
@@ -175,11 +236,23 @@ mod tests {
         #[test]
         fn a_joint_bends_by_acos_of_the_cosines(theta in angle(), phi in angle()) {
             let shape = SpineShape::from_angles(DVec3::ZERO, DQuat::IDENTITY, &[[theta, phi]]);
-            let bend = acos(shape.base.dot(shape.directions[0]));
+            let bend = acos(shape.base().dot(shape.directions[0]));
             let [theta, phi] = [f64::from(theta), f64::from(phi)];
             // Baxter 2004, eq. 3.12.
             let expected = acos(maulstick_num::cos(theta) * maulstick_num::cos(phi));
             prop_assert!((bend - expected).abs() < 1e-6);
+        }
+    }
+
+    #[test]
+    fn a_bent_spine_rests_in_its_shape_in_every_frame() {
+        let bent =
+            [0.1, 0.4, 0.9].map(|a| DVec3::new(maulstick_num::sin(a), 0.0, -maulstick_num::cos(a)));
+        let spine = Spine::uniform(0.03, 3, 1e-4).resting(&bent);
+        let frame = rotation(DVec3::new(0.0, 0.6, 0.8), 0.7);
+        let shape = SpineShape::at_rest(DVec3::ZERO, frame, &spine);
+        for (direction, rest) in shape.directions.iter().zip(bent) {
+            assert!((*direction - frame * rest).length() < 1e-12);
         }
     }
 

@@ -108,6 +108,51 @@ impl Way {
     }
 }
 
+/// A piece of the way between two samples.
+#[derive(Clone, Copy, Debug)]
+pub struct Piece<'a> {
+    /// The way.
+    pub way: &'a Way,
+    /// Its parameter where the piece begins.
+    pub from: f64,
+    /// And where it ends.
+    pub to: f64,
+    /// When the way begins, rig clock, ns.
+    pub start_ns: u64,
+    /// And when it ends.
+    pub end_ns: u64,
+}
+
+impl Piece<'_> {
+    /// Its end, with the handle at least so high.
+    #[must_use]
+    pub fn end(&self, least: f64) -> Sampled {
+        let mut pose = self.way.at(self.to);
+        pose.translation.z = pose.translation.z.max(least);
+        let whole = (self.end_ns - self.start_ns) as f64;
+        Sampled {
+            pose,
+            event_ns: self.start_ns + (whole * self.to) as u64,
+        }
+    }
+
+    /// Its two halves.
+    #[must_use]
+    pub fn halves(&self) -> [Self; 2] {
+        let middle = 0.5 * (self.from + self.to);
+        [
+            Self {
+                to: middle,
+                ..*self
+            },
+            Self {
+                from: middle,
+                ..*self
+            },
+        ]
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use maulstick_num::geometry::rotation;

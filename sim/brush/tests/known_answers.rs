@@ -1,23 +1,24 @@
 //! The numbers of a cantilever, a buckling spine, a tractrix; properties over random poses.
 
 use glam::{DQuat, DVec3};
-use maulstick_brush::solver::{Settings, Solution, Solver, Touch};
+use maulstick_brush::solver::{Settings, Solution, Solver, Stop};
 use maulstick_brush::{Spine, SpineShape};
 use maulstick_num::geometry::rotation;
 use proptest::prelude::*;
 
-fn settle(spine: &Spine, shape: &mut SpineShape, touches: &mut [Touch]) -> Solution {
-    Solver::default().solve(spine, shape, touches, &Settings::default())
+fn settle(spine: &Spine, shape: &mut SpineShape, stops: &mut [Stop]) -> Solution {
+    let settings = Settings::for_length(spine.length_m());
+    Solver::default().solve(spine, shape, stops, &[], &settings)
 }
 
 #[test]
 fn a_straight_spine_above_the_surface_stays_straight() {
     let spine = Spine::uniform(0.025, 3, 1.5e-4);
     let mut shape = SpineShape::straight(DVec3::new(0.0, 0.0, 0.03), DQuat::IDENTITY, 3);
-    let mut touches = vec![Touch::default(); 3];
+    let mut touches = Stop::on_surface(3);
     let solution = settle(&spine, &mut shape, &mut touches);
     assert!(
-        solution.converged && solution.spring_j < 1e-12,
+        solution.converged && solution.energy.spring < 1e-12,
         "{solution:?}"
     );
     assert!(touches.iter().all(|touch| touch.force_n == 0.0));
@@ -34,15 +35,13 @@ fn buckling_loads() {
             lengths_m: vec![length / joints as f64; joints],
             stiffness,
             damping: vec![0.0; joints],
+            rest: Vec::new(),
         };
         let down = rotation(DVec3::X, 1e-4);
         let mut shape = SpineShape::straight(DVec3::new(0.0, 0.0, 0.997), down, joints);
-        let mut touches = vec![Touch::default(); joints];
-        let settings = Settings {
-            friction: 0.0,
-            ..Settings::default()
-        };
-        let solution = Solver::default().solve(&spine, &mut shape, &mut touches, &settings);
+        let mut touches = Stop::on_surface(joints);
+        let settings = Settings::for_length(length).with_friction(0.0);
+        let solution = Solver::default().solve(&spine, &mut shape, &mut touches, &[], &settings);
         let load = touches[joints - 1].force_n;
         println!("{joints}: {load:.6}, expected {critical}, {solution:?}");
         assert!(solution.converged);
@@ -65,19 +64,20 @@ fn a_dragged_spine_follows_the_tractrix() {
             lengths_m: vec![length],
             stiffness: vec![1.0],
             damping: vec![0.0],
+            rest: Vec::new(),
         };
         let root = DVec3::new(0.0, 0.0, height);
         let mut shape = SpineShape::straight(root, DQuat::IDENTITY, 1);
         shape.directions[0] = DVec3::new(0.0, 1.0, -height) / length;
-        let mut touches = vec![Touch::default()];
+        let mut touches = Stop::on_surface(1);
         let settings = Settings {
             epsilon_m: 1e-7,
-            ..Settings::default()
+            ..Settings::for_length(length)
         };
         let mut solver = Solver::default();
         for step in 0..=steps {
             shape.root.x = 2.0 * step as f64 / steps as f64;
-            let solution = solver.solve(&spine, &mut shape, &mut touches, &settings);
+            let solution = solver.solve(&spine, &mut shape, &mut touches, &[], &settings);
             assert!(solution.converged, "{solution:?}");
         }
         (shape.tip(&spine).truncate() - glam::DVec2::new(1.035_972, 0.265_802)).length()
@@ -109,7 +109,7 @@ proptest! {
         let spine = Spine::uniform(length, joints, 1.5e-4);
         let brush = tilted(tilt, azimuth);
         let mut shape = SpineShape::straight(DVec3::new(0.0, 0.0, height * length), brush, joints);
-        let mut touches = vec![Touch::default(); joints];
+        let mut touches = Stop::on_surface(joints);
         let first = settle(&spine, &mut shape, &mut touches);
         shape.root.x += slide * length;
         let solution = settle(&spine, &mut shape, &mut touches);
@@ -128,7 +128,7 @@ proptest! {
             let brush = tilted(tilt, azimuth);
             let root = DVec3::new(0.0, 0.0, height * 0.025);
             let mut shape = SpineShape::straight(root, brush, 3);
-            let mut touches = vec![Touch::default(); 3];
+            let mut touches = Stop::on_surface(3);
             settle(&spine, &mut shape, &mut touches);
             rotation(DVec3::Z, -azimuth) * shape.tip(&spine)
         };
@@ -143,7 +143,7 @@ proptest! {
         let run = |sign: f64| {
             let root = DVec3::new(0.0, 0.0, height * 0.025);
             let mut shape = SpineShape::straight(root, tilted(tilt, sign * azimuth), 5);
-            let mut touches = vec![Touch::default(); 5];
+            let mut touches = Stop::on_surface(5);
             for step in 0..4 {
                 shape.root += DVec3::new(dx, sign * 0.1, 0.0) * (0.005 * f64::from(step));
                 settle(&spine, &mut shape, &mut touches);

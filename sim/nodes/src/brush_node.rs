@@ -185,6 +185,7 @@ impl BrushNode {
             if scene.message.version >= self.scene_version {
                 self.scene_version = scene.message.version;
                 self.model.set_scene(&scene.message);
+                self.model.tune(scene.message.tuning(&self.settings.name));
             }
         }
         while let Some(token) = self.tokens.try_recv() {
@@ -472,7 +473,8 @@ impl BrushNode {
             let sender = Sender::new(&*self.bus, &topic, Class::RealTime, me)?;
             self.models.insert(device.to_owned(), (sender, 0));
         }
-        let model = contact_model(origin, &self.settings.name, self.model.file(), plane);
+        let (name, feel) = (&self.settings.name, self.model.feel());
+        let model = contact_model(origin, name, self.model.file(), plane, feel);
         if let Some((sender, sent_ns)) = self.models.get_mut(device)
             && now_ns >= *sent_ns + MODEL_PERIOD_NS
         {

@@ -3,15 +3,14 @@
 use glam::DVec3;
 use maulstick_brush::BrushFile;
 use maulstick_brush::desk::Plane;
+use maulstick_brush::feel::Feel;
 use maulstick_types::Origin;
 use maulstick_types::haptics::{ContactModel, ForceLaw, Grain};
 
-/// k₁ of eq. 8.1: the force when the handle meets the surface, N.
-const K1_N: f64 = 0.8;
 /// k₂ of eq. 8.1: further force a head's length below, N.
 const K2_N: f64 = 6.0;
-/// Static friction exceeds the kinetic one by this factor.
-const STATIC_SHARE: f64 = 1.3;
+/// k₁ at most: a stiffer brush would be a hard wall to a hand that light, N.
+const K1_MOST_N: f64 = 3.0;
 /// After this time without another model the force fades, ns.
 const TIME_TO_LIVE_NS: u64 = 100_000_000;
 /// A change of model is spread over this time, ns.
@@ -19,7 +18,13 @@ const RECOVERY_NS: u64 = 15_000_000;
 
 /// What the hand feels of a surface through a brush.
 #[must_use]
-pub fn contact_model(device: Origin, brush: &str, file: &BrushFile, plane: &Plane) -> ContactModel {
+pub fn contact_model(
+    device: Origin,
+    brush: &str,
+    file: &BrushFile,
+    plane: &Plane,
+    feel: Feel,
+) -> ContactModel {
     let friction = file.contact.friction;
     ContactModel {
         device: device.source,
@@ -27,7 +32,7 @@ pub fn contact_model(device: Origin, brush: &str, file: &BrushFile, plane: &Plan
         brush: brush.to_owned(),
         plane_point_m: plane.to_desk.point(DVec3::ZERO).to_array(),
         plane_normal: plane.normal().to_array(),
-        friction_static: STATIC_SHARE * friction,
+        friction_static: file.contact.friction_static.unwrap_or(friction),
         friction_kinetic: friction,
         viscous_n_s_m: 0.0,
         grain: Grain {
@@ -36,7 +41,7 @@ pub fn contact_model(device: Origin, brush: &str, file: &BrushFile, plane: &Plan
             seed: 1,
         },
         law: ForceLaw::Linear {
-            k1_n: K1_N,
+            k1_n: feel.k1_n.min(K1_MOST_N),
             k2_n: K2_N,
         },
         head_length_m: file.length_m(),

@@ -78,9 +78,13 @@ impl Offline {
             command,
         };
         match self.sequencer.command(request).outcome {
-            Outcome::Refused { what, help } => Err(PaintRefusal { what, help }),
-            _ => Ok(()),
+            Outcome::Refused { what, help } => return Err(PaintRefusal { what, help }),
+            Outcome::Done { .. } | Outcome::Waiting => {}
         }
+        let scene = self.sequencer.painting_mut().scene();
+        self.model.set_scene(scene);
+        self.model.tune(scene.tuning(&self.brush));
+        Ok(())
     }
 
     /// Follows one sample.

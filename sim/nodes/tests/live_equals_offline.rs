@@ -222,8 +222,12 @@ fn a_live_brush_merges_while_paint_is_busy_and_keeps_the_path() {
         samples.len()
     );
     let merged = live.paint.painting_mut().report();
-    let mut offline =
-        Offline::new(painting(), "main", file(), 0.5, vec![loads()[0].clone()]).expect("set up");
+    let mut offline = Offline::new(painting(), "main", file(), 0.5, Vec::new()).expect("set up");
+    let load = Command::Load {
+        brush: "main".into(),
+        mixture: loads()[0].clone(),
+    };
+    offline.command(load).expect("loaded");
     for (time_ns, sample) in &samples {
         offline.sample(START_NS + time_ns, sample).expect("painted");
     }

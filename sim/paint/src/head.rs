@@ -1,7 +1,7 @@
 //! The head of a brush on a surface: where it is, and how far it goes.
 
 use maulstick_brush::head::STATIONS;
-use maulstick_brush::{Head, HeadPose};
+use maulstick_brush::{Head, HeadPose, Hold};
 use maulstick_num::geometry::{Rigid, nlerp};
 use maulstick_types::brush::Solve;
 
@@ -13,6 +13,7 @@ const NEAR: f32 = 3.0;
 pub struct Waypoint {
     brush: Rigid,
     angles: Vec<[f32; 2]>,
+    wetness: f32,
 }
 
 /// How a brush's lengths are seen on a surface.
@@ -25,14 +26,16 @@ pub struct Scale {
 }
 
 impl Waypoint {
-    /// The pose of a solve on a surface; with the brush's lengths, not the surface's.
+    /// The pose of a solve on a surface, of a brush that is so full (0 to 1); with the brush's
+    /// lengths, not the surface's.
     #[must_use]
-    pub fn of(solve: &Solve, scale: Scale) -> Self {
+    pub fn of(solve: &Solve, scale: Scale, wetness: f32) -> Self {
         let mut brush = Rigid::from(&solve.pose);
         brush.translation *= scale.zoom;
         Self {
             brush,
             angles: solve.angles_rad.clone(),
+            wetness,
         }
     }
 
@@ -50,13 +53,23 @@ impl Waypoint {
             rotation: nlerp(self.brush.rotation, other.brush.rotation, t),
             translation: self.brush.translation.lerp(other.brush.translation, t),
         };
-        Self { brush, angles }
+        Self {
+            brush,
+            angles,
+            wetness: mix(self.wetness, other.wetness),
+        }
     }
 
     /// The head there, in cells of the surface.
     pub fn pose(&self, head: &Head, scale: Scale, into: &mut HeadPose) {
         let per_m = 1.0 / (scale.cell_m * scale.zoom);
-        head.pose_scaled(&self.brush, &self.angles, per_m, into);
+        let hold = Hold {
+            brush: &self.brush,
+            angles: &self.angles,
+            per_m,
+            wetness: self.wetness,
+        };
+        head.pose(&hold, into);
     }
 }
 
@@ -85,6 +98,20 @@ pub fn low_bounds(
                 for at in &plane[row(station)] {
                     from[axis] = from[axis].min(*at);
                     to[axis] = to[axis].max(*at);
+                }
+            }
+        }
+    }
+    if let Some(skin) = head.skin() {
+        let points = &pose.skin;
+        for face in skin.faces() {
+            let corners = face.map(|i| i as usize);
+            if corners.iter().any(|i| points.z[*i] < height) {
+                for i in corners {
+                    for (axis, plane) in [&points.x, &points.y].into_iter().enumerate() {
+                        from[axis] = from[axis].min(plane[i]);
+                        to[axis] = to[axis].max(plane[i]);
+                    }
                 }
             }
         }

@@ -16,6 +16,30 @@ struct Held {
     inside: Vec<u32>,
 }
 
+/// Which bristles take paint up.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Half {
+    /// All of them.
+    Both,
+    /// Those toward −x of the brush.
+    Left,
+    /// Those toward +x of the brush.
+    Right,
+}
+
+impl Half {
+    /// The share that a bristle takes whose root is at `x` of half the ferrule's width: the colours
+    /// of a double-loaded brush run into each other a little in its middle.
+    fn share(self, x: f64) -> f64 {
+        let right = (0.5 + 2.5 * x).clamp(0.0, 1.0);
+        match self {
+            Self::Both => 1.0,
+            Self::Left => 1.0 - right,
+            Self::Right => right,
+        }
+    }
+}
+
 /// The paint on a brush.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct BrushLoad {
@@ -75,6 +99,18 @@ impl BrushLoad {
         self.films.iter().copied().max().unwrap_or(0)
     }
 
+    /// Counts of all films by those of full ones, 0 to 1.
+    #[must_use]
+    pub fn fullness(&self, traits: &BrushTraits) -> f32 {
+        let full = traits.film_full * self.texels as f64;
+        let held: u64 = self.films.iter().map(|count| u64::from(*count)).sum();
+        if full > 0.0 {
+            (held as f64 / full).min(1.0) as f32
+        } else {
+            0.0
+        }
+    }
+
     /// Counts of the thickest film of a strip.
     #[must_use]
     pub fn thickest_of(&self, strip: usize) -> u32 {
@@ -89,20 +125,27 @@ impl BrushLoad {
         counts
     }
 
-    /// Fills a clean brush from tubes and returns what they gave: full films, and inside as much as
-    /// the brush takes, divided by the mixture's shares.
-    pub fn fill(&mut self, head: &Head, traits: &BrushTraits, mixture: &[(usize, f64)]) -> Counts {
+    /// Fills a half of a clean brush from tubes: full films, and inside as much as the brush takes,
+    /// divided by the mixture's shares.
+    pub fn fill(
+        &mut self,
+        head: &Head,
+        traits: &BrushTraits,
+        mixture: &[(usize, f64)],
+        half: Half,
+    ) {
         for (slot, share) in mixture {
             let held = self.held_mut(*slot);
             let texels = held.film.iter_mut().zip(&mut held.inside);
             for (texel, (film, inside)) in texels.enumerate() {
-                let part = share * f64::from(head.capacity()[texel / ALONG]);
+                let strip = texel / ALONG;
+                let taken = half.share(f64::from(head.roots()[strip][0]));
+                let part = share * taken * f64::from(head.capacity()[strip]);
                 *film += (traits.film_full * part) as u32;
                 *inside += (traits.inside_full * part) as u32;
             }
         }
         self.count_films();
-        self.counts()
     }
 
     /// A brush of other strips that carries the same paint, spread evenly inside them.

@@ -1,7 +1,7 @@
 //! What a paint model does.
 
 use maulstick_brush::BrushFile;
-use maulstick_brush::head::{Head, HeadPose};
+use maulstick_brush::head::{Head, HeadPose, STATIONS};
 use maulstick_num::exp;
 
 use crate::load::{ALONG, BrushLoad};
@@ -22,6 +22,10 @@ pub struct Sweep<'a> {
 pub struct BrushTraits {
     /// Half the width of a strip, cells.
     pub half_width: f32,
+    /// Share of that width which a strip loses up to its point.
+    pub taper: f32,
+    /// How far the skin draws back where the strips show, cells.
+    pub recede: f32,
     /// From the middle of a strip down to its lower side, cells.
     pub half_thickness: f32,
     /// How far the most unruly strip keeps off the surface while the head is hardly pressed, cells.
@@ -68,6 +72,11 @@ impl BrushTraits {
         let share = |of_reference: f64| 1.0 - exp(maulstick_num::ln(1.0 - of_reference) * flow);
         Self {
             half_width: (0.5 * file.strips.width_mm * seen) as f32,
+            taper: file.strips.taper as f32,
+            recede: file
+                .surface
+                .as_ref()
+                .map_or(0.0, |skin| (skin.recede_mm * seen) as f32),
             half_thickness: (0.5 * file.strips.thickness_mm * seen) as f32,
             lift: (file.strips.lift_mm * seen) as f32,
             sink: (file.strips.sink_mm * seen) as f32,
@@ -80,6 +89,15 @@ impl BrushTraits {
             refill: share(Self::REFILL),
             creep: share(Self::CREEP),
         }
+    }
+}
+
+impl BrushTraits {
+    /// Half the width of a strip in the segment that ends at a station, cells.
+    #[must_use]
+    pub fn half_width_before(&self, station: usize) -> f32 {
+        let middle = (station as f32 - 0.5) / (STATIONS - 1) as f32;
+        self.half_width * (1.0 - self.taper * middle)
     }
 }
 

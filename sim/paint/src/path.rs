@@ -97,7 +97,7 @@ mod tests {
             angles_rad: vec![[0.0, 0.4]; 21],
             contacts: Vec::new(),
         };
-        Waypoint::of(&solve, SCALE)
+        Waypoint::of(&solve, SCALE, 1.0)
     }
 
     proptest! {

@@ -312,6 +312,11 @@ impl Sequencer {
             Command::Load { brush, mixture } => {
                 self.painting.load(brush, mixture).map(|()| String::new())
             }
+            Command::LoadBeside { brush, left, right } => self
+                .painting
+                .load_beside(brush, left, right)
+                .map(|()| String::new()),
+            Command::Tune { tuning } => self.painting.tune(tuning).map(|()| String::new()),
             Command::Clean { brush } => self.painting.clean(brush).map(|()| String::new()),
             Command::Take {
                 brush,

@@ -126,6 +126,7 @@ impl PaintingSetup {
             version: 1,
             surfaces: vec![canvas, board],
             paints: Vec::new(),
+            tunings: Vec::new(),
             light,
         }
     }

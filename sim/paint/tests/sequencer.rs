@@ -93,7 +93,7 @@ fn a_state_beyond_every_surface_is_refused_before_it_is_followed() {
     let file = BrushFile::library("round").expect("round");
     let at = |x: f64| {
         let mut state = misfit();
-        state.solves[0].angles_rad = vec![[0.0; 2]; file.spines.joints * file.spines.number()];
+        state.solves[0].angles_rad = vec![[0.0; 2]; file.spines.all_joints()];
         state.solves[0].pose.position_m = [x, 0.0, 0.0];
         state
     };
@@ -108,7 +108,7 @@ fn a_brush_file_that_comes_again_breaks_no_stroke() {
     let mut sequencer = sequencer();
     let file = BrushFile::library("round").expect("round");
     let mut state = misfit();
-    state.solves[0].angles_rad = vec![[0.0; 2]; file.spines.joints * file.spines.number()];
+    state.solves[0].angles_rad = vec![[0.0; 2]; file.spines.all_joints()];
     for seq in 0..2 {
         state.solves[0].pose.position_m = [0.02 + 0.005 * seq as f64, 0.02, 0.01];
         let (_, painted) = sequencer.state("main", &header(1, seq), &state);
@@ -150,7 +150,7 @@ fn a_restarted_brush_paints_strokes_of_its_own() {
     let mut sequencer = sequencer();
     let file = BrushFile::library("round").expect("round");
     let mut state = misfit();
-    state.solves[0].angles_rad = vec![[0.0; 2]; file.spines.joints * file.spines.number()];
+    state.solves[0].angles_rad = vec![[0.0; 2]; file.spines.all_joints()];
     // Both epochs number their first stroke 1.
     for (epoch, strokes) in [(1, 1), (1, 1), (2, 2)] {
         let (_, painted) = sequencer.state("main", &header(epoch, 0), &state);

@@ -1,7 +1,7 @@
 //! How far to go along a step.
 
-use super::{Energy, Settings, Solver, Touch};
-use crate::spine::{Spine, SpineShape};
+use super::{Energy, Problem, Solver, Stop};
+use crate::spine::SpineShape;
 
 /// A step turns no segment by more than this, rad.
 const LONGEST_TURN: f64 = 0.7;
@@ -10,14 +10,13 @@ impl Solver {
     /// Goes along the step as far as energy and penetration together fall; false where they do not.
     pub(super) fn line_search(
         &mut self,
-        spine: &Spine,
+        problem: Problem<'_>,
         shape: &mut SpineShape,
-        touches: &[Touch],
-        settings: &Settings,
+        stops: &[Stop],
         energy: Energy,
     ) -> bool {
         let price = 2.0 * self.multipliers.iter().copied().fold(0.0, f64::max)
-            + spine.stiffest() / spine.length_m();
+            + problem.spine.stiffest() / problem.spine.length_m();
         let merit = |energy: Energy, gaps: &[f64]| {
             energy.total() + price * gaps.iter().map(|gap| (-gap).max(0.0)).sum::<f64>()
         };
@@ -43,13 +42,13 @@ impl Solver {
         let noise = 1e-13 * start.abs().max(1e-12);
         for _ in 0..30 {
             self.try_step(shape, fraction, 0.0);
-            let tried = self.value(spine, shape, touches, settings);
+            let tried = self.value(problem, shape, stops);
             if merit(tried, &self.trial_gap) <= start + 1e-4 * fraction * slope.min(0.0) + noise {
                 shape.directions.copy_from_slice(&self.trial);
                 return true;
             }
             if self.correct(shape, fraction) {
-                let tried = self.value(spine, shape, touches, settings);
+                let tried = self.value(problem, shape, stops);
                 if merit(tried, &self.trial_gap) <= start + noise {
                     shape.directions.copy_from_slice(&self.trial);
                     return true;
@@ -64,7 +63,7 @@ impl Solver {
     pub(super) fn try_step(&mut self, shape: &SpineShape, fraction: f64, correction: f64) {
         let size = self.step.len();
         let correction_at = |p: usize| {
-            (0..size / 2)
+            (0..self.lambda.len())
                 .map(|i| self.lambda[i] * self.columns[i * size + p])
                 .sum::<f64>()
         };
@@ -86,7 +85,7 @@ impl Solver {
     /// Second-order correction: the surface is curved in the directions, so a straight step leaves
     /// the binding constraints; put the trial back onto them. False where none binds.
     pub(super) fn correct(&mut self, shape: &SpineShape, fraction: f64) -> bool {
-        let n = shape.directions.len();
+        let n = self.trial_gap.len();
         self.lambda.clear();
         self.lambda.extend(self.trial_gap.iter().map(|gap| -gap));
         let multipliers = &self.multipliers;

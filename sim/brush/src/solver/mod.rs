@@ -4,28 +4,39 @@
 mod assembly;
 mod line_search;
 mod newton;
+mod stop;
 
-use glam::{DVec2, DVec3};
+use glam::{DMat3, DVec3};
 
+pub use self::stop::{Stop, Wall};
+use crate::energy::friction::Anisotropy;
 use crate::qp::{Cholesky, DualSolver};
 use crate::spine::{Spine, SpineShape};
 
-/// What a joint's far end has to do with the surface z = 0.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Touch {
-    /// Normal force, N: the multiplier of its constraint, 0 in the air.
-    pub force_n: f64,
-    /// Where it touched before the brush moved; none if it was in the air.
-    pub anchor: Option<DVec2>,
+/// A joint of another spine that keeps its room.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Neighbour {
+    /// The joint of this spine that it pushes.
+    pub joint: usize,
+    /// Where it is, m.
+    pub at: DVec3,
+    /// How far apart the two are at rest, m.
+    pub at_rest_m: f64,
 }
 
 /// What the solver is asked for.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Settings {
-    /// Coefficient of friction; the normal force is that of the solve before.
+    /// Coefficient of friction while sliding; the normal force is that of the solve before.
     pub friction: f64,
+    /// Coefficient of friction while sticking; at least that while sliding.
+    pub friction_static: f64,
+    /// C_η and k (Baxter 2004, eq. 3.14); the preferred direction is that before the solve.
+    pub anisotropy: Anisotropy,
     /// Slip over which friction is rounded off, m.
     pub epsilon_m: f64,
+    /// Stiffness against neighbours that come nearer than at rest, N/m.
+    pub crowd_n_m: f64,
     /// Newton steps at most.
     pub max_iterations: usize,
     /// Converged where ‖∇L‖∞ is below this share of the stiffest spring and the penetration below
@@ -33,14 +44,47 @@ pub struct Settings {
     pub tolerance: f64,
 }
 
-impl Default for Settings {
-    fn default() -> Self {
+impl Settings {
+    /// Settings for a spine of this length: friction is rounded off over 8e-5 of it.
+    #[must_use]
+    pub fn for_length(length_m: f64) -> Self {
         Self {
             friction: 0.25,
-            epsilon_m: 2e-6,
+            friction_static: 0.25,
+            anisotropy: Anisotropy::default(),
+            epsilon_m: 8e-5 * length_m,
+            crowd_n_m: 0.0,
             max_iterations: 60,
             tolerance: 1e-9,
         }
+    }
+
+    /// With this coefficient of friction, sticking or not.
+    #[must_use]
+    pub fn with_friction(mut self, friction: f64) -> Self {
+        (self.friction, self.friction_static) = (friction, friction);
+        self
+    }
+}
+
+/// The parts of a spine's energy, J.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Energy {
+    /// Of the springs.
+    pub spring: f64,
+    /// Work against friction with the walls.
+    pub friction: f64,
+    /// Work against friction in the joints.
+    pub damping: f64,
+    /// Of neighbours pushed aside.
+    pub crowd: f64,
+}
+
+impl Energy {
+    /// All of it.
+    #[must_use]
+    pub fn total(self) -> f64 {
+        self.spring + self.friction + self.damping + self.crowd
     }
 }
 
@@ -53,14 +97,10 @@ pub struct Solution {
     pub iterations: usize,
     /// ‖∇L‖∞, N·m.
     pub residual: f64,
-    /// Deepest joint below the surface, m.
+    /// Deepest joint within a wall, m.
     pub penetration_m: f64,
-    /// Spring energy, J.
-    pub spring_j: f64,
-    /// Work against friction with the surface, J.
-    pub friction_j: f64,
-    /// Work against friction in the joints, J.
-    pub damping_j: f64,
+    /// The energy.
+    pub energy: Energy,
 }
 
 impl Solution {
@@ -84,13 +124,21 @@ pub struct Solver {
     before: Vec<DVec3>,
     /// The chord of each joint when the step began.
     chords: Vec<DVec3>,
+    /// Where each segment rests if the one before goes along the base; empty if that is straight.
+    rest: Vec<DVec3>,
     damped: bool,
+    /// Ends of the segments.
+    ends: Vec<DVec3>,
     tangents: Vec<[DVec3; 2]>,
+    /// Derivative of the energy by each direction, in space.
+    slopes: Vec<DVec3>,
+    /// Force and stiffness of what acts on each joint's end.
+    pulls: Vec<(DVec3, DMat3)>,
     gradient: Vec<f64>,
     hessian: Vec<f64>,
     model: Vec<f64>,
     gap: Vec<f64>,
-    /// Derivative of a joint's height by the directions above it; row i is its first 2(i+1).
+    /// Derivative of each gap by the directions: `stop · 2n + 2·segment + tangent`.
     rows: Vec<f64>,
     multipliers: Vec<f64>,
     springs: Vec<f64>,
@@ -102,95 +150,121 @@ pub struct Solver {
     rhs: Vec<f64>,
     step: Vec<f64>,
     trial: Vec<DVec3>,
+    trial_ends: Vec<DVec3>,
     trial_gap: Vec<f64>,
     factor: Cholesky,
     active_set: DualSolver,
 }
 
-/// Energy of a shape.
-#[derive(Clone, Copy, Debug, Default)]
-struct Energy {
-    spring: f64,
-    friction: f64,
-    damping: f64,
-}
-
-impl Energy {
-    fn total(self) -> f64 {
-        self.spring + self.friction + self.damping
-    }
+/// What a spine is solved among.
+#[derive(Clone, Copy, Debug)]
+struct Problem<'a> {
+    spine: &'a Spine,
+    neighbours: &'a [Neighbour],
+    settings: &'a Settings,
 }
 
 impl Solver {
-    /// Bends `shape` to the least energy above the plane z = 0, starting from how it is bent, and
-    /// writes the normal forces into `touches` (one for each segment's end).
+    /// Bends `shape` to the least energy outside the walls of all `stops`, starting from how it is
+    /// bent, and writes the normal forces into them.
     ///
     /// The normal force in the friction is that of the solve before. A contact that lifts has no
-    /// friction after all: the solve is done again without it. Where a leap of the handle leaves the
-    /// head so twisted that no minimum is found from there, it is sought from the straight head,
-    /// without friction; where that fails too, the head keeps its shape.
+    /// friction after all, and one that breaks loose has that of sliding: the solve is done again.
+    /// Where a leap of the handle leaves the head so twisted that no minimum is found from there, it
+    /// is sought from the relaxed head, without friction; where that fails too, the head keeps its
+    /// shape.
     pub fn solve(
         &mut self,
         spine: &Spine,
         shape: &mut SpineShape,
-        touches: &mut [Touch],
+        stops: &mut [Stop],
+        neighbours: &[Neighbour],
         settings: &Settings,
     ) -> Solution {
+        let problem = Problem {
+            spine,
+            neighbours,
+            settings,
+        };
         self.before.clear();
         self.before.extend_from_slice(&shape.directions);
-        self.note_chords(shape);
-        self.damped = spine.damping.iter().any(|d| *d > 0.0);
+        self.begin(spine, shape);
+        stops.iter_mut().for_each(|stop| stop.aim(spine, shape));
         self.multipliers.clear();
         self.multipliers
-            .extend(touches.iter().map(|touch| touch.force_n));
-        break_symmetry(shape);
-        let mut solution = self.minimise(spine, shape, touches, settings);
-        while solution.usable(spine) && self.release_lifted(touches) {
-            solution = self
-                .minimise(spine, shape, touches, settings)
-                .after(&solution);
+            .extend(stops.iter().map(|stop| stop.force_n));
+        break_symmetry(spine, shape);
+        let mut solution = self.minimise(problem, shape, stops);
+        while solution.usable(spine) && self.let_go(stops, settings) {
+            solution = self.minimise(problem, shape, stops).after(&solution);
         }
         if !solution.converged {
-            shape.directions.fill(shape.base);
-            touches.fill(Touch::default());
+            shape.relax(spine);
+            stops.iter_mut().for_each(Stop::clear);
             self.multipliers.fill(0.0);
             self.damped = false;
-            break_symmetry(shape);
-            solution = self
-                .minimise(spine, shape, touches, settings)
-                .after(&solution);
+            break_symmetry(spine, shape);
+            solution = self.minimise(problem, shape, stops).after(&solution);
         }
         if !solution.usable(spine) || !shape.directions.iter().all(|d| d.is_finite()) {
             shape.directions.copy_from_slice(&self.before);
+            solution.converged = false;
             return solution;
         }
-        for (i, touch) in touches.iter_mut().enumerate() {
-            touch.force_n = if self.touching(i) {
-                self.multipliers[i]
-            } else {
-                0.0
-            };
-            touch.anchor = self.touching(i).then(|| shape.joint(spine, i).truncate());
+        for (i, stop) in stops.iter_mut().enumerate() {
+            stop.settle(self.multipliers[i], self.ends[stop.joint], settings);
         }
         solution
+    }
+
+    /// The energy of a shape as [`solve`](Self::solve) would begin with it, and its derivative by
+    /// each direction, in space.
+    pub fn energy(
+        &mut self,
+        spine: &Spine,
+        shape: &SpineShape,
+        stops: &[Stop],
+        neighbours: &[Neighbour],
+        settings: &Settings,
+    ) -> (Energy, &[DVec3]) {
+        let problem = Problem {
+            spine,
+            neighbours,
+            settings,
+        };
+        let energy = self.evaluate(problem, shape, stops);
+        (energy, &self.slopes)
+    }
+
+    /// Notes from which shape the energy of damping counts, and how the spine rests.
+    pub fn begin(&mut self, spine: &Spine, shape: &SpineShape) {
+        let mut above = shape.base();
+        self.chords.clear();
+        for d in &shape.directions {
+            self.chords.push(*d - above);
+            above = *d;
+        }
+        self.damped = spine.damping.iter().any(|d| *d > 0.0);
+        self.rest.clear();
+        self.rest
+            .extend(spine.rest.iter().map(|rest| shape.frame * *rest));
     }
 
     /// Newton steps until the conditions of a minimum hold.
     fn minimise(
         &mut self,
-        spine: &Spine,
+        problem: Problem<'_>,
         shape: &mut SpineShape,
-        touches: &[Touch],
-        settings: &Settings,
+        stops: &[Stop],
     ) -> Solution {
-        let n = spine.joints();
-        let (scale, length) = (spine.stiffest(), spine.length_m());
+        let settings = problem.settings;
+        let (scale, length) = (problem.spine.stiffest(), problem.spine.length_m());
         let mut solution = Solution::default();
-        let mut energy = self.evaluate(spine, shape, touches, settings);
+        let mut energy = self.evaluate(problem, shape, stops);
         for iteration in 0..=settings.max_iterations {
-            self.curvature(spine, shape);
-            self.direction(n, 100.0 * scale / (length * length));
-            solution.residual = self.residual(n);
+            self.curvature(problem.spine, shape, stops);
+            self.direction(stops, 100.0 * scale / (length * length));
+            solution.residual = self.residual(stops.len());
             solution.penetration_m = self.gap.iter().fold(0.0, |worst: f64, gap| worst.max(-gap));
             solution.iterations = iteration;
             solution.converged = solution.residual <= settings.tolerance * scale
@@ -198,38 +272,20 @@ impl Solver {
             if solution.converged || iteration == settings.max_iterations {
                 break;
             }
-            if !self.line_search(spine, shape, touches, settings, energy) {
+            if !self.line_search(problem, shape, stops, energy) {
                 break;
             }
-            energy = self.evaluate(spine, shape, touches, settings);
+            energy = self.evaluate(problem, shape, stops);
         }
-        (solution.spring_j, solution.friction_j) = (energy.spring, energy.friction);
-        solution.damping_j = energy.damping;
+        solution.energy = energy;
         solution
     }
 
-    fn note_chords(&mut self, shape: &SpineShape) {
-        let mut above = shape.base;
-        self.chords.clear();
-        for d in &shape.directions {
-            self.chords.push(*d - above);
-            above = *d;
-        }
-    }
-
-    /// Whether joint `i` is held by its constraint.
-    fn touching(&self, i: usize) -> bool {
-        self.multipliers[i] > 0.0
-    }
-
-    /// Frees contacts that have lifted; whether there were any.
-    fn release_lifted(&self, touches: &mut [Touch]) -> bool {
+    /// Frees contacts that have lifted or broken loose; whether there were any.
+    fn let_go(&self, stops: &mut [Stop], settings: &Settings) -> bool {
         let mut any = false;
-        for (i, touch) in touches.iter_mut().enumerate() {
-            if touch.anchor.is_some() && !self.touching(i) {
-                *touch = Touch::default();
-                any = true;
-            }
+        for (i, stop) in stops.iter_mut().enumerate() {
+            any |= stop.let_go(self.multipliers[i], self.ends[stop.joint], settings);
         }
         any
     }
@@ -237,11 +293,12 @@ impl Solver {
 
 /// A straight spine pressed along its own axis has no way to bend that is better than another, and
 /// no gradient: turn it a little toward the lower right of the surface.
-fn break_symmetry(shape: &mut SpineShape) {
-    let upright = shape
-        .directions
-        .iter()
-        .all(|d| d.truncate().length_squared() < 1e-10);
+fn break_symmetry(spine: &Spine, shape: &mut SpineShape) {
+    let upright = spine.rest.is_empty()
+        && shape
+            .directions
+            .iter()
+            .all(|d| d.truncate().length_squared() < 1e-10);
     if upright && shape.root.z > 0.0 {
         for (i, d) in shape.directions.iter_mut().enumerate() {
             *d = (*d + DVec3::new(1.0, -1.0, 0.0) * (1e-3 * (i + 1) as f64)).normalize();

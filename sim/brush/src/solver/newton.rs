@@ -1,6 +1,6 @@
 //! The Newton step: a quadratic model made convex, and its multipliers.
 
-use super::Solver;
+use super::{Solver, Stop};
 
 impl Solver {
     /// The Newton step and the multipliers that belong to it.
@@ -8,8 +8,8 @@ impl Solver {
     /// Where the Hessian is not convex, the constraints that bind are added to the model as springs
     /// of `stiffness`: this changes no solution on them, and makes the model convex where it is
     /// convex along them. A spring that turns out to pull is taken out again.
-    pub(super) fn direction(&mut self, n: usize, stiffness: f64) {
-        let size = 2 * n;
+    pub(super) fn direction(&mut self, stops: &[Stop], stiffness: f64) {
+        let (n, size) = (stops.len(), self.gradient.len());
         self.springs.clear();
         self.springs.resize(n, 0.0);
         if !self.factor.factor(&self.model, size) {
@@ -35,23 +35,30 @@ impl Solver {
 
     /// The force with which constraint `i` pushes after the step: its multiplier and its spring.
     pub(super) fn push(&self, i: usize) -> f64 {
-        let moved: f64 = (0..2 * (i + 1)).map(|p| self.rows[p] * self.step[p]).sum();
+        let moved = dot(self.row(i), &self.step);
         self.lambda[i] - self.springs[i] * (self.gap[i] + moved)
     }
 
+    /// The derivative of gap `i` by the directions.
+    fn row(&self, i: usize) -> &[f64] {
+        let size = self.gradient.len();
+        &self.rows[i * size..(i + 1) * size]
+    }
+
     /// Factors the model with its springs, made convex by a shift of the diagonal if need be.
-    pub(super) fn factor_with_springs(&mut self, n: usize) {
-        let size = 2 * n;
+    fn factor_with_springs(&mut self, n: usize) {
+        let size = self.gradient.len();
         self.stiff.clear();
         self.stiff.extend_from_slice(&self.model);
         self.newton.clear();
         self.newton.extend(self.gradient.iter().map(|g| -g));
         for i in (0..n).filter(|i| self.springs[*i] > 0.0) {
-            for p in 0..2 * (i + 1) {
-                let scaled = self.springs[i] * self.rows[p];
+            let row = &self.rows[i * size..(i + 1) * size];
+            for p in 0..size {
+                let scaled = self.springs[i] * row[p];
                 self.newton[p] -= scaled * self.gap[i];
-                for q in 0..2 * (i + 1) {
-                    self.stiff[p * size + q] += scaled * self.rows[q];
+                for q in 0..size {
+                    self.stiff[p * size + q] += scaled * row[q];
                 }
             }
         }
@@ -72,28 +79,21 @@ impl Solver {
     }
 
     /// Multipliers and step of the convex model.
-    pub(super) fn solve_dual(&mut self, n: usize) {
-        let size = 2 * n;
+    fn solve_dual(&mut self, n: usize) {
+        let size = self.gradient.len();
         // Columns of H⁻¹Aᵀ, G = A·H⁻¹·Aᵀ and r = −(gap + A·newton).
         self.columns.clear();
-        for i in 0..n {
-            let start = self.columns.len();
-            self.columns.extend_from_slice(&self.rows[..2 * (i + 1)]);
-            self.columns.resize(start + size, 0.0);
-            self.factor.solve(&mut self.columns[start..]);
+        self.columns.extend_from_slice(&self.rows);
+        for column in self.columns.chunks_exact_mut(size) {
+            self.factor.solve(column);
         }
         self.dual.clear();
         self.rhs.clear();
         for i in 0..n {
-            for j in 0..n {
-                let column = &self.columns[j * size..(j + 1) * size];
-                self.dual
-                    .push((0..2 * (i + 1)).map(|p| self.rows[p] * column[p]).sum());
-            }
-            let moved: f64 = (0..2 * (i + 1))
-                .map(|p| self.rows[p] * self.newton[p])
-                .sum();
-            self.rhs.push(-(self.gap[i] + moved));
+            let row = &self.rows[i * size..(i + 1) * size];
+            let columns = self.columns.chunks_exact(size);
+            self.dual.extend(columns.map(|column| dot(row, column)));
+            self.rhs.push(-(self.gap[i] + dot(row, &self.newton)));
         }
         self.lambda.clear();
         self.lambda.extend_from_slice(&self.multipliers);
@@ -102,9 +102,10 @@ impl Solver {
             .solve(&self.dual, &self.rhs, floor, &mut self.lambda);
         self.step.clear();
         self.step.extend_from_slice(&self.newton);
-        for (i, value) in self.lambda.iter().enumerate() {
-            for p in 0..size {
-                self.step[p] += value * self.columns[i * size + p];
+        for (value, column) in self.lambda.iter().zip(self.columns.chunks_exact(size)) {
+            if *value != 0.0 {
+                let step = self.step.iter_mut().zip(column);
+                step.for_each(|(step, column)| *step += value * column);
             }
         }
     }
@@ -116,11 +117,18 @@ impl Solver {
 
     /// ‖∇E − Aᵀλ‖∞ with the multipliers of the newest step.
     pub(super) fn residual(&self, n: usize) -> f64 {
-        (0..2 * n)
+        let size = self.gradient.len();
+        (0..size)
             .map(|p| {
-                let push: f64 = (p / 2..n).map(|i| self.multipliers[i] * self.rows[p]).sum();
+                let push: f64 = (0..n)
+                    .map(|i| self.multipliers[i] * self.rows[i * size + p])
+                    .sum();
                 (self.gradient[p] - push).abs()
             })
             .fold(0.0, f64::max)
     }
+}
+
+fn dot(a: &[f64], b: &[f64]) -> f64 {
+    a.iter().zip(b).map(|(a, b)| a * b).sum()
 }

@@ -5,6 +5,7 @@
 //! top of what lies there: tooth, dry relief and wet paint. All lengths are in cells.
 
 use maulstick_brush::head::STATIONS;
+use maulstick_brush::{Head, HeadPose};
 
 use crate::load::ALONG;
 use crate::model::Step;
@@ -12,10 +13,11 @@ use crate::window::Window;
 
 /// A ribbon that covers a cell only in part counts as higher by this much.
 const EDGE_PENALTY: f32 = 0.3;
-/// Strips of the same depth lie over each other in a seeded order, the last this much higher, cells.
-const RANKS: f32 = 0.5;
-/// Contact begins softly over this depth, cells.
-const SOFT: f32 = 0.15;
+/// Strips of the same depth lie over each other in the order of their roots along the way that the
+/// head is bent (Baxter 2004, § 3.5.2), the last this much higher, cells.
+const RANKS: f32 = 0.02;
+/// A head that is bent by this share of its length has that order in full.
+const BENT: f32 = 0.2;
 /// No strip here.
 const NOTHING: u32 = u32::MAX;
 
@@ -42,12 +44,12 @@ pub struct Contact {
 
 /// What of the head reaches a cell.
 #[derive(Clone, Copy, Debug, PartialEq)]
-struct Fragment {
-    score: f32,
-    bottom: f32,
-    cover: f32,
-    texel: u32,
-    moved: [f32; 2],
+pub(super) struct Fragment {
+    pub(super) score: f32,
+    pub(super) bottom: f32,
+    pub(super) cover: f32,
+    pub(super) texel: u32,
+    pub(super) moved: [f32; 2],
 }
 
 const EMPTY: Fragment = Fragment {
@@ -68,10 +70,10 @@ pub struct Footprint {
     /// Columns and rows of the grid.
     pub size: [usize; 2],
     /// The surface's coordinates of the grid's lower left corner.
-    offset: [f32; 2],
+    pub(super) offset: [f32; 2],
     /// Room for the penetration of the grid.
     pub(super) depth: Vec<f32>,
-    fragments: Vec<Fragment>,
+    pub(super) fragments: Vec<Fragment>,
     wet: Vec<f32>,
 }
 
@@ -90,7 +92,6 @@ struct Ribbon {
     strip: usize,
     /// Its lower side above the middle line, cells.
     bottom: f32,
-    half_width: f32,
     /// Among strips of the same depth it counts as higher by this much, cells.
     rank: f32,
     /// How far it goes on past its end, cells.
@@ -123,20 +124,31 @@ impl Footprint {
         step.window.note_top(most);
         let loose = traits.lift * (1.0 - step.sweep.to.press);
         let top = most * traits.cells_per_quantum;
+        let film = step.load.thickest() as f32 * traits.film_cells_per_quantum;
+        self.draw_skin(
+            step,
+            top + film,
+            traits.recede * step.sweep.to.splay - pressed,
+        );
         for strip in 0..head.strips() {
-            let bottom = loose * head.lift()[strip] - pressed;
+            let ribbon = Ribbon {
+                strip,
+                bottom: loose * head.lift()[strip] - pressed,
+                rank: rank(head, step.sweep.to, strip),
+                past: 0.0,
+            };
             let film = step.load.thickest_of(strip) as f32 * traits.film_cells_per_quantum;
-            self.draw_strip(step, strip, bottom, top + film - bottom);
+            self.draw_strip(step, ribbon, top + film - ribbon.bottom);
         }
         self.touch(step);
     }
 
     /// Draws those segments of a strip that come below `height`.
-    fn draw_strip(&mut self, step: &Step<'_>, strip: usize, bottom: f32, height: f32) {
+    fn draw_strip(&mut self, step: &Step<'_>, mut ribbon: Ribbon, height: f32) {
         let (before, after) = (step.sweep.from, step.sweep.to);
         let strips = step.head.strips();
         let point = |station: usize| {
-            let i = station * strips + strip;
+            let i = station * strips + ribbon.strip;
             Point {
                 at: [after.x[i], after.y[i], after.z[i]],
                 moved: [after.x[i] - before.x[i], after.y[i] - before.y[i]],
@@ -144,20 +156,14 @@ impl Footprint {
             }
         };
         for station in 1..STATIONS {
-            let i = station * strips + strip;
+            let i = station * strips + ribbon.strip;
             if after.z[i - strips].min(after.z[i]) >= height {
                 continue;
             }
             let (p, q) = below(&point(station - 1), &point(station), height);
-            let past = if station == STATIONS - 1 { 0.5 } else { 0.0 };
-            let ribbon = Ribbon {
-                strip,
-                bottom,
-                half_width: step.traits.half_width,
-                rank: RANKS * step.head.lift()[strip],
-                past,
-            };
-            self.draw(&ribbon, &p, &q);
+            ribbon.past = if station == STATIONS - 1 { 0.5 } else { 0.0 };
+            let half_width = step.traits.half_width_before(station);
+            self.draw(&ribbon, half_width, &p, &q);
         }
     }
 
@@ -177,7 +183,7 @@ impl Footprint {
 
     /// Draws a ribbon from `a` to `b`: of each column of cells, or each row where it goes rather up
     /// than across, those whose middle it covers, and with a soft edge half a cell to either side.
-    fn draw(&mut self, ribbon: &Ribbon, a: &Point, b: &Point) {
+    fn draw(&mut self, ribbon: &Ribbon, half_width: f32, a: &Point, b: &Point) {
         let start = [a.at[0] - self.offset[0], a.at[1] - self.offset[1]];
         let d = [b.at[0] - a.at[0], b.at[1] - a.at[1]];
         let major = usize::from(d[1].abs() > d[0].abs());
@@ -186,7 +192,7 @@ impl Footprint {
         let inverse = if length > 1e-4 { 1.0 / d[major] } else { 0.0 };
         let slope = d[minor] * inverse;
         let cosine = 1.0 / (1.0 + slope * slope).sqrt();
-        let reach = ribbon.half_width + 0.5;
+        let reach = half_width + 0.5;
         let across = reach / cosine;
         // Segments of a strip share their ends: each has the columns from its first up to its last,
         // and the last segment goes on past the tip.
@@ -267,7 +273,7 @@ impl Footprint {
                     cell: cell as u32,
                     local: local as u32,
                     texel: fragment.texel,
-                    cover: fragment.cover * ((reach + film) / SOFT).min(1.0),
+                    cover: fragment.cover,
                     moved: fragment.moved,
                     depth,
                     fraction: if wet > 0.0 { depth / wet } else { 0.0 },
@@ -292,6 +298,15 @@ impl Footprint {
         }
         (from, to)
     }
+}
+
+/// By how much a strip counts as higher among those of the same depth, cells: of a head that lies to
+/// one side, the bristles rooted on that side lie on the others.
+fn rank(head: &Head, pose: &HeadPose, strip: usize) -> f32 {
+    let ([x, y], [to_x, to_y]) = (head.roots()[strip], pose.bend);
+    let bent = (to_x * to_x + to_y * to_y).sqrt();
+    let inner = (x * to_x + y * to_y) / bent.max(BENT);
+    RANKS * (0.5 + 0.25 * (inner + head.lift()[strip]))
 }
 
 /// The part of a ribbon that lies below `height`.

@@ -11,6 +11,7 @@
 //! | [`flow`] | paint moves within the head |
 
 pub mod advection;
+mod draw_skin;
 pub mod exchange;
 pub mod flow;
 pub mod footprint;

@@ -1,10 +1,10 @@
 //! What brushes take up and lose: slots of paints, loads, cleaning, the loads of a take.
 
 use maulstick_types::Mixture;
-use maulstick_types::scene::{PaintSlot, Scene};
+use maulstick_types::scene::{PaintSlot, Scene, Tuning};
 
 use super::{PaintRefusal, Painting};
-use crate::load::by_slot;
+use crate::load::{Half, by_slot};
 use crate::model::BrushTraits;
 use crate::quantum::SLOTS;
 
@@ -77,19 +77,57 @@ impl Painting {
         self.brush(brush)?;
         let slots = self.slots(mixture)?;
         self.begin_step(&format!("load {brush}"));
-        self.fill(brush, &slots)?;
+        self.fill(brush, &[(&slots, Half::Both)])?;
         self.history.end();
         Ok(())
     }
 
-    pub(super) fn fill(&mut self, brush: &str, slots: &[(usize, f64)]) -> Result<(), PaintRefusal> {
+    /// Loads a brush afresh with a mixture on either half of its width (double loading).
+    ///
+    /// # Errors
+    /// As [`load`](Self::load).
+    pub fn load_beside(
+        &mut self,
+        brush: &str,
+        left: &Mixture,
+        right: &Mixture,
+    ) -> Result<(), PaintRefusal> {
+        self.brush(brush)?;
+        let (left, right) = (self.slots(left)?, self.slots(right)?);
+        self.begin_step(&format!("load {brush}"));
+        self.fill(brush, &[(&left, Half::Left), (&right, Half::Right)])?;
+        self.history.end();
+        Ok(())
+    }
+
+    pub(super) fn fill(
+        &mut self,
+        brush: &str,
+        parts: &[(&[(usize, f64)], Half)],
+    ) -> Result<(), PaintRefusal> {
         let cell_m = self.sheets[0].cell_m;
         let track = self.brush(brush)?;
         let left = track.load.take_all();
         let traits = BrushTraits::of(&track.file, cell_m, 1.0);
-        let given = track.load.fill(&track.head, &traits, slots);
+        for (slots, half) in parts {
+            track.load.fill(&track.head, &traits, slots, *half);
+        }
+        let given = track.load.counts();
         self.ledger.to_cleaner(&left);
         self.ledger.from_tube(&given);
+        Ok(())
+    }
+
+    /// Makes a brush stiffer or softer; who solves it hears of it by the scene.
+    ///
+    /// # Errors
+    /// [`PaintRefusal`] for an unknown brush.
+    pub fn tune(&mut self, tuning: &Tuning) -> Result<(), PaintRefusal> {
+        self.brush(&tuning.brush)?;
+        let tunings = &mut self.scene.tunings;
+        tunings.retain(|other| other.brush != tuning.brush);
+        tunings.push(tuning.clone());
+        self.scene.version += 1;
         Ok(())
     }
 

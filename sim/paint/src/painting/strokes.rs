@@ -6,6 +6,7 @@ use maulstick_types::brush::{BrushState, Solve, solve_flags};
 
 use super::{PaintRefusal, Painting};
 use crate::head::{Scale, Waypoint, low_bounds};
+use crate::load::Half;
 use crate::model::{BrushTraits, Step, Sweep};
 use crate::path::PathStepper;
 use crate::quantum::QUANTUM_M;
@@ -68,9 +69,10 @@ impl Painting {
             self.begin_stroke(name)?;
         }
         let scale = self.scale(sheet);
-        let waypoint = Waypoint::of(solve, scale);
         let restarted = solve.flags & solve_flags::RESTARTED != 0;
         let track = self.brush(name)?;
+        let traits = BrushTraits::of(&track.file, scale.cell_m, scale.zoom);
+        let waypoint = Waypoint::of(solve, scale, track.load.fullness(&traits));
         let running = track
             .path
             .take()
@@ -109,7 +111,7 @@ impl Painting {
         let mixture = track.loads[track.next_load % track.loads.len()].clone();
         track.next_load += 1;
         let slots = self.slots(&mixture)?;
-        self.fill(name, &slots)
+        self.fill(name, &[(&slots, Half::Both)])
     }
 
     /// One step of the paint model.

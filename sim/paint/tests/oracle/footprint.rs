@@ -9,8 +9,8 @@ use crate::scene::{CELLS, Scene};
 
 /// The constants of the stage.
 const EDGE_PENALTY: f64 = 0.3;
-const RANKS: f64 = 0.5;
-const SOFT: f64 = 0.15;
+const RANKS: f64 = 0.02;
+const BENT: f64 = 0.2;
 /// Sixteen roundings of a place below 128 cells in f32.
 const ROUNDING: f64 = 16.0 * 128.0 / 33_554_432.0;
 
@@ -139,7 +139,8 @@ fn candidates(scene: &Scene, at: [usize; 2], most: f64) -> Vec<Candidate> {
     let traits = &scene.traits;
     let press = f64::from(scene.to.press);
     let pressed = f64::from(traits.half_thickness) + f64::from(traits.sink) * press;
-    let reach = f64::from(traits.half_width) + 0.5;
+    let wide = f64::from(traits.half_width);
+    let bend = scene.to.bend.map(f64::from);
     let middle = at.map(|cell| cell as f64 + 0.5);
     let mut found = Vec::new();
     for strip in 0..scene.head.strips() {
@@ -148,10 +149,15 @@ fn candidates(scene: &Scene, at: [usize; 2], most: f64) -> Vec<Candidate> {
         let film =
             f64::from(scene.load.thickest_of(strip)) * f64::from(traits.film_cells_per_quantum);
         let height = most + film - bottom;
+        let root = scene.head.roots()[strip].map(f64::from);
+        let inner = (root[0] * bend[0] + root[1] * bend[1]) / bend[0].hypot(bend[1]).max(BENT);
+        let rank = RANKS * (0.5 + 0.25 * (inner + unruly));
         for station in 1..STATIONS {
             let s = segment(scene, strip, station);
+            let along = (station as f64 - 0.5) / (STATIONS - 1) as f64;
+            let reach = wide * (1.0 - f64::from(traits.taper) * along) + 0.5;
             found.extend(cover(&s, middle, reach, height).map(|c| Candidate {
-                score: c.score + bottom + RANKS * unruly,
+                score: c.score + bottom + rank,
                 bottom: c.bottom + bottom,
                 strip,
                 along: (station as f64 - 1.0 + c.along) * (ALONG / (STATIONS - 1)) as f64,
@@ -192,7 +198,7 @@ fn cell(scene: &Scene, at: [usize; 2], candidates: &[Candidate]) -> Cell {
             let contact = Contact {
                 cell: place as u32,
                 texel: texel as u32,
-                cover: (c.cover * ((reach + film) / SOFT).clamp(0.0, 1.0)) as f32,
+                cover: c.cover as f32,
                 moved: c.moved.map(|v| v as f32),
                 depth: depth as f32,
                 fraction: if wet > 0.0 { (depth / wet) as f32 } else { 0.0 },
@@ -212,7 +218,7 @@ fn tolerances(off: f64, want: &Contact) -> [f64; 5] {
     } else {
         1.0
     };
-    [off * (1.0 + 1.0 / SOFT), off, off, off, fraction.max(1e-6)]
+    [off, off, off, off, fraction.max(1e-6)]
 }
 
 fn values(c: &Contact) -> [f64; 5] {

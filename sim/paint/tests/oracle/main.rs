@@ -7,5 +7,6 @@ mod exchange;
 mod flow;
 mod footprint;
 mod scene;
+mod skin;
 mod stroke;
 mod velocity;

@@ -137,10 +137,15 @@ fn poses(random: &mut Random, strips: usize) -> (HeadPose, HeadPose) {
         x: vec![0.0; strips * STATIONS],
         y: vec![0.0; strips * STATIONS],
         z: vec![0.0; strips * STATIONS],
-        press: 0.0,
+        ..HeadPose::default()
     };
     let (mut from, mut to) = (blank(), blank());
     to.press = random.unit() as f32;
+    to.splay = to.press;
+    to.bend = [
+        random.range(-0.6, 0.6) as f32,
+        random.range(-0.6, 0.6) as f32,
+    ];
     let together = [random.range(-0.7, 0.7), random.range(-0.7, 0.7)];
     for strip in 0..strips {
         let mut at = [random.range(-8.0, 105.0), random.range(-8.0, 95.0)];

@@ -4,7 +4,7 @@ use maulstick_brush::{BrushFile, Head, HeadPose};
 use maulstick_num::geometry::{Rigid, rotation};
 use maulstick_paint::head::{Scale, Waypoint, low_bounds};
 use maulstick_paint::impasto::Impasto;
-use maulstick_paint::load::BrushLoad;
+use maulstick_paint::load::{BrushLoad, Half};
 use maulstick_paint::model::{BrushTraits, PaintModel, Step, StepReport, Sweep};
 use maulstick_paint::path::PathStepper;
 use maulstick_paint::quantum::{Counts, add};
@@ -48,7 +48,7 @@ impl Bench {
         let head = Head::of(&file);
         let traits = BrushTraits::of(&file, CELL_M, 1.0);
         let mut load = BrushLoad::clean(head.strips());
-        load.fill(&head, &traits, &[(0, 0.7), (3, 0.3)]);
+        load.fill(&head, &traits, &[(0, 0.7), (3, 0.3)], Half::Both);
         Self {
             store: TileStore::new([SIDE; 2]),
             relief: Relief::flat(CELL_M),
@@ -130,7 +130,7 @@ fn arc(bench: &Bench) -> Vec<HeadPose> {
                 (0.85 - 0.3 * t) * bench.file.length_m(),
             ),
         };
-        let joints = bench.file.spines.number() * bench.file.spines.joints;
+        let joints = bench.file.spines.all_joints();
         Waypoint::of(
             &Solve {
                 event_ns: 0,
@@ -142,6 +142,7 @@ fn arc(bench: &Bench) -> Vec<HeadPose> {
                 contacts: Vec::new(),
             },
             SCALE,
+            1.0,
         )
     };
     let mut path = PathStepper::begin(&bench.head, waypoint(0), SCALE);

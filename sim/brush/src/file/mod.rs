@@ -1,0 +1,247 @@
+//! The brush file (TOML) and the library of brushes that come with the crate.
+//!
+//! ```toml
+//! kind = "round"
+//! [head]
+//! width_mm = 10.0          # widest
+//! length_mm = 25.0         # out of the ferrule
+//! profile = [[0.0, 0.8], [0.3, 1.0], [1.0, 0.1]]  # place along the head, share of half the width
+//! [spines]                 # that bend: one in the middle and a ring around it, or a row
+//! count = 6
+//! share = 0.7              # of the head's radius, where the ring stands
+//! joints = 3
+//! bending_stiffness_n_mm2 = 150.0   # of the whole head at the ferrule
+//! damping = 0.01           # torque of inner friction by that of a joint bent by 1 rad
+//! [strips]                 # that paint: bristles that follow the spines
+//! count = 384
+//! seed = 1                 # where they stand and how unruly each is
+//! width_mm = 0.25
+//! thickness_mm = 0.1
+//! lift_mm = 0.2            # the most unruly one keeps off the surface when hardly pressed
+//! sink_mm = 0.1            # deeper into the tooth when fully pressed
+//! open = 0.5               # width of the pressed point by that of the head
+//! unevenness = 0.6         # by which share of the mean the strips differ in how much they carry
+//! [contact]
+//! friction = 0.25
+//! [load]
+//! film_um = 200.0          # on the strips of a freshly loaded head
+//! inside_um = 200.0        # within them, as if spread over them
+//! ```
+//!
+//! All keys are in `docs/brushes.md`.
+
+pub mod check;
+pub mod library;
+pub mod sections;
+
+use serde::{Deserialize, Serialize};
+
+use self::check::within;
+use self::sections::{Contact, Head, Load, Spines, Strips, Surface};
+use crate::tuft::Tuft;
+
+/// Why a brush cannot be had.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum BrushError {
+    /// No such brush; the nearest name is proposed.
+    #[error("there is no brush called '{name}'; did you mean '{nearest}'?")]
+    Unknown {
+        /// What was asked for.
+        name: String,
+        /// The nearest name.
+        nearest: String,
+    },
+    /// The file is no brush file.
+    #[error("{0}")]
+    File(String),
+    /// A number is out of its range.
+    #[error("{field} is {value}, but must be {range}")]
+    Range {
+        /// The field.
+        field: String,
+        /// Its value.
+        value: f64,
+        /// What it may be.
+        range: String,
+    },
+}
+
+/// A brush file.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct BrushFile {
+    /// What kind of brush it is.
+    pub kind: String,
+    /// What it is for, in a sentence.
+    #[serde(default, skip_serializing_if = "String::is_empty")]
+    pub about: String,
+    /// The widths that it is made in, mm.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub sizes_mm: Vec<f64>,
+    /// The head's shape.
+    pub head: Head,
+    /// The spines, which bend.
+    pub spines: Spines,
+    /// The bristle strips, which paint.
+    pub strips: Strips,
+    /// The skin around them.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub surface: Option<Surface>,
+    /// Contact with the surface painted on.
+    pub contact: Contact,
+    /// What the head carries.
+    pub load: Load,
+}
+
+impl BrushFile {
+    /// Reads a brush file.
+    ///
+    /// # Errors
+    /// [`BrushError::File`] with the line, or [`BrushError::Range`].
+    pub fn parse(text: &str) -> Result<Self, BrushError> {
+        let file: Self = toml::from_str(text)
+            .map_err(|error| BrushError::File(error.to_string().trim_end().to_owned()))?;
+        file.check()?;
+        Ok(file)
+    }
+
+    /// Checks all numbers.
+    ///
+    /// # Errors
+    /// [`BrushError::Range`].
+    pub fn check(&self) -> Result<(), BrushError> {
+        check::check(self)
+    }
+
+    /// As a file, which [`parse`](Self::parse) reads back to the same brush.
+    ///
+    /// # Errors
+    /// [`BrushError::File`] where a value cannot be written as TOML.
+    pub fn to_toml(&self) -> Result<String, BrushError> {
+        toml::to_string(self).map_err(|error| BrushError::File(error.to_string()))
+    }
+
+    /// The brush at another width: lengths scale with it, stiffness with its square.
+    ///
+    /// # Errors
+    /// [`BrushError::Range`] where the width is out of range.
+    pub fn scaled_to(&self, width_mm: f64) -> Result<Self, BrushError> {
+        within("size_mm", width_mm, 0.1..=300.0)?;
+        let scale = width_mm / self.head.width_mm;
+        let mut brush = self.clone();
+        brush.head.width_mm = width_mm;
+        brush.head.length_mm *= scale;
+        if let Some(thickness) = &mut brush.head.thickness_mm {
+            *thickness *= scale;
+        }
+        brush.spines.bending_stiffness_n_mm2 *= scale * scale;
+        for chain in &mut brush.spines.chains {
+            let places = std::iter::once(&mut chain.root_mm).chain(&mut chain.segments_mm);
+            places.flatten().for_each(|mm| *mm *= scale);
+            // K = EI/l: the square of the size by the size.
+            let torques = chain
+                .stiffness_n_mm
+                .iter_mut()
+                .chain(&mut chain.damping_n_mm);
+            torques.for_each(|torque| *torque *= scale);
+        }
+        // Finer strips have fewer bristles each: a head has as many strips at any size.
+        brush.strips.width_mm *= scale;
+        if let Some(surface) = &mut brush.surface {
+            let places = surface.vertices_mm.iter_mut().flatten();
+            places.for_each(|mm| *mm *= scale);
+        }
+        Ok(brush)
+    }
+
+    /// Length of the head, m.
+    #[must_use]
+    pub fn length_m(&self) -> f64 {
+        self.head.length_mm * 1e-3
+    }
+
+    /// Half the width of the head at the place `s` in 0..1 along it, m.
+    #[must_use]
+    pub fn radius_m(&self, s: f64) -> f64 {
+        0.5e-3 * self.head.width_mm * share_at(&self.head.profile, s)
+    }
+
+    /// Half the thickness of the head at the place `s` in 0..1 along it, m.
+    #[must_use]
+    pub fn half_thickness_m(&self, s: f64) -> f64 {
+        let head = &self.head;
+        let profile = match head.thickness_profile.is_empty() {
+            true => &head.profile,
+            false => &head.thickness_profile,
+        };
+        0.5e-3 * head.thickness_mm.unwrap_or(head.width_mm) * share_at(profile, s)
+    }
+
+    /// Length of a bristle by the longest, at a place of the ferrule in shares of half its width and
+    /// thickness.
+    #[must_use]
+    pub fn length_share(&self, place: [f64; 2]) -> f64 {
+        let across = match self.head.outline {
+            sections::Outline::Flat => place[0],
+            sections::Outline::Round => (place[0] * place[0] + place[1] * place[1]).sqrt(),
+        };
+        match self.head.tip.is_empty() {
+            true => 1.0,
+            false => share_at(&self.head.tip, across),
+        }
+    }
+
+    /// Stiffness at a place along the head, by that at the ferrule.
+    #[must_use]
+    pub fn stiffness_share(&self, s: f64) -> f64 {
+        match self.spines.stiffness_profile.is_empty() {
+            true => 1.0,
+            false => share_at(&self.spines.stiffness_profile, s),
+        }
+    }
+
+    /// The spines in their seats.
+    #[must_use]
+    pub fn tuft(&self) -> Tuft {
+        Tuft::of(self)
+    }
+}
+
+/// The share at a place of a curve, which goes on level beyond its ends.
+fn share_at(curve: &[[f64; 2]], place: f64) -> f64 {
+    let after = curve
+        .iter()
+        .position(|[at, _]| *at >= place)
+        .unwrap_or(curve.len() - 1);
+    let [p1, r1] = curve[after];
+    let [p0, r0] = curve[after.saturating_sub(1)];
+    let t = if p1 > p0 {
+        ((place - p0) / (p1 - p0)).clamp(0.0, 1.0)
+    } else {
+        1.0
+    };
+    r0 + t * (r1 - r0)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn bad_files_name_their_field() {
+        let text = BrushFile::library_text("round").expect("text");
+        let error = |from: &str, to: &str| {
+            assert!(text.contains(from), "{from}");
+            BrushFile::parse(&text.replace(from, to))
+                .expect_err(to)
+                .to_string()
+        };
+        assert!(error("friction = 0.25", "frictoin = 0.25").contains("frictoin"));
+        assert!(error("joints = 3", "joints = 0").contains("spines.joints is 0"));
+        assert!(error("joints = 3", "joints = 65").contains("spines.joints is 65"));
+        assert!(error("count = 384", "count = 5000").contains("strips.count is 5000"));
+        assert!(error("length_mm = 25.0", "length_mm = -1.0").contains("head.length_mm is -1"));
+        assert!(error("friction = 0.25", "friction = nan").contains("contact.friction is NaN"));
+        assert!(error("[0.25, 1.0]", "[0.95, 1.0]").contains("rising order"));
+    }
+}

@@ -1,0 +1,210 @@
+//! The sections of a brush file.
+
+use serde::{Deserialize, Serialize};
+
+/// The outline of a ferrule.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Outline {
+    /// A circle, or an ellipse where the thickness is not the width.
+    #[default]
+    Round,
+    /// A rectangle with rounded corners.
+    Flat,
+}
+
+/// The head's shape.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Head {
+    /// The outline of the ferrule.
+    #[serde(default)]
+    pub outline: Outline,
+    /// Widest, mm.
+    pub width_mm: f64,
+    /// Thickest, mm; as wide if absent.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub thickness_mm: Option<f64>,
+    /// Length out of the ferrule, mm.
+    pub length_mm: f64,
+    /// Place along the head from 0 to 1, and half the width there as a share of half the widest.
+    pub profile: Vec<[f64; 2]>,
+    /// The same for the thickness; as `profile` if empty.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub thickness_profile: Vec<[f64; 2]>,
+    /// Place across the head (flat: −1 to 1 along the width; round: 0 to 1 from the middle), and the
+    /// length of the bristles there as a share of the longest; all alike if empty.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub tip: Vec<[f64; 2]>,
+}
+
+/// How spines stand in the ferrule.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Layout {
+    /// One in the middle and a ring around it.
+    #[default]
+    Ring,
+    /// A row along the width.
+    Row,
+    /// Each where its own chain says.
+    Chains,
+}
+
+/// A spine of its own shape.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Chain {
+    /// Where it begins in the brush frame, mm.
+    pub root_mm: [f64; 3],
+    /// Its segments at rest, from the ferrule to the point: each goes on by this much, mm.
+    pub segments_mm: Vec<[f64; 3]>,
+    /// Stiffness of the joint at the beginning of each segment, N·mm/rad.
+    pub stiffness_n_mm: Vec<f64>,
+    /// Inner friction of each joint, N·mm.
+    pub damping_n_mm: Vec<f64>,
+}
+
+/// The spines, which bend.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Spines {
+    /// How they stand.
+    #[serde(default)]
+    pub layout: Layout,
+    /// Number of spines in the ring (beside the middle one) or the row.
+    #[serde(default)]
+    pub count: usize,
+    /// Where the outer ones stand, as a share of half the head's width and thickness.
+    #[serde(default = "half")]
+    pub share: f64,
+    /// Number of joints of each.
+    #[serde(default)]
+    pub joints: usize,
+    /// Bending stiffness EI of the whole head at the ferrule, N·mm².
+    #[serde(default)]
+    pub bending_stiffness_n_mm2: f64,
+    /// Place along the head, and the stiffness there as a share of that at the ferrule.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub stiffness_profile: Vec<[f64; 2]>,
+    /// Torque of a joint's inner friction by its spring's torque at 1 rad.
+    #[serde(default)]
+    pub damping: f64,
+    /// By how much the outer bristles curve toward the middle (outward if negative) at rest, from
+    /// the ferrule to the point, degrees.
+    #[serde(default)]
+    pub curl_deg: f64,
+    /// Stiffness with which spines keep the room that they have at rest, by that of a spine's point
+    /// against a force across it.
+    #[serde(default)]
+    pub volume: f64,
+    /// The spines of the layout `chains`.
+    #[serde(default, rename = "chain", skip_serializing_if = "Vec::is_empty")]
+    pub chains: Vec<Chain>,
+}
+
+fn half() -> f64 {
+    0.5
+}
+
+impl Spines {
+    /// Number of spines.
+    #[must_use]
+    pub fn number(&self) -> usize {
+        match self.layout {
+            Layout::Ring => self.count + 1,
+            Layout::Row => self.count,
+            Layout::Chains => self.chains.len(),
+        }
+    }
+
+    /// Number of joints of all spines.
+    #[must_use]
+    pub fn all_joints(&self) -> usize {
+        match self.layout {
+            Layout::Chains => self.chains.iter().map(|c| c.segments_mm.len()).sum(),
+            Layout::Ring | Layout::Row => self.number() * self.joints,
+        }
+    }
+}
+
+/// The bristle strips, which paint.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Strips {
+    /// How many.
+    pub count: usize,
+    /// Seed of their places and of how unruly each is.
+    pub seed: u64,
+    /// Width at the ferrule, mm.
+    pub width_mm: f64,
+    /// Thickness, mm.
+    pub thickness_mm: f64,
+    /// Share of the width that is lost up to the point.
+    #[serde(default)]
+    pub taper: f64,
+    /// How far the most unruly one keeps off the surface while the head is hardly pressed, mm.
+    pub lift_mm: f64,
+    /// How much deeper the fully pressed head reaches into the tooth, mm.
+    pub sink_mm: f64,
+    /// Width of the fully pressed point by that of the head.
+    pub open: f64,
+    /// By which share of the mean the strips differ in how much they carry.
+    pub unevenness: f64,
+    /// Number of clumps in which they stick together; none if 0.
+    #[serde(default)]
+    pub clumps: usize,
+    /// How far the points of a clump come together on a clean brush and on a full one, 0 to 1.
+    #[serde(default)]
+    pub clumping: [f64; 2],
+}
+
+/// The skin: a closed surface around the strips, which paints where they lie close.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Surface {
+    /// Times that its control mesh is subdivided (Catmull and Clark 1978).
+    pub levels: usize,
+    /// How far the skin draws back within the strips as the head is pressed open, mm.
+    pub recede_mm: f64,
+    /// The control mesh; the head's own shape if empty.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub vertices_mm: Vec<[f64; 3]>,
+    /// Its faces: three or more vertices each, counterclockwise from outside.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub faces: Vec<Vec<usize>>,
+    /// What moves each vertex: joints, counted through all spines from the first, with their weights.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub weights: Vec<Vec<(usize, f64)>>,
+}
+
+/// Contact with the surface.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Contact {
+    /// Coefficient of friction while sliding.
+    pub friction: f64,
+    /// Coefficient of friction while sticking; as while sliding if absent.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub friction_static: Option<f64>,
+    /// C_η: the share of friction that a pulled bristle lacks.
+    #[serde(default)]
+    pub anisotropy: f64,
+    /// k > 1: how sharply that is focused on the way the bristle is pulled.
+    #[serde(default = "two")]
+    pub focus: f64,
+}
+
+fn two() -> f64 {
+    2.0
+}
+
+/// What the head carries.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Load {
+    /// Film on the strips of a freshly loaded head, µm.
+    pub film_um: f64,
+    /// Paint inside them, as thick as if it were spread over them, µm.
+    pub inside_um: f64,
+}

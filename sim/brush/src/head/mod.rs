@@ -1,0 +1,483 @@
+//! The head: bristle strips interpolated from the spines (Baxter 2004, § 3.5.2), and the skin
+//! around them.
+//!
+//! Each spine is a curve p_j(s), s from 0 at the ferrule to 1 at the point. A strip's root within the
+//! hull of the spines' roots is their convex sum, and so is the strip, Σ w_j·p_j(s) (eq. 3.16); what
+//! the head's profile adds is an offset for each station, in a frame that turns with the middle of
+//! the head. A root outside the hull has the weights of the nearest point of it. As the head is
+//! pressed down the strips open, and wet ones come together in clumps.
+
+pub mod curve;
+pub mod place;
+pub mod weights;
+
+use glam::{DMat3, DVec2, DVec3};
+use maulstick_num::atan2;
+use maulstick_num::geometry::{Rigid, shortest_arc};
+
+use self::curve::{Curve, curve, middle};
+use self::place::Random;
+use self::weights::{nearest_in_hull, weights_of};
+use crate::file::BrushFile;
+use crate::skin::{Skin, SkinPose};
+use crate::spine::SpineShape;
+use crate::tuft::Seat;
+
+/// Stations along a strip.
+pub const STATIONS: usize = 9;
+/// The head is fully open when its point would be this share of its length below the surface.
+const OPEN_AT: f64 = 0.35;
+
+/// The strips of a brush.
+#[derive(Clone, Debug)]
+pub struct Head {
+    seats: Vec<Seat>,
+    joints: usize,
+    strips: usize,
+    /// Weights, a plane a spine.
+    weights: Vec<Vec<f32>>,
+    /// What the profile adds to the spines' sum, brush frame, m: planes of x, y and z,
+    /// `station · strips + strip`.
+    closed: [Vec<f32>; 3],
+    /// What is added to that when pressed open: x and y.
+    opening: [Vec<f32>; 2],
+    /// What is added to that when clumped as on a clean brush and as on a full one.
+    clumping: [f32; 2],
+    clumped: Option<[Vec<f32>; 3]>,
+    /// Roots in shares of half the ferrule's width and thickness.
+    roots: Vec<[f32; 2]>,
+    /// Strips in the order of their roots around the ferrule.
+    around: Vec<u32>,
+    /// Seeded, 0 to 1: how far a strip keeps off the surface while the head is hardly pressed.
+    lift: Vec<f32>,
+    /// Seeded, about 1: how much paint a strip takes by the mean of all.
+    capacity: Vec<f32>,
+    /// Tangents of the middle of the head at rest.
+    rest: Curve,
+    skin: Option<Skin>,
+    length_m: f64,
+}
+
+/// Strips in space: planes of coordinates, `station · strips + strip`, station 0 at the ferrule.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct HeadPose {
+    /// Right.
+    pub x: Vec<f32>,
+    /// Up along the surface.
+    pub y: Vec<f32>,
+    /// Above the surface: never below it.
+    pub z: Vec<f32>,
+    /// How far the head is pressed open, 0 to 1.
+    pub press: f32,
+    /// How much of the strips shows beside the skin, 0 to 1: all of them where the head is open or has
+    /// run dry.
+    pub splay: f32,
+    /// Where the point is bent to by the head's length, in the ferrule's cross-section: x and y of
+    /// the brush frame.
+    pub bend: [f32; 2],
+    /// The skin, if the head has one.
+    pub skin: SkinPose,
+}
+
+/// How a head is held.
+#[derive(Clone, Copy, Debug)]
+pub struct Hold<'a> {
+    /// Brush frame to surface frame.
+    pub brush: &'a Rigid,
+    /// θ and φ of all joints, spine after spine.
+    pub angles: &'a [[f32; 2]],
+    /// Units of the pose a metre.
+    pub per_m: f64,
+    /// How full the brush is, 0 to 1: wet bristles clump.
+    pub wetness: f32,
+}
+
+/// Smooth from 0 at 0 to 1 at 1.
+fn smoothstep(t: f64) -> f64 {
+    let t = t.clamp(0.0, 1.0);
+    t * t * (3.0 - 2.0 * t)
+}
+
+impl Head {
+    /// The head of a brush file.
+    #[must_use]
+    pub fn of(file: &BrushFile) -> Self {
+        let tuft = file.tuft();
+        let half = DVec2::new(file.radius_m(0.0), file.half_thickness_m(0.0));
+        let spines: Vec<DVec2> = tuft
+            .seats
+            .iter()
+            .map(|seat| seat.root.truncate() / half)
+            .collect();
+        let mut random = Random::new(file.strips.seed);
+        let roots = place::roots(file, &spines, &mut random);
+        let count = roots.len();
+        let mut weights = vec![Vec::with_capacity(count); spines.len()];
+        for root in &roots {
+            let row = weights_of(&spines, nearest_in_hull(&spines, *root));
+            for (plane, weight) in weights.iter_mut().zip(row) {
+                plane.push(weight as f32);
+            }
+        }
+        let curves: Vec<Curve> = tuft
+            .seats
+            .iter()
+            .map(|seat| curve(&seat.spine, &seat.at_rest(&Rigid::IDENTITY)))
+            .collect();
+        let (_, rest) = middle(&curves, DVec3::NEG_Z);
+        let unruly = |range: f64, random: &mut Random| range * (2.0 * random.unit() - 1.0);
+        let lift = (0..count).map(|_| random.unit() as f32).collect();
+        let capacity = (0..count)
+            .map(|_| (1.0 + unruly(file.strips.unevenness, &mut random)) as f32)
+            .collect();
+        let mut head = Self {
+            joints: tuft.joints(),
+            strips: count,
+            closed: [const { Vec::new() }; 3],
+            opening: [const { Vec::new() }; 2],
+            clumping: file.strips.clumping.map(|share| share as f32),
+            clumped: None,
+            roots: roots
+                .iter()
+                .map(|root| [root.x as f32, root.y as f32])
+                .collect(),
+            around: order_around(&roots),
+            lift,
+            capacity,
+            rest,
+            skin: Skin::of(file, &tuft),
+            length_m: file.length_m(),
+            weights,
+            seats: tuft.seats,
+        };
+        head.lay(file, &roots, &curves);
+        head.clump(file, &roots);
+        head
+    }
+
+    /// The offsets that put the strips at rest onto the head's profile.
+    fn lay(&mut self, file: &BrushFile, roots: &[DVec2], curves: &[Curve]) {
+        let opened = file.strips.open * 0.5e-3 * file.head.width_mm;
+        for station in 0..STATIONS {
+            for (strip, root) in roots.iter().enumerate() {
+                let sum: DVec3 = curves
+                    .iter()
+                    .zip(&self.weights)
+                    .map(|(curve, plane)| curve[station] * f64::from(plane[strip]))
+                    .sum();
+                let off = rest_point(file, *root, station) - sum;
+                let planes = self.closed.iter_mut().zip(off.to_array());
+                planes.for_each(|(plane, value)| plane.push(value as f32));
+                let at = place_along(station) * file.length_share(root.to_array());
+                let wide = file.radius_m(at).max(1e-9);
+                let wider = (opened / wide).max(1.0) - 1.0;
+                let half = [wide, file.half_thickness_m(at)];
+                for axis in 0..2 {
+                    self.opening[axis].push((root[axis] * half[axis] * wider) as f32);
+                }
+            }
+        }
+    }
+
+    /// The offsets that bring strips together in clumps: each to the mean of the strips that stand
+    /// nearest to the same seed, the more the nearer to the point.
+    fn clump(&mut self, file: &BrushFile, roots: &[DVec2]) {
+        let clumps = file.strips.clumps.min(self.strips);
+        if clumps == 0 || self.clumping == [0.0; 2] {
+            return;
+        }
+        // Every so-many-th strip of an even sequence is an even sequence; a line is in order.
+        let half = DVec2::new(file.radius_m(0.0), file.half_thickness_m(0.0));
+        let seed = |clump: usize| roots[clump * self.strips / clumps] * half;
+        let distance = |clump: usize, root: DVec2| (seed(clump) - root * half).length_squared();
+        let member: Vec<usize> = roots
+            .iter()
+            .map(|root| {
+                let near =
+                    |a: &usize, b: &usize| distance(*a, *root).total_cmp(&distance(*b, *root));
+                (0..clumps).min_by(near).unwrap_or(0)
+            })
+            .collect();
+        let mut planes = [const { Vec::new() }; 3];
+        for station in 0..STATIONS {
+            let points: Vec<DVec3> = roots
+                .iter()
+                .map(|root| rest_point(file, *root, station))
+                .collect();
+            let mut sums = vec![(DVec3::ZERO, 0.0); clumps];
+            for (point, clump) in points.iter().zip(&member) {
+                sums[*clump] = (sums[*clump].0 + *point, sums[*clump].1 + 1.0);
+            }
+            let share = smoothstep(place_along(station));
+            for (point, clump) in points.iter().zip(&member) {
+                let (sum, count) = sums[*clump];
+                let off = (sum / f64::max(count, 1.0) - *point) * share;
+                for (plane, value) in planes.iter_mut().zip([off.x, off.y, 0.0]) {
+                    plane.push(value as f32);
+                }
+            }
+        }
+        self.clumped = Some(planes);
+    }
+
+    /// Number of strips.
+    #[must_use]
+    pub fn strips(&self) -> usize {
+        self.strips
+    }
+
+    /// Roots in shares of half the ferrule's width and thickness.
+    #[must_use]
+    pub fn roots(&self) -> &[[f32; 2]] {
+        &self.roots
+    }
+
+    /// The strip at a place around the head, 0 to 1 from +x counterclockwise.
+    #[must_use]
+    pub fn strip_around(&self, place: f32) -> usize {
+        let turn = place - place.floor();
+        let number = (turn * self.strips as f32) as usize;
+        self.around[number.min(self.strips - 1)] as usize
+    }
+
+    /// How far each strip keeps off the surface while the head is hardly pressed, 0 to 1.
+    #[must_use]
+    pub fn lift(&self) -> &[f32] {
+        &self.lift
+    }
+
+    /// How much paint each strip takes by the mean of all.
+    #[must_use]
+    pub fn capacity(&self) -> &[f32] {
+        &self.capacity
+    }
+
+    /// The skin, if it has one.
+    #[must_use]
+    pub fn skin(&self) -> Option<&Skin> {
+        self.skin.as_ref()
+    }
+
+    /// Whether a state with this many joint angles belongs to this head.
+    #[must_use]
+    pub fn fits(&self, angles: usize) -> bool {
+        angles == self.joints
+    }
+
+    /// The spines of a hold.
+    fn shapes(&self, hold: &Hold<'_>) -> Vec<SpineShape> {
+        let mut angles = hold.angles;
+        self.seats
+            .iter()
+            .map(|seat| {
+                let held = seat.held(hold.brush);
+                let (own, others) = angles.split_at(seat.spine.joints().min(angles.len()));
+                angles = others;
+                SpineShape::from_angles(held.translation, held.rotation, own)
+            })
+            .collect()
+    }
+
+    /// The strips of a hold, whose state must [`fit`](Self::fits).
+    pub fn pose(&self, hold: &Hold<'_>, into: &mut HeadPose) {
+        let shapes = self.shapes(hold);
+        let spines = self.seats.iter().zip(&shapes);
+        let curves: Vec<Curve> = spines
+            .map(|(seat, shape)| curve(&seat.spine, shape))
+            .collect();
+        let brush = hold.brush;
+        let unbent = brush.point(DVec3::new(0.0, 0.0, -self.length_m));
+        let press = smoothstep(-unbent.z / (OPEN_AT * self.length_m));
+        into.press = press as f32;
+        into.splay = into.press.max(1.0 - 2.0 * hold.wetness);
+        let (mean, tangents) = middle(&curves, brush.vector(DVec3::NEG_Z));
+        let bend = brush.rotation.conjugate() * (mean[STATIONS - 1] - unbent) / self.length_m;
+        into.bend = [bend.x as f32, bend.y as f32];
+        let count = self.strips * STATIONS;
+        for plane in [&mut into.x, &mut into.y, &mut into.z] {
+            plane.resize(count, 0.0);
+        }
+        let clump = self.clumping[0] + (self.clumping[1] - self.clumping[0]) * hold.wetness;
+        let mut off = [const { Vec::new() }; 3];
+        for station in 0..STATIONS {
+            let row = station * self.strips..(station + 1) * self.strips;
+            self.offsets(row.clone(), press as f32, clump, &mut off);
+            let turned = brush.vector(self.rest[station]);
+            let frame = shortest_arc(turned, tangents[station]) * brush.rotation;
+            let frame = DMat3::from_quat(frame) * hold.per_m;
+            for (axis, plane) in [&mut into.x, &mut into.y, &mut into.z]
+                .into_iter()
+                .enumerate()
+            {
+                let floor = if axis == 2 { 0.0 } else { f32::MIN };
+                let turn = [0, 1, 2].map(|i| frame.col(i)[axis] as f32);
+                // Places are kept small until the end: far from the origin f32 is coarse.
+                let center = mean[station][axis];
+                let plane = &mut plane[row.clone()];
+                for (i, p) in plane.iter_mut().enumerate() {
+                    *p = turn[0] * off[0][i] + turn[1] * off[1][i] + turn[2] * off[2][i];
+                }
+                for (curve, weights) in curves.iter().zip(&self.weights) {
+                    let place = ((curve[station][axis] - center) * hold.per_m) as f32;
+                    plane
+                        .iter_mut()
+                        .zip(weights)
+                        .for_each(|(p, w)| *p += w * place);
+                }
+                let center = (center * hold.per_m) as f32;
+                plane.iter_mut().for_each(|p| *p = (*p + center).max(floor));
+            }
+        }
+        into.skin.clear();
+        if let Some(skin) = &self.skin {
+            skin.pose(&self.seats, &shapes, hold.per_m, &mut into.skin);
+        }
+    }
+
+    /// The offsets of a station's strips in the brush frame, m.
+    fn offsets(
+        &self,
+        row: std::ops::Range<usize>,
+        press: f32,
+        clump: f32,
+        into: &mut [Vec<f32>; 3],
+    ) {
+        for (axis, off) in into.iter_mut().enumerate() {
+            off.clear();
+            off.extend_from_slice(&self.closed[axis][row.clone()]);
+            if let Some(opening) = self.opening.get(axis) {
+                let opening = &opening[row.clone()];
+                off.iter_mut()
+                    .zip(opening)
+                    .for_each(|(o, v)| *o += press * v);
+            }
+            if let Some(clumped) = &self.clumped {
+                let clumped = &clumped[axis][row.clone()];
+                off.iter_mut()
+                    .zip(clumped)
+                    .for_each(|(o, v)| *o += clump * v);
+            }
+        }
+    }
+}
+
+/// Numbers of roots by their angle around the middle.
+fn order_around(roots: &[DVec2]) -> Vec<u32> {
+    let turn = |i: u32| {
+        let root = roots[i as usize];
+        atan2(root.y, root.x).rem_euclid(2.0 * std::f64::consts::PI)
+    };
+    let mut order: Vec<u32> = (0..roots.len() as u32).collect();
+    order.sort_by(|a, b| turn(*a).total_cmp(&turn(*b)));
+    order
+}
+
+/// A station's place along a strip, 0 to 1.
+fn place_along(station: usize) -> f64 {
+    station as f64 / (STATIONS - 1) as f64
+}
+
+/// Where the strip with a root is at a station when nothing bends it, brush frame, m.
+fn rest_point(file: &BrushFile, root: DVec2, station: usize) -> DVec3 {
+    let at = place_along(station) * file.length_share(root.to_array());
+    DVec3::new(
+        root.x * file.radius_m(at),
+        root.y * file.half_thickness_m(at),
+        -at * file.length_m(),
+    )
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::file::library::LIBRARY;
+
+    fn head(kind: &str) -> (BrushFile, Head) {
+        let file = BrushFile::library(kind).expect(kind);
+        let head = Head::of(&file);
+        (file, head)
+    }
+
+    /// A head as it rests, with its ferrule at a height.
+    fn rest(kind: &str, height: f64, wetness: f32) -> HeadPose {
+        let (file, head) = head(kind);
+        let brush = Rigid {
+            translation: DVec3::new(0.1, 0.2, height),
+            ..Rigid::IDENTITY
+        };
+        let mut angles = Vec::new();
+        for seat in &file.tuft().seats {
+            seat.at_rest(&brush).angles(&mut angles);
+        }
+        assert!(head.fits(angles.len()));
+        let mut pose = HeadPose::default();
+        let hold = Hold {
+            brush: &brush,
+            angles: &angles,
+            per_m: 1.0,
+            wetness,
+        };
+        head.pose(&hold, &mut pose);
+        pose
+    }
+
+    #[test]
+    fn at_rest_the_strips_fill_the_profile() {
+        for (kind, _) in LIBRARY {
+            let (mut file, _) = head(kind);
+            file.strips.clumping = [0.0; 2];
+            let head = Head::of(&file);
+            let pose = rest(kind, 0.2, 0.0);
+            assert_eq!(pose.press, 0.0);
+            for station in [0, 3, 6] {
+                let row = station * head.strips()..(station + 1) * head.strips();
+                let widest = row
+                    .clone()
+                    .map(|i| (pose.x[i] - 0.1).abs())
+                    .fold(0.0, f32::max);
+                let at = |share: f64| file.radius_m(place_along(station) * share);
+                let shares = file.head.tip.iter().map(|[_, share]| *share);
+                let profile = shares.chain([1.0]).map(at).fold(0.0, f64::max);
+                let share = f64::from(widest) / profile;
+                assert!((0.7..1.06).contains(&share), "{kind} {station}: {share}");
+            }
+            let tip = pose.z.iter().copied().fold(f32::MAX, f32::min);
+            let lowest = 0.2 - file.length_m() as f32;
+            assert!(
+                (tip - lowest).abs() < 0.02 * file.length_m() as f32,
+                "{kind}"
+            );
+        }
+    }
+
+    #[test]
+    fn a_pressed_head_opens_and_stays_above_the_surface() {
+        let (file, _) = head("round");
+        let pose = rest("round", 0.7 * file.length_m(), 0.0);
+        assert!(pose.press > 0.5);
+        assert!(pose.z.iter().all(|z| *z >= 0.0));
+    }
+
+    #[test]
+    fn wet_strips_clump_at_the_point() {
+        let (file, head) = head("fan");
+        assert!(file.strips.clumping[1] > file.strips.clumping[0]);
+        let gaps = |wetness: f32| {
+            let pose = rest("fan", 0.2, wetness);
+            let mut tips = pose.x[(STATIONS - 1) * head.strips()..].to_vec();
+            tips.sort_by(f32::total_cmp);
+            tips.windows(2)
+                .map(|pair| pair[1] - pair[0])
+                .fold(0.0, f32::max)
+        };
+        assert!(gaps(1.0) > 1.3 * gaps(0.0), "{} {}", gaps(1.0), gaps(0.0));
+    }
+
+    #[test]
+    fn the_seed_places_the_strips() {
+        let (mut file, head) = head("round");
+        assert_eq!(Head::of(&file).lift, head.lift);
+        file.strips.seed += 1;
+        assert_ne!(Head::of(&file).lift, head.lift);
+    }
+}

@@ -1,0 +1,162 @@
+//! What a joint has to do with a wall: whether it touches, sticks or slides.
+
+use glam::DVec3;
+
+use super::Settings;
+use crate::energy::friction::{Anisotropy, Friction, friction};
+use crate::spine::{Spine, SpineShape};
+
+/// A sticking contact has broken loose where it slipped by more than this many times the rounding of
+/// friction: its force is then within .5 % of its bound.
+const LOOSE: f64 = 10.0;
+/// A sliding contact sticks where it slipped by less than this many times the rounding.
+const STUCK: f64 = 3.0;
+
+/// A half-space that joints stay in: n·x ≥ offset.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Wall {
+    /// Unit normal, out of the wall.
+    pub normal: DVec3,
+    /// Its distance from the origin along the normal, m.
+    pub offset_m: f64,
+}
+
+impl Wall {
+    /// The surface z = 0.
+    pub const SURFACE: Self = Self {
+        normal: DVec3::Z,
+        offset_m: 0.0,
+    };
+
+    /// Distance of a point, negative within, m.
+    #[must_use]
+    pub fn gap(&self, p: DVec3) -> f64 {
+        self.normal.dot(p) - self.offset_m
+    }
+
+    fn along(&self, v: DVec3) -> DVec3 {
+        v - self.normal * self.normal.dot(v)
+    }
+}
+
+/// A joint's far end and a wall that it stays out of.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Stop {
+    /// The joint.
+    pub joint: usize,
+    /// The wall.
+    pub wall: Wall,
+    /// Normal force, N: the multiplier of the constraint, 0 in the air.
+    pub force_n: f64,
+    /// Where it touched, or where it began to stick; none if it was in the air.
+    pub anchor: Option<DVec3>,
+    /// Whether it sticks: the coefficient of friction is then the static one.
+    pub sticks: bool,
+    /// d_p of Baxter 2004, eq. 3.14.
+    preferred: DVec3,
+}
+
+impl Stop {
+    /// A joint that does not touch.
+    #[must_use]
+    pub fn new(joint: usize, wall: Wall) -> Self {
+        Self {
+            joint,
+            wall,
+            force_n: 0.0,
+            anchor: None,
+            sticks: false,
+            preferred: DVec3::ZERO,
+        }
+    }
+
+    /// One for each joint of a spine against the surface z = 0.
+    #[must_use]
+    pub fn on_surface(joints: usize) -> Vec<Self> {
+        (0..joints)
+            .map(|joint| Self::new(joint, Wall::SURFACE))
+            .collect()
+    }
+
+    /// Whether it touches.
+    #[must_use]
+    pub fn touches(&self) -> bool {
+        self.force_n > 0.0
+    }
+
+    /// Puts it into the air.
+    pub fn clear(&mut self) {
+        *self = Self::new(self.joint, self.wall);
+    }
+
+    /// Notes which way its segment points: the unit projection onto the wall of the way from the end
+    /// of the segment to its root.
+    pub fn aim(&mut self, spine: &Spine, shape: &SpineShape) {
+        let back = -shape.directions[self.joint];
+        let lies = self.wall.along(back);
+        let short = 1e-6 * spine.lengths_m[self.joint];
+        self.preferred = if lies.length() > short {
+            lies.normalize()
+        } else {
+            DVec3::ZERO
+        };
+    }
+
+    /// The friction of a joint that is at `p`.
+    pub(super) fn friction(&self, p: DVec3, settings: &Settings) -> Option<Friction> {
+        let slip = self.wall.along(p - self.anchor?);
+        let coefficient = if self.sticks {
+            settings.friction_static.max(settings.friction)
+        } else {
+            settings.friction
+        };
+        let anisotropy = Anisotropy {
+            preferred: self.preferred,
+            ..settings.anisotropy
+        };
+        let weight = coefficient * self.force_n;
+        Some(friction(
+            weight,
+            slip,
+            self.wall.normal,
+            settings.epsilon_m,
+            &anisotropy,
+        ))
+    }
+
+    /// Frees the contact of a joint at `p` that has lifted or broken loose; whether it has.
+    pub(super) fn let_go(&mut self, force_n: f64, p: DVec3, settings: &Settings) -> bool {
+        let Some(anchor) = self.anchor else {
+            return false;
+        };
+        if force_n <= 0.0 {
+            self.clear();
+            return true;
+        }
+        let loose = self.wall.along(p - anchor).length() > LOOSE * settings.epsilon_m;
+        let breaks = self.sticks && loose;
+        self.sticks &= !loose;
+        breaks && settings.friction_static > settings.friction
+    }
+
+    /// Notes what came of a solve that put the joint to `p`.
+    pub(super) fn settle(&mut self, force_n: f64, p: DVec3, settings: &Settings) {
+        if force_n <= 0.0 {
+            self.clear();
+            return;
+        }
+        self.force_n = force_n;
+        match self.anchor {
+            Some(_) if self.sticks => {}
+            Some(anchor) => {
+                let slip = self.wall.along(p - anchor).length();
+                self.sticks = slip < STUCK * settings.epsilon_m;
+                self.anchor = Some(p);
+            }
+            None => {
+                self.sticks = true;
+                self.anchor = Some(p);
+            }
+        }
+    }
+}
