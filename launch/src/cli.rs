@@ -3,7 +3,9 @@
 use clap::{Parser, Subcommand};
 use maulstick_rig::Fault;
 
-use crate::commands::{bench, control, demo, endpoint, import, paints, render, schema, take};
+use crate::commands::{
+    bench, brush, control, demo, endpoint, import, paints, render, schema, take,
+};
 use crate::up;
 
 /// A painting rig that you can feel
@@ -43,6 +45,9 @@ enum Command {
     Endpoint(endpoint::EndpointOptions),
     /// Prints the messages of the rig
     Schema(schema::SchemaOptions),
+    /// Shows the brushes
+    #[command(subcommand)]
+    Brush(brush::BrushCommand),
     /// Lists the paints
     Paints(paints::PaintsOptions),
     /// Measures, beside peers
@@ -68,6 +73,7 @@ pub fn run() -> Result<i32, Fault> {
         Command::Snapshot(options) => control::snapshot(&options),
         Command::Endpoint(options) => endpoint::run(&options),
         Command::Schema(options) => schema::run(&options),
+        Command::Brush(command) => brush::run(&command),
         Command::Paints(options) => paints::run(&options),
         Command::Bench(options) => bench::run(&options),
     }

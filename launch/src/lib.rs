@@ -6,12 +6,14 @@
 //! | [`commands`] | what its subcommands do |
 //! | [`up`] | the supervisor |
 //! | [`nodes`] | the mains of the nodes |
+//! | [`sheet`] | the sheet of brushes and their marks |
 //! | [`performance`] | what `render` and `up --play` share: take, brush, loads, canvas |
 
 pub mod cli;
 pub mod commands;
 pub mod nodes;
 pub mod performance;
+pub mod sheet;
 pub mod up;
 
 use maulstick_rig::Fault;

@@ -77,6 +77,7 @@ impl Brushes {
             to_window: &|local| to_window(local.map(f64::from)),
             scale: view.scale as f32,
             bristle_m: held.file.strips.width_mm as f32 * 1e-3,
+            hair: held.file.head.hair,
             toward: lamp.toward,
         };
         let slots = self

@@ -2,10 +2,18 @@
 
 use eframe::egui::{Color32, Mesh, Pos2, Vec2, vec2};
 use maulstick_brush::HeadPose;
+use maulstick_brush::file::sections::Hair;
 
-/// Hog bristle in the light and in the depth of the tuft, sRGB.
-const LIGHT: [f32; 3] = [238.0, 214.0, 170.0];
-const DARK: [f32; 3] = [112.0, 82.0, 52.0];
+/// Bristles in the light and in the depth of the tuft, sRGB.
+const fn colours(hair: Hair) -> [[f32; 3]; 2] {
+    match hair {
+        Hair::Hog => [[238.0, 214.0, 170.0], [112.0, 82.0, 52.0]],
+        Hair::Sable => [[186.0, 112.0, 66.0], [62.0, 30.0, 18.0]],
+        Hair::Badger => [[226.0, 222.0, 214.0], [72.0, 66.0, 62.0]],
+        Hair::Steel => [[226.0, 230.0, 235.0], [136.0, 141.0, 148.0]],
+    }
+}
+
 /// Bristles farther below the middle of the tuft than this, by its radius, are under others.
 const UNDER: f32 = -0.5;
 /// Half the width of the soft edge of a ribbon, points.
@@ -19,6 +27,8 @@ pub struct HeadView<'a> {
     pub scale: f32,
     /// Width of a strip, m.
     pub bristle_m: f32,
+    /// What they look like.
+    pub hair: Hair,
     /// Unit vector toward the lamp, surface frame.
     pub toward: [f32; 3],
 }
@@ -66,7 +76,11 @@ pub fn ribbons(pose: &HeadPose, strips: usize, view: &HeadView<'_>) -> Mesh {
             let normal = across(&points, station);
             let along = station as f32 / (stations - 1) as f32;
             let light = middles[station].light(at(station, strip), view.toward);
-            let colour = shade(light, along, unruly(strip));
+            let own = match view.hair {
+                Hair::Steel => 0.0,
+                Hair::Hog | Hair::Sable | Hair::Badger => unruly(strip),
+            };
+            let colour = shade(view.hair, light, along, own);
             for (reach, alpha) in columns {
                 let place = points[station] + normal * *reach;
                 mesh.colored_vertex(place, with_alpha(colour, *alpha));
@@ -136,9 +150,10 @@ fn unruly(strip: usize) -> f32 {
 }
 
 /// The colour in `light` 0 to 1 at a place along a bristle, whose tip is flagged and lighter.
-fn shade(light: f32, along: f32, own: f32) -> [f32; 3] {
+fn shade(hair: Hair, light: f32, along: f32, own: f32) -> [f32; 3] {
+    let [bright, dark] = colours(hair);
     let t = (light * (0.85 + 0.15 * along) + 0.22 * own).clamp(0.0, 1.0);
-    std::array::from_fn(|i| DARK[i] + (LIGHT[i] - DARK[i]) * t)
+    std::array::from_fn(|i| dark[i] + (bright[i] - dark[i]) * t)
 }
 
 fn with_alpha(colour: [f32; 3], alpha: f32) -> Color32 {
@@ -168,6 +183,7 @@ mod tests {
             to_window: &to_window,
             scale: 1000.0,
             bristle_m: 4e-3,
+            hair: Hair::Hog,
             toward,
         };
         ribbons(pose, 2, &view)

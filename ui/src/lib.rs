@@ -11,6 +11,7 @@
 //! | [`follow`] | the brushes as they are now: newest sample, newest bend |
 //! | [`brush_shape`] | ferrule, handle and shadow |
 //! | [`brushes`], [`draw_head`], [`draw_brush`] | how it is drawn |
+//! | [`portrait`] | a brush as a picture |
 //! | [`gpu`] | the graphics device |
 //! | [`mouse`] | the mouse as a stylus |
 
@@ -25,6 +26,7 @@ pub mod frames;
 pub mod gpu;
 pub mod light_surface;
 pub mod mouse;
+pub mod portrait;
 pub mod show_surface;
 pub mod surface;
 pub mod view;

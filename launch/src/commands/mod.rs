@@ -1,6 +1,7 @@
 //! The subcommands, one file each.
 
 pub mod bench;
+pub mod brush;
 pub mod control;
 pub mod demo;
 pub mod endpoint;

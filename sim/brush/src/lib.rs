@@ -10,6 +10,7 @@
 //! | [`tuft`] | where the spines stand in the ferrule |
 //! | [`energy`] | spring, friction, damping, crowd: value, gradient, Hessian |
 //! | [`qp`] | the quadratic program of one Newton step |
+//! | [`blocks`] | symmetric matrices with a block for each pair of segments |
 //! | [`solver`] | the constrained minimum; a whole solve reads from top to bottom |
 //! | [`head`] | the bristle strips between the spines |
 //! | [`skin`] | the surface around them |
@@ -19,7 +20,9 @@
 //! | [`held`] | the spines of a brush in the hand, among walls and each other |
 //! | [`feel`] | what the hand feels of it |
 //! | [`model`] | the brush that follows a stylus |
+//! | [`trial`] | one spine by itself, from a file and a list of poses |
 
+pub mod blocks;
 pub mod desk;
 pub mod energy;
 pub mod feel;
@@ -32,6 +35,7 @@ pub mod skin;
 pub mod solver;
 pub mod spine;
 pub mod subdivide;
+pub mod trial;
 pub mod tuft;
 pub mod way;
 

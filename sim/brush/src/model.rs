@@ -327,8 +327,9 @@ impl BrushModel {
     }
 }
 
-/// What the solver is asked for by a brush file.
-fn settings_of(file: &BrushFile, tuft: &Tuft) -> Settings {
+/// What the solver is asked for by a brush file with this tuft.
+#[must_use]
+pub fn settings_of(file: &BrushFile, tuft: &Tuft) -> Settings {
     let contact = &file.contact;
     Settings {
         friction: contact.friction,

@@ -185,11 +185,21 @@ impl SpineShape {
     /// The shape of given angles in a frame of orientation `orientation`.
     #[must_use]
     pub fn from_angles(root: DVec3, orientation: DQuat, angles: &[[f32; 2]]) -> Self {
+        let exact = angles.iter().map(|angles| angles.map(f64::from));
+        Self::from_exact_angles(root, orientation, exact)
+    }
+
+    /// The shape of given angles, rad, in a frame of orientation `orientation`.
+    #[must_use]
+    pub fn from_exact_angles(
+        root: DVec3,
+        orientation: DQuat,
+        angles: impl Iterator<Item = [f64; 2]>,
+    ) -> Self {
         let mut frame = orientation * BRUSH_TO_SPINE;
         let directions = angles
-            .iter()
             .map(|angles| {
-                frame = (frame * bend(angles.map(f64::from))).normalize();
+                frame = (frame * bend(angles)).normalize();
                 frame * DVec3::Z
             })
             .collect();

@@ -28,7 +28,13 @@ fn a_straight_spine_above_the_surface_stays_straight() {
 /// spine has begun to bow, and its normal force is close to that load.
 #[test]
 fn buckling_loads() {
-    for (joints, critical) in [(1, 1.0), (2, 1.527_864), (3, 1.782_560), (5, 2.025_351)] {
+    for (joints, critical) in [
+        (1, 1.0),
+        (2, 1.527_864),
+        (3, 1.782_560),
+        (5, 2.025_351),
+        (10, 2.233_835),
+    ] {
         let (length, ei) = (1.0, 1.0);
         let stiffness = vec![ei * joints as f64 / length; joints];
         let spine = Spine {

@@ -65,6 +65,33 @@ impl Offline {
         Ok(offline)
     }
 
+    /// Puts the brush down and takes up another one, clean.
+    ///
+    /// # Errors
+    /// [`PaintRefusal`] where the painting refuses it.
+    pub fn take_up(
+        &mut self,
+        brush: &str,
+        file: BrushFile,
+        depth_share: f64,
+    ) -> Result<(), PaintRefusal> {
+        self.model = BrushModel::new(file.clone(), depth_share);
+        self.sequencer.painting_mut().define_brush(brush, file);
+        self.brush = brush.to_owned();
+        self.me = Origin {
+            source: name_hash(brush),
+            epoch: self.me.epoch + 1,
+        };
+        self.next = 0;
+        let (device, device_epoch) = (self.player.source, self.player.epoch);
+        self.command(Command::Take {
+            brush: brush.to_owned(),
+            device,
+            device_epoch,
+            loads: Vec::new(),
+        })
+    }
+
     /// Does a command now.
     ///
     /// # Errors

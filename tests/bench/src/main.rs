@@ -2,11 +2,13 @@
 //!
 //! | module | area |
 //! | --- | --- |
+//! | [`brush`] | `brush`: the solver of the spines beside slsqp, a head, its strips |
 //! | [`bus`] | `bus`: a sample from a device to the brush node, beside a bare zenoh put |
 //! | [`latency`] | `latency`: from a stylus sample to the first frame that holds it |
 //! | [`render`] | `render`: the 30 s recording, offline |
 //! | [`report`] | rows and their table |
 
+mod brush;
 mod bus;
 mod latency;
 mod render;
@@ -21,7 +23,7 @@ use crate::report::Report;
 #[derive(Parser)]
 #[command(name = "maulstick-bench", version)]
 struct Options {
-    /// What to measure: bus, latency, render; everything if absent
+    /// What to measure: brush, bus, latency, render; everything if absent
     area: Option<String>,
     /// As JSON
     #[arg(long)]
@@ -34,7 +36,8 @@ struct Options {
 /// An area's name and what measures it.
 type Area = (&'static str, fn(&mut Report) -> Result<(), Fault>);
 
-const AREAS: [Area; 3] = [
+const AREAS: [Area; 4] = [
+    ("brush", brush::run),
     ("bus", bus::run),
     ("latency", latency::run),
     ("render", render::run),

@@ -85,7 +85,7 @@ impl Report {
     pub(crate) fn print_table(&self) {
         println!("{}", self.machine);
         for row in &self.rows {
-            print!("{:<28} {:>12.4} {:<8}", row.name, row.value, row.unit);
+            print!("{:<28} {:>12} {:<8}", row.name, short(row.value), row.unit);
             match (row.peer, row.peer_value, row.ratio) {
                 (Some(peer), Some(value), Some(ratio)) => {
                     println!(" {peer} {value:.4}, ratio {ratio:.3}");
@@ -93,6 +93,15 @@ impl Report {
                 _ => println!(),
             }
         }
+    }
+}
+
+/// A number in four decimals, or in four digits where these would not show it.
+fn short(value: f64) -> String {
+    if value == 0.0 || value.abs() >= 1e-2 {
+        format!("{value:.4}")
+    } else {
+        format!("{value:.3e}")
     }
 }
 

@@ -13,6 +13,21 @@ pub enum Outline {
     Flat,
 }
 
+/// What bristles look like.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Hair {
+    /// Hog bristle: straw.
+    #[default]
+    Hog,
+    /// Sable and its like: red brown.
+    Sable,
+    /// Badger: grey with light points.
+    Badger,
+    /// The steel of a palette knife.
+    Steel,
+}
+
 /// The head's shape.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -20,6 +35,9 @@ pub struct Head {
     /// The outline of the ferrule.
     #[serde(default)]
     pub outline: Outline,
+    /// What its bristles look like.
+    #[serde(default)]
+    pub hair: Hair,
     /// Widest, mm.
     pub width_mm: f64,
     /// Thickest, mm; as wide if absent.

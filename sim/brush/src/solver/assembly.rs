@@ -3,274 +3,361 @@
 //! Directions are unit vectors: with T_j a basis of the tangent plane at d_j, a small change is
 //! δd_j = T_j·u_j. Gradient and Hessian are in the u_j, the curvature of the sphere included, so that
 //! a Newton step on them converges quadratically.
+//!
+//! [`look`](Solver::look) is what every trial of the line search needs, and
+//! [`assemble`](Solver::assemble) what only the next step does.
 
-use glam::{DMat3, DVec3};
+use glam::{DMat2, DMat3, DVec2, DVec3};
 
-use super::{Energy, Problem, Solver, Stop};
+use super::{Energy, Model, Problem, Solver, Stop, Tangents};
 use crate::energy::crowd::crowd;
 use crate::energy::damping::damping;
-use crate::energy::spring::{Bend, bent, rest_after, spring, straight};
+use crate::energy::spring::{bent, rest_after, spring, straight};
 use crate::spine::{Spine, SpineShape};
 
 impl Solver {
-    /// Gaps, gradient and Hessian of the energy at `shape`.
-    pub(super) fn evaluate(
+    /// Energy, its derivatives in space, and gaps at `shape`.
+    pub(super) fn look(
         &mut self,
         problem: Problem<'_>,
         shape: &SpineShape,
         stops: &[Stop],
     ) -> Energy {
         let spine = problem.spine;
-        let (n, size) = (spine.joints(), 2 * spine.joints());
-        self.tangents.clear();
-        self.tangents.extend(shape.directions.iter().map(|d| {
-            let (s, t) = d.any_orthonormal_pair();
-            [s, t]
-        }));
-        self.slopes.clear();
-        self.slopes.resize(n, DVec3::ZERO);
-        self.hessian.clear();
-        self.hessian.resize(size * size, 0.0);
-        shape.joints(spine, &mut self.ends);
+        shape.joints(spine, &mut self.point.ends);
+        self.point.slopes.clear();
+        self.point.slopes.resize(spine.joints(), DVec3::ZERO);
         let mut energy = Energy {
-            spring: self.add_springs(spine, shape),
+            spring: self.look_at_springs(spine, shape),
             ..Energy::default()
         };
         if self.damped {
-            energy.damping = self.add_damping(spine, shape);
+            energy.damping = self.look_at_dampers(spine, shape);
         }
-        self.add_outside(problem, stops, &mut energy);
-        self.pull(spine);
-        self.project(shape);
-        self.constrain(spine, stops);
+        self.look_outside(problem, stops, &mut energy);
+        let point = &mut self.point;
+        point.gaps.clear();
+        let ends = &point.ends;
+        let gaps = stops.iter().map(|stop| stop.wall.gap(ends[stop.joint]));
+        point.gaps.extend(gaps);
+        // What acts on the end of a segment acts on all segments above it too.
+        let mut force = DVec3::ZERO;
+        let segments = point.slopes.iter_mut().zip(&point.pulls);
+        for ((slope, pull), length) in segments.zip(&spine.lengths_m).rev() {
+            force += pull.0;
+            *slope += force * *length;
+        }
         energy
     }
 
-    /// The bend of joint `i` between `before` and `d`.
-    fn bend(&self, base: DVec3, i: usize, before: DVec3, d: DVec3) -> Bend {
-        match self.rest.get(i) {
-            Some(rest) => bent(base, *rest, before, d),
-            None => straight(before, d),
-        }
-    }
-
-    fn add_springs(&mut self, spine: &Spine, shape: &SpineShape) -> f64 {
-        let (size, base) = (self.tangents.len() * 2, shape.base());
+    fn look_at_springs(&mut self, spine: &Spine, shape: &SpineShape) -> f64 {
+        let (point, base) = (&mut self.point, shape.base());
         let (mut value, mut before) = (0.0, base);
+        point.bends.clear();
         for (i, d) in shape.directions.iter().enumerate() {
-            let bend = self.bend(base, i, before, *d);
-            let f = spring(spine.stiffness[i], bend.rest, *d);
+            let (rest, by_before) = match self.rest.get(i) {
+                None => (before, *d),
+                Some(rest) if i == 0 => (rest_after(base, *rest, before), DVec3::ZERO),
+                Some(rest) => {
+                    let bend = bent(base, *rest, before, *d);
+                    (bend.rest, bend.by_before)
+                }
+            };
+            let f = spring(spine.stiffness[i], rest, *d);
             value += f.value;
-            self.slopes[i] += bend.rest * f.first;
-            let own = self.tangents[i].map(|t| t.dot(bend.rest));
-            for a in 0..2 {
-                for b in 0..2 {
-                    self.hessian[(2 * i + a) * size + 2 * i + b] += f.second * own[a] * own[b];
-                }
-            }
+            point.slopes[i] += rest * f.first;
             if i > 0 {
-                self.slopes[i - 1] += bend.by_before * f.first;
-                let other = self.tangents[i - 1].map(|t| t.dot(bend.by_before));
-                for (a, ta) in self.tangents[i - 1].into_iter().enumerate() {
-                    let p = 2 * (i - 1) + a;
-                    for (b, tb) in self.tangents[i].into_iter().enumerate() {
-                        let mixed = bend.bent.map_or(ta.dot(tb), |bent| tb.dot(bent.mixed * ta));
-                        let value = f.second * other[a] * own[b] + f.first * mixed;
-                        let q = 2 * i + b;
-                        self.hessian[p * size + q] += value;
-                        self.hessian[q * size + p] += value;
-                    }
-                    for (b, tb) in self.tangents[i - 1].into_iter().enumerate() {
-                        let curved = bend.bent.map_or(0.0, |bent| ta.dot(bent.by_before * tb));
-                        self.hessian[p * size + 2 * (i - 1) + b] +=
-                            f.second * other[a] * other[b] + f.first * curved;
-                    }
-                }
+                point.slopes[i - 1] += by_before * f.first;
             }
+            point.bends.push(f);
             before = *d;
         }
         value
     }
 
-    /// Adds inner friction, which acts between neighbours: v = d_i − d_{i−1} − the chord before.
-    fn add_damping(&mut self, spine: &Spine, shape: &SpineShape) -> f64 {
-        let size = self.tangents.len() * 2;
-        let mut value = 0.0;
-        for i in 0..spine.joints() {
-            let above = i.checked_sub(1);
-            let start = above.map_or(shape.base(), |j| shape.directions[j]);
-            let v = shape.directions[i] - start - self.chords[i];
-            let f = damping(spine.damping[i], v);
+    /// Inner friction, which acts between neighbours: v = d_i − d_{i−1} − the chord before.
+    fn look_at_dampers(&mut self, spine: &Spine, shape: &SpineShape) -> f64 {
+        let point = &mut self.point;
+        let (mut value, mut before) = (0.0, shape.base());
+        point.dampers.clear();
+        for (i, d) in shape.directions.iter().enumerate() {
+            let f = damping(spine.damping[i], *d - before - self.chords[i]);
             value += f.value;
-            // Each segment that moves, with the sign of its part in v.
-            let parts = [(Some(i), 1.0), (above, -1.0)];
-            for (j, sign) in parts.into_iter().filter_map(|(j, sign)| Some((j?, sign))) {
-                self.slopes[j] += f.torque * sign;
-                for (a, ta) in self.tangents[j].into_iter().enumerate() {
-                    let p = 2 * j + a;
-                    for (k, other) in parts.into_iter().filter_map(|(k, sign)| Some((k?, sign))) {
-                        for (b, tb) in self.tangents[k].into_iter().enumerate() {
-                            let bent = f.across * ta.dot(tb) - f.along * v.dot(ta) * v.dot(tb);
-                            self.hessian[p * size + 2 * k + b] += sign * other * bent;
-                        }
-                    }
-                }
+            point.slopes[i] += f.torque;
+            if i > 0 {
+                point.slopes[i - 1] -= f.torque;
             }
+            point.dampers.push(f);
+            before = *d;
         }
         value
     }
 
     /// What acts on the ends of segments: friction and neighbours.
-    fn add_outside(&mut self, problem: Problem<'_>, stops: &[Stop], energy: &mut Energy) {
-        self.pulls.clear();
-        self.pulls
-            .resize(self.ends.len(), (DVec3::ZERO, DMat3::ZERO));
+    fn look_outside(&mut self, problem: Problem<'_>, stops: &[Stop], energy: &mut Energy) {
+        let point = &mut self.point;
+        point.pulls.clear();
+        let none = (DVec3::ZERO, DMat3::ZERO);
+        point.pulls.resize(point.ends.len(), none);
         for stop in stops {
-            if let Some(f) = stop.friction(self.ends[stop.joint], problem.settings) {
+            if let Some(f) = stop.friction(point.ends[stop.joint], problem.settings) {
                 energy.friction += f.value;
-                let pull = &mut self.pulls[stop.joint];
+                let pull = &mut point.pulls[stop.joint];
                 *pull = (pull.0 + f.force, pull.1 + f.hessian);
             }
         }
         for other in problem.neighbours {
-            let way = self.ends[other.joint] - other.at;
+            let way = point.ends[other.joint] - other.at;
             if let Some(f) = crowd(problem.settings.crowd_n_m, way, other.at_rest_m) {
                 energy.crowd += f.value;
-                let pull = &mut self.pulls[other.joint];
+                let pull = &mut point.pulls[other.joint];
                 *pull = (pull.0 + f.force, pull.1 + f.hessian);
             }
         }
     }
 
-    /// Hands what acts on the end of a segment to all segments above it.
-    fn pull(&mut self, spine: &Spine) {
-        let size = self.tangents.len() * 2;
-        let (mut force, mut stiffness) = (DVec3::ZERO, DMat3::ZERO);
+    /// ‖∇L‖∞, L = E − Σλ_i·gap_i with the multipliers at hand: the longest of the segments' gradients
+    /// in their tangent planes, N·m.
+    pub(super) fn residual(&mut self, spine: &Spine, shape: &SpineShape, stops: &[Stop]) -> f64 {
+        let point = &mut self.point;
+        point.lagrangian.clear();
+        point.lagrangian.resize(spine.joints(), DVec3::ZERO);
+        for (stop, push) in stops.iter().zip(&self.multipliers) {
+            point.lagrangian[stop.joint] -= stop.wall.normal * *push;
+        }
+        let (mut pushes, mut worst) = (DVec3::ZERO, 0.0);
+        for (j, slope) in point.slopes.iter().enumerate().rev() {
+            pushes += point.lagrangian[j];
+            let gradient = *slope + pushes * spine.lengths_m[j];
+            let d = shape.directions[j];
+            let across = gradient - d * gradient.dot(d);
+            worst = f64::max(worst, across.length());
+            point.lagrangian[j] = gradient;
+        }
+        worst
+    }
+
+    /// The quadratic model at the shape last looked at.
+    pub(super) fn assemble(&mut self, spine: &Spine, shape: &SpineShape) {
+        let (model, point) = (&mut self.model, &self.point);
+        let n = spine.joints();
+        model.tangents.clear();
+        let pairs = shape.directions.iter().map(|d| d.any_orthonormal_pair());
+        model.tangents.extend(pairs.map(|(s, t)| Tangents(s, t)));
+        model.gradient.clear();
+        let segments = model.tangents.iter().zip(&point.slopes);
+        let gradient = segments.map(|(tangents, slope)| tangents.of(*slope));
+        model.gradient.extend(gradient);
+        model.hessian.clear();
+        model.hessian.resize(n * n, DMat2::ZERO);
+        // The sphere's curvature, with that of the constraints.
+        for (j, d) in shape.directions.iter().enumerate() {
+            let curved = -point.lagrangian[j].dot(*d);
+            model.hessian[j * n + j] = DMat2::from_diagonal(DVec2::splat(curved));
+        }
+        self.assemble_springs(shape);
+        if self.damped {
+            self.assemble_dampers(shape);
+        }
+        self.assemble_pulls(spine);
+    }
+
+    fn assemble_springs(&mut self, shape: &SpineShape) {
+        let base = shape.base();
+        let mut before = base;
+        for (i, d) in shape.directions.iter().enumerate() {
+            let bend = match self.rest.get(i) {
+                Some(rest) => bent(base, *rest, before, *d),
+                None => straight(before, *d),
+            };
+            let f = self.point.bends[i];
+            let here = self.model.tangents[i];
+            let own = here.of(bend.rest);
+            self.model.add(i, i, outer(own * f.second, own));
+            if i > 0 {
+                let above = self.model.tangents[i - 1];
+                let other = above.of(bend.by_before);
+                let mut mixed = outer(other * f.second, own);
+                let mut curved = outer(other * f.second, other);
+                match &bend.bent {
+                    None => mixed += product(above, here.0, here.1) * f.first,
+                    Some(bent) => {
+                        let turned = bent.mixed.transpose();
+                        mixed += product(above, turned * here.0, turned * here.1) * f.first;
+                        let by_before = bent.by_before * f.first;
+                        curved += product(above, by_before * above.0, by_before * above.1);
+                    }
+                }
+                self.model.add(i - 1, i, mixed);
+                self.model.add(i - 1, i - 1, curved);
+            }
+            before = *d;
+        }
+    }
+
+    fn assemble_dampers(&mut self, shape: &SpineShape) {
+        let mut before = shape.base();
+        for (i, d) in shape.directions.iter().enumerate() {
+            let f = self.point.dampers[i];
+            let v = *d - before - self.chords[i];
+            let here = self.model.tangents[i];
+            let level = DMat2::from_diagonal(DVec2::splat(f.across));
+            let along = here.of(v);
+            self.model.add(i, i, level - outer(along * f.along, along));
+            if i > 0 {
+                let above = self.model.tangents[i - 1];
+                let other = above.of(v);
+                let mixed = product(above, here.0, here.1) * f.across;
+                self.model
+                    .add(i - 1, i, outer(other * f.along, along) - mixed);
+                self.model
+                    .add(i - 1, i - 1, level - outer(other * f.along, other));
+            }
+            before = *d;
+        }
+    }
+
+    /// What acts on the end of a segment couples all segments above it.
+    fn assemble_pulls(&mut self, spine: &Spine) {
+        let mut stiffness = DMat3::ZERO;
         let mut acts = false;
-        for j in (0..self.pulls.len()).rev() {
-            let (own_force, own_stiffness) = self.pulls[j];
-            if own_stiffness != DMat3::ZERO {
+        for (j, (_, own)) in self.point.pulls.iter().enumerate().rev() {
+            if *own != DMat3::ZERO {
                 acts = true;
-                force += own_force;
-                stiffness += own_stiffness;
+                stiffness += *own;
             }
             if !acts {
                 continue;
             }
-            let length = spine.lengths_m[j];
-            self.slopes[j] += force * length;
-            for (a, ta) in self.tangents[j].into_iter().enumerate() {
-                let p = 2 * j + a;
-                let along = stiffness * (ta * length);
-                for k in 0..=j {
-                    for (b, tb) in self.tangents[k].into_iter().enumerate() {
-                        let q = 2 * k + b;
-                        let coupling = spine.lengths_m[k] * along.dot(tb);
-                        self.hessian[p * size + q] += coupling;
-                        if k < j {
-                            self.hessian[q * size + p] += coupling;
-                        }
-                    }
-                }
+            let scaled = stiffness * spine.lengths_m[j];
+            let here = self.model.tangents[j];
+            let (s, t) = (scaled * here.0, scaled * here.1);
+            for k in 0..=j {
+                let above = self.model.tangents[k];
+                let block = product(above, s, t) * spine.lengths_m[k];
+                self.model.add(k, j, block);
             }
         }
-    }
-
-    /// The gradient on the sphere, and the sphere's curvature in the Hessian.
-    fn project(&mut self, shape: &SpineShape) {
-        let size = self.tangents.len() * 2;
-        self.gradient.clear();
-        for (j, slope) in self.slopes.iter().enumerate() {
-            let curved = slope.dot(shape.directions[j]);
-            for (a, t) in self.tangents[j].iter().enumerate() {
-                self.gradient.push(slope.dot(*t));
-                self.hessian[(2 * j + a) * size + 2 * j + a] -= curved;
-            }
-        }
-    }
-
-    /// The gaps and their derivatives.
-    fn constrain(&mut self, spine: &Spine, stops: &[Stop]) {
-        let size = self.tangents.len() * 2;
-        self.gap.clear();
-        self.rows.clear();
-        self.rows.resize(stops.len() * size, 0.0);
-        for (stop, row) in stops.iter().zip(self.rows.chunks_exact_mut(size)) {
-            self.gap.push(stop.wall.gap(self.ends[stop.joint]));
-            let below = self.tangents.iter().zip(&spine.lengths_m);
-            for (j, (tangents, length)) in below.enumerate().take(stop.joint + 1) {
-                row[2 * j] = length * tangents[0].dot(stop.wall.normal);
-                row[2 * j + 1] = length * tangents[1].dot(stop.wall.normal);
-            }
-        }
-    }
-
-    /// Adds the curvature of the constraints: −Σλ_i·∇²gap_i.
-    pub(super) fn curvature(&mut self, spine: &Spine, shape: &SpineShape, stops: &[Stop]) {
-        let size = self.tangents.len() * 2;
-        self.model.clear();
-        self.model.extend_from_slice(&self.hessian);
-        for (stop, force) in stops.iter().zip(&self.multipliers) {
-            if *force == 0.0 {
-                continue;
-            }
-            for j in 0..=stop.joint {
-                let lies = shape.directions[j].dot(stop.wall.normal);
-                let value = force * spine.lengths_m[j] * lies;
-                self.model[2 * j * size + 2 * j] += value;
-                self.model[(2 * j + 1) * size + 2 * j + 1] += value;
-            }
-        }
-    }
-
-    /// Energy and gaps of the trial.
-    pub(super) fn value(
-        &mut self,
-        problem: Problem<'_>,
-        shape: &SpineShape,
-        stops: &[Stop],
-    ) -> Energy {
-        let spine = problem.spine;
-        let mut energy = Energy::default();
-        place(shape.root, &self.trial, spine, &mut self.trial_ends);
-        let base = shape.base();
-        let mut above = base;
-        for (i, d) in self.trial.iter().enumerate() {
-            let rest = match self.rest.get(i) {
-                Some(rest) => rest_after(base, *rest, above),
-                None => above,
-            };
-            energy.spring += spring(spine.stiffness[i], rest, *d).value;
-            if self.damped {
-                let v = *d - above - self.chords[i];
-                energy.damping += damping(spine.damping[i], v).value;
-            }
-            above = *d;
-        }
-        self.trial_gap.clear();
-        for stop in stops {
-            let p = self.trial_ends[stop.joint];
-            self.trial_gap.push(stop.wall.gap(p));
-            if let Some(f) = stop.friction(p, problem.settings) {
-                energy.friction += f.value;
-            }
-        }
-        for other in problem.neighbours {
-            let way = self.trial_ends[other.joint] - other.at;
-            if let Some(f) = crowd(problem.settings.crowd_n_m, way, other.at_rest_m) {
-                energy.crowd += f.value;
-            }
-        }
-        energy
     }
 }
 
-/// The ends of segments.
-fn place(root: DVec3, directions: &[DVec3], spine: &Spine, into: &mut Vec<DVec3>) {
-    into.clear();
-    let mut p = root;
-    for (d, length) in directions.iter().zip(&spine.lengths_m) {
-        p += *d * *length;
-        into.push(p);
+/// a·bᵀ.
+fn outer(a: DVec2, b: DVec2) -> DMat2 {
+    DMat2::from_cols(a * b.x, a * b.y)
+}
+
+/// The part of two vectors in a plane, a column each.
+fn product(tangents: Tangents, s: DVec3, t: DVec3) -> DMat2 {
+    DMat2::from_cols(tangents.of(s), tangents.of(t))
+}
+
+impl Model {
+    /// Adds a block: row segment `k`, column segment `j` ≥ `k`.
+    fn add(&mut self, k: usize, j: usize, block: DMat2) {
+        self.hessian[k * self.gradient.len() + j] += block;
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use maulstick_num::geometry::rotation;
+
+    use super::super::{Neighbour, Settings, Wall};
+    use super::*;
+    use crate::energy::friction::Anisotropy;
+
+    /// A bent, damped spine that is dragged over the surface beside another one.
+    fn scene() -> (Spine, SpineShape, Vec<Stop>, [Neighbour; 1], Settings) {
+        let rest = [0.1, 0.3, 0.6, 0.8]
+            .map(|a| DVec3::new(maulstick_num::sin(a), 0.0, -maulstick_num::cos(a)));
+        let spine = Spine::uniform(0.9, 4, 1.0).resting(&rest).damped(0.2);
+        let frame = rotation(DVec3::new(0.6, 0.8, 0.0), 0.5);
+        let mut shape = SpineShape::at_rest(DVec3::new(0.1, -0.2, 0.6), frame, &spine);
+        for (i, d) in shape.directions.iter_mut().enumerate() {
+            *d = (*d + DVec3::new(0.2, 0.3 - 0.1 * i as f64, 0.25)).normalize();
+        }
+        let mut stops = Stop::on_surface(4);
+        stops.push(Stop::new(
+            3,
+            Wall {
+                normal: DVec3::X,
+                offset_m: -0.4,
+            },
+        ));
+        for (i, stop) in stops.iter_mut().enumerate().skip(2) {
+            stop.aim(&spine, &shape);
+            stop.force_n = 0.4 + 0.2 * i as f64;
+            stop.anchor = Some(shape.joint(&spine, stop.joint) + DVec3::new(-0.03, 0.02, 0.01));
+        }
+        let neighbour = Neighbour {
+            joint: 2,
+            at: shape.joint(&spine, 2) + DVec3::new(0.02, 0.03, -0.01),
+            at_rest_m: 0.06,
+        };
+        let settings = Settings {
+            anisotropy: Anisotropy {
+                share: 0.4,
+                focus: 2.0,
+                preferred: DVec3::ZERO,
+            },
+            epsilon_m: 1e-2,
+            crowd_n_m: 3.0,
+            ..Settings::for_length(0.9)
+        };
+        (spine, shape, stops, [neighbour], settings)
+    }
+
+    #[test]
+    fn the_hessian_is_the_derivative_of_the_lagrangians_gradient() {
+        let (spine, shape, stops, neighbours, settings) = scene();
+        let problem = Problem {
+            spine: &spine,
+            neighbours: &neighbours,
+            settings: &settings,
+        };
+        let mut solver = Solver::default();
+        solver.begin(
+            &spine,
+            &SpineShape::at_rest(shape.root, shape.frame, &spine),
+        );
+        solver.multipliers = vec![0.0, 0.3, 0.0, 0.5, 0.2];
+        let energy = solver.look(problem, &shape, &stops);
+        assert!(energy.friction > 0.0 && energy.damping > 0.0 && energy.crowd > 0.0);
+        solver.residual(&spine, &shape, &stops);
+        solver.assemble(&spine, &shape);
+        let (tangents, hessian) = (solver.model.tangents.clone(), solver.model.hessian.clone());
+        let along = |solver: &mut Solver, q: usize, h: f64| -> Vec<f64> {
+            let mut moved = shape.clone();
+            let d = &mut moved.directions[q / 2];
+            *d = (*d + tangents[q / 2].vector(DVec2::AXES[q % 2]) * h).normalize();
+            solver.look(problem, &moved, &stops);
+            solver.residual(&spine, &moved, &stops);
+            // The gradient along tangents that are carried along the way.
+            let parts = tangents.iter().zip(&shape.directions).enumerate();
+            let parts = parts.flat_map(|(j, (tangents, d))| {
+                let turn = maulstick_num::geometry::shortest_arc(*d, moved.directions[j]);
+                let lagrangian = turn.conjugate() * solver.point.lagrangian[j];
+                tangents.of(lagrangian).to_array()
+            });
+            parts.collect()
+        };
+        let (size, h) = (8, 1e-5);
+        let entry = |p: usize, q: usize| hessian[(p / 2) * 4 + q / 2].col(q % 2)[p % 2];
+        let scale = (0..size).fold(0.0, |most: f64, p| most.max(entry(p, p).abs()));
+        for q in 0..size {
+            let (up, down) = (along(&mut solver, q, h), along(&mut solver, q, -h));
+            for p in 0..=q {
+                let numeric = (up[p] - down[p]) / (2.0 * h);
+                let analytic = entry(p, q);
+                assert!(
+                    (numeric - analytic).abs() < 1e-6 * scale,
+                    "{p} {q}: {numeric} {analytic}"
+                );
+                assert!(
+                    (numeric - analytic - 1e-5 * scale).abs() > 1e-6 * scale,
+                    "a fault would pass"
+                );
+            }
+        }
     }
 }

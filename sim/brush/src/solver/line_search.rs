@@ -5,98 +5,90 @@ use crate::spine::SpineShape;
 
 /// A step turns no segment by more than this, rad.
 const LONGEST_TURN: f64 = 0.7;
+/// Times that a step is halved at most.
+const HALVINGS: usize = 30;
+
+/// How deep all joints together lie within their walls, m.
+fn sunk(gaps: &[f64]) -> f64 {
+    gaps.iter().map(|gap| (-gap).max(0.0)).sum()
+}
 
 impl Solver {
-    /// Goes along the step as far as energy and penetration together fall; false where they do not.
+    /// Goes along the step as far as energy and penetration together fall, and returns the energy
+    /// there; none where they do not, with everything as it was.
     pub(super) fn line_search(
         &mut self,
         problem: Problem<'_>,
         shape: &mut SpineShape,
         stops: &[Stop],
         energy: Energy,
-    ) -> bool {
+    ) -> Option<Energy> {
         let price = 2.0 * self.multipliers.iter().copied().fold(0.0, f64::max)
             + problem.spine.stiffest() / problem.spine.length_m();
-        let merit = |energy: Energy, gaps: &[f64]| {
-            energy.total() + price * gaps.iter().map(|gap| (-gap).max(0.0)).sum::<f64>()
-        };
-        let start = merit(energy, &self.gap);
-        let slope: f64 = self
-            .step
-            .iter()
-            .zip(&self.gradient)
-            .map(|(d, g)| d * g)
-            .sum::<f64>()
-            - price * self.gap.iter().map(|gap| (-gap).max(0.0)).sum::<f64>();
-        let turn = self
-            .step
-            .chunks_exact(2)
-            .map(|u| u[0] * u[0] + u[1] * u[1])
-            .fold(0.0, f64::max)
-            .sqrt();
+        let merit = |energy: Energy, gaps: &[f64]| energy.total() + price * sunk(gaps);
+        let start = merit(energy, &self.point.gaps);
+        let downhill = self.step.iter().zip(&self.model.gradient);
+        let slope = downhill.map(|(d, g)| d.dot(*g)).sum::<f64>() - price * sunk(&self.point.gaps);
+        let turns = self.step.iter().map(|u| u.length_squared());
+        let turn = turns.fold(0.0, f64::max).sqrt();
         let mut fraction = if turn > LONGEST_TURN {
             LONGEST_TURN / turn
         } else {
             1.0
         };
         let noise = 1e-13 * start.abs().max(1e-12);
-        for _ in 0..30 {
-            self.try_step(shape, fraction, 0.0);
-            let tried = self.value(problem, shape, stops);
-            if merit(tried, &self.trial_gap) <= start + 1e-4 * fraction * slope.min(0.0) + noise {
-                shape.directions.copy_from_slice(&self.trial);
-                return true;
+        self.search.from.clone_from(&shape.directions);
+        for _ in 0..HALVINGS {
+            self.search.way.clear();
+            let part = self.step.iter().map(|step| *step * fraction);
+            self.search.way.extend(part);
+            self.turn(shape);
+            let tried = self.look(problem, shape, stops);
+            let aim = start + 1e-4 * fraction * slope.min(0.0) + noise;
+            if merit(tried, &self.point.gaps) <= aim {
+                return Some(tried);
             }
-            if self.correct(shape, fraction) {
-                let tried = self.value(problem, shape, stops);
-                if merit(tried, &self.trial_gap) <= start + noise {
-                    shape.directions.copy_from_slice(&self.trial);
-                    return true;
+            if self.correct(shape) {
+                let tried = self.look(problem, shape, stops);
+                if merit(tried, &self.point.gaps) <= start + noise {
+                    return Some(tried);
                 }
             }
             fraction *= 0.5;
         }
-        false
+        shape.directions.copy_from_slice(&self.search.from);
+        self.look(problem, shape, stops);
+        None
     }
 
-    /// The shape after a fraction of the step, and of a correction along the constraints' columns.
-    pub(super) fn try_step(&mut self, shape: &SpineShape, fraction: f64, correction: f64) {
-        let size = self.step.len();
-        let correction_at = |p: usize| {
-            (0..self.lambda.len())
-                .map(|i| self.lambda[i] * self.columns[i * size + p])
-                .sum::<f64>()
-        };
-        self.trial.clear();
-        for (j, d) in shape.directions.iter().enumerate() {
-            let mut moved = *d;
-            for (a, t) in self.tangents[j].iter().enumerate() {
-                let p = 2 * j + a;
-                let mut along = fraction * self.step[p];
-                if correction != 0.0 {
-                    along += correction * correction_at(p);
-                }
-                moved += *t * along;
-            }
-            self.trial.push(moved.normalize());
+    /// The shape at the end of the way that is tried.
+    fn turn(&self, shape: &mut SpineShape) {
+        let ways = self.search.way.iter().zip(&self.model.tangents);
+        let segments = shape.directions.iter_mut().zip(&self.search.from);
+        for ((direction, from), (way, tangents)) in segments.zip(ways) {
+            *direction = (*from + tangents.vector(*way)).normalize();
         }
     }
 
-    /// Second-order correction: the surface is curved in the directions, so a straight step leaves
-    /// the binding constraints; put the trial back onto them. False where none binds.
-    pub(super) fn correct(&mut self, shape: &SpineShape, fraction: f64) -> bool {
-        let n = self.trial_gap.len();
-        self.lambda.clear();
-        self.lambda.extend(self.trial_gap.iter().map(|gap| -gap));
-        let multipliers = &self.multipliers;
-        let binding = (0..n).filter(|i| multipliers[*i] > 0.0);
-        if !self
+    /// Second-order correction: the walls are curved in the directions, so a straight step leaves the
+    /// binding constraints; put the trial back onto them along their columns. False where none binds.
+    fn correct(&mut self, shape: &mut SpineShape) -> bool {
+        let program = &mut self.program;
+        let (near, gaps) = (&self.near, &self.point.gaps);
+        program.lambda.clear();
+        program
+            .lambda
+            .extend(near.iter().map(|near| -gaps[near.stop]));
+        let binding = (0..near.len()).filter(|i| self.multipliers[near[*i].stop] > 0.0);
+        let floor = program.floor();
+        if !program
             .active_set
-            .solve_equalities(&self.dual, binding, self.floor(n), &mut self.lambda)
+            .solve_equalities(&program.dual, binding, floor, &mut program.lambda)
         {
             return false;
         }
-        self.try_step(shape, fraction, 1.0);
+        program.follow_columns(&mut self.search.way);
+        self.turn(shape);
         true
     }
 }

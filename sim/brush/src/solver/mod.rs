@@ -6,11 +6,14 @@ mod line_search;
 mod newton;
 mod stop;
 
-use glam::{DMat3, DVec3};
+use glam::{DMat2, DMat3, DVec2, DVec3};
 
 pub use self::stop::{Stop, Wall};
+use crate::blocks::BlockFactor;
+use crate::energy::damping::Damping;
 use crate::energy::friction::Anisotropy;
-use crate::qp::{Cholesky, DualSolver};
+use crate::energy::spring::OfCosine;
+use crate::qp::DualSolver;
 use crate::spine::{Spine, SpineShape};
 
 /// A joint of another spine that keeps its room.
@@ -127,33 +130,94 @@ pub struct Solver {
     /// Where each segment rests if the one before goes along the base; empty if that is straight.
     rest: Vec<DVec3>,
     damped: bool,
-    /// Ends of the segments.
+    faced: Vec<Stop>,
+    point: Point,
+    multipliers: Vec<f64>,
+    model: Model,
+    /// The Newton step of each segment, along its tangents.
+    step: Vec<DVec2>,
+    near: Vec<Near>,
+    program: Program,
+    search: Search,
+}
+
+/// Energy and gaps at a shape, and their first derivatives.
+#[derive(Clone, Debug, Default)]
+struct Point {
+    /// Ends of the segments, m.
     ends: Vec<DVec3>,
-    tangents: Vec<[DVec3; 2]>,
+    bends: Vec<OfCosine>,
+    dampers: Vec<Damping>,
+    /// Force and stiffness of what acts on each segment's end.
+    pulls: Vec<(DVec3, DMat3)>,
     /// Derivative of the energy by each direction, in space.
     slopes: Vec<DVec3>,
-    /// Force and stiffness of what acts on each joint's end.
-    pulls: Vec<(DVec3, DMat3)>,
-    gradient: Vec<f64>,
-    hessian: Vec<f64>,
-    model: Vec<f64>,
-    gap: Vec<f64>,
-    /// Derivative of each gap by the directions: `stop · 2n + 2·segment + tangent`.
-    rows: Vec<f64>,
-    multipliers: Vec<f64>,
-    springs: Vec<f64>,
-    lambda: Vec<f64>,
-    stiff: Vec<f64>,
-    newton: Vec<f64>,
-    columns: Vec<f64>,
+    /// The same of the Lagrangian.
+    lagrangian: Vec<DVec3>,
+    /// How far each stop's joint is outside its wall, m.
+    gaps: Vec<f64>,
+}
+
+/// A basis of the plane in which the direction of a segment can change.
+#[derive(Clone, Copy, Debug)]
+struct Tangents(DVec3, DVec3);
+
+impl Tangents {
+    /// The part of a vector in the plane.
+    fn of(&self, v: DVec3) -> DVec2 {
+        DVec2::new(self.0.dot(v), self.1.dot(v))
+    }
+
+    /// The vector of coordinates in the plane.
+    fn vector(&self, u: DVec2) -> DVec3 {
+        self.0 * u.x + self.1 * u.y
+    }
+}
+
+/// The quadratic model of the Lagrangian at a shape, in the tangents of the directions.
+#[derive(Clone, Debug, Default)]
+struct Model {
+    tangents: Vec<Tangents>,
+    gradient: Vec<DVec2>,
+    /// A block for each pair of segments, row after row; those on the diagonal and above it count.
+    hessian: Vec<DMat2>,
+}
+
+/// A constraint that binds, or would be broken by the step without it.
+#[derive(Clone, Copy, Debug)]
+struct Near {
+    stop: usize,
+    /// Stiffness of the spring that stands for it where the model is not convex.
+    spring: f64,
+}
+
+/// The quadratic program of a step; its constraints are those that are [`Near`].
+#[derive(Clone, Debug, Default)]
+struct Program {
+    factor: BlockFactor,
+    /// The model with springs.
+    stiff: Vec<DMat2>,
+    /// The step if nothing were in the way.
+    newton: Vec<DVec2>,
+    /// By how much the step moves the ends, m.
+    moves: Vec<DVec3>,
+    /// Derivative of each gap: a row a constraint.
+    rows: Vec<DVec2>,
+    /// H⁻¹ times each row.
+    columns: Vec<DVec2>,
     dual: Vec<f64>,
     rhs: Vec<f64>,
-    step: Vec<f64>,
-    trial: Vec<DVec3>,
-    trial_ends: Vec<DVec3>,
-    trial_gap: Vec<f64>,
-    factor: Cholesky,
+    lambda: Vec<f64>,
     active_set: DualSolver,
+}
+
+/// Room of the line search.
+#[derive(Clone, Debug, Default)]
+struct Search {
+    /// The directions that it starts from.
+    from: Vec<DVec3>,
+    /// The part of the step that is tried.
+    way: Vec<DVec2>,
 }
 
 /// What a spine is solved among.
@@ -212,13 +276,20 @@ impl Solver {
             return solution;
         }
         for (i, stop) in stops.iter_mut().enumerate() {
-            stop.settle(self.multipliers[i], self.ends[stop.joint], settings);
+            stop.settle(self.multipliers[i], self.point.ends[stop.joint], settings);
         }
         solution
     }
 
-    /// The energy of a shape as [`solve`](Self::solve) would begin with it, and its derivative by
-    /// each direction, in space.
+    /// The stops as the newest [`solve`](Self::solve) saw them in the end: with the normal forces and
+    /// anchors that its friction was reckoned with.
+    #[must_use]
+    pub fn faced(&self) -> &[Stop] {
+        &self.faced
+    }
+
+    /// The energy of a shape in the step that [`begin`](Self::begin) began, with the friction of
+    /// `stops`, and its derivative by each direction, in space.
     pub fn energy(
         &mut self,
         spine: &Spine,
@@ -232,8 +303,8 @@ impl Solver {
             neighbours,
             settings,
         };
-        let energy = self.evaluate(problem, shape, stops);
-        (energy, &self.slopes)
+        let energy = self.look(problem, shape, stops);
+        (energy, &self.point.slopes)
     }
 
     /// Notes from which shape the energy of damping counts, and how the spine rests.
@@ -257,35 +328,54 @@ impl Solver {
         shape: &mut SpineShape,
         stops: &[Stop],
     ) -> Solution {
-        let settings = problem.settings;
-        let (scale, length) = (problem.spine.stiffest(), problem.spine.length_m());
-        let mut solution = Solution::default();
-        let mut energy = self.evaluate(problem, shape, stops);
-        for iteration in 0..=settings.max_iterations {
-            self.curvature(problem.spine, shape, stops);
-            self.direction(stops, 100.0 * scale / (length * length));
-            solution.residual = self.residual(stops.len());
-            solution.penetration_m = self.gap.iter().fold(0.0, |worst: f64, gap| worst.max(-gap));
-            solution.iterations = iteration;
-            solution.converged = solution.residual <= settings.tolerance * scale
-                && solution.penetration_m <= settings.tolerance * length;
-            if solution.converged || iteration == settings.max_iterations {
+        self.faced.clear();
+        self.faced.extend_from_slice(stops);
+        let most = problem.settings.max_iterations;
+        let mut solution = Solution {
+            energy: self.look(problem, shape, stops),
+            ..Solution::default()
+        };
+        self.measure(problem, shape, stops, &mut solution);
+        while !solution.converged && solution.iterations < most {
+            self.assemble(problem.spine, shape);
+            self.direction(problem.spine, stops);
+            let found = self.line_search(problem, shape, stops, solution.energy);
+            if let Some(energy) = found {
+                solution.energy = energy;
+                solution.iterations += 1;
+            }
+            self.measure(problem, shape, stops, &mut solution);
+            if found.is_none() {
                 break;
             }
-            if !self.line_search(problem, shape, stops, energy) {
-                break;
-            }
-            energy = self.evaluate(problem, shape, stops);
         }
-        solution.energy = energy;
         solution
+    }
+
+    /// Whether the conditions of a minimum hold with the multipliers at hand.
+    fn measure(
+        &mut self,
+        problem: Problem<'_>,
+        shape: &SpineShape,
+        stops: &[Stop],
+        solution: &mut Solution,
+    ) {
+        let (spine, tolerance) = (problem.spine, problem.settings.tolerance);
+        solution.residual = self.residual(spine, shape, stops);
+        let gaps = self.point.gaps.iter();
+        solution.penetration_m = gaps.fold(0.0, |worst: f64, gap| worst.max(-gap));
+        let pushed = self.point.gaps.iter().zip(&self.multipliers);
+        let apart = pushed.map(|(gap, push)| if *push > 0.0 { *gap } else { 0.0 });
+        let off = apart.fold(solution.penetration_m, f64::max);
+        solution.converged = solution.residual <= tolerance * spine.stiffest()
+            && off <= tolerance * spine.length_m();
     }
 
     /// Frees contacts that have lifted or broken loose; whether there were any.
     fn let_go(&self, stops: &mut [Stop], settings: &Settings) -> bool {
         let mut any = false;
         for (i, stop) in stops.iter_mut().enumerate() {
-            any |= stop.let_go(self.multipliers[i], self.ends[stop.joint], settings);
+            any |= stop.let_go(self.multipliers[i], self.point.ends[stop.joint], settings);
         }
         any
     }

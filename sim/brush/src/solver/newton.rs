@@ -1,134 +1,209 @@
 //! The Newton step: a quadratic model made convex, and its multipliers.
+//!
+//! Of many constraints few bind. Only those that pushed before or would be broken by the step are in
+//! the quadratic program; where its solution breaks others they join in, and it is solved again.
 
-use super::{Solver, Stop};
+use glam::{DMat2, DVec2, DVec3};
+
+use super::{Near, Program, Solver, Stop};
+use crate::blocks::dot;
+use crate::spine::Spine;
+
+/// Stiffness of the springs that stand for constraints where the model is not convex, by that of the
+/// stiffest joint over the square of the length.
+const CONSTRAINT_STIFFNESS: f64 = 100.0;
+/// A step may leave a joint so deep in a wall without its constraint, by the length.
+const SLACK: f64 = 1e-12;
 
 impl Solver {
     /// The Newton step and the multipliers that belong to it.
     ///
-    /// Where the Hessian is not convex, the constraints that bind are added to the model as springs
-    /// of `stiffness`: this changes no solution on them, and makes the model convex where it is
-    /// convex along them. A spring that turns out to pull is taken out again.
-    pub(super) fn direction(&mut self, stops: &[Stop], stiffness: f64) {
-        let (n, size) = (stops.len(), self.gradient.len());
-        self.springs.clear();
-        self.springs.resize(n, 0.0);
-        if !self.factor.factor(&self.model, size) {
-            for i in 0..n {
-                if self.gap[i] < 0.0 || self.multipliers[i] > 0.0 {
-                    self.springs[i] = stiffness;
-                }
+    /// Where the Hessian is not convex, the constraints that bind are added to the model as springs:
+    /// this changes no solution on them, and makes the model convex where it is convex along them. A
+    /// spring that turns out to pull is taken out again.
+    pub(super) fn direction(&mut self, spine: &Spine, stops: &[Stop]) {
+        self.near.clear();
+        self.program.rows.clear();
+        let convex = self
+            .program
+            .factor
+            .factor(&self.model.hessian, spine.joints());
+        let length = spine.length_m();
+        let spring = match convex {
+            true => 0.0,
+            false => CONSTRAINT_STIFFNESS * spine.stiffest() / (length * length),
+        };
+        for stop in 0..stops.len() {
+            let binds = self.multipliers[stop] > 0.0;
+            if binds || (!convex && self.point.gaps[stop] < 0.0) {
+                self.approach(spine, stops, Near { stop, spring });
             }
         }
         loop {
-            self.factor_with_springs(n);
-            self.solve_dual(n);
-            let pulls = |solver: &Self, i: usize| solver.springs[i] > 0.0 && solver.push(i) < 0.0;
-            let Some(wrong) = (0..n).find(|i| pulls(self, *i)) else {
+            if convex {
+                self.program.newton.clear();
+                let downhill = self.model.gradient.iter().map(|g| -*g);
+                self.program.newton.extend(downhill);
+            } else {
+                self.stiffen();
+            }
+            self.program.factor.solve(&mut self.program.newton);
+            self.solve_program(spine, stops);
+            let pulls = |i: &usize| self.near[*i].spring > 0.0 && self.push(*i) < 0.0;
+            let Some(wrong) = (0..self.near.len()).find(pulls) else {
                 break;
             };
-            self.springs[wrong] = 0.0;
+            self.near[wrong].spring = 0.0;
         }
-        for i in 0..n {
-            self.multipliers[i] = self.push(i).max(0.0);
+        self.multipliers.fill(0.0);
+        for (i, near) in self.near.iter().enumerate() {
+            self.multipliers[near.stop] = self.push(i).max(0.0);
         }
     }
 
-    /// The force with which constraint `i` pushes after the step: its multiplier and its spring.
-    pub(super) fn push(&self, i: usize) -> f64 {
-        let moved = dot(self.row(i), &self.step);
-        self.lambda[i] - self.springs[i] * (self.gap[i] + moved)
+    /// Takes a constraint into the program.
+    fn approach(&mut self, spine: &Spine, stops: &[Stop], near: Near) {
+        self.near.push(near);
+        let stop = &stops[near.stop];
+        let segments = self.model.tangents.iter().zip(&spine.lengths_m).enumerate();
+        let row = segments.map(|(j, (tangents, length))| match j <= stop.joint {
+            true => tangents.of(stop.wall.normal) * *length,
+            false => DVec2::ZERO,
+        });
+        self.program.rows.extend(row);
     }
 
-    /// The derivative of gap `i` by the directions.
-    fn row(&self, i: usize) -> &[f64] {
-        let size = self.gradient.len();
-        &self.rows[i * size..(i + 1) * size]
+    /// The force with which a constraint pushes after the step: its multiplier and its spring.
+    fn push(&self, i: usize) -> f64 {
+        let near = self.near[i];
+        if near.spring == 0.0 {
+            return self.program.lambda[i];
+        }
+        let moved = dot(self.program.row(i, self.step.len()), &self.step);
+        self.program.lambda[i] - near.spring * (self.point.gaps[near.stop] + moved)
     }
 
     /// Factors the model with its springs, made convex by a shift of the diagonal if need be.
-    fn factor_with_springs(&mut self, n: usize) {
-        let size = self.gradient.len();
-        self.stiff.clear();
-        self.stiff.extend_from_slice(&self.model);
-        self.newton.clear();
-        self.newton.extend(self.gradient.iter().map(|g| -g));
-        for i in (0..n).filter(|i| self.springs[*i] > 0.0) {
-            let row = &self.rows[i * size..(i + 1) * size];
-            for p in 0..size {
-                let scaled = self.springs[i] * row[p];
-                self.newton[p] -= scaled * self.gap[i];
-                for q in 0..size {
-                    self.stiff[p * size + q] += scaled * row[q];
+    fn stiffen(&mut self) {
+        let n = self.model.gradient.len();
+        let program = &mut self.program;
+        program.stiff.clone_from(&self.model.hessian);
+        program.newton.clear();
+        let downhill = self.model.gradient.iter().map(|g| -*g);
+        program.newton.extend(downhill);
+        for (near, row) in self.near.iter().zip(program.rows.chunks_exact(n)) {
+            let gap = self.point.gaps[near.stop];
+            for j in 0..n {
+                let scaled = row[j] * near.spring;
+                program.newton[j] -= scaled * gap;
+                for k in j..n {
+                    let block = DMat2::from_cols(scaled * row[k].x, scaled * row[k].y);
+                    program.stiff[j * n + k] += block;
                 }
             }
         }
-        let mut shift = 0.0;
-        let scale = (0..size)
-            .map(|p| self.stiff[p * size + p].abs())
+        let diagonal = (0..n).map(|j| program.stiff[j * n + j]);
+        let scale = diagonal
+            .map(|block| block.x_axis.x.abs().max(block.y_axis.y.abs()))
             .fold(1e-30, f64::max);
-        while !self.factor.factor(&self.stiff, size) && shift < 1e9 * scale {
+        let mut shift = 0.0;
+        while !program.factor.factor(&program.stiff, n) && shift < 1e9 * scale {
             let larger = if shift == 0.0 {
                 1e-6 * scale
             } else {
                 4.0 * shift
             };
-            (0..size).for_each(|p| self.stiff[p * size + p] += larger - shift);
+            let more = DMat2::from_diagonal(DVec2::splat(larger - shift));
+            (0..n).for_each(|j| program.stiff[j * n + j] += more);
             shift = larger;
         }
-        self.factor.solve(&mut self.newton);
     }
 
     /// Multipliers and step of the convex model.
-    fn solve_dual(&mut self, n: usize) {
-        let size = self.gradient.len();
-        // Columns of H⁻¹Aᵀ, G = A·H⁻¹·Aᵀ and r = −(gap + A·newton).
-        self.columns.clear();
-        self.columns.extend_from_slice(&self.rows);
-        for column in self.columns.chunks_exact_mut(size) {
-            self.factor.solve(column);
-        }
-        self.dual.clear();
-        self.rhs.clear();
-        for i in 0..n {
-            let row = &self.rows[i * size..(i + 1) * size];
-            let columns = self.columns.chunks_exact(size);
-            self.dual.extend(columns.map(|column| dot(row, column)));
-            self.rhs.push(-(self.gap[i] + dot(row, &self.newton)));
-        }
-        self.lambda.clear();
-        self.lambda.extend_from_slice(&self.multipliers);
-        let floor = self.floor(n);
-        self.active_set
-            .solve(&self.dual, &self.rhs, floor, &mut self.lambda);
-        self.step.clear();
-        self.step.extend_from_slice(&self.newton);
-        for (value, column) in self.lambda.iter().zip(self.columns.chunks_exact(size)) {
-            if *value != 0.0 {
-                let step = self.step.iter_mut().zip(column);
-                step.for_each(|(step, column)| *step += value * column);
+    fn solve_program(&mut self, spine: &Spine, stops: &[Stop]) {
+        self.program.lambda.clear();
+        let pushes = self.near.iter().map(|near| self.multipliers[near.stop]);
+        self.program.lambda.extend(pushes);
+        loop {
+            let gaps = &self.point.gaps;
+            let near = self.near.iter().map(|near| gaps[near.stop]);
+            self.program.solve(near);
+            self.step.clone_from(&self.program.newton);
+            self.program.follow_columns(&mut self.step);
+            if !self.meet(spine, stops) {
+                break;
             }
         }
     }
 
-    /// What keeps the dual solvable where constraints depend on each other.
-    pub(super) fn floor(&self, n: usize) -> f64 {
-        1e-12 * (0..n).map(|i| self.dual[i * n + i]).fold(0.0, f64::max)
-    }
-
-    /// ‖∇E − Aᵀλ‖∞ with the multipliers of the newest step.
-    pub(super) fn residual(&self, n: usize) -> f64 {
-        let size = self.gradient.len();
-        (0..size)
-            .map(|p| {
-                let push: f64 = (0..n)
-                    .map(|i| self.multipliers[i] * self.rows[i * size + p])
-                    .sum();
-                (self.gradient[p] - push).abs()
-            })
-            .fold(0.0, f64::max)
+    /// Takes the constraints that the step would break into the program; whether there were any.
+    fn meet(&mut self, spine: &Spine, stops: &[Stop]) -> bool {
+        self.program.moves.clear();
+        let mut moved = DVec3::ZERO;
+        let segments = self.step.iter().zip(&self.model.tangents);
+        for ((step, tangents), length) in segments.zip(&spine.lengths_m) {
+            moved += tangents.vector(*step) * *length;
+            self.program.moves.push(moved);
+        }
+        let (slack, known) = (SLACK * spine.length_m(), self.near.len());
+        for (i, stop) in stops.iter().enumerate() {
+            let way = stop.wall.normal.dot(self.program.moves[stop.joint]);
+            let is_new = || self.near[..known].iter().all(|near| near.stop != i);
+            if self.point.gaps[i] + way < -slack && is_new() {
+                self.approach(
+                    spine,
+                    stops,
+                    Near {
+                        stop: i,
+                        spring: 0.0,
+                    },
+                );
+                self.program.lambda.push(0.0);
+            }
+        }
+        self.near.len() > known
     }
 }
 
-fn dot(a: &[f64], b: &[f64]) -> f64 {
-    a.iter().zip(b).map(|(a, b)| a * b).sum()
+impl Program {
+    /// The derivative of the gap of constraint `i` by the directions of `n` segments.
+    fn row(&self, i: usize, n: usize) -> &[DVec2] {
+        &self.rows[i * n..(i + 1) * n]
+    }
+
+    /// The multipliers: the columns H⁻¹Aᵀ, G = A·H⁻¹·Aᵀ and r = −(gap + A·newton), and the dual.
+    fn solve(&mut self, gaps: impl Iterator<Item = f64>) {
+        let n = self.newton.len();
+        self.columns.clone_from(&self.rows);
+        for column in self.columns.chunks_exact_mut(n) {
+            self.factor.solve(column);
+        }
+        self.dual.clear();
+        self.rhs.clear();
+        for (row, gap) in self.rows.chunks_exact(n).zip(gaps) {
+            let columns = self.columns.chunks_exact(n);
+            self.dual.extend(columns.map(|column| dot(row, column)));
+            self.rhs.push(-(gap + dot(row, &self.newton)));
+        }
+        let floor = self.floor();
+        self.active_set
+            .solve(&self.dual, &self.rhs, floor, &mut self.lambda);
+    }
+
+    /// What keeps the dual solvable where constraints depend on each other.
+    pub(super) fn floor(&self) -> f64 {
+        let n = self.lambda.len();
+        1e-12 * (0..n).map(|i| self.dual[i * n + i]).fold(0.0, f64::max)
+    }
+
+    /// Goes on by the multipliers times the columns.
+    pub(super) fn follow_columns(&self, way: &mut [DVec2]) {
+        let columns = self.columns.chunks_exact(way.len());
+        for (value, column) in self.lambda.iter().zip(columns) {
+            if *value != 0.0 {
+                let way = way.iter_mut().zip(column);
+                way.for_each(|(way, column)| *way += *column * *value);
+            }
+        }
+    }
 }

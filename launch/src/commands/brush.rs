@@ -1,0 +1,194 @@
+//! `maulstick brush`: the brushes of the library, their sheet, and one spine tried out by itself.
+
+use std::path::{Path, PathBuf};
+
+use clap::{Args, Subcommand};
+use indicatif::ProgressBar;
+use maulstick_brush::file::library::LIBRARY;
+use maulstick_brush::trial::{SpineFile, TrialPose, TrialRow, follow, poses};
+use maulstick_brush::{BrushError, BrushFile};
+use maulstick_rig::Fault;
+use maulstick_rig::config::toml_fault;
+use maulstick_rig::files::{check_writable, write_whole};
+use serde_json::json;
+
+use crate::commands::print_json;
+use crate::performance::library;
+use crate::sheet::sheet;
+
+/// `maulstick brush`.
+#[derive(Subcommand, Clone, Debug)]
+pub enum BrushCommand {
+    /// Lists the brushes of the library
+    List(ListOptions),
+    /// Draws each brush and its marks
+    Sheet(SheetOptions),
+    /// Bends one spine through a list of poses over the plane z = 0
+    ///
+    /// SPINE.toml has `lengths_m` and `stiffness_nm_per_rad` (lists from the ferrule to the point, 1
+    /// to 64 joints, used as they are) and may have `damping_nm` (a number or a list), `mu`,
+    /// `mu_static`, `c_eta` and `k`. POSES.csv has the header t,x,y,z,qx,qy,qz,qw (s, m, unit
+    /// quaternion from the brush's frame to the surface's) and a line a pose; unbent, the spine goes
+    /// from the pose's origin along the brush's −z. It comes to the first pose straight and without
+    /// friction, and to each other one as it was bent before.
+    ///
+    /// With --json a line a pose: `joints` are the far ends of all segments (m, the tip last, the
+    /// root left out), `theta` and `phi` the angles of all joints (rad), `energy` is in J,
+    /// `residual` is the steepest slope of the Lagrangian by the stiffness of the stiffest joint.
+    Solve(SolveOptions),
+}
+
+/// Options of `maulstick brush list`.
+#[derive(Args, Clone, Debug)]
+pub struct ListOptions {
+    /// As JSON
+    #[arg(long)]
+    json: bool,
+}
+
+/// Options of `maulstick brush sheet`.
+#[derive(Args, Clone, Debug)]
+pub struct SheetOptions {
+    /// The picture, a PNG
+    #[arg(short, long, value_name = "PNG")]
+    output: PathBuf,
+}
+
+/// Options of `maulstick brush solve`.
+#[derive(Args, Clone, Debug)]
+pub struct SolveOptions {
+    /// The spine
+    #[arg(long, value_name = "SPINE.toml")]
+    spine: PathBuf,
+    /// Where it is held
+    #[arg(long, value_name = "POSES.csv")]
+    poses: PathBuf,
+    /// As JSON, a line a pose
+    #[arg(long)]
+    json: bool,
+}
+
+/// Runs a command on brushes.
+///
+/// # Errors
+/// A [`Fault`] for a bad file.
+pub fn run(command: &BrushCommand) -> Result<i32, Fault> {
+    match command {
+        BrushCommand::List(options) => list(options),
+        BrushCommand::Sheet(options) => draw_sheet(options),
+        BrushCommand::Solve(options) => solve(options),
+    }
+}
+
+fn list(options: &ListOptions) -> Result<i32, Fault> {
+    let mut rows = Vec::new();
+    for (name, _) in LIBRARY {
+        let brush = BrushFile::library(name).map_err(|error| Fault::failure(error.to_string()))?;
+        let (head, spines) = (&brush.head, &brush.spines);
+        let sizes: Vec<String> = brush.sizes_mm.iter().map(f64::to_string).collect();
+        if options.json {
+            rows.push(json!({
+                "name": name,
+                "about": brush.about,
+                "sizes_mm": brush.sizes_mm,
+                "width_mm": head.width_mm,
+                "length_mm": head.length_mm,
+                "spines": spines.number(),
+                "joints": spines.all_joints(),
+                "strips": brush.strips.count,
+            }));
+        } else {
+            println!("{name:<9} {} ({} mm)", brush.about, sizes.join(", "));
+        }
+    }
+    if options.json {
+        print_json(&json!({ "brushes": rows }))?;
+    }
+    Ok(0)
+}
+
+fn draw_sheet(options: &SheetOptions) -> Result<i32, Fault> {
+    let path = &options.output;
+    check_writable(path).map_err(|error| Fault::writing(path, &error))?;
+    let bar = ProgressBar::new(0).with_message("painting");
+    let picture = sheet(&library()?, |done, of| {
+        bar.set_length(of as u64);
+        bar.set_position(done as u64);
+    })?;
+    bar.finish_and_clear();
+    write_whole(path, |file| picture.encode_png(file))
+        .map_err(|error| Fault::writing(path, &error))?;
+    println!(
+        "{}: {}×{} pixels",
+        path.display(),
+        picture.width,
+        picture.height
+    );
+    Ok(0)
+}
+
+fn solve(options: &SolveOptions) -> Result<i32, Fault> {
+    let (spine, poses) = (read_spine(&options.spine)?, read_poses(&options.poses)?);
+    if !options.json {
+        println!("        t        x        y        z   energy   depth residual  steps");
+        println!("        s       mm       mm       mm       µJ      mm                ");
+    }
+    for row in follow(&spine, &poses) {
+        if options.json {
+            let line = serde_json::to_string(&row);
+            println!(
+                "{}",
+                line.map_err(|error| Fault::failure(error.to_string()))?
+            );
+        } else {
+            print_row(&row);
+        }
+    }
+    Ok(0)
+}
+
+/// The tip, the energy, and how well it was found.
+fn print_row(row: &TrialRow) {
+    let [x, y, z] = row
+        .joints
+        .last()
+        .map_or([0.0; 3], |tip| tip.map(|v| v * 1e3));
+    println!(
+        "{:>9.4} {x:>8.3} {y:>8.3} {z:>8.3} {:>8.3} {:>7.0e} {:>8.0e} {:>6}{}",
+        row.t,
+        row.energy.total * 1e6,
+        row.penetration_m * 1e3,
+        row.residual,
+        row.iterations,
+        if row.converged { "" } else { "  not found" }
+    );
+}
+
+fn read(path: &Path) -> Result<(String, String), Fault> {
+    let text = std::fs::read_to_string(path).map_err(|error| Fault::reading(path, &error))?;
+    Ok((text, path.display().to_string()))
+}
+
+fn read_spine(path: &Path) -> Result<SpineFile, Fault> {
+    const HELP: &str = "see what a spine file holds: `maulstick brush solve --help`";
+    let (text, name) = read(path)?;
+    let file: SpineFile = toml::from_str(&text).map_err(|error| {
+        let fault = toml_fault(&text, &name, &error);
+        match fault.what.starts_with("unknown key") {
+            true => fault,
+            false => fault.help(HELP),
+        }
+    })?;
+    let refused = |error: BrushError| Fault::usage(error.to_string()).at(name).help(HELP);
+    file.check().map_err(refused)?;
+    Ok(file)
+}
+
+fn read_poses(path: &Path) -> Result<Vec<TrialPose>, Fault> {
+    let (text, name) = read(path)?;
+    poses(&text).map_err(|error| {
+        Fault::usage(error.what)
+            .at(format!("{name}:{}", error.line))
+            .help(error.help)
+    })
+}

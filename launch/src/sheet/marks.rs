@@ -1,0 +1,108 @@
+//! The marks of a brush: what a painter tries in the shop.
+
+use super::gesture::{Gesture, Moment, along, ease, swell};
+
+/// A mark and the mixture that the brush takes up for it; none goes on with what it has.
+pub struct Mark {
+    /// The gesture.
+    pub gesture: Gesture,
+    /// The mixture.
+    pub load: Option<&'static str>,
+}
+
+/// Size of the panel of a brush's marks, mm.
+pub const PANEL_MM: [f64; 2] = [250.0, 44.0];
+
+/// A stroke along points, whose brush leads with its broad side across the way; `edge` turns it on
+/// its edge.
+pub fn stroke(
+    points: Vec<[f64; 2]>,
+    seconds: f64,
+    twist_deg: f64,
+    pressure: impl Fn(f64) -> f64 + 'static,
+) -> Gesture {
+    let lean = {
+        let (from, to) = (points[0], points[points.len() - 1]);
+        let way = [to[0] - from[0], to[1] - from[1]];
+        let length = (way[0] * way[0] + way[1] * way[1]).sqrt().max(1e-9);
+        way.map(|v| 25.0 * v / length)
+    };
+    Gesture {
+        seconds,
+        hand: Box::new(move |t| Moment {
+            at: along(&points, ease(t)),
+            pressure: pressure(t),
+            tilt_deg: lean,
+            twist_deg,
+        }),
+    }
+}
+
+/// The marks of a brush on a panel: from a touch to full pressure; a wave; on its edge, twice; three
+/// dabs; lightly until it is dry.
+pub fn marks(width_mm: f64) -> Vec<Mark> {
+    let middle = 0.5 * PANEL_MM[1];
+    let blue = Some("Ultramarine Blue=0.75,Titanium White=0.25");
+    let red = Some("Quinacridone Red=0.8,Titanium White=0.2");
+    let ochre = Some("Yellow Ochre");
+    let green = Some("Phthalo Green Blue Shade=0.35,Hansa Yellow Opaque=0.65");
+    let mut marks = vec![Mark {
+        load: blue,
+        gesture: stroke(
+            vec![[8.0, middle - 4.0], [34.0, middle + 3.0], [64.0, middle]],
+            1.6,
+            90.0,
+            |t| 0.02 + 0.9 * ease(t) * ease((1.0 - t) / 0.04),
+        ),
+    }];
+    let wave = |i: i32| {
+        let t = f64::from(i) / 16.0;
+        let turn = maulstick_num::sin(2.0 * std::f64::consts::PI * 2.0 * t);
+        [76.0 + 46.0 * t, middle + 9.0 * turn]
+    };
+    marks.push(Mark {
+        load: red,
+        gesture: stroke((0..=16).map(wave).collect(), 2.2, 60.0, |t| {
+            0.08 + 0.36 * swell(t, 0.15)
+        }),
+    });
+    for (row, pressure) in [0.12, 0.45].into_iter().enumerate() {
+        let y = middle + 9.0 - 18.0 * row as f64;
+        marks.push(Mark {
+            load: (row == 0).then_some("Bone Black"),
+            gesture: stroke(vec![[132.0, y], [162.0, y]], 1.0, 0.0, move |t| {
+                0.02 + pressure * swell(t, 0.2)
+            }),
+        });
+    }
+    let apart = (0.55 * width_mm + 4.0).clamp(6.0, 13.0);
+    for dab in 0..3 {
+        let at = [172.0 + apart * f64::from(dab), middle];
+        let pressure = 0.35 + 0.2 * f64::from(dab);
+        marks.push(Mark {
+            load: (dab == 0).then_some(()).and(ochre),
+            gesture: Gesture {
+                seconds: 0.5,
+                hand: Box::new(move |t| Moment {
+                    at: [at[0] + 2.0 * t, at[1] + 4.0 - 8.0 * ease(t)],
+                    pressure: 0.02 + pressure * swell(t, 0.4),
+                    tilt_deg: [8.0, -20.0],
+                    twist_deg: 0.0,
+                }),
+            },
+        });
+    }
+    for row in 0..2 {
+        let y = middle + 10.0 - 20.0 * f64::from(row);
+        marks.push(Mark {
+            load: (row == 0).then_some(()).and(green),
+            gesture: stroke(
+                vec![[206.0, y], [226.0, y + 2.0], [244.0, y]],
+                1.0,
+                90.0,
+                move |t| 0.02 + (0.34 - 0.14 * f64::from(row)) * swell(t, 0.12),
+            ),
+        });
+    }
+    marks
+}

@@ -1,0 +1,93 @@
+//! A page: pictures and words put together.
+
+use ab_glyph::{Font as _, FontRef, PxScale, ScaleFont as _};
+use maulstick_paint::picture::Picture;
+use maulstick_rig::Fault;
+use maulstick_ui::portrait::Portrait;
+
+/// Paper and ink, sRGB.
+const PAPER: [u8; 3] = [250, 248, 244];
+const INK: [f32; 3] = [40.0, 36.0, 33.0];
+
+/// A page under work.
+pub struct Page {
+    picture: Picture,
+    font: FontRef<'static>,
+}
+
+impl Page {
+    /// An empty page of this size, pixels.
+    ///
+    /// # Errors
+    /// A [`Fault`] where the font cannot be read.
+    pub fn new(width: usize, height: usize) -> Result<Self, Fault> {
+        let font = FontRef::try_from_slice(epaint_default_fonts::UBUNTU_LIGHT)
+            .map_err(|error| Fault::failure(error.to_string()))?;
+        let rgb = PAPER.repeat(width * height);
+        let picture = Picture { width, height, rgb };
+        Ok(Self { picture, font })
+    }
+
+    /// The finished page.
+    #[must_use]
+    pub fn done(self) -> Picture {
+        self.picture
+    }
+
+    fn mix(&mut self, [x, y]: [usize; 2], colour: [f32; 3], cover: f32) {
+        if x >= self.picture.width || y >= self.picture.height {
+            return;
+        }
+        let at = 3 * (y * self.picture.width + x);
+        for (byte, own) in self.picture.rgb[at..at + 3].iter_mut().zip(colour) {
+            let under = f32::from(*byte);
+            *byte = (under + (own - under) * cover) as u8;
+        }
+    }
+
+    /// Puts a picture with its upper left corner here.
+    pub fn paste(&mut self, picture: &Picture, [x, y]: [usize; 2]) {
+        for row in 0..picture.height {
+            for column in 0..picture.width {
+                let from = 3 * (row * picture.width + column);
+                let colour = [0, 1, 2].map(|i| f32::from(picture.rgb[from + i]));
+                self.mix([x + column, y + row], colour, 1.0);
+            }
+        }
+    }
+
+    /// Puts a brush with its upper left corner here.
+    pub fn portray(&mut self, portrait: &Portrait, [x, y]: [usize; 2]) {
+        for (i, pixel) in portrait.rgba.chunks_exact(4).enumerate() {
+            let at = [x + i % portrait.width, y + i / portrait.width];
+            let colour = [0, 1, 2].map(|i| f32::from(pixel[i]));
+            self.mix(at, colour, f32::from(pixel[3]) / 255.0);
+        }
+    }
+
+    /// Writes a line with its left end and base line here; `size` is the height of a line, pixels.
+    pub fn write(&mut self, words: &str, [x, y]: [usize; 2], size: f32) {
+        let font = self.font.clone();
+        let scaled = font.as_scaled(PxScale::from(size));
+        let mut caret = x as f32;
+        let mut last = None;
+        for letter in words.chars() {
+            let id = scaled.glyph_id(letter);
+            caret += last.map_or(0.0, |last| scaled.kern(last, id));
+            let place = ab_glyph::point(caret, y as f32);
+            let glyph = id.with_scale_and_position(size, place);
+            if let Some(outline) = font.outline_glyph(glyph) {
+                let bounds = outline.px_bounds();
+                outline.draw(|dx, dy, cover| {
+                    let at = [
+                        bounds.min.x as usize + dx as usize,
+                        bounds.min.y as usize + dy as usize,
+                    ];
+                    self.mix(at, INK, cover.min(1.0));
+                });
+            }
+            caret += scaled.h_advance(id);
+            last = Some(id);
+        }
+    }
+}

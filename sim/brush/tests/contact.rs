@@ -1,0 +1,330 @@
+//! What walls do to a spine: forces at every solution, sticking, sliding, and the energy's derivatives.
+
+use glam::{DMat3, DVec3};
+use maulstick_brush::energy::friction::Anisotropy;
+use maulstick_brush::solver::{Neighbour, Settings, Solution, Solver, Stop, Wall};
+use maulstick_brush::{Spine, SpineShape};
+use maulstick_num::geometry::{rotation, shortest_arc};
+use maulstick_num::{cos, sin};
+use proptest::prelude::*;
+
+const LENGTH: f64 = 0.025;
+const EI: f64 = 1.5e-4;
+
+/// A spine on the surface.
+struct Bench {
+    spine: Spine,
+    settings: Settings,
+    solver: Solver,
+    shape: SpineShape,
+    stops: Vec<Stop>,
+}
+
+impl Bench {
+    /// Held at a height (in lengths), tilted so that its point leads toward +x.
+    fn new(joints: usize, height: f64, tilt: f64, settings: Settings) -> Self {
+        let root = DVec3::new(0.0, 0.0, height * LENGTH);
+        let mut bench = Self {
+            spine: Spine::uniform(LENGTH, joints, EI),
+            settings,
+            solver: Solver::default(),
+            shape: SpineShape::straight(root, rotation(DVec3::Y, -tilt), joints),
+            stops: Stop::on_surface(joints),
+        };
+        bench.to(0.0);
+        bench
+    }
+
+    /// Slides the ferrule to a place along x (m).
+    fn to(&mut self, x: f64) -> Solution {
+        self.shape.root.x = x;
+        let stops = &mut self.stops;
+        let solution = self
+            .solver
+            .solve(&self.spine, &mut self.shape, stops, &[], &self.settings);
+        assert!(solution.converged, "{solution:?}");
+        solution
+    }
+
+    fn tip(&self) -> DVec3 {
+        self.shape.tip(&self.spine)
+    }
+
+    /// The force with which the surface acts on the point, from the springs alone: where only the point
+    /// touches, the springs' derivative by each direction and the force's moment cancel.
+    fn reaction(&mut self) -> DVec3 {
+        let free = Stop::on_surface(self.spine.joints());
+        let touching = self.stops.iter().filter(|stop| stop.touches());
+        assert!(touching.count() == 1 && self.stops.last().is_some_and(Stop::touches));
+        let (_, slopes) = self
+            .solver
+            .energy(&self.spine, &self.shape, &free, &[], &self.settings);
+        let (mut matrix, mut right) = (DMat3::ZERO, DVec3::ZERO);
+        let segments = slopes.iter().zip(&self.shape.directions);
+        for ((slope, d), length) in segments.zip(&self.spine.lengths_m) {
+            let across = |v: DVec3| v - *d * d.dot(v);
+            let columns = DVec3::AXES.map(|axis| across(axis) * *length * *length);
+            matrix += DMat3::from_cols(columns[0], columns[1], columns[2]);
+            right += across(*slope) * *length;
+        }
+        matrix.inverse() * right
+    }
+
+    /// Friction by normal force at the point now.
+    fn share(&mut self) -> f64 {
+        let force = self.reaction();
+        force.truncate().length() / force.z
+    }
+}
+
+fn settings(friction: f64) -> Settings {
+    Settings::for_length(LENGTH).with_friction(friction)
+}
+
+#[test]
+fn friction_opposes_the_slip_within_its_cone() {
+    let mu = 0.25;
+    let mut bench = Bench::new(5, 0.8, 0.5, settings(mu));
+    let mut share = 0.0;
+    for step in 1..=300 {
+        let before = bench.tip();
+        bench.shape.root.y = 2e-3 * sin(f64::from(step) * 0.02);
+        let solution = bench.to(f64::from(step) * -1e-4);
+        let (slip, force) = (bench.tip() - before, bench.reaction());
+        let faced = bench.solver.faced()[4];
+        // Friction is that of the normal force before the step.
+        let bound = mu * faced.force_n;
+        let along = force.truncate();
+        assert!(
+            along.length() <= bound * (1.0 + 1e-6),
+            "{step}: {solution:?}"
+        );
+        assert!((force.z - bench.stops[4].force_n).abs() < 1e-6 * force.z);
+        if step > 1 && slip.length() > 1e-5 {
+            let cosine = -along.normalize().dot(slip.truncate().normalize());
+            assert!(cosine > 0.9999, "{step}: {cosine}");
+            assert!(along.length() > 0.99 * bound, "a faulty cone would pass");
+        }
+        share = bench.share();
+    }
+    assert!((share - mu).abs() < 1e-3, "steady sliding: {share}");
+}
+
+#[test]
+fn a_contact_holds_to_the_static_bound_and_slides_with_the_kinetic_one() {
+    let (kinetic, sticking) = (0.2, 0.4);
+    let settings = Settings {
+        friction_static: sticking,
+        ..settings(kinetic)
+    };
+    let mut bench = Bench::new(3, 0.8, 0.5, settings);
+    let mut x = 0.0;
+    for way in [-1.0, 1.0, -1.0] {
+        // Steps of less than the rounding: it holds.
+        let mut held = 0.0;
+        let mut steps = 0;
+        while bench.stops[2].sticks || steps == 0 {
+            held = bench.share().max(held);
+            x += way * 1e-6;
+            bench.to(x);
+            steps += 1;
+            assert!(steps < 1000, "it never broke loose: {held}");
+        }
+        // The bound is that of the normal force before, which rises as it breaks loose.
+        let faced = bench.solver.faced()[2].force_n;
+        let loose = bench.reaction().truncate().length() / faced;
+        // Steps of many times the rounding: it slides on.
+        let mut slid = 0.0;
+        for _ in 0..40 {
+            x += way * 5e-5;
+            bench.to(x);
+            slid = bench.share();
+        }
+        println!("{steps} steps: held to {held:.4}, loose at {loose:.4}, slid at {slid:.4}");
+        assert!((held - sticking).abs() < 0.02 * sticking, "{held}");
+        assert!((loose - kinetic).abs() < 0.01 * kinetic, "{loose}");
+        assert!((slid - kinetic).abs() < 0.01 * kinetic, "{slid}");
+        // It stands still, and sticks where it is.
+        bench.to(x);
+        bench.to(x);
+        assert!(bench.stops[2].sticks);
+    }
+}
+
+#[test]
+fn a_pushed_bristle_drags_more_than_a_pulled_one() {
+    let settings = Settings {
+        anisotropy: Anisotropy {
+            share: 0.4,
+            focus: 2.0,
+            ..Anisotropy::default()
+        },
+        ..settings(0.25)
+    };
+    let drag = |way: f64, settings: Settings| {
+        let mut bench = Bench::new(3, 0.85, 0.5, settings);
+        for step in 1..=30 {
+            bench.to(f64::from(step) * way * 5e-5);
+        }
+        bench.share()
+    };
+    let (pulled, pushed) = (drag(-1.0, settings), drag(1.0, settings));
+    println!("pulled {pulled:.4}, pushed {pushed:.4}");
+    assert!((pulled - 0.6 * 0.25).abs() < 2e-3 && (pushed - 0.25).abs() < 2e-3);
+    let even = Settings {
+        anisotropy: Anisotropy::default(),
+        ..settings
+    };
+    let fault = drag(-1.0, even) - drag(1.0, even);
+    assert!(
+        fault.abs() < 2e-3,
+        "without anisotropy both drag alike: {fault}"
+    );
+}
+
+#[test]
+fn a_wall_beside_the_surface_holds_the_spine_out() {
+    let solve = |wall: Option<Wall>| {
+        let mut bench = Bench::new(4, 1.2, 0.5, settings(0.25));
+        if let Some(wall) = wall {
+            bench
+                .stops
+                .extend((0..4).map(|joint| Stop::new(joint, wall)));
+        }
+        for step in 0..=40 {
+            bench.shape.root.z = (1.2 - 0.015 * f64::from(step)) * LENGTH;
+            bench.to(0.0);
+        }
+        let pushed: f64 = bench.stops[4..].iter().map(|stop| stop.force_n).sum();
+        (bench.tip(), pushed)
+    };
+    let (free, _) = solve(None);
+    let wall = Wall {
+        normal: DVec3::NEG_X,
+        offset_m: -(free.x - 2e-3),
+    };
+    let (held, pushed) = solve(Some(wall));
+    assert!(wall.gap(free) < -1e-3, "it would go through");
+    assert!(
+        wall.gap(held) > -1e-6 * LENGTH && held.z > -1e-6 * LENGTH,
+        "{held}"
+    );
+    assert!(pushed > 0.0);
+}
+
+#[test]
+fn spines_of_one_joint_and_of_64_follow_a_stroke() {
+    for joints in [1, 64] {
+        let mut bench = Bench::new(joints, 0.8, 0.6, settings(0.25));
+        for step in 1..=60 {
+            let t = f64::from(step) * 0.05;
+            bench.shape.root.z = LENGTH * (0.65 - 0.15 * sin(3.0 * t));
+            bench.shape.root.y = 2e-3 * sin(t);
+            let solution = bench.to(-2e-3 * t);
+            assert!(
+                solution.residual <= 1e-6 * bench.spine.stiffest(),
+                "{joints}: {solution:?}"
+            );
+            assert!(
+                solution.penetration_m <= 1e-6 * LENGTH,
+                "{joints}: {solution:?}"
+            );
+            assert!(bench.stops.iter().any(Stop::touches), "{joints}");
+        }
+    }
+}
+
+proptest! {
+    #[test]
+    fn the_energy_is_never_above_that_of_the_start(
+        (height, tilt) in (0.4..0.9f64, 0.2..0.8f64),
+        (dx, dy, dz) in (-0.02..0.02f64, -0.02..0.02f64, -0.01..0.03f64),
+        turn in -0.1..0.1f64,
+    ) {
+        let mut bench = Bench::new(4, height, tilt, settings(0.25));
+        bench.to(-1e-4);
+        let root = bench.shape.root + DVec3::new(dx, dy, dz) * LENGTH;
+        let frame = rotation(DVec3::X, turn) * bench.shape.frame;
+        bench.shape.carry(root, frame);
+        let before = bench.shape.clone();
+        let solution = bench.to(root.x);
+        let faced = bench.solver.faced().to_vec();
+        let none = bench.settings;
+        let (start, _) = bench.solver.energy(&bench.spine, &before, &faced, &[], &none);
+        let feasible = (0..4).all(|joint| before.joint(&bench.spine, joint).z >= 0.0);
+        if feasible {
+            prop_assert!(solution.energy.total() <= start.total() * (1.0 + 1e-12));
+        }
+    }
+}
+
+/// A spine that is bent at rest and damped, dragged over the surface along a wall and past another
+/// spine: all energies are on.
+#[test]
+fn the_energys_derivatives_agree_with_differences() {
+    let rest = [0.1, 0.3, 0.6, 0.8].map(|a| DVec3::new(sin(a), 0.0, -cos(a)));
+    let spine = Spine::uniform(0.9, 4, 1.0).resting(&rest).damped(0.2);
+    let frame = rotation(DVec3::new(0.6, 0.8, 0.0), 0.5);
+    let begun = SpineShape::at_rest(DVec3::new(0.1, -0.2, 0.6), frame, &spine);
+    let mut shape = begun.clone();
+    for (i, d) in shape.directions.iter_mut().enumerate() {
+        let turn = rotation(DVec3::new(0.36, 0.48, 0.8), 0.2 + 0.1 * i as f64);
+        *d = turn * *d;
+    }
+    let beside = Wall {
+        normal: DVec3::NEG_Y,
+        offset_m: -0.5,
+    };
+    let mut stops = Stop::on_surface(4);
+    stops.push(Stop::new(3, beside));
+    for stop in &mut stops {
+        stop.aim(&spine, &shape);
+        stop.force_n = 0.3 + 0.1 * stop.joint as f64;
+        let at = shape.joint(&spine, stop.joint);
+        stop.anchor = Some(at + DVec3::new(-0.03, 0.02, 0.01));
+    }
+    stops[1].sticks = true;
+    let neighbours = [1, 3].map(|joint| Neighbour {
+        joint,
+        at: shape.joint(&spine, joint) + DVec3::new(0.02, 0.03, -0.01),
+        at_rest_m: 0.06,
+    });
+    let settings = Settings {
+        friction: 0.3,
+        friction_static: 0.5,
+        anisotropy: Anisotropy {
+            share: 0.4,
+            focus: 2.5,
+            ..Anisotropy::default()
+        },
+        epsilon_m: 1e-2,
+        crowd_n_m: 30.0,
+        ..Settings::for_length(0.9)
+    };
+    let mut solver = Solver::default();
+    solver.begin(&spine, &begun);
+    let (energy, slopes) = solver.energy(&spine, &shape, &stops, &neighbours, &settings);
+    let slopes = slopes.to_vec();
+    let parts = [energy.spring, energy.friction, energy.damping, energy.crowd];
+    assert!(parts.iter().all(|part| *part > 1e-4), "{energy:?}");
+    for (i, slope) in slopes.iter().enumerate() {
+        let (s, t) = shape.directions[i].any_orthonormal_pair();
+        for tangent in [s, t, (s + t).normalize()] {
+            let mut moved = |h: f64| {
+                let mut shape = shape.clone();
+                let d = shape.directions[i];
+                shape.directions[i] = shortest_arc(d, (d + tangent * h).normalize()) * d;
+                let (energy, _) = solver.energy(&spine, &shape, &stops, &neighbours, &settings);
+                energy.total()
+            };
+            let numeric = (moved(1e-5) - moved(-1e-5)) / 2e-5;
+            let analytic = slope.dot(tangent);
+            assert!(
+                (numeric - analytic).abs() < 1e-6,
+                "{i}: {numeric} {analytic}"
+            );
+            let fault = numeric - 1.001 * analytic - 1e-5;
+            assert!(fault.abs() > 1e-6, "a fault would pass");
+        }
+    }
+}

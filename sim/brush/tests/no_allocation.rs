@@ -1,0 +1,124 @@
+//! A solve allocates nothing: neither that of one spine nor that of a whole head.
+
+#![allow(
+    unsafe_code,
+    reason = "an allocator is unsafe; this one hands all on to the system's"
+)]
+
+use std::alloc::{GlobalAlloc, Layout, System};
+use std::cell::Cell;
+
+use glam::{DQuat, DVec3};
+use maulstick_brush::desk::Obstacle;
+use maulstick_brush::held::{HeadSolver, HeldHead};
+use maulstick_brush::model::settings_of;
+use maulstick_brush::solver::{Settings, Solver, Stop};
+use maulstick_brush::{BrushFile, Spine, SpineShape};
+use maulstick_num::geometry::{Rigid, rotation};
+
+thread_local! {
+    static ALLOCATIONS: Cell<usize> = const { Cell::new(0) };
+}
+
+/// Counts what each thread allocates.
+struct Counting;
+
+fn count() {
+    ALLOCATIONS.set(ALLOCATIONS.get() + 1);
+}
+
+// SAFETY: every call goes to the system's allocator as it came.
+unsafe impl GlobalAlloc for Counting {
+    unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
+        count();
+        // SAFETY: as the caller promises.
+        unsafe { System.alloc(layout) }
+    }
+
+    unsafe fn dealloc(&self, at: *mut u8, layout: Layout) {
+        // SAFETY: as the caller promises.
+        unsafe { System.dealloc(at, layout) }
+    }
+
+    unsafe fn realloc(&self, at: *mut u8, layout: Layout, size: usize) -> *mut u8 {
+        count();
+        // SAFETY: as the caller promises.
+        unsafe { System.realloc(at, layout, size) }
+    }
+}
+
+#[global_allocator]
+static COUNTING: Counting = Counting;
+
+/// How often this thread allocates while `work` is done.
+fn allocations(work: impl FnOnce()) -> usize {
+    let before = ALLOCATIONS.get();
+    work();
+    ALLOCATIONS.get() - before
+}
+
+/// A tilted ferrule that slides, presses and lifts.
+fn place(step: usize, length: f64) -> Rigid {
+    let t = step as f64 * 0.01;
+    Rigid {
+        rotation: rotation(DVec3::Y, 0.5 + 0.3 * maulstick_num::sin(9.0 * t)),
+        translation: DVec3::new(
+            -0.2 * t,
+            0.01 * maulstick_num::sin(5.0 * t),
+            length * (0.7 + 0.4 * maulstick_num::sin(7.0 * t)),
+        ),
+    }
+}
+
+/// Steps of a stroke, of which the first half warms up.
+const STEPS: usize = 200;
+
+#[test]
+fn a_spine_is_solved_without_allocating() {
+    for joints in [1, 3, 10] {
+        let spine = Spine::uniform(0.025, joints, 1.5e-4).damped(0.01);
+        let settings = Settings::for_length(0.025);
+        let mut solver = Solver::default();
+        let mut stops = Stop::on_surface(joints);
+        let mut shape = SpineShape::straight(DVec3::Z, DQuat::IDENTITY, joints);
+        let mut touched = 0;
+        let mut stroke = |steps: std::ops::Range<usize>| {
+            for step in steps {
+                let held = place(step, 0.025);
+                shape.carry(held.translation, held.rotation);
+                let solution = solver.solve(&spine, &mut shape, &mut stops, &[], &settings);
+                assert!(solution.converged, "{solution:?}");
+                touched += usize::from(stops.iter().any(Stop::touches));
+            }
+        };
+        stroke(0..STEPS / 2);
+        assert_eq!(allocations(|| stroke(STEPS / 2..STEPS)), 0, "{joints}");
+        let fault = allocations(|| {
+            stroke(0..2);
+            std::hint::black_box(Vec::<u8>::with_capacity(1));
+        });
+        assert_eq!(fault, 1, "an allocation would pass");
+        assert!((STEPS / 4..STEPS).contains(&touched), "{touched}");
+    }
+}
+
+#[test]
+fn a_head_is_solved_without_allocating() {
+    for kind in ["round", "filbert"] {
+        let file = BrushFile::library(kind).expect(kind);
+        let (tuft, walls) = (file.tuft(), [Obstacle::ground()]);
+        let (settings, length) = (settings_of(&file, &tuft), file.length_m());
+        let mut room = HeadSolver::default();
+        let mut head = HeldHead::at_rest(&tuft, &place(0, length));
+        let mut touched = 0;
+        let mut stroke = |steps: std::ops::Range<usize>| {
+            for step in steps {
+                head.solve(&mut room, &tuft, &place(step, length), &walls, &settings);
+                touched += usize::from(head.touches());
+            }
+        };
+        stroke(0..STEPS / 2);
+        assert_eq!(allocations(|| stroke(STEPS / 2..STEPS)), 0, "{kind}");
+        assert!((STEPS / 4..STEPS).contains(&touched), "{touched}");
+    }
+}

@@ -1,0 +1,126 @@
+//! One spine on its stroke: our solver beside slsqp, pose by pose.
+
+use std::time::Instant;
+
+use maulstick_brush::energy::friction::Anisotropy;
+use maulstick_brush::solver::{Settings, Solver, Stop};
+use maulstick_brush::{Spine, SpineShape};
+use maulstick_rig::Fault;
+
+use super::angles::Angles;
+use super::stroke::stroke;
+use crate::report::{Report, quantile, sorted};
+
+/// A 10 mm round's spine: length (m) and bending stiffness (N·m²).
+pub(crate) const LENGTH_M: f64 = 0.025;
+const EI: f64 = 2.7e-5;
+/// Times that each solves each pose, in turn.
+const TURNS: usize = 3;
+/// The peer's minimum counts if it lies no deeper, in lengths.
+const FEASIBLE: f64 = 1e-9;
+/// Spines of the throughput row.
+const CROWD: usize = 128;
+
+/// The spine of the benchmarks.
+pub(crate) fn spine(joints: usize) -> Spine {
+    Spine::uniform(LENGTH_M, joints, EI).damped(0.01)
+}
+
+/// Its friction.
+pub(crate) fn settings() -> Settings {
+    Settings {
+        friction_static: 0.32,
+        anisotropy: Anisotropy {
+            share: 0.3,
+            focus: 2.0,
+            ..Anisotropy::default()
+        },
+        ..Settings::for_length(LENGTH_M)
+    }
+}
+
+/// Both on the poses of a stroke, each from our state at the pose before.
+pub(crate) fn beside_slsqp(report: &mut Report, joints: usize) -> Result<(), Fault> {
+    let (spine, settings) = (spine(joints), settings());
+    let poses = stroke(joints as u64, LENGTH_M);
+    let mut solver = Solver::default();
+    let mut stops = Stop::on_surface(joints);
+    let mut shape = SpineShape::straight(poses[0].translation, poses[0].rotation, joints);
+    let (mut ours, mut theirs) = (Vec::new(), Vec::new());
+    let (mut excess, mut residual, mut iterations) = (Vec::new(), Vec::new(), Vec::new());
+    let mut touching = 0;
+    for pose in &poses {
+        shape.carry(pose.translation, pose.rotation);
+        let (before, stops_before) = (shape.clone(), stops.clone());
+        let start: Vec<f64> = before.exact_angles().flatten().collect();
+        for _ in 0..TURNS {
+            shape.clone_from(&before);
+            stops.clone_from(&stops_before);
+            let clock = Instant::now();
+            let solution = solver.solve(&spine, &mut shape, &mut stops, &[], &settings);
+            ours.push(clock.elapsed().as_secs_f64() * 1e6);
+            if !solution.converged {
+                return Err(Fault::failure("a pose of the stroke has no solution"));
+            }
+            residual.push(solution.residual / spine.stiffest());
+            iterations.push(solution.iterations as f64);
+            let faced = solver.faced().to_vec();
+            let problem = Angles::new(&spine, &settings, &faced, &mut solver, before.clone());
+            let clock = Instant::now();
+            let minimum = problem.minimise(&start);
+            theirs.push(clock.elapsed().as_secs_f64() * 1e6);
+            let least = problem.energy_of(&shape).total() / spine.stiffest();
+            if minimum.penetration <= FEASIBLE {
+                excess.push(least / minimum.energy - 1.0);
+            }
+        }
+        touching += usize::from(stops.iter().any(Stop::touches));
+    }
+    let excess = sorted(excess);
+    let median = |values: Vec<f64>| quantile(&sorted(values), 0.5);
+    let worst = |values: &[f64]| values.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+    let solved = excess.len() as f64 / ours.len() as f64;
+    let mut row = |name: &str, value: f64, unit: &'static str| {
+        report.row(&format!("spine{joints}.{name}"), value, unit);
+    };
+    row(
+        "in_contact",
+        touching as f64 / poses.len() as f64,
+        "of poses",
+    );
+    row("energy_excess", quantile(&excess, 0.99), "");
+    row("energy_excess_worst", worst(&excess), "");
+    row("residual", worst(&residual), "");
+    row("iterations", median(iterations), "");
+    row("slsqp_feasible", solved, "of poses");
+    let times = (median(ours), median(theirs));
+    let name = format!("spine{joints}.time");
+    report.beside(&name, times.0, "µs", ("slsqp", times.1));
+    Ok(())
+}
+
+/// How many three-joint spines one core keeps at 1 kHz: each on its own stroke, one after the other
+/// in one thread, without batching.
+pub(crate) fn throughput(report: &mut Report) {
+    let (spine, settings) = (spine(3), settings());
+    let strokes: Vec<_> = (0..CROWD)
+        .map(|seed| stroke(seed as u64, LENGTH_M))
+        .collect();
+    let begin = |poses: &Vec<_>| {
+        let first: &maulstick_num::geometry::Rigid = &poses[0];
+        let shape = SpineShape::straight(first.translation, first.rotation, 3);
+        (shape, Stop::on_surface(3))
+    };
+    let mut spines: Vec<_> = strokes.iter().map(begin).collect();
+    let mut solver = Solver::default();
+    let mut rates = Vec::new();
+    for tick in 0..strokes[0].len() {
+        let clock = Instant::now();
+        for ((shape, stops), poses) in spines.iter_mut().zip(&strokes) {
+            shape.carry(poses[tick].translation, poses[tick].rotation);
+            solver.solve(&spine, shape, stops, &[], &settings);
+        }
+        rates.push(1e-3 / clock.elapsed().as_secs_f64() * CROWD as f64);
+    }
+    report.row("spines_at_1khz", quantile(&sorted(rates), 0.5), "spines");
+}
