@@ -161,7 +161,7 @@ fn bad_options_are_refused_with_the_nearest_name() {
         &render(&["--load", "Cobalt Blue=0.5,Bone Black=0.4"]),
         &["sum to 0.9"],
     );
-    has(&render(&["--brush", "ruond"]), &["'ruond'", "'flat'"]);
+    has(&render(&["--brush", "ruond"]), &["'ruond'", "'round'"]);
     has(&render(&["--size", "0x4"]), &["0x4"]);
     has(&render(&["--rig", "none.toml"]), &["none.toml"]);
     let said = fault(&place, &["render", "d.mcap", "-o", "no/p.png"], 1);
@@ -217,7 +217,7 @@ fn bad_settings_are_refused_with_their_line() {
     );
     has(
         &rig(("kind = \"round\"", "kind = \"flatt\"")),
-        &["'flatt'", "round"],
+        &["'flatt'", "flat"],
     );
     has(
         &rig(("ground = \"gesso\"", "ground = \"gesoo\"")),

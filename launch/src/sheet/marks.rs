@@ -66,7 +66,7 @@ pub fn marks(width_mm: f64) -> Vec<Mark> {
             0.08 + 0.36 * swell(t, 0.15)
         }),
     });
-    for (row, pressure) in [0.12, 0.45].into_iter().enumerate() {
+    for (row, pressure) in [0.1, 0.24].into_iter().enumerate() {
         let y = middle + 9.0 - 18.0 * row as f64;
         marks.push(Mark {
             load: (row == 0).then_some("Bone Black"),
@@ -75,9 +75,13 @@ pub fn marks(width_mm: f64) -> Vec<Mark> {
             }),
         });
     }
-    let apart = (0.55 * width_mm + 4.0).clamp(6.0, 13.0);
-    for dab in 0..3 {
-        let at = [172.0 + apart * f64::from(dab), middle];
+    let wide = width_mm > 12.0;
+    let (apart, dabs) = if wide { (width_mm, 1) } else { (10.0, 3) };
+    for dab in 0..dabs {
+        let at = [
+            if wide { 183.0 } else { 174.0 } + apart * f64::from(dab),
+            middle,
+        ];
         let pressure = 0.35 + 0.2 * f64::from(dab);
         marks.push(Mark {
             load: (dab == 0).then_some(()).and(ochre),
@@ -92,15 +96,20 @@ pub fn marks(width_mm: f64) -> Vec<Mark> {
             },
         });
     }
-    for row in 0..2 {
-        let y = middle + 10.0 - 20.0 * f64::from(row);
+    for row in 0..if wide { 1 } else { 2 } {
+        let y = middle
+            + if wide {
+                0.0
+            } else {
+                10.0 - 20.0 * f64::from(row)
+            };
         marks.push(Mark {
             load: (row == 0).then_some(()).and(green),
             gesture: stroke(
-                vec![[206.0, y], [226.0, y + 2.0], [244.0, y]],
+                vec![[208.0, y], [226.0, y + 2.0], [243.0, y]],
                 1.0,
                 90.0,
-                move |t| 0.02 + (0.34 - 0.14 * f64::from(row)) * swell(t, 0.12),
+                move |t| 0.02 + (0.28 - 0.14 * f64::from(row)) * swell(t, 0.12),
             ),
         });
     }

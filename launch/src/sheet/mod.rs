@@ -41,6 +41,8 @@ const PORTRAIT_SCALE: f64 = 3000.0;
 const BRUSH: &str = "main";
 /// The share of its head's length by which full pressure presses a brush in.
 const DEPTH_SHARE: f64 = 0.5;
+/// Width of that brush, mm.
+const ONE_STROKE_MM: f64 = 14.0;
 /// The two colours of a double-loaded brush.
 const DOUBLE: [&str; 2] = ["Quinacridone Magenta=0.6,Pyrrole Red=0.4", "Titanium White"];
 
@@ -51,8 +53,14 @@ struct Panel {
 }
 
 impl Panel {
-    fn new(size_mm: [f64; 2], file: BrushFile, library: PaintLibrary) -> Result<Self, Fault> {
+    fn new(
+        size_mm: [f64; 2],
+        ground: &str,
+        file: BrushFile,
+        library: PaintLibrary,
+    ) -> Result<Self, Fault> {
         let setup = PaintingSetup {
+            ground: ground.to_owned(),
             cells: size_mm.map(|mm| (mm / CELL_MM) as u32),
             cell_m: 1e-3 * CELL_MM,
             ..PaintingSetup::default()
@@ -97,7 +105,7 @@ fn mixture_of(text: &str) -> Result<Mixture, Fault> {
 /// # Errors
 /// A [`Fault`] where a brush or a paint is refused.
 pub fn brush_panel(file: &BrushFile, library: PaintLibrary) -> Result<Picture, Fault> {
-    let mut panel = Panel::new(marks::PANEL_MM, file.clone(), library)?;
+    let mut panel = Panel::new(marks::PANEL_MM, "gesso", file.clone(), library)?;
     for mark in marks::marks(file.head.width_mm) {
         if let Some(mixture) = mark.load {
             panel.load(BRUSH, mixture)?;
@@ -112,7 +120,7 @@ pub fn brush_panel(file: &BrushFile, library: PaintLibrary) -> Result<Picture, F
 /// # Errors
 /// As [`brush_panel`].
 pub fn one_stroke_panel(file: &BrushFile, library: PaintLibrary) -> Result<Picture, Fault> {
-    let mut panel = Panel::new(one_stroke::PANEL_MM, file.clone(), library)?;
+    let mut panel = Panel::new(one_stroke::PANEL_MM, "grey", file.clone(), library)?;
     for gesture in one_stroke::marks(file.head.width_mm) {
         let command = Command::LoadBeside {
             brush: BRUSH.to_owned(),
@@ -131,7 +139,7 @@ pub fn one_stroke_panel(file: &BrushFile, library: PaintLibrary) -> Result<Pictu
 /// As [`brush_panel`].
 pub fn softening_panel(blender: &BrushFile, library: PaintLibrary) -> Result<Picture, Fault> {
     let flat = library_brush("flat")?;
-    let mut panel = Panel::new(softening::PANEL_MM, flat, library)?;
+    let mut panel = Panel::new(softening::PANEL_MM, "gesso", flat, library)?;
     for (mixture, gesture) in softening::bands() {
         panel.load(BRUSH, mixture)?;
         panel.paint(&gesture)?;
@@ -185,7 +193,9 @@ pub fn sheet(library: &PaintLibrary, mut told: impl FnMut(usize, usize)) -> Resu
         tell();
     }
     for kind in double {
-        let file = library_brush(kind)?;
+        let file = library_brush(kind)?
+            .scaled_to(ONE_STROKE_MM)
+            .map_err(|error| Fault::failure(error.to_string()))?;
         let words = [
             "one stroke",
             &format!("double-loaded {kind}"),

@@ -39,14 +39,14 @@ fn polar(middle: [f64; 2], radius: f64, degrees: f64) -> [f64; 2] {
 
 /// Pivots on the inner corner, pressed: the outer one draws the rim.
 fn petal(middle: [f64; 2], width_mm: f64) -> Gesture {
-    let base = [middle[0], middle[1] - 9.0];
+    let base = [middle[0], middle[1] - 5.0];
     Gesture {
         seconds: 2.2,
         hand: Box::new(move |t| {
             let turn = 160.0 - 140.0 * ease(t);
             Moment {
                 at: polar(base, 0.62 * width_mm, turn),
-                pressure: 0.04 + 0.42 * swell(t, 0.25),
+                pressure: 0.03 + 0.34 * swell(t, 0.25),
                 tilt_deg: [0.0; 2],
                 twist_deg: turn,
             }
@@ -75,7 +75,7 @@ fn leaf(middle: [f64; 2]) -> Gesture {
 
 /// As a petal, with the outer corner wiggled out and in: a rim of scallops.
 fn shell(middle: [f64; 2], width_mm: f64) -> Gesture {
-    let base = [middle[0], middle[1] - 10.0];
+    let base = [middle[0], middle[1] - 5.0];
     Gesture {
         seconds: 4.0,
         hand: Box::new(move |t| {
@@ -96,9 +96,9 @@ fn comma(middle: [f64; 2]) -> Gesture {
     Gesture {
         seconds: 1.1,
         hand: Box::new(move |t| {
-            let turn = 130.0 + 110.0 * ease(t);
+            let turn = 120.0 + 115.0 * ease(t);
             Moment {
-                at: polar([middle[0] + 8.0, middle[1] + 4.0], 15.0, turn),
+                at: polar([middle[0] + 8.0, middle[1] + 1.0], 14.0, turn),
                 pressure: 0.03 + 0.6 * ease(t / 0.12) * ease((1.0 - t) / 0.85),
                 tilt_deg: [-6.0, -16.0],
                 twist_deg: 20.0 + 20.0 * t,
@@ -116,7 +116,7 @@ fn chisel_line(middle: [f64; 2]) -> Gesture {
                 middle[0] - 14.0 + 28.0 * ease(t),
                 middle[1] - 10.0 + 20.0 * ease(t),
             ],
-            pressure: 0.02 + 0.05 * swell(t, 0.2),
+            pressure: 0.02 + 0.035 * swell(t, 0.2),
             tilt_deg: [4.0, 3.0],
             twist_deg: 35.5,
         }),

@@ -14,14 +14,14 @@ pub fn bands() -> Vec<(&'static str, Gesture)> {
         })
     };
     vec![
-        ("Ultramarine Blue=0.6,Titanium White=0.4", band(28.0)),
-        ("Hansa Yellow Opaque=0.6,Titanium White=0.4", band(12.0)),
+        ("Ultramarine Blue=0.6,Titanium White=0.4", band(29.0)),
+        ("Hansa Yellow Opaque=0.6,Titanium White=0.4", band(11.0)),
     ]
 }
 
 /// Light sweeps across the edge, over the right half.
 pub fn sweeps() -> Vec<Gesture> {
-    (0..22)
+    (0..44)
         .map(|i| {
             let x = 134.0 + 9.5 * f64::from(i % 11);
             let up = i % 2 == 0;
@@ -30,8 +30,8 @@ pub fn sweeps() -> Vec<Gesture> {
                 hand: Box::new(move |t| {
                     let way = if up { ease(t) } else { 1.0 - ease(t) };
                     Moment {
-                        at: [x, 13.0 + 14.0 * way],
-                        pressure: 0.02 + 0.14 * swell(t, 0.3),
+                        at: [x, 12.0 + 16.0 * way],
+                        pressure: 0.02 + 0.3 * swell(t, 0.25),
                         tilt_deg: [0.0, if up { 18.0 } else { -18.0 }],
                         twist_deg: 0.0,
                     }
