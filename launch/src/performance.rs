@@ -61,6 +61,7 @@ impl PaintingOptions {
                 Some(section) => section.clone(),
                 None => BrushSection {
                     kind: name.clone(),
+                    size_mm: None,
                     ..config.brush[0].clone()
                 },
             },

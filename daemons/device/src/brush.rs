@@ -25,8 +25,12 @@ pub fn brush_file(section: &BrushSection) -> Result<BrushFile, Fault> {
                 .help("correct the brush file")
         })?
     };
-    file.scaled_to(section.size_mm)
-        .map_err(|error| Fault::usage(error.to_string()))
+    match section.size_mm {
+        Some(size_mm) => file
+            .scaled_to(size_mm)
+            .map_err(|error| Fault::usage(error.to_string())),
+        None => Ok(file),
+    }
 }
 
 #[cfg(test)]
@@ -39,7 +43,7 @@ mod tests {
         let section = |kind: &str| BrushSection {
             name: "main".into(),
             kind: kind.into(),
-            size_mm: 20.0,
+            size_mm: Some(20.0),
             depth_share: 0.5,
         };
         let library = brush_file(&section("round")).expect("a brush");

@@ -1,4 +1,4 @@
-//! Commands to the paint node, repeated with the same number until they are answered.
+//! Commands to a node, repeated with the same number until they are answered.
 
 use std::sync::Arc;
 use std::time::{Duration, Instant};
@@ -13,7 +13,7 @@ use maulstick_types::{Origin, name_hash};
 /// A query for a command waits this long before it is asked again.
 const ASK: Duration = Duration::from_secs(2);
 
-/// A client of the paint node.
+/// A client of a node.
 pub struct Commander {
     bus: Arc<dyn Bus>,
     topic: String,
@@ -26,13 +26,19 @@ impl Commander {
     /// A client with a number of its own.
     #[must_use]
     pub fn new(bus: Arc<dyn Bus>, topics: &Topics) -> Self {
+        Self::of(bus, topics, "paint")
+    }
+
+    /// A client of another node.
+    #[must_use]
+    pub fn of(bus: Arc<dyn Bus>, topics: &Topics, node: &str) -> Self {
         let me = Origin {
             source: name_hash("commander"),
             epoch: random_epoch(),
         };
         Self {
             bus,
-            topic: topics.command("paint"),
+            topic: topics.command(node),
             client: random_u64(),
             number: 0,
             me,

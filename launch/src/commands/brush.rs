@@ -8,12 +8,15 @@ use maulstick_brush::file::library::LIBRARY;
 use maulstick_brush::trial::{SpineFile, TrialPose, TrialRow, follow, poses};
 use maulstick_brush::{BrushError, BrushFile};
 use maulstick_rig::Fault;
+use maulstick_rig::config::BrushSection;
 use maulstick_rig::config::toml_fault;
 use maulstick_rig::files::{check_writable, write_whole};
+use maulstick_types::command::Command;
 use serde_json::json;
 
+use crate::commands::control::{Target, send};
 use crate::commands::print_json;
-use crate::performance::library;
+use crate::performance::{brush_file, library};
 use crate::sheet::sheet;
 
 /// `maulstick brush`.
@@ -23,6 +26,8 @@ pub enum BrushCommand {
     List(ListOptions),
     /// Draws each brush and its marks
     Sheet(SheetOptions),
+    /// Puts another brush into the hand of a running rig
+    Take(TakeOptions),
     /// Bends one spine through a list of poses over the plane z = 0
     ///
     /// SPINE.toml has `lengths_m` and `stiffness_nm_per_rad` (lists from the ferrule to the point, 1
@@ -68,6 +73,21 @@ pub struct SolveOptions {
     json: bool,
 }
 
+/// Options of `maulstick brush take`.
+#[derive(Args, Clone, Debug)]
+pub struct TakeOptions {
+    /// A brush of the library, or a brush file
+    kind: String,
+    /// Width of the head, mm; that of its file if absent
+    #[arg(long, value_name = "MM")]
+    size_mm: Option<f64>,
+    /// The brush of the rig that it takes the place of
+    #[arg(long, default_value = "main")]
+    brush: String,
+    #[command(flatten)]
+    target: Target,
+}
+
 /// Runs a command on brushes.
 ///
 /// # Errors
@@ -76,6 +96,7 @@ pub fn run(command: &BrushCommand) -> Result<i32, Fault> {
     match command {
         BrushCommand::List(options) => list(options),
         BrushCommand::Sheet(options) => draw_sheet(options),
+        BrushCommand::Take(options) => take_up(options),
         BrushCommand::Solve(options) => solve(options),
     }
 }
@@ -104,6 +125,25 @@ fn list(options: &ListOptions) -> Result<i32, Fault> {
     if options.json {
         print_json(&json!({ "brushes": rows }))?;
     }
+    Ok(0)
+}
+
+fn take_up(options: &TakeOptions) -> Result<i32, Fault> {
+    let section = BrushSection {
+        name: options.brush.clone(),
+        kind: options.kind.clone(),
+        size_mm: options.size_mm,
+        depth_share: 0.0,
+    };
+    let toml = brush_file(&section)?
+        .to_toml()
+        .map_err(|error| Fault::failure(error.to_string()))?;
+    let command = Command::Define {
+        brush: options.brush.clone(),
+        toml,
+    };
+    command.check().map_err(Fault::usage)?;
+    send(&options.target, &options.brush, command)?;
     Ok(0)
 }
 

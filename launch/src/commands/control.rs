@@ -86,11 +86,16 @@ pub struct SnapshotOptions {
     target: Target,
 }
 
+/// The node that does what concerns the painting.
+const PAINT: &str = "paint";
 /// How long a node has to answer.
 const PATIENCE: Duration = Duration::from_secs(10);
 
-/// Sends a command to the paint node of a rig; returns what it says.
-fn send(target: &Target, command: Command) -> Result<String, Fault> {
+/// Sends a command to a node of a rig; returns what it says.
+///
+/// # Errors
+/// A [`Fault`] in the node's own words, or where no rig runs.
+pub fn send(target: &Target, node: &str, command: Command) -> Result<String, Fault> {
     let (folder, info) = RigFolder::join(&target.name)?;
     let dial = Dial {
         name: "cli".into(),
@@ -100,7 +105,7 @@ fn send(target: &Target, command: Command) -> Result<String, Fault> {
     let session = ZenohBus::open(&dial, RigClock::with_offset(info.clock_offset_ns))?;
     let bus = Arc::new(session);
     let topics = Topics::new(folder.rig());
-    let mut commander = Commander::new(Arc::clone(&bus) as Arc<dyn Bus>, &topics);
+    let mut commander = Commander::of(Arc::clone(&bus) as Arc<dyn Bus>, &topics, node);
     let said = commander.send(command, None, PATIENCE, &|| false);
     bus.close();
     said
@@ -121,7 +126,7 @@ pub fn load(options: &LoadOptions) -> Result<i32, Fault> {
             right: checked(&library, beside)?,
         },
     };
-    send(&options.target, command)?;
+    send(&options.target, PAINT, command)?;
     Ok(0)
 }
 
@@ -148,7 +153,7 @@ pub fn tune(options: &TuneOptions) -> Result<i32, Fault> {
         },
     };
     command.check().map_err(Fault::usage)?;
-    send(&options.target, command)?;
+    send(&options.target, PAINT, command)?;
     Ok(0)
 }
 
@@ -159,6 +164,7 @@ pub fn tune(options: &TuneOptions) -> Result<i32, Fault> {
 pub fn clean(options: &CleanOptions) -> Result<i32, Fault> {
     send(
         &options.target,
+        PAINT,
         Command::Clean {
             brush: options.brush.clone(),
         },
@@ -171,7 +177,7 @@ pub fn clean(options: &CleanOptions) -> Result<i32, Fault> {
 /// # Errors
 /// A [`Fault`] where there is none, or where no rig runs.
 pub fn undo(options: &HistoryOptions) -> Result<i32, Fault> {
-    println!("undone: {}", send(&options.target, Command::Undo)?);
+    println!("undone: {}", send(&options.target, PAINT, Command::Undo)?);
     Ok(0)
 }
 
@@ -180,7 +186,7 @@ pub fn undo(options: &HistoryOptions) -> Result<i32, Fault> {
 /// # Errors
 /// A [`Fault`] where there is none, or where no rig runs.
 pub fn redo(options: &HistoryOptions) -> Result<i32, Fault> {
-    println!("redone: {}", send(&options.target, Command::Redo)?);
+    println!("redone: {}", send(&options.target, PAINT, Command::Redo)?);
     Ok(0)
 }
 
@@ -198,7 +204,7 @@ pub fn snapshot(options: &SnapshotOptions) -> Result<i32, Fault> {
     let ledger = options.ledger.as_ref().map(whole).transpose()?;
     println!(
         "{}",
-        send(&options.target, Command::Snapshot { path, ledger })?
+        send(&options.target, PAINT, Command::Snapshot { path, ledger })?
     );
     Ok(0)
 }

@@ -127,8 +127,9 @@ pub struct BrushSection {
     pub name: String,
     /// A brush of the library, or a path to a brush file.
     pub kind: String,
-    /// Width of the head, mm.
-    pub size_mm: f64,
+    /// Width of the head, mm; that of its file if absent.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub size_mm: Option<f64>,
     /// Share of the head's length that full pressure presses in.
     #[serde(default = "half")]
     pub depth_share: f64,
@@ -233,7 +234,7 @@ impl RigConfig {
             config.brush.push(BrushSection {
                 name: "main".into(),
                 kind: "round".into(),
-                size_mm: 10.0,
+                size_mm: None,
                 depth_share: 0.5,
             });
         }

@@ -13,6 +13,8 @@ pub const PATH_MAX: usize = 4096;
 pub const PARTS_MAX: usize = 64;
 /// The name of a paint has at most this many bytes.
 pub const PAINT_NAME_MAX: usize = 128;
+/// A brush file has at most this many bytes.
+pub const BRUSH_FILE_MAX: usize = 1_000_000;
 /// Factors on the stiffness of a brush.
 pub const STIFFNESS: std::ops::RangeInclusive<f64> = 0.05..=20.0;
 
@@ -86,6 +88,13 @@ wire_enum! {
             /// What the other half takes up.
             right: Mixture,
         },
+        /// Gives a brush another file; it is the brush's own node that does it.
+        Define {
+            /// Name of the brush.
+            brush: String,
+            /// The file, TOML.
+            toml: String,
+        },
         /// Makes a brush stiffer or softer than its file says.
         Tune {
             /// How it is from now on.
@@ -106,6 +115,12 @@ impl Command {
             Self::Clean { brush } => brush_name(brush),
             Self::LoadBeside { brush, left, right } => {
                 brush_name(brush).and_then(|()| [left, right].into_iter().try_for_each(short))
+            }
+            Self::Define { brush, toml } => {
+                brush_name(brush).and_then(|()| match toml.len() > BRUSH_FILE_MAX {
+                    true => Err(format!("a brush file of {} bytes is too long", toml.len())),
+                    false => Ok(()),
+                })
             }
             Self::Tune { tuning } => brush_name(&tuning.brush).and_then(|()| {
                 let good =

@@ -321,6 +321,10 @@ fn all() -> String {
             left: mixture.clone(),
             right: mixture.clone(),
         })),
+        line(&command(Command::Define {
+            brush: "main".into(),
+            toml: "kind".into(),
+        })),
         line(&command(Command::Tune {
             tuning: Tuning {
                 brush: "main".into(),

@@ -5,6 +5,8 @@ use maulstick_num::geometry::Rigid;
 use maulstick_types::brush::Contact;
 
 use crate::desk::Obstacle;
+use crate::energy::friction::Anisotropy;
+use crate::file::BrushFile;
 use crate::solver::{Neighbour, Settings, Solver, Stop};
 use crate::spine::SpineShape;
 use crate::tuft::Tuft;
@@ -173,5 +175,22 @@ fn face(stops: &mut Vec<Stop>, ends: &[DVec3], obstacles: &[Obstacle]) {
                 None => stops.push(Stop::new(joint, wall)),
             }
         }
+    }
+}
+
+/// What the solver is asked for by a brush file with this tuft.
+#[must_use]
+pub fn settings_of(file: &BrushFile, tuft: &Tuft) -> Settings {
+    let contact = &file.contact;
+    Settings {
+        friction: contact.friction,
+        friction_static: contact.friction_static.unwrap_or(contact.friction),
+        anisotropy: Anisotropy {
+            share: contact.anisotropy,
+            focus: contact.focus,
+            ..Anisotropy::default()
+        },
+        crowd_n_m: tuft.crowd_n_m,
+        ..Settings::for_length(file.length_m())
     }
 }

@@ -7,10 +7,9 @@ use maulstick_types::scene::Scene;
 use maulstick_types::stylus::StylusSample;
 
 use crate::desk::{Desk, Obstacle, Plane, aim, ferrule};
-use crate::energy::friction::Anisotropy;
 use crate::feel::Feel;
 use crate::file::BrushFile;
-use crate::held::{HeadSolver, HeldHead};
+use crate::held::{HeadSolver, HeldHead, settings_of};
 use crate::solver::Settings;
 use crate::tuft::Tuft;
 use crate::way::{Piece, Sampled, Way};
@@ -77,6 +76,14 @@ impl BrushModel {
             last_contact_ns: 0,
             tuned: 1.0,
         }
+    }
+
+    /// Takes up another brush, as stiff or soft as it was tuned; strokes are counted on.
+    pub fn take_up(&mut self, file: BrushFile) {
+        self.tuft = file.tuft();
+        self.tuft.stiffen(self.tuned);
+        self.settings = settings_of(&file, &self.tuft);
+        (self.file, self.held) = (file, None);
     }
 
     /// The brush file.
@@ -324,23 +331,6 @@ impl BrushModel {
             before: None,
             left_over: 0.0,
         }
-    }
-}
-
-/// What the solver is asked for by a brush file with this tuft.
-#[must_use]
-pub fn settings_of(file: &BrushFile, tuft: &Tuft) -> Settings {
-    let contact = &file.contact;
-    Settings {
-        friction: contact.friction,
-        friction_static: contact.friction_static.unwrap_or(contact.friction),
-        anisotropy: Anisotropy {
-            share: contact.anisotropy,
-            focus: contact.focus,
-            ..Anisotropy::default()
-        },
-        crowd_n_m: tuft.crowd_n_m,
-        ..Settings::for_length(file.length_m())
     }
 }
 

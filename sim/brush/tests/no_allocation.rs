@@ -10,8 +10,8 @@ use std::cell::Cell;
 
 use glam::{DQuat, DVec3};
 use maulstick_brush::desk::Obstacle;
+use maulstick_brush::held::settings_of;
 use maulstick_brush::held::{HeadSolver, HeldHead};
-use maulstick_brush::model::settings_of;
 use maulstick_brush::solver::{Settings, Solver, Stop};
 use maulstick_brush::{BrushFile, Spine, SpineShape};
 use maulstick_num::geometry::{Rigid, rotation};

@@ -1,5 +1,6 @@
 //! The brush node: stylus samples in; brush states, credit and contact models out.
 
+mod commands;
 mod settings;
 
 use std::collections::{BTreeMap, BTreeSet};
@@ -10,9 +11,9 @@ use glam::DVec3;
 use maulstick_brush::BrushModel;
 use maulstick_brush::desk::aim;
 use maulstick_bus::credit::Stamp;
-use maulstick_bus::typed::{Received, Receiver, Sender};
+use maulstick_bus::typed::{Reader, Received, Receiver, Sender};
 use maulstick_bus::{
-    Bus, BusError, Class, CreditReceiver, CreditSender, Queue, Subscription, Wake,
+    Bus, BusError, Class, CreditReceiver, CreditSender, Queue, Server, Subscription, Wake,
 };
 use maulstick_types::brush::{BrushConsumed, BrushDef, BrushState, Solve};
 use maulstick_types::haptics::ContactModel;
@@ -74,7 +75,9 @@ pub struct BrushNode {
     touching: bool,
     /// Devices of whose faulty samples it was said.
     faulty: BTreeSet<String>,
-    _def: Sender<BrushDef>,
+    def: Sender<BrushDef>,
+    commands: Server,
+    reader: Reader,
 }
 
 impl BrushNode {
@@ -95,21 +98,7 @@ impl BrushNode {
         let b = &*bus;
         let name = settings.name.as_str();
         let mut def = Sender::new(b, &topics.brush_def(name), Class::Cached, me)?;
-        let toml = settings.file.to_toml().map_err(|error| BusError::Topic {
-            topic: topics.brush_def(name),
-            reason: error.to_string(),
-        })?;
-        let hash = name_hash(&toml);
-        let now = b.now_ns();
-        def.send(
-            now,
-            now,
-            &BrushDef {
-                brush: name.to_owned(),
-                toml,
-                hash,
-            },
-        )?;
+        commands::define(&mut def, b.now_ns(), name, &settings.file)?;
         Ok(Self {
             samples: CreditReceiver::new(b, topics, &topics.sample("*"), me, wake)?,
             states: CreditSender::new(b, topics, &topics.brush_state(name), me, wake)?,
@@ -144,7 +133,9 @@ impl BrushNode {
             tokens: b.watch(&topics.node("*"), wake)?,
             touching: false,
             faulty: BTreeSet::new(),
-            _def: def,
+            def,
+            commands: b.serve(&topics.command(name), 16, wake)?,
+            reader: Reader::default(),
             topics: topics.clone(),
             settings,
             bus,
@@ -165,6 +156,7 @@ impl BrushNode {
         let bus = Arc::clone(&self.bus);
         let now_ns = bus.now_ns();
         self.take_in(now_ns);
+        self.serve_commands(now_ns)?;
         self.samples.poll(&*bus)?;
         while let Some(received) = self.next_sample() {
             self.sample(received, now_ns)?;

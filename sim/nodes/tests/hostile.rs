@@ -27,7 +27,7 @@ fn a_text_too_long_to_be_answered_is_refused_in_short() {
         },
     ];
     for (number, command) in hostile.into_iter().enumerate() {
-        let outcome = live.ask(number as u64 + 1, command);
+        let outcome = live.ask("paint", number as u64 + 1, command);
         assert!(
             matches!(&outcome, Outcome::Refused { what, .. } if what.contains("70000 bytes")),
             "{outcome:?}"

@@ -316,6 +316,10 @@ impl Sequencer {
                 .painting
                 .load_beside(brush, left, right)
                 .map(|()| String::new()),
+            Command::Define { brush, .. } => Err(PaintRefusal::new(
+                "a brush file is no matter of the painting".to_owned(),
+                &format!("send it to the node '{brush}'"),
+            )),
             Command::Tune { tuning } => self.painting.tune(tuning).map(|()| String::new()),
             Command::Clean { brush } => self.painting.clean(brush).map(|()| String::new()),
             Command::Take {

@@ -151,9 +151,11 @@ pub(super) fn length(quaternion: &[f64; 4]) -> f64 {
 }
 
 fn check_brush(brush: &BrushSection) -> Result<(), Wrong> {
-    if !(0.1..=300.0).contains(&brush.size_mm) {
+    if let Some(size_mm) = brush.size_mm
+        && !(0.1..=300.0).contains(&size_mm)
+    {
         let help = "choose 0.1 to 300";
-        return Err(Wrong::value(&brush.name, "size_mm", brush.size_mm, help));
+        return Err(Wrong::value(&brush.name, "size_mm", size_mm, help));
     }
     if !(0.0..=0.9).contains(&brush.depth_share) {
         let (share, help) = (brush.depth_share, "choose 0 to 0.9");

@@ -167,19 +167,19 @@ impl Live {
 
     /// One command, asked again until it is done.
     pub fn command(&mut self, number: u64, command: Command) {
-        let outcome = self.ask(number, command);
+        let outcome = self.ask("paint", number, command);
         assert!(matches!(outcome, Outcome::Done { .. }), "{outcome:?}");
     }
 
-    /// One command, asked again until it is done or refused.
-    pub fn ask(&mut self, number: u64, command: Command) -> Outcome {
+    /// One command to a node, asked again until it is done or refused.
+    pub fn ask(&mut self, node: &str, number: u64, command: Command) -> Outcome {
         let request = CommandRequest {
             client: 1,
             number,
             after: None,
             command,
         };
-        let topic = self.topics.command("paint");
+        let topic = self.topics.command(node);
         let origin = Origin {
             source: 1,
             epoch: 1,
@@ -194,7 +194,10 @@ impl Live {
                 .expect("asked");
             for _ in 0..100 {
                 self.net.advance(1_000_000);
-                self.paint.turn().expect("turned");
+                match node {
+                    "paint" => self.paint.turn().expect("turned"),
+                    _ => self.brush.turn().expect("turned"),
+                };
                 if let Some(maulstick_bus::bus::Answer::Bytes(bytes)) = pending.try_recv() {
                     let reply: CommandReply = decode(&bytes).expect("a reply").1;
                     if reply.outcome == Outcome::Waiting {

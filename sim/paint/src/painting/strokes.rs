@@ -40,7 +40,8 @@ impl Painting {
         solve: &Solve,
     ) -> Result<(), PaintRefusal> {
         let track = self.brush(name)?;
-        if !track.head.fits(solve.angles_rad.len()) || !solve.pose.is_valid() {
+        let fits = solve.stroke == 0 || track.head.fits(solve.angles_rad.len());
+        if !fits || !solve.pose.is_valid() {
             return Err(PaintRefusal::new(
                 format!("a state of brush '{name}' does not fit its brush file"),
                 "restart the brush node: it runs with another file",

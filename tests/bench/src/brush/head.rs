@@ -3,8 +3,8 @@
 use std::time::Instant;
 
 use maulstick_brush::desk::Obstacle;
+use maulstick_brush::held::settings_of;
 use maulstick_brush::held::{HeadSolver, HeldHead};
-use maulstick_brush::model::settings_of;
 use maulstick_brush::{BrushFile, Head, HeadPose, Hold};
 use maulstick_rig::Fault;
 
