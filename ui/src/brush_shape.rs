@@ -3,7 +3,8 @@
 //! Lengths are desk lengths in the frame of the surface below, m; z is the height above it.
 
 use glam::{DVec2, DVec3};
-use maulstick_brush::HeadPose;
+use maulstick_brush::head::STATIONS;
+use maulstick_brush::{BrushFile, HeadPose};
 use maulstick_num::geometry::Rigid;
 
 /// Length of the handle, m.
@@ -92,28 +93,77 @@ pub fn sections(brush: &Rigid, width_m: f64, root_m: f64) -> [Section; SECTIONS]
     })
 }
 
-/// The middle of the head at each station, and its radius across the way that it goes along the
-/// surface: half the width of an even disc that spreads as far.
+/// Width by thickness from which a head casts its shadow in three parts.
+const WIDE: f64 = 1.8;
+/// Discs of a head at most.
+pub const HEAD_DISCS: usize = 12;
+/// Stations of such a part.
+const OF_A_PART: [usize; 4] = [0, 3, 6, STATIONS - 1];
+
+/// Width of the handle's thickest part for the head of a brush file, m: a fan spreads beyond its
+/// ferrule.
 #[must_use]
-pub fn head_discs(pose: &HeadPose, strips: usize) -> Vec<(DVec3, f64)> {
-    let strips = strips.max(1);
-    let at = |i: usize| {
+pub fn handle_width_m(file: &BrushFile) -> f64 {
+    let root = file.radius_m(0.0).max(file.half_thickness_m(0.0));
+    (1e-3 * file.head.width_mm).min(3.0 * root)
+}
+
+/// Discs that cover a head, in a chain that ends at the ferrule: the middle of the strips at each
+/// station and their radius across the way that they go along the surface. A wide head is three such
+/// chains, joined.
+#[must_use]
+pub fn head_discs(pose: &HeadPose, roots: &[[f32; 2]], wide: bool) -> Vec<(DVec3, f64)> {
+    let part = |from: f32, to: f32| -> Vec<usize> {
+        let within = |strip: &usize| (from..to).contains(&roots[*strip][0]);
+        (0..roots.len()).filter(within).collect()
+    };
+    let strips = roots.len().max(1);
+    if !wide {
+        let stations: Vec<usize> = (0..pose.x.len() / strips).rev().collect();
+        return part_discs(pose, strips, &part(-2.0, 2.0), &stations);
+    }
+    let third = 1.0 / 3.0;
+    let (down, mut up) = (OF_A_PART, OF_A_PART);
+    up.reverse();
+    let parts = [(-2.0, -third, up), (-third, third, down), (third, 2.0, up)];
+    parts
+        .into_iter()
+        .flat_map(|(from, to, stations)| part_discs(pose, strips, &part(from, to), &stations))
+        .collect()
+}
+
+/// Whether the head of a brush file is wide.
+#[must_use]
+pub fn is_wide(file: &BrushFile) -> bool {
+    file.radius_m(0.5) > WIDE * file.half_thickness_m(0.5)
+}
+
+/// The discs of some of the strips at some of the stations.
+fn part_discs(
+    pose: &HeadPose,
+    strips: usize,
+    members: &[usize],
+    stations: &[usize],
+) -> Vec<(DVec3, f64)> {
+    let count = members.len().max(1) as f64;
+    let last = pose.x.len() / strips - 1;
+    let at = |station: usize, strip: usize| {
+        let i = station * strips + strip;
         let [x, y, z] = [&pose.x, &pose.y, &pose.z].map(|plane| f64::from(plane[i]));
         DVec3::new(x, y, z)
     };
-    let rows = |station: usize| (station * strips..(station + 1) * strips).map(at);
-    let stations = pose.x.len() / strips;
-    let middle = |station: usize| rows(station).sum::<DVec3>() / strips as f64;
-    let middles: Vec<DVec3> = (0..stations).map(middle).collect();
-    (0..stations)
-        .map(|station| {
-            let before = middles[station.saturating_sub(1)];
-            let after = middles[(station + 1).min(stations - 1)];
-            let ahead = (after - before).truncate().normalize_or(DVec2::X);
-            let off = |p: DVec3| (p - middles[station]).truncate().perp_dot(ahead);
-            let square = rows(station).map(|p| off(p) * off(p)).sum::<f64>() / strips as f64;
+    let points = |station: usize| members.iter().map(move |strip| at(station, *strip));
+    let middle = |station: usize| points(station).sum::<DVec3>() / count;
+    stations
+        .iter()
+        .map(|&station| {
+            let own = middle(station);
+            let way = middle((station + 1).min(last)) - middle(station.saturating_sub(1));
+            let ahead = way.truncate().normalize_or(DVec2::X);
+            let off = |p: DVec3| (p - own).truncate().perp_dot(ahead);
+            let square = points(station).map(|p| off(p) * off(p)).sum::<f64>() / count;
             // An even disc of radius R has the variance R²/4 along each axis.
-            (middles[station], 2.0 * square.sqrt())
+            (own, 2.0 * square.sqrt())
         })
         .collect()
 }
@@ -203,7 +253,7 @@ mod tests {
             z: vec![0.02; strips],
             ..HeadPose::default()
         };
-        let [(middle, found)] = head_discs(&pose, strips)[..] else {
+        let [(middle, found)] = head_discs(&pose, &vec![[0.0; 2]; strips], false)[..] else {
             panic!("one station")
         };
         assert!(
@@ -211,5 +261,34 @@ mod tests {
             "{middle}"
         );
         assert!((found / f64::from(radius) - 1.0).abs() < 0.02, "{found}");
+    }
+
+    #[test]
+    fn a_wide_head_casts_the_shadow_of_its_width_and_thickness() {
+        let file = BrushFile::library("flat").expect("flat");
+        assert!(is_wide(&file) && !is_wide(&BrushFile::library("round").expect("round")));
+        // Upright, 20 mm wide and 2 mm thick.
+        let strips = 300;
+        let root = |i: usize| [2.0 * (i as f32 + 0.5) / strips as f32 - 1.0, 0.0];
+        let roots: Vec<[f32; 2]> = (0..strips).map(root).collect();
+        let place = |i: usize| 0.01 * roots[i % strips][0];
+        let pose = HeadPose {
+            x: (0..strips * STATIONS).map(place).collect(),
+            y: (0..strips * STATIONS)
+                .map(|i| 1e-3 * ((i % 2) as f32 * 2.0 - 1.0) * 0.577)
+                .collect(),
+            z: vec![0.02; strips * STATIONS],
+            ..HeadPose::default()
+        };
+        let widest = |wide: bool| {
+            let discs = head_discs(&pose, &roots, wide);
+            assert!(discs.len() <= HEAD_DISCS);
+            discs.iter().map(|(_, radius)| *radius).fold(0.0, f64::max)
+        };
+        assert!(
+            widest(true) < 0.5 * widest(false).max(0.009),
+            "{}",
+            widest(true)
+        );
     }
 }

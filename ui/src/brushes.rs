@@ -6,7 +6,7 @@ use eframe::egui::{Pos2, Shape};
 use maulstick_brush::{Head, HeadPose, Hold};
 use maulstick_optics::light::Lamp;
 
-use crate::brush_shape::{head_discs, sections, shadow};
+use crate::brush_shape::{handle_width_m, head_discs, is_wide, sections, shadow};
 use crate::draw_brush::{Chain, ChainSlot, DrawBrush, Projection};
 use crate::draw_head::{HeadView, ribbons};
 use crate::follow::Held;
@@ -61,11 +61,10 @@ impl Brushes {
             wetness: WETNESS,
         };
         head.pose(&hold, &mut self.pose);
-        let width_m = held.file.head.width_mm * 1e-3;
-        let sections = sections(&held.brush, width_m, held.file.radius_m(0.0));
+        let root_m = held.file.radius_m(0.0).max(held.file.half_thickness_m(0.0));
+        let sections = sections(&held.brush, handle_width_m(held.file), root_m);
         // The shadow goes from the point of the head to the end of the handle.
-        let mut discs = head_discs(&self.pose, head.strips());
-        discs.reverse();
+        let mut discs = head_discs(&self.pose, head.roots(), is_wide(held.file));
         discs.extend(sections.iter().map(|section| (section.at, section.radius)));
         let projection = Projection {
             view,

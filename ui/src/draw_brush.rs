@@ -4,16 +4,15 @@ use bytemuck::{Pod, Zeroable};
 use eframe::egui::{PaintCallbackInfo, Pos2, Shape};
 use eframe::egui_wgpu::{self, CallbackResources, CallbackTrait, wgpu};
 use glam::Vec2;
-use maulstick_brush::head::STATIONS;
 
-use crate::brush_shape::{Material, SECTIONS, Section, Shade};
+use crate::brush_shape::{HEAD_DISCS, Material, SECTIONS, Section, Shade};
 use crate::gpu::{Gpu, Pass, UNIFORM};
 use crate::view::View;
 
 /// Nodes of a chain at most, as in the shader.
 const NODES: usize = 24;
-/// Discs of a shadow: those of the head's stations, then those of ferrule and handle.
-pub const SHADES: usize = STATIONS + SECTIONS;
+/// Discs of a shadow: those of the head, then those of ferrule and handle.
+pub const SHADES: usize = HEAD_DISCS + SECTIONS;
 /// Softness that keeps an edge from being jagged, pixels.
 const EDGE: f32 = 0.7;
 /// Linear colour of nickel and of lacquered wood.

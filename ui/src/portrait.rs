@@ -6,7 +6,7 @@ use glam::{DQuat, DVec3};
 use maulstick_brush::{BrushFile, Head, HeadPose, Hold};
 use maulstick_num::geometry::{Rigid, rotation};
 
-use crate::brush_shape::{Material, sections};
+use crate::brush_shape::{Material, handle_width_m, sections};
 use crate::draw_head::{HeadView, ribbons};
 
 /// Samples of a pixel, each way.
@@ -88,8 +88,7 @@ fn draw_handle(
     root: f64,
     to_window: &dyn Fn([f32; 3]) -> Pos2,
 ) {
-    let width_m = (file.head.width_mm * 1e-3).min(3.0 * root);
-    let parts = sections(brush, width_m, root);
+    let parts = sections(brush, handle_width_m(file), root);
     for pair in parts.windows(2).rev() {
         let rim = |i: usize, side: f64| {
             let at = pair[i].at + DVec3::X * (side * pair[i].radius);

@@ -182,7 +182,12 @@ fn another_brush_is_taken_up_and_a_bad_file_leaves_the_one_in_hand() {
     let newest = std::iter::from_fn(|| defs.try_recv()).last();
     let told = newest.expect("another one").message;
     assert_eq!(BrushFile::parse(&told.toml).expect("whole").kind, "flat");
-    let (_, both, missing) = paint(&mut live, 0.03);
+    let (_, both, missing) = paint(&mut live, 0.01);
+    println!(
+        "{:?} refused {:?}",
+        live.paint.painting_mut().report(),
+        live.paint
+    );
     assert!(both > round + round / 2, "{round} {both}");
     assert_eq!(missing, 0, "what the round carried is on the flat");
 }
