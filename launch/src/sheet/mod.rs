@@ -13,6 +13,8 @@ pub mod marks;
 pub mod one_stroke;
 pub mod page;
 pub mod softening;
+#[cfg(test)]
+mod tests;
 
 use maulstick_brush::BrushFile;
 use maulstick_brush::file::library::LIBRARY;
