@@ -150,7 +150,8 @@ fn candidates(scene: &Scene, at: [usize; 2], most: f64) -> Vec<Candidate> {
             f64::from(scene.load.thickest_of(strip)) * f64::from(traits.film_cells_per_quantum);
         let height = most + film - bottom;
         let root = scene.head.roots()[strip].map(f64::from);
-        let inner = (root[0] * bend[0] + root[1] * bend[1]) / bend[0].hypot(bend[1]).max(BENT);
+        let inner = (root[0] * bend[0] + root[1] * bend[1])
+            / (bend[0] * bend[0] + bend[1] * bend[1]).sqrt().max(BENT);
         let rank = RANKS * (0.5 + 0.25 * (inner + unruly));
         for station in 1..STATIONS {
             let s = segment(scene, strip, station);
