@@ -254,7 +254,8 @@ impl App {
     }
 }
 
-/// Draws the window anew when something has come, but not too often.
+/// Draws the window anew when something has come, but not too often: whatever comes, nothing is drawn
+/// for `rest` after a request.
 fn repaint(wake: &Wake, context: &Context, stop: &Stop, rest: Duration) {
     while !stop.requested() {
         if wake.wait(Duration::from_millis(200)) {

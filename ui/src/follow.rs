@@ -170,7 +170,7 @@ impl Known {
         // A stroke stays on its surface.
         let touched = self.touches.and_then(|surface| desk.plane(surface));
         let plane = *touched.or_else(|| desk.under(aim(sample, length)))?;
-        let on_desk = ferrule(sample, length, depth_share, plane.normal());
+        let on_desk = ferrule(sample, length, depth_share, &plane.wall());
         let brush = plane.to_desk.inverse().after(&on_desk);
         let far = brush.translation.abs().max_element();
         (far < 100.0).then(|| Held {

@@ -18,12 +18,7 @@ pub fn brush_file(section: &BrushSection) -> Result<BrushFile, Fault> {
             Fault::usage(error.to_string()).help("`--brush FILE.toml` takes a brush file")
         })?
     } else {
-        let text = std::fs::read_to_string(path).map_err(|error| Fault::reading(path, &error))?;
-        BrushFile::parse(&text).map_err(|error| {
-            Fault::usage(error.to_string())
-                .at(section.kind.clone())
-                .help("correct the brush file")
-        })?
+        read_brush(path)?
     };
     match section.size_mm {
         Some(size_mm) => file
@@ -31,6 +26,24 @@ pub fn brush_file(section: &BrushSection) -> Result<BrushFile, Fault> {
             .map_err(|error| Fault::usage(error.to_string())),
         None => Ok(file),
     }
+}
+
+/// Reads a brush file, or a brush modelled in Blender (`.glb`, `.gltf`).
+///
+/// # Errors
+/// A [`Fault`] with the file for one that cannot be read or is wrong.
+pub fn read_brush(path: &Path) -> Result<BrushFile, Fault> {
+    let bytes = std::fs::read(path).map_err(|error| Fault::reading(path, &error))?;
+    let place = path.display().to_string();
+    let wrong = |what: String, help: &str| Fault::usage(what).at(place.clone()).help(help);
+    let extension = path.extension().and_then(|extension| extension.to_str());
+    if matches!(extension, Some("glb" | "gltf")) {
+        return maulstick_brush::gltf::read(&bytes)
+            .map_err(|error| wrong(error.to_string(), "correct the model in Blender"));
+    }
+    let text = String::from_utf8(bytes)
+        .map_err(|_| wrong("this is no text".to_owned(), "name a TOML or a glTF file"))?;
+    BrushFile::parse(&text).map_err(|error| wrong(error.to_string(), "correct the brush file"))
 }
 
 #[cfg(test)]

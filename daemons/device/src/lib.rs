@@ -17,5 +17,5 @@ pub mod sheet;
 pub mod table;
 pub mod take;
 
-pub use brush::brush_file;
+pub use brush::{brush_file, read_brush};
 pub use take::{Take, TakeSample};

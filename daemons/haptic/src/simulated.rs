@@ -3,6 +3,7 @@
 
 use glam::{DQuat, DVec3};
 use maulstick_brush::desk::{ferrule, pen_orientation};
+use maulstick_brush::solver::Wall;
 use maulstick_device::Take;
 use maulstick_haptics::contact::Held;
 use maulstick_haptics::{Hand, Plant};
@@ -57,7 +58,7 @@ impl Simulated {
             .samples
             .iter()
             .map(|s| {
-                let on_desk = ferrule(&s.sample, head_length_m, depth_share, DVec3::Z);
+                let on_desk = ferrule(&s.sample, head_length_m, depth_share, &Wall::SURFACE);
                 let rigid = to_device.after(&on_desk);
                 Target {
                     time_s: (s.time_ns - start_ns) as f64 * 1e-9,

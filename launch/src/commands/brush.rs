@@ -1,5 +1,6 @@
 //! `maulstick brush`: the brushes of the library, their sheet, and one spine tried out by itself.
 
+use std::io::Write as _;
 use std::path::{Path, PathBuf};
 
 use clap::{Args, Subcommand};
@@ -7,6 +8,7 @@ use indicatif::ProgressBar;
 use maulstick_brush::file::library::LIBRARY;
 use maulstick_brush::trial::{SpineFile, TrialPose, TrialRow, follow, poses};
 use maulstick_brush::{BrushError, BrushFile};
+use maulstick_device::read_brush;
 use maulstick_rig::Fault;
 use maulstick_rig::config::BrushSection;
 use maulstick_rig::config::toml_fault;
@@ -26,6 +28,8 @@ pub enum BrushCommand {
     List(ListOptions),
     /// Draws each brush and its marks
     Sheet(SheetOptions),
+    /// Makes a brush file of a brush modelled in Blender
+    Import(ImportOptions),
     /// Puts another brush into the hand of a running rig
     Take(TakeOptions),
     /// Bends one spine through a list of poses over the plane z = 0
@@ -73,6 +77,17 @@ pub struct SolveOptions {
     json: bool,
 }
 
+/// Options of `maulstick brush import`.
+#[derive(Args, Clone, Debug)]
+pub struct ImportOptions {
+    /// The model, glTF 2.0
+    #[arg(value_name = "MODEL.glb")]
+    model: PathBuf,
+    /// The brush file to write
+    #[arg(short, long, value_name = "TOML")]
+    output: PathBuf,
+}
+
 /// Options of `maulstick brush take`.
 #[derive(Args, Clone, Debug)]
 pub struct TakeOptions {
@@ -96,6 +111,7 @@ pub fn run(command: &BrushCommand) -> Result<i32, Fault> {
     match command {
         BrushCommand::List(options) => list(options),
         BrushCommand::Sheet(options) => draw_sheet(options),
+        BrushCommand::Import(options) => import(options),
         BrushCommand::Take(options) => take_up(options),
         BrushCommand::Solve(options) => solve(options),
     }
@@ -125,6 +141,17 @@ fn list(options: &ListOptions) -> Result<i32, Fault> {
     if options.json {
         print_json(&json!({ "brushes": rows }))?;
     }
+    Ok(0)
+}
+
+fn import(options: &ImportOptions) -> Result<i32, Fault> {
+    let path = &options.output;
+    let text = read_brush(&options.model)?
+        .to_toml()
+        .map_err(|error| Fault::failure(error.to_string()))?;
+    write_whole(path, |file| Ok(file.write_all(text.as_bytes())?))
+        .map_err(|error| Fault::writing(path, &error))?;
+    println!("{}: {} bytes", path.display(), text.len());
     Ok(0)
 }
 

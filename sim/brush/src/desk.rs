@@ -46,6 +46,16 @@ impl Plane {
         self.to_desk.vector(DVec3::Z)
     }
 
+    /// What lies under it, desk frame.
+    #[must_use]
+    pub fn wall(&self) -> Wall {
+        let normal = self.normal();
+        Wall {
+            normal,
+            offset_m: normal.dot(self.to_desk.translation),
+        }
+    }
+
     /// Whether a point lies over the surface.
     fn holds(&self, in_desk: DVec3) -> bool {
         let p = self.to_desk.inverse().point(in_desk) / self.zoom;
@@ -186,13 +196,14 @@ pub fn aim(sample: &StylusSample, head_length_m: f64) -> DVec3 {
 }
 
 /// Brush frame to desk frame for a sample. For a pen the ferrule is at contact point + axis · head
-/// length · (1 − depth_share · pressure), and [`HOVER_M`] higher without pressure.
+/// length · (1 − depth_share · pressure), and [`HOVER_M`] higher without pressure; the contact point
+/// is where it lies on `surface` (desk frame), for a pen knows of no other height than its tablet's.
 #[must_use]
 pub fn ferrule(
     sample: &StylusSample,
     head_length_m: f64,
     depth_share: f64,
-    normal: DVec3,
+    surface: &Wall,
 ) -> Rigid {
     match &sample.pose {
         StylusPose::Ferrule { pose } => Rigid::from(pose),
@@ -205,7 +216,9 @@ pub fn ferrule(
             let rotation = pen_orientation(*tilt_rad, *twist_rad);
             let axis = rotation * DVec3::Z;
             let hover = if *pressure > 0.0 { 0.0 } else { HOVER_M };
-            let translation = DVec3::from_array(*point_m)
+            let normal = surface.normal;
+            let point = DVec3::from_array(*point_m);
+            let translation = point - normal * surface.gap(point)
                 + axis * (head_length_m * (1.0 - depth_share * pressure))
                 + normal * hover;
             Rigid {
@@ -240,6 +253,14 @@ mod tests {
         let axis = pen_orientation(DEFAULT_TILT_RAD, 0.4) * DVec3::Z;
         assert!((axis.z - 0.75f64.sqrt()).abs() < 1e-12, "{axis}");
         assert!((axis.x - 0.125f64.sqrt()).abs() < 1e-12 && (axis.x + axis.y).abs() < 1e-12);
+    }
+
+    #[test]
+    fn a_pen_paints_on_a_raised_board_too() {
+        let level = plane(1, 0.0, 0.01).wall();
+        let on = |wall: &Wall| ferrule(&pen(0.5), 0.025, 0.5, wall).translation;
+        let raised = on(&level) - on(&Wall::SURFACE);
+        assert!((raised - DVec3::Z * 0.01).length() < 1e-15, "{raised}");
     }
 
     fn plane(id: u32, x: f64, z: f64) -> Plane {
@@ -287,7 +308,7 @@ mod tests {
     fn pressure_lowers_the_ferrule_along_the_pen() {
         let length = 0.025;
         let at = |pressure: f64| {
-            let rigid = ferrule(&pen(pressure), length, 0.5, DVec3::Z);
+            let rigid = ferrule(&pen(pressure), length, 0.5, &Wall::SURFACE);
             rigid.point(DVec3::new(0.0, 0.0, -length))
         };
         let contact = DVec3::new(0.01, 0.02, 0.0);

@@ -135,8 +135,9 @@ impl HeldHead {
             let held = seat.held(brush);
             spine.shape.carry(held.translation, held.rotation);
         }
-        for (spine, ends) in self.spines.iter().zip(&mut room.ends) {
-            ends.clone_from(&spine.ends);
+        // The spines beside one are where the handle has carried them.
+        for ((spine, seat), ends) in self.spines.iter().zip(&tuft.seats).zip(&mut room.ends) {
+            spine.shape.joints(&seat.spine, ends);
         }
         let sweeps = match std::mem::take(&mut self.fresh) && tuft.crowd_n_m > 0.0 {
             true => SETTLING,

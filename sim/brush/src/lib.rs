@@ -6,6 +6,7 @@
 //! | module | holds |
 //! | --- | --- |
 //! | [`file`] | the brush file and the library of brushes |
+//! | [`gltf`] | a brush modelled in Blender |
 //! | [`spine`] | a chain of segments: directions, joint angles, joints |
 //! | [`tuft`] | where the spines stand in the ferrule |
 //! | [`energy`] | spring, friction, damping, crowd: value, gradient, Hessian |
@@ -27,6 +28,7 @@ pub mod desk;
 pub mod energy;
 pub mod feel;
 pub mod file;
+pub mod gltf;
 pub mod head;
 pub mod held;
 pub mod model;

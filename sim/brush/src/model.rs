@@ -152,7 +152,7 @@ impl BrushModel {
             return Vec::new();
         };
         let length = self.file.length_m();
-        let in_desk = ferrule(sample, length, self.depth_share, plane.normal());
+        let in_desk = ferrule(sample, length, self.depth_share, &plane.wall());
         let mut brush = plane.to_desk.inverse().after(&in_desk);
         if !sample.in_range {
             brush.translation.z = brush.translation.z.max(2.0 * length);

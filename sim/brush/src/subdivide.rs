@@ -82,8 +82,13 @@ fn once(coarse: &Subdivided) -> Subdivided {
         .enumerate()
         .map(|(i, edge)| (*edge, place(i)))
         .collect();
+    let mut around = vec![Vec::new(); mesh.vertices];
+    for ((a, b), beside) in &edges {
+        around[*a].push((*b, &beside[..]));
+        around[*b].push((*a, &beside[..]));
+    }
     let mut stencils: Vec<Stencil> = (0..mesh.vertices)
-        .map(|vertex| moved(vertex, old, &edges, &faces))
+        .map(|vertex| moved(vertex, old, &around[vertex], &faces))
         .collect();
     stencils.extend(faces.iter().cloned());
     stencils.extend(edges.iter().map(|((a, b), beside)| match beside[..] {
@@ -117,32 +122,33 @@ fn sides(face: &[usize]) -> impl Iterator<Item = (usize, usize)> {
 }
 
 /// A vertex after one level: (Q + 2R + (n − 3)·S)/n with Q the mean of the n faces' points, R that of
-/// the edges' middles, S the vertex; on a border (a + 6S + b)/8.
-fn moved(vertex: usize, old: &[Stencil], edges: &Edges, faces: &[Stencil]) -> Stencil {
+/// the edges' middles, S the vertex; on a border (a + 6S + b)/8. `edges` are the vertex's own: their
+/// other end and the faces beside them.
+fn moved(
+    vertex: usize,
+    old: &[Stencil],
+    edges: &[(usize, &[usize])],
+    faces: &[Stencil],
+) -> Stencil {
     let own = &old[vertex];
-    let mine: Vec<_> = edges
-        .iter()
-        .filter(|((a, b), _)| *a == vertex || *b == vertex)
-        .collect();
-    let other = |(a, b): &(usize, usize)| if *a == vertex { *b } else { *a };
-    let border: Vec<usize> = mine
+    let border: Vec<usize> = edges
         .iter()
         .filter(|(_, beside)| beside.len() == 1)
-        .map(|(edge, _)| other(edge))
+        .map(|(other, _)| *other)
         .collect();
     if let [a, b] = border[..] {
         let sum = Sum::default().add(own, 0.75);
         return sum.add(&old[a], 0.125).add(&old[b], 0.125).done();
     }
-    let n = mine.len() as f64;
-    if mine.len() < 3 || !border.is_empty() {
+    let n = edges.len() as f64;
+    if edges.len() < 3 || !border.is_empty() {
         return own.clone();
     }
     let mut sum = Sum::default().add(own, (n - 3.0) / n + 1.0 / n);
-    for (edge, beside) in mine {
-        sum = sum.add(&old[other(edge)], 1.0 / (n * n));
+    for (other, beside) in edges {
+        sum = sum.add(&old[*other], 1.0 / (n * n));
         // Each face lies beside two of the edges.
-        for face in beside {
+        for face in *beside {
             sum = sum.add(&faces[*face], 0.5 / (n * n));
         }
     }

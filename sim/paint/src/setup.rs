@@ -29,6 +29,8 @@ pub const PALETTE_PAINTS: [&str; 10] = [
 const PALETTE_CELLS: [u32; 2] = [512, 1024];
 /// Radius of its wells, cells, and their distance from its left edge.
 const WELL_CELLS: f64 = 36.0;
+/// The palette is a board so thick that lies on the desk, m: a brush may be wiped on its edge.
+const BOARD_M: f64 = 4e-3;
 /// Gap between palette and canvas on the desk, m.
 const GAP_M: f64 = 0.01;
 
@@ -114,6 +116,7 @@ impl PaintingSetup {
         let canvas = surface(CANVAS, at(-0.5 * size[0], -0.5 * size[1]), self.cells);
         let left = -0.5 * size[0] - GAP_M - palette[0];
         let mut board = surface(PALETTE, at(left, -0.5 * palette[1]), PALETTE_CELLS);
+        board.pose.position_m[2] = BOARD_M;
         board.ground = "grey".to_owned();
         board.tooth = "panel".to_owned();
         board.wells = self.wells();
