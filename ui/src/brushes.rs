@@ -13,9 +13,6 @@ use crate::follow::Held;
 use crate::gpu::Gpu;
 use crate::view::View;
 
-/// How wet a head looks: no message says how full it is.
-const WETNESS: f32 = 0.6;
-
 /// Places on the device for a brush.
 #[derive(Debug)]
 struct Slots {
@@ -58,7 +55,7 @@ impl Brushes {
             brush: &held.brush,
             angles: &held.angles,
             per_m: 1.0,
-            wetness: WETNESS,
+            wetness: held.wetness,
         };
         head.pose(&hold, &mut self.pose);
         let root_m = held.file.radius_m(0.0).max(held.file.half_thickness_m(0.0));

@@ -13,6 +13,8 @@ use maulstick_bus::typed::Receiver;
 use maulstick_bus::{Bus, BusError, Class, Queue, Wake};
 use maulstick_num::geometry::Rigid;
 use maulstick_types::brush::{BrushDef, BrushState};
+use maulstick_types::name_hash;
+use maulstick_types::paint::PaintConsumed;
 use maulstick_types::stylus::StylusSample;
 use maulstick_types::topics::Topics;
 
@@ -36,6 +38,8 @@ struct Known {
     angles: Vec<[f32; 2]>,
     /// The surface that it touches.
     touches: Option<u32>,
+    /// How full it is, 0 to 1.
+    wetness: f32,
 }
 
 /// A brush in the hand.
@@ -51,6 +55,8 @@ pub struct Held<'a> {
     pub brush: Rigid,
     /// Its joints, as its newest state has them; straight before the first.
     pub angles: Vec<[f32; 2]>,
+    /// How full it is, 0 to 1: wet bristles clump.
+    pub wetness: f32,
 }
 
 /// Follows all brushes of a rig.
@@ -59,6 +65,7 @@ pub struct Follower {
     samples: Receiver<StylusSample>,
     states: Receiver<BrushState>,
     defs: Receiver<BrushDef>,
+    credit: Receiver<PaintConsumed>,
     depth_shares: BTreeMap<String, f64>,
     /// The source that is only heard when it moves.
     quiet: u32,
@@ -88,6 +95,13 @@ impl Follower {
             samples: Receiver::new(bus, &samples, Class::RealTime, Queue::Ring(256), wake)?,
             states: Receiver::new(bus, &states, Class::RealTime, Queue::Ring(64), wake)?,
             defs: Receiver::new(bus, &defs, Class::Cached, Queue::Ring(16), wake)?,
+            credit: Receiver::new(
+                bus,
+                &topics.paint_consumed(),
+                Class::Control,
+                Queue::Ring(16),
+                wake,
+            )?,
             topics: topics.clone(),
             depth_shares,
             quiet,
@@ -107,10 +121,20 @@ impl Follower {
                         device: None,
                         angles: Vec::new(),
                         touches: None,
+                        wetness: 0.0,
                     };
                     self.known.insert(def.message.brush, known);
                 }
                 Err(error) => tracing::warn!("{}: {error}", def.key),
+            }
+        }
+        while let Some(credit) = self.credit.try_recv() {
+            for (name, known) in &mut self.known {
+                let source = name_hash(name);
+                let mut brushes = credit.message.brushes.iter();
+                if let Some(brush) = brushes.find(|brush| brush.brush == source) {
+                    known.wetness = brush.wetness;
+                }
             }
         }
         while let Some(sample) = self.samples.try_recv() {
@@ -179,6 +203,7 @@ impl Known {
             plane,
             brush,
             angles: self.angles.clone(),
+            wetness: self.wetness,
         })
     }
 }

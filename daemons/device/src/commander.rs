@@ -100,7 +100,7 @@ impl Commander {
                 Err(error) => return Err(error.into()),
             }
             if Instant::now() >= give_up || stop() {
-                return Err(Fault::failure("the paint node does not answer")
+                return Err(Fault::failure("the node does not answer")
                     .at(self.topic.clone())
                     .help("see whether it runs: `maulstick up` shows its nodes"));
             }

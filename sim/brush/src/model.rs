@@ -3,7 +3,7 @@
 use maulstick_num::geometry::Rigid;
 use maulstick_types::Origin;
 use maulstick_types::brush::{BrushState, Solve, solve_flags};
-use maulstick_types::scene::Scene;
+use maulstick_types::scene::{CANVAS, Scene};
 use maulstick_types::stylus::StylusSample;
 
 use crate::desk::{Desk, Obstacle, Plane, aim, ferrule};
@@ -51,6 +51,8 @@ struct Held {
     surface: u32,
     head: HeldHead,
     newest: Sampled,
+    /// The normal force of all contacts there, N.
+    force_n: f64,
     /// The sample before the newest one, if the brush touched there and has since.
     before: Option<Sampled>,
     /// Cells from the newest sample back to where the head was solved last.
@@ -99,10 +101,10 @@ impl BrushModel {
 
     /// Makes the head stiffer than its file says by this factor, or softer; it keeps its shape.
     pub fn tune(&mut self, factor: f64) {
-        let changed = factor / self.tuned;
-        if changed != 1.0 && changed.is_finite() && changed > 0.0 {
+        if factor != self.tuned && factor.is_finite() && factor > 0.0 {
             self.tuned = factor;
-            self.tuft.stiffen(changed);
+            self.tuft = self.file.tuft();
+            self.tuft.stiffen(factor);
             self.settings.crowd_n_m = self.tuft.crowd_n_m;
         }
     }
@@ -112,7 +114,7 @@ impl BrushModel {
     pub fn feel(&self) -> Feel {
         let length = self.file.length_m();
         match &self.held {
-            Some(held) => Feel::bent(&self.tuft, length, &held.newest.pose, held.head.force_n()),
+            Some(held) => Feel::bent(&self.tuft, length, &held.newest.pose, held.force_n),
             None => Feel::at_rest(&self.tuft, length),
         }
     }
@@ -121,6 +123,13 @@ impl BrushModel {
     #[must_use]
     pub fn has_scene(&self) -> bool {
         self.desk.is_some()
+    }
+
+    /// The surface that the brush is over, or the canvas.
+    #[must_use]
+    pub fn plane(&self) -> Option<&Plane> {
+        let surface = self.held.as_ref().map_or(CANVAS, |held| held.surface);
+        self.desk.as_ref()?.plane(surface)
     }
 
     /// The desk, for who needs its planes.
@@ -132,7 +141,7 @@ impl BrushModel {
     /// The normal force of all contacts now, N.
     #[must_use]
     pub fn force_n(&self) -> f64 {
-        self.held.as_ref().map_or(0.0, |held| held.head.force_n())
+        self.held.as_ref().map_or(0.0, |held| held.force_n)
     }
 
     /// Follows one sample of the device `origin`: none while there is no scene, else the solves on
@@ -157,7 +166,7 @@ impl BrushModel {
         if !sample.in_range {
             brush.translation.z = brush.translation.z.max(2.0 * length);
         }
-        brush.translation.z = brush.translation.z.max(LEAST_HEIGHT * length);
+        self.raise(&mut brush);
         let here = Sampled {
             pose: brush,
             event_ns,
@@ -171,6 +180,7 @@ impl BrushModel {
             let mut held = self.fresh(plane.id, here);
             let mut solve = self.solve(&mut held, here, &plane);
             solve.flags |= solve_flags::RESTARTED;
+            held.force_n = held.head.force_n();
             self.held = Some(held);
             return vec![solve];
         };
@@ -180,11 +190,19 @@ impl BrushModel {
             solves
         } else {
             (held.before, held.left_over) = (None, 0.0);
-            vec![self.solve(&mut held, here, &plane)]
+            let solve = self.solve(&mut held, here, &plane);
+            held.force_n = held.head.force_n();
+            vec![solve]
         };
         held.newest = here;
         self.held = Some(held);
         solves
+    }
+
+    /// Holds the ferrule so high that no spine begins below the surface.
+    fn raise(&self, brush: &mut Rigid) {
+        let least = LEAST_HEIGHT * self.file.length_m();
+        brush.translation.z += (least - self.tuft.lowest_root(brush)).max(0.0);
     }
 
     /// Solves a touching brush at each cell of its way to a sample, and gives a glimpse of it there.
@@ -215,7 +233,9 @@ impl BrushModel {
             (cells, at) = (cells + part, s);
         }
         held.left_over = whole - (cells - part);
-        let mut glimpse = self.solve(&mut held.clone(), here, plane);
+        let mut seen = held.clone();
+        let mut glimpse = self.solve(&mut seen, here, plane);
+        held.force_n = seen.head.force_n();
         glimpse.flags |= solve_flags::GLIMPSE;
         solves.push(glimpse);
         solves
@@ -233,8 +253,9 @@ impl BrushModel {
     ) {
         let mut tried = held.clone();
         let strokes = (self.strokes, self.last_contact_ns);
-        let least = LEAST_HEIGHT * self.file.length_m();
-        let solve = self.solve(&mut tried, piece.end(least), plane);
+        let mut end = piece.end();
+        self.raise(&mut end.pose);
+        let solve = self.solve(&mut tried, end, plane);
         let moved = tried.head.moved_in_contact(&held.head);
         if splits > 0 && moved > plane.cell_m * plane.zoom {
             (self.strokes, self.last_contact_ns) = strokes;
@@ -328,6 +349,7 @@ impl BrushModel {
             surface,
             head: HeldHead::at_rest(&self.tuft, &here.pose),
             newest: here,
+            force_n: 0.0,
             before: None,
             left_over: 0.0,
         }
@@ -335,154 +357,4 @@ impl BrushModel {
 }
 
 #[cfg(test)]
-mod tests {
-    use maulstick_types::Pose;
-    use maulstick_types::scene::{Light, Surface};
-    use maulstick_types::stylus::{DEFAULT_TILT_RAD, StylusPose};
-    use proptest::prelude::*;
-
-    use super::*;
-
-    const DEVICE: Origin = Origin {
-        source: 1,
-        epoch: 1,
-    };
-    const MS: u64 = 1_000_000;
-
-    fn scene() -> Scene {
-        let canvas = Surface {
-            id: 0,
-            pose: Pose {
-                position_m: [-0.128, -0.128, 0.0],
-                ..Pose::IDENTITY
-            },
-            zoom: 1.0,
-            cells: [1024; 2],
-            cell_m: 2.5e-4,
-            ground: "gesso".into(),
-            tooth: "linen".into(),
-            tooth_seed: 1,
-            wells: Vec::new(),
-        };
-        let light = Light {
-            direction: [0.0, 0.0, 1.0],
-            intensity: 1.0,
-            illuminant: "D65".into(),
-        };
-        Scene {
-            version: 1,
-            surfaces: vec![canvas],
-            paints: Vec::new(),
-            tunings: Vec::new(),
-            light,
-        }
-    }
-
-    fn brush() -> BrushModel {
-        let mut model = BrushModel::new(BrushFile::library("round").expect("round"), 0.5);
-        model.set_scene(&scene());
-        model
-    }
-
-    fn pen(x: f64, y: f64, pressure: f64) -> StylusSample {
-        let pose = StylusPose::Contact {
-            point_m: [x, y, 0.0],
-            tilt_rad: DEFAULT_TILT_RAD,
-            twist_rad: 0.0,
-            pressure,
-        };
-        StylusSample {
-            pose,
-            in_range: true,
-            ..StylusSample::away()
-        }
-    }
-
-    #[test]
-    fn strokes_are_numbered_by_the_gap_rule() {
-        let mut model = brush();
-        let mut stroke = |ms: u64, pressure: f64| {
-            model
-                .follow(DEVICE, ms * MS, &pen(0.0, 0.0, pressure))
-                .last()
-                .expect("a solve")
-                .stroke
-        };
-        assert_eq!(stroke(1000, 0.0), 0);
-        assert_eq!((stroke(1010, 0.3), stroke(1020, 0.3)), (1, 1));
-        assert_eq!(stroke(1090, 0.0), 0);
-        assert_eq!(
-            stroke(1169, 0.3),
-            1,
-            "149 ms without contact is the same stroke"
-        );
-        assert_eq!(stroke(1250, 0.0), 0);
-        assert_eq!(stroke(1319, 0.3), 2, "150 ms is a new one");
-    }
-
-    #[test]
-    fn time_that_stands_still_or_jumps_restarts_the_solver() {
-        let mut model = brush();
-        let mut restarted = |ms: u64| {
-            let solve = model.follow(DEVICE, ms * MS, &pen(0.0, 0.0, 0.3));
-            let solve = solve.last().expect("a solve");
-            solve.flags & solve_flags::RESTARTED != 0
-        };
-        assert!(restarted(1000));
-        assert!(!restarted(1010) && !restarted(1110));
-        assert!(restarted(1110), "no time has passed");
-        assert!(restarted(1100), "time runs backward");
-        assert!(restarted(1201), "over .1 s has passed");
-    }
-
-    #[test]
-    fn a_pressed_brush_bends_and_pushes_back() {
-        let mut model = brush();
-        let mut force = |ms: u64, pressure: f64| {
-            model.follow(DEVICE, ms * MS, &pen(0.0, 0.0, pressure));
-            model.force_n()
-        };
-        let (light, full) = (force(1000, 0.1), force(1010, 1.0));
-        assert!(
-            light > 0.0 && full > light && full < 3.0,
-            "{light} N, {full} N"
-        );
-        assert_eq!(force(1020, 0.0), 0.0);
-    }
-
-    proptest! {
-        // A leap is solved at up to 64 places for each of seven spines.
-        #![proptest_config(ProptestConfig::with_cases(ProptestConfig::default().cases / 16))]
-
-        #[test]
-        fn no_sample_breaks_the_brush(
-            samples in prop::collection::vec(
-                (0u64..200, -0.3..0.3f64, -0.3..0.3f64, 0.0..=1.0f64, -1.4..1.4f64, -1.4..1.4f64, any::<bool>()),
-                1..40,
-            )
-        ) {
-            let mut model = brush();
-            let mut ns = 1_000_000_000;
-            for (dt, x, y, pressure, tilt_x, tilt_y, in_range) in samples {
-                ns += dt * MS;
-                let pose = StylusPose::Contact {
-                    point_m: [x, y, 0.0],
-                    tilt_rad: [tilt_x, tilt_y],
-                    twist_rad: 0.0,
-                    pressure,
-                };
-                let sample = StylusSample { pose, in_range, ..StylusSample::away() };
-                let solves = model.follow(DEVICE, ns, &sample);
-                prop_assert!(solves.last().is_some_and(|solve| solve.event_ns == ns));
-                for solve in &solves {
-                    prop_assert!(solve.pose.is_valid());
-                    prop_assert!(solve.angles_rad.iter().flatten().all(|angle| angle.is_finite()));
-                    prop_assert!(solve.flags & solve_flags::NOT_CONVERGED == 0, "{solve:?}");
-                }
-                if !in_range {
-                    prop_assert!(solves.last().is_some_and(|solve| solve.contacts.is_empty()));
-                }
-            }
-        }
-    }
-}
+mod tests;

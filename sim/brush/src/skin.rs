@@ -4,7 +4,7 @@
 //! A control vertex is the mean, by its weights, of where each of its segments would carry it
 //! rigidly. Its mesh is that of the brush file, for example from Blender, or one around the strips.
 
-use glam::{DMat3, DQuat, DVec2, DVec3};
+use glam::{DMat3, DQuat, DVec3};
 use maulstick_num::atan2;
 use maulstick_num::geometry::{Rigid, shortest_arc};
 
@@ -194,12 +194,7 @@ fn place_of(file: &BrushFile, at: DVec3) -> [f32; 2] {
 
 /// A mesh around the strips: rings, and a lid at either end.
 fn around(file: &BrushFile, tuft: &Tuft) -> (Mesh, Vec<Vertex>) {
-    let half = DVec2::new(file.radius_m(0.0), file.half_thickness_m(0.0));
-    let spines: Vec<DVec2> = tuft
-        .seats
-        .iter()
-        .map(|seat| seat.root.truncate() / half)
-        .collect();
+    let spines = tuft.places(file);
     let mut firsts = Vec::new();
     for seat in &tuft.seats {
         let last = firsts.last().map_or(0, |(first, n)| first + n);

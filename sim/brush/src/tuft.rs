@@ -1,6 +1,6 @@
 //! The tuft: where the spines of a head stand in the ferrule.
 
-use glam::{DQuat, DVec3};
+use glam::{DQuat, DVec2, DVec3};
 use maulstick_num::geometry::{Rigid, shortest_arc};
 use maulstick_num::sin_cos;
 
@@ -84,8 +84,10 @@ impl Tuft {
                 .collect(),
             Layout::Chains => Vec::new(),
         };
-        let mut seats: Vec<Seat> = places.iter().map(|place| seat(file, *place)).collect();
-        seats.extend(spines.chains.iter().map(chain_seat));
+        let seats: Vec<Seat> = match spines.layout {
+            Layout::Ring | Layout::Row => places.iter().map(|place| seat(file, *place)).collect(),
+            Layout::Chains => spines.chains.iter().map(chain_seat).collect(),
+        };
         let rooms = rooms(&seats);
         // The stiffness of a spine's point against a force across it is 3·EI/L³.
         let soft = |seat: &Seat| {
@@ -101,6 +103,21 @@ impl Tuft {
             crowd_n_m: spines.volume * mean,
             seats,
         }
+    }
+
+    /// Where the spines stand, in shares of half the ferrule's width and thickness.
+    #[must_use]
+    pub fn places(&self, file: &BrushFile) -> Vec<DVec2> {
+        let half = DVec2::new(file.radius_m(0.0), file.half_thickness_m(0.0));
+        let seats = self.seats.iter();
+        seats.map(|seat| seat.root.truncate() / half).collect()
+    }
+
+    /// Height of the lowest root of a brush that is held at `brush`, m.
+    #[must_use]
+    pub fn lowest_root(&self, brush: &Rigid) -> f64 {
+        let roots = self.seats.iter().map(|seat| brush.point(seat.root).z);
+        roots.fold(brush.translation.z, f64::min)
     }
 
     /// Multiplies all stiffness by a factor.

@@ -124,14 +124,12 @@ pub struct Piece<'a> {
 }
 
 impl Piece<'_> {
-    /// Its end, with the handle at least so high.
+    /// Its end.
     #[must_use]
-    pub fn end(&self, least: f64) -> Sampled {
-        let mut pose = self.way.at(self.to);
-        pose.translation.z = pose.translation.z.max(least);
+    pub fn end(&self) -> Sampled {
         let whole = (self.end_ns - self.start_ns) as f64;
         Sampled {
-            pose,
+            pose: self.way.at(self.to),
             event_ns: self.start_ns + (whole * self.to) as u64,
         }
     }

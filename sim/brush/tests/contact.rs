@@ -328,3 +328,48 @@ fn the_energys_derivatives_agree_with_differences() {
         }
     }
 }
+
+/// A root so deep that no joint can come out: the spine keeps its bend, its contacts and its anchors,
+/// says that it did not converge, and goes on from there at the next pose that can be.
+#[test]
+fn what_cannot_be_keeps_the_last_good_state() {
+    let length = 0.025;
+    let spine = Spine::uniform(length, 3, 1.5e-4);
+    let settings = Settings::for_length(length);
+    let mut solver = Solver::default();
+    let tilt = maulstick_num::geometry::rotation(DVec3::Y, 0.3);
+    let mut shape = SpineShape::straight(DVec3::new(0.0, 0.0, 0.6 * length), tilt, 3);
+    let mut stops = Stop::on_surface(3);
+    for _ in 0..2 {
+        assert!(
+            solver
+                .solve(&spine, &mut shape, &mut stops, &[], &settings)
+                .converged
+        );
+    }
+    let (good, held) = (shape.directions.clone(), stops.clone());
+    assert!(held.iter().any(Stop::touches));
+    for depth in [1.1, 5.0, 1e6] {
+        shape.root.z = -depth * length;
+        let solution = solver.solve(&spine, &mut shape, &mut stops, &[], &settings);
+        assert!(!solution.converged);
+        let numbers = [
+            solution.residual,
+            solution.penetration_m,
+            solution.energy.total(),
+        ];
+        assert!(
+            numbers.iter().all(|number| number.is_finite()),
+            "{solution:?}"
+        );
+        assert!((solution.penetration_m / (depth * length) - 1.0).abs() < 1.0);
+        assert_eq!((&shape.directions, &stops), (&good, &held));
+    }
+    shape.root.z = 0.6 * length;
+    assert!(
+        solver
+            .solve(&spine, &mut shape, &mut stops, &[], &settings)
+            .converged
+    );
+    assert!((shape.directions[2] - good[2]).length() < 1e-6);
+}

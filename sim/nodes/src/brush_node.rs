@@ -77,6 +77,7 @@ pub struct BrushNode {
     faulty: BTreeSet<String>,
     def: Sender<BrushDef>,
     commands: Server,
+    answers: commands::Answers,
     reader: Reader,
 }
 
@@ -135,6 +136,7 @@ impl BrushNode {
             faulty: BTreeSet::new(),
             def,
             commands: b.serve(&topics.command(name), 16, wake)?,
+            answers: commands::Answers::default(),
             reader: Reader::default(),
             topics: topics.clone(),
             settings,
@@ -186,6 +188,9 @@ impl BrushNode {
                 self.gone.remove(node);
             } else {
                 self.gone.insert(node.to_owned());
+                if self.progress.contains_key(node) {
+                    self.touching = false;
+                }
             }
         }
         while let Some(credit) = self.credit.try_recv() {
@@ -453,10 +458,7 @@ impl BrushNode {
         if !self.drives_force.contains(device) {
             return Ok(());
         }
-        let Some(desk) = self.model.desk() else {
-            return Ok(());
-        };
-        let Some(plane) = desk.plane(maulstick_types::scene::CANVAS) else {
+        let Some(plane) = self.model.plane().copied() else {
             return Ok(());
         };
         if !self.models.contains_key(device) {
@@ -466,7 +468,7 @@ impl BrushNode {
             self.models.insert(device.to_owned(), (sender, 0));
         }
         let (name, feel) = (&self.settings.name, self.model.feel());
-        let model = contact_model(origin, name, self.model.file(), plane, feel);
+        let model = contact_model(origin, name, self.model.file(), &plane, feel);
         if let Some((sender, sent_ns)) = self.models.get_mut(device)
             && now_ns >= *sent_ns + MODEL_PERIOD_NS
         {

@@ -312,7 +312,7 @@ impl PaintNode {
                 brush: origin.source,
                 epoch: origin.epoch,
                 next: *next,
-                wetness: 0.0,
+                wetness: self.sequencer.painting().fullness(origin.source),
                 film_m: 0.0,
                 viscosity_m2_s: 0.0,
             })

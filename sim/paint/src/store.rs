@@ -1,12 +1,11 @@
 //! The tiles of a surface: immutable, reference-counted versions, and leases on them.
 
 use std::collections::BTreeSet;
-use std::sync::Arc;
 
 use maulstick_types::paint::TILE;
 
 use crate::quantum::{Counts, SLOTS, add};
-use crate::tile::{Tile, TileId, Version};
+use crate::tile::{TileId, Version};
 
 /// A rectangle of tiles: from the first, up to but not with the second corner.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -164,14 +163,6 @@ impl TileStore {
             .filter_map(|v| v.tile.as_ref())
             .map(|tile| tile.bytes())
             .sum()
-    }
-
-    /// A copy of the newest versions that shares their tiles.
-    #[must_use]
-    pub fn snapshot(&self) -> Vec<(TileId, u64, Option<Arc<Tile>>)> {
-        self.iter()
-            .map(|(id, version)| (id, version.number, version.tile.clone()))
-            .collect()
     }
 }
 

@@ -10,6 +10,11 @@ pub const MOST_JOINTS: usize = 64;
 /// Joints of all spines at most: a state of one solve fits a message many times over.
 pub const MOST_IN_ALL: usize = 512;
 
+/// Corners of all faces of a skin at most, once it is subdivided.
+pub const MOST_CORNERS: usize = 60_000;
+/// Half a ferrule is at least this share of half the greatest width or thickness.
+const LEAST_ROOT: f64 = 0.01;
+
 /// Checks that a field is within its range.
 ///
 /// # Errors
@@ -112,6 +117,20 @@ fn head(file: &BrushFile) -> Result<(), BrushError> {
         0.0..=1.0,
         0.0..=1.0,
     )?;
+    let widest = 0.5e-3 * head.width_mm;
+    let root = file.radius_m(0.0) / widest;
+    within(
+        "head.profile (share at the ferrule)",
+        root,
+        LEAST_ROOT..=1.0,
+    )?;
+    let thickest = 0.5e-3 * head.thickness_mm.unwrap_or(head.width_mm);
+    let root = file.half_thickness_m(0.0) / thickest;
+    within(
+        "head.thickness_profile (share at the ferrule)",
+        root,
+        LEAST_ROOT..=1.0,
+    )?;
     curve("head.tip", &head.tip, -1.0..=1.0, 0.05..=1.0)
 }
 
@@ -128,6 +147,13 @@ fn spines(file: &BrushFile) -> Result<(), BrushError> {
         )?;
         spines.chains.iter().try_for_each(chain)?;
     } else {
+        let foreign = spines.chains.len();
+        must(
+            "spines.chain",
+            foreign,
+            foreign == 0,
+            "absent: the layout is not 'chains'",
+        )?;
         let most = 24.0;
         let least = if spines.layout == Layout::Ring {
             3.0
@@ -210,7 +236,7 @@ fn strips(file: &BrushFile) -> Result<(), BrushError> {
 }
 
 fn surface(skin: &Surface, joints: usize) -> Result<(), BrushError> {
-    within("surface.levels", skin.levels as f64, 0.0..=3.0)?;
+    within("surface.levels", skin.levels as f64, 1.0..=3.0)?;
     within("surface.recede_mm", skin.recede_mm, 0.0..=10.0)?;
     let vertices = skin.vertices_mm.len();
     must(
@@ -234,6 +260,17 @@ fn surface(skin: &Surface, joints: usize) -> Result<(), BrushError> {
         skin.faces.len(),
         skin.faces.is_empty() == (vertices == 0),
         "faces over the vertices",
+    )?;
+    let corners: usize = skin.faces.iter().map(Vec::len).sum();
+    let fine = corners << (2 * (skin.levels - 1));
+    let range = format!("at most {MOST_CORNERS} corners once it is subdivided");
+    must("surface.faces", fine, fine <= MOST_CORNERS, &range)?;
+    let pairs: usize = skin.weights.iter().map(Vec::len).sum();
+    must(
+        "surface.weights",
+        pairs,
+        pairs <= 8 * vertices,
+        "at most 8 joints a vertex",
     )?;
     for face in &skin.faces {
         must(

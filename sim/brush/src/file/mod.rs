@@ -124,7 +124,7 @@ impl BrushFile {
     /// The brush at another width: lengths scale with it, stiffness with its square.
     ///
     /// # Errors
-    /// [`BrushError::Range`] where the width is out of range.
+    /// [`BrushError::Range`] where the width, or something that scales with it, is out of range.
     pub fn scaled_to(&self, width_mm: f64) -> Result<Self, BrushError> {
         within("size_mm", width_mm, 0.1..=300.0)?;
         let scale = width_mm / self.head.width_mm;
@@ -146,11 +146,20 @@ impl BrushFile {
             torques.for_each(|torque| *torque *= scale);
         }
         // Finer strips have fewer bristles each: a head has as many strips at any size.
-        brush.strips.width_mm *= scale;
+        let strips = &mut brush.strips;
+        let lengths = [
+            &mut strips.width_mm,
+            &mut strips.thickness_mm,
+            &mut strips.lift_mm,
+            &mut strips.sink_mm,
+        ];
+        lengths.into_iter().for_each(|mm| *mm *= scale);
         if let Some(surface) = &mut brush.surface {
             let places = surface.vertices_mm.iter_mut().flatten();
             places.for_each(|mm| *mm *= scale);
+            surface.recede_mm *= scale;
         }
+        brush.check()?;
         Ok(brush)
     }
 
@@ -243,5 +252,58 @@ mod tests {
         assert!(error("length_mm = 25.0", "length_mm = -1.0").contains("head.length_mm is -1"));
         assert!(error("friction = 0.25", "friction = nan").contains("contact.friction is NaN"));
         assert!(error("[0.25, 1.0]", "[0.95, 1.0]").contains("rising order"));
+        assert!(error("[[0.0, 0.82]", "[[0.0, 0.0]").contains("share at the ferrule"));
+        assert!(error("friction_static = 0.32", "friction_static = 0.1").contains("static is 0.1"));
+        assert!(error("focus = 2.0", "focus = 1.0").contains("contact.focus is 1"));
+        assert!(error("clumping = [0.0,", "clumping = [2.0,").contains("strips.clumping is 2"));
+        let chain = "[[spines.chain]]\nroot_mm = [0, 0, 0]\nsegments_mm = []\n\
+                     stiffness_n_mm = []\ndamping_n_mm = []\n[strips]";
+        assert!(error("[strips]", chain).contains("spines.chain is 1, but must be absent"));
+        let layout = |chain: &str| {
+            let text = text.replace("[spines]", "[spines]\nlayout = \"chains\"");
+            let file = text.replace("[strips]", chain);
+            BrushFile::parse(&file).expect_err(chain).to_string()
+        };
+        assert!(layout("[strips]").contains("1 to 24 chains"));
+        assert!(layout(chain).contains("1 to 64 segments"));
+        let unequal = chain.replace("segments_mm = []", "segments_mm = [[0, 0, -9]]");
+        assert!(layout(&unequal).contains("one for each segment"));
+        let skin = |text: &str| error("[contact]", &format!("[surface]\n{text}\n[contact]"));
+        assert!(skin("levels = 0\nrecede_mm = 0.1").contains("surface.levels is 0"));
+        let one = "levels = 1\nrecede_mm = 0.1\nvertices_mm = [[0, 0, 0]]\n";
+        assert!(skin(&format!("{one}weights = [[[0, 0.5]]]\nfaces = [[0, 0, 0]]")).contains("sum"));
+        assert!(
+            skin(&format!("{one}weights = [[[0, 1]]]\nfaces = [[0, 0, 3]]")).contains("vertex")
+        );
+        assert!(
+            skin(&format!("{one}weights = [[[99, 1]]]\nfaces = [[0, 0, 0]]")).contains("joint")
+        );
+    }
+
+    #[test]
+    fn odd_brushes_that_are_right_have_heads() {
+        let text = BrushFile::library_text("flat").expect("text");
+        let alter = |pairs: &[(&str, &str)]| {
+            let mut text = text.to_owned();
+            for (from, to) in pairs {
+                assert!(text.contains(from), "{from}");
+                text = text.replace(from, to);
+            }
+            crate::Head::of(&BrushFile::parse(&text).expect("right"))
+        };
+        assert_eq!(alter(&[("count = 5", "count = 1")]).strips(), 448);
+        assert_eq!(alter(&[("count = 448", "count = 1")]).strips(), 1);
+        assert!(alter(&[("joints = 3", "joints = 64")]).fits(5 * 64));
+        assert_eq!(
+            alter(&[("thickness_mm = 5.0", "thickness_mm = 0.05")]).strips(),
+            448
+        );
+        let too_fine = BrushFile::library("knife").and_then(|file| file.scaled_to(1.0));
+        assert!(
+            too_fine
+                .expect_err("too thin")
+                .to_string()
+                .contains("thickness_mm")
+        );
     }
 }

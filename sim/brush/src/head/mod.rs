@@ -103,12 +103,7 @@ impl Head {
     #[must_use]
     pub fn of(file: &BrushFile) -> Self {
         let tuft = file.tuft();
-        let half = DVec2::new(file.radius_m(0.0), file.half_thickness_m(0.0));
-        let spines: Vec<DVec2> = tuft
-            .seats
-            .iter()
-            .map(|seat| seat.root.truncate() / half)
-            .collect();
+        let spines = tuft.places(file);
         let mut random = Random::new(file.strips.seed);
         let roots = place::roots(file, &spines, &mut random);
         let count = roots.len();

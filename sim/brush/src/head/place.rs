@@ -76,6 +76,9 @@ pub fn roots(file: &BrushFile, spines: &[DVec2], random: &mut Random) -> Vec<DVe
         .chunks_exact(3)
         .map(|t| [points[t[0]], points[t[1]], points[t[2]]])
         .collect();
+    if triangles.is_empty() {
+        return vec![DVec2::ZERO; count];
+    }
     let area = |t: &[DVec2; 3]| (t[1] - t[0]).perp_dot(t[2] - t[0]).abs();
     let mut up_to = Vec::with_capacity(triangles.len());
     let mut whole = 0.0;

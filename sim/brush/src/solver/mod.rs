@@ -131,6 +131,8 @@ pub struct Solver {
     rest: Vec<DVec3>,
     damped: bool,
     faced: Vec<Stop>,
+    /// The stops before the solve.
+    stops_before: Vec<Stop>,
     point: Point,
     multipliers: Vec<f64>,
     model: Model,
@@ -252,7 +254,57 @@ impl Solver {
         };
         self.before.clear();
         self.before.extend_from_slice(&shape.directions);
+        self.stops_before.clear();
+        self.stops_before.extend_from_slice(stops);
         self.begin(spine, shape);
+        let solution = match is_within_reach(spine, shape, stops) {
+            true => self.attempt(problem, shape, stops),
+            false => Solution {
+                residual: f64::INFINITY,
+                ..Solution::default()
+            },
+        };
+        let finite = shape.directions.iter().all(|d| d.is_finite());
+        if !solution.usable(spine) || !finite {
+            shape.directions.copy_from_slice(&self.before);
+            stops.copy_from_slice(&self.stops_before);
+            return self.kept(problem, shape, stops, &solution);
+        }
+        for (i, stop) in stops.iter_mut().enumerate() {
+            stop.settle(self.multipliers[i], self.point.ends[stop.joint], settings);
+        }
+        solution
+    }
+
+    /// What may be said of a shape that was kept because none better was found.
+    fn kept(
+        &mut self,
+        problem: Problem<'_>,
+        shape: &SpineShape,
+        stops: &[Stop],
+        attempt: &Solution,
+    ) -> Solution {
+        self.begin(problem.spine, shape);
+        self.multipliers.clear();
+        self.multipliers
+            .extend(stops.iter().map(|stop| stop.force_n));
+        let mut kept = Solution {
+            energy: self.look(problem, shape, stops),
+            ..Solution::default()
+        };
+        self.measure(problem, shape, stops, &mut kept);
+        kept.converged = false;
+        kept.after(attempt)
+    }
+
+    /// Seeks the minimum from how the spine is bent, and if need be from the relaxed spine.
+    fn attempt(
+        &mut self,
+        problem: Problem<'_>,
+        shape: &mut SpineShape,
+        stops: &mut [Stop],
+    ) -> Solution {
+        let (spine, settings) = (problem.spine, problem.settings);
         stops.iter_mut().for_each(|stop| stop.aim(spine, shape));
         self.multipliers.clear();
         self.multipliers
@@ -262,21 +314,13 @@ impl Solver {
         while solution.usable(spine) && self.let_go(stops, settings) {
             solution = self.minimise(problem, shape, stops).after(&solution);
         }
-        if !solution.converged {
+        if !solution.usable(spine) {
             shape.relax(spine);
             stops.iter_mut().for_each(Stop::clear);
             self.multipliers.fill(0.0);
             self.damped = false;
             break_symmetry(spine, shape);
             solution = self.minimise(problem, shape, stops).after(&solution);
-        }
-        if !solution.usable(spine) || !shape.directions.iter().all(|d| d.is_finite()) {
-            shape.directions.copy_from_slice(&self.before);
-            solution.converged = false;
-            return solution;
-        }
-        for (i, stop) in stops.iter_mut().enumerate() {
-            stop.settle(self.multipliers[i], self.point.ends[stop.joint], settings);
         }
         solution
     }
@@ -379,6 +423,15 @@ impl Solver {
         }
         any
     }
+}
+
+/// Whether every joint could come out of its wall at all.
+fn is_within_reach(spine: &Spine, shape: &SpineShape, stops: &[Stop]) -> bool {
+    stops.iter().all(|stop| {
+        let root = stop.wall.gap(shape.root);
+        let reach = || spine.lengths_m[..=stop.joint].iter().sum::<f64>();
+        root >= 0.0 || root + reach() > 0.0
+    })
 }
 
 /// A straight spine pressed along its own axis has no way to bend that is better than another, and

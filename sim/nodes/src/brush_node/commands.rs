@@ -1,19 +1,42 @@
 //! Commands to the brush node: another brush file.
 
+use std::collections::BTreeMap;
+
 use maulstick_brush::BrushFile;
 use maulstick_bus::BusError;
 use maulstick_bus::typed::Sender;
 use maulstick_types::brush::BrushDef;
-use maulstick_types::command::{Command, CommandReply, CommandRequest, Outcome};
+use maulstick_types::command::{BRUSH_FILE_MAX, Command, CommandReply, CommandRequest, Outcome};
 use maulstick_types::{Flags, encode, name_hash};
 
 use super::BrushNode;
 use crate::backlog::Backlog;
 
+/// Clients whose newest answer is kept.
+const CLIENTS: usize = 64;
+
 /// Why a command was not done, and what to do.
 struct Refusal {
     what: String,
     help: &'static str,
+}
+
+/// The newest answer to each client: a command that is sent again is answered again.
+#[derive(Debug, Default)]
+pub(super) struct Answers(BTreeMap<u64, CommandReply>);
+
+impl Answers {
+    fn find(&self, request: &CommandRequest) -> Option<&CommandReply> {
+        let newest = self.0.get(&request.client);
+        newest.filter(|reply| reply.number == request.number)
+    }
+
+    fn keep(&mut self, client: u64, reply: CommandReply) {
+        if self.0.len() >= CLIENTS && !self.0.contains_key(&client) {
+            self.0.pop_first();
+        }
+        self.0.insert(client, reply);
+    }
 }
 
 /// Tells all what a brush is made of.
@@ -44,19 +67,26 @@ impl BrushNode {
                 .reader
                 .read::<CommandRequest>(&request.key, &request.bytes);
             let Some((_, asked)) = read else { continue };
-            let outcome = match self.command(&asked.command, now_ns)? {
-                Ok(()) => Outcome::Done {
-                    journal: 0,
-                    detail: String::new(),
-                },
-                Err(refusal) => Outcome::Refused {
-                    what: refusal.what,
-                    help: refusal.help.to_owned(),
-                },
-            };
-            let reply = CommandReply {
-                number: asked.number,
-                outcome,
+            let reply = match self.answers.find(&asked) {
+                Some(reply) => reply.clone(),
+                None => {
+                    let outcome = match self.command(&asked, now_ns)? {
+                        Ok(()) => Outcome::Done {
+                            journal: 0,
+                            detail: String::new(),
+                        },
+                        Err(refusal) => Outcome::Refused {
+                            what: refusal.what,
+                            help: refusal.help.to_owned(),
+                        },
+                    };
+                    let reply = CommandReply {
+                        number: asked.number,
+                        outcome,
+                    };
+                    self.answers.keep(asked.client, reply.clone());
+                    reply
+                }
             };
             let me = self.states.origin();
             match encode(&me, Flags::NONE, 0, now_ns, now_ns, &reply) {
@@ -72,10 +102,18 @@ impl BrushNode {
     }
 
     /// Does a command; a refused one changes nothing.
-    fn command(&mut self, command: &Command, now_ns: u64) -> Result<Result<(), Refusal>, BusError> {
+    fn command(
+        &mut self,
+        asked: &CommandRequest,
+        now_ns: u64,
+    ) -> Result<Result<(), Refusal>, BusError> {
         let refused = |what: String, help| Ok(Err(Refusal { what, help }));
-        let checked = command.check();
-        let toml = match command {
+        if asked.after.is_some() {
+            let what = "a brush has no journal in which to wait".to_owned();
+            return refused(what, "ask without a place in it");
+        }
+        let checked = asked.command.check();
+        let toml = match &asked.command {
             _ if checked.is_err() => {
                 return refused(checked.err().unwrap_or_default(), "correct the command");
             }
@@ -93,14 +131,20 @@ impl BrushNode {
             Ok(file) => file,
             Err(error) => return refused(error.to_string(), "correct the brush file"),
         };
-        if self.touching || self.is_held() || !self.backlog.is_empty() {
+        let told = file.to_toml().map_or(usize::MAX, |toml| toml.len());
+        if told > BRUSH_FILE_MAX {
+            let what = format!("the brush file would be {told} bytes long");
+            return refused(what, "make its skin of fewer faces and weights");
+        }
+        // What is on its way to the painting belongs to the brush that is in hand.
+        let under_way = !self.backlog.is_empty() || !self.outbox.is_empty();
+        if self.touching || self.is_held() || under_way || self.states.outstanding() > 0 {
             let what = "the brush is painting".to_owned();
             return refused(what, "lift it, or let the take end, and ask again");
         }
         define(&mut self.def, now_ns, &self.settings.name, &file)?;
         self.backlog = Backlog::new(file.length_m());
-        self.model.take_up(file.clone());
-        self.settings.file = file;
+        self.model.take_up(file);
         Ok(Ok(()))
     }
 }

@@ -13,15 +13,15 @@ use std::sync::Arc;
 
 use maulstick_brush::{BrushFile, Head};
 use maulstick_optics::{PaintError, PaintLibrary, Studio};
-use maulstick_types::Mixture;
 use maulstick_types::scene::{Scene, Surface, WellKind};
+use maulstick_types::{Mixture, name_hash};
 
 use crate::bare::{Bare, CLEANER_RGB, WellLook, well_colour};
 use crate::history::History;
 use crate::impasto::Impasto;
 use crate::ledger::Ledger;
 use crate::load::BrushLoad;
-use crate::model::PaintModel;
+use crate::model::{BrushTraits, PaintModel};
 use crate::path::PathStepper;
 use crate::relief::Relief;
 use crate::setup::{PaintingSetup, ground_reflectance, tooth_called};
@@ -222,6 +222,17 @@ impl Painting {
     #[must_use]
     pub fn knows_brush(&self, name: &str) -> bool {
         self.brushes.contains_key(name)
+    }
+
+    /// How full the brush with this hash of its name is, 0 to 1.
+    #[must_use]
+    pub fn fullness(&self, source: u32) -> f32 {
+        let mut brushes = self.brushes.iter();
+        let found = brushes.find(|(name, _)| name_hash(name) == source);
+        found.map_or(0.0, |(_, track)| {
+            let traits = BrushTraits::of(&track.file, self.sheets[0].cell_m, 1.0);
+            track.load.fullness(&traits)
+        })
     }
 
     fn brush(&mut self, name: &str) -> Result<&mut BrushTrack, PaintRefusal> {

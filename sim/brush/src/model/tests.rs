@@ -1,0 +1,177 @@
+//! Samples in, solves out.
+
+use maulstick_types::Pose;
+use maulstick_types::scene::{Light, Surface};
+use maulstick_types::stylus::{DEFAULT_TILT_RAD, StylusPose};
+use proptest::prelude::*;
+
+use super::*;
+use crate::file::library::LIBRARY;
+
+const DEVICE: Origin = Origin {
+    source: 1,
+    epoch: 1,
+};
+const MS: u64 = 1_000_000;
+
+fn scene() -> Scene {
+    let canvas = Surface {
+        id: 0,
+        pose: Pose {
+            position_m: [-0.128, -0.128, 0.0],
+            ..Pose::IDENTITY
+        },
+        zoom: 1.0,
+        cells: [1024; 2],
+        cell_m: 2.5e-4,
+        ground: "gesso".into(),
+        tooth: "linen".into(),
+        tooth_seed: 1,
+        wells: Vec::new(),
+    };
+    let light = Light {
+        direction: [0.0, 0.0, 1.0],
+        intensity: 1.0,
+        illuminant: "D65".into(),
+    };
+    Scene {
+        version: 1,
+        surfaces: vec![canvas],
+        paints: Vec::new(),
+        tunings: Vec::new(),
+        light,
+    }
+}
+
+fn brush() -> BrushModel {
+    let mut model = BrushModel::new(BrushFile::library("round").expect("round"), 0.5);
+    model.set_scene(&scene());
+    model
+}
+
+fn pen(x: f64, y: f64, pressure: f64) -> StylusSample {
+    let pose = StylusPose::Contact {
+        point_m: [x, y, 0.0],
+        tilt_rad: DEFAULT_TILT_RAD,
+        twist_rad: 0.0,
+        pressure,
+    };
+    StylusSample {
+        pose,
+        in_range: true,
+        ..StylusSample::away()
+    }
+}
+
+#[test]
+fn strokes_are_numbered_by_the_gap_rule() {
+    let mut model = brush();
+    let mut stroke = |ms: u64, pressure: f64| {
+        model
+            .follow(DEVICE, ms * MS, &pen(0.0, 0.0, pressure))
+            .last()
+            .expect("a solve")
+            .stroke
+    };
+    assert_eq!(stroke(1000, 0.0), 0);
+    assert_eq!((stroke(1010, 0.3), stroke(1020, 0.3)), (1, 1));
+    assert_eq!(stroke(1090, 0.0), 0);
+    assert_eq!(
+        stroke(1169, 0.3),
+        1,
+        "149 ms without contact is the same stroke"
+    );
+    assert_eq!(stroke(1250, 0.0), 0);
+    assert_eq!(stroke(1319, 0.3), 2, "150 ms is a new one");
+}
+
+#[test]
+fn time_that_stands_still_or_jumps_restarts_the_solver() {
+    let mut model = brush();
+    let mut restarted = |ms: u64| {
+        let solve = model.follow(DEVICE, ms * MS, &pen(0.0, 0.0, 0.3));
+        let solve = solve.last().expect("a solve");
+        solve.flags & solve_flags::RESTARTED != 0
+    };
+    assert!(restarted(1000));
+    assert!(!restarted(1010) && !restarted(1110));
+    assert!(restarted(1110), "no time has passed");
+    assert!(restarted(1100), "time runs backward");
+    assert!(restarted(1201), "over .1 s has passed");
+}
+
+#[test]
+fn a_pressed_brush_bends_and_pushes_back() {
+    let mut model = brush();
+    let mut force = |ms: u64, pressure: f64| {
+        model.follow(DEVICE, ms * MS, &pen(0.0, 0.0, pressure));
+        model.force_n()
+    };
+    let (light, full) = (force(1000, 0.1), force(1010, 1.0));
+    assert!(
+        light > 0.0 && full > light && full < 3.0,
+        "{light} N, {full} N"
+    );
+    assert_eq!(force(1020, 0.0), 0.0);
+}
+
+proptest! {
+    // A leap is solved at up to 64 places for each of seven spines.
+    #![proptest_config(ProptestConfig::with_cases(ProptestConfig::default().cases / 16))]
+
+    #[test]
+    fn no_sample_breaks_a_brush(
+        kind in 0..LIBRARY.len(),
+        samples in prop::collection::vec(
+            (
+                0u64..200,
+                [-0.3..0.3f64, -0.3..0.3f64],
+                0.0..=1.0f64,
+                [-1.484..1.484f64, -1.484..1.484f64, -3.0..3.0f64],
+                any::<[bool; 2]>(),
+            ),
+            1..40,
+        )
+    ) {
+        let file = BrushFile::library(LIBRARY[kind].0).expect("a brush");
+        let mut model = BrushModel::new(file, 0.5);
+        model.set_scene(&scene());
+        let mut ns = 1_000_000_000;
+        for (dt, [x, y], pressure, [tilt_x, tilt_y, twist_rad], [in_range, held]) in samples {
+            ns += dt * MS;
+            let pose = if held {
+                let orientation = crate::desk::pen_orientation([tilt_x, tilt_y], twist_rad);
+                let position_m = [x, y, 0.05 * pressure - 0.01];
+                let orientation = maulstick_num::geometry::canonical(orientation).to_array();
+                StylusPose::Ferrule { pose: Pose { position_m, orientation } }
+            } else {
+                let (point_m, tilt_rad) = ([x, y, 0.0], [tilt_x, tilt_y]);
+                StylusPose::Contact { point_m, tilt_rad, twist_rad, pressure }
+            };
+            let sample = StylusSample { pose, in_range, ..StylusSample::away() };
+            let solves = model.follow(DEVICE, ns, &sample);
+            prop_assert!(solves.last().is_some_and(|solve| solve.event_ns == ns));
+            for solve in &solves {
+                prop_assert!(solve.pose.is_valid());
+                prop_assert!(solve.angles_rad.iter().flatten().all(|angle| angle.is_finite()));
+                prop_assert!(solve.flags & solve_flags::NOT_CONVERGED == 0, "{}", LIBRARY[kind].0);
+            }
+            if !in_range {
+                prop_assert!(solves.last().is_some_and(|solve| solve.contacts.is_empty()));
+            }
+            let feel = model.feel().k1_n;
+            prop_assert!(feel.is_finite() && feel > 0.0);
+        }
+    }
+
+    #[test]
+    fn tuning_forgets_what_was_before(first in 0.1..4.0f64, last in 0.1..4.0f64) {
+        let tuned = |factors: &[f64]| {
+            let mut model = brush();
+            factors.iter().for_each(|factor| model.tune(*factor));
+            model.tuft
+        };
+        prop_assert!(tuned(&[first, last]) == tuned(&[last]));
+        prop_assert!(tuned(&[first]) != tuned(&[1.001 * first]));
+    }
+}
