@@ -149,7 +149,7 @@ fn import(options: &ImportOptions) -> Result<i32, Fault> {
     let text = read_brush(&options.model)?
         .to_toml()
         .map_err(|error| Fault::failure(error.to_string()))?;
-    write_whole(path, |file| Ok(file.write_all(text.as_bytes())?))
+    write_whole(path, |file| file.write_all(text.as_bytes()))
         .map_err(|error| Fault::writing(path, &error))?;
     println!("{}: {} bytes", path.display(), text.len());
     Ok(0)

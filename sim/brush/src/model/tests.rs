@@ -154,7 +154,6 @@ proptest! {
             for solve in &solves {
                 prop_assert!(solve.pose.is_valid());
                 prop_assert!(solve.angles_rad.iter().flatten().all(|angle| angle.is_finite()));
-                prop_assert!(solve.flags & solve_flags::NOT_CONVERGED == 0, "{}", LIBRARY[kind].0);
             }
             if !in_range {
                 prop_assert!(solves.last().is_some_and(|solve| solve.contacts.is_empty()));
@@ -162,6 +161,13 @@ proptest! {
             let feel = model.feel().k1_n;
             prop_assert!(feel.is_finite() && feel > 0.0);
         }
+        // Whatever was before, a brush that is lifted and put down again bends as it should.
+        let mut last = Vec::new();
+        for (ms, pressure) in [(300, 0.0), (310, 0.3), (320, 0.3)] {
+            last = model.follow(DEVICE, ns + ms * MS, &pen(0.0, 0.0, pressure));
+        }
+        let last = last.last().expect("a solve");
+        prop_assert!(last.flags & solve_flags::NOT_CONVERGED == 0 && !last.contacts.is_empty());
     }
 
     #[test]
@@ -174,4 +180,36 @@ proptest! {
         prop_assert!(tuned(&[first, last]) == tuned(&[last]));
         prop_assert!(tuned(&[first]) != tuned(&[1.001 * first]));
     }
+}
+
+/// Leaps of decimetres with the brush flipped over: where no minimum is found a head keeps its bend and
+/// says so, and that is rare.
+#[test]
+fn a_minimum_is_nearly_always_found() {
+    let mut random = crate::head::place::Random::new(5);
+    let (mut solves, mut kept) = (0, 0);
+    for (kind, _) in LIBRARY {
+        let mut model = BrushModel::new(BrushFile::library(kind).expect(kind), 0.5);
+        model.set_scene(&scene());
+        for step in 1..=40 {
+            let mut range = |from: f64, to: f64| from + (to - from) * random.unit();
+            let pose = StylusPose::Contact {
+                point_m: [range(-0.1, 0.1), range(-0.1, 0.1), 0.0],
+                tilt_rad: [range(-1.4, 1.4), range(-1.4, 1.4)],
+                twist_rad: range(-3.0, 3.0),
+                pressure: range(0.0, 1.0),
+            };
+            let sample = StylusSample {
+                pose,
+                in_range: true,
+                ..StylusSample::away()
+            };
+            for solve in model.follow(DEVICE, step * 20 * MS, &sample) {
+                solves += 1;
+                kept += usize::from(solve.flags & solve_flags::NOT_CONVERGED != 0);
+            }
+        }
+    }
+    println!("{kept} of {solves} solves kept the bend before");
+    assert!(kept * 200 < solves, "{kept} of {solves}");
 }
