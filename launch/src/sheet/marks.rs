@@ -1,5 +1,7 @@
 //! The marks of a brush: what a painter tries in the shop.
 
+use maulstick_brush::BrushFile;
+
 use super::gesture::{Gesture, Moment, along, ease, swell};
 
 /// A mark and the mixture that the brush takes up for it; none goes on with what it has.
@@ -40,7 +42,15 @@ pub fn stroke(
 
 /// The marks of a brush on a panel: from a touch to full pressure; a wave; on its edge, twice; three
 /// dabs; lightly until it is dry.
-pub fn marks(width_mm: f64) -> Vec<Mark> {
+pub fn marks(file: &BrushFile) -> Vec<Mark> {
+    let width_mm = file.head.width_mm;
+    let [left, right] = [-1.0, 1.0].map(|place| file.length_share([place, 0.0]));
+    // The long side of a slanted brush trails, held nearly upright.
+    let (tilt, twist_deg) = if right > left {
+        (6.0, 180.0)
+    } else {
+        (25.0, 0.0)
+    };
     let middle = 0.5 * PANEL_MM[1];
     let blue = Some("Ultramarine Blue=0.75,Titanium White=0.25");
     let red = Some("Quinacridone Red=0.8,Titanium White=0.2");
@@ -70,9 +80,15 @@ pub fn marks(width_mm: f64) -> Vec<Mark> {
         let y = middle + 9.0 - 18.0 * row as f64;
         marks.push(Mark {
             load: (row == 0).then_some("Bone Black"),
-            gesture: stroke(vec![[132.0, y], [162.0, y]], 1.0, 0.0, move |t| {
-                0.02 + pressure * swell(t, 0.2)
-            }),
+            gesture: Gesture {
+                seconds: 1.0,
+                hand: Box::new(move |t| Moment {
+                    at: [132.0 + 30.0 * ease(t), y],
+                    pressure: 0.02 + pressure * swell(t, 0.2),
+                    tilt_deg: [tilt, 0.0],
+                    twist_deg,
+                }),
+            },
         });
     }
     let wide = width_mm > 12.0;
@@ -106,7 +122,7 @@ pub fn marks(width_mm: f64) -> Vec<Mark> {
         marks.push(Mark {
             load: (row == 0).then_some(()).and(green),
             gesture: stroke(
-                vec![[208.0, y], [226.0, y + 2.0], [243.0, y]],
+                vec![[208.0, y], [224.0, y + 2.0], [238.0, y]],
                 1.0,
                 90.0,
                 move |t| 0.02 + (0.28 - 0.14 * f64::from(row)) * swell(t, 0.12),

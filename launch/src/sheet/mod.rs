@@ -44,7 +44,7 @@ const BRUSH: &str = "main";
 /// The share of its head's length by which full pressure presses a brush in.
 const DEPTH_SHARE: f64 = 0.5;
 /// Width of that brush, mm.
-const ONE_STROKE_MM: f64 = 14.0;
+const ONE_STROKE_MM: f64 = 13.5;
 /// The two colours of a double-loaded brush.
 const DOUBLE: [&str; 2] = ["Quinacridone Magenta=0.6,Pyrrole Red=0.4", "Titanium White"];
 
@@ -108,7 +108,7 @@ fn mixture_of(text: &str) -> Result<Mixture, Fault> {
 /// A [`Fault`] where a brush or a paint is refused.
 pub fn brush_panel(file: &BrushFile, library: PaintLibrary) -> Result<Picture, Fault> {
     let mut panel = Panel::new(marks::PANEL_MM, "gesso", file.clone(), library)?;
-    for mark in marks::marks(file.head.width_mm) {
+    for mark in marks::marks(file) {
         if let Some(mixture) = mark.load {
             panel.load(BRUSH, mixture)?;
         }

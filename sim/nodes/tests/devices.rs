@@ -12,7 +12,7 @@ use maulstick_types::haptics::{ContactModel, ForceLaw};
 use maulstick_types::scene::Tuning;
 use maulstick_types::stylus::{StylusInfo, axes};
 use maulstick_types::{Flags, Origin, name_hash};
-use support::{Live, START_NS, loads, pen, take};
+use support::{Device, Live, START_NS, loads, pen, take};
 
 fn live() -> Live {
     Live::new(MemoryNet::new(1, START_NS, Faults::default()))
@@ -28,15 +28,10 @@ fn turn(live: &mut Live) {
     }
 }
 
-#[test]
-fn a_force_device_with_a_number_of_its_own_gets_its_model() {
-    let mut live = live();
-    let (bus, wake) = (live.net.bus(), Wake::new());
-    let topic = live.topics.contact_model("arm");
-    let mut models =
-        Receiver::<ContactModel>::new(&bus, &topic, Class::RealTime, Queue::Ring(8), &wake)
-            .expect("subscribed");
-    let mut arm = live.device("arm", 42);
+/// A device that drives a force says so.
+fn force_device(live: &Live) -> Device {
+    let bus = live.net.bus();
+    let arm = live.device("arm", 42);
     let topic = live.topics.stylus_info("arm");
     let mut info = Sender::new(&bus, &topic, Class::Cached, arm.samples.origin()).expect("one");
     let told = StylusInfo {
@@ -52,6 +47,18 @@ fn a_force_device_with_a_number_of_its_own_gets_its_model() {
         workspace_m: [0.0; 6],
     };
     info.send(0, 0, &told).expect("sent");
+    arm
+}
+
+#[test]
+fn a_force_device_with_a_number_of_its_own_gets_its_model() {
+    let mut live = live();
+    let (bus, wake) = (live.net.bus(), Wake::new());
+    let topic = live.topics.contact_model("arm");
+    let mut models =
+        Receiver::<ContactModel>::new(&bus, &topic, Class::RealTime, Queue::Ring(8), &wake)
+            .expect("subscribed");
+    let mut arm = force_device(&live);
     turn(&mut live);
     arm.send(&pen(0.0, 0.0, 0.3));
     turn(&mut live);
@@ -200,22 +207,7 @@ fn a_softer_brush_pushes_back_less() {
     let mut models =
         Receiver::<ContactModel>::new(&bus, &topic, Class::RealTime, Queue::Ring(64), &wake)
             .expect("subscribed");
-    let mut arm = live.device("arm", 42);
-    let topic = live.topics.stylus_info("arm");
-    let mut info = Sender::new(&bus, &topic, Class::Cached, arm.samples.origin()).expect("one");
-    let told = StylusInfo {
-        device: "arm".into(),
-        driver: "foreign".into(),
-        brush: "main".into(),
-        priority: 0,
-        senses: axes::POSITION,
-        drives: axes::FORCE,
-        rate_hz: 1000.0,
-        max_force_n: 3.0,
-        max_stiffness_n_m: 800.0,
-        workspace_m: [0.0; 6],
-    };
-    info.send(0, 0, &told).expect("sent");
+    let mut arm = force_device(&live);
     turn(&mut live);
     let mut felt = |live: &mut Live| {
         let mut k1 = 0.0;

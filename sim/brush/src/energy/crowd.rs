@@ -2,6 +2,8 @@
 
 use glam::{DMat3, DVec3};
 
+use super::outer;
+
 /// The energy by which a joint is pushed away from a neighbour's that comes nearer than it stands at
 /// rest: E = k/(8D²)·max(0, D² − r²)², r the distance, D the one at rest. Its force at r → D is
 /// k·(D − r); it has no pole and pulls nothing together, so a head may splay but not collapse.
@@ -23,11 +25,11 @@ pub fn crowd(k: f64, x: DVec3, at_rest: f64) -> Option<Crowd> {
     let lacking = square - x.length_squared();
     (lacking > 0.0).then(|| {
         let scale = k / (2.0 * square);
-        let outer = DMat3::from_cols(x * x.x, x * x.y, x * x.z);
         Crowd {
             value: 0.25 * scale * lacking * lacking,
             force: x * (-scale * lacking),
-            hessian: outer * (2.0 * scale) - DMat3::from_diagonal(DVec3::splat(scale * lacking)),
+            hessian: outer(x, x) * (2.0 * scale)
+                - DMat3::from_diagonal(DVec3::splat(scale * lacking)),
         }
     })
 }

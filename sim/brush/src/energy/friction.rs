@@ -3,6 +3,8 @@
 use glam::{DMat3, DVec3};
 use maulstick_num::powf;
 
+use super::outer;
+
 /// Bristles catch in the tooth when pushed and not when pulled (Baxter 2004, eq. 3.13 and 3.14).
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Anisotropy {
@@ -26,10 +28,6 @@ pub struct Friction {
     pub force: DVec3,
     /// d²E/du², N/m.
     pub hessian: DMat3,
-}
-
-fn outer(a: DVec3, b: DVec3) -> DMat3 {
-    DMat3::from_cols(a * b.x, a * b.y, a * b.z)
 }
 
 /// Evaluates [`Friction`] for weight `w` (N), slip `u` (m) along a wall with unit `normal` and

@@ -7,7 +7,14 @@
 //! | [`damping`] | within a joint |
 //! | [`crowd`] | of joints pushed into each other's room |
 
+use glam::{DMat3, DVec3};
+
 pub mod crowd;
 pub mod damping;
 pub mod friction;
 pub mod spring;
+
+/// a·bᵀ.
+fn outer(a: DVec3, b: DVec3) -> DMat3 {
+    DMat3::from_cols(a * b.x, a * b.y, a * b.z)
+}

@@ -3,6 +3,8 @@
 use glam::{DMat3, DVec3};
 use maulstick_num::atan2;
 
+use super::outer;
+
 /// Value of a function of the cosine c between two unit vectors, and its first two derivatives.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct OfCosine {
@@ -95,7 +97,6 @@ pub fn bent(b: DVec3, r: DVec3, d: DVec3, e: DVec3) -> Bend {
     let s = b + d;
     let q = least(1.0 + b.dot(d));
     let (p, m, straight) = (s.dot(r), e.dot(s), 2.0 * b.dot(r));
-    let outer = |u: DVec3, v: DVec3| DMat3::from_cols(u * v.x, u * v.y, u * v.z);
     let both = |u: DVec3, v: DVec3| outer(u, v) + outer(v, u);
     Bend {
         rest: r - s * (p / q) + d * straight,
