@@ -7,6 +7,7 @@ use proptest::prelude::*;
 
 use super::*;
 use crate::file::library::LIBRARY;
+use crate::spine::SpineShape;
 
 const DEVICE: Origin = Origin {
     source: 1,
@@ -212,4 +213,50 @@ fn a_minimum_is_nearly_always_found() {
     }
     println!("{kept} of {solves} solves kept the bend before");
     assert!(kept * 200 < solves, "{kept} of {solves}");
+}
+
+/// A brush that is dragged along the canvas against the edge of the raised palette bends there: no
+/// joint enters the board.
+#[test]
+fn the_edge_of_the_palette_holds_the_bristles() {
+    let (edge, top) = (-0.138, 0.004);
+    let mut scene = scene();
+    let mut board = scene.surfaces[0].clone();
+    board.id = maulstick_types::scene::PALETTE;
+    board.pose.position_m = [edge - 0.256, -0.128, top];
+    let drag = |scene: &Scene| {
+        let mut model = brush();
+        model.set_scene(scene);
+        let seats = model.tuft.seats.clone();
+        let mut deepest = 0.0f64;
+        for step in 0..60u64 {
+            let sample = pen(-0.12 - 4e-4 * step as f64, 0.0, 0.4);
+            for solve in model.follow(DEVICE, (1000 + 8 * step) * MS, &sample) {
+                assert_eq!(solve.flags & solve_flags::NOT_CONVERGED, 0);
+                // The canvas begins at −128 mm.
+                let held = Rigid::from(&solve.pose);
+                let mut angles = &solve.angles_rad[..];
+                for seat in &seats {
+                    let (own, others) = angles.split_at(seat.spine.joints());
+                    angles = others;
+                    let at = seat.held(&held);
+                    let shape = SpineShape::from_angles(at.translation, at.rotation, own);
+                    for i in 0..seat.spine.joints() {
+                        let p = shape.joint(&seat.spine, i) - glam::DVec3::splat(0.128);
+                        let within = (edge - p.x).min(top - (p.z + 0.128));
+                        deepest = deepest.max(within);
+                    }
+                }
+            }
+        }
+        deepest
+    };
+    let through = drag(&scene);
+    scene.surfaces.push(board);
+    let held = drag(&scene);
+    assert!(
+        through > 2e-3,
+        "without the board they would be there: {through}"
+    );
+    assert!(held < 1e-6, "{held}");
 }
