@@ -4,7 +4,7 @@ use std::path::Path;
 
 use maulstick_brush::BrushFile;
 use maulstick_rig::Fault;
-use maulstick_rig::config::BrushSection;
+use maulstick_rig::config::{BrushSection, toml_fault};
 
 /// The brush file of a section, at its size: one of the library, or read from where its kind says.
 ///
@@ -43,7 +43,11 @@ pub fn read_brush(path: &Path) -> Result<BrushFile, Fault> {
     }
     let text = String::from_utf8(bytes)
         .map_err(|_| wrong("this is no text".to_owned(), "name a TOML or a glTF file"))?;
-    BrushFile::parse(&text).map_err(|error| wrong(error.to_string(), "correct the brush file"))
+    let file: BrushFile =
+        toml::from_str(&text).map_err(|error| toml_fault(&text, &place, &error))?;
+    file.check()
+        .map_err(|error| wrong(error.to_string(), "correct the brush file"))?;
+    Ok(file)
 }
 
 #[cfg(test)]
@@ -68,7 +72,8 @@ mod tests {
         assert_eq!(brush_file(&section(&kind)), Ok(library));
         std::fs::write(&path, "[head]\n").expect("written");
         let fault = brush_file(&section(&kind)).expect_err("half a file");
-        assert_eq!(fault.place.as_deref(), Some(kind.as_str()));
+        let line = format!("{kind}:1");
+        assert_eq!(fault.place, Some(line));
         assert!(
             brush_file(&section("ruond"))
                 .expect_err("misspelt")

@@ -17,7 +17,7 @@ use maulstick_types::command::Command;
 use serde_json::json;
 
 use crate::commands::control::{Target, send};
-use crate::commands::print_json;
+use crate::commands::{print_json, print_text};
 use crate::performance::{brush_file, library};
 use crate::sheet::sheet;
 
@@ -94,7 +94,7 @@ pub struct TakeOptions {
     /// A brush of the library, or a brush file
     kind: String,
     /// Width of the head, mm; that of its file if absent
-    #[arg(long, value_name = "MM")]
+    #[arg(long, value_name = "MM", allow_negative_numbers = true)]
     size_mm: Option<f64>,
     /// The brush of the rig that it takes the place of
     #[arg(long, default_value = "main")]
@@ -118,7 +118,7 @@ pub fn run(command: &BrushCommand) -> Result<i32, Fault> {
 }
 
 fn list(options: &ListOptions) -> Result<i32, Fault> {
-    let mut rows = Vec::new();
+    let (mut rows, mut text) = (Vec::new(), String::new());
     for (name, _) in LIBRARY {
         let brush = BrushFile::library(name).map_err(|error| Fault::failure(error.to_string()))?;
         let (head, spines) = (&brush.head, &brush.spines);
@@ -135,12 +135,14 @@ fn list(options: &ListOptions) -> Result<i32, Fault> {
                 "strips": brush.strips.count,
             }));
         } else {
-            println!("{name:<9} {} ({} mm)", brush.about, sizes.join(", "));
+            let sizes = sizes.join(", ");
+            text += &format!("{name:<9} {} ({sizes} mm)\n", brush.about);
         }
     }
     if options.json {
         print_json(&json!({ "brushes": rows }))?;
     }
+    print_text(&text)?;
     Ok(0)
 }
 
@@ -196,31 +198,29 @@ fn draw_sheet(options: &SheetOptions) -> Result<i32, Fault> {
 
 fn solve(options: &SolveOptions) -> Result<i32, Fault> {
     let (spine, poses) = (read_spine(&options.spine)?, read_poses(&options.poses)?);
+    let mut text = String::new();
     if !options.json {
-        println!("        t        x        y        z   energy   depth residual  steps");
-        println!("        s       mm       mm       mm       µJ      mm                ");
+        text += "        t        x        y        z   energy   depth residual  steps\n";
+        text += "        s       mm       mm       mm       µJ      mm                \n";
     }
     for row in follow(&spine, &poses) {
-        if options.json {
-            let line = serde_json::to_string(&row);
-            println!(
-                "{}",
-                line.map_err(|error| Fault::failure(error.to_string()))?
-            );
-        } else {
-            print_row(&row);
-        }
+        text += &match options.json {
+            true => serde_json::to_string(&row).map_err(|e| Fault::failure(e.to_string()))?,
+            false => in_columns(&row),
+        };
+        text.push('\n');
     }
+    print_text(&text)?;
     Ok(0)
 }
 
 /// The tip, the energy, and how well it was found.
-fn print_row(row: &TrialRow) {
+fn in_columns(row: &TrialRow) -> String {
     let [x, y, z] = row
         .joints
         .last()
         .map_or([0.0; 3], |tip| tip.map(|v| v * 1e3));
-    println!(
+    format!(
         "{:>9.4} {x:>8.3} {y:>8.3} {z:>8.3} {:>8.3} {:>7.0e} {:>8.0e} {:>6}{}",
         row.t,
         row.energy.total * 1e6,
@@ -228,11 +228,13 @@ fn print_row(row: &TrialRow) {
         row.residual,
         row.iterations,
         if row.converged { "" } else { "  not found" }
-    );
+    )
 }
 
 fn read(path: &Path) -> Result<(String, String), Fault> {
     let text = std::fs::read_to_string(path).map_err(|error| Fault::reading(path, &error))?;
+    // Spreadsheets begin a table with a byte order mark.
+    let text = text.trim_start_matches('\u{feff}').to_owned();
     Ok((text, path.display().to_string()))
 }
 

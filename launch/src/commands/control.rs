@@ -44,10 +44,10 @@ pub struct LoadOptions {
 #[derive(Args, Clone, Debug)]
 pub struct TuneOptions {
     /// Factor on the stiffness of its file
-    #[arg(long, default_value_t = 1.0)]
+    #[arg(long, default_value_t = 1.0, allow_negative_numbers = true)]
     stiffness: f64,
     /// 0 as in its file to 1 soaked: half as stiff
-    #[arg(long, default_value_t = 0.0)]
+    #[arg(long, default_value_t = 0.0, allow_negative_numbers = true)]
     wetness: f64,
     /// The brush
     #[arg(long, default_value = "main")]

@@ -11,12 +11,27 @@ pub mod render;
 pub mod schema;
 pub mod take;
 
+use std::io::{ErrorKind, Write as _};
 use std::path::Path;
 
 use indicatif::{ProgressBar, ProgressStyle};
 use maulstick_device::Take;
 use maulstick_rig::Fault;
 use serde_json::Value;
+
+/// Prints text; a reader that has seen enough, as `head` has, is no error.
+///
+/// # Errors
+/// A [`Fault`] where it cannot be written.
+pub fn print_text(text: &str) -> Result<(), Fault> {
+    let mut out = std::io::stdout().lock();
+    match out.write_all(text.as_bytes()).and_then(|()| out.flush()) {
+        Err(error) if error.kind() != ErrorKind::BrokenPipe => {
+            Err(Fault::failure(format!("cannot print: {error}")))
+        }
+        _ => Ok(()),
+    }
+}
 
 /// Prints JSON, indented.
 ///
@@ -25,8 +40,7 @@ use serde_json::Value;
 pub fn print_json(value: &Value) -> Result<(), Fault> {
     let text =
         serde_json::to_string_pretty(value).map_err(|error| Fault::failure(error.to_string()))?;
-    println!("{text}");
-    Ok(())
+    print_text(&(text + "\n"))
 }
 
 /// Writes a take and says what it holds.

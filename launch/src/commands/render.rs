@@ -41,6 +41,7 @@ pub fn run(options: &RenderOptions) -> Result<i32, Fault> {
     let library = library()?;
     let loads = options.painting.mixtures(&library)?;
     let take = Take::read(&options.take)?;
+    let unloaded = loads.is_empty();
     for path in [Some(&options.output), options.painting.ledger.as_ref()]
         .into_iter()
         .flatten()
@@ -67,5 +68,8 @@ pub fn run(options: &RenderOptions) -> Result<i32, Fault> {
     let ledger = options.painting.ledger.as_deref();
     write_snapshot(offline.painting_mut(), &options.output, ledger)
         .map_err(|(path, error)| Fault::writing(path.as_ref(), &error))?;
+    if unloaded {
+        eprintln!("the brush carried no paint: `--load \"Ultramarine Blue\"` gives it some");
+    }
     Ok(0)
 }

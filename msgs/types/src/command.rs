@@ -127,7 +127,10 @@ impl Command {
                     STIFFNESS.contains(&tuning.stiffness) && (0.0..=1.0).contains(&tuning.wetness);
                 match good {
                     true => Ok(()),
-                    false => Err("stiffness must be 0.05 to 20 and wetness 0 to 1".to_owned()),
+                    false => Err(format!(
+                        "stiffness is {}, wetness {}, but must be 0.05 to 20 and 0 to 1",
+                        tuning.stiffness, tuning.wetness
+                    )),
                 }
             }),
             Self::Take { brush, loads, .. } => {

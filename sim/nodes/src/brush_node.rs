@@ -73,6 +73,8 @@ pub struct BrushNode {
     gone: BTreeSet<String>,
     tokens: Subscription,
     touching: bool,
+    /// Number of the newest state that touches.
+    newest_contact: Option<u64>,
     /// Devices of whose faulty samples it was said.
     faulty: BTreeSet<String>,
     def: Sender<BrushDef>,
@@ -133,6 +135,7 @@ impl BrushNode {
             gone: BTreeSet::new(),
             tokens: b.watch(&topics.node("*"), wake)?,
             touching: false,
+            newest_contact: None,
             faulty: BTreeSet::new(),
             def,
             commands: b.serve(&topics.command(name), 16, wake)?,
@@ -399,9 +402,13 @@ impl BrushNode {
         if let Some(newest) = state.solves.last() {
             self.touching = !newest.contacts.is_empty();
         }
+        let touches = state.solves.iter().any(|solve| solve.stroke != 0);
         let device = (state.device, state.device_epoch);
         self.outbox.push(flags, first, last, state);
         let number = self.states.next_seq() + self.outbox.len() as u64 - 1;
+        if touches {
+            self.newest_contact = Some(number);
+        }
         for progress in self.progress.values_mut() {
             if (progress.device, progress.device_epoch) == device {
                 progress.state = number;

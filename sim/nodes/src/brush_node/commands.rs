@@ -136,9 +136,10 @@ impl BrushNode {
             let what = format!("the brush file would be {told} bytes long");
             return refused(what, "make its skin of fewer faces and weights");
         }
-        // What is on its way to the painting belongs to the brush that is in hand.
-        let under_way = !self.backlog.is_empty() || !self.outbox.is_empty();
-        if self.touching || self.is_held() || under_way || self.states.outstanding() > 0 {
+        // A stroke on its way to the painting belongs to the brush that is in hand.
+        let painted = self.states.next_seq() - self.states.outstanding();
+        let under_way = self.newest_contact.is_some_and(|state| state >= painted);
+        if self.touching || self.is_held() || under_way || !self.backlog.is_empty() {
             let what = "the brush is painting".to_owned();
             return refused(what, "lift it, or let the take end, and ask again");
         }
