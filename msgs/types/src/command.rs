@@ -3,7 +3,7 @@
 use crate::define::{message, wire_enum, wire_struct};
 use crate::mixture::Mixture;
 use crate::pose::Pose;
-use crate::scene::Tuning;
+use crate::scene::{Light, Tuning};
 use crate::stylus::FARTHEST_M;
 use crate::topics::check_name;
 
@@ -13,6 +13,8 @@ pub const PATH_MAX: usize = 4096;
 pub const PARTS_MAX: usize = 64;
 /// The name of a paint has at most this many bytes.
 pub const PAINT_NAME_MAX: usize = 128;
+/// The name of a layer has at most this many bytes.
+pub const LAYER_NAME_MAX: usize = 128;
 /// A brush file has at most this many bytes.
 pub const BRUSH_FILE_MAX: usize = 1_000_000;
 /// Factors on the stiffness of a brush.
@@ -100,6 +102,27 @@ wire_enum! {
             /// How it is from now on.
             tuning: Tuning,
         },
+        /// Changes the light, or how its light becomes colour.
+        Relight {
+            /// How it is from now on.
+            light: Light,
+        },
+        /// Dries wet paint of a surface into a new layer.
+        Dry {
+            /// The surface.
+            surface: u32,
+            /// The lower share of the wet film that dries, above 0 to 1.
+            share: f32,
+            /// Name of the layer.
+            name: String,
+        },
+        /// Makes a dry layer more or less opaque.
+        Opacity {
+            /// Number of the layer.
+            layer: u32,
+            /// Factor on its optical thickness, 0 to 1.
+            opacity: f32,
+        },
     }
 }
 
@@ -154,6 +177,21 @@ impl Command {
                     )),
                 }
             }
+            Self::Relight { light } => light.check(),
+            Self::Dry { share, name, .. } => match *share > 0.0 && *share <= 1.0 {
+                true if name.len() > LAYER_NAME_MAX => Err(format!(
+                    "a layer's name of {} bytes is too long",
+                    name.len()
+                )),
+                true => Ok(()),
+                false => Err(format!(
+                    "the share that dries is {share}, but must be above 0 to 1"
+                )),
+            },
+            Self::Opacity { opacity, .. } => match (0.0..=1.0).contains(opacity) {
+                true => Ok(()),
+                false => Err(format!("the opacity is {opacity}, but must be 0 to 1")),
+            },
             Self::Undo | Self::Redo | Self::Mark => Ok(()),
         }
     }
@@ -183,7 +221,7 @@ fn short(mixture: &Mixture) -> Result<(), String> {
 
 message! {
     /// A command with its sender and number; sending it again with the same number is safe.
-    pub struct CommandRequest [version 2, at most 1048576 bytes] {
+    pub struct CommandRequest [version 3, at most 1048576 bytes] {
         /// A number that the client drew at random.
         pub client: u64,
         /// Counts the client's commands.

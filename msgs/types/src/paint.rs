@@ -72,7 +72,7 @@ wire_enum! {
 
 message! {
     /// An entry of the journal, in order; it has room for the largest command with its index.
-    pub struct JournalEntry [version 2, at most 1049600 bytes] {
+    pub struct JournalEntry [version 3, at most 1049600 bytes] {
         /// From 0, without gaps.
         pub index: u64,
         /// What was accepted.
@@ -149,7 +149,7 @@ message! {
 
 message! {
     /// How the paint node fares, ten times a second.
-    pub struct PaintStatus [version 1, at most 4096 bytes] {
+    pub struct PaintStatus [version 2, at most 4096 bytes] {
         /// Entries of the journal so far.
         pub journal: u64,
         /// Steps of the paint model so far.
@@ -164,5 +164,9 @@ message! {
         pub lost: u64,
         /// Messages that did not decode or were not expected.
         pub refused: u64,
+        /// Tiles whose dry layers are to be computed for the present light.
+        pub baking: u32,
+        /// Those of them that are done.
+        pub baked: u32,
     }
 }

@@ -8,6 +8,14 @@ use crate::pose::Pose;
 pub const CANVAS: u32 = 0;
 /// The palette.
 pub const PALETTE: u32 = 1;
+/// Factors on the light's strength and on what the eye makes of it.
+pub const INTENSITY: std::ops::RangeInclusive<f64> = 0.0..=100.0;
+/// Names of the sampling rules.
+pub const RULES: [&str; 3] = ["gauss", "fitted", "reference"];
+/// Wavelengths of the rules `gauss` and `fitted`.
+pub const SAMPLES: std::ops::RangeInclusive<u32> = 4..=16;
+/// The name of an illuminant has at most this many bytes.
+pub const ILLUMINANT_NAME_MAX: usize = 128;
 
 wire_enum! {
     /// What a round region of the palette does.
@@ -74,7 +82,7 @@ wire_struct! {
 }
 
 wire_struct! {
-    /// The lamp.
+    /// The lamp, and how its light becomes colour.
     pub struct Light {
         /// Unit vector toward the lamp, canvas frame.
         pub direction: [f64; 3],
@@ -82,6 +90,35 @@ wire_struct! {
         pub intensity: f64,
         /// Name of the spectrum.
         pub illuminant: String,
+        /// The spectrum itself where it is none of the CIE's: relative power at 101 wavelengths,
+        /// 380 to 780 nm; empty for one that is known by its name.
+        pub spectrum: Vec<f64>,
+        /// Factor of the eye, or camera, that looks at it.
+        pub exposure: f64,
+        /// Factor on the slopes of the relief.
+        pub relief: f64,
+        /// Tangent of half the angle under which the lamp is seen: how soft shadows are.
+        pub softness: f64,
+        /// Year of the CIE observer: 1931 or 1964.
+        pub observer: u32,
+        /// Sampling rule: `gauss`, `fitted` or `reference`.
+        pub rule: String,
+        /// Wavelengths of the rule, 4 to 16; `reference` has 101.
+        pub samples: u32,
+        /// Whether the eye is adapted to the light's white; if not, its cast stays.
+        pub adapted: bool,
+    }
+}
+
+wire_struct! {
+    /// Paint that dried at one time.
+    pub struct Layer {
+        /// Its number, from 1; a layer lies over all of lower numbers.
+        pub number: u32,
+        /// Its name.
+        pub name: String,
+        /// Factor on its optical thickness, 0 to 1; its height stays.
+        pub opacity: f32,
     }
 }
 
@@ -97,6 +134,76 @@ wire_struct! {
     }
 }
 
+impl Default for Light {
+    /// Average daylight from the upper left.
+    fn default() -> Self {
+        Self {
+            direction: [-0.5, 0.5, 0.5f64.sqrt()],
+            intensity: 1.0,
+            illuminant: "D65".to_owned(),
+            spectrum: Vec::new(),
+            exposure: 1.0,
+            relief: 1.0,
+            softness: 0.1,
+            observer: 1931,
+            rule: "fitted".to_owned(),
+            samples: 16,
+            adapted: true,
+        }
+    }
+}
+
+impl Light {
+    /// Checks that it shines, in bounds.
+    ///
+    /// # Errors
+    /// What is wrong, in few words.
+    pub fn check(&self) -> Result<(), String> {
+        let bounded = [
+            ("intensity", self.intensity, INTENSITY),
+            ("exposure", self.exposure, INTENSITY),
+            ("relief strength", self.relief, 0.0..=10.0),
+            ("softness of shadows", self.softness, 0.0..=1.0),
+        ];
+        for (name, value, range) in bounded {
+            if !range.contains(&value) {
+                let (least, most) = (range.start(), range.end());
+                return Err(format!(
+                    "the {name} is {value}, but must be {least} to {most}"
+                ));
+            }
+        }
+        let length: f64 = self.direction.iter().map(|v| v * v).sum();
+        if !(1e-6..=1e6).contains(&length) || self.direction[2] < 0.0 {
+            return Err(
+                "the light must come from above the canvas: give x, y, z with z > 0".into(),
+            );
+        }
+        if self.illuminant.len() > ILLUMINANT_NAME_MAX {
+            let bytes = self.illuminant.len();
+            return Err(format!("an illuminant's name of {bytes} bytes is too long"));
+        }
+        let power = &self.spectrum;
+        let good = power.iter().all(|v| (0.0..=1e9).contains(v)) && power.iter().any(|v| *v > 0.0);
+        if !power.is_empty() && (power.len() != 101 || !good) {
+            return Err("a spectrum has 101 powers of 0 or more, not all of them 0".into());
+        }
+        if ![1931, 1964].contains(&self.observer) {
+            return Err(format!(
+                "there is no CIE observer of {}; take 1931 or 1964",
+                self.observer
+            ));
+        }
+        if !RULES.contains(&self.rule.as_str()) {
+            return Err(format!("the sampling rule is one of {}", RULES.join(", ")));
+        }
+        if self.rule != "reference" && !SAMPLES.contains(&self.samples) {
+            return Err(format!("a rule of {} samples; take 4 to 16", self.samples));
+        }
+        Ok(())
+    }
+}
+
 impl Tuning {
     /// Factor on the stiffness of a head.
     #[must_use]
@@ -107,7 +214,7 @@ impl Tuning {
 
 message! {
     /// The desk; cached for late joiners.
-    pub struct Scene [version 2, at most 262144 bytes] {
+    pub struct Scene [version 3, at most 262144 bytes] {
         /// Grows with every change.
         pub version: u64,
         /// The canvas first.
@@ -118,6 +225,8 @@ message! {
         pub light: Light,
         /// Brushes that are not as in their files.
         pub tunings: Vec<Tuning>,
+        /// What has dried, the oldest first.
+        pub layers: Vec<Layer>,
     }
 }
 

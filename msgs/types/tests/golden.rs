@@ -8,7 +8,7 @@ use maulstick_types::paint::{
     BrushCredit, Entry, FrameHolds, FrameReply, FrameRequest, FrameTile, JournalEntry,
     PaintConsumed, PaintStatus,
 };
-use maulstick_types::scene::{Light, PaintSlot, Scene, Surface, Tuning, Well, WellKind};
+use maulstick_types::scene::{Layer, Light, PaintSlot, Scene, Surface, Tuning, Well, WellKind};
 use maulstick_types::stylus::{
     StylusInfo, StylusPose, StylusSample, StylusStatus, TakeEnd, TakeStatus,
 };
@@ -233,11 +233,24 @@ fn all() -> String {
                 direction: [0.0, 0.0, 1.0],
                 intensity: 1.0,
                 illuminant: "D65".into(),
+                spectrum: vec![1.0; 2],
+                exposure: 0.9,
+                relief: 2.0,
+                softness: 0.1,
+                observer: 1964,
+                rule: "gauss".into(),
+                samples: 8,
+                adapted: false,
             },
             tunings: vec![Tuning {
                 brush: "main".into(),
                 stiffness: 1.5,
                 wetness: 0.5,
+            }],
+            layers: vec![Layer {
+                number: 1,
+                name: "sky".into(),
+                opacity: 0.5,
             }],
         }),
         line(&entry(Entry::States {
@@ -290,6 +303,8 @@ fn all() -> String {
             memory_bytes: 5,
             lost: 6,
             refused: 7,
+            baking: 8,
+            baked: 9,
         }),
         line(&command(Command::Load {
             brush: "main".into(),
@@ -331,6 +346,21 @@ fn all() -> String {
                 stiffness: 1.5,
                 wetness: 0.5,
             },
+        })),
+        line(&command(Command::Relight {
+            light: Light {
+                spectrum: vec![0.5],
+                ..Light::default()
+            },
+        })),
+        line(&command(Command::Dry {
+            surface: 0,
+            share: 0.5,
+            name: "sky".into(),
+        })),
+        line(&command(Command::Opacity {
+            layer: 1,
+            opacity: 0.25,
         })),
         line(&reply(Outcome::Done {
             journal: 1,

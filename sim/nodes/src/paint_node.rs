@@ -422,6 +422,8 @@ impl PaintNode {
             lag_ns,
             memory_bytes: self.sequencer.painting().bytes() as u64,
             lost: counts.lost,
+            baking: 0,
+            baked: 0,
             refused: self.refused
                 + counts.refused
                 + self.reader.refused()

@@ -3,6 +3,7 @@
 use std::sync::OnceLock;
 
 use crate::spectrum::{Spectrum, interpolate};
+use crate::spectrum_file::TableError;
 
 /// A standard observer.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -74,6 +75,17 @@ impl Illuminant {
         Some(Self {
             name: ILLUMINANTS[column].to_owned(),
             power,
+        })
+    }
+
+    /// A light of one's own from a CSV file `nm,power` (see [`Spectrum::parse`]).
+    ///
+    /// # Errors
+    /// [`TableError`] with line and column.
+    pub fn parse(name: &str, text: &str) -> Result<Self, TableError> {
+        Ok(Self {
+            name: name.to_owned(),
+            power: Spectrum::parse(text)?,
         })
     }
 

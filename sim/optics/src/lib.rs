@@ -3,6 +3,7 @@
 //! | module | holds |
 //! | --- | --- |
 //! | [`spectrum`] | the wavelength grid and spectra on it |
+//! | [`spectrum_file`] | spectra from CSV files |
 //! | [`cie`] | observers and illuminants |
 //! | [`quadrature`] | Gauss rules of any weight (Stieltjes, Golub and Welsch) |
 //! | [`rule`] | which wavelengths a painting computes, and their weights in XYZ |
@@ -21,6 +22,7 @@ pub mod paints;
 pub mod quadrature;
 pub mod rule;
 pub mod spectrum;
+pub mod spectrum_file;
 pub mod studio;
 pub mod surface;
 

@@ -46,6 +46,53 @@ pub(crate) fn interpolate(table: &[f64], x: f64) -> f64 {
     table[i] * (1.0 - t) + table[(i + 1).min(last)] * t
 }
 
+/// The spectrum through points (nm, value) of rising nm: monotone cubic between them (Fritsch and
+/// Butland 1984), which makes no peaks that were not measured; beyond the ends the end's value holds.
+/// Without points it is 0.
+#[must_use]
+pub fn resample(points: &[[f64; 2]]) -> Spectrum {
+    let slopes = monotone_slopes(points);
+    Spectrum::from_fn(|nm| {
+        let above = points.partition_point(|[x, _]| *x <= nm);
+        if above == 0 || above == points.len() {
+            let end = points.get(above.saturating_sub(1));
+            return end.map_or(0.0, |[_, y]| *y);
+        }
+        let ([x0, y0], [x1, y1]) = (points[above - 1], points[above]);
+        let (width, t) = (x1 - x0, (nm - x0) / (x1 - x0));
+        let (s, u) = (1.0 - t, t * t);
+        y0 * (1.0 + 2.0 * t) * s * s
+            + width * slopes[above - 1] * t * s * s
+            + y1 * u * (3.0 - 2.0 * t)
+            - width * slopes[above] * u * s
+    })
+}
+
+/// Slopes at points by the weighted harmonic mean of the chords on either side, 0 at extrema.
+fn monotone_slopes(points: &[[f64; 2]]) -> Vec<f64> {
+    let chord = |i: usize| (points[i + 1][1] - points[i][1]) / (points[i + 1][0] - points[i][0]);
+    let last = points.len().saturating_sub(1);
+    (0..points.len())
+        .map(|i| match i {
+            _ if last == 0 => 0.0,
+            0 => chord(0),
+            _ if i == last => chord(last - 1),
+            _ => {
+                let (before, after) = (chord(i - 1), chord(i));
+                if before * after <= 0.0 {
+                    return 0.0;
+                }
+                let (h0, h1) = (
+                    points[i][0] - points[i - 1][0],
+                    points[i + 1][0] - points[i][0],
+                );
+                let (w0, w1) = (2.0 * h1 + h0, h1 + 2.0 * h0);
+                (w0 + w1) / (w0 / before + w1 / after)
+            }
+        })
+        .collect()
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -56,5 +103,27 @@ mod tests {
         assert!((ramp.at(501.0) - 501.0).abs() < 1e-12);
         assert_eq!((ramp.at(300.0), ramp.at(900.0)), (380.0, 780.0));
         assert_eq!(wavelength(SAMPLES - 1), 780.0);
+    }
+
+    #[test]
+    fn resampling_keeps_the_points_and_makes_no_new_peaks() {
+        let points: Vec<[f64; 2]> = (0..36)
+            .map(|i| 400.0 + 10.0 * f64::from(i))
+            .map(|nm| [nm, if nm < 560.0 { 0.04 } else { 0.8 }])
+            .collect();
+        let dense = resample(&points);
+        assert!(
+            dense
+                .0
+                .iter()
+                .all(|v| (0.04 - 1e-12..=0.8 + 1e-12).contains(v))
+        );
+        for (nm, value) in [(400.0, 0.04), (560.0, 0.8), (380.0, 0.04)] {
+            assert!((dense.at(nm) - value).abs() < 1e-12);
+        }
+        let line: Vec<[f64; 2]> = [380.0, 431.0, 600.0, 780.0].map(|nm| [nm, 2.0 * nm]).into();
+        for (i, v) in resample(&line).0.iter().enumerate() {
+            assert!((v - 2.0 * wavelength(i)).abs() < 1e-9);
+        }
     }
 }

@@ -354,6 +354,9 @@ impl Sequencer {
                 .painting
                 .place(*surface, pose, *zoom)
                 .map(|()| String::new()),
+            Command::Relight { .. } | Command::Dry { .. } | Command::Opacity { .. } => {
+                Err(PaintRefusal::new("not yet".to_owned(), "wait"))
+            }
             Command::Mark => Ok(String::new()),
         };
         let (client, number) = (request.client, request.number);

@@ -120,17 +120,13 @@ impl PaintingSetup {
         board.ground = "grey".to_owned();
         board.tooth = "panel".to_owned();
         board.wells = self.wells();
-        let light = Light {
-            direction: [-0.5, 0.5, 0.5f64.sqrt()],
-            intensity: 1.0,
-            illuminant: "D65".to_owned(),
-        };
         Scene {
             version: 1,
             surfaces: vec![canvas, board],
             paints: Vec::new(),
             tunings: Vec::new(),
-            light,
+            light: Light::default(),
+            layers: Vec::new(),
         }
     }
 

@@ -32,14 +32,14 @@ fn scene() -> Scene {
     };
     let light = Light {
         direction: [0.0, 0.0, 1.0],
-        intensity: 1.0,
-        illuminant: "D65".into(),
+        ..Light::default()
     };
     Scene {
         version: 1,
         surfaces: vec![canvas],
         paints: Vec::new(),
         tunings: Vec::new(),
+        layers: Vec::new(),
         light,
     }
 }
