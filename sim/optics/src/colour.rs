@@ -35,6 +35,11 @@ fn inverse(m: &Matrix) -> Matrix {
     std::array::from_fn(|i| std::array::from_fn(|j| minor(j, i) / determinant))
 }
 
+/// The solution x of m·x = v.
+pub(crate) fn solve3(m: &Matrix, v: [f64; 3]) -> [f64; 3] {
+    times(&inverse(m), v)
+}
+
 fn xyz_of_chromaticity([x, y]: [f64; 2]) -> [f64; 3] {
     [x / y, 1.0, (1.0 - x - y) / y]
 }

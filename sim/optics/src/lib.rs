@@ -7,6 +7,7 @@
 //! | [`cie`] | observers and illuminants |
 //! | [`quadrature`] | Gauss rules of any weight (Stieltjes, Golub and Welsch) |
 //! | [`rule`] | which wavelengths a painting computes, and their weights in XYZ |
+//! | `fitted` | the rule that is fitted to paints and light |
 //! | [`km`] | Kubelka-Munk films |
 //! | [`surface`] | the surface correction |
 //! | [`light`] | a lamp on a relief |
@@ -16,6 +17,7 @@
 
 pub mod cie;
 pub mod colour;
+mod fitted;
 pub mod km;
 pub mod light;
 pub mod paints;

