@@ -63,6 +63,13 @@ pub fn xyz_to_linear_srgb(white_xyz: [f64; 3]) -> Matrix {
     product(&inverse(&srgb_to_xyz()), &adapt)
 }
 
+/// The matrix from XYZ (Y = 1 for the perfect diffuser) to linear sRGB for an eye that is not adapted
+/// to the light: its cast stays.
+#[must_use]
+pub fn linear_srgb_as_it_is() -> Matrix {
+    inverse(&srgb_to_xyz())
+}
+
 /// Applies a colour matrix.
 #[must_use]
 pub fn apply(matrix: &Matrix, colour: [f64; 3]) -> [f64; 3] {

@@ -46,16 +46,38 @@ fn decay_mean(u: f64, e: f64) -> f64 {
     sum
 }
 
-/// As [`film`], in f32 and without a branch, for loops over planes: one exponential, two divisions.
+/// A film over a ground of reflectance `under` (Baxter 2004, eq. 7.11).
+#[must_use]
+pub fn over(film: Film<f64>, under: f64) -> f64 {
+    film.r + film.t * film.t * under / (1.0 - film.r * under)
+}
+
+/// A film over a ground in f32 and without a branch, for loops over planes; its reflectance is n/m.
+///
+/// With f = 1 − R_g the textbook's R + T²R_g/(1 − R·R_g) of [`film`] and [`over`] becomes
+///
+/// n = σ·g·f + R_g·(c − κ·g),  m = (κ + σ·f)·g + c,
+///
+/// in which nothing cancels. Multiplied by 2t they need no division by t either: one exponential,
+/// and with whatever follows one division a film.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Ratio {
+    /// Numerator.
+    pub n: f32,
+    /// Denominator, above 0.
+    pub m: f32,
+}
+
+/// The film of `kd` = K·d and `sd` = S·d, both ≥ 0, over a ground of reflectance `under`, 0 to 1.
 #[must_use]
 #[inline]
-pub fn film_f32(kd: f32, sd: f32) -> Film<f32> {
+pub fn film_over_f32(kd: f32, sd: f32, under: f32) -> Ratio {
     let t = (kd * (kd + 2.0 * sd)).sqrt();
     let e = exp_f32(-t);
     let square = e * e;
-    let c = 0.5 * (1.0 + square);
+    let half_sum = 0.5 * (1.0 + square);
     let u = 2.0 * t;
-    // Terms to u⁷/8! reach f32 at u = ½.
+    // (1 − e^(−u))/u: terms to u⁷/8! reach f32 at u = ½.
     let series = 1.0 / 40320.0;
     let series = 1.0 / 5040.0 - u * series;
     let series = 1.0 / 720.0 - u * series;
@@ -64,25 +86,14 @@ pub fn film_f32(kd: f32, sd: f32) -> Film<f32> {
     let series = 1.0 / 6.0 - u * series;
     let series = 0.5 - u * series;
     let series = 1.0 - u * series;
-    let g = if u < 0.5 { series } else { (1.0 - square) / u };
-    let scale = 1.0 / ((kd + sd) * g + c);
-    Film {
-        r: sd * g * scale,
-        t: e * scale,
+    let thin = u < 0.5;
+    let g = if thin { series } else { 1.0 - square };
+    let c = if thin { half_sum } else { half_sum * u };
+    let free = 1.0 - under;
+    Ratio {
+        n: sd * g * free + under * (c - kd * g),
+        m: (kd + sd * free) * g + c,
     }
-}
-
-/// A film over a ground of reflectance `under` (Baxter 2004, eq. 7.11).
-#[must_use]
-pub fn over(film: Film<f64>, under: f64) -> f64 {
-    film.r + film.t * film.t * under / (1.0 - film.r * under)
-}
-
-/// As [`over`], in f32.
-#[must_use]
-#[inline]
-pub fn over_f32(film: Film<f32>, under: f32) -> f32 {
-    film.r + film.t * film.t * under / (1.0 - film.r * under)
 }
 
 /// Reflectance of an opaque layer: 1/(1 + q + √(q² + 2q)), q = K/S; 0 where S = 0.
@@ -113,10 +124,12 @@ mod tests {
             let got = film(k * d, s * d);
             println!("{k} {s} {d}: {got:?}, expected {r} {t}");
             assert!((got.r - r).abs() < 1e-9 && (got.t - t).abs() < 1e-9);
-            let single = film_f32((k * d) as f32, (s * d) as f32);
-            assert!(
-                (f64::from(single.r) - r).abs() < 1e-6 && (f64::from(single.t) - t).abs() < 1e-6
-            );
+            for ground in [0.0, 0.3, 1.0] {
+                let single = film_over_f32((k * d) as f32, (s * d) as f32, ground);
+                let exact = over(got, f64::from(ground));
+                let error = (f64::from(single.n) / f64::from(single.m) - exact).abs();
+                assert!(error < 1e-6, "{error:e}");
+            }
             assert!((got.r + 1e-8 - r).abs() > 1e-9, "a fault would pass");
         }
     }
@@ -133,15 +146,22 @@ mod tests {
                 for l in 0..59 {
                     let (k, s) = (decades(-6.0, 3.0, i), decades(-6.0, 3.0, j));
                     let d = decades(-4.0, 2.0, l);
-                    let got = film_f32((k * d) as f32, (s * d) as f32);
-                    assert!(got.r.is_finite() && got.t.is_finite() && got.r >= 0.0 && got.t >= 0.0);
-                    assert!(got.r + got.t <= 1.0 + 3e-7, "{k} {s} {d}: {got:?}");
                     let exact = film(k * d, s * d);
-                    worst = worst.max((f64::from(got.r) - exact.r).abs());
-                    worst = worst.max((f64::from(got.t) - exact.t).abs());
+                    assert!(exact.r + exact.t <= 1.0 + 1e-12, "{k} {s} {d}: {exact:?}");
+                    for ground in [0.0f32, 0.04, 0.5, 0.95, 1.0] {
+                        let got = film_over_f32((k * d) as f32, (s * d) as f32, ground);
+                        let r = got.n / got.m;
+                        assert!(
+                            r.is_finite() && (-1e-7..=1.0 + 3e-7).contains(&r),
+                            "{got:?}"
+                        );
+                        let error = f64::from(r) - over(exact, f64::from(ground));
+                        worst = worst.max(error.abs());
+                    }
                 }
             }
         }
+        println!("worst {worst:e}");
         assert!(worst < 1e-6, "{worst:e}");
     }
 

@@ -32,4 +32,4 @@ pub use cie::{Illuminant, Observer};
 pub use paints::{Paint, PaintError, PaintLibrary};
 pub use rule::SamplingRule;
 pub use spectrum::Spectrum;
-pub use studio::{FilmPlanes, Studio};
+pub use studio::{FilmPlanes, RuleKind, Studio, StudioSettings, Under};

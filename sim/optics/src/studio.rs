@@ -1,12 +1,83 @@
-//! The optics of one painting: its paints, its ground and the light that it stands in.
+//! The optics of one painting: its paints and the light that it stands in.
 
 use crate::cie::{Illuminant, Observer};
-use crate::colour::{apply, lab, xyz_to_linear_srgb};
-use crate::km;
+use crate::colour::{apply, lab, linear_srgb_as_it_is, xyz_to_linear_srgb};
+use crate::km::{self, film_over_f32};
 use crate::paints::Paint;
 use crate::rule::SamplingRule;
 use crate::spectrum::Spectrum;
 use crate::surface::SurfaceCorrection;
+
+/// Cells that are computed together: their sums stay in the first cache.
+const RUN: usize = 64;
+
+/// How wavelengths are chosen.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum RuleKind {
+    /// [`SamplingRule::gauss`].
+    Gauss,
+    /// [`SamplingRule::fitted`].
+    #[default]
+    Fitted,
+    /// [`SamplingRule::reference`].
+    Reference,
+}
+
+impl RuleKind {
+    /// The rule called `name`: `gauss`, `fitted` or `reference`.
+    #[must_use]
+    pub fn named(name: &str) -> Option<Self> {
+        match name {
+            "gauss" => Some(Self::Gauss),
+            "fitted" => Some(Self::Fitted),
+            "reference" => Some(Self::Reference),
+            _ => None,
+        }
+    }
+}
+
+/// The light, and how it becomes colour.
+#[derive(Clone, Debug, PartialEq)]
+pub struct StudioSettings {
+    /// The light's spectrum.
+    pub light: Illuminant,
+    /// Whose eye.
+    pub observer: Observer,
+    /// How wavelengths are chosen.
+    pub rule: RuleKind,
+    /// How many; [`RuleKind::Reference`] takes all 101.
+    pub samples: usize,
+    /// Whether the eye is adapted to the light's white, so that the perfect diffuser is (1, 1, 1); if
+    /// not, the light's cast stays.
+    pub adapted: bool,
+}
+
+impl Default for StudioSettings {
+    /// Average daylight, sixteen fitted samples, adapted.
+    fn default() -> Self {
+        Self {
+            light: Illuminant::d65(),
+            observer: Observer::default(),
+            rule: RuleKind::default(),
+            samples: 16,
+            adapted: true,
+        }
+    }
+}
+
+impl StudioSettings {
+    /// The rule for a palette of `paints`.
+    #[must_use]
+    pub fn rule(&self, paints: &[Paint]) -> SamplingRule {
+        match self.rule {
+            RuleKind::Gauss => SamplingRule::gauss(self.samples, self.observer, &self.light),
+            RuleKind::Fitted => {
+                SamplingRule::fitted(self.samples, self.observer, &self.light, paints)
+            }
+            RuleKind::Reference => SamplingRule::reference(self.observer, &self.light),
+        }
+    }
+}
 
 /// Everything that turns films of paint into colour, at the wavelengths of one rule.
 #[derive(Clone, Debug)]
@@ -21,30 +92,78 @@ pub struct Studio {
     rgb: Vec<[f32; 3]>,
 }
 
-/// The films of a run of cells: one plane of thickness, m, for each paint slot in use.
+/// What lies under a film: internal reflectances at the wavelengths of the rule.
+#[derive(Clone, Copy, Debug)]
+pub enum Under<'a> {
+    /// The same in all cells: a value a wavelength.
+    Even(&'a [f32]),
+    /// A plane of cells a wavelength, one after the other.
+    Planes(&'a [f32]),
+}
+
+impl Under<'_> {
+    /// The reflectances of cells `start`.. at a wavelength, of `cells` in all.
+    #[inline]
+    fn run(&self, sample: usize, cells: usize, start: usize) -> [f32; RUN] {
+        match self {
+            Self::Even(values) => [values[sample]; RUN],
+            Self::Planes(values) => {
+                let mut run = [0.0; RUN];
+                let end = (start + RUN).min(cells);
+                run[..end - start].copy_from_slice(&values[sample * cells..][start..end]);
+                run
+            }
+        }
+    }
+}
+
+/// A film over what lies under it, for a run of cells.
 #[derive(Clone, Copy, Debug)]
 pub struct FilmPlanes<'a> {
-    /// Slot of the paint and thickness in each cell; all of one length.
+    /// Slot of the paint and its thickness in each cell, m; all of one length.
     pub paints: &'a [(usize, &'a [f32])],
-    /// Internal reflectance of what lies below, a value for each wavelength of the rule.
-    pub ground: &'a [f32],
+    /// Factor on the film's optical thickness; its height stays.
+    pub opacity: f32,
+    /// What lies under it.
+    pub under: Under<'a>,
+}
+
+impl FilmPlanes<'_> {
+    /// K·d and S·d of cells `start`.. at a wavelength.
+    #[inline]
+    fn thickness(&self, paints: &[Vec<[f32; 2]>], sample: usize, start: usize) -> [[f32; RUN]; 2] {
+        let (mut kd, mut sd) = ([0.0f32; RUN], [0.0f32; RUN]);
+        for (slot, thickness) in self.paints {
+            let [k, s] = paints[*slot][sample].map(|per_m| per_m * self.opacity);
+            let end = (start + RUN).min(thickness.len());
+            for ((kd, sd), d) in kd.iter_mut().zip(&mut sd).zip(&thickness[start..end]) {
+                *kd += k * d;
+                *sd += s * d;
+            }
+        }
+        [kd, sd]
+    }
 }
 
 impl Studio {
-    /// A studio for `light` with `rule`.
+    /// A studio for a palette of `paints`; none of them has a slot yet.
     #[must_use]
-    pub fn new(rule: SamplingRule, observer: Observer, light: &Illuminant) -> Self {
-        let white = light.xyz(observer, &Spectrum::flat(1.0));
-        let to_rgb = xyz_to_linear_srgb(white);
+    pub fn new(settings: &StudioSettings, paints: &[Paint]) -> Self {
+        let rule = settings.rule(paints);
+        let white = settings.light.xyz(settings.observer, &Spectrum::flat(1.0));
+        let to_rgb = if settings.adapted {
+            xyz_to_linear_srgb(white)
+        } else {
+            linear_srgb_as_it_is()
+        };
         let rgb = rule
             .weights
             .iter()
             .map(|weight| apply(&to_rgb, *weight).map(|v| v as f32))
             .collect();
-        let surface = SurfaceCorrection::default();
         Self {
             rule,
-            surface,
+            surface: SurfaceCorrection::default(),
             white,
             to_rgb,
             paints: Vec::new(),
@@ -55,8 +174,12 @@ impl Studio {
     /// Baxter 2004, § 7.7: eight Gauss samples, under average daylight.
     #[must_use]
     pub fn daylight() -> Self {
-        let (observer, light) = (Observer::default(), Illuminant::d65());
-        Self::new(SamplingRule::gauss(8, observer, &light), observer, &light)
+        let settings = StudioSettings {
+            rule: RuleKind::Gauss,
+            samples: 8,
+            ..StudioSettings::default()
+        };
+        Self::new(&settings, &[])
     }
 
     /// Adds a paint and returns its slot.
@@ -71,6 +194,30 @@ impl Studio {
     #[must_use]
     pub fn wavelengths(&self) -> usize {
         self.rule.len()
+    }
+
+    /// The rule.
+    #[must_use]
+    pub fn rule(&self) -> &SamplingRule {
+        &self.rule
+    }
+
+    /// What the surface of a film does.
+    #[must_use]
+    pub fn surface(&self) -> SurfaceCorrection {
+        self.surface
+    }
+
+    /// K and S of the paint in a slot at each wavelength, per metre.
+    #[must_use]
+    pub fn paint(&self, slot: usize) -> &[[f32; 2]] {
+        &self.paints[slot]
+    }
+
+    /// Linear sRGB of a reflectance of 1 at each wavelength alone.
+    #[must_use]
+    pub fn primaries(&self) -> &[[f32; 3]] {
+        &self.rgb
     }
 
     /// A spectrum at the rule's wavelengths.
@@ -89,48 +236,57 @@ impl Studio {
         self.white
     }
 
-    /// Linear sRGB, without gloss, of one wet film over a ground, for a run of cells. `rgb` are the
-    /// planes of red, green and blue, as long as those of the paints.
+    /// Linear sRGB, without gloss, of one film over what lies under it. `rgb` are the planes of red,
+    /// green and blue, as long as those of the paints.
     ///
-    /// One exponential and three divisions a sample: two of the film, one of film over ground and
-    /// surface together.
+    /// One exponential and one division a sample: the film over its ground is n/m (see
+    /// [`film_over_f32`]), and the surface makes (1−k₁)(1−k₂)·n/(m − k₂·n) of it.
     pub fn shade(&self, films: &FilmPlanes<'_>, rgb: [&mut [f32]; 3]) {
-        const RUN: usize = 64;
         let [red, green, blue] = rgb;
         let cells = red.len();
         let (k1, k2) = (self.surface.k1 as f32, self.surface.k2 as f32);
         let open = (1.0 - k1) * (1.0 - k2);
         for start in (0..cells).step_by(RUN) {
-            let run = start..(start + RUN).min(cells);
             let mut sum = [[0.0f32; RUN]; 3];
             for (sample, weight) in self.rgb.iter().enumerate() {
-                let (mut kd, mut sd) = ([0.0f32; RUN], [0.0f32; RUN]);
-                for (slot, thickness) in films.paints {
-                    let [k, s] = self.paints[*slot][sample];
-                    let run = &thickness[run.clone()];
-                    for ((kd, sd), d) in kd.iter_mut().zip(&mut sd).zip(run) {
-                        *kd += k * d;
-                        *sd += s * d;
-                    }
-                }
-                let ground = films.ground[sample];
+                let [kd, sd] = films.thickness(&self.paints, sample, start);
+                let under = films.under.run(sample, cells, start);
                 let [r, g, b] = &mut sum;
                 for i in 0..RUN {
-                    let film = km::film_f32(kd[i], sd[i]);
-                    // Film over ground is n/m; the surface makes open·n/(m − k₂·n) of it.
-                    let m = 1.0 - film.r * ground;
-                    let n = film.r * m + film.t * film.t * ground;
-                    let leaving = open * n / (m - k2 * n);
+                    let film = film_over_f32(kd[i], sd[i], under[i]);
+                    let leaving = open * film.n / (film.m - k2 * film.n);
                     r[i] += weight[0] * leaving;
                     g[i] += weight[1] * leaving;
                     b[i] += weight[2] * leaving;
                 }
             }
+            let run = start..(start + RUN).min(cells);
             let length = run.len();
             red[run.clone()].copy_from_slice(&sum[0][..length]);
             green[run.clone()].copy_from_slice(&sum[1][..length]);
             blue[run].copy_from_slice(&sum[2][..length]);
         }
+    }
+
+    /// Internal reflectance of one film over what lies under it, a plane of `cells` a wavelength: what
+    /// dries becomes the ground of all that is painted over it (Baxter 2004, § 7.8).
+    #[must_use]
+    pub fn bake(&self, films: &FilmPlanes<'_>, cells: usize) -> Vec<f32> {
+        let mut baked = vec![0.0f32; self.rule.len() * cells];
+        for (sample, plane) in baked.chunks_exact_mut(cells.max(1)).enumerate() {
+            for start in (0..cells).step_by(RUN) {
+                let [kd, sd] = films.thickness(&self.paints, sample, start);
+                let under = films.under.run(sample, cells, start);
+                let mut run = [0.0f32; RUN];
+                for i in 0..RUN {
+                    let film = film_over_f32(kd[i], sd[i], under[i]);
+                    run[i] = (film.n / film.m).clamp(0.0, 1.0);
+                }
+                let end = (start + RUN).min(cells);
+                plane[start..end].copy_from_slice(&run[..end - start]);
+            }
+        }
+        baked
     }
 
     /// Linear sRGB, gloss included, of a uniform film: thickness in metres by slot, over a ground.
@@ -164,91 +320,4 @@ impl Studio {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::paints::PaintLibrary;
-
-    fn studio(names: &[&str]) -> Studio {
-        let library = PaintLibrary::measured().expect("whole");
-        let mut studio = Studio::daylight();
-        for name in names {
-            studio.add(library.find(name).expect("known"));
-        }
-        studio
-    }
-
-    fn shade(studio: &Studio, thickness: [f32; 2], ground: f32) -> [f32; 3] {
-        let planes = thickness.map(|d| vec![d; 130]);
-        let paints = [(0, planes[0].as_slice()), (1, planes[1].as_slice())];
-        let ground = vec![ground; studio.wavelengths()];
-        let mut rgb = [const { [0.0f32; 130] }; 3];
-        let [r, g, b] = &mut rgb;
-        studio.shade(
-            &FilmPlanes {
-                paints: &paints,
-                ground: &ground,
-            },
-            [r, g, b],
-        );
-        assert!(rgb.iter().all(|plane| plane.iter().all(|v| *v == plane[0])));
-        rgb.map(|plane| plane[129])
-    }
-
-    #[test]
-    fn planes_agree_with_the_plain_formula() {
-        let studio = studio(&["Ultramarine Blue", "Yellow Ochre"]);
-        let ground = vec![0.9f32; studio.wavelengths()];
-        for (a, b) in [
-            (0.0, 0.0),
-            (1e-6, 0.0),
-            (2e-5, 1e-5),
-            (1e-4, 3e-4),
-            (0.0, 5e-3),
-        ] {
-            let exact = studio.colour(&[(0, a), (1, b)], &ground);
-            let got = shade(&studio, [a as f32, b as f32], 0.9);
-            for (got, exact) in got.iter().zip(exact) {
-                let error = (f64::from(*got) + studio.surface.k1 - exact).abs();
-                assert!(error < 3e-6, "{a} {b}: {got} {exact}");
-                assert!((error - 3e-5).abs() > 3e-6, "a fault would pass");
-            }
-        }
-    }
-
-    #[test]
-    fn paints_look_like_their_names() {
-        let studio = studio(&[
-            "Ultramarine Blue",
-            "Hansa Yellow Opaque",
-            "Yellow Ochre",
-            "Titanium White",
-        ]);
-        let black = vec![0.0f32; studio.wavelengths()];
-        let opaque = |slot: usize| studio.colour(&[(slot, 0.01)], &black);
-        let [r, g, b] = opaque(0);
-        assert!(
-            b > 2.0 * r && b > 2.0 * g,
-            "ultramarine is blue: {r} {g} {b}"
-        );
-        let [r, g, b] = opaque(1);
-        assert!(
-            r > 4.0 * b && g > 4.0 * b,
-            "hansa yellow is yellow: {r} {g} {b}"
-        );
-        let lightness = studio.lab(&[(2, 0.01)], &black)[0];
-        assert!(
-            (lightness - 55.0).abs() < 2.5,
-            "yellow ochre's L* is 55, not {lightness}"
-        );
-        let [r, g, b] = opaque(3);
-        assert!(
-            r > 0.85 && (r - b).abs() < 0.12 && (r - g).abs() < 0.05,
-            "white: {r} {g} {b}"
-        );
-        let [r, g, b] = studio.colour(&[(0, 0.005), (1, 0.005)], &black);
-        assert!(
-            g > 1.2 * r && g > 1.2 * b,
-            "blue and yellow make green: {r} {g} {b}"
-        );
-    }
-}
+mod tests;
