@@ -4,7 +4,7 @@ use clap::{Parser, Subcommand};
 use maulstick_rig::Fault;
 
 use crate::commands::{
-    bench, brush, control, demo, endpoint, import, paints, render, schema, take,
+    bench, brush, control, demo, endpoint, import, layers, light, paints, render, schema, take,
 };
 use crate::up;
 
@@ -35,6 +35,12 @@ enum Command {
     Tune(control::TuneOptions),
     /// Takes all paint off a brush of a running rig
     Clean(control::CleanOptions),
+    /// Shows or changes the light over a running rig
+    Light(light::LightOptions),
+    /// Dries the wet paint of a running rig into a new layer
+    Dry(layers::DryOptions),
+    /// Makes a dry layer of a running rig more or less opaque
+    Opacity(layers::OpacityOptions),
     /// Takes the newest step in a running rig back
     Undo(control::HistoryOptions),
     /// Does the newest undone step in a running rig again
@@ -68,6 +74,9 @@ pub fn run() -> Result<i32, Fault> {
         Command::Load(options) => control::load(&options),
         Command::Tune(options) => control::tune(&options),
         Command::Clean(options) => control::clean(&options),
+        Command::Light(options) => light::run(&options),
+        Command::Dry(options) => layers::dry(&options),
+        Command::Opacity(options) => layers::opacity(&options),
         Command::Undo(options) => control::undo(&options),
         Command::Redo(options) => control::redo(&options),
         Command::Snapshot(options) => control::snapshot(&options),

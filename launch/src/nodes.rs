@@ -22,7 +22,7 @@ use maulstick_types::Mixture;
 use nix::sys::prctl::set_pdeathsig;
 use nix::sys::signal::Signal;
 
-use crate::performance::{brush_file, library, painting_setup, refused};
+use crate::performance::{brush_file, library_from, painting_setup, refused};
 
 /// Name of the mouse over the window as a device.
 pub const MOUSE: &str = "mouse";
@@ -152,8 +152,9 @@ struct PaintOptions {
 pub fn paint() -> Result<i32, Fault> {
     let options = PaintOptions::parse();
     let mut member = options.node.join("paint", Signal::SIGKILL)?;
-    let setup = painting_setup(&member.config)?;
-    let painting = Painting::new(&setup, library()?).map_err(refused)?;
+    let library = library_from(member.config.paint.paints.as_deref())?;
+    let setup = painting_setup(&member.config, &library)?;
+    let painting = Painting::new(&setup, library).map_err(refused)?;
     let origin = member.origin("paint");
     let bus = Arc::clone(&member.bus);
     let mut node = PaintNode::new(

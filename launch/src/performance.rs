@@ -1,14 +1,16 @@
 //! What `render` and `up --play` share: the take, the brush, the loads, the canvas.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use clap::Args;
 pub use maulstick_device::brush_file;
-use maulstick_optics::PaintLibrary;
+use maulstick_optics::{Illuminant, PaintError, PaintLibrary};
+use maulstick_paint::light::illuminant_named;
 use maulstick_paint::{PaintRefusal, PaintingSetup};
 use maulstick_rig::Fault;
-use maulstick_rig::config::{BrushSection, RigConfig};
+use maulstick_rig::config::{BrushSection, LightSection, RigConfig};
 use maulstick_types::Mixture;
+use maulstick_types::scene::Light;
 
 /// Options of a painting.
 #[derive(Args, Clone, Debug, Default)]
@@ -23,6 +25,15 @@ pub struct PaintingOptions {
     /// Without a take it is what the brush carries at the start
     #[arg(long, value_name = "MIX")]
     pub load: Vec<String>,
+    /// A paint file of one's own, as `maulstick fit` makes it
+    #[arg(long, value_name = "FILE")]
+    pub paints: Option<PathBuf>,
+    /// The light: A, D50, D65, FL2, FL8, FL11, or a CSV file of nm,power
+    #[arg(long, value_name = "NAME|FILE")]
+    pub illuminant: Option<String>,
+    /// Keeps the cast of the light: the eye is not adapted to it
+    #[arg(long)]
+    pub no_adapt: bool,
     /// Writes the ledger of the paint to this JSON file
     #[arg(long, value_name = "FILE")]
     pub ledger: Option<PathBuf>,
@@ -55,6 +66,13 @@ impl PaintingOptions {
             config.canvas.width_mm = f64::from(size[0]) * config.canvas.cell_mm;
             config.canvas.height_mm = f64::from(size[1]) * config.canvas.cell_mm;
         }
+        if let Some(paints) = &self.paints {
+            config.paint.paints = Some(paints.clone());
+        }
+        if let Some(illuminant) = &self.illuminant {
+            config.light.illuminant.clone_from(illuminant);
+        }
+        config.light.adapt &= !self.no_adapt;
         let section = match &self.brush {
             None => config.brush[0].clone(),
             Some(name) => match config.brush_named(name) {
@@ -113,15 +131,72 @@ pub fn library() -> Result<PaintLibrary, Fault> {
     PaintLibrary::measured().map_err(|error| Fault::failure(error.to_string()))
 }
 
+/// The paints of a file, or those that come with the program.
+///
+/// # Errors
+/// A [`Fault`] where the file cannot be read, with the line that is wrong.
+pub fn library_from(path: Option<&Path>) -> Result<PaintLibrary, Fault> {
+    let Some(path) = path else {
+        return library();
+    };
+    let text = std::fs::read_to_string(path).map_err(|error| Fault::reading(path, &error))?;
+    PaintLibrary::parse(&text).map_err(|error| match error {
+        PaintError::File { line, what } => in_file(path, line, what),
+        other => refused(PaintRefusal::paint(other)),
+    })
+}
+
+/// The spectrum of a light: a name of the CIE's or a CSV file.
+///
+/// # Errors
+/// A [`Fault`] for an unknown name, or a file that is none.
+pub fn illuminant(name: &str) -> Result<Illuminant, Fault> {
+    let path = Path::new(name);
+    let is_file = path.extension().is_some() || path.components().count() > 1;
+    if Illuminant::named(name).is_some() || !is_file {
+        return illuminant_named(name).map_err(refused);
+    }
+    let text = std::fs::read_to_string(path).map_err(|error| Fault::reading(path, &error))?;
+    let stem = path.file_stem().unwrap_or_default().to_string_lossy();
+    Illuminant::parse(&stem, &text).map_err(|error| in_file(path, error.line, error.what))
+}
+
+fn in_file(path: &Path, line: usize, what: String) -> Fault {
+    Fault::usage(what).at(format!("{}:{line}", path.display()))
+}
+
+/// The light of the rig's settings, with the spectrum of its file if it names one.
+fn light(section: &LightSection) -> Result<Light, Fault> {
+    let mut light = section.light();
+    if Illuminant::named(&light.illuminant).is_none() {
+        let found = illuminant(&light.illuminant)?;
+        light.illuminant = found.name;
+        light.spectrum = found.power.0.to_vec();
+    }
+    Ok(light)
+}
+
+/// What the wells hold: as the settings say. Paints of one's own, with nothing said of wells, lie in
+/// them in the order of their file.
+fn wells(config: &RigConfig, library: &PaintLibrary) -> Vec<String> {
+    let default = RigConfig::default().palette.wells;
+    let wells = &config.palette.wells;
+    let all_known = wells.iter().all(|name| library.find(name).is_ok());
+    if all_known || config.paint.paints.is_none() || *wells != default {
+        return wells.clone();
+    }
+    let names = library.paints().iter().map(|paint| paint.name.clone());
+    names.take(default.len()).collect()
+}
+
 /// The painting that the rig's settings ask for.
 ///
 /// # Errors
-/// A [`Fault`] for a well that is no mixture.
-pub fn painting_setup(config: &RigConfig) -> Result<PaintingSetup, Fault> {
+/// A [`Fault`] for a well that is no mixture, or a light that is none.
+pub fn painting_setup(config: &RigConfig, library: &PaintLibrary) -> Result<PaintingSetup, Fault> {
     let canvas = &config.canvas;
-    let wells = config
-        .palette
-        .wells
+    let wells = wells(config, library);
+    let wells = wells
         .iter()
         .map(|text| {
             text.parse::<Mixture>()
@@ -135,6 +210,8 @@ pub fn painting_setup(config: &RigConfig) -> Result<PaintingSetup, Fault> {
         tooth: canvas.tooth.clone(),
         tooth_seed: canvas.tooth_seed,
         wells,
+        light: light(&config.light)?,
+        exposure: config.light.exposure,
     })
 }
 

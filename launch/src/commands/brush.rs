@@ -16,7 +16,7 @@ use maulstick_rig::files::{check_writable, write_whole};
 use maulstick_types::command::Command;
 use serde_json::json;
 
-use crate::commands::control::{Target, send};
+use crate::commands::session::{Session, Target};
 use crate::commands::{print_json, print_text};
 use crate::performance::{brush_file, library};
 use crate::sheet::sheet;
@@ -172,7 +172,7 @@ fn take_up(options: &TakeOptions) -> Result<i32, Fault> {
         toml,
     };
     command.check().map_err(Fault::usage)?;
-    send(&options.target, &options.brush, command)?;
+    Session::open(&options.target)?.send(&options.brush, command)?;
     Ok(0)
 }
 

@@ -1,29 +1,17 @@
 //! Commands to a running rig: `maulstick load`, `clean`, `undo`, `redo` and `snapshot`.
 
 use std::path::PathBuf;
-use std::sync::Arc;
-use std::time::Duration;
 
 use clap::Args;
-use maulstick_bus::{Bus, Dial, RigClock, RigFolder, ZenohBus};
-use maulstick_device::commander::Commander;
-use maulstick_optics::{PaintError, PaintLibrary};
+use maulstick_optics::PaintError;
 use maulstick_paint::PaintRefusal;
 use maulstick_rig::Fault;
 use maulstick_types::Mixture;
 use maulstick_types::command::Command;
 use maulstick_types::scene::Tuning;
-use maulstick_types::topics::Topics;
 
-use crate::performance::{library, refused};
-
-/// Which rig a command is for.
-#[derive(Args, Clone, Debug)]
-pub struct Target {
-    /// The rig's name
-    #[arg(long, value_name = "RIG", default_value = "studio")]
-    name: String,
-}
+use crate::commands::session::{PAINT, Session, Target};
+use crate::performance::refused;
 
 /// Options of `maulstick load`.
 #[derive(Args, Clone, Debug)]
@@ -86,58 +74,34 @@ pub struct SnapshotOptions {
     target: Target,
 }
 
-/// The node that does what concerns the painting.
-const PAINT: &str = "paint";
-/// How long a node has to answer.
-const PATIENCE: Duration = Duration::from_secs(10);
-
-/// Sends a command to a node of a rig; returns what it says.
-///
-/// # Errors
-/// A [`Fault`] in the node's own words, or where no rig runs.
-pub fn send(target: &Target, node: &str, command: Command) -> Result<String, Fault> {
-    let (folder, info) = RigFolder::join(&target.name)?;
-    let dial = Dial {
-        name: "cli".into(),
-        listen: None,
-        connect: vec![info.endpoint],
-    };
-    let session = ZenohBus::open(&dial, RigClock::with_offset(info.clock_offset_ns))?;
-    let bus = Arc::new(session);
-    let topics = Topics::new(folder.rig());
-    let mut commander = Commander::of(Arc::clone(&bus) as Arc<dyn Bus>, &topics, node);
-    let said = commander.send(command, None, PATIENCE, &|| false);
-    bus.close();
-    said
-}
-
 /// Loads a brush.
 ///
 /// # Errors
 /// A [`Fault`] for an unknown paint or brush, or where no rig runs.
 pub fn load(options: &LoadOptions) -> Result<i32, Fault> {
-    let (library, brush) = (library()?, options.brush.clone());
-    let mixture = checked(&library, &options.mixture)?;
+    let brush = options.brush.clone();
+    let mixture = mixture_of(&options.mixture)?;
     let command = match &options.beside {
         None => Command::Load { brush, mixture },
         Some(beside) => Command::LoadBeside {
             brush,
             left: mixture,
-            right: checked(&library, beside)?,
+            right: mixture_of(beside)?,
         },
     };
     send(&options.target, PAINT, command)?;
     Ok(0)
 }
 
-/// A mixture of paints that there are.
-fn checked(library: &PaintLibrary, text: &str) -> Result<Mixture, Fault> {
-    let mixture = text
-        .parse()
-        .map_err(|error| refused(PaintRefusal::paint(PaintError::Mixture(error))))?;
-    library
-        .check(&mixture)
-        .map_err(|error| refused(PaintRefusal::paint(error)))
+/// A mixture; whether there are such paints the rig knows.
+fn mixture_of(text: &str) -> Result<Mixture, Fault> {
+    text.parse()
+        .map_err(|error| refused(PaintRefusal::paint(PaintError::Mixture(error))))
+}
+
+/// Sends one command to a node of a rig.
+fn send(target: &Target, node: &str, command: Command) -> Result<String, Fault> {
+    Session::open(target)?.send(node, command)
 }
 
 /// Makes a brush stiffer or softer.

@@ -6,9 +6,12 @@ pub mod control;
 pub mod demo;
 pub mod endpoint;
 pub mod import;
+pub mod layers;
+pub mod light;
 pub mod paints;
 pub mod render;
 pub mod schema;
+pub mod session;
 pub mod take;
 
 use std::io::{ErrorKind, Write as _};

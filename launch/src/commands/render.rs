@@ -11,7 +11,7 @@ use maulstick_rig::files::check_writable;
 use maulstick_rig::{Fault, RigConfig};
 
 use crate::commands::progress_bar;
-use crate::performance::{PaintingOptions, brush_file, library, painting_setup, refused};
+use crate::performance::{PaintingOptions, brush_file, library_from, painting_setup, refused};
 
 /// Options of `maulstick render`.
 #[derive(Args, Clone, Debug)]
@@ -38,7 +38,7 @@ pub fn run(options: &RenderOptions) -> Result<i32, Fault> {
         None => RigConfig::default(),
     };
     let section = options.painting.apply(&mut config)?;
-    let library = library()?;
+    let library = library_from(config.paint.paints.as_deref())?;
     let loads = options.painting.mixtures(&library)?;
     let take = Take::read(&options.take)?;
     let unloaded = loads.is_empty();
@@ -48,7 +48,8 @@ pub fn run(options: &RenderOptions) -> Result<i32, Fault> {
     {
         check_writable(path).map_err(|error| Fault::writing(path, &error))?;
     }
-    let painting = Painting::new(&painting_setup(&config)?, library).map_err(refused)?;
+    let setup = painting_setup(&config, &library)?;
+    let painting = Painting::new(&setup, library).map_err(refused)?;
     let file = brush_file(&section)?;
     let mut offline =
         Offline::new(painting, &section.name, file, section.depth_share, loads).map_err(refused)?;

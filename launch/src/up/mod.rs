@@ -12,23 +12,38 @@ pub mod conductor;
 pub mod plan;
 pub mod supervisor;
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use clap::Args;
 use maulstick_bus::RigFolder;
 use maulstick_device::Take;
 use maulstick_device::player::Rate;
+use maulstick_optics::{Illuminant, PaintLibrary};
 use maulstick_rig::config::{DEFAULT, RigConfig};
 use maulstick_rig::files::check_writable;
 use maulstick_rig::{Fault, member};
+use maulstick_types::Mixture;
 
-use crate::performance::{PaintingOptions, library, painting_setup, refused};
+use crate::performance::{PaintingOptions, library_from, painting_setup, refused};
 use crate::up::conductor::Performance;
 use crate::up::plan::{Hands, Window};
 use crate::up::supervisor::Supervisor;
 
 /// What the brush carries at the start, where nothing else is asked for.
 const FIRST_LOAD: &str = "Ultramarine Blue";
+
+/// What the brush carries at the start: of paints of one's own that lack it the first.
+fn first_load(library: &PaintLibrary) -> Mixture {
+    let first = library
+        .paints()
+        .first()
+        .map_or(FIRST_LOAD, |paint| paint.name.as_str());
+    Mixture::pure(
+        library
+            .find(FIRST_LOAD)
+            .map_or(first, |paint| paint.name.as_str()),
+    )
+}
 
 /// Options of `maulstick up`.
 #[derive(Args, Clone, Debug)]
@@ -80,9 +95,11 @@ pub fn run(options: &UpOptions) -> Result<i32, Fault> {
         config.rig.name.clone_from(name);
     }
     let section = options.painting.apply(&mut config)?;
-    let library = library()?;
+    let library = library_from(config.paint.paints.as_deref())?;
     let loads = options.painting.mixtures(&library)?;
-    painting_setup(&config)?.check(&library).map_err(refused)?;
+    painting_setup(&config, &library)?
+        .check(&library)
+        .map_err(refused)?;
     let performance = match &options.play {
         None => None,
         Some(path) => {
@@ -115,6 +132,13 @@ pub fn run(options: &UpOptions) -> Result<i32, Fault> {
             *hand = absolute(hand)?;
         }
     }
+    if let Some(paints) = &mut config.paint.paints {
+        *paints = absolute(paints)?;
+    }
+    let light = &mut config.light.illuminant;
+    if Illuminant::named(light).is_none() {
+        *light = absolute(Path::new(light.as_str()))?.display().to_string();
+    }
     let folder = RigFolder::create(&config.rig.name)?;
     let window = match options.headless {
         true => Window::Headless,
@@ -125,12 +149,10 @@ pub fn run(options: &UpOptions) -> Result<i32, Fault> {
         None => Hands::Devices,
     };
     let nodes = plan::nodes(&config, window, hands)?;
-    let first_load = match loads.into_iter().next() {
-        Some(mixture) => mixture,
-        None => FIRST_LOAD
-            .parse()
-            .map_err(|error| Fault::failure(format!("{error}")))?,
-    };
+    let first_load = loads
+        .into_iter()
+        .next()
+        .unwrap_or_else(|| first_load(&library));
     let mut supervisor = Supervisor::start(folder, &config, nodes, performance, first_load)?;
     supervisor.run()
 }

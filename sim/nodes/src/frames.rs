@@ -7,12 +7,13 @@ mod pyramid;
 
 use std::collections::BTreeMap;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 use maulstick_bus::typed::Reader;
 use maulstick_bus::{Bus, BusError, Request, Server, Wake};
-use maulstick_optics::Studio;
 use maulstick_paint::bare::Bare;
+use maulstick_paint::dry::DryStack;
+use maulstick_paint::look::Look;
 use maulstick_paint::tile::{Tile, TileId};
 use maulstick_types::paint::{FrameHolds, FrameReply, FrameRequest, FrameTile};
 use maulstick_types::{Flags, Origin, encode};
@@ -23,6 +24,10 @@ use pyramid::{BARE_VERSIONS, Pyramid, coarsest, grid};
 const REPLY_BYTES: usize = 16 << 20;
 /// Longest wait for a change, ms.
 const LONGEST_WAIT_MS: u32 = 400;
+/// A view waits this long for tiles that take their time; the rest comes with the next reply.
+const REPLY_WORK: Duration = Duration::from_millis(100);
+/// What has dried is baked ahead for this long between two looks at what is asked.
+const AHEAD: Duration = Duration::from_millis(10);
 
 /// A surface as its views see it.
 #[derive(Clone, Debug)]
@@ -37,13 +42,22 @@ pub struct FedSurface {
     pub tiles: BTreeMap<TileId, (u64, Option<Arc<Tile>>)>,
 }
 
+impl FedSurface {
+    /// The tiles on which something has dried.
+    pub fn dry_tiles(&self) -> impl Iterator<Item = (TileId, &Arc<DryStack>)> {
+        self.tiles
+            .iter()
+            .filter_map(|(id, (_, tile))| Some((*id, tile.as_deref()?.dry()?)))
+    }
+}
+
 /// What the stepper has handed over.
 #[derive(Clone, Debug, Default)]
 pub struct Fed {
     /// Surfaces by number.
     pub surfaces: BTreeMap<u32, FedSurface>,
-    /// Optics of the paints in use.
-    pub studio: Option<Arc<Studio>>,
+    /// How paint becomes colour.
+    pub look: Option<Arc<Look>>,
     /// The newest version.
     pub version: u64,
     /// Journal entries below this index are in it.
@@ -52,6 +66,17 @@ pub struct Fed {
     pub holds: Vec<FrameHolds>,
     /// Whether a view waits for news.
     pub wanted: bool,
+    /// Tiles with dry layers that are to be baked for this look, and those that are.
+    pub baking: Progress,
+}
+
+/// How far a long work is.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Progress {
+    /// Tiles in all.
+    pub all: u32,
+    /// Of them done.
+    pub done: u32,
 }
 
 /// Where stepper and frame thread meet.
@@ -140,10 +165,10 @@ impl FrameServer {
                 });
             }
         }
-        let fed = self.feed.lock().clone_for(&self.waiting);
+        let fed = self.feed.lock().clone();
         for waiting in std::mem::take(&mut self.waiting) {
             let reply = self.reply(&fed, &waiting.asked);
-            let news = !reply.tiles.is_empty() || waiting.asked.epoch != self.me.epoch;
+            let news = !reply.tiles.is_empty() || waiting.asked.epoch != reply.epoch;
             if !news && now_ns < waiting.deadline_ns {
                 self.waiting.push(waiting);
                 continue;
@@ -161,7 +186,22 @@ impl FrameServer {
             self.feed.lock().wanted = true;
             self.stepper.ring();
         }
+        if self.bake_ahead(&fed) {
+            return Duration::ZERO;
+        }
         Duration::from_millis(if self.waiting.is_empty() { 100 } else { 20 })
+    }
+
+    /// Bakes dry layers that nobody has looked at yet, for a short while; true where there are more.
+    fn bake_ahead(&mut self, fed: &Fed) -> bool {
+        let progress = self.pyramid.bake_ahead(fed, AHEAD);
+        let mut shared = self.feed.lock();
+        // A look that was handed over meanwhile begins anew.
+        let same = shared.look.as_ref().map(|look| look.generation());
+        if same == fed.look.as_ref().map(|look| look.generation()) {
+            shared.baking = progress;
+        }
+        progress.done < progress.all
     }
 
     /// Serves until `stop` says so.
@@ -172,10 +212,16 @@ impl FrameServer {
         }
     }
 
+    /// The epoch of frames: under another light everything is shown anew.
+    fn epoch(&self, fed: &Fed) -> u32 {
+        let generation = fed.look.as_ref().map_or(0, |look| look.generation());
+        self.me.epoch.wrapping_add(generation as u32)
+    }
+
     fn reply(&mut self, fed: &Fed, asked: &FrameRequest) -> FrameReply {
         let mut reply = FrameReply {
             surface: asked.surface,
-            epoch: self.me.epoch,
+            epoch: self.epoch(fed),
             version: BARE_VERSIONS + fed.version,
             level: 0,
             cells: [0; 2],
@@ -184,13 +230,13 @@ impl FrameServer {
             more: false,
             tiles: Vec::new(),
         };
-        let (Some(surface), Some(studio)) = (fed.surfaces.get(&asked.surface), &fed.studio) else {
+        let (Some(surface), Some(look)) = (fed.surfaces.get(&asked.surface), &fed.look) else {
             return reply;
         };
         let level = asked.level.min(coarsest(surface));
         reply.level = level;
         reply.cells = surface.cells.map(|cells| cells.div_ceil(1 << level));
-        let since = if asked.epoch == self.me.epoch {
+        let since = if asked.epoch == reply.epoch {
             asked.since
         } else {
             0
@@ -207,11 +253,9 @@ impl FrameServer {
             }
         }
         changed.sort();
-        let mut bytes = 0;
+        let (mut bytes, begun) = (0, Instant::now());
         for (place, (version, id)) in changed.iter().enumerate() {
-            let shown = self
-                .pyramid
-                .tile(studio, asked.surface, surface, level, *id);
+            let shown = self.pyramid.tile(look, asked.surface, surface, level, *id);
             let planes = shown.to_bytes();
             bytes += planes.len();
             reply.tiles.push(FrameTile {
@@ -220,23 +264,13 @@ impl FrameServer {
                 planes: planes.into(),
             });
             // No two tiles share a version, so the rest can be asked for from any of them on.
-            if bytes >= REPLY_BYTES && place + 1 < changed.len() {
+            let enough = bytes >= REPLY_BYTES || begun.elapsed() > REPLY_WORK;
+            if enough && place + 1 < changed.len() {
                 (reply.more, reply.version) = (true, *version);
                 break;
             }
         }
         reply
-    }
-}
-
-impl Fed {
-    /// A copy of what the waiting views may need.
-    fn clone_for(&self, waiting: &[Waiting]) -> Self {
-        if waiting.is_empty() {
-            Self::default()
-        } else {
-            self.clone()
-        }
     }
 }
 

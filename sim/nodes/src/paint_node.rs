@@ -21,7 +21,7 @@ use maulstick_types::scene::{CANVAS, Scene};
 use maulstick_types::topics::{Topics, check_name};
 use maulstick_types::{Flags, Origin, encode, name_hash};
 
-use crate::frames::{Fed, FedSurface, Feed};
+use crate::frames::{Fed, FedSurface, Feed, Progress};
 
 /// Least time between two hand-overs to the frames, ns.
 const FEED_PERIOD_NS: u64 = 8_000_000;
@@ -47,7 +47,8 @@ pub struct PaintNode {
     status: Sender<PaintStatus>,
     feed: Feed,
     fed_version: u64,
-    fed_studio: u64,
+    fed_scene: u64,
+    fed_look: u64,
     sent_scene: u64,
     fed_ns: u64,
     status_ns: u64,
@@ -77,6 +78,7 @@ impl PaintNode {
         let now = b.now_ns();
         scene.send(now, now, painting.scene())?;
         let sent_scene = painting.scene().version;
+        let fed_look = painting.look().generation();
         let mut sequencer = Sequencer::new(painting);
         sequencer.decide("backend cpu");
         let node = Self {
@@ -97,7 +99,8 @@ impl PaintNode {
             scene,
             feed: Feed::new(),
             fed_version: 1,
-            fed_studio: sent_scene,
+            fed_scene: sent_scene,
+            fed_look,
             sent_scene,
             fed_ns: 0,
             status_ns: 0,
@@ -334,7 +337,7 @@ impl PaintNode {
     fn feed_first(&self) {
         let painting = self.sequencer.painting();
         let mut fed = self.feed.lock();
-        fed.studio = Some(Arc::new(painting.studio().clone()));
+        fed.look = Some(Arc::clone(painting.look()));
         for surface in &painting.scene().surfaces {
             let (Some(store), Some(bare)) = (painting.store(surface.id), painting.bare(surface.id))
             else {
@@ -355,22 +358,28 @@ impl PaintNode {
 
     /// Hands new versions over, if a view waits for them.
     fn hand_over(&mut self, now_ns: u64) {
-        if now_ns < self.fed_ns + FEED_PERIOD_NS || !self.feed.lock().wanted {
+        let relit = self.fed_look != self.sequencer.painting().look().generation();
+        let due = now_ns >= self.fed_ns + FEED_PERIOD_NS && self.feed.lock().wanted;
+        if !due && !relit {
             return;
         }
         self.fed_ns = now_ns;
         self.sequencer.painting_mut().commit();
         let painting = self.sequencer.painting();
-        let news = painting.versions() > self.fed_version;
+        let news = relit || painting.versions() > self.fed_version;
         let mut fed = self.feed.lock();
         // The tiles may hold paints that are new too: both are handed over in one piece.
-        if self.fed_studio != painting.scene().version {
-            self.fed_studio = painting.scene().version;
-            fed.studio = Some(Arc::new(painting.studio().clone()));
+        if self.fed_scene != painting.scene().version {
+            self.fed_scene = painting.scene().version;
+            fed.look = Some(Arc::clone(painting.look()));
         }
-        if news {
+        if painting.versions() > self.fed_version {
             feed_versions(&mut fed, painting, self.fed_version);
             self.fed_version = painting.versions();
+        }
+        if relit {
+            self.fed_look = painting.look().generation();
+            feed_light(&mut fed, painting);
         }
         fed.version = self.fed_version;
         fed.journal = self.sequencer.journal_next();
@@ -415,6 +424,7 @@ impl PaintNode {
         self.tell_unknown(now_ns);
         let oldest_ns = self.states.heads().map(|next| next.header.event_ns).min();
         let lag_ns = oldest_ns.map_or(0, |oldest_ns| now_ns.saturating_sub(oldest_ns));
+        let baking = self.feed.lock().baking;
         let status = PaintStatus {
             journal: self.sequencer.journal_next(),
             steps,
@@ -422,8 +432,8 @@ impl PaintNode {
             lag_ns,
             memory_bytes: self.sequencer.painting().bytes() as u64,
             lost: counts.lost,
-            baking: 0,
-            baked: 0,
+            baking: baking.all,
+            baked: baking.done,
             refused: self.refused
                 + counts.refused
                 + self.reader.refused()
@@ -431,6 +441,24 @@ impl PaintNode {
         };
         self.status.send(now_ns, now_ns, &status)
     }
+}
+
+/// Hands over what surfaces show where nothing was painted, under another light, and how many tiles
+/// are to be baked for it.
+fn feed_light(fed: &mut Fed, painting: &Painting) {
+    for (number, surface) in &mut fed.surfaces {
+        if let Some(bare) = painting.bare(*number) {
+            surface.bare = Arc::clone(bare);
+        }
+    }
+    fed.baking = Progress {
+        all: fed
+            .surfaces
+            .values()
+            .map(|surface| surface.dry_tiles().count() as u32)
+            .sum(),
+        done: 0,
+    };
 }
 
 /// Adds the versions above `since` to what was fed.

@@ -72,7 +72,11 @@ fn compare(one: &Painting, two: &Painting) -> [f64; 3] {
     let (a, b) = (films(one), films(two));
     let ground = one.bare(0).expect("a canvas").ground.clone();
     let volume = |films: &[[f64; 2]]| films.iter().flatten().sum::<f64>();
-    let lab = |film: &[f64; 2]| one.studio().lab(&[(0, film[0]), (1, film[1])], &ground);
+    let lab = |film: &[f64; 2]| {
+        one.look()
+            .studio
+            .lab(&[(0, film[0]), (1, film[1])], &ground)
+    };
     let mut errors: Vec<f64> = a
         .iter()
         .zip(&b)

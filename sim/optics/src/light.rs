@@ -66,6 +66,20 @@ impl Lamp {
     }
 }
 
+/// Exposure.
+#[must_use]
+pub fn starting_exposure(ground: [f64; 3], intensity: f64) -> f64 {
+    let most = ground.iter().copied().fold(0.0, f64::max) * intensity;
+    if most > 0.98 { 0.98 / most } else { 1.0 }
+}
+
+/// Gloss.
+#[must_use]
+pub fn gloss(thinner: f32, wetness: f32) -> f32 {
+    let base = 0.3 + 0.45 * wetness;
+    base + (1.0 - base) * thinner
+}
+
 fn unit(v: [f64; 3]) -> [f64; 3] {
     let length = (v[0] * v[0] + v[1] * v[1] + v[2] * v[2]).sqrt();
     v.map(|x| x / length)

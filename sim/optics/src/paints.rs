@@ -24,6 +24,28 @@ pub struct Paint {
     pub s: Spectrum,
 }
 
+/// Name of the thinner, which every palette has: a medium that absorbs and scatters nothing.
+pub const THINNER: &str = "Thinner";
+
+impl Paint {
+    /// The thinner.
+    fn thinner() -> Self {
+        Self {
+            name: THINNER.to_owned(),
+            colour_index: String::new(),
+            source: "transparent by definition".to_owned(),
+            k: Spectrum::flat(0.0),
+            s: Spectrum::flat(0.0),
+        }
+    }
+
+    /// Whether it is the thinner.
+    #[must_use]
+    pub fn is_thinner(&self) -> bool {
+        self.name == THINNER
+    }
+}
+
 /// Why paints cannot be had.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum PaintError {
@@ -52,6 +74,7 @@ pub enum PaintError {
 #[derive(Clone, Debug, PartialEq)]
 pub struct PaintLibrary {
     paints: Vec<Paint>,
+    thinner: Paint,
     hash: u32,
 }
 
@@ -134,11 +157,12 @@ impl PaintLibrary {
         }
         Ok(Self {
             paints,
+            thinner: Paint::thinner(),
             hash: maulstick_types::name_hash(text),
         })
     }
 
-    /// All paints, in the order of the file.
+    /// All paints, in the order of the file; the thinner is none of them.
     #[must_use]
     pub fn paints(&self) -> &[Paint] {
         &self.paints
@@ -155,14 +179,11 @@ impl PaintLibrary {
     /// # Errors
     /// [`PaintError::Unknown`] with the nearest name.
     pub fn find(&self, name: &str) -> Result<&Paint, PaintError> {
-        if let Some(paint) = self
-            .paints
-            .iter()
-            .find(|p| p.name.eq_ignore_ascii_case(name))
-        {
+        let all = || self.paints.iter().chain([&self.thinner]);
+        if let Some(paint) = all().find(|p| p.name.eq_ignore_ascii_case(name)) {
             return Ok(paint);
         }
-        let names = self.paints.iter().map(|paint| paint.name.as_str());
+        let names = all().map(|paint| paint.name.as_str());
         let nearest = maulstick_types::nearest(name, names)
             .unwrap_or_default()
             .to_owned();

@@ -58,7 +58,7 @@ impl SamplingRule {
         if paints.is_empty() {
             return Self::gauss(n, observer, light);
         }
-        crate::fitted::fit(n, observer, light, paints)
+        crate::fitted::fit_once(n, observer, light, paints)
     }
 
     /// All 101 samples.

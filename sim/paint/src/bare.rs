@@ -4,7 +4,7 @@
 
 use std::sync::Arc;
 
-use maulstick_optics::{FilmPlanes, Studio};
+use maulstick_optics::{FilmPlanes, Studio, Under};
 use maulstick_types::paint::TILE;
 
 use crate::painting::WELL_M;
@@ -73,7 +73,8 @@ pub fn well_colour(studio: &Studio, shares: &[(usize, f64)], ground: &[f32]) -> 
     let [red, green, blue] = &mut rgb;
     let planes = FilmPlanes {
         paints: &paints,
-        ground,
+        opacity: 1.0,
+        under: Under::Even(ground),
     };
     studio.shade(&planes, [red, green, blue]);
     rgb.map(|channel| channel[0])

@@ -2,9 +2,11 @@
 
 use half::f16;
 use half::slice::HalfFloatSliceExt as _;
-use maulstick_optics::{FilmPlanes, Studio};
+use maulstick_optics::{FilmPlanes, Under};
 
 use crate::bare::Bare;
+use crate::dry::{DryLayer, DryStack};
+use crate::look::{Look, thickness};
 use crate::quantum::QUANTUM_M;
 use crate::tile::{TILE_CELLS, Tile, TileId};
 
@@ -21,18 +23,16 @@ pub struct DisplayTile {
     pub height: Vec<f32>,
 }
 
-/// Thickness of each paint of a tile, m, by slot.
-fn films(tile: Option<&Tile>) -> Vec<(usize, Vec<f32>)> {
-    let thickness = |plane: &[f32]| plane.iter().map(|count| count * QUANTUM_M as f32).collect();
-    tile.map(Tile::wet)
-        .unwrap_or_default()
-        .iter()
-        .map(|(slot, plane)| (*slot, thickness(plane)))
-        .collect()
-}
-
-fn height(films: &[(usize, Vec<f32>)]) -> Vec<f32> {
-    let mut height = vec![0.0f32; TILE_CELLS];
+/// Height of wet films and of what has dried under them, m.
+fn height(films: &[(usize, Vec<f32>)], dry: Option<&DryStack>) -> Vec<f32> {
+    let mut height: Vec<f32> = match dry {
+        Some(stack) => stack
+            .height()
+            .iter()
+            .map(|quanta| quanta * QUANTUM_M as f32)
+            .collect(),
+        None => vec![0.0; TILE_CELLS],
+    };
     for (_, film) in films {
         height
             .iter_mut()
@@ -42,11 +42,48 @@ fn height(films: &[(usize, Vec<f32>)]) -> Vec<f32> {
     height
 }
 
+/// Gloss of the topmost paint of a tile: by its share of thinner, and whether it is wet.
+fn gloss(films: &[(usize, Vec<f32>)], dry: Option<&DryStack>, thinner: Option<usize>) -> Vec<f32> {
+    let mut gloss = vec![0.0; TILE_CELLS];
+    let mut lay = |planes: &[(usize, &[f32])], wetness: f32| {
+        for cell in 0..TILE_CELLS {
+            let (mut all, mut thin) = (0.0, 0.0);
+            for (slot, plane) in planes {
+                all += plane[cell];
+                thin += if thinner == Some(*slot) {
+                    plane[cell]
+                } else {
+                    0.0
+                };
+            }
+            if all > 0.0 {
+                gloss[cell] = maulstick_optics::light::gloss(thin / all, wetness);
+            }
+        }
+    };
+    let layers: Vec<&DryLayer> = dry.iter().flat_map(|stack| stack.layers()).collect();
+    for layer in layers.iter().rev() {
+        let planes: Vec<_> = layer
+            .planes
+            .iter()
+            .map(|(slot, plane)| (*slot, &**plane))
+            .collect();
+        lay(&planes, 0.0);
+    }
+    let wet: Vec<_> = films
+        .iter()
+        .map(|(slot, film)| (*slot, film.as_slice()))
+        .collect();
+    lay(&wet, 1.0);
+    gloss
+}
+
 impl DisplayTile {
     /// Height of a tile of a surface alone, as in [`on`](Self::on), m.
     #[must_use]
     pub fn height_on(bare: &Bare, id: TileId, tile: Option<&Tile>) -> Vec<f32> {
-        let mut heights = height(&films(tile));
+        let films = tile.map(|tile| thickness(tile.wet())).unwrap_or_default();
+        let mut heights = height(&films, tile.and_then(Tile::dry).map(|stack| &**stack));
         for (cell, well) in bare.in_wells(id) {
             if heights[cell] == 0.0 {
                 heights[cell] = well.height_m;
@@ -60,12 +97,25 @@ impl DisplayTile {
         heights
     }
 
-    /// The display of a tile of a surface; `tile` is none where nothing was painted.
+    /// The display of a tile of a surface; `tile` is none where nothing was painted. `baked` are the
+    /// reflectances of what has dried on it (see [`Bakery`](crate::look::Bakery)), needed where
+    /// something has.
     #[must_use]
-    pub fn on(bare: &Bare, id: TileId, tile: Option<&Tile>, studio: &Studio) -> Self {
-        let mut shown = Self::of(tile, studio, &bare.ground);
+    pub fn on(
+        bare: &Bare,
+        id: TileId,
+        tile: Option<&Tile>,
+        look: &Look,
+        baked: Option<&[f32]>,
+    ) -> Self {
+        let mut shown = Self::of(
+            tile,
+            look,
+            baked.map_or(Under::Even(&bare.ground), Under::Planes),
+        );
+        let dry = tile.and_then(Tile::dry);
         for (cell, well) in bare.in_wells(id) {
-            if shown.wetness[cell] == 0.0 {
+            if shown.wetness[cell] == 0.0 && dry.is_none_or(|stack| stack.height()[cell] == 0.0) {
                 for (plane, channel) in shown.rgb.iter_mut().zip(well.rgb) {
                     plane[cell] = channel;
                 }
@@ -76,11 +126,12 @@ impl DisplayTile {
         shown
     }
 
-    /// The display of a tile over a flat ground; `tile` is none where nothing was painted.
+    /// The display of a tile over what its wet paint lies on; `tile` is none where nothing was
+    /// painted.
     #[must_use]
-    pub fn of(tile: Option<&Tile>, studio: &Studio, ground: &[f32]) -> Self {
-        let films = films(tile);
-        let height = height(&films);
+    pub fn of(tile: Option<&Tile>, look: &Look, under: Under<'_>) -> Self {
+        let films = tile.map(|tile| thickness(tile.wet())).unwrap_or_default();
+        let dry = tile.and_then(Tile::dry).map(|stack| &**stack);
         let mut rgb = [const { Vec::new() }; 3];
         rgb.iter_mut()
             .for_each(|plane| plane.resize(TILE_CELLS, 0.0));
@@ -89,22 +140,21 @@ impl DisplayTile {
             .iter()
             .map(|(slot, film)| (*slot, film.as_slice()))
             .collect();
-        studio.shade(
-            &FilmPlanes {
-                paints: &paints,
-                ground,
-            },
-            [red, green, blue],
-        );
-        let wetness: Vec<f32> = height
+        let planes = FilmPlanes {
+            paints: &paints,
+            opacity: 1.0,
+            under,
+        };
+        look.studio.shade(&planes, [red, green, blue]);
+        let wetness = height(&films, None)
             .iter()
             .map(|thickness| f32::from(u8::from(*thickness > 0.0)))
             .collect();
         Self {
             rgb,
-            gloss: wetness.clone(),
+            gloss: gloss(&films, dry, look.thinner),
             wetness,
-            height,
+            height: height(&films, dry),
         }
     }
 
@@ -181,21 +231,24 @@ impl DisplayTile {
 
 #[cfg(test)]
 mod tests {
-    use maulstick_optics::PaintLibrary;
+    use std::sync::Arc;
+
+    use maulstick_optics::{PaintLibrary, Studio};
 
     use super::*;
 
-    fn tile() -> (Studio, Vec<f32>, DisplayTile) {
+    fn tile() -> (Look, Vec<f32>, DisplayTile) {
         let mut studio = Studio::daylight();
         let library = PaintLibrary::measured().expect("whole");
         studio.add(library.find("Ultramarine Blue").expect("known"));
         let ground = vec![0.95; studio.wavelengths()];
-        let plane: Box<[f32]> = (0..TILE_CELLS)
+        let look = Look::new(studio);
+        let plane: Arc<[f32]> = (0..TILE_CELLS)
             .map(|i| if i % 2 == 0 { 33_000.0 } else { 0.0 })
             .collect();
-        let tile = Tile::new([(0, plane)].into_iter());
-        let shown = DisplayTile::of(Some(&tile), &studio, &ground);
-        (studio, ground, shown)
+        let tile = Tile::new([(0, plane)].into_iter(), None);
+        let shown = DisplayTile::of(Some(&tile), &look, Under::Even(&ground));
+        (look, ground, shown)
     }
 
     #[test]
@@ -219,8 +272,8 @@ mod tests {
 
     #[test]
     fn a_coarser_tile_is_the_mean_of_its_cells() {
-        let (studio, ground, shown) = tile();
-        let bare = DisplayTile::of(None, &studio, &ground);
+        let (look, ground, shown) = tile();
+        let bare = DisplayTile::of(None, &look, Under::Even(&ground));
         let coarse = DisplayTile::coarser([Some(&shown), None, None, None], &bare);
         assert!((coarse.height[0] - 0.5 * shown.height[0]).abs() < 1e-9);
         assert_eq!(

@@ -2,6 +2,8 @@
 
 use std::collections::BTreeMap;
 
+use maulstick_types::scene::Layer;
+
 use crate::ledger::Ledger;
 use crate::load::BrushLoad;
 use crate::tile::{TileId, Version};
@@ -10,12 +12,14 @@ use crate::tile::{TileId, Version};
 pub type Place = (u32, TileId);
 
 /// What a painting is besides its tiles.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Rest {
     /// What the brushes carry, by name.
     pub loads: BTreeMap<String, BrushLoad>,
     /// The books.
     pub ledger: Ledger,
+    /// The dry layers.
+    pub layers: Vec<Layer>,
 }
 
 /// One operation of the painter: what it replaced.

@@ -37,6 +37,8 @@ pub struct Stocks {
     pub canvas: Counts,
     /// On the palette.
     pub palette: Counts,
+    /// Dried, on canvas and palette.
+    pub dry: Counts,
 }
 
 /// The ledger as a file; volumes in m³, what the tubes gave is negative, so that all accounts sum
@@ -81,10 +83,11 @@ pub fn balance(
     quantum_m3: f64,
     tallies: Tallies,
 ) -> LedgerReport {
-    let accounts: [(&'static str, &Counts); 4] = [
+    let accounts: [(&'static str, &Counts); 5] = [
         ("brush", &stocks.brush),
         ("canvas", &stocks.canvas),
         ("palette", &stocks.palette),
+        ("dry", &stocks.dry),
         ("cleaner", &ledger.cleaner),
     ];
     let volume = |count: u64| count as f64 * quantum_m3;

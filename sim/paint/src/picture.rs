@@ -2,7 +2,6 @@
 
 use std::io::{Error, Write};
 
-use maulstick_optics::Studio;
 use maulstick_optics::colour::{SrgbTable, clamp_chromaticity};
 use maulstick_optics::light::{HeightField, lit};
 use maulstick_types::paint::TILE;
@@ -10,8 +9,10 @@ use maulstick_types::paint::TILE;
 use crate::bare::Bare;
 use crate::display::DisplayTile;
 use crate::lamp::lamp_over;
+use crate::look::{Bakery, Look};
 use crate::painting::Painting;
 use crate::store::TileStore;
+use crate::tile::Tile;
 
 /// An sRGB picture, three bytes a pixel from the top row.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -55,7 +56,7 @@ fn under(painting: &mut Painting, surface: u32, light: Light<'_>) -> Picture {
             rgb: Vec::new(),
         };
     };
-    draw(store, bare, painting.studio(), cell_m, light)
+    draw(store, bare, painting.look(), cell_m, light)
 }
 
 /// The heights of a whole surface, m, row after row from the lowest: slopes reach over the borders
@@ -76,7 +77,7 @@ fn heights(store: &TileStore, bare: &Bare) -> Vec<f32> {
 }
 
 /// Light first, then gamut and encoding.
-fn draw(store: &TileStore, bare: &Bare, studio: &Studio, cell_m: f64, light: Light<'_>) -> Picture {
+fn draw(store: &TileStore, bare: &Bare, look: &Look, cell_m: f64, light: Light<'_>) -> Picture {
     let [width, height] = store.cells().map(|cells| cells as usize);
     let heights = heights(store, bare);
     let field = HeightField {
@@ -87,7 +88,10 @@ fn draw(store: &TileStore, bare: &Bare, studio: &Studio, cell_m: f64, light: Lig
     let mut rgb = vec![0u8; width * height * 3];
     let table = SrgbTable::default();
     for (id, version) in store.iter() {
-        let shown = DisplayTile::on(bare, id, version.tile.as_deref(), studio);
+        let tile = version.tile.as_deref();
+        let dry = tile.and_then(Tile::dry);
+        let baked = dry.map(|stack| Bakery::default().planes(look, 0, id, (stack, &bare.ground)));
+        let shown = DisplayTile::on(bare, id, tile, look, baked.as_deref());
         let (left, bottom) = (id.x as usize * TILE, id.y as usize * TILE);
         for y in 0..TILE.min(height - bottom) {
             let row = height - 1 - (bottom + y);
@@ -123,12 +127,12 @@ impl Picture {
 mod tests {
     use std::sync::Arc;
 
-    use maulstick_optics::PaintLibrary;
+    use maulstick_optics::{PaintLibrary, Studio};
 
     use super::*;
     use crate::quantum::QUANTUM_M;
     use crate::relief::Relief;
-    use crate::tile::{Tile, Version};
+    use crate::tile::Version;
 
     const CELLS: [u32; 2] = [150, 70];
     const CELL_M: f64 = 2.5e-4;
@@ -144,8 +148,8 @@ mod tests {
                     id.y as usize * TILE + i / TILE,
                 )
             };
-            let plane: Box<[f32]> = (0..TILE * TILE).map(place).collect();
-            let tile = Some(Arc::new(Tile::new([(0, plane)].into_iter())));
+            let plane: Arc<[f32]> = (0..TILE * TILE).map(place).collect();
+            let tile = Some(Arc::new(Tile::new([(0, plane)].into_iter(), None)));
             store.replace(id, Version { number: 2, tile });
         }
         store
@@ -166,7 +170,7 @@ mod tests {
             relief: Arc::new(Relief::flat(CELL_M)),
             wells: Vec::new(),
         };
-        draw(store, &bare, &studio, CELL_M, light)
+        draw(store, &bare, &Look::new(studio), CELL_M, light)
     }
 
     #[test]

@@ -354,9 +354,16 @@ impl Sequencer {
                 .painting
                 .place(*surface, pose, *zoom)
                 .map(|()| String::new()),
-            Command::Relight { .. } | Command::Dry { .. } | Command::Opacity { .. } => {
-                Err(PaintRefusal::new("not yet".to_owned(), "wait"))
-            }
+            Command::Relight { light } => self.painting.relight(light).map(|()| String::new()),
+            Command::Dry {
+                surface,
+                share,
+                name,
+            } => self.painting.dry(*surface, *share, name),
+            Command::Opacity { layer, opacity } => self
+                .painting
+                .set_opacity(*layer, *opacity)
+                .map(|()| String::new()),
             Command::Mark => Ok(String::new()),
         };
         let (client, number) = (request.client, request.number);

@@ -4,6 +4,7 @@ use maulstick_optics::{PaintLibrary, Spectrum};
 use maulstick_types::scene::{CANVAS, Light, PALETTE, Scene, Surface, Well, WellKind};
 use maulstick_types::{Mixture, Pose};
 
+use crate::light::studio_settings;
 use crate::painting::PaintRefusal;
 use crate::tooth::Tooth;
 
@@ -49,6 +50,10 @@ pub struct PaintingSetup {
     pub tooth_seed: u64,
     /// What the palette's wells hold, from the top.
     pub wells: Vec<Mixture>,
+    /// The light.
+    pub light: Light,
+    /// Factor of the eye that looks at it; none: such that the bare canvas does not clip.
+    pub exposure: Option<f64>,
 }
 
 impl Default for PaintingSetup {
@@ -63,6 +68,8 @@ impl Default for PaintingSetup {
                 .iter()
                 .map(|name| Mixture::pure(name))
                 .collect(),
+            light: Light::default(),
+            exposure: None,
         }
     }
 }
@@ -87,6 +94,7 @@ impl PaintingSetup {
         }
         ground_reflectance(&self.ground)?;
         tooth_called(&self.tooth, self.tooth_seed, self.cell_m)?;
+        studio_settings(&self.light)?;
         for mixture in &self.wells {
             library.check(mixture).map_err(PaintRefusal::paint)?;
         }
@@ -125,7 +133,10 @@ impl PaintingSetup {
             surfaces: vec![canvas, board],
             paints: Vec::new(),
             tunings: Vec::new(),
-            light: Light::default(),
+            light: Light {
+                exposure: self.exposure.unwrap_or(1.0),
+                ..self.light.clone()
+            },
             layers: Vec::new(),
         }
     }

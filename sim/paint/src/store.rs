@@ -5,7 +5,7 @@ use std::collections::BTreeSet;
 use maulstick_types::paint::TILE;
 
 use crate::quantum::{Counts, SLOTS, add};
-use crate::tile::{TileId, Version};
+use crate::tile::{Tile, TileId, Version};
 
 /// A rectangle of tiles: from the first, up to but not with the second corner.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -141,16 +141,26 @@ impl TileStore {
         });
     }
 
-    /// All counts by slot.
+    /// Counts of all wet paint by slot.
     #[must_use]
     pub fn counts(&self) -> Counts {
+        self.sum(|tile| tile.counts())
+    }
+
+    /// Counts of all dry paint by slot.
+    #[must_use]
+    pub fn dry_counts(&self) -> Counts {
+        self.sum(|tile| tile.dry().map_or([0; SLOTS], |stack| stack.counts()))
+    }
+
+    fn sum(&self, of: impl Fn(&Tile) -> Counts) -> Counts {
         let mut counts = [0; SLOTS];
         for tile in self
             .versions
             .iter()
             .filter_map(|version| version.tile.as_ref())
         {
-            add(&mut counts, &tile.counts());
+            add(&mut counts, &of(tile));
         }
         counts
     }

@@ -4,6 +4,7 @@ use std::sync::Arc;
 
 use maulstick_types::paint::TILE;
 
+use crate::dry::{DryLayer, DryStack};
 use crate::quantum::{Counts, SLOTS};
 
 /// Cells of a tile.
@@ -18,43 +19,121 @@ pub struct TileId {
     pub x: u32,
 }
 
-/// What lies on a tile: a plane of counts for each paint that is there, in order of slot.
+/// A plane of counts for each paint that is there, in order of slot.
+pub type Planes = Vec<(usize, Arc<[f32]>)>;
+
+/// All counts of planes, by slot.
+#[must_use]
+pub fn plane_counts(planes: &Planes) -> Counts {
+    let mut counts = [0; SLOTS];
+    for (slot, plane) in planes {
+        counts[*slot] = plane.iter().map(|count| *count as u64).sum();
+    }
+    counts
+}
+
+/// What lies on a tile: wet paint over what has dried.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Tile {
-    wet: Vec<(usize, Box<[f32]>)>,
+    wet: Planes,
+    dry: Option<Arc<DryStack>>,
 }
 
 impl Tile {
-    /// A tile of wet planes; planes without paint are left out.
+    /// A tile of wet planes over what has dried; planes without paint are left out.
     #[must_use]
-    pub fn new(planes: impl Iterator<Item = (usize, Box<[f32]>)>) -> Self {
+    pub fn new(
+        planes: impl Iterator<Item = (usize, Arc<[f32]>)>,
+        dry: Option<Arc<DryStack>>,
+    ) -> Self {
         Self {
             wet: planes
                 .filter(|(_, plane)| plane.iter().any(|count| *count != 0.0))
                 .collect(),
+            dry,
         }
     }
 
     /// The wet planes, in order of slot.
     #[must_use]
-    pub fn wet(&self) -> &[(usize, Box<[f32]>)] {
+    pub fn wet(&self) -> &Planes {
         &self.wet
     }
 
-    /// All counts by slot.
+    /// What has dried.
+    #[must_use]
+    pub fn dry(&self) -> Option<&Arc<DryStack>> {
+        self.dry.as_ref()
+    }
+
+    /// Counts of the wet paint by slot.
     #[must_use]
     pub fn counts(&self) -> Counts {
-        let mut counts = [0; SLOTS];
-        for (slot, plane) in &self.wet {
-            counts[*slot] = plane.iter().map(|count| *count as u64).sum();
+        plane_counts(&self.wet)
+    }
+
+    /// The tile with the lower `share` of its wet film dried as layer `number`; none where nothing is
+    /// wet. All of it dries by reference.
+    #[must_use]
+    pub fn dried(&self, number: u32, share: f32) -> Option<Self> {
+        if self.wet.is_empty() {
+            return None;
         }
-        counts
+        let under = self.dry.clone();
+        if share >= 1.0 {
+            let layer = DryLayer {
+                number,
+                planes: self.wet.clone(),
+            };
+            return Some(Self {
+                wet: Vec::new(),
+                dry: Some(DryStack::over(under, layer)),
+            });
+        }
+        let part = |plane: &Arc<[f32]>| -> Arc<[f32]> {
+            plane.iter().map(|count| (count * share).floor()).collect()
+        };
+        let lower: Planes = self
+            .wet
+            .iter()
+            .map(|(slot, plane)| (*slot, part(plane)))
+            .filter(|(_, plane)| plane.iter().any(|count| *count != 0.0))
+            .collect();
+        if lower.is_empty() {
+            return None;
+        }
+        let upper = self.wet.iter().map(|(slot, plane)| {
+            let dried = lower.iter().find(|(other, _)| other == slot);
+            let left = match dried {
+                Some((_, dried)) => plane
+                    .iter()
+                    .zip(dried.iter())
+                    .map(|(all, dry)| all - dry)
+                    .collect(),
+                None => Arc::clone(plane),
+            };
+            (*slot, left)
+        });
+        let stack = DryStack::over(
+            under,
+            DryLayer {
+                number,
+                planes: lower.clone(),
+            },
+        );
+        Some(Self::new(upper, Some(stack)))
     }
 
     /// Bytes that it takes.
     #[must_use]
     pub fn bytes(&self) -> usize {
-        self.wet.len() * TILE_CELLS * size_of::<f32>()
+        let dry: usize = self
+            .dry
+            .iter()
+            .flat_map(|stack| stack.layers())
+            .map(|layer| layer.planes.len() + 1)
+            .sum();
+        (self.wet.len() + dry) * TILE_CELLS * size_of::<f32>()
     }
 }
 
@@ -65,4 +144,40 @@ pub struct Version {
     pub number: u64,
     /// The tile.
     pub tile: Option<Arc<Tile>>,
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn drying_loses_no_quantum_whatever_the_share() {
+        let plane = |step: usize| -> Arc<[f32]> {
+            (0..TILE_CELLS)
+                .map(|i| (i * step % 999 * 1000) as f32)
+                .collect()
+        };
+        let wet = Tile::new([(2, plane(7)), (5, plane(13))].into_iter(), None);
+        let all = wet.counts();
+        for share in [1e-3f32, 0.3, 0.5, 0.999, 1.0] {
+            let dried = wet.dried(1, share).expect("wet");
+            let stack = dried.dry().expect("dried");
+            let mut sum = dried.counts();
+            crate::quantum::add(&mut sum, &stack.counts());
+            assert_eq!(sum, all, "{share}");
+            let lower = stack.counts()[2] as f64 / all[2] as f64;
+            assert!((lower - f64::from(share)).abs() < 2e-3, "{share} {lower}");
+            let twice = dried.dried(2, 1.0);
+            assert_eq!(twice.is_some(), share < 1.0);
+            let depth = twice.and_then(|tile| Some(tile.dry()?.depth()));
+            assert_eq!(depth, (share < 1.0).then_some(2));
+        }
+        let whole = wet.dried(1, 1.0).expect("wet");
+        let layer = whole.dry().expect("dried").layer();
+        assert!(
+            Arc::ptr_eq(&layer.planes[0].1, &wet.wet()[0].1),
+            "by reference"
+        );
+        assert_eq!(wet.dried(1, 1e-9), None);
+    }
 }

@@ -1,8 +1,11 @@
 //! A window: leased tiles copied into contiguous planes, on which the kernels work.
 
+use std::sync::Arc;
+
 use maulstick_types::paint::TILE;
 
-use crate::quantum::SLOTS;
+use crate::dry::DryStack;
+use crate::quantum::{QUANTUM_M, SLOTS};
 use crate::relief::Relief;
 use crate::store::{TileRect, TileStore};
 use crate::tile::{Tile, TileId, Version};
@@ -16,6 +19,9 @@ pub struct Window {
     limit: [usize; 2],
     wet: [Option<Vec<f32>>; SLOTS],
     base: Vec<f32>,
+    /// What has dried on each tile, and the most quanta of it on a cell.
+    dry: Vec<Option<Arc<DryStack>>>,
+    dry_top: f32,
     top: f32,
     dirty: Vec<bool>,
 }
@@ -37,6 +43,11 @@ impl Window {
             limit: [0, 1].map(|i| rect.cells()[i].min(surface[i] - rect.from[i] as usize * TILE)),
             wet: [const { None }; SLOTS],
             base: vec![0.0; width * height],
+            dry: rect
+                .tiles()
+                .map(|id| store.version(id).tile.as_ref()?.dry().cloned())
+                .collect(),
+            dry_top: 0.0,
             top: 0.0,
             dirty: vec![false; tiles],
         };
@@ -50,6 +61,7 @@ impl Window {
                     .for_each(|(base, m)| *base = m * relief.cells_per_m());
             }
         }
+        window.lay_dry(relief.cells_per_m() * QUANTUM_M as f32);
         for id in rect.tiles() {
             let Some(tile) = &store.version(id).tile else {
                 continue;
@@ -62,10 +74,26 @@ impl Window {
                 }
             }
         }
-        window.top = (0..width * height)
-            .map(|cell| window.total(cell))
-            .fold(0.0, f32::max);
+        let wet = (0..width * height).map(|cell| window.total(cell));
+        window.top = wet.fold(0.0, f32::max) + window.dry_top;
         Some(window)
+    }
+
+    /// Raises what catches paint by what has dried on it.
+    fn lay_dry(&mut self, cells_per_quantum: f32) {
+        for (place, id) in self.rect.tiles().enumerate() {
+            let Some(stack) = self.dry[place].clone() else {
+                continue;
+            };
+            let start = self.corner(id);
+            for (row, dry) in stack.height().chunks_exact(TILE).enumerate() {
+                let to = &mut self.base[start + row * self.width..][..TILE];
+                for (base, quanta) in to.iter_mut().zip(dry) {
+                    *base += quanta * cells_per_quantum;
+                    self.dry_top = self.dry_top.max(*quanta);
+                }
+            }
+        }
     }
 
     /// Columns and rows, from the lower left corner, that lie on the surface.
@@ -80,15 +108,21 @@ impl Window {
         &self.base
     }
 
-    /// Most quanta that a cell of the window has had since it was opened.
+    /// Most quanta that have dried on a cell.
+    #[must_use]
+    pub fn dry_top(&self) -> f32 {
+        self.dry_top
+    }
+
+    /// Most quanta, wet and dry, that a cell of the window has had since it was opened.
     #[must_use]
     pub fn top(&self) -> f32 {
         self.top
     }
 
-    /// Notes that a cell holds so many quanta.
+    /// Notes that a cell holds so many quanta of wet paint.
     pub fn note_top(&mut self, quanta: f32) {
-        self.top = self.top.max(quanta);
+        self.top = self.top.max(quanta + self.dry_top);
     }
 
     /// The tiles.
@@ -187,9 +221,9 @@ impl Window {
                 for row in 0..TILE {
                     cells.extend_from_slice(&plane[start + row * self.width..][..TILE]);
                 }
-                Some((slot, cells.into_boxed_slice()))
+                Some((slot, Arc::from(cells)))
             });
-            let tile = Some(std::sync::Arc::new(Tile::new(planes)));
+            let tile = Some(Arc::new(Tile::new(planes, self.dry[place].clone())));
             *next += 1;
             replaced(
                 id,

@@ -132,6 +132,8 @@ enum Act {
     Clean(usize),
     Take(usize, Vec<usize>),
     Redefine(usize, usize),
+    Dry(u32, f32),
+    Opacity(u32, f32),
     Undo,
     Redo,
 }
@@ -156,6 +158,9 @@ fn act() -> impl Strategy<Value = Act> {
         1 => (brush.clone(), prop::collection::vec(load, 0..3)).prop_map(|(b, l)| Act::Take(b, l)),
         2 => (brush, prop_oneof![Just(31usize), Just(48), Just(60)])
             .prop_map(|(b, strips)| Act::Redefine(b, strips)),
+        2 => (prop_oneof![3 => Just(CANVAS), 1 => Just(PALETTE)], 0.01..1.3f32)
+            .prop_map(|(surface, share)| Act::Dry(surface, share.min(1.0))),
+        1 => (1..4u32, 0.0..1.0f32).prop_map(|(layer, opacity)| Act::Opacity(layer, opacity)),
         3 => Just(Act::Undo),
         2 => Just(Act::Redo),
     ]
@@ -174,7 +179,9 @@ fn perform(painting: &mut Painting, strokes: &mut [u64; 2], act: &Act) {
             painting.take(BRUSHES[*b], &loads).expect("known");
         }
         Act::Redefine(b, strips) => painting.define_brush(BRUSHES[*b], brush(10.0, *strips)),
-        // There may be nothing to undo or redo.
+        // There may be nothing to dry, to undo or to redo.
+        Act::Dry(surface, share) => drop(painting.dry(*surface, *share, "")),
+        Act::Opacity(layer, opacity) => drop(painting.set_opacity(*layer, *opacity)),
         Act::Undo => drop(painting.undo()),
         Act::Redo => drop(painting.redo()),
     }
@@ -196,6 +203,8 @@ proptest! {
         }
         let store = painting.store(CANVAS).expect("a canvas");
         prop_assert_eq!(store.counts(), [0; 16], "all that was done is undone");
+        prop_assert_eq!(store.dry_counts(), [0; 16]);
+        prop_assert!(painting.scene().layers.is_empty());
     }
 
     /// Strokes that leave the canvas and come back, jump, hover and turn, with full and empty
@@ -316,4 +325,40 @@ fn a_restart_paints_nothing_on_its_way() {
     }
     painting.commit();
     assert_eq!(painting.store(CANVAS).expect("a canvas").counts(), [0; 16]);
+}
+
+/// A dry stroke stays as high as it was, is in the books as dry, and catches the next one.
+#[test]
+fn what_has_dried_stays_and_catches_paint() {
+    let mut painting = painting(10.0);
+    painting.load("main", &mixture(MIXTURES[0])).expect("known");
+    paint(&mut painting, "main", 10.0, 1, &across(4.0, 12.0));
+    painting.commit();
+    let wet = painting.store(CANVAS).expect("a canvas").counts();
+    assert_eq!(
+        painting.dry(CANVAS, 1.0, "underpainting").as_deref(),
+        Ok("underpainting")
+    );
+    let store = painting.store(CANVAS).expect("a canvas");
+    assert_eq!((store.counts(), store.dry_counts()), ([0; 16], wet));
+    let report = painting.report();
+    assert_eq!(report.quanta_missing, 0);
+    assert!(report.accounts_m3["dry"] > 0.0 && report.accounts_m3["canvas"] == 0.0);
+    assert!(painting.dry(CANVAS, 1.0, "").is_err(), "nothing is wet");
+    // A brush so high that it only touched the first stroke's relief.
+    let deposited = |painting: &mut Painting, stroke: u64| {
+        painting.load("main", &mixture(MIXTURES[0])).expect("known");
+        let before = painting.store(CANVAS).expect("a canvas").counts()[0];
+        paint(painting, "main", 10.0, stroke, &across(4.0, 12.0));
+        painting.commit();
+        painting.store(CANVAS).expect("a canvas").counts()[0] - before
+    };
+    let over_dry = deposited(&mut painting, 2);
+    assert!(over_dry > 0);
+    assert_eq!(painting.report().quanta_missing, 0);
+    assert!(painting.set_opacity(9, 0.5).is_err());
+    painting.set_opacity(1, 0.5).expect("the layer");
+    assert_eq!(painting.scene().layers[0].opacity, 0.5);
+    painting.undo().expect("the opacity");
+    assert_eq!(painting.scene().layers[0].opacity, 1.0);
 }

@@ -51,6 +51,10 @@ impl RigConfig {
                 .help("choose a size of 1 to 65536 cells"));
             }
         }
+        self.light.light().check().map_err(|what| {
+            let help = "`maulstick up --print-config` shows what a light may be";
+            fault(what, "[light]", "").help(help)
+        })?;
         choose("paint model", &self.paint.model, &MODELS)
             .and_then(|()| choose("backend", &self.paint.backend, &BACKENDS))
             .map_err(|(what, help)| fault(what, "[paint]", "").help(help))

@@ -1,13 +1,16 @@
 //! Display tiles at every level of detail, made of those below and kept for the next request.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, VecDeque};
 use std::sync::Arc;
+use std::time::{Duration, Instant};
 
-use maulstick_optics::Studio;
+use maulstick_optics::Under;
 use maulstick_paint::display::DisplayTile;
-use maulstick_paint::tile::TileId;
+use maulstick_paint::dry::DryStack;
+use maulstick_paint::look::{Bakery, Look};
+use maulstick_paint::tile::{Tile, TileId};
 
-use super::FedSurface;
+use super::{Fed, FedSurface, Progress};
 
 /// Display tiles that are kept for the next request.
 const KEPT_TILES: usize = 1024;
@@ -32,6 +35,13 @@ pub(super) struct Pyramid {
     kept: BTreeMap<(u32, u32, TileId), (u64, Arc<DisplayTile>)>,
     /// What lies beyond the edge of a surface.
     outside: BTreeMap<u32, Arc<DisplayTile>>,
+    bakery: Bakery,
+    /// Generation of the look that all this shows.
+    generation: Option<u64>,
+    /// What is still to be baked for it, as far as nobody looks at it first.
+    ahead: VecDeque<(u32, TileId, Arc<DryStack>)>,
+    /// For which generation that is, and how many they were.
+    ahead_of: (Option<u64>, u32),
 }
 
 impl Pyramid {
@@ -59,14 +69,54 @@ impl Pyramid {
         }
     }
 
+    /// Begins anew under another look.
+    fn turn_to(&mut self, look: &Look) {
+        if self.generation != Some(look.generation()) {
+            self.generation = Some(look.generation());
+            self.kept.clear();
+            self.outside.clear();
+        }
+    }
+
+    /// Bakes what has dried for the present look, a tile after the other, for as long as `limit`.
+    /// What dries later is baked when it is looked at.
+    pub(super) fn bake_ahead(&mut self, fed: &Fed, limit: Duration) -> Progress {
+        let Some(look) = &fed.look else {
+            return Progress::default();
+        };
+        self.turn_to(look);
+        if self.ahead_of.0 != Some(look.generation()) {
+            let dry = fed.surfaces.iter().flat_map(|(number, surface)| {
+                let tiles = surface.dry_tiles();
+                tiles.map(|(id, stack)| (*number, id, Arc::clone(stack)))
+            });
+            self.ahead = dry.collect();
+            self.ahead_of = (Some(look.generation()), self.ahead.len() as u32);
+        }
+        let begun = Instant::now();
+        while begun.elapsed() < limit
+            && let Some((number, id, stack)) = self.ahead.pop_front()
+        {
+            if let Some(surface) = fed.surfaces.get(&number) {
+                let over = (&stack, surface.bare.ground.as_slice());
+                self.bakery.planes(look, number, id, over);
+            }
+        }
+        Progress {
+            all: self.ahead_of.1,
+            done: self.ahead_of.1 - self.ahead.len() as u32,
+        }
+    }
+
     pub(super) fn tile(
         &mut self,
-        studio: &Studio,
+        look: &Look,
         number: u32,
         surface: &FedSurface,
         level: u32,
         id: TileId,
     ) -> Arc<DisplayTile> {
+        self.turn_to(look);
         let version = Self::painted(surface, level, id);
         if let Some((kept, tile)) = self.kept.get(&(number, level, id))
             && *kept == version
@@ -75,17 +125,24 @@ impl Pyramid {
         }
         let tile = Arc::new(if level == 0 {
             let tile = surface.tiles.get(&id).and_then(|(_, tile)| tile.as_deref());
-            DisplayTile::on(&surface.bare, id, tile, studio)
+            let baked = tile.and_then(Tile::dry).map(|stack| {
+                let over = (stack, surface.bare.ground.as_slice());
+                self.bakery.planes(look, number, id, over)
+            });
+            DisplayTile::on(&surface.bare, id, tile, look, baked.as_deref())
         } else {
-            let outside =
-                Arc::clone(self.outside.entry(number).or_insert_with(|| {
-                    Arc::new(DisplayTile::of(None, studio, &surface.bare.ground))
-                }));
+            let outside = Arc::clone(self.outside.entry(number).or_insert_with(|| {
+                Arc::new(DisplayTile::of(
+                    None,
+                    look,
+                    Under::Even(&surface.bare.ground),
+                ))
+            }));
             let [across, up] = grid(surface, level - 1);
             let children: [Option<Arc<DisplayTile>>; 4] = std::array::from_fn(|quarter| {
                 let child = child(id, quarter as u32);
                 let inside = child.x < across && child.y < up;
-                inside.then(|| self.tile(studio, number, surface, level - 1, child))
+                inside.then(|| self.tile(look, number, surface, level - 1, child))
             });
             DisplayTile::coarser(children.each_ref().map(|child| child.as_deref()), &outside)
         });

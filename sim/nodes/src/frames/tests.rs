@@ -6,6 +6,7 @@ use maulstick_bus::bus::Answer;
 use maulstick_bus::{Class, Faults, MemoryNet};
 use maulstick_types::decode;
 
+use maulstick_paint::look::Look;
 use maulstick_paint::relief::Relief;
 
 use super::*;
@@ -28,11 +29,11 @@ fn rig() -> Rig {
 fn rig_of(cells: [u32; 2]) -> Rig {
     let net = MemoryNet::new(1, 0, Faults::default());
     let feed = Feed::new();
-    let studio = Studio::daylight();
+    let look = Look::new(maulstick_optics::Studio::daylight());
     {
         let mut fed = feed.lock();
         let bare = Arc::new(Bare {
-            ground: vec![0.95; studio.wavelengths()],
+            ground: vec![0.95; look.studio.wavelengths()],
             relief: Arc::new(Relief::flat(2.5e-4)),
             wells: Vec::new(),
         });
@@ -43,7 +44,7 @@ fn rig_of(cells: [u32; 2]) -> Rig {
             tiles: BTreeMap::new(),
         };
         fed.surfaces.insert(0, surface);
-        fed.studio = Some(Arc::new(studio));
+        fed.look = Some(Arc::new(look));
     }
     let bus: Arc<dyn Bus> = Arc::new(net.bus());
     let server = FrameServer::new(bus, "frame", feed.clone(), &Wake::new(), ME).expect("one");

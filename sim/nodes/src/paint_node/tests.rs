@@ -5,7 +5,7 @@
 use maulstick_brush::BrushModel;
 use maulstick_bus::bus::Answer;
 use maulstick_bus::{Faults, MemoryNet};
-use maulstick_optics::PaintLibrary;
+use maulstick_optics::{PaintLibrary, Under};
 use maulstick_paint::PaintingSetup;
 use maulstick_paint::display::DisplayTile;
 use maulstick_types::command::Command;
@@ -97,11 +97,12 @@ fn the_frames_know_a_paint_as_soon_as_a_tile_has_it() {
     node.feed.lock().wanted = true;
     node.hand_over(2_000_000_000);
     let fed = node.feed.lock();
-    let studio = fed.studio.as_ref().expect("optics");
+    let look = fed.look.as_ref().expect("a look");
     let surface = &fed.surfaces[&CANVAS];
     let painted = surface.tiles.values().filter_map(|(_, tile)| tile.as_ref());
     // Shading a paint that the studio does not have is out of bounds.
-    let shown = painted.map(|tile| DisplayTile::of(Some(tile), studio, &surface.bare.ground));
+    let shown =
+        painted.map(|tile| DisplayTile::of(Some(tile), look, Under::Even(&surface.bare.ground)));
     assert!(shown.count() > 0, "nothing was painted");
 }
 

@@ -16,6 +16,9 @@ mod select;
 mod training;
 mod weights;
 
+use std::collections::VecDeque;
+use std::sync::{Mutex, PoisonError};
+
 use crate::cie::{Illuminant, Observer};
 use crate::paints::Paint;
 use crate::rule::SamplingRule;
@@ -37,14 +40,52 @@ struct Target {
     weight: f64,
 }
 
-/// The rule of `n` wavelengths for `paints` under `light`.
+/// A fit that was done, by what it was done for.
+struct Done {
+    n: usize,
+    observer: Observer,
+    light: Illuminant,
+    paints: Vec<Paint>,
+    rule: SamplingRule,
+}
+
+/// Rules that are remembered: a painter goes back and forth between a few lights.
+const REMEMBERED: usize = 8;
+
+/// As [`fit`], from memory where the same was asked for before.
 #[must_use]
-pub(crate) fn fit(
+pub(crate) fn fit_once(
     n: usize,
     observer: Observer,
     light: &Illuminant,
     paints: &[Paint],
 ) -> SamplingRule {
+    static MEMORY: Mutex<VecDeque<Done>> = Mutex::new(VecDeque::new());
+    let mut memory = MEMORY.lock().unwrap_or_else(PoisonError::into_inner);
+    let same = |done: &&Done| {
+        (done.n, done.observer) == (n, observer) && done.light == *light && done.paints == paints
+    };
+    if let Some(done) = memory.iter().find(same) {
+        return done.rule.clone();
+    }
+    let rule = fit(n, observer, light, paints);
+    if memory.len() >= REMEMBERED {
+        memory.pop_front();
+    }
+    let (light, paints) = (light.clone(), paints.to_vec());
+    memory.push_back(Done {
+        n,
+        observer,
+        light,
+        paints,
+        rule: rule.clone(),
+    });
+    rule
+}
+
+/// The rule of `n` wavelengths for `paints` under `light`.
+#[must_use]
+fn fit(n: usize, observer: Observer, light: &Illuminant, paints: &[Paint]) -> SamplingRule {
     let white = light.xyz(observer, &Spectrum::flat(1.0));
     let full = SamplingRule::reference(observer, light);
     let mut targets: Vec<Target> = training::reflectances(paints)

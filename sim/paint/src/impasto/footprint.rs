@@ -123,7 +123,7 @@ impl Footprint {
         let most = self.wet.iter().copied().fold(0.0, f32::max);
         step.window.note_top(most);
         let loose = traits.lift * (1.0 - step.sweep.to.press);
-        let top = most * traits.cells_per_quantum;
+        let top = (most + step.window.dry_top()) * traits.cells_per_quantum;
         let film = step.load.thickest() as f32 * traits.film_cells_per_quantum;
         self.draw_skin(
             step,

@@ -6,6 +6,7 @@ use super::Painting;
 use crate::ledger::{LedgerReport, Stocks, Tallies, balance};
 use crate::quantum::{add, quantum_m3};
 use crate::store::TileStore;
+use crate::tile::{TILE_CELLS, Tile};
 
 impl Painting {
     /// Bytes that the tiles take.
@@ -23,6 +24,7 @@ impl Painting {
         }
         let mut covered_cells = 0;
         for sheet in &self.sheets {
+            add(&mut stocks.dry, &sheet.store.dry_counts());
             match sheet.id {
                 CANVAS => {
                     add(&mut stocks.canvas, &sheet.store.counts());
@@ -55,17 +57,16 @@ impl Painting {
     }
 }
 
-/// Cells with paint.
+/// Cells with paint, wet or dry.
 fn covered(store: &TileStore) -> u64 {
-    let mut count = 0;
-    for tile in store
+    let tiles = store
         .iter()
-        .filter_map(|(_, version)| version.tile.as_ref())
-    {
-        let cells = tile.wet().first().map_or(0, |(_, plane)| plane.len());
-        count += (0..cells)
-            .filter(|cell| tile.wet().iter().any(|(_, plane)| plane[*cell] > 0.0))
-            .count() as u64;
-    }
-    count
+        .filter_map(|(_, version)| version.tile.as_ref());
+    let painted = |tile: &Tile, cell: usize| {
+        let dry = tile.dry().is_some_and(|stack| stack.height()[cell] > 0.0);
+        dry || tile.wet().iter().any(|(_, plane)| plane[cell] > 0.0)
+    };
+    tiles
+        .map(|tile| (0..TILE_CELLS).filter(|cell| painted(tile, *cell)).count() as u64)
+        .sum()
 }

@@ -1,8 +1,11 @@
 //! What brushes take up and lose: slots of paints, loads, cleaning, the loads of a take.
 
-use maulstick_types::Mixture;
-use maulstick_types::scene::{PaintSlot, Scene, Tuning};
+use std::sync::Arc;
 
+use maulstick_types::Mixture;
+use maulstick_types::scene::{Scene, Tuning};
+
+use super::lighting::paint_slot;
 use super::{PaintRefusal, Painting};
 use crate::load::{Half, by_slot};
 use crate::model::BrushTraits;
@@ -35,28 +38,12 @@ impl Painting {
             ));
         }
         for paint in new {
-            let slot = self.studio.add(paint);
-            let black = vec![0.0; self.studio.wavelengths()];
-            let opaque = |films: &[(usize, f64)]| {
-                self.studio
-                    .colour(films, &black)
-                    .map(|channel| channel as f32)
-            };
-            // A tint is one part in ten of the strongest white's scattering.
-            let masstone = opaque(&[(slot, 0.01)]);
-            let white = self.studio.sample(&maulstick_optics::Spectrum::flat(0.9));
-            let tint = self
-                .studio
-                .colour(&[(slot, 1e-5)], &white)
-                .map(|channel| channel as f32);
-            let file_hash = self.library.hash();
-            let name = paint.name.clone();
-            self.scene.paints.push(PaintSlot {
-                name,
-                masstone,
-                tint,
-                file_hash,
-            });
+            let look = Arc::make_mut(&mut self.look);
+            let slot = paint_slot(&mut look.studio, paint, self.library.hash());
+            if paint.is_thinner() {
+                look.thinner = Some(self.scene.paints.len());
+            }
+            self.scene.paints.push(slot);
             self.scene.version += 1;
         }
         let find = |name: &str| {

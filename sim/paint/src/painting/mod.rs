@@ -1,6 +1,8 @@
 //! The painting: surfaces, brushes, books. It does what it is told, in the order that it is told.
 
 mod books;
+mod layers;
+mod lighting;
 mod loads;
 mod strokes;
 mod undo;
@@ -20,7 +22,9 @@ use crate::bare::{Bare, CLEANER_RGB, WellLook, well_colour};
 use crate::history::History;
 use crate::impasto::Impasto;
 use crate::ledger::Ledger;
+use crate::light::studio_settings;
 use crate::load::BrushLoad;
+use crate::look::Look;
 use crate::model::{BrushTraits, PaintModel};
 use crate::path::PathStepper;
 use crate::relief::Relief;
@@ -90,7 +94,7 @@ struct BrushTrack {
 pub struct Painting {
     scene: Scene,
     library: PaintLibrary,
-    studio: Studio,
+    look: Arc<Look>,
     sheets: Vec<Sheet>,
     brushes: BTreeMap<String, BrushTrack>,
     model: Box<dyn PaintModel>,
@@ -110,21 +114,22 @@ impl Painting {
     pub fn new(setup: &PaintingSetup, library: PaintLibrary) -> Result<Self, PaintRefusal> {
         setup.check(&library)?;
         let scene = setup.scene();
-        let studio = Studio::daylight();
+        let settings = studio_settings(&scene.light)?;
+        let studio = Studio::new(&settings, library.paints());
         let mut sheets = Vec::new();
         for surface in &scene.surfaces {
             sheets.push(Sheet {
                 id: surface.id,
                 cell_m: surface.cell_m,
                 store: TileStore::new(surface.cells),
-                bare: Arc::new(bare(surface, &studio, &library)?),
+                bare: Arc::new(bare(surface, &studio, &library, None)?),
                 top: 0.0,
             });
         }
-        Ok(Self {
+        let mut painting = Self {
             scene,
             library,
-            studio,
+            look: Arc::new(Look::new(studio)),
             sheets,
             brushes: BTreeMap::new(),
             model: Box::new(Impasto::default()),
@@ -134,7 +139,11 @@ impl Painting {
             steps: 0,
             footprint_cells: 0,
             span_ns: None,
-        })
+        };
+        if setup.exposure.is_none() {
+            painting.expose();
+        }
+        Ok(painting)
     }
 
     /// The desk.
@@ -149,10 +158,10 @@ impl Painting {
         &self.library
     }
 
-    /// The optics of the paints in use.
+    /// How its paint becomes colour.
     #[must_use]
-    pub fn studio(&self) -> &Studio {
-        &self.studio
+    pub fn look(&self) -> &Arc<Look> {
+        &self.look
     }
 
     /// A surface without what was painted on it.
@@ -278,8 +287,13 @@ impl Painting {
     }
 }
 
-/// A surface before anything is painted on it.
-fn bare(surface: &Surface, studio: &Studio, library: &PaintLibrary) -> Result<Bare, PaintRefusal> {
+/// A surface before anything is painted on it; `relief` is that of before, if it is known.
+fn bare(
+    surface: &Surface,
+    studio: &Studio,
+    library: &PaintLibrary,
+    relief: Option<Arc<Relief>>,
+) -> Result<Bare, PaintRefusal> {
     let ground = studio.sample(&ground_reflectance(&surface.ground)?);
     let tooth = tooth_called(&surface.tooth, surface.tooth_seed, surface.cell_m)?;
     let mut wells = Vec::new();
@@ -311,7 +325,7 @@ fn bare(surface: &Surface, studio: &Studio, library: &PaintLibrary) -> Result<Ba
     }
     Ok(Bare {
         ground,
-        relief: Arc::new(Relief::new(tooth, surface.cell_m)),
+        relief: relief.unwrap_or_else(|| Arc::new(Relief::new(tooth, surface.cell_m))),
         wells,
     })
 }

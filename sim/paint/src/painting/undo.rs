@@ -15,6 +15,7 @@ impl Painting {
         Rest {
             loads: loads.collect(),
             ledger: self.ledger.clone(),
+            layers: self.scene.layers.clone(),
         }
     }
 
@@ -79,6 +80,10 @@ impl Painting {
             }
         }
         self.ledger = step.rest.ledger;
+        if self.scene.layers != step.rest.layers {
+            self.scene.layers = step.rest.layers;
+            self.layers_changed();
+        }
         UndoStep {
             what: step.what,
             tiles,

@@ -1,0 +1,174 @@
+//! `maulstick light`: the lamp over a running rig.
+
+use clap::Args;
+use indicatif::{ProgressBar, ProgressStyle};
+use maulstick_bus::Class;
+use maulstick_rig::Fault;
+use maulstick_types::command::Command;
+use maulstick_types::paint::PaintStatus;
+use maulstick_types::scene::{Light, Scene};
+use serde_json::json;
+
+use crate::commands::print_json;
+use crate::commands::session::{Feed, PAINT, Session, Target};
+use crate::performance::illuminant;
+
+/// Options of `maulstick light`; what is not given stays as it is.
+#[derive(Args, Clone, Debug)]
+pub struct LightOptions {
+    /// Its spectrum: A, D50, D65, FL2, FL8, FL11, or a CSV file of nm,power
+    #[arg(long, value_name = "NAME|FILE")]
+    illuminant: Option<String>,
+    /// Toward the lamp: right, up the canvas, out of it
+    #[arg(
+        long,
+        value_name = "X,Y,Z",
+        value_delimiter = ',',
+        num_args = 3,
+        allow_hyphen_values = true
+    )]
+    direction: Option<Vec<f64>>,
+    /// Factor on its strength
+    #[arg(long, allow_negative_numbers = true)]
+    intensity: Option<f64>,
+    /// Factor of the eye that looks at it
+    #[arg(long, allow_negative_numbers = true)]
+    exposure: Option<f64>,
+    /// Factor on the slopes of the relief
+    #[arg(long, allow_negative_numbers = true)]
+    relief: Option<f64>,
+    /// Tangent of half the angle under which the lamp is seen: how soft shadows are
+    #[arg(long, allow_negative_numbers = true)]
+    softness: Option<f64>,
+    /// CIE observer
+    #[arg(long, value_name = "1931|1964")]
+    observer: Option<u32>,
+    /// Sampling rule: fitted, gauss, reference
+    #[arg(long)]
+    rule: Option<String>,
+    /// Wavelengths of the rule, 4 to 16
+    #[arg(long)]
+    samples: Option<u32>,
+    /// Whether the eye is adapted to the light's white
+    #[arg(long, value_name = "true|false")]
+    adapt: Option<bool>,
+    /// Prints the light as JSON
+    #[arg(long)]
+    json: bool,
+    #[command(flatten)]
+    target: Target,
+}
+
+impl LightOptions {
+    /// The light after what was asked for.
+    fn on(&self, light: &Light) -> Result<Light, Fault> {
+        let mut light = light.clone();
+        if let Some(name) = &self.illuminant {
+            let found = illuminant(name)?;
+            let known = maulstick_optics::Illuminant::named(&found.name);
+            light.spectrum = match known.as_ref() == Some(&found) {
+                true => Vec::new(),
+                false => found.power.0.to_vec(),
+            };
+            light.illuminant = found.name;
+        }
+        if let Some([x, y, z]) = self.direction.as_deref() {
+            light.direction = [*x, *y, *z];
+        }
+        let set = |to: &mut f64, value: Option<f64>| *to = value.unwrap_or(*to);
+        set(&mut light.intensity, self.intensity);
+        set(&mut light.exposure, self.exposure);
+        set(&mut light.relief, self.relief);
+        set(&mut light.softness, self.softness);
+        light.observer = self.observer.unwrap_or(light.observer);
+        light.samples = self.samples.unwrap_or(light.samples);
+        light.adapted = self.adapt.unwrap_or(light.adapted);
+        if let Some(rule) = &self.rule {
+            light.rule.clone_from(rule);
+        }
+        light.check().map_err(Fault::usage)?;
+        Ok(light)
+    }
+}
+
+/// Changes the light and waits until what has dried is computed anew; without changes it only tells.
+///
+/// # Errors
+/// A [`Fault`] for a light that is none, or where no rig runs.
+pub fn run(options: &LightOptions) -> Result<i32, Fault> {
+    // What is wrong in itself is told also where no rig runs.
+    options.on(&Light::default())?;
+    let session = Session::open(&options.target)?;
+    let mut scenes: Feed<Scene> = session.follow(&session.topics().scene(), Class::Cached)?;
+    let before = scenes.next()?.message.light;
+    let light = options.on(&before)?;
+    if light != before {
+        let mut statuses = session.follow(&session.topics().paint_status(), Class::Background)?;
+        session.send(
+            PAINT,
+            Command::Relight {
+                light: light.clone(),
+            },
+        )?;
+        wait_for_baking(&mut statuses, session.now_ns())?;
+    }
+    tell(&light, options)
+}
+
+/// Shows how far the dry layers are.
+fn wait_for_baking(statuses: &mut Feed<PaintStatus>, since_ns: u64) -> Result<(), Fault> {
+    let bar = ProgressBar::new(0).with_message("relighting");
+    if let Ok(style) = ProgressStyle::with_template("{msg} {bar:40} {pos}/{len} tiles, {eta} left")
+    {
+        bar.set_style(style);
+    }
+    loop {
+        let status = statuses.next()?;
+        if status.header.sent_ns < since_ns {
+            continue;
+        }
+        let PaintStatus { baking, baked, .. } = status.message;
+        bar.set_length(u64::from(baking));
+        bar.set_position(u64::from(baked));
+        if baked >= baking {
+            bar.finish_and_clear();
+            return Ok(());
+        }
+    }
+}
+
+fn tell(light: &Light, options: &LightOptions) -> Result<i32, Fault> {
+    let Light {
+        direction,
+        intensity,
+        exposure,
+        relief,
+        softness,
+        samples,
+        ..
+    } = light;
+    if options.json {
+        print_json(&json!({
+            "illuminant": light.illuminant, "observer": light.observer, "adapted": light.adapted,
+            "rule": light.rule, "samples": samples, "direction": direction,
+            "intensity": intensity, "exposure": exposure, "relief": relief, "softness": softness,
+        }))?;
+        return Ok(0);
+    }
+    let [x, y, z] = direction;
+    let eye = if light.adapted {
+        "adapted"
+    } else {
+        "not adapted"
+    };
+    println!(
+        "{} from {x:.2}, {y:.2}, {z:.2}, {eye} observer of {}",
+        light.illuminant, light.observer
+    );
+    println!("intensity {intensity}, exposure {exposure:.3}, relief {relief}, softness {softness}");
+    match light.rule.as_str() {
+        "reference" => println!("all 101 wavelengths"),
+        rule => println!("{samples} wavelengths, {rule}"),
+    }
+    Ok(0)
+}

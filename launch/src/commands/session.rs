@@ -1,0 +1,126 @@
+//! A client of a running rig.
+
+use std::sync::Arc;
+use std::time::{Duration, Instant};
+
+use clap::Args;
+use maulstick_bus::typed::{Received, Receiver};
+use maulstick_bus::{Bus, BusError, Class, Dial, Queue, RigClock, RigFolder, Wake, ZenohBus};
+use maulstick_device::commander::Commander;
+use maulstick_rig::Fault;
+use maulstick_types::Message;
+use maulstick_types::command::Command;
+use maulstick_types::topics::Topics;
+
+/// Which rig a command is for.
+#[derive(Args, Clone, Debug)]
+pub struct Target {
+    /// The rig's name
+    #[arg(long, value_name = "RIG", default_value = "studio")]
+    name: String,
+}
+
+/// The node that does what concerns the painting.
+pub const PAINT: &str = "paint";
+/// How long a node has to answer.
+const PATIENCE: Duration = Duration::from_secs(10);
+
+/// A connection to a rig, closed in the end.
+#[derive(Debug)]
+pub struct Session {
+    bus: Arc<ZenohBus>,
+    topics: Topics,
+}
+
+impl Session {
+    /// Joins a rig that runs.
+    ///
+    /// # Errors
+    /// A [`Fault`] where no rig of that name runs.
+    pub fn open(target: &Target) -> Result<Self, Fault> {
+        let (folder, info) = RigFolder::join(&target.name)?;
+        let dial = Dial {
+            name: "cli".into(),
+            listen: None,
+            connect: vec![info.endpoint],
+        };
+        let bus = ZenohBus::open(&dial, RigClock::with_offset(info.clock_offset_ns))?;
+        Ok(Self {
+            bus: Arc::new(bus),
+            topics: Topics::new(folder.rig()),
+        })
+    }
+
+    /// The topics of the rig.
+    #[must_use]
+    pub fn topics(&self) -> &Topics {
+        &self.topics
+    }
+
+    /// The time in the rig, ns.
+    #[must_use]
+    pub fn now_ns(&self) -> u64 {
+        self.bus.now_ns()
+    }
+
+    /// Sends a command to a node; returns what it says.
+    ///
+    /// # Errors
+    /// A [`Fault`] in the node's own words.
+    pub fn send(&self, node: &str, command: Command) -> Result<String, Fault> {
+        let bus = Arc::clone(&self.bus) as Arc<dyn Bus>;
+        Commander::of(bus, &self.topics, node).send(command, None, PATIENCE, &|| false)
+    }
+
+    /// Follows a topic.
+    ///
+    /// # Errors
+    /// [`BusError::Topic`] as a [`Fault`].
+    pub fn follow<M: Message>(&self, topic: &str, class: Class) -> Result<Feed<M>, Fault> {
+        let wake = Wake::new();
+        let messages = Receiver::new(&*self.bus, topic, class, Queue::Ring(16), &wake)?;
+        Ok(Feed {
+            messages,
+            wake,
+            topic: topic.to_owned(),
+        })
+    }
+}
+
+impl Drop for Session {
+    fn drop(&mut self) {
+        self.bus.close();
+    }
+}
+
+/// Messages of one topic.
+#[derive(Debug)]
+pub struct Feed<M> {
+    messages: Receiver<M>,
+    wake: Wake,
+    topic: String,
+}
+
+impl<M: Message> Feed<M> {
+    /// Waits for the next message.
+    ///
+    /// # Errors
+    /// A [`Fault`] where none comes.
+    pub fn next(&mut self) -> Result<Received<M>, Fault> {
+        let give_up = Instant::now() + PATIENCE;
+        loop {
+            if let Some(received) = self.messages.newest() {
+                return Ok(received);
+            }
+            let left = give_up.saturating_duration_since(Instant::now());
+            if left.is_zero() {
+                return Err(BusError::NoAnswer {
+                    topic: self.topic.clone(),
+                    limit_ms: PATIENCE.as_millis() as u64,
+                }
+                .into());
+            }
+            self.wake.wait(left);
+        }
+    }
+}

@@ -1,0 +1,72 @@
+//! The scene's light as the optics take it.
+
+use maulstick_optics::{Illuminant, Observer, RuleKind, Spectrum, StudioSettings};
+use maulstick_types::nearest;
+use maulstick_types::scene::Light;
+
+use crate::painting::PaintRefusal;
+
+/// What the optics need to know of the light; where it comes from and how strong it is they do not.
+///
+/// # Errors
+/// [`PaintRefusal`] for a light out of bounds, or a name of no illuminant.
+pub fn studio_settings(light: &Light) -> Result<StudioSettings, PaintRefusal> {
+    light.check().map_err(|what| {
+        PaintRefusal::new(what, "`maulstick light --help` lists what a light may be")
+    })?;
+    let spectrum: Result<[f64; maulstick_optics::spectrum::SAMPLES], _> =
+        light.spectrum.as_slice().try_into();
+    let illuminant = match spectrum {
+        Ok(power) => Illuminant {
+            name: light.illuminant.clone(),
+            power: Spectrum(power),
+        },
+        Err(_) => illuminant_named(&light.illuminant)?,
+    };
+    Ok(StudioSettings {
+        light: illuminant,
+        observer: match light.observer {
+            1964 => Observer::Cie1964,
+            _ => Observer::Cie1931,
+        },
+        rule: RuleKind::named(&light.rule).unwrap_or_default(),
+        samples: light.samples as usize,
+        adapted: light.adapted,
+    })
+}
+
+/// One of the CIE's illuminants.
+///
+/// # Errors
+/// [`PaintRefusal`] with the nearest name and all of them.
+pub fn illuminant_named(name: &str) -> Result<Illuminant, PaintRefusal> {
+    let names = maulstick_optics::cie::ILLUMINANTS;
+    Illuminant::named(name).ok_or_else(|| {
+        let like = nearest(name, names).unwrap_or_default();
+        PaintRefusal::new(
+            format!("there is no illuminant called '{name}'"),
+            &format!(
+                "did you mean '{like}'? There are {}, and any spectrum from a CSV file",
+                names.join(", ")
+            ),
+        )
+    })
+}
+
+/// Whether two lights differ in what the optics need, so that all colours are to be computed anew.
+#[must_use]
+pub fn changes_colour(one: &Light, other: &Light) -> bool {
+    let spectral = |light: &Light| {
+        let Light {
+            illuminant,
+            spectrum,
+            observer,
+            rule,
+            samples,
+            adapted,
+            ..
+        } = light.clone();
+        (illuminant, spectrum, observer, rule, samples, adapted)
+    };
+    spectral(one) != spectral(other)
+}

@@ -1,0 +1,259 @@
+//! How a painting looks under its light: the studio, the opacity of its dry layers, and those layers
+//! baked into the reflectances of what the wet paint lies on (Baxter 2004, § 7.8).
+
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
+use maulstick_optics::{FilmPlanes, Studio, Under};
+use maulstick_types::scene::Layer;
+
+use crate::dry::{DryLayer, DryStack};
+use crate::quantum::QUANTUM_M;
+use crate::tile::{Planes, TILE_CELLS, TileId};
+
+/// Baked tiles that are kept: 256 KiB each with sixteen wavelengths.
+const KEPT: usize = 512;
+
+/// Everything that turns the paint of a tile into colour.
+#[derive(Clone, Debug)]
+pub struct Look {
+    /// The optics of the paints in use.
+    pub studio: Studio,
+    /// Slot of the thinner, if it is in use.
+    pub thinner: Option<usize>,
+    /// Factor on the optical thickness of dry layers by number, where it is not 1.
+    opacities: BTreeMap<u32, f32>,
+    generation: u64,
+}
+
+impl Look {
+    /// The first look of a painting.
+    #[must_use]
+    pub fn new(studio: Studio) -> Self {
+        Self {
+            studio,
+            thinner: None,
+            opacities: BTreeMap::new(),
+            generation: 0,
+        }
+    }
+
+    /// Grows when light or opacities change: what was baked and shown before is to be done anew.
+    #[must_use]
+    pub fn generation(&self) -> u64 {
+        self.generation
+    }
+
+    /// The look under another light; `studio` has the same paints in the same slots.
+    pub fn relight(&mut self, studio: Studio) {
+        self.studio = studio;
+        self.generation += 1;
+    }
+
+    /// Takes over the opacities of `layers`.
+    pub fn set_layers(&mut self, layers: &[Layer]) {
+        let changed = layers.iter().filter(|layer| layer.opacity != 1.0);
+        let opacities = changed.map(|layer| (layer.number, layer.opacity)).collect();
+        if self.opacities != opacities {
+            self.opacities = opacities;
+            self.generation += 1;
+        }
+    }
+
+    /// Internal reflectances over `under` with one more dry layer.
+    fn with_layer(&self, layer: &DryLayer, under: Under<'_>) -> Vec<f32> {
+        let films = thickness(&layer.planes);
+        let paints: Vec<(usize, &[f32])> = films
+            .iter()
+            .map(|(slot, film)| (*slot, film.as_slice()))
+            .collect();
+        let opacity = self.opacities.get(&layer.number).copied().unwrap_or(1.0);
+        self.studio.bake(
+            &FilmPlanes {
+                paints: &paints,
+                opacity,
+                under,
+            },
+            TILE_CELLS,
+        )
+    }
+
+    /// Internal reflectances of a stack over an even ground, from `baked`, those of the stack's lower
+    /// part `known`, on.
+    fn bake(
+        &self,
+        stack: &DryStack,
+        ground: &[f32],
+        known: Option<(&DryStack, &[f32])>,
+    ) -> Vec<f32> {
+        let mut above: Vec<&DryStack> = Vec::new();
+        let mut next = Some(stack);
+        let mut start = None;
+        while let Some(link) = next {
+            if let Some((stack, baked)) = known
+                && std::ptr::eq(stack, link)
+            {
+                start = Some(baked.to_vec());
+                break;
+            }
+            above.push(link);
+            next = link.below().map(|below| &**below);
+        }
+        let mut baked = start;
+        for link in above.iter().rev() {
+            let under = baked
+                .as_ref()
+                .map_or(Under::Even(ground), |planes| Under::Planes(planes));
+            baked = Some(self.with_layer(link.layer(), under));
+        }
+        baked.unwrap_or_default()
+    }
+}
+
+/// Thickness of each paint of planes of counts, m, by slot.
+#[must_use]
+pub fn thickness(planes: &Planes) -> Vec<(usize, Vec<f32>)> {
+    let film = |plane: &[f32]| plane.iter().map(|count| count * QUANTUM_M as f32).collect();
+    planes
+        .iter()
+        .map(|(slot, plane)| (*slot, film(plane)))
+        .collect()
+}
+
+/// A baked tile: of which look and which stack.
+#[derive(Debug)]
+struct Baked {
+    generation: u64,
+    stack: Arc<DryStack>,
+    planes: Arc<[f32]>,
+}
+
+/// Baked tiles, kept for the next time that they are looked at.
+#[derive(Debug, Default)]
+pub struct Bakery {
+    kept: BTreeMap<(u32, TileId), Baked>,
+}
+
+impl Bakery {
+    /// Whether a tile of a surface need not be baked.
+    #[must_use]
+    pub fn holds(&self, look: &Look, surface: u32, id: TileId, stack: &Arc<DryStack>) -> bool {
+        self.kept.get(&(surface, id)).is_some_and(|kept| {
+            kept.generation == look.generation && Arc::ptr_eq(&kept.stack, stack)
+        })
+    }
+
+    /// Internal reflectances of what has dried on a tile, a plane a wavelength, over `ground`. Of a
+    /// stack that only grew since, just the new layers are computed.
+    pub fn planes(
+        &mut self,
+        look: &Look,
+        surface: u32,
+        id: TileId,
+        (stack, ground): (&Arc<DryStack>, &[f32]),
+    ) -> Arc<[f32]> {
+        let place = (surface, id);
+        let kept = self
+            .kept
+            .get(&place)
+            .filter(|kept| kept.generation == look.generation);
+        if let Some(kept) = kept
+            && Arc::ptr_eq(&kept.stack, stack)
+        {
+            return Arc::clone(&kept.planes);
+        }
+        let known = kept.map(|kept| (&*kept.stack, &*kept.planes));
+        let planes: Arc<[f32]> = look.bake(stack, ground, known).into();
+        if self.kept.len() >= KEPT && !self.kept.contains_key(&place) {
+            self.kept.pop_first();
+        }
+        let baked = Baked {
+            generation: look.generation,
+            stack: Arc::clone(stack),
+            planes: Arc::clone(&planes),
+        };
+        self.kept.insert(place, baked);
+        planes
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use maulstick_optics::PaintLibrary;
+
+    use super::*;
+
+    fn look() -> Look {
+        let library = PaintLibrary::measured().expect("whole");
+        let mut studio = Studio::daylight();
+        studio.add(library.find("Ultramarine Blue").expect("known"));
+        studio.add(library.find("Hansa Yellow Opaque").expect("known"));
+        Look::new(studio)
+    }
+
+    fn layer(number: u32, slot: usize, quanta: usize) -> DryLayer {
+        let plane: Arc<[f32]> = (0..TILE_CELLS).map(|i| (i % 5 * quanta) as f32).collect();
+        DryLayer {
+            number,
+            planes: vec![(slot, plane)],
+        }
+    }
+
+    #[test]
+    fn a_stack_that_grew_is_baked_as_one_that_is_baked_anew() {
+        let look = look();
+        let ground = vec![0.9; look.studio.wavelengths()];
+        let id = TileId { x: 0, y: 0 };
+        let first = DryStack::over(None, layer(1, 0, 9000));
+        let second = DryStack::over(Some(Arc::clone(&first)), layer(2, 1, 4000));
+        let mut grown = Bakery::default();
+        grown.planes(&look, 0, id, (&first, &ground));
+        assert!(!grown.holds(&look, 0, id, &second));
+        let one = grown.planes(&look, 0, id, (&second, &ground));
+        let two = Bakery::default().planes(&look, 0, id, (&second, &ground));
+        assert!(one == two && grown.holds(&look, 0, id, &second));
+        // Back to the older stack, as an undo goes.
+        let back = grown.planes(&look, 0, id, (&first, &ground));
+        assert!(back == Bakery::default().planes(&look, 0, id, (&first, &ground)));
+        assert!(back != one);
+    }
+
+    #[test]
+    fn opacity_scales_the_optical_thickness_and_is_baked_anew() {
+        let mut look = look();
+        let ground = vec![0.9; look.studio.wavelengths()];
+        let id = TileId { x: 0, y: 0 };
+        let stack = DryStack::over(None, layer(7, 0, 8000));
+        let mut bakery = Bakery::default();
+        let full = bakery.planes(&look, 0, id, (&stack, &ground));
+        let set = |look: &mut Look, opacity: f32| {
+            look.set_layers(&[Layer {
+                number: 7,
+                name: String::new(),
+                opacity,
+            }]);
+        };
+        set(&mut look, 0.5);
+        assert!(!bakery.holds(&look, 0, id, &stack));
+        let half = bakery.planes(&look, 0, id, (&stack, &ground));
+        let thinner = DryStack::over(None, layer(7, 0, 4000));
+        set(&mut look, 1.0);
+        let same = Bakery::default().planes(&look, 0, id, (&thinner, &ground));
+        assert!(
+            half.iter()
+                .zip(same.iter())
+                .all(|(a, b)| (a - b).abs() < 1e-6)
+        );
+        assert!(
+            half.iter()
+                .zip(full.iter())
+                .any(|(a, b)| (a - b).abs() > 1e-2)
+        );
+        set(&mut look, 0.0);
+        let none = bakery.planes(&look, 0, id, (&stack, &ground));
+        assert!(
+            none.iter().all(|r| (r - 0.9).abs() < 1e-6),
+            "the ground shows"
+        );
+    }
+}

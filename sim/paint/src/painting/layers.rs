@@ -1,0 +1,112 @@
+//! Drying, and what becomes of dry layers.
+
+use std::sync::Arc;
+
+use maulstick_types::scene::Layer;
+
+use super::{PaintRefusal, Painting};
+use crate::tile::{TileId, Version};
+
+impl Painting {
+    /// Dries the lower `share` of all wet paint of a surface into a new layer called `name`, and says
+    /// which.
+    ///
+    /// # Errors
+    /// [`PaintRefusal`] for an unknown surface, or where nothing is wet.
+    pub fn dry(&mut self, surface: u32, share: f32, name: &str) -> Result<String, PaintRefusal> {
+        self.close_windows();
+        let number = 1 + self.scene.layers.last().map_or(0, |layer| layer.number);
+        let unknown = || {
+            let what = format!("there is no surface {surface}");
+            PaintRefusal::new(what, "the canvas is 0, the palette 1")
+        };
+        let place = self
+            .sheets
+            .iter()
+            .position(|sheet| sheet.id == surface)
+            .ok_or_else(unknown)?;
+        let store = &self.sheets[place].store;
+        let dried = store.iter().filter_map(|(id, version)| {
+            let tile = version.tile.as_ref()?.dried(number, share)?;
+            Some((id, Arc::new(tile)))
+        });
+        let dried: Vec<(TileId, Arc<_>)> = dried.collect();
+        if dried.is_empty() {
+            return Err(PaintRefusal::new(
+                "nothing is wet".to_owned(),
+                "paint something first",
+            ));
+        }
+        self.begin_step("dry");
+        for (id, tile) in dried {
+            self.versions += 1;
+            let sheet = &mut self.sheets[place];
+            let dry = tile.dry().map_or(0.0, |stack| {
+                stack.height().iter().copied().fold(0.0, f32::max)
+            });
+            let wet = tile
+                .wet()
+                .iter()
+                .flat_map(|(_, plane)| plane.iter())
+                .copied();
+            sheet.top = sheet
+                .top
+                .max(dry + wet.fold(0.0, f32::max) * tile.wet().len() as f32);
+            let version = Version {
+                number: self.versions,
+                tile: Some(tile),
+            };
+            self.history
+                .replaced((surface, id), sheet.store.replace(id, version));
+        }
+        let name = if name.is_empty() {
+            format!("layer {number}")
+        } else {
+            name.to_owned()
+        };
+        let layer = Layer {
+            number,
+            name: name.clone(),
+            opacity: 1.0,
+        };
+        self.scene.layers.push(layer);
+        self.scene.version += 1;
+        self.history.end();
+        Ok(name)
+    }
+
+    /// Makes a dry layer more or less opaque: a factor on its optical thickness, never on its height.
+    ///
+    /// # Errors
+    /// [`PaintRefusal`] for an unknown layer.
+    pub fn set_opacity(&mut self, layer: u32, opacity: f32) -> Result<(), PaintRefusal> {
+        let layers = &self.scene.layers;
+        let Some(place) = layers.iter().position(|other| other.number == layer) else {
+            let known: Vec<String> = layers
+                .iter()
+                .map(|layer| format!("{} ({})", layer.number, layer.name))
+                .collect();
+            let help = match known.is_empty() {
+                true => "nothing has dried yet: `maulstick dry` makes a layer".to_owned(),
+                false => format!("there are {}", known.join(", ")),
+            };
+            return Err(PaintRefusal::new(
+                format!("there is no dry layer {layer}"),
+                &help,
+            ));
+        };
+        self.begin_step("opacity");
+        self.scene.layers[place].opacity = opacity;
+        self.layers_changed();
+        self.history.end();
+        Ok(())
+    }
+
+    /// Tells the look and all who follow the scene.
+    pub(super) fn layers_changed(&mut self) {
+        let mut look = (*self.look).clone();
+        look.set_layers(&self.scene.layers);
+        self.look = Arc::new(look);
+        self.scene.version += 1;
+    }
+}

@@ -1,0 +1,78 @@
+//! The light over a painting.
+
+use std::sync::Arc;
+
+use maulstick_optics::Studio;
+use maulstick_types::scene::{CANVAS, Light, PaintSlot};
+
+use super::{PaintRefusal, Painting, bare};
+use crate::light::{changes_colour, studio_settings};
+
+/// Thickness of an opaque layer, m.
+const OPAQUE_M: f64 = 0.01;
+
+impl Painting {
+    /// Changes the light. Where its spectrum, or how it becomes colour, is another, what has dried is
+    /// baked anew by whoever looks at it, tile by tile.
+    ///
+    /// # Errors
+    /// [`PaintRefusal`] for a light that is none.
+    pub fn relight(&mut self, light: &Light) -> Result<(), PaintRefusal> {
+        let settings = studio_settings(light)?;
+        if changes_colour(light, &self.scene.light) {
+            let mut studio = Studio::new(&settings, self.library.paints());
+            let mut slots = Vec::new();
+            for slot in &self.scene.paints {
+                let paint = self.library.find(&slot.name).map_err(PaintRefusal::paint)?;
+                slots.push(paint_slot(&mut studio, paint, slot.file_hash));
+            }
+            let mut bares = Vec::new();
+            for (sheet, surface) in self.sheets.iter().zip(&self.scene.surfaces) {
+                let relief = Some(Arc::clone(&sheet.bare.relief));
+                bares.push(Arc::new(bare(surface, &studio, &self.library, relief)?));
+            }
+            self.sheets
+                .iter_mut()
+                .zip(bares)
+                .for_each(|(sheet, bare)| sheet.bare = bare);
+            self.scene.paints = slots;
+            Arc::make_mut(&mut self.look).relight(studio);
+        }
+        self.scene.light = light.clone();
+        self.scene.version += 1;
+        Ok(())
+    }
+
+    /// Sets the exposure so that the bare canvas does not clip.
+    pub(super) fn expose(&mut self) {
+        let Some(sheet) = self.sheets.iter().find(|sheet| sheet.id == CANVAS) else {
+            return;
+        };
+        let rgb = self.look.studio.colour(&[], &sheet.bare.ground);
+        let light = &mut self.scene.light;
+        light.exposure = maulstick_optics::light::starting_exposure(rgb, light.intensity);
+    }
+}
+
+/// Gives a paint a slot of the studio and of the scene.
+pub(super) fn paint_slot(
+    studio: &mut Studio,
+    paint: &maulstick_optics::Paint,
+    file_hash: u32,
+) -> PaintSlot {
+    let slot = studio.add(paint);
+    let seen = |films: &[(usize, f64)], ground: f64| {
+        let ground = studio.sample(&maulstick_optics::Spectrum::flat(ground));
+        studio.colour(films, &ground).map(|channel| channel as f32)
+    };
+    PaintSlot {
+        name: paint.name.clone(),
+        masstone: seen(
+            &[(slot, OPAQUE_M)],
+            if paint.is_thinner() { 1.0 } else { 0.0 },
+        ),
+        // A tint is one part in ten of the strongest white's scattering.
+        tint: seen(&[(slot, 1e-5)], 0.9),
+        file_hash,
+    }
+}
