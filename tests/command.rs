@@ -2,23 +2,7 @@
 
 mod support;
 
-use support::Place;
-
-/// Runs a command that must fail with `code`, and returns what it says.
-fn fault(place: &Place, args: &[&str], code: i32) -> String {
-    let output = place.run(args);
-    let said = String::from_utf8_lossy(&output.stderr).into_owned();
-    assert_eq!(output.status.code(), Some(code), "{args:?}: {said}");
-    assert!(said.starts_with("error: "), "{args:?}: {said}");
-    assert!(!said.contains("panicked"), "{said}");
-    said
-}
-
-fn has(said: &str, words: &[&str]) {
-    for word in words {
-        assert!(said.contains(word), "'{word}' is missing in: {said}");
-    }
-}
+use support::{Place, fault, has};
 
 #[test]
 fn a_demo_becomes_a_picture_the_same_every_time() {

@@ -10,7 +10,14 @@ use support::{Launcher, Place, assert_same, hear, listen};
 /// A rig in which a short demo has been painted.
 fn painted(place: &Place) -> Launcher {
     place.short_demo("demo.mcap", 3.0);
-    let args = ["--play", "demo.mcap", "--rate", "max", "--load", "Ultramarine Blue"];
+    let args = [
+        "--play",
+        "demo.mcap",
+        "--rate",
+        "max",
+        "--load",
+        "Ultramarine Blue",
+    ];
     let launcher = Launcher::up(place, &args);
     let there = support::wait_for(support::PATIENCE, || {
         (support::on_canvas(place) > 0.0).then_some(())
@@ -32,22 +39,37 @@ fn a_painting_dries_and_is_seen_under_another_light() {
     let mut statuses = listen::<PaintStatus>(&bus, &topics.paint_status(), Class::Background);
     assert_eq!(says(&place, &["dry", "--layer", "sky"]), "dried: sky\n");
     let dried = hear(&mut scenes, |scene| !scene.layers.is_empty()).expect("a layer");
-    assert_eq!((dried.layers[0].name.as_str(), dried.layers[0].number), ("sky", 1));
+    assert_eq!(
+        (dried.layers[0].name.as_str(), dried.layers[0].number),
+        ("sky", 1)
+    );
     place.done(&["snapshot", "-o", "day.png", "--ledger", "l.json"]);
     let ledger: serde_json::Value = serde_json::from_slice(&place.bytes("l.json")).expect("JSON");
     assert_eq!(ledger["quanta_missing"], 0);
     assert!(ledger["accounts_m3"]["dry"].as_f64().expect("a number") > 0.0);
 
-    let told = says(&place, &["light", "--illuminant", "A", "--adapt", "false", "--json"]);
+    let told = says(
+        &place,
+        &["light", "--illuminant", "A", "--adapt", "false", "--json"],
+    );
     let told: serde_json::Value = serde_json::from_str(&told).expect("JSON");
-    assert_eq!((told["illuminant"].as_str(), told["adapted"].as_bool()), (Some("A"), Some(false)));
-    let baked = hear(&mut statuses, |status| status.baking > 0 && status.baked == status.baking);
+    assert_eq!(
+        (told["illuminant"].as_str(), told["adapted"].as_bool()),
+        (Some("A"), Some(false))
+    );
+    let baked = hear(&mut statuses, |status| {
+        status.baking > 0 && status.baked == status.baking
+    });
     assert!(baked.is_some(), "no tile is baked: {}", launcher.said());
     place.done(&["snapshot", "-o", "lamp.png"]);
     assert!(place.bytes("day.png") != place.bytes("lamp.png"));
     place.done(&["light", "--illuminant", "D65", "--adapt", "true"]);
     place.done(&["snapshot", "-o", "again.png"]);
-    assert_same(&place.bytes("day.png"), &place.bytes("again.png"), "back under daylight");
+    assert_same(
+        &place.bytes("day.png"),
+        &place.bytes("again.png"),
+        "back under daylight",
+    );
 
     place.done(&["opacity", "1", "0.2"]);
     place.done(&["snapshot", "-o", "glaze.png"]);
@@ -71,16 +93,31 @@ fn what_a_rig_cannot_do_with_light_it_refuses_with_words() {
         }
     };
     std::fs::write(place.path("bad.csv"), "nm,power\n380,1\n400,-3\n").expect("written");
-    refused(&["light", "--illuminant", "D56"], &["'D56'", "did you mean 'D5"]);
-    refused(&["light", "--illuminant", "bad.csv"], &["bad.csv:3", "column 2", "-3"]);
-    refused(&["light", "--illuminant", "none.csv"], &["none.csv", "check the path"]);
+    refused(
+        &["light", "--illuminant", "D56"],
+        &["'D56'", "did you mean 'D5"],
+    );
+    refused(
+        &["light", "--illuminant", "bad.csv"],
+        &["bad.csv:3", "column 2", "-3"],
+    );
+    refused(
+        &["light", "--illuminant", "none.csv"],
+        &["none.csv", "check the path"],
+    );
     refused(&["light", "--samples", "3"], &["3 samples", "4 to 16"]);
-    refused(&["light", "--rule", "simpson"], &["gauss, fitted, reference"]);
+    refused(
+        &["light", "--rule", "simpson"],
+        &["gauss, fitted, reference"],
+    );
     refused(&["light", "--intensity", "-1"], &["intensity", "-1"]);
     refused(&["light", "--direction", "0,0,-1"], &["z > 0"]);
     refused(&["dry"], &["nothing is wet"]);
     refused(&["dry", "--share", "0"], &["share"]);
-    refused(&["opacity", "3", "0.5"], &["no dry layer 3", "maulstick dry"]);
+    refused(
+        &["opacity", "3", "0.5"],
+        &["no dry layer 3", "maulstick dry"],
+    );
     refused(&["opacity", "3", "1.5"], &["1.5", "0 to 1"]);
     refused(&["load", "Colbat Blue"], &["did you mean 'Cobalt Blue'"]);
     std::fs::write(place.path("mine.csv"), "nm,power\n380,1\n780,2\n").expect("written");

@@ -4,7 +4,8 @@ use clap::{Parser, Subcommand};
 use maulstick_rig::Fault;
 
 use crate::commands::{
-    bench, brush, control, demo, endpoint, import, layers, light, paints, render, schema, take,
+    bench, brush, control, demo, endpoint, import, layers, light, matching, mix, paints, render,
+    schema, take,
 };
 use crate::up;
 
@@ -56,6 +57,10 @@ enum Command {
     Brush(brush::BrushCommand),
     /// Lists the paints
     Paints(paints::PaintsOptions),
+    /// Mixes paints and shows their colour
+    Mix(mix::MixOptions),
+    /// Proposes mixtures for a colour
+    Match(matching::MatchOptions),
     /// Measures, beside peers
     Bench(bench::BenchOptions),
 }
@@ -84,6 +89,8 @@ pub fn run() -> Result<i32, Fault> {
         Command::Schema(options) => schema::run(&options),
         Command::Brush(command) => brush::run(&command),
         Command::Paints(options) => paints::run(&options),
+        Command::Mix(options) => mix::run(&options),
+        Command::Match(options) => matching::run(&options),
         Command::Bench(options) => bench::run(&options),
     }
 }

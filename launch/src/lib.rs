@@ -6,15 +6,23 @@
 //! | [`commands`] | what its subcommands do |
 //! | [`up`] | the supervisor |
 //! | [`nodes`] | the mains of the nodes |
+//! | [`page`] | pictures made of patches, pictures and words |
+//! | [`viewing`] | options of light, observer and rule |
+//! | [`swatch`] | colours in the terminal |
+//! | [`chart`] | the mixing chart, and one mixture by four ways of mixing |
 //! | [`sheet`] | the sheet of brushes and their marks |
 //! | [`performance`] | what `render` and `up --play` share: take, brush, loads, canvas |
 
+pub mod chart;
 pub mod cli;
 pub mod commands;
 pub mod nodes;
+pub mod page;
 pub mod performance;
 pub mod sheet;
+pub mod swatch;
 pub mod up;
+pub mod viewing;
 
 use maulstick_rig::Fault;
 

@@ -5,12 +5,13 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 pub use maulstick_device::brush_file;
 use maulstick_optics::{Illuminant, PaintError, PaintLibrary};
-use maulstick_paint::light::illuminant_named;
 use maulstick_paint::{PaintRefusal, PaintingSetup};
 use maulstick_rig::Fault;
 use maulstick_rig::config::{BrushSection, LightSection, RigConfig};
 use maulstick_types::Mixture;
 use maulstick_types::scene::Light;
+
+use crate::viewing::illuminant;
 
 /// Options of a painting.
 #[derive(Args, Clone, Debug, Default)]
@@ -103,18 +104,21 @@ impl PaintingOptions {
         self.load
             .iter()
             .map(|text| {
-                let at = |refusal: PaintRefusal| refused(refusal).at(format!("--load {text:?}"));
-                let mixture: Mixture = text.parse().map_err(|error| {
-                    at(PaintRefusal::paint(maulstick_optics::PaintError::Mixture(
-                        error,
-                    )))
-                })?;
-                library
-                    .check(&mixture)
-                    .map_err(|error| at(PaintRefusal::paint(error)))
+                mixture_of(text, library).map_err(|fault| fault.at(format!("--load {text:?}")))
             })
             .collect()
     }
+}
+
+/// A mixture of a library's paints, their names spelt as the library does.
+///
+/// # Errors
+/// A [`Fault`] for a bad mixture or an unknown paint, with the nearest name.
+pub fn mixture_of(text: &str, library: &PaintLibrary) -> Result<Mixture, Fault> {
+    let mixture = text.parse().map_err(PaintError::Mixture);
+    mixture
+        .and_then(|mixture: Mixture| library.check(&mixture))
+        .map_err(|error| refused(PaintRefusal::paint(error)))
 }
 
 /// A refusal of the painting as the user sees it.
@@ -131,38 +135,22 @@ pub fn library() -> Result<PaintLibrary, Fault> {
     PaintLibrary::measured().map_err(|error| Fault::failure(error.to_string()))
 }
 
-/// The paints of a file, or those that come with the program.
+/// The paints of a paint file; without one, the measured ones.
 ///
 /// # Errors
-/// A [`Fault`] where the file cannot be read, with the line that is wrong.
+/// A [`Fault`] with file and line for a file that is no paint file.
 pub fn library_from(path: Option<&Path>) -> Result<PaintLibrary, Fault> {
     let Some(path) = path else {
         return library();
     };
     let text = std::fs::read_to_string(path).map_err(|error| Fault::reading(path, &error))?;
-    PaintLibrary::parse(&text).map_err(|error| match error {
-        PaintError::File { line, what } => in_file(path, line, what),
+    // Spreadsheets begin a table with a byte order mark.
+    PaintLibrary::parse(text.trim_start_matches('\u{feff}')).map_err(|error| match error {
+        PaintError::File { line, what } => Fault::usage(what)
+            .at(format!("{}:{line}", path.display()))
+            .help("a row: paint, colour index, source, K or S, then 101 values, 380 to 780 nm"),
         other => refused(PaintRefusal::paint(other)),
     })
-}
-
-/// The spectrum of a light: a name of the CIE's or a CSV file.
-///
-/// # Errors
-/// A [`Fault`] for an unknown name, or a file that is none.
-pub fn illuminant(name: &str) -> Result<Illuminant, Fault> {
-    let path = Path::new(name);
-    let is_file = path.extension().is_some() || path.components().count() > 1;
-    if Illuminant::named(name).is_some() || !is_file {
-        return illuminant_named(name).map_err(refused);
-    }
-    let text = std::fs::read_to_string(path).map_err(|error| Fault::reading(path, &error))?;
-    let stem = path.file_stem().unwrap_or_default().to_string_lossy();
-    Illuminant::parse(&stem, &text).map_err(|error| in_file(path, error.line, error.what))
-}
-
-fn in_file(path: &Path, line: usize, what: String) -> Fault {
-    Fault::usage(what).at(format!("{}:{line}", path.display()))
 }
 
 /// The light of the rig's settings, with the spectrum of its file if it names one.

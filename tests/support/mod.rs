@@ -29,6 +29,23 @@ pub const PATIENCE: Duration = Duration::from_secs(120);
 /// The command under test.
 pub const MAULSTICK: &str = env!("CARGO_BIN_EXE_maulstick");
 
+/// Runs a command that must fail with `code`, and returns what it says.
+pub fn fault(place: &Place, args: &[&str], code: i32) -> String {
+    let output = place.run(args);
+    let said = String::from_utf8_lossy(&output.stderr).into_owned();
+    assert_eq!(output.status.code(), Some(code), "{args:?}: {said}");
+    assert!(said.starts_with("error: "), "{args:?}: {said}");
+    assert!(!said.contains("panicked"), "{said}");
+    said
+}
+
+/// Asserts that all words are said.
+pub fn has(said: &str, words: &[&str]) {
+    for word in words {
+        assert!(said.contains(word), "'{word}' is missing in: {said}");
+    }
+}
+
 /// A folder for files and one for rigs; both go when dropped.
 pub struct Place {
     folder: tempfile::TempDir,

@@ -11,7 +11,7 @@ use serde_json::json;
 
 use crate::commands::print_json;
 use crate::commands::session::{Feed, PAINT, Session, Target};
-use crate::performance::illuminant;
+use crate::viewing::illuminant;
 
 /// Options of `maulstick light`; what is not given stays as it is.
 #[derive(Args, Clone, Debug)]

@@ -8,6 +8,8 @@ pub mod endpoint;
 pub mod import;
 pub mod layers;
 pub mod light;
+pub mod matching;
+pub mod mix;
 pub mod paints;
 pub mod render;
 pub mod schema;

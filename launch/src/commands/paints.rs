@@ -1,58 +1,71 @@
 //! `maulstick paints`: the paints to choose from.
 
+use std::path::PathBuf;
+
 use clap::Args;
-use maulstick_optics::Studio;
-use maulstick_optics::colour::{clamp_chromaticity, srgb_encode};
+use maulstick_optics::{Adaptation, Blend, Coat, Illuminant, Observer, Paint};
+use maulstick_optics::{SamplingRule, Viewing};
 use maulstick_rig::Fault;
 use serde_json::json;
 
-use crate::commands::print_json;
-use crate::performance::library;
+use crate::chart::every_pair::whitest;
+use crate::commands::{print_json, print_text};
+use crate::performance::library_from;
+use crate::swatch::{Terminal, hex};
 
 /// Options of `maulstick paints`.
 #[derive(Args, Clone, Debug)]
 pub struct PaintsOptions {
+    /// A paint file instead of the measured paints
+    #[arg(long, value_name = "FILE")]
+    paints: Option<PathBuf>,
     /// As JSON
     #[arg(long)]
     json: bool,
 }
 
-/// Thickness of an opaque layer, m.
-const OPAQUE_M: f64 = 0.01;
+/// Parts of white to one part of paint.
+const TINT: f64 = 10.0;
 
-/// Lists the paints with their masstones.
+/// Lists the paints with their masstones, and their tints of one part in ten of white.
 ///
 /// # Errors
-/// None in practice.
+/// A [`Fault`] for a bad paint file.
 pub fn run(options: &PaintsOptions) -> Result<i32, Fault> {
-    let library = library()?;
-    let mut studio = Studio::daylight();
-    let black = vec![0.0; studio.wavelengths()];
-    let mut rows = Vec::new();
+    let library = library_from(options.paints.as_deref())?;
+    let (observer, light) = (Observer::default(), Illuminant::d65());
+    let rule = SamplingRule::reference(observer, &light);
+    let viewing = Viewing::new(rule, observer, &light, Adaptation::Cat16);
+    let white = whitest(&library, &viewing);
+    let look = |parts: &[(&Paint, f64)]| {
+        let seen = viewing.coat(&Blend::new(parts), &Coat::masstone());
+        seen.bytes()
+    };
+    let terminal = Terminal::of_stdout();
+    let (mut rows, mut text) = (Vec::new(), String::new());
     for paint in library.paints() {
-        let slot = studio.add(paint);
-        let linear = studio
-            .colour(&[(slot, OPAQUE_M)], &black)
-            .map(|channel| channel as f32);
-        let srgb =
-            clamp_chromaticity(linear).map(|c| (srgb_encode(f64::from(c)) * 255.0).round() as u8);
-        if options.json {
-            rows.push(json!({
-                "name": paint.name,
-                "colour_index": paint.colour_index,
-                "source": paint.source,
-                "masstone_srgb": srgb,
-            }));
-        } else {
-            let [r, g, b] = srgb;
-            println!(
-                "#{r:02x}{g:02x}{b:02x}  {:<26} {:<8} {}",
-                paint.name, paint.colour_index, paint.source
-            );
-        }
+        let (masstone, tint) = (look(&[(paint, 1.0)]), look(&[(paint, 1.0), (white, TINT)]));
+        rows.push(json!({
+            "name": paint.name,
+            "colour_index": paint.colour_index,
+            "source": paint.source,
+            "masstone_srgb": masstone,
+            "tint_srgb": tint,
+        }));
+        let blocks = [masstone, tint].map(|colour| terminal.block(colour, 6));
+        text += &format!(
+            "{}{} {}  {:<26} {:<8} {}\n",
+            blocks.concat(),
+            hex(masstone),
+            hex(tint),
+            paint.name,
+            paint.colour_index,
+            paint.source
+        );
     }
-    if options.json {
-        print_json(&json!({ "paints": rows }))?;
+    match options.json {
+        true => print_json(&json!({ "paints": rows }))?,
+        false => print_text(&text)?,
     }
     Ok(0)
 }

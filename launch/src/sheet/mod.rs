@@ -6,12 +6,10 @@
 //! | [`marks`] | the marks of a brush |
 //! | [`one_stroke`] | the six marks of a double-loaded one |
 //! | [`softening`] | what a blender does between two wet colours |
-//! | [`page`] | pictures and words |
 
 pub mod gesture;
 pub mod marks;
 pub mod one_stroke;
-pub mod page;
 pub mod softening;
 #[cfg(test)]
 mod tests;
@@ -28,7 +26,7 @@ use maulstick_types::Mixture;
 use maulstick_types::command::Command;
 
 use self::gesture::Hand;
-use self::page::Page;
+use crate::page::Page;
 use crate::performance::refused;
 
 /// Cell of the marks, mm: a pixel of the sheet.

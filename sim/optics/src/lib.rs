@@ -13,23 +13,35 @@
 //! | [`light`] | a lamp on a relief |
 //! | [`colour`] | XYZ, Lab, ΔE₀₀, sRGB |
 //! | [`paints`] | the measured paints |
+//! | [`mixture`] | what mixed paints reflect, opaque or as a film |
+//! | [`viewing`] | light, observer and rule together: the colour of a reflectance |
+//! | [`comparison`] | one graded mixture by four ways of mixing |
+//! | [`search`] | minima of functions of one and two variables |
+//! | [`matching`] | mixtures that come nearest to a colour |
 //! | [`studio`] | all of the above for the paints, ground and light of one painting |
 
 pub mod cie;
 pub mod colour;
+pub mod comparison;
 mod fitted;
 pub mod km;
 pub mod light;
+pub mod matching;
+pub mod mixture;
 pub mod paints;
 pub mod quadrature;
 pub mod rule;
+pub mod search;
 pub mod spectrum;
 pub mod spectrum_file;
 pub mod studio;
 pub mod surface;
+pub mod viewing;
 
 pub use cie::{Illuminant, Observer};
+pub use mixture::{Blend, Coat, Layer};
 pub use paints::{Paint, PaintError, PaintLibrary};
 pub use rule::SamplingRule;
 pub use spectrum::Spectrum;
 pub use studio::{FilmPlanes, RuleKind, Studio, StudioSettings, Under};
+pub use viewing::{Adaptation, Seen, Viewing};

@@ -56,6 +56,15 @@ impl Page {
         }
     }
 
+    /// Fills a rectangle, from its upper left corner, with a colour.
+    pub fn fill(&mut self, [x, y]: [usize; 2], [width, height]: [usize; 2], colour: [u8; 3]) {
+        for row in y..y + height {
+            for column in x..x + width {
+                self.mix([column, row], colour.map(f32::from), 1.0);
+            }
+        }
+    }
+
     /// Puts a brush with its upper left corner here.
     pub fn portray(&mut self, portrait: &Portrait, [x, y]: [usize; 2]) {
         for (i, pixel) in portrait.rgba.chunks_exact(4).enumerate() {
@@ -67,23 +76,54 @@ impl Page {
 
     /// Writes a line with its left end and base line here; `size` is the height of a line, pixels.
     pub fn write(&mut self, words: &str, [x, y]: [usize; 2], size: f32) {
+        self.letters(words, size, |page, along, down, cover| {
+            page.ink([x as f32 + along, y as f32 + down], cover);
+        });
+    }
+
+    /// Writes a line upward: its left end is the lowest point, its base line is on the right.
+    pub fn write_up(&mut self, words: &str, [x, y]: [usize; 2], size: f32) {
+        self.letters(words, size, |page, along, down, cover| {
+            page.ink([x as f32 + down, y as f32 - along], cover);
+        });
+    }
+
+    /// Length of a line, pixels.
+    #[must_use]
+    pub fn length(&self, words: &str, size: f32) -> usize {
+        let scaled = self.font.as_scaled(PxScale::from(size));
+        let mut last = None;
+        let mut length = 0.0;
+        for letter in words.chars() {
+            let id = scaled.glyph_id(letter);
+            length += last.map_or(0.0, |last| scaled.kern(last, id)) + scaled.h_advance(id);
+            last = Some(id);
+        }
+        length.ceil() as usize
+    }
+
+    fn ink(&mut self, [x, y]: [f32; 2], cover: f32) {
+        if x >= 0.0 && y >= 0.0 {
+            self.mix([x as usize, y as usize], INK, cover.min(1.0));
+        }
+    }
+
+    /// Draws a line's letters pixel by pixel: places along the line and down from its base line, and
+    /// how much of the pixel is covered.
+    fn letters(&mut self, words: &str, size: f32, draw: impl Fn(&mut Self, f32, f32, f32)) {
         let font = self.font.clone();
         let scaled = font.as_scaled(PxScale::from(size));
-        let mut caret = x as f32;
+        let mut caret = 0.0;
         let mut last = None;
         for letter in words.chars() {
             let id = scaled.glyph_id(letter);
             caret += last.map_or(0.0, |last| scaled.kern(last, id));
-            let place = ab_glyph::point(caret, y as f32);
-            let glyph = id.with_scale_and_position(size, place);
+            let glyph = id.with_scale_and_position(size, ab_glyph::point(caret, 0.0));
             if let Some(outline) = font.outline_glyph(glyph) {
                 let bounds = outline.px_bounds();
                 outline.draw(|dx, dy, cover| {
-                    let at = [
-                        bounds.min.x as usize + dx as usize,
-                        bounds.min.y as usize + dy as usize,
-                    ];
-                    self.mix(at, INK, cover.min(1.0));
+                    let along = bounds.min.x + dx as f32;
+                    draw(self, along, bounds.min.y + dy as f32, cover);
                 });
             }
             caret += scaled.h_advance(id);

@@ -1,0 +1,128 @@
+//! Options of light, observer and rule.
+
+use std::path::Path;
+
+use clap::{Args, ValueEnum};
+use maulstick_optics::cie::ILLUMINANTS;
+use maulstick_optics::{Adaptation, Illuminant, Observer, PaintLibrary, SamplingRule, Viewing};
+use maulstick_rig::Fault;
+
+/// How colours are looked at.
+#[derive(Args, Clone, Debug)]
+pub struct ViewingOptions {
+    /// The light: A, D50, D65, FL2, FL8, FL11, or a CSV file with the columns nm and power
+    #[arg(long, value_name = "NAME|CSV", default_value = "D65")]
+    pub illuminant: String,
+    /// The CIE observer
+    #[arg(long, value_name = "YEAR", default_value = "1931")]
+    pub observer: ObserverYear,
+    /// Which wavelengths are computed: chosen for the paints, by Gauss, or all 101
+    #[arg(long, value_name = "RULE", default_value = "fitted")]
+    pub rule: RuleName,
+    /// How many wavelengths, 4 to 16
+    #[arg(long, value_name = "N", default_value = "16", value_parser = clap::value_parser!(u8).range(4..=16))]
+    pub samples: u8,
+    /// Shows the light's own cast; otherwise the eye has adapted to it (CAT16)
+    #[arg(long)]
+    pub no_adapt: bool,
+}
+
+/// A standard observer by its year.
+#[derive(ValueEnum, Clone, Copy, Debug, PartialEq, Eq)]
+pub enum ObserverYear {
+    /// 2°
+    #[value(name = "1931")]
+    Cie1931,
+    /// 10°
+    #[value(name = "1964")]
+    Cie1964,
+}
+
+/// A rule by its name.
+#[derive(ValueEnum, Clone, Copy, Debug, PartialEq, Eq)]
+pub enum RuleName {
+    /// Chosen for the paints and the light
+    Fitted,
+    /// Gaussian quadrature over the light that the eye sees
+    Gauss,
+    /// All 101 samples
+    Reference,
+}
+
+impl ViewingOptions {
+    fn observer(&self) -> Observer {
+        match self.observer {
+            ObserverYear::Cie1931 => Observer::Cie1931,
+            ObserverYear::Cie1964 => Observer::Cie1964,
+        }
+    }
+
+    /// The rule in words.
+    #[must_use]
+    pub fn rule_in_words(&self) -> String {
+        match self.rule {
+            RuleName::Reference => "101 samples".into(),
+            RuleName::Fitted => format!("fitted, {} samples", self.samples),
+            RuleName::Gauss => format!("Gauss, {} samples", self.samples),
+        }
+    }
+
+    /// What these options ask for.
+    ///
+    /// # Errors
+    /// A [`Fault`] for an unknown light, with the nearest name, or a bad file, with its line.
+    pub fn viewing(&self, library: &PaintLibrary) -> Result<Viewing, Fault> {
+        let light = illuminant(&self.illuminant)?;
+        let (observer, samples) = (self.observer(), usize::from(self.samples));
+        let rule = match self.rule {
+            RuleName::Fitted => SamplingRule::fitted(samples, observer, &light, library.paints()),
+            RuleName::Gauss => SamplingRule::gauss(samples, observer, &light),
+            RuleName::Reference => SamplingRule::reference(observer, &light),
+        };
+        Ok(self.look(rule, &light))
+    }
+
+    /// The same with all 101 samples.
+    ///
+    /// # Errors
+    /// As [`viewing`](Self::viewing).
+    pub fn reference(&self) -> Result<Viewing, Fault> {
+        let light = illuminant(&self.illuminant)?;
+        Ok(self.look(SamplingRule::reference(self.observer(), &light), &light))
+    }
+
+    fn look(&self, rule: SamplingRule, light: &Illuminant) -> Viewing {
+        let adaptation = match self.no_adapt {
+            true => Adaptation::None,
+            false => Adaptation::Cat16,
+        };
+        Viewing::new(rule, self.observer(), light, adaptation)
+    }
+}
+
+/// A light by its name, or of a CSV file.
+///
+/// # Errors
+/// A [`Fault`] for an unknown name, with the nearest, or a bad file, with its line.
+pub fn illuminant(name: &str) -> Result<Illuminant, Fault> {
+    if let Some(light) = Illuminant::named(name) {
+        return Ok(light);
+    }
+    let path = Path::new(name);
+    let is_file = path.extension().is_some() || name.contains('/') || path.exists();
+    if !is_file {
+        let nearest = Fault::nearest(name, ILLUMINANTS).unwrap_or_default();
+        let what = format!("there is no illuminant called '{name}'; did you mean '{nearest}'?");
+        let names = ILLUMINANTS.join(", ");
+        return Err(Fault::usage(what)
+            .at(format!("--illuminant {name}"))
+            .help(format!("give one of {names}, or a CSV file `nm,power`")));
+    }
+    let text = std::fs::read_to_string(path).map_err(|error| Fault::reading(path, &error))?;
+    let stem = path.file_stem().unwrap_or_default().to_string_lossy();
+    Illuminant::parse(&stem, text.trim_start_matches('\u{feff}')).map_err(|error| {
+        Fault::usage(error.what)
+            .at(format!("{name}:{}", error.line))
+            .help("a row a wavelength: nm,power, rising")
+    })
+}

@@ -1,0 +1,215 @@
+//! How a reflectance is looked at: the light, the observer, the wavelengths that are computed.
+
+use crate::cie::{Illuminant, Observer};
+use crate::colour::{
+    apply, clamp_chromaticity, lab, linear_srgb_as_it_is, solve3, srgb_encode, xyz_to_linear_srgb,
+};
+use crate::mixture::{Blend, Coat};
+use crate::rule::SamplingRule;
+use crate::spectrum::Spectrum;
+
+/// What the display shows of the light's own colour.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Adaptation {
+    /// None: the eye has adapted to the light, white is the display's white (CAT16).
+    #[default]
+    Cat16,
+    /// Its cast, as to an eye that is adapted to sRGB's white.
+    None,
+}
+
+/// How far outside 0 to 1 a channel is still inside the gamut: what rounding makes of white.
+const GAMUT_EDGE: f64 = 1e-9;
+
+/// A light, an observer, and the rule by which reflectances become XYZ.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Viewing {
+    rule: SamplingRule,
+    white: [f64; 3],
+    to_rgb: [[f64; 3]; 3],
+}
+
+/// A colour that is seen.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Seen {
+    /// XYZ, Y = 1 for the perfect diffuser.
+    pub xyz: [f64; 3],
+    /// CIELAB relative to the light's white.
+    pub lab: [f64; 3],
+    /// Linear sRGB, outside 0 to 1 where a display cannot show it.
+    pub linear: [f64; 3],
+}
+
+impl Viewing {
+    /// Looks with `rule`, which was made for this observer and light.
+    #[must_use]
+    pub fn new(
+        rule: SamplingRule,
+        observer: Observer,
+        light: &Illuminant,
+        adaptation: Adaptation,
+    ) -> Self {
+        let white = light.xyz(observer, &Spectrum::flat(1.0));
+        let to_rgb = match adaptation {
+            Adaptation::Cat16 => xyz_to_linear_srgb(white),
+            Adaptation::None => linear_srgb_as_it_is(),
+        };
+        Self {
+            rule,
+            white,
+            to_rgb,
+        }
+    }
+
+    /// The rule.
+    #[must_use]
+    pub fn rule(&self) -> &SamplingRule {
+        &self.rule
+    }
+
+    /// XYZ of the perfect diffuser.
+    #[must_use]
+    pub fn white(&self) -> [f64; 3] {
+        self.white
+    }
+
+    /// The colour of reflectances at the rule's wavelengths. A rule may have negative weights: what
+    /// it makes darker than black or lighter than white is brought back.
+    #[must_use]
+    pub fn see(&self, reflectances: &[f64]) -> Seen {
+        let xyz = self.rule.xyz(reflectances);
+        self.seen(std::array::from_fn(|i| xyz[i].clamp(0.0, self.white[i])))
+    }
+
+    /// The colour of a coat of paint.
+    #[must_use]
+    pub fn coat(&self, blend: &Blend, coat: &Coat) -> Seen {
+        let at = |nm: &f64| blend.reflectance_at(*nm, coat);
+        self.see(&self.rule.wavelengths_nm.iter().map(at).collect::<Vec<_>>())
+    }
+
+    /// The colour that the display shows for a linear sRGB colour, under this light.
+    #[must_use]
+    pub fn display(&self, linear: [f64; 3]) -> Seen {
+        self.seen(solve3(&self.to_rgb, linear))
+    }
+
+    fn seen(&self, xyz: [f64; 3]) -> Seen {
+        Seen {
+            xyz,
+            lab: lab(xyz, self.white),
+            linear: apply(&self.to_rgb, xyz),
+        }
+    }
+}
+
+impl Seen {
+    /// Whether an sRGB display can show it.
+    #[must_use]
+    pub fn in_gamut(&self) -> bool {
+        let inside = -GAMUT_EDGE..=1.0 + GAMUT_EDGE;
+        self.linear.iter().all(|channel| inside.contains(channel))
+    }
+
+    /// Encoded sRGB, 0 to 1; the nearest that a display shows along the line to white where it
+    /// cannot show the colour itself.
+    #[must_use]
+    pub fn srgb(&self) -> [f64; 3] {
+        if self.in_gamut() {
+            return self.linear.map(srgb_encode);
+        }
+        clamp_chromaticity(self.linear.map(|channel| channel as f32))
+            .map(|channel| srgb_encode(f64::from(channel)))
+    }
+
+    /// As bytes.
+    #[must_use]
+    pub fn bytes(&self) -> [u8; 3] {
+        self.srgb().map(|channel| (channel * 255.0).round() as u8)
+    }
+
+    /// CIELAB's chroma.
+    #[must_use]
+    pub fn chroma(&self) -> f64 {
+        let [_, a, b] = self.lab;
+        (a * a + b * b).sqrt()
+    }
+
+    /// CIELAB's hue angle, degrees, 0 to 360; 0 red, 90 yellow, 180 green, 270 blue.
+    #[must_use]
+    pub fn hue_deg(&self) -> f64 {
+        let [_, a, b] = self.lab;
+        maulstick_num::atan2(b, a).to_degrees().rem_euclid(360.0)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::paints::PaintLibrary;
+
+    fn viewing(light: &str, adaptation: Adaptation) -> Viewing {
+        let light = Illuminant::named(light).expect("known");
+        let observer = Observer::Cie1931;
+        let rule = SamplingRule::reference(observer, &light);
+        Viewing::new(rule, observer, &light, adaptation)
+    }
+
+    #[test]
+    fn white_is_white_to_the_adapted_eye_and_has_the_lights_cast_to_another() {
+        for light in crate::cie::ILLUMINANTS {
+            let white = viewing(light, Adaptation::Cat16).see(&[1.0; 101]);
+            assert!(white.in_gamut(), "{light}: {:?}", white.linear);
+            assert!((white.lab[0] - 100.0).abs() < 1e-9 && white.chroma() < 1e-9);
+            assert_eq!(white.bytes(), [255; 3]);
+        }
+        let [r, _, b] = viewing("A", Adaptation::None).see(&[0.5; 101]).linear;
+        assert!(r > 2.0 * b, "a bulb is orange: {r} {b}");
+    }
+
+    #[test]
+    fn a_displays_colour_comes_back() {
+        for adaptation in [Adaptation::Cat16, Adaptation::None] {
+            for light in ["A", "D65", "FL11"] {
+                let viewing = viewing(light, adaptation);
+                let linear = [0.254, 0.102, 0.045];
+                let shown = viewing.display(linear);
+                for (got, want) in shown.linear.iter().zip(linear) {
+                    assert!((got - want).abs() < 1e-12, "{light}");
+                }
+                assert!(shown.in_gamut());
+                assert!(!viewing.display([0.2, 0.3, 1.0 + 1e-8]).in_gamut());
+                assert!(!viewing.display([-1e-8, 0.3, 1.0]).in_gamut());
+            }
+        }
+    }
+
+    #[test]
+    fn no_rule_sees_more_than_white_or_less_than_black() {
+        let mut rule = SamplingRule::reference(Observer::Cie1931, &Illuminant::d65());
+        rule.weights[40] = rule.weights[40].map(|weight| -weight);
+        let (observer, light) = (Observer::Cie1931, Illuminant::d65());
+        let viewing = Viewing::new(rule, observer, &light, Adaptation::Cat16);
+        let only = |index: usize| -> Vec<f64> {
+            (0..101).map(|i| f64::from(u8::from(i == index))).collect()
+        };
+        assert_eq!(viewing.see(&only(40)).xyz, [0.0; 3]);
+        let all_but = only(40).iter().map(|r| 1.0 - r).collect::<Vec<_>>();
+        for (got, white) in viewing.see(&all_but).xyz.iter().zip(viewing.white()) {
+            assert!(*got <= white);
+        }
+    }
+
+    #[test]
+    fn what_a_display_cannot_show_is_said_and_brought_to_its_edge() {
+        let library = PaintLibrary::measured().expect("whole");
+        let look = |name: &str| {
+            let blend = Blend::new(&[(library.find(name).expect("known"), 1.0)]);
+            viewing("D65", Adaptation::Cat16).coat(&blend, &Coat::masstone())
+        };
+        let (ochre, phthalo) = (look("Yellow Ochre"), look("Cadmium Orange"));
+        println!("{ochre:?}\n{phthalo:?}");
+        assert!(ochre.in_gamut() && !phthalo.in_gamut());
+        assert!(phthalo.srgb().iter().all(|c| (0.0..=1.0).contains(c)));
+    }
+}
