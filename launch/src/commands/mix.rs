@@ -4,8 +4,7 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 use maulstick_optics::comparison::compare;
-use maulstick_optics::surface::SurfaceCorrection;
-use maulstick_optics::{Blend, Coat, Layer, PaintLibrary, Seen, Spectrum};
+use maulstick_optics::{Blend, Coat, Layer, PaintLibrary, Reading, Seen, Spectrum};
 use maulstick_paint::picture::Picture;
 use maulstick_rig::Fault;
 use maulstick_rig::files::{check_writable, write_whole};
@@ -97,7 +96,10 @@ impl FilmOptions {
                     ground: self.over,
                 },
             },
-            surface: self.saunderson.then(SurfaceCorrection::default),
+            reading: match self.saunderson {
+                true => Reading::Spectrometer,
+                false => Reading::Inside,
+            },
         }
     }
 }

@@ -39,7 +39,7 @@ pub mod surface;
 pub mod viewing;
 
 pub use cie::{Illuminant, Observer};
-pub use mixture::{Blend, Coat, Layer};
+pub use mixture::{Blend, Coat, Layer, Reading};
 pub use paints::{Paint, PaintError, PaintLibrary};
 pub use rule::SamplingRule;
 pub use spectrum::Spectrum;

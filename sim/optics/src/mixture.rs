@@ -36,27 +36,51 @@ pub enum Layer {
     },
 }
 
-/// A layer and its surface.
+/// Where a reflectance is taken.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Reading {
+    /// Within the film, below its surface.
+    Inside,
+    /// From where no gloss is seen: as a painting shows it.
+    #[default]
+    Shown,
+    /// By a spectrometer that includes the gloss.
+    Spectrometer,
+}
+
+impl Reading {
+    /// What is read of a film of internal reflectance `r`.
+    #[must_use]
+    pub fn of(self, r: f64) -> f64 {
+        let surface = SurfaceCorrection::default();
+        match self {
+            Self::Inside => r,
+            Self::Shown => surface.leaving(r),
+            Self::Spectrometer => surface.measured(r),
+        }
+    }
+}
+
+/// A layer, and where its reflectance is taken.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Coat {
     /// The layer.
     pub layer: Layer,
-    /// Its surface; without one the reflectance is that inside the film.
-    pub surface: Option<SurfaceCorrection>,
+    /// Where.
+    pub reading: Reading,
 }
 
 impl Coat {
-    /// An opaque layer as the eye sees it, gloss included.
+    /// An opaque layer as a painting shows it.
     #[must_use]
     pub fn masstone() -> Self {
         Self {
             layer: Layer::Opaque,
-            surface: Some(SurfaceCorrection::default()),
+            reading: Reading::Shown,
         }
     }
 
-    /// Reflectance of paint of absorption `k` and scattering `s`, per metre. With a surface it is
-    /// what a spectrometer reads that includes the gloss.
+    /// Reflectance of paint of absorption `k` and scattering `s`, per metre.
     #[must_use]
     pub fn reflectance(&self, k: f64, s: f64) -> f64 {
         let inside = match self.layer {
@@ -70,10 +94,7 @@ impl Coat {
                 km::over(km::film(k * d, s * d), ground)
             }
         };
-        match &self.surface {
-            Some(surface) => surface.measured(inside),
-            None => inside,
-        }
+        self.reading.of(inside)
     }
 }
 
@@ -152,13 +173,13 @@ mod tests {
                 thinner,
                 ground,
             },
-            surface: None,
+            reading: Reading::Inside,
         }
     }
 
     const OPAQUE: Coat = Coat {
         layer: Layer::Opaque,
-        surface: None,
+        reading: Reading::Inside,
     };
 
     fn worst(one: &Spectrum, two: &Spectrum) -> f64 {

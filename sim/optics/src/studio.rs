@@ -289,19 +289,27 @@ impl Studio {
         baked
     }
 
-    /// Linear sRGB, gloss included, of a uniform film: thickness in metres by slot, over a ground.
+    /// Linear sRGB of a uniform film as a painting shows it, the gloss left out: thickness in metres by
+    /// slot, over a ground.
     #[must_use]
     pub fn colour(&self, films: &[(usize, f64)], ground: &[f32]) -> [f64; 3] {
-        apply(&self.to_rgb, self.film_xyz(films, ground))
+        let shown = |r| self.surface.leaving(r);
+        apply(&self.to_rgb, self.film_xyz(films, ground, shown))
     }
 
-    /// CIELAB, gloss included, of a uniform film over a ground.
+    /// CIELAB of a uniform film over a ground as a spectrometer reads it, gloss included.
     #[must_use]
     pub fn lab(&self, films: &[(usize, f64)], ground: &[f32]) -> [f64; 3] {
-        lab(self.film_xyz(films, ground), self.white)
+        let read = |r| self.surface.measured(r);
+        lab(self.film_xyz(films, ground, read), self.white)
     }
 
-    fn film_xyz(&self, films: &[(usize, f64)], ground: &[f32]) -> [f64; 3] {
+    fn film_xyz(
+        &self,
+        films: &[(usize, f64)],
+        ground: &[f32],
+        surface: impl Fn(f64) -> f64,
+    ) -> [f64; 3] {
         let reflectance = |sample: usize| {
             let sum = |which: usize| {
                 films
@@ -309,7 +317,7 @@ impl Studio {
                     .map(|(slot, d)| f64::from(self.paints[*slot][sample][which]) * d)
                     .sum()
             };
-            self.surface.measured(km::over(
+            surface(km::over(
                 km::film(sum(0), sum(1)),
                 f64::from(ground[sample]),
             ))
