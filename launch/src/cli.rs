@@ -4,8 +4,8 @@ use clap::{Parser, Subcommand};
 use maulstick_rig::Fault;
 
 use crate::commands::{
-    bench, brush, control, demo, endpoint, import, layers, light, matching, mix, paints, render,
-    schema, take,
+    bench, brush, control, demo, endpoint, fit, import, layers, light, matching, mix, paints,
+    render, schema, take,
 };
 use crate::up;
 
@@ -61,6 +61,8 @@ enum Command {
     Mix(mix::MixOptions),
     /// Proposes mixtures for a colour
     Match(matching::MatchOptions),
+    /// Makes paints of measured reflectances
+    Fit(fit::FitCommand),
     /// Measures, beside peers
     Bench(bench::BenchOptions),
 }
@@ -91,6 +93,7 @@ pub fn run() -> Result<i32, Fault> {
         Command::Paints(options) => paints::run(&options),
         Command::Mix(options) => mix::run(&options),
         Command::Match(options) => matching::run(&options),
+        Command::Fit(options) => fit::run(&options),
         Command::Bench(options) => bench::run(&options),
     }
 }

@@ -5,6 +5,7 @@ pub mod brush;
 pub mod control;
 pub mod demo;
 pub mod endpoint;
+pub mod fit;
 pub mod import;
 pub mod layers;
 pub mod light;

@@ -1,0 +1,144 @@
+//! `maulstick fit`: paints of one's own from measured reflectances.
+
+use std::fmt::Write as _;
+use std::io::{ErrorKind, Write as _};
+use std::path::{Path, PathBuf};
+
+use clap::Args;
+use maulstick_measure::{Fit, FitOptions, MeasureError, paint_file, parse_surface};
+use maulstick_optics::surface::SurfaceCorrection;
+use maulstick_rig::Fault;
+use maulstick_rig::files::{check_writable, write_whole};
+use serde_json::json;
+
+use crate::commands::{print_json, print_text};
+
+/// Options of `maulstick fit`.
+#[derive(Args, Clone, Debug)]
+pub struct FitCommand {
+    /// A table: sample, a column of shares for each paint, a column of reflectances for each
+    /// wavelength (docs/measuring.md)
+    measurements: PathBuf,
+    /// The paint file to write
+    #[arg(short, long, value_name = "CSV")]
+    output: PathBuf,
+    /// The reference white, whose scattering is 1
+    #[arg(long, value_name = "NAME")]
+    white: Option<String>,
+    /// What the samples' surface reflects from outside and from inside
+    #[arg(long, value_name = "K1,K2", value_parser = parse_surface)]
+    surface: Option<SurfaceCorrection>,
+    /// The reflectances are those below the surface already
+    #[arg(long, conflicts_with = "surface")]
+    no_surface: bool,
+    /// The instrument leaves gloss out, as at 45°/0°, at 60°, or a sphere with an open trap
+    #[arg(long)]
+    specular_excluded: bool,
+    /// As JSON
+    #[arg(long)]
+    json: bool,
+}
+
+/// Fits the paints and writes their file.
+///
+/// # Errors
+/// A [`Fault`] with line and column of the table, or where the file cannot be written.
+pub fn run(options: &FitCommand) -> Result<i32, Fault> {
+    let path = &options.measurements;
+    let text = std::fs::read_to_string(path).map_err(|error| {
+        let fault = Fault::reading(path, &error);
+        match error.kind() {
+            ErrorKind::InvalidData => fault.help("save the table as CSV in UTF-8"),
+            _ => fault,
+        }
+    })?;
+    let output = &options.output;
+    let writing = |error: std::io::Error| Fault::writing(output, &error);
+    check_writable(output).map_err(writing)?;
+    let surface = if options.no_surface {
+        Some(SurfaceCorrection { k1: 0.0, k2: 0.0 })
+    } else {
+        options.surface
+    };
+    let chosen = FitOptions {
+        white: options.white.clone(),
+        surface,
+        specular_excluded: options.specular_excluded.then_some(true),
+    };
+    let fit = maulstick_measure::fit(&text, &chosen).map_err(|error| refused(path, &error))?;
+    write_whole(output, |file| file.write_all(paint_file(&fit).as_bytes())).map_err(writing)?;
+    for warning in &fit.warnings {
+        eprintln!("warning: {warning}");
+    }
+    if options.json {
+        print_json(&as_json(&fit, output))?;
+    } else {
+        print_text(&as_table(&fit, output))?;
+    }
+    Ok(0)
+}
+
+fn refused(path: &Path, error: &MeasureError) -> Fault {
+    let mut place = path.display().to_string();
+    if let Some(line) = error.place.line {
+        place.push_str(&format!(":{line}"));
+    }
+    if error.place.column.is_some() {
+        let column = maulstick_measure::Place {
+            line: None,
+            ..error.place.clone()
+        };
+        place.push_str(&format!(", {column}"));
+    }
+    Fault::usage(&error.what).at(place).help(&error.help)
+}
+
+fn as_json(fit: &Fit, output: &Path) -> serde_json::Value {
+    let row = |one: &maulstick_measure::Residual| {
+        json!({
+            "sample": one.name,
+            "line": one.line,
+            "delta_e": one.delta_e,
+            "rms": one.rms,
+        })
+    };
+    json!({
+        "output": output,
+        "paints": fit.paints.iter().map(|paint| &paint.name).collect::<Vec<_>>(),
+        "white": fit.white,
+        "white_s_per_m": fit.white_s_per_m,
+        "rows": fit.residuals.iter().map(row).collect::<Vec<_>>(),
+        "mean_delta_e": fit.mean(),
+        "worst_delta_e": fit.worst(),
+        "noise": fit.noise,
+        "warnings": fit.warnings,
+    })
+}
+
+fn as_table(fit: &Fit, output: &Path) -> String {
+    let letters = |one: &maulstick_measure::Residual| one.name.chars().count();
+    let width = fit.residuals.iter().map(letters).max().unwrap_or(0).max(6);
+    let mut text = format!("{:<width$}  ΔE₀₀\n", "sample");
+    // Writing to a String cannot fail.
+    for one in &fit.residuals {
+        writeln!(text, "{:<width$}  {:.2}", one.name, one.delta_e).ok();
+    }
+    writeln!(text, "{:<width$}  {:.2}", "mean", fit.mean()).ok();
+    writeln!(text, "{:<width$}  {:.2}", "worst", fit.worst()).ok();
+    if let Some(s) = fit.white_s_per_m {
+        writeln!(
+            text,
+            "'{}' scatters {s:.0} per metre, by the drawdowns",
+            fit.white
+        )
+        .ok();
+    }
+    let (paints, samples) = (fit.paints.len(), fit.residuals.len());
+    writeln!(
+        text,
+        "{}: {paints} paints from {samples} samples",
+        output.display()
+    )
+    .ok();
+    text
+}

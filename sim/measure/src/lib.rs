@@ -1,0 +1,43 @@
+//! Measuring paints: from reflectances of masstones, mixtures and drawdowns to K and S
+//! (Baxter 2004, § 7.5 and 7.6).
+//!
+//! | module | holds |
+//! | --- | --- |
+//! | [`table`] | a table as a spreadsheet writes it |
+//! | [`headings`], [`notes`] | what its columns and comments mean |
+//! | [`measurements`] | samples: what they are made of, and what was read of them |
+//! | [`instrument`] | raw spectra, the standard, the neutral-density filter |
+//! | [`surface`] | what the instrument reads of an internal reflectance |
+//! | [`layer`] | reflectance of a layer with its derivatives |
+//! | [`links`] | whether samples tie each paint to the reference white |
+//! | [`usual`] | what a paint is thought to be before it is measured |
+//! | [`normal`], [`programme`] | normal equations; quadratic programmes |
+//! | [`wavelength`] | K and S of all paints at one wavelength |
+//! | [`determined`] | how well readings determine them |
+//! | [`residuals`] | how well they reproduce the samples |
+//! | [`fit`](mod@fit) | the whole |
+//! | [`paint_file`](mod@paint_file) | the result as a file |
+
+pub mod determined;
+pub mod error;
+pub mod fit;
+pub mod headings;
+pub mod instrument;
+pub mod layer;
+pub mod links;
+pub mod measurements;
+pub mod normal;
+pub mod notes;
+pub mod paint_file;
+pub mod programme;
+pub mod residuals;
+pub mod surface;
+pub mod table;
+pub mod usual;
+pub mod wavelength;
+
+pub use error::{MeasureError, Place};
+pub use fit::{Fit, FitOptions, fit};
+pub use notes::parse_surface;
+pub use paint_file::paint_file;
+pub use residuals::Residual;
