@@ -10,10 +10,12 @@ use maulstick_bus::RigFolder;
 use maulstick_bus::typed::random_epoch;
 use maulstick_device::Take;
 use maulstick_device::player::{self, PlayerSettings, Rate};
+use maulstick_gpu::{Choice, Device, GpuFilms};
 use maulstick_haptic::daemon::{self, HapticSettings};
 use maulstick_nodes::frames::FrameServer;
 use maulstick_nodes::worker::Fallen;
 use maulstick_nodes::{BrushNode, BrushSettings, PaintNode, Worker};
+use maulstick_optics::backend::{CpuFilms, FilmBackend};
 use maulstick_paint::Painting;
 use maulstick_rig::config::{FOREIGN_PRIORITY, MOUSE_PRIORITY, PLAYER_PRIORITY, RigConfig};
 use maulstick_rig::member::log_to_stderr;
@@ -167,8 +169,10 @@ pub fn paint() -> Result<i32, Fault> {
     let (topic, feed) = (member.topics.frame(), node.feed());
     let frames = FrameServer::new(bus, &topic, feed.clone(), &member.wake, origin)?;
     let stop = member.stop.clone();
-    let mut thread = Worker::start("frames", move || frames.run(&stop))
-        .map_err(|error| Fault::failure(error.to_string()))?;
+    let backend = member.config.paint.backend.clone();
+    let run = move || frames.with_films(film_backend(&backend)).run(&stop);
+    let mut thread =
+        Worker::start("frames", run).map_err(|error| Fault::failure(error.to_string()))?;
     let fallen = |error: Fallen| Fault::failure(error.to_string());
     let mut turn = |node: &mut PaintNode| {
         thread.check().map_err(fallen)?;
@@ -184,6 +188,27 @@ pub fn paint() -> Result<i32, Fault> {
     let ended = thread.join().map_err(fallen);
     member.leave();
     result.and(ended).map(|()| 0)
+}
+
+/// What computes the colours of frames, as rig.toml says: `auto` takes a real GPU, `gpu` any.
+fn film_backend(name: &str) -> Box<dyn FilmBackend> {
+    let choice = match name {
+        "cpu" => return Box::new(CpuFilms::new()),
+        "gpu" => Choice::Forced,
+        _ => Choice::Auto,
+    };
+    match Device::open(choice).and_then(GpuFilms::new) {
+        Ok(gpu) => {
+            tracing::info!("colour is computed by {}", gpu.name());
+            Box::new(gpu)
+        }
+        Err(error) => {
+            if matches!(choice, Choice::Forced) {
+                tracing::warn!("{error}; colour is computed by the processor");
+            }
+            Box::new(CpuFilms::new())
+        }
+    }
 }
 
 /// Has the node take turns until it knows every brush of rig.toml, or it is time to stop.

@@ -18,7 +18,7 @@ pub const DRIVERS: [&str; 1] = ["simulated"];
 /// Paint models.
 pub const MODELS: [&str; 1] = ["impasto"];
 /// Backends of the paint model.
-pub const BACKENDS: [&str; 2] = ["auto", "cpu"];
+pub const BACKENDS: [&str; 3] = ["auto", "cpu", "gpu"];
 /// Priority of the mouse over the window.
 pub const MOUSE_PRIORITY: i32 = -100;
 /// Priority of a device that `rig.toml` does not name.

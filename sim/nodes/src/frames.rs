@@ -3,6 +3,7 @@
 //! The stepper hands over versions of tiles, which are shared and never copied; colour is computed
 //! here, only for tiles that someone looks at.
 
+mod films;
 mod pyramid;
 
 use std::collections::BTreeMap;
@@ -11,6 +12,7 @@ use std::time::{Duration, Instant};
 
 use maulstick_bus::typed::Reader;
 use maulstick_bus::{Bus, BusError, Request, Server, Wake};
+use maulstick_optics::backend::FilmBackend;
 use maulstick_paint::bare::Bare;
 use maulstick_paint::dry::DryStack;
 use maulstick_paint::look::Look;
@@ -18,12 +20,16 @@ use maulstick_paint::tile::{Tile, TileId};
 use maulstick_types::paint::{FrameHolds, FrameReply, FrameRequest, FrameTile};
 use maulstick_types::{Flags, Origin, encode};
 
+use films::SteadyFilms;
 use pyramid::{BARE_VERSIONS, Pyramid, coarsest, grid};
 
 /// A reply holds at most this much; the rest comes with the next one, bytes.
 const REPLY_BYTES: usize = 16 << 20;
 /// Longest wait for a change, ms.
 const LONGEST_WAIT_MS: u32 = 400;
+/// Tiles of a reply that are computed together, and tiles of full detail of those at most.
+const BATCH: usize = 16;
+const MOST_TILES: usize = 64;
 /// A view waits this long for tiles that take their time; the rest comes with the next reply.
 const REPLY_WORK: Duration = Duration::from_millis(100);
 /// What has dried is baked ahead for this long between two looks at what is asked.
@@ -148,6 +154,13 @@ impl FrameServer {
         })
     }
 
+    /// Computes colours with `films` from now on.
+    #[must_use]
+    pub fn with_films(mut self, films: Box<dyn FilmBackend>) -> Self {
+        self.pyramid.films = SteadyFilms::new(films);
+        self
+    }
+
     /// Answers who can be answered and returns how long to wait at most.
     pub fn turn(&mut self) -> Duration {
         let now_ns = self.bus.now_ns();
@@ -255,6 +268,14 @@ impl FrameServer {
         changed.sort();
         let (mut bytes, begun) = (0, Instant::now());
         for (place, (version, id)) in changed.iter().enumerate() {
+            if place % BATCH == 0 {
+                let part = &changed[place..(place + BATCH).min(changed.len())];
+                let ids = part
+                    .iter()
+                    .flat_map(|(_, id)| self.pyramid.stale(asked.surface, surface, level, *id));
+                let ids: Vec<TileId> = ids.take(MOST_TILES).collect();
+                self.pyramid.shade(look, asked.surface, surface, &ids);
+            }
             let shown = self.pyramid.tile(look, asked.surface, surface, level, *id);
             let planes = shown.to_bytes();
             bytes += planes.len();

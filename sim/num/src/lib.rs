@@ -8,4 +8,4 @@
 mod elementary;
 pub mod geometry;
 
-pub use elementary::{acos, atan2, cos, exp, exp_f32, ln, powf, sin, sin_cos};
+pub use elementary::{Decay, acos, atan2, cos, decay_f32, exp, exp_f32, ln, powf, sin, sin_cos};

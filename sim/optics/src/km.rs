@@ -7,7 +7,7 @@
 //! The same as Baxter 2004, eq. 7.8-7.10, without a division by S or t and without overflow:
 //! S = 0 (Beer) and K = 0 come out exactly. Source: Kubelka 1948.
 
-use maulstick_num::{exp, exp_f32};
+use maulstick_num::{Decay, decay_f32, exp};
 
 /// Reflectance over black and transmittance of a film.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -58,8 +58,8 @@ pub fn over(film: Film<f64>, under: f64) -> f64 {
 ///
 /// n = σ·g·f + R_g·(c − κ·g),  m = (κ + σ·f)·g + c,
 ///
-/// in which nothing cancels. Multiplied by 2t they need no division by t either: one exponential,
-/// and with whatever follows one division a film.
+/// in which nothing cancels. g is (1 + e^(−t))/2 times the mean of e^(−x) over 0..t. Multiplied by t
+/// they need no division by it either: one exponential, and with whatever follows one division a film.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Ratio {
     /// Numerator.
@@ -73,22 +73,11 @@ pub struct Ratio {
 #[inline]
 pub fn film_over_f32(kd: f32, sd: f32, under: f32) -> Ratio {
     let t = (kd * (kd + 2.0 * sd)).sqrt();
-    let e = exp_f32(-t);
-    let square = e * e;
-    let half_sum = 0.5 * (1.0 + square);
-    let u = 2.0 * t;
-    // (1 − e^(−u))/u: terms to u⁷/8! reach f32 at u = ½.
-    let series = 1.0 / 40320.0;
-    let series = 1.0 / 5040.0 - u * series;
-    let series = 1.0 / 720.0 - u * series;
-    let series = 1.0 / 120.0 - u * series;
-    let series = 1.0 / 24.0 - u * series;
-    let series = 1.0 / 6.0 - u * series;
-    let series = 0.5 - u * series;
-    let series = 1.0 - u * series;
-    let thin = u < 0.5;
-    let g = if thin { series } else { 1.0 - square };
-    let c = if thin { half_sum } else { half_sum * u };
+    let Decay { end, mean } = decay_f32(t);
+    // g and c times two, and where t is not small times t as well.
+    let near = t <= Decay::NEAR;
+    let g = (1.0 + end) * if near { mean } else { 1.0 - end };
+    let c = (1.0 + end * end) * if near { 1.0 } else { t };
     let free = 1.0 - under;
     Ratio {
         n: sd * g * free + under * (c - kd * g),

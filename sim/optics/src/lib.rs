@@ -19,7 +19,9 @@
 //! | [`search`] | minima of functions of one and two variables |
 //! | [`matching`] | mixtures that come nearest to a colour |
 //! | [`studio`] | all of the above for the paints, ground and light of one painting |
+//! | [`backend`] | a studio's films for many tiles at once, on whatever computes them |
 
+pub mod backend;
 pub mod cie;
 pub mod colour;
 pub mod comparison;
@@ -38,6 +40,7 @@ pub mod studio;
 pub mod surface;
 pub mod viewing;
 
+pub use backend::{BackendError, CpuFilms, FilmBackend};
 pub use cie::{Illuminant, Observer};
 pub use mixture::{Blend, Coat, Layer, Reading};
 pub use paints::{Paint, PaintError, PaintLibrary};

@@ -129,19 +129,52 @@ pub struct FilmPlanes<'a> {
 }
 
 impl FilmPlanes<'_> {
-    /// K·d and S·d of cells `start`.. at a wavelength.
+    /// Makes `sums` K·d and S·d of cells `start`.. at a wavelength.
     #[inline]
-    fn thickness(&self, paints: &[Vec<[f32; 2]>], sample: usize, start: usize) -> [[f32; RUN]; 2] {
-        let (mut kd, mut sd) = ([0.0f32; RUN], [0.0f32; RUN]);
-        for (slot, thickness) in self.paints {
-            let [k, s] = paints[*slot][sample].map(|per_m| per_m * self.opacity);
-            let end = (start + RUN).min(thickness.len());
-            for ((kd, sd), d) in kd.iter_mut().zip(&mut sd).zip(&thickness[start..end]) {
-                *kd += k * d;
-                *sd += s * d;
-            }
+    fn thickness(
+        &self,
+        paints: &[Vec<[f32; 2]>],
+        sample: usize,
+        start: usize,
+        sums: &mut [[f32; RUN]; 2],
+    ) {
+        *sums = [[0.0; RUN]; 2];
+        let mut rest = self.paints;
+        while let Some((four, others)) = rest.split_first_chunk::<4>() {
+            self.add(four, paints, sample, start, sums);
+            rest = others;
         }
-        [kd, sd]
+        if let Some((two, others)) = rest.split_first_chunk::<2>() {
+            self.add(two, paints, sample, start, sums);
+            rest = others;
+        }
+        if let Some(one) = rest.first_chunk::<1>() {
+            self.add(one, paints, sample, start, sums);
+        }
+    }
+
+    /// Adds K·d and S·d of some paints, one after the other; several at once spare the sums their way
+    /// through memory.
+    #[inline]
+    fn add<const N: usize>(
+        &self,
+        some: &[(usize, &[f32]); N],
+        paints: &[Vec<[f32; 2]>],
+        sample: usize,
+        start: usize,
+        [kd, sd]: &mut [[f32; RUN]; 2],
+    ) {
+        let length = RUN.min(some[0].1.len() - start);
+        let runs = some.map(|(_, plane)| &plane[start..start + length]);
+        let per_m = some.map(|(slot, _)| paints[slot][sample].map(|per_m| per_m * self.opacity));
+        for i in 0..length {
+            let (mut k_sum, mut s_sum) = (kd[i], sd[i]);
+            for (run, [k, s]) in runs.iter().zip(per_m) {
+                k_sum += k * run[i];
+                s_sum += s * run[i];
+            }
+            (kd[i], sd[i]) = (k_sum, s_sum);
+        }
     }
 }
 
@@ -196,6 +229,12 @@ impl Studio {
         self.rule.len()
     }
 
+    /// Number of paints: their slots lie below it.
+    #[must_use]
+    pub fn slots(&self) -> usize {
+        self.paints.len()
+    }
+
     /// The rule.
     #[must_use]
     pub fn rule(&self) -> &SamplingRule {
@@ -246,11 +285,12 @@ impl Studio {
         let cells = red.len();
         let (k1, k2) = (self.surface.k1 as f32, self.surface.k2 as f32);
         let open = (1.0 - k1) * (1.0 - k2);
+        let mut thickness = [[0.0f32; RUN]; 2];
         for start in (0..cells).step_by(RUN) {
             let mut sum = [[0.0f32; RUN]; 3];
             for (sample, weight) in self.rgb.iter().enumerate() {
-                let [kd, sd] = films.thickness(&self.paints, sample, start);
-                let under = films.under.run(sample, cells, start);
+                films.thickness(&self.paints, sample, start, &mut thickness);
+                let ([kd, sd], under) = (&thickness, films.under.run(sample, cells, start));
                 let [r, g, b] = &mut sum;
                 for i in 0..RUN {
                     let film = film_over_f32(kd[i], sd[i], under[i]);
@@ -273,10 +313,11 @@ impl Studio {
     #[must_use]
     pub fn bake(&self, films: &FilmPlanes<'_>, cells: usize) -> Vec<f32> {
         let mut baked = vec![0.0f32; self.rule.len() * cells];
+        let mut thickness = [[0.0f32; RUN]; 2];
         for (sample, plane) in baked.chunks_exact_mut(cells.max(1)).enumerate() {
             for start in (0..cells).step_by(RUN) {
-                let [kd, sd] = films.thickness(&self.paints, sample, start);
-                let under = films.under.run(sample, cells, start);
+                films.thickness(&self.paints, sample, start, &mut thickness);
+                let ([kd, sd], under) = (&thickness, films.under.run(sample, cells, start));
                 let mut run = [0.0f32; RUN];
                 for i in 0..RUN {
                     let film = film_over_f32(kd[i], sd[i], under[i]);

@@ -2,11 +2,11 @@
 
 use half::f16;
 use half::slice::HalfFloatSliceExt as _;
-use maulstick_optics::{FilmPlanes, Under};
+use maulstick_optics::{FilmPlanes, Studio, Under};
 
 use crate::bare::Bare;
 use crate::dry::{DryLayer, DryStack};
-use crate::look::{Look, thickness};
+use crate::look::thickness;
 use crate::quantum::QUANTUM_M;
 use crate::tile::{TILE_CELLS, Tile, TileId};
 
@@ -21,6 +21,41 @@ pub struct DisplayTile {
     pub wetness: Vec<f32>,
     /// Height of what lies there, tooth and paint, above the surface's highest bare peaks, m.
     pub height: Vec<f32>,
+}
+
+/// Thickness of each wet paint of a tile, m, by slot.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct WetFilms(Vec<(usize, Vec<f32>)>);
+
+impl WetFilms {
+    /// The wet films of a tile; none where nothing was painted.
+    #[must_use]
+    pub fn of(tile: Option<&Tile>) -> Self {
+        Self(tile.map(|tile| thickness(tile.wet())).unwrap_or_default())
+    }
+
+    /// The planes by slot, as the optics take them.
+    #[must_use]
+    pub fn planes(&self) -> Vec<(usize, &[f32])> {
+        let films = self.0.iter();
+        films.map(|(slot, film)| (*slot, film.as_slice())).collect()
+    }
+
+    /// Their colours over what lies under them: linear red, green, blue.
+    #[must_use]
+    pub fn shade(&self, studio: &Studio, under: Under<'_>) -> [Vec<f32>; 3] {
+        let mut rgb = [const { Vec::new() }; 3];
+        rgb.iter_mut()
+            .for_each(|plane| plane.resize(TILE_CELLS, 0.0));
+        let [red, green, blue] = &mut rgb;
+        let planes = FilmPlanes {
+            paints: &self.planes(),
+            opacity: 1.0,
+            under,
+        };
+        studio.shade(&planes, [red, green, blue]);
+        rgb
+    }
 }
 
 /// Height of wet films and of what has dried under them, m.
@@ -97,22 +132,17 @@ impl DisplayTile {
         heights
     }
 
-    /// The display of a tile of a surface; `tile` is none where nothing was painted. `baked` are the
-    /// reflectances of what has dried on it (see [`Bakery`](crate::look::Bakery)), needed where
-    /// something has.
+    /// The display of a tile of a surface; `tile` is none where nothing was painted. `rgb` are the
+    /// colours of its wet `films` over what lies under them.
     #[must_use]
     pub fn on(
         bare: &Bare,
         id: TileId,
         tile: Option<&Tile>,
-        look: &Look,
-        baked: Option<&[f32]>,
+        (films, rgb): (&WetFilms, [Vec<f32>; 3]),
+        thinner: Option<usize>,
     ) -> Self {
-        let mut shown = Self::of(
-            tile,
-            look,
-            baked.map_or(Under::Even(&bare.ground), Under::Planes),
-        );
+        let mut shown = Self::of(tile, (films, rgb), thinner);
         let dry = tile.and_then(Tile::dry);
         for (cell, well) in bare.in_wells(id) {
             if shown.wetness[cell] == 0.0 && dry.is_none_or(|stack| stack.height()[cell] == 0.0) {
@@ -126,35 +156,23 @@ impl DisplayTile {
         shown
     }
 
-    /// The display of a tile over what its wet paint lies on; `tile` is none where nothing was
-    /// painted.
+    /// The display of a tile on a flat ground, as in [`on`](Self::on).
     #[must_use]
-    pub fn of(tile: Option<&Tile>, look: &Look, under: Under<'_>) -> Self {
-        let films = tile.map(|tile| thickness(tile.wet())).unwrap_or_default();
+    pub fn of(
+        tile: Option<&Tile>,
+        (films, rgb): (&WetFilms, [Vec<f32>; 3]),
+        thinner: Option<usize>,
+    ) -> Self {
         let dry = tile.and_then(Tile::dry).map(|stack| &**stack);
-        let mut rgb = [const { Vec::new() }; 3];
-        rgb.iter_mut()
-            .for_each(|plane| plane.resize(TILE_CELLS, 0.0));
-        let [red, green, blue] = &mut rgb;
-        let paints: Vec<(usize, &[f32])> = films
-            .iter()
-            .map(|(slot, film)| (*slot, film.as_slice()))
-            .collect();
-        let planes = FilmPlanes {
-            paints: &paints,
-            opacity: 1.0,
-            under,
-        };
-        look.studio.shade(&planes, [red, green, blue]);
-        let wetness = height(&films, None)
+        let wetness = height(&films.0, None)
             .iter()
             .map(|thickness| f32::from(u8::from(*thickness > 0.0)))
             .collect();
         Self {
             rgb,
-            gloss: gloss(&films, dry, look.thinner),
+            gloss: gloss(&films.0, dry, thinner),
             wetness,
-            height: height(&films, dry),
+            height: height(&films.0, dry),
         }
     }
 
@@ -233,22 +251,27 @@ impl DisplayTile {
 mod tests {
     use std::sync::Arc;
 
-    use maulstick_optics::{PaintLibrary, Studio};
+    use maulstick_optics::PaintLibrary;
 
     use super::*;
 
-    fn tile() -> (Look, Vec<f32>, DisplayTile) {
+    fn shown(tile: Option<&Tile>, studio: &Studio, ground: &[f32]) -> DisplayTile {
+        let films = WetFilms::of(tile);
+        let rgb = films.shade(studio, Under::Even(ground));
+        DisplayTile::of(tile, (&films, rgb), None)
+    }
+
+    fn tile() -> (Studio, Vec<f32>, DisplayTile) {
         let mut studio = Studio::daylight();
         let library = PaintLibrary::measured().expect("whole");
         studio.add(library.find("Ultramarine Blue").expect("known"));
         let ground = vec![0.95; studio.wavelengths()];
-        let look = Look::new(studio);
         let plane: Arc<[f32]> = (0..TILE_CELLS)
             .map(|i| if i % 2 == 0 { 33_000.0 } else { 0.0 })
             .collect();
         let tile = Tile::new([(0, plane)].into_iter(), None);
-        let shown = DisplayTile::of(Some(&tile), &look, Under::Even(&ground));
-        (look, ground, shown)
+        let shown = shown(Some(&tile), &studio, &ground);
+        (studio, ground, shown)
     }
 
     #[test]
@@ -272,10 +295,10 @@ mod tests {
 
     #[test]
     fn a_coarser_tile_is_the_mean_of_its_cells() {
-        let (look, ground, shown) = tile();
-        let bare = DisplayTile::of(None, &look, Under::Even(&ground));
-        let coarse = DisplayTile::coarser([Some(&shown), None, None, None], &bare);
-        assert!((coarse.height[0] - 0.5 * shown.height[0]).abs() < 1e-9);
+        let (studio, ground, painted) = tile();
+        let bare = shown(None, &studio, &ground);
+        let coarse = DisplayTile::coarser([Some(&painted), None, None, None], &bare);
+        assert!((coarse.height[0] - 0.5 * painted.height[0]).abs() < 1e-9);
         assert_eq!(
             coarse.height[40], 0.0,
             "the right half lies beyond the edge"

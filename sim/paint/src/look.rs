@@ -4,6 +4,7 @@
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
+use maulstick_optics::backend::FilmBackend;
 use maulstick_optics::{FilmPlanes, Studio, Under};
 use maulstick_types::scene::Layer;
 
@@ -60,22 +61,33 @@ impl Look {
         }
     }
 
-    /// Internal reflectances over `under` with one more dry layer.
-    fn with_layer(&self, layer: &DryLayer, under: Under<'_>) -> Vec<f32> {
+    /// Internal reflectances over `under` with one more dry layer. Where the backend cannot, which is
+    /// a fault of the program, the layer is left out.
+    fn with_layer(
+        &self,
+        layer: &DryLayer,
+        under: Under<'_>,
+        backend: &mut dyn FilmBackend,
+    ) -> Vec<f32> {
         let films = thickness(&layer.planes);
         let paints: Vec<(usize, &[f32])> = films
             .iter()
             .map(|(slot, film)| (*slot, film.as_slice()))
             .collect();
         let opacity = self.opacities.get(&layer.number).copied().unwrap_or(1.0);
-        self.studio.bake(
-            &FilmPlanes {
-                paints: &paints,
-                opacity,
-                under,
-            },
-            TILE_CELLS,
-        )
+        let films = FilmPlanes {
+            paints: &paints,
+            opacity,
+            under,
+        };
+        let baked = backend.bake(&self.studio, &[films]).ok();
+        baked.and_then(|mut tiles| tiles.pop()).unwrap_or_else(|| {
+            let nothing = FilmPlanes {
+                paints: &[],
+                ..films
+            };
+            self.studio.bake(&nothing, TILE_CELLS)
+        })
     }
 
     /// Internal reflectances of a stack over an even ground, from `baked`, those of the stack's lower
@@ -85,6 +97,7 @@ impl Look {
         stack: &DryStack,
         ground: &[f32],
         known: Option<(&DryStack, &[f32])>,
+        backend: &mut dyn FilmBackend,
     ) -> Vec<f32> {
         let mut above: Vec<&DryStack> = Vec::new();
         let mut next = Some(stack);
@@ -104,7 +117,7 @@ impl Look {
             let under = baked
                 .as_ref()
                 .map_or(Under::Even(ground), |planes| Under::Planes(planes));
-            baked = Some(self.with_layer(link.layer(), under));
+            baked = Some(self.with_layer(link.layer(), under, backend));
         }
         baked.unwrap_or_default()
     }
@@ -147,7 +160,7 @@ impl Bakery {
     /// stack that only grew since, just the new layers are computed.
     pub fn planes(
         &mut self,
-        look: &Look,
+        (look, backend): (&Look, &mut dyn FilmBackend),
         surface: u32,
         id: TileId,
         (stack, ground): (&Arc<DryStack>, &[f32]),
@@ -163,7 +176,7 @@ impl Bakery {
             return Arc::clone(&kept.planes);
         }
         let known = kept.map(|kept| (&*kept.stack, &*kept.planes));
-        let planes: Arc<[f32]> = look.bake(stack, ground, known).into();
+        let planes: Arc<[f32]> = look.bake(stack, ground, known, backend).into();
         if self.kept.len() >= KEPT && !self.kept.contains_key(&place) {
             self.kept.pop_first();
         }
@@ -180,6 +193,7 @@ impl Bakery {
 #[cfg(test)]
 mod tests {
     use maulstick_optics::PaintLibrary;
+    use maulstick_optics::backend::CpuFilms;
 
     use super::*;
 
@@ -207,14 +221,22 @@ mod tests {
         let first = DryStack::over(None, layer(1, 0, 9000));
         let second = DryStack::over(Some(Arc::clone(&first)), layer(2, 1, 4000));
         let mut grown = Bakery::default();
-        grown.planes(&look, 0, id, (&first, &ground));
+        grown.planes((&look, &mut CpuFilms::new()), 0, id, (&first, &ground));
         assert!(!grown.holds(&look, 0, id, &second));
-        let one = grown.planes(&look, 0, id, (&second, &ground));
-        let two = Bakery::default().planes(&look, 0, id, (&second, &ground));
+        let one = grown.planes((&look, &mut CpuFilms::new()), 0, id, (&second, &ground));
+        let two =
+            Bakery::default().planes((&look, &mut CpuFilms::new()), 0, id, (&second, &ground));
         assert!(one == two && grown.holds(&look, 0, id, &second));
         // Back to the older stack, as an undo goes.
-        let back = grown.planes(&look, 0, id, (&first, &ground));
-        assert!(back == Bakery::default().planes(&look, 0, id, (&first, &ground)));
+        let back = grown.planes((&look, &mut CpuFilms::new()), 0, id, (&first, &ground));
+        assert!(
+            back == Bakery::default().planes(
+                (&look, &mut CpuFilms::new()),
+                0,
+                id,
+                (&first, &ground)
+            )
+        );
         assert!(back != one);
     }
 
@@ -225,7 +247,7 @@ mod tests {
         let id = TileId { x: 0, y: 0 };
         let stack = DryStack::over(None, layer(7, 0, 8000));
         let mut bakery = Bakery::default();
-        let full = bakery.planes(&look, 0, id, (&stack, &ground));
+        let full = bakery.planes((&look, &mut CpuFilms::new()), 0, id, (&stack, &ground));
         let set = |look: &mut Look, opacity: f32| {
             look.set_layers(&[Layer {
                 number: 7,
@@ -235,10 +257,11 @@ mod tests {
         };
         set(&mut look, 0.5);
         assert!(!bakery.holds(&look, 0, id, &stack));
-        let half = bakery.planes(&look, 0, id, (&stack, &ground));
+        let half = bakery.planes((&look, &mut CpuFilms::new()), 0, id, (&stack, &ground));
         let thinner = DryStack::over(None, layer(7, 0, 4000));
         set(&mut look, 1.0);
-        let same = Bakery::default().planes(&look, 0, id, (&thinner, &ground));
+        let same =
+            Bakery::default().planes((&look, &mut CpuFilms::new()), 0, id, (&thinner, &ground));
         assert!(
             half.iter()
                 .zip(same.iter())
@@ -250,7 +273,7 @@ mod tests {
                 .any(|(a, b)| (a - b).abs() > 1e-2)
         );
         set(&mut look, 0.0);
-        let none = bakery.planes(&look, 0, id, (&stack, &ground));
+        let none = bakery.planes((&look, &mut CpuFilms::new()), 0, id, (&stack, &ground));
         assert!(
             none.iter().all(|r| (r - 0.9).abs() < 1e-6),
             "the ground shows"

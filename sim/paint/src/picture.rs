@@ -2,12 +2,14 @@
 
 use std::io::{Error, Write};
 
+use maulstick_optics::Under;
+use maulstick_optics::backend::CpuFilms;
 use maulstick_optics::colour::{SrgbTable, clamp_chromaticity};
 use maulstick_optics::light::{HeightField, lit};
 use maulstick_types::paint::TILE;
 
 use crate::bare::Bare;
-use crate::display::DisplayTile;
+use crate::display::{DisplayTile, WetFilms};
 use crate::lamp::lamp_over;
 use crate::look::{Bakery, Look};
 use crate::painting::Painting;
@@ -90,8 +92,16 @@ fn draw(store: &TileStore, bare: &Bare, look: &Look, cell_m: f64, light: Light<'
     for (id, version) in store.iter() {
         let tile = version.tile.as_deref();
         let dry = tile.and_then(Tile::dry);
-        let baked = dry.map(|stack| Bakery::default().planes(look, 0, id, (stack, &bare.ground)));
-        let shown = DisplayTile::on(bare, id, tile, look, baked.as_deref());
+        let baked = dry.map(|stack| {
+            let over = (stack, bare.ground.as_slice());
+            Bakery::default().planes((look, &mut CpuFilms::new()), 0, id, over)
+        });
+        let under = baked
+            .as_deref()
+            .map_or(Under::Even(&bare.ground), Under::Planes);
+        let films = WetFilms::of(tile);
+        let unlit = films.shade(&look.studio, under);
+        let shown = DisplayTile::on(bare, id, tile, (&films, unlit), look.thinner);
         let (left, bottom) = (id.x as usize * TILE, id.y as usize * TILE);
         for y in 0..TILE.min(height - bottom) {
             let row = height - 1 - (bottom + y);

@@ -5,12 +5,14 @@
 //! | [`brush`] | `brush`: the solver of the spines beside slsqp, a head, its strips |
 //! | [`bus`] | `bus`: a sample from a device to the brush node, beside a bare zenoh put |
 //! | [`latency`] | `latency`: from a stylus sample to the first frame that holds it |
+//! | [`optics`] | `optics`: colours of few wavelengths beside all; films on both backends beside a copy |
 //! | [`render`] | `render`: the 30 s recording, offline |
 //! | [`report`] | rows and their table |
 
 mod brush;
 mod bus;
 mod latency;
+mod optics;
 mod render;
 mod report;
 
@@ -23,7 +25,7 @@ use crate::report::Report;
 #[derive(Parser)]
 #[command(name = "maulstick-bench", version)]
 struct Options {
-    /// What to measure: brush, bus, latency, render; everything if absent
+    /// What to measure: brush, bus, latency, optics, render; everything if absent
     area: Option<String>,
     /// As JSON
     #[arg(long)]
@@ -36,10 +38,11 @@ struct Options {
 /// An area's name and what measures it.
 type Area = (&'static str, fn(&mut Report) -> Result<(), Fault>);
 
-const AREAS: [Area; 4] = [
+const AREAS: [Area; 5] = [
     ("brush", brush::run),
     ("bus", bus::run),
     ("latency", latency::run),
+    ("optics", optics::run),
     ("render", render::run),
 ];
 

@@ -42,6 +42,11 @@ impl Report {
         }
     }
 
+    /// What else it was measured on.
+    pub(crate) fn on(&mut self, adapter: &str) {
+        adapter.clone_into(&mut self.adapter);
+    }
+
     /// A number alone.
     pub(crate) fn row(&mut self, name: &str, value: f64, unit: &'static str) {
         let name = name.to_owned();
@@ -73,6 +78,26 @@ impl Report {
         });
     }
 
+    /// Numbers of ours and of a peer, measured in turn: the median of each, and of their ratio.
+    pub(crate) fn paired(
+        &mut self,
+        name: &str,
+        unit: &'static str,
+        peer: &'static str,
+        pairs: &[(f64, f64)],
+    ) {
+        let median =
+            |of: fn(&(f64, f64)) -> f64| quantile(&sorted(pairs.iter().map(of).collect()), 0.5);
+        self.rows.push(Row {
+            name: name.to_owned(),
+            value: median(|pair| pair.0),
+            unit,
+            peer: Some(peer),
+            peer_value: Some(median(|pair| pair.1)),
+            ratio: Some(median(|pair| pair.0 / pair.1)),
+        });
+    }
+
     /// Prints the report as JSON.
     pub(crate) fn print_json(&self) -> Result<(), Fault> {
         let text = serde_json::to_string_pretty(self)
@@ -83,7 +108,7 @@ impl Report {
 
     /// Prints the report as a table.
     pub(crate) fn print_table(&self) {
-        println!("{}", self.machine);
+        println!("{}; {}", self.machine, self.adapter);
         for row in &self.rows {
             print!("{:<28} {:>12} {:<8}", row.name, short(row.value), row.unit);
             match (row.peer, row.peer_value, row.ratio) {

@@ -4,12 +4,14 @@ use std::collections::{BTreeMap, VecDeque};
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
-use maulstick_optics::Under;
-use maulstick_paint::display::DisplayTile;
+use maulstick_optics::backend::FilmBackend;
+use maulstick_optics::{FilmPlanes, Under};
+use maulstick_paint::display::{DisplayTile, WetFilms};
 use maulstick_paint::dry::DryStack;
 use maulstick_paint::look::{Bakery, Look};
 use maulstick_paint::tile::{Tile, TileId};
 
+use super::films::SteadyFilms;
 use super::{Fed, FedSurface, Progress};
 
 /// Display tiles that are kept for the next request.
@@ -36,6 +38,7 @@ pub(super) struct Pyramid {
     /// What lies beyond the edge of a surface.
     outside: BTreeMap<u32, Arc<DisplayTile>>,
     bakery: Bakery,
+    pub(super) films: SteadyFilms,
     /// Generation of the look that all this shows.
     generation: Option<u64>,
     /// What is still to be baked for it, as far as nobody looks at it first.
@@ -99,13 +102,84 @@ impl Pyramid {
         {
             if let Some(surface) = fed.surfaces.get(&number) {
                 let over = (&stack, surface.bare.ground.as_slice());
-                self.bakery.planes(look, number, id, over);
+                let sight = (&**look, &mut self.films as &mut dyn FilmBackend);
+                self.bakery.planes(sight, number, id, over);
             }
         }
         Progress {
             all: self.ahead_of.1,
             done: self.ahead_of.1 - self.ahead.len() as u32,
         }
+    }
+
+    /// The tiles of full detail of a rectangle of a level that are not kept or have changed.
+    pub(super) fn stale(
+        &self,
+        number: u32,
+        surface: &FedSurface,
+        level: u32,
+        id: TileId,
+    ) -> Vec<TileId> {
+        let [across, up] = surface.grid;
+        let span = |from: u32, most: u32| {
+            let side = 1u64 << level;
+            let to = (u64::from(from) + 1) * side;
+            (u64::from(from) * side).min(u64::from(most)) as u32..to.min(u64::from(most)) as u32
+        };
+        let columns = span(id.x, across);
+        let all = span(id.y, up).flat_map(|y| columns.clone().map(move |x| TileId { x, y }));
+        let stale = |id: &TileId| {
+            let version = Self::painted(surface, 0, *id);
+            self.kept
+                .get(&(number, 0, *id))
+                .is_none_or(|(kept, _)| *kept != version)
+        };
+        all.filter(stale).collect()
+    }
+
+    /// Computes tiles of full detail together.
+    pub(super) fn shade(&mut self, look: &Look, number: u32, surface: &FedSurface, ids: &[TileId]) {
+        self.turn_to(look);
+        let painted = |id: &TileId| surface.tiles.get(id).and_then(|(_, tile)| tile.as_deref());
+        let ground = surface.bare.ground.as_slice();
+        let mut baked = Vec::with_capacity(ids.len());
+        for id in ids {
+            baked.push(painted(id).and_then(Tile::dry).map(|stack| {
+                let sight = (look, &mut self.films as &mut dyn FilmBackend);
+                self.bakery.planes(sight, number, *id, (stack, ground))
+            }));
+        }
+        let films: Vec<WetFilms> = ids.iter().map(|id| WetFilms::of(painted(id))).collect();
+        let planes: Vec<Vec<(usize, &[f32])>> = films.iter().map(WetFilms::planes).collect();
+        let batch: Vec<FilmPlanes<'_>> = planes
+            .iter()
+            .zip(&baked)
+            .map(|(paints, baked)| FilmPlanes {
+                paints,
+                opacity: 1.0,
+                under: baked.as_deref().map_or(Under::Even(ground), Under::Planes),
+            })
+            .collect();
+        let colours = match self.films.shade(&look.studio, &batch) {
+            Ok(colours) => colours,
+            Err(error) => {
+                tracing::error!("tiles cannot be shown: {error}");
+                return;
+            }
+        };
+        for ((id, films), rgb) in ids.iter().zip(&films).zip(colours) {
+            let shown =
+                DisplayTile::on(&surface.bare, *id, painted(id), (films, rgb), look.thinner);
+            let version = Self::painted(surface, 0, *id);
+            self.keep((number, 0, *id), version, Arc::new(shown));
+        }
+    }
+
+    fn keep(&mut self, place: (u32, u32, TileId), version: u64, tile: Arc<DisplayTile>) {
+        if self.kept.len() >= KEPT_TILES {
+            self.kept.clear();
+        }
+        self.kept.insert(place, (version, tile));
     }
 
     pub(super) fn tile(
@@ -123,20 +197,17 @@ impl Pyramid {
         {
             return Arc::clone(tile);
         }
-        let tile = Arc::new(if level == 0 {
-            let tile = surface.tiles.get(&id).and_then(|(_, tile)| tile.as_deref());
-            let baked = tile.and_then(Tile::dry).map(|stack| {
-                let over = (stack, surface.bare.ground.as_slice());
-                self.bakery.planes(look, number, id, over)
-            });
-            DisplayTile::on(&surface.bare, id, tile, look, baked.as_deref())
-        } else {
+        if level == 0 {
+            self.shade(look, number, surface, &[id]);
+            if let Some((_, tile)) = self.kept.get(&(number, level, id)) {
+                return Arc::clone(tile);
+            }
+        }
+        let tile = Arc::new({
             let outside = Arc::clone(self.outside.entry(number).or_insert_with(|| {
-                Arc::new(DisplayTile::of(
-                    None,
-                    look,
-                    Under::Even(&surface.bare.ground),
-                ))
+                let films = WetFilms::default();
+                let rgb = films.shade(&look.studio, Under::Even(&surface.bare.ground));
+                Arc::new(DisplayTile::of(None, (&films, rgb), None))
             }));
             let [across, up] = grid(surface, level - 1);
             let children: [Option<Arc<DisplayTile>>; 4] = std::array::from_fn(|quarter| {
@@ -146,11 +217,7 @@ impl Pyramid {
             });
             DisplayTile::coarser(children.each_ref().map(|child| child.as_deref()), &outside)
         });
-        if self.kept.len() >= KEPT_TILES {
-            self.kept.clear();
-        }
-        self.kept
-            .insert((number, level, id), (version, Arc::clone(&tile)));
+        self.keep((number, level, id), version, Arc::clone(&tile));
         tile
     }
 }

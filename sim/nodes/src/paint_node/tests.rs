@@ -7,7 +7,7 @@ use maulstick_bus::bus::Answer;
 use maulstick_bus::{Faults, MemoryNet};
 use maulstick_optics::{PaintLibrary, Under};
 use maulstick_paint::PaintingSetup;
-use maulstick_paint::display::DisplayTile;
+use maulstick_paint::display::WetFilms;
 use maulstick_types::command::Command;
 use maulstick_types::stylus::{DEFAULT_TILT_RAD, StylusPose, StylusSample};
 use maulstick_types::{Header, Mixture, decode};
@@ -101,8 +101,9 @@ fn the_frames_know_a_paint_as_soon_as_a_tile_has_it() {
     let surface = &fed.surfaces[&CANVAS];
     let painted = surface.tiles.values().filter_map(|(_, tile)| tile.as_ref());
     // Shading a paint that the studio does not have is out of bounds.
-    let shown =
-        painted.map(|tile| DisplayTile::of(Some(tile), look, Under::Even(&surface.bare.ground)));
+    let shown = painted.map(|tile| {
+        WetFilms::of(Some(tile)).shade(&look.studio, Under::Even(&surface.bare.ground))
+    });
     assert!(shown.count() > 0, "nothing was painted");
 }
 

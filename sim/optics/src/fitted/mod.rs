@@ -12,6 +12,7 @@
 //! mean ΔE₀₀ of sixteen samples is .07, with weights of either sign as well.
 
 mod metric;
+mod normal;
 mod select;
 mod training;
 mod weights;
@@ -24,8 +25,9 @@ use crate::paints::Paint;
 use crate::rule::SamplingRule;
 use crate::spectrum::{SAMPLES, Spectrum, wavelength};
 use metric::Metric;
+use normal::Normal;
 use select::{exchange, spread};
-use weights::{Normal, non_negative};
+use weights::non_negative;
 
 /// Rounds of weighing the worst samples more, so that none stands out.
 const ROUNDS: usize = 3;
@@ -101,18 +103,16 @@ fn fit(n: usize, observer: Observer, light: &Illuminant, paints: &[Paint]) -> Sa
             }
         })
         .collect();
+    let every: Vec<usize> = (0..SAMPLES).collect();
     let mut chosen = spread(&full, n);
-    for round in 0..=ROUNDS {
-        let normal = Normal::new(&targets, white);
-        if round == 0 || round == ROUNDS {
-            exchange(&normal, &mut chosen);
-        }
-        if round < ROUNDS {
-            let rule = rule(&chosen, &non_negative(&normal, &chosen));
-            weigh(&mut targets, &rule, &chosen);
-        }
+    exchange(&Normal::new(&targets, white, &every), &mut chosen);
+    for _ in 0..ROUNDS {
+        let normal = Normal::new(&targets, white, &chosen);
+        let rule = rule(&chosen, &non_negative(&normal, &chosen));
+        weigh(&mut targets, &rule, &chosen);
     }
-    let normal = Normal::new(&targets, white);
+    let normal = Normal::new(&targets, white, &every);
+    exchange(&normal, &mut chosen);
     rule(&chosen, &non_negative(&normal, &chosen))
 }
 

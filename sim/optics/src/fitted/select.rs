@@ -5,7 +5,8 @@
 //! columns B and the block D lowers the sum of squares by rᵀ·(D − YᵀY)⁻¹·r, Y = L⁻¹·B,
 //! r = b − Yᵀ·z.
 
-use super::weights::{Factor, Normal};
+use super::normal::Normal;
+use super::weights::Factor;
 use crate::colour::solve3;
 use crate::rule::SamplingRule;
 use crate::spectrum::SAMPLES;
@@ -14,6 +15,9 @@ use crate::spectrum::SAMPLES;
 const WHITE: f64 = 1e3;
 /// Rounds over all wavelengths; it settles after four to eight.
 const SWEEPS: usize = 24;
+
+/// Wavelengths whose columns are solved for together: their sums stay in registers.
+const RUN: usize = 6;
 
 /// `n` wavelengths such that each stands for the same share of X + Y + Z, to begin with.
 pub(super) fn spread(full: &SamplingRule, n: usize) -> Vec<usize> {
@@ -34,7 +38,7 @@ pub(super) fn spread(full: &SamplingRule, n: usize) -> Vec<usize> {
 }
 
 /// Exchanges wavelengths until no single exchange lowers the sum of squares.
-pub(super) fn exchange(normal: &Normal, chosen: &mut Vec<usize>) {
+pub(super) fn exchange(normal: &Normal, chosen: &mut [usize]) {
     for _ in 0..SWEEPS {
         let mut settled = true;
         for place in 0..chosen.len() {
@@ -44,11 +48,11 @@ pub(super) fn exchange(normal: &Normal, chosen: &mut Vec<usize>) {
                 .filter(|(i, _)| *i != place)
                 .map(|(_, p)| *p)
                 .collect();
-            let border = Border::new(normal, &others);
-            let now = border.gain(normal, chosen[place]);
+            let gains = Border::new(normal, &others).gains(normal);
+            let now = gains[chosen[place]];
             let best = (0..SAMPLES)
                 .filter(|p| !others.contains(p))
-                .map(|p| (border.gain(normal, p), p))
+                .map(|p| (gains[p], p))
                 .max_by(|a, b| a.0.total_cmp(&b.0).then(b.1.cmp(&a.1)));
             if let Some((gain, p)) = best
                 && gain > now * (1.0 + 1e-12)
@@ -97,25 +101,49 @@ impl Border {
         }
     }
 
-    /// By how much wavelength `p` lowers the sum of squares.
-    fn gain(&self, normal: &Normal, p: usize) -> f64 {
-        let columns = [0, 1, 2].map(|c| {
-            let column: Vec<f64> = self
-                .unknowns
-                .iter()
-                .map(|q| entry(normal, self.white, *q, 3 * p + c))
-                .collect();
-            self.factor.forward(&column)
-        });
-        let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
-        let block = [0, 1, 2].map(|i| {
-            [0, 1, 2].map(|j: usize| {
-                entry(normal, self.white, 3 * p + i, 3 * p + j) - dot(&columns[i], &columns[j])
-            })
-        });
-        let r = [0, 1, 2].map(|c| pull(normal, self.white, 3 * p + c) - dot(&columns[c], &self.z));
-        let x = solve3(&block, r);
-        (0..3).map(|c| r[c] * x[c]).sum()
+    /// By how much each wavelength lowers the sum of squares.
+    fn gains(&self, normal: &Normal) -> Vec<f64> {
+        let (rows, z) = (&self.factor.rows, &self.z);
+        // Of each wavelength D − YᵀY and r.
+        let mut left = vec![([[0.0; 3]; 3], [0.0; 3]); SAMPLES];
+        for (at, left) in left.chunks_mut(RUN).enumerate() {
+            let from = 3 * RUN * at;
+            let width = 3 * left.len();
+            let mut y: Vec<[f64; 3 * RUN]> = Vec::with_capacity(rows.len());
+            for (row, unknown) in rows.iter().zip(&self.unknowns) {
+                let mut sum = [0.0; 3 * RUN];
+                for (l, y) in row.iter().zip(&y) {
+                    sum.iter_mut().zip(y).for_each(|(sum, y)| *sum += l * y);
+                }
+                let mut new = [0.0; 3 * RUN];
+                let b = &normal.row(*unknown)[from..from + width];
+                for (i, (new, b)) in new.iter_mut().zip(b).enumerate() {
+                    let white = if i % 3 == unknown % 3 {
+                        self.white
+                    } else {
+                        0.0
+                    };
+                    *new = (b + white - sum[i]) / row[y.len()];
+                }
+                y.push(new);
+            }
+            for (n, (block, r)) in left.iter_mut().enumerate() {
+                for i in 0..3 {
+                    let own = 3 * n + i;
+                    for j in 0..3 {
+                        let dot: f64 = y.iter().map(|y| y[own] * y[3 * n + j]).sum();
+                        block[i][j] = entry(normal, self.white, from + own, from + 3 * n + j) - dot;
+                    }
+                    let dot: f64 = y.iter().zip(z).map(|(y, z)| y[own] * z).sum();
+                    r[i] = pull(normal, self.white, from + own) - dot;
+                }
+            }
+        }
+        let gain = |(block, r): &([[f64; 3]; 3], [f64; 3])| {
+            let x = solve3(block, *r);
+            (0..3).map(|c| r[c] * x[c]).sum()
+        };
+        left.iter().map(gain).collect()
     }
 }
 

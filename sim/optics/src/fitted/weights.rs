@@ -1,81 +1,11 @@
-//! The least squares of a rule: normal equations over all 101 wavelengths, and their solution at
-//! some of them, exact for white and without negative weights.
+//! The least squares of a rule at some wavelengths, exact for white and without negative weights.
 
-use super::Target;
-use crate::spectrum::SAMPLES;
-
-/// Unknowns: three weights a wavelength.
-const SIZE: usize = 3 * SAMPLES;
-/// Share of the mean diagonal that is added to it: reflectances are smooth, and so the equations of
-/// neighbouring wavelengths nearly the same.
-const RIDGE: f64 = 1e-9;
-
-/// The minimum of xᵀ·A·x − 2·xᵀ·b is sought over the weights x of chosen wavelengths.
-pub(super) struct Normal {
-    /// A, SIZE×SIZE; entry 3·wavelength + channel.
-    a: Vec<f64>,
-    b: Vec<f64>,
-    pub(super) white: [f64; 3],
-}
-
-impl Normal {
-    pub(super) fn new(targets: &[Target], white: [f64; 3]) -> Self {
-        // A in the channels (i, j) is Σ w·M_ij·R·Rᵀ: six symmetric matrices.
-        let mut a = vec![0.0; SIZE * SIZE];
-        let mut b = vec![0.0; SIZE];
-        for i in 0..3 {
-            for j in 0..=i {
-                let mut gram = vec![[0.0f64; SAMPLES]; SAMPLES];
-                for target in targets {
-                    let m = target.weight * target.metric.0[i][j];
-                    for (row, r) in gram.iter_mut().zip(&target.reflectance) {
-                        let scale = m * r;
-                        row.iter_mut()
-                            .zip(&target.reflectance)
-                            .for_each(|(sum, r)| *sum += scale * r);
-                    }
-                }
-                for (p, row) in gram.iter().enumerate() {
-                    for (q, value) in row.iter().enumerate() {
-                        a[(3 * p + i) * SIZE + 3 * q + j] = *value;
-                        a[(3 * p + j) * SIZE + 3 * q + i] = *value;
-                    }
-                }
-            }
-        }
-        for target in targets {
-            let m = &target.metric.0;
-            let pull = [0, 1, 2]
-                .map(|i| target.weight * (0..3).map(|j| m[i][j] * target.xyz[j]).sum::<f64>());
-            for (p, r) in target.reflectance.iter().enumerate() {
-                (0..3).for_each(|i| b[3 * p + i] += r * pull[i]);
-            }
-        }
-        let trace: f64 = (0..SIZE).map(|i| a[i * SIZE + i]).sum();
-        for i in 0..SIZE {
-            a[i * SIZE + i] += RIDGE * trace / SIZE as f64;
-        }
-        Self { a, b, white }
-    }
-
-    pub(super) fn a(&self, p: usize, q: usize) -> f64 {
-        self.a[p * SIZE + q]
-    }
-
-    pub(super) fn b(&self, p: usize) -> f64 {
-        self.b[p]
-    }
-
-    /// Mean of A's diagonal.
-    pub(super) fn scale(&self) -> f64 {
-        (0..SIZE).map(|i| self.a[i * SIZE + i]).sum::<f64>() / SIZE as f64
-    }
-}
+use super::normal::Normal;
 
 /// A lower triangular Cholesky factor, row after row; grown by bordering.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Factor {
-    rows: Vec<Vec<f64>>,
+    pub(super) rows: Vec<Vec<f64>>,
 }
 
 impl Factor {

@@ -1,0 +1,210 @@
+//! The graphics device. Whatever happens to it becomes a value: wgpu's own answer to an error that
+//! nobody asked about, and to a device lost while someone waits for it, is to panic.
+
+use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::sync::{Arc, Mutex, PoisonError};
+use std::time::Duration;
+
+use pollster::block_on;
+
+/// Longest that a batch may take. A driver gives a hung device up after 2 to 10 s.
+const PATIENCE: Duration = Duration::from_secs(20);
+
+/// Which adapters will do.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Choice {
+    /// Only a real graphics processor: one that is emulated is slower than the processor itself.
+    #[default]
+    Auto,
+    /// Any, also an emulated one such as lavapipe.
+    Forced,
+}
+
+/// Why the device cannot be used.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum GpuError {
+    /// There is none of the kind that was asked for.
+    #[error("there is no graphics adapter that would do: {0}")]
+    None(String),
+    /// It was lost, or no longer answers.
+    #[error("it was lost: {0}")]
+    Lost(String),
+    /// Its memory is full.
+    #[error("its memory is full")]
+    Memory,
+    /// The driver refused something.
+    #[error("its driver refuses: {0}")]
+    Refused(String),
+}
+
+/// An open device.
+#[derive(Clone, Debug)]
+pub struct Device {
+    /// Makes things.
+    pub device: wgpu::Device,
+    /// Takes work, in order.
+    pub queue: wgpu::Queue,
+    info: wgpu::AdapterInfo,
+    lost: Arc<Mutex<Option<String>>>,
+    stray: Arc<Mutex<Option<GpuError>>>,
+}
+
+/// The limits that are asked for: those of nearly every device with compute shaders.
+fn limits() -> wgpu::Limits {
+    wgpu::Limits {
+        max_storage_buffers_per_shader_stage: 8,
+        ..wgpu::Limits::downlevel_defaults()
+    }
+}
+
+/// How little an adapter is wanted; none where it is out of the question.
+fn rank(info: &wgpu::AdapterInfo, choice: Choice) -> Option<u32> {
+    match info.device_type {
+        wgpu::DeviceType::DiscreteGpu => Some(0),
+        wgpu::DeviceType::IntegratedGpu => Some(1),
+        wgpu::DeviceType::VirtualGpu => Some(2),
+        wgpu::DeviceType::Other | wgpu::DeviceType::Cpu => (choice == Choice::Forced).then_some(3),
+    }
+}
+
+fn keep<T>(place: &Mutex<Option<T>>, first: T) {
+    let mut held = place.lock().unwrap_or_else(PoisonError::into_inner);
+    held.get_or_insert(first);
+}
+
+impl From<wgpu::Error> for GpuError {
+    fn from(error: wgpu::Error) -> Self {
+        match error {
+            wgpu::Error::OutOfMemory { .. } => Self::Memory,
+            wgpu::Error::Validation { description, .. }
+            | wgpu::Error::Internal { description, .. } => Self::Refused(description),
+        }
+    }
+}
+
+impl Device {
+    /// Opens the best adapter.
+    ///
+    /// # Errors
+    /// [`GpuError::None`].
+    pub fn open(choice: Choice) -> Result<Self, GpuError> {
+        let mut refusals = Vec::new();
+        // OpenGL only where there is nothing better: it shows the same adapters once more.
+        for backends in [wgpu::Backends::PRIMARY, wgpu::Backends::GL] {
+            let mut descriptor = wgpu::InstanceDescriptor::new_without_display_handle();
+            descriptor.backends = backends;
+            let instance = wgpu::Instance::new(descriptor);
+            let adapters = block_on(instance.enumerate_adapters(backends)).into_iter();
+            let mut wanted: Vec<(u32, wgpu::Adapter)> = adapters
+                .filter_map(|adapter| Some((rank(&adapter.get_info(), choice)?, adapter)))
+                .collect();
+            wanted.sort_by_key(|(rank, _)| *rank);
+            for (_, adapter) in wanted {
+                match Self::on(&adapter) {
+                    Ok(device) => return Ok(device),
+                    Err(refusal) => refusals.push(refusal),
+                }
+            }
+        }
+        if refusals.is_empty() {
+            refusals.push(match choice {
+                Choice::Auto => "none is a graphics processor of its own".to_owned(),
+                Choice::Forced => "no driver is installed".to_owned(),
+            });
+        }
+        Err(GpuError::None(refusals.join("; ")))
+    }
+
+    fn on(adapter: &wgpu::Adapter) -> Result<Self, String> {
+        let info = adapter.get_info();
+        let descriptor = wgpu::DeviceDescriptor {
+            label: Some("maulstick"),
+            required_limits: limits(),
+            ..Default::default()
+        };
+        let (device, queue) = block_on(adapter.request_device(&descriptor))
+            .map_err(|error| format!("{}: {error}", info.name))?;
+        let (lost, stray) = (Arc::new(Mutex::new(None)), Arc::new(Mutex::new(None)));
+        let on_loss = Arc::clone(&lost);
+        device.set_device_lost_callback(move |_, reason| keep(&on_loss, reason));
+        let on_error = Arc::clone(&stray);
+        device.on_uncaptured_error(Arc::new(move |error: wgpu::Error| {
+            keep(&on_error, GpuError::from(error));
+        }));
+        Ok(Self {
+            device,
+            queue,
+            info,
+            lost,
+            stray,
+        })
+    }
+
+    /// The adapter's name.
+    #[must_use]
+    pub fn name(&self) -> &str {
+        &self.info.name
+    }
+
+    /// Whether a processor emulates it.
+    #[must_use]
+    pub fn is_cpu(&self) -> bool {
+        self.info.device_type == wgpu::DeviceType::Cpu
+    }
+
+    /// Does what uses the device; what goes wrong with the device meanwhile is the error.
+    ///
+    /// # Errors
+    /// [`GpuError`].
+    pub fn guarded<T>(&self, work: impl FnOnce() -> Result<T, GpuError>) -> Result<T, GpuError> {
+        self.check_lost()?;
+        let filters = [
+            wgpu::ErrorFilter::Validation,
+            wgpu::ErrorFilter::OutOfMemory,
+            wgpu::ErrorFilter::Internal,
+        ];
+        let scopes = filters.map(|filter| self.device.push_error_scope(filter));
+        let done = work();
+        // In reverse, as they were pushed; the last one popped is what counts.
+        let mut fault = None;
+        for scope in scopes.into_iter().rev() {
+            fault = block_on(scope.pop()).map(GpuError::from).or(fault);
+        }
+        if done.is_err() || fault.is_some() {
+            // A loss is told only to those who poll.
+            self.poll(wgpu::PollType::Poll);
+        }
+        self.check_lost()?;
+        let mut stray = self.stray.lock().unwrap_or_else(PoisonError::into_inner);
+        match fault.or(stray.take()) {
+            Some(fault) => Err(fault),
+            None => done,
+        }
+    }
+
+    /// Waits until the device has done all that it was given.
+    ///
+    /// # Errors
+    /// [`GpuError::Lost`].
+    pub fn wait(&self) -> Result<(), GpuError> {
+        self.poll(wgpu::PollType::Wait {
+            submission_index: None,
+            timeout: Some(PATIENCE),
+        });
+        self.check_lost()
+    }
+
+    fn poll(&self, how: wgpu::PollType) {
+        match catch_unwind(AssertUnwindSafe(|| self.device.poll(how))) {
+            Ok(Ok(_)) => {}
+            Ok(Err(error)) => keep(&self.lost, error.to_string()),
+            Err(_) => keep(&self.lost, "it broke down at work".to_owned()),
+        }
+    }
+
+    fn check_lost(&self) -> Result<(), GpuError> {
+        let lost = self.lost.lock().unwrap_or_else(PoisonError::into_inner);
+        lost.clone()
+            .map_or(Ok(()), |reason| Err(GpuError::Lost(reason)))
+    }
+}

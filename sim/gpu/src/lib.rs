@@ -1,0 +1,21 @@
+//! The graphics device: stages of the simulation in WGSL, each with a twin in Rust.
+//!
+//! | module | holds |
+//! | --- | --- |
+//! | [`device`] | the device, its faults as values |
+//! | [`films`] | Kubelka-Munk films of many tiles at once |
+//! | `stage` | a compute shader and its pipelines |
+//! | `batch` | tiles as the shaders take them |
+//! | `arena` | buffers that are used again |
+//! | `shade_films`, `bake_films` | the stages of films |
+
+mod arena;
+mod bake_films;
+mod batch;
+pub mod device;
+pub mod films;
+mod shade_films;
+mod stage;
+
+pub use device::{Choice, Device, GpuError};
+pub use films::GpuFilms;
