@@ -4,7 +4,8 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 use maulstick_optics::comparison::compare;
-use maulstick_optics::{Blend, Coat, Layer, PaintLibrary, Reading, Seen, Spectrum};
+use maulstick_optics::surface::SurfaceCorrection;
+use maulstick_optics::{Blend, Coat, Layer, PaintLibrary, Seen, Spectrum};
 use maulstick_paint::picture::Picture;
 use maulstick_rig::Fault;
 use maulstick_rig::files::{check_writable, write_whole};
@@ -96,10 +97,7 @@ impl FilmOptions {
                     ground: self.over,
                 },
             },
-            reading: match self.saunderson {
-                true => Reading::Spectrometer,
-                false => Reading::Inside,
-            },
+            surface: self.saunderson.then(SurfaceCorrection::default),
         }
     }
 }

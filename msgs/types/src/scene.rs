@@ -84,7 +84,7 @@ wire_struct! {
 wire_struct! {
     /// The lamp, and how its light becomes colour.
     pub struct Light {
-        /// Toward the lamp, canvas frame; of any length.
+        /// Unit vector toward the lamp, canvas frame.
         pub direction: [f64; 3],
         /// Factor on the light's strength.
         pub intensity: f64,
@@ -138,7 +138,7 @@ impl Default for Light {
     /// Average daylight from the upper left.
     fn default() -> Self {
         Self {
-            direction: [-0.5, 0.5, 0.7],
+            direction: [-0.5, 0.5, 0.5f64.sqrt()],
             intensity: 1.0,
             illuminant: "D65".to_owned(),
             spectrum: Vec::new(),

@@ -42,7 +42,7 @@ pub mod viewing;
 
 pub use backend::{BackendError, CpuFilms, FilmBackend};
 pub use cie::{Illuminant, Observer};
-pub use mixture::{Blend, Coat, Layer, Reading};
+pub use mixture::{Blend, Coat, Layer};
 pub use paints::{Paint, PaintError, PaintLibrary};
 pub use rule::SamplingRule;
 pub use spectrum::Spectrum;

@@ -248,7 +248,6 @@ fn neighbours<const N: usize>(shares: [f64; N], whole: i64) -> Vec<[i64; N]> {
 mod tests {
     use super::*;
     use crate::cie::{Illuminant, Observer};
-    use crate::mixture::Reading;
     use crate::paints::PaintLibrary;
     use crate::rule::SamplingRule;
     use crate::viewing::Adaptation;
@@ -297,7 +296,7 @@ mod tests {
             assert!(own[0].delta_e < 0.1, "{own:?}");
             // A target without the gloss is another colour.
             let inside = Coat {
-                reading: Reading::Inside,
+                surface: None,
                 ..Coat::masstone()
             };
             let faulty = colour_of(text, &inside).lab;

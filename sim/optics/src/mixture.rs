@@ -36,51 +36,27 @@ pub enum Layer {
     },
 }
 
-/// Where a reflectance is taken.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Reading {
-    /// Within the film, below its surface.
-    Inside,
-    /// From where no gloss is seen: as a painting shows it.
-    #[default]
-    Shown,
-    /// By a spectrometer that includes the gloss.
-    Spectrometer,
-}
-
-impl Reading {
-    /// What is read of a film of internal reflectance `r`.
-    #[must_use]
-    pub fn of(self, r: f64) -> f64 {
-        let surface = SurfaceCorrection::default();
-        match self {
-            Self::Inside => r,
-            Self::Shown => surface.leaving(r),
-            Self::Spectrometer => surface.measured(r),
-        }
-    }
-}
-
-/// A layer, and where its reflectance is taken.
+/// A layer and its surface.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Coat {
     /// The layer.
     pub layer: Layer,
-    /// Where.
-    pub reading: Reading,
+    /// Its surface; without one the reflectance is that inside the film.
+    pub surface: Option<SurfaceCorrection>,
 }
 
 impl Coat {
-    /// An opaque layer as a painting shows it.
+    /// An opaque layer as the eye sees it, gloss included.
     #[must_use]
     pub fn masstone() -> Self {
         Self {
             layer: Layer::Opaque,
-            reading: Reading::Shown,
+            surface: Some(SurfaceCorrection::default()),
         }
     }
 
-    /// Reflectance of paint of absorption `k` and scattering `s`, per metre.
+    /// Reflectance of paint of absorption `k` and scattering `s`, per metre. With a surface it is
+    /// what a spectrometer reads that includes the gloss.
     #[must_use]
     pub fn reflectance(&self, k: f64, s: f64) -> f64 {
         let inside = match self.layer {
@@ -94,7 +70,10 @@ impl Coat {
                 km::over(km::film(k * d, s * d), ground)
             }
         };
-        self.reading.of(inside)
+        match &self.surface {
+            Some(surface) => surface.measured(inside),
+            None => inside,
+        }
     }
 }
 
@@ -173,13 +152,13 @@ mod tests {
                 thinner,
                 ground,
             },
-            reading: Reading::Inside,
+            surface: None,
         }
     }
 
     const OPAQUE: Coat = Coat {
         layer: Layer::Opaque,
-        reading: Reading::Inside,
+        surface: None,
     };
 
     fn worst(one: &Spectrum, two: &Spectrum) -> f64 {

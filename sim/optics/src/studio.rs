@@ -330,27 +330,19 @@ impl Studio {
         baked
     }
 
-    /// Linear sRGB of a uniform film as a painting shows it, the gloss left out: thickness in metres by
-    /// slot, over a ground.
+    /// Linear sRGB, gloss included, of a uniform film: thickness in metres by slot, over a ground.
     #[must_use]
     pub fn colour(&self, films: &[(usize, f64)], ground: &[f32]) -> [f64; 3] {
-        let shown = |r| self.surface.leaving(r);
-        apply(&self.to_rgb, self.film_xyz(films, ground, shown))
+        apply(&self.to_rgb, self.film_xyz(films, ground))
     }
 
-    /// CIELAB of a uniform film over a ground as a spectrometer reads it, gloss included.
+    /// CIELAB, gloss included, of a uniform film over a ground.
     #[must_use]
     pub fn lab(&self, films: &[(usize, f64)], ground: &[f32]) -> [f64; 3] {
-        let read = |r| self.surface.measured(r);
-        lab(self.film_xyz(films, ground, read), self.white)
+        lab(self.film_xyz(films, ground), self.white)
     }
 
-    fn film_xyz(
-        &self,
-        films: &[(usize, f64)],
-        ground: &[f32],
-        surface: impl Fn(f64) -> f64,
-    ) -> [f64; 3] {
+    fn film_xyz(&self, films: &[(usize, f64)], ground: &[f32]) -> [f64; 3] {
         let reflectance = |sample: usize| {
             let sum = |which: usize| {
                 films
@@ -358,7 +350,7 @@ impl Studio {
                     .map(|(slot, d)| f64::from(self.paints[*slot][sample][which]) * d)
                     .sum()
             };
-            surface(km::over(
+            self.surface.measured(km::over(
                 km::film(sum(0), sum(1)),
                 f64::from(ground[sample]),
             ))
