@@ -2,9 +2,14 @@
 
 mod support;
 
-use maulstick_bus::Class;
+use std::sync::Arc;
+
+use maulstick_bus::{Bus, Class};
+use maulstick_device::commander::Commander;
+use maulstick_types::command::Command;
 use maulstick_types::paint::PaintStatus;
 use maulstick_types::scene::Scene;
+use maulstick_types::stylus::TakeStatus;
 use support::{Launcher, Place, assert_same, hear, listen};
 
 /// A rig in which a short demo has been painted.
@@ -19,10 +24,17 @@ fn painted(place: &Place) -> Launcher {
         "Ultramarine Blue",
     ];
     let launcher = Launcher::up(place, &args);
-    let there = support::wait_for(support::PATIENCE, || {
-        (support::on_canvas(place) > 0.0).then_some(())
-    });
-    assert!(there.is_some(), "nothing painted: {}", launcher.said());
+    let (bus, topics) = support::join(place);
+    let mut player = listen::<TakeStatus>(&bus, &topics.("player"), Class::Background);
+    let ended = hear(&mut player, |status| status.end.is_some()).and_then(|status| status.end);
+    let after = ended.map(|end| end.after);
+    assert!(after.is_some(), "it does not end: {}", launcher.said());
+    // The paint node answers when the last of it is painted.
+    let bus = Arc::new(bus);
+    let mut commander = Commander::new(Arc::clone(&bus) as Arc<dyn Bus>, &topics);
+    let painted = commander.send(Command::Mark, after, support::PATIENCE, &|| false);
+    painted.expect("painted");
+    bus.close();
     launcher
 }
 
@@ -112,6 +124,7 @@ fn what_a_rig_cannot_do_with_light_it_refuses_with_words() {
     );
     refused(&["light", "--intensity", "-1"], &["intensity", "-1"]);
     refused(&["light", "--direction", "0,0,-1"], &["z > 0"]);
+    refused(&["light", "--direction", "1,2"], &["three numbers"]);
     refused(&["dry"], &["nothing is wet"]);
     refused(&["dry", "--share", "0"], &["share"]);
     refused(

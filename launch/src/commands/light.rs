@@ -20,14 +20,8 @@ pub struct LightOptions {
     #[arg(long, value_name = "NAME|FILE")]
     illuminant: Option<String>,
     /// Toward the lamp: right, up the canvas, out of it
-    #[arg(
-        long,
-        value_name = "X,Y,Z",
-        value_delimiter = ',',
-        num_args = 3,
-        allow_hyphen_values = true
-    )]
-    direction: Option<Vec<f64>>,
+    #[arg(long, value_name = "X,Y,Z", value_parser = three, allow_hyphen_values = true)]
+    direction: Option<[f64; 3]>,
     /// Factor on its strength
     #[arg(long, allow_negative_numbers = true)]
     intensity: Option<f64>,
@@ -72,9 +66,7 @@ impl LightOptions {
             };
             light.illuminant = found.name;
         }
-        if let Some([x, y, z]) = self.direction.as_deref() {
-            light.direction = [*x, *y, *z];
-        }
+        light.direction = self.direction.unwrap_or(light.direction);
         let set = |to: &mut f64, value: Option<f64>| *to = value.unwrap_or(*to);
         set(&mut light.intensity, self.intensity);
         set(&mut light.exposure, self.exposure);
@@ -89,6 +81,15 @@ impl LightOptions {
         light.check().map_err(Fault::usage)?;
         Ok(light)
     }
+}
+
+/// Reads `x,y,z`.
+fn three(text: &str) -> Result<[f64; 3], String> {
+    let numbers: Result<Vec<f64>, _> = text.split(',').map(|cell| cell.trim().parse()).collect();
+    numbers
+        .ok()
+        .and_then(|numbers| numbers.try_into().ok())
+        .ok_or_else(|| format!("'{text}' is not three numbers such as -0.5,0.5,0.7"))
 }
 
 /// Changes the light and waits until what has dried is computed anew; without changes it only tells.

@@ -286,7 +286,10 @@ impl Studio {
         let (k1, k2) = (self.surface.k1 as f32, self.surface.k2 as f32);
         let open = (1.0 - k1) * (1.0 - k2);
         let mut thickness = [[0.0f32; RUN]; 2];
-        for start in (0..cells).step_by(RUN) {
+        // A bare even ground is one colour.
+        let bare = films.paints.is_empty() && matches!(films.under, Under::Even(_));
+        let distinct = if bare { cells.min(1) } else { cells };
+        for start in (0..distinct).step_by(RUN) {
             let mut sum = [[0.0f32; RUN]; 3];
             for (sample, weight) in self.rgb.iter().enumerate() {
                 films.thickness(&self.paints, sample, start, &mut thickness);
@@ -305,6 +308,11 @@ impl Studio {
             red[run.clone()].copy_from_slice(&sum[0][..length]);
             green[run.clone()].copy_from_slice(&sum[1][..length]);
             blue[run].copy_from_slice(&sum[2][..length]);
+        }
+        if bare && cells > 0 {
+            for plane in [red, green, blue] {
+                plane.fill(plane[0]);
+            }
         }
     }
 
