@@ -25,7 +25,7 @@ fn painted(place: &Place) -> Launcher {
     ];
     let launcher = Launcher::up(place, &args);
     let (bus, topics) = support::join(place);
-    let mut player = listen::<TakeStatus>(&bus, &topics.("player"), Class::Background);
+    let mut player = listen::<TakeStatus>(&bus, &topics.take_status("player"), Class::Background);
     let ended = hear(&mut player, |status| status.end.is_some()).and_then(|status| status.end);
     let after = ended.map(|end| end.after);
     assert!(after.is_some(), "it does not end: {}", launcher.said());
