@@ -12,6 +12,7 @@
 //! | [`chart`] | the mixing chart, and one mixture by four ways of mixing |
 //! | [`sheet`] | the sheet of brushes and their marks |
 //! | [`performance`] | what `render` and `up --play` share: take, brush, loads, canvas |
+//! | [`view`] | how the window and pictures show colour |
 
 pub mod chart;
 pub mod cli;
@@ -22,6 +23,7 @@ pub mod performance;
 pub mod sheet;
 pub mod swatch;
 pub mod up;
+pub mod view;
 pub mod viewing;
 
 use maulstick_rig::Fault;

@@ -25,6 +25,7 @@ use nix::sys::prctl::set_pdeathsig;
 use nix::sys::signal::Signal;
 
 use crate::performance::{brush_file, library_from, painting_setup, refused};
+use crate::view::{VIEW, export};
 
 /// Name of the mouse over the window as a device.
 pub const MOUSE: &str = "mouse";
@@ -165,7 +166,8 @@ pub fn paint() -> Result<i32, Fault> {
         &member.wake,
         origin,
         painting,
-    )?;
+    )?
+    .exporting(export(&member.config.view, VIEW)?);
     let (topic, feed) = (member.topics.frame(), node.feed());
     let frames = FrameServer::new(bus, &topic, feed.clone(), &member.wake, origin)?;
     let stop = member.stop.clone();
@@ -348,7 +350,8 @@ pub fn ui() -> Result<i32, Fault> {
     let options = UiOptions::parse();
     let member = options.node.join("ui", Signal::SIGKILL)?;
     let by_signal = member.stop.clone();
-    maulstick_ui::run(member, MOUSE)?;
+    let export = export(&member.config.view, VIEW)?;
+    maulstick_ui::run(member, MOUSE, &export)?;
     // Ended by a signal it has not been closed by the painter.
     Ok(i32::from(by_signal.by_signal()))
 }

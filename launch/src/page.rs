@@ -24,7 +24,7 @@ impl Page {
         let font = FontRef::try_from_slice(epaint_default_fonts::UBUNTU_LIGHT)
             .map_err(|error| Fault::failure(error.to_string()))?;
         let rgb = PAPER.repeat(width * height);
-        let picture = Picture { width, height, rgb };
+        let picture = Picture::srgb(width, height, rgb);
         Ok(Self { picture, font })
     }
 

@@ -12,6 +12,7 @@ use maulstick_brush::desk::Desk;
 use maulstick_bus::typed::{Receiver, random_epoch};
 use maulstick_bus::{Bus, Class, Queue, Wake};
 use maulstick_paint::lamp::lamp_over;
+use maulstick_paint::picture::Export;
 use maulstick_rig::{Fault, Member, Stop};
 use maulstick_types::scene::{CANVAS, PALETTE, Scene, Surface};
 use maulstick_types::{Origin, name_hash};
@@ -22,6 +23,7 @@ use crate::follow::{Follower, SILENCE_NS};
 use crate::frames::{FrameInbox, FrameSource, pull};
 use crate::gpu::Gpu;
 use crate::mouse::{Mouse, Pointer};
+use crate::progress::WorkProgress;
 use crate::show_surface::Place;
 use crate::surface::{Passes, SurfaceView};
 use crate::view::{DESK_COLOUR, View, level};
@@ -61,6 +63,7 @@ pub struct App {
     scene: Option<(Scene, Desk)>,
     surfaces: [Pulled; SURFACES.len()],
     follower: Follower,
+    progress: WorkProgress,
     mouse: Mouse,
     view: Option<View>,
     pressed: bool,
@@ -90,6 +93,7 @@ impl App {
                 depth_shares.collect(),
                 me.source,
             )?,
+            progress: WorkProgress::new(&**bus, topics, &member.wake)?,
             scenes: Receiver::new(
                 &**bus,
                 &topics.scene(),
@@ -118,17 +122,17 @@ impl App {
         self
     }
 
-    /// Starts to pull frames and to draw them, for a window.
-    pub fn begin(&mut self, context: &Context, state: &RenderState) {
+    /// Starts to pull frames and to draw them, for a window on the display of `export`.
+    pub fn begin(&mut self, context: &Context, state: &RenderState, export: &Export) {
         let gpu = Gpu {
             device: state.device.clone(),
             queue: state.queue.clone(),
             target: state.target_format,
         };
         self.painter = Some(Painter {
-            passes: Passes::new(&gpu),
+            passes: Passes::new(&gpu, export),
             backdrop: Backdrop::new(&gpu),
-            brushes: Brushes::new(&gpu),
+            brushes: Brushes::new(&gpu, export),
             gpu,
         });
         let me = Origin {
@@ -162,6 +166,7 @@ impl App {
             self.scene = Some((scene.message, desk));
         }
         self.follower.take_in(now_ns);
+        self.progress.take_in();
         let (Some(painter), Some((scene, _))) = (&self.painter, &self.scene) else {
             return;
         };
@@ -295,6 +300,7 @@ impl eframe::App for App {
     }
 
     fn ui(&mut self, ui: &mut egui::Ui, _frame: &mut eframe::Frame) {
+        self.progress.show(ui.ctx());
         CentralPanel::default().frame(Frame::NONE).show(ui, |ui| {
             let area = ui.max_rect();
             let surfaces = self.scene.as_ref().map(|(scene, _)| &scene.surfaces[..]);

@@ -154,6 +154,8 @@ impl CallbackTrait for Copy {
 
 #[cfg(test)]
 mod tests {
+    use maulstick_paint::picture::Export;
+
     use super::*;
     use crate::gpu::testing::{draw, gpu, read, target};
     use crate::surface::SurfaceView;
@@ -162,7 +164,7 @@ mod tests {
     #[test]
     fn a_changed_tile_alone_is_drawn_anew_and_the_rest_stays() {
         let gpu = gpu();
-        let (passes, surface) = (Passes::new(&gpu), surface());
+        let (passes, surface) = (Passes::new(&gpu, &Export::default()), surface());
         let size = [200u32, 140];
         let look = look(&surface, size.map(|side| side as f32), 1.2);
         // Once as it comes, once all at the end.
@@ -184,7 +186,9 @@ mod tests {
         assert_eq!(turn(&mut view, &mut backdrop), 0, "nothing has changed");
         view.update(&gpu, &passes, &news());
         let drawn = turn(&mut view, &mut backdrop);
-        let tile_pixels = (66.0f32 * 1.2 + 8.0) * (65.0 * 1.2 + 8.0);
+        // A tile, and what its shadow may reach away from the lamp.
+        let side = |reach: f32| (64.0 + reach + 1.0) * 1.2 + 8.0;
+        let tile_pixels = side(16.0) * side(16.0);
         assert!(
             drawn > 0 && (drawn as f32) < tile_pixels,
             "{drawn} {tile_pixels}"

@@ -5,12 +5,14 @@ use std::collections::BTreeMap;
 use eframe::egui::{Pos2, Shape};
 use maulstick_brush::{Head, HeadPose, Hold};
 use maulstick_optics::light::Lamp;
+use maulstick_paint::picture::Export;
 
 use crate::brush_shape::{handle_width_m, head_discs, is_wide, sections, shadow};
 use crate::draw_brush::{Chain, ChainSlot, DrawBrush, Projection};
-use crate::draw_head::{HeadView, ribbons};
+use crate::draw_head::{HeadView, ribbons, tones};
 use crate::follow::Held;
 use crate::gpu::Gpu;
+use crate::tint::Tint;
 use crate::view::View;
 
 /// Places on the device for a brush.
@@ -26,16 +28,18 @@ pub struct Brushes {
     passes: DrawBrush,
     slots: BTreeMap<String, Slots>,
     pose: HeadPose,
+    tint: Tint,
 }
 
 impl Brushes {
-    /// Draws on a device.
+    /// Draws on a device, for the display of `export`.
     #[must_use]
-    pub fn new(gpu: &Gpu) -> Self {
+    pub fn new(gpu: &Gpu, export: &Export) -> Self {
         Self {
             passes: DrawBrush::new(gpu),
             slots: BTreeMap::new(),
             pose: HeadPose::default(),
+            tint: Tint::new(export),
         }
     }
 
@@ -74,6 +78,7 @@ impl Brushes {
             scale: view.scale as f32,
             bristle_m: held.file.strips.width_mm as f32 * 1e-3,
             hair: held.file.head.hair,
+            tones: tones(held.file.head.hair).map(|tone| self.tint.encoded(tone)),
             toward: lamp.toward,
         };
         let slots = self
@@ -89,7 +94,7 @@ impl Brushes {
             shapes.push(self.passes.cast(gpu, &slots.shadow, &chain).shape(view));
         }
         shapes.push(ribbons(&self.pose, head.strips(), &strips).into());
-        let chain = Chain::solid(&sections, &projection);
+        let chain = Chain::solid(&sections, &projection).tinted(&self.tint);
         if chain.is_visible() {
             shapes.push(self.passes.solid(gpu, &slots.solid, &chain).shape(view));
         }

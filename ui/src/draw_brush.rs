@@ -7,6 +7,7 @@ use glam::Vec2;
 
 use crate::brush_shape::{HEAD_DISCS, Material, SECTIONS, Section, Shade};
 use crate::gpu::{Gpu, Pass, UNIFORM};
+use crate::tint::Tint;
 use crate::view::View;
 
 /// Nodes of a chain at most, as in the shader.
@@ -147,6 +148,17 @@ impl Chain {
             }
         };
         Self::new(projection, &sections.each_ref().map(node)).bounded(|_| 1.0)
+    }
+
+    /// In colours as the display takes them.
+    #[must_use]
+    pub fn tinted(mut self, tint: &Tint) -> Self {
+        for colour in &mut self.colours {
+            let [r, g, b, opacity] = *colour;
+            let [r, g, b] = tint.linear([r, g, b]);
+            *colour = [r, g, b, opacity];
+        }
+        self
     }
 
     /// The shadow of at most [`SHADES`] discs.

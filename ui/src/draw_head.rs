@@ -5,7 +5,8 @@ use maulstick_brush::HeadPose;
 use maulstick_brush::file::sections::Hair;
 
 /// Bristles in the light and in the depth of the tuft, sRGB.
-const fn colours(hair: Hair) -> [[f32; 3]; 2] {
+#[must_use]
+pub const fn tones(hair: Hair) -> [[f32; 3]; 2] {
     match hair {
         Hair::Hog => [[238.0, 214.0, 170.0], [112.0, 82.0, 52.0]],
         Hair::Sable => [[186.0, 112.0, 66.0], [62.0, 30.0, 18.0]],
@@ -27,8 +28,10 @@ pub struct HeadView<'a> {
     pub scale: f32,
     /// Width of a strip, m.
     pub bristle_m: f32,
-    /// What they look like.
+    /// What they are made of.
     pub hair: Hair,
+    /// Bristles in the light and in the depth of the tuft, as the display takes it, 0 to 255.
+    pub tones: [[f32; 3]; 2],
     /// Unit vector toward the lamp, surface frame.
     pub toward: [f32; 3],
 }
@@ -80,7 +83,7 @@ pub fn ribbons(pose: &HeadPose, strips: usize, view: &HeadView<'_>) -> Mesh {
                 Hair::Steel => 0.0,
                 Hair::Hog | Hair::Sable | Hair::Badger => unruly(strip),
             };
-            let colour = shade(view.hair, light, along, own);
+            let colour = shade(view.tones, light, along, own);
             for (reach, alpha) in columns {
                 let place = points[station] + normal * *reach;
                 mesh.colored_vertex(place, with_alpha(colour, *alpha));
@@ -150,8 +153,7 @@ fn unruly(strip: usize) -> f32 {
 }
 
 /// The colour in `light` 0 to 1 at a place along a bristle, whose tip is flagged and lighter.
-fn shade(hair: Hair, light: f32, along: f32, own: f32) -> [f32; 3] {
-    let [bright, dark] = colours(hair);
+fn shade([bright, dark]: [[f32; 3]; 2], light: f32, along: f32, own: f32) -> [f32; 3] {
     let t = (light * (0.85 + 0.15 * along) + 0.22 * own).clamp(0.0, 1.0);
     std::array::from_fn(|i| dark[i] + (bright[i] - dark[i]) * t)
 }
@@ -184,6 +186,7 @@ mod tests {
             scale: 1000.0,
             bristle_m: 4e-3,
             hair: Hair::Hog,
+            tones: tones(Hair::Hog),
             toward,
         };
         ribbons(pose, 2, &view)

@@ -169,6 +169,13 @@ pub fn texture_binding(filterable: Filterable) -> wgpu::BindingType {
     }
 }
 
+/// A cube of colours, read through a sampler, as a binding.
+pub const CUBE: wgpu::BindingType = wgpu::BindingType::Texture {
+    sample_type: wgpu::TextureSampleType::Float { filterable: true },
+    view_dimension: wgpu::TextureViewDimension::D3,
+    multisampled: false,
+};
+
 /// Whether a texture is read through a sampler.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Filterable {

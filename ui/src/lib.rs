@@ -11,7 +11,9 @@
 //! | [`follow`] | the brushes as they are now: newest sample, newest bend |
 //! | [`brush_shape`] | ferrule, handle and shadow |
 //! | [`brushes`], [`draw_head`], [`draw_brush`] | how it is drawn |
+//! | [`tint`] | its colours, for displays other than sRGB |
 //! | [`portrait`] | a brush as a picture |
+//! | [`progress`] | how far long work is |
 //! | [`gpu`] | the graphics device |
 //! | [`mouse`] | the mouse as a stylus |
 
@@ -27,18 +29,23 @@ pub mod gpu;
 pub mod light_surface;
 pub mod mouse;
 pub mod portrait;
+pub mod progress;
 pub mod show_surface;
 pub mod surface;
+pub mod tint;
 pub mod view;
 
+use maulstick_paint::picture::Export;
 use maulstick_rig::{Fault, Member};
 
-/// Shows the window until it is closed; `mouse` is the name of the mouse as a device.
+/// Shows the window until it is closed; `mouse` is the name of the mouse as a device, `export` says
+/// what the display is.
 ///
 /// # Errors
 /// A [`Fault`] where there is no display or no GPU driver.
-pub fn run(mut member: Member, mouse: &str) -> Result<(), Fault> {
+pub fn run(mut member: Member, mouse: &str, export: &Export) -> Result<(), Fault> {
     let mut app = app::App::new(&member, mouse)?;
+    let export = export.clone();
     let viewport = eframe::egui::ViewportBuilder::default()
         .with_title(format!("Maulstick · {}", member.config.rig.name))
         .with_app_id("maulstick")
@@ -55,7 +62,7 @@ pub fn run(mut member: Member, mouse: &str) -> Result<(), Fault> {
                 .wgpu_render_state
                 .as_ref()
                 .ok_or("no graphics device")?;
-            app.begin(&creation.egui_ctx, state);
+            app.begin(&creation.egui_ctx, state, &export);
             member.ready()?;
             Ok(Box::new(app.with_member(member)))
         }),

@@ -7,7 +7,7 @@ use maulstick_brush::{BrushFile, Head, HeadPose, Hold};
 use maulstick_num::geometry::{Rigid, rotation};
 
 use crate::brush_shape::{Material, handle_width_m, sections};
-use crate::draw_head::{HeadView, ribbons};
+use crate::draw_head::{HeadView, ribbons, tones};
 
 /// Samples of a pixel, each way.
 const FINE: usize = 3;
@@ -69,6 +69,7 @@ pub fn portrait(file: &BrushFile, width: usize, height: usize, scale: f64) -> Po
         scale: scale as f32,
         bristle_m: file.strips.width_mm as f32 * 1e-3,
         hair: file.head.hair,
+        tones: tones(file.head.hair),
         toward: TOWARD,
     };
     canvas.draw(&ribbons(&pose, head.strips(), &view));

@@ -3,10 +3,13 @@
 use bytemuck::{Pod, Zeroable};
 use eframe::egui::{Pos2, Vec2};
 use eframe::egui_wgpu::wgpu;
+use half::f16;
 use maulstick_optics::colour::srgb_decode;
+use maulstick_optics::icc::Profile;
 use maulstick_types::scene::Surface;
+use wgpu::util::DeviceExt as _;
 
-use crate::gpu::{Filterable, Gpu, Pass, UNIFORM, texture_binding};
+use crate::gpu::{CUBE, Filterable, Gpu, Pass, UNIFORM, texture_binding};
 use crate::light_surface::CellRect;
 use crate::view::{DESK_COLOUR, View, corners};
 
@@ -124,6 +127,40 @@ impl PixelRect {
     }
 }
 
+/// Nodes of the side of a profile's cube: with the steps of eight bits between them the error is below
+/// half a step for the curves of displays.
+const CUBE_SIDE: usize = 33;
+
+/// A cube of colours, red fastest.
+fn cube_texture(gpu: &Gpu, colours: &[[f32; 3]]) -> wgpu::TextureView {
+    let side = (1..=CUBE_SIDE)
+        .find(|side| side * side * side >= colours.len())
+        .unwrap_or(CUBE_SIDE) as u32;
+    let texel = |[r, g, b]: &[f32; 3]| [*r, *g, *b, 1.0].map(f16::from_f32);
+    let halves = colours.iter().flat_map(texel);
+    let bytes: Vec<u8> = halves.flat_map(f16::to_le_bytes).collect();
+    let texture = gpu.device.create_texture_with_data(
+        &gpu.queue,
+        &wgpu::TextureDescriptor {
+            label: Some("profile"),
+            size: wgpu::Extent3d {
+                width: side,
+                height: side,
+                depth_or_array_layers: side,
+            },
+            mip_level_count: 1,
+            sample_count: 1,
+            dimension: wgpu::TextureDimension::D3,
+            format: wgpu::TextureFormat::Rgba16Float,
+            usage: wgpu::TextureUsages::TEXTURE_BINDING,
+            view_formats: &[],
+        },
+        wgpu::util::TextureDataOrder::LayerMajor,
+        &bytes,
+    );
+    texture.create_view(&wgpu::TextureViewDescriptor::default())
+}
+
 /// The passes.
 #[derive(Clone, Debug)]
 pub struct ShowSurface {
@@ -131,14 +168,15 @@ pub struct ShowSurface {
     fill: wgpu::RenderPipeline,
     show: wgpu::RenderPipeline,
     sampler: wgpu::Sampler,
+    cube: wgpu::TextureView,
 }
 
 impl ShowSurface {
-    /// The passes on a device.
+    /// The passes on a device, for a display with this profile.
     #[must_use]
-    pub fn new(gpu: &Gpu) -> Self {
+    pub fn new(gpu: &Gpu, profile: &Profile) -> Self {
         let sampler = wgpu::BindingType::Sampler(wgpu::SamplerBindingType::Filtering);
-        let bindings = [UNIFORM, texture_binding(Filterable::Yes), sampler];
+        let bindings = [UNIFORM, texture_binding(Filterable::Yes), sampler, CUBE];
         let layout = gpu.layout("show_surface", &bindings);
         let shader = gpu.shader("show_surface", include_str!("shaders/show_surface.wgsl"));
         let encoded = f64::from(DESK_COLOUR.r()) / 255.0;
@@ -147,6 +185,8 @@ impl ShowSurface {
         } else {
             encoded
         };
+        let cube = profile.cube(CUBE_SIDE);
+        let foreign = ("foreign", f64::from(u8::from(cube.is_some())));
         let pipeline = |vertex: &'static str, fragment: &'static str, blend| {
             gpu.pipeline(&Pass {
                 name: "show_surface",
@@ -154,7 +194,7 @@ impl ShowSurface {
                 shader: &shader,
                 vertex,
                 fragment,
-                constants: &[gpu.encoding(), ("grey", grey)],
+                constants: &[gpu.encoding(), ("grey", grey), foreign],
                 target: gpu.target,
                 blend,
             })
@@ -171,6 +211,7 @@ impl ShowSurface {
             show: pipeline("lay", "show", Some(over)),
             layout,
             sampler,
+            cube: cube_texture(gpu, &cube.unwrap_or_else(|| vec![[0.0; 3]])),
         }
     }
 
@@ -186,6 +227,7 @@ impl ShowSurface {
             place.as_entire_binding(),
             wgpu::BindingResource::TextureView(lit),
             wgpu::BindingResource::Sampler(&self.sampler),
+            wgpu::BindingResource::TextureView(&self.cube),
         ];
         gpu.bind(&self.layout, &resources)
     }

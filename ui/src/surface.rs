@@ -1,13 +1,16 @@
 //! A surface on the graphics device: tiles go up as they come, are lit, and are shown.
 
 use eframe::egui_wgpu::wgpu;
+use maulstick_optics::gamut::Gamut;
 use maulstick_optics::light::Lamp;
+use maulstick_optics::light::shadow::Shadows;
+use maulstick_paint::picture::Export;
 use maulstick_types::paint::TILE;
 use maulstick_types::scene::Surface;
 
 use crate::frames::{Shown, ShownTile};
 use crate::gpu::Gpu;
-use crate::light_surface::{COLOUR, CellRect, HEIGHT, LIT, LampUniform, LightSurface};
+use crate::light_surface::{COLOUR, CellRect, HEIGHT, LIT, LampUniform, LightSurface, joined};
 use crate::show_surface::{Detail, PixelRect, Place, ShowSurface};
 use crate::view::View;
 
@@ -23,12 +26,13 @@ pub struct Passes {
 }
 
 impl Passes {
-    /// The passes on a device.
+    /// The passes on a device, for the display of `export`.
     #[must_use]
-    pub fn new(gpu: &Gpu) -> Self {
+    pub fn new(gpu: &Gpu, export: &Export) -> Self {
+        let gamut = Gamut::new(export.gamut, export.profile.from_working());
         Self {
-            light: LightSurface::new(gpu),
-            show: ShowSurface::new(gpu),
+            light: LightSurface::new(gpu, &gamut),
+            show: ShowSurface::new(gpu, &export.profile),
         }
     }
 }
@@ -130,13 +134,14 @@ impl Sheet {
                 },
             );
         }
-        self.stale.push(area.with_border(cells));
+        self.stale.push(area);
     }
 
     /// Lights what is stale; everything where the lamp is another.
     fn light(&mut self, gpu: &Gpu, passes: &Passes, lamp: &Lamp, cell_m: f64) {
         let texel_m = cell_m * f64::from(1u32 << self.detail.level);
-        let lamp = LampUniform::new(lamp, texel_m as f32);
+        let shadows = Shadows::new(lamp, texel_m as f32);
+        let lamp = LampUniform::new(lamp, &shadows, texel_m as f32);
         let moved = self.under != Some(lamp);
         if moved {
             gpu.queue
@@ -152,6 +157,11 @@ impl Sheet {
         if self.stale.is_empty() {
             return;
         }
+        let reach = shadows.reach();
+        for area in &mut self.stale {
+            *area = area.with_border(reach, self.detail.cells);
+        }
+        self.stale = joined(std::mem::take(&mut self.stale));
         let mut encoder = gpu.device.create_command_encoder(&Default::default());
         passes
             .light
@@ -246,8 +256,10 @@ pub struct Laid {
 #[cfg(test)]
 pub(crate) mod tests {
     use eframe::egui::{Rect, pos2, vec2};
-    use maulstick_optics::colour::{SrgbTable, clamp_chromaticity};
-    use maulstick_optics::light::{HeightField, lit};
+    use maulstick_optics::colour::RgbSpace;
+    use maulstick_optics::gamut::GamutMapping;
+    use maulstick_optics::icc::Profile;
+    use maulstick_optics::light::{HeightField, LampSetup, Spot, lit};
     use maulstick_paint::PaintingSetup;
     use maulstick_paint::display::DisplayTile;
     use maulstick_paint::tile::TILE_CELLS;
@@ -341,17 +353,19 @@ pub(crate) mod tests {
         bytes.chunks_exact(4).map(|p| [p[0], p[1], p[2]]).collect()
     }
 
-    pub(crate) fn lamp() -> Lamp {
-        Lamp::new([-0.5, 0.5, 0.5f64.sqrt()], 1.0)
+    fn lamp_from(x: f64) -> Lamp {
+        Lamp::new(&LampSetup {
+            toward: [x, 0.5, 0.5f64.sqrt()],
+            ..Default::default()
+        })
     }
 
-    #[test]
-    fn the_window_shows_the_bytes_of_the_export() {
-        let gpu = gpu();
-        let passes = Passes::new(&gpu);
-        let mut view = SurfaceView::default();
-        view.update(&gpu, &passes, &shown(tiles(), 0, false));
-        view.light(&gpu, &passes, &lamp(), 2.5e-4);
+    pub(crate) fn lamp() -> Lamp {
+        lamp_from(-0.5)
+    }
+
+    /// The picture of the export, rows going downward.
+    fn exported(lamp: &Lamp, export: &Export) -> Vec<[u8; 3]> {
         let [width, rows] = CELLS.map(|cells| cells as usize);
         let heights: Vec<f32> = (0..width * rows)
             .map(|i| height(i % width, i / width))
@@ -361,31 +375,69 @@ pub(crate) mod tests {
             cells: [width, rows],
             cell_m: 2.5e-4,
         };
-        let table = SrgbTable::default();
-        let export = |lamp: &Lamp| -> Vec<[u8; 3]> {
-            let pixel = |i: usize| {
-                let (x, y) = (i % width, rows - 1 - i / width);
-                let light = lit(colour(x, y), 1.0, field.slope(x, y), lamp);
-                clamp_chromaticity(light).map(|channel| table.byte(channel))
+        let shadows = Shadows::new(lamp, 2.5e-4);
+        let gamut = Gamut::new(export.gamut, export.profile.from_working());
+        let pixel = |i: usize| {
+            let (x, y) = (i % width, rows - 1 - i / width);
+            let mut seen = [1.0];
+            shadows.row(&field, [x, y], &mut seen);
+            let spot = Spot {
+                unlit: colour(x, y),
+                gloss: 1.0,
+                slope: field.slope(x, y),
+                seen: seen[0],
             };
-            (0..width * rows).map(pixel).collect()
+            let mut bytes = [0; 3];
+            let profile = &export.profile;
+            profile.encode(&[gamut.map(lit(&spot, lamp))], &mut bytes);
+            bytes
         };
-        let window = drawn(&gpu, &mut view, &passes, 1.0, 0.0);
-        let differs = |export: &[[u8; 3]]| {
-            let pairs = window.iter().flatten().zip(export.iter().flatten());
-            pairs.map(|(a, b)| a.abs_diff(*b)).max().expect("pixels")
+        (0..width * rows).map(pixel).collect()
+    }
+
+    #[test]
+    fn the_window_shows_the_bytes_of_the_export() {
+        let gpu = gpu();
+        let to = |profile: Profile, gamut: GamutMapping| Export {
+            profile: profile.into(),
+            gamut,
         };
-        let off = differs(&export(&lamp()));
-        println!("greatest difference {off} of 255");
-        assert!(off <= 1, "{off}");
-        let mirrored = Lamp::new([0.5, 0.5, 0.5f64.sqrt()], 1.0);
-        assert!(differs(&export(&mirrored)) > 1, "a fault would pass");
+        let wide = || Profile::of(RgbSpace::DisplayP3);
+        // A profile that is read goes through the cube.
+        let read = Profile::read(wide().icc().to_vec()).expect("our own");
+        let exports = [
+            (Export::default(), 1),
+            (to(Profile::of(RgbSpace::Srgb), GamutMapping::Clamp), 1),
+            (to(wide(), GamutMapping::Soft), 1),
+            (to(read, GamutMapping::Soft), 2),
+        ];
+        for (export, most) in &exports {
+            let passes = Passes::new(&gpu, export);
+            let mut view = SurfaceView::default();
+            view.update(&gpu, &passes, &shown(tiles(), 0, false));
+            view.light(&gpu, &passes, &lamp(), 2.5e-4);
+            let window = drawn(&gpu, &mut view, &passes, 1.0, 0.0);
+            let differs = |picture: &[[u8; 3]]| {
+                let pairs = window.iter().flatten().zip(picture.iter().flatten());
+                pairs.map(|(a, b)| a.abs_diff(*b)).max().expect("pixels")
+            };
+            let off = differs(&exported(&lamp(), export));
+            println!("greatest difference {off} of 255");
+            assert!(off <= *most, "{off}");
+            let mirrored = exported(&lamp_from(0.5), export);
+            assert!(differs(&mirrored) > 2, "a fault would pass");
+        }
+        let [srgb, _, wide, _] = &exports;
+        assert!(
+            exported(&lamp(), &srgb.0) != exported(&lamp(), &wide.0),
+            "the spaces differ"
+        );
     }
 
     #[test]
     fn a_larger_picture_has_soft_cells_and_edges_and_no_seams() {
         let gpu = gpu();
-        let passes = Passes::new(&gpu);
+        let passes = Passes::new(&gpu, &Export::default());
         let mut view = SurfaceView::default();
         // A plane without relief whose green grows evenly: magnified it must still do so.
         let mut flat = tiles();
@@ -421,7 +473,7 @@ pub(crate) mod tests {
     #[test]
     fn a_new_level_is_shown_when_it_has_come_whole() {
         let gpu = gpu();
-        let passes = Passes::new(&gpu);
+        let passes = Passes::new(&gpu, &Export::default());
         let mut view = SurfaceView::default();
         let level = |view: &SurfaceView| view.shown.as_ref().map(|sheet| sheet.detail.level);
         view.update(&gpu, &passes, &shown(tiles(), 0, true));

@@ -12,6 +12,7 @@ use maulstick_rig::{Fault, RigConfig};
 
 use crate::commands::progress_bar;
 use crate::performance::{PaintingOptions, brush_file, library_from, painting_setup, refused};
+use crate::view::export;
 
 /// Options of `maulstick render`.
 #[derive(Args, Clone, Debug)]
@@ -24,6 +25,13 @@ pub struct RenderOptions {
     /// Settings of the rig
     #[arg(long, value_name = "FILE")]
     rig: Option<PathBuf>,
+    /// Where the picture goes: srgb, display-p3, or the ICC file of a display or printer; that of
+    /// rig.toml if absent
+    #[arg(long, value_name = "PROFILE")]
+    profile: Option<String>,
+    /// How colours come into its gamut: soft, clamp; that of rig.toml if absent
+    #[arg(long, value_name = "MAPPING")]
+    gamut: Option<String>,
     #[command(flatten)]
     painting: PaintingOptions,
 }
@@ -38,6 +46,15 @@ pub fn run(options: &RenderOptions) -> Result<i32, Fault> {
         None => RigConfig::default(),
     };
     let section = options.painting.apply(&mut config)?;
+    for (setting, option) in [
+        (&mut config.view.profile, &options.profile),
+        (&mut config.view.gamut, &options.gamut),
+    ] {
+        if let Some(value) = option {
+            setting.clone_from(value);
+        }
+    }
+    let export = export(&config.view, "--profile, --gamut")?;
     let library = library_from(config.paint.paints.as_deref())?;
     let loads = options.painting.mixtures(&library)?;
     let take = Take::read(&options.take)?;
@@ -67,7 +84,7 @@ pub fn run(options: &RenderOptions) -> Result<i32, Fault> {
     }
     bar.finish_and_clear();
     let ledger = options.painting.ledger.as_deref();
-    write_snapshot(offline.painting_mut(), &options.output, ledger)
+    write_snapshot(offline.painting_mut(), &options.output, ledger, &export)
         .map_err(|(path, error)| Fault::writing(path.as_ref(), &error))?;
     if unloaded {
         eprintln!("the brush carried no paint: `--load \"Ultramarine Blue\"` gives it some");

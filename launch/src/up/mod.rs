@@ -28,6 +28,7 @@ use crate::performance::{PaintingOptions, library_from, painting_setup, refused}
 use crate::up::conductor::Performance;
 use crate::up::plan::{Hands, Window};
 use crate::up::supervisor::Supervisor;
+use crate::view::{VIEW, export};
 
 /// What the brush carries at the start, where nothing else is asked for.
 const FIRST_LOAD: &str = "Ultramarine Blue";
@@ -139,6 +140,10 @@ pub fn run(options: &UpOptions) -> Result<i32, Fault> {
     if Illuminant::named(light).is_none() {
         *light = absolute(Path::new(light.as_str()))?.display().to_string();
     }
+    if let Some(path) = config.view.file() {
+        config.view.profile = absolute(path)?.display().to_string();
+    }
+    export(&config.view, VIEW)?;
     let folder = RigFolder::create(&config.rig.name)?;
     let window = match options.headless {
         true => Window::Headless,

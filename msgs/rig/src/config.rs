@@ -19,6 +19,10 @@ pub const DRIVERS: [&str; 1] = ["simulated"];
 pub const MODELS: [&str; 1] = ["impasto"];
 /// Backends of the paint model.
 pub const BACKENDS: [&str; 3] = ["auto", "cpu", "gpu"];
+/// Colour spaces that the window and pictures know without a file.
+pub const SPACES: [&str; 2] = ["srgb", "display-p3"];
+/// How colours come into the gamut of the display.
+pub const GAMUTS: [&str; 2] = ["soft", "clamp"];
 /// Priority of the mouse over the window.
 pub const MOUSE_PRIORITY: i32 = -100;
 /// Priority of a device that `rig.toml` does not name.
@@ -229,6 +233,49 @@ impl Default for PaintSection {
     }
 }
 
+/// `[view]`: how the window and pictures show colour.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct ViewSection {
+    /// One of [`SPACES`], or a path to the ICC profile of the display.
+    pub profile: String,
+    /// One of [`GAMUTS`].
+    pub gamut: String,
+}
+
+impl Default for ViewSection {
+    fn default() -> Self {
+        Self {
+            profile: "srgb".into(),
+            gamut: "soft".into(),
+        }
+    }
+}
+
+impl ViewSection {
+    /// The path of the profile where it is a file.
+    #[must_use]
+    pub fn file(&self) -> Option<&Path> {
+        let known = SPACES.contains(&self.profile.as_str());
+        (!known).then(|| Path::new(&self.profile))
+    }
+
+    /// Checks the names; a profile that is no known space has to look like a file.
+    ///
+    /// # Errors
+    /// What is wrong, and what to do.
+    pub fn check(&self) -> Result<(), (String, String)> {
+        let path = Path::new(&self.profile);
+        let is_file = path.extension().is_some() || path.components().count() > 1;
+        if !is_file {
+            check::choose("colour space", &self.profile, &SPACES).map_err(|(what, help)| {
+                (what, format!("{help}; or give the path of an ICC file"))
+            })?;
+        }
+        check::choose("gamut mapping", &self.gamut, &GAMUTS)
+    }
+}
+
 /// When a node is started again.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
@@ -272,6 +319,9 @@ pub struct RigConfig {
     /// The paint.
     #[serde(default)]
     pub paint: PaintSection,
+    /// Colour of the window and of pictures.
+    #[serde(default)]
+    pub view: ViewSection,
     /// Nodes by name.
     #[serde(default)]
     pub node: BTreeMap<String, NodeSection>,
@@ -397,5 +447,29 @@ mod tests {
         let text = error("brush = \"main\"", "brush = \"mian\"");
         assert!(text.contains("'mian'") && text.contains("'main'"), "{text}");
         assert!(error("model = \"impasto\"", "model = \"impatso\"").contains("'impasto'"));
+        let text = error("profile = \"srgb\"", "profile = \"sgrb\"");
+        assert!(text.contains("'srgb'") && text.contains("ICC"), "{text}");
+        assert!(text.contains("rig.toml:47"), "{text}");
+        let text = error("gamut = \"soft\"", "gamut = \"sfot\"");
+        assert!(
+            text.contains("did you mean 'soft'") && text.contains("rig.toml:48"),
+            "{text}"
+        );
+    }
+
+    #[test]
+    fn the_display_may_have_a_profile_of_its_own() {
+        let parse = |profile: &str| {
+            let text = DEFAULT.replace("profile = \"srgb\"", &format!("profile = \"{profile}\""));
+            RigConfig::parse(&text, "rig.toml").map(|config| config.view.file().map(PathBuf::from))
+        };
+        assert_eq!(parse("display-p3"), Ok(None));
+        for path in [
+            "eizo.icc",
+            "/usr/share/color/icc/left display.icm",
+            "profiles/eizo",
+        ] {
+            assert_eq!(parse(path), Ok(Some(PathBuf::from(path))));
+        }
     }
 }

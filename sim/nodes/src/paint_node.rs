@@ -10,7 +10,7 @@ use maulstick_bus::typed::{Reader, Received, Receiver, Sender};
 use maulstick_bus::{
     Arrival, Bus, BusError, Class, CreditReceiver, Queue, Request, Server, Subscription, Wake,
 };
-use maulstick_paint::picture::picture;
+use maulstick_paint::picture::{Export, picture_for};
 use maulstick_paint::sequencer::Replied;
 use maulstick_paint::{Effect, Painting, Sequencer};
 use maulstick_rig::files::write_whole;
@@ -59,6 +59,7 @@ pub struct PaintNode {
     unknown: BTreeSet<String>,
     misfits: BTreeSet<String>,
     strangers: BTreeSet<String>,
+    export: Export,
 }
 
 impl PaintNode {
@@ -110,6 +111,7 @@ impl PaintNode {
             unknown: BTreeSet::new(),
             misfits: BTreeSet::new(),
             strangers: BTreeSet::new(),
+            export: Export::default(),
             topics: topics.clone(),
             me,
             sequencer,
@@ -117,6 +119,13 @@ impl PaintNode {
         };
         node.feed_first();
         Ok(node)
+    }
+
+    /// Has snapshots leave the working space in this way.
+    #[must_use]
+    pub fn exporting(mut self, export: Export) -> Self {
+        self.export = export;
+        self
     }
 
     /// Where the frames take their pictures from.
@@ -285,7 +294,8 @@ impl PaintNode {
             return replied.outcome;
         };
         let painting = self.sequencer.painting_mut();
-        let written = write_snapshot(painting, Path::new(path), ledger.as_deref().map(Path::new));
+        let ledger = ledger.as_deref().map(Path::new);
+        let written = write_snapshot(painting, Path::new(path), ledger, &self.export);
         let outcome = match written {
             Ok(()) => replied.outcome,
             Err((path, error)) => Outcome::Refused {
@@ -483,6 +493,7 @@ pub fn write_snapshot(
     painting: &mut Painting,
     path: &Path,
     ledger: Option<&Path>,
+    export: &Export,
 ) -> Result<(), (String, std::io::Error)> {
     let name = |path: &Path| path.display().to_string();
     if let Some(ledger) = ledger {
@@ -492,7 +503,7 @@ pub fn write_snapshot(
         })
         .map_err(|error| (name(ledger), error))?;
     }
-    let picture = picture(painting, CANVAS);
+    let picture = picture_for(painting, CANVAS, export);
     write_whole(path, |file| picture.encode_png(file)).map_err(|error| (name(path), error))
 }
 

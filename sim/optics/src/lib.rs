@@ -11,7 +11,9 @@
 //! | [`km`] | Kubelka-Munk films |
 //! | [`surface`] | the surface correction |
 //! | [`light`] | a lamp on a relief |
-//! | [`colour`] | XYZ, Lab, ΔE₀₀, sRGB |
+//! | [`colour`] | XYZ, Lab, ΔE₀₀, the RGB of displays |
+//! | [`gamut`] | colours outside a display's gamut |
+//! | [`icc`] | where pictures go: profiles |
 //! | [`paints`] | the measured paints |
 //! | [`mixture`] | what mixed paints reflect, opaque or as a film |
 //! | [`viewing`] | light, observer and rule together: the colour of a reflectance |
@@ -26,6 +28,8 @@ pub mod cie;
 pub mod colour;
 pub mod comparison;
 mod fitted;
+pub mod gamut;
+pub mod icc;
 pub mod km;
 pub mod light;
 pub mod matching;

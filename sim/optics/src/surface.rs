@@ -13,13 +13,15 @@ pub struct SurfaceCorrection {
 }
 
 impl Default for SurfaceCorrection {
-    /// The constants with which the paints were measured (Berns 2016).
     fn default() -> Self {
-        Self { k1: 0.03, k2: 0.65 }
+        Self::STANDARD
     }
 }
 
 impl SurfaceCorrection {
+    /// The constants with which the paints were measured (Berns 2016).
+    pub const STANDARD: Self = Self { k1: 0.03, k2: 0.65 };
+
     /// What leaves a film of internal reflectance `r`, without the gloss k₁.
     #[must_use]
     pub fn leaving(&self, r: f64) -> f64 {

@@ -2,8 +2,9 @@
 
 use crate::cie::{Illuminant, Observer};
 use crate::colour::{
-    apply, clamp_chromaticity, lab, linear_srgb_as_it_is, solve3, srgb_encode, xyz_to_linear_srgb,
+    RgbSpace, apply, lab, linear_srgb_as_it_is, solve3, srgb_encode, xyz_to_linear_srgb,
 };
+use crate::gamut::{Gamut, GamutMapping};
 use crate::mixture::{Blend, Coat};
 use crate::rule::SamplingRule;
 use crate::spectrum::Spectrum;
@@ -111,14 +112,15 @@ impl Seen {
         self.linear.iter().all(|channel| inside.contains(channel))
     }
 
-    /// Encoded sRGB, 0 to 1; the nearest that a display shows along the line to white where it
-    /// cannot show the colour itself.
+    /// Encoded sRGB, 0 to 1; of the same hue where a display cannot show the colour itself.
     #[must_use]
     pub fn srgb(&self) -> [f64; 3] {
         if self.in_gamut() {
             return self.linear.map(srgb_encode);
         }
-        clamp_chromaticity(self.linear.map(|channel| channel as f32))
+        let gamut = Gamut::new(GamutMapping::Soft, &RgbSpace::Srgb.from_working());
+        gamut
+            .map(self.linear.map(|channel| channel as f32))
             .map(|channel| srgb_encode(f64::from(channel)))
     }
 

@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 use maulstick_num::geometry::Rigid;
-use maulstick_optics::light::Lamp;
+use maulstick_optics::light::{Lamp, LampSetup};
 use maulstick_types::scene::{CANVAS, Scene};
 
 /// The lamp in the frame of `surface`: the scene gives its direction in the canvas's. A surface that
@@ -18,7 +18,14 @@ pub fn lamp_over(scene: &Scene, surface: u32) -> Lamp {
         let on_desk = pose(CANVAS).vector(toward);
         toward = pose(surface).inverse().vector(on_desk);
     }
-    Lamp::new(toward.to_array(), scene.light.intensity)
+    let light = &scene.light;
+    Lamp::new(&LampSetup {
+        toward: toward.to_array(),
+        intensity: light.intensity,
+        exposure: light.exposure,
+        relief: light.relief,
+        softness: light.softness,
+    })
 }
 
 #[cfg(test)]
@@ -44,5 +51,17 @@ mod tests {
         scene.surfaces[0].pose.orientation = quarter.to_array();
         assert!((lamp_over(&scene, PALETTE).toward[0] - x).abs() < 1e-6);
         assert_eq!(lamp_over(&scene, 7), lamp_over(&scene, CANVAS));
+    }
+
+    #[test]
+    fn exposure_relief_and_softness_are_the_scenes() {
+        let mut scene = PaintingSetup::default().scene();
+        (scene.light.intensity, scene.light.exposure) = (2.0, 0.25);
+        (scene.light.relief, scene.light.softness) = (3.0, 0.4);
+        let lamp = lamp_over(&scene, CANVAS);
+        assert_eq!(
+            (lamp.intensity, lamp.relief, lamp.softness),
+            (0.5, 3.0, 0.4)
+        );
     }
 }

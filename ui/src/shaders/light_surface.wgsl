@@ -1,28 +1,66 @@
-// Lights a surface: takes unlit colour, gloss and height, gives linear colour within the gamut.
+// Lights a surface: takes unlit colour, gloss and height, gives linear light within the gamut of the
+// display.
 //
-// The formula is that of maulstick_optics::light, term by term, and the clamp that of
-// maulstick_optics::colour; a test compares them. A pixel of the target is a cell, row 0 the lowest.
+// The formulas are those of maulstick_optics::light, its shadows, and maulstick_optics::gamut, term by
+// term; a test compares them. A pixel of the target is a cell, row 0 the lowest.
+
+const TAPS: u32 = 16u;
 
 struct Lamp {
     toward: vec3<f32>,
     intensity: f32,
     half: vec3<f32>,
-    peak: f32,
-    flat: f32,
+    relief: f32,
+    // Of the sharp and of the broad highlight.
+    peak: vec2<f32>,
+    flat: vec2<f32>,
     cell_m: f32,
+    rise: f32,
+    sharpness: f32,
+    // The lamp in the plane of its direction: across the surface and out of it.
+    along: vec2<f32>,
+    // The two cells of each place on the way to the lamp; share of the second, and the run to it.
+    cells: array<vec4<i32>, TAPS>,
+    runs: array<vec4<f32>, TAPS>,
+}
+
+struct Rows {
+    x: vec4<f32>,
+    y: vec4<f32>,
+    z: vec4<f32>,
+}
+
+struct Gamut {
+    from_working: Rows,
+    to_cones: Rows,
+    from_cones: Rows,
+    to_lab: Rows,
+    from_lab: Rows,
 }
 
 // Share of the light that comes from all around.
 override ambient: f32;
-// Exponent of the highlight, as a power of two. No uniform: a loop to one makes some drivers compile
-// the shader anew for every draw.
-override sharpness: u32;
+// Share of the light that the surface reflects by itself.
+override surface: f32;
+// Exponents of the highlights, as powers of two, and halvings of the search for the gamut's edge. No
+// uniforms: a loop to one makes some drivers compile the shader anew for every draw.
+override sharp: u32;
+override broad: u32;
+override halvings: u32;
+// Least denominator of a horizon.
+override least: f32;
+// Share of the way to the edge of the gamut that is left as it is; how much lightness goes for colour.
+override knee: f32;
+override for_colour: f32;
+// How colours come into the gamut.
+override soft: bool;
 
 @group(0) @binding(0) var<uniform> lamp: Lamp;
 // Linear red, green, blue, and gloss.
 @group(0) @binding(1) var colours: texture_2d<f32>;
 // m.
 @group(0) @binding(2) var heights: texture_2d<f32>;
+@group(0) @binding(3) var<uniform> gamut: Gamut;
 
 @vertex
 fn cover(@builtin(vertex_index) corner: u32) -> @builtin(position) vec4<f32> {
@@ -33,8 +71,7 @@ fn cover(@builtin(vertex_index) corner: u32) -> @builtin(position) vec4<f32> {
 }
 
 // dh/dx and dh/dy: central differences, one-sided at the border.
-fn slope(cell: vec2<i32>) -> vec2<f32> {
-    let last = vec2<i32>(textureDimensions(heights)) - 1;
+fn slope(cell: vec2<i32>, last: vec2<i32>) -> vec2<f32> {
     let low = max(cell - 1, vec2<i32>(0));
     let high = min(cell + 1, last);
     let rise = vec2<f32>(
@@ -46,26 +83,110 @@ fn slope(cell: vec2<i32>) -> vec2<f32> {
     return rise / (vec2<f32>(max(high - low, vec2<i32>(1))) * lamp.cell_m);
 }
 
-fn sharpened(x: f32) -> f32 {
+// Share of the lamp that the relief does not hide.
+fn seen(cell: vec2<i32>, last: vec2<i32>) -> f32 {
+    let own = textureLoad(heights, cell, 0).r;
+    var horizon = -1.0;
+    for (var k = 0u; k < TAPS; k += 1u) {
+        let at = lamp.cells[k];
+        let run = lamp.runs[k];
+        let low = textureLoad(heights, clamp(cell + at.xy, vec2<i32>(0), last), 0).r;
+        let high = textureLoad(heights, clamp(cell + at.zw, vec2<i32>(0), last), 0).r;
+        let rise = (low - own + (high - low) * run.x) * lamp.rise;
+        let above = rise * lamp.along.x - run.z;
+        let ahead = rise * lamp.along.y + run.y;
+        horizon = max(horizon, above / max(ahead, least) * lamp.sharpness);
+    }
+    let u = 0.5 - 0.5 * min(horizon, 1.0);
+    return u * u * (3.0 - 2.0 * u);
+}
+
+fn sharpened(x: f32, squarings: u32) -> f32 {
     var power = max(x, 0.0);
-    for (var i = 0u; i < sharpness; i += 1u) {
+    for (var i = 0u; i < squarings; i += 1u) {
         power *= power;
     }
     return power;
 }
 
-fn lit(unlit: vec3<f32>, gloss: f32, rise: vec2<f32>) -> vec3<f32> {
+fn lit(unlit: vec3<f32>, gloss: f32, flat_rise: vec2<f32>, visible: f32) -> vec3<f32> {
+    let rise = flat_rise * lamp.relief;
     let n = vec3<f32>(-rise, 1.0) / sqrt(dot(rise, rise) + 1.0);
-    let incidence = max(dot(n, lamp.toward), 0.0) / lamp.toward.z;
+    let incidence = visible * max(dot(n, lamp.toward), 0.0) / lamp.toward.z;
     let diffuse = ambient + (1.0 - ambient) * incidence;
-    let lobe = max(sharpened(dot(n, lamp.half)) - lamp.flat, 0.0);
-    let highlight = gloss * lamp.peak * lobe * incidence;
-    return (diffuse * unlit + highlight) * lamp.intensity;
+    let facing = dot(n, lamp.half);
+    let lobes = vec2<f32>(sharpened(facing, sharp), sharpened(facing, broad));
+    let shine = lamp.peak * max(lobes - lamp.flat, vec2<f32>(0.0));
+    let highlight = (gloss * gloss * shine.x + gloss * (1.0 - gloss) * shine.y) * incidence;
+    return (diffuse * unlit + surface + highlight) * lamp.intensity;
+}
+
+fn times(m: Rows, v: vec3<f32>) -> vec3<f32> {
+    return vec3<f32>(dot(m.x.xyz, v), dot(m.y.xyz, v), dot(m.z.xyz, v));
+}
+
+fn cube_root(x: vec3<f32>) -> vec3<f32> {
+    let size = abs(x);
+    var y = bitcast<vec3<f32>>(bitcast<vec3<u32>>(size) / 3u + 0x2a514067u);
+    for (var i = 0u; i < 3u; i += 1u) {
+        y = (2.0 * y + size / (y * y)) * (1.0 / 3.0);
+    }
+    return select(select(y, -y, x < vec3<f32>(0.0)), vec3<f32>(0.0), size < vec3<f32>(1e-30));
+}
+
+// A colour at a share of the way from a grey.
+fn on_ray(grey: f32, way: vec3<f32>, share: f32) -> vec3<f32> {
+    let root = grey + share * way;
+    return times(gamut.from_cones, root * root * root);
+}
+
+fn outside(grey: f32, way: vec3<f32>, share: f32) -> f32 {
+    let rgb = on_ray(grey, way, share);
+    let off = max(-rgb, rgb - 1.0);
+    return max(off.r, max(off.g, off.b));
+}
+
+fn edge(grey: f32, way: vec3<f32>) -> f32 {
+    var low = 0.0;
+    var high = 1.0 / knee;
+    for (var i = 0u; i < halvings; i += 1u) {
+        let middle = 0.5 * (low + high);
+        let inside = outside(grey, way, middle) <= 0.0;
+        low = select(low, middle, inside);
+        high = select(middle, high, inside);
+    }
+    let inner = min(outside(grey, way, low), 0.0);
+    let outer = max(outside(grey, way, high), 1e-9);
+    return max(low + (high - low) * (-inner / (outer - inner)), 1e-6);
+}
+
+fn softly(rgb: vec3<f32>) -> vec3<f32> {
+    if !(max(rgb.r, max(rgb.g, rgb.b)) > 0.0) {
+        return vec3<f32>(0.0);
+    }
+    let lab = times(gamut.to_lab, cube_root(times(gamut.to_cones, rgb)));
+    let from_middle = lab.x - 0.5;
+    let side = select(1.0, -1.0, from_middle < 0.0);
+    let e = 0.5 + abs(from_middle) + for_colour * sqrt(dot(lab.yz, lab.yz));
+    let root = sqrt(max(e * e - 2.0 * abs(from_middle), 0.0));
+    let grey = clamp(0.5 + 0.5 * side * (e - root), 0.0, 1.0);
+    let way = lab.x - grey + vec3<f32>(
+        dot(gamut.from_lab.x.yz, lab.yz),
+        dot(gamut.from_lab.y.yz, lab.yz),
+        dot(gamut.from_lab.z.yz, lab.yz),
+    );
+    if outside(grey, way, 1.0 / knee) <= 0.0 {
+        return rgb;
+    }
+    let r = 1.0 / edge(grey, way);
+    let z = clamp(r, knee, 2.0 - knee) - knee;
+    let kept = (knee + z - z * z / (4.0 * (1.0 - knee))) / r;
+    return clamp(on_ray(grey, way, min(kept, 1.0)), vec3<f32>(0.0), vec3<f32>(1.0));
 }
 
 fn clamp_chromaticity(rgb: vec3<f32>) -> vec3<f32> {
-    let least = min(rgb.r, min(rgb.g, rgb.b));
-    if least >= 0.0 {
+    let smallest = min(rgb.r, min(rgb.g, rgb.b));
+    if smallest >= 0.0 {
         return rgb;
     }
     let sum = rgb.r + rgb.g + rgb.b;
@@ -73,13 +194,23 @@ fn clamp_chromaticity(rgb: vec3<f32>) -> vec3<f32> {
         return vec3<f32>(0.0);
     }
     let third = 1.0 / 3.0;
-    let t = third / (third - least / sum);
+    let t = third / (third - smallest / sum);
     return max((third + t * (rgb / sum - third)) * sum, vec3<f32>(0.0));
+}
+
+fn mapped(working: vec3<f32>) -> vec3<f32> {
+    let rgb = times(gamut.from_working, working);
+    if soft {
+        return softly(rgb);
+    }
+    return clamp(clamp_chromaticity(rgb), vec3<f32>(0.0), vec3<f32>(1.0));
 }
 
 @fragment
 fn light(@builtin(position) at: vec4<f32>) -> @location(0) vec4<f32> {
     let cell = vec2<i32>(at.xy);
+    let last = vec2<i32>(textureDimensions(heights)) - 1;
     let texel = textureLoad(colours, cell, 0);
-    return vec4<f32>(clamp_chromaticity(lit(texel.rgb, texel.a, slope(cell))), 1.0);
+    let colour = lit(texel.rgb, texel.a, slope(cell, last), seen(cell, last));
+    return vec4<f32>(mapped(colour), 1.0);
 }

@@ -1,5 +1,5 @@
-// Shows the desk, and a lit surface where it lies on it: linear light is filtered first, then
-// encoded.
+// Shows the desk, and a lit surface where it lies on it: linear light of the display's gamut is
+// filtered first, then encoded as the display takes it.
 
 struct Place {
     // Pixels of the view: the surface's lower left corner, and its sides from there.
@@ -15,12 +15,15 @@ struct Place {
 
 // Whether the target takes encoded values; one that encodes by itself takes linear light.
 override encoded: bool = true;
+// Whether the display has a profile of its own: what it is sent for encoded light is in the cube.
+override foreign: bool = false;
 // Grey of the desk, as the target takes it.
 override grey: f32 = 0.0;
 
 @group(0) @binding(0) var<uniform> place: Place;
 @group(0) @binding(1) var surface: texture_2d<f32>;
 @group(0) @binding(2) var smooth_sampler: sampler;
+@group(0) @binding(3) var cube: texture_3d<f32>;
 
 struct Corner {
     @builtin(position) position: vec4<f32>,
@@ -64,6 +67,29 @@ fn srgb(linear: vec3<f32>) -> vec3<f32> {
     return select(high, 12.92 * inside, inside <= vec3<f32>(0.0031308));
 }
 
+fn linear(encoded_light: vec3<f32>) -> vec3<f32> {
+    let high = pow((encoded_light + 0.055) / 1.055, vec3<f32>(2.4));
+    return select(high, encoded_light / 12.92, encoded_light <= vec3<f32>(0.04045));
+}
+
+// What the target takes for linear light of the gamut.
+fn sent(light: vec3<f32>) -> vec3<f32> {
+    if !foreign {
+        if encoded {
+            return srgb(light);
+        }
+        return light;
+    }
+    let side = f32(textureDimensions(cube).x);
+    // Nodes are in the middle of their texels.
+    let at = (srgb(light) * (side - 1.0) + 0.5) / side;
+    let own = textureSampleLevel(cube, smooth_sampler, at, 0.0).rgb;
+    if encoded {
+        return own;
+    }
+    return linear(own);
+}
+
 @fragment
 fn show(in: Corner) -> @location(0) vec4<f32> {
     var light = sampled(in.at);
@@ -74,8 +100,5 @@ fn show(in: Corner) -> @location(0) vec4<f32> {
     }
     let inner = clamp(min(in.at, 1.0 - in.at) * pixels() + 0.5, vec2<f32>(0.0), vec2<f32>(1.0));
     let cover = inner.x * inner.y;
-    if encoded {
-        return vec4<f32>(srgb(light) * cover, cover);
-    }
-    return vec4<f32>(light * cover, cover);
+    return vec4<f32>(sent(light) * cover, cover);
 }

@@ -3,7 +3,7 @@
 use maulstick_types::topics::check_name;
 
 use super::{
-    BACKENDS, BRUSH_NODE, BrushSection, DRIVERS, DeviceSection, MODELS, RESERVED, RigConfig,
+    BACKENDS, BRUSH_NODE, BrushSection, DRIVERS, DeviceSection, GAMUTS, MODELS, RESERVED, RigConfig,
 };
 use crate::fault::Fault;
 
@@ -57,7 +57,15 @@ impl RigConfig {
         })?;
         choose("paint model", &self.paint.model, &MODELS)
             .and_then(|()| choose("backend", &self.paint.backend, &BACKENDS))
-            .map_err(|(what, help)| fault(what, "[paint]", "").help(help))
+            .map_err(|(what, help)| fault(what, "[paint]", "").help(help))?;
+        let view = &self.view;
+        view.check().map_err(|(what, help)| {
+            let (key, value) = match GAMUTS.contains(&view.gamut.as_str()) {
+                true => ("profile", &view.profile),
+                false => ("gamut", &view.gamut),
+            };
+            fault(what, key, value).help(help)
+        })
     }
 
     /// What a device may be: its motors follow these numbers.
@@ -181,7 +189,11 @@ fn unknown<'a>(
     )
 }
 
-fn choose(kind: &str, name: &str, names: &[&'static str]) -> Result<(), (String, String)> {
+pub(super) fn choose(
+    kind: &str,
+    name: &str,
+    names: &[&'static str],
+) -> Result<(), (String, String)> {
     if names.contains(&name) {
         Ok(())
     } else {

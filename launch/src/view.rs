@@ -1,0 +1,112 @@
+//! How the window and pictures show colour: names and files of `[view]` and of the command line.
+
+use std::path::Path;
+use std::sync::Arc;
+
+use maulstick_optics::colour::RgbSpace;
+use maulstick_optics::gamut::GamutMapping;
+use maulstick_optics::icc::{Profile, ProfileError};
+use maulstick_paint::picture::Export;
+use maulstick_rig::Fault;
+use maulstick_rig::config::ViewSection;
+
+/// What faults of rig.toml call it.
+pub const VIEW: &str = "[view] of rig.toml";
+/// A profile has at most this many bytes; those of printers take a few million.
+const PROFILE_MAX: u64 = 64 << 20;
+
+/// What a section asks for; `place` is how faults call it.
+///
+/// # Errors
+/// A [`Fault`] for an unknown name, or a file that is no RGB profile.
+pub fn export(view: &ViewSection, place: &str) -> Result<Export, Fault> {
+    view.check()
+        .map_err(|(what, help)| Fault::usage(what).at(place).help(help))?;
+    let profile = match (view.file(), view.profile.as_str()) {
+        (Some(path), _) => read(path)?,
+        (None, "display-p3") => Profile::of(RgbSpace::DisplayP3),
+        (None, _) => Profile::of(RgbSpace::Srgb),
+    };
+    Ok(Export {
+        profile: Arc::new(profile),
+        gamut: match view.gamut.as_str() {
+            "clamp" => GamutMapping::Clamp,
+            _ => GamutMapping::Soft,
+        },
+    })
+}
+
+fn read(path: &Path) -> Result<Profile, Fault> {
+    let size = std::fs::metadata(path).map(|about| about.len());
+    if size.is_ok_and(|size| size > PROFILE_MAX) {
+        return Err(Fault::usage("a file of this size is no ICC profile")
+            .at(path.display().to_string())
+            .help("give the .icc or .icm file of the display"));
+    }
+    let bytes = std::fs::read(path).map_err(|error| Fault::reading(path, &error))?;
+    Profile::read(bytes).map_err(|error| {
+        let help = match error {
+            ProfileError::Damaged(_) => {
+                "make or download the profile again, or use srgb or display-p3"
+            }
+            ProfileError::NotRgb(_) | ProfileError::OneWay(_) => {
+                "give the profile of a display or of an RGB printer, or use srgb or display-p3"
+            }
+        };
+        Fault::usage(error.to_string())
+            .at(path.display().to_string())
+            .help(help)
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn fault(profile: &str, gamut: &str) -> String {
+        let view = ViewSection {
+            profile: profile.into(),
+            gamut: gamut.into(),
+        };
+        export(&view, "--profile").expect_err("refused").to_string()
+    }
+
+    #[test]
+    fn profiles_are_known_or_read_or_refused_with_what_to_do() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let path = |name: &str| folder.path().join(name).display().to_string();
+        let p3 = ViewSection {
+            profile: "display-p3".into(),
+            gamut: "clamp".into(),
+        };
+        let wide = export(&p3, "--profile").expect("known");
+        assert_eq!(wide.gamut, GamutMapping::Clamp);
+        let own = path("own.icc");
+        std::fs::write(&own, wide.profile.icc()).expect("written");
+        let view = ViewSection {
+            profile: own,
+            gamut: "soft".into(),
+        };
+        let read = export(&view, "--profile").expect("its own profile");
+        assert_eq!(read.profile.icc(), wide.profile.icc());
+
+        let text = fault(&path("none.icc"), "soft");
+        assert!(
+            text.contains("none.icc") && text.contains("check the path"),
+            "{text}"
+        );
+        let torn = path("torn.icc");
+        std::fs::write(&torn, &wide.profile.icc()[..300]).expect("written");
+        let text = fault(&torn, "soft");
+        assert!(
+            text.contains("damaged") && text.contains("torn.icc") && text.contains("help"),
+            "{text}"
+        );
+        let text = fault("display-p4", "soft");
+        assert!(
+            text.contains("'display-p3'") && text.contains("--profile"),
+            "{text}"
+        );
+        assert!(fault("srgb", "hard").contains("soft, clamp"));
+    }
+}

@@ -1,0 +1,18 @@
+//! XYZ, Lab, ΔE₀₀, and the colour spaces of displays and pictures.
+//!
+//! The working space is linear light with the primaries of sRGB, unclamped: a colour outside of sRGB
+//! has a negative channel there, and comes out of the matrix to a wider space without one.
+
+mod adapt;
+mod lab;
+mod matrix;
+mod rgb;
+
+pub use adapt::{D50, adaptation, bradford};
+pub use lab::{delta_e_2000, lab};
+pub use matrix::{Matrix, apply, inverse, product, solve3};
+pub use rgb::{
+    RgbSpace, SrgbTable, linear_srgb_as_it_is, srgb_decode, srgb_encode, xyz_to_linear_srgb,
+};
+
+pub use crate::gamut::clamp_chromaticity;
