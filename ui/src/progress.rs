@@ -48,7 +48,7 @@ impl WorkProgress {
         let Some(line) = self.line() else {
             return;
         };
-        egui::Area::new("progress".into())
+        egui::Area::new(egui::Id::unique("progress"))
             .anchor(egui::Align2::CENTER_BOTTOM, [0.0, -12.0])
             .interactable(false)
             .show(context, |ui| {

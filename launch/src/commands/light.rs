@@ -101,7 +101,7 @@ pub fn run(options: &LightOptions) -> Result<i32, Fault> {
     options.on(&Light::default())?;
     let session = Session::open(&options.target)?;
     let mut scenes: Feed<Scene> = session.follow(&session.topics().scene(), Class::Cached)?;
-    let before = scenes.next()?.message.light;
+    let before = scenes.hear()?.message.light;
     let light = options.on(&before)?;
     if light != before {
         let mut statuses = session.follow(&session.topics().paint_status(), Class::Background)?;
@@ -124,7 +124,7 @@ fn wait_for_baking(statuses: &mut Feed<PaintStatus>, since_ns: u64) -> Result<()
         bar.set_style(style);
     }
     loop {
-        let status = statuses.next()?;
+        let status = statuses.hear()?;
         if status.header.sent_ns < since_ns {
             continue;
         }

@@ -106,7 +106,7 @@ impl<M: Message> Feed<M> {
     ///
     /// # Errors
     /// A [`Fault`] where none comes.
-    pub fn next(&mut self) -> Result<Received<M>, Fault> {
+    pub fn hear(&mut self) -> Result<Received<M>, Fault> {
         let give_up = Instant::now() + PATIENCE;
         loop {
             if let Some(received) = self.messages.newest() {

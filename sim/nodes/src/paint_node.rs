@@ -1,5 +1,7 @@
 //! The paint node: brush states and commands in; journal, credit, scene and frames out.
 
+mod feeding;
+
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 use std::sync::Arc;
@@ -16,15 +18,14 @@ use maulstick_paint::{Effect, Painting, Sequencer};
 use maulstick_rig::files::write_whole;
 use maulstick_types::brush::{BrushDef, BrushState};
 use maulstick_types::command::{CommandReply, CommandRequest, Outcome};
-use maulstick_types::paint::{BrushCredit, FrameHolds, JournalEntry, PaintConsumed, PaintStatus};
+use maulstick_types::paint::{BrushCredit, JournalEntry, PaintConsumed, PaintStatus};
 use maulstick_types::scene::{CANVAS, Scene};
 use maulstick_types::topics::{Topics, check_name};
 use maulstick_types::{Flags, Origin, encode, name_hash};
 
-use crate::frames::{Fed, FedSurface, Feed, Progress};
+use crate::frames::Feed;
+use feeding::FEED_PERIOD_NS;
 
-/// Least time between two hand-overs to the frames, ns.
-const FEED_PERIOD_NS: u64 = 8_000_000;
 /// Time between two statuses, ns.
 const STATUS_PERIOD_NS: u64 = 100_000_000;
 /// States consumed in one turn before commands and frames have theirs.
@@ -343,73 +344,6 @@ impl PaintNode {
         Ok(())
     }
 
-    /// Surfaces and optics, before anything is painted.
-    fn feed_first(&self) {
-        let painting = self.sequencer.painting();
-        let mut fed = self.feed.lock();
-        fed.look = Some(Arc::clone(painting.look()));
-        for surface in &painting.scene().surfaces {
-            let (Some(store), Some(bare)) = (painting.store(surface.id), painting.bare(surface.id))
-            else {
-                continue;
-            };
-            let (cells, grid) = (store.cells(), store.grid());
-            fed.surfaces.insert(
-                surface.id,
-                FedSurface {
-                    cells,
-                    grid,
-                    bare: Arc::clone(bare),
-                    tiles: BTreeMap::new(),
-                },
-            );
-        }
-    }
-
-    /// Hands new versions over, if a view waits for them.
-    fn hand_over(&mut self, now_ns: u64) {
-        let relit = self.fed_look != self.sequencer.painting().look().generation();
-        let due = now_ns >= self.fed_ns + FEED_PERIOD_NS && self.feed.lock().wanted;
-        if !due && !relit {
-            return;
-        }
-        self.fed_ns = now_ns;
-        self.sequencer.painting_mut().commit();
-        let painting = self.sequencer.painting();
-        let news = relit || painting.versions() > self.fed_version;
-        let mut fed = self.feed.lock();
-        // The tiles may hold paints that are new too: both are handed over in one piece.
-        if self.fed_scene != painting.scene().version {
-            self.fed_scene = painting.scene().version;
-            fed.look = Some(Arc::clone(painting.look()));
-        }
-        if painting.versions() > self.fed_version {
-            feed_versions(&mut fed, painting, self.fed_version);
-            self.fed_version = painting.versions();
-        }
-        if relit {
-            self.fed_look = painting.look().generation();
-            feed_light(&mut fed, painting);
-        }
-        fed.version = self.fed_version;
-        fed.journal = self.sequencer.journal_next();
-        fed.holds = self
-            .sequencer
-            .consumed_all()
-            .into_iter()
-            .map(|(origin, next)| FrameHolds {
-                brush: origin.source,
-                epoch: origin.epoch,
-                next,
-            })
-            .collect();
-        if news {
-            fed.wanted = false;
-            drop(fed);
-            self.feed.ring();
-        }
-    }
-
     /// Says once of each brush that it moves without a brush file.
     fn tell_unknown(&mut self, now_ns: u64) {
         for next in self.states.heads() {
@@ -450,38 +384,6 @@ impl PaintNode {
                 + self.sequencer.ignored(),
         };
         self.status.send(now_ns, now_ns, &status)
-    }
-}
-
-/// Hands over what surfaces show where nothing was painted, under another light, and how many tiles
-/// are to be baked for it.
-fn feed_light(fed: &mut Fed, painting: &Painting) {
-    for (number, surface) in &mut fed.surfaces {
-        if let Some(bare) = painting.bare(*number) {
-            surface.bare = Arc::clone(bare);
-        }
-    }
-    fed.baking = Progress {
-        all: fed
-            .surfaces
-            .values()
-            .map(|surface| surface.dry_tiles().count() as u32)
-            .sum(),
-        done: 0,
-    };
-}
-
-/// Adds the versions above `since` to what was fed.
-fn feed_versions(fed: &mut Fed, painting: &Painting, since: u64) {
-    for (number, surface) in &mut fed.surfaces {
-        let Some(store) = painting.store(*number) else {
-            continue;
-        };
-        for (id, version) in store.iter().filter(|(_, version)| version.number > since) {
-            surface
-                .tiles
-                .insert(id, (version.number, version.tile.clone()));
-        }
     }
 }
 
