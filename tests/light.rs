@@ -2,39 +2,58 @@
 
 mod support;
 
-use std::sync::Arc;
+use std::path::Path;
 
-use maulstick_bus::{Bus, Class};
-use maulstick_device::commander::Commander;
-use maulstick_types::command::Command;
+use maulstick_bus::Class;
+use maulstick_device::{Take, TakeSample};
 use maulstick_types::paint::PaintStatus;
 use maulstick_types::scene::Scene;
-use maulstick_types::stylus::TakeStatus;
+use maulstick_types::stylus::{DEFAULT_TILT_RAD, StylusPose, StylusSample, axes};
 use support::{Launcher, Place, assert_same, hear, listen};
 
-/// A rig in which a short demo has been painted.
+/// A take of a hand that draws one stroke, lifts the brush and rests.
+fn one_stroke(path: &Path) {
+    let samples = (0..300u64).map(|number| TakeSample {
+        time_ns: number * 10_000_000,
+        sample: match number {
+            0..100 => StylusSample {
+                senses: axes::POSITION | axes::PRESSURE | axes::TILT,
+                pose: StylusPose::Contact {
+                    point_m: [4e-4 * number as f64 - 0.02, 0.0, 0.0],
+                    tilt_rad: DEFAULT_TILT_RAD,
+                    twist_rad: 0.0,
+                    pressure: 1.0,
+                },
+                in_range: true,
+                ..StylusSample::away()
+            },
+            _ => StylusSample::away(),
+        },
+    });
+    let take = Take {
+        device: "hand".into(),
+        samples: samples.collect(),
+    };
+    take.write(path).expect("written");
+}
+
+/// A rig in which a hand has painted a stroke and rests.
 fn painted(place: &Place) -> Launcher {
-    place.short_demo("demo.mcap", 3.0);
-    let args = [
-        "--play",
-        "demo.mcap",
-        "--rate",
-        "max",
-        "--load",
-        "Ultramarine Blue",
-    ];
-    let launcher = Launcher::up(place, &args);
-    let (bus, topics) = support::join(place);
-    let mut player = listen::<TakeStatus>(&bus, &topics.take_status("player"), Class::Background);
-    let ended = hear(&mut player, |status| status.end.is_some()).and_then(|status| status.end);
-    let after = ended.map(|end| end.after);
-    assert!(after.is_some(), "it does not end: {}", launcher.said());
-    // The paint node answers when the last of it is painted.
-    let bus = Arc::new(bus);
-    let mut commander = Commander::new(Arc::clone(&bus) as Arc<dyn Bus>, &topics);
-    let painted = commander.send(Command::Mark, after, support::PATIENCE, &|| false);
-    painted.expect("painted");
-    bus.close();
+    one_stroke(&place.path("stroke.mcap"));
+    let config = String::from_utf8(place.done(&["up", "--print-config"]).stdout).expect("UTF-8");
+    let config = config.replace("# hand = \"demo.mcap\"", "hand = \"stroke.mcap\"");
+    std::fs::write(place.path("rig.toml"), config).expect("written");
+    let mut launcher = Launcher::up(place, &["--rig", "rig.toml"]);
+    launcher.wait_says("is up");
+    // It is done when paint lies there and no more comes.
+    let mut before = 0.0;
+    let rests = support::wait_for(support::PATIENCE, || {
+        let now = support::on_canvas(place);
+        let same = now > 0.0 && now == before;
+        before = now;
+        same.then_some(())
+    });
+    assert!(rests.is_some(), "nothing painted: {}", launcher.said());
     launcher
 }
 

@@ -449,7 +449,7 @@ mod tests {
         assert!(error("model = \"impasto\"", "model = \"impatso\"").contains("'impasto'"));
         let text = error("profile = \"srgb\"", "profile = \"sgrb\"");
         assert!(text.contains("'srgb'") && text.contains("ICC"), "{text}");
-        assert!(text.contains("rig.toml:47"), "{text}");
+        assert!(text.contains("rig.toml:60"), "{text}");
         let text = error("gamut = \"soft\"", "gamut = \"sfot\"");
         assert!(
             text.contains("did you mean 'soft'") && text.contains("rig.toml:48"),
