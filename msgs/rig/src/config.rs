@@ -452,7 +452,7 @@ mod tests {
         assert!(text.contains("rig.toml:60"), "{text}");
         let text = error("gamut = \"soft\"", "gamut = \"sfot\"");
         assert!(
-            text.contains("did you mean 'soft'") && text.contains("rig.toml:48"),
+            text.contains("did you mean 'soft'") && text.contains("rig.toml:61"),
             "{text}"
         );
     }
