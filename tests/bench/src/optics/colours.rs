@@ -53,12 +53,15 @@ pub(crate) fn run(report: &mut Report) -> Result<(), Fault> {
         rows("gauss8", &gauss, &[("p95", 0.95)]);
     }
     let light = Illuminant::d65();
-    let time = |_| {
+    let mut paints = paints.to_vec();
+    let mut time = |_| {
+        // What was fitted before is remembered: other paints, by a hair, are not.
+        paints[0].k.0.iter_mut().for_each(|k| *k *= 1.0 + 1e-12);
         let clock = Instant::now();
-        std::hint::black_box(SamplingRule::fitted(16, OBSERVER, &light, paints));
+        std::hint::black_box(SamplingRule::fitted(16, OBSERVER, &light, &paints));
         1e3 * clock.elapsed().as_secs_f64()
     };
-    let times = sorted((0..FITS).map(time).collect());
+    let times = sorted((0..FITS).map(&mut time).collect());
     report.row("fit16.time", quantile(&times, 0.5), "ms");
     Ok(())
 }
