@@ -48,31 +48,45 @@ pub fn powf(x: f64, y: f64) -> f64 {
     libm::pow(x, y)
 }
 
-/// e to the power `x` for −87 ≤ x ≤ 88, relative error below 1.2e-7; below −87 it is 0.
-///
+/// e^x in parts: (1 + r·mean)·power, with mean = (e^r − 1)/r.
+struct Parts {
+    r: f32,
+    mean: f32,
+    power: f32,
+}
+
 /// Splits x into n·ln 2 + r with |r| ≤ ½ ln 2 and takes the Taylor polynomial of degree 7 of e^r
 /// (remainder below 2⁻²⁷). No branch and no call, so a loop over it vectorises.
-#[must_use]
 #[inline]
-pub fn exp_f32(x: f32) -> f32 {
+fn parts(x: f32) -> Parts {
     /// Adding and subtracting this rounds to the nearest integer.
     const ROUND: f32 = 12_582_912.0;
-    let clamped = x.clamp(-87.0, 88.0);
-    let shifted = clamped * std::f32::consts::LOG2_E + ROUND;
+    let shifted = x * std::f32::consts::LOG2_E + ROUND;
     let n = shifted - ROUND;
     // ln 2 in two parts: the first has few enough bits that n times it is exact.
-    let r = clamped - n * 0.693_359_4 - n * -2.121_944_4e-4;
+    let r = x - n * 0.693_359_4 - n * -2.121_944_4e-4;
     let p = 1.0 / 5040.0;
     let p = p * r + 1.0 / 720.0;
     let p = p * r + 1.0 / 120.0;
     let p = p * r + 1.0 / 24.0;
     let p = p * r + 1.0 / 6.0;
     let p = p * r + 0.5;
-    let p = p * r + 1.0;
-    let p = p * r + 1.0;
+    let mean = p * r + 1.0;
     // The integer n sits in the low bits of `shifted`: move it into the exponent.
     let power = f32::from_bits((shifted.to_bits() << 23).wrapping_add(0x3f80_0000));
-    if x < -87.0 { 0.0 } else { p * power }
+    Parts { r, mean, power }
+}
+
+/// e to the power `x` for −87 ≤ x ≤ 88, relative error below 1.2e-7; below −87 it is 0.
+#[must_use]
+#[inline]
+pub fn exp_f32(x: f32) -> f32 {
+    let Parts { r, mean, power } = parts(x.clamp(-87.0, 88.0));
+    if x < -87.0 {
+        0.0
+    } else {
+        (mean * r + 1.0) * power
+    }
 }
 
 /// e^(−t) and its mean over 0..t, (1 − e^(−t))/t.
@@ -95,19 +109,7 @@ impl Decay {
 #[must_use]
 #[inline]
 pub fn decay_f32(t: f32) -> Decay {
-    const ROUND: f32 = 12_582_912.0;
-    let x = -t.min(40.0);
-    let shifted = x * std::f32::consts::LOG2_E + ROUND;
-    let n = shifted - ROUND;
-    let r = x - n * 0.693_359_4 - n * -2.121_944_4e-4;
-    let p = 1.0 / 5040.0;
-    let p = p * r + 1.0 / 720.0;
-    let p = p * r + 1.0 / 120.0;
-    let p = p * r + 1.0 / 24.0;
-    let p = p * r + 1.0 / 6.0;
-    let p = p * r + 0.5;
-    let mean = p * r + 1.0;
-    let power = f32::from_bits((shifted.to_bits() << 23).wrapping_add(0x3f80_0000));
+    let Parts { r, mean, power } = parts(-t.min(40.0));
     Decay {
         end: (mean * r + 1.0) * power,
         mean,
