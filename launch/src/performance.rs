@@ -156,8 +156,8 @@ pub fn library_from(path: Option<&Path>) -> Result<PaintLibrary, Fault> {
 /// The light of the rig's settings, with the spectrum of its file if it names one.
 fn light(section: &LightSection) -> Result<Light, Fault> {
     let mut light = section.light();
-    if Illuminant::named(&light.illuminant).is_none() {
-        let found = illuminant(&light.illuminant)?;
+    if Illuminant::named(&section.illuminant).is_none() {
+        let found = illuminant(&section.illuminant)?;
         light.illuminant = found.name;
         light.spectrum = found.power.0.to_vec();
     }

@@ -3,9 +3,11 @@
 use std::path::Path;
 
 use clap::{Args, ValueEnum};
-use maulstick_optics::cie::ILLUMINANTS;
 use maulstick_optics::{Adaptation, Illuminant, Observer, PaintLibrary, SamplingRule, Viewing};
+use maulstick_paint::light::illuminant_named;
 use maulstick_rig::Fault;
+
+use crate::performance::refused;
 
 /// How colours are looked at.
 #[derive(Args, Clone, Debug)]
@@ -111,12 +113,8 @@ pub fn illuminant(name: &str) -> Result<Illuminant, Fault> {
     let path = Path::new(name);
     let is_file = path.extension().is_some() || name.contains('/') || path.exists();
     if !is_file {
-        let nearest = Fault::nearest(name, ILLUMINANTS).unwrap_or_default();
-        let what = format!("there is no illuminant called '{name}'; did you mean '{nearest}'?");
-        let names = ILLUMINANTS.join(", ");
-        return Err(Fault::usage(what)
-            .at(format!("--illuminant {name}"))
-            .help(format!("give one of {names}, or a CSV file `nm,power`")));
+        let unknown = |refusal| refused(refusal).at(format!("--illuminant {name}"));
+        return illuminant_named(name).map_err(unknown);
     }
     let text = std::fs::read_to_string(path).map_err(|error| Fault::reading(path, &error))?;
     let stem = path.file_stem().unwrap_or_default().to_string_lossy();

@@ -91,7 +91,7 @@ pub struct FrameSource {
 
 /// Pulls frames until `stop` says so; rings `wake` when one has come.
 pub fn pull(source: &FrameSource, inbox: &FrameInbox, wake: &Wake, stop: &Stop) {
-    let (mut since, mut epoch, mut level) = (0, 0, u32::MAX);
+    let (mut since, mut epoch, mut look, mut level) = (0, 0, 0, u32::MAX);
     while !stop.requested() {
         let wanted = inbox.level.load(Ordering::Relaxed);
         if wanted != level {
@@ -104,11 +104,12 @@ pub fn pull(source: &FrameSource, inbox: &FrameInbox, wake: &Wake, stop: &Stop) 
             tiles: [0, 0, u32::MAX, u32::MAX],
             level,
             wait_ms: WAIT_MS,
+            look,
         };
         let FrameSource { bus, topic, me, .. } = source;
         match ask::<_, FrameReply>(&**bus, topic, Class::Data, *me, &request, LIMIT) {
             Ok(reply) => {
-                (since, epoch) = (reply.version, reply.epoch);
+                (since, epoch, look) = (reply.version, reply.epoch, reply.look);
                 if !reply.tiles.is_empty() {
                     inbox.push(convert(&reply));
                     wake.ring();

@@ -33,6 +33,8 @@ pub struct LampUniform {
     _pad: f32,
     along: [f32; 2],
     _pad2: [f32; 2],
+    colour: [f32; 3],
+    _pad3: f32,
     cells: [[i32; 4]; TAPS],
     /// Weight, s·c, s·l_z.
     runs: [[f32; 4]; TAPS],
@@ -55,6 +57,8 @@ impl LampUniform {
             _pad: 0.0,
             along: shadows.toward,
             _pad2: [0.0; 2],
+            colour: lamp.colour,
+            _pad3: 0.0,
             cells: shadows.taps.map(|tap| {
                 let [[x, y], [x2, y2]] = tap.cells;
                 [x, y, x2, y2]
@@ -370,6 +374,7 @@ mod tests {
             exposure,
             relief: 1.3,
             softness,
+            colour: [1.3, 0.9, 0.4],
         })
     }
 

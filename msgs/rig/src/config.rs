@@ -118,13 +118,14 @@ pub struct LightSection {
 }
 
 impl LightSection {
-    /// The light, but for a spectrum of its own.
+    /// The light, but for a spectrum of its own; one of a file is called as the file is.
     #[must_use]
     pub fn light(&self) -> Light {
+        let name = Path::new(&self.illuminant).file_stem();
         Light {
             direction: self.direction,
             intensity: self.intensity,
-            illuminant: self.illuminant.clone(),
+            illuminant: name.unwrap_or_default().to_string_lossy().into_owned(),
             spectrum: Vec::new(),
             exposure: self.exposure.unwrap_or(1.0),
             relief: self.relief,

@@ -82,7 +82,7 @@ message! {
 
 message! {
     /// Asks for the tiles of a surface that changed.
-    pub struct FrameRequest [version 1, at most 256 bytes] {
+    pub struct FrameRequest [version 2, at most 256 bytes] {
         /// The surface.
         pub surface: u32,
         /// Tiles of a version above this; 0 asks for all.
@@ -95,6 +95,8 @@ message! {
         pub level: u32,
         /// How long to wait where nothing changed, ms, at most 400.
         pub wait_ms: u32,
+        /// The look that `since` belongs to.
+        pub look: u64,
     }
 }
 
@@ -125,7 +127,7 @@ wire_struct! {
 
 message! {
     /// The tiles that changed; where they are too many for one reply the rest comes with the next.
-    pub struct FrameReply [version 1, at most 67108864 bytes] {
+    pub struct FrameReply [version 2, at most 67108864 bytes] {
         /// The surface.
         pub surface: u32,
         /// Epoch of the paint node: where it differs from the asker's, all tiles come anew.
@@ -144,6 +146,8 @@ message! {
         pub more: bool,
         /// The tiles.
         pub tiles: Vec<FrameTile>,
+        /// Grows when the light changes: where it differs from the asker's, all tiles come anew.
+        pub look: u64,
     }
 }
 

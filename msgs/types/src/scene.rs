@@ -84,7 +84,7 @@ wire_struct! {
 wire_struct! {
     /// The lamp, and how its light becomes colour.
     pub struct Light {
-        /// Unit vector toward the lamp, canvas frame.
+        /// Toward the lamp, canvas frame; of any length.
         pub direction: [f64; 3],
         /// Factor on the light's strength.
         pub intensity: f64,
@@ -138,7 +138,7 @@ impl Default for Light {
     /// Average daylight from the upper left.
     fn default() -> Self {
         Self {
-            direction: [-0.5, 0.5, 0.5f64.sqrt()],
+            direction: [-0.5, 0.5, 0.7],
             intensity: 1.0,
             illuminant: "D65".to_owned(),
             spectrum: Vec::new(),
@@ -174,7 +174,7 @@ impl Light {
             }
         }
         let length: f64 = self.direction.iter().map(|v| v * v).sum();
-        if !(1e-6..=1e6).contains(&length) || self.direction[2] < 0.0 {
+        if !(1e-6..=1e6).contains(&length) || self.direction[2] <= 0.0 {
             return Err(
                 "the light must come from above the canvas: give x, y, z with z > 0".into(),
             );
@@ -214,7 +214,7 @@ impl Tuning {
 
 message! {
     /// The desk; cached for late joiners.
-    pub struct Scene [version 3, at most 262144 bytes] {
+    pub struct Scene [version 3, at most 16777216 bytes] {
         /// Grows with every change.
         pub version: u64,
         /// The canvas first.

@@ -2,6 +2,7 @@
 
 use crate::error::MeasureError;
 use crate::table::Table;
+use maulstick_optics::paints::check_paint_name;
 
 /// Columns that are neither a paint nor a wavelength.
 pub const RESERVED: [&str; 4] = ["sample", "kind", "thickness_um", "over"];
@@ -46,8 +47,12 @@ impl Headings {
             }
             let number = table.number(lower.trim_end_matches("nm").trim_end());
             let Some(nm) = number else {
-                if heading.contains(['"', ',']) || heading.starts_with('#') || lower == "paint" {
-                    let help = "choose another name, without commas, quotes and a leading #";
+                let named = check_paint_name(heading);
+                if let Err(what) = named {
+                    return Err(fault(what, "choose another name for the paint"));
+                }
+                if heading.starts_with('#') || lower == "paint" {
+                    let help = "choose another name, without a leading #";
                     return Err(fault(format!("'{heading}' cannot name a paint"), help));
                 }
                 found.paints.push((column, heading.clone()));

@@ -49,6 +49,12 @@ pub struct FedSurface {
 }
 
 impl FedSurface {
+    /// What has dried on a tile.
+    #[must_use]
+    pub fn dry_on(&self, id: TileId) -> Option<&Arc<DryStack>> {
+        self.tiles.get(&id)?.1.as_deref()?.dry()
+    }
+
     /// The tiles on which something has dried.
     pub fn dry_tiles(&self) -> impl Iterator<Item = (TileId, &Arc<DryStack>)> {
         self.tiles
@@ -181,7 +187,8 @@ impl FrameServer {
         let fed = self.feed.lock().clone();
         for waiting in std::mem::take(&mut self.waiting) {
             let reply = self.reply(&fed, &waiting.asked);
-            let news = !reply.tiles.is_empty() || waiting.asked.epoch != reply.epoch;
+            let asked = (waiting.asked.epoch, waiting.asked.look);
+            let news = !reply.tiles.is_empty() || asked != (reply.epoch, reply.look);
             if !news && now_ns < waiting.deadline_ns {
                 self.waiting.push(waiting);
                 continue;
@@ -225,16 +232,11 @@ impl FrameServer {
         }
     }
 
-    /// The epoch of frames: under another light everything is shown anew.
-    fn epoch(&self, fed: &Fed) -> u32 {
-        let generation = fed.look.as_ref().map_or(0, |look| look.generation());
-        self.me.epoch.wrapping_add(generation as u32)
-    }
-
     fn reply(&mut self, fed: &Fed, asked: &FrameRequest) -> FrameReply {
         let mut reply = FrameReply {
             surface: asked.surface,
-            epoch: self.epoch(fed),
+            epoch: self.me.epoch,
+            look: fed.look.as_ref().map_or(0, |look| look.generation()),
             version: BARE_VERSIONS + fed.version,
             level: 0,
             cells: [0; 2],
@@ -249,7 +251,7 @@ impl FrameServer {
         let level = asked.level.min(coarsest(surface));
         reply.level = level;
         reply.cells = surface.cells.map(|cells| cells.div_ceil(1 << level));
-        let since = if asked.epoch == reply.epoch {
+        let since = if (asked.epoch, asked.look) == (reply.epoch, reply.look) {
             asked.since
         } else {
             0

@@ -339,7 +339,11 @@ impl PaintNode {
         let scene = self.sequencer.painting().scene();
         if scene.version != self.sent_scene {
             self.sent_scene = scene.version;
-            self.scene.send(now_ns, now_ns, scene)?;
+            // Nothing that a painter does may end the node: a scene that does not fit is not told.
+            match self.scene.send(now_ns, now_ns, scene) {
+                Err(error @ BusError::Message { .. }) => tracing::error!("{error}"),
+                sent => sent?,
+            }
         }
         Ok(())
     }

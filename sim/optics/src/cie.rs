@@ -24,6 +24,9 @@ pub struct Illuminant {
     pub power: Spectrum,
 }
 
+/// A light has power at this many of the samples or more: the most that a rule takes.
+const NARROWEST: usize = 16;
+
 /// Names of the illuminants that come with the crate.
 pub const ILLUMINANTS: [&str; 6] = ["A", "D50", "D65", "FL2", "FL8", "FL11"];
 
@@ -83,10 +86,47 @@ impl Illuminant {
     /// # Errors
     /// [`TableError`] with line and column.
     pub fn parse(name: &str, text: &str) -> Result<Self, TableError> {
-        Ok(Self {
+        let light = Self {
             name: name.to_owned(),
             power: Spectrum::parse(text)?,
-        })
+        };
+        match light.check() {
+            Ok(()) => Ok(light),
+            Err(what) => Err(TableError {
+                line: text.lines().count().max(1),
+                what,
+            }),
+        }
+    }
+
+    /// Whether colours can be seen by it: it has power at as many wavelengths as a rule takes, and
+    /// excites each of the three responses of either observer.
+    ///
+    /// # Errors
+    /// What is wrong, in few words.
+    pub fn check(&self) -> Result<(), String> {
+        let most = self.power.0.iter().copied().fold(0.0, f64::max);
+        let shining = self
+            .power
+            .0
+            .iter()
+            .filter(|power| **power > 1e-6 * most)
+            .count();
+        if !(most > 0.0 && most.is_finite()) || shining < NARROWEST {
+            return Err(format!(
+                "the light has power at {shining} of the 101 wavelengths from 380 to 780 nm, 4 nm \
+                 apart; colours take {NARROWEST}"
+            ));
+        }
+        for observer in [Observer::Cie1931, Observer::Cie1964] {
+            let white = self.xyz(observer, &Spectrum::flat(1.0));
+            if !white.iter().all(|value| (1e-4..1e4).contains(value)) {
+                return Err(
+                    "the light leaves one of X, Y and Z dark, so no colour is seen by it".into(),
+                );
+            }
+        }
+        Ok(())
     }
 
     /// Average daylight, the default.
@@ -169,5 +209,28 @@ mod tests {
             Some("D50".into())
         );
         assert_eq!(Illuminant::named("candle"), None);
+    }
+
+    #[test]
+    fn a_light_by_which_no_colour_is_seen_is_refused() {
+        for name in ILLUMINANTS {
+            assert_eq!(Illuminant::named(name).expect("known").check(), Ok(()));
+        }
+        let error = |text: &str| {
+            Illuminant::parse("l", text)
+                .expect_err("no light")
+                .to_string()
+        };
+        for (text, word) in [
+            (
+                "500,0\n588,0\n589,1\n590,0\n800,0",
+                "of the 101 wavelengths",
+            ),
+            ("380,0\n390,0", "power at 0"),
+            ("200,1\n300,0\n900,0", "power at 0"),
+            ("600,0\n610,1\n780,1", "X, Y and Z"),
+        ] {
+            assert!(error(text).contains(word), "{}", error(text));
+        }
     }
 }

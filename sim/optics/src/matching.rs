@@ -8,12 +8,16 @@ use maulstick_num::exp;
 use maulstick_types::Mixture;
 use maulstick_types::mixture::Part;
 
+use std::collections::BTreeSet;
+
 use crate::colour::{delta_e_2000, lab};
 use crate::mixture::{Blend, Coat};
 use crate::paints::Paint;
 use crate::search::{golden_section, simplex};
 use crate::viewing::{Seen, Viewing};
 
+/// Most paints among which triples are sought.
+const MOST_IN_TRIPLES: usize = 40;
 /// Bound on ln of a ratio of shares: one part in 1100.
 const FARTHEST: f64 = 7.0;
 /// Places on which a pair is tried first; between them a colour turns but once.
@@ -134,10 +138,11 @@ impl<'a> Table<'a> {
     fn triples(&self, pairs: &[Found<2>]) -> Vec<Found<3>> {
         // Pairs stand in the order of b, then a.
         let pair = |a: usize, b: usize| pairs[b * (b - 1) / 2 + a].2;
+        let chosen = self.promising(pairs);
         let mut found = Vec::new();
-        for c in 2..self.paints.len() {
-            for b in 1..c {
-                for a in 0..b {
+        for (third, &c) in chosen.iter().enumerate() {
+            for (second, &b) in chosen[..third].iter().enumerate() {
+                for &a in &chosen[..second] {
                     let (shares, delta_e) = self.triple([a, b, c]);
                     if delta_e < pair(a, b).min(pair(a, c)).min(pair(b, c)) {
                         found.push(([a, b, c], shares, delta_e));
@@ -146,6 +151,23 @@ impl<'a> Table<'a> {
             }
         }
         found
+    }
+
+    /// Paints that triples are sought among, in their order: all of a common palette; of a large one
+    /// those of the nearest pairs, since the search grows with the cube of their number.
+    fn promising(&self, pairs: &[Found<2>]) -> Vec<usize> {
+        if self.paints.len() <= MOST_IN_TRIPLES {
+            return (0..self.paints.len()).collect();
+        }
+        let mut nearest: Vec<&Found<2>> = pairs.iter().collect();
+        nearest.sort_by(|a, b| a.2.total_cmp(&b.2));
+        let mut chosen = BTreeSet::new();
+        for paint in nearest.iter().flat_map(|(paints, ..)| paints) {
+            if chosen.len() < MOST_IN_TRIPLES {
+                chosen.insert(*paint);
+            }
+        }
+        chosen.into_iter().collect()
     }
 
     fn triple(&self, paints: [usize; 3]) -> ([f64; 3], f64) {

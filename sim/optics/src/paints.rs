@@ -70,6 +70,52 @@ pub enum PaintError {
     },
 }
 
+/// Largest K or S relative to titanium white's S: a black of which 0.02 µm hide.
+const MOST: f64 = 1e6;
+/// The name of a paint has at most this many bytes.
+const NAME_MAX: usize = maulstick_types::command::PAINT_NAME_MAX;
+
+/// Whether a paint may have this name: mixtures are written with it.
+///
+/// # Errors
+/// What is wrong, in words.
+pub fn check_paint_name(name: &str) -> Result<(), String> {
+    if name.trim().is_empty() {
+        return Err("a paint has no name".into());
+    }
+    if name.len() > NAME_MAX {
+        return Err(format!(
+            "a paint's name of {} bytes is over {NAME_MAX}",
+            name.len()
+        ));
+    }
+    if name.contains(['=', ',', '"']) || name.contains(char::is_control) {
+        return Err(format!(
+            "the name '{name}' has one of = , \" in it, as mixtures are written with"
+        ));
+    }
+    if name.eq_ignore_ascii_case(THINNER) {
+        return Err(format!(
+            "'{THINNER}' is the medium that every palette has; call the paint otherwise"
+        ));
+    }
+    Ok(())
+}
+
+/// The header names the wavelengths of the samples.
+fn check_header(cells: &[&str]) -> Result<(), String> {
+    for (i, cell) in cells.iter().skip(4).enumerate() {
+        let nm = crate::spectrum::wavelength(i);
+        if cell.trim().parse::<f64>() != Ok(nm) {
+            return Err(format!(
+                "column {}: wavelength '{cell}' instead of {nm}",
+                i + 5
+            ));
+        }
+    }
+    Ok(())
+}
+
 /// The paints to choose from.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PaintLibrary {
@@ -103,6 +149,7 @@ impl PaintLibrary {
             let fault = |what: String| PaintError::File { line, what };
             let cells: Vec<&str> = row.split(',').collect();
             if cells[0] == "paint" {
+                check_header(&cells).map_err(fault)?;
                 continue;
             }
             if cells.len() != 4 + SAMPLES {
@@ -117,8 +164,9 @@ impl PaintLibrary {
                 let number: f64 = cell
                     .parse()
                     .map_err(|_| fault(format!("column {}: '{cell}' is not a number", i + 5)))?;
-                if !(number >= 0.0 && number.is_finite()) {
-                    return Err(fault(format!("column {}: {cell} is not 0 or more", i + 5)));
+                if !(0.0..=MOST).contains(&number) {
+                    let what = format!("column {}: {cell} is not 0 to {MOST:.0}", i + 5);
+                    return Err(fault(what));
                 }
                 *value = number * WHITE_S_PER_M;
             }
@@ -128,9 +176,14 @@ impl PaintLibrary {
                 other => return Err(fault(format!("quantity '{other}' is neither K nor S"))),
             };
             if !found.contains_key(cells[0]) {
+                check_paint_name(cells[0]).map_err(fault)?;
                 order.push((cells[0].into(), cells[1].into(), cells[2].into()));
             }
-            found.entry(cells[0].to_owned()).or_default()[place] = Some(Spectrum(values));
+            let rows = found.entry(cells[0].to_owned()).or_default();
+            if rows[place].replace(Spectrum(values)).is_some() {
+                let what = format!("a second row of {} of '{}'", cells[3], cells[0]);
+                return Err(fault(what));
+            }
         }
         let mut paints = Vec::new();
         for (name, colour_index, source) in order {
@@ -241,10 +294,19 @@ mod tests {
         let error = |text: String| PaintLibrary::parse(&text).expect_err("broken").to_string();
         assert!(error("X,PX,me,K,1".into()).starts_with("line 1: 5 columns"));
         assert!(error(row("K", "x")).starts_with("line 1: column 5: 'x'"));
-        assert!(error(row("K", "-1")).contains("not 0 or more"));
-        assert!(error(row("K", "NaN")).contains("not 0 or more"));
+        assert!(error(row("K", "-1")).contains("not 0 to"));
+        assert!(error(row("K", "NaN")).contains("not 0 to"));
         assert!(error(row("Q", "1")).contains("neither K nor S"));
         assert!(error(row("K", "1")).contains("lacks its row"));
         assert!(error(String::new()).contains("no paint"));
+        assert!(error(row("K", "1e300")).contains("not 0 to"));
+        let twice = format!("{}\n{}", row("K", "1"), row("K", "2"));
+        assert!(error(twice).starts_with("line 2: a second row of K of 'X'"));
+        for (name, word) in [("a=b", "mixtures"), ("thinner", "medium"), (" ", "no name")] {
+            let named = row("K", "1").replacen('X', name, 1);
+            assert!(error(named).contains(word), "{name}");
+        }
+        let header = format!("paint,i,s,q{}", ",380".repeat(SAMPLES));
+        assert!(error(header).starts_with("line 1: column 6: wavelength '380' instead of 384"));
     }
 }

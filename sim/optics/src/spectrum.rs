@@ -68,6 +68,30 @@ pub fn resample(points: &[[f64; 2]]) -> Spectrum {
     })
 }
 
+/// The mean of the power through points (nm, power) of rising nm, straight between them, over the 4 nm
+/// around each sample: a narrow line between two samples is not lost. Beyond the ends the end's value
+/// holds.
+#[must_use]
+pub fn bin(points: &[[f64; 2]]) -> Spectrum {
+    // The integral from the first point to nm.
+    let integral = |nm: f64| -> f64 {
+        let (Some(first), Some(last)) = (points.first(), points.last()) else {
+            return 0.0;
+        };
+        let mut sum =
+            (nm.min(first[0]) - first[0]) * first[1] + (nm.max(last[0]) - last[0]) * last[1];
+        for pair in points.windows(2) {
+            let ([x0, y0], [x1, y1]) = (pair[0], pair[1]);
+            let x = nm.clamp(x0, x1);
+            let y = y0 + (y1 - y0) * (x - x0) / (x1 - x0);
+            sum += 0.5 * (y0 + y) * (x - x0);
+        }
+        sum
+    };
+    let half = 0.5 * STEP_NM;
+    Spectrum::from_fn(|nm| ((integral(nm + half) - integral(nm - half)) / STEP_NM).max(0.0))
+}
+
 /// Slopes at points by the weighted harmonic mean of the chords on either side, 0 at extrema.
 fn monotone_slopes(points: &[[f64; 2]]) -> Vec<f64> {
     let chord = |i: usize| (points[i + 1][1] - points[i][1]) / (points[i + 1][0] - points[i][0]);
@@ -103,6 +127,27 @@ mod tests {
         assert!((ramp.at(501.0) - 501.0).abs() < 1e-12);
         assert_eq!((ramp.at(300.0), ramp.at(900.0)), (380.0, 780.0));
         assert_eq!(wavelength(SAMPLES - 1), 780.0);
+    }
+
+    #[test]
+    fn a_line_between_samples_keeps_its_power() {
+        let line = |at: f64| {
+            [
+                [380.0, 0.0],
+                [at - 1.0, 0.0],
+                [at, 8.0],
+                [at + 1.0, 0.0],
+                [780.0, 0.0],
+            ]
+        };
+        for at in [588.0, 589.3, 590.0, 591.5] {
+            let power: f64 = bin(&line(at)).0.iter().sum::<f64>() * STEP_NM;
+            assert!((power - 8.0).abs() < 1e-9, "{at}: {power}");
+        }
+        let lost: f64 = resample(&line(590.0)).0.iter().sum();
+        assert_eq!(lost, 0.0, "points alone would miss it");
+        let slope = bin(&[[300.0, 300.0], [900.0, 900.0]]);
+        assert!((slope.0[7] - wavelength(7)).abs() < 1e-9);
     }
 
     #[test]

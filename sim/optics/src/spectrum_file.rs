@@ -7,7 +7,7 @@
 //! 385,52.31
 //! ```
 
-use crate::spectrum::{Spectrum, resample};
+use crate::spectrum::{Spectrum, bin};
 
 /// What is wrong with a table, and where.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
@@ -20,8 +20,8 @@ pub struct TableError {
 }
 
 impl Spectrum {
-    /// Reads a column of values of 0 or more over wavelengths in nm, which must rise; beyond the
-    /// ends the end's value holds.
+    /// Reads the power of a light: a column of values of 0 or more over wavelengths in nm, which must
+    /// rise; see [`bin`].
     ///
     /// # Errors
     /// [`TableError`] with line and column.
@@ -71,10 +71,7 @@ impl Spectrum {
         if table.len() < 2 {
             return Err(fault("a spectrum takes two wavelengths or more"));
         }
-        if table.iter().all(|[_, value]| *value == 0.0) {
-            return Err(fault("the spectrum is 0 everywhere"));
-        }
-        Ok(resample(&table))
+        Ok(bin(&table))
     }
 }
 
@@ -105,10 +102,6 @@ mod tests {
         assert_eq!(
             error(""),
             "line 1: a spectrum takes two wavelengths or more"
-        );
-        assert_eq!(
-            error("380,0\n390,0"),
-            "line 2: the spectrum is 0 everywhere"
         );
     }
 }

@@ -5,7 +5,7 @@ use half::slice::HalfFloatSliceExt as _;
 use maulstick_optics::{FilmPlanes, Studio, Under};
 
 use crate::bare::Bare;
-use crate::dry::{DryLayer, DryStack};
+use crate::dry::DryStack;
 use crate::look::thickness;
 use crate::quantum::QUANTUM_M;
 use crate::tile::{TILE_CELLS, Tile, TileId};
@@ -80,8 +80,13 @@ fn height(films: &[(usize, Vec<f32>)], dry: Option<&DryStack>) -> Vec<f32> {
 /// Gloss of the topmost paint of a tile: by its share of thinner, and whether it is wet.
 fn gloss(films: &[(usize, Vec<f32>)], dry: Option<&DryStack>, thinner: Option<usize>) -> Vec<f32> {
     let mut gloss = vec![0.0; TILE_CELLS];
+    let mut bare = TILE_CELLS;
+    // From the top down: a cell has the gloss of the first paint that is found in it.
     let mut lay = |planes: &[(usize, &[f32])], wetness: f32| {
         for cell in 0..TILE_CELLS {
+            if gloss[cell] > 0.0 {
+                continue;
+            }
             let (mut all, mut thin) = (0.0, 0.0);
             for (slot, plane) in planes {
                 all += plane[cell];
@@ -93,23 +98,25 @@ fn gloss(films: &[(usize, Vec<f32>)], dry: Option<&DryStack>, thinner: Option<us
             }
             if all > 0.0 {
                 gloss[cell] = maulstick_optics::light::gloss(thin / all, wetness);
+                bare -= 1;
             }
         }
+        bare > 0
     };
-    let layers: Vec<&DryLayer> = dry.iter().flat_map(|stack| stack.layers()).collect();
-    for layer in layers.iter().rev() {
+    let wet: Vec<_> = films
+        .iter()
+        .map(|(slot, film)| (*slot, film.as_slice()))
+        .collect();
+    let mut more = lay(&wet, 1.0);
+    let mut layers = dry.into_iter().flat_map(DryStack::layers);
+    while more && let Some(layer) = layers.next() {
         let planes: Vec<_> = layer
             .planes
             .iter()
             .map(|(slot, plane)| (*slot, &**plane))
             .collect();
-        lay(&planes, 0.0);
+        more = lay(&planes, 0.0);
     }
-    let wet: Vec<_> = films
-        .iter()
-        .map(|(slot, film)| (*slot, film.as_slice()))
-        .collect();
-    lay(&wet, 1.0);
     gloss
 }
 

@@ -25,6 +25,7 @@ pub struct DryStack {
     /// Quanta of this layer and all below, a cell.
     height: Box<[f32]>,
     depth: usize,
+    bytes: usize,
 }
 
 impl DryStack {
@@ -41,12 +42,15 @@ impl DryStack {
                 .zip(plane.iter())
                 .for_each(|(sum, count)| *sum += count);
         }
+        let own = (layer.planes.len() + 1) * TILE_CELLS * size_of::<f32>();
+        let bytes = own + below.as_ref().map_or(0, |below| below.bytes);
         let depth = 1 + below.as_ref().map_or(0, |below| below.depth);
         Arc::new(Self {
             layer,
             below,
             height,
             depth,
+            bytes,
         })
     }
 
@@ -72,6 +76,12 @@ impl DryStack {
     #[must_use]
     pub fn depth(&self) -> usize {
         self.depth
+    }
+
+    /// Bytes that all layers take.
+    #[must_use]
+    pub fn bytes(&self) -> usize {
+        self.bytes
     }
 
     /// The layers from the newest down.
@@ -155,6 +165,7 @@ mod tests {
                 below: Some(stack),
                 height,
                 depth,
+                bytes: 0,
             });
         }
         assert_eq!(stack.depth(), 100_000);

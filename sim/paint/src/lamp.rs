@@ -5,6 +5,8 @@ use maulstick_num::geometry::Rigid;
 use maulstick_optics::light::{Lamp, LampSetup};
 use maulstick_types::scene::{CANVAS, Scene};
 
+use crate::light::cast;
+
 /// The lamp in the frame of `surface`: the scene gives its direction in the canvas's. A surface that
 /// is not in the scene is taken to lie like the canvas.
 #[must_use]
@@ -25,6 +27,7 @@ pub fn lamp_over(scene: &Scene, surface: u32) -> Lamp {
         exposure: light.exposure,
         relief: light.relief,
         softness: light.softness,
+        colour: cast(light),
     })
 }
 

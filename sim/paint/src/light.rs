@@ -1,5 +1,6 @@
 //! The scene's light as the optics take it.
 
+use maulstick_optics::colour::{apply, linear_srgb_as_it_is};
 use maulstick_optics::{Illuminant, Observer, RuleKind, Spectrum, StudioSettings};
 use maulstick_types::nearest;
 use maulstick_types::scene::Light;
@@ -17,10 +18,16 @@ pub fn studio_settings(light: &Light) -> Result<StudioSettings, PaintRefusal> {
     let spectrum: Result<[f64; maulstick_optics::spectrum::SAMPLES], _> =
         light.spectrum.as_slice().try_into();
     let illuminant = match spectrum {
-        Ok(power) => Illuminant {
-            name: light.illuminant.clone(),
-            power: Spectrum(power),
-        },
+        Ok(power) => {
+            let found = Illuminant {
+                name: light.illuminant.clone(),
+                power: Spectrum(power),
+            };
+            found
+                .check()
+                .map_err(|what| PaintRefusal::new(what, "give a light of more wavelengths"))?;
+            found
+        }
         Err(_) => illuminant_named(&light.illuminant)?,
     };
     Ok(StudioSettings {
@@ -50,6 +57,18 @@ pub fn illuminant_named(name: &str) -> Result<Illuminant, PaintRefusal> {
                 names.join(", ")
             ),
         )
+    })
+}
+
+/// The light's own colour in linear sRGB: white to an eye that is adapted to it.
+#[must_use]
+pub fn cast(light: &Light) -> [f64; 3] {
+    if light.adapted {
+        return [1.0; 3];
+    }
+    studio_settings(light).map_or([1.0; 3], |settings| {
+        let white = settings.light.xyz(settings.observer, &Spectrum::flat(1.0));
+        apply(&linear_srgb_as_it_is(), white)
     })
 }
 

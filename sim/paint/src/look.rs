@@ -12,8 +12,8 @@ use crate::dry::{DryLayer, DryStack};
 use crate::quantum::QUANTUM_M;
 use crate::tile::{Planes, TILE_CELLS, TileId};
 
-/// Baked tiles that are kept: 256 KiB each with sixteen wavelengths.
-const KEPT: usize = 512;
+/// Baked tiles take this much at most, bytes; one with sixteen wavelengths takes 256 KiB.
+const KEPT_BYTES: usize = 128 << 20;
 
 /// Everything that turns the paint of a tile into colour.
 #[derive(Clone, Debug)]
@@ -133,27 +133,30 @@ pub fn thickness(planes: &Planes) -> Vec<(usize, Vec<f32>)> {
         .collect()
 }
 
-/// A baked tile: of which look and which stack.
+/// A baked tile: of which stack, and when it was last looked at.
 #[derive(Debug)]
 struct Baked {
-    generation: u64,
     stack: Arc<DryStack>,
     planes: Arc<[f32]>,
+    used: u64,
 }
 
-/// Baked tiles, kept for the next time that they are looked at.
+/// Baked tiles of one look, kept for the next time that they are looked at.
 #[derive(Debug, Default)]
 pub struct Bakery {
     kept: BTreeMap<(u32, TileId), Baked>,
+    bytes: usize,
+    looks: u64,
+    generation: u64,
 }
 
 impl Bakery {
     /// Whether a tile of a surface need not be baked.
     #[must_use]
     pub fn holds(&self, look: &Look, surface: u32, id: TileId, stack: &Arc<DryStack>) -> bool {
-        self.kept.get(&(surface, id)).is_some_and(|kept| {
-            kept.generation == look.generation && Arc::ptr_eq(&kept.stack, stack)
-        })
+        let kept = self.kept.get(&(surface, id));
+        self.generation == look.generation
+            && kept.is_some_and(|kept| Arc::ptr_eq(&kept.stack, stack))
     }
 
     /// Internal reflectances of what has dried on a tile, a plane a wavelength, over `ground`. Of a
@@ -165,27 +168,41 @@ impl Bakery {
         id: TileId,
         (stack, ground): (&Arc<DryStack>, &[f32]),
     ) -> Arc<[f32]> {
-        let place = (surface, id);
-        let kept = self
-            .kept
-            .get(&place)
-            .filter(|kept| kept.generation == look.generation);
+        if self.generation != look.generation {
+            self.kept.clear();
+            (self.generation, self.bytes) = (look.generation, 0);
+        }
+        self.looks += 1;
+        let (place, used) = ((surface, id), self.looks);
+        let kept = self.kept.get_mut(&place);
         if let Some(kept) = kept
             && Arc::ptr_eq(&kept.stack, stack)
         {
+            kept.used = used;
             return Arc::clone(&kept.planes);
         }
-        let known = kept.map(|kept| (&*kept.stack, &*kept.planes));
+        let kept = self.kept.remove(&place);
+        self.bytes -= kept.as_ref().map_or(0, |kept| size_of_val(&*kept.planes));
+        let known = kept.as_ref().map(|kept| (&*kept.stack, &*kept.planes));
         let planes: Arc<[f32]> = look.bake(stack, ground, known, backend).into();
-        if self.kept.len() >= KEPT && !self.kept.contains_key(&place) {
-            self.kept.pop_first();
+        self.bytes += size_of_val(&*planes);
+        while self.bytes > KEPT_BYTES {
+            let oldest = self.kept.iter().min_by_key(|(_, kept)| kept.used);
+            let Some(place) = oldest.map(|(place, _)| *place) else {
+                break;
+            };
+            let gone = self.kept.remove(&place);
+            self.bytes -= gone.map_or(0, |gone| size_of_val(&*gone.planes));
         }
-        let baked = Baked {
-            generation: look.generation,
-            stack: Arc::clone(stack),
-            planes: Arc::clone(&planes),
-        };
-        self.kept.insert(place, baked);
+        let (stack, shared) = (Arc::clone(stack), Arc::clone(&planes));
+        self.kept.insert(
+            place,
+            Baked {
+                stack,
+                planes: shared,
+                used,
+            },
+        );
         planes
     }
 }

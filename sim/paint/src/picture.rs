@@ -91,16 +91,18 @@ pub fn picture_for(painting: &mut Painting, surface: u32, export: &Export) -> Pi
     })
 }
 
-/// A point as if the surface were flat there, under a lamp of strength 1.
-fn flat(spot: &Spot) -> [f32; 3] {
-    spot.unlit.map(|channel| channel + SURFACE)
+/// A point as if the surface were flat there, under a lamp of strength 1 and of this colour.
+fn flat(spot: &Spot, lamp: [f32; 3]) -> [f32; 3] {
+    [0, 1, 2].map(|i| spot.unlit[i] + lamp[i] * SURFACE)
 }
 
 /// The picture of a surface as if it were flat: its colours alone.
 pub fn unlit_picture(painting: &mut Painting, surface: u32) -> Picture {
     let export = Export::default();
+    let lamp = lamp_over(painting.scene(), surface).colour;
+    let light: Light<'_> = &|spot| flat(spot, lamp);
     under(painting, surface, |_| View {
-        light: &flat,
+        light,
         shadows: None,
         export: &export,
     })
@@ -372,7 +374,7 @@ mod tests {
         let both = |store: &TileStore| {
             let shadows = Some(Shadows::new(&lamp, CELL_M as f32));
             let lit = drawn(store, &|spot| lit(spot, &lamp), shadows);
-            (lit, drawn(store, &flat, None))
+            (lit, drawn(store, &|spot| flat(spot, [1.0; 3]), None))
         };
         let (flat, unlit) = both(&store(|_, _| 50_000.0));
         assert!(flat == unlit);

@@ -72,15 +72,15 @@ impl Tile {
         plane_counts(&self.wet)
     }
 
-    /// The tile with the lower `share` of its wet film dried as layer `number`; none where nothing is
-    /// wet. All of it dries by reference.
+    /// The tile with the lower `share` of its wet film dried as layer `number`, but for the cells of
+    /// `wells`; none where nothing dries. All of it dries by reference.
     #[must_use]
-    pub fn dried(&self, number: u32, share: f32) -> Option<Self> {
+    pub fn dried(&self, number: u32, share: f32, wells: &[usize]) -> Option<Self> {
         if self.wet.is_empty() {
             return None;
         }
         let under = self.dry.clone();
-        if share >= 1.0 {
+        if share >= 1.0 && wells.is_empty() {
             let layer = DryLayer {
                 number,
                 planes: self.wet.clone(),
@@ -91,7 +91,9 @@ impl Tile {
             });
         }
         let part = |plane: &Arc<[f32]>| -> Arc<[f32]> {
-            plane.iter().map(|count| (count * share).floor()).collect()
+            let mut lower: Vec<f32> = plane.iter().map(|count| (count * share).floor()).collect();
+            wells.iter().for_each(|cell| lower[*cell] = 0.0);
+            lower.into()
         };
         let lower: Planes = self
             .wet
@@ -127,13 +129,8 @@ impl Tile {
     /// Bytes that it takes.
     #[must_use]
     pub fn bytes(&self) -> usize {
-        let dry: usize = self
-            .dry
-            .iter()
-            .flat_map(|stack| stack.layers())
-            .map(|layer| layer.planes.len() + 1)
-            .sum();
-        (self.wet.len() + dry) * TILE_CELLS * size_of::<f32>()
+        let dry = self.dry.as_ref().map_or(0, |stack| stack.bytes());
+        self.wet.len() * TILE_CELLS * size_of::<f32>() + dry
     }
 }
 
@@ -160,24 +157,27 @@ mod tests {
         let wet = Tile::new([(2, plane(7)), (5, plane(13))].into_iter(), None);
         let all = wet.counts();
         for share in [1e-3f32, 0.3, 0.5, 0.999, 1.0] {
-            let dried = wet.dried(1, share).expect("wet");
+            let dried = wet.dried(1, share, &[]).expect("wet");
             let stack = dried.dry().expect("dried");
             let mut sum = dried.counts();
             crate::quantum::add(&mut sum, &stack.counts());
             assert_eq!(sum, all, "{share}");
             let lower = stack.counts()[2] as f64 / all[2] as f64;
             assert!((lower - f64::from(share)).abs() < 2e-3, "{share} {lower}");
-            let twice = dried.dried(2, 1.0);
+            let twice = dried.dried(2, 1.0, &[]);
             assert_eq!(twice.is_some(), share < 1.0);
             let depth = twice.and_then(|tile| Some(tile.dry()?.depth()));
             assert_eq!(depth, (share < 1.0).then_some(2));
         }
-        let whole = wet.dried(1, 1.0).expect("wet");
+        let whole = wet.dried(1, 1.0, &[]).expect("wet");
         let layer = whole.dry().expect("dried").layer();
         assert!(
             Arc::ptr_eq(&layer.planes[0].1, &wet.wet()[0].1),
             "by reference"
         );
-        assert_eq!(wet.dried(1, 1e-9), None);
+        assert_eq!(wet.dried(1, 1e-9, &[]), None);
+        let around = wet.dried(1, 1.0, &[5, 6]).expect("wet");
+        let stays: Vec<f32> = (4..8).map(|cell| around.wet()[0].1[cell]).collect();
+        assert_eq!(stays, [0.0, 35_000.0, 42_000.0, 0.0], "a well stays wet");
     }
 }

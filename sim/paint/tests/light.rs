@@ -1,7 +1,10 @@
 //! What light and drying make of a painting.
 
 use maulstick_brush::BrushFile;
-use maulstick_optics::PaintLibrary;
+use maulstick_optics::light::{Lamp, LampSetup, Spot, lit};
+use maulstick_optics::{PaintLibrary, Under};
+use maulstick_paint::display::WetFilms;
+use maulstick_paint::lamp::lamp_over;
 use maulstick_paint::picture::{Picture, unlit_picture};
 use maulstick_paint::{Painting, PaintingSetup};
 use maulstick_types::Pose;
@@ -219,4 +222,40 @@ fn a_light_that_is_none_changes_nothing() {
         ..Light::default()
     });
     assert!(refusal.expect_err("unknown").help.contains("'D65'"));
+}
+
+/// A flat bare canvas, adapted or not, shows what a spectrometer reads of it under that light.
+#[test]
+fn a_flat_surface_shows_its_colour_and_the_colour_of_its_light() {
+    for adapted in [true, false] {
+        let light = Light {
+            adapted,
+            exposure: 1.0,
+            ..lamp_light()
+        };
+        let painting = painting(light);
+        let bare = painting.bare(CANVAS).expect("a canvas");
+        let studio = &painting.look().studio;
+        let read = studio.colour(&[], &bare.ground);
+        let [r, g, b] = WetFilms::of(None).shade(studio, Under::Even(&bare.ground));
+        let spot = Spot {
+            unlit: [r[0], g[0], b[0]],
+            gloss: 0.7,
+            slope: [0.0; 2],
+            seen: 1.0,
+        };
+        let strength = painting.scene().light.exposure;
+        let shown = lit(&spot, &lamp_over(painting.scene(), CANVAS));
+        for (shown, read) in shown.iter().zip(read) {
+            let off = (f64::from(*shown) - strength * read).abs();
+            assert!(off < 1e-5, "{adapted}: {shown} for {read}");
+        }
+        let white = Lamp::new(&LampSetup {
+            exposure: strength,
+            ..LampSetup::default()
+        });
+        let neutral = lit(&spot, &white);
+        let off = f64::from(neutral[2]) - strength * read[2];
+        assert_eq!(off.abs() > 1e-3, !adapted, "a neutral surface would pass");
+    }
 }

@@ -113,7 +113,7 @@ fn pull(bus: &ZenohBus, topics: &Topics, seconds: f64, rig: &mut Rig) -> Result<
         frames: 0,
         lost: 0,
     };
-    let (mut since, mut epoch) = (0, 0);
+    let (mut since, mut epoch, mut look) = (0, 0, 0);
     let give_up = Instant::now() + Duration::from_secs_f64(seconds + 30.0);
     while Instant::now() < give_up && rig.0.try_wait().map_err(fault)?.is_none() {
         let request = FrameRequest {
@@ -123,6 +123,7 @@ fn pull(bus: &ZenohBus, topics: &Topics, seconds: f64, rig: &mut Rig) -> Result<
             tiles: [0, 0, u32::MAX, u32::MAX],
             level: 0,
             wait_ms: 100,
+            look,
         };
         let limit = Duration::from_millis(500);
         let reply =
@@ -132,7 +133,7 @@ fn pull(bus: &ZenohBus, topics: &Topics, seconds: f64, rig: &mut Rig) -> Result<
                 Err(error) => return Err(error.into()),
             };
         let now_ns = bus.now_ns();
-        (since, epoch) = (reply.version, reply.epoch);
+        (since, epoch, look) = (reply.version, reply.epoch, reply.look);
         latencies.frames += usize::from(!reply.tiles.is_empty());
         while let Some(state) = states.try_recv() {
             if state.message.solves.iter().any(|solve| solve.stroke > 0) {

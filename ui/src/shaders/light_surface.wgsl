@@ -19,6 +19,8 @@ struct Lamp {
     sharpness: f32,
     // The lamp in the plane of its direction: across the surface and out of it.
     along: vec2<f32>,
+    // The light's own colour.
+    colour: vec3<f32>,
     // The two cells of each place on the way to the lamp; share of the second, and the run to it.
     cells: array<vec4<i32>, TAPS>,
     runs: array<vec4<f32>, TAPS>,
@@ -118,7 +120,7 @@ fn lit(unlit: vec3<f32>, gloss: f32, flat_rise: vec2<f32>, visible: f32) -> vec3
     let lobes = vec2<f32>(sharpened(facing, sharp), sharpened(facing, broad));
     let shine = lamp.peak * max(lobes - lamp.flat, vec2<f32>(0.0));
     let highlight = (gloss * gloss * shine.x + gloss * (1.0 - gloss) * shine.y) * incidence;
-    return (diffuse * unlit + surface + highlight) * lamp.intensity;
+    return (diffuse * unlit + lamp.colour * (surface + highlight)) * lamp.intensity;
 }
 
 fn times(m: Rows, v: vec3<f32>) -> vec3<f32> {

@@ -100,7 +100,12 @@ impl Pyramid {
         while begun.elapsed() < limit
             && let Some((number, id, stack)) = self.ahead.pop_front()
         {
-            if let Some(surface) = fed.surfaces.get(&number) {
+            // What has dried since was, or will be, baked by whoever looks at it.
+            if let Some(surface) = fed.surfaces.get(&number)
+                && surface
+                    .dry_on(id)
+                    .is_some_and(|now| Arc::ptr_eq(now, &stack))
+            {
                 let over = (&stack, surface.bare.ground.as_slice());
                 let sight = (&**look, &mut self.films as &mut dyn FilmBackend);
                 self.bakery.planes(sight, number, id, over);
@@ -175,6 +180,16 @@ impl Pyramid {
         }
     }
 
+    /// What lies beyond the edge of a surface, as if it went on.
+    fn outside(&mut self, look: &Look, number: u32, surface: &FedSurface) -> Arc<DisplayTile> {
+        let bare = || {
+            let films = WetFilms::default();
+            let rgb = films.shade(&look.studio, Under::Even(&surface.bare.ground));
+            Arc::new(DisplayTile::of(None, (&films, rgb), None))
+        };
+        Arc::clone(self.outside.entry(number).or_insert_with(bare))
+    }
+
     fn keep(&mut self, place: (u32, u32, TileId), version: u64, tile: Arc<DisplayTile>) {
         if self.kept.len() >= KEPT_TILES {
             self.kept.clear();
@@ -199,16 +214,12 @@ impl Pyramid {
         }
         if level == 0 {
             self.shade(look, number, surface, &[id]);
-            if let Some((_, tile)) = self.kept.get(&(number, level, id)) {
-                return Arc::clone(tile);
-            }
+            let kept = self.kept.get(&(number, level, id));
+            let kept = kept.map(|(_, tile)| Arc::clone(tile));
+            return kept.unwrap_or_else(|| self.outside(look, number, surface));
         }
         let tile = Arc::new({
-            let outside = Arc::clone(self.outside.entry(number).or_insert_with(|| {
-                let films = WetFilms::default();
-                let rgb = films.shade(&look.studio, Under::Even(&surface.bare.ground));
-                Arc::new(DisplayTile::of(None, (&films, rgb), None))
-            }));
+            let outside = self.outside(look, number, surface);
             let [across, up] = grid(surface, level - 1);
             let children: [Option<Arc<DisplayTile>>; 4] = std::array::from_fn(|quarter| {
                 let child = child(id, quarter as u32);

@@ -6,8 +6,12 @@ use maulstick_bus::bus::Answer;
 use maulstick_bus::{Class, Faults, MemoryNet};
 use maulstick_types::decode;
 
-use maulstick_paint::look::Look;
+use maulstick_optics::backend::{CpuFilms, FilmBackend};
+use maulstick_optics::{Illuminant, PaintLibrary, Studio, StudioSettings, Under};
+use maulstick_paint::display::{DisplayTile, WetFilms};
+use maulstick_paint::look::{Bakery, Look};
 use maulstick_paint::relief::Relief;
+use maulstick_paint::tile::TILE_CELLS;
 
 use super::*;
 
@@ -76,6 +80,7 @@ fn request(since: u64, epoch: u32, level: u32) -> FrameRequest {
         tiles: [0, 0, 100, 100],
         level,
         wait_ms: 300,
+        look: 0,
     }
 }
 
@@ -171,4 +176,87 @@ fn no_level_is_coarser_than_a_single_tile() {
         let reply = ask(&mut rig, &request(0, 5, level)).expect("at once");
         assert_eq!((reply.level, reply.tiles.len()), (2, 1));
     }
+}
+
+/// A tile with a dry layer and a wet film, in slot 0.
+fn dried(wet: f32, dry: f32) -> Arc<Tile> {
+    let plane = |count: f32| -> Arc<[f32]> { vec![count; TILE_CELLS].into() };
+    let lower = Tile::new([(0, plane(dry))].into_iter(), None);
+    let lower = lower.dried(1, 1.0, &[]).expect("wet");
+    Arc::new(Tile::new(
+        [(0, plane(wet))].into_iter(),
+        lower.dry().cloned(),
+    ))
+}
+
+/// Unlit colours of a tile as an export computes them.
+fn exported(rig: &Rig, tile: &Tile) -> [Vec<f32>; 3] {
+    let fed = rig.feed.lock();
+    let look = fed.look.as_ref().expect("a look");
+    let ground = fed.surfaces[&0].bare.ground.as_slice();
+    let stack = tile.dry().expect("dried");
+    let sight = (&**look, &mut CpuFilms::new() as &mut dyn FilmBackend);
+    let baked = Bakery::default().planes(sight, 0, TileId { x: 0, y: 0 }, (stack, ground));
+    WetFilms::of(Some(tile)).shade(&look.studio, Under::Planes(&baked))
+}
+
+fn look_under(light: &str) -> Look {
+    let library = PaintLibrary::measured().expect("whole");
+    let settings = StudioSettings {
+        light: Illuminant::named(light).expect("known"),
+        samples: 8,
+        ..StudioSettings::default()
+    };
+    let mut studio = Studio::new(&settings, library.paints());
+    studio.add(library.find("Pyrrole Red").expect("known"));
+    Look::new(studio)
+}
+
+#[test]
+fn under_another_light_everything_comes_anew_as_an_export_has_it() {
+    let mut rig = rig();
+    let tile = dried(3000.0, 9000.0);
+    let mut look = look_under("D65");
+    rig.feed.lock().look = Some(Arc::new(look.clone()));
+    paint(&rig, TileId { x: 0, y: 0 }, 7);
+    let place = TileId { x: 0, y: 0 };
+    let lay = |rig: &Rig, tile: &Arc<Tile>| {
+        let mut fed = rig.feed.lock();
+        let surface = fed.surfaces.get_mut(&0).expect("a surface");
+        surface.tiles.insert(place, (7, Some(Arc::clone(tile))));
+    };
+    lay(&rig, &tile);
+    let corner = |reply: &FrameReply| {
+        let tile = reply.tiles.iter().find(|tile| (tile.x, tile.y) == (0, 0));
+        DisplayTile::from_bytes(&tile.expect("the corner").planes).expect("whole")
+    };
+    let differ = |shown: &DisplayTile, exported: &[Vec<f32>; 3]| {
+        let planes = shown.rgb.iter().zip(exported);
+        planes.map(|(a, b)| (a[9] - b[9]).abs()).fold(0.0, f32::max)
+    };
+    let day = ask(&mut rig, &request(0, 0, 0)).expect("at once");
+    let by_day = exported(&rig, &tile);
+    assert!(differ(&corner(&day), &by_day) < 1e-3);
+    assert_eq!(
+        ask(&mut rig, &request(day.version, 5, 0)),
+        None,
+        "it waits for news"
+    );
+    // The lamp: the same versions, another look.
+    look.relight(look_under("A").studio);
+    rig.feed.lock().look = Some(Arc::new(look));
+    let lamp = ask(&mut rig, &request(day.version, 5, 0)).expect("news");
+    assert_eq!((lamp.tiles.len(), lamp.look), (12, day.look + 1));
+    let by_lamp = exported(&rig, &tile);
+    assert!(differ(&corner(&lamp), &by_lamp) < 1e-3);
+    assert!(
+        differ(&corner(&lamp), &by_day) > 1e-2,
+        "the old bakery would pass"
+    );
+    assert_eq!(rig.feed.lock().baking, Progress { all: 1, done: 1 });
+    let asked = FrameRequest {
+        look: lamp.look,
+        ..request(lamp.version, 5, 0)
+    };
+    assert_eq!(ask(&mut rig, &asked), None, "it waits for news");
 }

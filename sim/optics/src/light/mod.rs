@@ -10,7 +10,7 @@
 //! diffuse   d = a + (1 − a)·i
 //! lobe      λ(m) = (m + 8)/8·max((n·b)^m − b_z^m, 0)
 //! highlight s = F(l·b)·(g²·λ(64) + g·(1 − g)·λ(8))·i
-//! lit         = E·(d·unlit + k₁ + s)
+//! lit         = E·(d·unlit + w·(k₁ + s))
 //! ```
 //!
 //! d is Lambert's law with a share a of light from all around. V is the share of the lamp that the
@@ -18,7 +18,7 @@
 //! computer synthesized pictures*), normalised as in Akenine-Möller, Haines and Hoffman 2008
 //! (*Real-Time Rendering*, § 7.6); the gloss g moves the reflection from the broad lobe of a dull film
 //! into the sharp one of a wet film, and F is Fresnel's share of it ([`fresnel`]). The highlight has
-//! the colour of the lamp, which by definition is white (Baxter 2004, § 7.8.2). The films' colour leaves
+//! the colour w of the light, white to an adapted eye (Baxter 2004, § 7.8.2). The films' colour leaves
 //! the surface's own reflection k₁ out; here it is added, once. d and s are relative to a flat surface,
 //! which so looks as a spectrometer reads it, gloss included, times E, wherever the lamp stands, and does
 //! not change when its gloss dries away.
@@ -58,6 +58,8 @@ pub struct LampSetup {
     pub relief: f64,
     /// Tangent of half the angle under which the lamp is seen: how soft shadows are, 0 or more.
     pub softness: f64,
+    /// w, the light's own colour, linear.
+    pub colour: [f64; 3],
 }
 
 impl Default for LampSetup {
@@ -69,6 +71,7 @@ impl Default for LampSetup {
             exposure: 1.0,
             relief: 1.0,
             softness: 0.1,
+            colour: [1.0; 3],
         }
     }
 }
@@ -90,6 +93,8 @@ pub struct Lamp {
     pub flat: [f32; 2],
     /// Tangent of half the angle under which it is seen.
     pub softness: f32,
+    /// w.
+    pub colour: [f32; 3],
 }
 
 impl Lamp {
@@ -115,6 +120,7 @@ impl Lamp {
             peak: SHARPNESS.map(|m| (share * (f64::from(1u32 << m) + 8.0) / 8.0) as f32),
             flat: SHARPNESS.map(|m| sharpened(half[2], m)),
             softness: or(setup.softness, default.softness) as f32,
+            colour: setup.colour.map(|v| v as f32),
         }
     }
 }
@@ -175,8 +181,8 @@ pub fn lit(spot: &Spot, lamp: &Lamp) -> [f32; 3] {
     let lobe = |i: usize| lamp.peak[i] * (sharpened(facing, SHARPNESS[i]) - lamp.flat[i]).max(0.0);
     let gloss = spot.gloss;
     let highlight = (gloss * gloss * lobe(0) + gloss * (1.0 - gloss) * lobe(1)) * incidence;
-    spot.unlit
-        .map(|channel| (diffuse * channel + SURFACE + highlight) * lamp.intensity)
+    let shine = SURFACE + highlight;
+    [0, 1, 2].map(|i| (diffuse * spot.unlit[i] + lamp.colour[i] * shine) * lamp.intensity)
 }
 
 /// Gloss g of oil paint: `wetness` leads from .3, an eggshell of dry paint, to .75, stiff paint from

@@ -134,6 +134,7 @@ fn lamps_that_are_none_still_shine() {
             exposure: f64::INFINITY,
             relief: f64::NAN,
             softness: f64::NAN,
+            ..Default::default()
         };
         assert_eq!(Lamp::new(&none), above);
     }
@@ -154,7 +155,7 @@ fn exposure_and_relief_are_factors() {
         intensity: 0.5,
         exposure: 4.0,
         relief: 2.0,
-        softness: 0.1,
+        ..Default::default()
     });
     let slope = [0.1, -0.2];
     let twice = lit(&spot(GREY, 1.0, slope.map(|v| 2.0 * v)), &one);

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use maulstick_types::scene::Layer;
 
-use super::{PaintRefusal, Painting};
+use super::{PaintRefusal, Painting, Sheet};
 use crate::tile::{TileId, Version};
 
 impl Painting {
@@ -25,9 +25,11 @@ impl Painting {
             .iter()
             .position(|sheet| sheet.id == surface)
             .ok_or_else(unknown)?;
-        let store = &self.sheets[place].store;
+        let Sheet { store, bare, .. } = &self.sheets[place];
         let dried = store.iter().filter_map(|(id, version)| {
-            let tile = version.tile.as_ref()?.dried(number, share)?;
+            // What lies in a well is as fresh as what comes from the tube.
+            let wells: Vec<usize> = bare.in_wells(id).map(|(cell, _)| cell).collect();
+            let tile = version.tile.as_ref()?.dried(number, share, &wells)?;
             Some((id, Arc::new(tile)))
         });
         let dried: Vec<(TileId, Arc<_>)> = dried.collect();
