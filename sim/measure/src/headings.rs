@@ -162,7 +162,7 @@ mod tests {
         );
         assert_eq!(
             error("\"a,b\",500"),
-            "line 1, column 1 (a,b): 'a,b' cannot name a paint"
+            "line 1, column 1 (a,b): the name 'a,b' has one of = , \" in it, as mixtures are written with"
         );
         assert_eq!(
             error("sample,500,600,700"),
