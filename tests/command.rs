@@ -193,11 +193,11 @@ fn bad_settings_are_refused_with_their_line() {
     };
     has(
         &rig(("cell_mm = 0.25 ", "cell_m = 0.25 ")),
-        &["unknown key 'cell_m'", "'cell_mm'", "rig.toml:11"],
+        &["unknown key 'cell_m'", "'cell_mm'", "rig.toml:12"],
     );
     has(
         &rig(("driver = \"simulated\"", "driver = \"phantom\"")),
-        &["driver", "'simulated'", "rig.toml:28"],
+        &["driver", "'simulated'", "rig.toml:29"],
     );
     has(
         &rig(("kind = \"round\"", "kind = \"flatt\"")),

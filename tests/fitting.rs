@@ -101,3 +101,16 @@ fn fit_refuses_bad_measurements_with_row_and_column() {
         &["no/p.csv", "folder"],
     );
 }
+
+#[test]
+fn measurements_are_not_written_over() {
+    let place = Place::new();
+    std::fs::write(
+        place.path("m.csv"),
+        include_str!("../docs/examples/measurements.csv"),
+    )
+    .expect("written");
+    let said = fault(&place, &["fit", "m.csv", "-o", "m.csv"], 2);
+    has(&said, &["take the place of the measurements", "m.csv"]);
+    assert!(place.bytes("m.csv").starts_with(b"#"));
+}

@@ -94,6 +94,11 @@ fn a_painting_dries_and_is_seen_under_another_light() {
     assert!(baked.is_some(), "no tile is baked: {}", launcher.said());
     place.done(&["snapshot", "-o", "lamp.png"]);
     assert!(place.bytes("day.png") != place.bytes("lamp.png"));
+    // Under another spectrum the exposure is chosen anew, as for a painting that begins under it.
+    assert!(told["exposure"].as_f64() < Some(0.8), "{told}");
+    let by_hand = ["light", "--exposure", "0.5", "--json"];
+    let told: serde_json::Value = serde_json::from_str(&says(&place, &by_hand)).expect("JSON");
+    assert_eq!(told["exposure"].as_f64(), Some(0.5));
     place.done(&["light", "--illuminant", "D65", "--adapt", "true"]);
     place.done(&["snapshot", "-o", "again.png"]);
     assert_same(
@@ -141,6 +146,7 @@ fn what_a_rig_cannot_do_with_light_it_refuses_with_words() {
         &["light", "--rule", "simpson"],
         &["gauss, fitted, reference"],
     );
+    refused(&["light", "--exposure", "bright"], &["a number, or auto"]);
     refused(&["light", "--intensity", "-1"], &["intensity", "-1"]);
     refused(&["light", "--direction", "0,0,-1"], &["z > 0"]);
     refused(&["light", "--direction", "1,2"], &["three numbers"]);

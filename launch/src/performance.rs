@@ -157,7 +157,10 @@ pub fn library_from(path: Option<&Path>) -> Result<PaintLibrary, Fault> {
 fn light(section: &LightSection) -> Result<Light, Fault> {
     let mut light = section.light();
     if Illuminant::named(&section.illuminant).is_none() {
-        let found = illuminant(&section.illuminant)?;
+        let found = illuminant(&section.illuminant).map_err(|fault| match fault.place {
+            None => fault.at("illuminant of [light], or --illuminant"),
+            Some(_) => fault,
+        })?;
         light.illuminant = found.name;
         light.spectrum = found.power.0.to_vec();
     }

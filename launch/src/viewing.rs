@@ -59,6 +59,13 @@ impl ViewingOptions {
         }
     }
 
+    fn illuminant(&self) -> Result<Illuminant, Fault> {
+        illuminant(&self.illuminant).map_err(|fault| match fault.place {
+            None => fault.at(format!("--illuminant {}", self.illuminant)),
+            Some(_) => fault,
+        })
+    }
+
     /// The rule in words.
     #[must_use]
     pub fn rule_in_words(&self) -> String {
@@ -74,7 +81,7 @@ impl ViewingOptions {
     /// # Errors
     /// A [`Fault`] for an unknown light, with the nearest name, or a bad file, with its line.
     pub fn viewing(&self, library: &PaintLibrary) -> Result<Viewing, Fault> {
-        let light = illuminant(&self.illuminant)?;
+        let light = self.illuminant()?;
         let (observer, samples) = (self.observer(), usize::from(self.samples));
         let rule = match self.rule {
             RuleName::Fitted => SamplingRule::fitted(samples, observer, &light, library.paints()),
@@ -89,7 +96,7 @@ impl ViewingOptions {
     /// # Errors
     /// As [`viewing`](Self::viewing).
     pub fn reference(&self) -> Result<Viewing, Fault> {
-        let light = illuminant(&self.illuminant)?;
+        let light = self.illuminant()?;
         Ok(self.look(SamplingRule::reference(self.observer(), &light), &light))
     }
 
@@ -113,8 +120,7 @@ pub fn illuminant(name: &str) -> Result<Illuminant, Fault> {
     let path = Path::new(name);
     let is_file = path.extension().is_some() || name.contains('/') || path.exists();
     if !is_file {
-        let unknown = |refusal| refused(refusal).at(format!("--illuminant {name}"));
-        return illuminant_named(name).map_err(unknown);
+        return illuminant_named(name).map_err(refused);
     }
     let text = std::fs::read_to_string(path).map_err(|error| Fault::reading(path, &error))?;
     let stem = path.file_stem().unwrap_or_default().to_string_lossy();

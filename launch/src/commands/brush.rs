@@ -16,6 +16,7 @@ use maulstick_rig::files::{check_writable, write_whole};
 use maulstick_types::command::Command;
 use serde_json::json;
 
+use crate::commands::say;
 use crate::commands::session::{Session, Target};
 use crate::commands::{print_json, print_text};
 use crate::performance::{brush_file, library};
@@ -153,7 +154,7 @@ fn import(options: &ImportOptions) -> Result<i32, Fault> {
         .map_err(|error| Fault::failure(error.to_string()))?;
     write_whole(path, |file| file.write_all(text.as_bytes()))
         .map_err(|error| Fault::writing(path, &error))?;
-    println!("{}: {} bytes", path.display(), text.len());
+    say!("{}: {} bytes", path.display(), text.len());
     Ok(0)
 }
 
@@ -187,7 +188,7 @@ fn draw_sheet(options: &SheetOptions) -> Result<i32, Fault> {
     bar.finish_and_clear();
     write_whole(path, |file| picture.encode_png(file))
         .map_err(|error| Fault::writing(path, &error))?;
-    println!(
+    say!(
         "{}: {}×{} pixels",
         path.display(),
         picture.width,

@@ -10,6 +10,7 @@ use maulstick_types::Mixture;
 use maulstick_types::command::Command;
 use maulstick_types::scene::Tuning;
 
+use crate::commands::say;
 use crate::commands::session::{PAINT, Session, Target};
 use crate::performance::refused;
 
@@ -141,7 +142,7 @@ pub fn clean(options: &CleanOptions) -> Result<i32, Fault> {
 /// # Errors
 /// A [`Fault`] where there is none, or where no rig runs.
 pub fn undo(options: &HistoryOptions) -> Result<i32, Fault> {
-    println!("undone: {}", send(&options.target, PAINT, Command::Undo)?);
+    say!("undone: {}", send(&options.target, PAINT, Command::Undo)?);
     Ok(0)
 }
 
@@ -150,7 +151,7 @@ pub fn undo(options: &HistoryOptions) -> Result<i32, Fault> {
 /// # Errors
 /// A [`Fault`] where there is none, or where no rig runs.
 pub fn redo(options: &HistoryOptions) -> Result<i32, Fault> {
-    println!("redone: {}", send(&options.target, PAINT, Command::Redo)?);
+    say!("redone: {}", send(&options.target, PAINT, Command::Redo)?);
     Ok(0)
 }
 
@@ -166,7 +167,7 @@ pub fn snapshot(options: &SnapshotOptions) -> Result<i32, Fault> {
     };
     let path = whole(&options.output)?;
     let ledger = options.ledger.as_ref().map(whole).transpose()?;
-    println!(
+    say!(
         "{}",
         send(&options.target, PAINT, Command::Snapshot { path, ledger })?
     );

@@ -6,6 +6,7 @@ use maulstick_rig::Fault;
 use serde_json::json;
 
 use crate::commands::print_json;
+use crate::commands::say;
 
 /// Options of `maulstick endpoint`.
 #[derive(Args, Clone, Debug)]
@@ -33,7 +34,7 @@ pub fn run(options: &EndpointOptions) -> Result<i32, Fault> {
             "pid": info.pid,
         }))?;
     } else {
-        println!("{}", info.endpoint);
+        say!("{}", info.endpoint);
     }
     Ok(0)
 }

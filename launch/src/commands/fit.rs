@@ -54,6 +54,14 @@ pub fn run(options: &FitCommand) -> Result<i32, Fault> {
     })?;
     let output = &options.output;
     let writing = |error: std::io::Error| Fault::writing(output, &error);
+    let real = |path: &Path| std::fs::canonicalize(path).ok();
+    if real(output).is_some_and(|output| Some(output) == real(path)) {
+        return Err(
+            Fault::usage("the paints would take the place of the measurements")
+                .at(path.display().to_string())
+                .help("give another file for the paints: -o paints.csv"),
+        );
+    }
     check_writable(output).map_err(writing)?;
     let surface = if options.no_surface {
         Some(SurfaceCorrection { k1: 0.0, k2: 0.0 })

@@ -5,6 +5,7 @@ use maulstick_rig::Fault;
 use maulstick_types::command::Command;
 use maulstick_types::scene::{CANVAS, PALETTE};
 
+use crate::commands::say;
 use crate::commands::session::{PAINT, Session, Target};
 
 /// Options of `maulstick dry`.
@@ -46,7 +47,7 @@ pub fn dry(options: &DryOptions) -> Result<i32, Fault> {
         name: options.layer.clone(),
     };
     command.check().map_err(Fault::usage)?;
-    println!(
+    say!(
         "dried: {}",
         Session::open(&options.target)?.send(PAINT, command)?
     );

@@ -3,6 +3,7 @@
 use clap::Args;
 use indicatif::{ProgressBar, ProgressStyle};
 use maulstick_bus::Class;
+use maulstick_paint::light::changes_colour;
 use maulstick_rig::Fault;
 use maulstick_types::command::Command;
 use maulstick_types::paint::PaintStatus;
@@ -10,6 +11,7 @@ use maulstick_types::scene::{Light, Scene};
 use serde_json::json;
 
 use crate::commands::print_json;
+use crate::commands::say;
 use crate::commands::session::{Feed, PAINT, Session, Target};
 use crate::viewing::illuminant;
 
@@ -25,9 +27,10 @@ pub struct LightOptions {
     /// Factor on its strength
     #[arg(long, allow_negative_numbers = true)]
     intensity: Option<f64>,
-    /// Factor of the eye that looks at it
-    #[arg(long, allow_negative_numbers = true)]
-    exposure: Option<f64>,
+    /// Factor of the eye that looks at it; auto: such that the bare canvas does not clip, which is
+    /// also what another spectrum begins with
+    #[arg(long, value_name = "FACTOR|auto", value_parser = exposure, allow_negative_numbers = true)]
+    exposure: Option<Exposure>,
     /// Factor on the slopes of the relief
     #[arg(long, allow_negative_numbers = true)]
     relief: Option<f64>,
@@ -69,7 +72,9 @@ impl LightOptions {
         light.direction = self.direction.unwrap_or(light.direction);
         let set = |to: &mut f64, value: Option<f64>| *to = value.unwrap_or(*to);
         set(&mut light.intensity, self.intensity);
-        set(&mut light.exposure, self.exposure);
+        if let Some(Exposure::Factor(factor)) = self.exposure {
+            light.exposure = factor;
+        }
         set(&mut light.relief, self.relief);
         set(&mut light.softness, self.softness);
         light.observer = self.observer.unwrap_or(light.observer);
@@ -80,6 +85,21 @@ impl LightOptions {
         }
         light.check().map_err(Fault::usage)?;
         Ok(light)
+    }
+}
+
+/// Of the eye.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Exposure {
+    Auto,
+    Factor(f64),
+}
+
+fn exposure(text: &str) -> Result<Exposure, String> {
+    match text.parse() {
+        Ok(factor) => Ok(Exposure::Factor(factor)),
+        Err(_) if text == "auto" => Ok(Exposure::Auto),
+        Err(_) => Err("give a number, or auto".to_owned()),
     }
 }
 
@@ -102,16 +122,18 @@ pub fn run(options: &LightOptions) -> Result<i32, Fault> {
     let session = Session::open(&options.target)?;
     let mut scenes: Feed<Scene> = session.follow(&session.topics().scene(), Class::Cached)?;
     let before = scenes.hear()?.message.light;
-    let light = options.on(&before)?;
-    if light != before {
+    let mut light = options.on(&before)?;
+    let expose = match options.exposure {
+        Some(chosen) => chosen == Exposure::Auto,
+        None => changes_colour(&light, &before),
+    };
+    if light != before || expose {
         let mut statuses = session.follow(&session.topics().paint_status(), Class::Background)?;
-        session.send(
-            PAINT,
-            Command::Relight {
-                light: light.clone(),
-            },
-        )?;
+        session.send(PAINT, Command::Relight { light, expose })?;
         wait_for_baking(&mut statuses, session.now_ns())?;
+        light = scenes.hear()?.message.light;
+    } else {
+        light = before;
     }
     tell(&light, options)
 }
@@ -162,14 +184,15 @@ fn tell(light: &Light, options: &LightOptions) -> Result<i32, Fault> {
     } else {
         "not adapted"
     };
-    println!(
+    say!(
         "{} from {x:.2}, {y:.2}, {z:.2}, {eye} observer of {}",
-        light.illuminant, light.observer
+        light.illuminant,
+        light.observer
     );
-    println!("intensity {intensity}, exposure {exposure:.3}, relief {relief}, softness {softness}");
+    say!("intensity {intensity}, exposure {exposure:.3}, relief {relief}, softness {softness}");
     match light.rule.as_str() {
-        "reference" => println!("all 101 wavelengths"),
-        rule => println!("{samples} wavelengths, {rule}"),
+        "reference" => say!("all 101 wavelengths"),
+        rule => say!("{samples} wavelengths, {rule}"),
     }
     Ok(0)
 }

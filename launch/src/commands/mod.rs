@@ -25,6 +25,14 @@ use maulstick_device::Take;
 use maulstick_rig::Fault;
 use serde_json::Value;
 
+/// Prints a line as `println!` does, through [`print_text`]: for functions that return a [`Fault`].
+macro_rules! say {
+    ($($text:tt)*) => {
+        $crate::commands::print_text(&(format!($($text)*) + "\n"))?
+    };
+}
+pub(crate) use say;
+
 /// Prints text; a reader that has seen enough, as `head` has, is no error.
 ///
 /// # Errors
@@ -55,7 +63,7 @@ pub fn print_json(value: &Value) -> Result<(), Fault> {
 /// A [`Fault`] where the file cannot be written.
 pub fn write_take(take: &Take, path: &Path) -> Result<(), Fault> {
     take.write(path)?;
-    println!(
+    say!(
         "{}: {} samples, {:.1} s",
         path.display(),
         take.samples.len(),

@@ -6,7 +6,7 @@ use maulstick_types::CATALOGUE;
 use maulstick_types::schema::{Field, Shape};
 use serde_json::json;
 
-use crate::commands::print_json;
+use crate::commands::{print_json, print_text, say};
 
 /// Options of `maulstick schema`.
 #[derive(Args, Clone, Debug)]
@@ -66,7 +66,7 @@ pub fn run(options: &SchemaOptions) -> Result<i32, Fault> {
     }
     for entry in entries {
         let schema = (entry.schema)();
-        println!(
+        say!(
             "{}  version {}, hash {:#010x}, at most {} bytes, on {}",
             entry.name,
             entry.version,
@@ -75,16 +75,15 @@ pub fn run(options: &SchemaOptions) -> Result<i32, Fault> {
             entry.topics.join(", ")
         );
         let fields = |fields: &[Field]| {
-            for field in fields {
-                println!("    {:<18} {}", field.name, field.ty);
-            }
+            let line = |field: &Field| format!("    {:<18} {}\n", field.name, field.ty);
+            print_text(&fields.iter().map(line).collect::<String>())
         };
         match schema.types.get(entry.name) {
-            Some(Shape::Struct(members)) => fields(members),
-            Some(Shape::Enum(variants)) => variants.iter().for_each(|v| fields(&v.fields)),
+            Some(Shape::Struct(members)) => fields(members)?,
+            Some(Shape::Enum(variants)) => variants.iter().try_for_each(|v| fields(&v.fields))?,
             None => {}
         }
-        println!();
+        print_text("\n")?;
     }
     Ok(0)
 }

@@ -9,6 +9,7 @@ use maulstick_types::stylus::StylusPose;
 use serde_json::json;
 
 use crate::commands::print_json;
+use crate::commands::say;
 
 /// Subcommands of `maulstick take`.
 #[derive(Subcommand, Clone, Debug)]
@@ -55,8 +56,8 @@ pub fn run(command: &TakeCommand) -> Result<i32, Fault> {
                 }))?;
             } else {
                 let kind = if pens { "a pen" } else { "a 6-DOF stylus" };
-                println!("device   {} ({kind})", take.device);
-                println!(
+                say!("device   {} ({kind})", take.device);
+                say!(
                     "samples  {} over {seconds:.3} s, {rate:.1} a second",
                     take.samples.len()
                 );
@@ -74,7 +75,7 @@ pub fn run(command: &TakeCommand) -> Result<i32, Fault> {
             let damage = salvage
                 .damage
                 .unwrap_or_else(|| "nothing was damaged".to_owned());
-            println!(
+            say!(
                 "{}: {} samples ({damage})",
                 output.display(),
                 salvage.take.samples.len()

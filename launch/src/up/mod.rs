@@ -18,8 +18,8 @@ use clap::Args;
 use maulstick_bus::RigFolder;
 use maulstick_device::Take;
 use maulstick_device::player::Rate;
-use maulstick_optics::{Illuminant, PaintLibrary};
-use maulstick_rig::config::{DEFAULT, RigConfig};
+use maulstick_optics::PaintLibrary;
+use maulstick_rig::config::{DEFAULT, RigConfig, is_path};
 use maulstick_rig::files::check_writable;
 use maulstick_rig::{Fault, member};
 use maulstick_types::Mixture;
@@ -80,7 +80,7 @@ pub struct UpOptions {
 /// A [`Fault`] for bad settings or input, an occupied name, or nodes that do not stay up.
 pub fn run(options: &UpOptions) -> Result<i32, Fault> {
     if options.print_config {
-        print!("{DEFAULT}");
+        crate::commands::print_text(DEFAULT)?;
         return Ok(0);
     }
     if options.play.is_none() && options.painting.ledger.is_some() {
@@ -136,9 +136,11 @@ pub fn run(options: &UpOptions) -> Result<i32, Fault> {
     if let Some(paints) = &mut config.paint.paints {
         *paints = absolute(paints)?;
     }
-    let light = &mut config.light.illuminant;
-    if Illuminant::named(light).is_none() {
-        *light = absolute(Path::new(light.as_str()))?.display().to_string();
+    let kinds = config.brush.iter_mut().map(|brush| &mut brush.kind);
+    for text in kinds.chain([&mut config.light.illuminant]) {
+        if is_path(text) {
+            *text = absolute(Path::new(text.as_str()))?.display().to_string();
+        }
     }
     if let Some(path) = config.view.file() {
         config.view.profile = absolute(path)?.display().to_string();

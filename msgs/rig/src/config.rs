@@ -43,6 +43,14 @@ pub struct RigSection {
     pub name: String,
 }
 
+impl Default for RigSection {
+    fn default() -> Self {
+        Self {
+            name: "studio".into(),
+        }
+    }
+}
+
 /// `[canvas]`.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
@@ -266,9 +274,7 @@ impl ViewSection {
     /// # Errors
     /// What is wrong, and what to do.
     pub fn check(&self) -> Result<(), (String, String)> {
-        let path = Path::new(&self.profile);
-        let is_file = path.extension().is_some() || path.components().count() > 1;
-        if !is_file {
+        if !is_path(&self.profile) {
             check::choose("colour space", &self.profile, &SPACES).map_err(|(what, help)| {
                 (what, format!("{help}; or give the path of an ICC file"))
             })?;
@@ -301,6 +307,7 @@ pub struct NodeSection {
 #[serde(deny_unknown_fields)]
 pub struct RigConfig {
     /// The rig itself.
+    #[serde(default)]
     pub rig: RigSection,
     /// The canvas.
     #[serde(default)]
@@ -345,7 +352,35 @@ impl RigConfig {
     /// A [`Fault`] with the line.
     pub fn read(path: &Path) -> Result<Self, Fault> {
         let text = std::fs::read_to_string(path).map_err(|error| Fault::reading(path, &error))?;
-        Self::parse(&text, &path.display().to_string())
+        let mut config = Self::parse(&text, &path.display().to_string())?;
+        if let Some(folder) = std::path::absolute(path)
+            .ok()
+            .as_deref()
+            .and_then(Path::parent)
+        {
+            config.resolve(folder);
+        }
+        Ok(config)
+    }
+
+    /// Takes the paths of settings from the folder in which these lie.
+    fn resolve(&mut self, folder: &Path) {
+        let whole = |path: &mut PathBuf| *path = folder.join(&*path);
+        self.paint.paints.iter_mut().for_each(whole);
+        self.device
+            .iter_mut()
+            .filter_map(|device| device.hand.as_mut())
+            .for_each(whole);
+        let texts = [&mut self.light.illuminant, &mut self.view.profile];
+        for text in texts
+            .into_iter()
+            .chain(self.brush.iter_mut().map(|brush| &mut brush.kind))
+        {
+            let path = Path::new(text.as_str());
+            if path.extension().is_some() || path.components().count() > 1 {
+                *text = folder.join(path).display().to_string();
+            }
+        }
     }
 
     /// Reads a text; `name` is how errors call it.
@@ -362,6 +397,9 @@ impl RigConfig {
                 size_mm: None,
                 depth_share: 0.5,
             });
+        }
+        if config.palette.wells.is_empty() && !text.contains("[palette]") {
+            config.palette = Self::default().palette;
         }
         config.check(text, name)?;
         for device in &mut config.device {
@@ -384,6 +422,13 @@ impl RigConfig {
     pub fn brush_named(&self, name: &str) -> Option<&BrushSection> {
         self.brush.iter().find(|brush| brush.name == name)
     }
+}
+
+/// Whether a setting that may be a name is a path.
+#[must_use]
+pub fn is_path(text: &str) -> bool {
+    let path = Path::new(text);
+    path.extension().is_some() || path.components().count() > 1
 }
 
 /// A fault of the TOML reader, with its line, and the nearest key where a key is unknown.
@@ -438,11 +483,11 @@ mod tests {
             text.contains("unknown key 'cel_mm'") && text.contains("'cell_mm'"),
             "{text}"
         );
-        assert!(text.contains("rig.toml:11"), "{text}");
+        assert!(text.contains("rig.toml:12"), "{text}");
         let text = error("driver = \"simulated\"", "driver = \"simulted\"");
         assert!(text.contains("no driver called 'simulted'"), "{text}");
         assert!(
-            text.contains("did you mean 'simulated'") && text.contains("rig.toml:28"),
+            text.contains("did you mean 'simulated'") && text.contains("rig.toml:29"),
             "{text}"
         );
         let text = error("brush = \"main\"", "brush = \"mian\"");
@@ -450,10 +495,10 @@ mod tests {
         assert!(error("model = \"impasto\"", "model = \"impatso\"").contains("'impasto'"));
         let text = error("profile = \"srgb\"", "profile = \"sgrb\"");
         assert!(text.contains("'srgb'") && text.contains("ICC"), "{text}");
-        assert!(text.contains("rig.toml:60"), "{text}");
+        assert!(text.contains("rig.toml:61"), "{text}");
         let text = error("gamut = \"soft\"", "gamut = \"sfot\"");
         assert!(
-            text.contains("did you mean 'soft'") && text.contains("rig.toml:61"),
+            text.contains("did you mean 'soft'") && text.contains("rig.toml:62"),
             "{text}"
         );
     }

@@ -11,6 +11,16 @@ fn beside(path: &Path) -> PathBuf {
     path.with_file_name(name)
 }
 
+/// Where a file is really written: what a link leads to, not the link.
+fn target(path: &Path) -> PathBuf {
+    std::fs::canonicalize(path).unwrap_or_else(|_| path.to_owned())
+}
+
+/// Whether something that is no file stands there, a device or a pipe: it is written into, and stays.
+fn is_special(path: &Path) -> bool {
+    std::fs::metadata(path).is_ok_and(|found| !found.is_file() && !found.is_dir())
+}
+
 /// Writes a file through `fill`: whole under its name, or not at all.
 ///
 /// # Errors
@@ -19,6 +29,12 @@ pub fn write_whole(
     path: &Path,
     fill: impl FnOnce(&mut BufWriter<File>) -> Result<(), Error>,
 ) -> Result<(), Error> {
+    if is_special(path) {
+        let mut pipe = BufWriter::new(File::options().write(true).open(path)?);
+        fill(&mut pipe)?;
+        return pipe.flush();
+    }
+    let path = &target(path);
     let beside = beside(path);
     let write = || {
         let mut file = BufWriter::new(File::create(&beside)?);
@@ -40,7 +56,10 @@ pub fn check_writable(path: &Path) -> Result<(), Error> {
     if path.is_dir() {
         return Err(Error::from(std::io::ErrorKind::IsADirectory));
     }
-    let beside = beside(path);
+    if is_special(path) {
+        return File::options().write(true).open(path).map(drop);
+    }
+    let beside = beside(&target(path));
     File::create(&beside)?;
     std::fs::remove_file(&beside)
 }
@@ -66,6 +85,29 @@ mod tests {
             std::fs::read_dir(folder.path()).expect("a folder").count(),
             1
         );
+    }
+
+    #[test]
+    fn links_and_devices_stay_what_they_are() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let (real, link) = (
+            folder.path().join("real.txt"),
+            folder.path().join("link.txt"),
+        );
+        std::fs::write(&real, "old").expect("written");
+        std::os::unix::fs::symlink(&real, &link).expect("a link");
+        write_whole(&link, |file| file.write_all(b"new")).expect("written");
+        assert!(
+            std::fs::symlink_metadata(&link)
+                .expect("there")
+                .is_symlink()
+        );
+        assert_eq!(std::fs::read(&real).expect("there"), b"new");
+        let null = folder.path().join("null");
+        std::os::unix::fs::symlink("/dev/null", &null).expect("a link");
+        check_writable(&null).expect("a device");
+        write_whole(&null, |file| file.write_all(b"gone")).expect("written");
+        assert!(is_special(Path::new("/dev/null")));
     }
 
     #[test]

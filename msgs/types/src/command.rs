@@ -106,6 +106,8 @@ wire_enum! {
         Relight {
             /// How it is from now on.
             light: Light,
+            /// Whether the exposure is chosen anew, so that the bare canvas does not clip.
+            expose: bool,
         },
         /// Dries wet paint of a surface into a new layer.
         Dry {
@@ -177,7 +179,7 @@ impl Command {
                     )),
                 }
             }
-            Self::Relight { light } => light.check(),
+            Self::Relight { light, .. } => light.check(),
             Self::Dry { share, name, .. } => match *share > 0.0 && *share <= 1.0 {
                 true if name.len() > LAYER_NAME_MAX => Err(format!(
                     "a layer's name of {} bytes is too long",

@@ -354,6 +354,7 @@ fn all() -> String {
                 spectrum: vec![0.5],
                 ..Light::default()
             },
+            expose: true,
         })),
         line(&command(Command::Dry {
             surface: 0,

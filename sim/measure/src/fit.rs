@@ -31,6 +31,8 @@ const USUAL_NOISE: f64 = 2e-3;
 const LEAST_NOISE: f64 = 5e-5;
 /// A residual so many times what is usual is not only noise.
 const STANDS_OUT: f64 = 4.0;
+/// Readings have to reach from here to here, nm.
+const NARROWEST: [f64; 2] = [420.0, 680.0];
 /// Passes after the first.
 const PASSES: usize = 6;
 
@@ -63,6 +65,18 @@ pub struct Fit {
     pub warnings: Vec<String>,
 }
 
+/// Refuses readings that leave most of a colour to guessing.
+fn check_reach<T>(spectrum: &[(f64, T)]) -> Result<(), MeasureError> {
+    match spectrum {
+        [(first, _), .., (last, _)] if *first > NARROWEST[0] || *last < NARROWEST[1] => {
+            let what = format!("readings from {first} to {last} nm say too little of colour");
+            let help = "measure from 420 nm or less to 680 nm or more";
+            Err(MeasureError::new(what, help))
+        }
+        _ => Ok(()),
+    }
+}
+
 /// Fits K and S to a table of measurements.
 ///
 /// # Errors
@@ -76,6 +90,7 @@ pub fn fit(text: &str, options: &FitOptions) -> Result<Fit, MeasureError> {
     warnings.extend(strange_readings(&measured, &surface));
 
     let mut spectrum = wavelengths(&measured, white, surface)?;
+    check_reach(&spectrum)?;
     let mut found: Vec<Unknowns> = spectrum
         .iter()
         .map(|(_, one)| one.refine(one.start()))

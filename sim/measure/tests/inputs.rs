@@ -267,7 +267,7 @@ fn a_surface_is_two_numbers_or_none() {
 
 #[test]
 fn a_white_alone_is_fitted() {
-    let text = "Titanium White,400,500,600\n1,0.9,0.9,0.9\n";
+    let text = "Titanium White,400,550,700\n1,0.9,0.9,0.9\n";
     let found = fit(text, &FitOptions::default()).expect("fitted");
     assert_eq!(found.residuals[0].name, "Titanium White");
     assert!(found.worst() < 0.5, "{}", found.worst());
@@ -291,4 +291,11 @@ proptest! {
             prop_assert!(maulstick_optics::PaintLibrary::parse(&file).is_ok(), "{text}");
         }
     }
+}
+
+#[test]
+fn readings_of_half_the_spectrum_are_refused() {
+    let text = "Titanium White,400,450,500\n1,0.9,0.9,0.9\n";
+    let error = fit(text, &FitOptions::default()).expect_err("too little");
+    assert!(error.what.contains("400 to 500 nm"), "{}", error.what);
 }

@@ -223,12 +223,14 @@ mod tests {
         };
         for (text, word) in [
             (
-                "500,0\n588,0\n589,1\n590,0\n800,0",
+                "380,0\n588,0\n589,1\n590,0\n800,0",
                 "of the 101 wavelengths",
             ),
-            ("380,0\n390,0", "power at 0"),
+            ("380,0\n780,0", "power at 0"),
             ("200,1\n300,0\n900,0", "power at 0"),
-            ("600,0\n610,1\n780,1", "X, Y and Z"),
+            ("380,0\n600,0\n610,1\n780,1", "X, Y and Z"),
+            ("900,1\n1000,1", "from 900 to 1000 nm"),
+            ("560,1\n565,1", "from 560 to 565 nm"),
         ] {
             assert!(error(text).contains(word), "{}", error(text));
         }

@@ -19,6 +19,9 @@ pub struct TableError {
     pub what: String,
 }
 
+/// A spectrum covers this at least, nm: beyond its ends it is held.
+const COVERED: [f64; 2] = [420.0, 680.0];
+
 impl Spectrum {
     /// Reads the power of a light: a column of values of 0 or more over wavelengths in nm, which must
     /// rise; see [`bin`].
@@ -33,7 +36,8 @@ impl Spectrum {
                 continue;
             }
             let fault = |what: String| TableError { line, what };
-            let cells: Vec<&str> = row.split(',').map(str::trim).collect();
+            // Spreadsheets of half the world separate by semicolons.
+            let cells: Vec<&str> = row.split([',', ';']).map(str::trim).collect();
             let numbers: Vec<_> = cells.iter().map(|cell| cell.parse::<f64>()).collect();
             if table.is_empty() && !headed && numbers.iter().all(Result::is_err) {
                 headed = true;
@@ -70,6 +74,13 @@ impl Spectrum {
         };
         if table.len() < 2 {
             return Err(fault("a spectrum takes two wavelengths or more"));
+        }
+        let [first, last] = [table[0][0], table[table.len() - 1][0]];
+        if first > COVERED[0] || last < COVERED[1] {
+            return Err(fault(&format!(
+                "the spectrum goes from {first} to {last} nm; give it from {} or less to {} or more",
+                COVERED[0], COVERED[1]
+            )));
         }
         Ok(bin(&table))
     }

@@ -354,7 +354,12 @@ impl Sequencer {
                 .painting
                 .place(*surface, pose, *zoom)
                 .map(|()| String::new()),
-            Command::Relight { light } => self.painting.relight(light).map(|()| String::new()),
+            Command::Relight { light, expose } => self.painting.relight(light).map(|()| {
+                if *expose {
+                    self.painting.expose();
+                }
+                String::new()
+            }),
             Command::Dry {
                 surface,
                 share,

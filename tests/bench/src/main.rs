@@ -77,7 +77,6 @@ fn measure(options: &Options) -> Result<(), Fault> {
     if options.json {
         report.print_json()
     } else {
-        report.print_table();
-        Ok(())
+        report.print_table()
     }
 }

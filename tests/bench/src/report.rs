@@ -1,5 +1,7 @@
 //! Rows and their table.
 
+use std::io::Write as _;
+
 use maulstick_rig::Fault;
 use serde::Serialize;
 
@@ -102,22 +104,30 @@ impl Report {
     pub(crate) fn print_json(&self) -> Result<(), Fault> {
         let text = serde_json::to_string_pretty(self)
             .map_err(|error| Fault::failure(error.to_string()))?;
-        println!("{text}");
-        Ok(())
+        out(&(text + "\n"))
     }
 
     /// Prints the report as a table.
-    pub(crate) fn print_table(&self) {
-        println!("{}; {}", self.machine, self.adapter);
+    pub(crate) fn print_table(&self) -> Result<(), Fault> {
+        let mut text = format!("{}; {}\n", self.machine, self.adapter);
         for row in &self.rows {
-            print!("{:<28} {:>12} {:<8}", row.name, short(row.value), row.unit);
-            match (row.peer, row.peer_value, row.ratio) {
-                (Some(peer), Some(value), Some(ratio)) => {
-                    println!(" {peer} {value:.4}, ratio {ratio:.3}");
-                }
-                _ => println!(),
+            text += &format!("{:<28} {:>12} {:<8}", row.name, short(row.value), row.unit);
+            if let (Some(peer), Some(value), Some(ratio)) = (row.peer, row.peer_value, row.ratio) {
+                text += &format!(" {peer} {value:.4}, ratio {ratio:.3}");
             }
+            text += "\n";
         }
+        out(&text)
+    }
+}
+
+/// Prints; a reader that has seen enough is no error.
+fn out(text: &str) -> Result<(), Fault> {
+    match std::io::stdout().lock().write_all(text.as_bytes()) {
+        Err(error) if error.kind() != std::io::ErrorKind::BrokenPipe => {
+            Err(Fault::failure(format!("cannot print: {error}")))
+        }
+        _ => Ok(()),
     }
 }
 

@@ -225,8 +225,8 @@ mod tests {
         assert!(error("cell_mm = 0.25", "cell_mm = 0").contains("cells"));
         assert!(error("size_mm = 10", "size_mm = nan").contains("size_mm"));
         assert!(error("name = \"studio\"", "name = \"my studio\"").contains("my studio"));
-        assert!(error("width_mm = 256", "width_mm = \"wide\"").contains("rig.toml:9"));
-        assert!(error("[rig]", "[rig").contains("rig.toml:4"));
+        assert!(error("width_mm = 256", "width_mm = \"wide\"").contains("rig.toml:10"));
+        assert!(error("[rig]", "[rig").contains("rig.toml:5"));
     }
 
     #[test]
@@ -234,7 +234,7 @@ mod tests {
         for force in ["-1", "-1e-9", "nan", "inf"] {
             let text = error("max_force_n = 3.0", &format!("max_force_n = {force}"));
             assert!(
-                text.contains("max_force_n") && text.contains("rig.toml:33"),
+                text.contains("max_force_n") && text.contains("rig.toml:34"),
                 "{text}"
             );
         }
@@ -250,14 +250,14 @@ mod tests {
                 &format!("orientation = [{turn}]"),
             );
             assert!(
-                text.contains("orientation") && text.contains("rig.toml:32"),
+                text.contains("orientation") && text.contains("rig.toml:33"),
                 "{text}"
             );
         }
         for place in ["nan, 0, 0", "0, inf, 0", "0, 0, -inf"] {
             let text = error("position_m = [0, 0, 0]", &format!("position_m = [{place}]"));
             assert!(
-                text.contains("position_m") && text.contains("rig.toml:31"),
+                text.contains("position_m") && text.contains("rig.toml:32"),
                 "{text}"
             );
         }
@@ -283,7 +283,7 @@ mod tests {
         ] {
             let text = error("name = \"phantom\"", &format!("name = \"{name}\""));
             assert!(
-                text.contains(&format!("'{name}'")) && text.contains("rig.toml:27"),
+                text.contains(&format!("'{name}'")) && text.contains("rig.toml:28"),
                 "{text}"
             );
         }

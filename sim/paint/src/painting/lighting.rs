@@ -44,13 +44,14 @@ impl Painting {
     }
 
     /// Sets the exposure so that the bare canvas does not clip.
-    pub(super) fn expose(&mut self) {
+    pub fn expose(&mut self) {
         let Some(sheet) = self.sheets.iter().find(|sheet| sheet.id == CANVAS) else {
             return;
         };
         let rgb = self.look.studio.colour(&[], &sheet.bare.ground);
         let light = &mut self.scene.light;
         light.exposure = maulstick_optics::light::starting_exposure(rgb, light.intensity);
+        self.scene.version += 1;
     }
 }
 
