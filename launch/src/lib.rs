@@ -7,23 +7,24 @@
 //! | [`up`] | the supervisor |
 //! | [`nodes`] | the mains of the nodes |
 //! | [`page`] | pictures made of patches, pictures and words |
+//! | [`destination`] | the display or file that colours go to: profile and gamut |
 //! | [`viewing`] | options of light, observer and rule |
 //! | [`swatch`] | colours in the terminal |
 //! | [`chart`] | the mixing chart, and one mixture by four ways of mixing |
 //! | [`sheet`] | the sheet of brushes and their marks |
 //! | [`performance`] | what `render` and `up --play` share: take, brush, loads, canvas |
-//! | [`view`] | how the window and pictures show colour |
 
 pub mod chart;
 pub mod cli;
 pub mod commands;
+pub mod destination;
 pub mod nodes;
 pub mod page;
 pub mod performance;
 pub mod sheet;
 pub mod swatch;
 pub mod up;
-pub mod view;
+
 pub mod viewing;
 
 use maulstick_rig::Fault;

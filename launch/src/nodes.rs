@@ -24,8 +24,8 @@ use maulstick_types::Mixture;
 use nix::sys::prctl::set_pdeathsig;
 use nix::sys::signal::Signal;
 
+use crate::destination::{VIEW, export};
 use crate::performance::{brush_file, library_from, painting_setup, refused};
-use crate::view::{VIEW, export};
 
 /// Name of the mouse over the window as a device.
 pub const MOUSE: &str = "mouse";

@@ -3,9 +3,10 @@
 use std::path::Path;
 
 use clap::{Args, ValueEnum};
-use maulstick_optics::{Adaptation, Illuminant, Observer, PaintLibrary, SamplingRule, Viewing};
+use maulstick_optics::{Illuminant, Observer, PaintLibrary, RuleKind, StudioSettings, Viewing};
 use maulstick_paint::light::illuminant_named;
 use maulstick_rig::Fault;
+use maulstick_rig::config::is_path;
 
 use crate::performance::refused;
 
@@ -52,13 +53,6 @@ pub enum RuleName {
 }
 
 impl ViewingOptions {
-    fn observer(&self) -> Observer {
-        match self.observer {
-            ObserverYear::Cie1931 => Observer::Cie1931,
-            ObserverYear::Cie1964 => Observer::Cie1964,
-        }
-    }
-
     fn illuminant(&self) -> Result<Illuminant, Fault> {
         illuminant(&self.illuminant).map_err(|fault| match fault.place {
             None => fault.at(format!("--illuminant {}", self.illuminant)),
@@ -81,14 +75,7 @@ impl ViewingOptions {
     /// # Errors
     /// A [`Fault`] for an unknown light, with the nearest name, or a bad file, with its line.
     pub fn viewing(&self, library: &PaintLibrary) -> Result<Viewing, Fault> {
-        let light = self.illuminant()?;
-        let (observer, samples) = (self.observer(), usize::from(self.samples));
-        let rule = match self.rule {
-            RuleName::Fitted => SamplingRule::fitted(samples, observer, &light, library.paints()),
-            RuleName::Gauss => SamplingRule::gauss(samples, observer, &light),
-            RuleName::Reference => SamplingRule::reference(observer, &light),
-        };
-        Ok(self.look(rule, &light))
+        Ok(Viewing::new(&self.settings()?, library.paints()))
     }
 
     /// The same with all 101 samples.
@@ -96,16 +83,28 @@ impl ViewingOptions {
     /// # Errors
     /// As [`viewing`](Self::viewing).
     pub fn reference(&self) -> Result<Viewing, Fault> {
-        let light = self.illuminant()?;
-        Ok(self.look(SamplingRule::reference(self.observer(), &light), &light))
+        let settings = StudioSettings {
+            rule: RuleKind::Reference,
+            ..self.settings()?
+        };
+        Ok(Viewing::new(&settings, &[]))
     }
 
-    fn look(&self, rule: SamplingRule, light: &Illuminant) -> Viewing {
-        let adaptation = match self.no_adapt {
-            true => Adaptation::None,
-            false => Adaptation::Cat16,
-        };
-        Viewing::new(rule, self.observer(), light, adaptation)
+    fn settings(&self) -> Result<StudioSettings, Fault> {
+        Ok(StudioSettings {
+            light: self.illuminant()?,
+            observer: match self.observer {
+                ObserverYear::Cie1931 => Observer::Cie1931,
+                ObserverYear::Cie1964 => Observer::Cie1964,
+            },
+            rule: match self.rule {
+                RuleName::Fitted => RuleKind::Fitted,
+                RuleName::Gauss => RuleKind::Gauss,
+                RuleName::Reference => RuleKind::Reference,
+            },
+            samples: usize::from(self.samples),
+            adapted: !self.no_adapt,
+        })
     }
 }
 
@@ -118,8 +117,7 @@ pub fn illuminant(name: &str) -> Result<Illuminant, Fault> {
         return Ok(light);
     }
     let path = Path::new(name);
-    let is_file = path.extension().is_some() || name.contains('/') || path.exists();
-    if !is_file {
+    if !is_path(name) && !path.exists() {
         return illuminant_named(name).map_err(refused);
     }
     let text = std::fs::read_to_string(path).map_err(|error| Fault::reading(path, &error))?;

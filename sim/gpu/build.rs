@@ -1,39 +1,8 @@
 //! Checks the shaders: an error in one is an error of the build.
 
-use std::error::Error;
-use std::path::Path;
+#[path = "../../tools/check_shaders.rs"]
+mod check_shaders;
 
-use naga::front::wgsl;
-use naga::valid::{Capabilities, ValidationFlags, Validator};
-
-const SHADERS: &str = "src/shaders";
-/// What the others begin with, here as at run time.
-const PREFIX: &str = "films.wgsl";
-
-fn check(path: &Path, prefix: &str) -> Result<(), Box<dyn Error>> {
-    let source = format!("{prefix}{}", std::fs::read_to_string(path)?);
-    let name = path.display().to_string();
-    let module =
-        wgsl::parse_str(&source).map_err(|error| error.emit_to_string_with_path(&source, &name))?;
-    Validator::new(ValidationFlags::all(), Capabilities::empty())
-        .validate(&module)
-        .map_err(|error| error.emit_to_string_with_path(&source, &name))?;
-    Ok(())
-}
-
-fn main() -> Result<(), Box<dyn Error>> {
-    println!("cargo::rerun-if-changed={SHADERS}");
-    let prefix = std::fs::read_to_string(Path::new(SHADERS).join(PREFIX))?;
-    for entry in std::fs::read_dir(SHADERS)? {
-        let path = entry?.path();
-        if path.ends_with(PREFIX) {
-            continue;
-        }
-        if let Err(error) = check(&path, &prefix) {
-            for line in error.to_string().lines() {
-                println!("cargo::error={line}");
-            }
-        }
-    }
-    Ok(())
+fn main() -> Result<(), Box<dyn std::error::Error>> {
+    check_shaders::check_all(Some("films.wgsl"))
 }

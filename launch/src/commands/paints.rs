@@ -3,8 +3,7 @@
 use std::path::PathBuf;
 
 use clap::Args;
-use maulstick_optics::{Adaptation, Blend, Coat, Illuminant, Observer, Paint};
-use maulstick_optics::{SamplingRule, Viewing};
+use maulstick_optics::{Blend, Coat, Paint, RuleKind, StudioSettings, Viewing};
 use maulstick_rig::Fault;
 use serde_json::json;
 
@@ -33,9 +32,11 @@ const TINT: f64 = 10.0;
 /// A [`Fault`] for a bad paint file.
 pub fn run(options: &PaintsOptions) -> Result<i32, Fault> {
     let library = library_from(options.paints.as_deref())?;
-    let (observer, light) = (Observer::default(), Illuminant::d65());
-    let rule = SamplingRule::reference(observer, &light);
-    let viewing = Viewing::new(rule, observer, &light, Adaptation::Cat16);
+    let settings = StudioSettings {
+        rule: RuleKind::Reference,
+        ..StudioSettings::default()
+    };
+    let viewing = Viewing::new(&settings, library.paints());
     let white = whitest(&library, &viewing);
     let look = |parts: &[(&Paint, f64)]| {
         let seen = viewing.coat(&Blend::new(parts), &Coat::masstone());

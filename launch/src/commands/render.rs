@@ -11,8 +11,8 @@ use maulstick_rig::files::check_writable;
 use maulstick_rig::{Fault, RigConfig};
 
 use crate::commands::progress_bar;
+use crate::destination::export;
 use crate::performance::{PaintingOptions, brush_file, library_from, painting_setup, refused};
-use crate::view::export;
 
 /// Options of `maulstick render`.
 #[derive(Args, Clone, Debug)]

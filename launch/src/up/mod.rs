@@ -24,11 +24,11 @@ use maulstick_rig::files::check_writable;
 use maulstick_rig::{Fault, member};
 use maulstick_types::Mixture;
 
+use crate::destination::{VIEW, export};
 use crate::performance::{PaintingOptions, library_from, painting_setup, refused};
 use crate::up::conductor::Performance;
 use crate::up::plan::{Hands, Window};
 use crate::up::supervisor::Supervisor;
-use crate::view::{VIEW, export};
 
 /// What the brush carries at the start, where nothing else is asked for.
 const FIRST_LOAD: &str = "Ultramarine Blue";

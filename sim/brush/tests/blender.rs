@@ -2,15 +2,18 @@
 //!
 //! `./test --long` makes the environment `target/bpy-venv` with the package `bpy`.
 
+mod desk;
+
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
 use maulstick_brush::file::sections::Surface;
 use maulstick_brush::{BrushFile, BrushModel, gltf};
+use maulstick_types::Origin;
 use maulstick_types::brush::{Solve, solve_flags};
-use maulstick_types::scene::{Light, Scene, Surface as Canvas};
 use maulstick_types::stylus::{DEFAULT_TILT_RAD, StylusPose, StylusSample};
-use maulstick_types::{Origin, Pose};
+
+use desk::scene;
 
 const NEEDS_BLENDER: &str = "no target/bpy-venv/bin/python; ./test --long makes it";
 
@@ -176,35 +179,6 @@ fn the_add_on_and_the_loader_agree_on_what_is_a_brush() {
         );
         assert_eq!(surface(&brush).faces, surface(&reference).faces, "{name}");
         assert!((brush.head.width_mm - reference.head.width_mm).abs() < 1e-3);
-    }
-}
-
-fn scene() -> Scene {
-    let canvas = Canvas {
-        id: 0,
-        pose: Pose {
-            position_m: [-0.128, -0.128, 0.0],
-            ..Pose::IDENTITY
-        },
-        zoom: 1.0,
-        cells: [1024; 2],
-        cell_m: 2.5e-4,
-        ground: "gesso".into(),
-        tooth: "linen".into(),
-        tooth_seed: 1,
-        wells: Vec::new(),
-    };
-    let light = Light {
-        direction: [0.0, 0.0, 1.0],
-        ..Light::default()
-    };
-    Scene {
-        version: 1,
-        surfaces: vec![canvas],
-        paints: Vec::new(),
-        tunings: Vec::new(),
-        layers: Vec::new(),
-        light,
     }
 }
 

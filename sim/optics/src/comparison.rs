@@ -67,20 +67,22 @@ pub fn compare(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::cie::{Illuminant, Observer};
     use crate::paints::PaintLibrary;
-    use crate::rule::SamplingRule;
-    use crate::viewing::Adaptation;
+    use crate::studio::{RuleKind, StudioSettings};
 
     #[test]
     fn pigments_make_green_where_lights_do_not() {
         let library = PaintLibrary::measured().expect("whole");
         let pure = |name: &str| Blend::new(&[(library.find(name).expect("known"), 1.0)]);
         let (ochre, blue) = (pure("Yellow Ochre"), pure("Phthalo Blue Green Shade"));
-        let (observer, light) = (Observer::Cie1931, Illuminant::d65());
-        let looking = |rule| Viewing::new(rule, observer, &light, Adaptation::Cat16);
-        let exact = looking(SamplingRule::reference(observer, &light));
-        let gauss = looking(SamplingRule::gauss(16, observer, &light));
+        let looking = |rule| {
+            let settings = StudioSettings {
+                rule,
+                ..StudioSettings::default()
+            };
+            Viewing::new(&settings, &[])
+        };
+        let (exact, gauss) = (looking(RuleKind::Reference), looking(RuleKind::Gauss));
         let shares = [0.0, 0.02, 0.06, 0.2, 1.0];
         let rows = compare([&ochre, &blue], &shares, &exact, &gauss);
         for row in &rows {

@@ -51,4 +51,4 @@ pub use paints::{Paint, PaintError, PaintLibrary};
 pub use rule::SamplingRule;
 pub use spectrum::Spectrum;
 pub use studio::{FilmPlanes, RuleKind, Studio, StudioSettings, Under};
-pub use viewing::{Adaptation, Seen, Viewing};
+pub use viewing::{Seen, Viewing};

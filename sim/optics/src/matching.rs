@@ -269,19 +269,19 @@ fn neighbours<const N: usize>(shares: [f64; N], whole: i64) -> Vec<[i64; N]> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::cie::{Illuminant, Observer};
     use crate::paints::PaintLibrary;
-    use crate::rule::SamplingRule;
-    use crate::viewing::Adaptation;
+    use crate::studio::{RuleKind, StudioSettings};
 
     fn library() -> PaintLibrary {
         PaintLibrary::measured().expect("whole")
     }
 
     fn viewing() -> Viewing {
-        let (observer, light) = (Observer::default(), Illuminant::d65());
-        let rule = SamplingRule::gauss(16, observer, &light);
-        Viewing::new(rule, observer, &light, Adaptation::Cat16)
+        let settings = StudioSettings {
+            rule: RuleKind::Gauss,
+            ..StudioSettings::default()
+        };
+        Viewing::new(&settings, &[])
     }
 
     fn colour_of(mixture: &str, coat: &Coat) -> Seen {

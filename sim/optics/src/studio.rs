@@ -1,7 +1,7 @@
 //! The optics of one painting: its paints and the light that it stands in.
 
 use crate::cie::{Illuminant, Observer};
-use crate::colour::{apply, lab, linear_srgb_as_it_is, xyz_to_linear_srgb};
+use crate::colour::{Matrix, apply, lab, linear_srgb_as_it_is, xyz_to_linear_srgb};
 use crate::km::{self, film_over_f32};
 use crate::paints::Paint;
 use crate::rule::SamplingRule;
@@ -66,6 +66,21 @@ impl Default for StudioSettings {
 }
 
 impl StudioSettings {
+    /// XYZ of the perfect diffuser, Y = 1.
+    #[must_use]
+    pub fn white(&self) -> [f64; 3] {
+        self.light.xyz(self.observer, &Spectrum::flat(1.0))
+    }
+
+    /// From XYZ under this light to linear sRGB.
+    #[must_use]
+    pub fn to_rgb(&self) -> Matrix {
+        match self.adapted {
+            true => xyz_to_linear_srgb(self.white()),
+            false => linear_srgb_as_it_is(),
+        }
+    }
+
     /// The rule for a palette of `paints`.
     #[must_use]
     pub fn rule(&self, paints: &[Paint]) -> SamplingRule {
@@ -183,12 +198,7 @@ impl Studio {
     #[must_use]
     pub fn new(settings: &StudioSettings, paints: &[Paint]) -> Self {
         let rule = settings.rule(paints);
-        let white = settings.light.xyz(settings.observer, &Spectrum::flat(1.0));
-        let to_rgb = if settings.adapted {
-            xyz_to_linear_srgb(white)
-        } else {
-            linear_srgb_as_it_is()
-        };
+        let (white, to_rgb) = (settings.white(), settings.to_rgb());
         let rgb = rule
             .weights
             .iter()

@@ -1,23 +1,11 @@
 //! How a reflectance is looked at: the light, the observer, the wavelengths that are computed.
 
-use crate::cie::{Illuminant, Observer};
-use crate::colour::{
-    RgbSpace, apply, lab, linear_srgb_as_it_is, solve3, srgb_encode, xyz_to_linear_srgb,
-};
+use crate::colour::{RgbSpace, apply, lab, solve3, srgb_encode};
 use crate::gamut::{Gamut, GamutMapping};
 use crate::mixture::{Blend, Coat};
+use crate::paints::Paint;
 use crate::rule::SamplingRule;
-use crate::spectrum::Spectrum;
-
-/// What the display shows of the light's own colour.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Adaptation {
-    /// None: the eye has adapted to the light, white is the display's white (CAT16).
-    #[default]
-    Cat16,
-    /// Its cast, as to an eye that is adapted to sRGB's white.
-    None,
-}
+use crate::studio::StudioSettings;
 
 /// How far outside 0 to 1 a channel is still inside the gamut: what rounding makes of white.
 const GAMUT_EDGE: f64 = 1e-9;
@@ -42,23 +30,13 @@ pub struct Seen {
 }
 
 impl Viewing {
-    /// Looks with `rule`, which was made for this observer and light.
+    /// Looks as `settings` say at mixtures of `paints`.
     #[must_use]
-    pub fn new(
-        rule: SamplingRule,
-        observer: Observer,
-        light: &Illuminant,
-        adaptation: Adaptation,
-    ) -> Self {
-        let white = light.xyz(observer, &Spectrum::flat(1.0));
-        let to_rgb = match adaptation {
-            Adaptation::Cat16 => xyz_to_linear_srgb(white),
-            Adaptation::None => linear_srgb_as_it_is(),
-        };
+    pub fn new(settings: &StudioSettings, paints: &[Paint]) -> Self {
         Self {
-            rule,
-            white,
-            to_rgb,
+            rule: settings.rule(paints),
+            white: settings.white(),
+            to_rgb: settings.to_rgb(),
         }
     }
 
@@ -74,8 +52,7 @@ impl Viewing {
         self.white
     }
 
-    /// The colour of reflectances at the rule's wavelengths. A rule may have negative weights: what
-    /// it makes darker than black or lighter than white is brought back.
+    /// The colour of reflectances at the rule's wavelengths, kept from black to white.
     #[must_use]
     pub fn see(&self, reflectances: &[f64]) -> Seen {
         let xyz = self.rule.xyz(reflectances);
@@ -148,32 +125,37 @@ impl Seen {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::cie::Illuminant;
     use crate::paints::PaintLibrary;
+    use crate::studio::RuleKind;
 
-    fn viewing(light: &str, adaptation: Adaptation) -> Viewing {
-        let light = Illuminant::named(light).expect("known");
-        let observer = Observer::Cie1931;
-        let rule = SamplingRule::reference(observer, &light);
-        Viewing::new(rule, observer, &light, adaptation)
+    fn viewing(light: &str, adapted: bool) -> Viewing {
+        let settings = StudioSettings {
+            light: Illuminant::named(light).expect("known"),
+            rule: RuleKind::Reference,
+            adapted,
+            ..StudioSettings::default()
+        };
+        Viewing::new(&settings, &[])
     }
 
     #[test]
     fn white_is_white_to_the_adapted_eye_and_has_the_lights_cast_to_another() {
         for light in crate::cie::ILLUMINANTS {
-            let white = viewing(light, Adaptation::Cat16).see(&[1.0; 101]);
+            let white = viewing(light, true).see(&[1.0; 101]);
             assert!(white.in_gamut(), "{light}: {:?}", white.linear);
             assert!((white.lab[0] - 100.0).abs() < 1e-9 && white.chroma() < 1e-9);
             assert_eq!(white.bytes(), [255; 3]);
         }
-        let [r, _, b] = viewing("A", Adaptation::None).see(&[0.5; 101]).linear;
+        let [r, _, b] = viewing("A", false).see(&[0.5; 101]).linear;
         assert!(r > 2.0 * b, "a bulb is orange: {r} {b}");
     }
 
     #[test]
     fn a_displays_colour_comes_back() {
-        for adaptation in [Adaptation::Cat16, Adaptation::None] {
+        for adapted in [true, false] {
             for light in ["A", "D65", "FL11"] {
-                let viewing = viewing(light, adaptation);
+                let viewing = viewing(light, adapted);
                 let linear = [0.254, 0.102, 0.045];
                 let shown = viewing.display(linear);
                 for (got, want) in shown.linear.iter().zip(linear) {
@@ -188,10 +170,9 @@ mod tests {
 
     #[test]
     fn no_rule_sees_more_than_white_or_less_than_black() {
-        let mut rule = SamplingRule::reference(Observer::Cie1931, &Illuminant::d65());
-        rule.weights[40] = rule.weights[40].map(|weight| -weight);
-        let (observer, light) = (Observer::Cie1931, Illuminant::d65());
-        let viewing = Viewing::new(rule, observer, &light, Adaptation::Cat16);
+        let mut viewing = viewing("D65", true);
+        let weight = &mut viewing.rule.weights[40];
+        *weight = weight.map(|weight| -weight);
         let only = |index: usize| -> Vec<f64> {
             (0..101).map(|i| f64::from(u8::from(i == index))).collect()
         };
@@ -207,7 +188,7 @@ mod tests {
         let library = PaintLibrary::measured().expect("whole");
         let look = |name: &str| {
             let blend = Blend::new(&[(library.find(name).expect("known"), 1.0)]);
-            viewing("D65", Adaptation::Cat16).coat(&blend, &Coat::masstone())
+            viewing("D65", true).coat(&blend, &Coat::masstone())
         };
         let (ochre, phthalo) = (look("Yellow Ochre"), look("Cadmium Orange"));
         println!("{ochre:?}\n{phthalo:?}");

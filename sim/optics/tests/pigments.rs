@@ -1,9 +1,7 @@
 //! What every painter knows of some paints, as mixing by light would never have it. Beside each
 //! mixture stands the linear RGB blend of the same masstones, which must fail.
 
-use maulstick_optics::{
-    Adaptation, Blend, Coat, Illuminant, Observer, Paint, PaintLibrary, SamplingRule, Seen, Viewing,
-};
+use maulstick_optics::{Blend, Coat, Paint, PaintLibrary, RuleKind, Seen, StudioSettings, Viewing};
 
 type Parts<'a> = &'a [(&'a str, f64)];
 /// How paints become a colour.
@@ -16,11 +14,13 @@ struct Paints {
 
 impl Paints {
     fn new() -> Self {
-        let (observer, light) = (Observer::Cie1931, Illuminant::d65());
-        let rule = SamplingRule::reference(observer, &light);
+        let settings = StudioSettings {
+            rule: RuleKind::Reference,
+            ..StudioSettings::default()
+        };
         Self {
             library: PaintLibrary::measured().expect("whole"),
-            viewing: Viewing::new(rule, observer, &light, Adaptation::Cat16),
+            viewing: Viewing::new(&settings, &[]),
         }
     }
 

@@ -1,6 +1,6 @@
 //! The scene's light as the optics take it.
 
-use maulstick_optics::colour::{apply, linear_srgb_as_it_is};
+use maulstick_optics::colour::apply;
 use maulstick_optics::{Illuminant, Observer, RuleKind, Spectrum, StudioSettings};
 use maulstick_types::nearest;
 use maulstick_types::scene::Light;
@@ -67,8 +67,7 @@ pub fn cast(light: &Light) -> [f64; 3] {
         return [1.0; 3];
     }
     studio_settings(light).map_or([1.0; 3], |settings| {
-        let white = settings.light.xyz(settings.observer, &Spectrum::flat(1.0));
-        apply(&linear_srgb_as_it_is(), white)
+        apply(&settings.to_rgb(), settings.white())
     })
 }
 

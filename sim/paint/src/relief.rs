@@ -1,4 +1,4 @@
-//! The relief under the wet paint: tooth, and later what has dried on it.
+//! The relief of a bare ground; what has dried on it is added where a window is opened.
 
 use std::collections::BTreeMap;
 use std::sync::{Arc, Mutex, PoisonError};

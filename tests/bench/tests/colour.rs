@@ -6,7 +6,7 @@ use colorimetry::observer::Observer as PeerObserver;
 use colorimetry::spectrum::Spectrum as PeerSpectrum;
 use maulstick_optics::spectrum::wavelength;
 use maulstick_optics::{
-    Adaptation, Blend, Coat, Illuminant, Layer, Observer, PaintLibrary, SamplingRule, Spectrum,
+    Blend, Coat, Illuminant, Layer, Observer, PaintLibrary, RuleKind, Spectrum, StudioSettings,
     Viewing,
 };
 
@@ -31,9 +31,13 @@ fn peer(reflectance: &Spectrum, observer: PeerObserver, light: CieIlluminant) ->
 }
 
 fn own(blend: &Blend, coat: &Coat, observer: Observer, light: &str) -> Colour {
-    let light = Illuminant::named(light).expect("known");
-    let rule = SamplingRule::reference(observer, &light);
-    let seen = Viewing::new(rule, observer, &light, Adaptation::Cat16).coat(blend, coat);
+    let settings = StudioSettings {
+        light: Illuminant::named(light).expect("known"),
+        observer,
+        rule: RuleKind::Reference,
+        ..StudioSettings::default()
+    };
+    let seen = Viewing::new(&settings, &[]).coat(blend, coat);
     [seen.xyz.map(|value| 100.0 * value), seen.lab]
 }
 

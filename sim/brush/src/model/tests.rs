@@ -1,7 +1,6 @@
 //! Samples in, solves out.
 
 use maulstick_types::Pose;
-use maulstick_types::scene::{Light, Surface};
 use maulstick_types::stylus::{DEFAULT_TILT_RAD, StylusPose};
 use proptest::prelude::*;
 
@@ -9,40 +8,15 @@ use super::*;
 use crate::file::library::LIBRARY;
 use crate::spine::SpineShape;
 
+#[path = "../../tests/desk/mod.rs"]
+mod desk;
+use desk::scene;
+
 const DEVICE: Origin = Origin {
     source: 1,
     epoch: 1,
 };
 const MS: u64 = 1_000_000;
-
-fn scene() -> Scene {
-    let canvas = Surface {
-        id: 0,
-        pose: Pose {
-            position_m: [-0.128, -0.128, 0.0],
-            ..Pose::IDENTITY
-        },
-        zoom: 1.0,
-        cells: [1024; 2],
-        cell_m: 2.5e-4,
-        ground: "gesso".into(),
-        tooth: "linen".into(),
-        tooth_seed: 1,
-        wells: Vec::new(),
-    };
-    let light = Light {
-        direction: [0.0, 0.0, 1.0],
-        ..Light::default()
-    };
-    Scene {
-        version: 1,
-        surfaces: vec![canvas],
-        paints: Vec::new(),
-        tunings: Vec::new(),
-        layers: Vec::new(),
-        light,
-    }
-}
 
 fn brush() -> BrushModel {
     let mut model = BrushModel::new(BrushFile::library("round").expect("round"), 0.5);
