@@ -58,6 +58,10 @@ pub struct CleanOptions {
 /// Options of `maulstick undo` and `maulstick redo`.
 #[derive(Args, Clone, Debug)]
 pub struct HistoryOptions {
+    /// Whose newest step, where several brushes paint: that of this one, if nothing was painted over
+    /// it since; the newest of all if absent
+    #[arg(long, value_name = "BRUSH")]
+    brush: Option<String>,
     #[command(flatten)]
     target: Target,
 }
@@ -142,7 +146,9 @@ pub fn clean(options: &CleanOptions) -> Result<i32, Fault> {
 /// # Errors
 /// A [`Fault`] where there is none, or where no rig runs.
 pub fn undo(options: &HistoryOptions) -> Result<i32, Fault> {
-    say!("undone: {}", send(&options.target, PAINT, Command::Undo)?);
+    let brush = options.brush.clone();
+    let what = send(&options.target, PAINT, Command::Undo { brush })?;
+    say!("undone: {what}");
     Ok(0)
 }
 
@@ -151,7 +157,9 @@ pub fn undo(options: &HistoryOptions) -> Result<i32, Fault> {
 /// # Errors
 /// A [`Fault`] where there is none, or where no rig runs.
 pub fn redo(options: &HistoryOptions) -> Result<i32, Fault> {
-    say!("redone: {}", send(&options.target, PAINT, Command::Redo)?);
+    let brush = options.brush.clone();
+    let what = send(&options.target, PAINT, Command::Redo { brush })?;
+    say!("redone: {what}");
     Ok(0)
 }
 

@@ -15,6 +15,10 @@ pub const PARTS_MAX: usize = 64;
 pub const PAINT_NAME_MAX: usize = 128;
 /// The name of a layer has at most this many bytes.
 pub const LAYER_NAME_MAX: usize = 128;
+/// The name of a version has at most this many bytes.
+pub const VERSION_NAME_MAX: usize = 128;
+/// How thick a film of paint can be laid, m.
+pub const FILM_M: std::ops::RangeInclusive<f64> = 1e-6..=5e-3;
 /// A brush file has at most this many bytes.
 pub const BRUSH_FILE_MAX: usize = 1_000_000;
 /// Factors on the stiffness of a brush.
@@ -60,9 +64,15 @@ wire_enum! {
             loads: Vec<Mixture>,
         },
         /// Takes the newest step back.
-        Undo,
+        Undo {
+            /// Whose newest step, if not that of all; refused where a later step touches its tiles.
+            brush: Option<String>,
+        },
         /// Takes the newest undo back.
-        Redo,
+        Redo {
+            /// Of whose steps, if not of all.
+            brush: Option<String>,
+        },
         /// Writes a picture of the canvas and, if asked, the ledger.
         Snapshot {
             /// A PNG; written beside and renamed.
@@ -124,6 +134,53 @@ wire_enum! {
             layer: u32,
             /// Factor on its optical thickness, 0 to 1.
             opacity: f32,
+        },
+        /// Gives a surface another ground.
+        Ground {
+            /// The surface.
+            surface: u32,
+            /// Name of the ground.
+            ground: String,
+        },
+        /// Gives a surface another tooth.
+        Tooth {
+            /// The surface.
+            surface: u32,
+            /// Name of the tooth.
+            tooth: String,
+            /// Seed of the tooth.
+            seed: u64,
+        },
+        /// Lays an even film of wet paint over a whole surface.
+        Fill {
+            /// The surface.
+            surface: u32,
+            /// The paint.
+            mixture: Mixture,
+            /// Thickness of the film, m.
+            thickness_m: f64,
+        },
+        /// Keeps the painting as it is as a version.
+        Keep {
+            /// Name of the version.
+            name: String,
+        },
+        /// Makes the painting as it was in a version.
+        Return {
+            /// Name of the version.
+            name: String,
+        },
+        /// Begins a version from another one: the painting becomes as it was there.
+        Branch {
+            /// Name of the other version.
+            from: String,
+            /// Name of the new version.
+            name: String,
+        },
+        /// Forgets a version.
+        Forget {
+            /// Name of the version.
+            name: String,
         },
     }
 }
@@ -194,7 +251,33 @@ impl Command {
                 true => Ok(()),
                 false => Err(format!("the opacity is {opacity}, but must be 0 to 1")),
             },
-            Self::Undo | Self::Redo | Self::Mark => Ok(()),
+            Self::Undo { brush } | Self::Redo { brush } => {
+                brush.as_deref().map_or(Ok(()), brush_name)
+            }
+            Self::Ground { ground: name, .. } | Self::Tooth { tooth: name, .. } => {
+                match name.len() > PATH_MAX {
+                    true => Err(format!("a name of {} bytes is too long", name.len())),
+                    false => Ok(()),
+                }
+            }
+            Self::Fill {
+                mixture,
+                thickness_m,
+                ..
+            } => match FILM_M.contains(thickness_m) {
+                true => short(mixture),
+                false => Err(format!(
+                    "a film of {} µm, but it must be 1 to 5000 µm",
+                    thickness_m * 1e6
+                )),
+            },
+            Self::Keep { name } | Self::Return { name } | Self::Forget { name } => {
+                version_name(name)
+            }
+            Self::Branch { from, name } => [from, name]
+                .into_iter()
+                .try_for_each(|name| version_name(name)),
+            Self::Mark => Ok(()),
         }
     }
 }
@@ -207,6 +290,15 @@ fn brush_name(name: &str) -> Result<(), String> {
             format!("the brush's name {what}")
         }
     })
+}
+
+fn version_name(name: &str) -> Result<(), String> {
+    if name.trim().is_empty() || name.len() > VERSION_NAME_MAX || name.contains(char::is_control) {
+        return Err(format!(
+            "a version's name has 1 to {VERSION_NAME_MAX} bytes, and no line breaks"
+        ));
+    }
+    Ok(())
 }
 
 fn short(mixture: &Mixture) -> Result<(), String> {
@@ -223,7 +315,7 @@ fn short(mixture: &Mixture) -> Result<(), String> {
 
 message! {
     /// A command with its sender and number; sending it again with the same number is safe.
-    pub struct CommandRequest [version 3, at most 1048576 bytes] {
+    pub struct CommandRequest [version 4, at most 1048576 bytes] {
         /// A number that the client drew at random.
         pub client: u64,
         /// Counts the client's commands.

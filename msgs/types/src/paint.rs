@@ -72,7 +72,7 @@ wire_enum! {
 
 message! {
     /// An entry of the journal, in order; it has room for the largest command with its index.
-    pub struct JournalEntry [version 3, at most 1049600 bytes] {
+    pub struct JournalEntry [version 4, at most 1049600 bytes] {
         /// From 0, without gaps.
         pub index: u64,
         /// What was accepted.
@@ -153,7 +153,7 @@ message! {
 
 message! {
     /// How the paint node fares, ten times a second.
-    pub struct PaintStatus [version 2, at most 4096 bytes] {
+    pub struct PaintStatus [version 3, at most 4096 bytes] {
         /// Entries of the journal so far.
         pub journal: u64,
         /// Steps of the paint model so far.
@@ -172,5 +172,17 @@ message! {
         pub baking: u32,
         /// Those of them that are done.
         pub baked: u32,
+        /// The journal entries below this index are in the document; 0 without one.
+        pub committed: u64,
+        /// Steps that can be undone.
+        pub undo: u32,
+        /// Steps that can be redone.
+        pub redo: u32,
+        /// Operations that the oldest step holds: more than one where steps were merged.
+        pub merged: u64,
+        /// Bytes that the painting with its history takes where it is kept.
+        pub kept_bytes: u64,
+        /// Why the document does not take anything in at present; empty where it does.
+        pub fault: String,
     }
 }

@@ -262,7 +262,7 @@ fn all() -> String {
         line(&entry(Entry::Command {
             client: 1,
             number: 2,
-            command: Command::Undo,
+            command: Command::Undo { brush: None },
         })),
         line(&entry(Entry::Tick { count: 4 })),
         line(&entry(Entry::Decision {
@@ -307,6 +307,12 @@ fn all() -> String {
             refused: 7,
             baking: 8,
             baked: 9,
+            committed: 10,
+            undo: 11,
+            redo: 12,
+            merged: 13,
+            kept_bytes: 14,
+            fault: "full".into(),
         }),
         line(&command(Command::Load {
             brush: "main".into(),
@@ -321,8 +327,10 @@ fn all() -> String {
             device_epoch: 2,
             loads: vec![mixture.clone()],
         })),
-        line(&command(Command::Undo)),
-        line(&command(Command::Redo)),
+        line(&command(Command::Undo { brush: None })),
+        line(&command(Command::Redo {
+            brush: Some("main".into()),
+        })),
         line(&command(Command::Snapshot {
             path: "p.png".into(),
             ledger: Some("l.json".into()),
@@ -364,6 +372,33 @@ fn all() -> String {
         line(&command(Command::Opacity {
             layer: 1,
             opacity: 0.25,
+        })),
+        line(&command(Command::Ground {
+            surface: 0,
+            ground: "grey".into(),
+        })),
+        line(&command(Command::Tooth {
+            surface: 0,
+            tooth: "cotton".into(),
+            seed: 7,
+        })),
+        line(&command(Command::Fill {
+            surface: 0,
+            mixture: mixture.clone(),
+            thickness_m: 1e-4,
+        })),
+        line(&command(Command::Keep {
+            name: "sketch".into(),
+        })),
+        line(&command(Command::Return {
+            name: "sketch".into(),
+        })),
+        line(&command(Command::Branch {
+            from: "sketch".into(),
+            name: "warm".into(),
+        })),
+        line(&command(Command::Forget {
+            name: "warm".into(),
         })),
         line(&reply(Outcome::Done {
             journal: 1,

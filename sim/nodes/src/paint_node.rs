@@ -373,12 +373,20 @@ impl PaintNode {
         let oldest_ns = self.states.heads().map(|next| next.header.event_ns).min();
         let lag_ns = oldest_ns.map_or(0, |oldest_ns| now_ns.saturating_sub(oldest_ns));
         let baking = self.feed.lock().baking;
+        let painting = self.sequencer.painting();
+        let (undo, redo) = painting.history_depth();
         let status = PaintStatus {
             journal: self.sequencer.journal_next(),
             steps,
             footprint_cells,
             lag_ns,
-            memory_bytes: self.sequencer.painting().bytes() as u64,
+            memory_bytes: painting.bytes() as u64,
+            committed: 0,
+            undo: undo as u32,
+            redo: redo as u32,
+            merged: painting.history().merged(),
+            kept_bytes: painting.pager().counts().held(),
+            fault: String::new(),
             lost: counts.lost,
             baking: baking.all,
             baked: baking.done,

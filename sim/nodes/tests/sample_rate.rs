@@ -57,9 +57,9 @@ fn films(painting: &Painting) -> Vec<[f64; 2]> {
     let mut films = Vec::new();
     for (_, version) in store.iter() {
         let mut cells = vec![[0.0; 2]; TILE_CELLS];
-        for (slot, plane) in version.tile.iter().flat_map(|tile| tile.wet()) {
+        for (slot, plane) in version.tile.iter().flat_map(|tile| tile.wet().to_vec()) {
             for (cell, count) in cells.iter_mut().zip(plane.iter()) {
-                cell[*slot] = f64::from(*count) * QUANTUM_M;
+                cell[slot] = f64::from(*count) * QUANTUM_M;
             }
         }
         films.extend(cells);

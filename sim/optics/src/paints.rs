@@ -122,6 +122,7 @@ pub struct PaintLibrary {
     paints: Vec<Paint>,
     thinner: Paint,
     hash: u32,
+    text: std::sync::Arc<str>,
 }
 
 /// The paints that come with the crate: 28 acrylic artists' paints (Berns 2016, Okumura 2005).
@@ -212,6 +213,7 @@ impl PaintLibrary {
             paints,
             thinner: Paint::thinner(),
             hash: maulstick_types::name_hash(text),
+            text: text.into(),
         })
     }
 
@@ -225,6 +227,12 @@ impl PaintLibrary {
     #[must_use]
     pub fn hash(&self) -> u32 {
         self.hash
+    }
+
+    /// The file.
+    #[must_use]
+    pub fn text(&self) -> &str {
+        &self.text
     }
 
     /// The paint called `name`, whatever its case.

@@ -31,7 +31,7 @@ impl WetFilms {
     /// The wet films of a tile; none where nothing was painted.
     #[must_use]
     pub fn of(tile: Option<&Tile>) -> Self {
-        Self(tile.map(|tile| thickness(tile.wet())).unwrap_or_default())
+        Self(tile.map(|tile| thickness(&tile.wet())).unwrap_or_default())
     }
 
     /// The planes by slot, as the optics take them.
@@ -110,8 +110,8 @@ fn gloss(films: &[(usize, Vec<f32>)], dry: Option<&DryStack>, thinner: Option<us
     let mut more = lay(&wet, 1.0);
     let mut layers = dry.into_iter().flat_map(DryStack::layers);
     while more && let Some(layer) = layers.next() {
-        let planes: Vec<_> = layer
-            .planes
+        let content = layer.planes.get();
+        let planes: Vec<_> = content
             .iter()
             .map(|(slot, plane)| (*slot, &**plane))
             .collect();
@@ -124,7 +124,7 @@ impl DisplayTile {
     /// Height of a tile of a surface alone, as in [`on`](Self::on), m.
     #[must_use]
     pub fn height_on(bare: &Bare, id: TileId, tile: Option<&Tile>) -> Vec<f32> {
-        let films = tile.map(|tile| thickness(tile.wet())).unwrap_or_default();
+        let films = tile.map(|tile| thickness(&tile.wet())).unwrap_or_default();
         let mut heights = height(&films, tile.and_then(Tile::dry).map(|stack| &**stack));
         for (cell, well) in bare.in_wells(id) {
             if heights[cell] == 0.0 {

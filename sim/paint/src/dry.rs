@@ -3,55 +3,111 @@
 //! A stack is a list from the newest layer down, and shares what lies below with every older version
 //! of the tile: drying a tile adds a link, whatever lies under it.
 
-use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
+use std::sync::{Arc, Mutex, PoisonError, Weak};
 
+use crate::page::{Evict, Page, Pager};
 use crate::quantum::{Counts, SLOTS, add};
 use crate::tile::{Planes, TILE_CELLS, plane_counts};
 
 /// Paint of a tile that dried at one time.
-#[derive(Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct DryLayer {
     /// Number of the layer in the painting.
     pub number: u32,
     /// Counts by slot, as when they were wet.
-    pub planes: Planes,
+    pub planes: Page<Planes>,
 }
 
 /// A layer and what lies under it.
 #[derive(Debug)]
 pub struct DryStack {
+    id: u64,
     layer: DryLayer,
     below: Option<Arc<DryStack>>,
-    /// Quanta of this layer and all below, a cell.
-    height: Box<[f32]>,
+    height: Arc<Height>,
     depth: usize,
-    bytes: usize,
+    stored: AtomicBool,
+}
+
+/// Quanta of a layer and all below it, a cell: summed when somebody asks.
+#[derive(Debug)]
+struct Height {
+    pager: Arc<Pager>,
+    cells: Mutex<Option<Arc<[f32]>>>,
+    used: AtomicBool,
+}
+
+const HEIGHT_BYTES: usize = TILE_CELLS * size_of::<f32>();
+
+impl Height {
+    fn kept(&self) -> Option<Arc<[f32]>> {
+        self.used.store(true, Relaxed);
+        let cells = self.cells.lock().unwrap_or_else(PoisonError::into_inner);
+        cells.clone()
+    }
+}
+
+impl Evict for Height {
+    fn evict(&self) -> Option<usize> {
+        if self.used.swap(false, Relaxed) {
+            return None;
+        }
+        let taken = self.cells.try_lock().ok()?.take();
+        Some(taken.map_or(0, |_| HEIGHT_BYTES))
+    }
+}
+
+impl Drop for Height {
+    fn drop(&mut self) {
+        let cells = self.cells.get_mut().unwrap_or_else(PoisonError::into_inner);
+        if cells.is_some() {
+            self.pager.left(HEIGHT_BYTES);
+        }
+    }
 }
 
 impl DryStack {
     /// `layer` over what dried before.
     #[must_use]
     pub fn over(below: Option<Arc<Self>>, layer: DryLayer) -> Arc<Self> {
-        let mut height: Box<[f32]> = match &below {
-            Some(below) => below.height.clone(),
-            None => vec![0.0; TILE_CELLS].into(),
+        let id = layer.planes.pager().number();
+        Self::known(id, below, layer)
+    }
+
+    /// As [`over`](Self::over), with the number that it has in its document.
+    #[must_use]
+    pub fn known(id: u64, below: Option<Arc<Self>>, layer: DryLayer) -> Arc<Self> {
+        let height = Height {
+            pager: Arc::clone(layer.planes.pager()),
+            cells: Mutex::default(),
+            used: AtomicBool::new(false),
         };
-        for (_, plane) in &layer.planes {
-            height
-                .iter_mut()
-                .zip(plane.iter())
-                .for_each(|(sum, count)| *sum += count);
-        }
-        let own = (layer.planes.len() + 1) * TILE_CELLS * size_of::<f32>();
-        let bytes = own + below.as_ref().map_or(0, |below| below.bytes);
-        let depth = 1 + below.as_ref().map_or(0, |below| below.depth);
         Arc::new(Self {
+            id,
+            depth: 1 + below.as_ref().map_or(0, |below| below.depth),
             layer,
             below,
-            height,
-            depth,
-            bytes,
+            height: Arc::new(height),
+            stored: AtomicBool::new(false),
         })
+    }
+
+    /// Its number among the pages of the painting.
+    #[must_use]
+    pub fn id(&self) -> u64 {
+        self.id
+    }
+
+    /// Whether the document has it.
+    #[must_use]
+    pub fn is_stored(&self) -> bool {
+        self.stored.load(Relaxed)
+    }
+
+    /// Notes that the document has it.
+    pub fn note_stored(&self) {
+        self.stored.store(true, Relaxed);
     }
 
     /// The newest layer.
@@ -68,20 +124,47 @@ impl DryStack {
 
     /// Quanta of all layers, a cell.
     #[must_use]
-    pub fn height(&self) -> &[f32] {
-        &self.height
+    pub fn height(&self) -> Arc<[f32]> {
+        if let Some(kept) = self.height.kept() {
+            return kept;
+        }
+        let mut above = vec![self];
+        let mut under = None;
+        let mut next = self.below.as_deref();
+        while let Some(stack) = next {
+            under = stack.height.kept();
+            if under.is_some() {
+                break;
+            }
+            above.push(stack);
+            next = stack.below.as_deref();
+        }
+        let mut sum: Vec<f32> = under.map_or_else(|| vec![0.0; TILE_CELLS], |under| under.to_vec());
+        for stack in above.iter().rev() {
+            for (_, plane) in &*stack.layer.planes.get() {
+                let cells = sum.iter_mut().zip(plane.iter());
+                cells.for_each(|(sum, count)| *sum += count);
+            }
+        }
+        let sum: Arc<[f32]> = sum.into();
+        let mut cells = self
+            .height
+            .cells
+            .lock()
+            .unwrap_or_else(PoisonError::into_inner);
+        let first = cells.replace(Arc::clone(&sum)).is_none();
+        drop(cells);
+        if first {
+            let weak: Weak<Height> = Arc::downgrade(&self.height);
+            self.height.pager.enter(HEIGHT_BYTES, weak);
+        }
+        sum
     }
 
     /// Number of layers.
     #[must_use]
     pub fn depth(&self) -> usize {
         self.depth
-    }
-
-    /// Bytes that all layers take.
-    #[must_use]
-    pub fn bytes(&self) -> usize {
-        self.bytes
     }
 
     /// The layers from the newest down.
@@ -99,7 +182,7 @@ impl DryStack {
     pub fn counts(&self) -> Counts {
         let mut counts = [0; SLOTS];
         for layer in self.layers() {
-            add(&mut counts, &plane_counts(&layer.planes));
+            add(&mut counts, &plane_counts(&layer.planes.get()));
         }
         counts
     }
@@ -108,6 +191,9 @@ impl DryStack {
 impl Drop for DryStack {
     /// Layer by layer: thousands of them would overflow the call stack otherwise.
     fn drop(&mut self) {
+        if *self.stored.get_mut() {
+            self.height.pager.bury(self.id);
+        }
         let mut next = self.below.take();
         while let Some(stack) = next {
             next = Arc::into_inner(stack).and_then(|mut alone| alone.below.take());
@@ -129,7 +215,7 @@ mod tests {
         let plane: Arc<[f32]> = vec![count; TILE_CELLS].into();
         DryLayer {
             number,
-            planes: vec![(1, plane)],
+            planes: Page::loose(vec![(1, plane)]),
         }
     }
 
@@ -152,21 +238,14 @@ mod tests {
 
     #[test]
     fn a_hundred_thousand_layers_can_be_dropped() {
+        let planes = Page::loose(Vec::new());
         let thin = |number: u32| DryLayer {
             number,
-            planes: Vec::new(),
+            planes: planes.clone(),
         };
         let mut stack = DryStack::over(None, thin(0));
         for number in 1..100_000 {
-            let height = Box::default();
-            let depth = stack.depth + 1;
-            stack = Arc::new(DryStack {
-                layer: thin(number),
-                below: Some(stack),
-                height,
-                depth,
-                bytes: 0,
-            });
+            stack = DryStack::over(Some(stack), thin(number));
         }
         assert_eq!(stack.depth(), 100_000);
         drop(stack);

@@ -16,8 +16,36 @@ pub struct Waypoint {
     wetness: f32,
 }
 
+/// A [`Waypoint`] as it is kept: rotation x, y, z, w and translation of the brush, joint angles, how
+/// full the brush is.
+pub type KeptWaypoint = ([f64; 4], [f64; 3], Vec<[f32; 2]>, f32);
+
+impl From<&Waypoint> for KeptWaypoint {
+    fn from(from: &Waypoint) -> Self {
+        let Rigid {
+            rotation,
+            translation,
+        } = from.brush;
+        let (rotation, translation) = (rotation.to_array(), translation.to_array());
+        (rotation, translation, from.angles.clone(), from.wetness)
+    }
+}
+
+impl From<KeptWaypoint> for Waypoint {
+    fn from((rotation, translation, angles, wetness): KeptWaypoint) -> Self {
+        Self {
+            brush: Rigid {
+                rotation: glam::DQuat::from_array(rotation),
+                translation: translation.into(),
+            },
+            angles,
+            wetness,
+        }
+    }
+}
+
 /// How a brush's lengths are seen on a surface.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Scale {
     /// Side of a cell in the surface's own lengths, m.
     pub cell_m: f64,

@@ -1,104 +1,385 @@
-//! Undo and redo: steps as lists of tile versions that are swapped.
+//! Undo and redo: steps as lists of tiles that are swapped.
+//!
+//! Steps stand in their order. Undone ones stay until the painter goes on painting. Where the history
+//! takes too much room its oldest two steps become one, so that it goes back as far as before, in
+//! fewer steps.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
+use std::sync::Arc;
 
 use maulstick_types::scene::Layer;
+use serde::{Deserialize, Serialize};
 
-use crate::ledger::Ledger;
+use crate::ledger::{Booked, Ledger};
 use crate::load::BrushLoad;
-use crate::tile::{TileId, Version};
+use crate::page::Page;
+use crate::tile::{Tile, TileId};
 
 /// A surface's number and a tile of it.
 pub type Place = (u32, TileId);
 
-/// What a painting is besides its tiles.
+/// A tile; none where nothing was painted.
+pub type Held = Option<Arc<Tile>>;
+
+/// Whether both are the same pages.
+#[must_use]
+pub fn same(one: &Held, other: &Held) -> bool {
+    match (one, other) {
+        (Some(one), Some(other)) => one.is(other),
+        (one, other) => [one, other]
+            .into_iter()
+            .flatten()
+            .all(|tile| tile.is_bare()),
+    }
+}
+
+/// What a step made of a tile.
+#[derive(Clone, Debug)]
+pub struct Change {
+    /// The tile before it.
+    pub before: Held,
+    /// The tile after it.
+    pub after: Held,
+}
+
+/// What a painting's surface is made of, as far as a step can change it.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Make {
+    /// The surface.
+    pub surface: u32,
+    /// Name of its ground.
+    pub ground: String,
+    /// Name of its tooth.
+    pub tooth: String,
+    /// Seed of the tooth.
+    pub tooth_seed: u64,
+}
+
+/// What a painting is besides its tiles, as far as a step can change it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Rest {
     /// What the brushes carry, by name.
-    pub loads: BTreeMap<String, BrushLoad>,
+    pub loads: BTreeMap<String, Page<BrushLoad>>,
     /// The books.
     pub ledger: Ledger,
     /// The dry layers.
     pub layers: Vec<Layer>,
+    /// The surfaces.
+    pub makes: Vec<Make>,
 }
 
-/// One operation of the painter: what it replaced.
+/// What a step did besides tiles.
+#[derive(Clone, Debug, Default)]
+pub struct Deed {
+    /// What brushes carried before and after it, where it changed that.
+    pub loads: BTreeMap<String, [Page<BrushLoad>; 2]>,
+    /// What it booked.
+    pub booked: Booked,
+    /// The dry layers before and after it, if it changed them.
+    pub layers: Option<[Vec<Layer>; 2]>,
+    /// The surfaces before and after it, if it changed them.
+    pub makes: Option<[Vec<Make>; 2]>,
+}
+
+impl Deed {
+    /// What leads from one state to another, with what was booked on the way.
+    #[must_use]
+    pub fn between(before: &Rest, after: &Rest, booked: Booked) -> Self {
+        let changed = after.loads.iter().filter_map(|(name, page)| {
+            let was = before.loads.get(name)?;
+            (!was.is(page)).then(|| (name.clone(), [was.clone(), page.clone()]))
+        });
+        Self {
+            loads: changed.collect(),
+            booked,
+            layers: (before.layers != after.layers)
+                .then(|| [before.layers.clone(), after.layers.clone()]),
+            makes: (before.makes != after.makes)
+                .then(|| [before.makes.clone(), after.makes.clone()]),
+        }
+    }
+
+    /// This and then `later` as one.
+    fn and(mut self, later: &Self) -> Self {
+        for (name, [before, after]) in &later.loads {
+            self.loads
+                .entry(name.clone())
+                .and_modify(|[_, merged]| *merged = after.clone())
+                .or_insert_with(|| [before.clone(), after.clone()]);
+        }
+        self.booked.add(&later.booked);
+        self.layers = joined(self.layers, later.layers.as_ref());
+        self.makes = joined(self.makes, later.makes.as_ref());
+        self
+    }
+}
+
+fn joined<T: Clone>(first: Option<[T; 2]>, second: Option<&[T; 2]>) -> Option<[T; 2]> {
+    match (first, second) {
+        (Some([before, _]), Some([_, after])) => Some([before, after.clone()]),
+        (first, second) => first.or_else(|| second.cloned()),
+    }
+}
+
+/// One operation of the painter, or several that were merged.
 #[derive(Clone, Debug)]
-pub struct UndoStep {
+pub struct Step {
+    /// Its number; steps that ended later have higher ones.
+    pub id: u64,
     /// What it was, in words.
     pub what: String,
-    /// The versions before it.
-    pub tiles: BTreeMap<Place, Version>,
+    /// Whose brush made it, if a brush did.
+    pub brush: Option<String>,
+    /// How many operations it is.
+    pub operations: u64,
+    /// Whether it is done; if not, it was undone.
+    pub done: bool,
+    /// What it changed.
+    pub tiles: Arc<BTreeMap<Place, Change>>,
+    /// What it did besides.
+    pub deed: Arc<Deed>,
+}
+
+impl Step {
+    /// The step before it was finished, in a painting that is besides as it is in `rest`.
+    #[must_use]
+    pub fn reopened(self, rest: &Rest) -> OpenStep {
+        let mut before = rest.clone();
+        for (name, [page, _]) in &self.deed.loads {
+            before.loads.insert(name.clone(), page.clone());
+        }
+        let tiles = self.tiles.iter();
+        OpenStep {
+            id: self.id,
+            what: self.what,
+            brush: self.brush,
+            tiles: tiles
+                .map(|(place, change)| (*place, change.before.clone()))
+                .collect(),
+            before,
+            booked: self.deed.booked.clone(),
+        }
+    }
+}
+
+/// A step that is not finished.
+#[derive(Clone, Debug)]
+pub struct OpenStep {
+    /// As [`Step::id`].
+    pub id: u64,
+    /// As [`Step::what`].
+    pub what: String,
+    /// As [`Step::brush`].
+    pub brush: Option<String>,
+    /// The tiles before it.
+    pub tiles: BTreeMap<Place, Held>,
     /// The rest before it.
-    pub rest: Rest,
+    pub before: Rest,
+    /// What it booked so far.
+    pub booked: Booked,
 }
 
 /// Steps that can be undone and redone.
 #[derive(Debug, Default)]
 pub struct History {
-    open: Option<UndoStep>,
-    undo: Vec<UndoStep>,
-    redo: Vec<UndoStep>,
+    next: u64,
+    /// Steps that are not finished: each painter's own, none touching a tile of another.
+    open: Vec<OpenStep>,
+    steps: BTreeMap<u64, Step>,
+    /// Steps that were undone, the last one at the end.
+    undone: Vec<u64>,
+    /// Steps that changed, came or went since they were last asked for.
+    touched: BTreeSet<u64>,
 }
 
 impl History {
-    /// Begins a step; what can be redone is gone.
-    pub fn begin(&mut self, what: &str, rest: Rest) {
-        self.end();
-        self.redo.clear();
-        self.open = Some(UndoStep {
-            what: what.to_owned(),
-            tiles: BTreeMap::new(),
-            rest,
-        });
-    }
-
-    /// Whether a step is open.
+    /// The history of a painting that was kept, with the steps that go on.
     #[must_use]
-    pub fn is_open(&self) -> bool {
-        self.open.is_some()
-    }
-
-    /// Remembers a version that was replaced, the first one of each tile in the open step.
-    pub fn replaced(&mut self, place: Place, version: Version) {
-        if let Some(open) = &mut self.open {
-            open.tiles.entry(place).or_insert(version);
+    pub fn restored(next: u64, steps: Vec<Step>, undone: Vec<u64>, open: Vec<OpenStep>) -> Self {
+        let steps = steps.into_iter().map(|step| (step.id, step));
+        Self {
+            next,
+            open,
+            steps: steps.collect(),
+            undone,
+            touched: BTreeSet::new(),
         }
     }
 
-    /// Ends the open step.
-    pub fn end(&mut self) {
-        self.undo.extend(self.open.take());
+    /// Begins a step; what this brush, or nobody's brush, undid is gone.
+    pub fn begin(&mut self, what: &str, brush: Option<&str>, before: Rest) {
+        let own = |step: &Step| match (&step.brush, brush) {
+            (Some(one), Some(other)) => one == other,
+            _ => true,
+        };
+        let (steps, touched) = (&mut self.steps, &mut self.touched);
+        self.undone.retain(|id| {
+            let gone = steps.get(id).is_none_or(own);
+            if gone {
+                steps.remove(id);
+                touched.insert(*id);
+            }
+            !gone
+        });
+        self.next += 1;
+        self.open.push(OpenStep {
+            id: self.next,
+            what: what.to_owned(),
+            brush: brush.map(str::to_owned),
+            tiles: BTreeMap::new(),
+            before,
+            booked: Booked::default(),
+        });
     }
 
-    /// The step to take back.
-    pub fn take_undo(&mut self) -> Option<UndoStep> {
-        self.end();
-        self.undo.pop()
+    /// The steps that are not finished.
+    pub fn open(&self) -> impl Iterator<Item = &OpenStep> {
+        self.open.iter()
     }
 
-    /// The step to do again.
-    pub fn take_redo(&mut self) -> Option<UndoStep> {
-        self.end();
-        self.redo.pop()
+    /// The step of a brush, or of none, that is not finished.
+    pub fn open_of(&mut self, brush: Option<&str>) -> Option<&mut OpenStep> {
+        let mut open = self.open.iter_mut();
+        open.find(|step| step.brush.as_deref() == brush)
     }
 
-    /// Keeps a swapped step for redo.
-    pub fn push_redo(&mut self, step: UndoStep) {
-        self.redo.push(step);
+    /// Remembers what a step replaced: the first tile of each place.
+    pub fn replaced(&mut self, brush: Option<&str>, place: Place, tile: Held) {
+        if let Some(open) = self.open_of(brush) {
+            open.tiles.entry(place).or_insert(tile);
+        }
     }
 
-    /// Keeps a swapped step for undo.
-    pub fn push_undo(&mut self, step: UndoStep) {
-        self.undo.push(step);
+    /// Takes the steps that are not finished and of which `which` says so, to be finished by
+    /// [`push`](Self::push).
+    pub fn take_open(&mut self, which: impl Fn(&OpenStep) -> bool) -> Vec<OpenStep> {
+        let (taken, left) = std::mem::take(&mut self.open).into_iter().partition(which);
+        self.open = left;
+        taken
+    }
+
+    /// Adds a step that has just ended. It comes after all that ended before it, whenever it began:
+    /// it may lie over them, they never over it.
+    pub fn push(&mut self, mut step: Step) {
+        self.touched.insert(step.id);
+        self.next += 1;
+        step.id = self.next;
+        self.insert(step);
+    }
+
+    fn insert(&mut self, step: Step) {
+        self.touched.insert(step.id);
+        self.steps.insert(step.id, step);
+    }
+
+    /// The newest step that is done, of a brush or of all.
+    #[must_use]
+    pub fn last_done(&self, brush: Option<&str>) -> Option<&Step> {
+        let of = |step: &&Step| brush.is_none() || step.brush.as_deref() == brush;
+        let mut done = self.steps.values().rev().filter(|step| step.done);
+        done.find(of)
+    }
+
+    /// The step that was undone last, of a brush or of all.
+    #[must_use]
+    pub fn last_undone(&self, brush: Option<&str>) -> Option<&Step> {
+        let of = |step: &&Step| brush.is_none() || step.brush.as_deref() == brush;
+        let undone = self.undone.iter().rev();
+        undone.filter_map(|id| self.steps.get(id)).find(of)
+    }
+
+    /// Notes that a step was undone.
+    pub fn undone(&mut self, id: u64) {
+        if let Some(step) = self.steps.get_mut(&id) {
+            step.done = false;
+            self.touched.insert(id);
+            self.undone.push(id);
+        }
+    }
+
+    /// Notes that a step was done again. It comes after all that was done meanwhile.
+    pub fn redone(&mut self, id: u64) {
+        self.undone.retain(|other| *other != id);
+        let newest = self.last_done(None).map_or(0, |step| step.id);
+        if let Some(mut step) = self.steps.remove(&id) {
+            step.done = true;
+            match id > newest {
+                true => self.insert(step),
+                false => {
+                    self.touched.insert(id);
+                    self.push(step);
+                }
+            }
+        }
     }
 
     /// How many steps can be undone and redone.
     #[must_use]
     pub fn depth(&self) -> (usize, usize) {
-        (
-            self.undo.len() + usize::from(self.open.is_some()),
-            self.redo.len(),
-        )
+        let done = self.steps.len() - self.undone.len();
+        (done + self.open.len(), self.undone.len())
+    }
+
+    /// Operations that the oldest step holds: more than one where steps were merged.
+    #[must_use]
+    pub fn merged(&self) -> u64 {
+        self.steps.values().next().map_or(0, |step| step.operations)
+    }
+
+    /// The steps, the oldest first.
+    pub fn steps(&self) -> impl Iterator<Item = &Step> {
+        self.steps.values()
+    }
+
+    /// Number of the newest step, and the steps that were undone, the last one at the end.
+    #[must_use]
+    pub fn position(&self) -> (u64, &[u64]) {
+        (self.next, &self.undone)
+    }
+
+    /// The steps that changed or came since the last call, and those that went.
+    pub fn take_touched(&mut self) -> (Vec<Step>, Vec<u64>) {
+        let (mut there, mut gone) = (Vec::new(), Vec::new());
+        for id in std::mem::take(&mut self.touched) {
+            match self.steps.get(&id) {
+                Some(step) => there.push(step.clone()),
+                None => gone.push(id),
+            }
+        }
+        (there, gone)
+    }
+
+    /// Makes one step of the two oldest ones; false where there are none, or they were undone.
+    pub fn merge_oldest(&mut self) -> bool {
+        let mut oldest = self.steps.values();
+        let (Some(first), Some(second)) = (oldest.next(), oldest.next()) else {
+            return false;
+        };
+        if !first.done || !second.done {
+            return false;
+        }
+        let (gone, id) = (first.id, second.id);
+        let (Some(first), Some(second)) = (self.steps.remove(&gone), self.steps.remove(&id)) else {
+            return false;
+        };
+        let operations = first.operations + second.operations;
+        let mut tiles = Arc::unwrap_or_clone(first.tiles);
+        for (place, change) in &*second.tiles {
+            tiles
+                .entry(*place)
+                .and_modify(|merged| merged.after.clone_from(&change.after))
+                .or_insert_with(|| change.clone());
+        }
+        self.touched.insert(gone);
+        self.insert(Step {
+            id,
+            what: format!("{operations} steps"),
+            brush: None,
+            operations,
+            done: true,
+            tiles: Arc::new(tiles),
+            deed: Arc::new(Arc::unwrap_or_clone(first.deed).and(&second.deed)),
+        });
+        true
     }
 }

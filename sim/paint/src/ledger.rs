@@ -10,7 +10,7 @@ use serde::Serialize;
 use crate::quantum::{Counts, SLOTS, add};
 
 /// What was booked.
-#[derive(Clone, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, serde::Deserialize)]
 pub struct Ledger {
     tube: Counts,
     cleaner: Counts,
@@ -22,9 +22,52 @@ impl Ledger {
         add(&mut self.tube, counts);
     }
 
+    /// What was booked since `before`; less than nothing where it was taken back.
+    #[must_use]
+    pub fn since(&self, before: &Self) -> Booked {
+        let less = |own: &Counts, before: &Counts| {
+            std::array::from_fn(|slot| own[slot] as i64 - before[slot] as i64)
+        };
+        Booked {
+            tube: less(&self.tube, &before.tube),
+            cleaner: less(&self.cleaner, &before.cleaner),
+        }
+    }
+
+    /// Books again what was booked, `times` 1, or takes it back, −1.
+    pub fn book(&mut self, booked: &Booked, times: i64) {
+        let turn = |own: &mut Counts, booked: &[i64; SLOTS]| {
+            for (own, booked) in own.iter_mut().zip(booked) {
+                *own = own.saturating_add_signed(times * booked);
+            }
+        };
+        turn(&mut self.tube, &booked.tube);
+        turn(&mut self.cleaner, &booked.cleaner);
+    }
+
     /// The cleaner took.
     pub fn to_cleaner(&mut self, counts: &Counts) {
         add(&mut self.cleaner, counts);
+    }
+}
+
+/// What was booked in a while, by slot.
+#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, serde::Deserialize)]
+pub struct Booked {
+    tube: [i64; SLOTS],
+    cleaner: [i64; SLOTS],
+}
+
+impl Booked {
+    /// Adds what was booked then.
+    pub fn add(&mut self, later: &Self) {
+        let sum = |own: &mut [i64; SLOTS], later: &[i64; SLOTS]| {
+            own.iter_mut()
+                .zip(later)
+                .for_each(|(own, later)| *own += later);
+        };
+        sum(&mut self.tube, &later.tube);
+        sum(&mut self.cleaner, &later.cleaner);
     }
 }
 

@@ -8,12 +8,14 @@
 //! | --- | --- |
 //! | [`quantum`] | the unit in which paint is counted |
 //! | [`tile`], [`store`], [`window`] | tiles, their versions, and windows leased on them |
+//! | [`page`] | what of them is in memory |
 //! | [`head`], [`path`] | the head of a brush in space, and its motion cut into steps |
 //! | [`dry`] | what has dried, layer over layer |
 //! | [`tooth`], [`relief`] | what catches paint |
 //! | [`model`], [`impasto`] | paint models |
 //! | [`transfer`] | how much goes between brush and canvas |
 //! | [`load`], [`ledger`], [`history`] | what a brush carries, the books, undo |
+//! | [`kept`] | what a document holds besides tiles |
 //! | [`setup`] | the scene of a new painting |
 //! | [`painting`], [`sequencer`] | the painting and its journal |
 //! | [`light`], [`look`] | the light of the scene, and colour under it |
@@ -25,12 +27,14 @@ pub mod dry;
 pub mod head;
 pub mod history;
 pub mod impasto;
+pub mod kept;
 pub mod lamp;
 pub mod ledger;
 pub mod light;
 pub mod load;
 pub mod look;
 pub mod model;
+pub mod page;
 pub mod painting;
 pub mod path;
 pub mod picture;

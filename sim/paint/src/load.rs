@@ -4,6 +4,7 @@ use maulstick_brush::Head;
 use maulstick_types::Mixture;
 
 use crate::model::BrushTraits;
+use crate::page::{Backing, Content};
 use crate::quantum::{Counts, SLOTS};
 
 /// Texels along a strip.
@@ -51,7 +52,48 @@ pub struct BrushLoad {
     steps: u64,
 }
 
+impl Content for BrushLoad {
+    fn bytes(&self) -> usize {
+        let planes = 1 + 2 * self.held.iter().flatten().count();
+        planes * self.texels * size_of::<u32>()
+    }
+
+    fn fetch(backing: &dyn Backing, id: u64) -> Result<Self, String> {
+        backing.load(id)
+    }
+
+    fn nothing() -> Self {
+        Self::clean(0)
+    }
+}
+
 impl BrushLoad {
+    /// A load as it was kept: steps with contact, all paints' films as last counted, and for each
+    /// paint its films and what it has inside, by texel. None where the planes do not fit.
+    #[must_use]
+    pub fn of_planes(
+        steps: u64,
+        films: Vec<u32>,
+        planes: Vec<(usize, [Vec<u32>; 2])>,
+    ) -> Option<Self> {
+        let texels = films.len();
+        let mut load = Self::clean(0);
+        (load.texels, load.steps, load.films) = (texels, steps, films);
+        for (slot, [film, inside]) in planes {
+            if slot >= SLOTS || film.len() != texels || inside.len() != texels {
+                return None;
+            }
+            load.held[slot] = Some(Box::new(Held { film, inside }));
+        }
+        Some(load)
+    }
+
+    /// Steps with contact that it has made.
+    #[must_use]
+    pub fn steps(&self) -> u64 {
+        self.steps
+    }
+
     /// A clean brush with this many strips.
     #[must_use]
     pub fn clean(strips: usize) -> Self {
@@ -85,6 +127,12 @@ impl BrushLoad {
     #[must_use]
     pub fn total(&self) -> u64 {
         self.counts().iter().sum()
+    }
+
+    /// All paints' films, as last counted.
+    #[must_use]
+    pub fn films(&self) -> &[u32] {
+        &self.films
     }
 
     /// Counts of a texel's film.

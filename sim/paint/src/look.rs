@@ -51,6 +51,11 @@ impl Look {
         self.generation += 1;
     }
 
+    /// The look of surfaces that were made anew.
+    pub fn renew(&mut self) {
+        self.generation += 1;
+    }
+
     /// Takes over the opacities of `layers`.
     pub fn set_layers(&mut self, layers: &[Layer]) {
         let changed = layers.iter().filter(|layer| layer.opacity != 1.0);
@@ -69,7 +74,7 @@ impl Look {
         under: Under<'_>,
         backend: &mut dyn FilmBackend,
     ) -> Vec<f32> {
-        let films = thickness(&layer.planes);
+        let films = thickness(&layer.planes.get());
         let paints: Vec<(usize, &[f32])> = films
             .iter()
             .map(|(slot, film)| (*slot, film.as_slice()))
@@ -226,7 +231,7 @@ mod tests {
         let plane: Arc<[f32]> = (0..TILE_CELLS).map(|i| (i % 5 * quanta) as f32).collect();
         DryLayer {
             number,
-            planes: vec![(slot, plane)],
+            planes: crate::page::Page::loose(vec![(slot, plane)]),
         }
     }
 

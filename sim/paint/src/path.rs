@@ -33,6 +33,12 @@ impl PathStepper {
         Self { at, stepped, scale }
     }
 
+    /// Where it is.
+    #[must_use]
+    pub fn at(&self) -> &Waypoint {
+        &self.at
+    }
+
     /// How the brush's lengths are seen.
     #[must_use]
     pub fn scale(&self) -> Scale {

@@ -337,8 +337,8 @@ impl Sequencer {
                 self.announced.insert(brush.clone(), take);
                 String::new()
             }),
-            Command::Undo => self.painting.undo(),
-            Command::Redo => self.painting.redo(),
+            Command::Undo { brush } => self.painting.undo(brush.as_deref()),
+            Command::Redo { brush } => self.painting.redo(brush.as_deref()),
             Command::Snapshot { path, ledger } => {
                 effect = Some(Effect::Snapshot {
                     path: path.clone(),
@@ -365,6 +365,32 @@ impl Sequencer {
                 share,
                 name,
             } => self.painting.dry(*surface, *share, name),
+            Command::Ground { surface, ground } => self
+                .painting
+                .set_ground(*surface, ground)
+                .map(|()| String::new()),
+            Command::Tooth {
+                surface,
+                tooth,
+                seed,
+            } => self
+                .painting
+                .set_tooth(*surface, tooth, *seed)
+                .map(|()| String::new()),
+            Command::Fill {
+                surface,
+                mixture,
+                thickness_m,
+            } => self
+                .painting
+                .lay(*surface, mixture, *thickness_m)
+                .map(|()| String::new()),
+            Command::Keep { name } => self.painting.keep(name).map(|()| String::new()),
+            Command::Return { name } => self.painting.return_to(name).map(|()| String::new()),
+            Command::Branch { from, name } => {
+                self.painting.branch(from, name).map(|()| String::new())
+            }
+            Command::Forget { name } => self.painting.forget(name).map(|()| String::new()),
             Command::Opacity { layer, opacity } => self
                 .painting
                 .set_opacity(*layer, *opacity)

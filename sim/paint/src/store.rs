@@ -1,11 +1,13 @@
 //! The tiles of a surface: immutable, reference-counted versions, and leases on them.
 
 use std::collections::BTreeSet;
+use std::sync::Arc;
 
 use maulstick_types::paint::TILE;
 
+use crate::page::{Page, Pager};
 use crate::quantum::{Counts, SLOTS, add};
-use crate::tile::{Tile, TileId, Version};
+use crate::tile::{Planes, Tile, TileId, Version};
 
 /// A rectangle of tiles: from the first, up to but not with the second corner.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -21,6 +23,13 @@ impl TileRect {
     #[must_use]
     pub fn holds(&self, other: &Self) -> bool {
         (0..2).all(|i| self.from[i] <= other.from[i] && other.to[i] <= self.to[i])
+    }
+
+    /// Whether a tile lies inside.
+    #[must_use]
+    pub fn contains(&self, id: TileId) -> bool {
+        let within = |i: usize, at: u32| (self.from[i]..self.to[i]).contains(&at);
+        within(0, id.x) && within(1, id.y)
     }
 
     /// Tiles, row after row from the bottom.
@@ -44,12 +53,19 @@ pub struct TileStore {
     grid: [u32; 2],
     versions: Vec<Version>,
     leased: BTreeSet<TileId>,
+    pager: Arc<Pager>,
 }
 
 impl TileStore {
-    /// An empty surface of `cells` across and up.
+    /// An empty surface of `cells` across and up, of no painting.
     #[must_use]
     pub fn new(cells: [u32; 2]) -> Self {
+        Self::paged(cells, &Arc::default())
+    }
+
+    /// An empty surface whose tiles are among the pages of a painting.
+    #[must_use]
+    pub fn paged(cells: [u32; 2], pager: &Arc<Pager>) -> Self {
         let grid = cells.map(|cells| cells.div_ceil(TILE as u32));
         let versions = vec![Version::default(); (grid[0] * grid[1]) as usize];
         Self {
@@ -57,6 +73,7 @@ impl TileStore {
             grid,
             versions,
             leased: BTreeSet::new(),
+            pager: Arc::clone(pager),
         }
     }
 
@@ -70,6 +87,12 @@ impl TileStore {
     #[must_use]
     pub fn grid(&self) -> [u32; 2] {
         self.grid
+    }
+
+    /// The pages of its painting.
+    #[must_use]
+    pub fn pager(&self) -> &Arc<Pager> {
+        &self.pager
     }
 
     fn place(&self, id: TileId) -> usize {
@@ -165,13 +188,20 @@ impl TileStore {
         counts
     }
 
-    /// Bytes of all tiles.
+    /// Bytes that the newest versions take where they are kept: in the document, or in memory.
     #[must_use]
-    pub fn bytes(&self) -> usize {
-        self.versions
-            .iter()
-            .filter_map(|v| v.tile.as_ref())
-            .map(|tile| tile.bytes())
+    pub fn held_bytes(&self) -> u64 {
+        let tiles = self.versions.iter().filter_map(|v| v.tile.as_ref());
+        let bytes = |page: &Page<Planes>| match page.stored_bytes() {
+            0 => page.resident_bytes() as u64,
+            stored => stored as u64,
+        };
+        tiles
+            .map(|tile| {
+                let layers = tile.dry().into_iter().flat_map(|stack| stack.layers());
+                let dry: u64 = layers.map(|layer| bytes(&layer.planes)).sum();
+                dry + tile.wet_page().map_or(0, bytes)
+            })
             .sum()
     }
 }

@@ -5,6 +5,7 @@ use std::sync::Arc;
 use maulstick_types::paint::TILE;
 
 use crate::dry::{DryLayer, DryStack};
+use crate::page::{Backing, Content, Page, Pager};
 use crate::quantum::{Counts, SLOTS};
 
 /// Cells of a tile.
@@ -22,6 +23,20 @@ pub struct TileId {
 /// A plane of counts for each paint that is there, in order of slot.
 pub type Planes = Vec<(usize, Arc<[f32]>)>;
 
+impl Content for Planes {
+    fn bytes(&self) -> usize {
+        self.len() * TILE_CELLS * size_of::<f32>()
+    }
+
+    fn fetch(backing: &dyn Backing, id: u64) -> Result<Self, String> {
+        backing.planes(id)
+    }
+
+    fn nothing() -> Self {
+        Self::new()
+    }
+}
+
 /// All counts of planes, by slot.
 #[must_use]
 pub fn plane_counts(planes: &Planes) -> Counts {
@@ -35,29 +50,58 @@ pub fn plane_counts(planes: &Planes) -> Counts {
 /// What lies on a tile: wet paint over what has dried.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Tile {
-    wet: Planes,
+    wet: Option<Page<Planes>>,
     dry: Option<Arc<DryStack>>,
 }
 
+fn painted(planes: impl Iterator<Item = (usize, Arc<[f32]>)>) -> Planes {
+    planes
+        .filter(|(_, plane)| plane.iter().any(|count| *count != 0.0))
+        .collect()
+}
+
 impl Tile {
-    /// A tile of wet planes over what has dried; planes without paint are left out.
+    /// A tile, of no painting, of wet planes over what has dried; planes without paint are left out.
     #[must_use]
     pub fn new(
         planes: impl Iterator<Item = (usize, Arc<[f32]>)>,
         dry: Option<Arc<DryStack>>,
     ) -> Self {
-        Self {
-            wet: planes
-                .filter(|(_, plane)| plane.iter().any(|count| *count != 0.0))
-                .collect(),
-            dry,
-        }
+        let planes = painted(planes);
+        let wet = (!planes.is_empty()).then(|| Page::loose(planes));
+        Self { wet, dry }
+    }
+
+    /// A tile of a painting's pages: a later state of `before`, if that is known.
+    #[must_use]
+    pub fn paged(
+        pager: &Arc<Pager>,
+        planes: impl Iterator<Item = (usize, Arc<[f32]>)>,
+        dry: Option<Arc<DryStack>>,
+        before: Option<&Self>,
+    ) -> Self {
+        let planes = painted(planes);
+        let before = before.and_then(|tile| tile.wet.as_ref());
+        let wet = (!planes.is_empty()).then(|| Page::new(pager, Arc::new(planes), before));
+        Self { wet, dry }
+    }
+
+    /// A tile of pages.
+    #[must_use]
+    pub fn of_pages(wet: Option<Page<Planes>>, dry: Option<Arc<DryStack>>) -> Self {
+        Self { wet, dry }
     }
 
     /// The wet planes, in order of slot.
     #[must_use]
-    pub fn wet(&self) -> &Planes {
-        &self.wet
+    pub fn wet(&self) -> Arc<Planes> {
+        self.wet.as_ref().map(Page::get).unwrap_or_default()
+    }
+
+    /// The page of the wet planes, if anything is wet.
+    #[must_use]
+    pub fn wet_page(&self) -> Option<&Page<Planes>> {
+        self.wet.as_ref()
     }
 
     /// What has dried.
@@ -66,28 +110,45 @@ impl Tile {
         self.dry.as_ref()
     }
 
+    /// Whether nothing lies on it.
+    #[must_use]
+    pub fn is_bare(&self) -> bool {
+        self.wet.is_none() && self.dry.is_none()
+    }
+
+    /// Whether both are made of the same pages.
+    #[must_use]
+    pub fn is(&self, other: &Self) -> bool {
+        let wet = match (&self.wet, &other.wet) {
+            (Some(one), Some(other)) => one.is(other),
+            (one, other) => one.is_none() && other.is_none(),
+        };
+        let dry = match (&self.dry, &other.dry) {
+            (Some(one), Some(other)) => Arc::ptr_eq(one, other),
+            (one, other) => one.is_none() && other.is_none(),
+        };
+        wet && dry
+    }
+
     /// Counts of the wet paint by slot.
     #[must_use]
     pub fn counts(&self) -> Counts {
-        plane_counts(&self.wet)
+        plane_counts(&self.wet())
     }
 
     /// The tile with the lower `share` of its wet film dried as layer `number`, but for the cells of
-    /// `wells`; none where nothing dries. All of it dries by reference.
+    /// `wells`; none where nothing dries. All of it dries by reference, unread.
     #[must_use]
     pub fn dried(&self, number: u32, share: f32, wells: &[usize]) -> Option<Self> {
-        if self.wet.is_empty() {
-            return None;
-        }
-        let under = self.dry.clone();
+        let page = self.wet.as_ref()?;
+        let over = |planes: Page<Planes>| {
+            let layer = DryLayer { number, planes };
+            Some(DryStack::over(self.dry.clone(), layer))
+        };
         if share >= 1.0 && wells.is_empty() {
-            let layer = DryLayer {
-                number,
-                planes: self.wet.clone(),
-            };
             return Some(Self {
-                wet: Vec::new(),
-                dry: Some(DryStack::over(under, layer)),
+                wet: None,
+                dry: over(page.clone()),
             });
         }
         let part = |plane: &Arc<[f32]>| -> Arc<[f32]> {
@@ -95,16 +156,12 @@ impl Tile {
             wells.iter().for_each(|cell| lower[*cell] = 0.0);
             lower.into()
         };
-        let lower: Planes = self
-            .wet
-            .iter()
-            .map(|(slot, plane)| (*slot, part(plane)))
-            .filter(|(_, plane)| plane.iter().any(|count| *count != 0.0))
-            .collect();
+        let wet = page.get();
+        let lower = painted(wet.iter().map(|(slot, plane)| (*slot, part(plane))));
         if lower.is_empty() {
             return None;
         }
-        let upper = self.wet.iter().map(|(slot, plane)| {
+        let upper = wet.iter().map(|(slot, plane)| {
             let dried = lower.iter().find(|(other, _)| other == slot);
             let left = match dried {
                 Some((_, dried)) => plane
@@ -116,21 +173,14 @@ impl Tile {
             };
             (*slot, left)
         });
-        let stack = DryStack::over(
-            under,
-            DryLayer {
-                number,
-                planes: lower.clone(),
-            },
-        );
-        Some(Self::new(upper, Some(stack)))
-    }
-
-    /// Bytes that it takes.
-    #[must_use]
-    pub fn bytes(&self) -> usize {
-        let dry = self.dry.as_ref().map_or(0, |stack| stack.bytes());
-        self.wet.len() * TILE_CELLS * size_of::<f32>() + dry
+        let upper: Vec<_> = upper.collect();
+        let dry = over(Page::new(page.pager(), Arc::new(lower), None));
+        Some(Self::paged(
+            page.pager(),
+            upper.into_iter(),
+            dry,
+            Some(self),
+        ))
     }
 }
 
@@ -172,7 +222,7 @@ mod tests {
         let whole = wet.dried(1, 1.0, &[]).expect("wet");
         let layer = whole.dry().expect("dried").layer();
         assert!(
-            Arc::ptr_eq(&layer.planes[0].1, &wet.wet()[0].1),
+            wet.wet_page().is_some_and(|page| page.is(&layer.planes)),
             "by reference"
         );
         assert_eq!(wet.dried(1, 1e-9, &[]), None);

@@ -67,7 +67,7 @@ impl Window {
                 continue;
             };
             let start = window.corner(id);
-            for (slot, plane) in tile.wet() {
+            for (slot, plane) in &*tile.wet() {
                 let to = window.wet[*slot].get_or_insert_with(|| vec![0.0; width * height]);
                 for (row, cells) in plane.chunks_exact(TILE).enumerate() {
                     to[start + row * width..][..TILE].copy_from_slice(cells);
@@ -223,7 +223,9 @@ impl Window {
                 }
                 Some((slot, Arc::from(cells)))
             });
-            let tile = Some(Arc::new(Tile::new(planes, self.dry[place].clone())));
+            let before = store.version(id).tile.as_deref();
+            let dry = self.dry[place].clone();
+            let tile = Some(Arc::new(Tile::paged(store.pager(), planes, dry, before)));
             *next += 1;
             replaced(
                 id,

@@ -94,7 +94,7 @@ fn check(painting: &mut Painting) -> Result<(), TestCaseError> {
         let store = painting.store(surface).expect("a surface");
         for (id, version) in store.iter() {
             let Some(tile) = &version.tile else { continue };
-            for (_, plane) in tile.wet() {
+            for (_, plane) in &*tile.wet() {
                 for count in plane.iter() {
                     let fine = (0.0..=CELL_MAX as f32).contains(count) && count.fract() == 0.0;
                     prop_assert!(fine, "{count} quanta in tile {id:?} of surface {surface}");
@@ -182,8 +182,8 @@ fn perform(painting: &mut Painting, strokes: &mut [u64; 2], act: &Act) {
         // There may be nothing to dry, to undo or to redo.
         Act::Dry(surface, share) => drop(painting.dry(*surface, *share, "")),
         Act::Opacity(layer, opacity) => drop(painting.set_opacity(*layer, *opacity)),
-        Act::Undo => drop(painting.undo()),
-        Act::Redo => drop(painting.redo()),
+        Act::Undo => drop(painting.undo(None)),
+        Act::Redo => drop(painting.redo(None)),
     }
 }
 
@@ -198,9 +198,13 @@ proptest! {
             perform(&mut painting, &mut strokes, act);
             check(&mut painting)?;
         }
-        while painting.undo().is_ok() {
-            check(&mut painting)?;
-        }
+        let refusal = loop {
+            match painting.undo(None) {
+                Ok(_) => check(&mut painting)?,
+                Err(refusal) => break refusal,
+            }
+        };
+        prop_assert_eq!(refusal.what, "there is nothing to undo");
         let store = painting.store(CANVAS).expect("a canvas");
         prop_assert_eq!(store.counts(), [0; 16], "all that was done is undone");
         prop_assert_eq!(store.dry_counts(), [0; 16]);
@@ -249,10 +253,10 @@ fn what_is_painted_after_a_command_within_a_stroke_is_undone_too() {
     let commands: [fn(&mut Painting); 4] = [
         |painting| painting.load("main", &mixture(MIXTURES[0])).expect("known"),
         |painting| painting.clean("other").expect("known"),
-        |painting| drop(painting.undo().expect("a stroke")),
+        |painting| drop(painting.undo(None).expect("a stroke")),
         |painting| {
-            painting.undo().expect("a stroke");
-            painting.redo().expect("the stroke");
+            painting.undo(None).expect("a stroke");
+            painting.redo(None).expect("the stroke");
         },
     ];
     for command in commands {
@@ -266,11 +270,11 @@ fn what_is_painted_after_a_command_within_a_stroke_is_undone_too() {
         assert!(painted[0] > 0, "{painted:?}");
         let (steps, _) = painting.history_depth();
         for _ in 0..steps {
-            painting.undo().expect("a step");
+            painting.undo(None).expect("a step");
             assert_eq!(painting.report().quanta_missing, 0);
         }
         assert_eq!(painting.store(CANVAS).expect("a canvas").counts(), [0; 16]);
-        while painting.redo().is_ok() {
+        while painting.redo(None).is_ok() {
             assert_eq!(painting.report().quanta_missing, 0);
         }
         assert_eq!(painting.store(CANVAS).expect("a canvas").counts(), painted);
@@ -285,7 +289,7 @@ fn a_load_from_before_a_brush_had_other_strips_comes_back() {
         painting.load("main", &mixture(MIXTURES[0])).expect("known");
         painting.load("main", &mixture(MIXTURES[1])).expect("known");
         painting.define_brush("main", brush(10.0, strips));
-        painting.undo().expect("the second load");
+        painting.undo(None).expect("the second load");
         assert_eq!(painting.report().quanta_missing, 0);
         paint(&mut painting, "main", 10.0, 1, &across(4.0, 12.0));
         assert_eq!(painting.report().quanta_missing, 0);
@@ -359,6 +363,6 @@ fn what_has_dried_stays_and_catches_paint() {
     assert!(painting.set_opacity(9, 0.5).is_err());
     painting.set_opacity(1, 0.5).expect("the layer");
     assert_eq!(painting.scene().layers[0].opacity, 0.5);
-    painting.undo().expect("the opacity");
+    painting.undo(None).expect("the opacity");
     assert_eq!(painting.scene().layers[0].opacity, 1.0);
 }

@@ -1,5 +1,7 @@
 //! The painting's books.
 
+use std::sync::Arc;
+
 use maulstick_types::scene::{CANVAS, PALETTE};
 
 use super::Painting;
@@ -9,10 +11,10 @@ use crate::store::TileStore;
 use crate::tile::{TILE_CELLS, Tile};
 
 impl Painting {
-    /// Bytes that the tiles take.
+    /// Bytes that its tiles, and those of its history, take in memory.
     #[must_use]
     pub fn bytes(&self) -> usize {
-        self.sheets.iter().map(|sheet| sheet.store.bytes()).sum()
+        self.pager.counts().resident
     }
 
     /// Balances the books.
@@ -62,11 +64,13 @@ fn covered(store: &TileStore) -> u64 {
     let tiles = store
         .iter()
         .filter_map(|(_, version)| version.tile.as_ref());
-    let painted = |tile: &Tile, cell: usize| {
-        let dry = tile.dry().is_some_and(|stack| stack.height()[cell] > 0.0);
-        dry || tile.wet().iter().any(|(_, plane)| plane[cell] > 0.0)
+    let painted = |tile: &Arc<Tile>| {
+        let (wet, dry) = (tile.wet(), tile.dry().map(|stack| stack.height()));
+        let covered = |cell: &usize| {
+            dry.as_ref().is_some_and(|height| height[*cell] > 0.0)
+                || wet.iter().any(|(_, plane)| plane[*cell] > 0.0)
+        };
+        (0..TILE_CELLS).filter(covered).count() as u64
     };
-    tiles
-        .map(|tile| (0..TILE_CELLS).filter(|cell| painted(tile, *cell)).count() as u64)
-        .sum()
+    tiles.map(painted).sum()
 }

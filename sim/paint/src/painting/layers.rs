@@ -5,7 +5,7 @@ use std::sync::Arc;
 use maulstick_types::scene::Layer;
 
 use super::{PaintRefusal, Painting, Sheet};
-use crate::tile::{TileId, Version};
+use crate::tile::TileId;
 
 impl Painting {
     /// Dries the lower `share` of all wet paint of a surface into a new layer called `name`, and says
@@ -39,27 +39,10 @@ impl Painting {
                 "paint something first",
             ));
         }
-        self.begin_step("dry");
+        self.begin_step("dry", None);
         for (id, tile) in dried {
-            self.versions += 1;
-            let sheet = &mut self.sheets[place];
-            let dry = tile.dry().map_or(0.0, |stack| {
-                stack.height().iter().copied().fold(0.0, f32::max)
-            });
-            let wet = tile
-                .wet()
-                .iter()
-                .flat_map(|(_, plane)| plane.iter())
-                .copied();
-            sheet.top = sheet
-                .top
-                .max(dry + wet.fold(0.0, f32::max) * tile.wet().len() as f32);
-            let version = Version {
-                number: self.versions,
-                tile: Some(tile),
-            };
-            self.history
-                .replaced((surface, id), sheet.store.replace(id, version));
+            let before = self.put((surface, id), Some(tile));
+            self.history.replaced(None, (surface, id), before);
         }
         let name = if name.is_empty() {
             format!("layer {number}")
@@ -73,7 +56,7 @@ impl Painting {
         };
         self.scene.layers.push(layer);
         self.scene.version += 1;
-        self.history.end();
+        self.end_own_step();
         Ok(name)
     }
 
@@ -97,10 +80,10 @@ impl Painting {
                 &help,
             ));
         };
-        self.begin_step("opacity");
+        self.begin_step("opacity", None);
         self.scene.layers[place].opacity = opacity;
         self.layers_changed();
-        self.history.end();
+        self.end_own_step();
         Ok(())
     }
 

@@ -63,9 +63,10 @@ impl Painting {
     pub fn load(&mut self, brush: &str, mixture: &Mixture) -> Result<(), PaintRefusal> {
         self.brush(brush)?;
         let slots = self.slots(mixture)?;
-        self.begin_step(&format!("load {brush}"));
+        self.begin_step(&format!("load {brush}"), Some(brush));
         self.fill(brush, &[(&slots, Half::Both)])?;
-        self.history.end();
+        self.book(Some(brush));
+        self.end_step(|step| step.brush.as_deref() == Some(brush));
         Ok(())
     }
 
@@ -81,9 +82,10 @@ impl Painting {
     ) -> Result<(), PaintRefusal> {
         self.brush(brush)?;
         let (left, right) = (self.slots(left)?, self.slots(right)?);
-        self.begin_step(&format!("load {brush}"));
+        self.begin_step(&format!("load {brush}"), Some(brush));
         self.fill(brush, &[(&left, Half::Left), (&right, Half::Right)])?;
-        self.history.end();
+        self.book(Some(brush));
+        self.end_step(|step| step.brush.as_deref() == Some(brush));
         Ok(())
     }
 
@@ -94,12 +96,13 @@ impl Painting {
     ) -> Result<(), PaintRefusal> {
         let cell_m = self.sheets[0].cell_m;
         let track = self.brush(brush)?;
-        let left = track.load.take_all();
+        let load = Arc::make_mut(&mut track.load);
+        let left = load.take_all();
         let traits = BrushTraits::of(&track.file, cell_m, 1.0);
         for (slots, half) in parts {
-            track.load.fill(&track.head, &traits, slots, *half);
+            load.fill(&track.head, &traits, slots, *half);
         }
-        let given = track.load.counts();
+        let given = load.counts();
         self.ledger.to_cleaner(&left);
         self.ledger.from_tube(&given);
         Ok(())
@@ -124,10 +127,11 @@ impl Painting {
     /// [`PaintRefusal`] for an unknown brush.
     pub fn clean(&mut self, brush: &str) -> Result<(), PaintRefusal> {
         self.brush(brush)?;
-        self.begin_step(&format!("clean {brush}"));
-        let left = self.brush(brush)?.load.take_all();
+        self.begin_step(&format!("clean {brush}"), Some(brush));
+        let left = Arc::make_mut(&mut self.brush(brush)?.load).take_all();
         self.ledger.to_cleaner(&left);
-        self.history.end();
+        self.book(Some(brush));
+        self.end_step(|step| step.brush.as_deref() == Some(brush));
         Ok(())
     }
 

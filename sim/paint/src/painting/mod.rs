@@ -1,16 +1,21 @@
 //! The painting: surfaces, brushes, books. It does what it is told, in the order that it is told.
 
 mod books;
+mod keeping;
 mod layers;
 mod lighting;
 mod loads;
+mod makes;
 mod strokes;
 mod undo;
+mod versions;
 mod wells;
 
+pub use keeping::{Checkpoint, Restored};
+pub use versions::Named;
 pub use wells::WELL_M;
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
 use maulstick_brush::{BrushFile, Head};
@@ -26,11 +31,15 @@ use crate::light::studio_settings;
 use crate::load::BrushLoad;
 use crate::look::Look;
 use crate::model::{BrushTraits, PaintModel};
+use crate::page::{Page, Pager};
 use crate::path::PathStepper;
 use crate::relief::Relief;
 use crate::setup::{PaintingSetup, ground_reflectance, tooth_called};
 use crate::store::TileStore;
 use crate::window::Window;
+
+/// Most bytes of the history of a painting for which nothing else is said.
+pub const QUOTA: u64 = 2 << 30;
 
 /// Why something was not done, and what to do about it.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
@@ -81,7 +90,9 @@ struct Sheet {
 struct BrushTrack {
     file: BrushFile,
     head: Arc<Head>,
-    load: BrushLoad,
+    load: Arc<BrushLoad>,
+    /// The load that was last kept, and its page.
+    kept: Option<(Arc<BrushLoad>, Page<BrushLoad>)>,
     /// Epoch of the brush and number of the newest stroke.
     stroke: Option<(u32, u64)>,
     path: Option<(usize, PathStepper)>,
@@ -99,7 +110,17 @@ pub struct Painting {
     brushes: BTreeMap<String, BrushTrack>,
     model: Box<dyn PaintModel>,
     ledger: Ledger,
+    /// The books as far as their changes are booked for a step.
+    accounted: Ledger,
     history: History,
+    /// Most bytes of the history.
+    quota: u64,
+    named: BTreeMap<String, Named>,
+    /// Versions that came, changed or went since the document heard of them.
+    named_touched: BTreeSet<String>,
+    /// The version from which the painter goes on.
+    line: Option<String>,
+    pager: Arc<Pager>,
     versions: u64,
     steps: u64,
     footprint_cells: u64,
@@ -112,6 +133,18 @@ impl Painting {
     /// # Errors
     /// [`PaintRefusal`] where the setup is wrong.
     pub fn new(setup: &PaintingSetup, library: PaintLibrary) -> Result<Self, PaintRefusal> {
+        Self::paged(setup, library, Arc::default())
+    }
+
+    /// A new painting whose paint is in these pages.
+    ///
+    /// # Errors
+    /// As [`new`](Self::new).
+    pub fn paged(
+        setup: &PaintingSetup,
+        library: PaintLibrary,
+        pager: Arc<Pager>,
+    ) -> Result<Self, PaintRefusal> {
         setup.check(&library)?;
         let scene = setup.scene();
         let settings = studio_settings(&scene.light)?;
@@ -121,7 +154,7 @@ impl Painting {
             sheets.push(Sheet {
                 id: surface.id,
                 cell_m: surface.cell_m,
-                store: TileStore::new(surface.cells),
+                store: TileStore::paged(surface.cells, &pager),
                 bare: Arc::new(bare(surface, &studio, &library, None)?),
                 top: 0.0,
             });
@@ -134,7 +167,13 @@ impl Painting {
             brushes: BTreeMap::new(),
             model: Box::new(Impasto::default()),
             ledger: Ledger::default(),
+            accounted: Ledger::default(),
             history: History::default(),
+            quota: QUOTA,
+            named: BTreeMap::new(),
+            named_touched: BTreeSet::new(),
+            line: None,
+            pager,
             versions: 1,
             steps: 0,
             footprint_cells: 0,
@@ -207,13 +246,14 @@ impl Painting {
         match self.brushes.get_mut(name) {
             Some(track) => {
                 if head.strips() != track.head.strips() {
-                    track.load = BrushLoad::spread(head.strips(), &track.load.counts());
+                    track.load = BrushLoad::spread(head.strips(), &track.load.counts()).into();
                 }
                 (track.file, track.head, track.path) = (file, head, None);
             }
             None => {
                 let track = BrushTrack {
-                    load: BrushLoad::clean(head.strips()),
+                    load: BrushLoad::clean(head.strips()).into(),
+                    kept: None,
                     file,
                     head,
                     stroke: None,

@@ -6,6 +6,7 @@ use maulstick_types::brush::{BrushState, Solve, solve_flags};
 
 use super::{PaintRefusal, Painting};
 use crate::head::{Scale, Waypoint, low_bounds};
+use crate::history::{OpenStep, Place};
 use crate::load::Half;
 use crate::model::{BrushTraits, Step, Sweep};
 use crate::path::PathStepper;
@@ -27,10 +28,11 @@ impl Painting {
         epoch: u32,
         state: &BrushState,
     ) -> Result<(), PaintRefusal> {
-        for solve in &state.solves {
-            self.solve(brush, epoch, solve)?;
-        }
-        Ok(())
+        let solved = state.solves.iter();
+        let painted = solved.map(|solve| self.solve(brush, epoch, solve));
+        let painted: Result<(), PaintRefusal> = painted.collect();
+        self.book(Some(brush));
+        painted
     }
 
     pub(super) fn solve(
@@ -104,7 +106,7 @@ impl Painting {
     }
 
     pub(super) fn begin_stroke(&mut self, name: &str) -> Result<(), PaintRefusal> {
-        self.begin_step("stroke");
+        self.begin_step("stroke", Some(name));
         let track = self.brush(name)?;
         if track.loads.is_empty() {
             return Ok(());
@@ -129,9 +131,9 @@ impl Painting {
         let Some((from, to)) = low_bounds(&track.head, sweep.to, traits.half_width, height) else {
             return;
         };
-        if !self.history.is_open() {
+        if self.history.open_of(Some(name)).is_none() {
             // A command ended the stroke's undo step: the rest of the stroke is one of its own.
-            self.begin_step("stroke");
+            self.begin_step("stroke", Some(name));
         }
         if !self.reach(name, sheet, from, to) {
             return;
@@ -148,7 +150,7 @@ impl Painting {
             head: &track.head,
             sweep,
             bounds: (from, to),
-            load: &mut track.load,
+            load: Arc::make_mut(&mut track.load),
             traits,
         });
         self.sheets[sheet].top = self.sheets[sheet].top.max(window.top());
@@ -182,10 +184,31 @@ impl Painting {
             self.open_window(sheet, rect)
         });
         let opened = window.is_some();
+        if opened {
+            self.part_from_others(name, sheet, rect);
+        }
         if let Some(track) = self.brushes.get_mut(name) {
             track.window = window.map(|window| (sheet, window));
         }
         opened
+    }
+
+    /// Ends the open steps of other brushes that changed tiles of this brush's window: no two steps
+    /// change a tile at the same time.
+    fn part_from_others(&mut self, name: &str, sheet: usize, rect: TileRect) {
+        let surface = self.sheets[sheet].id;
+        let within = |(on, id): &Place| *on == surface && rect.contains(*id);
+        let shares =
+            |step: &OpenStep| step.brush.as_deref() != Some(name) && step.tiles.keys().any(within);
+        let ended = self.history.take_open(shares);
+        if ended.is_empty() {
+            return;
+        }
+        let after = self.rest();
+        for open in ended {
+            let step = self.finished(&open, &after);
+            self.history.push(step);
+        }
     }
 
     fn open_window(&mut self, sheet: usize, rect: TileRect) -> Option<Window> {
@@ -195,12 +218,12 @@ impl Painting {
 
     /// Writes what the windows hold back to the tiles.
     pub fn commit(&mut self) {
-        for track in self.brushes.values_mut() {
+        for (name, track) in &mut self.brushes {
             if let Some((sheet, window)) = &mut track.window {
                 let sheet = &mut self.sheets[*sheet];
                 let (id, history) = (sheet.id, &mut self.history);
                 window.commit(&mut sheet.store, &mut self.versions, |tile, version| {
-                    history.replaced((id, tile), version);
+                    history.replaced(Some(name), (id, tile), version.tile);
                 });
             }
         }

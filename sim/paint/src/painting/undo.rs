@@ -1,93 +1,258 @@
 //! Undo and redo.
 
 use std::collections::BTreeMap;
+use std::sync::Arc;
+
+use maulstick_types::scene::{Layer, Scene};
 
 use super::{PaintRefusal, Painting};
-use crate::history::{Rest, UndoStep};
+use crate::history::{Change, Deed, Held, Make, OpenStep, Place, Rest, Step, same};
+use crate::load::BrushLoad;
+use crate::page::Page;
 use crate::tile::Version;
 
+/// Which way a step is taken.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Way {
+    Back,
+    Forth,
+}
+
+/// What the surfaces of a scene are made of.
+pub(super) fn makes(scene: &Scene) -> Vec<Make> {
+    let surfaces = scene.surfaces.iter();
+    surfaces
+        .map(|surface| Make {
+            surface: surface.id,
+            ground: surface.ground.clone(),
+            tooth: surface.tooth.clone(),
+            tooth_seed: surface.tooth_seed,
+        })
+        .collect()
+}
+
 impl Painting {
-    pub(super) fn rest(&self) -> Rest {
-        let loads = self
-            .brushes
-            .iter()
-            .map(|(name, track)| (name.clone(), track.load.clone()));
+    pub(super) fn rest(&mut self) -> Rest {
+        let mut loads = BTreeMap::new();
+        for (name, track) in &mut self.brushes {
+            let kept = track.kept.as_ref();
+            let page = match kept.filter(|(content, _)| Arc::ptr_eq(content, &track.load)) {
+                Some((_, page)) => page.clone(),
+                None => {
+                    let before = kept.map(|(_, page)| page);
+                    let page = Page::new(&self.pager, Arc::clone(&track.load), before);
+                    track.kept = Some((Arc::clone(&track.load), page.clone()));
+                    page
+                }
+            };
+            loads.insert(name.clone(), page);
+        }
         Rest {
-            loads: loads.collect(),
+            loads,
             ledger: self.ledger.clone(),
             layers: self.scene.layers.clone(),
+            makes: makes(&self.scene),
         }
     }
 
-    pub(super) fn begin_step(&mut self, what: &str) {
-        self.close_windows();
+    /// Begins a step of a brush, or of none: one for all who paint, then.
+    pub(super) fn begin_step(&mut self, what: &str, brush: Option<&str>) {
+        self.book(brush);
+        match brush {
+            Some(brush) => self.end_step(|step| step.brush.as_deref() == Some(brush)),
+            None => self.end_step(|_| true),
+        }
         let rest = self.rest();
-        self.history.begin(what, rest);
+        self.history.begin(what, brush, rest);
     }
 
-    /// Takes the newest step back and says what it was.
-    ///
-    /// # Errors
-    /// [`PaintRefusal`] where there is none.
-    pub fn undo(&mut self) -> Result<String, PaintRefusal> {
+    /// Ends the open steps of which `which` says so.
+    pub(super) fn end_step(&mut self, which: impl Fn(&OpenStep) -> bool) {
         self.close_windows();
-        let step = self.history.take_undo().ok_or_else(|| {
-            PaintRefusal::new("there is nothing to undo".into(), "paint something first")
-        })?;
-        let what = step.what.clone();
-        let swapped = self.swap(step);
-        self.history.push_redo(swapped);
-        Ok(what)
+        let after = self.rest();
+        let ended = self.history.take_open(which);
+        let ends = !ended.is_empty();
+        for open in ended {
+            let step = self.finished(&open, &after);
+            self.history.push(step);
+        }
+        if ends {
+            self.keep_to_quota();
+        }
     }
 
-    /// Does the newest undone step again and says what it was.
+    /// Ends the step that is nobody's brush's.
+    pub(super) fn end_own_step(&mut self) {
+        self.end_step(|step| step.brush.is_none());
+    }
+
+    /// Books what was booked since the last call for the step of a brush, or of none.
+    pub(super) fn book(&mut self, brush: Option<&str>) {
+        let booked = self.ledger.since(&self.accounted);
+        self.accounted = self.ledger.clone();
+        if let Some(open) = self.history.open_of(brush) {
+            open.booked.add(&booked);
+        }
+    }
+
+    /// A step as it is if it ends now. A brush's step leaves what other brushes carry alone.
+    pub(super) fn finished(&self, open: &OpenStep, after: &Rest) -> Step {
+        let tiles = open.tiles.iter().map(|(place, before)| {
+            let change = Change {
+                before: before.clone(),
+                after: self.held(*place),
+            };
+            (*place, change)
+        });
+        let mut deed = Deed::between(&open.before, after, open.booked.clone());
+        if let Some(brush) = &open.brush {
+            deed.loads.retain(|name, _| name == brush);
+            (deed.layers, deed.makes) = (None, None);
+        }
+        Step {
+            id: open.id,
+            what: open.what.clone(),
+            brush: open.brush.clone(),
+            operations: 1,
+            done: true,
+            tiles: Arc::new(tiles.collect()),
+            deed: Arc::new(deed),
+        }
+    }
+
+    /// The steps that are not finished, as they are if they end now.
+    pub(super) fn open_steps(&mut self) -> Vec<Step> {
+        let after = self.rest();
+        let open = self.history.open();
+        open.map(|open| self.finished(open, &after)).collect()
+    }
+
+    /// What lies on a tile now.
+    pub(super) fn held(&self, (surface, id): Place) -> Held {
+        self.sheet(surface)?.store.version(id).tile.clone()
+    }
+
+    /// Takes the newest step back, of a brush or of all, and says what it was.
     ///
     /// # Errors
-    /// [`PaintRefusal`] where there is none.
-    pub fn redo(&mut self) -> Result<String, PaintRefusal> {
-        self.close_windows();
-        let step = self.history.take_redo().ok_or_else(|| {
-            PaintRefusal::new(
+    /// [`PaintRefusal`] where there is none, or where something was painted over it since.
+    pub fn undo(&mut self, brush: Option<&str>) -> Result<String, PaintRefusal> {
+        if let Some(brush) = brush {
+            self.brush(brush)?;
+        }
+        self.end_step(|_| true);
+        let Some(step) = self.history.last_done(brush).cloned() else {
+            let whose = brush.map_or(String::new(), |brush| format!(" of brush '{brush}'"));
+            return Err(PaintRefusal::new(
+                format!("there is nothing{whose} to undo"),
+                "paint something first",
+            ));
+        };
+        self.walk(&step, Way::Back)
+    }
+
+    /// Does the newest undone step again, of a brush or of all, and says what it was.
+    ///
+    /// # Errors
+    /// [`PaintRefusal`] where there is none, or where something was painted over it since.
+    pub fn redo(&mut self, brush: Option<&str>) -> Result<String, PaintRefusal> {
+        if let Some(brush) = brush {
+            self.brush(brush)?;
+        }
+        self.end_step(|_| true);
+        let Some(step) = self.history.last_undone(brush).cloned() else {
+            return Err(PaintRefusal::new(
                 "there is nothing to redo".into(),
                 "only what was undone and not painted over can be redone",
-            )
-        })?;
-        let what = step.what.clone();
-        let swapped = self.swap(step);
-        self.history.push_undo(swapped);
-        Ok(what)
+            ));
+        };
+        self.walk(&step, Way::Forth)
     }
 
-    /// Exchanges a step's versions and loads with those of now.
-    pub(super) fn swap(&mut self, step: UndoStep) -> UndoStep {
-        let rest = self.rest();
-        let mut tiles = BTreeMap::new();
-        for ((surface, id), version) in step.tiles {
-            let Some(sheet) = self.sheets.iter_mut().find(|sheet| sheet.id == surface) else {
-                continue;
-            };
-            self.versions += 1;
-            let restored = Version {
-                number: self.versions,
-                tile: version.tile,
-            };
-            tiles.insert((surface, id), sheet.store.replace(id, restored));
+    fn walk(&mut self, step: &Step, way: Way) -> Result<String, PaintRefusal> {
+        let (from, to) = match way {
+            Way::Back => (1, 0),
+            Way::Forth => (0, 1),
+        };
+        let held = |change: &Change, end: usize| match end {
+            0 => change.before.clone(),
+            _ => change.after.clone(),
+        };
+        let deed = &step.deed;
+        let mut tiles = step.tiles.iter();
+        let over = tiles.any(|(place, change)| !same(&self.held(*place), &held(change, from)));
+        let mut loads = deed.loads.iter();
+        let other_load = loads.any(|(name, pages)| !self.carries(name, &pages[from]));
+        let layers = deed.layers.as_ref();
+        let made = deed.makes.as_ref();
+        let other_rest = layers.is_some_and(|ends| ends[from] != self.scene.layers)
+            || made.is_some_and(|ends| ends[from] != makes(&self.scene));
+        if over || other_load || other_rest {
+            let other = self.history.last_done(None);
+            let other = other.map_or("something".to_owned(), |step| format!("'{}'", step.what));
+            return Err(PaintRefusal::new(
+                format!("'{}' lies under {other}, which came later", step.what),
+                "undo that first: `maulstick undo` without a brush takes the newest step of all",
+            ));
         }
-        for (name, load) in step.rest.loads {
-            if let Some(track) = self.brushes.get_mut(&name) {
-                track.load = load.onto(track.head.strips());
-                track.path = None;
-            }
+        for (place, change) in &*step.tiles {
+            self.put(*place, held(change, to));
         }
-        self.ledger = step.rest.ledger;
-        if self.scene.layers != step.rest.layers {
-            self.scene.layers = step.rest.layers;
+        for (name, pages) in &deed.loads {
+            self.carry(name, &pages[to]);
+        }
+        let times = if way == Way::Forth { 1 } else { -1 };
+        self.ledger.book(&deed.booked, times);
+        self.accounted = self.ledger.clone();
+        self.turn_rest(layers.map(|ends| &ends[to]), made.map(|ends| &ends[to]));
+        match way {
+            Way::Back => self.history.undone(step.id),
+            Way::Forth => self.history.redone(step.id),
+        }
+        Ok(step.what.clone())
+    }
+
+    /// Whether a brush carries what is on a page; of a brush that is gone nobody minds.
+    fn carries(&self, name: &str, page: &Page<BrushLoad>) -> bool {
+        self.brushes.get(name).is_none_or(|track| {
+            let kept = track.kept.as_ref();
+            kept.is_some_and(|(load, kept)| kept.is(page) && Arc::ptr_eq(load, &track.load))
+                || track.load.counts() == page.get().counts()
+        })
+    }
+
+    /// Has a brush carry what is on a page.
+    pub(super) fn carry(&mut self, name: &str, page: &Page<BrushLoad>) {
+        let Some(track) = self.brushes.get_mut(name) else {
+            return;
+        };
+        let load = page.get();
+        track.path = None;
+        if load.texels() == track.load.texels() {
+            track.load = Arc::clone(&load);
+            track.kept = Some((load, page.clone()));
+        } else {
+            track.load = Arc::new((*load).clone().onto(track.head.strips()));
+            track.kept = None;
+        }
+    }
+
+    /// Puts a tile in the place of another.
+    pub(super) fn put(&mut self, (surface, id): Place, tile: Held) -> Held {
+        self.versions += 1;
+        let number = self.versions;
+        let sheet = self.sheets.iter_mut().find(|sheet| sheet.id == surface)?;
+        sheet.store.replace(id, Version { number, tile }).tile
+    }
+
+    /// Makes layers and surfaces what they are to be.
+    pub(super) fn turn_rest(&mut self, layers: Option<&Vec<Layer>>, makes: Option<&Vec<Make>>) {
+        if let Some(layers) = layers {
+            self.scene.layers.clone_from(layers);
             self.layers_changed();
         }
-        UndoStep {
-            what: step.what,
-            tiles,
-            rest,
+        if let Some(makes) = makes {
+            self.remake(makes);
         }
     }
 
@@ -95,5 +260,29 @@ impl Painting {
     #[must_use]
     pub fn history_depth(&self) -> (usize, usize) {
         self.history.depth()
+    }
+
+    /// The steps of the past.
+    #[must_use]
+    pub fn history(&self) -> &crate::history::History {
+        &self.history
+    }
+
+    /// How many bytes the history may take; beyond that its oldest steps are merged.
+    pub fn set_quota(&mut self, bytes: u64) {
+        self.quota = bytes;
+        self.keep_to_quota();
+    }
+
+    /// Merges the oldest steps until the history keeps to its quota; all in one at the most.
+    fn keep_to_quota(&mut self) {
+        if self.pager.counts().held() <= self.quota {
+            return;
+        }
+        let shown = self.sheets.iter().map(|sheet| sheet.store.held_bytes());
+        let shown: u64 = shown.sum();
+        while self.pager.counts().held().saturating_sub(shown) > self.quota
+            && self.history.merge_oldest()
+        {}
     }
 }

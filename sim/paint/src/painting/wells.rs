@@ -3,6 +3,8 @@
 //! Under the brush a well's cells hold its mixture, fresh: what was pushed into them goes to the
 //! cleaner, what was taken comes from the tubes. A brush that touches the cleaner is clean.
 
+use std::sync::Arc;
+
 use maulstick_types::Mixture;
 use maulstick_types::scene::{Well, WellKind};
 
@@ -107,7 +109,7 @@ impl Painting {
             return;
         }
         renew(window, &cells, &[0; SLOTS], &mut self.ledger);
-        let left = track.load.take_all();
+        let left = Arc::make_mut(&mut track.load).take_all();
         self.ledger.to_cleaner(&left);
     }
 }

@@ -1,0 +1,1 @@
+//! The painting as a file.

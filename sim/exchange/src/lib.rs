@@ -1,0 +1,1 @@
+//! Paintings to and from other programs.

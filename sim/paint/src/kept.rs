@@ -1,0 +1,98 @@
+//! What a document holds of a painting besides its tiles, its history and its versions.
+
+use std::collections::BTreeMap;
+
+use maulstick_types::Mixture;
+use maulstick_types::command::Outcome;
+use maulstick_types::scene::Scene;
+use serde::{Deserialize, Serialize};
+
+use crate::head::{KeptWaypoint, Scale};
+use crate::ledger::Ledger;
+
+/// A brush as the painting knows it.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct KeptBrush {
+    /// Its file, TOML; in the document the file's hash.
+    pub file: String,
+    /// The page of what it carries.
+    pub load: u64,
+    /// Epoch of the brush and number of the newest stroke.
+    pub stroke: Option<(u32, u64)>,
+    /// Where it is on which surface, while it paints.
+    pub path: Option<(u32, Scale, KeptWaypoint)>,
+    /// What its next strokes take in turn, and which is next.
+    pub loads: Vec<Mixture>,
+    /// See `loads`.
+    pub next_load: usize,
+}
+
+/// A painting besides its tiles.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct KeptPainting {
+    /// The desk.
+    pub scene: Scene,
+    /// The paints, as a file; in the document the file's hash.
+    pub paints: String,
+    /// Most quanta that a cell of a surface ever had.
+    pub tops: BTreeMap<u32, f32>,
+    /// The brushes, by name.
+    pub brushes: BTreeMap<String, KeptBrush>,
+    /// The books.
+    pub ledger: Ledger,
+    /// Number of the newest tile version.
+    pub versions: u64,
+    /// Number of the next page.
+    pub next_page: u64,
+    /// Number of the newest step.
+    pub step: u64,
+    /// The steps that are not finished.
+    pub open_steps: Vec<u64>,
+    /// Steps that were undone, the last one at the end.
+    pub undone: Vec<u64>,
+    /// The version from which the painter goes on.
+    pub line: Option<String>,
+    /// Steps of the paint model.
+    pub steps: u64,
+    /// Cells of its footprints.
+    pub footprint_cells: u64,
+    /// Time of the first and of the last state, ns.
+    pub span_ns: Option<(u64, u64)>,
+}
+
+/// A take that may paint.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct KeptTake {
+    /// Its player.
+    pub device: u32,
+    /// Epoch of its playing.
+    pub epoch: u32,
+    /// Whether its last state has come.
+    pub ended: bool,
+}
+
+/// The newest reply to a client.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct KeptAnswer {
+    /// The command's number.
+    pub number: u64,
+    /// What became of it.
+    pub outcome: Outcome,
+    /// Its place among all replies.
+    pub age: u64,
+}
+
+/// The sequencer at a place of its journal.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct KeptSequencer {
+    /// Index of the next journal entry.
+    pub next: u64,
+    /// Takes that may paint, by brush.
+    pub takes: BTreeMap<String, KeptTake>,
+    /// Players that are gone.
+    pub gone: Vec<u32>,
+    /// How far the states of brushes are consumed: source, epoch, next.
+    pub consumed: Vec<(u32, u32, u64)>,
+    /// Replies, by client.
+    pub answers: BTreeMap<u64, KeptAnswer>,
+}

@@ -1,0 +1,281 @@
+//! What a painting hands to its document, and how it comes back from there.
+
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
+use maulstick_brush::{BrushFile, Head};
+use maulstick_optics::{PaintLibrary, Studio};
+
+use super::lighting::paint_slot;
+use super::undo::makes;
+use super::{BrushTrack, Named, PaintRefusal, Painting, QUOTA, Sheet, bare};
+use crate::head::Waypoint;
+use crate::history::{History, Place, Rest, Step};
+use crate::impasto::Impasto;
+use crate::kept::{KeptBrush, KeptPainting};
+use crate::light::studio_settings;
+use crate::load::BrushLoad;
+use crate::look::Look;
+use crate::page::{Page, Pager};
+use crate::path::PathStepper;
+use crate::store::TileStore;
+use crate::tile::Version;
+
+/// What changed since the document last heard of it; a moment of the painting, whole.
+#[derive(Clone, Debug)]
+pub struct Checkpoint {
+    /// The painting besides its tiles.
+    pub kept: KeptPainting,
+    /// Tiles that changed.
+    pub tiles: Vec<(Place, Version)>,
+    /// What the brushes carry, by name.
+    pub loads: BTreeMap<String, Page<BrushLoad>>,
+    /// Steps that came or changed; those that are not finished are among them.
+    pub steps: Vec<Step>,
+    /// Steps that went.
+    pub gone_steps: Vec<u64>,
+    /// Versions that came or changed.
+    pub named: Vec<Named>,
+    /// Versions that went.
+    pub gone_named: Vec<String>,
+    /// Pages and dry layers that nobody remembers.
+    pub dead: Vec<u64>,
+}
+
+/// A painting as it comes from its document.
+#[derive(Debug)]
+pub struct Restored {
+    /// The painting besides its tiles, with the files of its brushes.
+    pub kept: KeptPainting,
+    /// Its tiles.
+    pub tiles: Vec<(Place, Version)>,
+    /// What the brushes carry, by name.
+    pub loads: BTreeMap<String, Page<BrushLoad>>,
+    /// The steps of its history.
+    pub steps: Vec<Step>,
+    /// Its versions.
+    pub named: Vec<Named>,
+}
+
+impl Painting {
+    /// What changed since the last call, where the newest tile version was `since`.
+    pub fn checkpoint(&mut self, since: u64) -> Checkpoint {
+        self.commit();
+        let loads = self.rest().loads;
+        let (mut steps, gone_steps) = self.history.take_touched();
+        let open = self.open_steps();
+        let open_steps = open.iter().map(|step| step.id).collect();
+        steps.extend(open);
+        let (mut named, mut gone_named) = (Vec::new(), Vec::new());
+        for name in std::mem::take(&mut self.named_touched) {
+            match self.named.get(&name) {
+                Some(version) => named.push(version.clone()),
+                None => gone_named.push(name),
+            }
+        }
+        let mut tiles = Vec::new();
+        for sheet in &self.sheets {
+            let changed = sheet
+                .store
+                .iter()
+                .filter(|(_, version)| version.number > since);
+            tiles.extend(changed.map(|(id, version)| ((sheet.id, id), version.clone())));
+        }
+        let (step, undone) = self.history.position();
+        let kept = KeptPainting {
+            scene: self.scene.clone(),
+            paints: self.library.text().to_owned(),
+            tops: self
+                .sheets
+                .iter()
+                .map(|sheet| (sheet.id, sheet.top))
+                .collect(),
+            brushes: self.kept_brushes(&loads),
+            ledger: self.ledger.clone(),
+            versions: self.versions,
+            next_page: self.pager.next_number(),
+            step,
+            open_steps,
+            undone: undone.to_vec(),
+            line: self.line.clone(),
+            steps: self.steps,
+            footprint_cells: self.footprint_cells,
+            span_ns: self.span_ns,
+        };
+        Checkpoint {
+            kept,
+            tiles,
+            loads,
+            steps,
+            gone_steps,
+            named,
+            gone_named,
+            dead: self.pager.take_dead(),
+        }
+    }
+
+    fn kept_brushes(
+        &self,
+        loads: &BTreeMap<String, Page<BrushLoad>>,
+    ) -> BTreeMap<String, KeptBrush> {
+        let brushes = self.brushes.iter().map(|(name, track)| {
+            let path = track.path.as_ref().and_then(|(sheet, path)| {
+                let surface = self.sheets.get(*sheet)?.id;
+                Some((surface, path.scale(), path.at().into()))
+            });
+            let kept = KeptBrush {
+                file: track.file.to_toml().unwrap_or_default(),
+                load: loads.get(name).map_or(0, Page::id),
+                stroke: track.stroke,
+                path,
+                loads: track.loads.clone(),
+                next_load: track.next_load,
+            };
+            (name.clone(), kept)
+        });
+        brushes.collect()
+    }
+
+    /// A painting as its document has it.
+    ///
+    /// # Errors
+    /// [`PaintRefusal`] where what was kept does not hold together.
+    pub fn restore(
+        restored: Restored,
+        library: PaintLibrary,
+        pager: Arc<Pager>,
+    ) -> Result<Self, PaintRefusal> {
+        let kept = restored.kept;
+        let scene = kept.scene;
+        let mut look = Look::new(Studio::new(
+            &studio_settings(&scene.light)?,
+            library.paints(),
+        ));
+        for (place, slot) in scene.paints.iter().enumerate() {
+            let paint = library.find(&slot.name).map_err(PaintRefusal::paint)?;
+            paint_slot(&mut look.studio, paint, slot.file_hash);
+            if paint.is_thinner() {
+                look.thinner = Some(place);
+            }
+        }
+        look.set_layers(&scene.layers);
+        let mut sheets = Vec::new();
+        for surface in &scene.surfaces {
+            sheets.push(Sheet {
+                id: surface.id,
+                cell_m: surface.cell_m,
+                store: TileStore::paged(surface.cells, &pager),
+                bare: Arc::new(bare(surface, &look.studio, &library, None)?),
+                top: kept.tops.get(&surface.id).copied().unwrap_or(0.0),
+            });
+        }
+        for ((surface, id), version) in restored.tiles {
+            let sheet = sheets.iter_mut().find(|sheet| sheet.id == surface);
+            if let Some(sheet) = sheet
+                && id.x < sheet.store.grid()[0]
+                && id.y < sheet.store.grid()[1]
+            {
+                sheet.store.replace(id, version);
+            }
+        }
+        let mut brushes = BTreeMap::new();
+        for (name, brush) in kept.brushes {
+            let load = restored.loads.get(&name).cloned();
+            let track = restored_track(&name, brush, load, &sheets)?;
+            brushes.insert(name, track);
+        }
+        let (open, steps) =
+            (restored.steps.into_iter()).partition(|step| kept.open_steps.contains(&step.id));
+        let rest = Rest {
+            loads: restored.loads,
+            ledger: kept.ledger.clone(),
+            layers: scene.layers.clone(),
+            makes: makes(&scene),
+        };
+        let open: Vec<Step> = open;
+        let open = open.into_iter().map(|step| step.reopened(&rest)).collect();
+        let history = History::restored(kept.step, steps, kept.undone, open);
+        Ok(Self {
+            scene,
+            library,
+            look: Arc::new(look),
+            sheets,
+            brushes,
+            model: Box::new(Impasto::default()),
+            accounted: kept.ledger.clone(),
+            ledger: kept.ledger,
+            history,
+            quota: QUOTA,
+            named: restored
+                .named
+                .into_iter()
+                .map(|version| (version.name.clone(), version))
+                .collect(),
+            named_touched: Default::default(),
+            line: kept.line,
+            pager,
+            versions: kept.versions,
+            steps: kept.steps,
+            footprint_cells: kept.footprint_cells,
+            span_ns: kept.span_ns,
+        })
+    }
+
+    /// Forgets where the brushes are: the next states begin their ways anew.
+    pub fn lift_brushes(&mut self) {
+        self.close_windows();
+        self.brushes
+            .values_mut()
+            .for_each(|track| track.path = None);
+    }
+
+    /// Numbers tile versions from `least` on.
+    pub fn skip_versions(&mut self, least: u64) {
+        self.versions = self.versions.max(least);
+    }
+
+    /// The pages of the painting.
+    #[must_use]
+    pub fn pager(&self) -> &Arc<Pager> {
+        &self.pager
+    }
+}
+
+fn restored_track(
+    name: &str,
+    brush: KeptBrush,
+    load: Option<Page<BrushLoad>>,
+    sheets: &[Sheet],
+) -> Result<BrushTrack, PaintRefusal> {
+    let file = BrushFile::parse(&brush.file).map_err(|error| {
+        PaintRefusal::new(
+            format!("the file of brush '{name}' in the document is wrong: {error}"),
+            "`maulstick painting recover` takes out what is whole",
+        )
+    })?;
+    let head = Arc::new(Head::of(&file));
+    let path = brush.path.and_then(|(surface, scale, at)| {
+        let sheet = sheets.iter().position(|sheet| sheet.id == surface)?;
+        Some((sheet, PathStepper::begin(&head, Waypoint::from(at), scale)))
+    });
+    let strips = head.strips();
+    let content = load.as_ref().map(Page::get);
+    let (load, kept) = match (content, load) {
+        (Some(content), Some(page)) if content.texels() == BrushLoad::clean(strips).texels() => {
+            (Arc::clone(&content), Some((content, page)))
+        }
+        (Some(content), _) => (Arc::new((*content).clone().onto(strips)), None),
+        _ => (Arc::new(BrushLoad::clean(strips)), None),
+    };
+    Ok(BrushTrack {
+        file,
+        head,
+        load,
+        kept,
+        stroke: brush.stroke,
+        path,
+        window: None,
+        loads: brush.loads,
+        next_load: brush.next_load,
+    })
+}

@@ -1,0 +1,160 @@
+//! Named versions: the whole painting as it was at a moment.
+
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
+use super::{PaintRefusal, Painting};
+use crate::history::{Held, Place, Rest, same};
+use crate::load::BrushLoad;
+
+/// A painting as it was.
+#[derive(Clone, Debug)]
+pub struct Named {
+    /// Its name.
+    pub name: String,
+    /// The version that it was painted from.
+    pub parent: Option<String>,
+    /// Its tiles, where something was painted.
+    pub tiles: Arc<BTreeMap<Place, Held>>,
+    /// What it was besides.
+    pub rest: Rest,
+}
+
+impl Painting {
+    /// The versions, by name.
+    pub fn named(&self) -> impl Iterator<Item = &Named> {
+        self.named.values()
+    }
+
+    /// The version from which the painter goes on.
+    #[must_use]
+    pub fn line(&self) -> Option<&str> {
+        self.line.as_deref()
+    }
+
+    fn version(&self, name: &str) -> Result<&Named, PaintRefusal> {
+        self.named.get(name).ok_or_else(|| {
+            let names: Vec<&str> = self.named.keys().map(String::as_str).collect();
+            let help = match maulstick_types::nearest(name, names.iter().copied()) {
+                None => "this painting has none yet: keep one first".to_owned(),
+                Some(_) => format!("there are: {}", names.join(", ")),
+            };
+            PaintRefusal::new(format!("there is no version called '{name}'"), &help)
+        })
+    }
+
+    fn check_new(&self, name: &str) -> Result<(), PaintRefusal> {
+        match self.named.contains_key(name) {
+            true => Err(PaintRefusal::new(
+                format!("there is a version called '{name}' already"),
+                "choose another name, or forget that version first",
+            )),
+            false => Ok(()),
+        }
+    }
+
+    /// All tiles where something was painted.
+    fn painted(&self) -> BTreeMap<Place, Held> {
+        let mut tiles = BTreeMap::new();
+        for sheet in &self.sheets {
+            let versions = sheet.store.iter();
+            let painted = versions.filter(|(_, version)| version.tile.is_some());
+            tiles.extend(painted.map(|(id, version)| ((sheet.id, id), version.tile.clone())));
+        }
+        tiles
+    }
+
+    /// Keeps the painting as it is.
+    ///
+    /// # Errors
+    /// [`PaintRefusal`] where there is a version of that name.
+    pub fn keep(&mut self, name: &str) -> Result<(), PaintRefusal> {
+        self.check_new(name)?;
+        self.end_step(|_| true);
+        let named = Named {
+            name: name.to_owned(),
+            parent: self.line.clone(),
+            tiles: Arc::new(self.painted()),
+            rest: self.rest(),
+        };
+        self.line = Some(name.to_owned());
+        self.named_touched.insert(name.to_owned());
+        self.named.insert(name.to_owned(), named);
+        Ok(())
+    }
+
+    /// Makes the painting as it was in a version: a step that can be undone.
+    ///
+    /// # Errors
+    /// [`PaintRefusal`] for an unknown version.
+    pub fn return_to(&mut self, name: &str) -> Result<(), PaintRefusal> {
+        let to = self.version(name)?.clone();
+        self.begin_step(&format!("return to '{name}'"), None);
+        let before = self.rest();
+        let now = self.painted();
+        let nowhere = now.keys().filter(|place| !to.tiles.contains_key(place));
+        let cleared: Vec<Place> = nowhere.copied().collect();
+        let kept = to.tiles.iter().map(|(place, held)| (*place, held.clone()));
+        for (place, held) in kept.chain(cleared.into_iter().map(|place| (place, None))) {
+            if !same(&self.held(place), &held) {
+                let before = self.put(place, held);
+                self.history.replaced(None, place, before);
+            }
+        }
+        // Its books know nothing of brushes that came later.
+        for (name, track) in &mut self.brushes {
+            if !to.rest.loads.contains_key(name) {
+                track.load = Arc::new(BrushLoad::clean(track.head.strips()));
+            }
+        }
+        for (name, page) in &to.rest.loads {
+            self.carry(name, page);
+        }
+        self.ledger.clone_from(&to.rest.ledger);
+        self.book(None);
+        let layers = (before.layers != to.rest.layers).then_some(&to.rest.layers);
+        let makes = (before.makes != to.rest.makes).then_some(&to.rest.makes);
+        self.turn_rest(layers, makes);
+        self.end_own_step();
+        self.line = Some(name.to_owned());
+        Ok(())
+    }
+
+    /// Begins a version from another one: the painting becomes as it was there.
+    ///
+    /// # Errors
+    /// [`PaintRefusal`] where there is no such version, or one of the new name.
+    pub fn branch(&mut self, from: &str, name: &str) -> Result<(), PaintRefusal> {
+        self.check_new(name)?;
+        let begun = Named {
+            name: name.to_owned(),
+            parent: Some(from.to_owned()),
+            ..self.version(from)?.clone()
+        };
+        self.return_to(from)?;
+        self.line = Some(name.to_owned());
+        self.named_touched.insert(name.to_owned());
+        self.named.insert(name.to_owned(), begun);
+        Ok(())
+    }
+
+    /// Forgets a version; those painted from it count as painted from what it was painted from.
+    ///
+    /// # Errors
+    /// [`PaintRefusal`] for an unknown version.
+    pub fn forget(&mut self, name: &str) -> Result<(), PaintRefusal> {
+        let parent = self.version(name)?.parent.clone();
+        self.named.remove(name);
+        self.named_touched.insert(name.to_owned());
+        for other in self.named.values_mut() {
+            if other.parent.as_deref() == Some(name) {
+                other.parent.clone_from(&parent);
+                self.named_touched.insert(other.name.clone());
+            }
+        }
+        if self.line.as_deref() == Some(name) {
+            self.line = parent;
+        }
+        Ok(())
+    }
+}
