@@ -4,8 +4,8 @@ use clap::{Parser, Subcommand};
 use maulstick_rig::Fault;
 
 use crate::commands::{
-    bench, brush, control, demo, endpoint, fit, import, layers, light, matching, mix, paints,
-    render, schema, take,
+    bench, brush, control, demo, endpoint, fit, import, layers, light, matching, mix, painting,
+    paints, render, schema, surface, take,
 };
 use crate::up;
 
@@ -55,6 +55,15 @@ enum Command {
     /// Shows the brushes
     #[command(subcommand)]
     Brush(brush::BrushCommand),
+    /// Shows, exports, imports, repairs and packs paintings, and keeps versions of them
+    #[command(subcommand)]
+    Painting(painting::PaintingCommand),
+    /// Lays a film of wet paint over the canvas of a running rig
+    Fill(surface::FillOptions),
+    /// Gives the canvas of a running rig another ground
+    Ground(surface::GroundOptions),
+    /// Gives the canvas of a running rig another tooth
+    Tooth(surface::ToothOptions),
     /// Lists the paints
     Paints(paints::PaintsOptions),
     /// Mixes paints and shows their colour
@@ -90,6 +99,10 @@ pub fn run() -> Result<i32, Fault> {
         Command::Endpoint(options) => endpoint::run(&options),
         Command::Schema(options) => schema::run(&options),
         Command::Brush(command) => brush::run(&command),
+        Command::Painting(command) => painting::run(&command),
+        Command::Fill(options) => surface::fill(&options),
+        Command::Ground(options) => surface::ground(&options),
+        Command::Tooth(options) => surface::tooth(&options),
         Command::Paints(options) => paints::run(&options),
         Command::Mix(options) => mix::run(&options),
         Command::Match(options) => matching::run(&options),

@@ -12,19 +12,20 @@
 //! | [`swatch`] | colours in the terminal |
 //! | [`chart`] | the mixing chart, and one mixture by four ways of mixing |
 //! | [`sheet`] | the sheet of brushes and their marks |
+//! | [`document`] | paintings in files |
 //! | [`performance`] | what `render` and `up --play` share: take, brush, loads, canvas |
 
 pub mod chart;
 pub mod cli;
 pub mod commands;
 pub mod destination;
+pub mod document;
 pub mod nodes;
 pub mod page;
 pub mod performance;
 pub mod sheet;
 pub mod swatch;
 pub mod up;
-
 pub mod viewing;
 
 use maulstick_rig::Fault;

@@ -10,13 +10,14 @@ use maulstick_bus::RigFolder;
 use maulstick_bus::typed::random_epoch;
 use maulstick_device::Take;
 use maulstick_device::player::{self, PlayerSettings, Rate};
+use maulstick_document::{Document, DocumentError};
 use maulstick_gpu::{Choice, Device, GpuFilms};
 use maulstick_haptic::daemon::{self, HapticSettings};
 use maulstick_nodes::frames::FrameServer;
 use maulstick_nodes::worker::Fallen;
 use maulstick_nodes::{BrushNode, BrushSettings, PaintNode, Worker};
 use maulstick_optics::backend::{CpuFilms, FilmBackend};
-use maulstick_paint::Painting;
+use maulstick_paint::{Painting, Sequencer};
 use maulstick_rig::config::{FOREIGN_PRIORITY, MOUSE_PRIORITY, PLAYER_PRIORITY, RigConfig};
 use maulstick_rig::member::log_to_stderr;
 use maulstick_rig::{Fault, Member, MemberArgs};
@@ -25,6 +26,7 @@ use nix::sys::prctl::set_pdeathsig;
 use nix::sys::signal::Signal;
 
 use crate::destination::{VIEW, export};
+use crate::document::{go_on, wrong};
 use crate::performance::{brush_file, library_from, painting_setup, refused};
 
 /// Name of the mouse over the window as a device.
@@ -155,21 +157,19 @@ struct PaintOptions {
 pub fn paint() -> Result<i32, Fault> {
     let options = PaintOptions::parse();
     let mut member = options.node.join("paint", Signal::SIGKILL)?;
-    let library = library_from(member.config.paint.paints.as_deref())?;
-    let setup = painting_setup(&member.config, &library)?;
-    let painting = Painting::new(&setup, library).map_err(refused)?;
+    let (document, sequencer, since) = painting(&member.config)?;
     let origin = member.origin("paint");
     let bus = Arc::clone(&member.bus);
-    let mut node = PaintNode::new(
-        Arc::clone(&bus),
-        &member.topics,
-        &member.wake,
-        origin,
-        painting,
-    )?
-    .exporting(export(&member.config.view, VIEW)?);
+    let (topics, wake) = (&member.topics, &member.wake);
+    let mut node = PaintNode::going_on(Arc::clone(&bus), topics, wake, origin, sequencer)?
+        .exporting(export(&member.config.view, VIEW)?);
     let (topic, feed) = (member.topics.frame(), node.feed());
-    let frames = FrameServer::new(bus, &topic, feed.clone(), &member.wake, origin)?;
+    let mut frames = FrameServer::new(bus, &topic, feed.clone(), &member.wake, origin)?;
+    let path = document.as_ref().map(|document| document.path().to_owned());
+    if let Some(document) = document {
+        frames = frames.with_shelf(document.shelf());
+        node = node.keeping(document, since);
+    }
     let stop = member.stop.clone();
     let backend = member.config.paint.backend.clone();
     let run = move || frames.with_films(film_backend(&backend)).run(&stop);
@@ -178,7 +178,13 @@ pub fn paint() -> Result<i32, Fault> {
     let fallen = |error: Fallen| Fault::failure(error.to_string());
     let mut turn = |node: &mut PaintNode| {
         thread.check().map_err(fallen)?;
-        Ok(node.turn()?)
+        let wait = node.turn()?;
+        match (node.fault(), &path) {
+            (Some(what), Some(path)) => {
+                Err(wrong(path, &DocumentError::Damaged(what.to_owned())))
+            }
+            _ => Ok(wait),
+        }
     };
     // Its token says that commands to the rig's brushes and takes of them are done: it has to know
     // their files.
@@ -188,8 +194,25 @@ pub fn paint() -> Result<i32, Fault> {
     member.stop.request();
     feed.ring();
     let ended = thread.join().map_err(fallen);
+    let closed = node.close().map_err(|error| match &path {
+        Some(path) => wrong(path, &error),
+        None => Fault::failure(error.to_string()),
+    });
     member.leave();
-    result.and(ended).map(|()| 0)
+    result.and(ended).and(closed).map(|()| 0)
+}
+
+/// The painting that the settings ask for: in its document, or in memory.
+fn painting(config: &RigConfig) -> Result<(Option<Document>, Sequencer, u64), Fault> {
+    if let Some(path) = &config.paint.document {
+        let (document, sequencer, since) = go_on(config, path)?;
+        return Ok((Some(document), sequencer, since));
+    }
+    let library = library_from(config.paint.paints.as_deref())?;
+    let setup = painting_setup(config, &library)?;
+    let mut sequencer = Sequencer::new(Painting::new(&setup, library).map_err(refused)?);
+    sequencer.decide("backend cpu");
+    Ok((None, sequencer, 0))
 }
 
 /// What computes the colours of frames, as rig.toml says: `auto` takes a real GPU, `gpu` any.
@@ -304,6 +327,9 @@ struct PlayerOptions {
     /// Stay after the end
     #[arg(long, hide = true)]
     stay: bool,
+    /// Take back first what was painted of it before a crash
+    #[arg(long, hide = true)]
+    again: bool,
 }
 
 /// Main of the player.
@@ -327,6 +353,7 @@ pub fn player() -> Result<i32, Fault> {
         brush: options.brush,
         loads,
         stay: options.stay,
+        again: options.again,
     };
     let mut member = options.node.join(PLAYER, Signal::SIGKILL)?;
     player::run(&mut member, &settings)?;

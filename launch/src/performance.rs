@@ -35,6 +35,12 @@ pub struct PaintingOptions {
     /// Keeps the cast of the light: the eye is not adapted to it
     #[arg(long)]
     pub no_adapt: bool,
+    /// Most memory of a painting in a file, such as 512M; that of rig.toml if absent
+    #[arg(long, value_name = "SIZE")]
+    pub memory: Option<String>,
+    /// Most room of its history, such as 2G; beyond that its oldest steps are merged
+    #[arg(long, value_name = "SIZE")]
+    pub history: Option<String>,
     /// Writes the ledger of the paint to this JSON file
     #[arg(long, value_name = "FILE")]
     pub ledger: Option<PathBuf>,
@@ -74,6 +80,19 @@ impl PaintingOptions {
             config.light.illuminant.clone_from(illuminant);
         }
         config.light.adapt &= !self.no_adapt;
+        for (setting, option) in [
+            (&mut config.paint.memory, &self.memory),
+            (&mut config.paint.history, &self.history),
+        ] {
+            if let Some(size) = option {
+                setting.clone_from(size);
+            }
+        }
+        config.paint.bytes().map_err(|what| {
+            Fault::usage(what)
+                .at("--memory, --history")
+                .help("write sizes as 512M or 2G; 64M is the least memory")
+        })?;
         let section = match &self.brush {
             None => config.brush[0].clone(),
             Some(name) => match config.brush_named(name) {
@@ -94,6 +113,18 @@ impl PaintingOptions {
             config.brush[place] = section.clone();
         }
         Ok(section)
+    }
+
+    /// The first of the options that only a new painting takes.
+    #[must_use]
+    pub fn for_a_new_one(&self) -> Option<&'static str> {
+        let given = [
+            (self.size.is_some(), "--size"),
+            (self.paints.is_some(), "--paints"),
+            (self.illuminant.is_some(), "--illuminant"),
+            (self.no_adapt, "--no-adapt"),
+        ];
+        given.into_iter().find(|(given, _)| *given).map(|(_, name)| name)
     }
 
     /// The loads, each with the paints' names as the library spells them.

@@ -65,6 +65,8 @@ pub struct PlayerSettings {
     pub loads: Vec<Mixture>,
     /// Whether to stay after the end, telling it, until stopped.
     pub stay: bool,
+    /// Whether what was painted of it before a crash is undone first.
+    pub again: bool,
 }
 
 /// Time between two statuses, ns.
@@ -82,6 +84,7 @@ pub fn run(member: &mut Member, settings: &PlayerSettings) -> Result<(), Fault> 
     let stop = member.stop.clone();
     let mut commander = Commander::new(member.bus.clone(), &member.topics);
     let announce = Command::Take {
+        again: settings.again,
         brush: settings.brush.clone(),
         device: origin.source,
         device_epoch: origin.epoch,

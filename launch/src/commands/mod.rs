@@ -11,10 +11,12 @@ pub mod layers;
 pub mod light;
 pub mod matching;
 pub mod mix;
+pub mod painting;
 pub mod paints;
 pub mod render;
 pub mod schema;
 pub mod session;
+pub mod surface;
 pub mod take;
 
 use std::io::{ErrorKind, Write as _};

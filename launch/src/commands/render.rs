@@ -1,17 +1,19 @@
 //! `maulstick render`: a take, painted in one process.
 
 use std::path::PathBuf;
+use std::time::Instant;
 
 use clap::Args;
 use maulstick_device::Take;
-use maulstick_nodes::Offline;
+use maulstick_nodes::{Keeper, Offline};
 use maulstick_nodes::paint_node::write_snapshot;
-use maulstick_paint::Painting;
+use maulstick_paint::{Painting, Sequencer};
 use maulstick_rig::files::check_writable;
 use maulstick_rig::{Fault, RigConfig};
 
 use crate::commands::progress_bar;
 use crate::destination::export;
+use crate::document::{go_on, presence, wrong};
 use crate::performance::{PaintingOptions, brush_file, library_from, painting_setup, refused};
 
 /// Options of `maulstick render`.
@@ -32,6 +34,9 @@ pub struct RenderOptions {
     /// How colours come into its gamut: soft, clamp; that of rig.toml if absent
     #[arg(long, value_name = "MAPPING")]
     gamut: Option<String>,
+    /// Paints in this painting, and keeps it there; it is begun where there is none
+    #[arg(long, value_name = "FILE")]
+    document: Option<PathBuf>,
     #[command(flatten)]
     painting: PaintingOptions,
 }
@@ -65,11 +70,23 @@ pub fn run(options: &RenderOptions) -> Result<i32, Fault> {
     {
         check_writable(path).map_err(|error| Fault::writing(path, &error))?;
     }
-    let setup = painting_setup(&config, &library)?;
-    let painting = Painting::new(&setup, library).map_err(refused)?;
+    let (mut keeper, sequencer) = match &options.document {
+        Some(path) => {
+            presence(path, &options.painting)?;
+            let (document, mut sequencer, since) = go_on(&config, path)?;
+            let keeper = Keeper::new(document, &mut sequencer, since);
+            (Some(keeper), sequencer)
+        }
+        None => {
+            let setup = painting_setup(&config, &library)?;
+            let painting = Painting::new(&setup, library).map_err(refused)?;
+            (None, Sequencer::new(painting))
+        }
+    };
     let file = brush_file(&section)?;
-    let mut offline =
-        Offline::new(painting, &section.name, file, section.depth_share, loads).map_err(refused)?;
+    let (name, share) = (&section.name, section.depth_share);
+    let mut offline = Offline::going_on(sequencer, name, file, share, loads).map_err(refused)?;
+    let begun = Instant::now();
     let bar = progress_bar(take.length_ns()).with_message("painting");
     // The start does not matter to the painting; a live one has the clock's time here.
     let (start_ns, first_ns) = (1_000_000_000, take.samples[0].time_ns);
@@ -80,12 +97,19 @@ pub fn run(options: &RenderOptions) -> Result<i32, Fault> {
             .map_err(refused)?;
         if number % 64 == 0 {
             bar.set_position(time_ns / 1_000_000);
+            if let Some(keeper) = &mut keeper {
+                keeper.turn(offline.sequencer_mut(), begun.elapsed().as_nanos() as u64);
+            }
         }
     }
     bar.finish_and_clear();
     let ledger = options.painting.ledger.as_deref();
     write_snapshot(offline.painting_mut(), &options.output, ledger, &export)
         .map_err(|(path, error)| Fault::writing(path.as_ref(), &error))?;
+    if let (Some(keeper), Some(path)) = (keeper, &options.document) {
+        let closed = keeper.close(offline.sequencer_mut());
+        closed.map_err(|error| wrong(path, &error))?;
+    }
     if unloaded {
         eprintln!("the brush carried no paint: `--load \"Ultramarine Blue\"` gives it some");
     }

@@ -101,6 +101,9 @@ impl Conductor {
             self.position_ns.to_string(),
             "--stay".to_owned(),
         ];
+        if self.forgotten.is_some() {
+            args.push("--again".to_owned());
+        }
         for load in &performance.loads {
             args.extend(["--load".to_owned(), load.clone()]);
         }

@@ -25,6 +25,7 @@ use maulstick_rig::{Fault, member};
 use maulstick_types::Mixture;
 
 use crate::destination::{VIEW, export};
+use crate::document::{Presence, presence};
 use crate::performance::{PaintingOptions, library_from, painting_setup, refused};
 use crate::up::conductor::Performance;
 use crate::up::plan::{Hands, Window};
@@ -49,6 +50,9 @@ fn first_load(library: &PaintLibrary) -> Mixture {
 /// Options of `maulstick up`.
 #[derive(Args, Clone, Debug)]
 pub struct UpOptions {
+    /// The painting, begun where there is none; without it the painting is in memory alone
+    #[arg(value_name = "FILE")]
+    file: Option<PathBuf>,
     /// Settings of the rig; without it the built-in default
     #[arg(long, value_name = "FILE")]
     rig: Option<PathBuf>,
@@ -95,7 +99,14 @@ pub fn run(options: &UpOptions) -> Result<i32, Fault> {
     if let Some(name) = &options.name {
         config.rig.name.clone_from(name);
     }
+    if let Some(file) = &options.file {
+        config.paint.document = Some(absolute(file)?);
+    }
     let section = options.painting.apply(&mut config)?;
+    let presence = match &config.paint.document {
+        Some(path) => Some(presence(path, &options.painting)?),
+        None => None,
+    };
     let library = library_from(config.paint.paints.as_deref())?;
     let loads = options.painting.mixtures(&library)?;
     painting_setup(&config, &library)?
@@ -156,10 +167,12 @@ pub fn run(options: &UpOptions) -> Result<i32, Fault> {
         None => Hands::Devices,
     };
     let nodes = plan::nodes(&config, window, hands)?;
-    let first_load = loads
-        .into_iter()
-        .next()
-        .unwrap_or_else(|| first_load(&library));
+    // In a painting that goes on the brushes carry what they carried.
+    let first_load = match (loads.into_iter().next(), presence) {
+        (None, Some(Presence::There)) => None,
+        (Some(load), _) => Some(load),
+        (None, _) => Some(first_load(&library)),
+    };
     let mut supervisor = Supervisor::start(folder, &config, nodes, performance, first_load)?;
     supervisor.run()
 }

@@ -44,7 +44,7 @@ pub struct Supervisor {
     due: Vec<(String, Instant)>,
     started: Vec<(String, Instant)>,
     conductor: Option<Conductor>,
-    first_load: Mixture,
+    first_load: Option<Mixture>,
     bar: Option<ProgressBar>,
     shown: bool,
     /// Paint starts with clean brushes: the painter's are to be loaded.
@@ -69,7 +69,7 @@ impl Supervisor {
         config: &RigConfig,
         specs: Vec<NodeSpec>,
         performance: Option<Performance>,
-        first_load: Mixture,
+        first_load: Option<Mixture>,
     ) -> Result<Self, Fault> {
         let clock = RigClock::start();
         let dial = Dial {
@@ -280,7 +280,9 @@ impl Supervisor {
         for name in due {
             if let Some(place) = self.nodes.iter().position(|node| node.spec.name == name) {
                 self.nodes[place].restarts += 1;
-                self.unloaded |= self.nodes[place].spec.role == Role::Paint;
+                // A painting in a document comes back with what its brushes carry.
+                let forgets = self.config.paint.document.is_none();
+                self.unloaded |= forgets && self.nodes[place].spec.role == Role::Paint;
                 self.start_node(place)?;
             }
         }
@@ -349,7 +351,15 @@ impl Supervisor {
             );
         }
         match &self.conductor {
-            None => eprintln!("Ctrl-C stops it"),
+            None => {
+                match &self.config.paint.document {
+                    Some(path) => eprintln!("painting in {}", path.display()),
+                    None => eprintln!(
+                        "this painting is not kept: `maulstick up FILE.maul` keeps one in a file"
+                    ),
+                }
+                eprintln!("Ctrl-C stops it");
+            }
             Some(conductor) => {
                 let bar = progress_bar(conductor.performance.length_ns);
                 self.bar = Some(bar.with_message("playing"));
@@ -372,7 +382,10 @@ impl Supervisor {
     fn load_brushes(&self) {
         let (bus, topics) = (Arc::clone(&self.bus), self.topics.clone());
         let brushes: Vec<String> = self.config.brush.iter().map(|b| b.name.clone()).collect();
-        let (mixture, stop) = (self.first_load.clone(), self.stop.clone());
+        let Some(mixture) = self.first_load.clone() else {
+            return;
+        };
+        let stop = self.stop.clone();
         let load = move || {
             let mut commander = Commander::new(bus, &topics);
             for brush in brushes {

@@ -8,6 +8,7 @@ use std::path::{Path, PathBuf};
 
 use serde::{Deserialize, Serialize};
 
+use crate::size::parse_bytes;
 use crate::fault::Fault;
 
 pub use light::LightSection;
@@ -165,7 +166,31 @@ pub struct PaintSection {
     /// A paint file; the measured paints that come with the rig if absent.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub paints: Option<PathBuf>,
+    /// The painting's document; without it the painting is in memory alone.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub document: Option<PathBuf>,
+    /// Most memory of the painting's tiles where it has a document.
+    pub memory: String,
+    /// Most room of its history; beyond that its oldest steps are merged.
+    pub history: String,
 }
+
+impl PaintSection {
+    /// Most bytes of tiles in memory, and of the history.
+    ///
+    /// # Errors
+    /// What is wrong, in words.
+    pub fn bytes(&self) -> Result<[u64; 2], String> {
+        let memory = parse_bytes(&self.memory)?;
+        if memory < MEMORY_MIN {
+            return Err(format!("a memory of {} is less than 64M", self.memory));
+        }
+        Ok([memory, parse_bytes(&self.history)?])
+    }
+}
+
+/// Least memory of a painting, bytes.
+const MEMORY_MIN: u64 = 64 << 20;
 
 impl Default for PaintSection {
     fn default() -> Self {
@@ -173,6 +198,9 @@ impl Default for PaintSection {
             model: "impasto".into(),
             backend: "auto".into(),
             paints: None,
+            document: None,
+            memory: "1G".into(),
+            history: "2G".into(),
         }
     }
 }

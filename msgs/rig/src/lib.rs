@@ -12,6 +12,7 @@ pub mod config;
 pub mod fault;
 pub mod files;
 pub mod member;
+pub mod size;
 pub mod stop;
 
 pub use config::RigConfig;

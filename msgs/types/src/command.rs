@@ -62,6 +62,8 @@ wire_enum! {
             device_epoch: u32,
             /// The loads.
             loads: Vec<Mixture>,
+            /// Whether it begins again, after a crash: what was painted of it is undone first.
+            again: bool,
         },
         /// Takes the newest step back.
         Undo {
@@ -408,6 +410,7 @@ mod tests {
                 device: 1,
                 device_epoch: 1,
                 loads: vec![Mixture::pure(&long)],
+                again: false,
             },
         ];
         for command in hostile {

@@ -123,6 +123,18 @@ wire_struct! {
 }
 
 wire_struct! {
+    /// A version of the painting that was kept.
+    pub struct NamedVersion {
+        /// Its name.
+        pub name: String,
+        /// The version that it was painted from; empty where that was none.
+        pub parent: String,
+        /// Whether the painter goes on from here.
+        pub here: bool,
+    }
+}
+
+wire_struct! {
     /// How a brush was changed while painting.
     pub struct Tuning {
         /// Name of the brush.
@@ -214,7 +226,7 @@ impl Tuning {
 
 message! {
     /// The desk; cached for late joiners.
-    pub struct Scene [version 3, at most 16777216 bytes] {
+    pub struct Scene [version 4, at most 16777216 bytes] {
         /// Grows with every change.
         pub version: u64,
         /// The canvas first.
@@ -227,6 +239,8 @@ message! {
         pub tunings: Vec<Tuning>,
         /// What has dried, the oldest first.
         pub layers: Vec<Layer>,
+        /// The versions that were kept, by name.
+        pub versions: Vec<NamedVersion>,
     }
 }
 

@@ -326,6 +326,7 @@ fn all() -> String {
             device: 1,
             device_epoch: 2,
             loads: vec![mixture.clone()],
+            again: true,
         })),
         line(&command(Command::Undo { brush: None })),
         line(&command(Command::Redo {

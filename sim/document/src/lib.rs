@@ -1,1 +1,38 @@
 //! The painting as a file.
+//!
+//! A painting is one SQLite database (`.maul`), open in one program at a time. It holds the tiles with
+//! their history, what was accepted since (the journal), named versions, the tiles as they are shown,
+//! and the files that the painting is made with. `docs/document.md` describes the tables.
+//!
+//! | module | holds |
+//! | --- | --- |
+//! | [`document`] | an open painting, and the thread that owns its file |
+//! | [`database`] | the file: locks, pages read one by one |
+//! | [`writing`], [`opening`] | a moment of a painting, written as one transaction and read back |
+//! | [`journal`] | what was accepted, as bytes |
+//! | [`contents`], [`pack`] | what a file holds; making it small |
+//! | [`planes`], [`loads`] | paint as bytes |
+//! | [`rows`], [`schema`], [`sum`] | tables, migrations, checksums |
+//! | [`error`] | what can go wrong, and what to do |
+
+pub mod contents;
+pub mod database;
+pub mod document;
+pub mod error;
+pub mod journal;
+pub mod loads;
+pub mod opening;
+pub mod pack;
+pub mod planes;
+pub mod rows;
+pub mod scan;
+pub mod schema;
+pub mod sum;
+pub mod writing;
+
+pub use contents::Contents;
+pub use database::{Access, glance};
+pub use document::{Document, DocumentSettings, Shelf};
+pub use error::DocumentError;
+pub use opening::Opened;
+pub use writing::{Moment, ShownTile};

@@ -12,6 +12,7 @@ use std::time::{Duration, Instant};
 
 use maulstick_bus::typed::Reader;
 use maulstick_bus::{Bus, BusError, Request, Server, Wake};
+use maulstick_document::Shelf;
 use maulstick_optics::backend::FilmBackend;
 use maulstick_paint::bare::Bare;
 use maulstick_paint::dry::DryStack;
@@ -164,6 +165,13 @@ impl FrameServer {
     #[must_use]
     pub fn with_films(mut self, films: Box<dyn FilmBackend>) -> Self {
         self.pyramid.films = SteadyFilms::new(films);
+        self
+    }
+
+    /// Looks for tiles among those that were shown before, and puts new ones there.
+    #[must_use]
+    pub fn with_shelf(mut self, shelf: Shelf) -> Self {
+        self.pyramid.shelf = Some(shelf);
         self
     }
 

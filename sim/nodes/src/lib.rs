@@ -10,6 +10,7 @@
 //! | [`feel`] | the contact model for the hand |
 //! | [`paint_node`] | brush states and commands in, journal and credit out |
 //! | [`frames`] | pictures of what changed, for whoever asks |
+//! | [`keeper`] | the painting in its document |
 //! | [`offline`] | the same brush and paint in one process, without a bus |
 //! | [`worker`] | a thread that a node cannot do without |
 
@@ -18,12 +19,14 @@ pub mod backlog;
 pub mod brush_node;
 pub mod feel;
 pub mod frames;
+pub mod keeper;
 pub mod offline;
 pub mod outbox;
 pub mod paint_node;
 pub mod worker;
 
 pub use brush_node::{BrushNode, BrushSettings};
+pub use keeper::Keeper;
 pub use offline::Offline;
 pub use paint_node::PaintNode;
 pub use worker::Worker;

@@ -33,10 +33,23 @@ impl Offline {
         depth_share: f64,
         loads: Vec<Mixture>,
     ) -> Result<Self, PaintRefusal> {
+        Self::going_on(Sequencer::new(painting), brush, file, depth_share, loads)
+    }
+
+    /// As [`new`](Self::new), over a painting that goes on where its sequencer is.
+    ///
+    /// # Errors
+    /// As [`new`](Self::new).
+    pub fn going_on(
+        mut sequencer: Sequencer,
+        brush: &str,
+        file: BrushFile,
+        depth_share: f64,
+        loads: Vec<Mixture>,
+    ) -> Result<Self, PaintRefusal> {
         let mut model = BrushModel::new(file.clone(), depth_share);
-        model.set_scene(painting.scene());
-        let mut sequencer = Sequencer::new(painting);
-        sequencer.painting_mut().define_brush(brush, file);
+        model.set_scene(sequencer.painting().scene());
+        sequencer.define_brush(brush, file);
         let player = Origin {
             source: name_hash("player"),
             epoch: 1,
@@ -61,6 +74,7 @@ impl Offline {
             device,
             device_epoch,
             loads,
+            again: false,
         })?;
         Ok(offline)
     }
@@ -76,7 +90,7 @@ impl Offline {
         depth_share: f64,
     ) -> Result<(), PaintRefusal> {
         self.model = BrushModel::new(file.clone(), depth_share);
-        self.sequencer.painting_mut().define_brush(brush, file);
+        self.sequencer.define_brush(brush, file);
         self.brush = brush.to_owned();
         self.me = Origin {
             source: name_hash(brush),
@@ -89,6 +103,7 @@ impl Offline {
             device,
             device_epoch,
             loads: Vec::new(),
+            again: false,
         })
     }
 
@@ -151,6 +166,11 @@ impl Offline {
         let mut painting = self.sequencer.into_painting();
         painting.commit();
         painting
+    }
+
+    /// The sequencer.
+    pub fn sequencer_mut(&mut self) -> &mut Sequencer {
+        &mut self.sequencer
     }
 
     /// The painting.

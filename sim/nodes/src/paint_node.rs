@@ -12,6 +12,7 @@ use maulstick_bus::typed::{Reader, Received, Receiver, Sender};
 use maulstick_bus::{
     Arrival, Bus, BusError, Class, CreditReceiver, Queue, Request, Server, Subscription, Wake,
 };
+use maulstick_document::{Document, DocumentError};
 use maulstick_paint::picture::{Export, picture_for};
 use maulstick_paint::sequencer::Replied;
 use maulstick_paint::{Effect, Painting, Sequencer};
@@ -23,6 +24,7 @@ use maulstick_types::scene::{CANVAS, Scene};
 use maulstick_types::topics::{Topics, check_name};
 use maulstick_types::{Flags, Origin, encode, name_hash};
 
+use crate::Keeper;
 use crate::frames::Feed;
 use feeding::FEED_PERIOD_NS;
 
@@ -61,6 +63,7 @@ pub struct PaintNode {
     misfits: BTreeSet<String>,
     strangers: BTreeSet<String>,
     export: Export,
+    keeper: Option<Keeper>,
 }
 
 impl PaintNode {
@@ -75,14 +78,29 @@ impl PaintNode {
         me: Origin,
         painting: Painting,
     ) -> Result<Self, BusError> {
+        let mut sequencer = Sequencer::new(painting);
+        sequencer.decide("backend cpu");
+        Self::going_on(bus, topics, wake, me, sequencer)
+    }
+
+    /// A node that goes on with a painting where its sequencer is.
+    ///
+    /// # Errors
+    /// [`BusError`].
+    pub fn going_on(
+        bus: Arc<dyn Bus>,
+        topics: &Topics,
+        wake: &Wake,
+        me: Origin,
+        sequencer: Sequencer,
+    ) -> Result<Self, BusError> {
+        let painting = sequencer.painting();
         let b = &*bus;
         let mut scene = Sender::new(b, &topics.scene(), Class::Cached, me)?;
         let now = b.now_ns();
         scene.send(now, now, painting.scene())?;
         let sent_scene = painting.scene().version;
         let fed_look = painting.look().generation();
-        let mut sequencer = Sequencer::new(painting);
-        sequencer.decide("backend cpu");
         let node = Self {
             states: CreditReceiver::new(b, topics, &topics.brush_state("*"), me, wake)?,
             defs: Receiver::new(
@@ -113,6 +131,7 @@ impl PaintNode {
             misfits: BTreeSet::new(),
             strangers: BTreeSet::new(),
             export: Export::default(),
+            keeper: None,
             topics: topics.clone(),
             me,
             sequencer,
@@ -127,6 +146,30 @@ impl PaintNode {
     pub fn exporting(mut self, export: Export) -> Self {
         self.export = export;
         self
+    }
+
+    /// Keeps the painting in a document, where its tiles up to the version `since` are.
+    #[must_use]
+    pub fn keeping(mut self, document: Document, since: u64) -> Self {
+        self.keeper = Some(Keeper::new(document, &mut self.sequencer, since));
+        self
+    }
+
+    /// Why the painting cannot go on: a page of its document could not be read.
+    #[must_use]
+    pub fn fault(&self) -> Option<&str> {
+        self.sequencer.painting().pager().fault()
+    }
+
+    /// Writes what is to be kept and closes the document.
+    ///
+    /// # Errors
+    /// Why something could not be written.
+    pub fn close(mut self) -> Result<(), DocumentError> {
+        match self.keeper.take() {
+            Some(keeper) => keeper.close(&mut self.sequencer),
+            None => Ok(()),
+        }
     }
 
     /// Where the frames take their pictures from.
@@ -176,6 +219,9 @@ impl PaintNode {
         for entry in self.sequencer.drain_journal() {
             self.journal.send(now_ns, now_ns, &entry)?;
         }
+        if let Some(keeper) = &mut self.keeper {
+            keeper.turn(&mut self.sequencer, now_ns);
+        }
         self.publish_scene(now_ns)?;
         self.hand_over(now_ns);
         self.publish_status(now_ns)?;
@@ -191,7 +237,7 @@ impl PaintNode {
         let brush = self.topics.middle(key).unwrap_or_default();
         let refusal = match (check_name(brush), BrushFile::parse(&def.toml)) {
             (Ok(()), Ok(file)) if def.brush == brush => {
-                return self.sequencer.painting_mut().define_brush(brush, file);
+                return self.sequencer.define_brush(brush, file);
             }
             (Ok(()), Ok(_)) => "it names another brush".to_owned(),
             (Ok(()), Err(error)) => error.to_string(),
@@ -374,6 +420,7 @@ impl PaintNode {
         let lag_ns = oldest_ns.map_or(0, |oldest_ns| now_ns.saturating_sub(oldest_ns));
         let baking = self.feed.lock().baking;
         let painting = self.sequencer.painting();
+        let document = self.keeper.as_ref().map(Keeper::document);
         let (undo, redo) = painting.history_depth();
         let status = PaintStatus {
             journal: self.sequencer.journal_next(),
@@ -381,12 +428,14 @@ impl PaintNode {
             footprint_cells,
             lag_ns,
             memory_bytes: painting.bytes() as u64,
-            committed: 0,
+            committed: document.map_or(0, Document::committed),
             undo: undo as u32,
             redo: redo as u32,
             merged: painting.history().merged(),
             kept_bytes: painting.pager().counts().held(),
-            fault: String::new(),
+            fault: document
+                .and_then(Document::fault)
+                .map_or(String::new(), |(what, help)| format!("{what}: {help}")),
             lost: counts.lost,
             baking: baking.all,
             baked: baking.done,

@@ -53,6 +53,7 @@ fn the_largest_command_fits_into_the_journal() {
         device: 1,
         device_epoch: 1,
         loads,
+        again: false,
     };
     live.command(1, command);
     live.net.advance(1_000_000);

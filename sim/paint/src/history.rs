@@ -10,7 +10,8 @@ use std::sync::Arc;
 use maulstick_types::scene::Layer;
 use serde::{Deserialize, Serialize};
 
-use crate::ledger::{Booked, Ledger};
+pub use crate::ledger::Booked;
+use crate::ledger::Ledger;
 use crate::load::BrushLoad;
 use crate::page::Page;
 use crate::tile::{Tile, TileId};
@@ -347,6 +348,13 @@ impl History {
             }
         }
         (there, gone)
+    }
+
+    /// Forgets all steps.
+    pub fn forget(&mut self) {
+        self.open.clear();
+        self.undone.clear();
+        self.touched.extend(std::mem::take(&mut self.steps).into_keys());
     }
 
     /// Makes one step of the two oldest ones; false where there are none, or they were undone.

@@ -69,6 +69,8 @@ pub struct KeptTake {
     pub epoch: u32,
     /// Whether its last state has come.
     pub ended: bool,
+    /// The newest step when it began.
+    pub step: u64,
 }
 
 /// The newest reply to a client.
@@ -87,6 +89,8 @@ pub struct KeptAnswer {
 pub struct KeptSequencer {
     /// Index of the next journal entry.
     pub next: u64,
+    /// How many things were accepted.
+    pub serial: u64,
     /// Takes that may paint, by brush.
     pub takes: BTreeMap<String, KeptTake>,
     /// Players that are gone.

@@ -25,6 +25,7 @@ pub struct Look {
     /// Factor on the optical thickness of dry layers by number, where it is not 1.
     opacities: BTreeMap<u32, f32>,
     generation: u64,
+    print: i64,
 }
 
 impl Look {
@@ -36,7 +37,24 @@ impl Look {
             thinner: None,
             opacities: BTreeMap::new(),
             generation: 0,
+            print: 0,
         }
+    }
+
+    /// What it is, as a number: two looks of the same number show the same paint alike, today and
+    /// tomorrow.
+    #[must_use]
+    pub fn print(&self) -> i64 {
+        self.print
+    }
+
+    /// Notes what it is made of.
+    pub fn note(&mut self, made_of: &str) {
+        // FNV-1a, 64 bits (Fowler, Noll, Vo).
+        let hash = made_of.bytes().fold(0xcbf2_9ce4_8422_2325, |hash: u64, byte| {
+            (hash ^ u64::from(byte)).wrapping_mul(0x0000_0100_0000_01b3)
+        });
+        self.print = hash as i64;
     }
 
     /// Grows when light or opacities change: what was baked and shown before is to be done anew.

@@ -266,7 +266,11 @@ impl<T: Content> Page<T> {
     /// A new page; `base` is the one of which it is a later state.
     #[must_use]
     pub fn new(pager: &Arc<Pager>, content: Arc<T>, base: Option<&Self>) -> Self {
-        let base = base.map_or_else(Weak::new, |base| Arc::downgrade(&base.0));
+        // What is not stored may never be: then it is a later state of what came before that.
+        let base = base.map_or_else(Weak::new, |base| match base.stored_bytes() {
+            0 => base.0.base.clone(),
+            _ => Arc::downgrade(&base.0),
+        });
         Self::make(pager, pager.number(), Some(content), base)
     }
 
@@ -322,6 +326,12 @@ impl<T: Content> Page<T> {
             .map_or(0, |content| content.bytes())
     }
 
+    /// What it holds, if it is in memory.
+    #[must_use]
+    pub fn peek(&self) -> Option<Arc<T>> {
+        locked(&self.0.content).clone()
+    }
+
     /// Notes that the document has it, so that it may leave memory.
     pub fn note_stored(&self, bytes: usize) {
         let bytes = bytes.max(1);
@@ -336,10 +346,10 @@ impl<T: Content> Page<T> {
     #[must_use]
     pub fn get(&self) -> Arc<T> {
         self.0.used.store(true, Relaxed);
-        let mut content = locked(&self.0.content);
-        if let Some(content) = &*content {
-            return Arc::clone(content);
+        if let Some(content) = self.peek() {
+            return content;
         }
+        // Unlocked: the document's thread, which is asked here, may look at this page meanwhile.
         let pager = &self.0.pager;
         let read = match pager.backing.get() {
             Some(backing) => T::fetch(&**backing, self.0.id),
@@ -350,6 +360,10 @@ impl<T: Content> Page<T> {
             pager.fault.set(what).ok();
             T::nothing()
         }));
+        let mut content = locked(&self.0.content);
+        if let Some(content) = &*content {
+            return Arc::clone(content);
+        }
         *content = Some(Arc::clone(&read));
         drop(content);
         let weak: Weak<Kept<T>> = Arc::downgrade(&self.0);
@@ -420,9 +434,13 @@ mod tests {
     fn what_nobody_remembers_may_be_deleted_and_what_is_damaged_is_told() {
         let pager = Pager::backed(Arc::new(Numbers), usize::MAX, 1);
         let page = Page::new(&pager, Arc::new(plane(1)), None);
-        let unsaved = Page::new(&pager, Arc::new(plane(2)), Some(&page));
-        assert!(unsaved.base().is_some_and(|base| base.is(&page)));
         page.note_stored(50);
+        let unsaved = Page::new(&pager, Arc::new(plane(2)), Some(&page));
+        let newest = Page::new(&pager, Arc::new(plane(3)), Some(&unsaved));
+        for later in [&unsaved, &newest] {
+            assert!(later.base().is_some_and(|base| base.is(&page)));
+        }
+        drop(newest);
         let clone = page.clone();
         drop(page);
         assert!(pager.take_dead().is_empty());

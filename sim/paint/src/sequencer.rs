@@ -1,11 +1,15 @@
 //! The sequencer: it decides what enters the journal and in which order; nothing else does.
 
+mod records;
+
+pub use records::{Accepted, Record};
+
 use std::collections::{BTreeMap, BTreeSet};
 
 use maulstick_types::brush::BrushState;
 use maulstick_types::command::{Command, CommandRequest, Outcome};
 use maulstick_types::paint::{Entry, JournalEntry};
-use maulstick_types::{Flags, Header, Origin};
+use maulstick_types::{Flags, Header, Mixture, Origin};
 
 use crate::painting::{PaintRefusal, Painting};
 
@@ -45,6 +49,8 @@ struct Announced {
     epoch: u32,
     /// Whether its last state has come.
     ended: bool,
+    /// The newest step when it began.
+    step: u64,
 }
 
 /// The newest reply to a client.
@@ -70,6 +76,9 @@ pub struct Sequencer {
     answered: BTreeMap<u64, Answered>,
     answers: u64,
     ignored: u64,
+    serial: u64,
+    /// What was accepted, if somebody keeps it.
+    records: Option<Vec<Record>>,
 }
 
 impl Sequencer {
@@ -87,6 +96,8 @@ impl Sequencer {
             answered: BTreeMap::new(),
             answers: 0,
             ignored: 0,
+            serial: 0,
+            records: None,
         }
     }
 
@@ -162,19 +173,35 @@ impl Sequencer {
             self.ignored += 1;
             Ok(())
         } else {
-            self.enter_states(brush, header.epoch, header.seq);
+            let index = self.enter_states(brush, header.epoch, header.seq);
+            self.note(index, || Accepted::State {
+                header: *header,
+                state: state.clone(),
+            });
             self.painting.state(brush, header.epoch, state)
         };
-        if may_paint
-            && header.flags.has(Flags::REPLAY.with(Flags::LAST))
+        match may_paint {
+            true => self.consume(brush, header),
+            false => self.pass(header),
+        }
+        (self.release(), result)
+    }
+
+    /// Notes that a state is consumed.
+    fn pass(&mut self, header: &Header) {
+        self.consumed
+            .retain(|origin, _| origin.source != header.source || origin.epoch == header.epoch);
+        self.consumed.insert(header.origin(), header.seq + 1);
+    }
+
+    /// Notes that a state that may paint is consumed; the last one of a take ends it.
+    fn consume(&mut self, brush: &str, header: &Header) {
+        if header.flags.has(Flags::REPLAY.with(Flags::LAST))
             && let Some(take) = self.announced.get_mut(brush)
         {
             take.ended = true;
         }
-        self.consumed
-            .retain(|origin, _| origin.source != header.source || origin.epoch == header.epoch);
-        self.consumed.insert(header.origin(), header.seq + 1);
-        (self.release(), result)
+        self.pass(header);
     }
 
     /// Whether a state is of the announced take, or live while no take has its brush.
@@ -197,8 +224,9 @@ impl Sequencer {
         self.gone.remove(&device);
     }
 
-    fn enter_states(&mut self, brush: &str, epoch: u32, seq: u64) {
+    fn enter_states(&mut self, brush: &str, epoch: u32, seq: u64) -> u64 {
         if let Some(JournalEntry {
+            index,
             entry:
                 Entry::States {
                     brush: b,
@@ -206,21 +234,20 @@ impl Sequencer {
                     to,
                     ..
                 },
-            ..
         }) = self.journal.last_mut()
             && b == brush
             && *e == epoch
             && *to + 1 == seq
         {
             *to = seq;
-            return;
+            return *index;
         }
         self.enter(Entry::States {
             brush: brush.to_owned(),
             epoch,
             from: seq,
             to: seq,
-        });
+        })
     }
 
     fn enter(&mut self, entry: Entry) -> u64 {
@@ -232,9 +259,11 @@ impl Sequencer {
 
     /// Enters a decision of the node itself.
     pub fn decide(&mut self, what: &str) {
-        self.enter(Entry::Decision {
+        let entry = Entry::Decision {
             what: what.to_owned(),
-        });
+        };
+        let index = self.enter(entry.clone());
+        self.note(index, || Accepted::Entry(entry));
     }
 
     /// Accepts a command, at once or when the state that it waits for has come.
@@ -327,16 +356,8 @@ impl Sequencer {
                 device,
                 device_epoch,
                 loads,
-            } => self.painting.take(brush, loads).map(|()| {
-                let take = Announced {
-                    device: *device,
-                    epoch: *device_epoch,
-                    ended: false,
-                };
-                self.gone.remove(device);
-                self.announced.insert(brush.clone(), take);
-                String::new()
-            }),
+                again,
+            } => self.begin_take(brush, [*device, *device_epoch], loads, *again),
             Command::Undo { brush } => self.painting.undo(brush.as_deref()),
             Command::Redo { brush } => self.painting.redo(brush.as_deref()),
             Command::Snapshot { path, ledger } => {
@@ -401,11 +422,13 @@ impl Sequencer {
         let outcome = match done {
             Ok(detail) => {
                 let command = request.command.clone();
-                let journal = self.enter(Entry::Command {
+                let entry = Entry::Command {
                     client,
                     number,
                     command,
-                });
+                };
+                let journal = self.enter(entry.clone());
+                self.note(journal, || Accepted::Entry(entry));
                 Outcome::Done { journal, detail }
             }
             Err(PaintRefusal { what, help }) => Outcome::Refused { what, help },
@@ -417,6 +440,30 @@ impl Sequencer {
             outcome,
             effect,
         }
+    }
+
+    /// Begins a take; what was painted of one that begins again is undone.
+    fn begin_take(
+        &mut self,
+        brush: &str,
+        [device, epoch]: [u32; 2],
+        loads: &[Mixture],
+        again: bool,
+    ) -> Result<String, PaintRefusal> {
+        let before = self.announced.get(brush).filter(|take| again && !take.ended);
+        if let Some(step) = before.map(|take| take.step) {
+            self.painting.undo_to(step)?;
+        }
+        self.painting.take(brush, loads)?;
+        let take = Announced {
+            device,
+            epoch,
+            ended: false,
+            step: self.painting.newest_step(),
+        };
+        self.gone.remove(&device);
+        self.announced.insert(brush.to_owned(), take);
+        Ok(String::new())
     }
 
     /// Keeps what became of a command, also when its effect failed after all.

@@ -138,6 +138,7 @@ impl PaintingSetup {
                 ..self.light.clone()
             },
             layers: Vec::new(),
+            versions: Vec::new(),
         }
     }
 

@@ -178,7 +178,9 @@ fn perform(painting: &mut Painting, strokes: &mut [u64; 2], act: &Act) {
             let loads: Vec<Mixture> = loads.iter().map(|l| mixture(MIXTURES[*l])).collect();
             painting.take(BRUSHES[*b], &loads).expect("known");
         }
-        Act::Redefine(b, strips) => painting.define_brush(BRUSHES[*b], brush(10.0, *strips)),
+        Act::Redefine(b, strips) => {
+            painting.define_brush(BRUSHES[*b], brush(10.0, *strips));
+        }
         // There may be nothing to dry, to undo or to redo.
         Act::Dry(surface, share) => drop(painting.dry(*surface, *share, "")),
         Act::Opacity(layer, opacity) => drop(painting.set_opacity(*layer, *opacity)),

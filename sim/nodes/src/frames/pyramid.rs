@@ -4,6 +4,8 @@ use std::collections::{BTreeMap, VecDeque};
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
+use maulstick_document::rows::shown_number;
+use maulstick_document::{Shelf, ShownTile};
 use maulstick_optics::backend::FilmBackend;
 use maulstick_optics::{FilmPlanes, Under};
 use maulstick_paint::display::{DisplayTile, WetFilms};
@@ -39,6 +41,8 @@ pub(super) struct Pyramid {
     outside: BTreeMap<u32, Arc<DisplayTile>>,
     bakery: Bakery,
     pub(super) films: SteadyFilms,
+    /// Tiles as they were shown before, in the document.
+    pub(super) shelf: Option<Shelf>,
     /// Generation of the look that all this shows.
     generation: Option<u64>,
     /// What is still to be baked for it, as far as nobody looks at it first.
@@ -176,6 +180,7 @@ impl Pyramid {
             let shown =
                 DisplayTile::on(&surface.bare, *id, painted(id), (films, rgb), look.thinner);
             let version = Self::painted(surface, 0, *id);
+            self.put_aside(look, (number, 0, *id), version, &shown);
             self.keep((number, 0, *id), version, Arc::new(shown));
         }
     }
@@ -188,6 +193,27 @@ impl Pyramid {
             Arc::new(DisplayTile::of(None, (&films, rgb), None))
         };
         Arc::clone(self.outside.entry(number).or_insert_with(bare))
+    }
+
+    /// A tile as it was shown before.
+    fn shown(&self, look: &Look, place: (u32, u32, TileId), version: u64) -> Option<Arc<DisplayTile>> {
+        let (number, level, id) = place;
+        let shelf = self.shelf.as_ref().filter(|_| version > 0)?;
+        let bytes = shelf.get(shown_number(number, level, id), version, look.print())?;
+        DisplayTile::from_bytes(&bytes).map(Arc::new)
+    }
+
+    /// Has the document keep a tile as it is shown.
+    fn put_aside(&self, look: &Look, place: (u32, u32, TileId), version: u64, tile: &DisplayTile) {
+        if let Some(shelf) = self.shelf.as_ref().filter(|_| version > 0) {
+            let (number, level, id) = place;
+            shelf.put(ShownTile {
+                place: shown_number(number, level, id),
+                version,
+                look: look.print(),
+                bytes: tile.to_bytes(),
+            });
+        }
     }
 
     fn keep(&mut self, place: (u32, u32, TileId), version: u64, tile: Arc<DisplayTile>) {
@@ -212,6 +238,10 @@ impl Pyramid {
         {
             return Arc::clone(tile);
         }
+        if let Some(shown) = self.shown(look, (number, level, id), version) {
+            self.keep((number, level, id), version, Arc::clone(&shown));
+            return shown;
+        }
         if level == 0 {
             self.shade(look, number, surface, &[id]);
             let kept = self.kept.get(&(number, level, id));
@@ -228,6 +258,7 @@ impl Pyramid {
             });
             DisplayTile::coarser(children.each_ref().map(|child| child.as_deref()), &outside)
         });
+        self.put_aside(look, (number, level, id), version, &tile);
         self.keep((number, level, id), version, Arc::clone(&tile));
         tile
     }

@@ -34,6 +34,8 @@ impl PaintNode {
                 },
             );
         }
+        feed_versions(&mut fed, painting, self.fed_version);
+        fed.version = painting.versions();
     }
 
     /// Hands new versions over, if a view waits for them.

@@ -220,6 +220,7 @@ impl Live {
                 device,
                 device_epoch,
                 loads: loads(),
+                again: false,
             },
         );
     }

@@ -195,7 +195,7 @@ impl Painting {
         let open: Vec<Step> = open;
         let open = open.into_iter().map(|step| step.reopened(&rest)).collect();
         let history = History::restored(kept.step, steps, kept.undone, open);
-        Ok(Self {
+        let mut painting = Self {
             scene,
             library,
             look: Arc::new(look),
@@ -218,7 +218,9 @@ impl Painting {
             steps: kept.steps,
             footprint_cells: kept.footprint_cells,
             span_ns: kept.span_ns,
-        })
+        };
+        painting.note_look();
+        Ok(painting)
     }
 
     /// Forgets where the brushes are: the next states begin their ways anew.

@@ -56,6 +56,7 @@ impl Painting {
         };
         self.scene.layers.push(layer);
         self.scene.version += 1;
+        self.note_look();
         self.end_own_step();
         Ok(name)
     }
@@ -93,5 +94,6 @@ impl Painting {
         look.set_layers(&self.scene.layers);
         self.look = Arc::new(look);
         self.scene.version += 1;
+        self.note_look();
     }
 }

@@ -40,7 +40,27 @@ impl Painting {
         }
         self.scene.light = light.clone();
         self.scene.version += 1;
+        self.note_look();
         Ok(())
+    }
+
+    /// Notes in the look what it is made of: light, layers, grounds, paints.
+    pub(super) fn note_look(&mut self) {
+        let makes = super::undo::makes(&self.scene);
+        let light = Light {
+            exposure: 1.0,
+            intensity: 1.0,
+            direction: [0.0, 0.0, 1.0],
+            relief: 1.0,
+            softness: 0.0,
+            ..self.scene.light.clone()
+        };
+        let made_of = format!(
+            "1 {light:?} {:?} {makes:?} {}",
+            self.scene.layers,
+            self.library.hash()
+        );
+        Arc::make_mut(&mut self.look).note(&made_of);
     }
 
     /// Sets the exposure so that the bare canvas does not clip.

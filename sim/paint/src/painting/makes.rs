@@ -92,6 +92,7 @@ impl Painting {
         look.renew();
         self.look = Arc::new(look);
         self.scene.version += 1;
+        self.note_look();
     }
 
     /// Lays an even film of wet paint over a whole surface, but for its wells.

@@ -179,6 +179,7 @@ impl Painting {
             footprint_cells: 0,
             span_ns: None,
         };
+        painting.note_look();
         if setup.exposure.is_none() {
             painting.expose();
         }
@@ -232,14 +233,14 @@ impl Painting {
     }
 
     /// Introduces a brush, or gives a known one another file; what it carries it keeps, spread anew
-    /// where the other has another number of strips.
-    pub fn define_brush(&mut self, name: &str, file: BrushFile) {
+    /// where the other has another number of strips. False where nothing is new.
+    pub fn define_brush(&mut self, name: &str, file: BrushFile) -> bool {
         if self
             .brushes
             .get(name)
             .is_some_and(|track| track.file == file)
         {
-            return;
+            return false;
         }
         let head = Arc::new(Head::of(&file));
         self.close_windows();
@@ -265,6 +266,14 @@ impl Painting {
                 self.brushes.insert(name.to_owned(), track);
             }
         }
+        true
+    }
+
+    /// The brush with this hash of its name.
+    #[must_use]
+    pub fn brush_of(&self, source: u32) -> Option<&str> {
+        let mut names = self.brushes.keys();
+        names.find(|name| name_hash(name) == source).map(String::as_str)
     }
 
     /// Whether a brush is known.

@@ -151,6 +151,23 @@ impl Painting {
         self.walk(&step, Way::Back)
     }
 
+    /// The newest step that is done; steps that end later have higher numbers.
+    pub fn newest_step(&mut self) -> u64 {
+        self.end_step(|_| true);
+        self.history.last_done(None).map_or(0, |step| step.id)
+    }
+
+    /// Takes back all steps that came after the one with this number.
+    ///
+    /// # Errors
+    /// As [`undo`](Self::undo).
+    pub fn undo_to(&mut self, step: u64) -> Result<(), PaintRefusal> {
+        while self.newest_step() > step {
+            self.undo(None)?;
+        }
+        Ok(())
+    }
+
     /// Does the newest undone step again, of a brush or of all, and says what it was.
     ///
     /// # Errors
@@ -266,6 +283,12 @@ impl Painting {
     #[must_use]
     pub fn history(&self) -> &crate::history::History {
         &self.history
+    }
+
+    /// Forgets all steps: nothing of before can be undone.
+    pub fn forget_history(&mut self) {
+        self.end_step(|_| true);
+        self.history.forget();
     }
 
     /// How many bytes the history may take; beyond that its oldest steps are merged.

@@ -3,6 +3,8 @@
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
+use maulstick_types::scene::NamedVersion;
+
 use super::{PaintRefusal, Painting};
 use crate::history::{Held, Place, Rest, same};
 use crate::load::BrushLoad;
@@ -53,12 +55,24 @@ impl Painting {
         }
     }
 
+    /// Tells all who follow the scene.
+    fn versions_changed(&mut self) {
+        let versions = self.named.values().map(|version| NamedVersion {
+            name: version.name.clone(),
+            parent: version.parent.clone().unwrap_or_default(),
+            here: self.line.as_ref() == Some(&version.name),
+        });
+        self.scene.versions = versions.collect();
+        self.scene.version += 1;
+    }
+
     /// All tiles where something was painted.
     fn painted(&self) -> BTreeMap<Place, Held> {
         let mut tiles = BTreeMap::new();
         for sheet in &self.sheets {
             let versions = sheet.store.iter();
-            let painted = versions.filter(|(_, version)| version.tile.is_some());
+            let bare = |held: &Held| held.as_deref().is_none_or(crate::tile::Tile::is_bare);
+            let painted = versions.filter(|(_, version)| !bare(&version.tile));
             tiles.extend(painted.map(|(id, version)| ((sheet.id, id), version.tile.clone())));
         }
         tiles
@@ -80,6 +94,7 @@ impl Painting {
         self.line = Some(name.to_owned());
         self.named_touched.insert(name.to_owned());
         self.named.insert(name.to_owned(), named);
+        self.versions_changed();
         Ok(())
     }
 
@@ -117,6 +132,7 @@ impl Painting {
         self.turn_rest(layers, makes);
         self.end_own_step();
         self.line = Some(name.to_owned());
+        self.versions_changed();
         Ok(())
     }
 
@@ -135,6 +151,7 @@ impl Painting {
         self.line = Some(name.to_owned());
         self.named_touched.insert(name.to_owned());
         self.named.insert(name.to_owned(), begun);
+        self.versions_changed();
         Ok(())
     }
 
@@ -155,6 +172,7 @@ impl Painting {
         if self.line.as_deref() == Some(name) {
             self.line = parent;
         }
+        self.versions_changed();
         Ok(())
     }
 }

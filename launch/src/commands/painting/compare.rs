@@ -1,0 +1,113 @@
+//! Two versions of a painting side by side, and where they differ.
+
+use std::path::Path;
+
+use maulstick_optics::colour::{delta_e_2000, lab, srgb_decode};
+use maulstick_paint::picture::{Picture, picture};
+use maulstick_paint::Sequencer;
+use maulstick_rig::Fault;
+use maulstick_rig::files::{check_writable, write_whole};
+use maulstick_types::command::Command;
+use maulstick_types::scene::CANVAS;
+use serde_json::json;
+
+use crate::commands::{print_json, say};
+use crate::document::read;
+use crate::performance::refused;
+
+/// The painting as it is.
+const NOW: &str = "now";
+/// A difference that is shown as white, ΔE₀₀.
+const WHITE: f64 = 20.0;
+
+/// Draws `one`, `other` and their difference, left to right, and says how far they are apart.
+///
+/// # Errors
+/// A [`Fault`] for an unknown version, or a picture that cannot be written.
+pub(super) fn compare(
+    path: &Path,
+    [one, other]: [&str; 2],
+    output: &Path,
+    as_json: bool,
+) -> Result<i32, Fault> {
+    check_writable(output).map_err(|error| Fault::writing(output, &error))?;
+    let (_document, opened) = read(path)?;
+    let mut sequencer = opened.sequencer().map_err(refused)?;
+    sequencer.ask(Command::Mark).map_err(refused)?;
+    let pictures = [seen(&mut sequencer, one)?, seen(&mut sequencer, other)?];
+    let [left, right] = &pictures;
+    let (width, height) = (left.width, left.height);
+    let mut rgb = vec![0u8; 3 * width * height * 3];
+    let (mut sum, mut most, mut changed) = (0.0f64, 0.0f64, 0u64);
+    for y in 0..height {
+        for x in 0..width {
+            let at = (y * width + x) * 3;
+            let pixels = [left, right].map(|picture| [0, 1, 2].map(|c| picture.rgb[at + c]));
+            let delta = difference(pixels);
+            sum += delta;
+            most = most.max(delta);
+            changed += u64::from(delta > 1.0);
+            let parts = [pixels[0], pixels[1], heat(delta)];
+            for (part, pixel) in parts.into_iter().enumerate() {
+                let to = (y * 3 * width + part * width + x) * 3;
+                rgb[to..to + 3].copy_from_slice(&pixel);
+            }
+        }
+    }
+    let count = (width * height).max(1) as f64;
+    let picture = Picture::srgb(3 * width, height, rgb);
+    write_whole(output, |file| picture.encode_png(file))
+        .map_err(|error| Fault::writing(output, &error))?;
+    let (mean, share) = (sum / count, changed as f64 / count);
+    if as_json {
+        print_json(&json!({
+            "one": one, "other": other, "mean_delta_e": mean, "max_delta_e": most,
+            "changed_share": share,
+        }))?;
+    } else {
+        say!("{}: {one} | {other} | difference", output.display());
+        say!("ΔE00 {mean:.2} in the mean, {most:.1} at most; {:.1} % of the canvas changed", 100.0 * share);
+    }
+    Ok(0)
+}
+
+/// The picture of a version; the painting is as it was before.
+fn seen(sequencer: &mut Sequencer, version: &str) -> Result<Picture, Fault> {
+    let is_now = version == NOW;
+    if !is_now {
+        let name = version.to_owned();
+        sequencer.ask(Command::Return { name }).map_err(refused)?;
+    }
+    let seen = picture(sequencer.painting_mut(), CANVAS);
+    if !is_now {
+        sequencer.ask(Command::Undo { brush: None }).map_err(refused)?;
+    }
+    Ok(seen)
+}
+
+/// How far two pixels are apart, ΔE₀₀.
+fn difference([one, other]: [[u8; 3]; 2]) -> f64 {
+    if one == other {
+        return 0.0;
+    }
+    const WHITE_XYZ: [f64; 3] = [0.950_47, 1.0, 1.088_83];
+    let seen = |pixel: [u8; 3]| {
+        let [r, g, b] = pixel.map(|byte| srgb_decode(f64::from(byte) / 255.0));
+        let xyz = [
+            0.412_456_4 * r + 0.357_576_1 * g + 0.180_437_5 * b,
+            0.212_672_9 * r + 0.715_152_2 * g + 0.072_175 * b,
+            0.019_333_9 * r + 0.119_192 * g + 0.950_304_1 * b,
+        ];
+        lab(xyz, WHITE_XYZ)
+    };
+    delta_e_2000(seen(one), seen(other))
+}
+
+/// A difference as a colour: black, blue, orange, white.
+fn heat(delta: f64) -> [u8; 3] {
+    const STOPS: [[f64; 3]; 4] = [[0.0; 3], [30.0, 60.0, 170.0], [240.0, 140.0, 30.0], [255.0; 3]];
+    let place = (delta / WHITE).clamp(0.0, 1.0) * 3.0;
+    let from = (place as usize).min(2);
+    let t = place - from as f64;
+    std::array::from_fn(|c| (STOPS[from][c] + (STOPS[from + 1][c] - STOPS[from][c]) * t) as u8)
+}

@@ -1,0 +1,109 @@
+//! `maulstick painting info`: what a painting holds.
+
+use std::path::PathBuf;
+
+use clap::Args;
+use maulstick_document::{Contents, DocumentError};
+use maulstick_rig::size::show_bytes;
+use maulstick_rig::Fault;
+use serde_json::json;
+
+use crate::commands::{print_json, say};
+use crate::document::{read, wrong};
+use crate::performance::refused;
+
+/// Options of `maulstick painting info`.
+#[derive(Args, Clone, Debug)]
+pub struct InfoOptions {
+    /// The painting
+    file: PathBuf,
+    /// Reads every tile of it and of its history, to see that all are whole
+    #[arg(long)]
+    check: bool,
+    /// As JSON
+    #[arg(long)]
+    json: bool,
+}
+
+/// Shows what a painting holds.
+///
+/// # Errors
+/// A [`Fault`] where it cannot be read, or is damaged.
+pub(super) fn run(options: &InfoOptions) -> Result<i32, Fault> {
+    let path = &options.file;
+    let contents = Contents::read(path).map_err(|error| wrong(path, &error))?;
+    if options.check {
+        let bar = super::bar("reading");
+        let checked = contents.check(path, &mut super::tell(&bar));
+        bar.finish_and_clear();
+        checked.map_err(|error| wrong(path, &error))?;
+    }
+    let (document, opened) = read(path)?;
+    let pending = opened.pending();
+    let mut sequencer = opened.sequencer().map_err(refused)?;
+    let journal = sequencer.journal_next();
+    let painting = sequencer.painting_mut();
+    let ledger = painting.report();
+    if let Some(what) = document.pager().fault() {
+        return Err(wrong(path, &DocumentError::Damaged(what.to_owned())));
+    }
+    let scene = painting.scene();
+    let canvas = &scene.surfaces[0];
+    let size_cm = canvas.cells.map(|cells| f64::from(cells) * canvas.cell_m * 100.0);
+    let per_mm = 1e-3 / canvas.cell_m;
+    let (undo, redo) = painting.history_depth();
+    let names: Vec<&str> = scene.paints.iter().map(|slot| slot.name.as_str()).collect();
+    let versions: Vec<_> = painting.named().map(|version| version.name.as_str()).collect();
+    if options.json {
+        let layers: Vec<_> = scene
+            .layers
+            .iter()
+            .map(|layer| json!({"number": layer.number, "name": layer.name, "opacity": layer.opacity}))
+            .collect();
+        print_json(&json!({
+            "file": path.display().to_string(),
+            "format": contents.format,
+            "bytes": contents.bytes,
+            "cells": canvas.cells,
+            "size_cm": size_cm,
+            "cells_per_mm": per_mm,
+            "ground": canvas.ground,
+            "tooth": canvas.tooth,
+            "paints": names,
+            "layers": layers,
+            "undo": undo,
+            "redo": redo,
+            "merged": painting.history().merged(),
+            "versions": versions,
+            "journal": journal,
+            "pending": pending,
+            "tables": contents.tables,
+            "checked": options.check,
+            "ledger": ledger,
+        }))?;
+        return Ok(0);
+    }
+    say!("size      {:.1} × {:.1} cm, {} × {} cells, {per_mm} a mm", size_cm[0], size_cm[1], canvas.cells[0], canvas.cells[1]);
+    say!("ground    {}, {} tooth", canvas.ground, canvas.tooth);
+    say!("paints    {}", if names.is_empty() { "none yet".to_owned() } else { names.join(", ") });
+    for layer in &scene.layers {
+        say!("layer     {} {}, opacity {}", layer.number, layer.name, layer.opacity);
+    }
+    let merged = match painting.history().merged() {
+        0 | 1 => String::new(),
+        merged => format!(", the oldest of them {merged} in one"),
+    };
+    say!("history   {undo} steps to undo, {redo} to redo{merged}");
+    say!("versions  {}", if versions.is_empty() { "none".to_owned() } else { versions.join(", ") });
+    say!("file      {}, format {}", show_bytes(contents.bytes), contents.format);
+    for (table, bytes) in &contents.tables {
+        say!("          {table:<8} {}", show_bytes(*bytes));
+    }
+    if pending > 0 {
+        say!("          it was not closed: {pending} things were done again after its last moment");
+    }
+    if options.check {
+        say!("          every tile is whole");
+    }
+    Ok(0)
+}

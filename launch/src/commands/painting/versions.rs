@@ -1,0 +1,131 @@
+//! `maulstick painting versions`: the versions of a painting, in a file or in a running rig.
+
+use std::path::PathBuf;
+
+use clap::Args;
+use maulstick_rig::{Fault, RigConfig};
+use maulstick_types::command::Command;
+use maulstick_types::scene::{NamedVersion, Scene};
+use maulstick_bus::Class;
+use serde_json::json;
+
+use crate::commands::session::{PAINT, Session, Target};
+use crate::commands::{print_json, say};
+use crate::document::{go_on, wrong};
+use crate::performance::refused;
+
+use super::compare::compare;
+
+/// Options of `maulstick painting versions`.
+#[derive(Args, Clone, Debug)]
+pub struct VersionsOptions {
+    /// The painting; that of the running rig if absent
+    file: Option<PathBuf>,
+    /// Keeps the painting as it is under this name
+    #[arg(long, value_name = "NAME", group = "act")]
+    keep: Option<String>,
+    /// Makes the painting as it was in a version; this can be undone
+    #[arg(long = "return", value_name = "NAME", group = "act")]
+    return_to: Option<String>,
+    /// Begins a version from another one: the painting becomes as it was there
+    #[arg(long, value_names = ["FROM", "NAME"], num_args = 2, group = "act")]
+    branch: Option<Vec<String>>,
+    /// Forgets a version
+    #[arg(long, value_name = "NAME", group = "act")]
+    forget: Option<String>,
+    /// Draws two versions and their difference side by side; "now" is the painting as it is
+    #[arg(long, value_names = ["ONE", "OTHER"], num_args = 2, group = "act", requires = "output", requires = "file")]
+    compare: Option<Vec<String>>,
+    /// The picture of the difference, a PNG
+    #[arg(short, long, value_name = "PNG", requires = "compare")]
+    output: Option<PathBuf>,
+    /// As JSON
+    #[arg(long)]
+    json: bool,
+    #[command(flatten)]
+    target: Target,
+}
+
+impl VersionsOptions {
+    fn command(&self) -> Option<Command> {
+        let keep = self.keep.clone().map(|name| Command::Keep { name });
+        let back = self.return_to.clone().map(|name| Command::Return { name });
+        let forget = self.forget.clone().map(|name| Command::Forget { name });
+        let branch = self.branch.as_deref().and_then(|names| match names {
+            [from, name] => Some(Command::Branch {
+                from: from.clone(),
+                name: name.clone(),
+            }),
+            _ => None,
+        });
+        keep.or(back).or(forget).or(branch)
+    }
+}
+
+/// Lists versions, or does what is asked of them.
+///
+/// # Errors
+/// A [`Fault`] for an unknown version, or where there is no painting.
+pub(super) fn run(options: &VersionsOptions) -> Result<i32, Fault> {
+    let command = options.command();
+    if let Some(command) = &command {
+        command.check().map_err(Fault::usage)?;
+    }
+    let Some(path) = &options.file else {
+        let session = Session::open(&options.target)?;
+        if let Some(command) = command {
+            session.send(PAINT, command)?;
+        }
+        let mut scenes = session.follow::<Scene>(&session.topics().scene(), Class::Cached)?;
+        return list(&scenes.hear()?.message, options.json);
+    };
+    if let (Some([one, other]), Some(output)) = (options.compare.as_deref(), &options.output) {
+        return compare(path, [one, other], output, options.json);
+    }
+    let Some(command) = command else {
+        let (_document, opened) = crate::document::read(path)?;
+        return list(opened.sequencer().map_err(refused)?.painting().scene(), options.json);
+    };
+    let (document, mut sequencer, since) = match path.exists() {
+        true => go_on(&RigConfig::default(), path)?,
+        false => return Err(wrong(path, &maulstick_document::DocumentError::Missing)),
+    };
+    let keeper = maulstick_nodes::Keeper::new(document, &mut sequencer, since);
+    let done = sequencer.ask(command).map_err(refused);
+    keeper.close(&mut sequencer).map_err(|error| wrong(path, &error))?;
+    done?;
+    list(sequencer.painting().scene(), options.json)
+}
+
+fn list(scene: &Scene, as_json: bool) -> Result<i32, Fault> {
+    if as_json {
+        let versions: Vec<_> = scene
+            .versions
+            .iter()
+            .map(|version| json!({"name": version.name, "parent": version.parent, "here": version.here}))
+            .collect();
+        print_json(&json!({ "versions": versions }))?;
+        return Ok(0);
+    }
+    if scene.versions.is_empty() {
+        say!("no versions yet: --keep NAME keeps the painting as it is");
+    }
+    let roots = scene.versions.iter().filter(|version| version.parent.is_empty());
+    for root in roots {
+        show(&scene.versions, root, 0)?;
+    }
+    Ok(0)
+}
+
+fn show(all: &[NamedVersion], version: &NamedVersion, depth: usize) -> Result<(), Fault> {
+    let here = if version.here { "  ← painted on from here" } else { "" };
+    say!("{:indent$}{}{here}", "", version.name, indent = 2 * depth);
+    let children = all.iter().filter(|other| other.parent == version.name);
+    for child in children {
+        // A chain of parents has no ring: names are unique, and a parent is there before its child.
+        if depth < all.len() {
+            show(all, child, depth + 1)?;
+        }
+    }
+    Ok(())
+}

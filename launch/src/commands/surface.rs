@@ -1,0 +1,94 @@
+//! `maulstick fill`, `ground` and `tooth`: the canvas of a running rig.
+
+use clap::Args;
+use maulstick_rig::Fault;
+use maulstick_types::command::Command;
+use maulstick_types::scene::{CANVAS, PALETTE};
+
+use crate::commands::session::{PAINT, Session, Target};
+use crate::performance::{library, mixture_of};
+
+/// Options of `maulstick fill`.
+#[derive(Args, Clone, Debug)]
+pub struct FillOptions {
+    /// The paint: "Yellow Ochre=0.7,Titanium White=0.3"
+    mixture: String,
+    /// Thickness of the film, µm
+    #[arg(long, default_value_t = 50.0, allow_negative_numbers = true)]
+    um: f64,
+    /// The palette in the place of the canvas
+    #[arg(long)]
+    palette: bool,
+    #[command(flatten)]
+    target: Target,
+}
+
+/// Options of `maulstick ground`.
+#[derive(Args, Clone, Debug)]
+pub struct GroundOptions {
+    /// The ground: gesso, grey, black
+    ground: String,
+    #[command(flatten)]
+    target: Target,
+}
+
+/// Options of `maulstick tooth`.
+#[derive(Args, Clone, Debug)]
+pub struct ToothOptions {
+    /// The tooth: linen, cotton, panel, paper
+    tooth: String,
+    /// Another piece of the same cloth
+    #[arg(long, default_value_t = 1)]
+    seed: u64,
+    #[command(flatten)]
+    target: Target,
+}
+
+fn send(target: &Target, command: Command) -> Result<i32, Fault> {
+    command.check().map_err(Fault::usage)?;
+    Session::open(target)?.send(PAINT, command)?;
+    Ok(0)
+}
+
+/// Lays an even film.
+///
+/// # Errors
+/// A [`Fault`] for an unknown paint, or where no rig runs.
+pub fn fill(options: &FillOptions) -> Result<i32, Fault> {
+    let mixture = match mixture_of(&options.mixture, &library()?) {
+        Ok(mixture) => mixture,
+        // The rig may have paints of its own: it knows best.
+        Err(fault) => options.mixture.parse().map_err(|_| fault)?,
+    };
+    let command = Command::Fill {
+        surface: if options.palette { PALETTE } else { CANVAS },
+        mixture,
+        thickness_m: options.um * 1e-6,
+    };
+    send(&options.target, command)
+}
+
+/// Gives the canvas another ground.
+///
+/// # Errors
+/// A [`Fault`] for an unknown ground, or where no rig runs.
+pub fn ground(options: &GroundOptions) -> Result<i32, Fault> {
+    let command = Command::Ground {
+        surface: CANVAS,
+        ground: options.ground.clone(),
+    };
+    send(&options.target, command)
+}
+
+/// Gives the canvas another tooth.
+///
+/// # Errors
+/// A [`Fault`] for an unknown tooth, or where no rig runs.
+pub fn tooth(options: &ToothOptions) -> Result<i32, Fault> {
+    let command = Command::Tooth {
+        surface: CANVAS,
+        tooth: options.tooth.clone(),
+        seed: options.seed,
+    };
+    send(&options.target, command)
+}

@@ -1,0 +1,109 @@
+//! Paintings in files, as the command line speaks of them.
+
+use std::path::Path;
+
+use maulstick_document::{Access, Document, DocumentError, DocumentSettings, Opened, glance};
+use maulstick_paint::{Painting, Sequencer};
+use maulstick_rig::config::RigConfig;
+use maulstick_rig::fault::EXIT_FAILURE;
+use maulstick_rig::Fault;
+use maulstick_rig::files::check_writable;
+
+use crate::performance::{PaintingOptions, library_from, painting_setup, refused};
+
+/// What is wrong with a document, as the user sees it.
+#[must_use]
+pub fn wrong(path: &Path, error: &DocumentError) -> Fault {
+    let fault = Fault::usage(error.to_string())
+        .at(path.display().to_string())
+        .help(error.help());
+    let failure = matches!(
+        error,
+        DocumentError::Full | DocumentError::ReadOnly(_) | DocumentError::InUse { .. }
+    );
+    match failure {
+        true => Fault {
+            code: EXIT_FAILURE,
+            ..fault
+        },
+        false => fault,
+    }
+}
+
+/// A painting that is read: nothing is written.
+///
+/// # Errors
+/// A [`Fault`] where there is none, or it cannot be read.
+pub fn read(path: &Path) -> Result<(Document, Opened), Fault> {
+    let settings = DocumentSettings::new(path, Access::Read);
+    let (document, opened) =
+        Document::open(&settings).map_err(|error| wrong(path, &error))?;
+    let opened = opened.ok_or_else(|| wrong(path, &DocumentError::NoPainting))?;
+    Ok((document, opened))
+}
+
+/// A painting that goes on: as its file has it, or begun there as the settings say. Also tile versions
+/// up to which the file has it.
+///
+/// # Errors
+/// A [`Fault`] where the file cannot be used, or the settings are wrong.
+pub fn go_on(config: &RigConfig, path: &Path) -> Result<(Document, Sequencer, u64), Fault> {
+    let [memory, history] = config
+        .paint
+        .bytes()
+        .map_err(|what| Fault::usage(what).at("[paint]"))?;
+    let settings = DocumentSettings {
+        memory: usize::try_from(memory).unwrap_or(usize::MAX),
+        ..DocumentSettings::new(path, Access::Paint)
+    };
+    let (document, opened) =
+        Document::open(&settings).map_err(|error| wrong(path, &error))?;
+    let (mut sequencer, since) = match opened {
+        Some(opened) => {
+            let since = opened.kept().versions;
+            (opened.sequencer().map_err(refused)?, since)
+        }
+        None => {
+            let library = library_from(config.paint.paints.as_deref())?;
+            let setup = painting_setup(config, &library)?;
+            let pager = document.pager().clone();
+            let painting = Painting::paged(&setup, library, pager).map_err(refused)?;
+            let mut sequencer = Sequencer::new(painting);
+            sequencer.decide("backend cpu");
+            (sequencer, 0)
+        }
+    };
+    sequencer.painting_mut().set_quota(history);
+    if let Some(what) = document.pager().fault() {
+        return Err(wrong(path, &DocumentError::Damaged(what.to_owned())));
+    }
+    Ok((document, sequencer, since))
+}
+
+/// What stands where a painting is to be.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Presence {
+    /// Nothing: it is to be begun there.
+    New,
+    /// A painting.
+    There,
+}
+
+/// Sees, before anything is started, whether a painting can go on in a file, or be begun there.
+///
+/// # Errors
+/// A [`Fault`] where it cannot, or where an option is given that only a new painting takes.
+pub fn presence(path: &Path, options: &PaintingOptions) -> Result<Presence, Fault> {
+    match glance(path).map_err(|error| wrong(path, &error))? {
+        false => {
+            check_writable(path).map_err(|error| Fault::writing(path, &error))?;
+            Ok(Presence::New)
+        }
+        true => match options.for_a_new_one() {
+            Some(option) => Err(Fault::usage(format!("{option} is for a new painting"))
+                .at(path.display().to_string())
+                .help("this one has its size, paints and light; `maulstick light` changes its light")),
+            None => Ok(Presence::There),
+        },
+    }
+}

@@ -1,0 +1,306 @@
+//! The file: opened for one program alone, and its rows read one by one.
+
+use std::path::{Path, PathBuf};
+
+use maulstick_paint::load::BrushLoad;
+use maulstick_paint::tile::Planes;
+use rusqlite::{Connection, OpenFlags, OptionalExtension as _, params};
+
+use crate::error::DocumentError;
+use crate::schema::{self, Table};
+use crate::sum::Sum;
+use crate::{loads, planes};
+
+/// What a file is opened for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Access {
+    /// To paint in it; it is begun where there is none.
+    Paint,
+    /// To read it; nothing is changed but that a journal left by a crash is folded in.
+    Read,
+}
+
+/// Bytes of a page of the file.
+const PAGE_BYTES: u32 = 8192;
+/// The first bytes of every SQLite file.
+const MAGIC: &[u8; 16] = b"SQLite format 3\0";
+/// A page's chain of differences has at most this many links.
+pub(crate) const DEPTH_MAX: i64 = 8;
+
+/// An open painting.
+#[derive(Debug)]
+pub struct Database {
+    pub(crate) connection: Connection,
+    /// zstd's level of what is written.
+    pub(crate) level: i32,
+}
+
+/// The journal that SQLite keeps beside a file.
+fn beside(path: &Path, suffix: &str) -> PathBuf {
+    let mut name = path.as_os_str().to_owned();
+    name.push(suffix);
+    name.into()
+}
+
+/// Whether a painting is there that can go on; false where one is to be begun.
+///
+/// # Errors
+/// Any [`DocumentError`], and nothing is changed.
+pub fn glance(path: &Path) -> Result<bool, DocumentError> {
+    if is_new(path)? {
+        return Ok(false);
+    }
+    let (database, _) = Database::open(path, Access::Paint, None)?;
+    let begun = crate::opening::has_state(&database)?;
+    database.close()?;
+    Ok(begun)
+}
+
+fn length(path: &Path) -> Option<u64> {
+    std::fs::metadata(path).ok().map(|about| about.len())
+}
+
+/// Whether a painting is to be begun there.
+fn is_new(path: &Path) -> Result<bool, DocumentError> {
+    let Some(length_found) = length(path) else {
+        return match path.parent() {
+            Some(folder) if !folder.as_os_str().is_empty() && !folder.is_dir() => {
+                Err(DocumentError::Other("its folder does not exist".to_owned()))
+            }
+            _ => Ok(true),
+        };
+    };
+    if !path.is_file() {
+        return Err(DocumentError::NoPainting);
+    }
+    if length_found == 0 {
+        return match length(&beside(path, "-wal")) {
+            Some(1..) => Err(DocumentError::Damaged("the file is empty".to_owned())),
+            _ => Ok(true),
+        };
+    }
+    let mut head = [0; 16];
+    use std::io::Read as _;
+    let read = std::fs::File::open(path)?.read_exact(&mut head);
+    match read {
+        Ok(()) if &head == MAGIC => Ok(false),
+        Ok(()) if length_found > 4096 && damaged_head(&head) => {
+            Err(DocumentError::Damaged("its first bytes are wrong".to_owned()))
+        }
+        _ => Err(DocumentError::NoPainting),
+    }
+}
+
+/// Whether these are a painting's first bytes with a few of them wrong.
+fn damaged_head(head: &[u8; 16]) -> bool {
+    head.iter().zip(MAGIC).filter(|(one, other)| one == other).count() >= 8
+}
+
+impl Database {
+    /// Opens a painting; `vfs` is the name of SQLite's way to the file, if not the usual one. True
+    /// where it was begun.
+    ///
+    /// # Errors
+    /// Any [`DocumentError`].
+    pub fn open(
+        path: &Path,
+        access: Access,
+        vfs: Option<&str>,
+    ) -> Result<(Self, bool), DocumentError> {
+        let new = is_new(path)?;
+        if new && access == Access::Read {
+            return Err(DocumentError::Missing);
+        }
+        let flags = OpenFlags::SQLITE_OPEN_READ_WRITE
+            | OpenFlags::SQLITE_OPEN_NO_MUTEX
+            | OpenFlags::SQLITE_OPEN_CREATE;
+        let connection = match vfs {
+            Some(vfs) => Connection::open_with_flags_and_vfs(path, flags, vfs),
+            None => Connection::open_with_flags(path, flags),
+        };
+        let mut database = Self {
+            connection: connection?,
+            level: planes::LEVEL,
+        };
+        match database.take(path, new) {
+            Err(DocumentError::ReadOnly(_)) if access == Access::Read => {
+                database = Self::open_frozen(path)?;
+            }
+            Err(DocumentError::InUse { .. }) => {
+                return Err(DocumentError::InUse {
+                    holder: holder(path),
+                });
+            }
+            taken => taken?,
+        }
+        if new {
+            schema::create(&database.connection)?;
+        }
+        match access {
+            Access::Paint => schema::migrate(&database.connection)?,
+            Access::Read => schema::migrate(&database.connection)?,
+        }
+        Ok((database, new))
+    }
+
+    /// Makes the file this program's own and sets how it is written.
+    fn take(&self, path: &Path, new: bool) -> Result<(), DocumentError> {
+        let connection = &self.connection;
+        if connection.is_readonly("main")? {
+            return Err(DocumentError::ReadOnly(
+                "no permission to write".to_owned(),
+            ));
+        }
+        // Before the first access, so that SQLite needs no memory shared between programs.
+        connection.pragma_update(None, "locking_mode", "EXCLUSIVE")?;
+        if new {
+            connection.pragma_update(None, "page_size", PAGE_BYTES)?;
+        }
+        let mode: String =
+            connection.query_row("PRAGMA journal_mode = WAL", params![], |row| row.get(0))?;
+        if mode != "wal" {
+            let folder = path.parent().unwrap_or(path).display();
+            return Err(DocumentError::ReadOnly(format!("no journal in {folder}")));
+        }
+        connection.pragma_update(None, "synchronous", "FULL")?;
+        connection.execute_batch(
+            "PRAGMA cache_size = -8192; PRAGMA temp_store = MEMORY; PRAGMA cell_size_check = ON; \
+             BEGIN EXCLUSIVE; COMMIT;",
+        )?;
+        Ok(())
+    }
+
+    /// Opens a painting that nobody can write to, if no journal lies beside it.
+    fn open_frozen(path: &Path) -> Result<Self, DocumentError> {
+        if length(&beside(path, "-wal")).is_some_and(|length| length > 0) {
+            return Err(DocumentError::ReadOnly(
+                "it was not closed, and its journal is to be folded in first".to_owned(),
+            ));
+        }
+        let text = path.as_os_str().as_encoded_bytes();
+        let escaped: String = text
+            .iter()
+            .map(|byte| match byte {
+                b'a'..=b'z' | b'A'..=b'Z' | b'0'..=b'9' | b'/' | b'.' | b'_' | b'-' => {
+                    char::from(*byte).to_string()
+                }
+                other => format!("%{other:02X}"),
+            })
+            .collect();
+        let flags = OpenFlags::SQLITE_OPEN_READ_ONLY
+            | OpenFlags::SQLITE_OPEN_URI
+            | OpenFlags::SQLITE_OPEN_NO_MUTEX;
+        let uri = format!("file:{escaped}?immutable=1");
+        Ok(Self {
+            connection: Connection::open_with_flags(uri, flags)?,
+            level: planes::LEVEL,
+        })
+    }
+
+    /// Folds the journal into the file and closes it.
+    ///
+    /// # Errors
+    /// What SQLite says.
+    pub fn close(self) -> Result<(), DocumentError> {
+        if !self.connection.is_readonly("main")? {
+            self.connection
+                .query_row("PRAGMA wal_checkpoint(TRUNCATE)", params![], |_| Ok(()))?;
+        }
+        self.connection.close().map_err(|(_, error)| error.into())
+    }
+
+    /// The planes of a page.
+    ///
+    /// # Errors
+    /// [`DocumentError::Damaged`] where it is not whole, or what SQLite says.
+    pub fn planes(&self, id: u64) -> Result<Planes, DocumentError> {
+        self.planes_at(id, DEPTH_MAX + 1)
+    }
+
+    fn planes_at(&self, id: u64, left: i64) -> Result<Planes, DocumentError> {
+        let damaged = |what: &str| DocumentError::Damaged(format!("page {id} {what}"));
+        if left < 0 {
+            return Err(damaged("is a difference to itself"));
+        }
+        let mut statement = self
+            .connection
+            .prepare_cached("SELECT base, depth, slots, data, sum FROM page WHERE id = ?1")?;
+        let row = statement.query_row(params![id as i64], |row| {
+            let ints: [i64; 3] = [row.get(0)?, row.get(1)?, row.get(2)?];
+            Ok((ints, row.get::<_, Vec<u8>>(3)?, row.get::<_, i64>(4)?))
+        });
+        let ([base, depth, slots], data, sum) =
+            row.optional()?.ok_or_else(|| damaged("is missing"))?;
+        if page_sum(id, [base, depth, slots], &data) != sum {
+            return Err(damaged("does not match its checksum"));
+        }
+        let base = match base {
+            0 => None,
+            base => Some(self.planes_at(base as u64, left - 1)?),
+        };
+        planes::decode(slots as u32, &data, base.as_ref()).map_err(|what| damaged(&what))
+    }
+
+    /// What a brush carried.
+    ///
+    /// # Errors
+    /// As [`planes`](Self::planes).
+    pub fn load(&self, id: u64) -> Result<BrushLoad, DocumentError> {
+        let damaged = |what: &str| DocumentError::Damaged(format!("load {id} {what}"));
+        let mut statement = self
+            .connection
+            .prepare_cached("SELECT data, sum FROM load WHERE id = ?1")?;
+        let row = statement.query_row(params![id as i64], |row| {
+            Ok((row.get::<_, Vec<u8>>(0)?, row.get::<_, i64>(1)?))
+        });
+        let (data, sum) = row.optional()?.ok_or_else(|| damaged("is missing"))?;
+        if load_sum(id, &data) != sum {
+            return Err(damaged("does not match its checksum"));
+        }
+        loads::decode(&data).map_err(|what| damaged(&what))
+    }
+
+    /// A tile as it was shown; none where there is none, or it is damaged.
+    #[must_use]
+    pub fn shown(&self, place: i64, version: i64, look: i64) -> Option<Vec<u8>> {
+        let query = "SELECT data, sum FROM shown WHERE place = ?1 AND version = ?2 AND look = ?3";
+        let mut statement = self.connection.prepare_cached(query).ok()?;
+        let row = statement.query_row(params![place, version, look], |row| {
+            Ok((row.get::<_, Vec<u8>>(0)?, row.get::<_, i64>(1)?))
+        });
+        let (data, sum) = row.ok()?;
+        (shown_sum(place, version, look, &data) == sum).then_some(data)
+    }
+}
+
+pub(crate) fn page_sum(id: u64, ints: [i64; 3], data: &[u8]) -> i64 {
+    let sum = Sum::of(Table::Page).int(id as i64);
+    let sum = ints.into_iter().fold(sum, Sum::int);
+    sum.bytes(data).done()
+}
+
+pub(crate) fn load_sum(id: u64, data: &[u8]) -> i64 {
+    Sum::of(Table::Load).int(id as i64).bytes(data).done()
+}
+
+pub(crate) fn shown_sum(place: i64, version: i64, look: i64, data: &[u8]) -> i64 {
+    let sum = Sum::of(Table::Shown).int(place).int(version).int(look);
+    sum.bytes(data).done()
+}
+
+/// The process that holds the lock of a file, if the system knows it.
+fn holder(path: &Path) -> Option<i32> {
+    use nix::fcntl::{FcntlArg, fcntl};
+    // Bytes that SQLite locks: pending, reserved and shared, from 1 GiB on.
+    const LOCKED: (i64, i64) = (0x4000_0000, 512);
+    let file = std::fs::File::open(path).ok()?;
+    let mut lock = nix::libc::flock {
+        l_type: nix::libc::F_WRLCK as i16,
+        l_whence: nix::libc::SEEK_SET as i16,
+        l_start: LOCKED.0,
+        l_len: LOCKED.1,
+        l_pid: 0,
+    };
+    fcntl(&file, FcntlArg::F_GETLK(&mut lock)).ok()?;
+    (lock.l_type != nix::libc::F_UNLCK as i16 && lock.l_pid > 0).then_some(lock.l_pid)
+}

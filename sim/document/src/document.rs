@@ -1,0 +1,468 @@
+//! An open painting with the thread that owns its file.
+//!
+//! The painter's thread only hands over: what was accepted, and moments of the painting. Here they are
+//! written, and pages that left memory are read; who waits for a page comes first.
+
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+use std::sync::atomic::{AtomicU64, Ordering::SeqCst};
+use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError, mpsc};
+use std::thread::JoinHandle;
+use std::time::{Duration, Instant};
+
+use maulstick_paint::load::BrushLoad;
+use maulstick_paint::page::{Backing, Pager};
+use maulstick_paint::sequencer::Record;
+use maulstick_paint::tile::Planes;
+
+use crate::database::{Access, Database};
+use crate::error::DocumentError;
+use crate::journal;
+use crate::opening::{Opened, opened};
+use crate::writing::{Moment, ShownTile, Writer};
+
+/// Accepted things are in the file after this long.
+const COMMIT: Duration = Duration::from_millis(100);
+/// What could not be written is tried again after this long.
+const AGAIN: Duration = Duration::from_secs(1);
+/// Tiles as they are shown that wait to be written, at most.
+const SHOWN_MAX: usize = 4096;
+
+/// How a document is opened.
+#[derive(Clone, Debug)]
+pub struct DocumentSettings {
+    /// The file.
+    pub path: PathBuf,
+    /// What for.
+    pub access: Access,
+    /// Most bytes of pages in memory.
+    pub memory: usize,
+    /// Name of SQLite's way to the file, if not the usual one.
+    pub vfs: Option<String>,
+}
+
+impl DocumentSettings {
+    /// A file opened for this, with 1 GiB of memory.
+    #[must_use]
+    pub fn new(path: &Path, access: Access) -> Self {
+        Self {
+            path: path.to_owned(),
+            access,
+            memory: 1 << 30,
+            vfs: None,
+        }
+    }
+}
+
+/// A page that somebody waits for.
+enum Fetch {
+    Planes(u64, mpsc::Sender<Result<Planes, String>>),
+    Load(u64, mpsc::Sender<Result<BrushLoad, String>>),
+    Shown([i64; 3], mpsc::Sender<Option<Vec<u8>>>),
+}
+
+#[derive(Default)]
+struct Queues {
+    fetches: Vec<Fetch>,
+    records: Vec<Record>,
+    moment: Option<Moment>,
+    shown: BTreeMap<i64, ShownTile>,
+    /// Who waits until all that was handed over is written, or could not be.
+    flushes: Vec<mpsc::Sender<()>>,
+    closing: bool,
+    /// A page could not be read: what was painted since may rest on its absence.
+    broken: bool,
+    fault: String,
+    help: &'static str,
+}
+
+/// Where the painter's threads and the document's meet.
+#[derive(Default)]
+struct Shared {
+    queues: Mutex<Queues>,
+    bell: Condvar,
+    committed: AtomicU64,
+}
+
+impl Shared {
+    fn lock(&self) -> MutexGuard<'_, Queues> {
+        self.queues.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    fn ask<T>(&self, fetch: impl FnOnce(mpsc::Sender<T>) -> Fetch) -> Option<T> {
+        let (send, receive) = mpsc::channel();
+        self.lock().fetches.push(fetch(send));
+        self.bell.notify_all();
+        receive.recv().ok()
+    }
+}
+
+/// Pages from the document's thread.
+struct Pages(Arc<Shared>);
+
+const GONE: &str = "the document was closed";
+
+impl Backing for Pages {
+    fn planes(&self, id: u64) -> Result<Planes, String> {
+        let read = self.0.ask(|answer| Fetch::Planes(id, answer));
+        read.unwrap_or_else(|| Err(GONE.to_owned()))
+    }
+
+    fn load(&self, id: u64) -> Result<BrushLoad, String> {
+        let read = self.0.ask(|answer| Fetch::Load(id, answer));
+        read.unwrap_or_else(|| Err(GONE.to_owned()))
+    }
+}
+
+/// An open painting.
+pub struct Document {
+    path: PathBuf,
+    shared: Arc<Shared>,
+    pager: Arc<Pager>,
+    thread: Option<JoinHandle<Result<(), DocumentError>>>,
+}
+
+/// Tiles as they were shown, for the thread that shows them.
+#[derive(Clone)]
+pub struct Shelf(Arc<Shared>);
+
+impl Shelf {
+    /// The planes of a tile as it was shown under a look, if they are in the document.
+    #[must_use]
+    pub fn get(&self, place: i64, version: u64, look: i64) -> Option<Vec<u8>> {
+        let bytes = self.0.ask(|answer| Fetch::Shown([place, version as i64, look], answer))??;
+        zstd::bulk::decompress(&bytes, 1 << 20).ok()
+    }
+
+    /// Puts a tile aside, to be written with the next moment that holds it.
+    pub fn put(&self, tile: ShownTile) {
+        let mut queues = self.0.lock();
+        if queues.shown.len() < SHOWN_MAX && !queues.closing {
+            queues.shown.insert(tile.place, tile);
+        }
+    }
+}
+
+impl std::fmt::Debug for Shelf {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str("Shelf")
+    }
+}
+
+impl Document {
+    /// Opens a painting, or begins one: then there is nothing opened.
+    ///
+    /// # Errors
+    /// Any [`DocumentError`]; the file is as it was.
+    pub fn open(settings: &DocumentSettings) -> Result<(Self, Option<Opened>), DocumentError> {
+        let vfs = settings.vfs.as_deref();
+        let (database, new) = Database::open(&settings.path, settings.access, vfs)?;
+        let shared: Arc<Shared> = Arc::default();
+        let backing = Arc::new(Pages(Arc::clone(&shared)));
+        // A painting that was begun, and not a second of it kept, begins anew.
+        let begun = new || !crate::opening::has_state(&database)?;
+        let (pager, found) = match begun {
+            true => (Pager::backed(backing, settings.memory, 1), None),
+            false => {
+                let next = crate::opening::next_page(&database)?;
+                let pager = Pager::backed(backing, settings.memory, next);
+                let found = opened(&database, &pager)?;
+                shared.committed.store(found.index(), SeqCst);
+                (pager, Some(found))
+            }
+        };
+        let thread = Thread {
+            shared: Arc::clone(&shared),
+            database,
+            writes: settings.access == Access::Paint,
+            last_commit: Instant::now(),
+            failed: None,
+        };
+        let thread = std::thread::Builder::new()
+            .name("document".into())
+            .spawn(move || thread.run())?;
+        let document = Self {
+            path: settings.path.clone(),
+            shared,
+            pager,
+            thread: Some(thread),
+        };
+        Ok((document, found))
+    }
+
+    /// The file.
+    #[must_use]
+    pub fn path(&self) -> &Path {
+        &self.path
+    }
+
+    /// The pages of the painting.
+    #[must_use]
+    pub fn pager(&self) -> &Arc<Pager> {
+        &self.pager
+    }
+
+    /// Tiles as they were shown.
+    #[must_use]
+    pub fn shelf(&self) -> Shelf {
+        Shelf(Arc::clone(&self.shared))
+    }
+
+    /// Hands over what was accepted; it is in the file within a tenth of a second.
+    pub fn record(&self, records: Vec<Record>) {
+        if !records.is_empty() {
+            self.shared.lock().records.extend(records);
+            self.shared.bell.notify_all();
+        }
+    }
+
+    /// Whether the last moment is written, so that the next one can be handed over.
+    #[must_use]
+    pub fn is_ready(&self) -> bool {
+        self.shared.lock().moment.is_none()
+    }
+
+    /// Hands a moment over. It has to hold all records that were handed over before, and the one
+    /// before it has to be written ([`is_ready`](Self::is_ready)).
+    pub fn keep(&self, moment: Moment) {
+        self.shared.lock().moment = Some(moment);
+        self.shared.bell.notify_all();
+    }
+
+    /// The journal entries below this index are in the file.
+    #[must_use]
+    pub fn committed(&self) -> u64 {
+        self.shared.committed.load(SeqCst)
+    }
+
+    /// Why nothing is written at present, and what to do about it; none where all is well.
+    #[must_use]
+    pub fn fault(&self) -> Option<(String, &'static str)> {
+        let queues = self.shared.lock();
+        (!queues.fault.is_empty()).then(|| (queues.fault.clone(), queues.help))
+    }
+
+    /// Waits until all that was handed over is written, or could not be.
+    pub fn flush(&self) {
+        let (send, receive) = mpsc::channel();
+        self.shared.lock().flushes.push(send);
+        self.shared.bell.notify_all();
+        receive.recv().ok();
+    }
+
+    /// Writes what was handed over, folds the journal in and closes the file.
+    ///
+    /// # Errors
+    /// Why something could not be written.
+    pub fn close(mut self) -> Result<(), DocumentError> {
+        self.end()
+    }
+
+    fn end(&mut self) -> Result<(), DocumentError> {
+        self.shared.lock().closing = true;
+        self.shared.bell.notify_all();
+        match self.thread.take().map(JoinHandle::join) {
+            None => Ok(()),
+            Some(Ok(ended)) => ended,
+            Some(Err(_)) => Err(DocumentError::Other("its thread has fallen".to_owned())),
+        }
+    }
+}
+
+impl Drop for Document {
+    fn drop(&mut self) {
+        if let Err(error) = self.end() {
+            tracing::error!("{}: {error}", self.path.display());
+        }
+    }
+}
+
+impl std::fmt::Debug for Document {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_tuple("Document").field(&self.path).finish()
+    }
+}
+
+/// The document's thread.
+struct Thread {
+    shared: Arc<Shared>,
+    database: Database,
+    writes: bool,
+    last_commit: Instant,
+    failed: Option<Instant>,
+}
+
+/// What the thread does next.
+enum Work {
+    Fetch,
+    Keep(Box<Moment>, Vec<ShownTile>),
+    Commit(Vec<Record>),
+    Close,
+}
+
+impl Thread {
+    fn run(mut self) -> Result<(), DocumentError> {
+        loop {
+            match self.next() {
+                Work::Fetch => serve(&self.shared, &self.database),
+                Work::Keep(moment, shown) => self.keep(*moment, shown),
+                Work::Commit(records) => self.commit(records),
+                Work::Close => break,
+            }
+        }
+        let (fault, left) = {
+            let mut queues = self.shared.lock();
+            queues.fetches.clear();
+            let left = queues.moment.is_some() || !queues.records.is_empty();
+            (queues.fault.clone(), left)
+        };
+        self.database.close()?;
+        match left && !fault.is_empty() {
+            true => Err(DocumentError::Other(fault)),
+            false => Ok(()),
+        }
+    }
+
+    fn next(&mut self) -> Work {
+        let mut queues = self.shared.lock();
+        loop {
+            if !queues.fetches.is_empty() {
+                return Work::Fetch;
+            }
+            let rests = self.failed.is_some_and(|when| when.elapsed() < AGAIN);
+            let may_write = self.writes && !queues.broken;
+            let hurry = queues.closing || !queues.flushes.is_empty();
+            let tries = may_write && (!rests || hurry);
+            if tries && let Some(moment) = queues.moment.take() {
+                // What shows a later moment waits for that.
+                let newest = moment.painting.kept.versions;
+                let later = queues.shown.extract_if(.., |_, tile| tile.version <= newest);
+                let shown = later.map(|(_, tile)| tile).collect();
+                return Work::Keep(Box::new(moment), shown);
+            }
+            let due = self.last_commit.elapsed() >= COMMIT;
+            if tries && !queues.records.is_empty() && (due || hurry) {
+                return Work::Commit(std::mem::take(&mut queues.records));
+            }
+            for waits in queues.flushes.drain(..) {
+                // Who waited may have given up.
+                waits.send(()).ok();
+            }
+            if queues.closing {
+                return Work::Close;
+            }
+            let wait = match (queues.records.is_empty(), rests) {
+                (false, false) if may_write => COMMIT.saturating_sub(self.last_commit.elapsed()),
+                _ => AGAIN,
+            };
+            let waited = self.shared.bell.wait_timeout(queues, wait.max(Duration::from_millis(1)));
+            (queues, _) = waited.unwrap_or_else(PoisonError::into_inner);
+        }
+    }
+
+    /// Runs `write` in a transaction; nothing of it stays where it fails.
+    fn transaction<T>(
+        &self,
+        write: impl FnOnce(&Database) -> Result<T, DocumentError>,
+    ) -> Result<T, DocumentError> {
+        let connection = &self.database.connection;
+        connection.execute_batch("BEGIN IMMEDIATE")?;
+        let written = write(&self.database).and_then(|written| {
+            connection.execute_batch("COMMIT")?;
+            Ok(written)
+        });
+        if written.is_err() && !connection.is_autocommit() {
+            connection.execute_batch("ROLLBACK").ok();
+        }
+        written
+    }
+
+    fn keep(&mut self, moment: Moment, shown: Vec<ShownTile>) {
+        let shared = Arc::clone(&self.shared);
+        let written = self.transaction(|database| {
+            let mut breathe = |database: &Database| serve(&shared, database);
+            Writer::new(database, &mut breathe).moment(&moment, &shown)
+        });
+        let mut queues = self.shared.lock();
+        match written {
+            Ok(stored) => {
+                stored.note();
+                let serial = moment.sequencer.serial;
+                queues.records.retain(|record| record.serial >= serial);
+                self.shared.committed.fetch_max(moment.sequencer.next, SeqCst);
+                drop(queues);
+                self.well();
+            }
+            Err(error) => {
+                queues.moment = Some(moment);
+                drop(queues);
+                self.ill(&error);
+            }
+        }
+    }
+
+    fn commit(&mut self, records: Vec<Record>) {
+        let (Some(first), Some(last)) = (records.first(), records.last()) else {
+            return;
+        };
+        let written = self.transaction(|database| {
+            let data = journal::write(&records)?;
+            crate::opening::put_journal(database, [first.serial, last.serial], &data)
+        });
+        self.last_commit = Instant::now();
+        match written {
+            Ok(()) => {
+                self.shared.committed.fetch_max(last.next(), SeqCst);
+                self.well();
+            }
+            Err(error) => {
+                let mut queues = self.shared.lock();
+                let later = std::mem::replace(&mut queues.records, records);
+                queues.records.extend(later);
+                drop(queues);
+                self.ill(&error);
+            }
+        }
+    }
+
+    fn well(&mut self) {
+        if self.failed.take().is_some() {
+            tracing::info!("the painting is written again");
+            self.shared.lock().fault.clear();
+        }
+    }
+
+    fn ill(&mut self, error: &DocumentError) {
+        let mut queues = self.shared.lock();
+        if queues.fault.is_empty() {
+            tracing::error!("the painting cannot be written: {error}; {}", error.help());
+        }
+        (queues.fault, queues.help) = (error.to_string(), error.help());
+        self.failed = Some(Instant::now());
+        // Who waits would wait for ever.
+        if queues.closing {
+            queues.broken = true;
+        }
+        queues.flushes.clear();
+    }
+}
+
+/// Reads what is waited for.
+fn serve(shared: &Shared, database: &Database) {
+    let fetches = std::mem::take(&mut shared.lock().fetches);
+    let broken = |error: DocumentError| {
+        let mut queues = shared.lock();
+        queues.broken = true;
+        (queues.fault, queues.help) = (error.to_string(), error.help());
+        error.to_string()
+    };
+    for fetch in fetches {
+        match fetch {
+            Fetch::Planes(id, answer) => answer.send(database.planes(id).map_err(broken)).unwrap_or(()),
+            Fetch::Load(id, answer) => answer.send(database.load(id).map_err(broken)).unwrap_or(()),
+            Fetch::Shown([place, version, look], answer) => {
+                answer.send(database.shown(place, version, look)).unwrap_or(());
+            }
+        }
+    }
+}

@@ -1,0 +1,104 @@
+//! What can go wrong with a document.
+
+use rusqlite::ffi;
+
+/// Why a document cannot be opened, read or written.
+#[derive(Debug, thiserror::Error)]
+pub enum DocumentError {
+    /// Something else than a painting.
+    #[error("this is no painting of Maulstick")]
+    NoPainting,
+    /// No such file, where one is to be read.
+    #[error("there is no such file")]
+    Missing,
+    /// A painting of a newer program.
+    #[error("this painting has the format {found}, but this program knows formats up to {known}")]
+    Newer {
+        /// Its schema.
+        found: i32,
+        /// The newest that is known.
+        known: i32,
+    },
+    /// Another program has it open.
+    #[error("the painting is open in another program{}", holder.map_or(String::new(), |pid| format!(" (process {pid})")))]
+    InUse {
+        /// Which, if the system says so.
+        holder: Option<i32>,
+    },
+    /// The file or its folder cannot be written to.
+    #[error("the painting cannot be written to: {0}")]
+    ReadOnly(String),
+    /// No room on the disk.
+    #[error("the disk is full")]
+    Full,
+    /// Bytes that do not hold together.
+    #[error("the painting is damaged: {0}")]
+    Damaged(String),
+    /// Anything else that SQLite or the system says.
+    #[error("{0}")]
+    Other(String),
+}
+
+impl DocumentError {
+    /// What to do about it.
+    #[must_use]
+    pub fn help(&self) -> &'static str {
+        match self {
+            Self::NoPainting => "give a file that `maulstick up FILE.maul` made, or a new name",
+            Self::Missing => "check the path; `maulstick up FILE.maul` begins a painting",
+            Self::Newer { .. } => "open it with that newer Maulstick; nothing was changed",
+            Self::InUse { .. } => {
+                "close it there; if that program hangs, end it: what it had written is safe"
+            }
+            Self::ReadOnly(_) => "check the permissions of the file and its folder, or copy it",
+            Self::Full => "free some space: nothing that was written is lost",
+            Self::Damaged(_) => "`maulstick painting recover FILE -o NEW.maul` takes out what is whole",
+            Self::Other(_) => "check the path and the disk",
+        }
+    }
+}
+
+impl From<rusqlite::Error> for DocumentError {
+    fn from(error: rusqlite::Error) -> Self {
+        let rusqlite::Error::SqliteFailure(code, _) = &error else {
+            return match error {
+                rusqlite::Error::QueryReturnedNoRows => {
+                    Self::Damaged("something is missing".to_owned())
+                }
+                rusqlite::Error::FromSqlConversionFailure(..)
+                | rusqlite::Error::InvalidColumnType(..)
+                | rusqlite::Error::IntegralValueOutOfRange(..) => Self::Damaged(error.to_string()),
+                other => Self::Other(other.to_string()),
+            };
+        };
+        match code.extended_code & 0xff {
+            ffi::SQLITE_BUSY | ffi::SQLITE_LOCKED => Self::InUse { holder: None },
+            ffi::SQLITE_READONLY | ffi::SQLITE_CANTOPEN | ffi::SQLITE_PERM => {
+                Self::ReadOnly(error.to_string())
+            }
+            ffi::SQLITE_FULL => Self::Full,
+            ffi::SQLITE_NOTADB => Self::NoPainting,
+            ffi::SQLITE_CORRUPT => Self::Damaged(error.to_string()),
+            _ => Self::Other(error.to_string()),
+        }
+    }
+}
+
+impl From<std::io::Error> for DocumentError {
+    fn from(error: std::io::Error) -> Self {
+        match error.kind() {
+            std::io::ErrorKind::StorageFull => Self::Full,
+            std::io::ErrorKind::NotFound => Self::Missing,
+            std::io::ErrorKind::PermissionDenied | std::io::ErrorKind::ReadOnlyFilesystem => {
+                Self::ReadOnly(error.to_string())
+            }
+            _ => Self::Other(error.to_string()),
+        }
+    }
+}
+
+impl From<serde_json::Error> for DocumentError {
+    fn from(error: serde_json::Error) -> Self {
+        Self::Damaged(error.to_string())
+    }
+}

@@ -1,0 +1,174 @@
+//! The frames of a WAL: "The Write-Ahead Log", SQLite file format, section 4.
+
+use std::collections::BTreeMap;
+use std::io::{Read, Seek};
+
+use super::WalState;
+use super::format::is_page_size;
+use super::leaf::be32;
+use super::store::read_at;
+
+/// Bytes of the WAL's header.
+const HEADER: usize = 32;
+/// Bytes of a frame before its page.
+const FRAME_HEADER: usize = 24;
+/// The magic number without its last bit, which says whether checksums are over big-endian words.
+const MAGIC: u32 = 0x377f_0682;
+/// The only version there is.
+const VERSION: u32 = 3_007_000;
+
+type Checksum = [u32; 2];
+type Salts = [u32; 2];
+
+/// The header of a WAL, if it is not damaged.
+pub(super) struct Header {
+    /// Bytes of a page.
+    pub(super) page_size: usize,
+    big_endian: bool,
+    salts: Salts,
+    checksum: Checksum,
+}
+
+impl Header {
+    pub(super) fn read<F: Read + Seek>(wal: &mut F) -> Option<Self> {
+        let bytes = read_at(wal, 0, HEADER).ok()?;
+        let magic = be32(&bytes, 0)?;
+        let header = Self {
+            page_size: usize::try_from(be32(&bytes, 8)?).ok()?,
+            big_endian: magic & 1 == 1,
+            salts: pair(&bytes, 16)?,
+            checksum: pair(&bytes, 24)?,
+        };
+        let stands = magic & !1 == MAGIC
+            && be32(&bytes, 4)? == VERSION
+            && is_page_size(header.page_size)
+            && sum([0, 0], bytes.get(..24)?, header.big_endian) == header.checksum;
+        stands.then_some(header)
+    }
+}
+
+/// Where in a WAL each page stands: offsets of a page's bytes, of its latest committed frame.
+#[derive(Debug, Default)]
+pub(super) struct Frames {
+    /// Frames with nothing damaged before them.
+    pub(super) good: BTreeMap<u32, u64>,
+    /// Frames behind a damaged one.
+    pub(super) past_damage: BTreeMap<u32, u64>,
+    /// What became of the WAL.
+    pub(super) state: WalState,
+}
+
+impl Frames {
+    /// Reads a WAL of `length` bytes, with pages of `page_size` bytes, through.
+    ///
+    /// A frame's checksum goes on from the one before it, which is stored: so frames behind a
+    /// damaged one can be told to be whole, too. With those behind it come those before it that no
+    /// commit had followed yet. Without a header the salts are those of the first
+    /// two neighbours of which the second is whole, since the frames of earlier runs of the log
+    /// stand only behind those of the latest.
+    pub(super) fn read<F: Read + Seek>(
+        wal: &mut F,
+        length: u64,
+        header: Option<&Header>,
+        page_size: usize,
+    ) -> Self {
+        let big_endian = header.is_some_and(|header| header.big_endian);
+        let mut salts = header.map(|header| header.salts);
+        let mut before = header.map(|header| (header.salts, header.checksum));
+        let mut frames = Self::default();
+        let mut waiting = Vec::new();
+        let mut broken = header.is_none();
+        let mut damaged = false;
+        let mut offset = HEADER as u64;
+        let step = FRAME_HEADER + page_size;
+        while offset < length {
+            let Ok(bytes) = read_at(wal, offset, step) else {
+                // A stretch that the disk refuses; the next one may be readable.
+                damaged = true;
+                broken = true;
+                before = None;
+                offset += step as u64;
+                continue;
+            };
+            let (Some(frame), true) = (Frame::parse(&bytes), bytes.len() == step) else {
+                break;
+            };
+            let ours = salts.unwrap_or(frame.salts) == frame.salts;
+            let whole = ours && frame.follows(before, &bytes, big_endian);
+            if whole {
+                salts = Some(frame.salts);
+                waiting.push((frame.page, offset + FRAME_HEADER as u64));
+                if frame.is_commit {
+                    let count = waiting.len() as u64;
+                    if broken {
+                        frames.past_damage.extend(waiting.drain(..));
+                        frames.state.frames_past_damage += count;
+                    } else {
+                        frames.good.extend(waiting.drain(..));
+                        frames.state.frames_good += count;
+                    }
+                }
+            } else {
+                broken = true;
+                damaged |= ours && salts.is_some();
+            }
+            before = Some((frame.salts, frame.checksum));
+            offset += step as u64;
+        }
+        frames.state.damaged = damaged || frames.state.frames_past_damage > 0;
+        frames
+    }
+}
+
+/// The header of a frame.
+struct Frame {
+    page: u32,
+    is_commit: bool,
+    salts: Salts,
+    checksum: Checksum,
+}
+
+impl Frame {
+    fn parse(bytes: &[u8]) -> Option<Self> {
+        Some(Self {
+            page: be32(bytes, 0)?,
+            is_commit: be32(bytes, 4)? != 0,
+            salts: pair(bytes, 8)?,
+            checksum: pair(bytes, 16)?,
+        })
+    }
+
+    /// Whether the frame with `bytes` is whole, by the salts and the checksum stored before it.
+    fn follows(&self, before: Option<(Salts, Checksum)>, bytes: &[u8], big_endian: bool) -> bool {
+        let Some((salts, checksum)) = before else {
+            return false;
+        };
+        let (Some(head), Some(page)) = (bytes.get(..8), bytes.get(FRAME_HEADER..)) else {
+            return false;
+        };
+        let checksum = sum(sum(checksum, head, big_endian), page, big_endian);
+        self.page != 0 && salts == self.salts && checksum == self.checksum
+    }
+}
+
+fn pair(bytes: &[u8], at: usize) -> Option<[u32; 2]> {
+    Some([be32(bytes, at)?, be32(bytes, at + 4)?])
+}
+
+/// The checksum that goes on from `start` over pairs of words: "Checksum Algorithm", section 4.2.
+fn sum(start: Checksum, bytes: &[u8], big_endian: bool) -> Checksum {
+    let mut sum = start;
+    let (words, _) = bytes.as_chunks::<4>();
+    let word = |word: [u8; 4]| {
+        if big_endian {
+            u32::from_be_bytes(word)
+        } else {
+            u32::from_le_bytes(word)
+        }
+    };
+    for words in words.as_chunks::<2>().0 {
+        sum[0] = sum[0].wrapping_add(word(words[0])).wrapping_add(sum[1]);
+        sum[1] = sum[1].wrapping_add(word(words[1])).wrapping_add(sum[0]);
+    }
+    sum
+}

@@ -1,0 +1,397 @@
+//! A checkpoint as one transaction.
+
+use maulstick_paint::history::{Held, Step};
+use maulstick_paint::kept::KeptSequencer;
+use maulstick_paint::load::BrushLoad;
+use maulstick_paint::page::Page;
+use maulstick_paint::painting::{Checkpoint, Named};
+use maulstick_paint::tile::Planes;
+use rusqlite::{OptionalExtension as _, params};
+use sha2::Digest as _;
+
+use crate::database::{DEPTH_MAX, Database, load_sum, page_sum, shown_sum};
+use crate::error::DocumentError;
+use crate::rows::{KeptDeed, KeptRest, numbers, packed, place_number};
+use crate::schema::Table;
+use crate::sum::Sum;
+use crate::{loads, planes};
+
+/// A moment of a painting with its place in the journal, and files that belong to it.
+#[derive(Clone, Debug)]
+pub struct Moment {
+    /// The painting.
+    pub painting: Checkpoint,
+    /// The sequencer.
+    pub sequencer: KeptSequencer,
+    /// Further files: kind, name, bytes.
+    pub files: Vec<(String, String, Vec<u8>)>,
+}
+
+/// A tile as it is shown.
+#[derive(Clone, Debug)]
+pub struct ShownTile {
+    /// Its place, [`crate::rows::shown_number`].
+    pub place: i64,
+    /// The tile version that it shows.
+    pub version: u64,
+    /// What it is shown under.
+    pub look: i64,
+    /// Its planes.
+    pub bytes: Vec<u8>,
+}
+
+/// What is done between two pages: somebody may wait for one.
+pub(crate) type Breath<'a> = &'a mut dyn FnMut(&Database);
+
+/// The hash of a file, lower-case hexadecimal SHA-256.
+#[must_use]
+pub fn file_hash(data: &[u8]) -> String {
+    let digest = sha2::Sha256::digest(data);
+    digest.iter().map(|byte| format!("{byte:02x}")).collect()
+}
+
+/// What was written, to be noted once it is committed.
+#[derive(Debug, Default)]
+pub(crate) struct Stored {
+    planes: Vec<(Page<Planes>, usize)>,
+    loads: Vec<(Page<BrushLoad>, usize)>,
+    stacks: Vec<std::sync::Arc<maulstick_paint::dry::DryStack>>,
+}
+
+impl Stored {
+    /// Notes that the document has it all.
+    pub(crate) fn note(self) {
+        self.planes.iter().for_each(|(page, bytes)| page.note_stored(*bytes));
+        self.loads.iter().for_each(|(page, bytes)| page.note_stored(*bytes));
+        self.stacks.iter().for_each(|stack| stack.note_stored());
+    }
+}
+
+/// Writes inside one transaction.
+pub(crate) struct Writer<'a, 'b> {
+    database: &'a Database,
+    breathe: Breath<'b>,
+    stored: Stored,
+    written: std::collections::BTreeSet<u64>,
+}
+
+impl<'a, 'b> Writer<'a, 'b> {
+    pub(crate) fn new(database: &'a Database, breathe: Breath<'b>) -> Self {
+        Self {
+            database,
+            breathe,
+            stored: Stored::default(),
+            written: Default::default(),
+        }
+    }
+
+    /// Writes a moment and the tiles as they are shown; what it makes superfluous goes.
+    pub(crate) fn moment(mut self, moment: &Moment, shown: &[ShownTile]) -> Result<Stored, DocumentError> {
+        let painting = &moment.painting;
+        for (_, version) in &painting.tiles {
+            self.held(&version.tile)?;
+        }
+        for step in &painting.steps {
+            self.step(step)?;
+        }
+        for version in &painting.named {
+            self.version(version)?;
+        }
+        for page in painting.loads.values() {
+            self.load(page)?;
+        }
+        let connection = &self.database.connection;
+        for (place, version) in &painting.tiles {
+            let place = place_number(*place);
+            let [page, dry] = numbers(&version.tile);
+            let ints = [place, version.number as i64, page, dry];
+            let sum = ints.into_iter().fold(Sum::of(Table::Tile), Sum::int).done();
+            connection
+                .prepare_cached("INSERT OR REPLACE INTO tile VALUES(6, ?1, ?2, ?3, ?4, ?5)")?
+                .execute(params![ints[0], ints[1], ints[2], ints[3], sum])?;
+        }
+        for step in &painting.gone_steps {
+            connection
+                .prepare_cached("DELETE FROM step WHERE id = ?1")?
+                .execute(params![*step as i64])?;
+        }
+        for name in &painting.gone_named {
+            connection.execute("DELETE FROM version WHERE name = ?1", params![name])?;
+        }
+        for tile in shown {
+            self.shown(tile)?;
+        }
+        self.state(moment)?;
+        self.bury(&painting.dead)?;
+        connection.execute(
+            "DELETE FROM journal WHERE last < ?1",
+            params![moment.sequencer.serial as i64],
+        )?;
+        Ok(self.stored)
+    }
+
+    fn held(&mut self, held: &Held) -> Result<(), DocumentError> {
+        let Some(tile) = held else {
+            return Ok(());
+        };
+        if let Some(page) = tile.wet_page() {
+            self.page(page)?;
+        }
+        let mut next = tile.dry();
+        while let Some(stack) = next.filter(|stack| !stack.is_stored()) {
+            next = stack.below();
+            if !self.written.insert(stack.id()) {
+                continue;
+            }
+            self.page(&stack.layer().planes)?;
+            let below = stack.below().map_or(0, |below| below.id());
+            let ints = [stack.id(), below, u64::from(stack.layer().number), stack.layer().planes.id()]
+                .map(|number| number as i64);
+            let sum = ints.into_iter().fold(Sum::of(Table::Dry), Sum::int).done();
+            self.database
+                .connection
+                .prepare_cached("INSERT OR REPLACE INTO dry VALUES(4, ?1, ?2, ?3, ?4, ?5)")?
+                .execute(params![ints[0], ints[1], ints[2], ints[3], sum])?;
+            self.stored.stacks.push(std::sync::Arc::clone(stack));
+        }
+        Ok(())
+    }
+
+    fn page(&mut self, page: &Page<Planes>) -> Result<(), DocumentError> {
+        if page.stored_bytes() > 0 || !self.written.insert(page.id()) {
+            return Ok(());
+        }
+        (self.breathe)(self.database);
+        let content = page.peek().ok_or_else(|| {
+            DocumentError::Other(format!("page {} left memory before it was written", page.id()))
+        })?;
+        let base = page.base().filter(|base| base.stored_bytes() > 0);
+        let base = match base {
+            Some(base) => self.base_of(&base)?,
+            None => None,
+        };
+        let level = self.database.level;
+        let data = planes::encode(&content, base.as_ref().map(|(_, _, content)| &**content), level)?;
+        let (base, depth) = base.map_or((0, 0), |(id, depth, _)| (id, depth + 1));
+        let slots = i64::from(planes::mask(&content));
+        let sum = page_sum(page.id(), [base, depth, slots], &data);
+        self.database
+            .connection
+            .prepare_cached("INSERT OR REPLACE INTO page VALUES(3, ?1, ?2, ?3, ?4, ?5, ?6)")?
+            .execute(params![page.id() as i64, base, depth, slots, data, sum])?;
+        self.stored.planes.push((page.clone(), data.len()));
+        Ok(())
+    }
+
+    /// Number, depth and planes of the page that another one is a difference to; none where the chain
+    /// is long enough.
+    #[allow(clippy::type_complexity)]
+    fn base_of(
+        &self,
+        base: &Page<Planes>,
+    ) -> Result<Option<(i64, i64, std::sync::Arc<Planes>)>, DocumentError> {
+        let id = base.id() as i64;
+        let depth: Option<i64> = self
+            .database
+            .connection
+            .prepare_cached("SELECT depth FROM page WHERE id = ?1")?
+            .query_row(params![id], |row| row.get(0))
+            .optional()?;
+        let Some(depth) = depth.filter(|depth| *depth < DEPTH_MAX) else {
+            return Ok(None);
+        };
+        let content = match base.peek() {
+            Some(content) => content,
+            None => std::sync::Arc::new(self.database.planes(base.id())?),
+        };
+        Ok(Some((id, depth, content)))
+    }
+
+    fn load(&mut self, page: &Page<BrushLoad>) -> Result<(), DocumentError> {
+        if page.stored_bytes() > 0 || !self.written.insert(page.id()) {
+            return Ok(());
+        }
+        let content = page.peek().ok_or_else(|| {
+            DocumentError::Other(format!("load {} left memory before it was written", page.id()))
+        })?;
+        let data = loads::encode(&content, self.database.level)?;
+        let sum = load_sum(page.id(), &data);
+        self.database
+            .connection
+            .prepare_cached("INSERT OR REPLACE INTO load VALUES(5, ?1, ?2, ?3)")?
+            .execute(params![page.id() as i64, data, sum])?;
+        self.stored.loads.push((page.clone(), data.len()));
+        Ok(())
+    }
+
+    fn step(&mut self, step: &Step) -> Result<(), DocumentError> {
+        let mut tiles = Vec::with_capacity(step.tiles.len() * 5);
+        for (place, change) in &*step.tiles {
+            self.held(&change.before)?;
+            self.held(&change.after)?;
+            tiles.push(place_number(*place));
+            tiles.extend(numbers(&change.before));
+            tiles.extend(numbers(&change.after));
+        }
+        for page in step.deed.loads.values().flatten() {
+            self.load(page)?;
+        }
+        let loads = step.deed.loads.iter();
+        let deed = KeptDeed {
+            loads: loads
+                .map(|(name, pages)| (name.clone(), pages.each_ref().map(Page::id)))
+                .collect(),
+            booked: step.deed.booked.clone(),
+            layers: step.deed.layers.clone(),
+            makes: step.deed.makes.clone(),
+        };
+        let deed = serde_json::to_string(&deed)?;
+        let tiles = packed(tiles);
+        let brush = step.brush.as_deref().unwrap_or_default();
+        let (id, operations) = (step.id as i64, step.operations as i64);
+        let sum = Sum::of(Table::Step)
+            .int(id)
+            .bytes(step.what.as_bytes())
+            .bytes(brush.as_bytes())
+            .int(operations)
+            .int(i64::from(step.done))
+            .bytes(deed.as_bytes())
+            .bytes(&tiles)
+            .done();
+        self.database
+            .connection
+            .prepare_cached("INSERT OR REPLACE INTO step VALUES(7, ?1, ?2, ?3, ?4, ?5, ?6, ?7, ?8)")?
+            .execute(params![id, step.what, brush, operations, step.done, deed, tiles, sum])?;
+        Ok(())
+    }
+
+    fn version(&mut self, version: &Named) -> Result<(), DocumentError> {
+        let mut tiles = Vec::with_capacity(version.tiles.len() * 3);
+        for (place, held) in &*version.tiles {
+            self.held(held)?;
+            tiles.push(place_number(*place));
+            tiles.extend(numbers(held));
+        }
+        for page in version.rest.loads.values() {
+            self.load(page)?;
+        }
+        let loads = version.rest.loads.iter();
+        let rest = KeptRest {
+            loads: loads.map(|(name, page)| (name.clone(), page.id())).collect(),
+            ledger: version.rest.ledger.clone(),
+            layers: version.rest.layers.clone(),
+            makes: version.rest.makes.clone(),
+        };
+        let rest = serde_json::to_string(&rest)?;
+        let tiles = packed(tiles);
+        let parent = version.parent.as_deref().unwrap_or_default();
+        let sum = Sum::of(Table::Version)
+            .bytes(version.name.as_bytes())
+            .bytes(parent.as_bytes())
+            .bytes(rest.as_bytes())
+            .bytes(&tiles)
+            .done();
+        self.database.connection.execute(
+            "INSERT OR REPLACE INTO version VALUES(8, ?1, ?2, ?3, ?4, ?5)",
+            params![version.name, parent, rest, tiles, sum],
+        )?;
+        Ok(())
+    }
+
+    fn shown(&self, tile: &ShownTile) -> Result<(), DocumentError> {
+        let data = zstd::bulk::compress(&tile.bytes, self.database.level)?;
+        let version = tile.version as i64;
+        let sum = shown_sum(tile.place, version, tile.look, &data);
+        self.database
+            .connection
+            .prepare_cached("INSERT OR REPLACE INTO shown VALUES(10, ?1, ?2, ?3, ?4, ?5)")?
+            .execute(params![tile.place, version, tile.look, data, sum])?;
+        Ok(())
+    }
+
+    fn file(&self, kind: &str, name: &str, data: &[u8]) -> Result<String, DocumentError> {
+        let hash = file_hash(data);
+        let known: Option<i64> = self
+            .database
+            .connection
+            .prepare_cached("SELECT 1 FROM file WHERE hash = ?1")?
+            .query_row(params![hash], |row| row.get(0))
+            .optional()?;
+        if known.is_none() {
+            let sum = Sum::of(Table::File)
+                .bytes(hash.as_bytes())
+                .bytes(kind.as_bytes())
+                .bytes(name.as_bytes())
+                .bytes(data)
+                .done();
+            self.database.connection.execute(
+                "INSERT INTO file VALUES(2, ?1, ?2, ?3, ?4, ?5)",
+                params![hash, kind, name, data, sum],
+            )?;
+        }
+        Ok(hash)
+    }
+
+    fn state(&self, moment: &Moment) -> Result<(), DocumentError> {
+        let mut kept = moment.painting.kept.clone();
+        kept.paints = self.file("paints", "paints.csv", kept.paints.as_bytes())?;
+        for (name, brush) in &mut kept.brushes {
+            brush.file = self.file("brush", name, brush.file.as_bytes())?;
+        }
+        for (kind, name, data) in &moment.files {
+            self.file(kind, name, data)?;
+        }
+        self.put_state("painting", &serde_json::to_string(&kept)?)?;
+        self.put_state("sequencer", &serde_json::to_string(&moment.sequencer)?)
+    }
+
+    fn put_state(&self, key: &str, value: &str) -> Result<(), DocumentError> {
+        let sum = Sum::of(Table::State)
+            .bytes(key.as_bytes())
+            .bytes(value.as_bytes())
+            .done();
+        self.database
+            .connection
+            .prepare_cached("INSERT OR REPLACE INTO state VALUES(1, ?1, ?2, ?3)")?
+            .execute(params![key, value, sum])?;
+        Ok(())
+    }
+
+    /// Deletes pages and layers that nobody remembers. Pages that are differences to one of them are
+    /// written anew.
+    fn bury(&mut self, dead: &[u64]) -> Result<(), DocumentError> {
+        let connection = &self.database.connection;
+        let gone: std::collections::BTreeSet<u64> = dead.iter().copied().collect();
+        let mut rebased: Vec<(u64, Planes)> = Vec::new();
+        for id in &gone {
+            let mut statement =
+                connection.prepare_cached("SELECT id FROM page WHERE base = ?1")?;
+            let later = statement.query_map(params![*id as i64], |row| row.get::<_, i64>(0))?;
+            for later in later {
+                let later = later? as u64;
+                if !gone.contains(&later) {
+                    rebased.push((later, self.database.planes(later)?));
+                }
+            }
+        }
+        for (id, content) in rebased {
+            (self.breathe)(self.database);
+            let data = planes::encode(&content, None, self.database.level)?;
+            let slots = i64::from(planes::mask(&content));
+            let sum = page_sum(id, [0, 0, slots], &data);
+            connection
+                .prepare_cached(
+                    "UPDATE page SET base = 0, depth = 0, slots = ?2, data = ?3, sum = ?4 WHERE id = ?1",
+                )?
+                .execute(params![id as i64, slots, data, sum])?;
+        }
+        for id in &gone {
+            for table in ["page", "dry", "load"] {
+                connection
+                    .prepare_cached(&format!("DELETE FROM {table} WHERE id = ?1"))?
+                    .execute(params![*id as i64])?;
+            }
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,227 @@
+//! What a power cut leaves of a database: a VFS that writes down what SQLite does to its files, and
+//! the files as they may stand after a power cut at any point of that.
+//!
+//! Of each file everything before its last sync is there, and deletions before the directory's. Of
+//! what came since, any part may be: each write is there, is not, or is there in some of its sectors
+//! of 512 bytes; truncations and deletions are there or not. That some writes are missing and later ones are not is the same as
+//! their having been reordered. Bytes beside a write are never hurt, which is what SQLite's
+//! `SQLITE_IOCAP_POWERSAFE_OVERWRITE` supposes and the unix VFS promises. Sources: "Atomic Commit In
+//! SQLite", <https://sqlite.org/atomiccommit.html>, section 2; "How SQLite Is Tested", section 3.3.
+
+#![allow(
+    dead_code,
+    reason = "every test binary compiles this module and uses its own part of it"
+)]
+
+mod shim;
+
+use std::path::Path;
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+
+use rand_pcg::rand_core::Rng;
+
+/// Bytes of a disk's sector, which is written whole or not at all.
+const SECTOR: usize = 512;
+
+/// The name of the VFS, for `Connection::open_with_flags_and_vfs`.
+pub(crate) const VFS: &std::ffi::CStr = shim::NAME;
+
+/// One of a database's files.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum FileKind {
+    Main,
+    Wal,
+    Journal,
+}
+
+/// What SQLite did to a file.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(crate) enum Deed {
+    Write {
+        offset: u64,
+        bytes: Vec<u8>,
+    },
+    /// To so many bytes.
+    Truncate(u64),
+    Sync,
+    Delete,
+    /// The directory is synced: the deletions of all its files so far.
+    SyncDirectory,
+}
+
+/// A deed and the file it was done to.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(crate) struct Op {
+    pub(crate) file: FileKind,
+    pub(crate) deed: Deed,
+}
+
+/// What SQLite did to the files of one database, in order, over any number of connections.
+#[derive(Debug, Clone)]
+pub(crate) struct Log(Arc<Mutex<Recorded>>);
+
+#[derive(Debug)]
+struct Recorded {
+    start: Image,
+    ops: Vec<Op>,
+}
+
+/// The files of a database; none for one that is not there.
+#[derive(Debug, Clone, Default, PartialEq, Eq)]
+pub(crate) struct Image {
+    pub(crate) main: Vec<u8>,
+    pub(crate) wal: Option<Vec<u8>>,
+    pub(crate) journal: Option<Vec<u8>>,
+}
+
+/// Logs what SQLite does to the database at `main` in connections that are opened through the VFS
+/// [`VFS`]. What stands there already counts as synced. The VFS offers no shared memory for a database
+/// that is watched, so a WAL needs `locking_mode = EXCLUSIVE` before it; one that nobody watches has
+/// the default VFS's files.
+pub(crate) fn watch(main: &Path) -> Log {
+    shim::register(shim::Rank::Named);
+    let log = Log(Arc::new(Mutex::new(Recorded {
+        start: Image::read_from(main),
+        ops: Vec::new(),
+    })));
+    shim::watch(main, &log);
+    log
+}
+
+/// As [`watch`], and from now on every connection of this process that names no VFS goes through
+/// [`VFS`]: for code that opens its databases itself.
+pub(crate) fn watch_by_default(main: &Path) -> Log {
+    shim::register(shim::Rank::Default);
+    watch(main)
+}
+
+impl Log {
+    /// The point after the latest operation: how many there have been.
+    pub(crate) fn point(&self) -> usize {
+        self.recorded().ops.len()
+    }
+
+    /// The operations so far.
+    pub(crate) fn ops(&self) -> Vec<Op> {
+        self.recorded().ops.clone()
+    }
+
+    /// The files as a power cut after the first `point` operations may leave them. `random` decides
+    /// how much of what was not synced is there: nothing, everything, or each operation by a coin of
+    /// some bias.
+    pub(crate) fn image(&self, random: &mut impl Rng, point: usize) -> Image {
+        let recorded = self.recorded();
+        let start = recorded.start.clone();
+        let file = |kind, content| {
+            let ops = recorded.ops.iter().take(point);
+            let ops = ops.filter(|op| op.file == kind || op.deed == Deed::SyncDirectory);
+            (content, ops.map(|op| &op.deed).collect::<Vec<_>>())
+        };
+        let [main, wal, journal] = [
+            file(FileKind::Main, Some(start.main)),
+            file(FileKind::Wal, start.wal),
+            file(FileKind::Journal, start.journal),
+        ]
+        .map(|(content, deeds)| cut(random, content, &deeds));
+        Image {
+            main: main.unwrap_or_default(),
+            wal,
+            journal,
+        }
+    }
+
+    fn recorded(&self) -> MutexGuard<'_, Recorded> {
+        self.0.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    fn note(&self, file: FileKind, deed: Deed) {
+        self.recorded().ops.push(Op { file, deed });
+    }
+}
+
+impl Image {
+    /// Writes the files into `dir`, the main file as `name`; those of an earlier image go.
+    pub(crate) fn write_to(&self, dir: &Path, name: &str) {
+        std::fs::write(dir.join(name), &self.main).expect("the main file is written");
+        for (suffix, bytes) in [("-wal", &self.wal), ("-journal", &self.journal)] {
+            let path = dir.join(format!("{name}{suffix}"));
+            match bytes {
+                Some(bytes) => std::fs::write(path, bytes).expect("the log is written"),
+                None if path.exists() => std::fs::remove_file(path).expect("the log is removed"),
+                None => {}
+            }
+        }
+    }
+
+    /// The files of the database at `main`.
+    pub(crate) fn read_from(main: &Path) -> Self {
+        let beside = |suffix: &str| {
+            let mut path = main.as_os_str().to_owned();
+            path.push(suffix);
+            std::fs::read(path).ok()
+        };
+        Self {
+            main: beside("").unwrap_or_default(),
+            wal: beside("-wal"),
+            journal: beside("-journal"),
+        }
+    }
+}
+
+/// A file with `content` after `deeds` and a power cut.
+fn cut(random: &mut impl Rng, content: Option<Vec<u8>>, deeds: &[&Deed]) -> Option<Vec<u8>> {
+    let last = |deed: &Deed, deeds: &[&Deed]| deeds.iter().rposition(|other| *other == deed);
+    let synced = last(&Deed::Sync, deeds);
+    let directory = last(&Deed::SyncDirectory, deeds).unwrap_or(0);
+    let deleted = last(&Deed::Delete, &deeds[..directory]);
+    let settled = synced.max(deleted).map_or(0, |last| last + 1);
+    let (settled, since) = deeds.split_at(settled);
+    let mut content = content;
+    for deed in settled {
+        apply(&mut content, deed, |_| true);
+    }
+    let bias = [0, 1, 2, 3, 4][random.next_u32() as usize % 5];
+    for deed in since {
+        let mut coin = || random.next_u32() % 4 < bias;
+        let is_there = coin();
+        match deed {
+            Deed::Write { .. } if random.next_u32().is_multiple_of(4) => {
+                let mut coin = || random.next_u32() % 4 < bias;
+                apply(&mut content, deed, |_| coin());
+            }
+            // The name still stands for the old file: what went to a new one is lost with it.
+            Deed::Delete if !is_there => break,
+            _ if is_there => apply(&mut content, deed, |_| true),
+            _ => {}
+        }
+    }
+    content
+}
+
+/// Does `deed` to a file, a write only in the sectors for which `sector` says so.
+fn apply(content: &mut Option<Vec<u8>>, deed: &Deed, mut sector: impl FnMut(usize) -> bool) {
+    match deed {
+        Deed::Write { offset, bytes } => {
+            let file = content.get_or_insert_default();
+            let mut at = usize::try_from(*offset).expect("a test's file is small");
+            let mut rest = bytes.as_slice();
+            while !rest.is_empty() {
+                let room = SECTOR - at % SECTOR;
+                let (run, beyond) = rest.split_at(room.min(rest.len()));
+                if sector(at / SECTOR) {
+                    let end = at + run.len();
+                    file.resize(file.len().max(end), 0);
+                    file[at..end].copy_from_slice(run);
+                }
+                at += run.len();
+                rest = beyond;
+            }
+        }
+        Deed::Truncate(length) => {
+            let length = usize::try_from(*length).expect("a test's file is small");
+            content.get_or_insert_default().resize(length, 0);
+        }
+        Deed::Sync | Deed::SyncDirectory => {}
+        Deed::Delete => *content = None,
+    }
+}

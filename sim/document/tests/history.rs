@@ -1,0 +1,135 @@
+//! Whatever is done, undone and redone: the same bytes, in memory and in a document.
+
+mod studio;
+
+use std::sync::Arc;
+
+use maulstick_document::{Access, Document, DocumentSettings, Moment};
+use maulstick_paint::Sequencer;
+use maulstick_types::command::{Command, Outcome};
+use proptest::prelude::*;
+use studio::{Painter, equip, print, sequencer};
+
+/// What a painting is to the eye: all but how deep its history is.
+fn seen(sequencer: &mut Sequencer) -> Vec<String> {
+    let mut lines = print(sequencer);
+    lines.remove(1);
+    lines
+}
+
+fn is_done(outcome: &Outcome) -> bool {
+    matches!(outcome, Outcome::Done { .. })
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(24))]
+
+    #[test]
+    fn all_undone_and_redone_is_as_it_was(seed in any::<u64>(), acts in 1usize..40) {
+        let mut painter = Painter::new(seed);
+        let mut sequencer = sequencer(Arc::default());
+        equip(&mut sequencer);
+        for _ in 0..acts {
+            let act = painter.next();
+            painter.act(&mut sequencer, &act);
+        }
+        // Steps that are undone already are not what is asked here.
+        while is_done(&painter.command(&mut sequencer, Command::Redo { brush: None })) {}
+        let end = seen(&mut sequencer);
+        let mut prints = vec![end];
+        while is_done(&painter.command(&mut sequencer, Command::Undo { brush: None })) {
+            prints.push(seen(&mut sequencer));
+        }
+        let store = sequencer.painting().store(0).expect("a canvas");
+        prop_assert_eq!(store.counts(), [0; 16], "all is undone");
+        while let Some(expected) = prints.pop() {
+            prop_assert_eq!(seen(&mut sequencer), expected);
+            let redone = painter.command(&mut sequencer, Command::Redo { brush: None });
+            prop_assert_eq!(is_done(&redone), !prints.is_empty());
+        }
+    }
+
+    /// A painting in a document, with little memory, closed, killed and opened again, beside one that
+    /// is in memory alone.
+    #[test]
+    fn a_document_is_the_painting(seed in any::<u64>(), acts in 1usize..60) {
+        let folder = tempfile::tempdir().expect("a folder");
+        let path = folder.path().join("a painting.maul");
+        let mut settings = DocumentSettings {
+            memory: 400_000,
+            ..DocumentSettings::new(&path, Access::Paint)
+        };
+        let mut painter = Painter::new(seed);
+        let mut twin = sequencer(Arc::default());
+        equip(&mut twin);
+        let (document, opened) = Document::open(&settings).expect("begun");
+        prop_assert!(opened.is_none());
+        let mut document = Some(document);
+        let mut kept = sequencer(Arc::clone(document.as_ref().expect("open").pager()));
+        let mut since = 0;
+        let mut log = Vec::new();
+        kept.record();
+        let moment = |kept: &mut Sequencer, since: &mut u64| {
+            let sequencer = kept.kept();
+            let painting = kept.painting_mut().checkpoint(*since);
+            *since = painting.kept.versions;
+            Moment { painting, sequencer, files: Vec::new() }
+        };
+        document.as_ref().expect("open").keep(moment(&mut kept, &mut since));
+        equip(&mut kept);
+        for _ in 0..acts {
+            let act = painter.next();
+            let mut other = painter.clone();
+            painter.act(&mut twin, &act);
+            other.act(&mut kept, &act);
+            let (one, two) = (seen(&mut kept), seen(&mut twin));
+            let differ = one.iter().zip(&two).find(|(a, b)| a != b).map(|(a, b)| format!("{a}\n{b}\n{} {}", one.len(), two.len()));
+            prop_assert!(one == two, "{differ:?} after {}", match &act { studio::Act::Paint(b, new, s) => format!("paint {b} {new} on {} {log:#?}", s[0].surface), other => format!("{other:?} {log:#?}") });
+            log.push(match &act { studio::Act::Paint(b, new, s) => format!("paint {b} {new} on {}", s[0].surface), other => format!("{other:?}") });
+            let open = document.as_ref().expect("open");
+            open.record(kept.take_records());
+            if painter.dice.below(3) == 0 && open.is_ready() {
+                open.keep(moment(&mut kept, &mut since));
+            }
+            if painter.dice.below(8) == 0 {
+                open.flush();
+                prop_assert_eq!(open.fault(), None);
+                prop_assert_eq!(open.committed(), kept.journal_next());
+                // As if the program were killed: the file is taken from it as it is.
+                let killed = settings.path.with_extension("killed.maul");
+                for suffix in ["", "-wal"] {
+                    let of = |path: &std::path::Path| format!("{}{suffix}", path.display());
+                    std::fs::copy(of(&settings.path), of(&killed)).expect("copied");
+                }
+                settings.path = killed;
+                drop(document.take());
+                let (again, opened) = Document::open(&settings).expect("opened");
+                let opened = opened.expect("a painting");
+                since = opened.kept().versions;
+                kept = opened.sequencer().expect("whole");
+                kept.record();
+                twin.painting_mut().lift_brushes();
+                log.push("killed".to_owned());
+                let (one, two) = (print(&mut kept), print(&mut twin));
+                for (one, two) in one.iter().zip(&two) {
+                    prop_assert_eq!(one, two);
+                }
+                prop_assert_eq!(one.len(), two.len());
+                document = Some(again);
+            }
+        }
+        prop_assert_eq!(print(&mut kept), print(&mut twin));
+        loop {
+            let undo = Command::Undo { brush: None };
+            let mut other = painter.clone();
+            let (one, two) = (painter.command(&mut twin, undo.clone()), other.command(&mut kept, undo));
+            prop_assert_eq!(is_done(&one), is_done(&two));
+            prop_assert_eq!(seen(&mut kept), seen(&mut twin));
+            if !is_done(&one) {
+                break;
+            }
+        }
+        prop_assert_eq!(kept.painting().pager().fault(), None);
+        document.expect("open").close().expect("closed");
+    }
+}

@@ -1,0 +1,283 @@
+//! A painter who does anything at all, from a seed.
+
+#![allow(dead_code, unreachable_pub, reason = "each test uses a part")]
+
+use maulstick_brush::BrushFile;
+use maulstick_optics::PaintLibrary;
+use maulstick_paint::history::Held;
+use maulstick_paint::page::Pager;
+use maulstick_paint::{Painting, PaintingSetup, Sequencer};
+use maulstick_types::brush::{BrushState, Solve};
+use maulstick_types::command::{Command, CommandRequest, Outcome};
+use maulstick_types::scene::{CANVAS, PALETTE};
+use maulstick_types::{Flags, Header, Mixture, Pose, name_hash};
+use rand_pcg::Pcg64Mcg;
+use rand_pcg::rand_core::Rng as _;
+use std::sync::Arc;
+
+pub const BRUSHES: [&str; 2] = ["main", "other"];
+const MIXTURES: [&str; 3] = [
+    "Titanium White",
+    "Ultramarine Blue=0.6,Titanium White=0.4",
+    "Yellow Ochre=0.5,Pyrrole Red=0.25,Bone Black=0.25",
+];
+/// Cells of the canvas: more than a tile, and not a multiple of it.
+const CELLS: [u32; 2] = [150, 100];
+
+pub fn mixture(text: &str) -> Mixture {
+    text.parse().expect("a mixture")
+}
+
+pub fn brush(strips: usize) -> BrushFile {
+    let mut file = BrushFile::library("round").expect("round");
+    file.strips.count = strips;
+    file.scaled_to(10.0).expect("a size")
+}
+
+/// A new painting on these pages, with two brushes.
+pub fn sequencer(pager: Arc<Pager>) -> Sequencer {
+    let setup = PaintingSetup {
+        cells: CELLS,
+        wells: MIXTURES.map(mixture).to_vec(),
+        ..PaintingSetup::default()
+    };
+    let library = PaintLibrary::measured().expect("whole");
+    let painting = Painting::paged(&setup, library, pager).expect("a painting");
+    Sequencer::new(painting)
+}
+
+/// Gives a new painting its brushes.
+pub fn equip(sequencer: &mut Sequencer) {
+    for name in BRUSHES {
+        sequencer.define_brush(name, brush(48));
+    }
+}
+
+/// Numbers from a seed.
+#[derive(Clone)]
+pub struct Dice(Pcg64Mcg);
+
+impl Dice {
+    pub fn new(seed: u64) -> Self {
+        Self(Pcg64Mcg::new(u128::from(seed) << 1 | 1))
+    }
+
+    pub fn below(&mut self, bound: u64) -> u64 {
+        self.0.next_u64() % bound
+    }
+
+    fn between(&mut self, from: f64, to: f64) -> f64 {
+        from + (to - from) * (self.below(1 << 30) as f64 / f64::from(1 << 30))
+    }
+}
+
+/// What the painter does next.
+#[derive(Clone, Debug)]
+pub enum Act {
+    Paint(usize, bool, Vec<Solve>),
+    Command(Command),
+    Redefine(usize, usize),
+}
+
+/// The painter.
+#[derive(Clone)]
+pub struct Painter {
+    pub dice: Dice,
+    strokes: [u64; 2],
+    seqs: [u64; 2],
+    commands: u64,
+}
+
+impl Painter {
+    pub fn new(seed: u64) -> Self {
+        Self {
+            dice: Dice::new(seed),
+            strokes: [1; 2],
+            seqs: [0; 2],
+            commands: 0,
+        }
+    }
+
+    fn way(&mut self, stroke: u64) -> Vec<Solve> {
+        let dice = &mut self.dice;
+        let file = brush(48);
+        let palette = dice.below(5) == 0;
+        let (surface, middle) = match palette {
+            true => (PALETTE, [20.0, dice.between(20.0, 230.0)]),
+            false => (CANVAS, [dice.between(3.0, 34.0), dice.between(3.0, 22.0)]),
+        };
+        let count = 2 + dice.below(3);
+        let joints = file.spines.all_joints();
+        let place = |dice: &mut Dice| {
+            let at = middle.map(|mm: f64| (mm + dice.between(-4.0, 4.0)) * 1e-3);
+            let (sine, cosine) = maulstick_num::sin_cos(dice.between(-0.3, 0.3));
+            let bend = [dice.between(-0.4, 0.4) as f32, dice.between(-0.4, 0.4) as f32];
+            Solve {
+                event_ns: 0,
+                stroke,
+                surface,
+                flags: 0,
+                pose: Pose {
+                    position_m: [at[0], at[1], dice.between(0.3, 0.9) * file.length_m()],
+                    orientation: [0.0, 0.0, sine, cosine],
+                },
+                angles_rad: (0..joints).map(|_| bend).collect(),
+                contacts: Vec::new(),
+            }
+        };
+        (0..count).map(|_| place(dice)).collect()
+    }
+
+    pub fn next(&mut self) -> Act {
+        let b = self.dice.below(2) as usize;
+        let brush = BRUSHES[b].to_owned();
+        let mixture = mixture(MIXTURES[self.dice.below(3) as usize]);
+        let named = |dice: &mut Dice| ["one", "two", "three"][dice.below(3) as usize].to_owned();
+        let maybe = |dice: &mut Dice, brush: &str| (dice.below(3) == 0).then(|| brush.to_owned());
+        let command = match self.dice.below(40) {
+            0..15 => {
+                let new = self.dice.below(2) == 0;
+                self.strokes[b] += u64::from(new);
+                let way = self.way(self.strokes[b]);
+                return Act::Paint(b, new, way);
+            }
+            15..18 => Command::Load { brush, mixture },
+            18 => Command::Clean { brush },
+            19..21 => Command::Dry {
+                surface: CANVAS,
+                share: [1.0, 0.4][self.dice.below(2) as usize],
+                name: String::new(),
+            },
+            21 => Command::Opacity {
+                layer: 1 + self.dice.below(3) as u32,
+                opacity: 0.5,
+            },
+            22 => Command::Fill {
+                surface: CANVAS,
+                mixture,
+                thickness_m: 2e-5,
+            },
+            23 => Command::Ground {
+                surface: CANVAS,
+                ground: ["gesso", "grey", "black"][self.dice.below(3) as usize].to_owned(),
+            },
+            24 => Command::Tooth {
+                surface: CANVAS,
+                tooth: ["linen", "paper"][self.dice.below(2) as usize].to_owned(),
+                seed: self.dice.below(3),
+            },
+            25..27 => Command::Keep {
+                name: named(&mut self.dice),
+            },
+            27 => Command::Return {
+                name: named(&mut self.dice),
+            },
+            28 => Command::Branch {
+                from: named(&mut self.dice),
+                name: named(&mut self.dice),
+            },
+            29 => Command::Forget {
+                name: named(&mut self.dice),
+            },
+            30..35 => Command::Undo {
+                brush: maybe(&mut self.dice, &brush),
+            },
+            35..39 => Command::Redo {
+                brush: maybe(&mut self.dice, &brush),
+            },
+            _ => return Act::Redefine(b, [31, 48][self.dice.below(2) as usize]),
+        };
+        Act::Command(command)
+    }
+
+    /// Does an act; what cannot be done is refused, as it is to any painter.
+    pub fn act(&mut self, sequencer: &mut Sequencer, act: &Act) {
+        match act {
+            Act::Paint(b, _, solves) => {
+                let header = Header {
+                    version: 1,
+                    schema: 0,
+                    source: name_hash(BRUSHES[*b]),
+                    epoch: 1,
+                    flags: Flags::NONE,
+                    length: 0,
+                    seq: self.seqs[*b],
+                    event_ns: 0,
+                    sent_ns: 0,
+                };
+                self.seqs[*b] += 1;
+                let state = BrushState {
+                    device: 1,
+                    device_epoch: 1,
+                    device_seq: 0,
+                    solves: solves.clone(),
+                };
+                let (_, painted) = sequencer.state(BRUSHES[*b], &header, &state);
+                painted.expect("it fits");
+            }
+            Act::Command(command) => drop(self.command(sequencer, command.clone())),
+            Act::Redefine(b, strips) => sequencer.define_brush(BRUSHES[*b], brush(*strips)),
+        }
+    }
+
+    pub fn command(&mut self, sequencer: &mut Sequencer, command: Command) -> Outcome {
+        self.commands += 1;
+        let request = CommandRequest {
+            client: 7,
+            number: self.commands,
+            after: None,
+            command,
+        };
+        let outcome = sequencer.command(request).outcome;
+        sequencer.drain_journal();
+        outcome
+    }
+}
+
+/// All that lies on a tile, in words of numbers.
+fn content(held: &Held) -> Vec<u64> {
+    let Some(tile) = held else { return Vec::new() };
+    let mut words = Vec::new();
+    let mut add = |planes: &maulstick_paint::tile::Planes| {
+        for (slot, plane) in planes {
+            words.push(*slot as u64);
+            let sum = plane.iter().enumerate().fold(17u64, |sum, (cell, count)| {
+                let word = (cell as u64) << 32 | u64::from(count.to_bits());
+                (sum ^ word).wrapping_mul(0x9e37_79b9_7f4a_7c15).rotate_left(23)
+            });
+            words.push(sum);
+        }
+    };
+    add(&tile.wet());
+    for layer in tile.dry().into_iter().flat_map(|stack| stack.layers()) {
+        add(&layer.planes.get());
+    }
+    words
+}
+
+/// All that a painting is, so that two of them can be compared.
+pub fn print(sequencer: &mut Sequencer) -> Vec<String> {
+    let painting = sequencer.painting_mut();
+    let report = painting.report();
+    assert_eq!(report.quanta_missing, 0, "the books balance");
+    let mut lines = vec![format!("{report:?}"), format!("{:?}", painting.history_depth())];
+    let mut scene = painting.scene().clone();
+    scene.version = 0;
+    lines.push(format!("{scene:?}"));
+    for surface in [CANVAS, PALETTE] {
+        let store = painting.store(surface).expect("a surface");
+        for (id, version) in store.iter() {
+            let words = content(&version.tile);
+            if !words.is_empty() {
+                lines.push(format!("{surface} {id:?} {words:?}"));
+            }
+        }
+    }
+    for version in painting.named() {
+        lines.push(format!("{} from {:?}", version.name, version.parent));
+        for (place, held) in &*version.tiles {
+            lines.push(format!("{place:?} {:?}", content(held)));
+        }
+    }
+    lines
+}

@@ -1,0 +1,236 @@
+//! What a document keeps of the journal: the accepted things themselves, to be accepted again.
+
+use std::collections::BTreeMap;
+
+use maulstick_brush::BrushFile;
+use maulstick_types::brush::BrushState;
+use maulstick_types::command::{Command, CommandRequest, Outcome};
+use maulstick_types::paint::Entry;
+use maulstick_types::{Header, Origin};
+
+use super::{Announced, Answered, Sequencer};
+use crate::kept::{KeptAnswer, KeptSequencer, KeptTake};
+use crate::painting::{PaintRefusal, Painting};
+
+/// The client that runs the sequencer.
+const OWN: u64 = 0;
+
+/// Something that was accepted.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Accepted {
+    /// A state of a brush.
+    State {
+        /// Its header, as it came.
+        header: Header,
+        /// Itself.
+        state: BrushState,
+    },
+    /// A command, a tick or a decision.
+    Entry(Entry),
+    /// A brush and its file, TOML.
+    Brush {
+        /// Its name.
+        brush: String,
+        /// The file.
+        toml: String,
+    },
+}
+
+/// An accepted thing and its place.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Record {
+    /// Counts all that was accepted, from 0.
+    pub serial: u64,
+    /// Index of its journal entry; a range of states shares one.
+    pub index: u64,
+    /// The thing.
+    pub what: Accepted,
+}
+
+impl Record {
+    /// Index of the next journal entry after it.
+    #[must_use]
+    pub fn next(&self) -> u64 {
+        match self.what {
+            // No entry tells of it.
+            Accepted::Brush { .. } => self.index,
+            Accepted::State { .. } | Accepted::Entry(_) => self.index + 1,
+        }
+    }
+}
+
+impl Sequencer {
+    /// Keeps what is accepted from now on, for [`take_records`](Self::take_records).
+    pub fn record(&mut self) {
+        self.records.get_or_insert_default();
+    }
+
+    /// How many things were accepted.
+    #[must_use]
+    pub fn serial(&self) -> u64 {
+        self.serial
+    }
+
+    /// What was accepted since the last call.
+    pub fn take_records(&mut self) -> Vec<Record> {
+        self.records.as_mut().map(std::mem::take).unwrap_or_default()
+    }
+
+    pub(super) fn note(&mut self, index: u64, what: impl FnOnce() -> Accepted) {
+        let serial = self.serial;
+        self.serial += 1;
+        if let Some(records) = &mut self.records {
+            records.push(Record {
+                serial,
+                index,
+                what: what(),
+            });
+        }
+    }
+
+    /// Does a command of the one who runs the sequencer, at once.
+    ///
+    /// # Errors
+    /// [`PaintRefusal`] where the painting refuses it.
+    pub fn ask(&mut self, command: Command) -> Result<String, PaintRefusal> {
+        let number = self.answered.get(&OWN).map_or(1, |answer| answer.number + 1);
+        let request = CommandRequest {
+            client: OWN,
+            number,
+            after: None,
+            command,
+        };
+        let outcome = self.command(request).outcome;
+        self.drain_journal();
+        match outcome {
+            Outcome::Done { detail, .. } => Ok(detail),
+            Outcome::Refused { what, help } => Err(PaintRefusal { what, help }),
+            Outcome::Waiting => Ok(String::new()),
+        }
+    }
+
+    /// Introduces a brush, or gives a known one another file.
+    pub fn define_brush(&mut self, brush: &str, file: BrushFile) {
+        let toml = file.to_toml().unwrap_or_default();
+        if self.painting.define_brush(brush, file) {
+            let index = self.next;
+            self.note(index, || Accepted::Brush {
+                brush: brush.to_owned(),
+                toml,
+            });
+        }
+    }
+
+    /// Accepts again what a document has kept. What was done then is done now; what was asked of the
+    /// outside world is not asked again.
+    pub fn replay(&mut self, record: Record) {
+        let recording = self.records.take();
+        let next = record.next();
+        self.next = record.index;
+        match record.what {
+            Accepted::State { header, state } => self.replay_state(&header, &state),
+            Accepted::Entry(Entry::Command {
+                client,
+                number,
+                command,
+            }) => {
+                let request = CommandRequest {
+                    client,
+                    number,
+                    after: None,
+                    command,
+                };
+                self.execute(&request);
+            }
+            Accepted::Entry(Entry::Decision { what }) => self.decide(&what),
+            Accepted::Entry(Entry::Tick { .. } | Entry::States { .. }) => {}
+            Accepted::Brush { brush, toml } => {
+                if let Ok(file) = BrushFile::parse(&toml) {
+                    self.painting.define_brush(&brush, file);
+                }
+            }
+        }
+        self.journal.clear();
+        self.next = next;
+        self.serial = record.serial + 1;
+        self.records = recording;
+    }
+
+    fn replay_state(&mut self, header: &Header, state: &BrushState) {
+        let brush = self.painting.brush_of(header.source).map(str::to_owned);
+        if let Some(brush) = brush {
+            // It was not refused then.
+            self.painting.state(&brush, header.epoch, state).ok();
+            self.consume(&brush, header);
+        }
+    }
+
+    /// The sequencer besides its painting, as a document keeps it.
+    #[must_use]
+    pub fn kept(&self) -> KeptSequencer {
+        let takes = self.announced.iter().map(|(brush, take)| {
+            let kept = KeptTake {
+                device: take.device,
+                epoch: take.epoch,
+                ended: take.ended,
+                step: take.step,
+            };
+            (brush.clone(), kept)
+        });
+        let answers = self.answered.iter().map(|(client, answered)| {
+            let kept = KeptAnswer {
+                number: answered.number,
+                outcome: answered.outcome.clone(),
+                age: answered.age,
+            };
+            (*client, kept)
+        });
+        let consumed = self.consumed.iter();
+        KeptSequencer {
+            next: self.next,
+            serial: self.serial,
+            takes: takes.collect(),
+            gone: self.gone.iter().copied().collect(),
+            consumed: consumed
+                .map(|(origin, next)| (origin.source, origin.epoch, *next))
+                .collect(),
+            answers: answers.collect(),
+        }
+    }
+
+    /// A sequencer that goes on where it was kept.
+    #[must_use]
+    pub fn restored(painting: Painting, kept: KeptSequencer) -> Self {
+        let answers = kept.answers.values().map(|answer| answer.age).max();
+        let takes = kept.takes.into_iter().map(|(brush, take)| {
+            let announced = Announced {
+                device: take.device,
+                epoch: take.epoch,
+                ended: take.ended,
+                step: take.step,
+            };
+            (brush, announced)
+        });
+        let answered = kept.answers.into_iter().map(|(client, answer)| {
+            let answered = Answered {
+                number: answer.number,
+                outcome: answer.outcome,
+                age: answer.age,
+            };
+            (client, answered)
+        });
+        let consumed = kept.consumed.into_iter().map(|(source, epoch, next)| {
+            (Origin { source, epoch }, next)
+        });
+        Self {
+            next: kept.next,
+            serial: kept.serial,
+            announced: takes.collect::<BTreeMap<_, _>>(),
+            gone: kept.gone.into_iter().collect(),
+            consumed: consumed.collect(),
+            answered: answered.collect(),
+            answers: answers.unwrap_or(0),
+            ..Self::new(painting)
+        }
+    }
+}
