@@ -1,4 +1,5 @@
-//! How far a long work of the paint node is: a line over the desk, gone when it is done.
+//! What the paint node has to say: how far a long work is, and that the painting cannot be written.
+//! A line over the desk, gone when it is over.
 
 use eframe::egui;
 use maulstick_bus::typed::Receiver;
@@ -12,6 +13,7 @@ pub struct WorkProgress {
     statuses: Receiver<PaintStatus>,
     baking: u32,
     baked: u32,
+    fault: String,
 }
 
 impl WorkProgress {
@@ -25,20 +27,29 @@ impl WorkProgress {
             statuses: Receiver::new(bus, &topic, Class::Background, Queue::Ring(4), wake)?,
             baking: 0,
             baked: 0,
+            fault: String::new(),
         })
     }
 
     /// Takes in what has come.
     pub fn take_in(&mut self) {
         if let Some(status) = self.statuses.newest() {
-            let PaintStatus { baking, baked, .. } = status.message;
-            (self.baking, self.baked) = (baking, baked);
+            let PaintStatus {
+                baking,
+                baked,
+                fault,
+                ..
+            } = status.message;
+            (self.baking, self.baked, self.fault) = (baking, baked, fault);
         }
     }
 
-    /// The line; none where nothing is under way.
+    /// The line; none where nothing is to be said. What cannot be saved comes first.
     #[must_use]
     pub fn line(&self) -> Option<String> {
+        if !self.fault.is_empty() {
+            return Some(format!("The painting is not being saved: {}", self.fault));
+        }
         let share = 100 * u64::from(self.baked) / u64::from(self.baking.max(1));
         (self.baked < self.baking).then(|| format!("Relighting dry layers: {share} %"))
     }

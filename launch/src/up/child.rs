@@ -59,6 +59,8 @@ pub struct Node {
     pub state: State,
     /// How often it was started again.
     pub restarts: u32,
+    /// Since when its token is missed.
+    pub missed: Option<Instant>,
     process: Option<(Child, Option<ChildStdin>)>,
 }
 
@@ -95,6 +97,7 @@ impl Node {
             spec,
             state: State::Restarting,
             restarts: 0,
+            missed: None,
             process: None,
         }
     }
@@ -123,6 +126,7 @@ impl Node {
         let stdin = child.stdin.take();
         self.process = Some((child, stdin));
         self.state = State::Starting;
+        self.missed = None;
         Ok(())
     }
 
@@ -160,6 +164,11 @@ impl Node {
         self.signal(Signal::SIGTERM);
         // A stopped process hears no other signal.
         self.signal(Signal::SIGCONT);
+    }
+
+    /// Ends the process; that it has ended is seen as if it had by itself.
+    pub fn strike(&mut self) {
+        self.signal(Signal::SIGKILL);
     }
 
     /// Ends the process and all that it started, and waits for it.

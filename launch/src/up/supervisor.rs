@@ -51,6 +51,9 @@ pub struct Supervisor {
     unloaded: bool,
 }
 
+/// A node whose token is gone for so long is taken for frozen.
+const FROZEN: Duration = Duration::from_secs(5);
+
 /// Why the rig ends.
 enum End {
     /// With this exit code.
@@ -158,6 +161,7 @@ impl Supervisor {
         if let Some(code) = self.watch_children()? {
             return Ok(Some(code));
         }
+        self.end_frozen();
         self.restart_due()?;
         self.watch_starts()?;
         self.show_when_ready();
@@ -175,9 +179,11 @@ impl Supervisor {
                 continue;
             };
             let node = self.nodes.iter_mut().find(|node| node.spec.name == name);
-            if let Some(node) = node.filter(|node| node.state == State::Starting)
-                && arrival.present
-            {
+            let Some(node) = node else {
+                continue;
+            };
+            node.missed = (!arrival.present).then(Instant::now);
+            if node.state == State::Starting && arrival.present {
                 node.state = State::Running;
             }
         }
@@ -287,6 +293,20 @@ impl Supervisor {
             }
         }
         Ok(())
+    }
+
+    /// Kills nodes whose token is gone while their process is not: they are frozen, and started again
+    /// as those that crash.
+    fn end_frozen(&mut self) {
+        let running = self.nodes.iter_mut().filter(|node| node.state == State::Running);
+        for node in running {
+            let long = node.missed.is_some_and(|since| since.elapsed() > FROZEN);
+            if long && node.pid().is_some() {
+                tracing::warn!("node '{}' does not answer and is ended", node.spec.name);
+                node.missed = None;
+                node.strike();
+            }
+        }
     }
 
     /// A node that shows no token in time is killed, and with that has failed.

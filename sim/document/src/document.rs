@@ -82,6 +82,7 @@ struct Shared {
     queues: Mutex<Queues>,
     bell: Condvar,
     committed: AtomicU64,
+    page_in_ns: AtomicU64,
 }
 
 impl Shared {
@@ -233,6 +234,12 @@ impl Document {
     #[must_use]
     pub fn committed(&self) -> u64 {
         self.shared.committed.load(SeqCst)
+    }
+
+    /// Time of the processor that was spent on reading pages.
+    #[must_use]
+    pub fn page_in_cpu(&self) -> Duration {
+        Duration::from_nanos(self.shared.page_in_ns.load(SeqCst))
     }
 
     /// Why nothing is written at present, and what to do about it; none where all is well.
@@ -447,9 +454,20 @@ impl Thread {
     }
 }
 
+/// Time of the processor that this thread has had.
+fn thread_cpu() -> Duration {
+    use nix::time::{ClockId, clock_gettime};
+    let now = clock_gettime(ClockId::CLOCK_THREAD_CPUTIME_ID);
+    now.map_or(Duration::ZERO, Duration::from)
+}
+
 /// Reads what is waited for.
 fn serve(shared: &Shared, database: &Database) {
     let fetches = std::mem::take(&mut shared.lock().fetches);
+    if fetches.is_empty() {
+        return;
+    }
+    let begun = thread_cpu();
     let broken = |error: DocumentError| {
         let mut queues = shared.lock();
         queues.broken = true;
@@ -465,4 +483,6 @@ fn serve(shared: &Shared, database: &Database) {
             }
         }
     }
+    let spent = thread_cpu().saturating_sub(begun);
+    shared.page_in_ns.fetch_add(spent.as_nanos() as u64, SeqCst);
 }

@@ -214,6 +214,21 @@ impl DisplayTile {
         }
     }
 
+    /// The tile with the mean of each plane in all of its cells.
+    #[must_use]
+    pub fn even(&self) -> Self {
+        let even = |plane: &[f32]| {
+            let sum: f64 = plane.iter().copied().map(f64::from).sum();
+            vec![(sum / plane.len().max(1) as f64) as f32; plane.len()]
+        };
+        Self {
+            rgb: self.rgb.each_ref().map(|plane| even(plane)),
+            gloss: even(&self.gloss),
+            wetness: even(&self.wetness),
+            height: even(&self.height),
+        }
+    }
+
     /// The planes as a frame carries them: red, green, blue, gloss, wetness as half floats, height
     /// as floats, little endian.
     #[must_use]

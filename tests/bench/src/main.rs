@@ -4,6 +4,7 @@
 //! | --- | --- |
 //! | [`brush`] | `brush`: the solver of the spines beside slsqp, a head, its strips |
 //! | [`bus`] | `bus`: a sample from a device to the brush node, beside a bare zenoh put |
+//! | [`document`] | `document`: vast canvases, long histories, opening and packing a painting's file |
 //! | [`latency`] | `latency`: from a stylus sample to the first frame that holds it |
 //! | [`optics`] | `optics`: colours of few wavelengths beside all; films on both backends beside a copy |
 //! | [`render`] | `render`: the 30 s recording, offline |
@@ -11,6 +12,7 @@
 
 mod brush;
 mod bus;
+mod document;
 mod latency;
 mod optics;
 mod render;
@@ -25,7 +27,7 @@ use crate::report::Report;
 #[derive(Parser)]
 #[command(name = "maulstick-bench", version)]
 struct Options {
-    /// What to measure: brush, bus, latency, optics, render; everything if absent
+    /// What to measure: brush, bus, document, latency, optics, render; everything if absent
     area: Option<String>,
     /// As JSON
     #[arg(long)]
@@ -38,9 +40,10 @@ struct Options {
 /// An area's name and what measures it.
 type Area = (&'static str, fn(&mut Report) -> Result<(), Fault>);
 
-const AREAS: [Area; 5] = [
+const AREAS: [Area; 6] = [
     ("brush", brush::run),
     ("bus", bus::run),
+    ("document", document::run),
     ("latency", latency::run),
     ("optics", optics::run),
     ("render", render::run),

@@ -28,6 +28,7 @@ pub(crate) fn scene() -> Scene {
         paints: Vec::new(),
         tunings: Vec::new(),
         layers: Vec::new(),
+        versions: Vec::new(),
         light,
     }
 }

@@ -19,6 +19,16 @@ use super::{Fed, FedSurface, Progress};
 /// Display tiles that are kept for the next request.
 const KEPT_TILES: usize = 1024;
 
+/// From this level on, eight cells to a point and coarser, a bare ground looks even.
+const PLAIN_LEVEL: u32 = 3;
+/// Surfaces of more tiles than this are not drawn tile by tile where they are bare.
+const PLAIN_TILES: u32 = 1024;
+
+/// Whether a surface is so vast that what is bare of it is drawn as if it were even.
+fn is_plain(surface: &FedSurface) -> bool {
+    surface.grid[0] * surface.grid[1] > PLAIN_TILES && surface.bare.wells.is_empty()
+}
+
 /// The coarsest level: a single tile shows the whole surface.
 pub(super) fn coarsest(surface: &FedSurface) -> u32 {
     let [across, up] = surface.grid;
@@ -39,6 +49,8 @@ pub(super) struct Pyramid {
     kept: BTreeMap<(u32, u32, TileId), (u64, Arc<DisplayTile>)>,
     /// What lies beyond the edge of a surface.
     outside: BTreeMap<u32, Arc<DisplayTile>>,
+    /// A bare tile of a vast surface, from afar.
+    plain: BTreeMap<u32, Arc<DisplayTile>>,
     bakery: Bakery,
     pub(super) films: SteadyFilms,
     /// Tiles as they were shown before, in the document.
@@ -82,6 +94,7 @@ impl Pyramid {
             self.generation = Some(look.generation());
             self.kept.clear();
             self.outside.clear();
+            self.plain.clear();
         }
     }
 
@@ -216,6 +229,17 @@ impl Pyramid {
         }
     }
 
+    /// A bare tile seen from afar, where threads and grain are too small to be seen.
+    fn plain(&mut self, look: &Look, number: u32, surface: &FedSurface) -> Arc<DisplayTile> {
+        if let Some(plain) = self.plain.get(&number) {
+            return Arc::clone(plain);
+        }
+        let near = self.tile(look, number, surface, 0, TileId { x: 0, y: 0 });
+        let plain = Arc::new(near.even());
+        self.plain.insert(number, Arc::clone(&plain));
+        plain
+    }
+
     fn keep(&mut self, place: (u32, u32, TileId), version: u64, tile: Arc<DisplayTile>) {
         if self.kept.len() >= KEPT_TILES {
             self.kept.clear();
@@ -237,6 +261,9 @@ impl Pyramid {
             && *kept == version
         {
             return Arc::clone(tile);
+        }
+        if version == 0 && level >= PLAIN_LEVEL && is_plain(surface) {
+            return self.plain(look, number, surface);
         }
         if let Some(shown) = self.shown(look, (number, level, id), version) {
             self.keep((number, level, id), version, Arc::clone(&shown));

@@ -1,0 +1,208 @@
+//! A hand that paints strokes anywhere, from a seed.
+
+use std::path::Path;
+use std::time::{Duration, Instant};
+
+use maulstick_brush::BrushFile;
+use maulstick_document::{Access, Document, DocumentSettings};
+use maulstick_nodes::Keeper;
+use maulstick_optics::PaintLibrary;
+use maulstick_paint::{Painting, PaintingSetup, Sequencer};
+use maulstick_rig::Fault;
+use maulstick_types::brush::{BrushState, Solve};
+use maulstick_types::command::Command;
+use maulstick_types::scene::CANVAS;
+use maulstick_types::{Flags, Header, Pose, name_hash};
+use rand_pcg::Pcg64Mcg;
+use rand_pcg::rand_core::Rng as _;
+
+use super::fault;
+
+const BRUSH: &str = "main";
+const PAINTS: [&str; 4] = [
+    "Ultramarine Blue",
+    "Titanium White",
+    "Yellow Ochre",
+    "Pyrrole Red=0.5,Bone Black=0.5",
+];
+/// Way between two states, m: as a quick hand goes in 8 ms.
+const STATE_M: f64 = 2e-3;
+
+/// A painting in a document with the hand over it.
+pub(super) struct Easel {
+    pub(super) sequencer: Sequencer,
+    pub(super) keeper: Keeper,
+    size_m: [f64; 2],
+    file: BrushFile,
+    dice: Pcg64Mcg,
+    stroke: u64,
+    seq: u64,
+    begun: Instant,
+}
+
+/// What painting took.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Took {
+    /// Steps of the paint model.
+    pub(super) steps: u64,
+    /// Time of this thread's processor.
+    pub(super) busy: Duration,
+    /// Time to page in, for each state of the brush.
+    pub(super) paging_ms: Vec<f64>,
+}
+
+impl Easel {
+    /// A canvas of so many cells either way, in a new file.
+    pub(super) fn new(path: &Path, cells: u32, memory: usize, quota: u64) -> Result<Self, Fault> {
+        let settings = DocumentSettings {
+            memory,
+            ..DocumentSettings::new(path, Access::Paint)
+        };
+        let (document, _) = Document::open(&settings).map_err(fault)?;
+        let setup = PaintingSetup {
+            cells: [cells, cells],
+            ..PaintingSetup::default()
+        };
+        let library = PaintLibrary::measured().map_err(fault)?;
+        let pager = document.pager().clone();
+        let painting = Painting::paged(&setup, library, pager).map_err(fault)?;
+        let mut sequencer = Sequencer::new(painting);
+        sequencer.painting_mut().set_quota(quota);
+        let keeper = Keeper::new(document, &mut sequencer, 0);
+        let file = BrushFile::library("round").map_err(fault)?;
+        sequencer.define_brush(BRUSH, file.clone());
+        Ok(Self {
+            sequencer,
+            keeper,
+            size_m: [f64::from(cells) * setup.cell_m; 2],
+            file,
+            dice: Pcg64Mcg::new(7),
+            stroke: 0,
+            seq: 0,
+            begun: Instant::now(),
+        })
+    }
+
+    /// A canvas that was painted before.
+    pub(super) fn again(path: &Path, memory: usize) -> Result<Self, Fault> {
+        let settings = DocumentSettings {
+            memory,
+            ..DocumentSettings::new(path, Access::Paint)
+        };
+        let (document, opened) = Document::open(&settings).map_err(fault)?;
+        let opened = opened.ok_or_else(|| fault("the painting is gone"))?;
+        let since = opened.kept().versions;
+        let mut sequencer = opened.sequencer().map_err(fault)?;
+        let keeper = Keeper::new(document, &mut sequencer, since);
+        let canvas = &sequencer.painting().scene().surfaces[0];
+        let size_m = canvas.cells.map(|cells| f64::from(cells) * canvas.cell_m);
+        Ok(Self {
+            size_m,
+            sequencer,
+            keeper,
+            file: BrushFile::library("round").map_err(fault)?,
+            dice: Pcg64Mcg::new(8),
+            stroke: 1 << 32,
+            seq: 0,
+            begun: Instant::now(),
+        })
+    }
+
+    fn unit(&mut self) -> f64 {
+        (self.dice.next_u64() >> 11) as f64 / (1u64 << 53) as f64
+    }
+
+    /// Loads a paint in turn.
+    pub(super) fn load(&mut self) -> Result<(), Fault> {
+        let text = PAINTS[self.stroke as usize % PAINTS.len()];
+        let command = Command::Load {
+            brush: BRUSH.to_owned(),
+            mixture: text.parse().map_err(fault)?,
+        };
+        self.sequencer.ask(command).map_err(fault)?;
+        Ok(())
+    }
+
+    /// A stroke of `length_m` anywhere, in any direction.
+    pub(super) fn stroke(&mut self, length_m: f64, took: &mut Took) -> Result<(), Fault> {
+        let margin = 0.02f64.min(0.25 * self.size_m[0]);
+        let from = [0, 1].map(|i| margin + self.unit() * (self.size_m[i] - 2.0 * margin));
+        let (sine, cosine) = maulstick_num::sin_cos(6.28 * self.unit());
+        self.stroke += 1;
+        let states = (length_m / STATE_M).ceil().max(2.0) as u32;
+        for state in 0..=states {
+            let way = length_m * f64::from(state) / f64::from(states);
+            let at = [from[0] + cosine * way, from[1] + sine * way];
+            let at = [0, 1].map(|i| at[i].clamp(0.0, self.size_m[i]));
+            self.state(at, took)?;
+        }
+        self.keep();
+        Ok(())
+    }
+
+    /// Hands over to the document what is due.
+    pub(super) fn keep(&mut self) {
+        let now_ns = self.begun.elapsed().as_nanos() as u64;
+        self.sequencer.drain_journal();
+        self.keeper.turn(&mut self.sequencer, now_ns);
+    }
+
+    fn state(&mut self, [x, y]: [f64; 2], took: &mut Took) -> Result<(), Fault> {
+        let joints = self.file.spines.all_joints();
+        let solve = Solve {
+            event_ns: 0,
+            stroke: self.stroke,
+            surface: CANVAS,
+            flags: 0,
+            pose: Pose {
+                position_m: [x, y, 0.55 * self.file.length_m()],
+                orientation: [0.0, 0.0, 0.0, 1.0],
+            },
+            angles_rad: vec![[0.25, 0.3]; joints],
+            contacts: Vec::new(),
+        };
+        let header = Header {
+            version: 1,
+            schema: 0,
+            source: name_hash(BRUSH),
+            epoch: 1,
+            flags: Flags::NONE,
+            length: 0,
+            seq: self.seq,
+            event_ns: 0,
+            sent_ns: 0,
+        };
+        self.seq += 1;
+        let state = BrushState {
+            device: 1,
+            device_epoch: 1,
+            device_seq: 0,
+            solves: vec![solve],
+        };
+        let steps = self.sequencer.painting().work().0;
+        let paged = self.keeper.document().page_in_cpu();
+        let busy = thread_cpu();
+        let (_, painted) = self.sequencer.state(BRUSH, &header, &state);
+        took.busy += thread_cpu().saturating_sub(busy);
+        painted.map_err(fault)?;
+        let paged = self.keeper.document().page_in_cpu().saturating_sub(paged);
+        took.paging_ms.push(1e3 * paged.as_secs_f64());
+        took.steps += self.sequencer.painting().work().0 - steps;
+        Ok(())
+    }
+}
+
+/// Time of the processor that this thread has had.
+pub(super) fn thread_cpu() -> Duration {
+    use nix::time::{ClockId, clock_gettime};
+    let now = clock_gettime(ClockId::CLOCK_THREAD_CPUTIME_ID);
+    now.map_or(Duration::ZERO, Duration::from)
+}
+
+/// Memory of this process, bytes.
+pub(super) fn resident() -> u64 {
+    let status = std::fs::read_to_string("/proc/self/status").unwrap_or_default();
+    let line = status.lines().find_map(|line| line.strip_prefix("VmRSS:"));
+    let kib = line.and_then(|line| line.trim().trim_end_matches(" kB").parse::<u64>().ok());
+    kib.unwrap_or(0) << 10
+}

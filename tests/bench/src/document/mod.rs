@@ -1,0 +1,32 @@
+//! A painting's document: vast canvases, long histories, opening, packing.
+//!
+//! | module | holds |
+//! | --- | --- |
+//! | [`hand`] | a hand that paints strokes anywhere, from a seed |
+//! | [`vast`] | a canvas larger than memory beside a small one |
+//! | [`undoing`] | ten thousand steps taken back |
+//! | [`opening`] | how soon a painting is seen and painted on |
+//! | [`packing`] | a packed painting beside an OpenEXR file |
+
+mod hand;
+mod opening;
+mod packing;
+mod undoing;
+mod vast;
+
+use maulstick_rig::Fault;
+
+use crate::report::Report;
+
+/// Measures and reports.
+pub(crate) fn run(report: &mut Report) -> Result<(), Fault> {
+    vast::run(report)?;
+    undoing::run(report)?;
+    opening::run(report)?;
+    packing::run(report)
+}
+
+/// What went wrong, as the user sees it.
+fn fault(error: impl ToString) -> Fault {
+    Fault::failure(error.to_string())
+}
