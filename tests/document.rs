@@ -37,16 +37,30 @@ fn a_rendered_document_is_the_picture_and_goes_on() {
     };
     render(&["-o", "memory.png"]);
     render(&["-o", "file.png", "--document", "ein Bild ä"]);
-    assert_same(&place.bytes("memory.png"), &place.bytes("file.png"), "in memory and in a file");
+    assert_same(
+        &place.bytes("memory.png"),
+        &place.bytes("file.png"),
+        "in memory and in a file",
+    );
     let before = info(&place, "ein Bild ä");
     assert!(before["undo"].as_u64() > Some(0) && before["pending"] == 0);
     assert_eq!(before["size_cm"][0], 25.6);
     // Little memory, and a second take over the first.
-    render(&["-o", "twice.png", "--document", "ein Bild ä", "--memory", "64M"]);
+    render(&[
+        "-o",
+        "twice.png",
+        "--document",
+        "ein Bild ä",
+        "--memory",
+        "64M",
+    ]);
     let after = info(&place, "ein Bild ä");
     assert!(after["undo"].as_u64() > before["undo"].as_u64());
     assert_eq!(after["ledger"]["quanta_missing"], 0);
-    assert!(!place.path("ein Bild ä-wal").exists(), "its journal is folded in");
+    assert!(
+        !place.path("ein Bild ä-wal").exists(),
+        "its journal is folded in"
+    );
 }
 
 #[test]
@@ -60,21 +74,30 @@ fn what_was_done_is_there_after_a_kill_and_can_be_undone() {
     place.done(&["fill", "Titanium White=0.5,Bone Black=0.5", "--um", "20"]);
     place.done(&["painting", "versions", "--keep", "first"]);
     place.done(&["ground", "grey"]);
-    let books = |names: &[&str]| -> Vec<f64> {
-        names.iter().map(|name| account(&place, name)).collect()
-    };
+    let books =
+        |names: &[&str]| -> Vec<f64> { names.iter().map(|name| account(&place, name)).collect() };
     const ACCOUNTS: [&str; 4] = ["brush", "canvas", "dry", "cleaner"];
     let before = books(&ACCOUNTS);
-    assert!(before.iter().all(|volume| *volume > 0.0 || *volume == before[3]));
+    assert!(
+        before
+            .iter()
+            .all(|volume| *volume > 0.0 || *volume == before[3])
+    );
     let (bus, topics) = join(&place);
     let mut status = listen::<PaintStatus>(&bus, &topics.paint_status(), Class::Background);
     let whole = |status: &PaintStatus| status.committed == status.journal && status.undo >= 5;
     hear(&mut status, whole).expect("all is in the file");
     let killed = Instant::now();
-    signal(place.pid("maulstick-paint").expect("a paint node"), Signal::SIGKILL);
+    signal(
+        place.pid("maulstick-paint").expect("a paint node"),
+        Signal::SIGKILL,
+    );
     launcher.wait_says("is started again");
     assert_eq!(books(&ACCOUNTS), before, "as it was");
-    println!("restarted and asked after {:.2} s", killed.elapsed().as_secs_f64());
+    println!(
+        "restarted and asked after {:.2} s",
+        killed.elapsed().as_secs_f64()
+    );
     let undone = |what: &str| {
         let said = place.done(&["undo"]).stdout;
         assert!(String::from_utf8_lossy(&said).contains(what), "{what}");
@@ -101,24 +124,42 @@ fn kill_at_random(rounds: u32) {
     for round in 0..rounds {
         let mut launcher = Launcher::up(
             &place,
-            &["x.maul", "--play", "take.mcap", "--rate", "2", "--load", "Cobalt Blue", "--size", "512x512"]
-                [..if round == 0 { 9 } else { 7 }],
+            &[
+                "x.maul",
+                "--play",
+                "take.mcap",
+                "--rate",
+                "2",
+                "--load",
+                "Cobalt Blue",
+                "--size",
+                "512x512",
+            ][..if round == 0 { 9 } else { 7 }],
         );
         let (bus, topics) = join(&place);
         let mut status = listen::<PaintStatus>(&bus, &topics.paint_status(), Class::Background);
         // Somewhere in the take, later from round to round.
         let steps = u64::from(30 + round * 137 % 700);
-        let told = hear(&mut status, |told| told.steps > steps && told.committed > least);
+        let told = hear(&mut status, |told| {
+            told.steps > steps && told.committed > least
+        });
         let told = told.unwrap_or_else(|| panic!("{}", launcher.said()));
         signal(launcher.pid(), Signal::SIGSTOP);
-        signal(place.pid("maulstick-paint").expect("a paint node"), Signal::SIGKILL);
+        signal(
+            place.pid("maulstick-paint").expect("a paint node"),
+            Signal::SIGKILL,
+        );
         signal(launcher.pid(), Signal::SIGKILL);
         launcher.wait(PATIENCE);
         bus.close();
         place.wait_empty(PATIENCE);
         let there = info(&place, "x.maul");
         let journal = there["journal"].as_u64().expect("a number");
-        assert!(journal >= told.committed, "round {round}: {journal} of {}", told.committed);
+        assert!(
+            journal >= told.committed,
+            "round {round}: {journal} of {}",
+            told.committed
+        );
         assert_eq!(there["ledger"]["quanta_missing"], 0, "round {round}");
         assert!(there["undo"].as_u64() > Some(0), "round {round}");
         least = journal;
@@ -142,50 +183,112 @@ fn a_take_into_a_painting_begins_again_after_a_crash() {
     place.short_demo("take.mcap", 4.0);
     let load = ["--load", "Cobalt Blue"];
     place.done(&[&["render", "take.mcap", "-o", "whole.png"], &load[..]].concat());
-    let play = ["up", "--headless", "x.maul", "--play", "take.mcap", "--rate", "2", "--snapshot", "p.png"];
+    let play = [
+        "up",
+        "--headless",
+        "x.maul",
+        "--play",
+        "take.mcap",
+        "--rate",
+        "2",
+        "--snapshot",
+        "p.png",
+    ];
     let mut launcher = Launcher::start(place.maulstick(&[&play, &load[..]].concat()));
     launcher.wait_says("is up");
     let (bus, topics) = join(&place);
     let mut status = listen::<PaintStatus>(&bus, &topics.paint_status(), Class::Background);
     hear(&mut status, |told| told.steps > 200 && told.committed > 2).expect("painting");
-    signal(place.pid("maulstick-paint").expect("a paint node"), Signal::SIGKILL);
+    signal(
+        place.pid("maulstick-paint").expect("a paint node"),
+        Signal::SIGKILL,
+    );
     launcher.wait_says("is started again");
     bus.close();
     assert!(launcher.wait(PATIENCE).success(), "{}", launcher.said());
-    assert_same(&place.bytes("whole.png"), &place.bytes("p.png"), "painted once, not twice");
+    assert_same(
+        &place.bytes("whole.png"),
+        &place.bytes("p.png"),
+        "painted once, not twice",
+    );
 }
 
 #[test]
 fn what_is_no_painting_is_refused_and_stays_as_it_is() {
     let place = Place::new();
     place.short_demo("take.mcap", 2.0);
-    let write = |name: &str, bytes: &[u8]| std::fs::write(place.path(name), bytes).expect("written");
-    write("text.maul", b"a shopping list, and much more than sixteen bytes of it");
+    let write =
+        |name: &str, bytes: &[u8]| std::fs::write(place.path(name), bytes).expect("written");
+    write(
+        "text.maul",
+        b"a shopping list, and much more than sixteen bytes of it",
+    );
     for args in [
         &["up", "--headless", "text.maul"][..],
         &["painting", "info", "text.maul"],
         &["painting", "pack", "text.maul"],
-        &["render", "take.mcap", "-o", "p.png", "--document", "text.maul"],
+        &[
+            "render",
+            "take.mcap",
+            "-o",
+            "p.png",
+            "--document",
+            "text.maul",
+        ],
     ] {
-        has(&fault(&place, args, 2), &["no painting", "text.maul", "help:"]);
+        has(
+            &fault(&place, args, 2),
+            &["no painting", "text.maul", "help:"],
+        );
     }
     assert!(place.bytes("text.maul").starts_with(b"a shopping"));
     assert!(!place.path("p.png").exists());
-    has(&fault(&place, &["painting", "info", "none.maul"], 2), &["no such file", "none.maul"]);
-    has(&fault(&place, &["up", "--headless", "no/folder/x.maul"], 2), &["folder", "x.maul"]);
-    has(&fault(&place, &["up", "--headless", "."], 2), &["no painting"]);
-    place.done(&["render", "take.mcap", "-o", "p.png", "--document", "x.maul", "--load", "Bone Black"]);
+    has(
+        &fault(&place, &["painting", "info", "none.maul"], 2),
+        &["no such file", "none.maul"],
+    );
+    has(
+        &fault(&place, &["up", "--headless", "no/folder/x.maul"], 2),
+        &["folder", "x.maul"],
+    );
+    has(
+        &fault(&place, &["up", "--headless", "."], 2),
+        &["no painting"],
+    );
+    place.done(&[
+        "render",
+        "take.mcap",
+        "-o",
+        "p.png",
+        "--document",
+        "x.maul",
+        "--load",
+        "Bone Black",
+    ]);
     let there = place.bytes("x.maul");
     let again = ["up", "--headless", "x.maul", "--size", "64x64"];
     has(&fault(&place, &again, 2), &["--size", "x.maul"]);
-    has(&fault(&place, &["up", "--headless", "y.maul", "--memory", "lots"], 2), &["lots", "512M"]);
+    has(
+        &fault(
+            &place,
+            &["up", "--headless", "y.maul", "--memory", "lots"],
+            2,
+        ),
+        &["lots", "512M"],
+    );
     // A newer program's painting, and a damaged one.
     let mut newer = there.clone();
     newer[63] = 99;
     write("newer.maul", &newer);
-    has(&fault(&place, &["up", "--headless", "newer.maul"], 2), &["format 99", "newer"]);
+    has(
+        &fault(&place, &["up", "--headless", "newer.maul"], 2),
+        &["format 99", "newer"],
+    );
     write("torn.maul", &there[..there.len() / 2]);
-    has(&fault(&place, &["painting", "info", "torn.maul"], 2), &["damaged", "recover"]);
+    has(
+        &fault(&place, &["painting", "info", "torn.maul"], 2),
+        &["damaged", "recover"],
+    );
     assert_same(&place.bytes("newer.maul"), &newer, "a newer painting");
     assert_eq!(place.bytes("torn.maul").len(), there.len() / 2);
 }
@@ -199,7 +302,10 @@ fn a_painting_is_open_once() {
         &["up", "--headless", "--name", "other", "x.maul"][..],
         &["painting", "info", "x.maul"],
     ] {
-        has(&fault(&place, args, 1), &["open in another program", &pid.to_string(), "x.maul"]);
+        has(
+            &fault(&place, args, 1),
+            &["open in another program", &pid.to_string(), "x.maul"],
+        );
     }
     close(&place, launcher);
     place.done(&["painting", "info", "x.maul"]);
@@ -219,9 +325,10 @@ fn a_full_disk_is_told_and_what_was_written_is_safe() {
         .args(["--mount", "sh", "-c", script, support::MAULSTICK])
         .current_dir(place.path("."))
         .output();
-    let Some(output) = output.ok().filter(|output| {
-        !String::from_utf8_lossy(&output.stderr).contains("unshare failed")
-    }) else {
+    let Some(output) = output
+        .ok()
+        .filter(|output| !String::from_utf8_lossy(&output.stderr).contains("unshare failed"))
+    else {
         eprintln!("skipped: no namespaces here");
         return;
     };
@@ -229,9 +336,15 @@ fn a_full_disk_is_told_and_what_was_written_is_safe() {
         String::from_utf8_lossy(&output.stdout).into_owned(),
         String::from_utf8_lossy(&output.stderr).into_owned(),
     );
-    assert!(said.contains("code 1") && told.contains("full"), "{said}{told}");
+    assert!(
+        said.contains("code 1") && told.contains("full"),
+        "{said}{told}"
+    );
     assert!(said.contains("info 0"), "it opens: {said}{told}");
-    assert!(place.path("p.png").exists(), "the picture is written all the same");
+    assert!(
+        place.path("p.png").exists(),
+        "the picture is written all the same"
+    );
 }
 
 #[test]
@@ -243,7 +356,9 @@ fn a_frozen_paint_node_is_replaced() {
     let pid = place.pid("maulstick-paint").expect("a paint node");
     signal(pid, Signal::SIGSTOP);
     launcher.wait_says("is started again");
-    let anew = wait_for(PATIENCE, || place.pid("maulstick-paint").filter(|anew| *anew != pid));
+    let anew = wait_for(PATIENCE, || {
+        place.pid("maulstick-paint").filter(|anew| *anew != pid)
+    });
     assert!(anew.is_some(), "{}", launcher.said());
     assert_eq!(account(&place, "canvas"), before);
     close(&place, launcher);

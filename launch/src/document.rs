@@ -4,9 +4,9 @@ use std::path::Path;
 
 use maulstick_document::{Access, Document, DocumentError, DocumentSettings, Opened, glance};
 use maulstick_paint::{Painting, Sequencer};
+use maulstick_rig::Fault;
 use maulstick_rig::config::RigConfig;
 use maulstick_rig::fault::EXIT_FAILURE;
-use maulstick_rig::Fault;
 use maulstick_rig::files::check_writable;
 
 use crate::performance::{PaintingOptions, library_from, painting_setup, refused};
@@ -36,8 +36,7 @@ pub fn wrong(path: &Path, error: &DocumentError) -> Fault {
 /// A [`Fault`] where there is none, or it cannot be read.
 pub fn read(path: &Path) -> Result<(Document, Opened), Fault> {
     let settings = DocumentSettings::new(path, Access::Read);
-    let (document, opened) =
-        Document::open(&settings).map_err(|error| wrong(path, &error))?;
+    let (document, opened) = Document::open(&settings).map_err(|error| wrong(path, &error))?;
     let opened = opened.ok_or_else(|| wrong(path, &DocumentError::NoPainting))?;
     Ok((document, opened))
 }
@@ -56,8 +55,7 @@ pub fn go_on(config: &RigConfig, path: &Path) -> Result<(Document, Sequencer, u6
         memory: usize::try_from(memory).unwrap_or(usize::MAX),
         ..DocumentSettings::new(path, Access::Paint)
     };
-    let (document, opened) =
-        Document::open(&settings).map_err(|error| wrong(path, &error))?;
+    let (document, opened) = Document::open(&settings).map_err(|error| wrong(path, &error))?;
     let (mut sequencer, since) = match opened {
         Some(opened) => {
             let since = opened.kept().versions;
@@ -102,7 +100,9 @@ pub fn presence(path: &Path, options: &PaintingOptions) -> Result<Presence, Faul
         true => match options.for_a_new_one() {
             Some(option) => Err(Fault::usage(format!("{option} is for a new painting"))
                 .at(path.display().to_string())
-                .help("this one has its size, paints and light; `maulstick light` changes its light")),
+                .help(
+                    "this one has its size, paints and light; `maulstick light` changes its light",
+                )),
             None => Ok(Presence::There),
         },
     }

@@ -180,9 +180,7 @@ pub fn paint() -> Result<i32, Fault> {
         thread.check().map_err(fallen)?;
         let wait = node.turn()?;
         match (node.fault(), &path) {
-            (Some(what), Some(path)) => {
-                Err(wrong(path, &DocumentError::Damaged(what.to_owned())))
-            }
+            (Some(what), Some(path)) => Err(wrong(path, &DocumentError::Damaged(what.to_owned()))),
             _ => Ok(wait),
         }
     };

@@ -124,7 +124,10 @@ impl PaintingOptions {
             (self.illuminant.is_some(), "--illuminant"),
             (self.no_adapt, "--no-adapt"),
         ];
-        given.into_iter().find(|(given, _)| *given).map(|(_, name)| name)
+        given
+            .into_iter()
+            .find(|(given, _)| *given)
+            .map(|(_, name)| name)
     }
 
     /// The loads, each with the paints' names as the library spells them.

@@ -5,8 +5,8 @@ use std::time::Instant;
 
 use clap::Args;
 use maulstick_device::Take;
-use maulstick_nodes::{Keeper, Offline};
 use maulstick_nodes::paint_node::write_snapshot;
+use maulstick_nodes::{Keeper, Offline};
 use maulstick_paint::{Painting, Sequencer};
 use maulstick_rig::files::check_writable;
 use maulstick_rig::{Fault, RigConfig};

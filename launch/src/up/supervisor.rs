@@ -298,7 +298,10 @@ impl Supervisor {
     /// Kills nodes whose token is gone while their process is not: they are frozen, and started again
     /// as those that crash.
     fn end_frozen(&mut self) {
-        let running = self.nodes.iter_mut().filter(|node| node.state == State::Running);
+        let running = self
+            .nodes
+            .iter_mut()
+            .filter(|node| node.state == State::Running);
         for node in running {
             let long = node.missed.is_some_and(|since| since.elapsed() > FROZEN);
             if long && node.pid().is_some() {

@@ -8,8 +8,8 @@ use std::path::{Path, PathBuf};
 
 use serde::{Deserialize, Serialize};
 
-use crate::size::parse_bytes;
 use crate::fault::Fault;
+use crate::size::parse_bytes;
 
 pub use light::LightSection;
 

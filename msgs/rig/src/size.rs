@@ -6,7 +6,10 @@
 /// What is wrong, in words.
 pub fn parse_bytes(text: &str) -> Result<u64, String> {
     let wrong = || format!("'{text}' is not a size such as 512M or 2G");
-    let trimmed = text.trim().trim_end_matches(['b', 'B']).trim_end_matches(['i', 'I']);
+    let trimmed = text
+        .trim()
+        .trim_end_matches(['b', 'B'])
+        .trim_end_matches(['i', 'I']);
     let (number, shift) = match trimmed.chars().last().map(|c| c.to_ascii_uppercase()) {
         Some('K') => (&trimmed[..trimmed.len() - 1], 10),
         Some('M') => (&trimmed[..trimmed.len() - 1], 20),

@@ -8,7 +8,9 @@ use maulstick_types::paint::{
     BrushCredit, Entry, FrameHolds, FrameReply, FrameRequest, FrameTile, JournalEntry,
     PaintConsumed, PaintStatus,
 };
-use maulstick_types::scene::{Layer, Light, PaintSlot, Scene, Surface, Tuning, Well, WellKind};
+use maulstick_types::scene::{
+    Layer, Light, NamedVersion, PaintSlot, Scene, Surface, Tuning, Well, WellKind,
+};
 use maulstick_types::stylus::{
     StylusInfo, StylusPose, StylusSample, StylusStatus, TakeEnd, TakeStatus,
 };
@@ -251,6 +253,11 @@ fn all() -> String {
                 number: 1,
                 name: "sky".into(),
                 opacity: 0.5,
+            }],
+            versions: vec![NamedVersion {
+                name: "warm".into(),
+                parent: "sketch".into(),
+                here: true,
             }],
         }),
         line(&entry(Entry::States {

@@ -62,7 +62,9 @@ impl Contents {
     pub fn check(&self, path: &Path, tell: &mut dyn FnMut(u64, u64)) -> Result<(), DocumentError> {
         let (database, _) = Database::open(path, Access::Read, None)?;
         let ids = |table: &str| -> Result<Vec<i64>, DocumentError> {
-            let mut statement = database.connection.prepare(&format!("SELECT id FROM {table}"))?;
+            let mut statement = database
+                .connection
+                .prepare(&format!("SELECT id FROM {table}"))?;
             let rows = statement.query_map(params![], |row| row.get(0))?;
             Ok(rows.collect::<Result<_, _>>()?)
         };
@@ -75,9 +77,10 @@ impl Contents {
         for id in loads {
             database.load(id as u64)?;
         }
-        let verdict: String = database
-            .connection
-            .query_row("PRAGMA integrity_check(1)", params![], |row| row.get(0))?;
+        let verdict: String =
+            database
+                .connection
+                .query_row("PRAGMA integrity_check(1)", params![], |row| row.get(0))?;
         tell(all, all);
         database.close()?;
         match verdict.as_str() {

@@ -84,16 +84,20 @@ fn is_new(path: &Path) -> Result<bool, DocumentError> {
     let read = std::fs::File::open(path)?.read_exact(&mut head);
     match read {
         Ok(()) if &head == MAGIC => Ok(false),
-        Ok(()) if length_found > 4096 && damaged_head(&head) => {
-            Err(DocumentError::Damaged("its first bytes are wrong".to_owned()))
-        }
+        Ok(()) if length_found > 4096 && damaged_head(&head) => Err(DocumentError::Damaged(
+            "its first bytes are wrong".to_owned(),
+        )),
         _ => Err(DocumentError::NoPainting),
     }
 }
 
 /// Whether these are a painting's first bytes with a few of them wrong.
 fn damaged_head(head: &[u8; 16]) -> bool {
-    head.iter().zip(MAGIC).filter(|(one, other)| one == other).count() >= 8
+    head.iter()
+        .zip(MAGIC)
+        .filter(|(one, other)| one == other)
+        .count()
+        >= 8
 }
 
 impl Database {
@@ -147,9 +151,7 @@ impl Database {
     fn take(&self, path: &Path, new: bool) -> Result<(), DocumentError> {
         let connection = &self.connection;
         if connection.is_readonly("main")? {
-            return Err(DocumentError::ReadOnly(
-                "no permission to write".to_owned(),
-            ));
+            return Err(DocumentError::ReadOnly("no permission to write".to_owned()));
         }
         // Before the first access, so that SQLite needs no memory shared between programs.
         connection.pragma_update(None, "locking_mode", "EXCLUSIVE")?;

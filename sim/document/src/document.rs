@@ -131,7 +131,9 @@ impl Shelf {
     /// The planes of a tile as it was shown under a look, if they are in the document.
     #[must_use]
     pub fn get(&self, place: i64, version: u64, look: i64) -> Option<Vec<u8>> {
-        let bytes = self.0.ask(|answer| Fetch::Shown([place, version as i64, look], answer))??;
+        let bytes = self
+            .0
+            .ask(|answer| Fetch::Shown([place, version as i64, look], answer))??;
         zstd::bulk::decompress(&bytes, 1 << 20).ok()
     }
 
@@ -343,7 +345,9 @@ impl Thread {
             if tries && let Some(moment) = queues.moment.take() {
                 // What shows a later moment waits for that.
                 let newest = moment.painting.kept.versions;
-                let later = queues.shown.extract_if(.., |_, tile| tile.version <= newest);
+                let later = queues
+                    .shown
+                    .extract_if(.., |_, tile| tile.version <= newest);
                 let shown = later.map(|(_, tile)| tile).collect();
                 return Work::Keep(Box::new(moment), shown);
             }
@@ -362,7 +366,10 @@ impl Thread {
                 (false, false) if may_write => COMMIT.saturating_sub(self.last_commit.elapsed()),
                 _ => AGAIN,
             };
-            let waited = self.shared.bell.wait_timeout(queues, wait.max(Duration::from_millis(1)));
+            let waited = self
+                .shared
+                .bell
+                .wait_timeout(queues, wait.max(Duration::from_millis(1)));
             (queues, _) = waited.unwrap_or_else(PoisonError::into_inner);
         }
     }
@@ -396,7 +403,9 @@ impl Thread {
                 stored.note();
                 let serial = moment.sequencer.serial;
                 queues.records.retain(|record| record.serial >= serial);
-                self.shared.committed.fetch_max(moment.sequencer.next, SeqCst);
+                self.shared
+                    .committed
+                    .fetch_max(moment.sequencer.next, SeqCst);
                 drop(queues);
                 self.well();
             }
@@ -476,10 +485,14 @@ fn serve(shared: &Shared, database: &Database) {
     };
     for fetch in fetches {
         match fetch {
-            Fetch::Planes(id, answer) => answer.send(database.planes(id).map_err(broken)).unwrap_or(()),
+            Fetch::Planes(id, answer) => answer
+                .send(database.planes(id).map_err(broken))
+                .unwrap_or(()),
             Fetch::Load(id, answer) => answer.send(database.load(id).map_err(broken)).unwrap_or(()),
             Fetch::Shown([place, version, look], answer) => {
-                answer.send(database.shown(place, version, look)).unwrap_or(());
+                answer
+                    .send(database.shown(place, version, look))
+                    .unwrap_or(());
             }
         }
     }

@@ -52,7 +52,9 @@ impl DocumentError {
             }
             Self::ReadOnly(_) => "check the permissions of the file and its folder, or copy it",
             Self::Full => "free some space: nothing that was written is lost",
-            Self::Damaged(_) => "`maulstick painting recover FILE -o NEW.maul` takes out what is whole",
+            Self::Damaged(_) => {
+                "`maulstick painting recover FILE -o NEW.maul` takes out what is whole"
+            }
             Self::Other(_) => "check the path and the disk",
         }
     }

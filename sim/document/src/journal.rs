@@ -74,10 +74,16 @@ pub fn read(first: u64, bytes: &[u8]) -> Result<Vec<Record>, DocumentError> {
     }
     let (mut records, mut rest) = (Vec::new(), bytes.as_slice());
     while !rest.is_empty() {
-        let (index, after) = rest.split_first_chunk::<8>().ok_or_else(|| damaged("torn"))?;
-        let (length, after) = after.split_first_chunk::<4>().ok_or_else(|| damaged("torn"))?;
+        let (index, after) = rest
+            .split_first_chunk::<8>()
+            .ok_or_else(|| damaged("torn"))?;
+        let (length, after) = after
+            .split_first_chunk::<4>()
+            .ok_or_else(|| damaged("torn"))?;
         let length = u32::from_le_bytes(*length) as usize;
-        let (message, after) = after.split_at_checked(length).ok_or_else(|| damaged("torn"))?;
+        let (message, after) = after
+            .split_at_checked(length)
+            .ok_or_else(|| damaged("torn"))?;
         rest = after;
         records.push(Record {
             serial: first + records.len() as u64,

@@ -16,7 +16,12 @@ const TEXELS_MAX: usize = 1 << 20;
 pub fn encode(load: &BrushLoad, level: i32) -> std::io::Result<Vec<u8>> {
     let slots: Vec<usize> = (0..SLOTS).filter(|slot| load.has(*slot)).collect();
     let steps = load.steps();
-    let mut words = vec![load.texels() as u32, slots.len() as u32, steps as u32, (steps >> 32) as u32];
+    let mut words = vec![
+        load.texels() as u32,
+        slots.len() as u32,
+        steps as u32,
+        (steps >> 32) as u32,
+    ];
     words.extend(load.films());
     for slot in slots {
         words.push(slot as u32);

@@ -68,7 +68,10 @@ impl Opened {
     /// # Errors
     /// [`PaintRefusal`] where what was kept does not hold together.
     pub fn sequencer(self) -> Result<Sequencer, PaintRefusal> {
-        let pictures = self.files.into_iter().filter(|(kind, ..)| kind == "picture");
+        let pictures = self
+            .files
+            .into_iter()
+            .filter(|(kind, ..)| kind == "picture");
         let _pictures: Vec<_> = pictures.collect();
         let painting = Painting::restore(self.restored, self.library, self.pager)?;
         let mut sequencer = Sequencer::restored(painting, self.sequencer);
@@ -93,18 +96,27 @@ fn damaged(what: impl ToString) -> DocumentError {
 pub(crate) fn has_state(database: &Database) -> Result<bool, DocumentError> {
     let found: Option<i64> = database
         .connection
-        .query_row("SELECT 1 FROM state WHERE key = 'painting'", params![], |row| row.get(0))
+        .query_row(
+            "SELECT 1 FROM state WHERE key = 'painting'",
+            params![],
+            |row| row.get(0),
+        )
         .optional()?;
     Ok(found.is_some())
 }
 
-fn state<T: serde::de::DeserializeOwned>(database: &Database, key: &str) -> Result<T, DocumentError> {
+fn state<T: serde::de::DeserializeOwned>(
+    database: &Database,
+    key: &str,
+) -> Result<T, DocumentError> {
     let (value, sum): (String, i64) = database.connection.query_row(
         "SELECT value, sum FROM state WHERE key = ?1",
         params![key],
         |row| Ok((row.get(0)?, row.get(1)?)),
     )?;
-    let expected = Sum::of(Table::State).bytes(key.as_bytes()).bytes(value.as_bytes());
+    let expected = Sum::of(Table::State)
+        .bytes(key.as_bytes())
+        .bytes(value.as_bytes());
     if expected.done() != sum {
         return Err(damaged(format!("the {key} does not match its checksum")));
     }
@@ -345,9 +357,14 @@ fn versions(database: &Database, shelves: &Shelves) -> Result<Vec<Named>, Docume
     while let Some(row) = rows.next()? {
         let texts: [String; 3] = [row.get(0)?, row.get(1)?, row.get(2)?];
         let packed: Vec<u8> = row.get(3)?;
-        let sum = texts.iter().fold(Sum::of(Table::Version), |sum, text| sum.bytes(text.as_bytes()));
+        let sum = texts.iter().fold(Sum::of(Table::Version), |sum, text| {
+            sum.bytes(text.as_bytes())
+        });
         if sum.bytes(&packed).done() != row.get::<_, i64>(4)? {
-            return Err(damaged(format!("version '{}' does not match its checksum", texts[0])));
+            return Err(damaged(format!(
+                "version '{}' does not match its checksum",
+                texts[0]
+            )));
         }
         let mut tiles = BTreeMap::new();
         let groups = unpacked::<3>(&packed);

@@ -40,7 +40,9 @@ pub fn pack(
     let before = std::fs::metadata(path)?.len();
     let (database, _) = Database::open(path, Access::Paint, None)?;
     let pages: Vec<i64> = {
-        let mut statement = database.connection.prepare("SELECT id FROM page ORDER BY id")?;
+        let mut statement = database
+            .connection
+            .prepare("SELECT id FROM page ORDER BY id")?;
         let rows = statement.query_map(params![], |row| row.get(0))?;
         rows.collect::<Result<_, _>>()?
     };
@@ -96,7 +98,9 @@ fn compress(database: &Database, id: i64) -> Result<(), DocumentError> {
     let (base, depth, data): (i64, i64, Vec<u8>) = database
         .connection
         .prepare_cached("SELECT base, depth, data FROM page WHERE id = ?1")?
-        .query_row(params![id], |row| Ok((row.get(0)?, row.get(1)?, row.get(2)?)))?;
+        .query_row(params![id], |row| {
+            Ok((row.get(0)?, row.get(1)?, row.get(2)?))
+        })?;
     let content: Planes = database.planes(id as u64)?;
     let under = match base {
         0 => None,

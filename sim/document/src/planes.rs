@@ -118,7 +118,10 @@ mod tests {
         let slots = prop::collection::btree_map(0..SLOTS, plane, 0..4);
         slots.prop_map(|slots| {
             let counts = |plane: Vec<u32>| plane.iter().map(|count| *count as f32).collect();
-            slots.into_iter().map(|(slot, plane)| (slot, counts(plane))).collect()
+            slots
+                .into_iter()
+                .map(|(slot, plane)| (slot, counts(plane)))
+                .collect()
         })
     }
 
@@ -144,7 +147,10 @@ mod tests {
 
     #[test]
     fn a_small_change_takes_few_bytes() {
-        let base: Planes = vec![(3, (0..TILE_CELLS).map(|i| (i * i % 99_991) as f32).collect())];
+        let base: Planes = vec![(
+            3,
+            (0..TILE_CELLS).map(|i| (i * i % 99_991) as f32).collect(),
+        )];
         let mut counts = base[0].1.to_vec();
         (500..540).for_each(|cell| counts[cell] += 1234.0);
         let now: Planes = vec![(3, counts.into())];

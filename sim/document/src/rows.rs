@@ -52,7 +52,12 @@ pub fn unpacked<const N: usize>(bytes: &[u8]) -> Option<Vec<[i64; N]>> {
     let (numbers, rest) = bytes.as_chunks::<8>();
     let (groups, over) = numbers.as_chunks::<N>();
     let whole = rest.is_empty() && over.is_empty();
-    whole.then(|| groups.iter().map(|group| group.map(i64::from_le_bytes)).collect())
+    whole.then(|| {
+        groups
+            .iter()
+            .map(|group| group.map(i64::from_le_bytes))
+            .collect()
+    })
 }
 
 /// What a step did besides tiles: the numbers of loads before and after it, what it booked, layers and

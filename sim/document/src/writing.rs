@@ -61,8 +61,12 @@ pub(crate) struct Stored {
 impl Stored {
     /// Notes that the document has it all.
     pub(crate) fn note(self) {
-        self.planes.iter().for_each(|(page, bytes)| page.note_stored(*bytes));
-        self.loads.iter().for_each(|(page, bytes)| page.note_stored(*bytes));
+        self.planes
+            .iter()
+            .for_each(|(page, bytes)| page.note_stored(*bytes));
+        self.loads
+            .iter()
+            .for_each(|(page, bytes)| page.note_stored(*bytes));
         self.stacks.iter().for_each(|stack| stack.note_stored());
     }
 }
@@ -86,7 +90,11 @@ impl<'a, 'b> Writer<'a, 'b> {
     }
 
     /// Writes a moment and the tiles as they are shown; what it makes superfluous goes.
-    pub(crate) fn moment(mut self, moment: &Moment, shown: &[ShownTile]) -> Result<Stored, DocumentError> {
+    pub(crate) fn moment(
+        mut self,
+        moment: &Moment,
+        shown: &[ShownTile],
+    ) -> Result<Stored, DocumentError> {
         let painting = &moment.painting;
         for (_, version) in &painting.tiles {
             self.held(&version.tile)?;
@@ -145,8 +153,13 @@ impl<'a, 'b> Writer<'a, 'b> {
             }
             self.page(&stack.layer().planes)?;
             let below = stack.below().map_or(0, |below| below.id());
-            let ints = [stack.id(), below, u64::from(stack.layer().number), stack.layer().planes.id()]
-                .map(|number| number as i64);
+            let ints = [
+                stack.id(),
+                below,
+                u64::from(stack.layer().number),
+                stack.layer().planes.id(),
+            ]
+            .map(|number| number as i64);
             let sum = ints.into_iter().fold(Sum::of(Table::Dry), Sum::int).done();
             self.database
                 .connection
@@ -163,7 +176,10 @@ impl<'a, 'b> Writer<'a, 'b> {
         }
         (self.breathe)(self.database);
         let content = page.peek().ok_or_else(|| {
-            DocumentError::Other(format!("page {} left memory before it was written", page.id()))
+            DocumentError::Other(format!(
+                "page {} left memory before it was written",
+                page.id()
+            ))
         })?;
         let base = page.base().filter(|base| base.stored_bytes() > 0);
         let base = match base {
@@ -171,7 +187,11 @@ impl<'a, 'b> Writer<'a, 'b> {
             None => None,
         };
         let level = self.database.level;
-        let data = planes::encode(&content, base.as_ref().map(|(_, _, content)| &**content), level)?;
+        let data = planes::encode(
+            &content,
+            base.as_ref().map(|(_, _, content)| &**content),
+            level,
+        )?;
         let (base, depth) = base.map_or((0, 0), |(id, depth, _)| (id, depth + 1));
         let slots = i64::from(planes::mask(&content));
         let sum = page_sum(page.id(), [base, depth, slots], &data);
@@ -212,7 +232,10 @@ impl<'a, 'b> Writer<'a, 'b> {
             return Ok(());
         }
         let content = page.peek().ok_or_else(|| {
-            DocumentError::Other(format!("load {} left memory before it was written", page.id()))
+            DocumentError::Other(format!(
+                "load {} left memory before it was written",
+                page.id()
+            ))
         })?;
         let data = loads::encode(&content, self.database.level)?;
         let sum = load_sum(page.id(), &data);
@@ -260,8 +283,12 @@ impl<'a, 'b> Writer<'a, 'b> {
             .done();
         self.database
             .connection
-            .prepare_cached("INSERT OR REPLACE INTO step VALUES(7, ?1, ?2, ?3, ?4, ?5, ?6, ?7, ?8)")?
-            .execute(params![id, step.what, brush, operations, step.done, deed, tiles, sum])?;
+            .prepare_cached(
+                "INSERT OR REPLACE INTO step VALUES(7, ?1, ?2, ?3, ?4, ?5, ?6, ?7, ?8)",
+            )?
+            .execute(params![
+                id, step.what, brush, operations, step.done, deed, tiles, sum
+            ])?;
         Ok(())
     }
 
@@ -277,7 +304,9 @@ impl<'a, 'b> Writer<'a, 'b> {
         }
         let loads = version.rest.loads.iter();
         let rest = KeptRest {
-            loads: loads.map(|(name, page)| (name.clone(), page.id())).collect(),
+            loads: loads
+                .map(|(name, page)| (name.clone(), page.id()))
+                .collect(),
             ledger: version.rest.ledger.clone(),
             layers: version.rest.layers.clone(),
             makes: version.rest.makes.clone(),
@@ -364,8 +393,7 @@ impl<'a, 'b> Writer<'a, 'b> {
         let gone: std::collections::BTreeSet<u64> = dead.iter().copied().collect();
         let mut rebased: Vec<(u64, Planes)> = Vec::new();
         for id in &gone {
-            let mut statement =
-                connection.prepare_cached("SELECT id FROM page WHERE base = ?1")?;
+            let mut statement = connection.prepare_cached("SELECT id FROM page WHERE base = ?1")?;
             let later = statement.query_map(params![*id as i64], |row| row.get::<_, i64>(0))?;
             for later in later {
                 let later = later? as u64;

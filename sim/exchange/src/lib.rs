@@ -1,1 +1,32 @@
 //! Paintings to and from other programs.
+//!
+//! An export takes a painting and a surface of it, writes to a file from its start, and tells how far
+//! it is. Each needs memory for a few rows of tiles, however large the surface is, but for
+//! [`write_open_raster`], which also holds packed layers. The same painting gives the same bytes: no
+//! file has a date in it.
+//!
+//! | export | file |
+//! | --- | --- |
+//! | [`write_lit_png`] | the painting under its lamp: PNG of 8 or 16 bits a channel |
+//! | [`write_open_exr`] | unlit colour, height and the thickness of each paint: OpenEXR |
+//! | [`write_open_raster`] | flat colour, a layer for each dry layer: OpenRaster |
+//! | [`write_height_map`] | height: grey PNG of 16 bits; [`HeightRange`] says what black and white are |
+//! | [`write_stl`] | height as a solid to print: STL; [`stl_step`] proposes how fine |
+//!
+//! Errors are [`ExchangeError`]; [`Progress`] hears how far an export is.
+
+mod error;
+mod height_map;
+mod lit_png;
+mod open_exr;
+mod open_raster;
+mod stl;
+mod surface;
+
+pub use error::ExchangeError;
+pub use height_map::{HeightRange, write_height_map};
+pub use lit_png::write_lit_png;
+pub use open_exr::write_open_exr;
+pub use open_raster::write_open_raster;
+pub use stl::{STL_TRIANGLES, StlSetup, StlSize, stl_step, write_stl};
+pub use surface::Progress;

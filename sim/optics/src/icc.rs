@@ -5,7 +5,7 @@
 //! through `moxcms`, whose arithmetic may differ between processors.
 
 use std::fmt;
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 
 use moxcms::{
     ColorProfile, DataColorSpace, Layout, LocalizableString, ProfileClass, ProfileText,
@@ -13,7 +13,7 @@ use moxcms::{
 };
 
 use crate::colour::{
-    D50, Matrix, RgbSpace, SrgbTable, apply, bradford, inverse, product, srgb_encode,
+    D50, Matrix, RgbSpace, SrgbCurve, SrgbTable, apply, bradford, inverse, product, srgb_encode,
 };
 
 /// Why a file is no profile that pictures can go to.
@@ -46,6 +46,8 @@ pub struct Profile {
     icc: Vec<u8>,
     from_working: Matrix,
     encoder: Encoder,
+    /// The transfer function of sRGB for pictures of 16 bits, made for the first of them.
+    curve: OnceLock<SrgbCurve>,
 }
 
 /// Where the date is in a profile (ICC.1:2022, § 7.2.1), which `moxcms` sets to the time of writing: the
@@ -74,6 +76,7 @@ impl Profile {
             icc,
             from_working: space.from_working(),
             encoder: Encoder::Curve(SrgbTable::default()),
+            curve: OnceLock::new(),
         }
     }
 
@@ -136,6 +139,7 @@ impl Profile {
                 steps: (0..=STEPS).map(|i| encoded(i) as u16).collect(),
                 transform,
             },
+            curve: OnceLock::new(),
         };
         profile.check_ends()?;
         Ok(profile)
@@ -181,6 +185,18 @@ impl Profile {
                     *byte = ((u32::from(value) + 128) / 257) as u8;
                 }
             }
+        }
+    }
+
+    /// As [`encode`](Self::encode), 16 bits a channel: values of pixels, three each.
+    pub fn encode16(&self, linear: &[[f32; 3]], values: &mut [u16]) {
+        let curve = self.curve.get_or_init(SrgbCurve::default);
+        for (pixel, colour) in values.chunks_exact_mut(3).zip(linear) {
+            pixel.copy_from_slice(&colour.map(|channel| curve.value(channel)));
+        }
+        if let Encoder::Foreign { transform, .. } = &self.encoder {
+            let to = through(&**transform, values);
+            values.copy_from_slice(&to);
         }
     }
 

@@ -354,7 +354,8 @@ impl History {
     pub fn forget(&mut self) {
         self.open.clear();
         self.undone.clear();
-        self.touched.extend(std::mem::take(&mut self.steps).into_keys());
+        self.touched
+            .extend(std::mem::take(&mut self.steps).into_keys());
     }
 
     /// Makes one step of the two oldest ones; false where there are none, or they were undone.

@@ -19,8 +19,10 @@
 //! | [`setup`] | the scene of a new painting |
 //! | [`painting`], [`sequencer`] | the painting and its journal |
 //! | [`light`], [`look`] | the light of the scene, and colour under it |
-//! | [`bare`], [`display`], [`lamp`], [`picture`] | what is shown: bare, unlit, lit, as a picture |
+//! | [`bare`], [`display`], [`lamp`] | what is shown: bare, unlit, lit |
+//! | [`bands`], [`picture`] | a surface row of tiles by row of tiles, and pictures of it |
 
+pub mod bands;
 pub mod bare;
 pub mod display;
 pub mod dry;

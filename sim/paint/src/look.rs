@@ -51,9 +51,11 @@ impl Look {
     /// Notes what it is made of.
     pub fn note(&mut self, made_of: &str) {
         // FNV-1a, 64 bits (Fowler, Noll, Vo).
-        let hash = made_of.bytes().fold(0xcbf2_9ce4_8422_2325, |hash: u64, byte| {
-            (hash ^ u64::from(byte)).wrapping_mul(0x0000_0100_0000_01b3)
-        });
+        let hash = made_of
+            .bytes()
+            .fold(0xcbf2_9ce4_8422_2325, |hash: u64, byte| {
+                (hash ^ u64::from(byte)).wrapping_mul(0x0000_0100_0000_01b3)
+            });
         self.print = hash as i64;
     }
 

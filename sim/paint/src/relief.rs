@@ -56,7 +56,14 @@ impl Relief {
             None => vec![0.0; TILE_CELLS].into(),
         };
         if tiles.len() >= KEPT {
-            tiles.pop_first();
+            // Whichever way work goes over the surface, what is farthest is not what comes next.
+            let ends = [tiles.first_key_value(), tiles.last_key_value()];
+            let [first, last] = ends.map(|end| end.map_or(0, |(other, _)| other.y.abs_diff(id.y)));
+            if first > last {
+                tiles.pop_first();
+            } else {
+                tiles.pop_last();
+            }
         }
         tiles.insert(id, Arc::clone(&heights));
         heights

@@ -450,7 +450,10 @@ impl Sequencer {
         loads: &[Mixture],
         again: bool,
     ) -> Result<String, PaintRefusal> {
-        let before = self.announced.get(brush).filter(|take| again && !take.ended);
+        let before = self
+            .announced
+            .get(brush)
+            .filter(|take| again && !take.ended);
         if let Some(step) = before.map(|take| take.step) {
             self.painting.undo_to(step)?;
         }

@@ -3,8 +3,8 @@
 use std::path::Path;
 
 use maulstick_optics::colour::{delta_e_2000, lab, srgb_decode};
-use maulstick_paint::picture::{Picture, picture};
 use maulstick_paint::Sequencer;
+use maulstick_paint::picture::{Picture, picture};
 use maulstick_rig::Fault;
 use maulstick_rig::files::{check_writable, write_whole};
 use maulstick_types::command::Command;
@@ -66,7 +66,10 @@ pub(super) fn compare(
         }))?;
     } else {
         say!("{}: {one} | {other} | difference", output.display());
-        say!("ΔE00 {mean:.2} in the mean, {most:.1} at most; {:.1} % of the canvas changed", 100.0 * share);
+        say!(
+            "ΔE00 {mean:.2} in the mean, {most:.1} at most; {:.1} % of the canvas changed",
+            100.0 * share
+        );
     }
     Ok(0)
 }
@@ -80,7 +83,9 @@ fn seen(sequencer: &mut Sequencer, version: &str) -> Result<Picture, Fault> {
     }
     let seen = picture(sequencer.painting_mut(), CANVAS);
     if !is_now {
-        sequencer.ask(Command::Undo { brush: None }).map_err(refused)?;
+        sequencer
+            .ask(Command::Undo { brush: None })
+            .map_err(refused)?;
     }
     Ok(seen)
 }
@@ -105,7 +110,12 @@ fn difference([one, other]: [[u8; 3]; 2]) -> f64 {
 
 /// A difference as a colour: black, blue, orange, white.
 fn heat(delta: f64) -> [u8; 3] {
-    const STOPS: [[f64; 3]; 4] = [[0.0; 3], [30.0, 60.0, 170.0], [240.0, 140.0, 30.0], [255.0; 3]];
+    const STOPS: [[f64; 3]; 4] = [
+        [0.0; 3],
+        [30.0, 60.0, 170.0],
+        [240.0, 140.0, 30.0],
+        [255.0; 3],
+    ];
     let place = (delta / WHITE).clamp(0.0, 1.0) * 3.0;
     let from = (place as usize).min(2);
     let t = place - from as f64;

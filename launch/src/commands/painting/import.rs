@@ -5,4 +5,6 @@ use maulstick_rig::Fault;
 #[derive(Args, Clone, Debug)]
 pub struct ImportOptions {}
 /// Runs.
-pub fn run(_: &ImportOptions) -> Result<i32, Fault> { Ok(0) }
+pub fn run(_: &ImportOptions) -> Result<i32, Fault> {
+    Ok(0)
+}

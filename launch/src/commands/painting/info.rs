@@ -4,8 +4,8 @@ use std::path::PathBuf;
 
 use clap::Args;
 use maulstick_document::{Contents, DocumentError};
-use maulstick_rig::size::show_bytes;
 use maulstick_rig::Fault;
+use maulstick_rig::size::show_bytes;
 use serde_json::json;
 
 use crate::commands::{print_json, say};
@@ -49,11 +49,16 @@ pub(super) fn run(options: &InfoOptions) -> Result<i32, Fault> {
     }
     let scene = painting.scene();
     let canvas = &scene.surfaces[0];
-    let size_cm = canvas.cells.map(|cells| f64::from(cells) * canvas.cell_m * 100.0);
+    let size_cm = canvas
+        .cells
+        .map(|cells| f64::from(cells) * canvas.cell_m * 100.0);
     let per_mm = 1e-3 / canvas.cell_m;
     let (undo, redo) = painting.history_depth();
     let names: Vec<&str> = scene.paints.iter().map(|slot| slot.name.as_str()).collect();
-    let versions: Vec<_> = painting.named().map(|version| version.name.as_str()).collect();
+    let versions: Vec<_> = painting
+        .named()
+        .map(|version| version.name.as_str())
+        .collect();
     if options.json {
         let layers: Vec<_> = scene
             .layers
@@ -83,19 +88,48 @@ pub(super) fn run(options: &InfoOptions) -> Result<i32, Fault> {
         }))?;
         return Ok(0);
     }
-    say!("size      {:.1} × {:.1} cm, {} × {} cells, {per_mm} a mm", size_cm[0], size_cm[1], canvas.cells[0], canvas.cells[1]);
+    say!(
+        "size      {:.1} × {:.1} cm, {} × {} cells, {per_mm} a mm",
+        size_cm[0],
+        size_cm[1],
+        canvas.cells[0],
+        canvas.cells[1]
+    );
     say!("ground    {}, {} tooth", canvas.ground, canvas.tooth);
-    say!("paints    {}", if names.is_empty() { "none yet".to_owned() } else { names.join(", ") });
+    say!(
+        "paints    {}",
+        if names.is_empty() {
+            "none yet".to_owned()
+        } else {
+            names.join(", ")
+        }
+    );
     for layer in &scene.layers {
-        say!("layer     {} {}, opacity {}", layer.number, layer.name, layer.opacity);
+        say!(
+            "layer     {} {}, opacity {}",
+            layer.number,
+            layer.name,
+            layer.opacity
+        );
     }
     let merged = match painting.history().merged() {
         0 | 1 => String::new(),
         merged => format!(", the oldest of them {merged} in one"),
     };
     say!("history   {undo} steps to undo, {redo} to redo{merged}");
-    say!("versions  {}", if versions.is_empty() { "none".to_owned() } else { versions.join(", ") });
-    say!("file      {}, format {}", show_bytes(contents.bytes), contents.format);
+    say!(
+        "versions  {}",
+        if versions.is_empty() {
+            "none".to_owned()
+        } else {
+            versions.join(", ")
+        }
+    );
+    say!(
+        "file      {}, format {}",
+        show_bytes(contents.bytes),
+        contents.format
+    );
     for (table, bytes) in &contents.tables {
         say!("          {table:<8} {}", show_bytes(*bytes));
     }

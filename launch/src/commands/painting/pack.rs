@@ -34,6 +34,11 @@ pub(super) fn run(options: &PackOptions) -> Result<i32, Fault> {
     let packed = pack(path, history, &mut super::tell(&bar));
     bar.finish_and_clear();
     let [before, after] = packed.map_err(|error| wrong(path, &error))?;
-    say!("{}: {} instead of {}", path.display(), show_bytes(after), show_bytes(before));
+    say!(
+        "{}: {} instead of {}",
+        path.display(),
+        show_bytes(after),
+        show_bytes(before)
+    );
     Ok(0)
 }

@@ -5,4 +5,6 @@ use maulstick_rig::Fault;
 #[derive(Args, Clone, Debug)]
 pub struct RecoverOptions {}
 /// Runs.
-pub fn run(_: &RecoverOptions) -> Result<i32, Fault> { Ok(0) }
+pub fn run(_: &RecoverOptions) -> Result<i32, Fault> {
+    Ok(0)
+}

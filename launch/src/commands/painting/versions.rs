@@ -3,10 +3,10 @@
 use std::path::PathBuf;
 
 use clap::Args;
+use maulstick_bus::Class;
 use maulstick_rig::{Fault, RigConfig};
 use maulstick_types::command::Command;
 use maulstick_types::scene::{NamedVersion, Scene};
-use maulstick_bus::Class;
 use serde_json::json;
 
 use crate::commands::session::{PAINT, Session, Target};
@@ -84,7 +84,10 @@ pub(super) fn run(options: &VersionsOptions) -> Result<i32, Fault> {
     }
     let Some(command) = command else {
         let (_document, opened) = crate::document::read(path)?;
-        return list(opened.sequencer().map_err(refused)?.painting().scene(), options.json);
+        return list(
+            opened.sequencer().map_err(refused)?.painting().scene(),
+            options.json,
+        );
     };
     let (document, mut sequencer, since) = match path.exists() {
         true => go_on(&RigConfig::default(), path)?,
@@ -92,7 +95,9 @@ pub(super) fn run(options: &VersionsOptions) -> Result<i32, Fault> {
     };
     let keeper = maulstick_nodes::Keeper::new(document, &mut sequencer, since);
     let done = sequencer.ask(command).map_err(refused);
-    keeper.close(&mut sequencer).map_err(|error| wrong(path, &error))?;
+    keeper
+        .close(&mut sequencer)
+        .map_err(|error| wrong(path, &error))?;
     done?;
     list(sequencer.painting().scene(), options.json)
 }
@@ -110,7 +115,10 @@ fn list(scene: &Scene, as_json: bool) -> Result<i32, Fault> {
     if scene.versions.is_empty() {
         say!("no versions yet: --keep NAME keeps the painting as it is");
     }
-    let roots = scene.versions.iter().filter(|version| version.parent.is_empty());
+    let roots = scene
+        .versions
+        .iter()
+        .filter(|version| version.parent.is_empty());
     for root in roots {
         show(&scene.versions, root, 0)?;
     }
@@ -118,7 +126,11 @@ fn list(scene: &Scene, as_json: bool) -> Result<i32, Fault> {
 }
 
 fn show(all: &[NamedVersion], version: &NamedVersion, depth: usize) -> Result<(), Fault> {
-    let here = if version.here { "  ← painted on from here" } else { "" };
+    let here = if version.here {
+        "  ← painted on from here"
+    } else {
+        ""
+    };
     say!("{:indent$}{}{here}", "", version.name, indent = 2 * depth);
     let children = all.iter().filter(|other| other.parent == version.name);
     for child in children {

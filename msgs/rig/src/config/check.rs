@@ -58,9 +58,9 @@ impl RigConfig {
         choose("paint model", &self.paint.model, &MODELS)
             .and_then(|()| choose("backend", &self.paint.backend, &BACKENDS))
             .map_err(|(what, help)| fault(what, "[paint]", "").help(help))?;
-        self.paint.bytes().map_err(|what| {
-            fault(what, "[paint]", "").help("write sizes as 512M or 2G")
-        })?;
+        self.paint
+            .bytes()
+            .map_err(|what| fault(what, "[paint]", "").help("write sizes as 512M or 2G"))?;
         let view = &self.view;
         view.check().map_err(|(what, help)| {
             let (key, value) = match GAMUTS.contains(&view.gamut.as_str()) {

@@ -111,7 +111,10 @@ impl Painter {
         let place = |dice: &mut Dice| {
             let at = middle.map(|mm: f64| (mm + dice.between(-4.0, 4.0)) * 1e-3);
             let (sine, cosine) = maulstick_num::sin_cos(dice.between(-0.3, 0.3));
-            let bend = [dice.between(-0.4, 0.4) as f32, dice.between(-0.4, 0.4) as f32];
+            let bend = [
+                dice.between(-0.4, 0.4) as f32,
+                dice.between(-0.4, 0.4) as f32,
+            ];
             Solve {
                 event_ns: 0,
                 stroke,
@@ -243,7 +246,9 @@ fn content(held: &Held) -> Vec<u64> {
             words.push(*slot as u64);
             let sum = plane.iter().enumerate().fold(17u64, |sum, (cell, count)| {
                 let word = (cell as u64) << 32 | u64::from(count.to_bits());
-                (sum ^ word).wrapping_mul(0x9e37_79b9_7f4a_7c15).rotate_left(23)
+                (sum ^ word)
+                    .wrapping_mul(0x9e37_79b9_7f4a_7c15)
+                    .rotate_left(23)
             });
             words.push(sum);
         }
@@ -260,7 +265,10 @@ pub fn print(sequencer: &mut Sequencer) -> Vec<String> {
     let painting = sequencer.painting_mut();
     let report = painting.report();
     assert_eq!(report.quanta_missing, 0, "the books balance");
-    let mut lines = vec![format!("{report:?}"), format!("{:?}", painting.history_depth())];
+    let mut lines = vec![
+        format!("{report:?}"),
+        format!("{:?}", painting.history_depth()),
+    ];
     let mut scene = painting.scene().clone();
     scene.version = 0;
     lines.push(format!("{scene:?}"));

@@ -209,7 +209,12 @@ impl Pyramid {
     }
 
     /// A tile as it was shown before.
-    fn shown(&self, look: &Look, place: (u32, u32, TileId), version: u64) -> Option<Arc<DisplayTile>> {
+    fn shown(
+        &self,
+        look: &Look,
+        place: (u32, u32, TileId),
+        version: u64,
+    ) -> Option<Arc<DisplayTile>> {
         let (number, level, id) = place;
         let shelf = self.shelf.as_ref().filter(|_| version > 0)?;
         let bytes = shelf.get(shown_number(number, level, id), version, look.print())?;

@@ -12,7 +12,8 @@ pub use adapt::{D50, adaptation, bradford};
 pub use lab::{delta_e_2000, lab};
 pub use matrix::{Matrix, apply, inverse, product, solve3};
 pub use rgb::{
-    RgbSpace, SrgbTable, linear_srgb_as_it_is, srgb_decode, srgb_encode, xyz_to_linear_srgb,
+    RgbSpace, SrgbCurve, SrgbTable, linear_srgb_as_it_is, srgb_decode, srgb_encode,
+    xyz_to_linear_srgb,
 };
 
 pub use crate::gamut::clamp_chromaticity;

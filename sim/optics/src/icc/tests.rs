@@ -93,6 +93,32 @@ fn a_photographers_display_gets_its_own_numbers() {
 }
 
 #[test]
+fn sixteen_bits_round_to_eight() {
+    let ramp = |i: u32| {
+        let [r, g, b] = [i, i * 7 % 1001, i * 13 % 1001];
+        [r, g, b].map(|v| v as f32 / 1000.0)
+    };
+    let linear: Vec<[f32; 3]> = (0..=1000).map(ramp).collect();
+    let read = || Profile::read(photographers()).expect("whole");
+    for profile in [Profile::of(RgbSpace::Srgb), read()] {
+        let (mut eight, mut sixteen) = (vec![0; 3003], vec![0; 3003]);
+        profile.encode(&linear, &mut eight);
+        profile.encode16(&linear, &mut sixteen);
+        let off = |shift: f64| {
+            let pair = |(byte, value): (&u8, &u16)| {
+                (f64::from(*byte) - f64::from(*value) / 257.0 - shift).abs()
+            };
+            eight.iter().zip(&sixteen).map(pair).fold(0.0, f64::max)
+        };
+        println!("{:.3} of a step", off(0.0));
+        assert!(off(0.0) < 0.56);
+        assert!(off(0.1) > 0.56, "a fault would pass");
+        let distinct: std::collections::BTreeSet<_> = sixteen.iter().collect();
+        assert!(distinct.len() > 990, "{}", distinct.len());
+    }
+}
+
+#[test]
 fn what_is_no_profile_for_pictures_is_refused_with_its_reason() {
     let read = |bytes: &[u8]| Profile::read(bytes.to_vec()).expect_err("refused");
     let whole = photographers();

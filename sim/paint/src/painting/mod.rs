@@ -273,7 +273,9 @@ impl Painting {
     #[must_use]
     pub fn brush_of(&self, source: u32) -> Option<&str> {
         let mut names = self.brushes.keys();
-        names.find(|name| name_hash(name) == source).map(String::as_str)
+        names
+            .find(|name| name_hash(name) == source)
+            .map(String::as_str)
     }
 
     /// Whether a brush is known.

@@ -73,7 +73,10 @@ impl Sequencer {
 
     /// What was accepted since the last call.
     pub fn take_records(&mut self) -> Vec<Record> {
-        self.records.as_mut().map(std::mem::take).unwrap_or_default()
+        self.records
+            .as_mut()
+            .map(std::mem::take)
+            .unwrap_or_default()
     }
 
     pub(super) fn note(&mut self, index: u64, what: impl FnOnce() -> Accepted) {
@@ -93,7 +96,10 @@ impl Sequencer {
     /// # Errors
     /// [`PaintRefusal`] where the painting refuses it.
     pub fn ask(&mut self, command: Command) -> Result<String, PaintRefusal> {
-        let number = self.answered.get(&OWN).map_or(1, |answer| answer.number + 1);
+        let number = self
+            .answered
+            .get(&OWN)
+            .map_or(1, |answer| answer.number + 1);
         let request = CommandRequest {
             client: OWN,
             number,
@@ -219,9 +225,10 @@ impl Sequencer {
             };
             (client, answered)
         });
-        let consumed = kept.consumed.into_iter().map(|(source, epoch, next)| {
-            (Origin { source, epoch }, next)
-        });
+        let consumed = kept
+            .consumed
+            .into_iter()
+            .map(|(source, epoch, next)| (Origin { source, epoch }, next));
         Self {
             next: kept.next,
             serial: kept.serial,

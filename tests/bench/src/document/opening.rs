@@ -4,8 +4,7 @@ use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 use maulstick_bus::bus::Answer;
-use maulstick_bus::memory::{Faults, MemoryNet};
-use maulstick_bus::{Bus, Class, Wake};
+use maulstick_bus::{Bus, Class, Faults, MemoryNet, Wake};
 use maulstick_document::{Access, Document, DocumentSettings};
 use maulstick_nodes::PaintNode;
 use maulstick_nodes::frames::FrameServer;
@@ -76,7 +75,9 @@ fn once(path: &std::path::Path) -> Result<[f64; 2], Fault> {
     }
     let seen = ms(begun);
     node.turn()?;
-    node.painting_mut().lay(CANVAS, &"Bone Black".parse().map_err(fault)?, 1e-6).ok();
+    node.painting_mut()
+        .lay(CANVAS, &"Bone Black".parse().map_err(fault)?, 1e-6)
+        .ok();
     Ok([seen, ms(begun)])
 }
 
@@ -93,13 +94,21 @@ pub(super) fn run(report: &mut Report) -> Result<(), Fault> {
     }
     easel.keeper.close(&mut easel.sequencer).map_err(fault)?;
     let first = once(&path)?[0];
-    report.row("document: first frame of 4096², never shown before", first, "ms");
+    report.row(
+        "document: first frame of 4096², never shown before",
+        first,
+        "ms",
+    );
     let mut times = Vec::new();
     for _ in 0..ROUNDS {
         times.push(once(&path)?);
     }
     let median = |i: usize| quantile(&sorted(times.iter().map(|t| t[i]).collect()), 0.5);
-    report.row("document: first frame of 4096², shown before", median(0), "ms");
+    report.row(
+        "document: first frame of 4096², shown before",
+        median(0),
+        "ms",
+    );
     report.row("document: painted on", median(1), "ms");
     Ok(())
 }

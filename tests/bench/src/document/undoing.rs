@@ -28,7 +28,10 @@ pub(super) fn run(report: &mut Report) -> Result<(), Fault> {
     let mut spent_ms = Vec::new();
     for _ in 0..STEPS {
         let (busy, paged) = (thread_cpu(), easel.keeper.document().page_in_cpu());
-        easel.sequencer.ask(Command::Undo { brush: None }).map_err(fault)?;
+        easel
+            .sequencer
+            .ask(Command::Undo { brush: None })
+            .map_err(fault)?;
         let busy = thread_cpu().saturating_sub(busy);
         let paged = easel.keeper.document().page_in_cpu().saturating_sub(paged);
         spent_ms.push(1e3 * (busy + paged).as_secs_f64());
@@ -36,10 +39,22 @@ pub(super) fn run(report: &mut Report) -> Result<(), Fault> {
     }
     report.row("document: steps of the history", steps as f64, "");
     let spent_ms = sorted(spent_ms);
-    report.row("document: an undo of 10,000, p99", quantile(&spent_ms, 0.99), "ms");
-    report.row("document: an undo of 10,000, median", quantile(&spent_ms, 0.5), "ms");
+    report.row(
+        "document: an undo of 10,000, p99",
+        quantile(&spent_ms, 0.99),
+        "ms",
+    );
+    report.row(
+        "document: an undo of 10,000, median",
+        quantile(&spent_ms, 0.5),
+        "ms",
+    );
     easel.keeper.close(&mut easel.sequencer).map_err(fault)?;
     let bytes = std::fs::metadata(&path).map_or(0, |about| about.len());
-    report.row("document: file with 10,000 steps", bytes as f64 / f64::from(1 << 20), "MiB");
+    report.row(
+        "document: file with 10,000 steps",
+        bytes as f64 / f64::from(1 << 20),
+        "MiB",
+    );
     Ok(())
 }

@@ -43,19 +43,41 @@ pub(super) fn run(report: &mut Report) -> Result<(), Fault> {
         most = most.max(resident());
     }
     let [small, vast] = easels;
-    let store = vast.sequencer.painting().store(maulstick_types::scene::CANVAS);
+    let store = vast
+        .sequencer
+        .painting()
+        .store(maulstick_types::scene::CANVAS);
     let painted = store.map_or(0, |store| {
-        store.iter().filter(|(_, version)| version.tile.is_some()).count()
+        store
+            .iter()
+            .filter(|(_, version)| version.tile.is_some())
+            .count()
     });
     report.row("document: tiles painted of 65536", painted as f64, "tiles");
     let name = "document: 16384² canvas, 512M";
     report.paired(name, "steps/s", "1024² canvas", &pairs);
     let [_, took] = took;
     let paging = sorted(took.paging_ms);
-    report.row("document: page-in of a state, p99.9", quantile(&paging, 0.999), "ms");
-    report.row("document: page-ins", vast.sequencer.painting().pager().counts().fetched as f64, "");
-    report.row("document: memory of both canvases", most as f64 / f64::from(1 << 20), "MiB");
-    report.row("document: memory before the vast one", before as f64 / f64::from(1 << 20), "MiB");
+    report.row(
+        "document: page-in of a state, p99.9",
+        quantile(&paging, 0.999),
+        "ms",
+    );
+    report.row(
+        "document: page-ins",
+        vast.sequencer.painting().pager().counts().fetched as f64,
+        "",
+    );
+    report.row(
+        "document: memory of both canvases",
+        most as f64 / f64::from(1 << 20),
+        "MiB",
+    );
+    report.row(
+        "document: memory before the vast one",
+        before as f64 / f64::from(1 << 20),
+        "MiB",
+    );
     for mut easel in [small, vast] {
         easel.keep();
         easel.keeper.close(&mut easel.sequencer).map_err(fault)?;
@@ -71,7 +93,11 @@ fn again(report: &mut Report, path: &std::path::Path) -> Result<(), Fault> {
         easel.stroke(STROKE_M, &mut took)?;
     }
     let counts = easel.sequencer.painting().pager().counts();
-    report.row("document: opened again with 64M, page-ins", counts.fetched as f64, "");
+    report.row(
+        "document: opened again with 64M, page-ins",
+        counts.fetched as f64,
+        "",
+    );
     report.row(
         "document: opened again with 64M, page-in of a state, p99.9",
         quantile(&sorted(took.paging_ms), 0.999),

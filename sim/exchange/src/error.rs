@@ -1,0 +1,64 @@
+//! What can be wrong.
+
+use std::io;
+
+/// Why a painting did not come into a file.
+#[derive(Debug, thiserror::Error)]
+pub enum ExchangeError {
+    /// The painting has no such surface.
+    #[error("there is no surface {0}: the canvas is 0, the palette 1")]
+    NoSurface(u32),
+    /// A part of the painting cannot be read back from its document, so the file lacks paint.
+    #[error("the painting's document is damaged: {0}")]
+    Damaged(String),
+    /// The file cannot be written.
+    #[error("the file cannot be written: {0}")]
+    Write(#[from] io::Error),
+    /// An OpenEXR file cannot hold this.
+    #[error("the OpenEXR file cannot be written: {0}")]
+    OpenExr(String),
+    /// A measure of a relief is out of its range.
+    #[error("a {what} of {value}: choose {least} to {most}")]
+    OutOfRange {
+        /// Which one, with its unit.
+        what: &'static str,
+        /// What it was.
+        value: f64,
+        /// The least.
+        least: f64,
+        /// The greatest.
+        most: f64,
+    },
+    /// A relief would have more triangles than its format can count.
+    #[error("{triangles} triangles are too many for STL: choose a step of at least {step} cells")]
+    TooManyTriangles {
+        /// How many it would have.
+        triangles: u64,
+        /// The step with which they are few enough to work with.
+        step: u32,
+    },
+}
+
+impl From<exr::error::Error> for ExchangeError {
+    fn from(error: exr::error::Error) -> Self {
+        match error {
+            exr::error::Error::Io(error) => Self::Write(error),
+            other => Self::OpenExr(other.to_string()),
+        }
+    }
+}
+
+impl From<zip::result::ZipError> for ExchangeError {
+    fn from(error: zip::result::ZipError) -> Self {
+        match error {
+            zip::result::ZipError::Io(error) => Self::Write(error),
+            other => Self::Write(io::Error::other(other)),
+        }
+    }
+}
+
+impl From<png::EncodingError> for ExchangeError {
+    fn from(error: png::EncodingError) -> Self {
+        Self::Write(error.into())
+    }
+}

@@ -1,0 +1,94 @@
+//! The relief of a painting as a picture: light is high.
+
+use std::io::Write;
+
+use maulstick_paint::Painting;
+use maulstick_paint::bands::{Banded, in_order};
+use maulstick_paint::picture::{Depth, Pixels, density, write_png};
+
+use crate::ExchangeError;
+use crate::surface::{Progress, Steps, banded, check_whole};
+
+/// From the lowest to the highest place of a surface, m above the highest peaks of its bare ground.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct HeightRange {
+    /// The lowest.
+    pub least_m: f32,
+    /// The highest.
+    pub greatest_m: f32,
+}
+
+impl HeightRange {
+    /// The range of a surface, by two threads.
+    fn of(banded: &Banded<'_>, steps: &mut Steps<'_>) -> Result<Self, ExchangeError> {
+        let mut range = Self {
+            least_m: f32::INFINITY,
+            greatest_m: f32::NEG_INFINITY,
+        };
+        let job = |band: usize| {
+            let ends = (f32::INFINITY, f32::NEG_INFINITY);
+            let heights = banded.heights(band);
+            let heights = heights.iter();
+            heights.fold(ends, |(least, most), h| (least.min(*h), most.max(*h)))
+        };
+        in_order(banded.bands(), job, |_, (least, greatest)| {
+            range.least_m = range.least_m.min(least);
+            range.greatest_m = range.greatest_m.max(greatest);
+            steps.step();
+            Ok::<(), ExchangeError>(())
+        })?;
+        Ok(range)
+    }
+
+    /// 0 for the lowest place, 65535 for the highest; 0 where all is level.
+    fn level(&self, height: f32) -> u16 {
+        let [height, least, greatest] = [height, self.least_m, self.greatest_m].map(f64::from);
+        if greatest <= least {
+            return 0;
+        }
+        ((height - least) / (greatest - least) * 65_535.0 + 0.5) as u16
+    }
+}
+
+/// Writes the heights of a surface as a grey PNG of 16 bits, linear from the least to the greatest,
+/// which are returned, and stand in its `tEXt`, in micrometres. `pHYs` says how large a cell is.
+///
+/// # Errors
+/// [`ExchangeError`].
+pub fn write_height_map(
+    painting: &mut Painting,
+    surface: u32,
+    to: impl Write,
+    progress: Progress<'_>,
+) -> Result<HeightRange, ExchangeError> {
+    let banded = banded(painting, surface)?;
+    let width = banded.cells()[0];
+    let mut steps = Steps::new(progress, 2 * banded.bands());
+    let range = HeightRange::of(&banded, &mut steps)?;
+    let pixels = Pixels {
+        size: banded.cells(),
+        colour: png::ColorType::Grayscale,
+        depth: Depth::Sixteen,
+        icc: None,
+        pixels_per_m: Some(density(banded.cell_m())),
+    };
+    let mut info = pixels.info();
+    let [least, greatest] = [range.least_m, range.greatest_m].map(|m| f64::from(m) * 1e6);
+    let text = format!("0 is {least:.4} micrometres, 65535 is {greatest:.4}");
+    info.uncompressed_latin1_text = vec![png::text_metadata::TEXtChunk::new("Height", text)];
+    let job = |band: usize| {
+        let heights = banded.heights(band);
+        let rows = heights.chunks_exact(width).rev();
+        let values = rows.flatten().map(|height| range.level(*height));
+        values.flat_map(u16::to_be_bytes).collect::<Vec<u8>>()
+    };
+    write_png::<ExchangeError>(to, info, |file| {
+        in_order(banded.bands(), job, |_, rows| {
+            file.write_all(&rows)?;
+            steps.step();
+            Ok(())
+        })
+    })?;
+    check_whole(painting)?;
+    Ok(range)
+}

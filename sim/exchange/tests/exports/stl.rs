@@ -1,0 +1,227 @@
+//! STL files, measured.
+
+use std::collections::BTreeMap;
+use std::io::Cursor;
+
+use maulstick_exchange::{ExchangeError, STL_TRIANGLES, StlSetup, StlSize, stl_step, write_stl};
+use maulstick_paint::Painting;
+use maulstick_types::scene::CANVAS;
+
+use crate::support::{CELL_M, CELLS, STL, bare, heights, painted, speck};
+
+type Point = [f32; 3];
+
+/// A facet: its normal and its corners.
+type Facet = [Point; 4];
+
+fn solid(painting: &mut Painting, setup: &StlSetup) -> (StlSize, Vec<Facet>) {
+    let mut to = Cursor::new(Vec::new());
+    let size = write_stl(painting, CANVAS, setup, &mut to, &mut |_, _| {}).expect("written");
+    let file = to.into_inner();
+    assert!(!file.starts_with(b"solid"), "that would be text");
+    let count = u32::from_le_bytes(file[80..84].try_into().expect("four"));
+    assert_eq!(u64::from(count), size.triangles);
+    assert_eq!(file.len(), 84 + 50 * count as usize);
+    let facets = file[84..].chunks_exact(50).map(|facet| {
+        let float = |i: usize| f32::from_le_bytes(facet[4 * i..][..4].try_into().expect("four"));
+        [0, 1, 2, 3].map(|corner| [0, 1, 2].map(|axis| float(3 * corner + axis)))
+    });
+    (size, facets.collect())
+}
+
+/// Whether each edge has two triangles that run along it in opposite directions.
+fn is_watertight(facets: &[Facet]) -> bool {
+    let mut edges: BTreeMap<[[u32; 3]; 2], [u32; 2]> = BTreeMap::new();
+    for [_, corners @ ..] in facets {
+        let bits = corners.map(|corner| corner.map(f32::to_bits));
+        for i in 0..3 {
+            let (from, to) = (bits[i], bits[(i + 1) % 3]);
+            let back = usize::from(from > to);
+            edges.entry([from.min(to), from.max(to)]).or_default()[back] += 1;
+        }
+    }
+    edges.values().all(|runs| *runs == [1, 1])
+}
+
+fn cross(u: [f64; 3], v: [f64; 3]) -> [f64; 3] {
+    [
+        u[1] * v[2] - u[2] * v[1],
+        u[2] * v[0] - u[0] * v[2],
+        u[0] * v[1] - u[1] * v[0],
+    ]
+}
+
+fn dot(u: [f64; 3], v: [f64; 3]) -> f64 {
+    u[0] * v[0] + u[1] * v[1] + u[2] * v[2]
+}
+
+/// mm³, by the theorem of Gauss: less than 0 where normals point in.
+fn volume(facets: &[Facet]) -> f64 {
+    let corners = facets
+        .iter()
+        .map(|[_, corners @ ..]| corners.map(|c| c.map(f64::from)));
+    corners.map(|[a, b, c]| dot(a, cross(b, c)) / 6.0).sum()
+}
+
+fn normals_fit(facets: &[Facet]) -> bool {
+    facets.iter().all(|facet| {
+        let [normal, a, b, c] = facet.map(|point| point.map(f64::from));
+        let side = |to: [f64; 3]| [0, 1, 2].map(|i| to[i] - a[i]);
+        let own = cross(side(b), side(c));
+        let length = dot(own, own).sqrt();
+        length > 0.0 && (dot(own, normal) / length - 1.0).abs() < 1e-5
+    })
+}
+
+/// mm³, by prisms under the triangles between means of cells.
+fn expected(heights: &[f32], setup: &StlSetup) -> f64 {
+    let [width, height] = CELLS.map(|cells| cells as usize);
+    let (step, half) = (setup.step as usize, (setup.step as usize).div_ceil(2));
+    let at = |vertex: usize, cells: usize| (vertex * step).min(cells);
+    let around = |at: usize, cells: usize| at.saturating_sub(half)..(at + half).min(cells);
+    let mean = |i: usize, j: usize| {
+        let (xs, ys) = (around(at(i, width), width), around(at(j, height), height));
+        let cells = ys.flat_map(|y| xs.clone().map(move |x| (height - 1 - y) * width + x));
+        let cells: Vec<f64> = cells.map(|cell| f64::from(heights[cell])).collect();
+        cells.iter().sum::<f64>() / cells.len() as f64
+    };
+    let (across, up) = (width.div_ceil(step), height.div_ceil(step));
+    let vertices = (0..=up).flat_map(|j| (0..=across).map(move |i| mean(i, j)));
+    let means: Vec<f64> = vertices.collect();
+    let least = means.iter().copied().fold(f64::INFINITY, f64::min);
+    let z = |i: usize, j: usize| {
+        setup.base_mm + (means[j * (across + 1) + i] - least) * setup.exaggeration * 1e3
+    };
+    let mut sum = 0.0;
+    for j in 0..up {
+        for i in 0..across {
+            let size = |axis: usize, v: usize| {
+                at(v + 1, [width, height][axis]) - at(v, [width, height][axis])
+            };
+            let area = (size(0, i) * size(1, j)) as f64 * (CELL_M * 1e3) * (CELL_M * 1e3);
+            let corners = 2.0 * (z(i, j) + z(i + 1, j + 1)) + z(i + 1, j) + z(i, j + 1);
+            sum += area * corners / 6.0;
+        }
+    }
+    sum
+}
+
+#[test]
+fn a_relief_is_a_solid_of_the_right_volume() {
+    let mut painting = painted();
+    let heights = heights(&mut painting);
+    for step in [1, 2, 3, 64, 100, 1000] {
+        let setup = StlSetup { step, ..STL };
+        let (size, facets) = solid(&mut painting, &setup);
+        assert!(is_watertight(&facets), "step {step}");
+        assert!(normals_fit(&facets), "step {step}");
+        let top = facets
+            .iter()
+            .flatten()
+            .map(|point| point[2])
+            .fold(0.0, f32::max);
+        assert!((f64::from(top) - size.size_mm[2]).abs() < 1e-5);
+        assert_eq!(size.size_mm[..2], [37.5, 17.5]);
+        let expected = |exaggeration: f64| {
+            let setup = StlSetup {
+                exaggeration,
+                ..setup
+            };
+            expected(&heights, &setup)
+        };
+        let off = |expected: f64| (volume(&facets) / expected - 1.0).abs();
+        println!(
+            "step {step}: {} triangles, off by {:.1e}",
+            size.triangles,
+            off(expected(5.0))
+        );
+        assert!(off(expected(5.0)) < 1e-6, "step {step}");
+        assert!(
+            off(expected(5.05)) > 1e-6 || step > 64,
+            "a fault would pass"
+        );
+    }
+    let (_, mut facets) = solid(&mut painting, &STL);
+    let whole = volume(&facets);
+    let [normal, a, b, c] = facets[100];
+    facets[100] = [normal, a, c, b];
+    assert!(!is_watertight(&facets) && !normals_fit(&facets) && volume(&facets) < whole);
+    facets.remove(100);
+    assert!(!is_watertight(&facets), "a hole would pass");
+}
+
+#[test]
+fn a_cell_is_a_block() {
+    let (size, facets) = solid(&mut speck(), &STL);
+    assert_eq!((size.triangles, facets.len()), (14, 14));
+    assert!(is_watertight(&facets) && normals_fit(&facets));
+    assert!((volume(&facets) - 0.25 * 0.25 * 2.0).abs() < 1e-7);
+}
+
+#[test]
+fn a_proposed_step_gives_as_many_triangles_as_programs_bear() {
+    let triangles = |cells: [u32; 2], step: u32| {
+        let [across, up] = cells.map(|cells| u64::from(cells.div_ceil(step)));
+        2 * across * up + 6 * (across + up)
+    };
+    for (cells, step) in [
+        ([1, 1], 1),
+        (CELLS, 1),
+        ([1024, 1024], 1),
+        ([16_384, 16_384], 12),
+        ([65_536, 1], 1),
+    ] {
+        assert_eq!(stl_step(cells), step);
+        assert!(triangles(cells, step) <= STL_TRIANGLES);
+        assert!(step == 1 || triangles(cells, step - 1) > STL_TRIANGLES);
+    }
+}
+
+#[test]
+fn measures_out_of_range_are_refused() {
+    let mut painting = speck();
+    for setup in [
+        StlSetup {
+            base_mm: 0.0,
+            ..STL
+        },
+        StlSetup {
+            base_mm: f64::NAN,
+            ..STL
+        },
+        StlSetup {
+            exaggeration: -1.0,
+            ..STL
+        },
+        StlSetup {
+            exaggeration: f64::INFINITY,
+            ..STL
+        },
+        StlSetup { step: 0, ..STL },
+    ] {
+        let mut to = Vec::new();
+        let error = write_stl(&mut painting, CANVAS, &setup, &mut to, &mut |_, _| {});
+        println!("{}", error.as_ref().expect_err("refused"));
+        assert!(matches!(error, Err(ExchangeError::OutOfRange { .. })));
+        assert!(to.is_empty());
+    }
+    let flat = StlSetup {
+        exaggeration: 0.0,
+        ..STL
+    };
+    assert_eq!(solid(&mut painted(), &flat).0.size_mm[2], 2.0);
+}
+
+#[test]
+fn more_triangles_than_a_file_can_count_are_refused_with_a_step_that_fits() {
+    let mut vast = bare([65_536, 65_536]);
+    let setup = StlSetup { step: 1, ..STL };
+    let mut to = Vec::new();
+    let error = write_stl(&mut vast, CANVAS, &setup, &mut to, &mut |_, _| {});
+    println!("{}", error.as_ref().expect_err("refused"));
+    assert!(to.is_empty());
+    assert!(matches!(
+        error,
+        Err(ExchangeError::TooManyTriangles { step: 47, .. })
+    ));
+}

@@ -1,0 +1,180 @@
+//! Small paintings, and their files.
+
+use std::io::Cursor;
+
+use maulstick_brush::BrushFile;
+use maulstick_exchange::{
+    ExchangeError, StlSetup, write_height_map, write_lit_png, write_open_exr, write_open_raster,
+    write_stl,
+};
+use maulstick_optics::PaintLibrary;
+use maulstick_paint::bands::Banded;
+use maulstick_paint::picture::{Depth, Export};
+use maulstick_paint::{Painting, PaintingSetup};
+use maulstick_types::Pose;
+use maulstick_types::brush::{BrushState, Solve};
+use maulstick_types::scene::CANVAS;
+
+/// No multiple of a tile either way.
+pub(crate) const CELLS: [u32; 2] = [150, 70];
+/// Of a cell.
+pub(crate) const CELL_M: f64 = 2.5e-4;
+
+pub(crate) fn bare(cells: [u32; 2]) -> Painting {
+    let setup = PaintingSetup {
+        cells,
+        cell_m: CELL_M,
+        ..PaintingSetup::default()
+    };
+    let library = PaintLibrary::measured().expect("whole");
+    let mut painting = Painting::new(&setup, library).expect("a painting");
+    let file = BrushFile::library("round").expect("round");
+    painting.define_brush("main", file.scaled_to(8.0).expect("a size"));
+    painting
+}
+
+/// A stroke from left to right, `y_mm` up the canvas.
+pub(crate) fn stroke(painting: &mut Painting, number: u64, load: &str, [x_mm, y_mm]: [f64; 2]) {
+    let mixture = load.parse().expect("a mixture");
+    painting.load("main", &mixture).expect("known");
+    let file = BrushFile::library("round").and_then(|file| file.scaled_to(8.0));
+    let file = file.expect("round");
+    let solve = |dx_mm: f64| Solve {
+        event_ns: 0,
+        stroke: number,
+        surface: CANVAS,
+        flags: 0,
+        pose: Pose {
+            position_m: [(x_mm + dx_mm) * 1e-3, y_mm * 1e-3, 0.6 * file.length_m()],
+            ..Pose::IDENTITY
+        },
+        angles_rad: vec![[0.2, 0.3]; file.spines.all_joints()],
+        contacts: Vec::new(),
+    };
+    let state = BrushState {
+        device: 1,
+        device_epoch: 1,
+        device_seq: 0,
+        solves: vec![solve(0.0), solve(8.0), solve(17.0)],
+    };
+    painting.state("main", 1, &state).expect("it fits");
+}
+
+/// Two dry layers, the lower one under a name that XML must escape, and wet paint over parts of them.
+pub(crate) fn painted() -> Painting {
+    let mut painting = bare(CELLS);
+    stroke(
+        &mut painting,
+        1,
+        "Ultramarine Blue=0.3,Titanium White=0.7",
+        [3.0, 7.0],
+    );
+    painting
+        .dry(CANVAS, 1.0, "sky <\"first\"> & sea")
+        .expect("wet");
+    stroke(
+        &mut painting,
+        2,
+        "Hansa Yellow Opaque=0.2,Thinner=0.8",
+        [10.0, 9.0],
+    );
+    painting.dry(CANVAS, 0.6, "glaze").expect("wet");
+    stroke(&mut painting, 3, "Pyrrole Red", [14.0, 5.0]);
+    painting
+}
+
+/// One cell, with a dry layer and wet paint.
+pub(crate) fn speck() -> Painting {
+    let mut painting = bare([1, 1]);
+    let mut lay = |paint: &str| {
+        let mixture = paint.parse().expect("a mixture");
+        painting.lay(CANVAS, &mixture, 3e-5).expect("it fits");
+        painting.dry(CANVAS, 0.5, "").expect("wet");
+    };
+    lay("Yellow Ochre");
+    lay("Ultramarine Blue");
+    painting
+}
+
+/// Heights of a whole surface, m, row after row from the top.
+pub(crate) fn heights(painting: &mut Painting) -> Vec<f32> {
+    let banded = Banded::of(painting, CANVAS).expect("a canvas");
+    let width = banded.cells()[0];
+    let rows = |band: usize| {
+        let heights = banded.heights(band);
+        let rows = heights.chunks_exact(width).rev().map(<[f32]>::to_vec);
+        rows.collect::<Vec<_>>().concat()
+    };
+    (0..banded.bands()).flat_map(rows).collect()
+}
+
+pub(crate) const STL: StlSetup = StlSetup {
+    base_mm: 2.0,
+    exaggeration: 5.0,
+    step: 3,
+};
+
+/// An export into a file, which hears how far it is.
+pub(crate) type Write =
+    fn(&mut Painting, u32, &mut dyn File, &mut dyn FnMut(u64, u64)) -> Result<(), ExchangeError>;
+
+/// What exports write to.
+pub(crate) trait File: std::io::Write + std::io::Seek {}
+
+impl<T: std::io::Write + std::io::Seek> File for T {}
+
+/// All exports.
+pub(crate) const EXPORTS: [(&str, Write); 6] = [
+    ("PNG, 8 bits", |painting, surface, to, tell| {
+        write_lit_png(
+            painting,
+            surface,
+            (&Export::default(), Depth::Eight),
+            to,
+            tell,
+        )
+    }),
+    ("PNG, 16 bits", |painting, surface, to, tell| {
+        write_lit_png(
+            painting,
+            surface,
+            (&Export::default(), Depth::Sixteen),
+            to,
+            tell,
+        )
+    }),
+    ("height map", |painting, surface, to, tell| {
+        write_height_map(painting, surface, to, tell).map(|_| ())
+    }),
+    ("OpenEXR", |painting, surface, to, tell| {
+        write_open_exr(painting, surface, to, tell)
+    }),
+    ("OpenRaster", |painting, surface, to, tell| {
+        write_open_raster(painting, surface, to, tell)
+    }),
+    ("STL", |painting, surface, to, tell| {
+        write_stl(painting, surface, &STL, to, tell).map(|_| ())
+    }),
+];
+
+/// The bytes of the export called `name`.
+pub(crate) fn file(name: &str, painting: &mut Painting) -> Vec<u8> {
+    let (_, write) = EXPORTS
+        .iter()
+        .find(|(other, _)| *other == name)
+        .expect("an export");
+    let mut to = Cursor::new(Vec::new());
+    write(painting, CANVAS, &mut to, &mut |_, _| {}).expect("written");
+    to.into_inner()
+}
+
+/// A PNG's header and bytes.
+pub(crate) fn decoded(file: &[u8]) -> (png::Info<'static>, Vec<u8>) {
+    let mut reader = png::Decoder::new(Cursor::new(file))
+        .read_info()
+        .expect("a PNG");
+    let mut bytes = vec![0; reader.output_buffer_size().expect("small")];
+    reader.next_frame(&mut bytes).expect("pixels");
+    reader.finish().expect("an end");
+    (reader.info().clone(), bytes)
+}

@@ -1,0 +1,203 @@
+use std::sync::Arc;
+
+use maulstick_optics::colour::SrgbTable;
+use maulstick_optics::light::shadow::Shadows;
+use maulstick_optics::light::{HeightField, Lamp, LampSetup, Spot, lit};
+use maulstick_optics::{PaintLibrary, Studio};
+use maulstick_types::paint::TILE;
+
+use super::drawing::flat;
+use super::*;
+use crate::bands::Banded;
+use crate::bare::Bare;
+use crate::look::Look;
+use crate::quantum::QUANTUM_M;
+use crate::relief::Relief;
+use crate::store::TileStore;
+use crate::tile::{Tile, Version};
+
+const CELLS: [u32; 2] = [150, 70];
+const CELL_M: f64 = 2.5e-4;
+
+/// Film whose thickness in quanta is a function of the place.
+fn store(quanta: impl Fn(usize, usize) -> f32) -> TileStore {
+    let mut store = TileStore::new(CELLS);
+    let ids: Vec<_> = store.iter().map(|(id, _)| id).collect();
+    for id in ids {
+        let place = |i: usize| {
+            quanta(
+                id.x as usize * TILE + i % TILE,
+                id.y as usize * TILE + i / TILE,
+            )
+        };
+        let plane: Arc<[f32]> = (0..TILE * TILE).map(place).collect();
+        let tile = Some(Arc::new(Tile::new([(0, plane)].into_iter(), None)));
+        store.replace(id, Version { number: 2, tile });
+    }
+    store
+}
+
+fn studio() -> Studio {
+    let mut studio = Studio::daylight();
+    let library = PaintLibrary::measured().expect("whole");
+    studio.add(library.find("Ultramarine Blue").expect("known"));
+    studio
+}
+
+fn bare(studio: &Studio) -> Bare {
+    Bare {
+        ground: vec![0.95; studio.wavelengths()],
+        relief: Arc::new(Relief::flat(CELL_M)),
+        wells: Vec::new(),
+    }
+}
+
+fn drawn(
+    store: &TileStore,
+    light: impl Fn(&Spot) -> [f32; 3] + Sync + 'static,
+    shadows: Option<Shadows>,
+) -> Picture {
+    let studio = studio();
+    let bare = bare(&studio);
+    let look = Look::new(studio);
+    let export = Export {
+        gamut: GamutMapping::Clamp,
+        ..Default::default()
+    };
+    let banded = Banded::new(store, &bare, &look, CELL_M);
+    whole(Some(Drawing::new(
+        banded,
+        Box::new(light),
+        shadows,
+        &export,
+    )))
+}
+
+/// Heights of a whole surface, row after row from the lowest.
+fn heights(store: &TileStore) -> Vec<f32> {
+    let studio = studio();
+    let bare = bare(&studio);
+    let look = Look::new(studio);
+    let banded = Banded::new(store, &bare, &look, CELL_M);
+    let bands = (0..banded.bands()).rev();
+    bands
+        .flat_map(|band| banded.heights(band).to_vec())
+        .collect()
+}
+
+fn upper_left() -> Lamp {
+    Lamp::new(&LampSetup {
+        toward: [-0.5, 0.5, 0.5f64.sqrt()],
+        ..Default::default()
+    })
+}
+
+#[test]
+fn slopes_go_on_over_the_borders_of_tiles() {
+    const BEND: f32 = 40.0;
+    let bowl = store(|x, y| BEND * (x * x + y * y) as f32);
+    // Slope as a colour: in a paraboloid it grows by the same amount with every cell.
+    let scale = (CELL_M / QUANTUM_M) as f32 / (2.0 * BEND * 150.0);
+    let light = move |spot: &Spot| [spot.slope[0] * scale, spot.slope[1] * scale, 0.0];
+    let shown = drawn(&bowl, light, None);
+    let table = SrgbTable::default();
+    let expected = |x: usize, y: usize| {
+        let inside = |at: usize, size: u32| at > 0 && at + 1 < size as usize;
+        (inside(x, CELLS[0]) && inside(y, CELLS[1]))
+            .then(|| [x, y].map(|at| table.byte(at as f32 / 150.0)))
+    };
+    let off = |shown: &Picture| {
+        let mut worst = 0;
+        for (i, pixel) in shown.rgb.chunks_exact(3).enumerate() {
+            let (x, y) = (i % shown.width, shown.height - 1 - i / shown.width);
+            for (got, want) in expected(x, y).iter().flatten().zip(pixel) {
+                worst = worst.max(got.abs_diff(*want));
+            }
+        }
+        worst
+    };
+    assert!(off(&shown) <= 1, "{}", off(&shown));
+    let torn = store(|x, y| BEND * (x * x + y * y) as f32 + f32::from(x as u16 / 64) * 2000.0);
+    let shown = drawn(&torn, light, None);
+    assert!(off(&shown) > 1, "a seam would pass");
+}
+
+#[test]
+fn a_flat_film_is_lit_to_its_unlit_colour_and_a_ridge_is_not() {
+    let lamp = upper_left();
+    let both = |store: &TileStore| {
+        let shadows = Some(Shadows::new(&lamp, CELL_M as f32));
+        let lit = drawn(store, move |spot| lit(spot, &lamp), shadows);
+        (lit, drawn(store, |spot| flat(spot, [1.0; 3]), None))
+    };
+    let (flat, unlit) = both(&store(|_, _| 50_000.0));
+    assert!(flat == unlit);
+    let (ridge, unlit) = both(&store(|x, _| {
+        50_000.0 + if x == 64 { 40_000.0 } else { 0.0 }
+    }));
+    let sum = |picture: &Picture, x: usize| -> u32 {
+        let pixel = &picture.rgb[(30 * picture.width + x) * 3..][..3];
+        pixel.iter().map(|channel| u32::from(*channel)).sum()
+    };
+    assert!(
+        sum(&ridge, 63) > sum(&unlit, 63),
+        "the flank toward the lamp"
+    );
+    assert!(sum(&ridge, 65) < sum(&unlit, 65), "the flank away from it");
+}
+
+#[test]
+fn shadows_fall_over_the_borders_of_tiles() {
+    // A wall of one millimetre across the corner where four tiles meet.
+    let wall = store(|x, y| {
+        let across = (60..64).contains(&(x + 64 - y.min(64)));
+        50_000.0 + if across { 660_000.0 } else { 0.0 }
+    });
+    let lamp = upper_left();
+    let whole = HeightField {
+        heights: &heights(&wall),
+        cells: CELLS.map(|cells| cells as usize),
+        cell_m: CELL_M as f32,
+    };
+    let shadows = Shadows::new(&lamp, CELL_M as f32);
+    let shown = drawn(&wall, |spot| [spot.seen; 3], Some(shadows));
+    let table = SrgbTable::default();
+    let mut dark = 0;
+    for (i, pixel) in shown.rgb.chunks_exact(3).enumerate() {
+        let (x, y) = (i % shown.width, shown.height - 1 - i / shown.width);
+        let mut seen = [0.0];
+        shadows.row(&whole, [x, y], &mut seen);
+        assert_eq!(pixel[0], table.byte(seen[0]), "{x} {y}");
+        dark += u32::from(pixel[0] < 128);
+    }
+    assert!(dark > 50, "{dark}");
+}
+
+#[test]
+fn a_png_says_what_its_bytes_mean() {
+    let wide = Export {
+        profile: Arc::new(Profile::of(RgbSpace::DisplayP3)),
+        gamut: GamutMapping::Soft,
+    };
+    let mut painting = Painting::new(
+        &crate::PaintingSetup {
+            cells: [8, 8],
+            ..Default::default()
+        },
+        PaintLibrary::measured().expect("whole"),
+    )
+    .expect("a painting");
+    let profiles = [Export::default(), wide].map(|export| {
+        let picture = picture_for(&mut painting, maulstick_types::scene::CANVAS, &export);
+        let mut file = Vec::new();
+        picture.encode_png(&mut file).expect("written");
+        let decoder = png::Decoder::new(std::io::Cursor::new(file));
+        let reader = decoder.read_info().expect("a PNG");
+        let icc = reader.info().icc_profile.as_ref().map(|icc| icc.to_vec());
+        assert_eq!(icc.as_deref(), Some(export.profile.icc()));
+        let size = reader.info().pixel_dims.map(|size| (size.xppu, size.unit));
+        assert_eq!(size, Some((4000, png::Unit::Meter)));
+        icc
+    });
+    assert!(profiles[0] != profiles[1]);
+}
