@@ -343,6 +343,7 @@ fn steps(database: &Database, shelves: &Shelves) -> Result<Vec<Step>, DocumentEr
                 booked: kept.booked,
                 layers: kept.layers,
                 makes: kept.makes,
+                tops: kept.tops,
             }),
         });
     }
@@ -386,6 +387,7 @@ fn versions(database: &Database, shelves: &Shelves) -> Result<Vec<Named>, Docume
                 ledger: kept.ledger,
                 layers: kept.layers,
                 makes: kept.makes,
+                tops: kept.tops,
             },
         });
     }

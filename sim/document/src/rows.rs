@@ -72,6 +72,8 @@ pub struct KeptDeed {
     pub layers: Option<[Vec<Layer>; 2]>,
     /// Surfaces.
     pub makes: Option<[Vec<Make>; 2]>,
+    /// Most quanta that a cell of a surface ever had.
+    pub tops: [BTreeMap<u32, f32>; 2],
 }
 
 /// What a painting was in a version besides tiles.
@@ -85,6 +87,8 @@ pub struct KeptRest {
     pub layers: Vec<Layer>,
     /// Surfaces.
     pub makes: Vec<Make>,
+    /// Most quanta that a cell of a surface ever had.
+    pub tops: BTreeMap<u32, f32>,
 }
 
 #[cfg(test)]

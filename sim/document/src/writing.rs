@@ -267,6 +267,7 @@ impl<'a, 'b> Writer<'a, 'b> {
             booked: step.deed.booked.clone(),
             layers: step.deed.layers.clone(),
             makes: step.deed.makes.clone(),
+            tops: step.deed.tops.clone(),
         };
         let deed = serde_json::to_string(&deed)?;
         let tiles = packed(tiles);
@@ -310,6 +311,7 @@ impl<'a, 'b> Writer<'a, 'b> {
             ledger: version.rest.ledger.clone(),
             layers: version.rest.layers.clone(),
             makes: version.rest.makes.clone(),
+            tops: version.rest.tops.clone(),
         };
         let rest = serde_json::to_string(&rest)?;
         let tiles = packed(tiles);

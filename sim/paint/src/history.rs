@@ -14,6 +14,7 @@ pub use crate::ledger::Booked;
 use crate::ledger::Ledger;
 use crate::load::BrushLoad;
 use crate::page::Page;
+use crate::store::TileRect;
 use crate::tile::{Tile, TileId};
 
 /// A surface's number and a tile of it.
@@ -67,6 +68,8 @@ pub struct Rest {
     pub layers: Vec<Layer>,
     /// The surfaces.
     pub makes: Vec<Make>,
+    /// Most quanta that a cell of a surface ever had.
+    pub tops: BTreeMap<u32, f32>,
 }
 
 /// What a step did besides tiles.
@@ -80,6 +83,8 @@ pub struct Deed {
     pub layers: Option<[Vec<Layer>; 2]>,
     /// The surfaces before and after it, if it changed them.
     pub makes: Option<[Vec<Make>; 2]>,
+    /// Most quanta that a cell of a surface ever had, before and after it.
+    pub tops: [BTreeMap<u32, f32>; 2],
 }
 
 impl Deed {
@@ -97,6 +102,7 @@ impl Deed {
                 .then(|| [before.layers.clone(), after.layers.clone()]),
             makes: (before.makes != after.makes)
                 .then(|| [before.makes.clone(), after.makes.clone()]),
+            tops: [before.tops.clone(), after.tops.clone()],
         }
     }
 
@@ -111,6 +117,7 @@ impl Deed {
         self.booked.add(&later.booked);
         self.layers = joined(self.layers, later.layers.as_ref());
         self.makes = joined(self.makes, later.makes.as_ref());
+        self.tops[1].clone_from(&later.tops[1]);
         self
     }
 }
@@ -144,7 +151,7 @@ pub struct Step {
 impl Step {
     /// The step before it was finished, in a painting that is besides as it is in `rest`.
     #[must_use]
-    pub fn reopened(self, rest: &Rest) -> OpenStep {
+    pub fn reopened(self, rest: &Rest, reached: BTreeSet<Place>) -> OpenStep {
         let mut before = rest.clone();
         for (name, [page, _]) in &self.deed.loads {
             before.loads.insert(name.clone(), page.clone());
@@ -159,6 +166,8 @@ impl Step {
                 .collect(),
             before,
             booked: self.deed.booked.clone(),
+            reached,
+            last_reach: None,
         }
     }
 }
@@ -178,6 +187,10 @@ pub struct OpenStep {
     pub before: Rest,
     /// What it booked so far.
     pub booked: Booked,
+    /// The tiles that it may have changed.
+    pub reached: BTreeSet<Place>,
+    /// The tiles that its last motion reached.
+    pub last_reach: Option<(u32, TileRect)>,
 }
 
 /// Steps that can be undone and redone.
@@ -230,6 +243,8 @@ impl History {
             tiles: BTreeMap::new(),
             before,
             booked: Booked::default(),
+            reached: BTreeSet::new(),
+            last_reach: None,
         });
     }
 

@@ -27,6 +27,17 @@ pub struct KeptBrush {
     pub next_load: usize,
 }
 
+/// A step that is not finished.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct KeptOpen {
+    /// Its number.
+    pub step: u64,
+    /// The tiles that it may have changed: surface, column, row.
+    pub reached: Vec<[u32; 3]>,
+    /// Most quanta that a cell of a surface ever had, before it.
+    pub tops: BTreeMap<u32, f32>,
+}
+
 /// A painting besides its tiles.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct KeptPainting {
@@ -47,7 +58,7 @@ pub struct KeptPainting {
     /// Number of the newest step.
     pub step: u64,
     /// The steps that are not finished.
-    pub open_steps: Vec<u64>,
+    pub open_steps: Vec<KeptOpen>,
     /// Steps that were undone, the last one at the end.
     pub undone: Vec<u64>,
     /// The version from which the painter goes on.

@@ -12,14 +12,14 @@ use super::{BrushTrack, Named, PaintRefusal, Painting, QUOTA, Sheet, bare};
 use crate::head::Waypoint;
 use crate::history::{History, Place, Rest, Step};
 use crate::impasto::Impasto;
-use crate::kept::{KeptBrush, KeptPainting};
+use crate::kept::{KeptBrush, KeptOpen, KeptPainting};
 use crate::light::studio_settings;
 use crate::load::BrushLoad;
 use crate::look::Look;
 use crate::page::{Page, Pager};
 use crate::path::PathStepper;
 use crate::store::TileStore;
-use crate::tile::Version;
+use crate::tile::{TileId, Version};
 
 /// What changed since the document last heard of it; a moment of the painting, whole.
 #[derive(Clone, Debug)]
@@ -64,7 +64,12 @@ impl Painting {
         let loads = self.rest().loads;
         let (mut steps, gone_steps) = self.history.take_touched();
         let open = self.open_steps();
-        let open_steps = open.iter().map(|step| step.id).collect();
+        let open_steps = self.history.open().map(|step| KeptOpen {
+            step: step.id,
+            tops: step.before.tops.clone(),
+            reached: step.reached.iter().map(|(surface, id)| [*surface, id.x, id.y]).collect(),
+        });
+        let open_steps = open_steps.collect();
         steps.extend(open);
         let (mut named, mut gone_named) = (Vec::new(), Vec::new());
         for name in std::mem::take(&mut self.named_touched) {
@@ -191,9 +196,22 @@ impl Painting {
             ledger: kept.ledger.clone(),
             layers: scene.layers.clone(),
             makes: makes(&scene),
+            tops: kept.tops.clone(),
         };
         let open: Vec<Step> = open;
-        let open = open.into_iter().map(|step| step.reopened(&rest)).collect();
+        let reopened = |step: Step| {
+            let mut known = kept.open_steps.iter();
+            let known = known.find(|open| open.step == step.id);
+            let reached = known.into_iter().flat_map(|open| &open.reached);
+            let reached = reached.map(|[surface, x, y]| (*surface, TileId { x: *x, y: *y }));
+            let reached = reached.collect();
+            let mut open = step.reopened(&rest, reached);
+            if let Some(tops) = known.map(|open| open.tops.clone()) {
+                open.before.tops = tops;
+            }
+            open
+        };
+        let open = open.into_iter().map(reopened).collect();
         let history = History::restored(kept.step, steps, kept.undone, open);
         let mut painting = Self {
             scene,

@@ -6,7 +6,7 @@ use maulstick_types::brush::{BrushState, Solve, solve_flags};
 
 use super::{PaintRefusal, Painting};
 use crate::head::{Scale, Waypoint, low_bounds};
-use crate::history::{OpenStep, Place};
+use crate::history::OpenStep;
 use crate::load::Half;
 use crate::model::{BrushTraits, Step, Sweep};
 use crate::path::PathStepper;
@@ -135,6 +135,7 @@ impl Painting {
             // A command ended the stroke's undo step: the rest of the stroke is one of its own.
             self.begin_step("stroke", Some(name));
         }
+        self.claim(name, sheet, from, to);
         if !self.reach(name, sheet, from, to) {
             return;
         }
@@ -184,30 +185,34 @@ impl Painting {
             self.open_window(sheet, rect)
         });
         let opened = window.is_some();
-        if opened {
-            self.part_from_others(name, sheet, rect);
-        }
         if let Some(track) = self.brushes.get_mut(name) {
             track.window = window.map(|window| (sheet, window));
         }
         opened
     }
 
-    /// Ends the open steps of other brushes that changed tiles of this brush's window: no two steps
-    /// change a tile at the same time.
-    fn part_from_others(&mut self, name: &str, sheet: usize, rect: TileRect) {
+    /// Notes which tiles a brush's step reaches, and ends the open steps of other brushes that have
+    /// reached one of them: no two steps change a tile at the same time.
+    fn claim(&mut self, name: &str, sheet: usize, from: [i64; 2], to: [i64; 2]) {
         let surface = self.sheets[sheet].id;
-        let within = |(on, id): &Place| *on == surface && rect.contains(*id);
-        let shares =
-            |step: &OpenStep| step.brush.as_deref() != Some(name) && step.tiles.keys().any(within);
-        let ended = self.history.take_open(shares);
-        if ended.is_empty() {
+        let Some(rect) = self.sheets[sheet].store.around(from, to) else {
+            return;
+        };
+        let Some(open) = self.history.open_of(Some(name)) else {
+            return;
+        };
+        if open.last_reach == Some((surface, rect)) {
             return;
         }
-        let after = self.rest();
-        for open in ended {
-            let step = self.finished(&open, &after);
-            self.history.push(step);
+        open.last_reach = Some((surface, rect));
+        open.reached.extend(rect.tiles().map(|id| (surface, id)));
+        let shares = |step: &OpenStep| {
+            let mut tiles = rect.tiles();
+            let others = step.brush.as_deref() != Some(name);
+            others && tiles.any(|id| step.reached.contains(&(surface, id)))
+        };
+        if self.history.open().any(shares) {
+            self.end_step(shares);
         }
     }
 

@@ -52,6 +52,7 @@ impl Painting {
             ledger: self.ledger.clone(),
             layers: self.scene.layers.clone(),
             makes: makes(&self.scene),
+            tops: self.sheets.iter().map(|sheet| (sheet.id, sheet.top)).collect(),
         }
     }
 
@@ -222,11 +223,31 @@ impl Painting {
         self.ledger.book(&deed.booked, times);
         self.accounted = self.ledger.clone();
         self.turn_rest(layers.map(|ends| &ends[to]), made.map(|ends| &ends[to]));
+        self.turn_tops(step, way);
         match way {
             Way::Back => self.history.undone(step.id),
             Way::Forth => self.history.redone(step.id),
         }
         Ok(step.what.clone())
+    }
+
+    /// How high paint stands is as it was, where nothing else was painted meanwhile: then the same
+    /// motion paints the same again.
+    fn turn_tops(&mut self, step: &Step, way: Way) {
+        let newest = self.history.last_done(None).map_or(0, |newest| newest.id);
+        let [before, after] = &step.deed.tops;
+        let (from, to) = match way {
+            Way::Back if step.id == newest => (after, before),
+            Way::Forth if step.id > newest => (before, after),
+            _ => return,
+        };
+        for sheet in &mut self.sheets {
+            if from.get(&sheet.id) == Some(&sheet.top)
+                && let Some(top) = to.get(&sheet.id)
+            {
+                sheet.top = *top;
+            }
+        }
     }
 
     /// Whether a brush carries what is on a page; of a brush that is gone nobody minds.
