@@ -107,3 +107,14 @@ pub fn presence(path: &Path, options: &PaintingOptions) -> Result<Presence, Faul
         },
     }
 }
+
+/// Sees that a file is there, where one is not to be begun.
+///
+/// # Errors
+/// A [`Fault`] where there is none.
+pub fn there(path: &Path) -> Result<(), Fault> {
+    match path.exists() {
+        true => Ok(()),
+        false => Err(wrong(path, &DocumentError::Missing)),
+    }
+}

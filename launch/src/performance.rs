@@ -237,6 +237,7 @@ pub fn painting_setup(config: &RigConfig, library: &PaintLibrary) -> Result<Pain
         wells,
         light: light(&config.light)?,
         exposure: config.light.exposure,
+        ..PaintingSetup::default()
     })
 }
 

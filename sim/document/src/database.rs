@@ -205,9 +205,9 @@ impl Database {
     /// What SQLite says.
     pub fn close(self) -> Result<(), DocumentError> {
         if !self.connection.is_readonly("main")? {
-            let folded = self
-                .connection
-                .query_row("PRAGMA wal_checkpoint(TRUNCATE)", params![], |_| Ok(()));
+            let folded =
+                self.connection
+                    .query_row("PRAGMA wal_checkpoint(TRUNCATE)", params![], |_| Ok(()));
             match folded.map_err(DocumentError::from) {
                 // What is in the journal is safe there, and folded in when there is room.
                 Err(DocumentError::Full) => {}

@@ -5,6 +5,7 @@ use std::sync::Arc;
 
 use maulstick_optics::PaintLibrary;
 use maulstick_paint::dry::{DryLayer, DryStack};
+use maulstick_paint::embedded::Embedded;
 use maulstick_paint::history::{Change, Deed, Held, Rest, Step};
 use maulstick_paint::kept::{KeptPainting, KeptSequencer};
 use maulstick_paint::load::BrushLoad;
@@ -34,7 +35,6 @@ pub struct Opened {
     records: Vec<Record>,
     library: PaintLibrary,
     pager: Arc<Pager>,
-    files: Vec<(String, String, Vec<u8>)>,
 }
 
 impl Opened {
@@ -68,11 +68,6 @@ impl Opened {
     /// # Errors
     /// [`PaintRefusal`] where what was kept does not hold together.
     pub fn sequencer(self) -> Result<Sequencer, PaintRefusal> {
-        let pictures = self
-            .files
-            .into_iter()
-            .filter(|(kind, ..)| kind == "picture");
-        let _pictures: Vec<_> = pictures.collect();
         let painting = Painting::restore(self.restored, self.library, self.pager)?;
         let mut sequencer = Sequencer::restored(painting, self.sequencer);
         let crashed = !self.records.is_empty();
@@ -140,6 +135,21 @@ pub(crate) fn file(database: &Database, hash: &str) -> Result<Vec<u8>, DocumentE
         true => Ok(data),
         false => Err(damaged(format!("file {hash} is not what it was"))),
     }
+}
+
+/// The pictures of grounds and teeth.
+fn pictures(database: &Database) -> Result<Embedded, DocumentError> {
+    let query = "SELECT hash FROM file WHERE kind = 'picture' ORDER BY hash";
+    let mut statement = database.connection.prepare(query)?;
+    let hashes = statement.query_map(params![], |row| row.get::<_, String>(0))?;
+    let mut embedded = Embedded::default();
+    for hash in hashes {
+        let bytes = file(database, &hash?)?;
+        embedded
+            .add(bytes.into())
+            .map_err(|refusal| damaged(refusal.what))?;
+    }
+    Ok(embedded)
 }
 
 fn text(database: &Database, hash: &str) -> Result<String, DocumentError> {
@@ -413,6 +423,7 @@ pub(crate) fn opened(database: &Database, pager: &Arc<Pager>) -> Result<Opened, 
         loads,
         steps: steps(database, &shelves)?,
         named: versions(database, &shelves)?,
+        embedded: pictures(database)?,
         kept,
     };
     // What nothing refers to goes with the next moment: the shelves were the last to remember it.
@@ -423,6 +434,5 @@ pub(crate) fn opened(database: &Database, pager: &Arc<Pager>) -> Result<Opened, 
         records,
         library,
         pager: Arc::clone(pager),
-        files: Vec::new(),
     })
 }

@@ -79,7 +79,7 @@ fn settle(path: &Path, history: History) -> Result<(), DocumentError> {
     document.keep(Moment {
         painting,
         sequencer: kept,
-        files: Vec::new(),
+        pictures: Vec::new(),
     });
     document.flush();
     // What was forgotten goes with the next moment.
@@ -89,7 +89,7 @@ fn settle(path: &Path, history: History) -> Result<(), DocumentError> {
     document.keep(Moment {
         painting,
         sequencer: kept,
-        files: Vec::new(),
+        pictures: Vec::new(),
     });
     document.close()
 }

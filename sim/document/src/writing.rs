@@ -1,5 +1,8 @@
 //! A checkpoint as one transaction.
 
+use std::collections::BTreeSet;
+use std::sync::Arc;
+
 use maulstick_paint::history::{Held, Step};
 use maulstick_paint::kept::KeptSequencer;
 use maulstick_paint::load::BrushLoad;
@@ -23,8 +26,8 @@ pub struct Moment {
     pub painting: Checkpoint,
     /// The sequencer.
     pub sequencer: KeptSequencer,
-    /// Further files: kind, name, bytes.
-    pub files: Vec<(String, String, Vec<u8>)>,
+    /// Pictures of grounds and teeth, by their hash.
+    pub pictures: Vec<(String, Arc<[u8]>)>,
 }
 
 /// A tile as it is shown.
@@ -55,7 +58,7 @@ pub fn file_hash(data: &[u8]) -> String {
 pub(crate) struct Stored {
     planes: Vec<(Page<Planes>, usize)>,
     loads: Vec<(Page<BrushLoad>, usize)>,
-    stacks: Vec<std::sync::Arc<maulstick_paint::dry::DryStack>>,
+    stacks: Vec<Arc<maulstick_paint::dry::DryStack>>,
 }
 
 impl Stored {
@@ -71,12 +74,15 @@ impl Stored {
     }
 }
 
+/// Number, depth and planes of a page that another one is a difference to.
+type Base = (i64, i64, Arc<Planes>);
+
 /// Writes inside one transaction.
 pub(crate) struct Writer<'a, 'b> {
     database: &'a Database,
     breathe: Breath<'b>,
     stored: Stored,
-    written: std::collections::BTreeSet<u64>,
+    written: BTreeSet<u64>,
 }
 
 impl<'a, 'b> Writer<'a, 'b> {
@@ -165,7 +171,7 @@ impl<'a, 'b> Writer<'a, 'b> {
                 .connection
                 .prepare_cached("INSERT OR REPLACE INTO dry VALUES(4, ?1, ?2, ?3, ?4, ?5)")?
                 .execute(params![ints[0], ints[1], ints[2], ints[3], sum])?;
-            self.stored.stacks.push(std::sync::Arc::clone(stack));
+            self.stored.stacks.push(Arc::clone(stack));
         }
         Ok(())
     }
@@ -205,11 +211,7 @@ impl<'a, 'b> Writer<'a, 'b> {
 
     /// Number, depth and planes of the page that another one is a difference to; none where the chain
     /// is long enough.
-    #[allow(clippy::type_complexity)]
-    fn base_of(
-        &self,
-        base: &Page<Planes>,
-    ) -> Result<Option<(i64, i64, std::sync::Arc<Planes>)>, DocumentError> {
+    fn base_of(&self, base: &Page<Planes>) -> Result<Option<Base>, DocumentError> {
         let id = base.id() as i64;
         let depth: Option<i64> = self
             .database
@@ -222,7 +224,7 @@ impl<'a, 'b> Writer<'a, 'b> {
         };
         let content = match base.peek() {
             Some(content) => content,
-            None => std::sync::Arc::new(self.database.planes(base.id())?),
+            None => Arc::new(self.database.planes(base.id())?),
         };
         Ok(Some((id, depth, content)))
     }
@@ -340,15 +342,19 @@ impl<'a, 'b> Writer<'a, 'b> {
         Ok(())
     }
 
-    fn file(&self, kind: &str, name: &str, data: &[u8]) -> Result<String, DocumentError> {
-        let hash = file_hash(data);
+    fn has_file(&self, hash: &str) -> Result<bool, DocumentError> {
         let known: Option<i64> = self
             .database
             .connection
             .prepare_cached("SELECT 1 FROM file WHERE hash = ?1")?
             .query_row(params![hash], |row| row.get(0))
             .optional()?;
-        if known.is_none() {
+        Ok(known.is_some())
+    }
+
+    fn file(&self, kind: &str, name: &str, data: &[u8]) -> Result<String, DocumentError> {
+        let hash = file_hash(data);
+        if !self.has_file(&hash)? {
             let sum = Sum::of(Table::File)
                 .bytes(hash.as_bytes())
                 .bytes(kind.as_bytes())
@@ -369,8 +375,10 @@ impl<'a, 'b> Writer<'a, 'b> {
         for (name, brush) in &mut kept.brushes {
             brush.file = self.file("brush", name, brush.file.as_bytes())?;
         }
-        for (kind, name, data) in &moment.files {
-            self.file(kind, name, data)?;
+        for (hash, data) in &moment.pictures {
+            if !self.has_file(hash)? {
+                self.file("picture", hash, data)?;
+            }
         }
         self.put_state("painting", &serde_json::to_string(&kept)?)?;
         self.put_state("sequencer", &serde_json::to_string(&moment.sequencer)?)
@@ -392,7 +400,7 @@ impl<'a, 'b> Writer<'a, 'b> {
     /// written anew.
     fn bury(&mut self, dead: &[u64]) -> Result<(), DocumentError> {
         let connection = &self.database.connection;
-        let gone: std::collections::BTreeSet<u64> = dead.iter().copied().collect();
+        let gone: BTreeSet<u64> = dead.iter().copied().collect();
         let mut rebased: Vec<(u64, Planes)> = Vec::new();
         for id in &gone {
             let mut statement = connection.prepare_cached("SELECT id FROM page WHERE base = ?1")?;

@@ -73,7 +73,7 @@ proptest! {
             let sequencer = kept.kept();
             let painting = kept.painting_mut().checkpoint(*since);
             *since = painting.kept.versions;
-            Moment { painting, sequencer, files: Vec::new() }
+            Moment { painting, sequencer, pictures: Vec::new() }
         };
         document.as_ref().expect("open").keep(moment(&mut kept, &mut since));
         equip(&mut kept);

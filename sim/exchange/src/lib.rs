@@ -14,19 +14,43 @@
 //! | [`write_stl`] | height as a solid to print: STL; [`stl_step`] proposes how fine |
 //!
 //! Errors are [`ExchangeError`]; [`Progress`] hears how far an export is.
+//!
+//! An import makes of a picture an underpainting, a ground or a tooth:
+//!
+//! | module | holds |
+//! | --- | --- |
+//! | [`read_image`] | pictures from files, a row at a time |
+//! | [`fit_to`] | a picture as large as a canvas |
+//! | [`embed`] | pictures as a painting holds them: grounds and teeth |
+//! | [`underpaint`] | a picture as paint |
+//! | `films`, `candidates`, `recipes`, `search` | the mixtures whose films come nearest to its colours |
+//!
+//! Its errors are [`ImportError`].
 
+mod candidates;
+pub mod embed;
 mod error;
+mod films;
+pub mod fit_to;
 mod height_map;
+pub mod import_error;
 mod lit_png;
 mod open_exr;
 mod open_raster;
+pub mod read_image;
+mod recipes;
+mod search;
 mod stl;
 mod surface;
+pub mod underpaint;
 
 pub use error::ExchangeError;
 pub use height_map::{HeightRange, write_height_map};
+pub use import_error::ImportError;
 pub use lit_png::write_lit_png;
 pub use open_exr::write_open_exr;
 pub use open_raster::write_open_raster;
+pub use read_image::Image;
 pub use stl::{STL_TRIANGLES, StlSetup, StlSize, stl_step, write_stl};
 pub use surface::Progress;
+pub use underpaint::{Likeness, Support, Underpainting};

@@ -70,7 +70,7 @@ fn films(painting: &Painting) -> Vec<[f64; 2]> {
 /// Relative difference of the deposited volumes; mean and 99th percentile of ΔE₀₀.
 fn compare(one: &Painting, two: &Painting) -> [f64; 3] {
     let (a, b) = (films(one), films(two));
-    let ground = one.bare(0).expect("a canvas").ground.clone();
+    let ground = one.bare(0).expect("a canvas").ground.mean().to_vec();
     let volume = |films: &[[f64; 2]]| films.iter().flatten().sum::<f64>();
     let lab = |film: &[f64; 2]| {
         one.look()

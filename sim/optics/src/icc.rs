@@ -4,6 +4,10 @@
 //! bytes of their profiles, which hold no date. Colours for the profile of a display or a printer go
 //! through `moxcms`, whose arithmetic may differ between processors.
 
+mod incoming;
+
+pub use incoming::Incoming;
+
 use std::fmt;
 use std::sync::{Arc, OnceLock};
 

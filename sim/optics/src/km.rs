@@ -85,6 +85,41 @@ pub fn film_over_f32(kd: f32, sd: f32, under: f32) -> Ratio {
     }
 }
 
+/// Reflectance of a film over a ground, and how it changes with K·d and with S·d.
+///
+/// With u = κ(κ+2σ) = t² the functions e^(−t)·sinh(t)/t and e^(−t)·cosh(t) are g and c of
+/// [`film_over_f32`], and their common factor cancels in n/m. Without it they are analytic in u, with
+/// slopes (c − g)/(2u) and g/2, so nothing is divided by t.
+#[must_use]
+pub fn over_with_slopes(kd: f64, sd: f64, under: f64) -> [f64; 3] {
+    let u = kd * (kd + 2.0 * sd);
+    let t = u.sqrt();
+    let e = exp(-t);
+    let c = 0.5 * (1.0 + e * e);
+    let g = decay_mean(2.0 * t, e * e);
+    // Below t = .3 by its series Σ k·u^(k−1)/(2k+1)!, where the difference loses digits.
+    let g_u = if u < 0.09 {
+        e * (1.0 / 6.0 + u * (1.0 / 60.0 + u * (1.0 / 1680.0 + u / 90_720.0)))
+    } else {
+        0.5 * (c - g) / u
+    };
+    let c_u = 0.5 * g;
+    let free = 1.0 - under;
+    let denominator = (kd + sd * free) * g + c;
+    let r = (sd * g * free + under * (c - kd * g)) / denominator;
+    let slope = |u_by: f64, [n, m]: [f64; 2]| {
+        let (g_by, c_by) = (g_u * u_by, c_u * u_by);
+        let n = n + sd * free * g_by + under * (c_by - kd * g_by);
+        let m = m + (kd + sd * free) * g_by + c_by;
+        (n - r * m) / denominator
+    };
+    [
+        r,
+        slope(2.0 * (kd + sd), [-under * g, g]),
+        slope(2.0 * kd, [free * g, free * g]),
+    ]
+}
+
 /// Reflectance of an opaque layer: 1/(1 + q + √(q² + 2q)), q = K/S; 0 where S = 0.
 #[must_use]
 pub fn opaque(k: f64, s: f64) -> f64 {
@@ -152,6 +187,34 @@ mod tests {
         }
         println!("worst {worst:e}");
         assert!(worst < 1e-6, "{worst:e}");
+    }
+
+    #[test]
+    fn slopes_of_a_film_are_those_of_differences() {
+        let mut worst = 0.0f64;
+        for kd in [1e-6, 1e-3, 0.02, 0.3, 2.0, 30.0] {
+            for sd in [1e-6, 1e-3, 0.05, 0.7, 4.0, 50.0] {
+                for under in [0.0, 0.3, 0.95] {
+                    let [r, by_k, by_s] = over_with_slopes(kd, sd, under);
+                    let at = |kd: f64, sd: f64| over(film(kd, sd), under);
+                    assert!((r - at(kd, sd)).abs() < 1e-13, "{kd} {sd} {under}");
+                    let [dk, ds] = [kd, sd].map(|v| (1e-4 * v).max(2e-7));
+                    let differences = [
+                        (at(kd + dk, sd) - at(kd - dk, sd)) / (2.0 * dk),
+                        (at(kd, sd + ds) - at(kd, sd - ds)) / (2.0 * ds),
+                    ];
+                    for (slope, difference) in [by_k, by_s].into_iter().zip(differences) {
+                        let off = (slope - difference).abs() / (difference.abs() + 1e-4);
+                        worst = worst.max(off);
+                        let faulty = (1.001 * slope - difference).abs();
+                        let seen = faulty / (difference.abs() + 1e-4) > 5e-5;
+                        assert!(seen || slope.abs() < 1e-5, "a fault would pass");
+                    }
+                }
+            }
+        }
+        println!("worst {worst:e}");
+        assert!(worst < 5e-5, "{worst:e}");
     }
 
     #[test]

@@ -21,6 +21,7 @@
 //! | [`search`] | minima of functions of one and two variables |
 //! | [`matching`] | mixtures that come nearest to a colour |
 //! | [`studio`] | all of the above for the paints, ground and light of one painting |
+//! | [`upsampling`] | reflectances that have a given colour |
 //! | [`backend`] | a studio's films for many tiles at once, on whatever computes them |
 
 pub mod backend;
@@ -42,6 +43,7 @@ pub mod spectrum;
 pub mod spectrum_file;
 pub mod studio;
 pub mod surface;
+pub mod upsampling;
 pub mod viewing;
 
 pub use backend::{BackendError, CpuFilms, FilmBackend};
@@ -51,4 +53,5 @@ pub use paints::{Paint, PaintError, PaintLibrary};
 pub use rule::SamplingRule;
 pub use spectrum::Spectrum;
 pub use studio::{FilmPlanes, RuleKind, Studio, StudioSettings, Under};
+pub use upsampling::{Smooth, Upsampler};
 pub use viewing::{Seen, Viewing};

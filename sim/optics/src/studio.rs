@@ -285,6 +285,12 @@ impl Studio {
         self.white
     }
 
+    /// From XYZ to linear sRGB.
+    #[must_use]
+    pub fn to_rgb(&self) -> &Matrix {
+        &self.to_rgb
+    }
+
     /// Linear sRGB, without gloss, of one film over what lies under it. `rgb` are the planes of red,
     /// green and blue, as long as those of the paints.
     ///

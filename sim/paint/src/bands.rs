@@ -245,12 +245,14 @@ impl<'a> Banded<'a> {
     /// `bakery`, for the next that lies on the same dry layers.
     #[must_use]
     pub fn shown(&self, id: TileId, tile: Option<&Tile>, bakery: &mut Bakery) -> DisplayTile {
-        let ground = self.bare.ground.as_slice();
+        let ground = self.bare.ground.tile(id);
         let baked = tile.and_then(Tile::dry).map(|stack| {
             let mut alone = CpuFilms::with_threads(NonZero::<usize>::MIN);
-            bakery.planes((self.look, &mut alone), 0, id, (stack, ground))
+            bakery.planes((self.look, &mut alone), 0, id, (stack, ground.under()))
         });
-        let under = baked.as_deref().map_or(Under::Even(ground), Under::Planes);
+        let under = baked
+            .as_deref()
+            .map_or_else(|| ground.under(), Under::Planes);
         let films = WetFilms::of(tile);
         let unlit = films.shade(&self.look.studio, under);
         DisplayTile::on(self.bare, id, tile, (&films, unlit), self.look.thinner)

@@ -7,6 +7,7 @@ use std::sync::Arc;
 use maulstick_optics::{FilmPlanes, Studio, Under};
 use maulstick_types::paint::TILE;
 
+use crate::ground::Ground;
 use crate::painting::WELL_M;
 use crate::relief::Relief;
 use crate::tile::TileId;
@@ -30,8 +31,8 @@ pub const CLEANER_RGB: [f32; 3] = [0.30, 0.37, 0.40];
 /// A surface without what was painted on it.
 #[derive(Clone, Debug)]
 pub struct Bare {
-    /// Internal reflectance of the ground at the studio's wavelengths.
-    pub ground: Vec<f32>,
+    /// What it is primed with.
+    pub ground: Ground,
     /// Heights of what lies under the paint.
     pub relief: Arc<Relief>,
     /// Its wells.

@@ -11,7 +11,8 @@
 //! | [`page`] | what of them is in memory |
 //! | [`head`], [`path`] | the head of a brush in space, and its motion cut into steps |
 //! | [`dry`] | what has dried, layer over layer |
-//! | [`tooth`], [`relief`] | what catches paint |
+//! | [`tooth`], [`tooth_picture`], [`relief`] | what catches paint |
+//! | [`embedded`], [`ground`] | pictures that a painting holds, and what lies under the paint |
 //! | [`model`], [`impasto`] | paint models |
 //! | [`transfer`] | how much goes between brush and canvas |
 //! | [`load`], [`ledger`], [`history`] | what a brush carries, the books, undo |
@@ -26,6 +27,8 @@ pub mod bands;
 pub mod bare;
 pub mod display;
 pub mod dry;
+pub mod embedded;
+pub mod ground;
 pub mod head;
 pub mod history;
 pub mod impasto;
@@ -47,6 +50,7 @@ pub mod setup;
 pub mod store;
 pub mod tile;
 pub mod tooth;
+pub mod tooth_picture;
 pub mod transfer;
 pub mod window;
 

@@ -115,12 +115,12 @@ impl Look {
         })
     }
 
-    /// Internal reflectances of a stack over an even ground, from `baked`, those of the stack's lower
-    /// part `known`, on.
+    /// Internal reflectances of a stack over a ground, from `baked`, those of the stack's lower part
+    /// `known`, on.
     fn bake(
         &self,
         stack: &DryStack,
-        ground: &[f32],
+        ground: Under<'_>,
         known: Option<(&DryStack, &[f32])>,
         backend: &mut dyn FilmBackend,
     ) -> Vec<f32> {
@@ -141,7 +141,7 @@ impl Look {
         for link in above.iter().rev() {
             let under = baked
                 .as_ref()
-                .map_or(Under::Even(ground), |planes| Under::Planes(planes));
+                .map_or(ground, |planes| Under::Planes(planes));
             baked = Some(self.with_layer(link.layer(), under, backend));
         }
         baked.unwrap_or_default()
@@ -191,7 +191,7 @@ impl Bakery {
         (look, backend): (&Look, &mut dyn FilmBackend),
         surface: u32,
         id: TileId,
-        (stack, ground): (&Arc<DryStack>, &[f32]),
+        (stack, ground): (&Arc<DryStack>, Under<'_>),
     ) -> Arc<[f32]> {
         if self.generation != look.generation {
             self.kept.clear();
@@ -258,25 +258,25 @@ mod tests {
     #[test]
     fn a_stack_that_grew_is_baked_as_one_that_is_baked_anew() {
         let look = look();
-        let ground = vec![0.9; look.studio.wavelengths()];
+        let even = vec![0.9; look.studio.wavelengths()];
+        let ground = Under::Even(&even);
         let id = TileId { x: 0, y: 0 };
         let first = DryStack::over(None, layer(1, 0, 9000));
         let second = DryStack::over(Some(Arc::clone(&first)), layer(2, 1, 4000));
         let mut grown = Bakery::default();
-        grown.planes((&look, &mut CpuFilms::new()), 0, id, (&first, &ground));
+        grown.planes((&look, &mut CpuFilms::new()), 0, id, (&first, ground));
         assert!(!grown.holds(&look, 0, id, &second));
-        let one = grown.planes((&look, &mut CpuFilms::new()), 0, id, (&second, &ground));
-        let two =
-            Bakery::default().planes((&look, &mut CpuFilms::new()), 0, id, (&second, &ground));
+        let one = grown.planes((&look, &mut CpuFilms::new()), 0, id, (&second, ground));
+        let two = Bakery::default().planes((&look, &mut CpuFilms::new()), 0, id, (&second, ground));
         assert!(one == two && grown.holds(&look, 0, id, &second));
         // Back to the older stack, as an undo goes.
-        let back = grown.planes((&look, &mut CpuFilms::new()), 0, id, (&first, &ground));
+        let back = grown.planes((&look, &mut CpuFilms::new()), 0, id, (&first, ground));
         assert!(
             back == Bakery::default().planes(
                 (&look, &mut CpuFilms::new()),
                 0,
                 id,
-                (&first, &ground)
+                (&first, ground)
             )
         );
         assert!(back != one);
@@ -285,11 +285,12 @@ mod tests {
     #[test]
     fn opacity_scales_the_optical_thickness_and_is_baked_anew() {
         let mut look = look();
-        let ground = vec![0.9; look.studio.wavelengths()];
+        let even = vec![0.9; look.studio.wavelengths()];
+        let ground = Under::Even(&even);
         let id = TileId { x: 0, y: 0 };
         let stack = DryStack::over(None, layer(7, 0, 8000));
         let mut bakery = Bakery::default();
-        let full = bakery.planes((&look, &mut CpuFilms::new()), 0, id, (&stack, &ground));
+        let full = bakery.planes((&look, &mut CpuFilms::new()), 0, id, (&stack, ground));
         let set = |look: &mut Look, opacity: f32| {
             look.set_layers(&[Layer {
                 number: 7,
@@ -299,11 +300,11 @@ mod tests {
         };
         set(&mut look, 0.5);
         assert!(!bakery.holds(&look, 0, id, &stack));
-        let half = bakery.planes((&look, &mut CpuFilms::new()), 0, id, (&stack, &ground));
+        let half = bakery.planes((&look, &mut CpuFilms::new()), 0, id, (&stack, ground));
         let thinner = DryStack::over(None, layer(7, 0, 4000));
         set(&mut look, 1.0);
         let same =
-            Bakery::default().planes((&look, &mut CpuFilms::new()), 0, id, (&thinner, &ground));
+            Bakery::default().planes((&look, &mut CpuFilms::new()), 0, id, (&thinner, ground));
         assert!(
             half.iter()
                 .zip(same.iter())
@@ -315,7 +316,7 @@ mod tests {
                 .any(|(a, b)| (a - b).abs() > 1e-2)
         );
         set(&mut look, 0.0);
-        let none = bakery.planes((&look, &mut CpuFilms::new()), 0, id, (&stack, &ground));
+        let none = bakery.planes((&look, &mut CpuFilms::new()), 0, id, (&stack, ground));
         assert!(
             none.iter().all(|r| (r - 0.9).abs() < 1e-6),
             "the ground shows"

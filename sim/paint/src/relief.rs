@@ -5,14 +5,23 @@ use std::sync::{Arc, Mutex, PoisonError};
 
 use crate::tile::{TILE_CELLS, TileId};
 use crate::tooth::Tooth;
+use crate::tooth_picture::PictureTooth;
 
 /// Heights that are kept; beyond that they are computed anew.
 const KEPT: usize = 1024;
 
+/// Where heights come from.
+#[derive(Debug)]
+enum Shape {
+    Flat,
+    Tooth(Tooth),
+    Picture(PictureTooth),
+}
+
 /// What catches paint on a surface.
 #[derive(Debug)]
 pub struct Relief {
-    tooth: Option<Tooth>,
+    shape: Shape,
     cell_m: f64,
     tiles: Mutex<BTreeMap<TileId, Arc<[f32]>>>,
 }
@@ -21,18 +30,24 @@ impl Relief {
     /// The relief of a bare ground.
     #[must_use]
     pub fn new(tooth: Tooth, cell_m: f64) -> Self {
-        Self {
-            tooth: Some(tooth),
-            cell_m,
-            tiles: Mutex::default(),
-        }
+        Self::of(Shape::Tooth(tooth), cell_m)
+    }
+
+    /// The relief of a bare ground whose tooth is a picture.
+    #[must_use]
+    pub fn pictured(tooth: PictureTooth, cell_m: f64) -> Self {
+        Self::of(Shape::Picture(tooth), cell_m)
     }
 
     /// A surface without tooth.
     #[must_use]
     pub fn flat(cell_m: f64) -> Self {
+        Self::of(Shape::Flat, cell_m)
+    }
+
+    fn of(shape: Shape, cell_m: f64) -> Self {
         Self {
-            tooth: None,
+            shape,
             cell_m,
             tiles: Mutex::default(),
         }
@@ -51,9 +66,10 @@ impl Relief {
         if let Some(heights) = tiles.get(&id) {
             return Arc::clone(heights);
         }
-        let heights: Arc<[f32]> = match &self.tooth {
-            Some(tooth) => tooth.tile(id).into(),
-            None => vec![0.0; TILE_CELLS].into(),
+        let heights: Arc<[f32]> = match &self.shape {
+            Shape::Tooth(tooth) => tooth.tile(id).into(),
+            Shape::Picture(tooth) => tooth.tile(id).into(),
+            Shape::Flat => vec![0.0; TILE_CELLS].into(),
         };
         if tiles.len() >= KEPT {
             // Whichever way work goes over the surface, what is farthest is not what comes next.

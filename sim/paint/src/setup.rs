@@ -4,9 +4,12 @@ use maulstick_optics::{PaintLibrary, Spectrum};
 use maulstick_types::scene::{CANVAS, Light, PALETTE, Scene, Surface, Well, WellKind};
 use maulstick_types::{Mixture, Pose};
 
+use crate::embedded::{Embedded, IMAGE};
 use crate::light::studio_settings;
 use crate::painting::PaintRefusal;
+use crate::relief::Relief;
 use crate::tooth::Tooth;
+use crate::tooth_picture::PictureTooth;
 
 /// Grounds by name: internal reflectance, the same at every wavelength. Acrylic gesso is titanium
 /// white and chalk in a lean binder.
@@ -42,9 +45,10 @@ pub struct PaintingSetup {
     pub cells: [u32; 2],
     /// Side of a cell, m.
     pub cell_m: f64,
-    /// Name of the ground, one of [`GROUNDS`].
+    /// Name of the ground: one of [`GROUNDS`], or `image:` and the hash of a picture.
     pub ground: String,
-    /// Name of the tooth.
+    /// Name of the tooth: one of [`Tooth::names`], or a picture's
+    /// ([`ToothName`](crate::tooth_picture::ToothName)).
     pub tooth: String,
     /// Seed of the tooth.
     pub tooth_seed: u64,
@@ -54,6 +58,8 @@ pub struct PaintingSetup {
     pub light: Light,
     /// Factor of the eye that looks at it; none: such that the bare canvas does not clip.
     pub exposure: Option<f64>,
+    /// The pictures that its ground and its tooth may be made of.
+    pub embedded: Embedded,
 }
 
 impl Default for PaintingSetup {
@@ -70,6 +76,7 @@ impl Default for PaintingSetup {
                 .collect(),
             light: Light::default(),
             exposure: None,
+            embedded: Embedded::default(),
         }
     }
 }
@@ -92,8 +99,8 @@ impl PaintingSetup {
                 "choose .01 to 10 mm",
             ));
         }
-        ground_reflectance(&self.ground)?;
-        tooth_called(&self.tooth, self.tooth_seed, self.cell_m)?;
+        check_ground(&self.ground, &self.embedded)?;
+        relief_called(&self.tooth, self.tooth_seed, self.cell_m, &self.embedded)?;
         studio_settings(&self.light)?;
         for mixture in &self.wells {
             library.check(mixture).map_err(PaintRefusal::paint)?;
@@ -175,7 +182,18 @@ impl PaintingSetup {
     }
 }
 
-/// The internal reflectance of a ground.
+/// Checks that there is a ground called `name`.
+///
+/// # Errors
+/// [`PaintRefusal`] with what there is.
+pub fn check_ground(name: &str, embedded: &Embedded) -> Result<(), PaintRefusal> {
+    match name.strip_prefix(IMAGE) {
+        Some(hash) => embedded.colours(hash).map(drop),
+        None => ground_reflectance(name).map(drop),
+    }
+}
+
+/// The internal reflectance of a ground that is the same everywhere.
 ///
 /// # Errors
 /// [`PaintRefusal`] with the names that there are.
@@ -193,17 +211,27 @@ pub fn ground_reflectance(name: &str) -> Result<Spectrum, PaintRefusal> {
         })
 }
 
-/// The tooth called `name` on cells of `cell_m`.
+/// The relief of a tooth called `name` on cells of `cell_m`.
 ///
 /// # Errors
 /// [`PaintRefusal`] with the names that there are.
-pub fn tooth_called(name: &str, seed: u64, cell_m: f64) -> Result<Tooth, PaintRefusal> {
-    Tooth::new(name, seed, cell_m).ok_or_else(|| {
+pub fn relief_called(
+    name: &str,
+    seed: u64,
+    cell_m: f64,
+    embedded: &Embedded,
+) -> Result<Relief, PaintRefusal> {
+    if name.starts_with(IMAGE) {
+        let tooth = PictureTooth::called(name, cell_m, embedded)?;
+        return Ok(Relief::pictured(tooth, cell_m));
+    }
+    let tooth = Tooth::new(name, seed, cell_m).ok_or_else(|| {
         PaintRefusal::new(
             format!("there is no tooth called '{name}'"),
             &format!("choose one of {}", Tooth::names()),
         )
-    })
+    })?;
+    Ok(Relief::new(tooth, cell_m))
 }
 
 #[cfg(test)]
@@ -246,5 +274,9 @@ mod tests {
         let error = check(|s| s.tooth = "line".into()).expect_err("unknown");
         assert!(error.help.contains("linen"));
         assert!(check(|s| s.wells = vec![Mixture::pure("Blue")]).is_err());
+        let error = check(|s| s.ground = "image:00".into()).expect_err("no hash");
+        assert!(error.help.contains("SHA-256"));
+        let error = check(|s| s.tooth = "image:00".into()).expect_err("no size");
+        assert!(error.help.contains("80um"));
     }
 }

@@ -164,7 +164,7 @@ fn the_bare_canvas_does_not_clip_at_the_start() {
             ..Light::default()
         });
         let bare = painting.bare(CANVAS).expect("a canvas");
-        let rgb = painting.look().studio.colour(&[], &bare.ground);
+        let rgb = painting.look().studio.colour(&[], bare.ground.mean());
         let light = &painting.scene().light;
         let most = rgb
             .iter()
@@ -236,8 +236,8 @@ fn a_flat_surface_shows_its_colour_and_the_colour_of_its_light() {
         let painting = painting(light);
         let bare = painting.bare(CANVAS).expect("a canvas");
         let studio = &painting.look().studio;
-        let read = studio.colour(&[], &bare.ground);
-        let [r, g, b] = WetFilms::of(None).shade(studio, Under::Even(&bare.ground));
+        let read = studio.colour(&[], bare.ground.mean());
+        let [r, g, b] = WetFilms::of(None).shade(studio, Under::Even(bare.ground.mean()));
         let spot = Spot {
             unlit: [r[0], g[0], b[0]],
             gloss: 0.7,

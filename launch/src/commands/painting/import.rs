@@ -1,10 +1,165 @@
-//! `maulstick painting import`.
-use clap::Args;
-use maulstick_rig::Fault;
-/// Options.
+//! `maulstick painting import`: a picture as underpainting, as ground or as tooth.
+
+use std::path::PathBuf;
+
+use clap::{Args, ValueEnum};
+use maulstick_exchange::underpaint::underpaint;
+use maulstick_exchange::{Image, ImportError, Support, embed};
+use maulstick_nodes::Keeper;
+use maulstick_paint::painting::Wetness;
+use maulstick_paint::{Painting, Sequencer};
+use maulstick_rig::{Fault, RigConfig};
+use maulstick_types::command::Command;
+use maulstick_types::scene::{CANVAS, WellKind};
+
+use crate::commands::say;
+use crate::document::{go_on, there, wrong};
+use crate::performance::refused;
+
+/// What becomes of a picture.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+enum Purpose {
+    /// Paint, mixed for each cell so that its colour comes nearest
+    Underpainting,
+    /// What the paint lies on
+    Ground,
+    /// Relief that catches paint: white is high
+    Tooth,
+}
+
+/// Options of `maulstick painting import`.
 #[derive(Args, Clone, Debug)]
-pub struct ImportOptions {}
-/// Runs.
-pub fn run(_: &ImportOptions) -> Result<i32, Fault> {
+pub struct ImportOptions {
+    /// The painting
+    file: PathBuf,
+    /// The picture: PNG, JPEG or TIFF
+    picture: PathBuf,
+    /// What it becomes
+    #[arg(long = "as", value_name = "PURPOSE", default_value = "underpainting")]
+    purpose: Purpose,
+    /// Thickness of an underpainting, µm
+    #[arg(long, default_value_t = 60.0, allow_negative_numbers = true)]
+    um: f64,
+    /// An underpainting is wet, as it is if nothing else is said
+    #[arg(long, conflicts_with = "dry")]
+    wet: bool,
+    /// An underpainting is dry: a layer of this name
+    #[arg(long, value_name = "LAYER", num_args = 0..=1, default_missing_value = "underpainting")]
+    dry: Option<String>,
+    /// A paint to mix it of; give it several times. Those in use in the painting if absent, in a new
+    /// painting those of its palette
+    #[arg(long = "paint", value_name = "NAME")]
+    paints: Vec<String>,
+    /// Width of a tooth's picture on the canvas, mm; it is repeated beyond. That of the canvas if
+    /// absent
+    #[arg(long, value_name = "MM", allow_negative_numbers = true)]
+    width_mm: Option<f64>,
+    /// Depth of a tooth from white to black, µm
+    #[arg(long, default_value_t = 80.0, allow_negative_numbers = true)]
+    depth_um: f64,
+}
+
+/// Takes a picture into a painting.
+///
+/// # Errors
+/// A [`Fault`] where picture or painting cannot be read; the painting is as it was then.
+pub(super) fn run(options: &ImportOptions) -> Result<i32, Fault> {
+    let path = &options.file;
+    there(path)?;
+    let image = Image::open(&options.picture).map_err(|error| options.fault(&error))?;
+    let (document, mut sequencer, since) = go_on(&RigConfig::default(), path)?;
+    let keeper = Keeper::new(document, &mut sequencer, since);
+    let done = match options.purpose {
+        Purpose::Underpainting => options.paint(&mut sequencer, &image),
+        Purpose::Ground => options.ground(&mut sequencer, &image),
+        Purpose::Tooth => options.tooth(&mut sequencer, &image),
+    };
+    let closed = keeper.close(&mut sequencer);
+    let said = done?;
+    closed.map_err(|error| wrong(path, &error))?;
+    say!("{}: {said}", path.display());
     Ok(0)
+}
+
+impl ImportOptions {
+    fn fault(&self, error: &ImportError) -> Fault {
+        Fault::usage(error.to_string()).at(self.picture.display().to_string())
+    }
+
+    fn paint(&self, sequencer: &mut Sequencer, image: &Image) -> Result<String, Fault> {
+        let painting = sequencer.painting_mut();
+        let paints = match self.paints.is_empty() {
+            true => paints_at_hand(painting),
+            false => self.paints.clone(),
+        };
+        let wrong = |error: ImportError| self.fault(&error);
+        let support = Support::of(painting, CANVAS, &paints).map_err(wrong)?;
+        let bar = super::bar("mixing");
+        let found = underpaint(&support, image, self.um * 1e-6, &mut super::tell(&bar));
+        bar.finish_and_clear();
+        let found = found.map_err(wrong)?;
+        let wetness = match &self.dry {
+            Some(name) => Wetness::Dry { name: name.clone() },
+            None => Wetness::Wet,
+        };
+        let painted = painting.underpaint(CANVAS, found.paints(), &wetness, found.tiles());
+        painted.map_err(refused)?;
+        let likeness = found.likeness();
+        Ok(format!(
+            "underpainted with {} paints; ΔE00 {:.2} in the mean, {:.1} for 95 %, {:.1} at most",
+            found.paints().len(),
+            likeness.mean,
+            likeness.p95,
+            likeness.max
+        ))
+    }
+
+    fn ground(&self, sequencer: &mut Sequencer, image: &Image) -> Result<String, Fault> {
+        let cells = sequencer.painting().scene().surfaces[0].cells;
+        let bytes = embed::ground(image, cells).map_err(|error| self.fault(&error))?;
+        let hash = sequencer.painting_mut().embed(bytes).map_err(refused)?;
+        let command = Command::Ground {
+            surface: CANVAS,
+            ground: format!("image:{hash}"),
+        };
+        sequencer.ask(command).map_err(refused)?;
+        Ok("the picture is its ground".to_owned())
+    }
+
+    fn tooth(&self, sequencer: &mut Sequencer, image: &Image) -> Result<String, Fault> {
+        let canvas = &sequencer.painting().scene().surfaces[0];
+        let cell_m = canvas.cell_m;
+        let width_mm = self
+            .width_mm
+            .unwrap_or(f64::from(canvas.cells[0]) * cell_m * 1e3);
+        let bytes = embed::tooth(image, width_mm, cell_m).map_err(|error| self.fault(&error))?;
+        let hash = sequencer.painting_mut().embed(bytes).map_err(refused)?;
+        let command = Command::Tooth {
+            surface: CANVAS,
+            tooth: format!("image:{hash}@{width_mm}mm,{}um", self.depth_um),
+            seed: 1,
+        };
+        sequencer.ask(command).map_err(refused)?;
+        Ok(format!(
+            "the picture is its tooth, {} µm deep",
+            self.depth_um
+        ))
+    }
+}
+
+/// The paints in use; in a new painting those that lie on its palette.
+fn paints_at_hand(painting: &Painting) -> Vec<String> {
+    let scene = painting.scene();
+    let mut names: Vec<String> = scene.paints.iter().map(|slot| slot.name.clone()).collect();
+    if names.is_empty() {
+        let wells = scene.surfaces.iter().flat_map(|surface| &surface.wells);
+        for well in wells {
+            if let WellKind::Paint { mixture } = &well.kind {
+                names.extend(mixture.parts.iter().map(|part| part.paint.clone()));
+            }
+        }
+    }
+    names.sort();
+    names.dedup();
+    names
 }

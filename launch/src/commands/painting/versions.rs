@@ -11,7 +11,7 @@ use serde_json::json;
 
 use crate::commands::session::{PAINT, Session, Target};
 use crate::commands::{print_json, say};
-use crate::document::{go_on, wrong};
+use crate::document::{go_on, there, wrong};
 use crate::performance::refused;
 
 use super::compare::compare;
@@ -89,10 +89,8 @@ pub(super) fn run(options: &VersionsOptions) -> Result<i32, Fault> {
             options.json,
         );
     };
-    let (document, mut sequencer, since) = match path.exists() {
-        true => go_on(&RigConfig::default(), path)?,
-        false => return Err(wrong(path, &maulstick_document::DocumentError::Missing)),
-    };
+    there(path)?;
+    let (document, mut sequencer, since) = go_on(&RigConfig::default(), path)?;
     let keeper = maulstick_nodes::Keeper::new(document, &mut sequencer, since);
     let done = sequencer.ask(command).map_err(refused);
     keeper

@@ -123,7 +123,8 @@ impl Pyramid {
                     .dry_on(id)
                     .is_some_and(|now| Arc::ptr_eq(now, &stack))
             {
-                let over = (&stack, surface.bare.ground.as_slice());
+                let ground = surface.bare.ground.tile(id);
+                let over = (&stack, ground.under());
                 let sight = (&**look, &mut self.films as &mut dyn FilmBackend);
                 self.bakery.planes(sight, number, id, over);
             }
@@ -163,23 +164,27 @@ impl Pyramid {
     pub(super) fn shade(&mut self, look: &Look, number: u32, surface: &FedSurface, ids: &[TileId]) {
         self.turn_to(look);
         let painted = |id: &TileId| surface.tiles.get(id).and_then(|(_, tile)| tile.as_deref());
-        let ground = surface.bare.ground.as_slice();
+        let grounds: Vec<_> = ids.iter().map(|id| surface.bare.ground.tile(*id)).collect();
         let mut baked = Vec::with_capacity(ids.len());
-        for id in ids {
+        for (id, ground) in ids.iter().zip(&grounds) {
             baked.push(painted(id).and_then(Tile::dry).map(|stack| {
                 let sight = (look, &mut self.films as &mut dyn FilmBackend);
-                self.bakery.planes(sight, number, *id, (stack, ground))
+                self.bakery
+                    .planes(sight, number, *id, (stack, ground.under()))
             }));
         }
         let films: Vec<WetFilms> = ids.iter().map(|id| WetFilms::of(painted(id))).collect();
         let planes: Vec<Vec<(usize, &[f32])>> = films.iter().map(WetFilms::planes).collect();
         let batch: Vec<FilmPlanes<'_>> = planes
             .iter()
-            .zip(&baked)
-            .map(|(paints, baked)| FilmPlanes {
+            .zip(baked.iter().zip(&grounds))
+            .map(|(paints, (baked, ground))| FilmPlanes {
                 paints,
                 opacity: 1.0,
-                under: baked.as_deref().map_or(Under::Even(ground), Under::Planes),
+                under: match baked {
+                    Some(baked) => Under::Planes(baked),
+                    None => ground.under(),
+                },
             })
             .collect();
         let colours = match self.films.shade(&look.studio, &batch) {
@@ -202,7 +207,7 @@ impl Pyramid {
     fn outside(&mut self, look: &Look, number: u32, surface: &FedSurface) -> Arc<DisplayTile> {
         let bare = || {
             let films = WetFilms::default();
-            let rgb = films.shade(&look.studio, Under::Even(&surface.bare.ground));
+            let rgb = films.shade(&look.studio, Under::Even(surface.bare.ground.mean()));
             Arc::new(DisplayTile::of(None, (&films, rgb), None))
         };
         Arc::clone(self.outside.entry(number).or_insert_with(bare))

@@ -9,6 +9,8 @@ use maulstick_types::decode;
 use maulstick_optics::backend::{CpuFilms, FilmBackend};
 use maulstick_optics::{Illuminant, PaintLibrary, Studio, StudioSettings, Under};
 use maulstick_paint::display::{DisplayTile, WetFilms};
+use maulstick_paint::embedded::Embedded;
+use maulstick_paint::ground::Ground;
 use maulstick_paint::look::{Bakery, Look};
 use maulstick_paint::relief::Relief;
 use maulstick_paint::tile::TILE_CELLS;
@@ -37,7 +39,7 @@ fn rig_of(cells: [u32; 2]) -> Rig {
     {
         let mut fed = feed.lock();
         let bare = Arc::new(Bare {
-            ground: vec![0.95; look.studio.wavelengths()],
+            ground: Ground::Even(vec![0.95; look.studio.wavelengths()]),
             relief: Arc::new(Relief::flat(2.5e-4)),
             wells: Vec::new(),
         });
@@ -193,10 +195,11 @@ fn dried(wet: f32, dry: f32) -> Arc<Tile> {
 fn exported(rig: &Rig, tile: &Tile) -> [Vec<f32>; 3] {
     let fed = rig.feed.lock();
     let look = fed.look.as_ref().expect("a look");
-    let ground = fed.surfaces[&0].bare.ground.as_slice();
+    let id = TileId { x: 0, y: 0 };
+    let ground = fed.surfaces[&0].bare.ground.tile(id);
     let stack = tile.dry().expect("dried");
     let sight = (&**look, &mut CpuFilms::new() as &mut dyn FilmBackend);
-    let baked = Bakery::default().planes(sight, 0, TileId { x: 0, y: 0 }, (stack, ground));
+    let baked = Bakery::default().planes(sight, 0, id, (stack, ground.under()));
     WetFilms::of(Some(tile)).shade(&look.studio, Under::Planes(&baked))
 }
 
@@ -259,4 +262,53 @@ fn under_another_light_everything_comes_anew_as_an_export_has_it() {
         ..request(lamp.version, 5, 0)
     };
     assert_eq!(ask(&mut rig, &asked), None, "it waits for news");
+}
+
+/// A ground of a picture that goes from dark to light across the surface.
+fn pictured(look: &Look, cells: [u32; 2]) -> Ground {
+    let mut bytes = Vec::new();
+    let mut encoder = png::Encoder::new(&mut bytes, cells[0], cells[1]);
+    encoder.set_color(png::ColorType::Rgb);
+    let row = (0..cells[0]).flat_map(|x| [60 + (x / 2) as u8, 90, 200 - (x / 2) as u8]);
+    let raw: Vec<u8> = (0..cells[1]).flat_map(|_| row.clone()).collect();
+    let mut writer = encoder.write_header().expect("a header");
+    writer.write_image_data(&raw).expect("pixels");
+    writer.finish().expect("whole");
+    let mut embedded = Embedded::default();
+    let hash = embedded.add(bytes.into()).expect("taken");
+    Ground::called(&format!("image:{hash}"), cells, &look.studio, &embedded).expect("a ground")
+}
+
+#[test]
+fn a_picture_is_the_ground_of_each_tile_bare_and_painted() {
+    let cells = [200, 130];
+    let mut rig = rig_of(cells);
+    let look = look_under("D65");
+    let tile = dried(300.0, 900.0);
+    let place = TileId { x: 0, y: 0 };
+    {
+        let mut fed = rig.feed.lock();
+        let surface = fed.surfaces.get_mut(&0).expect("a surface");
+        Arc::make_mut(&mut surface.bare).ground = pictured(&look, cells);
+        surface.tiles.insert(place, (7, Some(Arc::clone(&tile))));
+        fed.look = Some(Arc::new(look.clone()));
+    }
+    let reply = ask(&mut rig, &request(0, 0, 0)).expect("at once");
+    let shown = |x: u32| {
+        let found = reply.tiles.iter().find(|tile| (tile.x, tile.y) == (x, 0));
+        DisplayTile::from_bytes(&found.expect("a tile").planes).expect("whole")
+    };
+    let differ = |one: &[Vec<f32>; 3], other: &[Vec<f32>; 3]| {
+        let cells = one.iter().flatten().zip(other.iter().flatten());
+        cells.map(|(a, b)| (a - b).abs()).fold(0.0, f32::max)
+    };
+    assert!(differ(&shown(0).rgb, &exported(&rig, &tile)) < 1e-3);
+    let fed = rig.feed.lock();
+    let ground = &fed.surfaces[&0].bare.ground;
+    let films = WetFilms::default();
+    let bare = |id: TileId| films.shade(&look.studio, ground.tile(id).under());
+    assert!(differ(&shown(2).rgb, &bare(TileId { x: 2, y: 0 })) < 1e-3);
+    assert!(differ(&shown(2).rgb, &bare(TileId { x: 1, y: 0 })) > 1e-2);
+    let even = films.shade(&look.studio, Under::Even(ground.mean()));
+    assert!(differ(&shown(2).rgb, &even) > 1e-2, "a fault would pass");
 }

@@ -102,7 +102,7 @@ fn the_frames_know_a_paint_as_soon_as_a_tile_has_it() {
     let painted = surface.tiles.values().filter_map(|(_, tile)| tile.as_ref());
     // Shading a paint that the studio does not have is out of bounds.
     let shown = painted.map(|tile| {
-        WetFilms::of(Some(tile)).shade(&look.studio, Under::Even(&surface.bare.ground))
+        WetFilms::of(Some(tile)).shade(&look.studio, Under::Even(surface.bare.ground.mean()))
     });
     assert!(shown.count() > 0, "nothing was painted");
 }

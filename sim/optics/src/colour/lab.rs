@@ -2,6 +2,8 @@
 
 use maulstick_num::{atan2, cos, exp, powf, sin};
 
+use super::matrix::Matrix;
+
 /// CIE 1976 L*a*b* relative to `white` (both Y = 1 for the perfect diffuser).
 #[must_use]
 pub fn lab(xyz: [f64; 3], white: [f64; 3]) -> [f64; 3] {
@@ -28,10 +30,6 @@ pub fn delta_e_2000(one: [f64; 3], two: [f64; 3]) -> f64 {
         }
     };
     let chroma = |a: f64, b: f64| (a * a + b * b).sqrt();
-    let seventh = |c: f64| {
-        let c7 = powf(c, 7.0);
-        (c7 / (c7 + 6_103_515_625.0)).sqrt()
-    };
     let mean_c = 0.5 * (chroma(one[1], one[2]) + chroma(two[1], two[2]));
     let stretch = 1.0 + 0.5 * (1.0 - seventh(mean_c));
     let polar = |lab: [f64; 3]| {
@@ -62,6 +60,13 @@ pub fn delta_e_2000(one: [f64; 3], two: [f64; 3]) -> f64 {
     } else {
         0.5 * (h1 + h2 - 360.0)
     };
+    let [sl, sc, sh, rt] = scales([mean_l, mean_c, mean_h]);
+    let (l, c, h) = (dl / sl, dc / sc, big_dh / sh);
+    (l * l + c * c + h * h + rt * c * h).sqrt()
+}
+
+/// S_L, S_C, S_H and R_T at a mean lightness, chroma and hue in degrees.
+fn scales([mean_l, mean_c, mean_h]: [f64; 3]) -> [f64; 4] {
     let cosine = |factor: f64, shift: f64| cos((factor * mean_h + shift).to_radians());
     let t = 1.0 - 0.17 * cosine(1.0, -30.0) + 0.24 * cosine(2.0, 0.0) + 0.32 * cosine(3.0, 6.0)
         - 0.20 * cosine(4.0, -63.0);
@@ -72,8 +77,41 @@ pub fn delta_e_2000(one: [f64; 3], two: [f64; 3]) -> f64 {
     let sc = 1.0 + 0.045 * mean_c;
     let sh = 1.0 + 0.015 * mean_c * t;
     let rt = -2.0 * seventh(mean_c) * sin(rotation.to_radians());
-    let (l, c, h) = (dl / sl, dc / sc, big_dh / sh);
-    (l * l + c * c + h * h + rt * c * h).sqrt()
+    [sl, sc, sh, rt]
+}
+
+/// √(C⁷/(C⁷ + 25⁷)).
+fn seventh(c: f64) -> f64 {
+    let c7 = powf(c, 7.0);
+    (c7 / (c7 + 6_103_515_625.0)).sqrt()
+}
+
+/// The matrix W with which CIEDE2000 between `here` and a colour near it in Lab is the length of
+/// W·(difference): of lightness, of chroma, of hue.
+#[must_use]
+pub fn delta_e_2000_near(here: [f64; 3]) -> Matrix {
+    let [l, a, b] = here;
+    let stretch = 1.0 + 0.5 * (1.0 - seventh((a * a + b * b).sqrt()));
+    let chroma = (a * stretch * a * stretch + b * b).sqrt();
+    // Around grey chroma and hue count alike, whatever the hue.
+    let (cosine, sine) = match chroma > 0.0 {
+        true => (a * stretch / chroma, b / chroma),
+        false => (1.0, 0.0),
+    };
+    let hue = match chroma > 0.0 {
+        true => atan2(sine, cosine).to_degrees().rem_euclid(360.0),
+        false => 0.0,
+    };
+    let [sl, sc, sh, rt] = scales([l, chroma, hue]);
+    let along = [0.0, cosine * stretch / sc, sine / sc];
+    let across = [0.0, -sine * stretch / sh, cosine / sh];
+    // c² + h² + R_T·c·h as a sum of squares; |R_T| < 2.
+    let rest = (1.0 - 0.25 * rt * rt).sqrt();
+    [
+        [1.0 / sl, 0.0, 0.0],
+        [0, 1, 2].map(|i| along[i] + 0.5 * rt * across[i]),
+        across.map(|value| rest * value),
+    ]
 }
 
 #[cfg(test)]
@@ -95,6 +133,31 @@ mod tests {
             println!("{got:.4} expected {:.4}", v[6]);
             assert!((got - v[6]).abs() < 1e-4 && (got - back).abs() < 1e-9);
             assert!((got + 1e-3 - v[6]).abs() > 1e-4, "a fault would pass");
+        }
+    }
+
+    #[test]
+    fn near_a_colour_the_difference_is_a_length() {
+        use super::super::matrix::apply;
+        for here in [
+            [50.0, 2.0, -3.0],
+            [30.0, 20.0, -70.0],
+            [80.0, -40.0, 60.0],
+            [25.0, 0.0, 0.0],
+        ] {
+            let near = delta_e_2000_near(here);
+            for off in [[1e-3, 0.0, 0.0], [0.0, 1e-3, 5e-4], [3e-4, -7e-4, 9e-4]] {
+                let there = [0, 1, 2].map(|i| here[i] + off[i]);
+                let exact = delta_e_2000(here, there);
+                let seen = apply(&near, off);
+                let length = (seen[0] * seen[0] + seen[1] * seen[1] + seen[2] * seen[2]).sqrt();
+                println!("{here:?}: {length:e} for {exact:e}");
+                assert!((length - exact).abs() < 2e-3 * exact);
+                assert!(
+                    (1.01 * length - exact).abs() > 2e-3 * exact,
+                    "a fault would pass"
+                );
+            }
         }
     }
 

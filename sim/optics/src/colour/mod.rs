@@ -9,7 +9,7 @@ mod matrix;
 mod rgb;
 
 pub use adapt::{D50, adaptation, bradford};
-pub use lab::{delta_e_2000, lab};
+pub use lab::{delta_e_2000, delta_e_2000_near, lab};
 pub use matrix::{Matrix, apply, inverse, product, solve3};
 pub use rgb::{
     RgbSpace, SrgbCurve, SrgbTable, linear_srgb_as_it_is, srgb_decode, srgb_encode,

@@ -9,6 +9,7 @@ use maulstick_optics::{PaintLibrary, Studio};
 use super::lighting::paint_slot;
 use super::undo::makes;
 use super::{BrushTrack, Named, PaintRefusal, Painting, QUOTA, Sheet, bare};
+use crate::embedded::Embedded;
 use crate::head::Waypoint;
 use crate::history::{History, Place, Rest, Step};
 use crate::impasto::Impasto;
@@ -55,6 +56,8 @@ pub struct Restored {
     pub steps: Vec<Step>,
     /// Its versions.
     pub named: Vec<Named>,
+    /// The pictures that its grounds and teeth are made of, those of its history among them.
+    pub embedded: Embedded,
 }
 
 impl Painting {
@@ -67,7 +70,11 @@ impl Painting {
         let open_steps = self.history.open().map(|step| KeptOpen {
             step: step.id,
             tops: step.before.tops.clone(),
-            reached: step.reached.iter().map(|(surface, id)| [*surface, id.x, id.y]).collect(),
+            reached: step
+                .reached
+                .iter()
+                .map(|(surface, id)| [*surface, id.x, id.y])
+                .collect(),
         });
         let open_steps = open_steps.collect();
         steps.extend(open);
@@ -164,13 +171,14 @@ impl Painting {
             }
         }
         look.set_layers(&scene.layers);
+        let makers = (&library, &restored.embedded);
         let mut sheets = Vec::new();
         for surface in &scene.surfaces {
             sheets.push(Sheet {
                 id: surface.id,
                 cell_m: surface.cell_m,
                 store: TileStore::paged(surface.cells, &pager),
-                bare: Arc::new(bare(surface, &look.studio, &library, None)?),
+                bare: Arc::new(bare(surface, &look.studio, makers, None)?),
                 top: kept.tops.get(&surface.id).copied().unwrap_or(0.0),
             });
         }
@@ -189,8 +197,8 @@ impl Painting {
             let track = restored_track(&name, brush, load, &sheets)?;
             brushes.insert(name, track);
         }
-        let (open, steps) =
-            (restored.steps.into_iter()).partition(|step| kept.open_steps.contains(&step.id));
+        let (open, steps) = (restored.steps.into_iter())
+            .partition(|step| kept.open_steps.iter().any(|open| open.step == step.id));
         let rest = Rest {
             loads: restored.loads,
             ledger: kept.ledger.clone(),
@@ -218,6 +226,7 @@ impl Painting {
             library,
             look: Arc::new(look),
             sheets,
+            embedded: restored.embedded,
             brushes,
             model: Box::new(Impasto::default()),
             accounted: kept.ledger.clone(),

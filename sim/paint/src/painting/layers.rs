@@ -5,7 +5,7 @@ use std::sync::Arc;
 use maulstick_types::scene::Layer;
 
 use super::{PaintRefusal, Painting, Sheet};
-use crate::tile::TileId;
+use crate::tile::{Tile, TileId};
 
 impl Painting {
     /// Dries the lower `share` of all wet paint of a surface into a new layer called `name`, and says
@@ -15,7 +15,31 @@ impl Painting {
     /// [`PaintRefusal`] for an unknown surface, or where nothing is wet.
     pub fn dry(&mut self, surface: u32, share: f32, name: &str) -> Result<String, PaintRefusal> {
         self.close_windows();
-        let number = 1 + self.scene.layers.last().map_or(0, |layer| layer.number);
+        let dried = self.drying(surface, share)?;
+        self.begin_step("dry", None);
+        let name = self.dried(surface, dried, name);
+        self.end_own_step();
+        Ok(name)
+    }
+
+    /// As [`dry`](Self::dry), within the step that is open.
+    pub(super) fn dry_in_step(
+        &mut self,
+        surface: u32,
+        share: f32,
+        name: &str,
+    ) -> Result<String, PaintRefusal> {
+        let dried = self.drying(surface, share)?;
+        Ok(self.dried(surface, dried, name))
+    }
+
+    fn next_layer(&self) -> u32 {
+        1 + self.scene.layers.last().map_or(0, |layer| layer.number)
+    }
+
+    /// The tiles of a surface after the lower `share` of their wet paint has dried into the next layer.
+    fn drying(&self, surface: u32, share: f32) -> Result<Vec<(TileId, Arc<Tile>)>, PaintRefusal> {
+        let number = self.next_layer();
         let unknown = || {
             let what = format!("there is no surface {surface}");
             PaintRefusal::new(what, "the canvas is 0, the palette 1")
@@ -32,14 +56,19 @@ impl Painting {
             let tile = version.tile.as_ref()?.dried(number, share, &wells)?;
             Some((id, Arc::new(tile)))
         });
-        let dried: Vec<(TileId, Arc<_>)> = dried.collect();
-        if dried.is_empty() {
-            return Err(PaintRefusal::new(
+        let dried: Vec<(TileId, Arc<Tile>)> = dried.collect();
+        match dried.is_empty() {
+            true => Err(PaintRefusal::new(
                 "nothing is wet".to_owned(),
                 "paint something first",
-            ));
+            )),
+            false => Ok(dried),
         }
-        self.begin_step("dry", None);
+    }
+
+    /// Puts dried tiles in their places and says how the layer is called.
+    fn dried(&mut self, surface: u32, dried: Vec<(TileId, Arc<Tile>)>, name: &str) -> String {
+        let number = self.next_layer();
         for (id, tile) in dried {
             let before = self.put((surface, id), Some(tile));
             self.history.replaced(None, (surface, id), before);
@@ -57,8 +86,7 @@ impl Painting {
         self.scene.layers.push(layer);
         self.scene.version += 1;
         self.note_look();
-        self.end_own_step();
-        Ok(name)
+        name
     }
 
     /// Makes a dry layer more or less opaque: a factor on its optical thickness, never on its height.

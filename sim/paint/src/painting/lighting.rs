@@ -29,7 +29,8 @@ impl Painting {
             let mut bares = Vec::new();
             for (sheet, surface) in self.sheets.iter().zip(&self.scene.surfaces) {
                 let relief = Some(Arc::clone(&sheet.bare.relief));
-                bares.push(Arc::new(bare(surface, &studio, &self.library, relief)?));
+                let makers = (&self.library, &self.embedded);
+                bares.push(Arc::new(bare(surface, &studio, makers, relief)?));
             }
             self.sheets
                 .iter_mut()
@@ -68,7 +69,7 @@ impl Painting {
         let Some(sheet) = self.sheets.iter().find(|sheet| sheet.id == CANVAS) else {
             return;
         };
-        let rgb = self.look.studio.colour(&[], &sheet.bare.ground);
+        let rgb = self.look.studio.colour(&[], sheet.bare.ground.mean());
         let light = &mut self.scene.light;
         light.exposure = maulstick_optics::light::starting_exposure(rgb, light.intensity);
         self.scene.version += 1;

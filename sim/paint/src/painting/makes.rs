@@ -8,7 +8,7 @@ use maulstick_types::scene::Surface;
 use super::{PaintRefusal, Painting, bare};
 use crate::history::Make;
 use crate::quantum::{QUANTUM_M, SLOTS};
-use crate::setup::{ground_reflectance, tooth_called};
+use crate::setup::{check_ground, relief_called};
 use crate::tile::{TILE_CELLS, Tile};
 
 impl Painting {
@@ -28,7 +28,7 @@ impl Painting {
     /// [`PaintRefusal`] for an unknown surface or ground.
     pub fn set_ground(&mut self, surface: u32, ground: &str) -> Result<(), PaintRefusal> {
         self.surface(surface)?;
-        ground_reflectance(ground)?;
+        check_ground(ground, &self.embedded)?;
         self.make("ground", surface, |make| {
             ground.clone_into(&mut make.ground)
         });
@@ -41,7 +41,7 @@ impl Painting {
     /// [`PaintRefusal`] for an unknown surface or tooth.
     pub fn set_tooth(&mut self, surface: u32, tooth: &str, seed: u64) -> Result<(), PaintRefusal> {
         let cell_m = self.surface(surface)?.cell_m;
-        tooth_called(tooth, seed, cell_m)?;
+        relief_called(tooth, seed, cell_m, &self.embedded)?;
         self.make("tooth", surface, |make| {
             tooth.clone_into(&mut make.tooth);
             make.tooth_seed = seed;
@@ -84,7 +84,8 @@ impl Painting {
             };
             let relief = (!tooth).then(|| Arc::clone(&sheet.bare.relief));
             // What a step brings back was checked when it was made.
-            if let Ok(bare) = bare(surface, &self.look.studio, &self.library, relief) {
+            let makers = (&self.library, &self.embedded);
+            if let Ok(bare) = bare(surface, &self.look.studio, makers, relief) {
                 sheet.bare = Arc::new(bare);
             }
         }

@@ -7,11 +7,13 @@ mod lighting;
 mod loads;
 mod makes;
 mod strokes;
+mod underpainting;
 mod undo;
 mod versions;
 mod wells;
 
 pub use keeping::{Checkpoint, Restored};
+pub use underpainting::{LaidTile, Wetness};
 pub use versions::Named;
 pub use wells::WELL_M;
 
@@ -24,6 +26,8 @@ use maulstick_types::scene::{Scene, Surface, WellKind};
 use maulstick_types::{Mixture, name_hash};
 
 use crate::bare::{Bare, CLEANER_RGB, WellLook, well_colour};
+use crate::embedded::Embedded;
+use crate::ground::Ground;
 use crate::history::History;
 use crate::impasto::Impasto;
 use crate::ledger::Ledger;
@@ -34,7 +38,7 @@ use crate::model::{BrushTraits, PaintModel};
 use crate::page::{Page, Pager};
 use crate::path::PathStepper;
 use crate::relief::Relief;
-use crate::setup::{PaintingSetup, ground_reflectance, tooth_called};
+use crate::setup::{PaintingSetup, relief_called};
 use crate::store::TileStore;
 use crate::window::Window;
 
@@ -107,6 +111,7 @@ pub struct Painting {
     library: PaintLibrary,
     look: Arc<Look>,
     sheets: Vec<Sheet>,
+    embedded: Embedded,
     brushes: BTreeMap<String, BrushTrack>,
     model: Box<dyn PaintModel>,
     ledger: Ledger,
@@ -155,7 +160,7 @@ impl Painting {
                 id: surface.id,
                 cell_m: surface.cell_m,
                 store: TileStore::paged(surface.cells, &pager),
-                bare: Arc::new(bare(surface, &studio, &library, None)?),
+                bare: Arc::new(bare(surface, &studio, (&library, &setup.embedded), None)?),
                 top: 0.0,
             });
         }
@@ -164,6 +169,7 @@ impl Painting {
             library,
             look: Arc::new(Look::new(studio)),
             sheets,
+            embedded: setup.embedded.clone(),
             brushes: BTreeMap::new(),
             model: Box::new(Impasto::default()),
             ledger: Ledger::default(),
@@ -342,11 +348,17 @@ impl Painting {
 fn bare(
     surface: &Surface,
     studio: &Studio,
-    library: &PaintLibrary,
+    (library, embedded): (&PaintLibrary, &Embedded),
     relief: Option<Arc<Relief>>,
 ) -> Result<Bare, PaintRefusal> {
-    let ground = studio.sample(&ground_reflectance(&surface.ground)?);
-    let tooth = tooth_called(&surface.tooth, surface.tooth_seed, surface.cell_m)?;
+    let ground = Ground::called(&surface.ground, surface.cells, studio, embedded)?;
+    let relief = match relief {
+        Some(relief) => relief,
+        None => {
+            let (name, seed) = (&surface.tooth, surface.tooth_seed);
+            Arc::new(relief_called(name, seed, surface.cell_m, embedded)?)
+        }
+    };
     let mut wells = Vec::new();
     for well in &surface.wells {
         let center = well.center_m.map(|m| m / surface.cell_m);
@@ -370,13 +382,13 @@ fn bare(
         wells.push(WellLook {
             center,
             radius,
-            rgb: well_colour(&mixed, &shares, &ground),
+            rgb: well_colour(&mixed, &shares, ground.mean()),
             height_m: WELL_M as f32,
         });
     }
     Ok(Bare {
         ground,
-        relief: relief.unwrap_or_else(|| Arc::new(Relief::new(tooth, surface.cell_m))),
+        relief,
         wells,
     })
 }

@@ -52,7 +52,11 @@ impl Painting {
             ledger: self.ledger.clone(),
             layers: self.scene.layers.clone(),
             makes: makes(&self.scene),
-            tops: self.sheets.iter().map(|sheet| (sheet.id, sheet.top)).collect(),
+            tops: self
+                .sheets
+                .iter()
+                .map(|sheet| (sheet.id, sheet.top))
+                .collect(),
         }
     }
 

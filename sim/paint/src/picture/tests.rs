@@ -46,7 +46,7 @@ fn studio() -> Studio {
 
 fn bare(studio: &Studio) -> Bare {
     Bare {
-        ground: vec![0.95; studio.wavelengths()],
+        ground: crate::ground::Ground::Even(vec![0.95; studio.wavelengths()]),
         relief: Arc::new(Relief::flat(CELL_M)),
         wells: Vec::new(),
     }

@@ -1,0 +1,42 @@
+//! Why a picture cannot be imported.
+
+use maulstick_paint::PaintRefusal;
+
+use crate::read_image::MOST_SIDE;
+
+/// Why a picture cannot be imported.
+#[derive(Debug, thiserror::Error)]
+pub enum ImportError {
+    /// The file cannot be read.
+    #[error("the file cannot be read: {0}")]
+    File(#[source] std::io::Error),
+    /// It holds no picture, or one that is damaged.
+    #[error("this is no whole PNG, JPEG or TIFF picture: {0}")]
+    NotAPicture(String),
+    /// It is larger than pictures may be.
+    #[error(
+        "a picture of {0}×{1} pixels is too large: import one of at most {MOST_SIDE} pixels either way"
+    )]
+    TooLarge(u32, u32),
+    /// The canvas has more cells than a picture is fitted to.
+    #[error("a canvas of {0}×{1} cells is too large for a picture: it may have 67 million cells")]
+    Canvas(usize, usize),
+    /// The film is too thin or too thick.
+    #[error("a film of {0} µm cannot be laid: choose 1 to 5000 µm")]
+    Thickness(f64),
+    /// There is nothing to mix, or too much.
+    #[error("{0} paints cannot be mixed to a picture: choose 1 to 16")]
+    Paints(usize),
+    /// The painting refuses.
+    #[error("{}", .0.what)]
+    Refused(PaintRefusal),
+    /// It cannot be written as a PNG.
+    #[error("the picture cannot be kept: {0}")]
+    Png(#[source] png::EncodingError),
+}
+
+impl From<PaintRefusal> for ImportError {
+    fn from(refusal: PaintRefusal) -> Self {
+        Self::Refused(refusal)
+    }
+}
