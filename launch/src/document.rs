@@ -19,7 +19,10 @@ pub fn wrong(path: &Path, error: &DocumentError) -> Fault {
         .help(error.help());
     let failure = matches!(
         error,
-        DocumentError::Full | DocumentError::ReadOnly(_) | DocumentError::InUse { .. }
+        DocumentError::Full
+            | DocumentError::ReadOnly(_)
+            | DocumentError::InUse { .. }
+            | DocumentError::Unwritten(_)
     );
     match failure {
         true => Fault {

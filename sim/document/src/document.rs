@@ -327,7 +327,7 @@ impl Thread {
         };
         self.database.close()?;
         match left && !fault.is_empty() {
-            true => Err(DocumentError::Other(fault)),
+            true => Err(DocumentError::Unwritten(fault)),
             false => Ok(()),
         }
     }

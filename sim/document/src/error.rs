@@ -34,6 +34,9 @@ pub enum DocumentError {
     /// Bytes that do not hold together.
     #[error("the painting is damaged: {0}")]
     Damaged(String),
+    /// What was painted last could not be written.
+    #[error("what was painted last is not in the file: {0}")]
+    Unwritten(String),
     /// Anything else that SQLite or the system says.
     #[error("{0}")]
     Other(String),
@@ -52,6 +55,7 @@ impl DocumentError {
             }
             Self::ReadOnly(_) => "check the permissions of the file and its folder, or copy it",
             Self::Full => "free some space: nothing that was written is lost",
+            Self::Unwritten(_) => "nothing that was written before is lost",
             Self::Damaged(_) => {
                 "`maulstick painting recover FILE -o NEW.maul` takes out what is whole"
             }

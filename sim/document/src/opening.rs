@@ -74,11 +74,12 @@ impl Opened {
         for record in self.records {
             sequencer.replay(record);
         }
-        let painting = sequencer.painting_mut();
-        painting.lift_brushes();
         if crashed {
+            let painting = sequencer.painting_mut();
             painting.skip_versions(painting.versions() + SKIP);
         }
+        sequencer.record();
+        sequencer.go_on();
         Ok(sequencer)
     }
 }

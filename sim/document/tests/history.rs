@@ -107,8 +107,7 @@ proptest! {
                 let opened = opened.expect("a painting");
                 since = opened.kept().versions;
                 kept = opened.sequencer().expect("whole");
-                kept.record();
-                twin.painting_mut().lift_brushes();
+                twin.go_on();
                 log.push("killed".to_owned());
                 let (one, two) = (print(&mut kept), print(&mut twin));
                 for (one, two) in one.iter().zip(&two) {

@@ -44,6 +44,17 @@ pub struct Change {
     pub after: Held,
 }
 
+impl Change {
+    /// The tile before it, 0, or after it, 1.
+    #[must_use]
+    pub fn end(&self, which: usize) -> &Held {
+        match which {
+            0 => &self.before,
+            _ => &self.after,
+        }
+    }
+}
+
 /// What a painting's surface is made of, as far as a step can change it.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Make {

@@ -141,8 +141,11 @@ impl Painting {
     /// As [`load`](Self::load).
     pub fn take(&mut self, brush: &str, loads: &[Mixture]) -> Result<(), PaintRefusal> {
         self.brush(brush)?;
-        for mixture in loads {
-            self.slots(mixture)?;
+        let known = (self.scene.paints.clone(), Arc::clone(&self.look));
+        let mut slots = loads.iter().map(|mixture| self.slots(mixture));
+        if let Some(Err(refusal)) = slots.find(Result::is_err) {
+            (self.scene.paints, self.look) = known;
+            return Err(refusal);
         }
         self.close_windows();
         let track = self.brush(brush)?;

@@ -18,6 +18,16 @@ enum Way {
     Forth,
 }
 
+impl Way {
+    /// The end that a step is taken from, and the one that it is taken to.
+    fn ends(self) -> [usize; 2] {
+        match self {
+            Self::Back => [1, 0],
+            Self::Forth => [0, 1],
+        }
+    }
+}
+
 /// What the surfaces of a scene are made of.
 pub(super) fn makes(scene: &Scene) -> Vec<Make> {
     let surfaces = scene.surfaces.iter();
@@ -140,20 +150,30 @@ impl Painting {
     /// Takes the newest step back, of a brush or of all, and says what it was.
     ///
     /// # Errors
-    /// [`PaintRefusal`] where there is none, or where something was painted over it since.
+    /// [`PaintRefusal`] where there is none, or where something was painted over it since: then
+    /// nothing has changed.
     pub fn undo(&mut self, brush: Option<&str>) -> Result<String, PaintRefusal> {
         if let Some(brush) = brush {
             self.brush(brush)?;
         }
+        self.commit();
+        let own = |step: &OpenStep| brush.is_none() || step.brush.as_deref() == brush;
+        // Nothing lies over a step that is not finished.
+        if !self.history.open().any(own) {
+            let step = self.history.last_done(brush).ok_or_else(|| {
+                let whose = brush.map_or(String::new(), |brush| format!(" of brush '{brush}'"));
+                PaintRefusal::new(
+                    format!("there is nothing{whose} to undo"),
+                    "paint something first",
+                )
+            })?;
+            self.check(step, Way::Back)?;
+        }
         self.end_step(|_| true);
-        let Some(step) = self.history.last_done(brush).cloned() else {
-            let whose = brush.map_or(String::new(), |brush| format!(" of brush '{brush}'"));
-            return Err(PaintRefusal::new(
-                format!("there is nothing{whose} to undo"),
-                "paint something first",
-            ));
-        };
-        self.walk(&step, Way::Back)
+        match self.history.last_done(brush).cloned() {
+            Some(step) => Ok(self.walk(&step, Way::Back)),
+            None => Ok(String::new()),
+        }
     }
 
     /// The newest step that is done; steps that end later have higher numbers.
@@ -176,49 +196,51 @@ impl Painting {
     /// Does the newest undone step again, of a brush or of all, and says what it was.
     ///
     /// # Errors
-    /// [`PaintRefusal`] where there is none, or where something was painted over it since.
+    /// As [`undo`](Self::undo).
     pub fn redo(&mut self, brush: Option<&str>) -> Result<String, PaintRefusal> {
         if let Some(brush) = brush {
             self.brush(brush)?;
         }
-        self.end_step(|_| true);
-        let Some(step) = self.history.last_undone(brush).cloned() else {
-            return Err(PaintRefusal::new(
+        self.commit();
+        let step = self.history.last_undone(brush).cloned().ok_or_else(|| {
+            PaintRefusal::new(
                 "there is nothing to redo".into(),
                 "only what was undone and not painted over can be redone",
-            ));
-        };
-        self.walk(&step, Way::Forth)
+            )
+        })?;
+        self.check(&step, Way::Forth)?;
+        self.end_step(|_| true);
+        Ok(self.walk(&step, Way::Forth))
     }
 
-    fn walk(&mut self, step: &Step, way: Way) -> Result<String, PaintRefusal> {
-        let (from, to) = match way {
-            Way::Back => (1, 0),
-            Way::Forth => (0, 1),
-        };
-        let held = |change: &Change, end: usize| match end {
-            0 => change.before.clone(),
-            _ => change.after.clone(),
-        };
+    /// Sees that all is as the step left it, or found it.
+    fn check(&self, step: &Step, way: Way) -> Result<(), PaintRefusal> {
+        let from = way.ends()[0];
         let deed = &step.deed;
         let mut tiles = step.tiles.iter();
-        let over = tiles.any(|(place, change)| !same(&self.held(*place), &held(change, from)));
+        let over = tiles.any(|(place, change)| !same(&self.held(*place), change.end(from)));
         let mut loads = deed.loads.iter();
         let other_load = loads.any(|(name, pages)| !self.carries(name, &pages[from]));
-        let layers = deed.layers.as_ref();
-        let made = deed.makes.as_ref();
+        let (layers, made) = (deed.layers.as_ref(), deed.makes.as_ref());
         let other_rest = layers.is_some_and(|ends| ends[from] != self.scene.layers)
             || made.is_some_and(|ends| ends[from] != makes(&self.scene));
-        if over || other_load || other_rest {
-            let other = self.history.last_done(None);
-            let other = other.map_or("something".to_owned(), |step| format!("'{}'", step.what));
-            return Err(PaintRefusal::new(
-                format!("'{}' lies under {other}, which came later", step.what),
-                "undo that first: `maulstick undo` without a brush takes the newest step of all",
-            ));
+        if !over && !other_load && !other_rest {
+            return Ok(());
         }
+        let other = self.history.last_done(None);
+        let other = other.map_or("something".to_owned(), |step| format!("'{}'", step.what));
+        Err(PaintRefusal::new(
+            format!("'{}' lies under {other}, which came later", step.what),
+            "undo that first: `maulstick undo` without a brush takes the newest step of all",
+        ))
+    }
+
+    /// Takes a step back, or forth; it was checked.
+    fn walk(&mut self, step: &Step, way: Way) -> String {
+        let to = way.ends()[1];
+        let deed = &step.deed;
         for (place, change) in &*step.tiles {
-            self.put(*place, held(change, to));
+            self.put(*place, change.end(to).clone());
         }
         for (name, pages) in &deed.loads {
             self.carry(name, &pages[to]);
@@ -226,13 +248,14 @@ impl Painting {
         let times = if way == Way::Forth { 1 } else { -1 };
         self.ledger.book(&deed.booked, times);
         self.accounted = self.ledger.clone();
+        let (layers, made) = (deed.layers.as_ref(), deed.makes.as_ref());
         self.turn_rest(layers.map(|ends| &ends[to]), made.map(|ends| &ends[to]));
         self.turn_tops(step, way);
         match way {
             Way::Back => self.history.undone(step.id),
             Way::Forth => self.history.redone(step.id),
         }
-        Ok(step.what.clone())
+        step.what.clone()
     }
 
     /// How high paint stands is as it was, where nothing else was painted meanwhile: then the same

@@ -15,6 +15,10 @@ use crate::painting::{PaintRefusal, Painting};
 /// The client that runs the sequencer.
 const OWN: u64 = 0;
 
+/// The decision that a painting goes on after its program ended: what its brushes did last is not
+/// joined to what they do next.
+const GOES_ON: &str = "the painting goes on";
+
 /// Something that was accepted.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Accepted {
@@ -115,6 +119,12 @@ impl Sequencer {
         }
     }
 
+    /// Goes on after the program ended: the next states of brushes begin their ways anew.
+    pub fn go_on(&mut self) {
+        self.painting.lift_brushes();
+        self.decide(GOES_ON);
+    }
+
     /// Introduces a brush, or gives a known one another file.
     pub fn define_brush(&mut self, brush: &str, file: BrushFile) {
         let toml = file.to_toml().unwrap_or_default();
@@ -148,7 +158,12 @@ impl Sequencer {
                 };
                 self.execute(&request);
             }
-            Accepted::Entry(Entry::Decision { what }) => self.decide(&what),
+            Accepted::Entry(Entry::Decision { what }) => {
+                if what == GOES_ON {
+                    self.painting.lift_brushes();
+                }
+                self.decide(&what);
+            }
             Accepted::Entry(Entry::Tick { .. } | Entry::States { .. }) => {}
             Accepted::Brush { brush, toml } => {
                 if let Ok(file) = BrushFile::parse(&toml) {
