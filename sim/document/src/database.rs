@@ -4,6 +4,7 @@ use std::path::{Path, PathBuf};
 
 use maulstick_paint::load::BrushLoad;
 use maulstick_paint::tile::Planes;
+use rusqlite::config::DbConfig;
 use rusqlite::{Connection, OpenFlags, OptionalExtension as _, params};
 
 use crate::error::DocumentError;
@@ -36,7 +37,7 @@ pub struct Database {
 }
 
 /// The journal that SQLite keeps beside a file.
-fn beside(path: &Path, suffix: &str) -> PathBuf {
+pub(crate) fn beside(path: &Path, suffix: &str) -> PathBuf {
     let mut name = path.as_os_str().to_owned();
     name.push(suffix);
     name.into()
@@ -78,6 +79,10 @@ fn is_new(path: &Path) -> Result<bool, DocumentError> {
             Some(1..) => Err(DocumentError::Damaged("the file is empty".to_owned())),
             _ => Ok(true),
         };
+    }
+    if length(&beside(path, "-journal")).is_some_and(|length| length > 0) {
+        // The power went while it was begun: SQLite takes back what there is of it.
+        return Ok(false);
     }
     let mut head = [0; 16];
     use std::io::Read as _;
@@ -126,7 +131,7 @@ impl Database {
             connection: connection?,
             level: planes::LEVEL,
         };
-        match database.take(path, new) {
+        match database.take(path) {
             Err(DocumentError::ReadOnly(_)) if access == Access::Read => {
                 database = Self::open_frozen(path)?;
             }
@@ -137,27 +142,26 @@ impl Database {
             }
             taken => taken?,
         }
+        // It was begun, and not even its tables were written.
+        let new = new || (access == Access::Paint && schema::is_blank(&database.connection)?);
         if new {
             schema::create(&database.connection)?;
         }
-        match access {
-            Access::Paint => schema::migrate(&database.connection)?,
-            Access::Read => schema::migrate(&database.connection)?,
-        }
+        schema::migrate(&database.connection)?;
         Ok((database, new))
     }
 
     /// Makes the file this program's own and sets how it is written.
-    fn take(&self, path: &Path, new: bool) -> Result<(), DocumentError> {
+    fn take(&self, path: &Path) -> Result<(), DocumentError> {
         let connection = &self.connection;
+        // A painting that turns out to be damaged keeps its journal as it is.
+        connection.set_db_config(DbConfig::SQLITE_DBCONFIG_NO_CKPT_ON_CLOSE, true)?;
         if connection.is_readonly("main")? {
             return Err(DocumentError::ReadOnly("no permission to write".to_owned()));
         }
         // Before the first access, so that SQLite needs no memory shared between programs.
         connection.pragma_update(None, "locking_mode", "EXCLUSIVE")?;
-        if new {
-            connection.pragma_update(None, "page_size", PAGE_BYTES)?;
-        }
+        connection.pragma_update(None, "page_size", PAGE_BYTES)?;
         let mode: String =
             connection.query_row("PRAGMA journal_mode = WAL", params![], |row| row.get(0))?;
         if mode != "wal" {
@@ -213,6 +217,8 @@ impl Database {
                 Err(DocumentError::Full) => {}
                 folded => folded?,
             }
+            let folded = DbConfig::SQLITE_DBCONFIG_NO_CKPT_ON_CLOSE;
+            self.connection.set_db_config(folded, false)?;
         }
         self.connection.close().map_err(|(_, error)| error.into())
     }
@@ -296,19 +302,23 @@ pub(crate) fn shown_sum(place: i64, version: i64, look: i64, data: &[u8]) -> i64
     sum.bytes(data).done()
 }
 
-/// The process that holds the lock of a file, if the system knows it.
-fn holder(path: &Path) -> Option<i32> {
-    use nix::fcntl::{FcntlArg, fcntl};
-    // Bytes that SQLite locks: pending, reserved and shared, from 1 GiB on.
-    const LOCKED: (i64, i64) = (0x4000_0000, 512);
-    let file = std::fs::File::open(path).ok()?;
-    let mut lock = nix::libc::flock {
-        l_type: nix::libc::F_WRLCK as i16,
-        l_whence: nix::libc::SEEK_SET as i16,
-        l_start: LOCKED.0,
-        l_len: LOCKED.1,
-        l_pid: 0,
-    };
-    fcntl(&file, FcntlArg::F_GETLK(&mut lock)).ok()?;
-    (lock.l_type != nix::libc::F_UNLCK as i16 && lock.l_pid > 0).then_some(lock.l_pid)
+/// The process that holds the lock of a file, if the system knows it. The file is not opened: closing
+/// it again would drop this process's own locks of it.
+pub(crate) fn holder(path: &Path) -> Option<i32> {
+    use std::os::unix::fs::MetadataExt as _;
+    // The first bytes that SQLite locks: pending, reserved and shared, from 1 GiB on.
+    const LOCKED: std::ops::Range<u64> = 0x4000_0000..0x4000_0200;
+    let inode = std::fs::metadata(path).ok()?.ino();
+    let locks = std::fs::read_to_string("/proc/locks").ok()?;
+    let held = locks.lines().find_map(|line| {
+        // 1: POSIX  ADVISORY  WRITE 4242 08:01:131090 1073741824 1073742335
+        let words: Vec<&str> = line.split_whitespace().collect();
+        let [_, "POSIX", _, _, process, file, from, _] = words[..] else {
+            return None;
+        };
+        let of_it = file.rsplit(':').next()?.parse() == Ok(inode);
+        let is_lock = LOCKED.contains(&from.parse().ok()?);
+        (of_it && is_lock).then(|| process.parse().ok())?
+    });
+    held.filter(|process| *process > 0)
 }

@@ -3,30 +3,28 @@
 //! The painter's thread only hands over: what was accepted, and moments of the painting. Here they are
 //! written, and pages that left memory are read; who waits for a page comes first.
 
-use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
-use std::sync::atomic::{AtomicU64, Ordering::SeqCst};
-use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError, mpsc};
+use std::sync::atomic::Ordering::SeqCst;
+use std::sync::{Arc, PoisonError, mpsc};
 use std::thread::JoinHandle;
 use std::time::{Duration, Instant};
 
-use maulstick_paint::load::BrushLoad;
-use maulstick_paint::page::{Backing, Pager};
+use maulstick_paint::page::Pager;
 use maulstick_paint::sequencer::Record;
-use maulstick_paint::tile::Planes;
 
 use crate::database::{Access, Database};
 use crate::error::DocumentError;
 use crate::journal;
 use crate::opening::{Opened, opened};
+use crate::queues::{End, Fetch, Life, Pages, Shared, Shelf};
 use crate::writing::{Moment, ShownTile, Writer};
 
 /// Accepted things are in the file after this long.
 const COMMIT: Duration = Duration::from_millis(100);
 /// What could not be written is tried again after this long.
 const AGAIN: Duration = Duration::from_secs(1);
-/// Tiles as they are shown that wait to be written, at most.
-const SHOWN_MAX: usize = 4096;
+/// Accepted things of a row of the journal, at most: many wait where the disk was full.
+const ROW: usize = 1024;
 
 /// How a document is opened.
 #[derive(Clone, Debug)]
@@ -54,102 +52,12 @@ impl DocumentSettings {
     }
 }
 
-/// A page that somebody waits for.
-enum Fetch {
-    Planes(u64, mpsc::Sender<Result<Planes, String>>),
-    Load(u64, mpsc::Sender<Result<BrushLoad, String>>),
-    Shown([i64; 3], mpsc::Sender<Option<Vec<u8>>>),
-}
-
-#[derive(Default)]
-struct Queues {
-    fetches: Vec<Fetch>,
-    records: Vec<Record>,
-    moment: Option<Moment>,
-    shown: BTreeMap<i64, ShownTile>,
-    /// Who waits until all that was handed over is written, or could not be.
-    flushes: Vec<mpsc::Sender<()>>,
-    closing: bool,
-    /// A page could not be read: what was painted since may rest on its absence.
-    broken: bool,
-    fault: String,
-    help: &'static str,
-}
-
-/// Where the painter's threads and the document's meet.
-#[derive(Default)]
-struct Shared {
-    queues: Mutex<Queues>,
-    bell: Condvar,
-    committed: AtomicU64,
-    page_in_ns: AtomicU64,
-}
-
-impl Shared {
-    fn lock(&self) -> MutexGuard<'_, Queues> {
-        self.queues.lock().unwrap_or_else(PoisonError::into_inner)
-    }
-
-    fn ask<T>(&self, fetch: impl FnOnce(mpsc::Sender<T>) -> Fetch) -> Option<T> {
-        let (send, receive) = mpsc::channel();
-        self.lock().fetches.push(fetch(send));
-        self.bell.notify_all();
-        receive.recv().ok()
-    }
-}
-
-/// Pages from the document's thread.
-struct Pages(Arc<Shared>);
-
-const GONE: &str = "the document was closed";
-
-impl Backing for Pages {
-    fn planes(&self, id: u64) -> Result<Planes, String> {
-        let read = self.0.ask(|answer| Fetch::Planes(id, answer));
-        read.unwrap_or_else(|| Err(GONE.to_owned()))
-    }
-
-    fn load(&self, id: u64) -> Result<BrushLoad, String> {
-        let read = self.0.ask(|answer| Fetch::Load(id, answer));
-        read.unwrap_or_else(|| Err(GONE.to_owned()))
-    }
-}
-
 /// An open painting.
 pub struct Document {
     path: PathBuf,
     shared: Arc<Shared>,
     pager: Arc<Pager>,
     thread: Option<JoinHandle<Result<(), DocumentError>>>,
-}
-
-/// Tiles as they were shown, for the thread that shows them.
-#[derive(Clone)]
-pub struct Shelf(Arc<Shared>);
-
-impl Shelf {
-    /// The planes of a tile as it was shown under a look, if they are in the document.
-    #[must_use]
-    pub fn get(&self, place: i64, version: u64, look: i64) -> Option<Vec<u8>> {
-        let bytes = self
-            .0
-            .ask(|answer| Fetch::Shown([place, version as i64, look], answer))??;
-        zstd::bulk::decompress(&bytes, 1 << 20).ok()
-    }
-
-    /// Puts a tile aside, to be written with the next moment that holds it.
-    pub fn put(&self, tile: ShownTile) {
-        let mut queues = self.0.lock();
-        if queues.shown.len() < SHOWN_MAX && !queues.closing {
-            queues.shown.insert(tile.place, tile);
-        }
-    }
-}
-
-impl std::fmt::Debug for Shelf {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.write_str("Shelf")
-    }
 }
 
 impl Document {
@@ -222,7 +130,8 @@ impl Document {
     /// Whether the last moment is written, so that the next one can be handed over.
     #[must_use]
     pub fn is_ready(&self) -> bool {
-        self.shared.lock().moment.is_none()
+        let queues = self.shared.lock();
+        queues.moment.is_none() && !queues.writing
     }
 
     /// Hands a moment over. It has to hold all records that were handed over before, and the one
@@ -254,7 +163,13 @@ impl Document {
     /// Waits until all that was handed over is written, or could not be.
     pub fn flush(&self) {
         let (send, receive) = mpsc::channel();
-        self.shared.lock().flushes.push(send);
+        {
+            let mut queues = self.shared.lock();
+            if queues.life == Life::Ended {
+                return;
+            }
+            queues.flushes.push(send);
+        }
         self.shared.bell.notify_all();
         receive.recv().ok();
     }
@@ -268,7 +183,12 @@ impl Document {
     }
 
     fn end(&mut self) -> Result<(), DocumentError> {
-        self.shared.lock().closing = true;
+        {
+            let mut queues = self.shared.lock();
+            if queues.life == Life::Open {
+                queues.life = Life::Closing;
+            }
+        }
         self.shared.bell.notify_all();
         match self.thread.take().map(JoinHandle::join) {
             None => Ok(()),
@@ -311,6 +231,7 @@ enum Work {
 
 impl Thread {
     fn run(mut self) -> Result<(), DocumentError> {
+        let _end = End(Arc::clone(&self.shared));
         loop {
             match self.next() {
                 Work::Fetch => serve(&self.shared, &self.database),
@@ -320,8 +241,7 @@ impl Thread {
             }
         }
         let (fault, left) = {
-            let mut queues = self.shared.lock();
-            queues.fetches.clear();
+            let queues = self.shared.lock();
             let left = queues.moment.is_some() || !queues.records.is_empty();
             (queues.fault.clone(), left)
         };
@@ -340,9 +260,11 @@ impl Thread {
             }
             let rests = self.failed.is_some_and(|when| when.elapsed() < AGAIN);
             let may_write = self.writes && !queues.broken;
-            let hurry = queues.closing || !queues.flushes.is_empty();
+            let closing = queues.life == Life::Closing;
+            let hurry = closing || !queues.flushes.is_empty();
             let tries = may_write && (!rests || hurry);
             if tries && let Some(moment) = queues.moment.take() {
+                queues.writing = true;
                 // What shows a later moment waits for that.
                 let newest = moment.painting.kept.versions;
                 let later = queues
@@ -359,7 +281,7 @@ impl Thread {
                 // Who waited may have given up.
                 waits.send(()).ok();
             }
-            if queues.closing {
+            if closing {
                 return Work::Close;
             }
             let wait = match (queues.records.is_empty(), rests) {
@@ -398,6 +320,7 @@ impl Thread {
             Writer::new(database, &mut breathe).moment(&moment, &shown)
         });
         let mut queues = self.shared.lock();
+        queues.writing = false;
         match written {
             Ok(stored) => {
                 stored.note();
@@ -418,12 +341,13 @@ impl Thread {
     }
 
     fn commit(&mut self, records: Vec<Record>) {
-        let (Some(first), Some(last)) = (records.first(), records.last()) else {
+        let Some(last) = records.last() else {
             return;
         };
         let written = self.transaction(|database| {
-            let data = journal::write(&records)?;
-            crate::opening::put_journal(database, [first.serial, last.serial], &data)
+            records
+                .chunks(ROW)
+                .try_for_each(|row| journal::put(database, row))
         });
         self.last_commit = Instant::now();
         match written {
@@ -444,7 +368,10 @@ impl Thread {
     fn well(&mut self) {
         if self.failed.take().is_some() {
             tracing::info!("the painting is written again");
-            self.shared.lock().fault.clear();
+            let mut queues = self.shared.lock();
+            if !queues.broken {
+                queues.fault.clear();
+            }
         }
     }
 
@@ -456,7 +383,7 @@ impl Thread {
         (queues.fault, queues.help) = (error.to_string(), error.help());
         self.failed = Some(Instant::now());
         // Who waits would wait for ever.
-        if queues.closing {
+        if queues.life == Life::Closing {
             queues.broken = true;
         }
         queues.flushes.clear();

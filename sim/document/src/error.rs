@@ -37,6 +37,12 @@ pub enum DocumentError {
     /// What was painted last could not be written.
     #[error("what was painted last is not in the file: {0}")]
     Unwritten(String),
+    /// What is left of a damaged painting makes none any more.
+    #[error("the painting cannot be recovered: it has lost {0}")]
+    Lost(String),
+    /// A file is where a new one is to be written.
+    #[error("there is a file of that name already")]
+    Taken,
     /// Anything else that SQLite or the system says.
     #[error("{0}")]
     Other(String),
@@ -59,6 +65,8 @@ impl DocumentError {
             Self::Damaged(_) => {
                 "`maulstick painting recover FILE -o NEW.maul` takes out what is whole"
             }
+            Self::Lost(_) => "take the newest copy of it that is whole",
+            Self::Taken => "give another name: nothing is written over",
             Self::Other(_) => "check the path and the disk",
         }
     }

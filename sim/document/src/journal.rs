@@ -1,11 +1,18 @@
 //! Accepted things as bytes: messages as on the bus, each with its index and its length before it.
 
+use std::io::Read as _;
+
 use maulstick_paint::sequencer::{Accepted, Record};
 use maulstick_types::brush::{BrushDef, BrushState};
 use maulstick_types::paint::JournalEntry;
 use maulstick_types::{Flags, Header, Message, Origin, decode, encode, name_hash};
 
+use rusqlite::params;
+
+use crate::database::Database;
 use crate::error::DocumentError;
+use crate::schema::Table;
+use crate::sum::Sum;
 
 /// A row's data has at most this many bytes.
 const MOST: usize = 1 << 28;
@@ -63,12 +70,36 @@ pub fn write(records: &[Record]) -> Result<Vec<u8>, DocumentError> {
     Ok(zstd::bulk::compress(&bytes, 1)?)
 }
 
+/// Writes records, of which there is at least one, as a row of the journal.
+pub(crate) fn put(database: &Database, records: &[Record]) -> Result<(), DocumentError> {
+    let (Some(first), Some(last)) = (records.first(), records.last()) else {
+        return Ok(());
+    };
+    let data = write(records)?;
+    let ends = [first.serial, last.serial];
+    let sum = sum(ends, &data);
+    let [first, last] = ends.map(|serial| serial as i64);
+    database
+        .connection
+        .prepare_cached("INSERT OR REPLACE INTO journal VALUES(9, ?1, ?2, ?3, ?4)")?
+        .execute(params![first, last, data, sum])?;
+    Ok(())
+}
+
+/// The checksum of a row of the journal.
+pub(crate) fn sum([first, last]: [u64; 2], data: &[u8]) -> i64 {
+    let sum = Sum::of(Table::Journal).int(first as i64).int(last as i64);
+    sum.bytes(data).done()
+}
+
 /// Reads records; the first has the serial number `first`.
 ///
 /// # Errors
 /// [`DocumentError::Damaged`].
 pub fn read(first: u64, bytes: &[u8]) -> Result<Vec<Record>, DocumentError> {
-    let bytes = zstd::stream::decode_all(bytes).map_err(damaged)?;
+    let mut packed = zstd::stream::read::Decoder::new(bytes)?.take(MOST as u64 + 1);
+    let mut bytes = Vec::new();
+    packed.read_to_end(&mut bytes).map_err(damaged)?;
     if bytes.len() > MOST {
         return Err(damaged("a row is too long"));
     }

@@ -13,6 +13,7 @@
 //! | [`contents`], [`pack`] | what a file holds; making it small |
 //! | [`planes`], [`loads`] | paint as bytes |
 //! | [`rows`], [`schema`], [`sum`] | tables, migrations, checksums |
+//! | [`scan`], [`recover`] | rows out of damaged files; a new painting of what is whole |
 //! | [`error`] | what can go wrong, and what to do |
 
 pub mod contents;
@@ -24,6 +25,8 @@ pub mod loads;
 pub mod opening;
 pub mod pack;
 pub mod planes;
+mod queues;
+pub mod recover;
 pub mod rows;
 pub mod scan;
 pub mod schema;
@@ -32,7 +35,9 @@ pub mod writing;
 
 pub use contents::Contents;
 pub use database::{Access, glance};
-pub use document::{Document, DocumentSettings, Shelf};
+pub use document::{Document, DocumentSettings};
 pub use error::DocumentError;
 pub use opening::Opened;
+pub use queues::Shelf;
+pub use recover::{Salvage, recover};
 pub use writing::{Moment, ShownTile};

@@ -23,8 +23,8 @@ use crate::rows::{KeptDeed, KeptRest, place_of, unpacked};
 use crate::schema::Table;
 use crate::sum::Sum;
 
-/// Tile versions are numbered this much higher after a crash: no number that was ever shown means
-/// another tile.
+/// Tile versions are numbered this much higher each time: after a crash no number that was ever shown
+/// means another tile, though the newest of them are in no file.
 const SKIP: u64 = 1 << 32;
 
 /// A painting that was kept.
@@ -70,14 +70,11 @@ impl Opened {
     pub fn sequencer(self) -> Result<Sequencer, PaintRefusal> {
         let painting = Painting::restore(self.restored, self.library, self.pager)?;
         let mut sequencer = Sequencer::restored(painting, self.sequencer);
-        let crashed = !self.records.is_empty();
         for record in self.records {
             sequencer.replay(record);
         }
-        if crashed {
-            let painting = sequencer.painting_mut();
-            painting.skip_versions(painting.versions() + SKIP);
-        }
+        let painting = sequencer.painting_mut();
+        painting.skip_versions(painting.versions() + SKIP);
         sequencer.record();
         sequencer.go_on();
         Ok(sequencer)
@@ -153,27 +150,9 @@ fn pictures(database: &Database) -> Result<Embedded, DocumentError> {
     Ok(embedded)
 }
 
-fn text(database: &Database, hash: &str) -> Result<String, DocumentError> {
+/// A file that is a text, by its hash.
+pub(crate) fn text(database: &Database, hash: &str) -> Result<String, DocumentError> {
     String::from_utf8(file(database, hash)?).map_err(damaged)
-}
-
-/// Writes a row of the journal.
-pub(crate) fn put_journal(
-    database: &Database,
-    [first, last]: [u64; 2],
-    data: &[u8],
-) -> Result<(), DocumentError> {
-    let sum = journal_sum([first, last], data);
-    database
-        .connection
-        .prepare_cached("INSERT OR REPLACE INTO journal VALUES(9, ?1, ?2, ?3, ?4)")?
-        .execute(params![first as i64, last as i64, data, sum])?;
-    Ok(())
-}
-
-fn journal_sum([first, last]: [u64; 2], data: &[u8]) -> i64 {
-    let sum = Sum::of(Table::Journal).int(first as i64).int(last as i64);
-    sum.bytes(data).done()
 }
 
 /// What was accepted since the painting was kept.
@@ -185,7 +164,7 @@ fn records(database: &Database, from: u64) -> Result<Vec<Record>, DocumentError>
     while let Some(row) = rows.next()? {
         let (first, last): (i64, i64) = (row.get(0)?, row.get(1)?);
         let data: Vec<u8> = row.get(2)?;
-        if journal_sum([first as u64, last as u64], &data) != row.get::<_, i64>(3)? {
+        if journal::sum([first as u64, last as u64], &data) != row.get::<_, i64>(3)? {
             return Err(damaged("the journal does not match its checksum"));
         }
         let read = journal::read(first as u64, &data)?;

@@ -55,14 +55,17 @@ pub fn pack(
         }
         database.connection.execute_batch("COMMIT")?;
     }
-    database.connection.execute_batch("VACUUM")?;
+    // Its copy of the painting may take more room than there is memory.
+    database
+        .connection
+        .execute_batch("PRAGMA temp_store = FILE; VACUUM")?;
     tell(all, all);
     database.close()?;
     Ok([before, std::fs::metadata(path)?.len()])
 }
 
 /// Does again what was left to be done again, and writes it; forgets the history if it is to go.
-fn settle(path: &Path, history: History) -> Result<(), DocumentError> {
+pub(crate) fn settle(path: &Path, history: History) -> Result<(), DocumentError> {
     let (document, opened) = Document::open(&DocumentSettings::new(path, Access::Paint))?;
     let Some(opened) = opened else {
         return document.close();
@@ -71,6 +74,9 @@ fn settle(path: &Path, history: History) -> Result<(), DocumentError> {
     let mut sequencer = opened
         .sequencer()
         .map_err(|refusal| DocumentError::Damaged(refusal.what))?;
+    if let Some(fault) = document.pager().fault() {
+        return Err(DocumentError::Damaged(fault.to_owned()));
+    }
     if history == History::Forgotten {
         sequencer.painting_mut().forget_history();
     }
@@ -82,6 +88,9 @@ fn settle(path: &Path, history: History) -> Result<(), DocumentError> {
         pictures: Vec::new(),
     });
     document.flush();
+    if !document.is_ready() {
+        return document.close();
+    }
     // What was forgotten goes with the next moment.
     let versions = sequencer.painting().versions();
     let kept = sequencer.kept();

@@ -28,7 +28,7 @@ fn counts(plane: &[f32]) -> Vec<i32> {
     plane.iter().map(|count| *count as i32).collect()
 }
 
-fn find<'a>(planes: &'a Planes, slot: usize) -> Option<&'a [f32]> {
+fn find(planes: &Planes, slot: usize) -> Option<&[f32]> {
     let found = planes.iter().find(|(other, _)| *other == slot);
     found.map(|(_, plane)| &**plane)
 }

@@ -16,8 +16,10 @@ mod format;
 mod leaf;
 mod record;
 mod store;
+mod tree;
 mod wal;
 
+use std::collections::BTreeSet;
 use std::ffi::OsString;
 use std::fs::File;
 use std::io::{self, Read, Seek};
@@ -67,7 +69,8 @@ pub struct Row {
     /// Which copy of that page.
     pub origin: Origin,
     /// Whether SQLite would read this copy of the page too: the frame of the WAL where the page has
-    /// a good one, otherwise the main file.
+    /// a good one, otherwise the main file; and the page is not free, as far as that is known
+    /// ([`Scan::knows_free`]).
     pub current: bool,
 }
 
@@ -80,8 +83,8 @@ pub struct Tally {
     pub leaves: u64,
     /// Rows that came out.
     pub rows: u64,
-    /// Rows on leaves that did not parse whole. Rows of a page that no longer looks like a leaf are
-    /// in no count.
+    /// Rows on current leaves that did not parse whole. Rows of a page that no longer looks like a
+    /// leaf are in no count.
     pub rows_lost: u64,
     /// Reads that the disk refused.
     pub reads_failed: u64,
@@ -106,6 +109,7 @@ pub struct WalState {
 pub struct Scan<F> {
     store: Store<F>,
     tally: Tally,
+    free: Option<BTreeSet<u32>>,
 }
 
 impl Scan<File> {
@@ -136,10 +140,51 @@ impl<F: Read + Seek> Scan<F> {
     /// # Errors
     /// The length of a file cannot be told. Damage is never an error.
     pub fn new(main: F, wal: Option<F>) -> io::Result<Self> {
+        let mut store = Store::new(main, wal)?;
+        let free = tree::free_pages(&mut store);
         Ok(Self {
-            store: Store::new(main, wal)?,
+            store,
             tally: Tally::default(),
+            free,
         })
+    }
+
+    /// Whether the list of free pages is whole. Where it is not, rows that the database had deleted
+    /// may pass for current ones.
+    pub fn knows_free(&self) -> bool {
+        self.free.is_some()
+    }
+
+    /// Pages of the main file.
+    pub fn pages(&self) -> u32 {
+        self.store.main_pages()
+    }
+
+    /// How many pages the trees of the tables lead to that are no pages of a table any more. What
+    /// rows they had, if any, is not known.
+    pub fn lost_pages(&mut self) -> u64 {
+        let roots = self.rows().filter(|row| row.current).filter_map(root);
+        let mut wanted: BTreeSet<u32> = roots.collect();
+        // Without a schema its own page is one of them.
+        wanted.insert(1);
+        let beyond = self.store.stops_of_wal();
+        let beyond = beyond.iter().filter(|stop| stop.current);
+        let pages = (1..=self.pages()).chain(beyond.map(|stop| stop.page));
+        let pages: Vec<u32> = pages.filter(|page| !self.is_free(*page)).collect();
+        for number in pages {
+            let page = self.store.page(number, Origin::Wal).unwrap_or_default();
+            wanted.extend(tree::children(&page, number).into_iter().flatten());
+        }
+        let store = &mut self.store;
+        let lost = wanted.into_iter().filter(|number| {
+            let page = store.page(*number, Origin::Wal);
+            !page.is_some_and(|page| tree::is_of_table(&page, *number))
+        });
+        lost.count() as u64
+    }
+
+    fn is_free(&self, page: u32) -> bool {
+        self.free.as_ref().is_some_and(|free| free.contains(&page))
     }
 
     /// The page size, and how it became known.
@@ -160,9 +205,9 @@ impl<F: Read + Seek> Scan<F> {
         }
     }
 
-    /// Walks over all pages and gives every row that parses whole: first the current ones in the
-    /// order of the pages, then those of the copies that SQLite would not read: frames past damage,
-    /// and the main file's pages under frames of the WAL.
+    /// Walks over all pages and gives every row that parses whole: first those of the copies that
+    /// SQLite would read and of free pages, in the order of the pages, then those of the copies that
+    /// SQLite would not read: frames past damage, and the main file's pages under frames of the WAL.
     pub fn rows(&mut self) -> Rows<'_, F> {
         self.tally = Tally::default();
         let pages = self.store.main_pages();
@@ -173,6 +218,16 @@ impl<F: Read + Seek> Scan<F> {
             rest: rest.into_iter(),
             leaf: None,
         }
+    }
+}
+
+/// The root page of a table, in a row of the schema.
+fn root(row: Row) -> Option<u32> {
+    match row.values.as_slice() {
+        [Value::Text(kind), _, _, Value::Int(root), Value::Text(_)] if kind == "table" => {
+            u32::try_from(*root).ok()
+        }
+        _ => None,
     }
 }
 
@@ -198,10 +253,14 @@ impl<F: Read + Seek> Rows<'_, F> {
             return Some(Stop {
                 page,
                 origin: self.scan.store.current_origin(page),
-                current: true,
+                current: !self.scan.is_free(page),
             });
         }
-        self.rest.next()
+        let stop = self.rest.next()?;
+        Some(Stop {
+            current: stop.current && !self.scan.is_free(stop.page),
+            ..stop
+        })
     }
 
     fn row(&mut self, stop: Stop, leaf: &Leaf<Vec<u8>>, cell: usize) -> Option<Row> {
@@ -238,7 +297,7 @@ impl<F: Read + Seek> Iterator for Rows<'_, F> {
                         self.scan.tally.rows += 1;
                         return Some(row);
                     }
-                    None => self.scan.tally.rows_lost += 1,
+                    None => self.scan.tally.rows_lost += u64::from(stop.current),
                 }
             }
             let stop = self.next_stop()?;

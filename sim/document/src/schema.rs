@@ -54,6 +54,40 @@ impl Table {
         ];
         ALL.into_iter().find(|table| *table as i64 == tag)
     }
+
+    /// Its name.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Table::State => "state",
+            Table::File => "file",
+            Table::Page => "page",
+            Table::Dry => "dry",
+            Table::Load => "load",
+            Table::Tile => "tile",
+            Table::Step => "step",
+            Table::Version => "version",
+            Table::Journal => "journal",
+            Table::Shown => "shown",
+        }
+    }
+
+    /// Its columns between tag and sum: `i` an integer, `t` a text, `b` a blob. An integer that comes
+    /// first is the row's key.
+    #[must_use]
+    pub fn columns(self) -> &'static str {
+        match self {
+            Table::State => "tt",
+            Table::File => "tttb",
+            Table::Page => "iiiib",
+            Table::Dry | Table::Tile => "iiii",
+            Table::Load => "ib",
+            Table::Step => "ittiitb",
+            Table::Version => "tttb",
+            Table::Journal => "iib",
+            Table::Shown => "iiib",
+        }
+    }
 }
 
 const TABLES: &str = "
@@ -80,6 +114,17 @@ pub fn create(connection: &Connection) -> Result<(), DocumentError> {
          PRAGMA user_version = {VERSION}; COMMIT;"
     ))?;
     Ok(())
+}
+
+/// Whether there is nothing in a database, not even the mark of a program.
+///
+/// # Errors
+/// What SQLite says.
+pub fn is_blank(connection: &Connection) -> Result<bool, DocumentError> {
+    let number = |query: &str| connection.query_row(query, params![], |row| row.get::<_, i64>(0));
+    Ok(number("PRAGMA application_id")? == 0
+        && number("PRAGMA user_version")? == 0
+        && number("SELECT count(*) FROM sqlite_schema")? == 0)
 }
 
 /// What leads from each older schema to the next; the first, to 2, will be the first here.

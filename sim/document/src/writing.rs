@@ -224,7 +224,12 @@ impl<'a, 'b> Writer<'a, 'b> {
         };
         let content = match base.peek() {
             Some(content) => content,
-            None => Arc::new(self.database.planes(base.id())?),
+            None => match self.database.planes(base.id()) {
+                Ok(planes) => Arc::new(planes),
+                // Nothing new is to rest on a page that is damaged.
+                Err(DocumentError::Damaged(_)) => return Ok(None),
+                Err(error) => return Err(error),
+            },
         };
         Ok(Some((id, depth, content)))
     }
@@ -407,8 +412,14 @@ impl<'a, 'b> Writer<'a, 'b> {
             let later = statement.query_map(params![*id as i64], |row| row.get::<_, i64>(0))?;
             for later in later {
                 let later = later? as u64;
-                if !gone.contains(&later) {
-                    rebased.push((later, self.database.planes(later)?));
+                if gone.contains(&later) {
+                    continue;
+                }
+                match self.database.planes(later) {
+                    Ok(content) => rebased.push((later, content)),
+                    // It is lost with its base or without; what is painted now is not.
+                    Err(DocumentError::Damaged(_)) => {}
+                    Err(error) => return Err(error),
                 }
             }
         }

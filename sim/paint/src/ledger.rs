@@ -45,6 +45,12 @@ impl Ledger {
         turn(&mut self.cleaner, &booked.cleaner);
     }
 
+    /// By slot, what the tubes gave less what the cleaner took: as much is to be found.
+    #[must_use]
+    pub fn due(&self) -> [i64; SLOTS] {
+        std::array::from_fn(|slot| (self.tube[slot] as i64).wrapping_sub(self.cleaner[slot] as i64))
+    }
+
     /// The cleaner took.
     pub fn to_cleaner(&mut self, counts: &Counts) {
         add(&mut self.cleaner, counts);
@@ -59,6 +65,13 @@ pub struct Booked {
 }
 
 impl Booked {
+    /// By slot, what came from the tubes less what went to the cleaner: by as much there is more to
+    /// be found.
+    #[must_use]
+    pub fn due(&self) -> [i64; SLOTS] {
+        std::array::from_fn(|slot| self.tube[slot].wrapping_sub(self.cleaner[slot]))
+    }
+
     /// Adds what was booked then.
     pub fn add(&mut self, later: &Self) {
         let sum = |own: &mut [i64; SLOTS], later: &[i64; SLOTS]| {

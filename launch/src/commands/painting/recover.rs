@@ -1,10 +1,173 @@
-//! `maulstick painting recover`.
+//! `maulstick painting recover`: what is whole of a damaged painting, as a new one.
+
+use std::path::PathBuf;
+
 use clap::Args;
+use maulstick_document::{DocumentError, Salvage, recover};
+use maulstick_paint::history::Place;
 use maulstick_rig::Fault;
-/// Options.
+use maulstick_rig::files::check_writable;
+use maulstick_types::scene::{CANVAS, PALETTE};
+use serde_json::json;
+
+use crate::commands::{print_json, say};
+use crate::document::wrong;
+
+/// At most so many names are printed of a kind.
+const NAMES: usize = 20;
+
+/// Options of `maulstick painting recover`.
 #[derive(Args, Clone, Debug)]
-pub struct RecoverOptions {}
-/// Runs.
-pub fn run(_: &RecoverOptions) -> Result<i32, Fault> {
+pub struct RecoverOptions {
+    /// The damaged painting, which stays as it is
+    file: PathBuf,
+    /// The painting to write
+    #[arg(short, long, value_name = "NEW.maul")]
+    output: PathBuf,
+    /// As JSON
+    #[arg(long)]
+    json: bool,
+}
+
+/// Recovers a painting.
+///
+/// # Errors
+/// A [`Fault`] where nothing can be recovered, or the new painting cannot be written.
+pub(super) fn run(options: &RecoverOptions) -> Result<i32, Fault> {
+    let (path, output) = (&options.file, &options.output);
+    if output.exists() {
+        return Err(wrong(output, &DocumentError::Taken));
+    }
+    check_writable(output).map_err(|error| Fault::writing(output, &error))?;
+    let bar = super::bar("recovering");
+    let recovered = recover(path, output, &mut super::tell(&bar));
+    bar.finish_and_clear();
+    let salvage = recovered.map_err(|error| match error {
+        DocumentError::Taken | DocumentError::ReadOnly(_) | DocumentError::Full => {
+            wrong(output, &error)
+        }
+        error => wrong(path, &error),
+    })?;
+    if options.json {
+        print_json(&as_json(&salvage))?;
+        return Ok(0);
+    }
+    show(&salvage)?;
+    say!("written   {}", output.display());
     Ok(0)
+}
+
+fn as_json(salvage: &Salvage) -> serde_json::Value {
+    let places = |places: &[Place]| -> Vec<_> {
+        let each = places.iter();
+        each.map(|(surface, id)| json!({"surface": surface, "column": id.x, "row": id.y}))
+            .collect()
+    };
+    json!({
+        "whole": salvage.is_whole(),
+        "tiles": salvage.tiles,
+        "older_tiles": places(&salvage.older),
+        "thinned_tiles": places(&salvage.thinned),
+        "missing_tiles": places(&salvage.missing),
+        "lost_layers": salvage.layers,
+        "steps": salvage.steps,
+        "lost_steps": salvage.lost_steps,
+        "versions": salvage.versions,
+        "lost_versions": salvage.lost_versions,
+        "cleaned_brushes": salvage.brushes,
+        "replaced_files": salvage.files,
+        "records": salvage.records,
+        "lost_records": salvage.lost_records,
+        "damaged_rows": salvage.rows,
+        "lost_pages": salvage.pages,
+        "older_state": salvage.is_old,
+    })
+}
+
+fn show(salvage: &Salvage) -> Result<(), Fault> {
+    say!("tiles     {} are whole", salvage.tiles);
+    let tiles = [
+        (&salvage.older, "are as they were earlier"),
+        (&salvage.thinned, "lost wet paint or a dry layer"),
+        (&salvage.missing, "are missing"),
+    ];
+    for (places, what) in tiles {
+        if !places.is_empty() {
+            let names: Vec<String> = places.iter().map(name).collect();
+            say!("          {} {what}: {}", places.len(), list(&names));
+        }
+    }
+    say!(
+        "history   {} steps{}",
+        salvage.steps,
+        without(salvage.lost_steps)
+    );
+    let gone = salvage.lost_versions.len() as u64;
+    say!("versions  {}{}", salvage.versions, without(gone));
+    if gone > 0 {
+        say!("          missing: {}", list(&salvage.lost_versions));
+    }
+    if salvage.records + salvage.lost_records > 0 {
+        let lost = without(salvage.lost_records);
+        say!("journal   {} things done again{lost}", salvage.records);
+    }
+    if !salvage.brushes.is_empty() {
+        say!("brushes   clean now: {}", list(&salvage.brushes));
+    }
+    if !salvage.files.is_empty() {
+        say!("files     replaced by others: {}", list(&salvage.files));
+    }
+    if salvage.is_old {
+        say!("state     an older one: layers, light and books may be of before");
+    }
+    match (salvage.is_whole(), salvage.rows + salvage.pages) {
+        (true, _) => say!("          nothing is missing"),
+        (false, 0) => {}
+        (false, _) => say!(
+            "damage    {} rows, {} pages of the file",
+            salvage.rows,
+            salvage.pages
+        ),
+    }
+    Ok(())
+}
+
+fn without(lost: u64) -> String {
+    match lost {
+        0 => String::new(),
+        lost => format!(", {lost} are gone"),
+    }
+}
+
+fn name((surface, id): &Place) -> String {
+    match *surface {
+        CANVAS => format!("canvas {}/{}", id.x, id.y),
+        PALETTE => format!("palette {}/{}", id.x, id.y),
+        other => format!("surface {other} {}/{}", id.x, id.y),
+    }
+}
+
+fn list(names: &[String]) -> String {
+    let shown = names
+        .iter()
+        .take(NAMES)
+        .cloned()
+        .collect::<Vec<_>>()
+        .join(", ");
+    match names.len().saturating_sub(NAMES) {
+        0 => shown,
+        more => format!("{shown} and {more} more"),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_long_list_is_cut_and_counted() {
+        let names: Vec<String> = (0..23).map(|number| number.to_string()).collect();
+        assert!(list(&names).ends_with("18, 19 and 3 more"));
+        assert_eq!(list(&names[..2]), "0, 1");
+    }
 }

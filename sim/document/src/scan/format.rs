@@ -76,7 +76,7 @@ pub(super) fn is_page_size(bytes: usize) -> bool {
 }
 
 /// Whether the fields of a database's header that never change are as they must be.
-fn header_stands(header: &[u8]) -> bool {
+pub(super) fn header_stands(header: &[u8]) -> bool {
     header.starts_with(b"SQLite format 3\0") && header.get(21..24) == Some(&[64, 32, 32])
 }
 

@@ -5,7 +5,7 @@ use std::ops::Range;
 use super::record::{self, varint};
 
 /// The type byte of a leaf page of a table.
-const TABLE_LEAF: u8 = 0x0D;
+pub(super) const TABLE_LEAF: u8 = 0x0D;
 /// Bytes of a leaf's header.
 const HEADER: usize = 8;
 /// Bytes of the database's header, which precedes the b-tree's on page 1.

@@ -110,10 +110,28 @@ impl Log {
     /// how much of what was not synced is there: nothing, everything, or each operation by a coin of
     /// some bias.
     pub(crate) fn image(&self, random: &mut impl Rng, point: usize) -> Image {
+        self.image_with(random, point, |_| true)
+    }
+
+    /// As [`image`](Self::image), of a disk that does not sync when it is told to.
+    pub(crate) fn image_of_a_liar(&self, random: &mut impl Rng, point: usize) -> Image {
+        self.image_with(random, point, |deed| *deed != Deed::Sync)
+    }
+
+    fn image_with(
+        &self,
+        random: &mut impl Rng,
+        point: usize,
+        is_done: impl Fn(&Deed) -> bool,
+    ) -> Image {
         let recorded = self.recorded();
         let start = recorded.start.clone();
         let file = |kind, content| {
-            let ops = recorded.ops.iter().take(point);
+            let ops = recorded
+                .ops
+                .iter()
+                .take(point)
+                .filter(|op| is_done(&op.deed));
             let ops = ops.filter(|op| op.file == kind || op.deed == Deed::SyncDirectory);
             (content, ops.map(|op| &op.deed).collect::<Vec<_>>())
         };

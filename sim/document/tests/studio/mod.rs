@@ -4,7 +4,7 @@
 
 use maulstick_brush::BrushFile;
 use maulstick_optics::PaintLibrary;
-use maulstick_paint::history::Held;
+use maulstick_paint::history::{Held, Place};
 use maulstick_paint::page::Pager;
 use maulstick_paint::{Painting, PaintingSetup, Sequencer};
 use maulstick_types::brush::{BrushState, Solve};
@@ -13,6 +13,7 @@ use maulstick_types::scene::{CANVAS, PALETTE};
 use maulstick_types::{Flags, Header, Mixture, Pose, name_hash};
 use rand_pcg::Pcg64Mcg;
 use rand_pcg::rand_core::Rng as _;
+use std::collections::BTreeMap;
 use std::sync::Arc;
 
 pub const BRUSHES: [&str; 2] = ["main", "other"];
@@ -238,7 +239,7 @@ impl Painter {
 }
 
 /// All that lies on a tile, in words of numbers.
-fn content(held: &Held) -> Vec<u64> {
+pub fn content(held: &Held) -> Vec<u64> {
     let Some(tile) = held else { return Vec::new() };
     let mut words = Vec::new();
     let mut add = |planes: &maulstick_paint::tile::Planes| {
@@ -258,6 +259,21 @@ fn content(held: &Held) -> Vec<u64> {
         add(&layer.planes.get());
     }
     words
+}
+
+/// What lies on every tile with paint.
+pub fn tiles(sequencer: &mut Sequencer) -> BTreeMap<Place, Vec<u64>> {
+    let painting = sequencer.painting_mut();
+    painting.commit();
+    let mut tiles = BTreeMap::new();
+    for surface in [CANVAS, PALETTE] {
+        let store = painting.store(surface).expect("a surface");
+        let words = store
+            .iter()
+            .map(|(id, version)| ((surface, id), content(&version.tile)));
+        tiles.extend(words.filter(|(_, words)| !words.is_empty()));
+    }
+    tiles
 }
 
 /// All that a painting is, so that two of them can be compared.

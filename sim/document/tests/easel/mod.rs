@@ -1,0 +1,106 @@
+//! A painting in a document, kept as the paint node keeps it.
+
+#![allow(dead_code, unreachable_pub, reason = "each test uses a part")]
+
+use std::sync::Arc;
+
+use maulstick_document::{Document, DocumentSettings, Moment};
+use maulstick_paint::Sequencer;
+use maulstick_types::command::Command;
+
+use crate::studio::{Act, Painter, equip, sequencer};
+
+pub struct Easel {
+    pub document: Document,
+    pub sequencer: Sequencer,
+    since: u64,
+}
+
+impl Easel {
+    /// Begins a painting with two brushes.
+    pub fn begin(settings: &DocumentSettings) -> Self {
+        let (document, opened) = Document::open(settings).expect("begun");
+        assert!(opened.is_none(), "it is new");
+        let mut kept = sequencer(Arc::clone(document.pager()));
+        kept.record();
+        let mut easel = Self {
+            document,
+            sequencer: kept,
+            since: 0,
+        };
+        easel.hand_over();
+        equip(&mut easel.sequencer);
+        easel.record();
+        easel
+    }
+
+    /// Goes on with a painting.
+    ///
+    /// # Errors
+    /// What is wrong with it.
+    pub fn open(settings: &DocumentSettings) -> Result<Self, String> {
+        let (document, opened) = Document::open(settings).map_err(|error| error.to_string())?;
+        let opened = opened.ok_or("there is no painting in it")?;
+        let since = opened.kept().versions;
+        let mut kept = opened.sequencer().map_err(|refusal| refusal.what)?;
+        kept.record();
+        match document.pager().fault() {
+            Some(fault) => Err(fault.to_owned()),
+            None => Ok(Self {
+                document,
+                sequencer: kept,
+                since,
+            }),
+        }
+    }
+
+    fn record(&mut self) {
+        self.document.record(self.sequencer.take_records());
+    }
+
+    fn hand_over(&mut self) {
+        let sequencer = self.sequencer.kept();
+        let painting = self.sequencer.painting_mut().checkpoint(self.since);
+        self.since = painting.kept.versions;
+        self.document.keep(Moment {
+            painting,
+            sequencer,
+            pictures: Vec::new(),
+        });
+    }
+
+    pub fn act(&mut self, painter: &mut Painter, act: &Act) {
+        painter.act(&mut self.sequencer, act);
+        self.record();
+    }
+
+    /// Hands a moment over, if the last one is written.
+    pub fn moment(&mut self) {
+        if self.document.is_ready() {
+            self.hand_over();
+        }
+    }
+
+    pub fn flush(&self) {
+        self.document.flush();
+        assert_eq!(self.document.fault(), None);
+    }
+
+    /// Undoes all that can be; returns how many steps that were.
+    pub fn undo_all(&mut self) -> usize {
+        let mut steps = 0;
+        while self.sequencer.ask(Command::Undo { brush: None }).is_ok() {
+            steps += 1;
+        }
+        self.record();
+        steps
+    }
+
+    /// Writes all as a moment and closes the file.
+    pub fn close(mut self) {
+        self.flush();
+        self.hand_over();
+        self.flush();
+        self.document.close().expect("closed");
+    }
+}
