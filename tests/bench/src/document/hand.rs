@@ -127,7 +127,7 @@ impl Easel {
     pub(super) fn stroke(&mut self, length_m: f64, took: &mut Took) -> Result<(), Fault> {
         let margin = 0.02f64.min(0.25 * self.size_m[0]);
         let from = [0, 1].map(|i| margin + self.unit() * (self.size_m[i] - 2.0 * margin));
-        let (sine, cosine) = maulstick_num::sin_cos(6.28 * self.unit());
+        let (sine, cosine) = maulstick_num::sin_cos(std::f64::consts::TAU * self.unit());
         self.stroke += 1;
         let states = (length_m / STATE_M).ceil().max(2.0) as u32;
         for state in 0..=states {
