@@ -143,7 +143,7 @@ fn kill_at_random(rounds: u32) {
         let told = hear(&mut status, |told| {
             told.steps > steps && told.committed > least
         });
-        let told = told.unwrap_or_else(|| panic!("{}", launcher.said()));
+        let told = told.expect("something is committed");
         signal(launcher.pid(), Signal::SIGSTOP);
         signal(
             place.pid("maulstick-paint").expect("a paint node"),
