@@ -280,9 +280,15 @@ impl FrameServer {
         for (place, (version, id)) in changed.iter().enumerate() {
             if place % BATCH == 0 {
                 let part = &changed[place..(place + BATCH).min(changed.len())];
-                let ids = part
+                let pyramid = &mut self.pyramid;
+                // What was shown before need not be computed.
+                let new = part
                     .iter()
-                    .flat_map(|(_, id)| self.pyramid.stale(asked.surface, surface, level, *id));
+                    .filter(|(_, id)| !pyramid.recall(look, asked.surface, surface, level, *id));
+                let new: Vec<TileId> = new.map(|(_, id)| *id).collect();
+                let ids = new
+                    .iter()
+                    .flat_map(|id| self.pyramid.stale(asked.surface, surface, level, *id));
                 let ids: Vec<TileId> = ids.take(MOST_TILES).collect();
                 self.pyramid.shade(look, asked.surface, surface, &ids);
             }

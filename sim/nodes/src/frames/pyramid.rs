@@ -226,6 +226,33 @@ impl Pyramid {
         DisplayTile::from_bytes(&bytes).map(Arc::new)
     }
 
+    /// Whether a tile is kept, in memory or, as it was shown before, in the document.
+    pub(super) fn recall(
+        &mut self,
+        look: &Look,
+        number: u32,
+        surface: &FedSurface,
+        level: u32,
+        id: TileId,
+    ) -> bool {
+        self.turn_to(look);
+        let place = (number, level, id);
+        let version = Self::painted(surface, level, id);
+        if self
+            .kept
+            .get(&place)
+            .is_some_and(|(kept, _)| *kept == version)
+        {
+            return true;
+        }
+        let shown = self.shown(look, place, version);
+        let recalled = shown.is_some();
+        if let Some(shown) = shown {
+            self.keep(place, version, shown);
+        }
+        recalled
+    }
+
     /// Has the document keep a tile as it is shown.
     fn put_aside(&self, look: &Look, place: (u32, u32, TileId), version: u64, tile: &DisplayTile) {
         if let Some(shelf) = self.shelf.as_ref().filter(|_| version > 0) {

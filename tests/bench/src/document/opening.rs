@@ -25,7 +25,7 @@ const STROKE_M: f64 = 0.06;
 const LEVEL: u32 = 2;
 const ROUNDS: usize = 5;
 
-/// Until the picture is there, and until the first step of a stroke is painted, ms.
+/// Until the picture is there, and until the paint node takes the first stroke, ms.
 fn once(path: &std::path::Path) -> Result<[f64; 2], Fault> {
     let begun = Instant::now();
     let ms = |since: Instant| 1e3 * since.elapsed().as_secs_f64();
@@ -75,10 +75,9 @@ fn once(path: &std::path::Path) -> Result<[f64; 2], Fault> {
     }
     let seen = ms(begun);
     node.turn()?;
-    node.painting_mut()
-        .lay(CANVAS, &"Bone Black".parse().map_err(fault)?, 1e-6)
-        .ok();
-    Ok([seen, ms(begun)])
+    let ready = ms(begun);
+    node.close().map_err(fault)?;
+    Ok([seen, ready])
 }
 
 pub(super) fn run(report: &mut Report) -> Result<(), Fault> {
@@ -109,6 +108,6 @@ pub(super) fn run(report: &mut Report) -> Result<(), Fault> {
         median(0),
         "ms",
     );
-    report.row("document: painted on", median(1), "ms");
+    report.row("document: ready to be painted on", median(1), "ms");
     Ok(())
 }
