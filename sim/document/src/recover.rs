@@ -8,6 +8,7 @@
 //! - a dry layer whose paint is gone stays without paint, one of which nothing is known ends its stack;
 //! - a step that does not lead back from what is on the tiles now goes with all older ones;
 //! - a version of which a tile is gone goes;
+//! - a ground or a tooth of which the picture is gone is the plain one;
 //! - a brush of which it is not known what it carried is clean;
 //! - the journal is done again up to its first gap.
 //!
@@ -16,6 +17,7 @@
 
 mod found;
 mod gathering;
+mod pictures;
 mod rest;
 mod steps;
 mod stock;
@@ -33,6 +35,7 @@ use crate::scan::{Scan, Value};
 use crate::schema::Table;
 use found::Found;
 use gathering::{Gathered, Standing};
+use pictures::Pictures;
 use steps::{Now, Steps, makes};
 use stock::Stock;
 
@@ -175,8 +178,12 @@ fn write(
     salvage.layers = stock.hollow + stock.cut;
     rest::files(&mut kept, &mut salvage, database)?;
     rest::brushes(&mut kept, &mut stock, &mut salvage, database)?;
-    tiles_and_steps(&mut gathered, &mut kept, &stock, &mut salvage, database)?;
-    rest::versions(&gathered, &mut kept, &mut stock, &mut salvage, database)?;
+    let pictures = Pictures::read(database)?;
+    salvage.files.extend(pictures.mend(&mut kept.scene));
+    let shelves = (&stock, &pictures);
+    tiles_and_steps(&mut gathered, &mut kept, shelves, &mut salvage, database)?;
+    let shelves = (&mut stock, &pictures);
+    rest::versions(&gathered, &mut kept, shelves, &mut salvage, database)?;
     rest::journal(&gathered, &mut sequencer, base, &mut salvage, database)?;
     kept.next_page = kept.next_page.max(stock.next);
     for (key, state) in [
@@ -193,13 +200,13 @@ fn write(
 fn tiles_and_steps(
     gathered: &mut Gathered,
     kept: &mut KeptPainting,
-    stock: &Stock,
+    (stock, pictures): (&Stock, &Pictures),
     salvage: &mut Salvage,
     database: &Database,
 ) -> Result<(), DocumentError> {
     let newest = gathered.steps.keys().last().copied().unwrap_or(0);
     kept.step = kept.step.max(newest.max(0) as u64);
-    let steps = Steps::of(gathered, kept);
+    let steps = Steps::of(gathered, kept, pictures);
     let tiles = tiles::write(gathered, &steps.states(), stock, kept, salvage, database)?;
     let carried = kept.brushes.iter();
     let now = Now {

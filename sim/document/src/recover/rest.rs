@@ -14,6 +14,7 @@ use rusqlite::params;
 use super::Salvage;
 use super::found::Found;
 use super::gathering::{Gathered, Standing};
+use super::pictures::Pictures;
 use super::stock::{Numbers, Stock};
 use crate::database::Database;
 use crate::error::DocumentError;
@@ -145,7 +146,7 @@ pub(super) fn paint<'a>(
     all
 }
 
-/// Writes the versions of which every tile is there; what was painted from another one counts as
+/// Writes the versions of which every tile is there, with plain surfaces for lost pictures; what was painted from another one counts as
 /// painted from what that was painted from.
 ///
 /// # Errors
@@ -153,7 +154,7 @@ pub(super) fn paint<'a>(
 pub(super) fn versions(
     gathered: &Gathered,
     kept: &mut KeptPainting,
-    stock: &mut Stock,
+    (stock, pictures): (&mut Stock, &Pictures),
     salvage: &mut Salvage,
     database: &Database,
 ) -> Result<(), DocumentError> {
@@ -170,7 +171,7 @@ pub(super) fn versions(
             continue;
         }
         parents.insert(name, found.text(1));
-        if let Some(rest) = version(found, stock, database)? {
+        if let Some(rest) = version(found, stock, pictures, database)? {
             whole.insert(name.as_str(), (found, rest));
         }
     }
@@ -217,6 +218,7 @@ pub(super) fn versions(
 fn version(
     found: &Found,
     stock: &mut Stock,
+    pictures: &Pictures,
     database: &Database,
 ) -> Result<Option<String>, DocumentError> {
     let tiles = unpacked::<3>(found.blob(3));
@@ -228,7 +230,7 @@ fn version(
     if numbers.any(|numbers| stock.held(numbers).is_none()) {
         return Ok(None);
     }
-    let mut changed = false;
+    let mut changed = pictures.mend_makes(&mut rest.makes);
     for id in rest.loads.values_mut() {
         if stock.load(*id).is_none() {
             *id = clean_load(stock, database)? as u64;

@@ -9,6 +9,7 @@ use maulstick_types::scene::{Layer, Scene};
 
 use super::found::Found;
 use super::gathering::Gathered;
+use super::pictures::Pictures;
 use super::stock::{Numbers, Stock};
 use crate::database::Database;
 use crate::error::DocumentError;
@@ -63,7 +64,7 @@ pub(super) fn makes(scene: &Scene) -> Vec<Make> {
 
 impl Steps {
     /// The steps that were found, of a painting that was kept so.
-    pub(super) fn of(gathered: &mut Gathered, kept: &KeptPainting) -> Self {
+    pub(super) fn of(gathered: &mut Gathered, kept: &KeptPainting, pictures: &Pictures) -> Self {
         let found = std::mem::take(&mut gathered.steps);
         let torn = gathered.torn_steps.iter().map(|id| (*id, Vec::new()));
         let mut all: BTreeMap<i64, Vec<Found>> = torn.collect();
@@ -84,6 +85,7 @@ impl Steps {
                 .as_ref()
                 .map_or(place(id).is_none(), |copy| copy.int(4) != 0);
             let known = best.and_then(Known::of);
+            let known = known.filter(|known| known.is_made_of(pictures));
             match is_done {
                 true => {
                     let is_open = kept.open_steps.iter().any(|open| open.step as i64 == id);
@@ -178,7 +180,12 @@ impl Known {
         })
     }
 
-    /// Whether all is there that it names, and it books just the paint that it brings.
+    fn is_made_of(&self, pictures: &Pictures) -> bool {
+        let mut makes = self.deed.makes.iter().flatten();
+        makes.all(|makes| pictures.has_all(makes))
+    }
+
+    /// Whether all paint is there that it names, and it books just the paint that it brings.
     fn balances(&self, stock: &Stock) -> bool {
         let mut brought = [0i64; SLOTS];
         let mut bring = |ends: [Option<Counts>; 2]| {

@@ -1,0 +1,68 @@
+//! Grounds and teeth that are made of pictures: of one that is lost there is the plain one.
+
+use std::collections::BTreeSet;
+
+use maulstick_paint::PaintingSetup;
+use maulstick_paint::embedded::IMAGE;
+use maulstick_paint::history::Make;
+use maulstick_types::scene::Scene;
+use rusqlite::params;
+
+use crate::database::Database;
+use crate::error::DocumentError;
+
+/// The pictures that are whole, by their hash.
+pub(super) struct Pictures(BTreeSet<String>);
+
+impl Pictures {
+    /// Those in the new painting.
+    ///
+    /// # Errors
+    /// What SQLite says.
+    pub(super) fn read(database: &Database) -> Result<Self, DocumentError> {
+        let query = "SELECT hash FROM file WHERE kind = 'picture'";
+        let mut statement = database.connection.prepare(query)?;
+        let hashes = statement.query_map(params![], |row| row.get(0))?;
+        Ok(Self(hashes.collect::<Result<_, _>>()?))
+    }
+
+    /// Whether what a ground or a tooth of this name is made of is there.
+    fn has(&self, name: &str) -> bool {
+        match name.strip_prefix(IMAGE) {
+            Some(rest) => self.0.contains(rest.split('@').next().unwrap_or(rest)),
+            None => true,
+        }
+    }
+
+    /// Whether all is there that surfaces are made of.
+    pub(super) fn has_all(&self, makes: &[Make]) -> bool {
+        let mut names = makes.iter().flat_map(|make| [&make.ground, &make.tooth]);
+        names.all(|name| self.has(name))
+    }
+
+    /// Makes surfaces plain that were made of lost pictures; returns the names of these.
+    pub(super) fn mend(&self, scene: &mut Scene) -> Vec<String> {
+        let names = scene
+            .surfaces
+            .iter_mut()
+            .flat_map(|surface| self.plain(&mut surface.ground, &mut surface.tooth));
+        names.collect()
+    }
+
+    /// As [`mend`](Self::mend), in a version; true where something was lost.
+    pub(super) fn mend_makes(&self, makes: &mut [Make]) -> bool {
+        let mut lost = false;
+        for make in makes {
+            lost |= !self.plain(&mut make.ground, &mut make.tooth).is_empty();
+        }
+        lost
+    }
+
+    fn plain(&self, ground: &mut String, tooth: &mut String) -> Vec<String> {
+        let plain = PaintingSetup::default();
+        let pairs = [(ground, plain.ground), (tooth, plain.tooth)];
+        let lost = pairs.into_iter().filter(|(name, _)| !self.has(name));
+        lost.map(|(name, plain)| std::mem::replace(name, plain))
+            .collect()
+    }
+}
