@@ -31,12 +31,12 @@ fn close(place: &Place, mut launcher: Launcher) {
 fn a_rendered_document_is_the_picture_and_goes_on() {
     let place = Place::new();
     place.short_demo("take.mcap", 4.0);
-    let load = ["--load", "Ultramarine Blue"];
-    let render = |more: &[&str]| {
-        place.done(&[&["render", "take.mcap"], &load[..], more].concat());
+    let render = |load: &str, more: &[&str]| {
+        place.done(&[&["render", "take.mcap", "--load", load], more].concat());
     };
-    render(&["-o", "memory.png"]);
-    render(&["-o", "file.png", "--document", "ein Bild ä"]);
+    let blue = "Ultramarine Blue";
+    render(blue, &["-o", "memory.png"]);
+    render(blue, &["-o", "file.png", "--document", "ein Bild ä"]);
     assert_same(
         &place.bytes("memory.png"),
         &place.bytes("file.png"),
@@ -45,18 +45,14 @@ fn a_rendered_document_is_the_picture_and_goes_on() {
     let before = info(&place, "ein Bild ä");
     assert!(before["undo"].as_u64() > Some(0) && before["pending"] == 0);
     assert_eq!(before["size_cm"][0], 25.6);
-    // Little memory, and a second take over the first.
-    render(&[
-        "-o",
-        "twice.png",
-        "--document",
-        "ein Bild ä",
-        "--memory",
-        "64M",
-    ]);
+    // Little memory, and a second take over the first, with another paint.
+    let file = ["--document", "ein Bild ä", "--memory", "64M"];
+    let yellow = "Hansa Yellow Opaque";
+    render(yellow, &[&["-o", "twice.png"], &file[..]].concat());
     let after = info(&place, "ein Bild ä");
     assert!(after["undo"].as_u64() > before["undo"].as_u64());
     assert_eq!(after["ledger"]["quanta_missing"], 0);
+    assert_eq!(after["paints"], serde_json::json!([blue, yellow]));
     assert!(
         !place.path("ein Bild ä-wal").exists(),
         "its journal is folded in"

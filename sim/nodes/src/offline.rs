@@ -4,7 +4,7 @@
 
 use maulstick_brush::{BrushFile, BrushModel};
 use maulstick_paint::{PaintRefusal, Painting, Sequencer};
-use maulstick_types::command::{Command, CommandRequest, Outcome};
+use maulstick_types::command::Command;
 use maulstick_types::stylus::StylusSample;
 use maulstick_types::{Flags, Header, Message as _, Mixture, Origin, name_hash};
 
@@ -18,7 +18,6 @@ pub struct Offline {
     me: Origin,
     next: u64,
     samples: u64,
-    commands: u64,
 }
 
 impl Offline {
@@ -66,7 +65,6 @@ impl Offline {
             me,
             next: 0,
             samples: 0,
-            commands: 0,
         };
         let (device, device_epoch) = (player.source, player.epoch);
         offline.command(Command::Take {
@@ -112,17 +110,7 @@ impl Offline {
     /// # Errors
     /// [`PaintRefusal`] where the painting refuses it.
     pub fn command(&mut self, command: Command) -> Result<(), PaintRefusal> {
-        self.commands += 1;
-        let request = CommandRequest {
-            client: 1,
-            number: self.commands,
-            after: None,
-            command,
-        };
-        match self.sequencer.command(request).outcome {
-            Outcome::Refused { what, help } => return Err(PaintRefusal { what, help }),
-            Outcome::Done { .. } | Outcome::Waiting => {}
-        }
+        self.sequencer.ask(command)?;
         let scene = self.sequencer.painting_mut().scene();
         self.model.set_scene(scene);
         self.model.tune(scene.tuning(&self.brush));

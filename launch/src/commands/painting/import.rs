@@ -83,7 +83,15 @@ pub(super) fn run(options: &ImportOptions) -> Result<i32, Fault> {
 
 impl ImportOptions {
     fn fault(&self, error: &ImportError) -> Fault {
-        Fault::usage(error.to_string()).at(self.picture.display().to_string())
+        match error {
+            ImportError::File(error) => Fault::reading(&self.picture, error),
+            ImportError::Thickness(_) => Fault::usage(error.to_string()).at("--um"),
+            ImportError::Paints(_) => Fault::usage(error.to_string()).at("--paint"),
+            ImportError::Refused(refusal) => refused(refusal.clone()).at("--paint"),
+            other => Fault::usage(other.to_string())
+                .at(self.picture.display().to_string())
+                .help("give a PNG, JPEG or TIFF of at most 20,000 pixels either way"),
+        }
     }
 
     fn paint(&self, sequencer: &mut Sequencer, image: &Image) -> Result<String, Fault> {
@@ -132,6 +140,15 @@ impl ImportOptions {
         let width_mm = self
             .width_mm
             .unwrap_or(f64::from(canvas.cells[0]) * cell_m * 1e3);
+        let good = (1.0..=1e4).contains(&width_mm) && (1.0..=1e3).contains(&self.depth_um);
+        if !good {
+            let depth_um = self.depth_um;
+            return Err(
+                Fault::usage(format!("a tooth {width_mm} mm wide, {depth_um} µm deep"))
+                    .at("--width-mm, --depth-um")
+                    .help("choose 1 to 10000 mm and 1 to 1000 µm"),
+            );
+        }
         let bytes = embed::tooth(image, width_mm, cell_m).map_err(|error| self.fault(&error))?;
         let hash = sequencer.painting_mut().embed(bytes).map_err(refused)?;
         let command = Command::Tooth {

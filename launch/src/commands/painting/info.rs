@@ -52,6 +52,7 @@ pub(super) fn run(options: &InfoOptions) -> Result<i32, Fault> {
     let size_cm = canvas
         .cells
         .map(|cells| f64::from(cells) * canvas.cell_m * 100.0);
+    let [ground, tooth] = [&canvas.ground, &canvas.tooth].map(|name| short(name));
     let per_mm = 1e-3 / canvas.cell_m;
     let (undo, redo) = painting.history_depth();
     let names: Vec<&str> = scene.paints.iter().map(|slot| slot.name.as_str()).collect();
@@ -95,7 +96,7 @@ pub(super) fn run(options: &InfoOptions) -> Result<i32, Fault> {
         canvas.cells[0],
         canvas.cells[1]
     );
-    say!("ground    {}, {} tooth", canvas.ground, canvas.tooth);
+    say!("ground    {ground}, {tooth} tooth");
     say!(
         "paints    {}",
         if names.is_empty() {
@@ -140,4 +141,15 @@ pub(super) fn run(options: &InfoOptions) -> Result<i32, Fault> {
         say!("          every tile is whole");
     }
     Ok(0)
+}
+
+/// The name of a ground or tooth; of a picture the first digits of its hash.
+fn short(name: &str) -> String {
+    let Some(picture) = name.strip_prefix("image:") else {
+        return name.to_owned();
+    };
+    let (hash, size) = picture.split_once('@').unwrap_or((picture, ""));
+    let size = size.replace(',', ", ");
+    let digits: String = hash.chars().take(8).collect();
+    format!("picture {digits} {size}").trim_end().to_owned()
 }

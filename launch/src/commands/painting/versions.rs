@@ -96,7 +96,7 @@ pub(super) fn run(options: &VersionsOptions) -> Result<i32, Fault> {
     keeper
         .close(&mut sequencer)
         .map_err(|error| wrong(path, &error))?;
-    done?;
+    done.map_err(|fault| fault.at(path.display().to_string()))?;
     list(sequencer.painting().scene(), options.json)
 }
 
