@@ -129,7 +129,7 @@ pub(crate) fn file(database: &Database, hash: &str) -> Result<Vec<u8>, DocumentE
         params![hash],
         |row| row.get(0),
     )?;
-    match crate::writing::file_hash(&data) == hash {
+    match maulstick_paint::embedded::hash_of(&data) == hash {
         true => Ok(data),
         false => Err(damaged(format!("file {hash} is not what it was"))),
     }

@@ -3,6 +3,7 @@
 use std::collections::BTreeSet;
 use std::sync::Arc;
 
+use maulstick_paint::embedded::hash_of;
 use maulstick_paint::history::{Held, Step};
 use maulstick_paint::kept::KeptSequencer;
 use maulstick_paint::load::BrushLoad;
@@ -10,7 +11,6 @@ use maulstick_paint::page::Page;
 use maulstick_paint::painting::{Checkpoint, Named};
 use maulstick_paint::tile::Planes;
 use rusqlite::{OptionalExtension as _, params};
-use sha2::Digest as _;
 
 use crate::database::{DEPTH_MAX, Database, load_sum, page_sum, shown_sum};
 use crate::error::DocumentError;
@@ -45,13 +45,6 @@ pub struct ShownTile {
 
 /// What is done between two pages: somebody may wait for one.
 pub(crate) type Breath<'a> = &'a mut dyn FnMut(&Database);
-
-/// The hash of a file, lower-case hexadecimal SHA-256.
-#[must_use]
-pub fn file_hash(data: &[u8]) -> String {
-    let digest = sha2::Sha256::digest(data);
-    digest.iter().map(|byte| format!("{byte:02x}")).collect()
-}
 
 /// What was written, to be noted once it is committed.
 #[derive(Debug, Default)]
@@ -358,7 +351,7 @@ impl<'a, 'b> Writer<'a, 'b> {
     }
 
     fn file(&self, kind: &str, name: &str, data: &[u8]) -> Result<String, DocumentError> {
-        let hash = file_hash(data);
+        let hash = hash_of(data);
         if !self.has_file(&hash)? {
             let sum = Sum::of(Table::File)
                 .bytes(hash.as_bytes())

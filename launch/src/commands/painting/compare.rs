@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use maulstick_optics::colour::{delta_e_2000, lab, srgb_decode};
+use maulstick_optics::colour::{RgbSpace, apply, delta_e_2000, lab, srgb_decode};
 use maulstick_paint::Sequencer;
 use maulstick_paint::picture::{Picture, picture};
 use maulstick_rig::Fault;
@@ -95,15 +95,11 @@ fn difference([one, other]: [[u8; 3]; 2]) -> f64 {
     if one == other {
         return 0.0;
     }
-    const WHITE_XYZ: [f64; 3] = [0.950_47, 1.0, 1.088_83];
+    let to_xyz = RgbSpace::Srgb.to_xyz();
+    let white = apply(&to_xyz, [1.0; 3]);
     let seen = |pixel: [u8; 3]| {
-        let [r, g, b] = pixel.map(|byte| srgb_decode(f64::from(byte) / 255.0));
-        let xyz = [
-            0.412_456_4 * r + 0.357_576_1 * g + 0.180_437_5 * b,
-            0.212_672_9 * r + 0.715_152_2 * g + 0.072_175 * b,
-            0.019_333_9 * r + 0.119_192 * g + 0.950_304_1 * b,
-        ];
-        lab(xyz, WHITE_XYZ)
+        let linear = pixel.map(|byte| srgb_decode(f64::from(byte) / 255.0));
+        lab(apply(&to_xyz, linear), white)
     };
     delta_e_2000(seen(one), seen(other))
 }

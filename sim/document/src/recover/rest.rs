@@ -22,7 +22,6 @@ use crate::opening::text;
 use crate::rows::{KeptRest, unpacked};
 use crate::scan::Value;
 use crate::schema::Table;
-use crate::writing::file_hash;
 use crate::{journal, loads};
 
 /// Whether a library has all paints of a painting.
@@ -85,7 +84,7 @@ fn put_file(
     name: &str,
     data: &str,
 ) -> Result<String, DocumentError> {
-    let hash = file_hash(data.as_bytes());
+    let hash = maulstick_paint::embedded::hash_of(data.as_bytes());
     let texts = [hash.as_str(), kind, name].map(|text| Value::Text(text.to_owned()));
     let values = texts
         .into_iter()
