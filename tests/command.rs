@@ -53,6 +53,68 @@ fn a_demo_becomes_a_picture_the_same_every_time() {
 }
 
 #[test]
+fn a_take_that_embeds_what_it_is_painted_with_gives_the_same_painting() {
+    let place = Place::new();
+    place.short_demo("bare.mcap", 4.0);
+    let brush = maulstick_brush::BrushFile::library("filbert").expect("a brush");
+    std::fs::write(place.path("own.toml"), brush.to_toml().expect("a file")).expect("written");
+    let kit = [
+        "--brush",
+        "own.toml",
+        "--size",
+        "640x600",
+        "--illuminant",
+        "A",
+        "--load",
+        "Pyrrole Red",
+    ];
+    let paint = |take: &str, picture: &str, kit: &[&str]| {
+        place.done(&[&["render", take, "-o", picture], kit].concat());
+        place.bytes(picture)
+    };
+    let wanted = paint("bare.mcap", "options.png", &kit);
+    for name in ["whole.mcap", "again.mcap"] {
+        place.done(&[&["take", "embed", "bare.mcap", "-o", name], &kit[..]].concat());
+    }
+    support::assert_same(
+        &place.bytes("whole.mcap"),
+        &place.bytes("again.mcap"),
+        "one take embedded twice",
+    );
+    std::fs::remove_file(place.path("own.toml")).expect("removed");
+    let got = paint("whole.mcap", "embedded.png", &[]);
+    support::assert_same(&wanted, &got, "by options and by what the take embeds");
+    assert!(paint("bare.mcap", "plain.png", &[]) != wanted);
+    let other = paint("whole.mcap", "other.png", &["--load", "Bone Black"]);
+    assert!(other != wanted, "an option wins over what the take embeds");
+    place.done(&[
+        "up",
+        "--headless",
+        "--play",
+        "whole.mcap",
+        "--rate",
+        "max",
+        "--snapshot",
+        "live.png",
+    ]);
+    support::assert_same(&wanted, &place.bytes("live.png"), "rendered and live");
+    has(
+        &String::from_utf8_lossy(&place.done(&["take", "info", "whole.mcap"]).stdout),
+        &["embeds", "Pyrrole Red"],
+    );
+
+    // Its brush is damaged: the samples can be had, and nothing else is painted in its place.
+    let mut bytes = place.bytes("whole.mcap");
+    let at = bytes.windows(6).position(|found| found == b"[head]");
+    bytes[at.expect("a brush file") + 1] = b'x';
+    std::fs::write(place.path("torn.mcap"), bytes).expect("written");
+    has(
+        &fault(&place, &["render", "torn.mcap", "-o", "p.png"], 2),
+        &["torn.mcap", "embeds", "take embed"],
+    );
+}
+
+#[test]
 fn the_canvas_has_the_size_that_is_asked_for() {
     let place = Place::new();
     place.short_demo("demo.mcap", 1.0);

@@ -411,6 +411,7 @@ fn press_for_minutes(path: &Path) {
         }
     });
     let take = Take {
+        kit: None,
         device: "hand".into(),
         samples: samples.collect(),
     };

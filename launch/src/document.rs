@@ -100,7 +100,7 @@ pub fn presence(path: &Path, options: &PaintingOptions) -> Result<Presence, Faul
             check_writable(path).map_err(|error| Fault::writing(path, &error))?;
             Ok(Presence::New)
         }
-        true => match options.for_a_new_one() {
+        true => match options.kit.for_a_new_one() {
             Some(option) => Err(Fault::usage(format!("{option} is for a new painting"))
                 .at(path.display().to_string())
                 .help(

@@ -13,6 +13,7 @@
 //! | [`chart`] | the mixing chart, and one mixture by four ways of mixing |
 //! | [`sheet`] | the sheet of brushes and their marks |
 //! | [`document`] | paintings in files |
+//! | [`kit`] | what a take is painted with: put into it, and taken from it |
 //! | [`performance`] | what `render` and `up --play` share: take, brush, loads, canvas |
 
 pub mod chart;
@@ -20,6 +21,7 @@ pub mod cli;
 pub mod commands;
 pub mod destination;
 pub mod document;
+pub mod kit;
 pub mod nodes;
 pub mod page;
 pub mod performance;

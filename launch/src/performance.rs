@@ -13,9 +13,9 @@ use maulstick_types::scene::Light;
 
 use crate::viewing::illuminant;
 
-/// Options of a painting.
+/// What is painted with, and on.
 #[derive(Args, Clone, Debug, Default)]
-pub struct PaintingOptions {
+pub struct KitOptions {
     /// Size of the canvas in cells, for example 1024x1024
     #[arg(long, value_name = "WxH", value_parser = parse_size)]
     pub size: Option<[u32; 2]>,
@@ -35,6 +35,14 @@ pub struct PaintingOptions {
     /// Keeps the cast of the light: the eye is not adapted to it
     #[arg(long)]
     pub no_adapt: bool,
+}
+
+/// Options of a painting. What they leave open is as the take embeds it, else as rig.toml says.
+#[derive(Args, Clone, Debug, Default)]
+pub struct PaintingOptions {
+    /// What is painted with, and on.
+    #[command(flatten)]
+    pub kit: KitOptions,
     /// Most memory of a painting in a file, such as 512M; that of rig.toml if absent
     #[arg(long, value_name = "SIZE")]
     pub memory: Option<String>,
@@ -63,8 +71,8 @@ pub fn parse_size(text: &str) -> Result<[u32; 2], String> {
     Ok(size)
 }
 
-impl PaintingOptions {
-    /// Puts size and brush into the rig's settings, and returns the brush's section.
+impl KitOptions {
+    /// Puts size, brush, paints and light into the rig's settings, and returns the brush's section.
     ///
     /// # Errors
     /// A [`Fault`] for an unknown brush, with the nearest name.
@@ -80,19 +88,6 @@ impl PaintingOptions {
             config.light.illuminant.clone_from(illuminant);
         }
         config.light.adapt &= !self.no_adapt;
-        for (setting, option) in [
-            (&mut config.paint.memory, &self.memory),
-            (&mut config.paint.history, &self.history),
-        ] {
-            if let Some(size) = option {
-                setting.clone_from(size);
-            }
-        }
-        config.paint.bytes().map_err(|what| {
-            Fault::usage(what)
-                .at("--memory, --history")
-                .help("write sizes as 512M or 2G; 64M is the least memory")
-        })?;
         let section = match &self.brush {
             None => config.brush[0].clone(),
             Some(name) => match config.brush_named(name) {
@@ -130,17 +125,47 @@ impl PaintingOptions {
             .map(|(_, name)| name)
     }
 
-    /// The loads, each with the paints' names as the library spells them.
+    /// The loads, each with the paints' names as the library spells them; `embedded` are those of the
+    /// take, where the options have none.
     ///
     /// # Errors
     /// A [`Fault`] for a bad mixture or an unknown paint, with the nearest name.
-    pub fn mixtures(&self, library: &PaintLibrary) -> Result<Vec<Mixture>, Fault> {
-        self.load
-            .iter()
-            .map(|text| {
-                mixture_of(text, library).map_err(|fault| fault.at(format!("--load {text:?}")))
-            })
-            .collect()
+    pub fn mixtures(
+        &self,
+        embedded: &[String],
+        library: &PaintLibrary,
+    ) -> Result<Vec<Mixture>, Fault> {
+        let (loads, whose) = match self.load.is_empty() {
+            false => (self.load.as_slice(), "--load"),
+            true => (embedded, "the take's load"),
+        };
+        let mixture = |text: &String| {
+            mixture_of(text, library).map_err(|fault| fault.at(format!("{whose} {text:?}")))
+        };
+        loads.iter().map(mixture).collect()
+    }
+}
+
+impl PaintingOptions {
+    /// As [`KitOptions::apply`], with memory and history.
+    ///
+    /// # Errors
+    /// As there, and for sizes that are none.
+    pub fn apply(&self, config: &mut RigConfig) -> Result<BrushSection, Fault> {
+        for (setting, option) in [
+            (&mut config.paint.memory, &self.memory),
+            (&mut config.paint.history, &self.history),
+        ] {
+            if let Some(size) = option {
+                setting.clone_from(size);
+            }
+        }
+        config.paint.bytes().map_err(|what| {
+            Fault::usage(what)
+                .at("--memory, --history")
+                .help("write sizes as 512M or 2G; 64M is the least memory")
+        })?;
+        self.kit.apply(config)
     }
 }
 
@@ -256,7 +281,7 @@ mod tests {
     #[test]
     fn a_brush_may_come_from_the_rig_the_library_or_a_file() {
         let apply = |name: &str| {
-            let options = PaintingOptions {
+            let options = KitOptions {
                 brush: Some(name.into()),
                 ..Default::default()
             };

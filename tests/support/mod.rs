@@ -98,6 +98,7 @@ impl Place {
             .filter(|sample| sample.time_ns <= end)
             .collect();
         let take = maulstick_device::Take {
+            kit: None,
             device: "demo".into(),
             samples,
         };

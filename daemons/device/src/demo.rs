@@ -182,6 +182,7 @@ pub fn performance(subject: Subject, seed: u64) -> Take {
     }
     travel(&mut samples, time_s, rest, rest);
     Take {
+        kit: None,
         device: "demo".into(),
         samples,
     }

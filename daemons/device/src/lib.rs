@@ -3,6 +3,7 @@
 //! | module | holds |
 //! | --- | --- |
 //! | [`take`] | recorded samples as MCAP files |
+//! | [`kit`] | what a take is painted with, embedded in it |
 //! | [`table`] | tables of strokes, imported as takes |
 //! | [`demo`], [`sheet`] | performances made from a seed |
 //! | [`player`] | a device that plays a take |
@@ -12,10 +13,12 @@
 pub mod brush;
 pub mod commander;
 pub mod demo;
+pub mod kit;
 pub mod player;
 pub mod sheet;
 pub mod table;
 pub mod take;
 
 pub use brush::{brush_file, read_brush};
+pub use kit::Kit;
 pub use take::{Take, TakeSample};

@@ -108,6 +108,7 @@ pub fn parse(text: &str, name: &str, layout: TableLayout, device: &str) -> Resul
             .help("each line is: t x y pressure [tilt_x tilt_y [twist]]"));
     }
     Ok(Take {
+        kit: None,
         device: device.to_owned(),
         samples,
     })

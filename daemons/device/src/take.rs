@@ -2,7 +2,7 @@
 //! messages are those of the bus, header and all. `log_time` is the time since the take's start.
 
 use std::fs::File;
-use std::io::{BufReader, BufWriter};
+use std::io::{BufWriter, Cursor};
 use std::path::Path;
 
 use maulstick_rig::Fault;
@@ -11,6 +11,8 @@ use maulstick_types::stylus::StylusSample;
 use maulstick_types::{Flags, Message as _, Origin, decode, encode, name_hash};
 use mcap::records::MessageHeader;
 use mcap::sans_io::LinearReaderOptions;
+
+use crate::kit::Kit;
 
 /// Encoding of the messages: the bus's own header and body.
 pub const MESSAGE_ENCODING: &str = "x-maulstick";
@@ -33,6 +35,8 @@ pub struct Take {
     pub device: String,
     /// At least one.
     pub samples: Vec<TakeSample>,
+    /// What it is painted with, where it embeds that.
+    pub kit: Option<Kit>,
 }
 
 /// What a damaged take still holds.
@@ -81,11 +85,15 @@ impl Take {
     pub fn salvage(path: &Path) -> Result<Salvage, Fault> {
         let place = path.display().to_string();
         let fault = |what: String, help: &str| Fault::usage(what).at(place.clone()).help(help);
-        let file = File::open(path).map_err(|error| Fault::reading(path, &error))?;
+        let mut bytes = std::fs::read(path).map_err(|error| Fault::reading(path, &error))?;
+        let (kit, mut damage) = match Kit::read(&bytes) {
+            Ok(kit) => (kit, None),
+            Err(damage) => (None, Some(damage)),
+        };
+        Kit::hide(&mut bytes);
         let options = LinearReaderOptions::default();
-        let reader = mcap::io::MessageReader::new_with_options(BufReader::new(file), options);
+        let reader = mcap::io::MessageReader::new_with_options(Cursor::new(&bytes), options);
         let mut devices: Vec<Take> = Vec::new();
-        let mut damage = None;
         let mut last_ns = 0;
         for (number, message) in reader.enumerate() {
             let message = match message {
@@ -129,6 +137,7 @@ impl Take {
                 None => devices.push(Take {
                     device: device.to_owned(),
                     samples: vec![sample],
+                    kit: kit.clone(),
                 }),
             }
         }
@@ -173,6 +182,9 @@ impl Take {
             .compression(Some(mcap::Compression::Zstd))
             .compression_threads(0)
             .create(file)?;
+        if let Some(kit) = &self.kit {
+            kit.write(&mut writer)?;
+        }
         let fields = serde_json::to_vec(StylusSample::schema()).unwrap_or_default();
         let schema = writer.add_schema("StylusSample/1", SCHEMA_ENCODING, &fields)?;
         let topic = format!("stylus/{}/sample", self.device);
@@ -227,6 +239,7 @@ mod tests {
         Take {
             device: "pen".into(),
             samples: (0..5000).map(sample).collect(),
+            kit: None,
         }
     }
 
@@ -240,6 +253,36 @@ mod tests {
         assert_eq!(Take::read(&paths[0]), Ok(take()));
         let bytes = paths.map(|path| std::fs::read(path).expect("read"));
         assert!(bytes[0] == bytes[1]);
+    }
+
+    fn with_a_kit() -> Take {
+        let mut kit = Kit::default();
+        kit.add(b"paint".to_vec(), "csv");
+        kit.settings = kit.add(b"[canvas]".to_vec(), "toml");
+        kit.loads = vec!["Ultramarine Blue".into(), "Titanium White".into()];
+        Take {
+            kit: Some(kit),
+            ..take()
+        }
+    }
+
+    #[test]
+    fn what_a_take_embeds_is_what_it_was_or_damaged() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let path = folder.path().join("a.mcap");
+        with_a_kit().write(&path).expect("written");
+        assert_eq!(Take::read(&path), Ok(with_a_kit()));
+        let mut bytes = std::fs::read(&path).expect("read");
+        let at = bytes.windows(8).position(|found| found == b"[canvas]");
+        bytes[at.expect("embedded as it is")] ^= 1;
+        std::fs::write(&path, &bytes).expect("written");
+        let fault = Take::read(&path).expect_err("damaged").to_string();
+        assert!(
+            fault.contains("embeds") && fault.contains("5000"),
+            "{fault}"
+        );
+        let whole = Take::salvage(&path).expect("its samples");
+        assert_eq!(whole.take, take());
     }
 
     #[test]

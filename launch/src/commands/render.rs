@@ -14,6 +14,7 @@ use maulstick_rig::{Fault, RigConfig};
 use crate::commands::progress_bar;
 use crate::destination::export;
 use crate::document::{go_on, presence, wrong};
+use crate::kit::use_kit;
 use crate::performance::{PaintingOptions, brush_file, library_from, painting_setup, refused};
 
 /// Options of `maulstick render`.
@@ -50,6 +51,9 @@ pub fn run(options: &RenderOptions) -> Result<i32, Fault> {
         Some(path) => RigConfig::read(path)?,
         None => RigConfig::default(),
     };
+    let take = Take::read(&options.take)?;
+    let folder = tempfile::tempdir().map_err(|error| Fault::failure(error.to_string()))?;
+    let embedded = use_kit(&take, &options.take, folder.path(), &mut config)?;
     let section = options.painting.apply(&mut config)?;
     for (setting, option) in [
         (&mut config.view.profile, &options.profile),
@@ -61,8 +65,7 @@ pub fn run(options: &RenderOptions) -> Result<i32, Fault> {
     }
     let export = export(&config.view, "--profile, --gamut")?;
     let library = library_from(config.paint.paints.as_deref())?;
-    let loads = options.painting.mixtures(&library)?;
-    let take = Take::read(&options.take)?;
+    let loads = options.painting.kit.mixtures(&embedded, &library)?;
     let unloaded = loads.is_empty();
     for path in [Some(&options.output), options.painting.ledger.as_ref()]
         .into_iter()

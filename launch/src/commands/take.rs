@@ -1,15 +1,16 @@
-//! `maulstick take`: what a take holds, and what of a damaged one is whole.
+//! `maulstick take`: what a take holds, what it is painted with, and what of a damaged one is whole.
 
 use std::path::PathBuf;
 
-use clap::Subcommand;
-use maulstick_device::Take;
-use maulstick_rig::Fault;
+use clap::{Args, Subcommand};
+use maulstick_device::{Kit, Take};
+use maulstick_rig::{Fault, RigConfig};
 use maulstick_types::stylus::StylusPose;
 use serde_json::json;
 
-use crate::commands::print_json;
-use crate::commands::say;
+use crate::commands::{print_json, say, write_take};
+use crate::kit::{kit_of, use_kit};
+use crate::performance::{KitOptions, library_from, painting_setup, refused};
 
 /// Subcommands of `maulstick take`.
 #[derive(Subcommand, Clone, Debug)]
@@ -22,6 +23,9 @@ pub enum TakeCommand {
         #[arg(long)]
         json: bool,
     },
+    /// Puts what a take is painted with into it: canvas, palette, brush, paints, light, loads. Then it
+    /// gives the same painting anywhere
+    Embed(EmbedOptions),
     /// Writes the whole samples of a damaged take to another file
     Recover {
         /// The damaged take, which stays as it is
@@ -32,12 +36,64 @@ pub enum TakeCommand {
     },
 }
 
+/// Options of `maulstick take embed`.
+#[derive(Args, Clone, Debug)]
+pub struct EmbedOptions {
+    /// The take, which stays as it is
+    take: PathBuf,
+    /// The take to write
+    #[arg(short, long, value_name = "TAKE")]
+    output: PathBuf,
+    /// Settings of the rig
+    #[arg(long, value_name = "FILE")]
+    rig: Option<PathBuf>,
+    #[command(flatten)]
+    kit: KitOptions,
+}
+
+/// Embeds what a take is painted with.
+fn embed(options: &EmbedOptions) -> Result<i32, Fault> {
+    let mut config = match &options.rig {
+        Some(path) => RigConfig::read(path)?,
+        None => RigConfig::default(),
+    };
+    let take = Take::read(&options.take)?;
+    let folder = tempfile::tempdir().map_err(|error| Fault::failure(error.to_string()))?;
+    let embedded = use_kit(&take, &options.take, folder.path(), &mut config)?;
+    let brush = options.kit.apply(&mut config)?;
+    let library = library_from(config.paint.paints.as_deref())?;
+    let loads = options.kit.mixtures(&embedded, &library)?;
+    painting_setup(&config, &library)?
+        .check(&library)
+        .map_err(refused)?;
+    let take = Take {
+        kit: Some(kit_of(&config, &brush, &loads)?),
+        ..take
+    };
+    write_take(&take, &options.output)?;
+    Ok(0)
+}
+
+/// What a take embeds, in words; nothing where it embeds nothing.
+fn kit_in_words(kit: &Kit) -> String {
+    let bytes: usize = kit.files.values().map(Vec::len).sum();
+    let loads = match kit.loads.is_empty() {
+        true => "no load".to_owned(),
+        false => kit.loads.join("; "),
+    };
+    format!(
+        "canvas, brush, paints and light ({:.1} kB); {loads}",
+        bytes as f64 * 1e-3
+    )
+}
+
 /// Runs the subcommand.
 ///
 /// # Errors
 /// A [`Fault`] where the take cannot be read or written.
 pub fn run(command: &TakeCommand) -> Result<i32, Fault> {
     match command {
+        TakeCommand::Embed(options) => embed(options),
         TakeCommand::Info { take, json } => {
             let take = Take::read(take)?;
             let seconds = take.length_ns() as f64 * 1e-9;
@@ -52,6 +108,8 @@ pub fn run(command: &TakeCommand) -> Result<i32, Fault> {
                     "samples": take.samples.len(),
                     "seconds": seconds,
                     "rate_hz": rate,
+                    "loads": take.kit.as_ref().map(|kit| &kit.loads),
+                    "embeds": take.kit.as_ref().map(|kit| kit.files.keys().collect::<Vec<_>>()),
                     "kind": if pens { "pen" } else { "6-DOF" },
                 }))?;
             } else {
@@ -61,6 +119,9 @@ pub fn run(command: &TakeCommand) -> Result<i32, Fault> {
                     "samples  {} over {seconds:.3} s, {rate:.1} a second",
                     take.samples.len()
                 );
+                if let Some(kit) = &take.kit {
+                    say!("embeds   {}", kit_in_words(kit));
+                }
             }
             Ok(0)
         }

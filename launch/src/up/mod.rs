@@ -26,11 +26,14 @@ use maulstick_types::Mixture;
 
 use crate::destination::{VIEW, export};
 use crate::document::{Presence, presence};
+use crate::kit::use_kit;
 use crate::performance::{PaintingOptions, library_from, painting_setup, refused};
 use crate::up::conductor::Performance;
 use crate::up::plan::{Hands, Window};
 use crate::up::supervisor::Supervisor;
 
+/// Where, in the rig's folder, lies what the played take embeds.
+const KIT: &str = "kit";
 /// What the brush carries at the start, where nothing else is asked for.
 const FIRST_LOAD: &str = "Ultramarine Blue";
 
@@ -102,20 +105,28 @@ pub fn run(options: &UpOptions) -> Result<i32, Fault> {
     if let Some(file) = &options.file {
         config.paint.document = Some(absolute(file)?);
     }
+    let folder = RigFolder::create(&config.rig.name)?;
+    let take = match &options.play {
+        None => None,
+        Some(path) => Some((path, Take::read(path)?)),
+    };
+    let embedded = match &take {
+        None => Vec::new(),
+        Some((path, take)) => use_kit(take, path, &folder.path().join(KIT), &mut config)?,
+    };
     let section = options.painting.apply(&mut config)?;
     let presence = match &config.paint.document {
         Some(path) => Some(presence(path, &options.painting)?),
         None => None,
     };
     let library = library_from(config.paint.paints.as_deref())?;
-    let loads = options.painting.mixtures(&library)?;
+    let loads = options.painting.kit.mixtures(&embedded, &library)?;
     painting_setup(&config, &library)?
         .check(&library)
         .map_err(refused)?;
-    let performance = match &options.play {
+    let performance = match &take {
         None => None,
-        Some(path) => {
-            let length_ns = Take::read(path)?.length_ns();
+        Some((path, take)) => {
             for file in [&options.snapshot, &options.painting.ledger]
                 .into_iter()
                 .flatten()
@@ -134,7 +145,7 @@ pub fn run(options: &UpOptions) -> Result<i32, Fault> {
                     .as_deref()
                     .map(absolute)
                     .transpose()?,
-                length_ns,
+                length_ns: take.length_ns(),
             })
         }
     };
@@ -157,7 +168,6 @@ pub fn run(options: &UpOptions) -> Result<i32, Fault> {
         config.view.profile = absolute(path)?.display().to_string();
     }
     export(&config.view, VIEW)?;
-    let folder = RigFolder::create(&config.rig.name)?;
     let window = match options.headless {
         true => Window::Headless,
         false => Window::Shown,
