@@ -89,11 +89,10 @@ fn what_was_done_is_there_after_a_kill_and_can_be_undone() {
         Signal::SIGKILL,
     );
     launcher.wait_says("is started again");
+    support::drain(&mut status);
+    hear(&mut status, |_| true).expect("the painting goes on");
+    println!("paints again after {:.2} s", killed.elapsed().as_secs_f64());
     assert_eq!(books(&ACCOUNTS), before, "as it was");
-    println!(
-        "restarted and asked after {:.2} s",
-        killed.elapsed().as_secs_f64()
-    );
     let undone = |what: &str| {
         let said = place.done(&["undo"]).stdout;
         assert!(String::from_utf8_lossy(&said).contains(what), "{what}");

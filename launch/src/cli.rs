@@ -2,6 +2,7 @@
 
 use clap::{Parser, Subcommand};
 use maulstick_rig::Fault;
+use maulstick_rig::files::clear_on_signals;
 
 use crate::commands::{
     bench, brush, control, demo, endpoint, fit, import, layers, light, matching, mix, painting,
@@ -81,7 +82,13 @@ enum Command {
 /// # Errors
 /// A [`Fault`] as the user sees it.
 pub fn run() -> Result<i32, Fault> {
-    match Cli::parse().command {
+    let command = Cli::parse().command;
+    // A rig has processes to end first.
+    if !matches!(command, Command::Up(_)) {
+        clear_on_signals(crate::EXIT_INTERRUPTED)
+            .map_err(|error| Fault::failure(format!("cannot watch for signals: {error}")))?;
+    }
+    match command {
         Command::Up(options) => up::run(&options),
         Command::Render(options) => render::run(&options),
         Command::Import(options) => import::run(&options),

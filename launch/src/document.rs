@@ -50,7 +50,7 @@ pub fn read(path: &Path) -> Result<(Document, Opened), Fault> {
 /// # Errors
 /// A [`Fault`] where the file cannot be used, or the settings are wrong.
 pub fn go_on(config: &RigConfig, path: &Path) -> Result<(Document, Sequencer, u64), Fault> {
-    let [memory, history] = config
+    let (memory, history) = config
         .paint
         .bytes()
         .map_err(|what| Fault::usage(what).at("[paint]"))?;
@@ -74,7 +74,9 @@ pub fn go_on(config: &RigConfig, path: &Path) -> Result<(Document, Sequencer, u6
             (sequencer, 0)
         }
     };
-    sequencer.painting_mut().set_quota(history);
+    if let Some(history) = history {
+        sequencer.painting_mut().set_quota(history);
+    }
     if let Some(what) = document.pager().fault() {
         return Err(wrong(path, &DocumentError::Damaged(what.to_owned())));
     }

@@ -46,7 +46,8 @@ pub struct PaintingOptions {
     /// Most memory of a painting in a file, such as 512M; that of rig.toml if absent
     #[arg(long, value_name = "SIZE")]
     pub memory: Option<String>,
-    /// Most room of its history, such as 2G; beyond that its oldest steps are merged
+    /// Most room of its history, such as 2G; beyond that its oldest steps are merged. The painting keeps
+    /// to it from then on
     #[arg(long, value_name = "SIZE")]
     pub history: Option<String>,
     /// Writes the ledger of the paint to this JSON file
@@ -152,13 +153,11 @@ impl PaintingOptions {
     /// # Errors
     /// As there, and for sizes that are none.
     pub fn apply(&self, config: &mut RigConfig) -> Result<BrushSection, Fault> {
-        for (setting, option) in [
-            (&mut config.paint.memory, &self.memory),
-            (&mut config.paint.history, &self.history),
-        ] {
-            if let Some(size) = option {
-                setting.clone_from(size);
-            }
+        if let Some(memory) = &self.memory {
+            config.paint.memory.clone_from(memory);
+        }
+        if self.history.is_some() {
+            config.paint.history.clone_from(&self.history);
         }
         config.paint.bytes().map_err(|what| {
             Fault::usage(what)

@@ -1,6 +1,6 @@
 //! `maulstick render`: a take, painted in one process.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 use clap::Args;
@@ -71,6 +71,11 @@ pub fn run(options: &RenderOptions) -> Result<i32, Fault> {
         .into_iter()
         .flatten()
     {
+        if is_same(path, &options.take) {
+            return Err(Fault::usage("the take would be overwritten")
+                .at(path.display().to_string())
+                .help("give the picture another name"));
+        }
         check_writable(path).map_err(|error| Fault::writing(path, &error))?;
     }
     let (mut keeper, sequencer) = match &options.document {
@@ -117,4 +122,10 @@ pub fn run(options: &RenderOptions) -> Result<i32, Fault> {
         eprintln!("the brush carried no paint: `--load \"Ultramarine Blue\"` gives it some");
     }
     Ok(0)
+}
+
+/// Whether two names lead to one file.
+fn is_same(one: &Path, other: &Path) -> bool {
+    let real = |path: &Path| std::fs::canonicalize(path).ok();
+    real(one).is_some_and(|one| real(other) == Some(one))
 }

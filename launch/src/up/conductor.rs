@@ -45,6 +45,8 @@ pub struct Conductor {
     statuses: Receiver<TakeStatus>,
     epoch: Option<u32>,
     forgotten: Option<u32>,
+    /// Whether what was painted of it is to be undone first.
+    again: bool,
     position_ns: u64,
     end: Option<TakeEnd>,
     writing: Option<Writing>,
@@ -78,6 +80,7 @@ impl Conductor {
             statuses,
             epoch: None,
             forgotten: None,
+            again: false,
             position_ns: 0,
             end: None,
             writing: None,
@@ -101,7 +104,7 @@ impl Conductor {
             self.position_ns.to_string(),
             "--stay".to_owned(),
         ];
-        if self.forgotten.is_some() {
+        if self.again {
             args.push("--again".to_owned());
         }
         for load in &performance.loads {
@@ -127,7 +130,9 @@ impl Conductor {
     /// The take has to be played again: what the player said so far holds no more.
     pub fn begin_again(&mut self) {
         self.follow();
-        self.forgotten = self.epoch.take();
+        self.again = true;
+        // A second fault may come before the player that was started after the first says anything.
+        self.forgotten = self.epoch.take().or(self.forgotten);
         self.end = None;
         if let Some(writing) = self.writing.take() {
             writing.given_up.store(true, Ordering::SeqCst);

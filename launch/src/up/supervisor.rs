@@ -6,6 +6,7 @@ use std::time::{Duration, Instant};
 use indicatif::ProgressBar;
 use maulstick_bus::{Bus, Dial, RigClock, RigFolder, Subscription, Wake, ZenohBus};
 use maulstick_device::commander::Commander;
+use maulstick_rig::fault::EXIT_FAILURE;
 use maulstick_rig::member::{CONFIG_FILE, HUB};
 use maulstick_rig::{Fault, RigConfig, Stop};
 use maulstick_types::Mixture;
@@ -20,6 +21,8 @@ use crate::up::plan::{NodeSpec, Role};
 
 /// A node shows its token within this time, or it counts as failed.
 const START_TIME: Duration = Duration::from_secs(30);
+/// The same for the paint node of a document: a fill of a vast canvas may have to be done again.
+const START_TIME_DOCUMENT: Duration = Duration::from_secs(600);
 /// All nodes end within this time when asked.
 const GRACE: Duration = Duration::from_millis(1200);
 /// How often children are looked at.
@@ -146,10 +149,12 @@ impl Supervisor {
         if let Some(bar) = self.bar.take() {
             bar.finish_and_clear();
         }
-        self.stop_all();
+        let is_kept = self.stop_all();
         self.folder.withdraw();
         self.session.close();
         match end {
+            // Paint itself said why.
+            End::Code(0) if !is_kept => Ok(EXIT_FAILURE),
             End::Code(code) => Ok(code),
             End::Fault(fault) => Err(fault),
         }
@@ -253,7 +258,7 @@ impl Supervisor {
             .help("its own messages above say why; three failures in ten seconds are the limit")
     }
 
-    /// A take whose brush or paint died is played again from its start, on a new painting.
+    /// A take whose brush or paint died is played again from its start; what was painted of it goes.
     fn replay_after(&mut self, role: Role) {
         let Some(conductor) = &mut self.conductor else {
             return;
@@ -324,7 +329,11 @@ impl Supervisor {
                 .started
                 .iter()
                 .find(|(name, _)| *name == node.spec.name);
-            if since.is_some_and(|(_, since)| now - *since > START_TIME) {
+            let limit = match (node.spec.role, &self.config.paint.document) {
+                (Role::Paint, Some(_)) => START_TIME_DOCUMENT,
+                _ => START_TIME,
+            };
+            if since.is_some_and(|(_, since)| now - *since > limit) {
                 tracing::warn!("node '{}' does not get ready", node.spec.name);
                 node.terminate();
                 node.kill();
@@ -457,21 +466,23 @@ impl Supervisor {
     }
 
     /// Asks all nodes to end, and ends those that do not.
-    fn stop_all(&mut self) {
+    /// Ends all nodes; false where paint says that it could not keep the painting.
+    fn stop_all(&mut self) -> bool {
         self.nodes.iter_mut().for_each(Node::terminate);
         let give_up = Instant::now() + GRACE;
+        let mut is_kept = true;
         while Instant::now() < give_up {
-            let left = self.nodes.iter_mut().filter(|node| node.pid().is_some());
-            if left
-                .filter_map(|node| node.ended().is_none().then_some(()))
-                .count()
-                == 0
-            {
+            for node in &mut self.nodes {
+                let failed = matches!(node.ended(), Some(Ended::Refused(_) | Ended::Badly));
+                is_kept &= !(failed && node.spec.role == Role::Paint);
+            }
+            if self.nodes.iter().all(|node| node.pid().is_none()) {
                 break;
             }
             self.wake.wait(Duration::from_millis(5));
         }
         self.nodes.iter_mut().for_each(Node::kill);
+        is_kept
     }
 }
 

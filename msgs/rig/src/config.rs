@@ -171,21 +171,24 @@ pub struct PaintSection {
     pub document: Option<PathBuf>,
     /// Most memory of the painting's tiles where it has a document.
     pub memory: String,
-    /// Most room of its history; beyond that its oldest steps are merged.
-    pub history: String,
+    /// Most room of its history; beyond that its oldest steps are merged. As the document has it if
+    /// absent.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub history: Option<String>,
 }
 
 impl PaintSection {
-    /// Most bytes of tiles in memory, and of the history.
+    /// Most bytes of tiles in memory, and of the history if that is said.
     ///
     /// # Errors
     /// What is wrong, in words.
-    pub fn bytes(&self) -> Result<[u64; 2], String> {
+    pub fn bytes(&self) -> Result<(u64, Option<u64>), String> {
         let memory = parse_bytes(&self.memory)?;
         if memory < MEMORY_MIN {
             return Err(format!("a memory of {} is less than 64M", self.memory));
         }
-        Ok([memory, parse_bytes(&self.history)?])
+        let history = self.history.as_deref().map(parse_bytes).transpose()?;
+        Ok((memory, history))
     }
 }
 
@@ -200,7 +203,7 @@ impl Default for PaintSection {
             paints: None,
             document: None,
             memory: "1G".into(),
-            history: "2G".into(),
+            history: None,
         }
     }
 }
@@ -330,6 +333,7 @@ impl RigConfig {
     fn resolve(&mut self, folder: &Path) {
         let whole = |path: &mut PathBuf| *path = folder.join(&*path);
         self.paint.paints.iter_mut().for_each(whole);
+        self.paint.document.iter_mut().for_each(whole);
         self.device
             .iter_mut()
             .filter_map(|device| device.hand.as_mut())
@@ -458,10 +462,10 @@ mod tests {
         assert!(error("model = \"impasto\"", "model = \"impatso\"").contains("'impasto'"));
         let text = error("profile = \"srgb\"", "profile = \"sgrb\"");
         assert!(text.contains("'srgb'") && text.contains("ICC"), "{text}");
-        assert!(text.contains("rig.toml:61"), "{text}");
+        assert!(text.contains("rig.toml:64"), "{text}");
         let text = error("gamut = \"soft\"", "gamut = \"sfot\"");
         assert!(
-            text.contains("did you mean 'soft'") && text.contains("rig.toml:62"),
+            text.contains("did you mean 'soft'") && text.contains("rig.toml:65"),
             "{text}"
         );
     }

@@ -80,6 +80,7 @@ impl Fault {
             std::io::ErrorKind::NotFound => not_found,
             std::io::ErrorKind::PermissionDenied => "check the permissions",
             std::io::ErrorKind::StorageFull => "free some space",
+            std::io::ErrorKind::AlreadyExists => "give another name",
             _ => "check the path and the disk",
         };
         self.at(path.display().to_string()).help(help)

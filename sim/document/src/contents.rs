@@ -47,7 +47,7 @@ impl Contents {
                 tables.push((table, bytes as u64));
             }
         }
-        database.close()?;
+        database.leave()?;
         Ok(Self {
             format: VERSION,
             bytes: std::fs::metadata(path)?.len(),
@@ -82,7 +82,7 @@ impl Contents {
                 .connection
                 .query_row("PRAGMA integrity_check(1)", params![], |row| row.get(0))?;
         tell(all, all);
-        database.close()?;
+        database.leave()?;
         match verdict.as_str() {
             "ok" => Ok(()),
             other => Err(DocumentError::Damaged(other.to_owned())),

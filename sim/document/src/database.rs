@@ -17,7 +17,7 @@ use crate::{loads, planes};
 pub enum Access {
     /// To paint in it; it is begun where there is none.
     Paint,
-    /// To read it; nothing is changed but that a journal left by a crash is folded in.
+    /// To read it; nothing is changed.
     Read,
 }
 
@@ -53,7 +53,7 @@ pub fn glance(path: &Path) -> Result<bool, DocumentError> {
     }
     let (database, _) = Database::open(path, Access::Paint, None)?;
     let begun = crate::opening::has_state(&database)?;
-    database.close()?;
+    database.leave()?;
     Ok(begun)
 }
 
@@ -84,11 +84,17 @@ fn is_new(path: &Path) -> Result<bool, DocumentError> {
         // The power went while it was begun: SQLite takes back what there is of it.
         return Ok(false);
     }
-    let mut head = [0; 16];
+    let mut head = [0; 100];
     use std::io::Read as _;
     let read = std::fs::File::open(path)?.read_exact(&mut head);
     match read {
-        Ok(()) if &head == MAGIC => Ok(false),
+        Ok(()) if head.starts_with(MAGIC) && head[WRITE_VERSION] == ROLLBACK => {
+            match schema::is_foreign(path)? {
+                true => Err(DocumentError::NoPainting),
+                false => Ok(false),
+            }
+        }
+        Ok(()) if head.starts_with(MAGIC) => Ok(false),
         Ok(()) if length_found > 4096 && damaged_head(&head) => Err(DocumentError::Damaged(
             "its first bytes are wrong".to_owned(),
         )),
@@ -96,8 +102,13 @@ fn is_new(path: &Path) -> Result<bool, DocumentError> {
     }
 }
 
+/// Where a SQLite file says how it is written.
+const WRITE_VERSION: usize = 18;
+/// What stands there where no write-ahead log was ever asked for, as every painting does first.
+const ROLLBACK: u8 = 1;
+
 /// Whether these are a painting's first bytes with a few of them wrong.
-fn damaged_head(head: &[u8; 16]) -> bool {
+fn damaged_head(head: &[u8]) -> bool {
     head.iter()
         .zip(MAGIC)
         .filter(|(one, other)| one == other)
@@ -154,6 +165,8 @@ impl Database {
     /// Makes the file this program's own and sets how it is written.
     fn take(&self, path: &Path) -> Result<(), DocumentError> {
         let connection = &self.connection;
+        // Nobody waits for another program.
+        connection.busy_timeout(std::time::Duration::ZERO)?;
         // A painting that turns out to be damaged keeps its journal as it is.
         connection.set_db_config(DbConfig::SQLITE_DBCONFIG_NO_CKPT_ON_CLOSE, true)?;
         if connection.is_readonly("main")? {
@@ -201,6 +214,22 @@ impl Database {
             connection: Connection::open_with_flags(uri, flags)?,
             level: planes::LEVEL,
         })
+    }
+
+    /// Closes it with its journal as it is.
+    ///
+    /// # Errors
+    /// What SQLite says.
+    pub fn leave(self) -> Result<(), DocumentError> {
+        let journal = self
+            .connection
+            .path()
+            .map(|path| beside(Path::new(path), "-wal"));
+        match journal.and_then(|journal| length(&journal)) {
+            Some(1..) => self.connection.close().map_err(|(_, error)| error.into()),
+            // An empty one would lie about.
+            _ => self.close(),
+        }
     }
 
     /// Folds the journal into the file and closes it.

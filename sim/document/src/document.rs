@@ -23,6 +23,8 @@ use crate::writing::{Moment, ShownTile, Writer};
 const COMMIT: Duration = Duration::from_millis(100);
 /// What could not be written is tried again after this long.
 const AGAIN: Duration = Duration::from_secs(1);
+/// Tiles as they are shown of a moment, at most.
+const SHOWN: usize = 128;
 /// Accepted things of a row of the journal, at most: many wait where the disk was full.
 const ROW: usize = 1024;
 
@@ -87,7 +89,8 @@ impl Document {
             database,
             writes: settings.access == Access::Paint,
             last_commit: Instant::now(),
-            failed: None,
+            moment: Tries::default(),
+            journal: Tries::default(),
         };
         let thread = std::thread::Builder::new()
             .name("document".into())
@@ -218,7 +221,23 @@ struct Thread {
     database: Database,
     writes: bool,
     last_commit: Instant,
+    moment: Tries,
+    journal: Tries,
+}
+
+/// How writing goes.
+#[derive(Default)]
+struct Tries {
     failed: Option<Instant>,
+    /// On closing nothing is tried twice.
+    given_up: bool,
+}
+
+impl Tries {
+    fn may(&self, hurry: bool) -> bool {
+        let rests = self.failed.is_some_and(|when| when.elapsed() < AGAIN);
+        !self.given_up && (hurry || !rests)
+    }
 }
 
 /// What the thread does next.
@@ -240,11 +259,19 @@ impl Thread {
                 Work::Close => break,
             }
         }
-        let (fault, left) = {
+        let (fault, left, broken) = {
             let queues = self.shared.lock();
             let left = queues.moment.is_some() || !queues.records.is_empty();
-            (queues.fault.clone(), left)
+            (queues.fault.clone(), left, queues.broken)
         };
+        if broken {
+            // Its journal may hold what is to be recovered.
+            self.database.leave()?;
+            return match left {
+                true => Err(DocumentError::Damaged(fault)),
+                false => Ok(()),
+            };
+        }
         self.database.close()?;
         match left && !fault.is_empty() {
             true => Err(DocumentError::Unwritten(fault)),
@@ -258,23 +285,29 @@ impl Thread {
             if !queues.fetches.is_empty() {
                 return Work::Fetch;
             }
-            let rests = self.failed.is_some_and(|when| when.elapsed() < AGAIN);
             let may_write = self.writes && !queues.broken;
             let closing = queues.life == Life::Closing;
             let hurry = closing || !queues.flushes.is_empty();
-            let tries = may_write && (!rests || hurry);
-            if tries && let Some(moment) = queues.moment.take() {
+            let due = hurry || self.last_commit.elapsed() >= COMMIT;
+            let commits = may_write && due && self.journal.may(hurry) && !queues.records.is_empty();
+            // A moment holds what was accepted, but may find no room where that still has some.
+            if commits && self.moment.failed.is_some() {
+                return Work::Commit(std::mem::take(&mut queues.records));
+            }
+            if may_write
+                && self.moment.may(hurry)
+                && let Some(moment) = queues.moment.take()
+            {
                 queues.writing = true;
                 // What shows a later moment waits for that.
                 let newest = moment.painting.kept.versions;
-                let later = queues
+                let ready = queues
                     .shown
                     .extract_if(.., |_, tile| tile.version <= newest);
-                let shown = later.map(|(_, tile)| tile).collect();
+                let shown = ready.take(SHOWN).map(|(_, tile)| tile).collect();
                 return Work::Keep(Box::new(moment), shown);
             }
-            let due = self.last_commit.elapsed() >= COMMIT;
-            if tries && !queues.records.is_empty() && (due || hurry) {
+            if commits {
                 return Work::Commit(std::mem::take(&mut queues.records));
             }
             for waits in queues.flushes.drain(..) {
@@ -284,9 +317,10 @@ impl Thread {
             if closing {
                 return Work::Close;
             }
-            let wait = match (queues.records.is_empty(), rests) {
-                (false, false) if may_write => COMMIT.saturating_sub(self.last_commit.elapsed()),
-                _ => AGAIN,
+            let waits = may_write && self.journal.may(false) && !queues.records.is_empty();
+            let wait = match waits {
+                true => COMMIT.saturating_sub(self.last_commit.elapsed()),
+                false => AGAIN,
             };
             let waited = self
                 .shared
@@ -315,10 +349,23 @@ impl Thread {
 
     fn keep(&mut self, moment: Moment, shown: Vec<ShownTile>) {
         let shared = Arc::clone(&self.shared);
-        let written = self.transaction(|database| {
-            let mut breathe = |database: &Database| serve(&shared, database);
-            Writer::new(database, &mut breathe).moment(&moment, &shown)
-        });
+        let written = loop {
+            let until = Instant::now() + COMMIT;
+            let written = self.transaction(|database| {
+                let mut breathe = |database: &Database| serve(&shared, database);
+                Writer::new(database, &mut breathe).moment(&moment, &shown, until)
+            });
+            match written {
+                // What is accepted meanwhile does not wait for the rest.
+                Ok((stored, false)) => {
+                    stored.note();
+                    let records = std::mem::take(&mut self.shared.lock().records);
+                    self.commit(records);
+                }
+                Ok((stored, true)) => break Ok(stored),
+                Err(error) => break Err(error),
+            }
+        };
         let mut queues = self.shared.lock();
         queues.writing = false;
         match written {
@@ -330,12 +377,12 @@ impl Thread {
                     .committed
                     .fetch_max(moment.sequencer.next, SeqCst);
                 drop(queues);
-                self.well();
+                self.well(Part::Moment);
             }
             Err(error) => {
                 queues.moment = Some(moment);
                 drop(queues);
-                self.ill(&error);
+                self.ill(Part::Moment, &error);
             }
         }
     }
@@ -353,20 +400,21 @@ impl Thread {
         match written {
             Ok(()) => {
                 self.shared.committed.fetch_max(last.next(), SeqCst);
-                self.well();
+                self.well(Part::Journal);
             }
             Err(error) => {
                 let mut queues = self.shared.lock();
                 let later = std::mem::replace(&mut queues.records, records);
                 queues.records.extend(later);
                 drop(queues);
-                self.ill(&error);
+                self.ill(Part::Journal, &error);
             }
         }
     }
 
-    fn well(&mut self) {
-        if self.failed.take().is_some() {
+    fn well(&mut self, part: Part) {
+        let failed = self.tries(part).failed.take().is_some();
+        if failed && self.moment.failed.is_none() && self.journal.failed.is_none() {
             tracing::info!("the painting is written again");
             let mut queues = self.shared.lock();
             if !queues.broken {
@@ -375,19 +423,35 @@ impl Thread {
         }
     }
 
-    fn ill(&mut self, error: &DocumentError) {
+    fn ill(&mut self, part: Part, error: &DocumentError) {
         let mut queues = self.shared.lock();
         if queues.fault.is_empty() {
             tracing::error!("the painting cannot be written: {error}; {}", error.help());
         }
         (queues.fault, queues.help) = (error.to_string(), error.help());
-        self.failed = Some(Instant::now());
+        let closing = queues.life == Life::Closing;
         // Who waits would wait for ever.
-        if queues.life == Life::Closing {
-            queues.broken = true;
-        }
         queues.flushes.clear();
+        drop(queues);
+        *self.tries(part) = Tries {
+            failed: Some(Instant::now()),
+            given_up: closing,
+        };
     }
+
+    fn tries(&mut self, part: Part) -> &mut Tries {
+        match part {
+            Part::Moment => &mut self.moment,
+            Part::Journal => &mut self.journal,
+        }
+    }
+}
+
+/// What is written.
+#[derive(Clone, Copy)]
+enum Part {
+    Moment,
+    Journal,
 }
 
 /// Time of the processor that this thread has had.

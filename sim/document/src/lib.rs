@@ -39,5 +39,5 @@ pub use document::{Document, DocumentSettings};
 pub use error::DocumentError;
 pub use opening::Opened;
 pub use queues::Shelf;
-pub use recover::{Salvage, recover};
+pub use recover::{Salvage, part_of, recover};
 pub use writing::{Moment, ShownTile};

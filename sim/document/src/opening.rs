@@ -22,6 +22,7 @@ use crate::journal;
 use crate::rows::{KeptDeed, KeptRest, place_of, unpacked};
 use crate::schema::Table;
 use crate::sum::Sum;
+use crate::writing::COPY;
 
 /// Tile versions are numbered this much higher each time: after a crash no number that was ever shown
 /// means another tile, though the newest of them are in no file.
@@ -98,7 +99,21 @@ pub(crate) fn has_state(database: &Database) -> Result<bool, DocumentError> {
     Ok(found.is_some())
 }
 
+/// Reads a part of the state, from its second copy where the first is not whole.
 fn state<T: serde::de::DeserializeOwned>(
+    database: &Database,
+    key: &str,
+) -> Result<T, DocumentError> {
+    match state_row(database, key) {
+        Err(DocumentError::Damaged(what)) => {
+            let copy = state_row(database, &format!("{key}{COPY}"));
+            copy.map_err(|_| DocumentError::Damaged(what))
+        }
+        read => read,
+    }
+}
+
+fn state_row<T: serde::de::DeserializeOwned>(
     database: &Database,
     key: &str,
 ) -> Result<T, DocumentError> {
@@ -119,8 +134,15 @@ fn state<T: serde::de::DeserializeOwned>(
 /// The number of the next page.
 pub(crate) fn next_page(database: &Database) -> Result<u64, DocumentError> {
     let kept: KeptPainting = state(database, "painting")?;
-    Ok(kept.next_page)
+    let newest: i64 = database
+        .connection
+        .query_row(NEWEST, params![], |row| row.get(0))?;
+    Ok(kept.next_page.max(newest as u64 + 1))
 }
+
+/// The newest number that something has: pages are written before what refers to them.
+const NEWEST: &str = "SELECT max((SELECT coalesce(max(id), 0) FROM page), \
+     (SELECT coalesce(max(id), 0) FROM load), (SELECT coalesce(max(id), 0) FROM dry))";
 
 /// A file by its hash.
 pub(crate) fn file(database: &Database, hash: &str) -> Result<Vec<u8>, DocumentError> {
@@ -142,10 +164,9 @@ fn pictures(database: &Database) -> Result<Embedded, DocumentError> {
     let hashes = statement.query_map(params![], |row| row.get::<_, String>(0))?;
     let mut embedded = Embedded::default();
     for hash in hashes {
-        let bytes = file(database, &hash?)?;
-        embedded
-            .add(bytes.into())
-            .map_err(|refusal| damaged(refusal.what))?;
+        let hash = hash?;
+        let bytes = file(database, &hash)?;
+        embedded.know(hash, bytes.into());
     }
     Ok(embedded)
 }

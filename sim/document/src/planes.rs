@@ -7,7 +7,7 @@
 
 use std::sync::Arc;
 
-use maulstick_paint::quantum::SLOTS;
+use maulstick_paint::quantum::{CELL_MAX, SLOTS};
 use maulstick_paint::tile::{Planes, TILE_CELLS};
 use maulstick_types::paint::TILE;
 
@@ -96,6 +96,12 @@ pub fn decode(mask: u32, bytes: &[u8], base: Option<&Planes>) -> Result<Planes, 
                 None => beside(&now, cell),
             };
             now[cell] = expected.wrapping_add(unzigzag(u32::from_le_bytes(code)));
+        }
+        if now
+            .iter()
+            .any(|count| !(0..=CELL_MAX as i32).contains(count))
+        {
+            return Err(format!("slot {slot} has a cell of more than it can hold"));
         }
         let plane: Arc<[f32]> = now.iter().map(|count| *count as f32).collect();
         planes.push((*slot, plane));

@@ -87,6 +87,11 @@ impl Drop for End {
     fn drop(&mut self) {
         let mut queues = self.0.lock();
         queues.life = Life::Ended;
+        if std::thread::panicking() {
+            queues.broken = true;
+            queues.fault = "its thread has fallen".to_owned();
+            queues.help = "start the rig again: what was committed is in the file";
+        }
         queues.fetches.clear();
         queues.flushes.clear();
     }

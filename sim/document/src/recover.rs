@@ -32,7 +32,7 @@ use crate::database::{Access, Database, beside, holder};
 use crate::error::DocumentError;
 use crate::pack::{History, settle};
 use crate::scan::{Scan, Value};
-use crate::schema::Table;
+use crate::schema::{APPLICATION_ID, Table, VERSION};
 use found::Found;
 use gathering::{Gathered, Standing};
 use pictures::Pictures;
@@ -94,12 +94,27 @@ impl Salvage {
 /// What is written before the new painting has its name; it goes where it does not get it.
 struct Part(PathBuf);
 
-impl Drop for Part {
-    fn drop(&mut self) {
+impl Part {
+    fn remove(&self) {
         for suffix in ["", "-wal", "-journal"] {
             // It may not be there.
             std::fs::remove_file(beside(&self.0, suffix)).ok();
         }
+    }
+
+    /// Sees that all of it is in the one file that gets the name: closing leaves the journal beside it
+    /// where the disk is full.
+    fn is_folded(&self) -> Result<(), DocumentError> {
+        match std::fs::metadata(beside(&self.0, "-wal")) {
+            Ok(journal) if journal.len() > 0 => Err(DocumentError::Full),
+            _ => Ok(()),
+        }
+    }
+}
+
+impl Drop for Part {
+    fn drop(&mut self) {
+        self.remove();
     }
 }
 
@@ -127,18 +142,44 @@ pub fn recover(
     if holder.is_some() {
         return Err(DocumentError::InUse { holder });
     }
+    refuse_newer(damaged)?;
     let mut scan = Scan::open(damaged)?;
-    let part = Part(beside(to, &format!(".part-{}", std::process::id())));
+    let part = Part(part_of(to));
+    part.remove();
     let (database, _) = Database::open(&part.0, Access::Paint, None)?;
     let salvage = write(&mut scan, &database, tell)?;
     database.close()?;
+    part.is_folded()?;
     settle(&part.0, History::Kept).map_err(|error| match error {
         DocumentError::Damaged(what) => DocumentError::Lost(what),
         error => error,
     })?;
+    part.is_folded()?;
     tell(PARTS, PARTS);
     std::fs::rename(&part.0, to)?;
     Ok(salvage)
+}
+
+/// Where a painting is made before it gets its name; its journal lies beside it.
+#[must_use]
+pub fn part_of(to: &Path) -> PathBuf {
+    beside(to, &format!(".part-{}", std::process::id()))
+}
+
+/// A newer program's painting may hold what this one does not know.
+fn refuse_newer(damaged: &Path) -> Result<(), DocumentError> {
+    use std::io::Read as _;
+    let mut head = [0; 100];
+    let read = std::fs::File::open(damaged)?.read_exact(&mut head);
+    let number = |at: usize| i32::from_be_bytes([0, 1, 2, 3].map(|byte| head[at + byte]));
+    let [version, application] = [60, 68].map(number);
+    match read.is_ok() && application == APPLICATION_ID && version > VERSION {
+        true => Err(DocumentError::Newer {
+            found: version,
+            known: VERSION,
+        }),
+        false => Ok(()),
+    }
 }
 
 /// Parts of the work that are told of.

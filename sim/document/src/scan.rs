@@ -184,7 +184,7 @@ impl<F: Read + Seek> Scan<F> {
     }
 
     fn is_free(&self, page: u32) -> bool {
-        self.free.as_ref().is_some_and(|free| free.contains(&page))
+        self.store.is_beyond(page) || self.free.as_ref().is_some_and(|free| free.contains(&page))
     }
 
     /// The page size, and how it became known.

@@ -1,6 +1,8 @@
 //! The tables of a painting. `docs/document.md` tells them to other programs.
 
-use rusqlite::{Connection, params};
+use std::path::Path;
+
+use rusqlite::{Connection, OpenFlags, params};
 
 use crate::error::DocumentError;
 
@@ -125,6 +127,18 @@ pub fn is_blank(connection: &Connection) -> Result<bool, DocumentError> {
     Ok(number("PRAGMA application_id")? == 0
         && number("PRAGMA user_version")? == 0
         && number("SELECT count(*) FROM sqlite_schema")? == 0)
+}
+
+/// Whether a file is another program's database. It is only read.
+///
+/// # Errors
+/// What SQLite says.
+pub fn is_foreign(path: &Path) -> Result<bool, DocumentError> {
+    let flags = OpenFlags::SQLITE_OPEN_READ_ONLY | OpenFlags::SQLITE_OPEN_NO_MUTEX;
+    let connection = Connection::open_with_flags(path, flags)?;
+    let application: i32 =
+        connection.query_row("PRAGMA application_id", params![], |row| row.get(0))?;
+    Ok(application != APPLICATION_ID && !is_blank(&connection)?)
 }
 
 /// What leads from each older schema to the next; the first, to 2, will be the first here.

@@ -2,6 +2,7 @@
 
 use std::collections::BTreeSet;
 use std::sync::Arc;
+use std::time::Instant;
 
 use maulstick_paint::embedded::hash_of;
 use maulstick_paint::history::{Held, Step};
@@ -42,6 +43,10 @@ pub struct ShownTile {
     /// Its planes.
     pub bytes: Vec<u8>,
 }
+
+/// What is added to the keys of the second copy of the state: without it a single wrong bit would cost
+/// all.
+pub(crate) const COPY: &str = " copy";
 
 /// What is done between two pages: somebody may wait for one.
 pub(crate) type Breath<'a> = &'a mut dyn FnMut(&Database);
@@ -88,15 +93,25 @@ impl<'a, 'b> Writer<'a, 'b> {
         }
     }
 
-    /// Writes a moment and the tiles as they are shown; what it makes superfluous goes.
+    /// Writes a moment and the tiles as they are shown; what it makes superfluous goes. Where its pages
+    /// take longer than `until` only some of these are written, which nothing refers to yet, and false
+    /// is returned.
     pub(crate) fn moment(
         mut self,
         moment: &Moment,
         shown: &[ShownTile],
-    ) -> Result<Stored, DocumentError> {
+        until: Instant,
+    ) -> Result<(Stored, bool), DocumentError> {
         let painting = &moment.painting;
-        for (_, version) in &painting.tiles {
-            self.held(&version.tile)?;
+        let tiles = painting.tiles.iter().map(|(_, version)| &version.tile);
+        let changes = painting.steps.iter().flat_map(|step| step.tiles.values());
+        let steps = changes.flat_map(|change| [&change.before, &change.after]);
+        let named = painting.named.iter().flat_map(|named| named.tiles.values());
+        for held in tiles.chain(steps).chain(named) {
+            self.held(held)?;
+            if !self.written.is_empty() && Instant::now() > until {
+                return Ok((self.stored, false));
+            }
         }
         for step in &painting.steps {
             self.step(step)?;
@@ -126,6 +141,7 @@ impl<'a, 'b> Writer<'a, 'b> {
             connection.execute("DELETE FROM version WHERE name = ?1", params![name])?;
         }
         for tile in shown {
+            (self.breathe)(self.database);
             self.shown(tile)?;
         }
         self.state(moment)?;
@@ -134,7 +150,7 @@ impl<'a, 'b> Writer<'a, 'b> {
             "DELETE FROM journal WHERE last < ?1",
             params![moment.sequencer.serial as i64],
         )?;
-        Ok(self.stored)
+        Ok((self.stored, true))
     }
 
     fn held(&mut self, held: &Held) -> Result<(), DocumentError> {
@@ -378,8 +394,13 @@ impl<'a, 'b> Writer<'a, 'b> {
                 self.file("picture", hash, data)?;
             }
         }
-        self.put_state("painting", &serde_json::to_string(&kept)?)?;
-        self.put_state("sequencer", &serde_json::to_string(&moment.sequencer)?)
+        let painting = serde_json::to_string(&kept)?;
+        let sequencer = serde_json::to_string(&moment.sequencer)?;
+        for copy in ["", COPY] {
+            self.put_state(&format!("painting{copy}"), &painting)?;
+            self.put_state(&format!("sequencer{copy}"), &sequencer)?;
+        }
+        Ok(())
     }
 
     fn put_state(&self, key: &str, value: &str) -> Result<(), DocumentError> {
@@ -399,33 +420,19 @@ impl<'a, 'b> Writer<'a, 'b> {
     fn bury(&mut self, dead: &[u64]) -> Result<(), DocumentError> {
         let connection = &self.database.connection;
         let gone: BTreeSet<u64> = dead.iter().copied().collect();
-        let mut rebased: Vec<(u64, Planes)> = Vec::new();
         for id in &gone {
-            let mut statement = connection.prepare_cached("SELECT id FROM page WHERE base = ?1")?;
-            let later = statement.query_map(params![*id as i64], |row| row.get::<_, i64>(0))?;
-            for later in later {
-                let later = later? as u64;
+            for later in self.differences_to(*id)? {
                 if gone.contains(&later) {
                     continue;
                 }
+                (self.breathe)(self.database);
                 match self.database.planes(later) {
-                    Ok(content) => rebased.push((later, content)),
+                    Ok(content) => self.rebase(later, &content)?,
                     // It is lost with its base or without; what is painted now is not.
                     Err(DocumentError::Damaged(_)) => {}
                     Err(error) => return Err(error),
                 }
             }
-        }
-        for (id, content) in rebased {
-            (self.breathe)(self.database);
-            let data = planes::encode(&content, None, self.database.level)?;
-            let slots = i64::from(planes::mask(&content));
-            let sum = page_sum(id, [0, 0, slots], &data);
-            connection
-                .prepare_cached(
-                    "UPDATE page SET base = 0, depth = 0, slots = ?2, data = ?3, sum = ?4 WHERE id = ?1",
-                )?
-                .execute(params![id as i64, slots, data, sum])?;
         }
         for id in &gone {
             for table in ["page", "dry", "load"] {
@@ -434,6 +441,29 @@ impl<'a, 'b> Writer<'a, 'b> {
                     .execute(params![*id as i64])?;
             }
         }
+        Ok(())
+    }
+
+    fn differences_to(&self, id: u64) -> Result<Vec<u64>, DocumentError> {
+        let query = "SELECT id FROM page WHERE base = ?1";
+        let mut statement = self.database.connection.prepare_cached(query)?;
+        let later = statement.query_map(params![id as i64], |row| row.get::<_, i64>(0))?;
+        Ok(later
+            .map(|id| Ok(id? as u64))
+            .collect::<Result<_, rusqlite::Error>>()?)
+    }
+
+    /// Writes a page that was a difference so that it needs no other.
+    fn rebase(&self, id: u64, content: &Planes) -> Result<(), DocumentError> {
+        let data = planes::encode(content, None, self.database.level)?;
+        let slots = i64::from(planes::mask(content));
+        let sum = page_sum(id, [0, 0, slots], &data);
+        let query =
+            "UPDATE page SET base = 0, depth = 0, slots = ?2, data = ?3, sum = ?4 WHERE id = ?1";
+        self.database
+            .connection
+            .prepare_cached(query)?
+            .execute(params![id as i64, slots, data, sum])?;
         Ok(())
     }
 }

@@ -49,6 +49,29 @@ proptest! {
         }
     }
 
+    /// Where the history has little room its oldest steps become one: it still goes back to the
+    /// beginning, and the newest steps stay apart.
+    #[test]
+    fn a_short_history_goes_back_as_far(seed in any::<u64>(), acts in 20usize..60, quota in 1u64..2_000_000) {
+        let mut painter = Painter::new(seed);
+        let mut sequencer = sequencer(Arc::default());
+        equip(&mut sequencer);
+        sequencer.painting_mut().set_quota(quota);
+        for _ in 0..acts {
+            let act = painter.next();
+            painter.act(&mut sequencer, &act);
+            seen(&mut sequencer);
+        }
+        while is_done(&painter.command(&mut sequencer, Command::Undo { brush: None })) {
+            seen(&mut sequencer);
+        }
+        let store = sequencer.painting().store(0).expect("a canvas");
+        prop_assert_eq!(store.counts(), [0; 16], "all is undone");
+        let steps = sequencer.painting().history().steps();
+        let apart = steps.skip(1).all(|step| step.operations == 1);
+        prop_assert!(apart, "only the oldest are merged");
+    }
+
     /// A painting in a document, with little memory, closed, killed and opened again, beside one that
     /// is in memory alone.
     #[test]
@@ -83,9 +106,9 @@ proptest! {
             painter.act(&mut twin, &act);
             other.act(&mut kept, &act);
             let (one, two) = (seen(&mut kept), seen(&mut twin));
-            let differ = one.iter().zip(&two).find(|(a, b)| a != b).map(|(a, b)| format!("{a}\n{b}\n{} {}", one.len(), two.len()));
-            prop_assert!(one == two, "{differ:?} after {}", match &act { studio::Act::Paint(b, new, s) => format!("paint {b} {new} on {} {log:#?}", s[0].surface), other => format!("{other:?} {log:#?}") });
-            log.push(match &act { studio::Act::Paint(b, new, s) => format!("paint {b} {new} on {}", s[0].surface), other => format!("{other:?}") });
+            let differ = one.iter().zip(&two).find(|(one, two)| one != two);
+            prop_assert!(one == two, "{differ:#?} after {log:?} and {act}");
+            log.push(act.to_string());
             let open = document.as_ref().expect("open");
             open.record(kept.take_records());
             if painter.dice.below(3) == 0 && open.is_ready() {

@@ -191,8 +191,10 @@ impl Painted {
     /// What is wrong with what comes of these bytes.
     fn try_with(&self, bytes: &[u8]) -> Result<Option<Salvage>, String> {
         let damaged = Rows::of(bytes);
-        let state = Key::Text(1, "painting".to_owned());
-        let has_state = (self.rows.0[&state].iter()).all(|row| damaged.has(&state, row));
+        let has_state = ["painting", "painting copy"].iter().any(|key| {
+            let state = Key::Text(1, (*key).to_owned());
+            (self.rows.0[&state].iter()).all(|row| damaged.has(&state, row))
+        });
         match self.recover(bytes) {
             Ok((new, salvage)) => {
                 self.check(&damaged, &new, &salvage)?;

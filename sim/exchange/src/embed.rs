@@ -27,16 +27,22 @@ pub fn ground(image: &Image, cells: [u32; 2]) -> Result<Arc<[u8]>, ImportError> 
 }
 
 /// A picture as a tooth that is `width_mm` wide on cells of `cell_m`, 16-bit grey PNG: as fine as the
-/// picture, but no finer than the cells.
+/// picture, but no finer than the cells, and of very many pixels coarser.
 ///
 /// # Errors
 /// [`ImportError`].
 pub fn tooth(image: &Image, width_mm: f64, cell_m: f64) -> Result<Arc<[u8]>, ImportError> {
     let pixels = image.size();
     let cells = (width_mm * 1e-3 / cell_m).round().max(1.0) as usize;
-    let across = pixels[0].min(cells);
-    let down = pixels[1] as f64 * across as f64 / pixels[0] as f64;
-    let size = [across, (down.round() as usize).max(1)];
+    let mut across = pixels[0].min(cells);
+    let down = |across: usize| {
+        let down = pixels[1] as f64 * across as f64 / pixels[0] as f64;
+        (down.round() as usize).max(1)
+    };
+    while across > 1 && across as u64 * down(across) as u64 > MOST_PIXELS {
+        across /= 2;
+    }
+    let size = [across, down(across)];
     let raw: Vec<u8> = heights(image, size)?
         .iter()
         .flat_map(|height| height.to_be_bytes())

@@ -53,6 +53,9 @@ fn whole(pixels: [usize; 2], cells: [usize; 2]) -> [Cut; 2] {
     })
 }
 
+/// Shares below this one are rounding errors.
+const LEAST_SHARE: f64 = 1e-9;
+
 /// The pixels that make a cell, from the first on, with their shares.
 #[derive(Clone, Debug, PartialEq)]
 struct Taps {
@@ -76,12 +79,12 @@ impl Cut {
         }
         let low = (self.from + cell as f64 * self.scale).max(0.0);
         let high = (self.from + (cell as f64 + 1.0) * self.scale).min(self.pixels as f64);
-        let first = (low as usize).min(last);
-        let covered = (first..self.pixels).map(|i| {
-            let (from, to) = (low.max(i as f64), high.min(i as f64 + 1.0));
-            to - from
-        });
-        let mut shares: Vec<f64> = covered.take_while(|share| *share > 1e-9).collect();
+        let share = |pixel: usize| high.min(pixel as f64 + 1.0) - low.max(pixel as f64);
+        let mut first = (low as usize).min(last);
+        // A cell that begins at the next pixel may lie a rounding error before it.
+        first += usize::from(first < last && share(first) <= LEAST_SHARE);
+        let covered = (first..self.pixels).map(share);
+        let mut shares: Vec<f64> = covered.take_while(|share| *share > LEAST_SHARE).collect();
         if shares.is_empty() {
             shares.push(1.0);
         }
@@ -209,6 +212,27 @@ mod tests {
         );
         assert!(asked.iter().all(|times| *times <= 1), "{asked:?}");
         out
+    }
+
+    #[test]
+    fn every_cell_is_made_of_all_the_pixels_under_it() {
+        for (pixels, cells) in [(3000, 800), (2500, 800), (3000, 1200), (4800, 1024), (7, 7)] {
+            let scale = pixels as f64 / cells as f64;
+            let cut = Cut {
+                pixels,
+                cells,
+                from: 0.0,
+                scale,
+            };
+            for cell in 0..cells {
+                let taps = cut.taps(cell);
+                let least = (scale - 1.0).floor().max(1.0) as usize;
+                assert!(
+                    taps.shares.len() >= least,
+                    "{pixels} onto {cells}, cell {cell}: {taps:?}"
+                );
+            }
+        }
     }
 
     #[test]

@@ -2,7 +2,7 @@
 //!
 //! Steps stand in their order. Undone ones stay until the painter goes on painting. Where the history
 //! takes too much room its oldest two steps become one, so that it goes back as far as before, in
-//! fewer steps.
+//! fewer steps; the newest sixteen stay apart.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
@@ -16,6 +16,9 @@ use crate::load::BrushLoad;
 use crate::page::Page;
 use crate::store::TileRect;
 use crate::tile::{Tile, TileId};
+
+/// The newest steps, which are never merged.
+const APART: usize = 16;
 
 /// A surface's number and a tile of it.
 pub type Place = (u32, TileId);
@@ -160,6 +163,21 @@ pub struct Step {
 }
 
 impl Step {
+    /// Whether it changed anything that another one changed.
+    fn lies_on(&self, other: &Self) -> bool {
+        let changes = |change: &Change| !same(&change.before, &change.after);
+        let (few, many) = match self.tiles.len() < other.tiles.len() {
+            true => (&self.tiles, &other.tiles),
+            false => (&other.tiles, &self.tiles),
+        };
+        let mut tiles = few.iter();
+        let mut loads = self.deed.loads.keys();
+        tiles.any(|(place, change)| changes(change) && many.get(place).is_some_and(changes))
+            || loads.any(|name| other.deed.loads.contains_key(name))
+            || self.deed.layers.is_some() && other.deed.layers.is_some()
+            || self.deed.makes.is_some() && other.deed.makes.is_some()
+    }
+
     /// The step before it was finished, in a painting that is besides as it is in `rest`.
     #[must_use]
     pub fn reopened(self, rest: &Rest, reached: BTreeSet<Place>) -> OpenStep {
@@ -215,6 +233,8 @@ pub struct History {
     undone: Vec<u64>,
     /// Steps that changed, came or went since they were last asked for.
     touched: BTreeSet<u64>,
+    /// See [`part_at`](Self::part_at).
+    part: u64,
 }
 
 impl History {
@@ -228,6 +248,7 @@ impl History {
             steps: steps.collect(),
             undone,
             touched: BTreeSet::new(),
+            part: 0,
         }
     }
 
@@ -237,15 +258,10 @@ impl History {
             (Some(one), Some(other)) => one == other,
             _ => true,
         };
-        let (steps, touched) = (&mut self.steps, &mut self.touched);
-        self.undone.retain(|id| {
-            let gone = steps.get(id).is_none_or(own);
-            if gone {
-                steps.remove(id);
-                touched.insert(*id);
-            }
-            !gone
-        });
+        let undone = self.undone.iter().filter_map(|id| self.steps.get(id));
+        let gone = undone.filter(|step| own(step)).map(|step| step.id);
+        let gone = gone.collect();
+        self.drop_undone(gone);
         self.next += 1;
         self.open.push(OpenStep {
             id: self.next,
@@ -305,6 +321,18 @@ impl History {
         let of = |step: &&Step| brush.is_none() || step.brush.as_deref() == brush;
         let mut done = self.steps.values().rev().filter(|step| step.done);
         done.find(of)
+    }
+
+    /// The newest step that is done and came after another one, on what that changed.
+    #[must_use]
+    pub fn later_on(&self, step: &Step) -> Option<&Step> {
+        let later = self
+            .steps
+            .range(step.id + 1..)
+            .rev()
+            .map(|(_, later)| later);
+        let mut done = later.filter(|later| later.done);
+        done.find(|later| later.lies_on(step))
     }
 
     /// The step that was undone last, of a brush or of all.
@@ -384,18 +412,34 @@ impl History {
             .extend(std::mem::take(&mut self.steps).into_keys());
     }
 
-    /// Makes one step of the two oldest ones; false where there are none, or they were undone.
+    /// Steps up to this one and later ones are never merged with each other; 0 for none.
+    pub fn part_at(&mut self, id: u64) {
+        self.part = id;
+    }
+
+    /// Makes one step of the two oldest neighbours that may become one; of undone ones the oldest goes.
+    /// False where only the newest are left, which stay apart.
     pub fn merge_oldest(&mut self) -> bool {
-        let mut oldest = self.steps.values();
-        let (Some(first), Some(second)) = (oldest.next(), oldest.next()) else {
+        let mergeable = self.steps.len().saturating_sub(APART);
+        let ids: Vec<u64> = self.steps.keys().take(mergeable + 1).copied().collect();
+        let parts = |one: u64, other: u64| one <= self.part && self.part < other;
+        let pair = ids.windows(2).find(|pair| !parts(pair[0], pair[1]));
+        let Some(&[first, second]) = pair.filter(|_| mergeable > 0) else {
             return false;
         };
-        if !first.done || !second.done {
-            return false;
+        let undone = [first, second]
+            .into_iter()
+            .find(|id| self.steps.get(id).is_some_and(|step| !step.done));
+        match undone {
+            Some(id) => self.drop_undone(BTreeSet::from([id])),
+            None => self.merge(first, second),
         }
-        let (gone, id) = (first.id, second.id);
+        true
+    }
+
+    fn merge(&mut self, gone: u64, id: u64) {
         let (Some(first), Some(second)) = (self.steps.remove(&gone), self.steps.remove(&id)) else {
-            return false;
+            return;
         };
         let operations = first.operations + second.operations;
         let mut tiles = Arc::unwrap_or_clone(first.tiles);
@@ -409,12 +453,32 @@ impl History {
         self.insert(Step {
             id,
             what: format!("{operations} steps"),
-            brush: None,
+            brush: first
+                .brush
+                .filter(|brush| second.brush.as_ref() == Some(brush)),
             operations,
             done: true,
             tiles: Arc::new(tiles),
             deed: Arc::new(Arc::unwrap_or_clone(first.deed).and(&second.deed)),
         });
-        true
+    }
+
+    /// Forgets undone steps, and those that were undone before them and lie on the same tiles: they
+    /// could be redone only on top of them.
+    fn drop_undone(&mut self, mut gone: BTreeSet<u64>) {
+        let mut lost: BTreeSet<Place> = BTreeSet::new();
+        for id in self.undone.iter().rev() {
+            let Some(step) = self.steps.get(id) else {
+                continue;
+            };
+            let rests = step.tiles.keys().any(|place| lost.contains(place));
+            if rests || gone.contains(id) {
+                gone.insert(*id);
+                lost.extend(step.tiles.keys());
+            }
+        }
+        self.undone.retain(|id| !gone.contains(id));
+        self.steps.retain(|id, _| !gone.contains(id));
+        self.touched.extend(gone);
     }
 }

@@ -69,6 +69,13 @@ pub struct KeptPainting {
     pub footprint_cells: u64,
     /// Time of the first and of the last state, ns.
     pub span_ns: Option<(u64, u64)>,
+    /// Most bytes of the history.
+    #[serde(default = "quota")]
+    pub quota: u64,
+}
+
+fn quota() -> u64 {
+    crate::painting::QUOTA
 }
 
 /// A take that may paint.

@@ -34,6 +34,16 @@ impl Ledger {
         }
     }
 
+    /// Whether [`book`](Self::book) leaves no account below nothing.
+    #[must_use]
+    pub fn can_book(&self, booked: &Booked, times: i64) -> bool {
+        let covers = |own: &Counts, booked: &[i64; SLOTS]| {
+            let mut pairs = own.iter().zip(booked);
+            pairs.all(|(own, booked)| own.checked_add_signed(times * booked).is_some())
+        };
+        covers(&self.tube, &booked.tube) && covers(&self.cleaner, &booked.cleaner)
+    }
+
     /// Books again what was booked, `times` 1, or takes it back, −1.
     pub fn book(&mut self, booked: &Booked, times: i64) {
         let turn = |own: &mut Counts, booked: &[i64; SLOTS]| {

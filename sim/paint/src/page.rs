@@ -77,6 +77,8 @@ pub struct Pager {
     resident: AtomicUsize,
     stored: AtomicU64,
     fetched: AtomicU64,
+    /// So many pages may come before any is asked again to leave.
+    rest: AtomicUsize,
     ring: Mutex<VecDeque<Weak<dyn Evict>>>,
     dead: Mutex<Vec<u64>>,
     fault: OnceLock<String>,
@@ -91,6 +93,7 @@ impl Default for Pager {
             resident: AtomicUsize::new(0),
             stored: AtomicU64::new(0),
             fetched: AtomicU64::new(0),
+            rest: AtomicUsize::new(0),
             ring: Mutex::default(),
             dead: Mutex::default(),
             fault: OnceLock::new(),
@@ -167,9 +170,22 @@ impl Pager {
         }
         let mut ring = locked(&self.ring);
         ring.push_back(what);
+        while ring.front().is_some_and(|what| what.strong_count() == 0) {
+            ring.pop_front();
+        }
+        // Where none could leave, none is asked again until the document has another one, or many came.
+        let rest = self.rest.load(Relaxed);
+        if rest > 0 {
+            self.rest.store(rest - 1, Relaxed);
+            return;
+        }
         // Each gets a second chance, so two rounds find all that can leave.
         let mut tries = 2 * ring.len();
-        while self.resident.load(Relaxed) > self.bound.load(Relaxed) && tries > 0 {
+        while self.resident.load(Relaxed) > self.bound.load(Relaxed) {
+            if tries == 0 {
+                self.rest.store(ring.len() / 2, Relaxed);
+                break;
+            }
             tries -= 1;
             let Some(oldest) = ring.pop_front() else {
                 break;
@@ -318,6 +334,15 @@ impl<T: Content> Page<T> {
         self.0.stored.load(Relaxed)
     }
 
+    /// Bytes that it takes where it is kept: in the document, or in memory.
+    #[must_use]
+    pub fn held_bytes(&self) -> usize {
+        match self.stored_bytes() {
+            0 => self.resident_bytes(),
+            stored => stored,
+        }
+    }
+
     /// Bytes that it takes in memory now.
     #[must_use]
     pub fn resident_bytes(&self) -> usize {
@@ -339,6 +364,7 @@ impl<T: Content> Page<T> {
         let stored = &self.0.pager.stored;
         stored.fetch_add(bytes as u64, Relaxed);
         stored.fetch_sub(before as u64, Relaxed);
+        self.0.pager.rest.store(0, Relaxed);
     }
 
     /// What it holds, from the document if it is not in memory. A page that cannot be read holds

@@ -178,13 +178,26 @@ impl Sequencer {
                 header: *header,
                 state: state.clone(),
             });
-            self.painting.state(brush, header.epoch, state)
+            self.paint(brush, header, state)
         };
         match may_paint {
             true => self.consume(brush, header),
             false => self.pass(header),
         }
         (self.release(), result)
+    }
+
+    /// A live stroke takes up no loads of a take that was played before.
+    fn paint(
+        &mut self,
+        brush: &str,
+        header: &Header,
+        state: &BrushState,
+    ) -> Result<(), PaintRefusal> {
+        if !header.flags.has(Flags::REPLAY) {
+            self.painting.forget_loads(brush);
+        }
+        self.painting.state(brush, header.epoch, state)
     }
 
     /// Notes that a state is consumed.
@@ -450,19 +463,19 @@ impl Sequencer {
         loads: &[Mixture],
         again: bool,
     ) -> Result<String, PaintRefusal> {
-        let before = self
-            .announced
-            .get(brush)
-            .filter(|take| again && !take.ended);
+        let before = self.announced.get(brush).filter(|_| again);
         if let Some(step) = before.map(|take| take.step) {
-            self.painting.undo_to(step)?;
+            self.painting.undo_to(brush, step)?;
         }
         self.painting.take(brush, loads)?;
+        let step = self.painting.newest_step();
+        // What may have to be taken back is not merged with what came before.
+        self.painting.part_history(step);
         let take = Announced {
             device,
             epoch,
             ended: false,
-            step: self.painting.newest_step(),
+            step,
         };
         self.gone.remove(&device);
         self.announced.insert(brush.to_owned(), take);

@@ -87,18 +87,7 @@ impl PaintingSetup {
     /// # Errors
     /// [`PaintRefusal`] with what to do.
     pub fn check(&self, library: &PaintLibrary) -> Result<(), PaintRefusal> {
-        if self.cells.iter().any(|cells| !(1..=65_536).contains(cells)) {
-            return Err(PaintRefusal::new(
-                format!("a canvas of {}×{} cells", self.cells[0], self.cells[1]),
-                "choose 1 to 65536 cells either way",
-            ));
-        }
-        if !(1e-5..=1e-2).contains(&self.cell_m) {
-            return Err(PaintRefusal::new(
-                format!("cells of {} mm", self.cell_m * 1e3),
-                "choose .01 to 10 mm",
-            ));
-        }
+        check_size(self.cells, self.cell_m)?;
         check_ground(&self.ground, &self.embedded)?;
         relief_called(&self.tooth, self.tooth_seed, self.cell_m, &self.embedded)?;
         studio_settings(&self.light)?;
@@ -190,6 +179,26 @@ pub fn check_ground(name: &str, embedded: &Embedded) -> Result<(), PaintRefusal>
     match name.strip_prefix(IMAGE) {
         Some(hash) => embedded.colours(hash).map(drop),
         None => ground_reflectance(name).map(drop),
+    }
+}
+
+/// Checks the size of a surface and of its cells.
+///
+/// # Errors
+/// [`PaintRefusal`] with what is possible.
+pub fn check_size(cells: [u32; 2], cell_m: f64) -> Result<(), PaintRefusal> {
+    if cells.iter().any(|cells| !(1..=65_536).contains(cells)) {
+        return Err(PaintRefusal::new(
+            format!("a canvas of {}×{} cells", cells[0], cells[1]),
+            "choose 1 to 65536 cells either way",
+        ));
+    }
+    match (1e-5..=1e-2).contains(&cell_m) {
+        true => Ok(()),
+        false => Err(PaintRefusal::new(
+            format!("cells of {} mm", cell_m * 1e3),
+            "choose .01 to 10 mm",
+        )),
     }
 }
 

@@ -5,9 +5,9 @@ use std::sync::Arc;
 
 use maulstick_types::paint::TILE;
 
-use crate::page::{Page, Pager};
+use crate::page::Pager;
 use crate::quantum::{Counts, SLOTS, add};
-use crate::tile::{Planes, Tile, TileId, Version};
+use crate::tile::{Tile, TileId, Version};
 
 /// A rectangle of tiles: from the first, up to but not with the second corner.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -186,23 +186,6 @@ impl TileStore {
             add(&mut counts, &of(tile));
         }
         counts
-    }
-
-    /// Bytes that the newest versions take where they are kept: in the document, or in memory.
-    #[must_use]
-    pub fn held_bytes(&self) -> u64 {
-        let tiles = self.versions.iter().filter_map(|v| v.tile.as_ref());
-        let bytes = |page: &Page<Planes>| match page.stored_bytes() {
-            0 => page.resident_bytes() as u64,
-            stored => stored as u64,
-        };
-        tiles
-            .map(|tile| {
-                let layers = tile.dry().into_iter().flat_map(|stack| stack.layers());
-                let dry: u64 = layers.map(|layer| bytes(&layer.planes)).sum();
-                dry + tile.wet_page().map_or(0, bytes)
-            })
-            .sum()
     }
 }
 

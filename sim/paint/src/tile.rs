@@ -104,6 +104,13 @@ impl Tile {
         self.wet.as_ref()
     }
 
+    /// Its wet page and those of its dry layers.
+    pub fn pages(&self) -> impl Iterator<Item = &Page<Planes>> {
+        let layers = self.dry.iter().flat_map(|stack| stack.layers());
+        let dry = layers.map(|layer| &layer.planes);
+        self.wet.iter().chain(dry)
+    }
+
     /// What has dried.
     #[must_use]
     pub fn dry(&self) -> Option<&Arc<DryStack>> {

@@ -2,6 +2,7 @@
 
 use std::path::Path;
 
+use maulstick_document::DocumentError;
 use maulstick_optics::colour::{RgbSpace, apply, delta_e_2000, lab, srgb_decode};
 use maulstick_paint::Sequencer;
 use maulstick_paint::picture::{Picture, picture};
@@ -12,7 +13,7 @@ use maulstick_types::scene::CANVAS;
 use serde_json::json;
 
 use crate::commands::{print_json, say};
-use crate::document::read;
+use crate::document::{read, wrong};
 use crate::performance::refused;
 
 /// The painting as it is.
@@ -31,10 +32,13 @@ pub(super) fn compare(
     as_json: bool,
 ) -> Result<i32, Fault> {
     check_writable(output).map_err(|error| Fault::writing(output, &error))?;
-    let (_document, opened) = read(path)?;
+    let (document, opened) = read(path)?;
     let mut sequencer = opened.sequencer().map_err(refused)?;
     sequencer.ask(Command::Mark).map_err(refused)?;
     let pictures = [seen(&mut sequencer, one)?, seen(&mut sequencer, other)?];
+    if let Some(what) = document.pager().fault() {
+        return Err(wrong(path, &DocumentError::Damaged(what.to_owned())));
+    }
     let [left, right] = &pictures;
     let (width, height) = (left.width, left.height);
     let mut rgb = vec![0u8; 3 * width * height * 3];

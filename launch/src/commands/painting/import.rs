@@ -43,11 +43,11 @@ pub struct ImportOptions {
     /// An underpainting is wet, as it is if nothing else is said
     #[arg(long, conflicts_with = "dry")]
     wet: bool,
-    /// An underpainting is dry: a layer of this name
+    /// An underpainting is dry: a layer of this name. What is wet dries before it, as a layer of its own
     #[arg(long, value_name = "LAYER", num_args = 0..=1, default_missing_value = "underpainting")]
     dry: Option<String>,
-    /// A paint to mix it of; give it several times. Those in use in the painting if absent, in a new
-    /// painting those of its palette
+    /// A paint to mix it of; give it several times. Those in use in the painting if absent; where none
+    /// is, those of its palette
     #[arg(long = "paint", value_name = "NAME")]
     paints: Vec<String>,
     /// Width of a tooth's picture on the canvas, mm; it is repeated beyond. That of the canvas if
@@ -88,6 +88,9 @@ impl ImportOptions {
             ImportError::Thickness(_) => Fault::usage(error.to_string()).at("--um"),
             ImportError::Paints(_) => Fault::usage(error.to_string()).at("--paint"),
             ImportError::Refused(refusal) => refused(refusal.clone()).at("--paint"),
+            ImportError::Canvas(..) => Fault::usage(error.to_string())
+                .at(self.file.display().to_string())
+                .help("give it as a ground, which may be coarser than the cells"),
             other => Fault::usage(other.to_string())
                 .at(self.picture.display().to_string())
                 .help("give a PNG, JPEG or TIFF of at most 20,000 pixels either way"),

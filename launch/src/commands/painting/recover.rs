@@ -3,10 +3,10 @@
 use std::path::PathBuf;
 
 use clap::Args;
-use maulstick_document::{DocumentError, Salvage, recover};
+use maulstick_document::{DocumentError, Salvage, part_of, recover};
 use maulstick_paint::history::Place;
 use maulstick_rig::Fault;
-use maulstick_rig::files::check_writable;
+use maulstick_rig::files::{Unfinished, check_writable};
 use maulstick_types::scene::{CANVAS, PALETTE};
 use serde_json::json;
 
@@ -38,14 +38,19 @@ pub(super) fn run(options: &RecoverOptions) -> Result<i32, Fault> {
     if output.exists() {
         return Err(wrong(output, &DocumentError::Taken));
     }
+    std::fs::File::open(path).map_err(|error| Fault::reading(path, &error))?;
     check_writable(output).map_err(|error| Fault::writing(output, &error))?;
+    let part = part_of(output);
+    let beside = |suffix: &str| PathBuf::from(format!("{}{suffix}", part.display()));
+    let _unfinished = Unfinished::new(["", "-wal", "-journal"].map(beside).into());
     let bar = super::bar("recovering");
     let recovered = recover(path, output, &mut super::tell(&bar));
     bar.finish_and_clear();
     let salvage = recovered.map_err(|error| match error {
-        DocumentError::Taken | DocumentError::ReadOnly(_) | DocumentError::Full => {
-            wrong(output, &error)
-        }
+        DocumentError::Taken
+        | DocumentError::ReadOnly(_)
+        | DocumentError::Full
+        | DocumentError::Unwritten(_) => wrong(output, &error),
         error => wrong(path, &error),
     })?;
     if options.json {

@@ -12,6 +12,7 @@ use crate::database::Database;
 use crate::error::DocumentError;
 use crate::scan::{Row, Scan};
 use crate::schema::Table;
+use crate::writing::COPY;
 
 /// Rows that are written in one transaction.
 const BATCH: u64 = 512;
@@ -159,7 +160,7 @@ impl Gathered {
     }
 
     fn state(&mut self, found: &Found, standing: Standing) {
-        match found.text(0) {
+        match found.text(0).trim_end_matches(COPY) {
             "painting" => {
                 let state = |kept: &KeptPainting| (kept.versions, kept.next_page, kept.step);
                 newest(&mut self.painting, found.text(1), standing, state);

@@ -54,6 +54,8 @@ pub(super) struct Frames {
     pub(super) good: BTreeMap<u32, u64>,
     /// Frames behind a damaged one.
     pub(super) past_damage: BTreeMap<u32, u64>,
+    /// Pages that the database has since the latest good commit; 0 where there is none.
+    pub(super) database_pages: u32,
     /// What became of the WAL.
     pub(super) state: WalState,
 }
@@ -98,13 +100,14 @@ impl Frames {
             if whole {
                 salts = Some(frame.salts);
                 waiting.push((frame.page, offset + FRAME_HEADER as u64));
-                if frame.is_commit {
+                if frame.commits > 0 {
                     let count = waiting.len() as u64;
                     if broken {
                         frames.past_damage.extend(waiting.drain(..));
                         frames.state.frames_past_damage += count;
                     } else {
                         frames.good.extend(waiting.drain(..));
+                        frames.database_pages = frame.commits;
                         frames.state.frames_good += count;
                     }
                 }
@@ -123,7 +126,8 @@ impl Frames {
 /// The header of a frame.
 struct Frame {
     page: u32,
-    is_commit: bool,
+    /// Pages of the database after the commit that this frame ends; 0 where it ends none.
+    commits: u32,
     salts: Salts,
     checksum: Checksum,
 }
@@ -132,7 +136,7 @@ impl Frame {
     fn parse(bytes: &[u8]) -> Option<Self> {
         Some(Self {
             page: be32(bytes, 0)?,
-            is_commit: be32(bytes, 4)? != 0,
+            commits: be32(bytes, 4)?,
             salts: pair(bytes, 8)?,
             checksum: pair(bytes, 16)?,
         })

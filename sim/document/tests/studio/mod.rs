@@ -80,6 +80,19 @@ pub enum Act {
     Redefine(usize, usize),
 }
 
+impl std::fmt::Display for Act {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match self {
+            Self::Paint(brush, new, way) => {
+                let stroke = if *new { "stroke" } else { "stroke on" };
+                write!(f, "{stroke} of {} on {}", BRUSHES[*brush], way[0].surface)
+            }
+            Self::Command(command) => write!(f, "{command:?}"),
+            Self::Redefine(brush, strips) => write!(f, "{} with {strips}", BRUSHES[*brush]),
+        }
+    }
+}
+
 /// The painter.
 #[derive(Clone)]
 pub struct Painter {

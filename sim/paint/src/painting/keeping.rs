@@ -5,10 +5,11 @@ use std::sync::Arc;
 
 use maulstick_brush::{BrushFile, Head};
 use maulstick_optics::{PaintLibrary, Studio};
+use maulstick_types::scene::{CANVAS, PALETTE};
 
 use super::lighting::paint_slot;
 use super::undo::makes;
-use super::{BrushTrack, Named, PaintRefusal, Painting, QUOTA, Sheet, bare};
+use super::{BrushTrack, Named, PaintRefusal, Painting, Sheet, bare};
 use crate::embedded::Embedded;
 use crate::head::Waypoint;
 use crate::history::{History, Place, Rest, Step};
@@ -19,6 +20,7 @@ use crate::load::BrushLoad;
 use crate::look::Look;
 use crate::page::{Page, Pager};
 use crate::path::PathStepper;
+use crate::setup::check_size;
 use crate::store::TileStore;
 use crate::tile::{TileId, Version};
 
@@ -113,6 +115,7 @@ impl Painting {
             steps: self.steps,
             footprint_cells: self.footprint_cells,
             span_ns: self.span_ns,
+            quota: self.quota,
         };
         Checkpoint {
             kept,
@@ -159,6 +162,16 @@ impl Painting {
     ) -> Result<Self, PaintRefusal> {
         let kept = restored.kept;
         let scene = kept.scene;
+        for surface in &scene.surfaces {
+            check_size(surface.cells, surface.cell_m)?;
+        }
+        let ids: Vec<u32> = scene.surfaces.iter().map(|surface| surface.id).collect();
+        if ids != [CANVAS, PALETTE] {
+            return Err(PaintRefusal::new(
+                "the document has no canvas and palette".to_owned(),
+                "`maulstick painting recover` takes out what is whole",
+            ));
+        }
         let mut look = Look::new(Studio::new(
             &studio_settings(&scene.light)?,
             library.paints(),
@@ -232,7 +245,7 @@ impl Painting {
             accounted: kept.ledger.clone(),
             ledger: kept.ledger,
             history,
-            quota: QUOTA,
+            quota: kept.quota,
             named: restored
                 .named
                 .into_iter()
@@ -250,9 +263,10 @@ impl Painting {
         Ok(painting)
     }
 
-    /// Forgets where the brushes are: the next states begin their ways anew.
+    /// Forgets where the brushes are, and when: the next states begin their ways, and a time, anew.
     pub fn lift_brushes(&mut self) {
         self.close_windows();
+        self.span_ns = None;
         self.brushes
             .values_mut()
             .for_each(|track| track.path = None);

@@ -56,11 +56,11 @@ impl Painting {
             softness: 0.0,
             ..self.scene.light.clone()
         };
-        let made_of = format!(
-            "1 {light:?} {:?} {makes:?} {}",
-            self.scene.layers,
-            self.library.hash()
-        );
+        // Of the layers only how opaque they are is seen.
+        let layers = self.scene.layers.iter();
+        let veiled = layers.filter(|layer| layer.opacity != 1.0);
+        let veiled: Vec<(u32, f32)> = veiled.map(|layer| (layer.number, layer.opacity)).collect();
+        let made_of = format!("2 {light:?} {veiled:?} {makes:?} {}", self.library.hash());
         Arc::make_mut(&mut self.look).note(&made_of);
     }
 

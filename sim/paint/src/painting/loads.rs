@@ -12,6 +12,16 @@ use crate::model::BrushTraits;
 use crate::quantum::SLOTS;
 
 impl Painting {
+    /// The slots of several mixtures; where one is refused no paint gets a slot.
+    fn all_slots(&mut self, mixtures: &[Mixture]) -> Result<Vec<Vec<(usize, f64)>>, PaintRefusal> {
+        let known = (self.scene.paints.clone(), Arc::clone(&self.look));
+        let slots: Result<_, _> = mixtures.iter().map(|mixture| self.slots(mixture)).collect();
+        if Result::is_err(&slots) {
+            (self.scene.paints, self.look) = known;
+        }
+        slots
+    }
+
     /// The slots of a mixture's paints; new paints get the next free ones.
     pub(super) fn slots(&mut self, mixture: &Mixture) -> Result<Vec<(usize, f64)>, PaintRefusal> {
         let mixture = self.library.check(mixture).map_err(PaintRefusal::paint)?;
@@ -81,12 +91,19 @@ impl Painting {
         right: &Mixture,
     ) -> Result<(), PaintRefusal> {
         self.brush(brush)?;
-        let (left, right) = (self.slots(left)?, self.slots(right)?);
+        let slots = self.all_slots(&[left.clone(), right.clone()])?;
         self.begin_step(&format!("load {brush}"), Some(brush));
-        self.fill(brush, &[(&left, Half::Left), (&right, Half::Right)])?;
+        self.fill(brush, &[(&slots[0], Half::Left), (&slots[1], Half::Right)])?;
         self.book(Some(brush));
         self.end_step(|step| step.brush.as_deref() == Some(brush));
         Ok(())
+    }
+
+    /// Forgets what the strokes of a brush would load.
+    pub fn forget_loads(&mut self, brush: &str) {
+        if let Some(track) = self.brushes.get_mut(brush) {
+            track.loads.clear();
+        }
     }
 
     pub(super) fn fill(
@@ -141,12 +158,7 @@ impl Painting {
     /// As [`load`](Self::load).
     pub fn take(&mut self, brush: &str, loads: &[Mixture]) -> Result<(), PaintRefusal> {
         self.brush(brush)?;
-        let known = (self.scene.paints.clone(), Arc::clone(&self.look));
-        let mut slots = loads.iter().map(|mixture| self.slots(mixture));
-        if let Some(Err(refusal)) = slots.find(Result::is_err) {
-            (self.scene.paints, self.look) = known;
-            return Err(refusal);
-        }
+        self.all_slots(loads)?;
         self.close_windows();
         let track = self.brush(brush)?;
         track.loads = loads.to_vec();

@@ -1,15 +1,12 @@
-//! What surfaces are made of, and paint that is laid over all of one.
+//! What surfaces are made of.
 
 use std::sync::Arc;
 
-use maulstick_types::Mixture;
 use maulstick_types::scene::Surface;
 
 use super::{PaintRefusal, Painting, bare};
 use crate::history::Make;
-use crate::quantum::{QUANTUM_M, SLOTS};
 use crate::setup::{check_ground, relief_called};
-use crate::tile::{TILE_CELLS, Tile};
 
 impl Painting {
     pub(super) fn surface(&self, id: u32) -> Result<&Surface, PaintRefusal> {
@@ -94,99 +91,5 @@ impl Painting {
         self.look = Arc::new(look);
         self.scene.version += 1;
         self.note_look();
-    }
-
-    /// Lays an even film of wet paint over a whole surface, but for its wells.
-    ///
-    /// # Errors
-    /// [`PaintRefusal`] for an unknown surface or paint, or a 17th paint.
-    pub fn lay(
-        &mut self,
-        surface: u32,
-        mixture: &Mixture,
-        thickness_m: f64,
-    ) -> Result<(), PaintRefusal> {
-        self.surface(surface)?;
-        let slots = self.slots(mixture)?;
-        let mut quanta = [0.0f32; SLOTS];
-        for (slot, share) in slots {
-            quanta[slot] += (share * thickness_m / QUANTUM_M).round() as f32;
-        }
-        self.begin_step("fill", None);
-        let store = self.sheet(surface).map(|sheet| sheet.store.grid());
-        let [across, up] = store.unwrap_or_default();
-        for y in 0..up {
-            for x in 0..across {
-                self.lay_on((surface, crate::tile::TileId { x, y }), |_, slot| {
-                    quanta[slot]
-                });
-            }
-        }
-        self.end_own_step();
-        Ok(())
-    }
-
-    /// Adds wet paint to a tile, `quanta` by cell and slot: as much as the cells still hold. Cells
-    /// beyond the surface's edge and in wells get none.
-    pub(super) fn lay_on(
-        &mut self,
-        place: crate::history::Place,
-        quanta: impl Fn(usize, usize) -> f32,
-    ) {
-        let Some(sheet) = self.sheets.iter().find(|sheet| sheet.id == place.0) else {
-            return;
-        };
-        let before = sheet.store.version(place.1).tile.clone();
-        let wet = before.as_deref().map(Tile::wet).unwrap_or_default();
-        let mut planes: Vec<Option<Vec<f32>>> = vec![None; SLOTS];
-        let mut room = vec![crate::quantum::CELL_MAX as f32; TILE_CELLS];
-        for (slot, plane) in &*wet {
-            room.iter_mut()
-                .zip(plane.iter())
-                .for_each(|(room, held)| *room -= held);
-            planes[*slot] = Some(plane.to_vec());
-        }
-        let [width, height] = sheet.store.cells().map(|cells| cells as usize);
-        let side = maulstick_types::paint::TILE;
-        for cell in 0..TILE_CELLS {
-            let x = place.1.x as usize * side + cell % side;
-            let y = place.1.y as usize * side + cell / side;
-            if x >= width || y >= height {
-                room[cell] = 0.0;
-            }
-        }
-        for (cell, _) in sheet.bare.in_wells(place.1) {
-            room[cell] = 0.0;
-        }
-        let mut given = [0u64; SLOTS];
-        let mut top = 0.0f32;
-        for cell in 0..TILE_CELLS {
-            for (slot, plane) in planes.iter_mut().enumerate() {
-                let part = quanta(cell, slot).min(room[cell]).max(0.0).floor();
-                if part > 0.0 {
-                    plane.get_or_insert_with(|| vec![0.0; TILE_CELLS])[cell] += part;
-                    room[cell] -= part;
-                    given[slot] += part as u64;
-                }
-            }
-            top = top.max(crate::quantum::CELL_MAX as f32 - room[cell]);
-        }
-        if given.iter().all(|count| *count == 0) {
-            return;
-        }
-        let dry = before.as_deref().and_then(Tile::dry).cloned();
-        let beneath = dry.as_ref().map_or(0.0, |stack| {
-            stack.height().iter().copied().fold(0.0, f32::max)
-        });
-        let planes = planes.into_iter().enumerate();
-        let planes = planes.filter_map(|(slot, plane)| Some((slot, plane?.into())));
-        let tile = Tile::paged(&self.pager, planes, dry, before.as_deref());
-        let replaced = self.put(place, Some(Arc::new(tile)));
-        self.history.replaced(None, place, replaced);
-        self.ledger.from_tube(&given);
-        self.book(None);
-        if let Some(sheet) = self.sheets.iter_mut().find(|sheet| sheet.id == place.0) {
-            sheet.top = sheet.top.max(top + beneath);
-        }
     }
 }

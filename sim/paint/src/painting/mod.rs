@@ -1,6 +1,7 @@
 //! The painting: surfaces, brushes, books. It does what it is told, in the order that it is told.
 
 mod books;
+mod film;
 mod keeping;
 mod layers;
 mod lighting;

@@ -46,8 +46,9 @@ impl Painting {
     }
 
     /// Lays paint on a surface, cell by cell, from the tubes of `paints`: one step that can be undone.
-    /// Cells beyond the surface's edge and in wells get none, and none more than it can hold. Returns
-    /// the name of the layer, if it dried.
+    /// Cells beyond the surface's edge and in wells get none, and none more than it can hold. Where it is
+    /// to dry, what is wet dries before it, as a layer of its own. Returns the name of its layer, if it
+    /// dried.
     ///
     /// # Errors
     /// [`PaintRefusal`] for an unknown surface or paint, or a 17th paint; then nothing is laid.
@@ -63,6 +64,10 @@ impl Painting {
         let grid = self.sheet(surface).map(|sheet| sheet.store.grid());
         let [across, up] = grid.unwrap_or_default();
         self.begin_step("underpaint", None);
+        if matches!(wetness, Wetness::Dry { .. }) {
+            // What is wet dries first, apart: nothing dries on top of wet paint.
+            self.dry_in_step(surface, 1.0, "").ok();
+        }
         for tile in tiles {
             if tile.id.x >= across || tile.id.y >= up {
                 continue;
@@ -77,7 +82,7 @@ impl Painting {
                 let count = by_slot[slot].get(cell);
                 count.map_or(0.0, |count| *count as f32)
             };
-            self.lay_on((surface, tile.id), quanta);
+            self.lay_on((surface, tile.id), quanta, None);
         }
         let name = match wetness {
             Wetness::Wet => None,

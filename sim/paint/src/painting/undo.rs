@@ -1,6 +1,6 @@
 //! Undo and redo.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, HashSet};
 use std::sync::Arc;
 
 use maulstick_types::scene::{Layer, Scene};
@@ -24,6 +24,14 @@ impl Way {
         match self {
             Self::Back => [1, 0],
             Self::Forth => [0, 1],
+        }
+    }
+
+    /// How often what it booked is booked.
+    fn times(self) -> i64 {
+        match self {
+            Self::Back => -1,
+            Self::Forth => 1,
         }
     }
 }
@@ -182,15 +190,22 @@ impl Painting {
         self.history.last_done(None).map_or(0, |step| step.id)
     }
 
-    /// Takes back all steps that came after the one with this number.
+    /// Takes back all steps of a brush that came after the one with this number.
     ///
     /// # Errors
     /// As [`undo`](Self::undo).
-    pub fn undo_to(&mut self, step: u64) -> Result<(), PaintRefusal> {
-        while self.newest_step() > step {
-            self.undo(None)?;
+    pub fn undo_to(&mut self, brush: &str, step: u64) -> Result<(), PaintRefusal> {
+        self.end_step(|_| true);
+        let later = |own: &Step| own.id > step;
+        while self.history.last_done(Some(brush)).is_some_and(later) {
+            self.undo(Some(brush))?;
         }
         Ok(())
+    }
+
+    /// Steps up to this one and later ones are never merged with each other.
+    pub fn part_history(&mut self, step: u64) {
+        self.history.part_at(step);
     }
 
     /// Does the newest undone step again, of a brush or of all, and says what it was.
@@ -224,10 +239,16 @@ impl Painting {
         let (layers, made) = (deed.layers.as_ref(), deed.makes.as_ref());
         let other_rest = layers.is_some_and(|ends| ends[from] != self.scene.layers)
             || made.is_some_and(|ends| ends[from] != makes(&self.scene));
-        if !over && !other_load && !other_rest {
+        let other_books = !self.ledger.can_book(&deed.booked, way.times());
+        // What came later may have led back to what this one left, as a return to a version does.
+        let later = match way {
+            Way::Back => self.history.later_on(step),
+            Way::Forth => None,
+        };
+        if later.is_none() && !over && !other_load && !other_rest && !other_books {
             return Ok(());
         }
-        let other = self.history.last_done(None);
+        let other = later.or_else(|| self.history.last_done(None));
         let other = other.map_or("something".to_owned(), |step| format!("'{}'", step.what));
         Err(PaintRefusal::new(
             format!("'{}' lies under {other}, which came later", step.what),
@@ -245,8 +266,7 @@ impl Painting {
         for (name, pages) in &deed.loads {
             self.carry(name, &pages[to]);
         }
-        let times = if way == Way::Forth { 1 } else { -1 };
-        self.ledger.book(&deed.booked, times);
+        self.ledger.book(&deed.booked, way.times());
         self.accounted = self.ledger.clone();
         let (layers, made) = (deed.layers.as_ref(), deed.makes.as_ref());
         self.turn_rest(layers.map(|ends| &ends[to]), made.map(|ends| &ends[to]));
@@ -345,15 +365,25 @@ impl Painting {
         self.keep_to_quota();
     }
 
-    /// Merges the oldest steps until the history keeps to its quota; all in one at the most.
+    /// Merges the oldest steps until the history keeps to its quota, or only the newest are apart.
     fn keep_to_quota(&mut self) {
         if self.pager.counts().held() <= self.quota {
             return;
         }
-        let shown = self.sheets.iter().map(|sheet| sheet.store.held_bytes());
-        let shown: u64 = shown.sum();
-        while self.pager.counts().held().saturating_sub(shown) > self.quota
+        let other = self.held_besides_history();
+        while self.pager.counts().held().saturating_sub(other) > self.quota
             && self.history.merge_oldest()
         {}
+    }
+
+    /// Bytes of the tiles that are shown, and of versions.
+    fn held_besides_history(&self) -> u64 {
+        let shown = self.sheets.iter().flat_map(|sheet| sheet.store.iter());
+        let shown = shown.filter_map(|(_, version)| version.tile.as_ref());
+        let named = self.named.values().flat_map(|named| named.tiles.values());
+        let mut counted = HashSet::new();
+        let pages = shown.chain(named.flatten()).flat_map(|tile| tile.pages());
+        let once = pages.filter(|page| counted.insert(page.id()));
+        once.map(|page| page.held_bytes() as u64).sum()
     }
 }

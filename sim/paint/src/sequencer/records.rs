@@ -119,10 +119,17 @@ impl Sequencer {
         }
     }
 
-    /// Goes on after the program ended: the next states of brushes begin their ways anew.
+    /// Goes on after the program ended: the next states of brushes begin their ways anew, and no take
+    /// holds a brush until its player is there again.
     pub fn go_on(&mut self) {
-        self.painting.lift_brushes();
+        self.let_go();
         self.decide(GOES_ON);
+    }
+
+    fn let_go(&mut self) {
+        self.painting.lift_brushes();
+        let players = self.announced.values().map(|take| take.device);
+        self.gone.extend(players);
     }
 
     /// Introduces a brush, or gives a known one another file.
@@ -156,11 +163,13 @@ impl Sequencer {
                     after: None,
                     command,
                 };
-                self.execute(&request);
+                if request.command.check().is_ok() {
+                    self.execute(&request);
+                }
             }
             Accepted::Entry(Entry::Decision { what }) => {
                 if what == GOES_ON {
-                    self.painting.lift_brushes();
+                    self.let_go();
                 }
                 self.decide(&what);
             }
@@ -179,9 +188,9 @@ impl Sequencer {
 
     fn replay_state(&mut self, header: &Header, state: &BrushState) {
         let brush = self.painting.brush_of(header.source).map(str::to_owned);
-        if let Some(brush) = brush {
-            // It was not refused then.
-            self.painting.state(&brush, header.epoch, state).ok();
+        if let Some(brush) = brush.filter(|_| state.fault().is_none()) {
+            // What was refused then is refused now.
+            self.paint(&brush, header, state).ok();
             self.consume(&brush, header);
         }
     }
@@ -244,10 +253,14 @@ impl Sequencer {
             .consumed
             .into_iter()
             .map(|(source, epoch, next)| (Origin { source, epoch }, next));
+        let announced: BTreeMap<String, Announced> = takes.collect();
+        let newest = announced.values().map(|take| take.step).max();
+        let mut painting = painting;
+        painting.part_history(newest.unwrap_or(0));
         Self {
             next: kept.next,
             serial: kept.serial,
-            announced: takes.collect::<BTreeMap<_, _>>(),
+            announced,
             gone: kept.gone.into_iter().collect(),
             consumed: consumed.collect(),
             answered: answered.collect(),

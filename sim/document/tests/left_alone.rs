@@ -1,0 +1,135 @@
+//! What is only looked at stays as it is, and what one wrong bit costs.
+
+mod studio;
+
+use std::path::Path;
+use std::sync::Arc;
+
+use maulstick_document::{
+    Access, Contents, Document, DocumentError, DocumentSettings, Moment, glance, recover,
+};
+use maulstick_paint::Sequencer;
+use rusqlite::{Connection, params};
+use studio::{Painter, equip, print, sequencer};
+
+fn moment(kept: &mut Sequencer, since: u64) -> Moment {
+    let sequencer = kept.kept();
+    Moment {
+        painting: kept.painting_mut().checkpoint(since),
+        sequencer,
+        pictures: Vec::new(),
+    }
+}
+
+/// A painting with some paint, closed; how it is.
+fn painted(path: &Path) -> Vec<String> {
+    let settings = DocumentSettings::new(path, Access::Paint);
+    let (document, _) = Document::open(&settings).expect("begun");
+    let mut kept = sequencer(Arc::clone(document.pager()));
+    equip(&mut kept);
+    let mut painter = Painter::new(5);
+    for _ in 0..12 {
+        let act = painter.next();
+        painter.act(&mut kept, &act);
+    }
+    document.keep(moment(&mut kept, 0));
+    let print = print(&mut kept);
+    document.close().expect("closed");
+    print
+}
+
+fn bytes(path: &Path) -> Vec<u8> {
+    std::fs::read(path).expect("there")
+}
+
+#[test]
+fn another_programs_database_stays_as_it_is() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = folder.path().join("places.sqlite");
+    let foreign = Connection::open(&path).expect("begun");
+    foreign
+        .execute_batch("CREATE TABLE place(name TEXT); INSERT INTO place VALUES('here')")
+        .expect("written");
+    foreign.close().expect("closed");
+    let before = bytes(&path);
+    let refused = |error: Option<DocumentError>| matches!(error, Some(DocumentError::NoPainting));
+    assert!(refused(glance(&path).err()));
+    assert!(refused(Contents::read(&path).err()));
+    for access in [Access::Paint, Access::Read] {
+        let settings = DocumentSettings::new(&path, access);
+        assert!(refused(Document::open(&settings).err()));
+    }
+    assert!(bytes(&path) == before);
+    let names = std::fs::read_dir(folder.path()).expect("a folder");
+    assert_eq!(names.count(), 1, "nothing lies beside it");
+}
+
+#[test]
+fn looking_at_a_painting_that_was_not_closed_leaves_its_journal() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = folder.path().join("a.maul");
+    painted(&path);
+    let open = Connection::open(&path).expect("opened");
+    open.execute_batch("PRAGMA wal_autocheckpoint = 0; UPDATE tile SET version = version + 1")
+        .expect("written");
+    let killed = folder.path().join("killed.maul");
+    let journal = |path: &Path| path.with_extension("maul-wal");
+    std::fs::copy(&path, &killed).expect("copied");
+    std::fs::copy(journal(&path), journal(&killed)).expect("copied");
+    let before = [bytes(&killed), bytes(&journal(&killed))];
+    assert!(before[1].len() > 1000);
+    assert!(glance(&killed).expect("a painting"));
+    Contents::read(&killed).expect("read");
+    assert!([bytes(&killed), bytes(&journal(&killed))] == before);
+    // What it holds is damaged: it is told, and the journal is still there.
+    let settings = DocumentSettings::new(&killed, Access::Paint);
+    assert!(matches!(
+        Document::open(&settings).err(),
+        Some(DocumentError::Damaged(_))
+    ));
+    assert!(bytes(&journal(&killed)) == before[1]);
+}
+
+#[test]
+fn a_wrong_bit_in_the_state_costs_nothing() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = folder.path().join("a.maul");
+    let before = painted(&path);
+    let open = Connection::open(&path).expect("opened");
+    open.execute(
+        "UPDATE state SET value = replace(value, 'canvas', 'conves') WHERE key = ?1",
+        params!["sequencer"],
+    )
+    .expect("written");
+    open.execute(
+        "UPDATE state SET value = value || ' ' WHERE key = ?1",
+        params!["painting"],
+    )
+    .expect("written");
+    open.close().expect("closed");
+    let settings = DocumentSettings::new(&path, Access::Read);
+    let (document, opened) = Document::open(&settings).expect("opened");
+    let mut sequencer = opened.expect("a painting").sequencer().expect("whole");
+    assert_eq!(print(&mut sequencer), before);
+    document.close().expect("closed");
+    let mended = folder.path().join("mended.maul");
+    let salvage = recover(&path, &mended, &mut |_, _| {}).expect("recovered");
+    assert!(!salvage.is_old && salvage.missing.is_empty(), "{salvage:?}");
+}
+
+#[test]
+fn a_newer_programs_painting_is_not_called_whole() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = folder.path().join("a.maul");
+    painted(&path);
+    let open = Connection::open(&path).expect("opened");
+    open.execute_batch("PRAGMA journal_mode = DELETE; PRAGMA user_version = 2")
+        .expect("written");
+    open.close().expect("closed");
+    let to = folder.path().join("b.maul");
+    assert!(matches!(
+        recover(&path, &to, &mut |_, _| {}),
+        Err(DocumentError::Newer { found: 2, .. })
+    ));
+    assert!(!to.exists());
+}
