@@ -113,13 +113,17 @@ pub fn presence(path: &Path, options: &PaintingOptions) -> Result<Presence, Faul
     }
 }
 
-/// Sees that a file is there, where one is not to be begun.
+/// Sees that a painting is there, where none is to be begun.
 ///
 /// # Errors
 /// A [`Fault`] where there is none.
 pub fn there(path: &Path) -> Result<(), Fault> {
-    match path.exists() {
+    let found = match path.exists() {
+        true => glance(path),
+        false => Err(DocumentError::Missing),
+    };
+    match found.map_err(|error| wrong(path, &error))? {
         true => Ok(()),
-        false => Err(wrong(path, &DocumentError::Missing)),
+        false => Err(wrong(path, &DocumentError::NoPainting)),
     }
 }

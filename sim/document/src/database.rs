@@ -129,7 +129,10 @@ impl Database {
     ) -> Result<(Self, bool), DocumentError> {
         let new = is_new(path)?;
         if new && access == Access::Read {
-            return Err(DocumentError::Missing);
+            return Err(match path.exists() {
+                true => DocumentError::NoPainting,
+                false => DocumentError::Missing,
+            });
         }
         let flags = OpenFlags::SQLITE_OPEN_READ_WRITE
             | OpenFlags::SQLITE_OPEN_NO_MUTEX
@@ -153,20 +156,32 @@ impl Database {
             }
             taken => taken?,
         }
-        // It was begun, and not even its tables were written.
-        let new = new || (access == Access::Paint && schema::is_blank(&database.connection)?);
-        if new {
-            schema::create(&database.connection)?;
+        match database.set_up(new, access) {
+            Ok(new) => Ok((database, new)),
+            Err(error) => {
+                database.leave().ok();
+                Err(error)
+            }
         }
-        schema::migrate(&database.connection)?;
-        Ok((database, new))
+    }
+
+    /// Makes the tables of a new painting, and brings an older one up to this program; true where it is
+    /// new.
+    fn set_up(&self, new: bool, access: Access) -> Result<bool, DocumentError> {
+        // It was begun, and not even its tables were written.
+        let new = new || (access == Access::Paint && schema::is_blank(&self.connection)?);
+        if new {
+            schema::create(&self.connection)?;
+        }
+        schema::migrate(&self.connection)?;
+        Ok(new)
     }
 
     /// Makes the file this program's own and sets how it is written.
     fn take(&self, path: &Path) -> Result<(), DocumentError> {
         let connection = &self.connection;
-        // Nobody waits for another program.
-        connection.busy_timeout(std::time::Duration::ZERO)?;
+        // A program that was killed holds its locks until the system has cleared it away.
+        connection.busy_timeout(std::time::Duration::from_secs(1))?;
         // A painting that turns out to be damaged keeps its journal as it is.
         connection.set_db_config(DbConfig::SQLITE_DBCONFIG_NO_CKPT_ON_CLOSE, true)?;
         if connection.is_readonly("main")? {

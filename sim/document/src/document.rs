@@ -72,18 +72,16 @@ impl Document {
         let (database, new) = Database::open(&settings.path, settings.access, vfs)?;
         let shared: Arc<Shared> = Arc::default();
         let backing = Arc::new(Pages(Arc::clone(&shared)));
-        // A painting that was begun, and not a second of it kept, begins anew.
-        let begun = new || !crate::opening::has_state(&database)?;
-        let (pager, found) = match begun {
-            true => (Pager::backed(backing, settings.memory, 1), None),
-            false => {
-                let next = crate::opening::next_page(&database)?;
-                let pager = Pager::backed(backing, settings.memory, next);
-                let found = opened(&database, &pager)?;
-                shared.committed.store(found.index(), SeqCst);
-                (pager, Some(found))
+        let (pager, found) = match content(&database, new, backing, settings.memory) {
+            Ok(content) => content,
+            Err(error) => {
+                database.leave().ok();
+                return Err(error);
             }
         };
+        if let Some(found) = &found {
+            shared.committed.store(found.index(), SeqCst);
+        }
         let thread = Thread {
             shared: Arc::clone(&shared),
             database,
@@ -215,6 +213,22 @@ impl std::fmt::Debug for Document {
     }
 }
 
+/// The pages of a painting, and what it is; nothing where it is to be begun.
+fn content(
+    database: &Database,
+    new: bool,
+    backing: Arc<Pages>,
+    memory: usize,
+) -> Result<(Arc<Pager>, Option<Opened>), DocumentError> {
+    // A painting that was begun, and not a second of it kept, begins anew.
+    if new || !crate::opening::has_state(database)? {
+        return Ok((Pager::backed(backing, memory, 1), None));
+    }
+    let pager = Pager::backed(backing, memory, crate::opening::next_page(database)?);
+    let found = opened(database, &pager)?;
+    Ok((pager, Some(found)))
+}
+
 /// The document's thread.
 struct Thread {
     shared: Arc<Shared>,
@@ -267,8 +281,9 @@ impl Thread {
         if broken {
             // Its journal may hold what is to be recovered.
             self.database.leave()?;
+            let what = fault.trim_start_matches("the painting is damaged: ");
             return match left {
-                true => Err(DocumentError::Damaged(fault)),
+                true => Err(DocumentError::Damaged(what.to_owned())),
                 false => Ok(()),
             };
         }
@@ -472,7 +487,10 @@ fn serve(shared: &Shared, database: &Database) {
         let mut queues = shared.lock();
         queues.broken = true;
         (queues.fault, queues.help) = (error.to_string(), error.help());
-        error.to_string()
+        match error {
+            DocumentError::Damaged(what) => what,
+            error => error.to_string(),
+        }
     };
     for fetch in fetches {
         match fetch {

@@ -53,7 +53,10 @@ impl DocumentError {
     #[must_use]
     pub fn help(&self) -> &'static str {
         match self {
-            Self::NoPainting => "give a file that `maulstick up FILE.maul` made, or a new name",
+            Self::NoPainting => {
+                "give a file that `maulstick up FILE.maul` made, or a new name; of a painting whose \
+                 beginning is damaged `maulstick painting recover FILE -o NEW.maul` takes out what is whole"
+            }
             Self::Missing => "check the path; `maulstick up FILE.maul` begins a painting",
             Self::Newer { .. } => "open it with that newer Maulstick; nothing was changed",
             Self::InUse { .. } => {

@@ -187,6 +187,11 @@ impl<F: Read + Seek> Scan<F> {
         self.store.is_beyond(page) || self.free.as_ref().is_some_and(|free| free.contains(&page))
     }
 
+    /// Whether the file begins as a database does.
+    pub fn has_header(&self) -> bool {
+        matches!(self.page_size().from, PageSizeFrom::Header)
+    }
+
     /// The page size, and how it became known.
     pub fn page_size(&self) -> PageSize {
         self.store.page_size()

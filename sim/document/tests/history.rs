@@ -22,7 +22,7 @@ fn is_done(outcome: &Outcome) -> bool {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(24))]
+    #![proptest_config(studio::cases(24))]
 
     #[test]
     fn all_undone_and_redone_is_as_it_was(seed in any::<u64>(), acts in 1usize..40) {

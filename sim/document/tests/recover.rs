@@ -232,7 +232,7 @@ fn hurt(bytes: &mut Vec<u8>, dice: &mut Dice) {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(16))]
+    #![proptest_config(studio::cases(16))]
 
     #[test]
     fn what_is_whole_comes_back(seed in any::<u64>(), acts in 1usize..40) {
@@ -403,4 +403,17 @@ fn nothing_is_written_over_and_nothing_made_of_nothing() {
     ));
     easel.close();
     assert!(!new.exists());
+}
+
+/// Cases that once went wrong.
+#[test]
+fn what_was_lost_once_is_not_lost_again() {
+    for (seed, acts) in [
+        (17_672_387_863_968_454_319, 38),
+        (4_922_705_410_365_251_054, 17),
+    ] {
+        let painted = Painted::new(seed, acts);
+        let (_, salvage) = painted.recover(&painted.bytes).expect("recovered");
+        assert!(salvage.is_whole(), "{seed}, {acts}: {salvage:?}");
+    }
 }

@@ -19,9 +19,8 @@ pub struct Window {
     limit: [usize; 2],
     wet: [Option<Vec<f32>>; SLOTS],
     base: Vec<f32>,
-    /// What has dried on each tile, and the most quanta of it on a cell.
+    /// What has dried on each tile.
     dry: Vec<Option<Arc<DryStack>>>,
-    dry_top: f32,
     top: f32,
     dirty: Vec<bool>,
 }
@@ -47,7 +46,6 @@ impl Window {
                 .tiles()
                 .map(|id| store.version(id).tile.as_ref()?.dry().cloned())
                 .collect(),
-            dry_top: 0.0,
             top: 0.0,
             dirty: vec![false; tiles],
         };
@@ -74,8 +72,6 @@ impl Window {
                 }
             }
         }
-        let wet = (0..width * height).map(|cell| window.total(cell));
-        window.top = wet.fold(0.0, f32::max) + window.dry_top;
         Some(window)
     }
 
@@ -90,7 +86,6 @@ impl Window {
                 let to = &mut self.base[start + row * self.width..][..TILE];
                 for (base, quanta) in to.iter_mut().zip(dry) {
                     *base += quanta * cells_per_quantum;
-                    self.dry_top = self.dry_top.max(*quanta);
                 }
             }
         }
@@ -108,21 +103,15 @@ impl Window {
         &self.base
     }
 
-    /// Most quanta that have dried on a cell.
-    #[must_use]
-    pub fn dry_top(&self) -> f32 {
-        self.dry_top
-    }
-
-    /// Most quanta, wet and dry, that a cell of the window has had since it was opened.
+    /// The highest that brushes have met paint in the window, wet on dry, quanta.
     #[must_use]
     pub fn top(&self) -> f32 {
         self.top
     }
 
-    /// Notes that a cell holds so many quanta of wet paint.
+    /// Notes that paint stands so high, quanta.
     pub fn note_top(&mut self, quanta: f32) {
-        self.top = self.top.max(quanta + self.dry_top);
+        self.top = self.top.max(quanta);
     }
 
     /// The tiles.

@@ -5,6 +5,7 @@ use std::path::Path;
 use maulstick_document::DocumentError;
 use maulstick_optics::colour::{RgbSpace, apply, delta_e_2000, lab, srgb_decode};
 use maulstick_paint::Sequencer;
+use maulstick_paint::painting::NOW;
 use maulstick_paint::picture::{Picture, picture};
 use maulstick_rig::Fault;
 use maulstick_rig::files::{check_writable, write_whole};
@@ -16,8 +17,6 @@ use crate::commands::{print_json, say};
 use crate::document::{read, wrong};
 use crate::performance::refused;
 
-/// The painting as it is.
-const NOW: &str = "now";
 /// A difference that is shown as white, ΔE₀₀.
 const WHITE: f64 = 20.0;
 

@@ -100,6 +100,7 @@ impl Gathered {
             }
         }
         match gathered.found {
+            0 if scan.has_header() => Err(DocumentError::Lost("every row".to_owned())),
             0 => Err(DocumentError::NoPainting),
             _ => Ok(gathered),
         }

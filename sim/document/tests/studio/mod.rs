@@ -11,6 +11,7 @@ use maulstick_types::brush::{BrushState, Solve};
 use maulstick_types::command::{Command, CommandRequest, Outcome};
 use maulstick_types::scene::{CANVAS, PALETTE};
 use maulstick_types::{Flags, Header, Mixture, Pose, name_hash};
+use proptest::prelude::ProptestConfig;
 use rand_pcg::Pcg64Mcg;
 use rand_pcg::rand_core::Rng as _;
 use std::collections::BTreeMap;
@@ -24,6 +25,16 @@ const MIXTURES: [&str; 3] = [
 ];
 /// Cells of the canvas: more than a tile, and not a multiple of it.
 const CELLS: [u32; 2] = [150, 100];
+
+/// So many cases, or as many as `PROPTEST_CASES` asks for.
+pub fn cases(usual: u32) -> ProptestConfig {
+    let asked = std::env::var("PROPTEST_CASES").ok();
+    let asked = asked.and_then(|cases| cases.parse().ok());
+    ProptestConfig {
+        failure_persistence: None,
+        ..ProptestConfig::with_cases(asked.unwrap_or(usual))
+    }
+}
 
 pub fn mixture(text: &str) -> Mixture {
     text.parse().expect("a mixture")

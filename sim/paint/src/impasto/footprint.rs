@@ -120,10 +120,10 @@ impl Footprint {
             return;
         }
         self.weigh(step.window);
-        let most = self.wet.iter().copied().fold(0.0, f32::max);
-        step.window.note_top(most);
+        // Of the cells around the brush alone: what else the window holds must not matter.
+        let top = self.highest(step.window, traits.cells_per_quantum);
+        step.window.note_top(top / traits.cells_per_quantum);
         let loose = traits.lift * (1.0 - step.sweep.to.press);
-        let top = (most + step.window.dry_top()) * traits.cells_per_quantum;
         let film = step.load.thickest() as f32 * traits.film_cells_per_quantum;
         self.draw_skin(
             step,
@@ -246,6 +246,34 @@ impl Footprint {
                     .for_each(|(sum, count)| *sum += count);
             }
         }
+    }
+
+    /// The highest that paint stands on a cell of the grid, cells; 0 where none does.
+    fn highest(&self, window: &Window, to_cells: f32) -> f32 {
+        let [width, _] = self.size;
+        let mut highest = 0.0f32;
+        for (y, row) in self.wet.chunks_exact(width).enumerate() {
+            let start = (self.from[1] + y) * window.width() + self.from[0];
+            let base = &window.base()[start..start + width];
+            let heights = row
+                .iter()
+                .zip(base)
+                .map(|(wet, base)| base + wet * to_cells);
+            highest = heights.fold(highest, f32::max);
+        }
+        highest
+    }
+
+    /// Notes how high paint stands where the brush has left it.
+    pub fn note_left(&self, step: &mut Step<'_>) {
+        let quanta_per_cell = 1.0 / step.traits.cells_per_quantum;
+        let window: &Window = step.window;
+        let heights = self.contacts.iter().map(|contact| {
+            let cell = contact.cell as usize;
+            window.total(cell) + window.base()[cell] * quanta_per_cell
+        });
+        let highest = heights.fold(0.0, f32::max);
+        step.window.note_top(highest);
     }
 
     /// Which of the covered cells are touched.

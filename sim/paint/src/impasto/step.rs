@@ -30,6 +30,7 @@ impl PaintModel for Impasto {
         self.advection.run(footprint, step.window);
         self.exchange.run(footprint, step);
         flow(footprint, step);
+        footprint.note_left(step);
         step.window.touch(footprint.reached());
         StepReport {
             footprint_cells: footprint.contacts.len() as u64,

@@ -15,7 +15,7 @@ mod wells;
 
 pub use keeping::{Checkpoint, Restored};
 pub use underpainting::{LaidTile, Wetness};
-pub use versions::Named;
+pub use versions::{NOW, Named};
 pub use wells::WELL_M;
 
 use std::collections::{BTreeMap, BTreeSet};

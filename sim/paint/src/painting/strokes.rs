@@ -135,8 +135,10 @@ impl Painting {
             // A command ended the stroke's undo step: the rest of the stroke is one of its own.
             self.begin_step("stroke", Some(name));
         }
-        self.claim(name, sheet, from, to);
-        if !self.reach(name, sheet, from, to) {
+        // Paint is pushed a cell farther than the brush comes.
+        let (outer_from, outer_to) = (from.map(|cell| cell - 1), to.map(|cell| cell + 1));
+        self.claim(name, sheet, outer_from, outer_to);
+        if !self.reach(name, sheet, outer_from, outer_to) {
             return;
         }
         self.tend_wells(name, sheet, from, to);

@@ -22,6 +22,9 @@ pub struct Named {
     pub rest: Rest,
 }
 
+/// What the painting as it is is called among its versions.
+pub const NOW: &str = "now";
+
 impl Painting {
     /// The versions, by name.
     pub fn named(&self) -> impl Iterator<Item = &Named> {
@@ -47,6 +50,10 @@ impl Painting {
 
     fn check_new(&self, name: &str) -> Result<(), PaintRefusal> {
         match self.named.contains_key(name) {
+            _ if name == NOW => Err(PaintRefusal::new(
+                format!("'{NOW}' is the painting as it is, not a version"),
+                "choose another name",
+            )),
             true => Err(PaintRefusal::new(
                 format!("there is a version called '{name}' already"),
                 "choose another name, or forget that version first",
@@ -124,6 +131,10 @@ impl Painting {
         }
         for (name, page) in &to.rest.loads {
             self.carry(name, page);
+        }
+        for sheet in &mut self.sheets {
+            let top = to.rest.tops.get(&sheet.id).copied().unwrap_or(0.0);
+            sheet.top = sheet.top.max(top);
         }
         self.ledger.clone_from(&to.rest.ledger);
         self.book(None);

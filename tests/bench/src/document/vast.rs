@@ -94,6 +94,11 @@ fn again(report: &mut Report, path: &std::path::Path) -> Result<(), Fault> {
     }
     let counts = easel.sequencer.painting().pager().counts();
     report.row(
+        "document: opened again with 64M",
+        took.steps as f64 / took.busy.as_secs_f64(),
+        "steps/s",
+    );
+    report.row(
         "document: opened again with 64M, page-ins",
         counts.fetched as f64,
         "",
