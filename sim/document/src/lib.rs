@@ -6,7 +6,7 @@
 //!
 //! | module | holds |
 //! | --- | --- |
-//! | [`document`] | an open painting, and the thread that owns its file |
+//! | [`document`], `thread`, `queues` | an open painting, the thread that owns its file, and where both meet |
 //! | [`database`] | the file: locks, pages read one by one |
 //! | [`writing`], [`opening`] | a moment of a painting, written as one transaction and read back |
 //! | [`journal`] | what was accepted, as bytes |
@@ -31,6 +31,7 @@ pub mod rows;
 pub mod scan;
 pub mod schema;
 pub mod sum;
+mod thread;
 pub mod writing;
 
 pub use contents::Contents;

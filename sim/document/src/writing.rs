@@ -93,13 +93,12 @@ impl<'a, 'b> Writer<'a, 'b> {
         }
     }
 
-    /// Writes a moment and the tiles as they are shown; what it makes superfluous goes. Where its pages
+    /// Writes a moment; what it makes superfluous goes. Where its pages
     /// take longer than `until` only some of these are written, which nothing refers to yet, and false
     /// is returned.
     pub(crate) fn moment(
         mut self,
         moment: &Moment,
-        shown: &[ShownTile],
         until: Instant,
     ) -> Result<(Stored, bool), DocumentError> {
         let painting = &moment.painting;
@@ -139,10 +138,6 @@ impl<'a, 'b> Writer<'a, 'b> {
         }
         for name in &painting.gone_named {
             connection.execute("DELETE FROM version WHERE name = ?1", params![name])?;
-        }
-        for tile in shown {
-            (self.breathe)(self.database);
-            self.shown(tile)?;
         }
         self.state(moment)?;
         self.bury(&painting.dead)?;
@@ -345,7 +340,16 @@ impl<'a, 'b> Writer<'a, 'b> {
         Ok(())
     }
 
-    fn shown(&self, tile: &ShownTile) -> Result<(), DocumentError> {
+    /// Writes tiles as they are shown.
+    pub(crate) fn shown(self, tiles: &[ShownTile]) -> Result<(), DocumentError> {
+        for tile in tiles {
+            (self.breathe)(self.database);
+            self.show(tile)?;
+        }
+        Ok(())
+    }
+
+    fn show(&self, tile: &ShownTile) -> Result<(), DocumentError> {
         let data = zstd::bulk::compress(&tile.bytes, self.database.level)?;
         let version = tile.version as i64;
         let sum = shown_sum(tile.place, version, tile.look, &data);
