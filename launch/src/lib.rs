@@ -14,6 +14,7 @@
 //! | [`sheet`] | the sheet of brushes and their marks |
 //! | [`document`] | paintings in files |
 //! | [`kit`] | what a take is painted with: put into it, and taken from it |
+//! | [`script`] | a day at the easel, a step after the other |
 //! | [`performance`] | what `render` and `up --play` share: take, brush, loads, canvas |
 
 pub mod chart;
@@ -25,6 +26,7 @@ pub mod kit;
 pub mod nodes;
 pub mod page;
 pub mod performance;
+pub mod script;
 pub mod sheet;
 pub mod swatch;
 pub mod up;

@@ -1,27 +1,38 @@
-//! `maulstick render`: a take, painted in one process.
+//! `maulstick render`: a take, or a script, painted in one process.
 
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 use clap::Args;
+use indicatif::ProgressBar;
 use maulstick_device::Take;
 use maulstick_nodes::paint_node::write_snapshot;
 use maulstick_nodes::{Keeper, Offline};
 use maulstick_paint::{Painting, Sequencer};
 use maulstick_rig::files::check_writable;
 use maulstick_rig::{Fault, RigConfig};
+use maulstick_types::Mixture;
+use maulstick_types::command::Command;
 
 use crate::commands::progress_bar;
 use crate::destination::export;
 use crate::document::{go_on, presence, wrong};
 use crate::kit::use_kit;
 use crate::performance::{PaintingOptions, brush_file, library_from, painting_setup, refused};
+use crate::script::{Act, Script};
+
+/// Time before a take, ns: strokes of two takes are never one.
+const PAUSE_NS: u64 = 1_000_000_000;
 
 /// Options of `maulstick render`.
 #[derive(Args, Clone, Debug)]
 pub struct RenderOptions {
     /// The take
-    take: PathBuf,
+    #[arg(required_unless_present = "script", conflicts_with = "script")]
+    take: Option<PathBuf>,
+    /// A script in the place of a take: brushes, loads, takes, drying, light, step by step
+    #[arg(long, value_name = "FILE")]
+    script: Option<PathBuf>,
     /// The picture, a PNG
     #[arg(short, long, value_name = "PNG")]
     output: PathBuf,
@@ -51,9 +62,15 @@ pub fn run(options: &RenderOptions) -> Result<i32, Fault> {
         Some(path) => RigConfig::read(path)?,
         None => RigConfig::default(),
     };
-    let take = Take::read(&options.take)?;
+    let take = match &options.take {
+        Some(path) => Some((path, Take::read(path)?)),
+        None => None,
+    };
     let folder = tempfile::tempdir().map_err(|error| Fault::failure(error.to_string()))?;
-    let embedded = use_kit(&take, &options.take, folder.path(), &mut config)?;
+    let embedded = match &take {
+        Some((path, take)) => use_kit(take, path, folder.path(), &mut config)?,
+        None => Vec::new(),
+    };
     let section = options.painting.apply(&mut config)?;
     for (setting, option) in [
         (&mut config.view.profile, &options.profile),
@@ -66,13 +83,26 @@ pub fn run(options: &RenderOptions) -> Result<i32, Fault> {
     let export = export(&config.view, "--profile, --gamut")?;
     let library = library_from(config.paint.paints.as_deref())?;
     let loads = options.painting.kit.mixtures(&embedded, &library)?;
-    let unloaded = loads.is_empty();
+    let unloaded = loads.is_empty() && options.script.is_none();
+    let script = match (&options.script, take) {
+        (Some(path), _) => Script::read(path, &library)?,
+        (None, Some((path, take))) => Script(vec![(
+            path.display().to_string(),
+            Act::Take(take, loads.clone()),
+        )]),
+        (None, None) => Script(Vec::new()),
+    };
     for path in [Some(&options.output), options.painting.ledger.as_ref()]
         .into_iter()
         .flatten()
     {
-        if is_same(path, &options.take) {
-            return Err(Fault::usage("the take would be overwritten")
+        let inputs = [&options.take, &options.script];
+        if inputs
+            .into_iter()
+            .flatten()
+            .any(|input| is_same(path, input))
+        {
+            return Err(Fault::usage("what is painted would be overwritten")
                 .at(path.display().to_string())
                 .help("give the picture another name"));
         }
@@ -93,35 +123,112 @@ pub fn run(options: &RenderOptions) -> Result<i32, Fault> {
     };
     let file = brush_file(&section)?;
     let (name, share) = (&section.name, section.depth_share);
-    let mut offline = Offline::going_on(sequencer, name, file, share, loads).map_err(refused)?;
-    let begun = Instant::now();
-    let bar = progress_bar(take.length_ns()).with_message("painting");
-    // The start does not matter to the painting; a live one has the clock's time here.
-    let (start_ns, first_ns) = (1_000_000_000, take.samples[0].time_ns);
-    for (number, sample) in take.samples.iter().enumerate() {
-        let time_ns = sample.time_ns - first_ns;
-        offline
-            .sample(start_ns + time_ns, &sample.sample)
-            .map_err(refused)?;
-        if number % 64 == 0 {
-            bar.set_position(time_ns / 1_000_000);
-            if let Some(keeper) = &mut keeper {
-                keeper.turn(offline.sequencer_mut(), begun.elapsed().as_nanos() as u64);
-            }
-        }
+    let offline = Offline::going_on(sequencer, name, file, share, loads).map_err(refused)?;
+    let mut easel = Easel {
+        offline,
+        keeper: &mut keeper,
+        begun: Instant::now(),
+        bar: progress_bar(script.length_ns()).with_message("painting"),
+        painted_ns: 0,
+    };
+    let painted = script
+        .0
+        .into_iter()
+        .try_for_each(|(place, act)| easel.act(act).map_err(|fault| fault.at(place)));
+    easel.bar.finish_and_clear();
+    let mut offline = easel.offline;
+    let mut close = |offline: &mut Offline| match (keeper.take(), &options.document) {
+        (Some(keeper), Some(path)) => keeper
+            .close(offline.sequencer_mut())
+            .map_err(|error| wrong(path, &error)),
+        _ => Ok(()),
+    };
+    if let Err(fault) = painted {
+        // What was painted before it is kept.
+        close(&mut offline)?;
+        return Err(fault);
     }
-    bar.finish_and_clear();
     let ledger = options.painting.ledger.as_deref();
     write_snapshot(offline.painting_mut(), &options.output, ledger, &export)
         .map_err(|(path, error)| Fault::writing(path.as_ref(), &error))?;
-    if let (Some(keeper), Some(path)) = (keeper, &options.document) {
-        let closed = keeper.close(offline.sequencer_mut());
-        closed.map_err(|error| wrong(path, &error))?;
-    }
+    close(&mut offline)?;
     if unloaded {
         eprintln!("the brush carried no paint: `--load \"Ultramarine Blue\"` gives it some");
     }
     Ok(0)
+}
+
+/// A painting at which a script is followed.
+struct Easel<'a> {
+    offline: Offline,
+    keeper: &'a mut Option<Keeper>,
+    begun: Instant,
+    bar: ProgressBar,
+    /// Time of the takes so far, ns.
+    painted_ns: u64,
+}
+
+impl Easel<'_> {
+    fn act(&mut self, act: Act) -> Result<(), Fault> {
+        let brush = self.offline.brush().to_owned();
+        let done = match act {
+            Act::Brush(name, file, share) => self.offline.take_up(&name, *file, share),
+            Act::Load(mixture, None) => self.offline.command(Command::Load { brush, mixture }),
+            Act::Load(left, Some(right)) => {
+                let command = Command::LoadBeside { brush, left, right };
+                self.offline.command(command)
+            }
+            Act::Clean => self.offline.command(Command::Clean { brush }),
+            Act::Take(take, loads) => return self.follow(&take, loads),
+            Act::Opacity(name, opacity) => {
+                let layers = &self.offline.painting_mut().scene().layers;
+                let found = layers.iter().rev().find(|layer| layer.name == name);
+                let layer = found.map(|layer| layer.number).ok_or_else(|| {
+                    let names: Vec<&str> = layers.iter().map(|layer| layer.name.as_str()).collect();
+                    Fault::usage(format!("there is no dry layer called '{name}'"))
+                        .help(format!("there are: {}", names.join(", ")))
+                })?;
+                self.offline.command(Command::Opacity { layer, opacity })
+            }
+            Act::Light(change) => {
+                let light = change.on(&self.offline.painting_mut().scene().light)?;
+                let expose = change.exposes();
+                self.offline.command(Command::Relight { light, expose })
+            }
+            Act::Undo(times) => {
+                (0..times).try_for_each(|_| self.offline.command(Command::Undo { brush: None }))
+            }
+            Act::Command(command) => self.offline.command(command),
+        };
+        done.map_err(refused)?;
+        self.keep();
+        Ok(())
+    }
+
+    fn follow(&mut self, take: &Take, loads: Vec<Mixture>) -> Result<(), Fault> {
+        self.offline.begin_take(loads).map_err(refused)?;
+        // The start does not matter to the painting; a live one has the clock's time here.
+        let (start_ns, first_ns) = (PAUSE_NS + self.painted_ns, take.samples[0].time_ns);
+        for (number, sample) in take.samples.iter().enumerate() {
+            let time_ns = sample.time_ns - first_ns;
+            let followed = self.offline.sample(start_ns + time_ns, &sample.sample);
+            followed.map_err(refused)?;
+            if number % 64 == 0 {
+                self.bar
+                    .set_position((self.painted_ns + time_ns) / 1_000_000);
+                self.keep();
+            }
+        }
+        self.painted_ns += take.length_ns() + PAUSE_NS;
+        Ok(())
+    }
+
+    fn keep(&mut self) {
+        if let Some(keeper) = self.keeper {
+            let now_ns = self.begun.elapsed().as_nanos() as u64;
+            keeper.turn(self.offline.sequencer_mut(), now_ns);
+        }
+    }
 }
 
 /// Whether two names lead to one file.

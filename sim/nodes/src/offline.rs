@@ -66,18 +66,11 @@ impl Offline {
             next: 0,
             samples: 0,
         };
-        let (device, device_epoch) = (player.source, player.epoch);
-        offline.command(Command::Take {
-            brush: brush.to_owned(),
-            device,
-            device_epoch,
-            loads,
-            again: false,
-        })?;
+        offline.begin_take(loads)?;
         Ok(offline)
     }
 
-    /// Puts the brush down and takes up another one, clean.
+    /// Puts the brush down and takes up another one, with what it carried when it was put down.
     ///
     /// # Errors
     /// [`PaintRefusal`] where the painting refuses it.
@@ -95,14 +88,27 @@ impl Offline {
             epoch: self.me.epoch + 1,
         };
         self.next = 0;
-        let (device, device_epoch) = (self.player.source, self.player.epoch);
+        self.begin_take(Vec::new())
+    }
+
+    /// Begins another take with the brush in hand; its strokes take the next of `loads` in turn.
+    ///
+    /// # Errors
+    /// [`PaintRefusal`] where a load is wrong.
+    pub fn begin_take(&mut self, loads: Vec<Mixture>) -> Result<(), PaintRefusal> {
         self.command(Command::Take {
-            brush: brush.to_owned(),
-            device,
-            device_epoch,
-            loads: Vec::new(),
+            brush: self.brush.clone(),
+            device: self.player.source,
+            device_epoch: self.player.epoch,
+            loads,
             again: false,
         })
+    }
+
+    /// Name of the brush in hand.
+    #[must_use]
+    pub fn brush(&self) -> &str {
+        &self.brush
     }
 
     /// Does a command now.

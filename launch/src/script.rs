@@ -1,0 +1,394 @@
+//! A script: a day at the easel, a step after the other.
+//!
+//! ```toml
+//! step = [
+//!     { brush = "filbert", size_mm = 12 },
+//!     { load = "Ultramarine Blue=0.6,Titanium White=0.4" },
+//!     { take = "sky.mcap" },
+//!     { dry = 1.0, layer = "sky" },
+//! ]
+//! ```
+//!
+//! A step has one key that says what is done, and perhaps others that say how. Paths count from the
+//! script's folder. All of it is read before anything is painted.
+
+use std::path::Path;
+
+use maulstick_brush::BrushFile;
+use maulstick_device::{Take, brush_file};
+use maulstick_optics::PaintLibrary;
+use maulstick_rig::Fault;
+use maulstick_rig::config::{BrushSection, is_path, toml_fault};
+use maulstick_types::Mixture;
+use maulstick_types::command::Command;
+use maulstick_types::scene::{CANVAS, Light};
+use serde::Deserialize;
+use toml::Spanned;
+
+use crate::performance::mixture_of;
+use crate::viewing::illuminant;
+
+/// Thickness of a film for which nothing is said, µm.
+const FILM_UM: f64 = 50.0;
+/// The keys that say what is done, and those that say how.
+const STEPS: [(&str, &[&str]); 13] = [
+    ("brush", &["size_mm", "depth_share"]),
+    ("load", &["beside"]),
+    ("clean", &[]),
+    ("take", &["loads"]),
+    ("dry", &["layer"]),
+    ("opacity", &["layer"]),
+    ("fill", &["um"]),
+    ("ground", &[]),
+    ("tooth", &["seed"]),
+    ("light", &[]),
+    ("undo", &[]),
+    ("keep", &[]),
+    ("return", &[]),
+];
+
+/// What is done in a step.
+#[derive(Clone, Debug)]
+pub enum Act {
+    /// Takes up a brush: its name, its file, the share of its head that full pressure presses in.
+    Brush(String, Box<BrushFile>, f64),
+    /// Loads the brush; with two mixtures a half of its width with each.
+    Load(Mixture, Option<Mixture>),
+    /// Takes all paint off the brush.
+    Clean,
+    /// Follows a take; its strokes load these mixtures in turn.
+    Take(Take, Vec<Mixture>),
+    /// Makes the dry layer of this name more or less opaque.
+    Opacity(String, f32),
+    /// Changes the light.
+    Light(LightStep),
+    /// Takes so many steps back.
+    Undo(u32),
+    /// Anything else.
+    Command(Command),
+}
+
+/// What a step changes of the light.
+#[derive(Clone, Debug, Default, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct LightStep {
+    illuminant: Option<String>,
+    direction: Option<[f64; 3]>,
+    intensity: Option<f64>,
+    exposure: Option<f64>,
+    relief: Option<f64>,
+    softness: Option<f64>,
+}
+
+impl LightStep {
+    /// The light after it.
+    ///
+    /// # Errors
+    /// A [`Fault`] for a spectrum that there is not, or a light that is none.
+    pub fn on(&self, light: &Light) -> Result<Light, Fault> {
+        let mut light = light.clone();
+        if let Some(name) = &self.illuminant {
+            let found = illuminant(name)?;
+            let known = maulstick_optics::Illuminant::named(&found.name);
+            light.spectrum = match known.as_ref() == Some(&found) {
+                true => Vec::new(),
+                false => found.power.0.to_vec(),
+            };
+            light.illuminant = found.name;
+        }
+        light.direction = self.direction.unwrap_or(light.direction);
+        for (to, value) in [
+            (&mut light.intensity, self.intensity),
+            (&mut light.exposure, self.exposure),
+            (&mut light.relief, self.relief),
+            (&mut light.softness, self.softness),
+        ] {
+            *to = value.unwrap_or(*to);
+        }
+        light.check().map_err(Fault::usage)?;
+        Ok(light)
+    }
+
+    /// Whether the exposure is to be found anew: under another spectrum, if none is given.
+    #[must_use]
+    pub fn exposes(&self) -> bool {
+        self.illuminant.is_some() && self.exposure.is_none()
+    }
+}
+
+/// The steps of a script, each with its place, file and line.
+#[derive(Clone, Debug)]
+pub struct Script(pub Vec<(String, Act)>);
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct File {
+    step: Vec<Spanned<Raw>>,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Raw {
+    brush: Option<String>,
+    size_mm: Option<f64>,
+    depth_share: Option<f64>,
+    load: Option<String>,
+    beside: Option<String>,
+    clean: Option<bool>,
+    take: Option<String>,
+    loads: Option<Vec<String>>,
+    dry: Option<f32>,
+    layer: Option<String>,
+    opacity: Option<f32>,
+    fill: Option<String>,
+    um: Option<f64>,
+    ground: Option<String>,
+    tooth: Option<String>,
+    seed: Option<u64>,
+    light: Option<LightStep>,
+    undo: Option<u32>,
+    keep: Option<String>,
+    #[serde(rename = "return")]
+    back: Option<String>,
+}
+
+impl Script {
+    /// Reads a script, its takes and brushes.
+    ///
+    /// # Errors
+    /// A [`Fault`] with file and line.
+    pub fn read(path: &Path, library: &PaintLibrary) -> Result<Self, Fault> {
+        let text = std::fs::read_to_string(path).map_err(|error| Fault::reading(path, &error))?;
+        let name = path.display().to_string();
+        let file: File = toml::from_str(&text).map_err(|error| {
+            let fault = toml_fault(&text, &name, &error);
+            match error.message().starts_with("unknown field") {
+                true => fault,
+                false => fault.help("a script is `step = [ { load = \"Bone Black\" }, … ]`"),
+            }
+        })?;
+        let folder = path.parent().unwrap_or(Path::new("")).to_owned();
+        let steps = file.step.into_iter().map(|step| {
+            let line = text[..step.span().start].matches('\n').count() + 1;
+            let place = format!("{name}:{line}");
+            let act = step.into_inner().act(&folder, library);
+            let placed = |fault: Fault| match fault.place {
+                // What is wrong with another file is said with its place.
+                Some(_) => fault,
+                None => fault.at(place.clone()),
+            };
+            Ok((place.clone(), act.map_err(placed)?))
+        });
+        steps.collect::<Result<_, _>>().map(Self)
+    }
+
+    /// Length of all takes, ns.
+    #[must_use]
+    pub fn length_ns(&self) -> u64 {
+        let lengths = self.0.iter().map(|(_, act)| match act {
+            Act::Take(take, _) => take.length_ns(),
+            _ => 0,
+        });
+        lengths.sum()
+    }
+}
+
+impl Raw {
+    /// The keys that are given.
+    fn keys(&self) -> Vec<&'static str> {
+        let keys = [
+            ("brush", self.brush.is_some()),
+            ("size_mm", self.size_mm.is_some()),
+            ("depth_share", self.depth_share.is_some()),
+            ("load", self.load.is_some()),
+            ("beside", self.beside.is_some()),
+            ("clean", self.clean.is_some()),
+            ("take", self.take.is_some()),
+            ("loads", self.loads.is_some()),
+            ("dry", self.dry.is_some()),
+            ("layer", self.layer.is_some()),
+            ("opacity", self.opacity.is_some()),
+            ("fill", self.fill.is_some()),
+            ("um", self.um.is_some()),
+            ("ground", self.ground.is_some()),
+            ("tooth", self.tooth.is_some()),
+            ("seed", self.seed.is_some()),
+            ("light", self.light.is_some()),
+            ("undo", self.undo.is_some()),
+            ("keep", self.keep.is_some()),
+            ("return", self.back.is_some()),
+        ];
+        let given = keys.into_iter().filter(|(_, given)| *given);
+        given.map(|(key, _)| key).collect()
+    }
+
+    /// Sees that the step does one thing, and that the other keys are that thing's.
+    fn check(&self) -> Result<(), Fault> {
+        let keys = self.keys();
+        let what: Vec<_> = STEPS
+            .iter()
+            .filter(|(step, _)| keys.contains(step))
+            .collect();
+        let names = STEPS.map(|(step, _)| step).join(", ");
+        let [(step, options)] = what[..] else {
+            let what = match what.len() {
+                0 => "a step that does nothing",
+                _ => "a step that does several things",
+            };
+            return Err(Fault::usage(what).help(format!("a step has one of: {names}")));
+        };
+        match keys
+            .iter()
+            .find(|key| *key != step && !options.contains(key))
+        {
+            None => Ok(()),
+            Some(key) => Err(Fault::usage(format!("'{key}' says nothing of '{step}'"))
+                .help(format!("'{step}' takes: {}", options.join(", ")))),
+        }
+    }
+
+    fn act(self, folder: &Path, library: &PaintLibrary) -> Result<Act, Fault> {
+        self.check()?;
+        let mixture = |text: &String| mixture_of(text, library);
+        let beside = |name: &str| folder.join(name);
+        let command = |command: Command| {
+            command.check().map_err(Fault::usage)?;
+            Ok(Act::Command(command))
+        };
+        if let Some(kind) = self.brush {
+            let stem = Path::new(&kind).file_stem();
+            let section = BrushSection {
+                name: stem.unwrap_or_default().to_string_lossy().into_owned(),
+                kind: match is_path(&kind) {
+                    true => beside(&kind).display().to_string(),
+                    false => kind,
+                },
+                size_mm: self.size_mm,
+                depth_share: self.depth_share.unwrap_or(0.5),
+            };
+            let file = brush_file(&section)?;
+            return Ok(Act::Brush(
+                section.name,
+                Box::new(file),
+                section.depth_share,
+            ));
+        }
+        if let Some(load) = &self.load {
+            let other = self.beside.as_ref().map(mixture).transpose()?;
+            return Ok(Act::Load(mixture(load)?, other));
+        }
+        if let Some(take) = &self.take {
+            let loads = self.loads.iter().flatten().map(mixture);
+            return Ok(Act::Take(
+                Take::read(&beside(take))?,
+                loads.collect::<Result<_, _>>()?,
+            ));
+        }
+        if let Some(opacity) = self.opacity {
+            let layer = self.layer.ok_or_else(|| {
+                Fault::usage("no layer is named").help("{ opacity = 0.5, layer = \"sky\" }")
+            })?;
+            return match (0.0..=1.0).contains(&opacity) {
+                true => Ok(Act::Opacity(layer, opacity)),
+                false => {
+                    Err(Fault::usage(format!("an opacity of {opacity}")).help("choose 0 to 1"))
+                }
+            };
+        }
+        if let Some(mut light) = self.light {
+            let file = light.illuminant.iter_mut().filter(|name| is_path(name));
+            file.for_each(|name| *name = beside(name).display().to_string());
+            // What is wrong in itself is said before anything is painted.
+            light.on(&maulstick_paint::PaintingSetup::default().light)?;
+            return Ok(Act::Light(light));
+        }
+        if let Some(times) = self.undo {
+            return Ok(Act::Undo(times));
+        }
+        if let Some(share) = self.dry {
+            let (surface, name) = (CANVAS, self.layer.unwrap_or_default());
+            return command(Command::Dry {
+                surface,
+                share,
+                name,
+            });
+        }
+        if let Some(paint) = &self.fill {
+            return command(Command::Fill {
+                surface: CANVAS,
+                mixture: mixture(paint)?,
+                thickness_m: self.um.unwrap_or(FILM_UM) * 1e-6,
+            });
+        }
+        if let Some(ground) = self.ground {
+            return command(Command::Ground {
+                surface: CANVAS,
+                ground,
+            });
+        }
+        if let Some(tooth) = self.tooth {
+            return command(Command::Tooth {
+                surface: CANVAS,
+                tooth,
+                seed: self.seed.unwrap_or(1),
+            });
+        }
+        match (self.keep, self.back) {
+            (Some(name), _) => command(Command::Keep { name }),
+            (_, Some(name)) => command(Command::Return { name }),
+            _ => Ok(Act::Clean),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn read(steps: &str) -> Result<Script, Fault> {
+        let folder = tempfile::tempdir().expect("a folder");
+        let path = folder.path().join("day.toml");
+        std::fs::write(&path, format!("# a day\nstep = [\n{steps}\n]\n")).expect("written");
+        Script::read(&path, &PaintLibrary::measured().expect("whole"))
+    }
+
+    #[test]
+    fn steps_are_read_in_their_order() {
+        let steps = "{ brush = \"flat\", size_mm = 20 },\n{ load = \"Bone Black\" },\n{ clean = true },\n\
+            { fill = \"Titanium White\", um = 30 },\n{ dry = 0.5, layer = \"sky\" },\n\
+            { opacity = 0.3, layer = \"sky\" },\n{ light = { intensity = 2 } },\n{ undo = 2 }";
+        let script = read(steps).expect("a script");
+        assert_eq!(script.0.len(), 8);
+        assert!(
+            matches!(&script.0[0].1, Act::Brush(name, file, _) if name == "flat" && file.head.width_mm == 20.0)
+        );
+        assert!(matches!(script.0[7].1, Act::Undo(2)));
+        assert!(script.0[4].0.ends_with("day.toml:7"));
+    }
+
+    #[test]
+    fn what_is_wrong_has_its_line_and_the_nearest_name() {
+        let says = |steps: &str, words: &[&str]| {
+            let fault = read(steps).expect_err(steps).to_string();
+            for word in words {
+                assert!(fault.contains(word), "{steps}: {fault}");
+            }
+        };
+        says(
+            "{ load = \"Bone Black\" },\n{ drie = 1.0 },",
+            &["day.toml:4", "'drie'", "'dry'"],
+        );
+        says("{ load = \"Bone Balck\" }", &["day.toml:3", "Bone Black"]);
+        says("{ size_mm = 3 }", &["day.toml:3", "does nothing"]);
+        says("{ dry = 1.0, undo = 1 }", &["several", "brush, load"]);
+        says(
+            "{ fill = \"Bone Black\", layer = \"x\" }",
+            &["'layer'", "um"],
+        );
+        says("{ take = \"none.mcap\" }", &["none.mcap"]);
+        says("{ brush = \"flta\" }", &["day.toml:3", "'flat'"]);
+        says("{ opacity = 3, layer = \"x\" }", &["day.toml:3", "0 to 1"]);
+        says("{ light = { intensity = -1 } }", &["day.toml:3"]);
+        says("{ dry = \"all\" }", &["day.toml:3", "step = ["]);
+    }
+}
