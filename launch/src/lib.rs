@@ -14,6 +14,7 @@
 //! | [`sheet`] | the sheet of brushes and their marks |
 //! | [`document`] | paintings in files |
 //! | [`kit`] | what a take is painted with: put into it, and taken from it |
+//! | [`lamp`] | what is changed of the light |
 //! | [`script`] | a day at the easel, a step after the other |
 //! | [`performance`] | what `render` and `up --play` share: take, brush, loads, canvas |
 
@@ -23,6 +24,7 @@ pub mod commands;
 pub mod destination;
 pub mod document;
 pub mod kit;
+pub mod lamp;
 pub mod nodes;
 pub mod page;
 pub mod performance;

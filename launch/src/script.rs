@@ -21,12 +21,12 @@ use maulstick_rig::Fault;
 use maulstick_rig::config::{BrushSection, is_path, toml_fault};
 use maulstick_types::Mixture;
 use maulstick_types::command::Command;
-use maulstick_types::scene::{CANVAS, Light};
+use maulstick_types::scene::CANVAS;
 use serde::Deserialize;
 use toml::Spanned;
 
+use crate::lamp::LightChange;
 use crate::performance::mixture_of;
-use crate::viewing::illuminant;
 
 /// Thickness of a film for which nothing is said, µm.
 const FILM_UM: f64 = 50.0;
@@ -61,59 +61,11 @@ pub enum Act {
     /// Makes the dry layer of this name more or less opaque.
     Opacity(String, f32),
     /// Changes the light.
-    Light(LightStep),
+    Light(LightChange),
     /// Takes so many steps back.
     Undo(u32),
     /// Anything else.
     Command(Command),
-}
-
-/// What a step changes of the light.
-#[derive(Clone, Debug, Default, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct LightStep {
-    illuminant: Option<String>,
-    direction: Option<[f64; 3]>,
-    intensity: Option<f64>,
-    exposure: Option<f64>,
-    relief: Option<f64>,
-    softness: Option<f64>,
-}
-
-impl LightStep {
-    /// The light after it.
-    ///
-    /// # Errors
-    /// A [`Fault`] for a spectrum that there is not, or a light that is none.
-    pub fn on(&self, light: &Light) -> Result<Light, Fault> {
-        let mut light = light.clone();
-        if let Some(name) = &self.illuminant {
-            let found = illuminant(name)?;
-            let known = maulstick_optics::Illuminant::named(&found.name);
-            light.spectrum = match known.as_ref() == Some(&found) {
-                true => Vec::new(),
-                false => found.power.0.to_vec(),
-            };
-            light.illuminant = found.name;
-        }
-        light.direction = self.direction.unwrap_or(light.direction);
-        for (to, value) in [
-            (&mut light.intensity, self.intensity),
-            (&mut light.exposure, self.exposure),
-            (&mut light.relief, self.relief),
-            (&mut light.softness, self.softness),
-        ] {
-            *to = value.unwrap_or(*to);
-        }
-        light.check().map_err(Fault::usage)?;
-        Ok(light)
-    }
-
-    /// Whether the exposure is to be found anew: under another spectrum, if none is given.
-    #[must_use]
-    pub fn exposes(&self) -> bool {
-        self.illuminant.is_some() && self.exposure.is_none()
-    }
 }
 
 /// The steps of a script, each with its place, file and line.
@@ -145,7 +97,7 @@ struct Raw {
     ground: Option<String>,
     tooth: Option<String>,
     seed: Option<u64>,
-    light: Option<LightStep>,
+    light: Option<LightChange>,
     undo: Option<u32>,
     keep: Option<String>,
     #[serde(rename = "return")]

@@ -13,7 +13,7 @@ use serde_json::json;
 use crate::commands::print_json;
 use crate::commands::say;
 use crate::commands::session::{Feed, PAINT, Session, Target};
-use crate::viewing::illuminant;
+use crate::lamp::LightChange;
 
 /// Options of `maulstick light`; what is not given stays as it is.
 #[derive(Args, Clone, Debug)]
@@ -57,34 +57,23 @@ pub struct LightOptions {
 }
 
 impl LightOptions {
-    /// The light after what was asked for.
-    fn on(&self, light: &Light) -> Result<Light, Fault> {
-        let mut light = light.clone();
-        if let Some(name) = &self.illuminant {
-            let found = illuminant(name)?;
-            let known = maulstick_optics::Illuminant::named(&found.name);
-            light.spectrum = match known.as_ref() == Some(&found) {
-                true => Vec::new(),
-                false => found.power.0.to_vec(),
-            };
-            light.illuminant = found.name;
+    /// What is asked for.
+    fn change(&self) -> LightChange {
+        LightChange {
+            illuminant: self.illuminant.clone(),
+            direction: self.direction,
+            intensity: self.intensity,
+            exposure: match self.exposure {
+                Some(Exposure::Factor(factor)) => Some(factor),
+                _ => None,
+            },
+            relief: self.relief,
+            softness: self.softness,
+            observer: self.observer,
+            rule: self.rule.clone(),
+            samples: self.samples,
+            adapted: self.adapt,
         }
-        light.direction = self.direction.unwrap_or(light.direction);
-        let set = |to: &mut f64, value: Option<f64>| *to = value.unwrap_or(*to);
-        set(&mut light.intensity, self.intensity);
-        if let Some(Exposure::Factor(factor)) = self.exposure {
-            light.exposure = factor;
-        }
-        set(&mut light.relief, self.relief);
-        set(&mut light.softness, self.softness);
-        light.observer = self.observer.unwrap_or(light.observer);
-        light.samples = self.samples.unwrap_or(light.samples);
-        light.adapted = self.adapt.unwrap_or(light.adapted);
-        if let Some(rule) = &self.rule {
-            light.rule.clone_from(rule);
-        }
-        light.check().map_err(Fault::usage)?;
-        Ok(light)
     }
 }
 
@@ -118,11 +107,12 @@ fn three(text: &str) -> Result<[f64; 3], String> {
 /// A [`Fault`] for a light that is none, or where no rig runs.
 pub fn run(options: &LightOptions) -> Result<i32, Fault> {
     // What is wrong in itself is told also where no rig runs.
-    options.on(&Light::default())?;
+    let change = options.change();
+    change.on(&Light::default())?;
     let session = Session::open(&options.target)?;
     let mut scenes: Feed<Scene> = session.follow(&session.topics().scene(), Class::Cached)?;
     let before = scenes.hear()?.message.light;
-    let mut light = options.on(&before)?;
+    let mut light = change.on(&before)?;
     let expose = match options.exposure {
         Some(chosen) => chosen == Exposure::Auto,
         None => changes_colour(&light, &before),

@@ -5,9 +5,10 @@ use std::time::Instant;
 
 use clap::Args;
 use indicatif::ProgressBar;
-use maulstick_device::Take;
+use maulstick_device::{Take, TakeSample};
 use maulstick_nodes::paint_node::write_snapshot;
 use maulstick_nodes::{Keeper, Offline};
+use maulstick_paint::light::changes_colour;
 use maulstick_paint::{Painting, Sequencer};
 use maulstick_rig::files::check_writable;
 use maulstick_rig::{Fault, RigConfig};
@@ -191,8 +192,9 @@ impl Easel<'_> {
                 self.offline.command(Command::Opacity { layer, opacity })
             }
             Act::Light(change) => {
-                let light = change.on(&self.offline.painting_mut().scene().light)?;
-                let expose = change.exposes();
+                let before = self.offline.painting_mut().scene().light.clone();
+                let light = change.on(&before)?;
+                let expose = change.exposure.is_none() && changes_colour(&light, &before);
                 self.offline.command(Command::Relight { light, expose })
             }
             Act::Undo(times) => {
@@ -209,16 +211,27 @@ impl Easel<'_> {
         self.offline.begin_take(loads).map_err(refused)?;
         // The start does not matter to the painting; a live one has the clock's time here.
         let (start_ns, first_ns) = (PAUSE_NS + self.painted_ns, take.samples[0].time_ns);
-        for (number, sample) in take.samples.iter().enumerate() {
-            let time_ns = sample.time_ns - first_ns;
-            let followed = self.offline.sample(start_ns + time_ns, &sample.sample);
-            followed.map_err(refused)?;
-            if number % 64 == 0 {
-                self.bar
-                    .set_position((self.painted_ns + time_ns) / 1_000_000);
-                self.keep();
+        let time_ns = |sample: &TakeSample| sample.time_ns - first_ns;
+        let samples = take.samples.iter();
+        let samples: Vec<_> = samples
+            .map(|sample| (start_ns + time_ns(sample), &sample.sample))
+            .collect();
+        let Self {
+            offline,
+            keeper,
+            begun,
+            bar,
+            painted_ns,
+        } = self;
+        let followed = offline.follow(&samples, |sequencer, number| {
+            if number % 16 == 0 {
+                bar.set_position((*painted_ns + time_ns(&take.samples[number])) / 1_000_000);
             }
-        }
+            if let Some(keeper) = keeper {
+                keeper.turn(sequencer, begun.elapsed().as_nanos() as u64);
+            }
+        });
+        followed.map_err(refused)?;
         self.painted_ns += take.length_ns() + PAUSE_NS;
         Ok(())
     }

@@ -2,11 +2,17 @@
 //! The messages that would have crossed the bus are handed on directly, so the painting is the
 //! same, byte for byte.
 
+use std::sync::mpsc;
+
 use maulstick_brush::{BrushFile, BrushModel};
 use maulstick_paint::{PaintRefusal, Painting, Sequencer};
+use maulstick_types::brush::BrushState;
 use maulstick_types::command::Command;
 use maulstick_types::stylus::StylusSample;
 use maulstick_types::{Flags, Header, Message as _, Mixture, Origin, name_hash};
+
+/// So many states the brush may be ahead of the paint.
+const AHEAD: usize = 256;
 
 /// Brush and paint, driven by samples.
 #[derive(Debug)]
@@ -128,30 +134,69 @@ impl Offline {
     /// # Errors
     /// [`PaintRefusal`] where the painting refuses its state.
     pub fn sample(&mut self, event_ns: u64, sample: &StylusSample) -> Result<(), PaintRefusal> {
-        let number = self.samples;
-        self.samples += 1;
-        if sample.fault().is_some() {
-            return Ok(());
+        self.follow(&[(event_ns, sample)], |_, _| {})
+    }
+
+    /// Follows samples, each with its time, ns. The brush is bent on a thread of its own, ahead of the
+    /// paint. `each` is told after which sample the painting is.
+    ///
+    /// # Errors
+    /// [`PaintRefusal`] where the painting refuses a state.
+    pub fn follow(
+        &mut self,
+        samples: &[(u64, &StylusSample)],
+        mut each: impl FnMut(&mut Sequencer, usize),
+    ) -> Result<(), PaintRefusal> {
+        let first = self.samples;
+        self.samples += samples.len() as u64;
+        let (player, model) = (self.player, &mut self.model);
+        let bend = move |(number, (event_ns, sample)): (usize, &(u64, &StylusSample))| {
+            let fits = sample.fault().is_none();
+            let serial = first + number as u64;
+            let state = fits.then(|| model.state(player, serial, *event_ns, sample))?;
+            Some((number, *event_ns, state?))
+        };
+        let mut bend = bend;
+        let (sequencer, brush, me, next) =
+            (&mut self.sequencer, &self.brush, self.me, &mut self.next);
+        let mut paint = |(number, event_ns, state): (usize, u64, BrushState)| {
+            let header = Header {
+                version: BrushState::VERSION,
+                schema: 0,
+                source: me.source,
+                epoch: me.epoch,
+                flags: Flags::REPLAY,
+                length: 0,
+                seq: *next,
+                event_ns,
+                sent_ns: event_ns,
+            };
+            *next += 1;
+            // Offline no command waits for a state.
+            let (_, painted) = sequencer.state(brush, &header, &state);
+            sequencer.drain_journal();
+            each(sequencer, number);
+            painted
+        };
+        if let [_] = samples {
+            return samples
+                .iter()
+                .enumerate()
+                .filter_map(bend)
+                .try_for_each(paint);
         }
-        let Some(state) = self.model.state(self.player, number, event_ns, sample) else {
-            return Ok(());
-        };
-        let header = Header {
-            version: maulstick_types::brush::BrushState::VERSION,
-            schema: 0,
-            source: self.me.source,
-            epoch: self.me.epoch,
-            flags: Flags::REPLAY,
-            length: 0,
-            seq: self.next,
-            event_ns,
-            sent_ns: event_ns,
-        };
-        self.next += 1;
-        // Offline no command waits for a state.
-        let (_, painted) = self.sequencer.state(&self.brush, &header, &state);
-        self.sequencer.drain_journal();
-        painted
+        std::thread::scope(|scope| {
+            let (bent, states) = mpsc::sync_channel(AHEAD);
+            scope.spawn(move || {
+                for state in samples.iter().enumerate().filter_map(&mut bend) {
+                    // The painter has given up: what is wrong is said there.
+                    if bent.send(state).is_err() {
+                        return;
+                    }
+                }
+            });
+            states.into_iter().try_for_each(&mut paint)
+        })
     }
 
     /// The painting, done.

@@ -260,6 +260,18 @@ impl BrushLoad {
         self.held_mut(slot).film[texel] += count;
     }
 
+    /// Counts the films of all paints on these texels afresh.
+    pub fn count_films_of(&mut self, texels: &[u32]) {
+        for texel in texels {
+            self.films[*texel as usize] = 0;
+        }
+        for held in self.held.iter().flatten() {
+            for texel in texels {
+                self.films[*texel as usize] += held.film[*texel as usize];
+            }
+        }
+    }
+
     /// Counts the films of all paints afresh.
     pub fn count_films(&mut self) {
         self.films.fill(0);

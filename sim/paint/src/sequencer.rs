@@ -11,6 +11,7 @@ use maulstick_types::command::{Command, CommandRequest, Outcome};
 use maulstick_types::paint::{Entry, JournalEntry};
 use maulstick_types::{Flags, Header, Mixture, Origin};
 
+use crate::kept::{KeptAnswer, KeptTake};
 use crate::painting::{PaintRefusal, Painting};
 
 /// Clients whose last reply is kept, so that a repeated command is done once. A client repeats
@@ -42,38 +43,19 @@ pub struct Replied {
     pub effect: Option<Effect>,
 }
 
-/// A take that may paint, and until its end alone.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-struct Announced {
-    device: u32,
-    epoch: u32,
-    /// Whether its last state has come.
-    ended: bool,
-    /// The newest step when it began.
-    step: u64,
-}
-
-/// The newest reply to a client.
-#[derive(Clone, Debug)]
-struct Answered {
-    number: u64,
-    outcome: Outcome,
-    /// Its place among all replies.
-    age: u64,
-}
-
 /// Orders states and commands, keeps the journal, drives the painting.
 #[derive(Debug)]
 pub struct Sequencer {
     painting: Painting,
     next: u64,
     journal: Vec<JournalEntry>,
-    announced: BTreeMap<String, Announced>,
+    /// By brush, the take that may paint, and until its end alone.
+    announced: BTreeMap<String, KeptTake>,
     /// Players that are gone: their takes hold no brush any more.
     gone: BTreeSet<u32>,
     consumed: BTreeMap<Origin, u64>,
     waiting: Vec<CommandRequest>,
-    answered: BTreeMap<u64, Answered>,
+    answered: BTreeMap<u64, KeptAnswer>,
     answers: u64,
     ignored: u64,
     serial: u64,
@@ -471,7 +453,7 @@ impl Sequencer {
         let step = self.painting.newest_step();
         // What may have to be taken back is not merged with what came before.
         self.painting.part_history(step);
-        let take = Announced {
+        let take = KeptTake {
             device,
             epoch,
             ended: false,
@@ -492,7 +474,7 @@ impl Sequencer {
         }
         self.answers += 1;
         let age = self.answers;
-        let reply = Answered {
+        let reply = KeptAnswer {
             number,
             outcome,
             age,

@@ -7,16 +7,20 @@
 //! | [`document`] | `document`: vast canvases, long histories, opening and packing a painting's file |
 //! | [`latency`] | `latency`: from a stylus sample to the first frame that holds it |
 //! | [`optics`] | `optics`: colours of few wavelengths beside all; films on both backends beside a copy |
+//! | [`paint`] | `paint`: steps of the paint model by themselves, beside a copy |
 //! | [`render`] | `render`: the 30 s recording, offline |
 //! | [`report`] | rows and their table |
+//! | [`thread_cpu`] | time of the processor |
 
 mod brush;
 mod bus;
 mod document;
 mod latency;
 mod optics;
+mod paint;
 mod render;
 mod report;
+mod thread_cpu;
 
 use clap::Parser;
 use maulstick_rig::Fault;
@@ -27,7 +31,7 @@ use crate::report::Report;
 #[derive(Parser)]
 #[command(name = "maulstick-bench", version)]
 struct Options {
-    /// What to measure: brush, bus, document, latency, optics, render; everything if absent
+    /// What to measure: brush, bus, document, latency, optics, paint, render; everything if absent
     area: Option<String>,
     /// As JSON
     #[arg(long)]
@@ -40,12 +44,13 @@ struct Options {
 /// An area's name and what measures it.
 type Area = (&'static str, fn(&mut Report) -> Result<(), Fault>);
 
-const AREAS: [Area; 6] = [
+const AREAS: [Area; 7] = [
     ("brush", brush::run),
     ("bus", bus::run),
     ("document", document::run),
     ("latency", latency::run),
     ("optics", optics::run),
+    ("paint", paint::run),
     ("render", render::run),
 ];
 

@@ -1,6 +1,6 @@
 //! The skin of a head in its footprint: triangles over the middles of cells.
 
-use super::footprint::{Footprint, Fragment};
+use super::footprint::{Footprint, Fragment, Segment};
 use crate::load::ALONG;
 use crate::model::Step;
 
@@ -88,11 +88,20 @@ impl Footprint {
                 let strip = step.head.strip_around(around);
                 *fragment = Fragment {
                     score: z,
-                    bottom: z,
                     cover: 1.0,
-                    texel: (strip * ALONG + (along as usize).min(ALONG - 1)) as u32,
-                    moved: [0, 1].map(|i| mix(corners.map(|corner| corner.moved[i]))),
+                    t: 0.0,
+                    segment: self.segments.len() as u32,
                 };
+                self.segments.push(Segment {
+                    texel: (strip * ALONG + (along as usize).min(ALONG - 1)) as u32,
+                    along: [0.0; 2],
+                    z: [z, 0.0],
+                    bottom: 0.0,
+                    moved: [
+                        [0, 1].map(|i| mix(corners.map(|corner| corner.moved[i]))),
+                        [0.0; 2],
+                    ],
+                });
             }
         }
     }

@@ -10,19 +10,29 @@ use crate::quantum::{CELL_MAX, QUANTA_PER_UNIT, SLOTS};
 use crate::transfer::transfer;
 use crate::window::Window;
 
-/// Room for a step.
+/// Room for a step. Of the brush's many texels few touch at a time: these are numbered afresh in each
+/// step, so that the others cost nothing.
 #[derive(Clone, Debug, Default)]
 pub struct Exchange {
     /// Quanta that each contact wants from the brush (positive) or gives to it (negative).
     wants: Vec<f32>,
-    /// Quanta wanted of each texel.
+    /// The place of each contact's texel in `texels`.
+    places: Vec<u32>,
+    /// The texels that touch.
+    texels: Vec<u32>,
+    /// The place of each texel of the brush in `texels`; [`NOWHERE`] but for those that touch.
+    place_of: Vec<u32>,
+    /// Quanta wanted of each texel that touches.
     drawn: Vec<f32>,
-    /// Quanta offered to each texel.
+    /// Quanta offered to each.
     offered: Vec<f32>,
     /// Share of its wants that a texel grants, and of its offers that it takes.
     granted: Vec<[f64; 2]>,
     before: Vec<u32>,
 }
+
+/// The place of a texel that does not touch.
+const NOWHERE: u32 = u32::MAX;
 
 /// Quanta that a contact wants from the brush (positive) or gives to it (negative).
 #[must_use]
@@ -36,34 +46,51 @@ pub fn wanted(contact: &Contact, on_brush: f32, on_canvas: f32, traits: &BrushTr
 impl Exchange {
     /// Exchanges the paint of one step.
     pub fn run(&mut self, footprint: &Footprint, step: &mut Step<'_>) {
+        self.find_texels(footprint, step.load.texels());
         self.demand(footprint, step);
         self.grant(step.load, &step.traits);
         for slot in 0..SLOTS {
             self.deposit(footprint, slot, step.load, step.window);
         }
         self.take_up(footprint, step.load, step.window);
-        step.load.count_films();
+        step.load.count_films_of(&self.texels);
+    }
+
+    fn find_texels(&mut self, footprint: &Footprint, texels: usize) {
+        for texel in self.texels.drain(..) {
+            self.place_of[texel as usize] = NOWHERE;
+        }
+        self.place_of.resize(texels, NOWHERE);
+        self.places.clear();
+        for contact in &footprint.contacts {
+            let place = &mut self.place_of[contact.texel as usize];
+            if *place == NOWHERE {
+                *place = self.texels.len() as u32;
+                self.texels.push(contact.texel);
+            }
+            self.places.push(*place);
+        }
     }
 
     fn demand(&mut self, footprint: &Footprint, step: &Step<'_>) {
-        let texels = step.load.texels();
         for plane in [&mut self.drawn, &mut self.offered] {
             plane.clear();
-            plane.resize(texels, 0.0);
+            plane.resize(self.texels.len(), 0.0);
         }
         self.wants.clear();
         let to_units = 1.0 / QUANTA_PER_UNIT as f32;
-        for contact in &footprint.contacts {
-            let texel = contact.texel as usize;
-            let film = step.load.film(texel) as f32 * step.traits.film_units_per_quantum;
+        for (contact, place) in footprint.contacts.iter().zip(&self.places) {
+            let place = *place as usize;
+            let film =
+                step.load.film(contact.texel as usize) as f32 * step.traits.film_units_per_quantum;
             let lying = step.window.total(contact.cell as usize);
             let wants = wanted(contact, film, lying * to_units, &step.traits);
             let room = CELL_MAX as f32 - lying;
             let wants = (wants.clamp(-lying, room) as i32) as f32;
             if wants > 0.0 {
-                self.drawn[texel] += wants;
+                self.drawn[place] += wants;
             } else {
-                self.offered[texel] -= wants;
+                self.offered[place] -= wants;
             }
             self.wants.push(wants);
         }
@@ -76,8 +103,9 @@ impl Exchange {
             let wanted = f64::from(wanted);
             if wanted > there { there / wanted } else { 1.0 }
         };
-        for (texel, (drawn, offered)) in self.drawn.iter().zip(&self.offered).enumerate() {
-            let film = f64::from(load.film(texel));
+        let asked = self.drawn.iter().zip(&self.offered);
+        for (texel, (drawn, offered)) in self.texels.iter().zip(asked) {
+            let film = f64::from(load.film(*texel as usize));
             self.granted
                 .push([share(*drawn, film), share(*offered, (most - film).max(0.0))]);
         }
@@ -95,16 +123,21 @@ impl Exchange {
             return;
         };
         self.before.clear();
-        self.before.extend_from_slice(film);
+        let there = self.texels.iter().map(|texel| film[*texel as usize]);
+        self.before.extend(there);
+        if self.before.iter().all(|count| *count == 0) {
+            return;
+        }
         let plane = window.plane_mut(slot);
-        for (contact, wants) in footprint.contacts.iter().zip(&self.wants) {
-            let texel = contact.texel as usize;
-            if *wants <= 0.0 || self.before[texel] == 0 {
+        let contacts = footprint.contacts.iter().zip(&self.wants);
+        for ((contact, wants), place) in contacts.zip(&self.places) {
+            let (texel, before) = (contact.texel as usize, self.before[*place as usize]);
+            if *wants <= 0.0 || before == 0 {
                 continue;
             }
             // A share of what was there before the step, whatever other cells have drawn since.
-            let share =
-                f64::from(self.before[texel]) / f64::from(totals[texel]) * self.granted[texel][0];
+            let granted = self.granted[*place as usize][0];
+            let share = f64::from(before) / f64::from(totals[texel]) * granted;
             let moved = ((f64::from(*wants) * share) as u32).min(film[texel]);
             film[texel] -= moved;
             plane[contact.cell as usize] += moved as f32;
@@ -113,7 +146,8 @@ impl Exchange {
 
     /// Canvas to brush, all slots.
     fn take_up(&self, footprint: &Footprint, load: &mut BrushLoad, window: &mut Window) {
-        for (contact, wants) in footprint.contacts.iter().zip(&self.wants) {
+        let contacts = footprint.contacts.iter().zip(&self.wants);
+        for ((contact, wants), place) in contacts.zip(&self.places) {
             if *wants >= 0.0 {
                 continue;
             }
@@ -122,7 +156,7 @@ impl Exchange {
             if total <= 0.0 {
                 continue;
             }
-            let share = f64::from(-*wants) * self.granted[texel][1] / f64::from(total);
+            let share = f64::from(-*wants) * self.granted[*place as usize][1] / f64::from(total);
             for (slot, plane) in window.planes_mut() {
                 let moved = (f64::from(plane[cell]) * share) as u32;
                 if moved > 0 {

@@ -42,23 +42,54 @@ pub struct Contact {
     pub velocity: [f32; 2],
 }
 
-/// What of the head reaches a cell.
+/// What of the head reaches a cell: which segment, and where along it. Many are drawn over each other,
+/// so the rest is found for those alone that are left.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Fragment {
     pub(super) score: f32,
-    pub(super) bottom: f32,
     pub(super) cover: f32,
-    pub(super) texel: u32,
-    pub(super) moved: [f32; 2],
+    /// 0 at the segment's beginning, 1 at its end.
+    pub(super) t: f32,
+    pub(super) segment: u32,
 }
 
 const EMPTY: Fragment = Fragment {
     score: f32::MAX,
-    bottom: f32::MAX,
     cover: 0.0,
-    texel: NOTHING,
-    moved: [0.0; 2],
+    t: 0.0,
+    segment: NOTHING,
 };
+
+/// A piece of the head that was drawn: each quantity at its beginning, and how much it changes.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Segment {
+    /// The first texel of its strip.
+    pub(super) texel: u32,
+    /// Place along the strip in texels.
+    pub(super) along: [f32; 2],
+    /// Height of the middle line, cells.
+    pub(super) z: [f32; 2],
+    /// The lower side above the middle line, cells.
+    pub(super) bottom: f32,
+    /// How far it went since the step before, cells.
+    pub(super) moved: [[f32; 2]; 2],
+}
+
+impl Segment {
+    fn bottom(&self, t: f32) -> f32 {
+        self.z[0] + t * self.z[1] + self.bottom
+    }
+
+    fn texel(&self, t: f32) -> u32 {
+        let along = (self.along[0] + t * self.along[1]) as usize;
+        self.texel + along.min(ALONG - 1) as u32
+    }
+
+    fn moved(&self, t: f32) -> [f32; 2] {
+        let [from, change] = self.moved;
+        [0, 1].map(|i| from[i] + t * change[i])
+    }
+}
 
 /// The footprint of one step.
 #[derive(Clone, Debug, Default)]
@@ -74,6 +105,7 @@ pub struct Footprint {
     /// Room for the penetration of the grid.
     pub(super) depth: Vec<f32>,
     pub(super) fragments: Vec<Fragment>,
+    pub(super) segments: Vec<Segment>,
     wet: Vec<f32>,
 }
 
@@ -175,6 +207,7 @@ impl Footprint {
         self.from = [0, 1].map(|i| inside(from[i], i));
         let to = [0, 1].map(|i| inside(to[i], i));
         self.size = [0, 1].map(|i| to[i].saturating_sub(self.from[i]));
+        self.segments.clear();
         self.fragments.clear();
         self.fragments.resize(self.size[0] * self.size[1], EMPTY);
         // Strips are drawn in the coordinates of the surface.
@@ -206,27 +239,36 @@ impl Footprint {
         let column = |edge: f32| ((edge + 0.5).clamp(0.0, last)) as usize;
         let stride = [1, self.size[0]];
         let edge = self.size[minor] as f32;
-        for m in column(low)..column(high) {
+        let columns = column(low)..column(high);
+        if columns.is_empty() {
+            return;
+        }
+        let segment = Segment {
+            texel: (ribbon.strip * ALONG) as u32,
+            along: [a.along, b.along - a.along],
+            z: [a.at[2], b.at[2] - a.at[2]],
+            bottom: ribbon.bottom,
+            moved: [a.moved, [0, 1].map(|i| b.moved[i] - a.moved[i])],
+        };
+        let number = self.segments.len() as u32;
+        self.segments.push(segment);
+        for m in columns {
             let off = m as f32 + 0.5 - start[major];
             let t = (off * inverse).clamp(0.0, 1.0);
             let middle = start[minor] + off * slope - 0.5;
             let from = (middle - across + 1.0).clamp(0.0, edge) as usize;
             let to = (middle + across + 1.0).clamp(0.0, edge) as usize;
-            let z = a.at[2] + t * (b.at[2] - a.at[2]) + ribbon.bottom;
-            let along = (a.along + t * (b.along - a.along)) as usize;
-            let texel = (ribbon.strip * ALONG + along.min(ALONG - 1)) as u32;
-            let moved = [0, 1].map(|i| a.moved[i] + t * (b.moved[i] - a.moved[i]));
+            let lowest = segment.bottom(t) + ribbon.rank;
             for n in from..to {
                 let cover = (reach - (n as f32 - middle).abs() * cosine).min(1.0);
-                let score = z + ribbon.rank + (1.0 - cover) * EDGE_PENALTY;
+                let score = lowest + (1.0 - cover) * EDGE_PENALTY;
                 let fragment = &mut self.fragments[m * stride[major] + n * stride[minor]];
                 if cover > 0.0 && score < fragment.score {
                     *fragment = Fragment {
                         score,
-                        bottom: z,
                         cover,
-                        texel,
-                        moved,
+                        t,
+                        segment: number,
                     };
                 }
             }
@@ -285,14 +327,15 @@ impl Footprint {
             for x in 0..self.size[0] {
                 let local = y * self.size[0] + x;
                 let fragment = self.fragments[local];
-                if fragment.texel == NOTHING {
+                let Some(segment) = self.segments.get(fragment.segment as usize) else {
                     continue;
-                }
+                };
+                let texel = segment.texel(fragment.t);
                 let cell = row + x;
                 let wet = self.wet[local] * to_cells;
-                let film = step.load.film(fragment.texel as usize) as f32
-                    * step.traits.film_cells_per_quantum;
-                let reach = window.base()[cell] + wet - fragment.bottom;
+                let film =
+                    step.load.film(texel as usize) as f32 * step.traits.film_cells_per_quantum;
+                let reach = window.base()[cell] + wet - segment.bottom(fragment.t);
                 if reach + film <= 0.0 {
                     continue;
                 }
@@ -300,9 +343,9 @@ impl Footprint {
                 self.contacts.push(Contact {
                     cell: cell as u32,
                     local: local as u32,
-                    texel: fragment.texel,
+                    texel,
                     cover: fragment.cover,
-                    moved: fragment.moved,
+                    moved: segment.moved(fragment.t),
                     depth,
                     fraction: if wet > 0.0 { depth / wet } else { 0.0 },
                     velocity: [0.0; 2],

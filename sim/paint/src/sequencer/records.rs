@@ -1,15 +1,13 @@
 //! What a document keeps of the journal: the accepted things themselves, to be accepted again.
 
-use std::collections::BTreeMap;
-
 use maulstick_brush::BrushFile;
 use maulstick_types::brush::BrushState;
 use maulstick_types::command::{Command, CommandRequest, Outcome};
 use maulstick_types::paint::Entry;
 use maulstick_types::{Header, Origin};
 
-use super::{Announced, Answered, Sequencer};
-use crate::kept::{KeptAnswer, KeptSequencer, KeptTake};
+use super::Sequencer;
+use crate::kept::KeptSequencer;
 use crate::painting::{PaintRefusal, Painting};
 
 /// The client that runs the sequencer.
@@ -198,72 +196,36 @@ impl Sequencer {
     /// The sequencer besides its painting, as a document keeps it.
     #[must_use]
     pub fn kept(&self) -> KeptSequencer {
-        let takes = self.announced.iter().map(|(brush, take)| {
-            let kept = KeptTake {
-                device: take.device,
-                epoch: take.epoch,
-                ended: take.ended,
-                step: take.step,
-            };
-            (brush.clone(), kept)
-        });
-        let answers = self.answered.iter().map(|(client, answered)| {
-            let kept = KeptAnswer {
-                number: answered.number,
-                outcome: answered.outcome.clone(),
-                age: answered.age,
-            };
-            (*client, kept)
-        });
         let consumed = self.consumed.iter();
         KeptSequencer {
             next: self.next,
             serial: self.serial,
-            takes: takes.collect(),
+            takes: self.announced.clone(),
             gone: self.gone.iter().copied().collect(),
             consumed: consumed
                 .map(|(origin, next)| (origin.source, origin.epoch, *next))
                 .collect(),
-            answers: answers.collect(),
+            answers: self.answered.clone(),
         }
     }
 
     /// A sequencer that goes on where it was kept.
     #[must_use]
-    pub fn restored(painting: Painting, kept: KeptSequencer) -> Self {
+    pub fn restored(mut painting: Painting, kept: KeptSequencer) -> Self {
         let answers = kept.answers.values().map(|answer| answer.age).max();
-        let takes = kept.takes.into_iter().map(|(brush, take)| {
-            let announced = Announced {
-                device: take.device,
-                epoch: take.epoch,
-                ended: take.ended,
-                step: take.step,
-            };
-            (brush, announced)
-        });
-        let answered = kept.answers.into_iter().map(|(client, answer)| {
-            let answered = Answered {
-                number: answer.number,
-                outcome: answer.outcome,
-                age: answer.age,
-            };
-            (client, answered)
-        });
         let consumed = kept
             .consumed
             .into_iter()
             .map(|(source, epoch, next)| (Origin { source, epoch }, next));
-        let announced: BTreeMap<String, Announced> = takes.collect();
-        let newest = announced.values().map(|take| take.step).max();
-        let mut painting = painting;
+        let newest = kept.takes.values().map(|take| take.step).max();
         painting.part_history(newest.unwrap_or(0));
         Self {
             next: kept.next,
             serial: kept.serial,
-            announced,
+            announced: kept.takes,
             gone: kept.gone.into_iter().collect(),
             consumed: consumed.collect(),
-            answered: answered.collect(),
+            answered: kept.answers,
             answers: answers.unwrap_or(0),
             ..Self::new(painting)
         }

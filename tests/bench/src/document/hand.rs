@@ -17,6 +17,7 @@ use rand_pcg::Pcg64Mcg;
 use rand_pcg::rand_core::Rng as _;
 
 use super::fault;
+use crate::thread_cpu::thread_cpu;
 
 const BRUSH: &str = "main";
 const PAINTS: [&str; 4] = [
@@ -190,13 +191,6 @@ impl Easel {
         took.steps += self.sequencer.painting().work().0 - steps;
         Ok(())
     }
-}
-
-/// Time of the processor that this thread has had.
-pub(super) fn thread_cpu() -> Duration {
-    use nix::time::{ClockId, clock_gettime};
-    let now = clock_gettime(ClockId::CLOCK_THREAD_CPUTIME_ID);
-    now.map_or(Duration::ZERO, Duration::from)
 }
 
 /// Memory of this process, bytes.

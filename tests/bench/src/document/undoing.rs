@@ -4,8 +4,9 @@ use maulstick_rig::Fault;
 use maulstick_types::command::Command;
 
 use super::fault;
-use super::hand::{Easel, Took, thread_cpu};
+use super::hand::{Easel, Took};
 use crate::report::{Report, quantile, sorted};
+use crate::thread_cpu::thread_cpu;
 
 const CELLS: u32 = 4096;
 const STEPS: usize = 10_000;

@@ -1,0 +1,178 @@
+//! Steps of the paint model by themselves: states of a brush that were solved before, on wet paint.
+
+use std::time::Duration;
+
+use maulstick_brush::BrushFile;
+use maulstick_optics::PaintLibrary;
+use maulstick_paint::{Painting, PaintingSetup, Sequencer};
+use maulstick_rig::Fault;
+use maulstick_types::brush::{BrushState, Solve};
+use maulstick_types::command::Command;
+use maulstick_types::scene::CANVAS;
+use maulstick_types::{Flags, Header, Pose, name_hash};
+
+use crate::report::{Report, quantile, sorted};
+use crate::thread_cpu::thread_cpu;
+
+const BRUSH: &str = "main";
+/// The paints on the canvas and on the brush.
+const FILM: &str = "Ultramarine Blue=0.25,Titanium White=0.25,Yellow Ochre=0.25,Pyrrole Red=0.25";
+/// Thickness of the film on the canvas, m.
+const FILM_M: f64 = 60e-6;
+/// Way of a step, cells.
+const STEP_CELLS: f64 = 0.7;
+/// Share of the square that the footprint covers.
+const COVERED: f64 = 0.62;
+/// States of a round, and rounds.
+const STATES: usize = 200;
+const ROUNDS: usize = 7;
+
+/// A footprint of so many cells either way, of a brush of so many strips.
+const SIZES: [(usize, usize); 2] = [(26, 64), (88, 256)];
+
+fn fault(error: impl ToString) -> Fault {
+    Fault::failure(error.to_string())
+}
+
+/// A brush that goes round over wet paint.
+struct Round {
+    sequencer: Sequencer,
+    states: Vec<BrushState>,
+    seq: u64,
+}
+
+impl Round {
+    fn new(width_mm: f64, strips: usize, side: usize) -> Result<Self, Fault> {
+        let mut file = BrushFile::library("round").map_err(fault)?;
+        file.strips.count = strips;
+        let file = file.scaled_to(width_mm).map_err(fault)?;
+        let cells = (6 * side).max(256) as u32;
+        let setup = PaintingSetup {
+            cells: [cells, cells],
+            ..PaintingSetup::default()
+        };
+        let library = PaintLibrary::measured().map_err(fault)?;
+        let mut sequencer = Sequencer::new(Painting::new(&setup, library).map_err(fault)?);
+        sequencer.define_brush(BRUSH, file.clone());
+        let mixture = || FILM.parse().map_err(fault);
+        let load = Command::Load {
+            brush: BRUSH.to_owned(),
+            mixture: mixture()?,
+        };
+        let fill = Command::Fill {
+            surface: CANVAS,
+            mixture: mixture()?,
+            thickness_m: FILM_M,
+        };
+        for command in [load, fill] {
+            sequencer.ask(command).map_err(fault)?;
+        }
+        let size_m = f64::from(cells) * setup.cell_m;
+        let radius_m = 0.25 * size_m;
+        let turn = STEP_CELLS * setup.cell_m / radius_m;
+        let states = (0..STATES).map(|state| {
+            let (sine, cosine) = maulstick_num::sin_cos(turn * state as f64);
+            let at = [cosine, sine].map(|way| 0.5 * size_m + radius_m * way);
+            BrushState {
+                device: 1,
+                device_epoch: 1,
+                device_seq: 0,
+                solves: vec![Solve {
+                    event_ns: 0,
+                    stroke: 1,
+                    surface: CANVAS,
+                    flags: 0,
+                    pose: Pose {
+                        position_m: [at[0], at[1], 0.45 * file.length_m()],
+                        orientation: [0.0, 0.0, 0.0, 1.0],
+                    },
+                    angles_rad: vec![[0.3, 0.3]; file.spines.all_joints()],
+                    contacts: Vec::new(),
+                }],
+            }
+        });
+        Ok(Self {
+            states: states.collect(),
+            sequencer,
+            seq: 0,
+        })
+    }
+
+    /// Paints the states; steps and footprint cells of them, and the time they took.
+    fn paint(&mut self) -> Result<([u64; 2], Duration), Fault> {
+        let before = self.sequencer.painting().work();
+        let begun = thread_cpu();
+        for state in &self.states {
+            let header = Header {
+                version: 1,
+                schema: 0,
+                source: name_hash(BRUSH),
+                epoch: 1,
+                flags: Flags::NONE,
+                length: 0,
+                seq: self.seq,
+                event_ns: 0,
+                sent_ns: 0,
+            };
+            self.seq += 1;
+            self.sequencer
+                .state(BRUSH, &header, state)
+                .1
+                .map_err(fault)?;
+        }
+        let took = thread_cpu().saturating_sub(begun);
+        self.sequencer.drain_journal();
+        let after = self.sequencer.painting().work();
+        Ok(([after.0 - before.0, after.1 - before.1], took))
+    }
+}
+
+/// A brush whose footprint covers the share of the square that is wanted.
+fn fitted(side: usize, strips: usize) -> Result<Round, Fault> {
+    let wanted = COVERED * (side * side) as f64;
+    let mut width_mm = 0.25 * side as f64;
+    for _ in 0..6 {
+        let ([steps, cells], _) = Round::new(width_mm, strips, side)?.paint()?;
+        let covered = cells as f64 / steps.max(1) as f64;
+        if (0.97..1.06).contains(&(covered / wanted)) {
+            break;
+        }
+        width_mm = (width_mm * (wanted / covered.max(1.0)).sqrt()).clamp(0.5, 250.0);
+    }
+    Round::new(width_mm, strips, side)
+}
+
+/// Measures and reports.
+pub(crate) fn run(report: &mut Report) -> Result<(), Fault> {
+    for (side, strips) in SIZES {
+        let mut round = fitted(side, strips)?;
+        round.paint()?;
+        let (mut pairs, mut covered) = (Vec::new(), Vec::new());
+        for _ in 0..ROUNDS {
+            let ([steps, cells], took) = round.paint()?;
+            let copied = copy(side, steps);
+            let rate = |took: Duration| steps as f64 / took.as_secs_f64();
+            pairs.push((rate(took), rate(copied)));
+            covered.push(cells as f64 / steps.max(1) as f64);
+        }
+        let name = format!("steps_per_s.{side}");
+        report.paired(&name, "steps/s", "a copy of its cells", &pairs);
+        let name = format!("footprint_cells.{side}");
+        report.row(&name, quantile(&sorted(covered), 0.5), "cells");
+    }
+    Ok(())
+}
+
+/// Time to copy the cells of so many steps: height and four paints, read and written.
+fn copy(side: usize, steps: u64) -> Duration {
+    let from = vec![1.0f32; side * side * 5];
+    let mut to = vec![0.0f32; from.len()];
+    let begun = thread_cpu();
+    for _ in 0..steps {
+        to.copy_from_slice(std::hint::black_box(&from));
+        std::hint::black_box(&mut to);
+    }
+    thread_cpu()
+        .saturating_sub(begun)
+        .max(Duration::from_nanos(1))
+}
