@@ -166,6 +166,17 @@ impl Window {
         self.wet.iter().flatten().map(|plane| plane[cell]).sum()
     }
 
+    /// Wet quanta of all paints on each of these cells, plane by plane.
+    pub fn totals(&self, cells: impl Iterator<Item = u32> + Clone, totals: &mut Vec<f32>) {
+        totals.clear();
+        totals.extend(cells.clone().map(|_| 0.0));
+        for plane in self.wet.iter().flatten() {
+            for (total, cell) in totals.iter_mut().zip(cells.clone()) {
+                *total += plane[cell as usize];
+            }
+        }
+    }
+
     /// Whether any of a paint may be there.
     #[must_use]
     pub fn has(&self, slot: usize) -> bool {

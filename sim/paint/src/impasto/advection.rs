@@ -18,6 +18,8 @@ pub struct Advection {
     sent: Vec<[f32; 3]>,
     inflow: Vec<f32>,
     full: Vec<bool>,
+    /// Wet quanta on each contact's cell.
+    totals: Vec<f32>,
 }
 
 /// A cell that gives paint away.
@@ -62,10 +64,11 @@ impl Advection {
         self.donors.clear();
         let width = window.width() as i64;
         let [right, top] = window.limit().map(|limit| limit as i64);
-        for contact in &footprint.contacts {
+        let cells = footprint.contacts.iter().map(|contact| contact.cell);
+        window.totals(cells, &mut self.totals);
+        for (contact, total) in footprint.contacts.iter().zip(&self.totals) {
             let [u, v] = contact.velocity;
-            let total = window.total(contact.cell as usize);
-            if total <= STAIN || (u == 0.0 && v == 0.0) {
+            if *total <= STAIN || (u == 0.0 && v == 0.0) {
                 continue;
             }
             let loose = (total - STAIN) / total;

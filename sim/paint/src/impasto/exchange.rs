@@ -29,6 +29,10 @@ pub struct Exchange {
     /// Share of its wants that a texel grants, and of its offers that it takes.
     granted: Vec<[f64; 2]>,
     before: Vec<u32>,
+    /// Wet quanta that lie on each contact's cell before the exchange.
+    lying: Vec<f32>,
+    /// Share of these that each contact gives to the brush.
+    shares: Vec<f64>,
 }
 
 /// The place of a texel that does not touch.
@@ -79,14 +83,16 @@ impl Exchange {
         }
         self.wants.clear();
         let to_units = 1.0 / QUANTA_PER_UNIT as f32;
-        for (contact, place) in footprint.contacts.iter().zip(&self.places) {
+        let cells = footprint.contacts.iter().map(|contact| contact.cell);
+        step.window.totals(cells, &mut self.lying);
+        let contacts = footprint.contacts.iter().zip(&self.places);
+        for ((contact, place), lying) in contacts.zip(&self.lying) {
             let place = *place as usize;
             let film =
                 step.load.film(contact.texel as usize) as f32 * step.traits.film_units_per_quantum;
-            let lying = step.window.total(contact.cell as usize);
             let wants = wanted(contact, film, lying * to_units, &step.traits);
             let room = CELL_MAX as f32 - lying;
-            let wants = (wants.clamp(-lying, room) as i32) as f32;
+            let wants = (wants.clamp(-*lying, room) as i32) as f32;
             if wants > 0.0 {
                 self.drawn[place] += wants;
             } else {
@@ -144,24 +150,29 @@ impl Exchange {
         }
     }
 
-    /// Canvas to brush, all slots.
-    fn take_up(&self, footprint: &Footprint, load: &mut BrushLoad, window: &mut Window) {
-        let contacts = footprint.contacts.iter().zip(&self.wants);
-        for ((contact, wants), place) in contacts.zip(&self.places) {
-            if *wants >= 0.0 {
-                continue;
+    /// Canvas to brush, all slots. Each cell has one contact, so what lies on those that give is what lay
+    /// there before.
+    fn take_up(&mut self, footprint: &Footprint, load: &mut BrushLoad, window: &mut Window) {
+        self.shares.clear();
+        let asked = self.wants.iter().zip(&self.places).zip(&self.lying);
+        self.shares.extend(asked.map(|((wants, place), lying)| {
+            let gives = *wants < 0.0 && *lying > 0.0;
+            let granted = self.granted[*place as usize][1];
+            match gives {
+                true => f64::from(-*wants) * granted / f64::from(*lying),
+                false => 0.0,
             }
-            let (cell, texel) = (contact.cell as usize, contact.texel as usize);
-            let total = window.total(cell);
-            if total <= 0.0 {
-                continue;
-            }
-            let share = f64::from(-*wants) * self.granted[*place as usize][1] / f64::from(total);
-            for (slot, plane) in window.planes_mut() {
-                let moved = (f64::from(plane[cell]) * share) as u32;
+        }));
+        if self.shares.iter().all(|share| *share == 0.0) {
+            return;
+        }
+        for (slot, plane) in window.planes_mut() {
+            for (contact, share) in footprint.contacts.iter().zip(&self.shares) {
+                let held = &mut plane[contact.cell as usize];
+                let moved = (f64::from(*held) * share) as u32;
                 if moved > 0 {
-                    plane[cell] -= moved as f32;
-                    load.add_film(slot, texel, moved);
+                    *held -= moved as f32;
+                    load.add_film(slot, contact.texel as usize, moved);
                 }
             }
         }

@@ -106,7 +106,10 @@ pub struct Footprint {
     pub(super) depth: Vec<f32>,
     pub(super) fragments: Vec<Fragment>,
     pub(super) segments: Vec<Segment>,
+    /// Wet quanta of all paints on the grid's cells, before the step.
     wet: Vec<f32>,
+    /// Those on the contacts, after it.
+    left: Vec<f32>,
 }
 
 /// A point of a ribbon's middle line.
@@ -252,6 +255,8 @@ impl Footprint {
         };
         let number = self.segments.len() as u32;
         self.segments.push(segment);
+        let penalty = |cover: f32| (1.0 - cover) * EDGE_PENALTY;
+        let fragments = self.fragments.as_mut_slice();
         for m in columns {
             let off = m as f32 + 0.5 - start[major];
             let t = (off * inverse).clamp(0.0, 1.0);
@@ -260,9 +265,13 @@ impl Footprint {
             let to = (middle + across + 1.0).clamp(0.0, edge) as usize;
             let lowest = segment.bottom(t) + ribbon.rank;
             for n in from..to {
+                let fragment = &mut fragments[m * stride[major] + n * stride[minor]];
+                // However much of the cell it covers: most lie above what was drawn there before.
+                if lowest >= fragment.score {
+                    continue;
+                }
                 let cover = (reach - (n as f32 - middle).abs() * cosine).min(1.0);
-                let score = lowest + (1.0 - cover) * EDGE_PENALTY;
-                let fragment = &mut self.fragments[m * stride[major] + n * stride[minor]];
+                let score = lowest + penalty(cover);
                 if cover > 0.0 && score < fragment.score {
                     *fragment = Fragment {
                         score,
@@ -307,13 +316,15 @@ impl Footprint {
     }
 
     /// Notes how high paint stands where the brush has left it.
-    pub fn note_left(&self, step: &mut Step<'_>) {
+    pub fn note_left(&mut self, step: &mut Step<'_>) {
         let quanta_per_cell = 1.0 / step.traits.cells_per_quantum;
         let window: &Window = step.window;
-        let heights = self.contacts.iter().map(|contact| {
-            let cell = contact.cell as usize;
-            window.total(cell) + window.base()[cell] * quanta_per_cell
-        });
+        let cells = self.contacts.iter().map(|contact| contact.cell);
+        window.totals(cells, &mut self.left);
+        let heights =
+            self.contacts.iter().zip(&self.left).map(|(contact, left)| {
+                left + window.base()[contact.cell as usize] * quanta_per_cell
+            });
         let highest = heights.fold(0.0, f32::max);
         step.window.note_top(highest);
     }
