@@ -74,6 +74,9 @@ pub struct Salvage {
     pub pages: u64,
     /// Whether the state of the painting besides its tiles is an older one.
     pub is_old: bool,
+    /// The format that the file names, if it is none that this program knows: of a newer one there may
+    /// be more than what was found.
+    pub format: Option<i32>,
 }
 
 impl Salvage {
@@ -142,12 +145,15 @@ pub fn recover(
     if holder.is_some() {
         return Err(DocumentError::InUse { holder });
     }
-    refuse_newer(damaged)?;
+    let format = unknown_format(damaged)?;
     let mut scan = Scan::open(damaged)?;
     let part = Part(part_of(to));
     part.remove();
     let (database, _) = Database::open(&part.0, Access::Paint, None)?;
-    let salvage = write(&mut scan, &database, tell)?;
+    let salvage = Salvage {
+        format,
+        ..write(&mut scan, &database, tell)?
+    };
     database.close()?;
     part.is_folded()?;
     settle(&part.0, History::Kept).map_err(|error| match error {
@@ -166,20 +172,15 @@ pub fn part_of(to: &Path) -> PathBuf {
     beside(to, &format!(".part-{}", std::process::id()))
 }
 
-/// A newer program's painting may hold what this one does not know.
-fn refuse_newer(damaged: &Path) -> Result<(), DocumentError> {
+/// The format that the file names, if this program does not know it: a newer one, or a damaged number.
+fn unknown_format(damaged: &Path) -> Result<Option<i32>, DocumentError> {
     use std::io::Read as _;
     let mut head = [0; 100];
     let read = std::fs::File::open(damaged)?.read_exact(&mut head);
     let number = |at: usize| i32::from_be_bytes([0, 1, 2, 3].map(|byte| head[at + byte]));
     let [version, application] = [60, 68].map(number);
-    match read.is_ok() && application == APPLICATION_ID && version > VERSION {
-        true => Err(DocumentError::Newer {
-            found: version,
-            known: VERSION,
-        }),
-        false => Ok(()),
-    }
+    let unknown = read.is_ok() && application == APPLICATION_ID && version > VERSION;
+    Ok(unknown.then_some(version))
 }
 
 /// Parts of the work that are told of.

@@ -86,6 +86,7 @@ fn as_json(salvage: &Salvage) -> serde_json::Value {
         "damaged_rows": salvage.rows,
         "lost_pages": salvage.pages,
         "older_state": salvage.is_old,
+        "unknown_format": salvage.format,
     })
 }
 
@@ -124,6 +125,11 @@ fn show(salvage: &Salvage) -> Result<(), Fault> {
     }
     if salvage.is_old {
         say!("state     an older one: layers, light and books may be of before");
+    }
+    if let Some(format) = salvage.format {
+        say!(
+            "format    {format}, unknown to this program: what a newer one keeps besides is not here"
+        );
     }
     match (salvage.is_whole(), salvage.rows + salvage.pages) {
         (true, _) => say!("          nothing is missing"),
