@@ -98,8 +98,9 @@ impl Thread {
             let left = queues.moment.is_some() || !queues.records.is_empty();
             (queues.fault.clone(), left, queues.broken)
         };
-        if broken {
-            // Its journal may hold what is to be recovered.
+        if broken || !self.writes {
+            // Who only reads changes nothing, and a damaged one's journal may hold what is to be
+            // recovered.
             self.database.leave()?;
             let what = fault.trim_start_matches("the painting is damaged: ");
             return match left {

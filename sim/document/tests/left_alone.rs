@@ -131,3 +131,27 @@ fn a_newer_programs_painting_is_not_called_whole() {
     assert_eq!(salvage.format, Some(2));
     assert!(!salvage.is_whole());
 }
+
+#[test]
+fn reading_a_painting_that_was_not_closed_changes_nothing() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = folder.path().join("a.maul");
+    let before = painted(&path);
+    let open = Connection::open(&path).expect("opened");
+    open.execute_batch(
+        "PRAGMA wal_autocheckpoint = 0; INSERT INTO shown VALUES(10, 99, 1, 1, x'00', 0)",
+    )
+    .expect("written");
+    let killed = folder.path().join("killed.maul");
+    let journal = |path: &Path| path.with_extension("maul-wal");
+    std::fs::copy(&path, &killed).expect("copied");
+    std::fs::copy(journal(&path), journal(&killed)).expect("copied");
+    let files = || [bytes(&killed), bytes(&journal(&killed))];
+    let left = files();
+    let settings = DocumentSettings::new(&killed, Access::Read);
+    let (document, opened) = Document::open(&settings).expect("opened");
+    let mut sequencer = opened.expect("a painting").sequencer().expect("whole");
+    assert_eq!(print(&mut sequencer), before);
+    document.close().expect("closed");
+    assert!(files() == left);
+}

@@ -150,13 +150,12 @@ impl Offline {
         let first = self.samples;
         self.samples += samples.len() as u64;
         let (player, model) = (self.player, &mut self.model);
-        let bend = move |(number, (event_ns, sample)): (usize, &(u64, &StylusSample))| {
+        let mut bend = move |(number, (event_ns, sample)): (usize, &(u64, &StylusSample))| {
             let fits = sample.fault().is_none();
             let serial = first + number as u64;
             let state = fits.then(|| model.state(player, serial, *event_ns, sample))?;
             Some((number, *event_ns, state?))
         };
-        let mut bend = bend;
         let (sequencer, brush, me, next) =
             (&mut self.sequencer, &self.brush, self.me, &mut self.next);
         let mut paint = |(number, event_ns, state): (usize, u64, BrushState)| {

@@ -5,6 +5,7 @@
 //! | [`brush`] | `brush`: the solver of the spines beside slsqp, a head, its strips |
 //! | [`bus`] | `bus`: a sample from a device to the brush node, beside a bare zenoh put |
 //! | [`document`] | `document`: vast canvases, long histories, opening and packing a painting's file |
+//! | [`header`] | headers of a brush's states |
 //! | [`latency`] | `latency`: from a stylus sample to the first frame that holds it |
 //! | [`optics`] | `optics`: colours of few wavelengths beside all; films on both backends beside a copy |
 //! | [`paint`] | `paint`: steps of the paint model by themselves, beside a copy |
@@ -15,6 +16,7 @@
 mod brush;
 mod bus;
 mod document;
+mod header;
 mod latency;
 mod optics;
 mod paint;

@@ -6,11 +6,12 @@ use maulstick_brush::BrushFile;
 use maulstick_optics::PaintLibrary;
 use maulstick_paint::{Painting, PaintingSetup, Sequencer};
 use maulstick_rig::Fault;
+use maulstick_types::Pose;
 use maulstick_types::brush::{BrushState, Solve};
 use maulstick_types::command::Command;
 use maulstick_types::scene::CANVAS;
-use maulstick_types::{Flags, Header, Pose, name_hash};
 
+use crate::header::header_of;
 use crate::report::{Report, quantile, sorted};
 use crate::thread_cpu::thread_cpu;
 
@@ -103,17 +104,7 @@ impl Round {
         let before = self.sequencer.painting().work();
         let begun = thread_cpu();
         for state in &self.states {
-            let header = Header {
-                version: 1,
-                schema: 0,
-                source: name_hash(BRUSH),
-                epoch: 1,
-                flags: Flags::NONE,
-                length: 0,
-                seq: self.seq,
-                event_ns: 0,
-                sent_ns: 0,
-            };
+            let header = header_of(BRUSH, self.seq);
             self.seq += 1;
             self.sequencer
                 .state(BRUSH, &header, state)

@@ -9,14 +9,15 @@ use maulstick_nodes::Keeper;
 use maulstick_optics::PaintLibrary;
 use maulstick_paint::{Painting, PaintingSetup, Sequencer};
 use maulstick_rig::Fault;
+use maulstick_types::Pose;
 use maulstick_types::brush::{BrushState, Solve};
 use maulstick_types::command::Command;
 use maulstick_types::scene::CANVAS;
-use maulstick_types::{Flags, Header, Pose, name_hash};
 use rand_pcg::Pcg64Mcg;
 use rand_pcg::rand_core::Rng as _;
 
 use super::fault;
+use crate::header::header_of;
 use crate::thread_cpu::thread_cpu;
 
 const BRUSH: &str = "main";
@@ -162,17 +163,7 @@ impl Easel {
             angles_rad: vec![[0.25, 0.3]; joints],
             contacts: Vec::new(),
         };
-        let header = Header {
-            version: 1,
-            schema: 0,
-            source: name_hash(BRUSH),
-            epoch: 1,
-            flags: Flags::NONE,
-            length: 0,
-            seq: self.seq,
-            event_ns: 0,
-            sent_ns: 0,
-        };
+        let header = header_of(BRUSH, self.seq);
         self.seq += 1;
         let state = BrushState {
             device: 1,
