@@ -7,8 +7,9 @@ use maulstick_types::brush::{BrushState, Solve, solve_flags};
 use super::{PaintRefusal, Painting};
 use crate::head::{Scale, Waypoint, low_bounds};
 use crate::history::OpenStep;
+use crate::impasto::advection::STAIN;
 use crate::load::Half;
-use crate::model::{BrushTraits, Step, Sweep};
+use crate::model::{BrushTraits, Handling, Step, Sweep};
 use crate::path::PathStepper;
 use crate::quantum::QUANTUM_M;
 use crate::store::TileRect;
@@ -155,6 +156,9 @@ impl Painting {
             bounds: (from, to),
             load: Arc::make_mut(&mut track.load),
             traits,
+            handling: Handling::default(),
+            stain: STAIN,
+            thinner: None,
         });
         self.sheets[sheet].top = self.sheets[sheet].top.max(window.top());
         self.footprint_cells += report.footprint_cells;
