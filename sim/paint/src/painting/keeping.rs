@@ -8,6 +8,7 @@ use maulstick_optics::{PaintLibrary, Studio};
 use maulstick_types::scene::{CANVAS, PALETTE};
 
 use super::lighting::paint_slot;
+use super::modes::UnderBrush;
 use super::undo::makes;
 use super::{BrushTrack, Named, PaintRefusal, Painting, Sheet, bare};
 use crate::embedded::Embedded;
@@ -311,6 +312,7 @@ fn restored_track(
         _ => (Arc::new(BrushLoad::clean(strips)), None),
     };
     Ok(BrushTrack {
+        under: UnderBrush::default(),
         file,
         head,
         load,

@@ -111,13 +111,13 @@ impl Painting {
         brush: &str,
         parts: &[(&[(usize, f64)], Half)],
     ) -> Result<(), PaintRefusal> {
-        let cell_m = self.sheets[0].cell_m;
+        let (cell_m, thinner) = (self.sheets[0].cell_m, self.thinner());
         let track = self.brush(brush)?;
         let load = Arc::make_mut(&mut track.load);
         let left = load.take_all();
         let traits = BrushTraits::of(&track.file, cell_m, 1.0);
         for (slots, half) in parts {
-            load.fill(&track.head, &traits, slots, *half);
+            load.fill(&track.head, &traits, slots, thinner, *half);
         }
         let given = load.counts();
         self.ledger.to_cleaner(&left);

@@ -4,12 +4,12 @@ use std::sync::Arc;
 
 use maulstick_types::brush::{BrushState, Solve, solve_flags};
 
+use super::modes::{Prepared, UnderBrush, handling_of};
 use super::{PaintRefusal, Painting};
 use crate::head::{Scale, Waypoint, low_bounds};
 use crate::history::OpenStep;
-use crate::impasto::advection::STAIN;
 use crate::load::Half;
-use crate::model::{BrushTraits, Handling, Step, Sweep};
+use crate::model::{BrushTraits, Step, Sweep};
 use crate::path::PathStepper;
 use crate::quantum::QUANTUM_M;
 use crate::store::TileRect;
@@ -143,6 +143,12 @@ impl Painting {
             return;
         }
         self.tend_wells(name, sheet, from, to);
+        let mut handlings = self.scene.handlings.iter();
+        let handling = handling_of(handlings.find(|handling| handling.brush == name));
+        let id = self.sheets[sheet].id;
+        let surface = self.scene.surfaces.iter().find(|surface| surface.id == id);
+        let prepared = Prepared::of(surface);
+        let thinner = self.thinner();
         let Some(track) = self.brushes.get_mut(name) else {
             return;
         };
@@ -155,11 +161,15 @@ impl Painting {
             sweep,
             bounds: (from, to),
             load: Arc::make_mut(&mut track.load),
-            traits,
-            handling: Handling::default(),
-            stain: STAIN,
-            thinner: None,
+            traits: prepared.traits(traits),
+            handling,
+            stain: prepared.stain,
+            lasting: prepared.lasting,
+            thinner,
         });
+        track.under = UnderBrush::of(&report, scale.cell_m);
+        self.ledger.from_mode(&report.from_nowhere);
+        self.ledger.to_cleaner(&report.lifted);
         self.sheets[sheet].top = self.sheets[sheet].top.max(window.top());
         self.footprint_cells += report.footprint_cells;
     }
