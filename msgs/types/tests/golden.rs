@@ -13,12 +13,19 @@ use maulstick_types::scene::{
 use maulstick_types::stylus::{
     StylusInfo, StylusPose, StylusSample, StylusStatus, TakeEnd, TakeStatus,
 };
-use maulstick_types::{CATALOGUE, Flags, Message, Mixture, Origin, Pose, decode, encode};
+use maulstick_types::{CATALOGUE, Flags, Message, Mixture, Origin, Pose, Region, decode, encode};
 
 fn pose() -> Pose {
     Pose {
         position_m: [0.1, -0.2, 0.3],
         orientation: [0.0, 0.6, 0.0, 0.8],
+    }
+}
+
+fn region() -> Region {
+    Region {
+        corner_m: [0.01, 0.02],
+        size_m: [0.06, 0.04],
     }
 }
 
@@ -405,6 +412,32 @@ fn all() -> String {
         })),
         line(&command(Command::Forget {
             name: "warm".into(),
+        })),
+        line(&command(Command::DryRegion {
+            surface: 0,
+            share: 0.5,
+            name: "sky".into(),
+            region: region(),
+        })),
+        line(&command(Command::DryOver {
+            surface: 0,
+            ticks: 5400,
+            name: "sky".into(),
+            region: Some(region()),
+        })),
+        line(&command(Command::StopDrying { surface: 1 })),
+        line(&command(Command::Wet {
+            surface: 0,
+            layers: 2,
+            region: None,
+        })),
+        line(&command(Command::LayerOpacity {
+            layer: "sky".into(),
+            opacity: 0.25,
+        })),
+        line(&command(Command::GroundSpectrum {
+            surface: 0,
+            spectrum: "380,1".into(),
         })),
         line(&reply(Outcome::Done {
             journal: 1,

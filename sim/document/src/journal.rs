@@ -5,7 +5,7 @@ use std::io::Read as _;
 use maulstick_paint::sequencer::{Accepted, Record};
 use maulstick_types::brush::{BrushDef, BrushState};
 use maulstick_types::paint::JournalEntry;
-use maulstick_types::{Flags, Header, Message, Origin, decode, encode, name_hash};
+use maulstick_types::{Flags, HEADER_BYTES, Header, Message, Origin, decode, encode, name_hash};
 
 use rusqlite::params;
 
@@ -137,6 +137,10 @@ fn accepted(message: &[u8]) -> Result<Accepted, DocumentError> {
             brush: def.brush,
             toml: def.toml,
         });
+    }
+    if JournalEntry::OLDER.contains(&header.schema) {
+        let entry = JournalEntry::decode_body(&message[HEADER_BYTES..]).map_err(damaged)?;
+        return Ok(Accepted::Entry(entry.entry));
     }
     let (_, entry) = decode::<JournalEntry>(message).map_err(damaged)?;
     Ok(Accepted::Entry(entry.entry))
