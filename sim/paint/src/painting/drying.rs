@@ -11,9 +11,8 @@ use std::sync::Arc;
 use maulstick_types::Region;
 use serde::{Deserialize, Serialize};
 
-use super::layers::Part;
+use super::layers::{Changed, Part};
 use super::{PaintRefusal, Painting};
-use crate::tile::{Tile, TileId};
 
 /// Most tiles that dry in a tick.
 const TILES_A_TICK: usize = 32;
@@ -237,7 +236,7 @@ impl Painting {
             if self.history.open_of(None).is_none() {
                 self.begin_step(STEP, None);
             }
-            self.put_dried(surface, dried);
+            self.put_changed(surface, dried);
             if layer.is_none() {
                 self.add_layer(number, &drying.name);
             }
@@ -258,14 +257,13 @@ impl Painting {
     }
 
     /// So many tiles as dry in a tick, from the one with number `first` on, and which is next.
-    #[allow(clippy::type_complexity, reason = "tiles and a number")]
     fn some_dried(
         &self,
         part: &Part,
         number: u32,
         share: f32,
         first: u32,
-    ) -> (Vec<(TileId, Arc<Tile>)>, Option<u32>) {
+    ) -> (Changed, Option<u32>) {
         let store = &self.sheets[part.sheet].store;
         let across = store.grid()[0];
         let mut dried = Vec::new();

@@ -17,6 +17,9 @@ pub(super) struct Part {
     cells: [[u32; 2]; 2],
 }
 
+/// Tiles after some of their paint dried, or became wet.
+pub(super) type Changed = Vec<(TileId, Arc<Tile>)>;
+
 /// Why nothing dries.
 pub(super) fn nothing_wet(region: Option<&Region>) -> PaintRefusal {
     let place = region.map_or(String::new(), |region| format!(" in {region}"));
@@ -151,7 +154,7 @@ impl Painting {
     }
 
     /// The tiles of a part after the lower `share` of their wet paint has dried into the next layer.
-    fn drying(&self, part: &Part, share: f32) -> Vec<(TileId, Arc<Tile>)> {
+    fn drying(&self, part: &Part, share: f32) -> Changed {
         let number = self.next_layer();
         let dried = self.sheets[part.sheet].store.iter();
         let dried = dried.filter_map(|(id, version)| {
@@ -163,15 +166,15 @@ impl Painting {
     }
 
     /// Puts dried tiles in their places and says how the layer is called.
-    fn dried(&mut self, surface: u32, dried: Vec<(TileId, Arc<Tile>)>, name: &str) -> String {
+    fn dried(&mut self, surface: u32, dried: Changed, name: &str) -> String {
         let number = self.next_layer();
-        self.put_dried(surface, dried);
+        self.put_changed(surface, dried);
         self.add_layer(number, name)
     }
 
     /// Puts tiles in their places, within the step that is open.
-    pub(super) fn put_dried(&mut self, surface: u32, dried: Vec<(TileId, Arc<Tile>)>) {
-        for (id, tile) in dried {
+    pub(super) fn put_changed(&mut self, surface: u32, tiles: Changed) {
+        for (id, tile) in tiles {
             let before = self.put((surface, id), Some(tile));
             self.history.replaced(None, (surface, id), before);
         }
@@ -202,11 +205,12 @@ impl Painting {
     /// [`PaintRefusal`] for an unknown layer.
     pub fn set_opacity_of(&mut self, layer: &str, opacity: f32) -> Result<(), PaintRefusal> {
         let named = self.scene.layers.iter().rev();
-        let number = layer.parse().ok();
+        let number: Option<u32> = layer.parse().ok();
         let found = named.clone().find(|other| other.name == layer);
         let found = found.or_else(|| named.clone().find(|other| Some(other.number) == number));
         match found.map(|layer| layer.number) {
             Some(number) => self.set_opacity(number, opacity),
+            None if number.is_some() => Err(self.no_layer(layer)),
             None => Err(self.no_layer(&format!("called '{layer}'"))),
         }
     }

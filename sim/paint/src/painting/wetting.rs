@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use maulstick_types::Region;
 
-use super::layers::Part;
+use super::layers::{Changed, Part};
 use super::{PaintRefusal, Painting};
 use crate::tile::{TILE_CELLS, Tile, TileId};
 
@@ -46,7 +46,7 @@ impl Painting {
         }
         let names: Vec<String> = chosen.rev().map(|layer| layer.name.clone()).collect();
         let mut full_cells = 0;
-        let mut tiles: Vec<(TileId, Arc<Tile>)> = Vec::new();
+        let mut tiles = Changed::new();
         for (id, tile, within) in self.dried_tiles(&part) {
             if let Some(rewet) = tile.rewet(least, &within) {
                 full_cells += rewet.full_cells;
@@ -61,7 +61,7 @@ impl Painting {
         }
         self.let_stay_wet(Some(surface));
         self.begin_step("wet", None);
-        self.put_dried(surface, tiles);
+        self.put_changed(surface, tiles);
         self.drop_empty_layers(&numbers);
         self.end_own_step();
         let names = names.join(", ");
