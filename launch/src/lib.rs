@@ -13,6 +13,7 @@
 //! | [`chart`] | the mixing chart, and one mixture by four ways of mixing |
 //! | [`sheet`] | the sheet of brushes and their marks |
 //! | [`document`] | paintings in files |
+//! | [`duration`], [`ground`] | times and grounds as a painter names them |
 //! | [`kit`] | what a take is painted with: put into it, and taken from it |
 //! | [`lamp`] | what is changed of the light |
 //! | [`script`] | a day at the easel, a step after the other |
@@ -23,6 +24,8 @@ pub mod cli;
 pub mod commands;
 pub mod destination;
 pub mod document;
+pub mod duration;
+pub mod ground;
 pub mod kit;
 pub mod lamp;
 pub mod nodes;

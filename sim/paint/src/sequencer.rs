@@ -1,5 +1,6 @@
 //! The sequencer: it decides what enters the journal and in which order; nothing else does.
 
+mod layers;
 mod records;
 
 pub use records::{Accepted, Record};
@@ -179,7 +180,9 @@ impl Sequencer {
         if !header.flags.has(Flags::REPLAY) {
             self.painting.forget_loads(brush);
         }
-        self.painting.state(brush, header.epoch, state)
+        let painted = self.painting.state(brush, header.epoch, state);
+        self.painting.note_contact(brush);
+        painted
     }
 
     /// Notes that a state is consumed.
@@ -376,11 +379,6 @@ impl Sequencer {
                 }
                 String::new()
             }),
-            Command::Dry {
-                surface,
-                share,
-                name,
-            } => self.painting.dry(*surface, *share, name),
             Command::Ground { surface, ground } => self
                 .painting
                 .set_ground(*surface, ground)
@@ -407,10 +405,6 @@ impl Sequencer {
                 self.painting.branch(from, name).map(|()| String::new())
             }
             Command::Forget { name } => self.painting.forget(name).map(|()| String::new()),
-            Command::Opacity { layer, opacity } => self
-                .painting
-                .set_opacity(*layer, *opacity)
-                .map(|()| String::new()),
             Command::Handle { handling } => self.painting.handle(handling).map(|()| String::new()),
             Command::FillWith {
                 surface,
@@ -428,6 +422,17 @@ impl Sequencer {
                 self.painting.piles(*surface, *last).map(|()| String::new())
             }
             Command::Mark => Ok(String::new()),
+            command @ (Command::Dry { .. }
+            | Command::DryRegion { .. }
+            | Command::DryOver { .. }
+            | Command::StopDrying { .. }
+            | Command::Wet { .. }
+            | Command::Opacity { .. }
+            | Command::LayerOpacity { .. }) => self.layers(command),
+            Command::GroundSpectrum { surface, spectrum } => self
+                .painting
+                .set_ground_spectrum(*surface, spectrum)
+                .map(|()| String::new()),
         };
         let (client, number) = (request.client, request.number);
         let outcome = match done {

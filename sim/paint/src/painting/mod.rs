@@ -1,6 +1,7 @@
 //! The painting: surfaces, brushes, books. It does what it is told, in the order that it is told.
 
 mod books;
+mod drying;
 mod film;
 mod keeping;
 mod layers;
@@ -13,7 +14,9 @@ mod underpainting;
 mod undo;
 mod versions;
 mod wells;
+mod wetting;
 
+pub use drying::{Clock, Drying, Round, TICKS_A_SECOND};
 pub use keeping::{Checkpoint, Restored};
 pub use modes::UnderBrush;
 pub use underpainting::{LaidTile, Wetness};
@@ -135,6 +138,7 @@ pub struct Painting {
     steps: u64,
     footprint_cells: u64,
     span_ns: Option<(u64, u64)>,
+    clock: Clock,
 }
 
 impl Painting {
@@ -189,6 +193,7 @@ impl Painting {
             steps: 0,
             footprint_cells: 0,
             span_ns: None,
+            clock: Clock::default(),
         };
         painting.note_look();
         if setup.exposure.is_none() {

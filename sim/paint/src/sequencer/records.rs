@@ -171,7 +171,8 @@ impl Sequencer {
                 }
                 self.decide(&what);
             }
-            Accepted::Entry(Entry::Tick { .. } | Entry::States { .. }) => {}
+            Accepted::Entry(Entry::Tick { .. }) => self.painting.tick(),
+            Accepted::Entry(Entry::States { .. }) => {}
             Accepted::Brush { brush, toml } => {
                 if let Ok(file) = BrushFile::parse(&toml) {
                     self.painting.define_brush(&brush, file);
