@@ -1,4 +1,4 @@
-//! The seven effects of Baxter 2004, fig. 6.2: what the paint model is for.
+//! The seven effects of Baxter 2004, fig. 6.2, and thinned paint: what the paint model is for.
 
 use maulstick_optics::PaintLibrary;
 use maulstick_paint::picture::Picture;
@@ -13,7 +13,7 @@ use crate::page::Page;
 use crate::performance::refused;
 
 /// Size of a panel, mm.
-const PANEL_MM: [f64; 2] = [110.0, 62.0];
+const PANEL_MM: [f64; 2] = [86.0, 48.0];
 /// Room for the words over a panel, pixels.
 const WORDS: usize = 52;
 
@@ -29,7 +29,7 @@ struct Effect {
     paint: fn(PaintLibrary) -> Result<Panel, Fault>,
 }
 
-const EFFECTS: [Effect; 7] = [
+const EFFECTS: [Effect; 8] = [
     Effect {
         name: "bidirectional transfer",
         words: "white, drawn down through wet blue, yellow and red",
@@ -42,7 +42,7 @@ const EFFECTS: [Effect; 7] = [
     },
     Effect {
         name: "controlled drying",
-        words: "wet by 32, 42, 56, 75 and 100 %, and a clean brush through them",
+        words: "wet by 32, 42, 56, 75 and 100 %, then yellow through them",
         paint: drying,
     },
     Effect {
@@ -52,18 +52,23 @@ const EFFECTS: [Effect; 7] = [
     },
     Effect {
         name: "glazing",
-        words: "grey strokes, dried; thinned paint over their right half",
+        words: "grey, dried; thinned magenta and green over it",
         paint: glazing,
     },
     Effect {
         name: "impasto",
-        words: "one full load laid on another, the light from the left",
+        words: "four full loads on each other, lit from the left",
         paint: impasto,
     },
     Effect {
         name: "scumbling",
-        words: "thick strokes, dried; white lightly over their right half",
+        words: "thick strokes, dried; white lightly over the right half",
         paint: scumbling,
+    },
+    Effect {
+        name: "thinning",
+        words: "the same paint with 0, 40, 70 and 90 % of thinner",
+        paint: thinning,
     },
 ];
 
@@ -135,27 +140,28 @@ fn wave(points: Vec<[f64; 2]>, pressure: f64, seconds: f64) -> Gesture {
 }
 
 fn transfer(library: PaintLibrary) -> Result<Panel, Fault> {
-    let mut panel = Panel::of("flat", 14.0, library)?;
-    for (row, mixture) in [BLUE, YELLOW, RED].into_iter().enumerate() {
-        let y = 49.0 - 18.0 * row as f64;
-        panel.load(BRUSH, mixture)?;
-        panel.paint(&line([8.0, y], [102.0, y], 0.5, 90.0))?;
-        panel.paint(&line([102.0, y], [8.0, y], 0.4, 90.0))?;
+    let mut panel = Panel::of("flat", 8.0, library)?;
+    for (row, mixture) in ["Ultramarine Blue", YELLOW, RED].into_iter().enumerate() {
+        let y = 40.0 - 15.0 * row as f64;
+        for from in [6.0, 80.0, 6.0] {
+            panel.load(BRUSH, mixture)?;
+            panel.paint(&line([from, y], [86.0 - from, y], 0.4, 90.0))?;
+        }
     }
-    panel.take_up("round", "round", 7.0)?;
-    panel.load("round", WHITE)?;
-    for x in [26.0, 58.0, 90.0] {
+    panel.take_up("round", "round", 6.0)?;
+    for x in [20.0, 45.0, 70.0] {
+        panel.load("round", "Titanium White=0.5,Thinner=0.5")?;
         let way = (0..9).map(|i| {
             let side = if i % 2 == 0 { -1.0 } else { 1.0 };
-            [x + 9.0 * side, 58.0 - 6.6 * f64::from(i)]
+            [x + 7.0 * side, 45.0 - 5.2 * f64::from(i)]
         });
-        panel.paint(&wave(way.collect(), 0.4, 3.0))?;
+        panel.paint(&wave(way.collect(), 0.45, 3.0))?;
     }
     Ok(panel)
 }
 
 fn loading(library: PaintLibrary) -> Result<Panel, Fault> {
-    let mut panel = Panel::of("flat", 13.0, library)?;
+    let mut panel = Panel::of("flat", 10.0, library)?;
     let pairs = [
         ["Quinacridone Magenta=0.6,Pyrrole Red=0.4", WHITE],
         [BLUE, YELLOW],
@@ -168,10 +174,10 @@ fn loading(library: PaintLibrary) -> Result<Panel, Fault> {
             right: mixture_of(right)?,
         };
         panel.offline.command(command).map_err(refused)?;
-        let y = 50.0 - 19.0 * row as f64;
+        let y = 39.0 - 15.0 * row as f64;
         let way = (0..7).map(|i| {
             let side = if i % 2 == 0 { -1.0 } else { 1.0 };
-            [10.0 + 15.0 * f64::from(i), y + 3.5 * side]
+            [8.0 + 11.7 * f64::from(i), y + 2.7 * side]
         });
         panel.paint(&wave(way.collect(), 0.4, 2.4))?;
     }
@@ -179,22 +185,23 @@ fn loading(library: PaintLibrary) -> Result<Panel, Fault> {
 }
 
 fn drying(library: PaintLibrary) -> Result<Panel, Fault> {
-    let mut panel = Panel::of("flat", 11.0, library)?;
+    let mut panel = Panel::of("flat", 9.0, library)?;
     // What was painted first dries most often: .75⁴ = .32 of it stays wet.
     for stripe in 0..5 {
         if stripe > 0 {
             panel.dry(0.25)?;
         }
-        let y = 54.0 - 11.5 * f64::from(stripe);
+        let y = 42.5 - 9.2 * f64::from(stripe);
         panel.load(BRUSH, "Ultramarine Blue=0.8,Titanium White=0.2")?;
-        panel.paint(&line([6.0, y], [104.0, y], 0.45, 90.0))?;
-        panel.paint(&line([104.0, y], [6.0, y], 0.4, 90.0))?;
+        panel.paint(&line([5.0, y], [81.0, y], 0.45, 90.0))?;
+        panel.paint(&line([81.0, y], [5.0, y], 0.4, 90.0))?;
     }
-    panel.take_up("clean", "round", 6.0)?;
-    for x in [22.0, 46.0, 70.0, 92.0] {
+    panel.take_up("yellow", "round", 6.0)?;
+    for x in [16.0, 34.0, 52.0, 70.0] {
+        panel.load("yellow", "Hansa Yellow Opaque=0.4,Thinner=0.6")?;
         let way = (0..6).map(|i| {
             let side = if i % 2 == 0 { -1.0 } else { 1.0 };
-            [x + 3.0 * side, 60.0 - 11.5 * f64::from(i)]
+            [x + 2.5 * side, 46.5 - 9.0 * f64::from(i)]
         });
         panel.paint(&wave(way.collect(), 0.45, 2.2))?;
     }
@@ -202,92 +209,130 @@ fn drying(library: PaintLibrary) -> Result<Panel, Fault> {
 }
 
 fn blending(library: PaintLibrary) -> Result<Panel, Fault> {
-    let mut panel = Panel::of("flat", 16.0, library)?;
-    for (mixture, rows) in [(YELLOW, [52.0, 39.0]), ("Ultramarine Blue", [24.0, 11.0])] {
+    let mut panel = Panel::of("flat", 13.0, library)?;
+    for (mixture, rows) in [
+        ("Ultramarine Blue=0.7,Titanium White=0.3", [18.0, 8.0]),
+        (YELLOW, [40.0, 30.0]),
+    ] {
         for y in rows {
-            panel.load(BRUSH, mixture)?;
-            panel.paint(&line([8.0, y], [102.0, y], 0.5, 90.0))?;
+            for from in [6.0, 80.0] {
+                panel.load(BRUSH, mixture)?;
+                panel.paint(&line([from, y], [86.0 - from, y], 0.4, 90.0))?;
+            }
         }
     }
-    panel.take_up("filbert", "filbert", 12.0)?;
-    for pass in 0..3 {
+    panel.take_up("filbert", "filbert", 10.0)?;
+    for pass in 0..2 {
         for i in 0..5 {
-            let x = 58.0 + 10.0 * f64::from(i) + 3.0 * f64::from(pass);
-            panel.paint(&line([x, 14.0], [x, 49.0], 0.4, 0.0))?;
-            panel.paint(&line([x + 4.0, 49.0], [x + 4.0, 14.0], 0.4, 0.0))?;
+            let x = 44.0 + 7.5 * f64::from(i) + 2.5 * f64::from(pass);
+            let zigzag = (0..9).map(|turn| {
+                let (side, down) = (f64::from(turn % 2), f64::from(turn / 2));
+                [x + 0.8 * down, 12.0 + 24.0 * side]
+            });
+            panel.paint(&wave(zigzag.collect(), 0.45, 4.0))?;
         }
     }
     Ok(panel)
 }
 
 fn glazing(library: PaintLibrary) -> Result<Panel, Fault> {
-    let mut panel = Panel::of("filbert", 13.0, library)?;
+    let mut panel = Panel::of("filbert", 11.0, library)?;
     let greys = [
         "Bone Black=0.7,Titanium White=0.3",
         "Bone Black=0.2,Titanium White=0.8",
         "Bone Black=0.03,Titanium White=0.97",
     ];
     for (row, grey) in greys.into_iter().enumerate() {
-        let y = 50.0 - 19.0 * row as f64;
+        let y = 39.0 - 15.0 * row as f64;
         panel.load(BRUSH, grey)?;
-        panel.paint(&line([8.0, y], [102.0, y], 0.5, 90.0))?;
-        panel.paint(&line([102.0, y + 2.0], [8.0, y - 2.0], 0.4, 90.0))?;
+        panel.paint(&line([6.0, y], [80.0, y], 0.5, 90.0))?;
+        panel.paint(&line([80.0, y + 1.5], [6.0, y - 1.5], 0.4, 90.0))?;
     }
     panel.dry(1.0)?;
-    panel.take_up("glaze", "flat", 15.0)?;
+    panel.take_up("glaze", "flat", 14.0)?;
     let glazes = [
-        ("Quinacridone Magenta=0.15,Thinner=0.85", 66.0),
-        ("Phthalo Green Blue Shade=0.1,Thinner=0.9", 92.0),
+        ("Quinacridone Magenta=0.15,Thinner=0.85", 48.0),
+        ("Phthalo Green Blue Shade=0.1,Thinner=0.9", 70.0),
     ];
     for (glaze, x) in glazes {
-        panel.load("glaze", glaze)?;
-        panel.paint(&line([x, 58.0], [x, 4.0], 0.35, 0.0))?;
+        for _ in 0..2 {
+            panel.load("glaze", glaze)?;
+            panel.paint(&line([x, 45.0], [x, 3.0], 0.4, 0.0))?;
+        }
     }
     Ok(panel)
 }
 
 fn impasto(library: PaintLibrary) -> Result<Panel, Fault> {
-    let mut panel = Panel::of("bright", 13.0, library)?;
-    let colours = [
-        "Ultramarine Blue=0.4,Titanium White=0.6",
-        "Hansa Yellow Opaque=0.5,Titanium White=0.5",
-        WHITE,
-    ];
-    for (layer, mixture) in colours.into_iter().enumerate() {
-        for i in 0..6 {
-            let x = 14.0 + 15.0 * f64::from(i) + 2.0 * layer as f64;
-            let (low, high) = (10.0 + 6.0 * layer as f64, 52.0 - 5.0 * layer as f64);
-            panel.load(BRUSH, mixture)?;
-            let lean = if i % 2 == 0 { 6.0 } else { -6.0 };
-            panel.paint(&line([x - lean, low], [x + lean, high], 0.22, 0.0))?;
+    let mut panel = Panel::of("bright", 8.0, library)?;
+    // Petals around two hearts, each of four loads.
+    for (middle, colour) in [
+        ([24.0, 24.0], "Hansa Yellow Opaque=0.3,Titanium White=0.7"),
+        ([62.0, 24.0], "Quinacridone Magenta=0.2,Titanium White=0.8"),
+    ] {
+        for petal in 0..7 {
+            let angle = std::f64::consts::TAU * f64::from(petal) / 7.0;
+            let (sine, cosine) = maulstick_num::sin_cos(angle);
+            let at = |radius: f64| [middle[0] + radius * cosine, middle[1] + radius * sine];
+            for _ in 0..4 {
+                panel.load(BRUSH, colour)?;
+                let turned = angle.to_degrees() + 90.0;
+                panel.paint(&line(at(7.0), at(17.0), 0.2, turned))?;
+            }
+        }
+        for dab in 0..5 {
+            let (sine, cosine) = maulstick_num::sin_cos(1.3 * f64::from(dab));
+            let at = [middle[0] + 2.0 * cosine, middle[1] + 2.0 * sine];
+            panel.load(BRUSH, "Cadmium Orange")?;
+            panel.paint(&line(at, [at[0] + 1.5, at[1] + 1.0], 0.15, 45.0))?;
         }
     }
     Ok(panel)
 }
 
 fn scumbling(library: PaintLibrary) -> Result<Panel, Fault> {
-    let mut panel = Panel::of("bright", 13.0, library)?;
+    let mut panel = Panel::of("bright", 10.0, library)?;
     for i in 0..14 {
         let (column, row) = (i % 7, i / 7);
-        let x = 12.0 + 14.0 * f64::from(column);
-        let y = [46.0, 18.0][row as usize];
+        let x = 10.0 + 11.0 * f64::from(column);
+        let y = [35.5, 13.0][row as usize];
         panel.load(BRUSH, "Burnt Sienna=0.8,Bone Black=0.2")?;
-        panel.paint(&line([x - 3.0, y - 12.0], [x + 3.0, y + 12.0], 0.25, 0.0))?;
+        panel.paint(&line([x - 2.5, y - 10.0], [x + 2.5, y + 10.0], 0.25, 0.0))?;
     }
     panel.dry(1.0)?;
-    panel.take_up("scumble", "flat", 16.0)?;
+    panel.take_up("scumble", "flat", 13.0)?;
     panel.load("scumble", WHITE)?;
-    for y in [50.0, 38.0, 24.0, 12.0] {
+    for y in [40.0, 30.0, 19.0, 9.0] {
         let gesture = Gesture {
             seconds: 0.9,
             hand: Box::new(move |t| Moment {
-                at: [56.0 + 48.0 * t, y],
+                at: [44.0 + 38.0 * t, y],
                 pressure: 0.02 + 0.05 * swell(t, 0.2),
                 tilt_deg: [0.0; 2],
                 twist_deg: 90.0,
             }),
         };
         panel.paint(&gesture)?;
+    }
+    Ok(panel)
+}
+
+fn thinning(library: PaintLibrary) -> Result<Panel, Fault> {
+    let mut panel = Panel::of("round", 8.0, library)?;
+    let mixtures = [
+        "Ultramarine Blue",
+        "Ultramarine Blue=0.6,Thinner=0.4",
+        "Ultramarine Blue=0.3,Thinner=0.7",
+        "Ultramarine Blue=0.1,Thinner=0.9",
+    ];
+    for (row, mixture) in mixtures.into_iter().enumerate() {
+        let y = 40.5 - 11.0 * row as f64;
+        panel.load(BRUSH, mixture)?;
+        let way = (0..9).map(|i| {
+            let side = if i % 2 == 0 { -1.0 } else { 1.0 };
+            [6.0 + 9.2 * f64::from(i), y + 1.5 * side]
+        });
+        panel.paint(&wave(way.collect(), 0.4, 2.4))?;
     }
     Ok(panel)
 }

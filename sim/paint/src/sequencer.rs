@@ -2,6 +2,7 @@
 
 mod layers;
 mod records;
+mod ways;
 
 pub use records::{Accepted, Record};
 
@@ -405,22 +406,6 @@ impl Sequencer {
                 self.painting.branch(from, name).map(|()| String::new())
             }
             Command::Forget { name } => self.painting.forget(name).map(|()| String::new()),
-            Command::Handle { handling } => self.painting.handle(handling).map(|()| String::new()),
-            Command::FillWith {
-                surface,
-                brush,
-                thickness_m,
-            } => self
-                .painting
-                .fill_with(*surface, brush, *thickness_m)
-                .map(|()| String::new()),
-            Command::Size { surface, stain_m } => self
-                .painting
-                .size(*surface, *stain_m)
-                .map(|()| String::new()),
-            Command::Piles { surface, last } => {
-                self.painting.piles(*surface, *last).map(|()| String::new())
-            }
             Command::Mark => Ok(String::new()),
             command @ (Command::Dry { .. }
             | Command::DryRegion { .. }
@@ -429,6 +414,10 @@ impl Sequencer {
             | Command::Wet { .. }
             | Command::Opacity { .. }
             | Command::LayerOpacity { .. }) => self.layers(command),
+            command @ (Command::Handle { .. }
+            | Command::FillWith { .. }
+            | Command::Size { .. }
+            | Command::Piles { .. }) => self.ways(command),
             Command::GroundSpectrum { surface, spectrum } => self
                 .painting
                 .set_ground_spectrum(*surface, spectrum)

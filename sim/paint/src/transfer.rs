@@ -39,7 +39,7 @@ pub fn transfer(on_brush: f32, on_canvas: f32, travel: f32, share: f32) -> f32 {
 }
 
 /// Share of the thinner film that changes places along a reference cell, by that which goes over.
-pub const SWAP: f32 = 0.3;
+pub const SWAP: f32 = 0.8;
 /// How deep the films reach that change places, units: 100 µm.
 pub const SWAP_FILM: f32 = 0.004;
 
