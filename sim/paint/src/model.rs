@@ -131,4 +131,26 @@ pub trait PaintModel: Send {
     fn name(&self) -> &'static str;
     /// Moves the paint of one step.
     fn step(&mut self, step: &mut Step<'_>) -> StepReport;
+    /// What computes its steps: `cpu`, or `gpu` and the adapter's name.
+    fn backend(&self) -> String {
+        "cpu".to_owned()
+    }
+    /// Whether steps leave what they did elsewhere until they are [settled](Self::settle). Until then
+    /// nobody else may change window and load, and all steps are of the same two.
+    fn defers(&self) -> bool {
+        false
+    }
+    /// As [`step`](Self::step), but window and load, which must be settled, have what it did at once.
+    fn step_now(&mut self, step: &mut Step<'_>) -> StepReport {
+        self.step(step)
+    }
+    /// Writes what deferred steps did into their window and load; what they did in all, besides what
+    /// they reported themselves.
+    fn settle(&mut self, _window: &mut Window, _load: &mut BrushLoad) -> StepReport {
+        StepReport::default()
+    }
+    /// Why it computes elsewhere than before, once. No paint is lost by it.
+    fn take_fall(&mut self) -> Option<String> {
+        None
+    }
 }

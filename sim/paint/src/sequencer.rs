@@ -179,7 +179,11 @@ impl Sequencer {
         if !header.flags.has(Flags::REPLAY) {
             self.painting.forget_loads(brush);
         }
-        self.painting.state(brush, header.epoch, state)
+        let painted = self.painting.state(brush, header.epoch, state);
+        if let Some(why) = self.painting.take_fall() {
+            self.decide(&format!("backend {}: {why}", self.painting.backend()));
+        }
+        painted
     }
 
     /// Notes that a state is consumed.

@@ -4,6 +4,7 @@ use std::sync::Arc;
 
 use maulstick_types::brush::{BrushState, Solve, solve_flags};
 
+use super::backend::Deferral;
 use super::{PaintRefusal, Painting};
 use crate::head::{Scale, Waypoint, low_bounds};
 use crate::history::OpenStep;
@@ -64,6 +65,7 @@ impl Painting {
         let track = self.brush(name)?;
         if solve.stroke == 0 {
             track.path = None;
+            self.fall.stroke_ends();
             return Ok(());
         }
         if track.stroke != Some((epoch, solve.stroke)) {
@@ -75,7 +77,8 @@ impl Painting {
         let restarted = solve.flags & solve_flags::RESTARTED != 0;
         let track = self.brush(name)?;
         let traits = BrushTraits::of(&track.file, scale.cell_m, scale.zoom);
-        let waypoint = Waypoint::of(solve, scale, track.load.fullness(&traits));
+        let waypoint = Waypoint::of(solve, scale, self.seen_fullness(name, &traits)?);
+        let track = self.brush(name)?;
         let running = track
             .path
             .take()
@@ -107,7 +110,9 @@ impl Painting {
 
     pub(super) fn begin_stroke(&mut self, name: &str) -> Result<(), PaintRefusal> {
         self.begin_step("stroke", Some(name));
+        self.fall.stroke_ends();
         let track = self.brush(name)?;
+        track.deferral = Deferral::default();
         if track.loads.is_empty() {
             return Ok(());
         }
@@ -125,9 +130,15 @@ impl Painting {
             return;
         };
         let traits = BrushTraits::of(&track.file, scale.cell_m, scale.zoom);
-        let wet = self.sheets[sheet].top * (QUANTUM_M / scale.cell_m) as f32;
-        let film = track.load.thickest() as f32 * traits.film_cells_per_quantum;
-        let height = wet + film + traits.half_thickness + traits.sink;
+        let deferred = self.model.defers() && !self.has_wells(sheet);
+        let height = if deferred {
+            // How high paint stands is not known here.
+            f32::INFINITY
+        } else {
+            let wet = self.sheets[sheet].top * (QUANTUM_M / scale.cell_m) as f32;
+            let film = track.load.thickest() as f32 * traits.film_cells_per_quantum;
+            wet + film + traits.half_thickness + traits.sink
+        };
         let Some((from, to)) = low_bounds(&track.head, sweep.to, traits.half_width, height) else {
             return;
         };
@@ -141,6 +152,9 @@ impl Painting {
         if !self.reach(name, sheet, outer_from, outer_to) {
             return;
         }
+        if !deferred || self.unsettled.as_deref() != Some(name) {
+            self.settle();
+        }
         self.tend_wells(name, sheet, from, to);
         let Some(track) = self.brushes.get_mut(name) else {
             return;
@@ -148,16 +162,24 @@ impl Painting {
         let Some((_, window)) = &mut track.window else {
             return;
         };
-        let report = self.model.step(&mut Step {
+        let mut step = Step {
             window,
             head: &track.head,
             sweep,
             bounds: (from, to),
             load: Arc::make_mut(&mut track.load),
             traits,
-        });
+        };
+        let report = if deferred {
+            self.model.step(&mut step)
+        } else {
+            self.model.step_now(&mut step)
+        };
         self.sheets[sheet].top = self.sheets[sheet].top.max(window.top());
         self.footprint_cells += report.footprint_cells;
+        if deferred {
+            self.defer(name);
+        }
     }
 
     /// Makes sure that the brush's window holds the cells `from`..`to`; false where they all lie
@@ -225,6 +247,7 @@ impl Painting {
 
     /// Writes what the windows hold back to the tiles.
     pub fn commit(&mut self) {
+        self.settle();
         for (name, track) in &mut self.brushes {
             if let Some((sheet, window)) = &mut track.window {
                 let sheet = &mut self.sheets[*sheet];

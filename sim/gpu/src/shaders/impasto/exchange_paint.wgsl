@@ -1,0 +1,47 @@
+// Paint goes over: what its texel grants each cell of each paint, truncated, is taken from one side and
+// given to the other.
+
+// A texel held this many times its full film at most.
+const FILM_OVER = 2.0;
+// Shares are short by more than rounding adds, so that no sum of them exceeds what is there.
+const SHORT = 1.0 - 1.0 / 1048576.0;
+
+@compute @workgroup_size(256)
+fn exchange_paint(@builtin(global_invocation_id) id: vec3<u32>) {
+    let i = id.x;
+    if i >= cells() {
+        return;
+    }
+    let texel = contacts[i].texel;
+    if texel == NONE {
+        return;
+    }
+    let film = f32(load[1u + texel]);
+    let drawn = f32(atomicLoad(&asks[texel]));
+    let offered = f32(atomicLoad(&asks[texels() + texel]));
+    var granted = vec2(1.0, 1.0);
+    if step.transfer == SPONGE {
+        granted.x = select(0.0, 1.0, film > 0.0);
+    } else {
+        granted.x = min(1.0, film / max(drawn, 1.0));
+        let room = FILM_OVER * step.film_full - film + drawn * granted.x;
+        granted.y = clamp(room / max(offered, 1.0), 0.0, 1.0);
+    }
+    let goes = wants[i] * granted * SHORT;
+    let share = vec2(goes.x / max(film, 1.0), goes.y / max(totals[i], 1.0));
+    let cell = cell_of(i % step.width, i / step.width);
+    for (var paint = 0u; paint < step.planes; paint++) {
+        let at = paint * step.plane + cell;
+        let there = planes[at];
+        let left = trunc(f32(load[film_of(paint) + texel]) * share.x);
+        let taken = min(trunc(there * share.y), there);
+        if left != 0.0 || taken != 0.0 {
+            planes[at] = there + left - taken;
+            if step.transfer != SPONGE {
+                // In two's complement a negative change is added as well.
+                let change = u32(i32(taken) - i32(left));
+                atomicAdd(&asks[change_of(paint) + texel], change);
+            }
+        }
+    }
+}
