@@ -12,12 +12,14 @@
 //! | [`swatch`] | colours in the terminal |
 //! | [`chart`] | the mixing chart, and one mixture by four ways of mixing |
 //! | [`sheet`] | the sheet of brushes and their marks |
+//! | [`backend`] | what computes the steps of the paint |
 //! | [`document`] | paintings in files |
 //! | [`kit`] | what a take is painted with: put into it, and taken from it |
 //! | [`lamp`] | what is changed of the light |
 //! | [`script`] | a day at the easel, a step after the other |
 //! | [`performance`] | what `render` and `up --play` share: take, brush, loads, canvas |
 
+pub mod backend;
 pub mod chart;
 pub mod cli;
 pub mod commands;

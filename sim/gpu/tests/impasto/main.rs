@@ -2,9 +2,13 @@
 //! these; whole strokes; a device that is lost.
 
 #[path = "../../../paint/tests/oracle/scene.rs"]
+#[allow(dead_code, reason = "what these tests need of it")]
 mod scene;
 
+mod easel;
 mod footprint;
+mod stroke;
+mod transport;
 
 use maulstick_gpu::{Choice, Device};
 
