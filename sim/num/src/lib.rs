@@ -7,5 +7,6 @@
 
 mod elementary;
 pub mod geometry;
+mod wide;
 
 pub use elementary::{Decay, acos, atan2, cos, decay_f32, exp, exp_f32, ln, powf, sin, sin_cos};

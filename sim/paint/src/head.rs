@@ -116,17 +116,22 @@ pub fn low_bounds(
     let border = (std::f32::consts::SQRT_2 * (half_width + 0.5) + 0.5).ceil() as i64;
     let (mut from, mut to) = ([f32::MAX; 2], [f32::MIN; 2]);
     let row = |station: usize| station * strips..(station + 1) * strips;
-    let is_low = |station: usize| pose.z[row(station)].iter().any(|z| *z < height);
-    let low: [bool; STATIONS] = std::array::from_fn(is_low);
-    for station in 0..STATIONS {
-        // A strip may come down and rise again between two stations, so those beside count as well.
-        let beside = station.saturating_sub(1)..(station + 2).min(STATIONS);
-        if low[beside].contains(&true) {
-            for (axis, plane) in [&pose.x, &pose.y].into_iter().enumerate() {
-                for at in &plane[row(station)] {
-                    from[axis] = from[axis].min(*at);
-                    to[axis] = to[axis].max(*at);
-                }
+    for station in 1..STATIONS {
+        let (before, after) = (row(station - 1), row(station));
+        for (axis, plane) in [&pose.x, &pose.y].into_iter().enumerate() {
+            let ends = plane[before.clone()].iter().zip(&plane[after.clone()]);
+            let heights = pose.z[before.clone()].iter().zip(&pose.z[after.clone()]);
+            for ((a, b), (za, zb)) in ends.zip(heights) {
+                let low = za.min(*zb) < height;
+                let (least, most) = if a < b { (*a, *b) } else { (*b, *a) };
+                let least = if low { least } else { f32::MAX };
+                let most = if low { most } else { f32::MIN };
+                from[axis] = if least < from[axis] {
+                    least
+                } else {
+                    from[axis]
+                };
+                to[axis] = if most > to[axis] { most } else { to[axis] };
             }
         }
     }

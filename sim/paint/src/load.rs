@@ -260,6 +260,25 @@ impl BrushLoad {
         self.held_mut(slot).film[texel] += count;
     }
 
+    /// Adds to a paint on a texel's film, or takes away of what is there.
+    pub fn change_film(&mut self, slot: usize, texel: usize, change: i32) {
+        let count = &mut self.held_mut(slot).film[texel];
+        *count = count.saturating_add_signed(change);
+    }
+
+    /// Makes a texel hold so much of a paint, in its film and inside; what it held before.
+    pub fn set_texel(&mut self, slot: usize, texel: usize, holds: [u32; 2]) -> [u32; 2] {
+        if holds == [0; 2] && !self.has(slot) {
+            return [0; 2];
+        }
+        let held = self.held_mut(slot);
+        let [film, inside] = holds;
+        [
+            std::mem::replace(&mut held.film[texel], film),
+            std::mem::replace(&mut held.inside[texel], inside),
+        ]
+    }
+
     /// Counts the films of all paints on these texels afresh.
     pub fn count_films_of(&mut self, texels: &[u32]) {
         for texel in texels {

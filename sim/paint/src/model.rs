@@ -5,7 +5,7 @@ use maulstick_brush::head::{Head, HeadPose, STATIONS};
 use maulstick_num::exp;
 
 use crate::load::{ALONG, BrushLoad};
-use crate::quantum::{QUANTA_PER_UNIT, QUANTUM_M, REFERENCE_CELL_M};
+use crate::quantum::{CELL_MAX, Counts, QUANTA_PER_UNIT, QUANTUM_M, REFERENCE_CELL_M, SLOTS};
 use crate::window::Window;
 
 /// The motion of a head in one step, in cells of the surface.
@@ -101,6 +101,46 @@ impl BrushTraits {
     }
 }
 
+/// What goes over between brush and canvas (Baxter 2004, § 6.8).
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub enum Transfer {
+    /// Paint goes both ways and is counted.
+    #[default]
+    Paint,
+    /// The brush stays as it is: a full one never runs out, an empty one never fills.
+    Sponge,
+    /// The brush lays down so much paint along a reference cell and takes nothing up.
+    Marker {
+        /// Units.
+        flow: f32,
+    },
+    /// The brush takes on the colours that it touches; the canvas stays as it is.
+    Sampler,
+    /// What the brush touches is lifted off, and the brush is clean.
+    Vacuum,
+}
+
+/// How a brush is used.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Handling {
+    /// Whether it pushes paint.
+    pub push: bool,
+    /// What goes over.
+    pub transfer: Transfer,
+    /// It adds no paint to a cell with more wet paint than this, quanta.
+    pub most: f32,
+}
+
+impl Default for Handling {
+    fn default() -> Self {
+        Self {
+            push: true,
+            transfer: Transfer::Paint,
+            most: CELL_MAX as f32,
+        }
+    }
+}
+
 /// One step of a brush on a surface.
 #[derive(Debug)]
 pub struct Step<'a> {
@@ -116,6 +156,12 @@ pub struct Step<'a> {
     pub load: &'a mut BrushLoad,
     /// Its traits.
     pub traits: BrushTraits,
+    /// How it is used.
+    pub handling: Handling,
+    /// Quanta that stay on a cell however hard it is brushed (Baxter 2004, § 6.4.1, size).
+    pub stain: f32,
+    /// The slot of the thinner, if the painting has one.
+    pub thinner: Option<usize>,
 }
 
 /// What a step did.
@@ -123,6 +169,26 @@ pub struct Step<'a> {
 pub struct StepReport {
     /// Cells that the head touched.
     pub footprint_cells: u64,
+    /// Wet quanta on them before the step.
+    pub wet: u64,
+    /// Those of them that are thinner.
+    pub thinner: u64,
+    /// By slot, quanta on canvas and brush that came from nowhere, as the brush's mode has it.
+    pub from_nowhere: [i64; SLOTS],
+    /// By slot, quanta that were lifted off for good.
+    pub lifted: Counts,
+}
+
+impl StepReport {
+    /// Adds what another step did.
+    pub fn add(&mut self, other: &Self) {
+        self.footprint_cells += other.footprint_cells;
+        self.wet += other.wet;
+        self.thinner += other.thinner;
+        crate::quantum::add(&mut self.lifted, &other.lifted);
+        let came = self.from_nowhere.iter_mut().zip(other.from_nowhere);
+        came.for_each(|(sum, came)| *sum += came);
+    }
 }
 
 /// A paint model: how paint moves in one step.

@@ -14,11 +14,19 @@ pub const MAX_TRANSFER: f32 = 0.001;
 /// EQUAL_PAINT_CUTOFF, units.
 pub const EQUAL_PAINT_CUTOFF: f32 = 1.0 / 30.0;
 
-/// Paint that leaves the brush for the canvas (positive) or the canvas for the brush (negative),
-/// units, where the brush carries `on_brush` and reaches `on_canvas` units, after `travel`.
+/// Share of the paint that goes over along a travel in reference cells.
 #[must_use]
-#[inline]
-pub fn transfer(on_brush: f32, on_canvas: f32, travel: f32) -> f32 {
+#[inline(always)]
+pub fn share(travel: f32) -> f32 {
+    1.0 - exp_f32(LN_KEPT * travel)
+}
+
+/// Paint that leaves the brush for the canvas (positive) or the canvas for the brush (negative),
+/// units, where the brush carries `on_brush` and reaches `on_canvas` units, after `travel`, along
+/// which `share` goes over.
+#[must_use]
+#[inline(always)]
+pub fn transfer(on_brush: f32, on_canvas: f32, travel: f32, share: f32) -> f32 {
     let difference = on_brush - on_canvas;
     let nearly_equal = (difference.abs() * (1.0 / EQUAL_PAINT_CUTOFF)).min(1.0);
     let donor = if difference > 0.0 {
@@ -26,9 +34,21 @@ pub fn transfer(on_brush: f32, on_canvas: f32, travel: f32) -> f32 {
     } else {
         on_canvas
     };
-    let share = 1.0 - exp_f32(LN_KEPT * travel);
     let amount = (donor * share * nearly_equal).min(MAX_TRANSFER * travel);
     if difference > 0.0 { amount } else { -amount }
+}
+
+/// Share of the thinner film that changes places along a reference cell, by that which goes over.
+pub const SWAP: f32 = 0.3;
+/// How deep the films reach that change places, units: 100 µm.
+pub const SWAP_FILM: f32 = 0.004;
+
+/// Paint that goes both ways at once where brush and canvas are wet, units: their films mix as the
+/// bristles go through them, but no deeper than a film, however high the paint lies.
+#[must_use]
+#[inline(always)]
+pub fn swap(on_brush: f32, on_canvas: f32, share: f32) -> f32 {
+    SWAP * share * on_brush.min(on_canvas).min(SWAP_FILM)
 }
 
 #[cfg(test)]
@@ -49,7 +69,7 @@ mod tests {
     proptest! {
         #[test]
         fn over_one_cell_it_is_the_printed_algorithm(a_c in 0.0..0.2f64, a_b in 0.0..0.2f64) {
-            let got = f64::from(transfer(a_b as f32, a_c as f32, 1.0));
+            let got = f64::from(transfer(a_b as f32, a_c as f32, 1.0, share(1.0)));
             let want = printed(a_c, a_b);
             prop_assert!((got - want).abs() < 1e-8, "{got} {want}");
         }
@@ -58,8 +78,10 @@ mod tests {
         fn nothing_moves_without_travel_and_more_with_more(
             a_b in 0.0..0.1f32, a_c in 0.0..0.1f32, s in 0.0..1.0f32,
         ) {
-            prop_assert_eq!(transfer(a_b, a_c, 0.0).abs(), 0.0);
-            let (less, more) = (transfer(a_b, a_c, s).abs(), transfer(a_b, a_c, 1.0).abs());
+            let over = |s: f32| transfer(a_b, a_c, s, share(s)).abs();
+            prop_assert_eq!(over(0.0), 0.0);
+            prop_assert_eq!(swap(a_b, a_c, share(0.0)), 0.0);
+            let (less, more) = (over(s), over(1.0));
             prop_assert!(less <= more + 1e-9);
             prop_assert!(less <= a_b.max(a_c));
         }
@@ -67,7 +89,7 @@ mod tests {
 
     #[test]
     fn a_wrong_share_would_be_found() {
-        let faulty = f64::from(transfer(0.009, 0.0, 1.0)) * 1.001;
+        let faulty = f64::from(transfer(0.009, 0.0, 1.0, share(1.0))) * 1.001;
         assert!((faulty - printed(0.0, 0.009)).abs() > 1e-8);
     }
 }

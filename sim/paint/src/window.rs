@@ -10,6 +10,32 @@ use crate::relief::Relief;
 use crate::store::{TileRect, TileStore};
 use crate::tile::{Tile, TileId, Version};
 
+/// A rectangle of a window's cells.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Area {
+    /// Its lowest column and row.
+    pub from: [usize; 2],
+    /// Columns and rows.
+    pub size: [usize; 2],
+}
+
+impl Area {
+    /// Whether it holds no cell.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        self.size.contains(&0)
+    }
+
+    /// Its rows as ranges of the planes of a window of this width.
+    pub fn rows(&self, width: usize) -> impl Iterator<Item = std::ops::Range<usize>> + use<> {
+        let (from, size) = (self.from, self.size);
+        (0..size[1]).map(move |y| {
+            let start = (from[1] + y) * width + from[0];
+            start..start + size[0]
+        })
+    }
+}
+
 /// The planes of a rectangle of tiles, row after row from the bottom.
 #[derive(Debug)]
 pub struct Window {
@@ -144,6 +170,12 @@ impl Window {
         self.wet[slot].get_or_insert_with(|| vec![0.0; cells])
     }
 
+    /// The plane of a slot, if it is in use.
+    #[must_use]
+    pub fn plane(&self, slot: usize) -> Option<&[f32]> {
+        self.wet[slot].as_deref()
+    }
+
     /// The planes in use, in order of slot.
     pub fn planes(&self) -> impl Iterator<Item = (usize, &[f32])> {
         self.wet
@@ -166,13 +198,39 @@ impl Window {
         self.wet.iter().flatten().map(|plane| plane[cell]).sum()
     }
 
-    /// Wet quanta of all paints on each of these cells, plane by plane.
-    pub fn totals(&self, cells: impl Iterator<Item = u32> + Clone, totals: &mut Vec<f32>) {
+    /// The cells `from`..`to` of the surface, as far as they lie in the window and on the surface.
+    #[must_use]
+    pub fn area(&self, from: [i64; 2], to: [i64; 2]) -> Area {
+        let origin = self.origin();
+        let inside =
+            |value: i64, i: usize| (value - origin[i]).clamp(0, self.limit[i] as i64) as usize;
+        let from = [0, 1].map(|i| inside(from[i], i));
+        Area {
+            from,
+            size: [0, 1].map(|i| inside(to[i], i).saturating_sub(from[i])),
+        }
+    }
+
+    /// Wet quanta of all paints on each cell of an area, row after row.
+    pub fn weigh(&self, area: &Area, totals: &mut Vec<f32>) {
         totals.clear();
-        totals.extend(cells.clone().map(|_| 0.0));
+        totals.resize(area.size[0] * area.size[1], 0.0);
         for plane in self.wet.iter().flatten() {
-            for (total, cell) in totals.iter_mut().zip(cells.clone()) {
-                *total += plane[cell as usize];
+            let sums = totals.chunks_exact_mut(area.size[0].max(1));
+            for (sums, row) in sums.zip(area.rows(self.width)) {
+                let counts = sums.iter_mut().zip(&plane[row]);
+                counts.for_each(|(sum, count)| *sum += count);
+            }
+        }
+    }
+
+    /// Wet quanta of all paints on each of these cells.
+    pub fn totals(&self, cells: &[u32], totals: &mut Vec<f32>) {
+        totals.clear();
+        totals.resize(cells.len(), 0.0);
+        for plane in self.wet.iter().flatten() {
+            for (total, cell) in totals.iter_mut().zip(cells) {
+                *total += plane[*cell as usize];
             }
         }
     }

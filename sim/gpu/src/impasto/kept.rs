@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use maulstick_brush::{Head, HeadPose};
 use maulstick_paint::load::BrushLoad;
-use maulstick_paint::model::{BrushTraits, PaintModel, Step, StepReport, Sweep};
+use maulstick_paint::model::{BrushTraits, Handling, PaintModel, Step, StepReport, Sweep};
 use maulstick_paint::window::Window;
 
 /// A step without window and load.
@@ -13,6 +13,9 @@ struct KeptStep {
     to: Arc<HeadPose>,
     bounds: ([i64; 2], [i64; 2]),
     traits: BrushTraits,
+    handling: Handling,
+    stain: f32,
+    thinner: Option<usize>,
 }
 
 /// Steps of one head in one window since these were last settled.
@@ -48,6 +51,9 @@ impl KeptSteps {
             to: Arc::new(step.sweep.to.clone()),
             bounds: step.bounds,
             traits: step.traits,
+            handling: step.handling,
+            stain: step.stain,
+            thinner: step.thinner,
         });
     }
 
@@ -70,8 +76,11 @@ impl KeptSteps {
                 bounds: kept.bounds,
                 load,
                 traits: kept.traits,
+                handling: kept.handling,
+                stain: kept.stain,
+                thinner: kept.thinner,
             });
-            report.footprint_cells += did.footprint_cells;
+            report.add(&did);
         }
         report
     }

@@ -23,7 +23,7 @@ mod workspace;
 
 use maulstick_paint::impasto::Impasto;
 use maulstick_paint::load::BrushLoad;
-use maulstick_paint::model::{PaintModel, Step, StepReport};
+use maulstick_paint::model::{PaintModel, Step, StepReport, Transfer};
 use maulstick_paint::window::Window;
 
 use crate::device::{Device, GpuError};
@@ -45,6 +45,8 @@ struct Session {
     uploaded: bool,
     /// Rows of the window that may have changed.
     rows: Option<(usize, usize)>,
+    /// Whether paint may have come from nowhere.
+    sponge: bool,
 }
 
 /// The paint model `impasto` on the device; on the processor once that is lost.
@@ -137,6 +139,11 @@ impl PaintModel for GpuImpasto {
     }
 
     fn step(&mut self, step: &mut Step<'_>) -> StepReport {
+        if matches!(step.handling.transfer, Transfer::Sampler | Transfer::Vacuum) {
+            let mut report = self.settle(step.window, step.load);
+            report.add(&self.cpu.step(step));
+            return report;
+        }
         let Some(workspace) = &mut self.workspace else {
             return self.cpu.step(step);
         };
@@ -147,6 +154,7 @@ impl PaintModel for GpuImpasto {
                 batch: Batch::default(),
                 uploaded: false,
                 rows: None,
+                sponge: false,
             });
         }
         let Some(session) = &mut self.session else {
@@ -160,6 +168,7 @@ impl PaintModel for GpuImpasto {
         };
         batch.records.push(record);
         session.kept.keep(step);
+        session.sponge |= step.handling.transfer == Transfer::Sponge;
         let rows = record.rows();
         let (first, last) = session.rows.unwrap_or((rows.start, rows.end));
         session.rows = Some((first.min(rows.start), last.max(rows.end)));
@@ -184,10 +193,13 @@ impl PaintModel for GpuImpasto {
         let read = Self::flush(workspace, session, window, load)
             .and_then(|()| workspace.read_back(&session.on, first..last, window.width()));
         match read {
-            Ok((settled, footprint_cells)) => {
+            Ok((settled, mut report)) => {
+                if session.sponge {
+                    report.from_nowhere = session.on.gained(&settled, window, load);
+                }
                 session.on.write(&settled, window, load);
                 self.session = None;
-                StepReport { footprint_cells }
+                report
             }
             Err(error) => self.fall(&error, window, load),
         }

@@ -88,7 +88,6 @@ impl Prober {
                 moved: [value(2), value(3)],
                 depth: value(4),
                 fraction: value(5),
-                ..Contact::default()
             }
         });
         Ok(Some(Probe {

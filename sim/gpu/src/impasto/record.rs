@@ -2,9 +2,8 @@
 
 use bytemuck::{Pod, Zeroable};
 use maulstick_brush::head::STATIONS;
-use maulstick_paint::impasto::advection::STAIN;
 use maulstick_paint::impasto::footprint::rank;
-use maulstick_paint::model::Step;
+use maulstick_paint::model::{Step, Transfer};
 use maulstick_paint::quantum::CELL_MAX;
 
 use super::residence::Residence;
@@ -79,6 +78,11 @@ impl StepRecord {
         // Paint is pushed a cell farther than the brush comes.
         let from = [0, 1].map(|i| within(from[i] - 1, i));
         let to = [0, 1].map(|i| within(to[i] + 1, i));
+        let (transfer, flow) = match step.handling.transfer {
+            Transfer::Sponge => (1, 0.0),
+            Transfer::Marker { flow } => (2, flow),
+            Transfer::Paint | Transfer::Sampler | Transfer::Vacuum => (0, 0.0),
+        };
         let strips = head.strips();
         let pressed = traits.half_thickness + traits.sink * after.press;
         let loose = traits.lift * (1.0 - after.press);
@@ -107,12 +111,12 @@ impl StepRecord {
             film_full: traits.film_full as f32,
             refill: traits.refill as f32,
             creep: traits.creep as f32,
-            stain: STAIN,
-            thinner: NONE,
-            transfer: 0,
-            flow: 0.0,
-            most: CELL_MAX as f32,
-            push: 1,
+            stain: step.stain,
+            thinner: step.thinner.map_or(NONE, |slot| on.plane_of(slot)),
+            transfer,
+            flow,
+            most: step.handling.most.min(CELL_MAX as f32),
+            push: u32::from(step.handling.push),
             inside: touched.map(|edge| [0, 1].map(|i| edge[i] - from[i])),
             cell_max: CELL_MAX as f32,
             rest: [0; 18],

@@ -77,6 +77,38 @@ impl Residence {
         usize::BITS - self.segments().leading_zeros()
     }
 
+    /// The plane of a paint; `u32::MAX` where it is not in use.
+    pub(crate) fn plane_of(&self, slot: usize) -> u32 {
+        let place = self.slots.iter().position(|of| *of == slot);
+        place.map_or(u32::MAX, |place| place as u32)
+    }
+
+    /// By slot, how much more there is than window and load have now.
+    pub(crate) fn gained(
+        &self,
+        settled: &Settled,
+        window: &Window,
+        load: &BrushLoad,
+    ) -> [i64; SLOTS] {
+        let mut gained = [0; SLOTS];
+        let run = settled.rows.start * window.width()..settled.rows.end * window.width();
+        let sum = |plane: &[f32]| plane.iter().map(|count| *count as i64).sum::<i64>();
+        let carried = load.counts();
+        for (place, slot) in self.slots.iter().enumerate() {
+            let lies = &settled.planes[place * run.len()..][..run.len()];
+            let lay = window
+                .plane(*slot)
+                .map_or(0, |plane| sum(&plane[run.clone()]));
+            let parts = [place, self.slots.len() + place];
+            let carries = parts
+                .iter()
+                .flat_map(|part| &settled.load[1 + (1 + part) * self.texels..][..self.texels]);
+            let carries: i64 = carries.map(|count| i64::from(*count)).sum();
+            gained[*slot] = sum(lies) - lay + carries - carried[*slot] as i64;
+        }
+        gained
+    }
+
     /// Words of the load.
     pub(crate) fn load_words(&self) -> usize {
         1 + (1 + 2 * self.slots.len()) * self.texels

@@ -5,6 +5,7 @@ use std::ops::Range;
 use bytemuck::cast_slice;
 use maulstick_brush::Head;
 use maulstick_paint::load::BrushLoad;
+use maulstick_paint::model::StepReport;
 use maulstick_paint::window::Window;
 use wgpu::BufferUsages as Usage;
 
@@ -16,8 +17,10 @@ use crate::device::{Device, GpuError};
 
 /// Steps of a submission.
 pub(crate) const BATCH: usize = 64;
-/// Words of the statistics: cells touched, and eight a step.
-const STATS: u64 = 1 + 8 * BATCH as u64;
+/// Words of the statistics of all steps: cells touched, wet paint and thinner on them.
+const TALLY: u64 = 3;
+/// Words of the statistics: those and eight a step.
+const STATS: u64 = TALLY + 8 * BATCH as u64;
 /// Invocations of a workgroup that goes over a grid, and over strips or segments.
 const GROUP: [u64; 2] = [256, 64];
 
@@ -117,7 +120,7 @@ impl Workspace {
             let buffers: Vec<&wgpu::Buffer> =
                 buffers.iter_mut().map(|arena| arena.of(&gpu, 4)).collect();
             let stats = buffers[Binding::Stats as usize];
-            encoder.clear_buffer(stats, 4, Some(4 * (STATS - 1)));
+            encoder.clear_buffer(stats, 4 * TALLY, Some(4 * (STATS - TALLY)));
             let records = self.records.of(&gpu, 4);
             let bound: Vec<wgpu::BindGroup> = self
                 .pipelines
@@ -150,13 +153,13 @@ impl Workspace {
         })
     }
 
-    /// Reads rows of the window, the load, and how many cells were touched.
+    /// Reads rows of the window, the load, and what the steps did.
     pub(crate) fn read_back(
         &mut self,
         on: &Residence,
         rows: Range<usize>,
         row: usize,
-    ) -> Result<(Settled, u64), GpuError> {
+    ) -> Result<(Settled, StepReport), GpuError> {
         let words = rows.len() * row * on.slots.len();
         let load_words = on.load_words();
         let plane = |place: usize| 4 * ((place * on.cells + rows.start * row) as u64);
@@ -164,13 +167,19 @@ impl Workspace {
             .map(|place| (Binding::Planes, plane(place), 4 * (rows.len() * row) as u64))
             .collect();
         ranges.push((Binding::Load, 0, 4 * load_words as u64));
-        ranges.push((Binding::Stats, 0, 4));
-        let (settled, touched) = self.read(&ranges, |bytes| {
-            let (bytes, touched) = bytes.split_at(bytes.len() - 4);
-            let touched: Vec<u32> = bytemuck::pod_collect_to_vec(touched);
-            (Settled::read(bytes, words, rows), touched[0])
-        })?;
-        Ok((settled, u64::from(touched)))
+        ranges.push((Binding::Stats, 0, 4 * TALLY));
+        self.read(&ranges, |bytes| {
+            let (bytes, tally) = bytes.split_at(bytes.len() - 4 * TALLY as usize);
+            let tally: Vec<u32> = bytemuck::pod_collect_to_vec(tally);
+            let quanta = |word: usize| f64::from(f32::from_bits(tally[word])) * 256.0;
+            let report = StepReport {
+                footprint_cells: u64::from(tally[0]),
+                wet: quanta(1) as u64,
+                thinner: quanta(2) as u64,
+                ..StepReport::default()
+            };
+            (Settled::read(bytes, words, rows), report)
+        })
     }
 
     /// Reads parts of buffers, one after the other: which, from where, how many bytes.

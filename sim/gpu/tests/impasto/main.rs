@@ -7,6 +7,7 @@ mod scene;
 
 mod easel;
 mod footprint;
+mod modes;
 mod stroke;
 mod transport;
 

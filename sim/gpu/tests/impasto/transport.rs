@@ -120,11 +120,19 @@ fn free(grid: &Grid<'_>, scene: &Scene, at: [i64; 2], axis: usize) -> f64 {
     let of = |at: [i64; 2]| {
         grid.touched.get(&at).map(|c| {
             let (depth, cover) = (f64::from(c.depth), f64::from(c.cover));
-            let wet = f64::from(scene.window.total(c.cell as usize))
-                * f64::from(scene.traits.cells_per_quantum);
-            let squish = 1.5f64.min(0.2 / wet.max(1e-6));
+            let total = f64::from(scene.window.total(c.cell as usize));
+            // Paint that the brush does not reach resists nothing.
+            let wet = match c.fraction > 0.0 {
+                true => total * f64::from(scene.traits.cells_per_quantum),
+                false => 0.0,
+            };
+            let thinner = scene.thinner.and_then(|slot| scene.window.plane(slot));
+            let thinner = thinner.map_or(0.0, |plane| f64::from(plane[c.cell as usize]));
+            let thinner = thinner / total.max(1.0);
+            let squish = (1.5 * (1.0 + 4.0 * thinner)).min(0.2 / wet.max(1e-6));
+            let follows = 0.5 * (1.0 - 0.5 * thinner);
             (
-                0.5 * cover * f64::from(c.moved[axis]),
+                follows * cover * f64::from(c.moved[axis]),
                 depth * cover,
                 squish,
             )
@@ -159,6 +167,7 @@ fn paint_follows_the_brush_and_goes_out_of_its_way() {
     let mut moving = 0;
     for seed in 0..8 {
         let mut scene = scene(seed, 0);
+        scene.thinner = [None, Some(2), Some(9)][seed as usize % 3];
         let probe = run(&mut prober, &mut scene, "find_velocity");
         let grid = Grid::new(&probe, &scene);
         let mut worst = 0.0f64;

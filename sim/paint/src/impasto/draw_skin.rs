@@ -1,6 +1,7 @@
 //! The skin of a head in its footprint: triangles over the middles of cells.
 
-use super::footprint::{Footprint, Fragment, Segment};
+use super::drawing::{Line, Piece};
+use super::footprint::Footprint;
 use crate::load::ALONG;
 use crate::model::Step;
 
@@ -61,7 +62,7 @@ impl Footprint {
             let of = corners.map(|corner| corner.at[axis]);
             let low = of[0].min(of[1]).min(of[2]);
             let high = of[0].max(of[1]).max(of[2]);
-            let last = self.size[axis] as f32;
+            let last = self.grid.size[axis] as f32;
             let cell = |edge: f32| (edge + 0.5).clamp(0.0, last) as usize;
             cell(low)..cell(high)
         };
@@ -79,29 +80,23 @@ impl Footprint {
                 }
                 let mix = |of: [f32; 3]| u * of[0] + v * of[1] + w * of[2];
                 let z = mix(corners.map(|corner| corner.at[2]));
-                let fragment = &mut self.fragments[row * self.size[0] + column];
-                if z >= fragment.score {
-                    continue;
-                }
                 let around = mix(corners.map(|corner| corner.place[0]));
                 let along = mix(corners.map(|corner| corner.place[1])) * ALONG as f32;
                 let strip = step.head.strip_around(around);
-                *fragment = Fragment {
-                    score: z,
-                    cover: 1.0,
-                    t: 0.0,
-                    segment: self.segments.len() as u32,
-                };
-                self.segments.push(Segment {
+                let piece = Piece {
                     texel: (strip * ALONG + (along as usize).min(ALONG - 1)) as u32,
-                    along: [0.0; 2],
                     z: [z, 0.0],
-                    bottom: 0.0,
                     moved: [
                         [0, 1].map(|i| mix(corners.map(|corner| corner.moved[i]))),
                         [0.0; 2],
                     ],
-                });
+                    line: Line {
+                        reach: f32::MAX,
+                        ..Line::default()
+                    },
+                    ..Piece::default()
+                };
+                self.drawing.draw_cell(column, row, piece);
             }
         }
     }

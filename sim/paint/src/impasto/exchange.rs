@@ -1,63 +1,201 @@
 //! Stages 4 and 5: paint goes from brush to canvas or from canvas to brush (Baxter 2004, § 6.5).
 //!
-//! Algorithm 3 decides for each cell, once for both sides. Cells that draw on one brush texel have
-//! their demands summed, scaled together where they exceed what it holds, and truncated once.
+//! Algorithm 3 decides for each cell, once for both sides, how much goes over. Where both carry
+//! paint, their films also change places: so a brush that is full, or that carries as much as lies
+//! there, still takes on the colour that it meets. Cells that draw on one brush texel have their
+//! demands summed, scaled together where they exceed what it holds, and truncated once.
+
+use maulstick_num::wide;
 
 use super::footprint::{Contact, Footprint};
 use crate::load::BrushLoad;
-use crate::model::{BrushTraits, Step};
+use crate::model::{BrushTraits, Handling, Step, Transfer};
 use crate::quantum::{CELL_MAX, QUANTA_PER_UNIT, SLOTS};
-use crate::transfer::transfer;
-use crate::window::Window;
+use crate::transfer::{share, swap, transfer};
 
 /// Room for a step. Of the brush's many texels few touch at a time: these are numbered afresh in each
 /// step, so that the others cost nothing.
 #[derive(Clone, Debug, Default)]
 pub struct Exchange {
-    /// Quanta that each contact wants from the brush (positive) or gives to it (negative).
-    wants: Vec<f32>,
+    meetings: Meetings,
+    /// Quanta that each contact wants from the brush, and that it gives to it.
+    wants: [Vec<f32>; 2],
+    /// Its cell.
+    cells: Vec<u32>,
     /// The place of each contact's texel in `texels`.
     places: Vec<u32>,
     /// The texels that touch.
     texels: Vec<u32>,
     /// The place of each texel of the brush in `texels`; [`NOWHERE`] but for those that touch.
     place_of: Vec<u32>,
-    /// Quanta wanted of each texel that touches.
-    drawn: Vec<f32>,
-    /// Quanta offered to each.
-    offered: Vec<f32>,
-    /// Share of its wants that a texel grants, and of its offers that it takes.
-    granted: Vec<[f64; 2]>,
-    before: Vec<u32>,
-    /// Wet quanta that lie on each contact's cell before the exchange.
+    /// Quanta wanted of each texel that touches, and offered to it.
+    asked: Vec<[f32; 2]>,
+    /// Of one paint: what each of these texels gives by quantum that is wanted of it.
+    gives: Vec<f32>,
+    /// Of one paint: quanta on each of these texels.
+    held: Vec<f32>,
+    /// Share of its offers that each of these texels takes.
+    taken: Vec<f32>,
+    /// Share of the wet paint on each contact's cell that goes to the brush.
+    shares: Vec<f32>,
+    /// By how much one paint changes on each of these texels.
+    change: Vec<f32>,
+}
+
+/// [`Meeting`]s, a plane each.
+#[derive(Clone, Debug, Default)]
+struct Meetings {
+    travel: Vec<f32>,
+    cover: Vec<f32>,
+    on_brush: Vec<f32>,
     lying: Vec<f32>,
-    /// Share of these that each contact gives to the brush.
-    shares: Vec<f64>,
+    fraction: Vec<f32>,
+}
+
+impl Meetings {
+    fn of(&mut self, contacts: &[Contact], films: &[u32], traits: &BrushTraits) {
+        let travel = |contact: &Contact| {
+            let [u, v] = contact.moved;
+            (u * u + v * v).sqrt() * traits.cell_per_reference
+        };
+        let on_brush = |contact: &Contact| {
+            films[contact.texel as usize] as f32 * traits.film_units_per_quantum
+        };
+        for plane in [
+            &mut self.travel,
+            &mut self.cover,
+            &mut self.on_brush,
+            &mut self.fraction,
+        ] {
+            plane.clear();
+        }
+        self.travel.extend(contacts.iter().map(travel));
+        self.cover
+            .extend(contacts.iter().map(|contact| contact.cover));
+        self.on_brush.extend(contacts.iter().map(on_brush));
+        self.fraction
+            .extend(contacts.iter().map(|contact| contact.fraction));
+    }
 }
 
 /// The place of a texel that does not touch.
 const NOWHERE: u32 = u32::MAX;
+/// What is shared out of a film that is all used up: so much less that rounding never takes more
+/// than there is.
+const ALL: f32 = 1.0 - 1.0 / 1_048_576.0;
 
-/// Quanta that a contact wants from the brush (positive) or gives to it (negative).
+/// What is known of a contact before the exchange.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Meeting {
+    /// Way of the brush, reference cells.
+    pub travel: f32,
+    /// Share of the cell that is covered, 0 to 1.
+    pub cover: f32,
+    /// The brush's film, units.
+    pub on_brush: f32,
+    /// Wet paint on the cell, quanta.
+    pub lying: f32,
+    /// Share of it that the brush reaches.
+    pub fraction: f32,
+}
+
+/// What a contact wants: quanta from the brush, and to it.
 #[must_use]
-pub fn wanted(contact: &Contact, on_brush: f32, on_canvas: f32, traits: &BrushTraits) -> f32 {
-    let [u, v] = contact.moved;
-    let travel = (u * u + v * v).sqrt() * traits.cell_per_reference;
-    let units = transfer(on_brush, on_canvas * contact.fraction, travel);
-    units * contact.cover * QUANTA_PER_UNIT as f32
+#[inline(always)]
+pub fn wanted(meeting: &Meeting, handling: &Handling) -> [f32; 2] {
+    let quanta = meeting.cover * QUANTA_PER_UNIT as f32;
+    let on_canvas = meeting.lying * (1.0 / QUANTA_PER_UNIT as f32) * meeting.fraction;
+    let (net, swap) = match handling.transfer {
+        Transfer::Marker { flow } => (flow * meeting.travel, 0.0),
+        _ => {
+            let share = share(meeting.travel);
+            let net = transfer(meeting.on_brush, on_canvas, meeting.travel, share);
+            (net, swap(meeting.on_brush, on_canvas, share))
+        }
+    };
+    let most = least(handling.most, CELL_MAX as f32);
+    let room = positive(most - meeting.lying);
+    let given = least((positive(net) + swap) * quanta, room);
+    let taken = least((positive(-net) + swap) * quanta, meeting.lying);
+    [given.floor(), taken.floor()]
+}
+
+#[inline(always)]
+fn least(a: f32, b: f32) -> f32 {
+    if a < b { a } else { b }
+}
+
+#[inline(always)]
+fn positive(a: f32) -> f32 {
+    if a > 0.0 { a } else { 0.0 }
+}
+
+wide! {
+    /// What all contacts want: quanta from the brush, and to it.
+    fn want(meetings: &Meetings, handling: &Handling, wants: &mut [Vec<f32>; 2]) {
+        let count = meetings.travel.len();
+        let [given, taken] = wants;
+        for plane in [&mut *given, &mut *taken] {
+            plane.clear();
+            plane.resize(count, 0.0);
+        }
+        let (given, taken) = (&mut given[..count], &mut taken[..count]);
+        let (travel, cover) = (&meetings.travel[..count], &meetings.cover[..count]);
+        let (on_brush, lying) = (&meetings.on_brush[..count], &meetings.lying[..count]);
+        let fraction = &meetings.fraction[..count];
+        for i in 0..count {
+            let meeting = Meeting {
+                travel: travel[i],
+                cover: cover[i],
+                on_brush: on_brush[i],
+                lying: lying[i],
+                fraction: fraction[i],
+            };
+            [given[i], taken[i]] = wanted(&meeting, handling);
+        }
+    }
+}
+
+wide! {
+    /// One paint, both ways: `change` is what comes onto each texel.
+    fn swap_paint(
+        exchange: &Exchange,
+        cells: &[u32],
+        gives: &[f32],
+        plane: &mut [f32],
+        change: &mut [f32],
+    ) {
+        let asked = exchange.wants[0].iter().zip(&exchange.shares);
+        let ways = cells.iter().zip(&exchange.places);
+        for ((cell, place), (given, share)) in ways.zip(asked) {
+            let count = &mut plane[*cell as usize];
+            let place = *place as usize;
+            let given = (given * gives[place]).floor();
+            let taken = (*count * share).floor();
+            *count += given - taken;
+            change[place] += taken - given;
+        }
+    }
 }
 
 impl Exchange {
-    /// Exchanges the paint of one step.
-    pub fn run(&mut self, footprint: &Footprint, step: &mut Step<'_>) {
+    /// Exchanges the paint of one step; by slot, what came onto the canvas from nowhere.
+    pub fn run(&mut self, footprint: &Footprint, step: &mut Step<'_>) -> [i64; SLOTS] {
         self.find_texels(footprint, step.load.texels());
         self.demand(footprint, step);
-        self.grant(step.load, &step.traits);
+        let sponge = step.handling.transfer == Transfer::Sponge;
+        self.grant(step.load, &step.traits, sponge);
+        let mut from_nowhere = [0; SLOTS];
         for slot in 0..SLOTS {
-            self.deposit(footprint, slot, step.load, step.window);
+            let change = self.exchange(slot, step);
+            if sponge {
+                from_nowhere[slot] = -change;
+            } else {
+                self.note_on_brush(slot, step.load);
+            }
         }
-        self.take_up(footprint, step.load, step.window);
         step.load.count_films_of(&self.texels);
+        from_nowhere
     }
 
     fn find_texels(&mut self, footprint: &Footprint, texels: usize) {
@@ -76,104 +214,88 @@ impl Exchange {
         }
     }
 
+    /// What each contact wants of its texel and offers to it.
     fn demand(&mut self, footprint: &Footprint, step: &Step<'_>) {
-        for plane in [&mut self.drawn, &mut self.offered] {
-            plane.clear();
-            plane.resize(self.texels.len(), 0.0);
+        let contacts = &footprint.contacts;
+        self.cells.clear();
+        self.cells
+            .extend(contacts.iter().map(|contact| contact.cell));
+        step.window.totals(&self.cells, &mut self.meetings.lying);
+        self.meetings.of(contacts, step.load.films(), &step.traits);
+        want(&self.meetings, &step.handling, &mut self.wants);
+        self.asked.clear();
+        self.asked.resize(self.texels.len(), [0.0; 2]);
+        let [given, taken] = &self.wants;
+        for (place, (given, taken)) in self.places.iter().zip(given.iter().zip(taken)) {
+            let asked = &mut self.asked[*place as usize];
+            asked[0] += given;
+            asked[1] += taken;
         }
-        self.wants.clear();
-        let to_units = 1.0 / QUANTA_PER_UNIT as f32;
-        let cells = footprint.contacts.iter().map(|contact| contact.cell);
-        step.window.totals(cells, &mut self.lying);
-        let contacts = footprint.contacts.iter().zip(&self.places);
-        for ((contact, place), lying) in contacts.zip(&self.lying) {
-            let place = *place as usize;
-            let film =
-                step.load.film(contact.texel as usize) as f32 * step.traits.film_units_per_quantum;
-            let wants = wanted(contact, film, lying * to_units, &step.traits);
-            let room = CELL_MAX as f32 - lying;
-            let wants = (wants.clamp(-*lying, room) as i32) as f32;
-            if wants > 0.0 {
-                self.drawn[place] += wants;
+    }
+
+    /// Scales what is wanted of each texel, and offered to it, to what it has and has room for.
+    fn grant(&mut self, load: &BrushLoad, traits: &BrushTraits, sponge: bool) {
+        let most = (traits.film_full * BrushTraits::FILM_OVER) as f32;
+        self.taken.clear();
+        for (texel, [drawn, offered]) in self.texels.iter().zip(&mut self.asked) {
+            let film = load.film(*texel as usize) as f32;
+            let granted = if *drawn > film && !sponge {
+                ALL * film / *drawn
             } else {
-                self.offered[place] -= wants;
-            }
-            self.wants.push(wants);
+                1.0
+            };
+            let room = (most - film + *drawn * granted).max(0.0);
+            let taken = if *offered > room && !sponge {
+                room / *offered
+            } else {
+                1.0
+            };
+            // By quantum of all paints in the film, so that a paint's share comes out.
+            *drawn = if film > 0.0 { granted / film } else { 0.0 };
+            self.taken.push(taken);
         }
-    }
-
-    fn grant(&mut self, load: &BrushLoad, traits: &BrushTraits) {
-        self.granted.clear();
-        let most = traits.film_full * BrushTraits::FILM_OVER;
-        let share = |wanted: f32, there: f64| {
-            let wanted = f64::from(wanted);
-            if wanted > there { there / wanted } else { 1.0 }
-        };
-        let asked = self.drawn.iter().zip(&self.offered);
-        for (texel, (drawn, offered)) in self.texels.iter().zip(asked) {
-            let film = f64::from(load.film(*texel as usize));
-            self.granted
-                .push([share(*drawn, film), share(*offered, (most - film).max(0.0))]);
-        }
-    }
-
-    /// Brush to canvas, one slot.
-    fn deposit(
-        &mut self,
-        footprint: &Footprint,
-        slot: usize,
-        load: &mut BrushLoad,
-        window: &mut Window,
-    ) {
-        let Some((film, totals)) = load.films_mut(slot) else {
-            return;
-        };
-        self.before.clear();
-        let there = self.texels.iter().map(|texel| film[*texel as usize]);
-        self.before.extend(there);
-        if self.before.iter().all(|count| *count == 0) {
-            return;
-        }
-        let plane = window.plane_mut(slot);
-        let contacts = footprint.contacts.iter().zip(&self.wants);
-        for ((contact, wants), place) in contacts.zip(&self.places) {
-            let (texel, before) = (contact.texel as usize, self.before[*place as usize]);
-            if *wants <= 0.0 || before == 0 {
-                continue;
-            }
-            // A share of what was there before the step, whatever other cells have drawn since.
-            let granted = self.granted[*place as usize][0];
-            let share = f64::from(before) / f64::from(totals[texel]) * granted;
-            let moved = ((f64::from(*wants) * share) as u32).min(film[texel]);
-            film[texel] -= moved;
-            plane[contact.cell as usize] += moved as f32;
-        }
-    }
-
-    /// Canvas to brush, all slots. Each cell has one contact, so what lies on those that give is what lay
-    /// there before.
-    fn take_up(&mut self, footprint: &Footprint, load: &mut BrushLoad, window: &mut Window) {
         self.shares.clear();
-        let asked = self.wants.iter().zip(&self.places).zip(&self.lying);
-        self.shares.extend(asked.map(|((wants, place), lying)| {
-            let gives = *wants < 0.0 && *lying > 0.0;
-            let granted = self.granted[*place as usize][1];
-            match gives {
-                true => f64::from(-*wants) * granted / f64::from(*lying),
-                false => 0.0,
-            }
+        let taken = &self.taken;
+        let offers = self.wants[1].iter().zip(&self.places);
+        let offers = offers.zip(&self.meetings.lying);
+        self.shares.extend(offers.map(|((offered, place), lying)| {
+            let goes = offered * taken[*place as usize];
+            if *lying > 0.0 { goes / lying } else { 0.0 }
         }));
-        if self.shares.iter().all(|share| *share == 0.0) {
-            return;
+    }
+
+    /// One slot, both ways; the quanta that the brush gained, which are noted in `change`.
+    fn exchange(&mut self, slot: usize, step: &mut Step<'_>) -> i64 {
+        self.held.clear();
+        match step.load.film_of(slot) {
+            Some(film) => {
+                let there = self.texels.iter().map(|texel| film[*texel as usize] as f32);
+                self.held.extend(there);
+            }
+            None => self.held.resize(self.texels.len(), 0.0),
         }
-        for (slot, plane) in window.planes_mut() {
-            for (contact, share) in footprint.contacts.iter().zip(&self.shares) {
-                let held = &mut plane[contact.cell as usize];
-                let moved = (f64::from(*held) * share) as u32;
-                if moved > 0 {
-                    *held -= moved as f32;
-                    load.add_film(slot, contact.texel as usize, moved);
-                }
+        let on_brush = self.held.iter().any(|count| *count > 0.0);
+        self.change.clear();
+        self.change.resize(self.texels.len(), 0.0);
+        if !on_brush && !step.window.has(slot) {
+            return 0;
+        }
+        let held = self.held.iter().zip(&self.asked);
+        self.gives.clear();
+        self.gives
+            .extend(held.map(|(held, [drawn, _])| held * drawn));
+        let mut change = std::mem::take(&mut self.change);
+        let gives = std::mem::take(&mut self.gives);
+        let plane = step.window.plane_mut(slot);
+        swap_paint(self, &self.cells, &gives, plane, &mut change);
+        (self.change, self.gives) = (change, gives);
+        self.change.iter().map(|change| *change as i64).sum()
+    }
+
+    fn note_on_brush(&self, slot: usize, load: &mut BrushLoad) {
+        for (texel, change) in self.texels.iter().zip(&self.change) {
+            if *change != 0.0 {
+                load.change_film(slot, *texel as usize, *change as i32);
             }
         }
     }

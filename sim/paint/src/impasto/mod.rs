@@ -9,12 +9,15 @@
 //! | [`advection`] | 3: the paint goes there, counted |
 //! | [`exchange`] | 4 and 5: Algorithm 3, both ways |
 //! | [`flow`] | paint moves within the head |
+//! | [`modes`] | the sampler and the vacuum cleaner, in place of 2 to 5 |
 
 pub mod advection;
 mod draw_skin;
+mod drawing;
 pub mod exchange;
 pub mod flow;
 pub mod footprint;
+pub mod modes;
 pub mod step;
 pub mod velocity;
 

@@ -1,16 +1,18 @@
 //! The whole step.
 
-use super::advection::Advection;
+use super::advection::{Advection, Axis};
 use super::exchange::Exchange;
 use super::flow::flow;
 use super::footprint::Footprint;
-use super::velocity::velocity;
-use crate::model::{PaintModel, Step, StepReport};
+use super::modes::{sample, vacuum};
+use super::velocity::Faces;
+use crate::model::{PaintModel, Step, StepReport, Transfer};
 
 /// The paint model `impasto`, with room for its stages.
 #[derive(Debug, Default)]
 pub struct Impasto {
     footprint: Footprint,
+    faces: Faces,
     advection: Advection,
     exchange: Exchange,
 }
@@ -26,14 +28,35 @@ impl PaintModel for Impasto {
         if footprint.contacts.is_empty() {
             return StepReport::default();
         }
-        velocity(footprint);
-        self.advection.run(footprint, step.window);
-        self.exchange.run(footprint, step);
-        flow(footprint, step);
+        let mut report = footprint.report(step);
+        match step.handling.transfer {
+            Transfer::Sampler => {
+                report.from_nowhere = sample(footprint, step);
+                return report;
+            }
+            Transfer::Vacuum => report.lifted = vacuum(footprint, step),
+            _ => {
+                if step.handling.push {
+                    self.faces.find(footprint, step);
+                    let first = if step.load.steps() % 2 == 0 {
+                        Axis::X
+                    } else {
+                        Axis::Y
+                    };
+                    self.advection.run(
+                        footprint.around,
+                        &self.faces,
+                        step.window,
+                        first,
+                        step.stain,
+                    );
+                }
+                report.from_nowhere = self.exchange.run(footprint, step);
+                flow(footprint, step);
+            }
+        }
         footprint.note_left(step);
         step.window.touch(footprint.reached());
-        StepReport {
-            footprint_cells: footprint.contacts.len() as u64,
-        }
+        report
     }
 }

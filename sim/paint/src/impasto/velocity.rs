@@ -2,9 +2,15 @@
 //!
 //! Paint sticks to brush and canvas, so on the whole it goes half as far as the bristle above it,
 //! whose motion holds the turning of the brush. What the bristles press aside flows down the
-//! gradient of the penetration: −c·∇p.
+//! gradient of the penetration: −c·∇p. Both are found for the faces between cells, where paint goes
+//! over: so the squish from a cell into the next is told by these two alone.
+//!
+//! Thinned paint slips under the bristles and gives way sooner.
 
-use super::footprint::Footprint;
+use maulstick_num::wide;
+
+use super::footprint::{Contact, Footprint};
+use crate::model::Step;
 
 /// Share of the brush's motion that paint follows.
 pub const FOLLOWS: f32 = 0.5;
@@ -13,39 +19,144 @@ pub const SQUISH: f32 = 1.5;
 /// The squish diffuses paint by c·h in a step, h its height in cells; explicit steps are stable up to
 /// about this, so c is smaller in thicker paint.
 pub const STABLE: f32 = 0.2;
+/// Share of its grip that paint of thinner alone has lost.
+pub const SLIP: f32 = 0.5;
+/// By how much more of the penetration thinner alone flows.
+pub const EASE: f32 = 4.0;
 
-/// c under a height of wet paint in cells.
+/// c under a height of wet paint in cells, where `thinner` is a share of it.
 #[must_use]
-pub fn squish(wet: f32) -> f32 {
-    SQUISH.min(STABLE / wet.max(1e-6))
+#[inline]
+pub fn squish(wet: f32, thinner: f32) -> f32 {
+    (SQUISH * (1.0 + EASE * thinner)).min(STABLE / wet.max(1e-6))
 }
 
-/// Sets the velocity of each contact; no component exceeds one cell a step.
-pub fn velocity(footprint: &mut Footprint) {
-    let [width, height] = footprint.size;
-    let depth = &mut footprint.depth;
-    depth.clear();
-    depth.resize(width * height, 0.0);
-    for contact in &footprint.contacts {
-        depth[contact.local as usize] = contact.depth * contact.cover;
+/// Share of the brush's motion that paint with a share of thinner follows.
+#[must_use]
+#[inline]
+pub fn follows(thinner: f32) -> f32 {
+    FOLLOWS * (1.0 - SLIP * thinner)
+}
+
+/// What the contacts do to the paint, and how much of a cell goes through its faces in one step, on
+/// the cells [around](Footprint::around) the footprint.
+#[derive(Clone, Debug, Default)]
+pub struct Faces {
+    /// Through the right face of each cell, cells; what goes left is negative.
+    pub right: Vec<f32>,
+    /// Through its upper face.
+    pub above: Vec<f32>,
+    /// Motion of the paint by the bristles, x and y.
+    push: [Vec<f32>; 2],
+    /// Penetration.
+    depth: Vec<f32>,
+    /// c; 0 where nothing touches.
+    squish: Vec<f32>,
+    /// What would leave a cell along one axis, at least 1.
+    leaves: Vec<f32>,
+}
+
+wide! {
+    fn through_faces(faces: &mut Faces, width: usize) {
+        faces.through(0, 1);
+        faces.limit(width, 1);
+        faces.through(1, width);
+        faces.limit(width, width);
     }
-    for contact in &mut footprint.contacts {
-        let local = contact.local as usize;
-        let (x, y) = (local % width, local / width);
-        let at = |inside: bool, place: usize| if inside { depth[place] } else { 0.0 };
-        let slope = [
-            at(x + 1 < width, local + 1) - at(x > 0, local.wrapping_sub(1)),
-            at(y + 1 < height, local + width) - at(y > 0, local.wrapping_sub(width)),
-        ];
-        let wet = if contact.fraction > 0.0 {
-            contact.depth / contact.fraction
+}
+
+impl Faces {
+    /// Finds the velocities; no cell loses more than it holds along either axis.
+    pub fn find(&mut self, footprint: &Footprint, step: &Step<'_>) {
+        let [width, height] = footprint.around.size;
+        let [push_x, push_y] = &mut self.push;
+        for plane in [push_x, push_y, &mut self.depth, &mut self.squish] {
+            plane.clear();
+            plane.resize(width * height, 0.0);
+        }
+        for (contact, quanta) in footprint.contacts.iter().zip(&footprint.wet) {
+            let place = contact.local as usize;
+            let thinner = thinner_of(contact, *quanta, step);
+            let wet = match contact.fraction > 0.0 {
+                true => contact.depth / contact.fraction,
+                false => 0.0,
+            };
+            let follows = follows(thinner) * contact.cover;
+            self.push[0][place] = follows * contact.moved[0];
+            self.push[1][place] = follows * contact.moved[1];
+            self.depth[place] = contact.depth * contact.cover;
+            self.squish[place] = squish(wet, thinner);
+        }
+        through_faces(self, width);
+    }
+
+    /// Velocities through the faces between cells that are `next` apart.
+    #[inline(always)]
+    fn through(&mut self, axis: usize, next: usize) {
+        let faces = if axis == 0 {
+            &mut self.right
         } else {
-            0.0
+            &mut self.above
         };
-        let squish = squish(wet);
-        contact.velocity = [0, 1].map(|i| {
-            let follows = FOLLOWS * contact.cover * contact.moved[i];
-            (follows - 0.5 * squish * slope[i]).clamp(-1.0, 1.0)
-        });
+        let cells = self.depth.len();
+        faces.clear();
+        faces.resize(cells, 0.0);
+        if cells < next {
+            return;
+        }
+        let push = self.push[axis].iter().zip(&self.push[axis][next..]);
+        let depth = self.depth.iter().zip(&self.depth[next..]);
+        let squish = self.squish.iter().zip(&self.squish[next..]);
+        let sides = push.zip(depth).zip(squish);
+        for (face, (((b, b_next), (p, p_next)), (c, c_next))) in faces.iter_mut().zip(sides) {
+            let (touched, next_touched) = (*c > 0.0, *c_next > 0.0);
+            let both = touched & next_touched;
+            let push = if both { 0.5 * (b + b_next) } else { b + b_next };
+            let c = if both { c.min(*c_next) } else { c.max(*c_next) };
+            let v = (push + c * (p - p_next)).clamp(-1.0, 1.0);
+            // Paint goes only where something moves it.
+            let moved = if v > 0.0 { touched } else { next_touched };
+            *face = if moved { v } else { 0.0 };
+        }
+    }
+
+    /// Slows what leaves a cell through both faces of an axis to what it holds.
+    #[inline(always)]
+    fn limit(&mut self, width: usize, next: usize) {
+        let faces = if next == 1 {
+            &mut self.right
+        } else {
+            &mut self.above
+        };
+        // The last column has its neighbour in the row above: there is no face between them.
+        if next == 1 {
+            for row in faces.chunks_exact_mut(width.max(1)) {
+                if let Some(last) = row.last_mut() {
+                    *last = 0.0;
+                }
+            }
+        }
+        self.leaves.clear();
+        self.leaves.extend(faces.iter().map(|face| face.max(0.0)));
+        let before = self.leaves.iter_mut().skip(next).zip(&*faces);
+        before.for_each(|(leaves, face)| *leaves -= face.min(0.0));
+        self.leaves
+            .iter_mut()
+            .for_each(|leaves| *leaves = leaves.max(1.0));
+        let donors = self
+            .leaves
+            .iter()
+            .zip(&self.leaves[next.min(self.leaves.len())..]);
+        for (face, (cell, beside)) in faces.iter_mut().zip(donors) {
+            *face /= if *face > 0.0 { *cell } else { *beside };
+        }
+    }
+}
+
+/// Share of thinner in the wet paint under a contact.
+fn thinner_of(contact: &Contact, wet: f32, step: &Step<'_>) -> f32 {
+    match step.thinner.and_then(|slot| step.window.plane(slot)) {
+        Some(plane) if wet > 0.0 => plane[contact.cell as usize] / wet,
+        _ => 0.0,
     }
 }

@@ -4,7 +4,7 @@
 use std::sync::Arc;
 
 use super::{PaintRefusal, Painting};
-use crate::model::{BrushTraits, PaintModel};
+use crate::model::{BrushTraits, PaintModel, StepReport};
 
 /// Deferred steps are settled after so many at the latest. How full the brush is, is seen just then:
 /// when somebody looks at the painting must not matter.
@@ -99,11 +99,16 @@ impl Painting {
             let report = self.model.settle(window, Arc::make_mut(&mut track.load));
             let sheet = &mut self.sheets[*sheet];
             sheet.top = sheet.top.max(window.top());
-            self.footprint_cells += report.footprint_cells;
+            self.note(&report);
         }
         if let Some(what) = self.model.take_fall() {
             self.fall.found = Some(what);
         }
+    }
+
+    /// Notes what steps did.
+    pub(super) fn note(&mut self, report: &StepReport) {
+        self.footprint_cells += report.footprint_cells;
     }
 
     /// Whether a sheet has wells: those are tended on the CPU, step by step.

@@ -8,8 +8,9 @@ use super::backend::Deferral;
 use super::{PaintRefusal, Painting};
 use crate::head::{Scale, Waypoint, low_bounds};
 use crate::history::OpenStep;
+use crate::impasto::advection::STAIN;
 use crate::load::Half;
-use crate::model::{BrushTraits, Step, Sweep};
+use crate::model::{BrushTraits, Handling, Step, Sweep};
 use crate::path::PathStepper;
 use crate::quantum::QUANTUM_M;
 use crate::store::TileRect;
@@ -169,6 +170,9 @@ impl Painting {
             bounds: (from, to),
             load: Arc::make_mut(&mut track.load),
             traits,
+            handling: Handling::default(),
+            stain: STAIN,
+            thinner: None,
         };
         let report = if deferred {
             self.model.step(&mut step)
@@ -176,7 +180,7 @@ impl Painting {
             self.model.step_now(&mut step)
         };
         self.sheets[sheet].top = self.sheets[sheet].top.max(window.top());
-        self.footprint_cells += report.footprint_cells;
+        self.note(&report);
         if deferred {
             self.defer(name);
         }

@@ -5,8 +5,9 @@ use std::collections::BTreeMap;
 use maulstick_paint::impasto::exchange::Exchange;
 use maulstick_paint::impasto::footprint::{Contact, Footprint};
 use maulstick_paint::load::BrushLoad;
-use maulstick_paint::model::BrushTraits;
+use maulstick_paint::model::{BrushTraits, Handling, Transfer};
 use maulstick_paint::quantum::{QUANTA_PER_UNIT, SLOTS};
+use maulstick_paint::transfer::{SWAP, SWAP_FILM};
 use maulstick_paint::window::Window;
 
 use crate::scene::{Scene, lying};
@@ -27,6 +28,7 @@ struct Expected {
     films: BTreeMap<(usize, usize), [f64; 2]>,
     deposits: usize,
     uptakes: usize,
+    swaps: usize,
     overdrawn: usize,
     overfilled: usize,
 }
@@ -41,85 +43,99 @@ fn on(window: &Window, slot: usize, cell: usize) -> f64 {
     plane.map_or(0.0, |(_, plane)| f64::from(plane[cell]))
 }
 
-/// Quanta that a cell wants of its texel.
-fn wants(c: &Contact, window: &Window, load: &BrushLoad, traits: &BrushTraits) -> f64 {
+/// Quanta that a cell wants of its texel, and offers to it.
+fn wants(
+    c: &Contact,
+    window: &Window,
+    load: &BrushLoad,
+    traits: &BrushTraits,
+    handling: &Handling,
+) -> [f64; 2] {
     let cell = c.cell as usize;
     let lying: f64 = (0..SLOTS).map(|slot| on(window, slot, cell)).sum();
     let [u, v] = c.moved.map(f64::from);
     let travel = (u * u + v * v).sqrt() * f64::from(traits.cell_per_reference);
     let a_b = film(load, c.texel as usize) * f64::from(traits.film_units_per_quantum);
     let a_c = lying / QUANTA_PER_UNIT * f64::from(c.fraction);
-    let units = algorithm_3(a_b, a_c, travel) * f64::from(c.cover);
-    (units * QUANTA_PER_UNIT).clamp(-lying, QUANTA_PER_UNIT - lying)
+    let share = 1.0 - maulstick_num::powf(0.9, travel);
+    let mut net = algorithm_3(a_b, a_c, travel);
+    let mut both = f64::from(SWAP) * share * a_b.min(a_c).min(f64::from(SWAP_FILM));
+    if let Transfer::Marker { flow } = handling.transfer {
+        (net, both) = (f64::from(flow) * travel, 0.0);
+    }
+    let quanta = |units: f64| units * f64::from(c.cover) * QUANTA_PER_UNIT;
+    let room = (QUANTA_PER_UNIT.min(f64::from(handling.most)) - lying).max(0.0);
+    [
+        quanta(net.max(0.0) + both).min(room),
+        quanta((-net).max(0.0) + both).min(lying),
+    ]
 }
 
 fn oracle(contacts: &[Contact], scene: &Scene) -> Expected {
     let (window, load, traits) = (&scene.window, &scene.load, &scene.traits);
-    let wants: Vec<f64> = contacts
+    let sponge = scene.handling.transfer == Transfer::Sponge;
+    let wants: Vec<[f64; 2]> = contacts
         .iter()
-        .map(|c| wants(c, window, load, traits))
+        .map(|c| wants(c, window, load, traits, &scene.handling))
         .collect();
     // Demand and offer of each texel, and from how many cells they come.
     let mut demand = BTreeMap::<u32, [f64; 3]>::new();
-    for (c, wants) in contacts.iter().zip(&wants) {
+    for (c, [given, taken]) in contacts.iter().zip(&wants) {
         let sums = demand.entry(c.texel).or_default();
-        sums[0] += wants.max(0.0);
-        sums[1] += (-wants).max(0.0);
+        sums[0] += given;
+        sums[1] += taken;
         sums[2] += 1.0;
     }
     let mut expected = Expected::default();
-    for (c, wants) in contacts.iter().zip(&wants) {
+    for (c, [given, taken]) in contacts.iter().zip(&wants) {
         let (cell, texel) = (c.cell as usize, c.texel as usize);
         let [drawn, offered, sharers] = demand[&c.texel];
         let there = film(load, texel);
-        let room = (traits.film_full * BrushTraits::FILM_OVER - there).max(0.0);
-        let (sum, limit) = if *wants > 0.0 {
-            (drawn, there)
-        } else {
-            (offered, room)
-        };
-        let granted = if sum > limit { limit / sum } else { 1.0 };
-        expected.deposits += usize::from(*wants > 1.0);
-        expected.uptakes += usize::from(*wants < -1.0);
-        expected.overdrawn += usize::from(*wants > 1.0 && granted < 1.0 && there > 0.0);
-        expected.overfilled += usize::from(*wants < -1.0 && granted < 1.0 && room > 0.0);
+        let mut granted = if drawn > there { there / drawn } else { 1.0 };
+        let full = traits.film_full * BrushTraits::FILM_OVER;
+        let room = (full - there + drawn * granted).max(0.0);
+        let mut taken_in = if offered > room { room / offered } else { 1.0 };
+        if sponge {
+            (granted, taken_in) = (1.0, 1.0);
+        }
+        expected.deposits += usize::from(*given > *taken + 1.0);
+        expected.uptakes += usize::from(*taken > *given + 1.0);
+        expected.swaps += usize::from(*given > 1.0 && *taken > 1.0);
+        expected.overdrawn += usize::from(*given > 1.0 && granted < 1.0 && there > 0.0);
+        expected.overfilled += usize::from(*taken > 1.0 && taken_in < 1.0 && room > 0.0);
         let lying: f64 = (0..SLOTS).map(|slot| on(window, slot, cell)).sum();
         for slot in 0..SLOTS {
             let of_film = load
                 .film_of(slot)
                 .map_or(0.0, |film| f64::from(film[texel]));
             let of_cell = on(window, slot, cell);
-            let share = if *wants > 0.0 {
-                of_film / there.max(1.0)
-            } else {
-                of_cell / lying.max(1.0)
-            };
-            let moved = wants * granted * share;
+            let to_canvas = given * granted * of_film / there.max(1.0);
+            let to_brush = taken * taken_in * of_cell / lying.max(1.0);
             // The demand is truncated and so is what moves; a sum of truncated demands is short of
-            // up to a quantum from each cell that shares the texel. Single precision adds 10⁻⁶.
-            let shared = if granted < 1.0 {
-                sharers / sum * wants.abs()
-            } else {
-                0.0
+            // up to a quantum from each cell that shares the texel, and what a film has room for
+            // changes with both. Single precision adds 10⁻⁶.
+            let shared = |granted: f64, sum: f64, own: f64| match granted < 1.0 {
+                true => 2.0 * sharers / sum * own,
+                false => 0.0,
             };
-            let bound = if share > 0.0 {
-                2.0 + shared + 2e-6 * moved.abs()
-            } else {
-                0.0
+            let off = |moved: f64, shared: f64| match moved > 0.0 {
+                true => 2.0 + shared + 4e-6 * moved,
+                false => 0.0,
             };
+            let bound = off(to_canvas, shared(granted, drawn, *given))
+                + off(to_brush, shared(taken_in, offered, *taken));
             let put =
                 |to: &mut [f64; 2], moved: f64| (to[0], to[1]) = (to[0] + moved, to[1] + bound);
+            let onto = to_canvas - to_brush;
             put(
                 expected.cells.entry((slot, cell)).or_insert([of_cell, 0.0]),
-                moved,
+                onto,
             );
-            put(
-                expected
-                    .films
-                    .entry((slot, texel))
-                    .or_insert([of_film, 0.0]),
-                -moved,
-            );
+            let film = expected.films.entry((slot, texel));
+            let film = film.or_insert([of_film, 0.0]);
+            if !sponge {
+                put(film, -onto);
+            }
         }
     }
     expected
@@ -148,18 +164,32 @@ fn crowd(contacts: &mut [Contact]) {
 #[test]
 fn paint_goes_both_ways_as_algorithm_3_says() {
     let mut seen = Expected::default();
-    for seed in 0..24 {
+    for seed in 0..32 {
         let mut scene = Scene::new(seed);
         let mut footprint = Footprint::default();
         footprint.find(&mut scene.step());
+        scene.handling.transfer = match seed {
+            0..24 => Transfer::Paint,
+            24..28 => Transfer::Sponge,
+            _ => Transfer::Marker { flow: 0.0004 },
+        };
+        if seed % 4 == 0 {
+            scene.handling.most = 60_000.0;
+        }
         if seed % 2 == 1 {
             crowd(&mut footprint.contacts);
             scene.traits.film_full *= 0.05;
         }
         let before = scene.counts();
         let expected = oracle(&footprint.contacts, &scene);
-        Exchange::default().run(&footprint, &mut scene.step());
-        assert_eq!(scene.counts(), before, "scene {seed}");
+        let from_nowhere = Exchange::default().run(&footprint, &mut scene.step());
+        let after = scene.counts();
+        for slot in 0..SLOTS {
+            let came = after[slot] as i64 - before[slot] as i64;
+            assert_eq!(came, from_nowhere[slot], "scene {seed}");
+        }
+        let sponge = scene.handling.transfer == Transfer::Sponge;
+        assert_eq!(sponge, from_nowhere != [0; SLOTS], "scene {seed}");
         lying(&scene.window);
         assert!(agrees(&scene, &expected), "scene {seed}");
         for texel in 0..scene.load.texels() {
@@ -168,6 +198,7 @@ fn paint_goes_both_ways_as_algorithm_3_says() {
         }
         seen.deposits += expected.deposits;
         seen.uptakes += expected.uptakes;
+        seen.swaps += expected.swaps;
         seen.overdrawn += expected.overdrawn;
         seen.overfilled += expected.overfilled;
         let most = expected
@@ -185,6 +216,7 @@ fn paint_goes_both_ways_as_algorithm_3_says() {
         seen.deposits,
         seen.uptakes
     );
+    assert!(seen.swaps > 1000, "{}", seen.swaps);
     assert!(
         seen.overdrawn > 20 && seen.overfilled > 20,
         "{} {}",

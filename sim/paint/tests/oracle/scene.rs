@@ -3,8 +3,9 @@
 
 use maulstick_brush::head::STATIONS;
 use maulstick_brush::{BrushFile, Head, HeadPose};
+use maulstick_paint::impasto::advection::STAIN;
 use maulstick_paint::load::{ALONG, BrushLoad};
-use maulstick_paint::model::{BrushTraits, Step, Sweep};
+use maulstick_paint::model::{BrushTraits, Handling, Step, Sweep};
 use maulstick_paint::quantum::{Counts, SLOTS};
 use maulstick_paint::relief::Relief;
 use maulstick_paint::store::TileStore;
@@ -63,6 +64,8 @@ pub(crate) struct Scene {
     pub(crate) load: BrushLoad,
     pub(crate) traits: BrushTraits,
     pub(crate) bounds: ([i64; 2], [i64; 2]),
+    pub(crate) handling: Handling,
+    pub(crate) thinner: Option<usize>,
 }
 
 impl Scene {
@@ -87,6 +90,8 @@ impl Scene {
             load,
             traits,
             bounds,
+            handling: Handling::default(),
+            thinner: None,
         }
     }
 
@@ -101,6 +106,9 @@ impl Scene {
             bounds: self.bounds,
             load: &mut self.load,
             traits: self.traits,
+            handling: self.handling,
+            stain: STAIN,
+            thinner: self.thinner,
         }
     }
 

@@ -4,8 +4,9 @@ use maulstick_brush::{BrushFile, Head, HeadPose};
 use maulstick_num::geometry::{Rigid, rotation};
 use maulstick_paint::head::{Scale, Waypoint, low_bounds};
 use maulstick_paint::impasto::Impasto;
+use maulstick_paint::impasto::advection::STAIN;
 use maulstick_paint::load::{BrushLoad, Half};
-use maulstick_paint::model::{BrushTraits, PaintModel, Step, StepReport, Sweep};
+use maulstick_paint::model::{BrushTraits, Handling, PaintModel, Step, StepReport, Sweep};
 use maulstick_paint::path::PathStepper;
 use maulstick_paint::quantum::{Counts, add};
 use maulstick_paint::relief::Relief;
@@ -87,6 +88,9 @@ impl Bench {
             bounds,
             load: &mut self.load,
             traits: self.traits,
+            handling: Handling::default(),
+            stain: STAIN,
+            thinner: None,
         });
         window.commit(&mut self.store, &mut self.versions, |_, _| {});
         window.close(&mut self.store);
@@ -310,6 +314,9 @@ fn a_step_without_contact_changes_nothing() {
                 bounds: ([-64; 2], [1024; 2]),
                 load: &mut bench.load,
                 traits: bench.traits,
+                handling: Handling::default(),
+                stain: STAIN,
+                thinner: None,
             });
             assert_eq!(report, StepReport::default());
         }

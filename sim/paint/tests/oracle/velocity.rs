@@ -1,57 +1,109 @@
-//! Stage 2: half the brush's motion, and −c·∇p by central differences.
+//! Stage 2: half the brush's motion and −c·∇p, through the faces between cells.
 
 use std::collections::BTreeMap;
 
-use maulstick_paint::impasto::footprint::Footprint;
-use maulstick_paint::impasto::velocity::{FOLLOWS, SQUISH, STABLE, velocity};
+use maulstick_paint::impasto::footprint::{Contact, Footprint};
+use maulstick_paint::impasto::velocity::{EASE, FOLLOWS, Faces, SLIP, SQUISH, STABLE};
+use maulstick_paint::window::Window;
 
 use crate::scene::Scene;
 
-/// Five operations on numbers of at most a few cells, each rounded to 2⁻²⁴ of its result.
-const TOLERANCE: f64 = 2e-6;
+/// Ten operations on numbers of at most a few cells, each rounded to 2⁻²⁴ of its result.
+const TOLERANCE: f64 = 4e-6;
 
-fn oracle(footprint: &Footprint) -> Vec<[f64; 2]> {
-    let [width, height] = footprint.size.map(|cells| cells as i64);
-    let place = |local: u32| (i64::from(local) % width, i64::from(local) / width);
-    let pressed: BTreeMap<(i64, i64), f64> = footprint
-        .contacts
-        .iter()
-        .map(|c| (place(c.local), f64::from(c.depth) * f64::from(c.cover)))
-        .collect();
-    let p = |x: i64, y: i64| {
-        let inside = (0..width).contains(&x) && (0..height).contains(&y);
-        pressed
-            .get(&(x, y))
-            .filter(|_| inside)
-            .copied()
-            .unwrap_or(0.0)
-    };
-    let velocity = |c: &maulstick_paint::impasto::footprint::Contact| {
-        let (x, y) = place(c.local);
-        let gradient = [
-            (p(x + 1, y) - p(x - 1, y)) / 2.0,
-            (p(x, y + 1) - p(x, y - 1)) / 2.0,
-        ];
-        let wet = f64::from(c.depth) / f64::from(c.fraction).max(1e-30);
-        let c_of_squish = f64::from(SQUISH).min(f64::from(STABLE) / wet.max(1e-6));
-        [0, 1].map(|i| {
-            let brush = f64::from(FOLLOWS) * f64::from(c.cover) * f64::from(c.moved[i]);
-            (brush - c_of_squish * gradient[i]).clamp(-1.0, 1.0)
-        })
-    };
-    footprint.contacts.iter().map(velocity).collect()
+/// What a touched cell does to its paint.
+#[derive(Clone, Copy)]
+struct Touch {
+    push: [f64; 2],
+    depth: f64,
+    squish: f64,
 }
 
-fn agrees(footprint: &Footprint, oracle: &[[f64; 2]]) -> bool {
-    let mut pairs = footprint.contacts.iter().zip(oracle);
-    pairs.all(|(c, want)| (0..2).all(|i| (f64::from(c.velocity[i]) - want[i]).abs() <= TOLERANCE))
+fn touch(c: &Contact, window: &Window, thinner: Option<usize>) -> Touch {
+    let on = |plane: &[f32]| f64::from(plane[c.cell as usize]);
+    let total: f64 = window.planes().map(|(_, plane)| on(plane)).sum();
+    let thin = thinner.and_then(|slot| window.plane(slot)).map_or(0.0, on);
+    let share = if total > 0.0 { thin / total } else { 0.0 };
+    let wet = f64::from(c.depth) / f64::from(c.fraction).max(1e-30);
+    let flow = f64::from(SQUISH) * (1.0 + f64::from(EASE) * share);
+    let grip = f64::from(FOLLOWS) * (1.0 - f64::from(SLIP) * share) * f64::from(c.cover);
+    Touch {
+        push: c.moved.map(|cells| grip * f64::from(cells)),
+        depth: f64::from(c.depth) * f64::from(c.cover),
+        squish: flow.min(f64::from(STABLE) / wet.max(1e-6)),
+    }
+}
+
+/// Velocities through the right and the upper face of each cell around.
+fn oracle(footprint: &Footprint, window: &Window, thinner: Option<usize>) -> [Vec<f64>; 2] {
+    let [width, height] = footprint.around.size.map(|cells| cells as i64);
+    let touched: BTreeMap<(i64, i64), Touch> = footprint
+        .contacts
+        .iter()
+        .map(|c| {
+            let place = i64::from(c.local);
+            ((place % width, place / width), touch(c, window, thinner))
+        })
+        .collect();
+    let face = |x: i64, y: i64, axis: usize| {
+        let next = [(x + 1, y), (x, y + 1)][axis];
+        if x < 0 || y < 0 || next.0 >= width || next.1 >= height {
+            return 0.0;
+        }
+        let (i, j) = (touched.get(&(x, y)), touched.get(&next));
+        let sides: Vec<&Touch> = i.into_iter().chain(j).collect();
+        let count = sides.len().max(1) as f64;
+        let push = sides.iter().map(|t| t.push[axis]).sum::<f64>() / count;
+        let c = sides.iter().map(|t| t.squish).fold(f64::MAX, f64::min);
+        let fall = i.map_or(0.0, |t| t.depth) - j.map_or(0.0, |t| t.depth);
+        let v = match count as usize * sides.len() {
+            0 => 0.0,
+            _ => (push + c * fall).clamp(-1.0, 1.0),
+        };
+        let donor = if v > 0.0 { i } else { j };
+        if donor.is_some() { v } else { 0.0 }
+    };
+    [0, 1].map(|axis| {
+        let before = |x: i64, y: i64| [(x - 1, y), (x, y - 1)][axis];
+        let leaves = |x: i64, y: i64| {
+            let (bx, by) = before(x, y);
+            (face(x, y, axis).max(0.0) - face(bx, by, axis).min(0.0)).max(1.0)
+        };
+        let mut faces = Vec::new();
+        for y in 0..height {
+            for x in 0..width {
+                let v = face(x, y, axis);
+                let (nx, ny) = [(x + 1, y), (x, y + 1)][axis];
+                faces.push(
+                    v / if v > 0.0 {
+                        leaves(x, y)
+                    } else {
+                        leaves(nx, ny)
+                    },
+                );
+            }
+        }
+        faces
+    })
+}
+
+fn agrees(faces: &Faces, oracle: &[Vec<f64>; 2]) -> bool {
+    let near = |got: &[f32], want: &[f64]| {
+        got.len() == want.len()
+            && got
+                .iter()
+                .zip(want)
+                .all(|(got, want)| (f64::from(*got) - want).abs() <= TOLERANCE)
+    };
+    near(&faces.right, &oracle[0]) && near(&faces.above, &oracle[1])
 }
 
 #[test]
 fn paint_goes_half_as_far_as_the_brush_and_out_of_its_way() {
-    let (mut clamped, mut squished) = (0, 0);
+    let (mut clamped, mut squished, mut slowed) = (0, 0, 0);
     for seed in 0..24 {
         let mut scene = Scene::new(seed);
+        scene.thinner = [None, Some(2)][seed as usize / 2 % 2];
         let mut footprint = Footprint::default();
         footprint.find(&mut scene.step());
         if seed % 2 == 0 {
@@ -60,18 +112,35 @@ fn paint_goes_half_as_far_as_the_brush_and_out_of_its_way() {
                 contact.moved = contact.moved.map(|cells| 3.0 * cells);
             }
         }
-        velocity(&mut footprint);
-        let want = oracle(&footprint);
-        assert!(agrees(&footprint, &want), "scene {seed}");
-        for (c, v) in footprint.contacts.iter().zip(&want) {
-            clamped += usize::from(v[0].abs() == 1.0);
+        let mut faces = Faces::default();
+        faces.find(&footprint, &scene.step());
+        let want = oracle(&footprint, &scene.window, scene.thinner);
+        assert!(agrees(&faces, &want), "scene {seed}");
+        for c in &footprint.contacts {
+            let v = want[0][c.local as usize];
+            clamped += usize::from(v.abs() == 1.0);
+            slowed += usize::from(v.abs() > 0.5 && v.abs() < 1.0);
             let follows = 0.5 * f64::from(c.cover) * f64::from(c.moved[0]);
-            squished += usize::from((v[0] - follows).abs() > 1e-3);
+            squished += usize::from((v - follows).abs() > 1e-3);
         }
-        let at = footprint.contacts.len() / 2;
-        let fault = 10.0 * TOLERANCE as f32;
-        footprint.contacts[at].velocity[1] += fault;
-        assert!(!agrees(&footprint, &want), "a fault in scene {seed} passes");
+        let at = (0..want[1].len()).max_by(|a, b| want[1][*a].total_cmp(&want[1][*b]));
+        faces.above[at.expect("cells")] += 10.0 * TOLERANCE as f32;
+        assert!(!agrees(&faces, &want), "a fault in scene {seed} passes");
     }
-    assert!(clamped > 20 && squished > 1000, "{clamped} {squished}");
+    assert!(
+        clamped > 20 && squished > 1000 && slowed > 20,
+        "{clamped} {squished} {slowed}"
+    );
+}
+
+/// A thinned film gives way to the brush sooner, and follows it less.
+#[test]
+fn thinner_lets_paint_slip_and_flow() {
+    use maulstick_paint::impasto::velocity::{follows, squish};
+    assert!(follows(0.8) < follows(0.2) && squish(0.01, 0.8) > squish(0.01, 0.2));
+    assert_eq!(
+        squish(10.0, 0.8),
+        squish(10.0, 0.0),
+        "stable in thick paint"
+    );
 }

@@ -5,7 +5,7 @@
 const LN_KEPT = -0.105360516;
 const MAX_TRANSFER = 0.001;
 const EQUAL_PAINT_CUTOFF = 1.0 / 30.0;
-// SWAP and SWAP_FILM of exchange.rs.
+// SWAP and SWAP_FILM of transfer.rs.
 const SWAP = 0.3;
 const SWAP_FILM = 0.004;
 
@@ -54,9 +54,9 @@ fn ask_paint(@builtin(global_invocation_id) id: vec3<u32>) {
         swap = SWAP * share * min(min(on_brush, on_canvas), SWAP_FILM);
     }
     let quanta = contact.cover * QUANTA_PER_UNIT;
-    let room = min(step.cell_max - lying, max(step.most - lying, 0.0));
-    let to_canvas = min(trunc((max(net, 0.0) + swap) * quanta), room);
-    let to_brush = min(trunc((max(-net, 0.0) + swap) * quanta), lying);
+    let room = max(step.most - lying, 0.0);
+    let to_canvas = trunc(min((max(net, 0.0) + swap) * quanta, room));
+    let to_brush = trunc(min((max(-net, 0.0) + swap) * quanta, lying));
     wants[i] = vec2(to_canvas, to_brush);
     atomicAdd(&asks[contact.texel], u32(to_canvas));
     atomicAdd(&asks[texels() + contact.texel], u32(to_brush));

@@ -3,8 +3,15 @@
 
 // A texel held this many times its full film at most.
 const FILM_OVER = 2.0;
-// Shares are short by more than rounding adds, so that no sum of them exceeds what is there.
+// Where next to all of a donor is asked for, shares are short by more than rounding adds, so that no sum
+// of them exceeds what is there; elsewhere rounding takes no quantum of a whole one.
+const NEXT_TO_ALL = 0.9999;
 const SHORT = 1.0 - 1.0 / 1048576.0;
+const LONG = 1.0 + 1.0 / 2097152.0;
+
+fn rounded(share: f32, asked: f32, there: f32) -> f32 {
+    return share * select(LONG, SHORT, asked > NEXT_TO_ALL * there);
+}
 
 @compute @workgroup_size(256)
 fn exchange_paint(@builtin(global_invocation_id) id: vec3<u32>) {
@@ -27,8 +34,11 @@ fn exchange_paint(@builtin(global_invocation_id) id: vec3<u32>) {
         let room = FILM_OVER * step.film_full - film + drawn * granted.x;
         granted.y = clamp(room / max(offered, 1.0), 0.0, 1.0);
     }
-    let goes = wants[i] * granted * SHORT;
-    let share = vec2(goes.x / max(film, 1.0), goes.y / max(totals[i], 1.0));
+    let goes = wants[i] * granted;
+    let share = vec2(
+        rounded(goes.x / max(film, 1.0), drawn, film),
+        rounded(goes.y / max(totals[i], 1.0), goes.y, totals[i]),
+    );
     let cell = cell_of(i % step.width, i / step.width);
     for (var paint = 0u; paint < step.planes; paint++) {
         let at = paint * step.plane + cell;

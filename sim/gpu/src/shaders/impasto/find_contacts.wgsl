@@ -1,9 +1,12 @@
 // Which of the covered cells are touched: where what is lowest, with its film of paint, reaches the top
 // of what lies there.
 
+// Constants of velocity.rs.
 const SQUISH = 1.5;
 const STABLE = 0.2;
 const FOLLOWS = 0.5;
+const SLIP = 0.5;
+const EASE = 4.0;
 
 // What reaches a cell.
 struct Fragment {
@@ -77,10 +80,13 @@ fn find_contacts(@builtin(global_invocation_id) id: vec3<u32>) {
         fraction = depth / wet;
     }
     let thinner = totals[3u * cells() + i];
-    let squish = min(SQUISH * (1.0 + 4.0 * thinner), STABLE / max(wet, 1e-6));
-    let follows = FOLLOWS * (1.0 - 0.5 * thinner);
+    let resists = select(0.0, wet, fraction > 0.0);
+    let squish = min(SQUISH * (1.0 + EASE * thinner), STABLE / max(resists, 1e-6));
+    let follows = FOLLOWS * (1.0 - SLIP * thinner);
     contacts[i] = Contact(
         fragment.texel, fragment.cover, fragment.moved, depth, fraction, squish, follows,
     );
     atomicAdd(&stats[stat(TOUCHED)], 1u);
+    atomicAdd(&stats[stat(WET)], u32(totals[i] / 256.0));
+    atomicAdd(&stats[stat(THINNER)], u32(totals[i] * thinner / 256.0));
 }

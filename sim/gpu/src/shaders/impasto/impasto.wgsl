@@ -112,7 +112,8 @@ const MARKER = 2u;
 // By cell of the grid: all paint, all paint between the passes of the advection, height of what
 // catches paint, share of thinner.
 @group(0) @binding(12) var<storage, read_write> totals: array<f32>;
-// Of the batch the cells touched so far; then eight of each step, see below.
+// Cells touched so far, wet paint and thinner that lay on them before their steps, as bits of f32 in 256
+// quanta; then eight words of each step of the batch, see below.
 @group(0) @binding(13) var<storage, read_write> stats: array<atomic<u32>>;
 // Workgroups of the stages that follow the footprint.
 @group(0) @binding(14) var<storage, read_write> groups: array<vec4<u32>>;
@@ -127,9 +128,12 @@ const FULLEST = 2u;
 const TOUCHED = 3u;
 // Steps with contact before this one.
 const STEPS = 4u;
+// Wet paint and thinner on the cells in contact, in 256 quanta.
+const WET = 5u;
+const THINNER = 6u;
 
 fn stat(which: u32) -> u32 {
-    return 1u + 8u * step.number + which;
+    return 3u + 8u * step.number + which;
 }
 
 fn cells() -> u32 {

@@ -4,6 +4,13 @@ fn covering(cells: u32, each: u32) -> u32 {
     return (cells + each - 1u) / each;
 }
 
+// Adds to a sum of all steps; nobody else does.
+fn tally(sum: u32, which: u32) {
+    let before = bitcast<f32>(atomicLoad(&stats[sum]));
+    let more = f32(atomicLoad(&stats[stat(which)]));
+    atomicStore(&stats[sum], bitcast<u32>(before + more));
+}
+
 @compute @workgroup_size(1)
 fn plan_step() {
     let touched = atomicLoad(&stats[stat(TOUCHED)]);
@@ -17,6 +24,8 @@ fn plan_step() {
     }
     load[0] = steps + 1u;
     atomicAdd(&stats[0], touched);
+    tally(1u, WET);
+    tally(2u, THINNER);
     groups[0] = vec4(covering(cells(), 256u), 1u, 1u, 0u);
     groups[1] = vec4(covering(step.strips, 64u), 1u, 1u, 0u);
     for (var second = 0u; second < 2u; second++) {
