@@ -87,6 +87,6 @@ fn find_contacts(@builtin(global_invocation_id) id: vec3<u32>) {
         fragment.texel, fragment.cover, fragment.moved, depth, fraction, squish, follows,
     );
     atomicAdd(&stats[stat(TOUCHED)], 1u);
-    atomicAdd(&stats[stat(WET)], u32(totals[i] / 256.0));
-    atomicAdd(&stats[stat(THINNER)], u32(totals[i] * thinner / 256.0));
+    atomicAdd(&stats[stat(WET)], u32(totals[i] / 256.0 + 0.5));
+    atomicAdd(&stats[stat(THINNER)], u32(totals[i] * thinner / 256.0 + 0.5));
 }
