@@ -165,6 +165,19 @@ pub(crate) static KERNELS: [Kernel; 10] = [
     },
 ];
 
+const fn copy(constants: &'static [(&'static str, f64)]) -> Kernel {
+    Kernel {
+        name: "copy_planes",
+        source: source!("copy_planes"),
+        constants,
+        bindings: &[B::Planes, B::Other],
+        groups: Groups::Grid,
+    }
+}
+
+/// What the advection is measured beside, in as many parts.
+pub(crate) static COPIES: [Kernel; 2] = [copy(&[("second", 0.0)]), copy(&[("second", 1.0)])];
+
 /// A stage on a device.
 pub(crate) struct Pipeline {
     pub(crate) kernel: &'static Kernel,

@@ -11,11 +11,13 @@
 //! | `record` | a step as the shaders take it |
 //! | `residence` | a window and a load while they are on the device |
 //! | `workspace` | the buffers; upload, steps, read-back |
+//! | [`measure`] | the advection beside a copy, for the benchmark |
 //! | [`probe`] | what single stages leave, for tests |
 //! | `kept` | steps that are on the device alone |
 
 mod kept;
 mod kernels;
+pub mod measure;
 pub mod probe;
 mod record;
 mod residence;

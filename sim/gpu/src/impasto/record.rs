@@ -2,6 +2,7 @@
 
 use bytemuck::{Pod, Zeroable};
 use maulstick_brush::head::STATIONS;
+use maulstick_paint::impasto::advection::STAIN;
 use maulstick_paint::impasto::footprint::rank;
 use maulstick_paint::model::{Step, Transfer};
 use maulstick_paint::quantum::CELL_MAX;
@@ -145,6 +146,21 @@ impl StepRecord {
             motion(&after.skin.y, &before.skin.y, poses);
         }
         Some(record)
+    }
+
+    /// A square of cells in a window of that size, on which nothing but the advection works.
+    pub(crate) fn of_square(side: u32, planes: u32) -> Self {
+        Self {
+            size: [side; 2],
+            row: side,
+            plane: side * side,
+            limit: [side; 2],
+            planes,
+            stain: STAIN,
+            push: 1,
+            cell_max: CELL_MAX as f32,
+            ..Self::default()
+        }
     }
 
     /// Cells of the grid.
