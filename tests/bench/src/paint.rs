@@ -154,6 +154,9 @@ pub(crate) fn run(report: &mut Report, backend: &str) -> Result<(), Fault> {
         "gpu" => Some(Device::open(Choice::Forced).map_err(fault)?),
         _ => None,
     };
+    if let Some(gpu) = &gpu {
+        report.on(gpu.name());
+    }
     for (side, strips) in SIZES {
         let mut round = fitted(side, strips, gpu.as_ref())?;
         round.paint()?;

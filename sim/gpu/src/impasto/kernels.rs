@@ -34,9 +34,9 @@ impl Binding {
 /// How many workgroups a stage has.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Groups {
-    /// As many as cover the cells of the grid and the strips.
+    /// As many as cover the cells of the grid.
     Grid,
-    /// As many as cover the segments.
+    /// As many as cover the segments, and so the strips and faces.
     Segments,
     /// One.
     One,
@@ -68,20 +68,26 @@ macro_rules! source {
 use Binding as B;
 
 /// The stages of a step, in order.
-pub(crate) static KERNELS: [Kernel; 10] = [
+pub(crate) static KERNELS: [Kernel; 12] = [
+    Kernel {
+        name: "weigh_films",
+        source: source!("weigh_films"),
+        constants: &[],
+        bindings: &[B::Load, B::Asks, B::Stats],
+        groups: Groups::Segments,
+    },
+    Kernel {
+        name: "bound_head",
+        source: source!("bound_head"),
+        constants: &[],
+        bindings: &[B::Poses, B::Head, B::Stats],
+        groups: Groups::Segments,
+    },
     Kernel {
         name: "weigh_grid",
         source: source!("weigh_grid"),
         constants: &[],
-        bindings: &[
-            B::Planes,
-            B::Base,
-            B::Load,
-            B::Asks,
-            B::Keys,
-            B::Totals,
-            B::Stats,
-        ],
+        bindings: &[B::Planes, B::Base, B::Keys, B::Totals, B::Stats],
         groups: Groups::Grid,
     },
     Kernel {
@@ -153,6 +159,7 @@ pub(crate) static KERNELS: [Kernel; 10] = [
             B::Contacts,
             B::Totals,
             B::Wants,
+            B::Stats,
         ],
         groups: Groups::Planned(0),
     },

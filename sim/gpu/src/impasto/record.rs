@@ -2,6 +2,7 @@
 
 use bytemuck::{Pod, Zeroable};
 use maulstick_brush::head::STATIONS;
+use maulstick_paint::head::border;
 use maulstick_paint::impasto::advection::STAIN;
 use maulstick_paint::impasto::footprint::rank;
 use maulstick_paint::model::{Step, Transfer};
@@ -51,8 +52,10 @@ pub(crate) struct StepRecord {
     push: u32,
     inside: [[u32; 2]; 2],
     cell_max: f32,
+    reach: f32,
+    border: i32,
     /// Up to the least distance of two records.
-    rest: [u32; 18],
+    rest: [u32; 16],
 }
 
 /// Bytes from one record to the next.
@@ -120,7 +123,9 @@ impl StepRecord {
             push: u32::from(step.handling.push),
             inside: touched.map(|edge| [0, 1].map(|i| edge[i] - from[i])),
             cell_max: CELL_MAX as f32,
-            rest: [0; 18],
+            reach: traits.half_thickness + traits.sink,
+            border: border(traits.half_width) as i32,
+            rest: [0; 16],
         };
         debug_assert_eq!(after.x.len(), strips * STATIONS);
         let motion = |after: &[f32], before: &[f32], poses: &mut Vec<f32>| {

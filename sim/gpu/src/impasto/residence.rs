@@ -31,8 +31,6 @@ pub(crate) struct Residence {
     pub(crate) vertices: usize,
     /// Steps with contact that the brush had made.
     steps: u64,
-    /// Height of wet paint by its count, cells.
-    cells_per_quantum: f32,
 }
 
 /// What is read back.
@@ -43,6 +41,8 @@ pub(crate) struct Settled {
     pub(crate) planes: Vec<f32>,
     /// The load, as impasto.wgsl lays it out.
     pub(crate) load: Vec<u32>,
+    /// The highest that paint ever stood, quanta.
+    pub(crate) top: f32,
 }
 
 impl Residence {
@@ -58,7 +58,6 @@ impl Residence {
             faces: head.skin().map_or(0, |skin| skin.faces().len()),
             vertices: head.skin().map_or(0, |skin| skin.places().len()),
             steps: step.load.steps(),
-            cells_per_quantum: step.traits.cells_per_quantum,
         };
         // A cell of the grid takes up to 32 bytes, of the window 4 a paint.
         let per_cell = (4 * residence.slots.len()).max(32);
@@ -164,7 +163,7 @@ impl Residence {
     pub(crate) fn write(&self, settled: &Settled, window: &mut Window, load: &mut BrushLoad) {
         self.write_planes(settled, window);
         self.write_load(settled, load);
-        self.note_top(&settled.rows, window);
+        window.note_top(settled.top);
     }
 
     fn write_planes(&self, settled: &Settled, window: &mut Window) {
@@ -217,30 +216,17 @@ impl Residence {
             *load = settled;
         }
     }
-
-    /// Notes how high paint stands on rows of the window.
-    fn note_top(&self, rows: &std::ops::Range<usize>, window: &mut Window) {
-        let run = rows.start * window.width()..rows.end * window.width();
-        let mut height: Vec<f32> = window.base()[run.clone()].to_vec();
-        height
-            .iter_mut()
-            .for_each(|base| *base /= self.cells_per_quantum);
-        for (_, plane) in window.planes() {
-            let counts = height.iter_mut().zip(&plane[run.clone()]);
-            counts.for_each(|(height, count)| *height += count);
-        }
-        window.note_top(height.into_iter().fold(0.0, f32::max));
-    }
 }
 
 impl Settled {
     /// What the device wrote: counts of `words` words, then the load.
-    pub(crate) fn read(bytes: &[u8], words: usize, rows: std::ops::Range<usize>) -> Self {
+    pub(crate) fn read(bytes: &[u8], words: usize, rows: std::ops::Range<usize>, top: f32) -> Self {
         let (planes, load) = bytes.split_at(words * size_of::<f32>());
         Self {
             rows,
             planes: pod_collect_to_vec(planes),
             load: pod_collect_to_vec(load),
+            top,
         }
     }
 }

@@ -17,10 +17,10 @@ use crate::device::{Device, GpuError};
 
 /// Steps of a submission.
 pub(crate) const BATCH: usize = 64;
-/// Words of the statistics of all steps: cells touched, wet paint and thinner on them.
-const TALLY: u64 = 3;
-/// Words of the statistics: those and eight a step.
-const STATS: u64 = TALLY + 8 * BATCH as u64;
+/// Words of the statistics of all steps: cells touched, wet paint and thinner on them, the highest paint.
+const TALLY: u64 = 4;
+/// Words of the statistics: those and sixteen a step.
+const STATS: u64 = TALLY + 16 * BATCH as u64;
 /// Invocations of a workgroup that goes over a grid, and over strips or segments.
 const GROUP: [u64; 2] = [256, 64];
 
@@ -90,7 +90,9 @@ impl Workspace {
             self.fill(Binding::Load, &[cast_slice(&on.load(load))])?;
             self.fill(Binding::Head, &[cast_slice(&on.head(head))])?;
             self.fill(Binding::Asks, &[&vec![0; 4 * on.asks_words()]])?;
-            self.fill(Binding::Stats, &[&[0; 4 * STATS as usize]])?;
+            let mut stats = vec![0; STATS as usize];
+            stats[TALLY as usize - 1] = window.top().to_bits();
+            self.fill(Binding::Stats, &[cast_slice(&stats)])?;
             self.room(Binding::Other, (on.cells * on.slots.len()) as u64);
             self.room(Binding::Segments, 16 * on.segments() as u64);
             self.room(Binding::Groups, 16);
@@ -135,7 +137,7 @@ impl Workspace {
                     pass.set_bind_group(0, bound, &[offset]);
                     let [grid, few] = GROUP;
                     let count = match pipeline.kernel.groups {
-                        Groups::Grid => record.cells().max(on.strips as u64).div_ceil(grid),
+                        Groups::Grid => record.cells().div_ceil(grid),
                         Groups::Segments => (on.segments() as u64).div_ceil(few),
                         Groups::One => 1,
                         Groups::Planned(place) => {
@@ -178,7 +180,8 @@ impl Workspace {
                 thinner: quanta(2) as u64,
                 ..StepReport::default()
             };
-            (Settled::read(bytes, words, rows), report)
+            let top = f32::from_bits(tally[3]);
+            (Settled::read(bytes, words, rows, top), report)
         })
     }
 

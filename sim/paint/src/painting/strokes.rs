@@ -163,6 +163,8 @@ impl Painting {
         let Some((_, window)) = &mut track.window else {
             return;
         };
+        // Below this the head may touch.
+        window.note_top(self.sheets[sheet].top);
         let mut step = Step {
             window,
             head: &track.head,

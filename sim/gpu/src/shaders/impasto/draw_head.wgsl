@@ -4,16 +4,37 @@
 // A ribbon that covers a cell only in part counts as higher by this much.
 const EDGE_PENALTY = 0.3;
 
-// The key of a score: the lower, the smaller.
-fn key(score: f32, segment: u32) -> u32 {
-    let top = bitcast<f32>(atomicLoad(&stats[stat(TOP)]));
-    let film = f32(atomicLoad(&stats[stat(FILM)])) * step.film_cells_per_quantum;
-    let most = f32((NONE >> step.bits) - 1u);
-    let place = (score - step.low) / (top + film + step.span);
-    return (u32(clamp(place, 0.0, 1.0) * most) << step.bits) | segment;
+// How the paint stands: the highest, cells; the thickest film, cells; and by how much a key grows with a
+// score.
+struct Scale {
+    top: f32,
+    film: f32,
+    per_cell: f32,
 }
 
-fn draw_triangle(number: u32, height: f32) {
+fn scale() -> Scale {
+    let top = bitcast<f32>(atomicLoad(&stats[stat(TOP)]));
+    let film = f32(atomicLoad(&stats[stat(FILM)])) * step.film_cells_per_quantum;
+    return Scale(top, film, most() / (top + film + step.span));
+}
+
+// The largest score of a key.
+fn most() -> f32 {
+    return f32((NONE >> step.bits) - 1u);
+}
+
+// Keeps a segment on a cell where it is the lowest: the lower its score, the smaller its key.
+fn keep(cell: u32, score: f32, per_cell: f32, segment: u32) {
+    let place = clamp((score - step.low) * per_cell, 0.0, most());
+    let key = (u32(place) << step.bits) | segment;
+    // Most lie above what was drawn before, and a look costs less than a write.
+    if key < atomicLoad(&keys[cell]) {
+        atomicMin(&keys[cell], key);
+    }
+}
+
+fn draw_triangle(number: u32, scale: Scale) {
+    let height = scale.top + scale.film;
     let face = number / 2u;
     var corners: array<u32, 4>;
     var is_low = false;
@@ -33,8 +54,9 @@ fn draw_triangle(number: u32, height: f32) {
     let inverse = 1.0 / area;
     let low = min(min(triangle.a, triangle.b), triangle.c);
     let high = max(max(triangle.a, triangle.b), triangle.c);
-    let in_low = vec2(f32(step.in_x0), f32(step.in_y0));
-    let in_high = vec2(f32(step.in_x1), f32(step.in_y1));
+    let touched = inside();
+    let in_low = vec2<f32>(touched.low);
+    let in_high = vec2<f32>(touched.high);
     let begin = vec2<u32>(clamp(low + 0.5, in_low, in_high));
     let end = vec2<u32>(clamp(high + 0.5, in_low, in_high));
     for (var y = begin.y; y < end.y; y++) {
@@ -47,7 +69,7 @@ fn draw_triangle(number: u32, height: f32) {
                 continue;
             }
             let score = dot(vec3(u, v, w), triangle.z);
-            atomicMin(&keys[y * step.width + x], key(score, number));
+            keep(y * step.width + x, score, scale.per_cell, number);
         }
     }
 }
@@ -76,13 +98,12 @@ fn toward(a: Point, b: Point, t: f32) -> Point {
     );
 }
 
-fn draw_segment(number: u32, strip: u32, station: u32) {
+fn draw_segment(number: u32, strip: u32, station: u32, scale: Scale) {
     let poses_end = step.poses + 5u * STATIONS * step.strips;
     let bottom = poses[poses_end + strip];
     let rank = poses[poses_end + step.strips + strip];
-    let top = bitcast<f32>(atomicLoad(&stats[stat(TOP)]));
     let thickest = f32(atomicLoad(&asks[thickest_of(strip)])) * step.film_cells_per_quantum;
-    let height = top + thickest - bottom;
+    let height = scale.top + thickest - bottom;
     var a = point(strip, station - 1u);
     var b = point(strip, station);
     if min(a.at.z, b.at.z) >= height {
@@ -111,8 +132,9 @@ fn draw_segment(number: u32, strip: u32, station: u32) {
         low = start[major] - length - past;
         high = start[major];
     }
-    let in_low = vec2(f32(step.in_x0), f32(step.in_y0));
-    let in_high = vec2(f32(step.in_x1), f32(step.in_y1));
+    let touched = inside();
+    let in_low = vec2<f32>(touched.low);
+    let in_high = vec2<f32>(touched.high);
     let first = u32(clamp(low + 0.5, in_low[major], in_high[major]));
     let last = u32(clamp(high + 0.5, in_low[major], in_high[major]));
     let across = ribbon.reach / line.cosine;
@@ -127,7 +149,7 @@ fn draw_segment(number: u32, strip: u32, station: u32) {
             if cover > 0.0 {
                 let score = lowest + (1.0 - cover) * EDGE_PENALTY;
                 let at = select(m * step.width + n, n * step.width + m, major == 0u);
-                atomicMin(&keys[at], key(score, number));
+                keep(at, score, scale.per_cell, number);
             }
         }
     }
@@ -136,15 +158,14 @@ fn draw_segment(number: u32, strip: u32, station: u32) {
 @compute @workgroup_size(64)
 fn draw_head(@builtin(global_invocation_id) id: vec3<u32>) {
     let triangles = 2u * step.faces;
+    let scale = scale();
     if id.x < triangles {
-        let top = bitcast<f32>(atomicLoad(&stats[stat(TOP)]));
-        let film = f32(atomicLoad(&stats[stat(FILM)])) * step.film_cells_per_quantum;
-        draw_triangle(id.x, top + film);
+        draw_triangle(id.x, scale);
         return;
     }
     let segment = id.x - triangles;
     let strip = segment / (STATIONS - 1u);
     if strip < step.strips {
-        draw_segment(id.x, strip, segment % (STATIONS - 1u) + 1u);
+        draw_segment(id.x, strip, segment % (STATIONS - 1u) + 1u, scale);
     }
 }

@@ -13,6 +13,20 @@ fn rounded(share: f32, asked: f32, there: f32) -> f32 {
     return share * select(LONG, SHORT, asked > NEXT_TO_ALL * there);
 }
 
+// Notes how high paint stands where the brush was, and beside it.
+fn note_left(i: u32, total: f32) {
+    let at = vec2(i % step.width, i / step.width);
+    let touched = inside();
+    if any(at + 1u < touched.low) || any(at > touched.high) {
+        return;
+    }
+    let height = total + totals[2u * cells() + i] / step.cells_per_quantum;
+    let bits = bitcast<u32>(max(height, 0.0));
+    if bits > atomicLoad(&stats[TOP_EVER]) {
+        atomicMax(&stats[TOP_EVER], bits);
+    }
+}
+
 @compute @workgroup_size(256)
 fn exchange_paint(@builtin(global_invocation_id) id: vec3<u32>) {
     let i = id.x;
@@ -21,6 +35,7 @@ fn exchange_paint(@builtin(global_invocation_id) id: vec3<u32>) {
     }
     let texel = contacts[i].texel;
     if texel == NONE {
+        note_left(i, totals[i]);
         return;
     }
     let film = f32(load[1u + texel]);
@@ -40,11 +55,13 @@ fn exchange_paint(@builtin(global_invocation_id) id: vec3<u32>) {
         rounded(goes.y / max(totals[i], 1.0), goes.y, totals[i]),
     );
     let cell = cell_of(i % step.width, i / step.width);
+    var sum = 0.0;
     for (var paint = 0u; paint < step.planes; paint++) {
         let at = paint * step.plane + cell;
         let there = planes[at];
         let left = trunc(f32(load[film_of(paint) + texel]) * share.x);
         let taken = min(trunc(there * share.y), there);
+        sum += there + left - taken;
         if left != 0.0 || taken != 0.0 {
             planes[at] = there + left - taken;
             if step.transfer != SPONGE {
@@ -54,4 +71,5 @@ fn exchange_paint(@builtin(global_invocation_id) id: vec3<u32>) {
             }
         }
     }
+    note_left(i, sum);
 }

@@ -53,13 +53,18 @@ struct Step {
     most: f32,
     // Whether paint is pushed.
     push: u32,
-    // Columns and rows of the grid that may be touched; beside them paint is only pushed.
+    // Columns and rows of the grid that may be touched; beside them paint is only pushed. Of these, the
+    // cells that what is low of the head reaches (see `inside`).
     in_x0: u32,
     in_y0: u32,
     in_x1: u32,
     in_y1: u32,
     // The most that a cell holds.
     cell_max: f32,
+    // From the middle of a strip down to its lower side where it is pressed most.
+    reach: f32,
+    // How far a strip reaches beyond its middle line.
+    border: i32,
 }
 
 // A cell in contact.
@@ -112,8 +117,9 @@ const MARKER = 2u;
 // By cell of the grid: all paint, all paint between the passes of the advection, height of what
 // catches paint, share of thinner.
 @group(0) @binding(12) var<storage, read_write> totals: array<f32>;
-// Cells touched so far, wet paint and thinner that lay on them before their steps, as bits of f32 in 256
-// quanta; then eight words of each step of the batch, see below.
+// Cells touched so far; wet paint and thinner that lay on them before their steps, as bits of f32, in 256
+// quanta; the highest that paint ever stood, as bits of f32, quanta. Then sixteen words of each step of
+// the batch, see below.
 @group(0) @binding(13) var<storage, read_write> stats: array<atomic<u32>>;
 // Workgroups of the stages that follow the footprint.
 @group(0) @binding(14) var<storage, read_write> groups: array<vec4<u32>>;
@@ -131,9 +137,40 @@ const STEPS = 4u;
 // Wet paint and thinner on the cells in contact, in 256 quanta.
 const WET = 5u;
 const THINNER = 6u;
+// The least and the most column and row of the grid that what is low of the head reaches: away from and
+// beside a bias, 0 where nothing is low.
+const LEAST = 7u;
+const MOST = 9u;
+const BIAS = 65536;
+const AWAY = 60000.0;
+
+// Of all steps: the highest that paint ever stood.
+const TOP_EVER = 3u;
 
 fn stat(which: u32) -> u32 {
-    return 3u + 8u * step.number + which;
+    return 4u + 16u * step.number + which;
+}
+
+// The columns and rows that may be touched: from, up to but not with.
+struct Inside {
+    low: vec2<u32>,
+    high: vec2<u32>,
+}
+
+fn inside() -> Inside {
+    let from_low = vec2<i32>(vec2(step.in_x0, step.in_y0));
+    let to_high = vec2<i32>(vec2(step.in_x1, step.in_y1));
+    var low = to_high;
+    var high = from_low;
+    for (var axis = 0u; axis < 2u; axis++) {
+        let least = atomicLoad(&stats[stat(LEAST) + axis]);
+        let most = atomicLoad(&stats[stat(MOST) + axis]);
+        if least != 0u {
+            low[axis] = clamp(BIAS - i32(least) - step.border, from_low[axis], to_high[axis]);
+            high[axis] = clamp(i32(most) - BIAS + step.border + 1, low[axis], to_high[axis]);
+        }
+    }
+    return Inside(vec2<u32>(low), vec2<u32>(high));
 }
 
 fn cells() -> u32 {

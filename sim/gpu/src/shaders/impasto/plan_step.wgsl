@@ -16,6 +16,8 @@ fn plan_step() {
     let touched = atomicLoad(&stats[stat(TOUCHED)]);
     let steps = load[0];
     atomicStore(&stats[stat(STEPS)], steps);
+    let top = bitcast<f32>(atomicLoad(&stats[stat(TOP)]));
+    atomicMax(&stats[TOP_EVER], bitcast<u32>(top / step.cells_per_quantum));
     if touched == 0u {
         for (var i = 0u; i < 4u; i++) {
             groups[i] = vec4(0u);

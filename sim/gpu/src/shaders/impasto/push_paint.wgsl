@@ -6,7 +6,7 @@
 override second: u32 = 0u;
 
 // Of a column at most this share leaves, so that rounding never takes more than there is.
-const MOST = 1.0 - 1.0 / 1048576.0;
+const LOOSEST = 1.0 - 1.0 / 1048576.0;
 
 const COLUMNS = 32u;
 const ROWS = 8u;
@@ -75,7 +75,7 @@ fn push_paint(
     var share = 0.0;
     if v != 0.0 {
         let donor = select(2u, 1u, v > 0.0);
-        share = min(loose(row.at[donor]) / max(total(row.at[donor]), 1.0), MOST);
+        share = min(loose(row.at[donor]) / max(total(row.at[donor]), 1.0), LOOSEST);
         let fullest = bitcast<f32>(atomicLoad(&stats[stat(FULLEST)]));
         if fullest > 0.1 * step.cell_max {
             let receiver = 3u - donor;

@@ -1,20 +1,21 @@
-// What lies on each cell of the grid, how high it stands, and how thick the films are.
+// What lies on each cell of the grid, and how high it stands where it may be touched.
+
+// Raises a height to at least 0 and this. Most are lower, and a look costs less than a write.
+fn raise(which: u32, height: f32) {
+    let bits = bitcast<u32>(max(height, 0.0));
+    if bits > atomicLoad(&stats[which]) {
+        atomicMax(&stats[which], bits);
+    }
+}
 
 @compute @workgroup_size(256)
 fn weigh_grid(@builtin(global_invocation_id) id: vec3<u32>) {
     let i = id.x;
-    if i < step.strips {
-        var thickest = 0u;
-        for (var k = 0u; k < ALONG; k++) {
-            thickest = max(thickest, load[1u + i * ALONG + k]);
-        }
-        atomicStore(&asks[thickest_of(i)], thickest);
-        atomicMax(&stats[stat(FILM)], thickest);
-    }
     if i >= cells() {
         return;
     }
-    let cell = cell_of(i % step.width, i / step.width);
+    let at = vec2(i % step.width, i / step.width);
+    let cell = cell_of(at.x, at.y);
     var total = 0.0;
     for (var paint = 0u; paint < step.planes; paint++) {
         total += planes[paint * step.plane + cell];
@@ -27,7 +28,9 @@ fn weigh_grid(@builtin(global_invocation_id) id: vec3<u32>) {
     totals[2u * cells() + i] = base[cell];
     totals[3u * cells() + i] = thinner;
     atomicStore(&keys[i], NONE);
-    let height = base[cell] + total * step.cells_per_quantum;
-    atomicMax(&stats[stat(TOP)], bitcast<u32>(max(height, 0.0)));
-    atomicMax(&stats[stat(FULLEST)], bitcast<u32>(total));
+    raise(stat(FULLEST), total);
+    let touched = inside();
+    if all(at >= touched.low) && all(at < touched.high) {
+        raise(stat(TOP), base[cell] + total * step.cells_per_quantum);
+    }
 }
