@@ -259,7 +259,7 @@ fn bad_settings_are_refused_with_their_line() {
     );
     has(
         &rig(("driver = \"simulated\"", "driver = \"phantom\"")),
-        &["driver", "'simulated'", "rig.toml:29"],
+        &["driver", "'simulated'", "rig.toml:31"],
     );
     has(
         &rig(("kind = \"round\"", "kind = \"flatt\"")),

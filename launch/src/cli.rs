@@ -5,8 +5,8 @@ use maulstick_rig::Fault;
 use maulstick_rig::files::clear_on_signals;
 
 use crate::commands::{
-    bench, brush, control, demo, endpoint, fit, import, layers, light, matching, mix, painting,
-    paints, render, schema, surface, take,
+    bench, brush, control, demo, endpoint, fit, import, layers, light, matching, mix, mode,
+    painting, paints, render, schema, surface, take,
 };
 use crate::up;
 
@@ -65,6 +65,10 @@ enum Command {
     Ground(surface::GroundOptions),
     /// Gives the canvas of a running rig another tooth
     Tooth(surface::ToothOptions),
+    /// Sizes the canvas of a running rig
+    Size(mode::SizeOptions),
+    /// Says whether paint on the palette of a running rig depletes or lasts
+    Piles(mode::PilesOptions),
     /// Lists the paints
     Paints(paints::PaintsOptions),
     /// Mixes paints and shows their colour
@@ -110,6 +114,8 @@ pub fn run() -> Result<i32, Fault> {
         Command::Fill(options) => surface::fill(&options),
         Command::Ground(options) => surface::ground(&options),
         Command::Tooth(options) => surface::tooth(&options),
+        Command::Size(options) => mode::size(&options),
+        Command::Piles(options) => mode::piles(&options),
         Command::Paints(options) => paints::run(&options),
         Command::Mix(options) => mix::run(&options),
         Command::Match(options) => matching::run(&options),

@@ -265,6 +265,8 @@ pub fn painting_setup(config: &RigConfig, library: &PaintLibrary) -> Result<Pain
         ground: canvas.ground.clone(),
         tooth: canvas.tooth.clone(),
         tooth_seed: canvas.tooth_seed,
+        stain_m: canvas.stain_um * 1e-6,
+        piles_last: config.palette.piles == "last",
         wells,
         light: light(&config.light)?,
         exposure: config.light.exposure,

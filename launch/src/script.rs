@@ -21,20 +21,25 @@ use maulstick_rig::Fault;
 use maulstick_rig::config::{BrushSection, is_path, toml_fault};
 use maulstick_types::Mixture;
 use maulstick_types::command::Command;
-use maulstick_types::scene::CANVAS;
+use maulstick_types::scene::{BrushMode, CANVAS};
 use serde::Deserialize;
 use toml::Spanned;
 
+use crate::commands::mode::{handling, piles_command};
 use crate::lamp::LightChange;
 use crate::performance::mixture_of;
 
 /// Thickness of a film for which nothing is said, µm.
 const FILM_UM: f64 = 50.0;
 /// The keys that say what is done, and those that say how.
-const STEPS: [(&str, &[&str]); 13] = [
+const STEPS: [(&str, &[&str]); 17] = [
     ("brush", &["size_mm", "depth_share"]),
     ("load", &["beside"]),
     ("clean", &[]),
+    ("mode", &["flow", "most_um"]),
+    ("fill_with_brush", &["um"]),
+    ("stain_um", &[]),
+    ("piles", &[]),
     ("take", &["loads"]),
     ("dry", &["layer"]),
     ("opacity", &["layer"]),
@@ -56,6 +61,10 @@ pub enum Act {
     Load(Mixture, Option<Mixture>),
     /// Takes all paint off the brush.
     Clean,
+    /// Uses the brush in another way: mode, flow of the marker, most paint, m.
+    Handle(BrushMode, f64, f64),
+    /// Lays a film of what the brush carries over the canvas, m.
+    FillWith(f64),
     /// Follows a take; its strokes load these mixtures in turn.
     Take(Take, Vec<Mixture>),
     /// Makes the dry layer of this name more or less opaque.
@@ -87,6 +96,12 @@ struct Raw {
     load: Option<String>,
     beside: Option<String>,
     clean: Option<bool>,
+    mode: Option<String>,
+    flow: Option<f64>,
+    most_um: Option<f64>,
+    fill_with_brush: Option<bool>,
+    stain_um: Option<f64>,
+    piles: Option<String>,
     take: Option<String>,
     loads: Option<Vec<String>>,
     dry: Option<f32>,
@@ -155,6 +170,12 @@ impl Raw {
             ("load", self.load.is_some()),
             ("beside", self.beside.is_some()),
             ("clean", self.clean.is_some()),
+            ("mode", self.mode.is_some()),
+            ("flow", self.flow.is_some()),
+            ("most_um", self.most_um.is_some()),
+            ("fill_with_brush", self.fill_with_brush.is_some()),
+            ("stain_um", self.stain_um.is_some()),
+            ("piles", self.piles.is_some()),
             ("take", self.take.is_some()),
             ("loads", self.loads.is_some()),
             ("dry", self.dry.is_some()),
@@ -225,6 +246,28 @@ impl Raw {
                 section.depth_share,
             ));
         }
+        if let Some(mode) = &self.mode {
+            let handling = handling("brush", mode, self.flow, self.most_um)?;
+            return Ok(Act::Handle(handling.mode, handling.flow, handling.most_m));
+        }
+        let thickness_m = self.um.unwrap_or(FILM_UM) * 1e-6;
+        if self.fill_with_brush.is_some() {
+            let brush = "brush".to_owned();
+            let fill = Command::FillWith {
+                surface: CANVAS,
+                brush,
+                thickness_m,
+            };
+            fill.check().map_err(Fault::usage)?;
+            return Ok(Act::FillWith(thickness_m));
+        }
+        if let Some(um) = self.stain_um {
+            let (surface, stain_m) = (CANVAS, um * 1e-6);
+            return command(Command::Size { surface, stain_m });
+        }
+        if let Some(piles) = &self.piles {
+            return command(piles_command(piles)?);
+        }
         if let Some(load) = &self.load {
             let other = self.beside.as_ref().map(mixture).transpose()?;
             return Ok(Act::Load(mixture(load)?, other));
@@ -269,7 +312,7 @@ impl Raw {
             return command(Command::Fill {
                 surface: CANVAS,
                 mixture: mixture(paint)?,
-                thickness_m: self.um.unwrap_or(FILM_UM) * 1e-6,
+                thickness_m,
             });
         }
         if let Some(ground) = self.ground {
@@ -342,5 +385,9 @@ mod tests {
         says("{ opacity = 3, layer = \"x\" }", &["day.toml:3", "0 to 1"]);
         says("{ light = { intensity = -1 } }", &["day.toml:3"]);
         says("{ dry = \"all\" }", &["day.toml:3", "step = ["]);
+        says("{ mode = \"spunge\" }", &["day.toml:3", "'sponge'"]);
+        says("{ mode = \"marker\", flow = -1 }", &["day.toml:3", "µm/mm"]);
+        says("{ stain_um = -2 }", &["day.toml:3", "0 to 1000"]);
+        says("{ piles = \"stay\" }", &["day.toml:3", "deplete"]);
     }
 }

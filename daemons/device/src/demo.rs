@@ -157,7 +157,7 @@ pub enum Subject {
     /// A flower before hills.
     Flower,
     /// A sheet of marks: what brush and paint can do.
-    Sheet,
+    Marks,
 }
 
 /// The performance of a seed.
@@ -169,7 +169,7 @@ pub fn performance(subject: Subject, seed: u64) -> Take {
     };
     match subject {
         Subject::Flower => hand.flower(),
-        Subject::Sheet => sheet::marks(&mut hand),
+        Subject::Marks => sheet::marks(&mut hand),
     }
     let mut samples = Vec::new();
     let mut time_s = 0.0;
@@ -291,7 +291,7 @@ mod tests {
     #[test]
     fn it_stays_on_the_default_canvas() {
         let flowers = (0..50).map(|seed| performance(Subject::Flower, seed));
-        for take in flowers.chain([performance(Subject::Sheet, 1)]) {
+        for take in flowers.chain([performance(Subject::Marks, 1)]) {
             for TakeSample { sample, .. } in take.samples {
                 if let StylusPose::Contact { point_m, .. } = sample.pose {
                     assert!(

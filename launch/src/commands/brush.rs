@@ -16,6 +16,7 @@ use maulstick_rig::files::{check_writable, write_whole};
 use maulstick_types::command::Command;
 use serde_json::json;
 
+use crate::commands::mode::{self, ModeOptions};
 use crate::commands::say;
 use crate::commands::session::{Session, Target};
 use crate::commands::{print_json, print_text};
@@ -33,6 +34,8 @@ pub enum BrushCommand {
     Import(ImportOptions),
     /// Puts another brush into the hand of a running rig
     Take(TakeOptions),
+    /// Uses a brush in another way: as a sponge, a marker, a vacuum cleaner
+    Mode(ModeOptions),
     /// Bends one spine through a list of poses over the plane z = 0
     ///
     /// SPINE.toml has `lengths_m` and `stiffness_nm_per_rad` (lists from the ferrule to the point, 1
@@ -114,6 +117,7 @@ pub fn run(command: &BrushCommand) -> Result<i32, Fault> {
         BrushCommand::Sheet(options) => draw_sheet(options),
         BrushCommand::Import(options) => import(options),
         BrushCommand::Take(options) => take_up(options),
+        BrushCommand::Mode(options) => mode::mode(options),
         BrushCommand::Solve(options) => solve(options),
     }
 }

@@ -11,6 +11,7 @@ pub mod layers;
 pub mod light;
 pub mod matching;
 pub mod mix;
+pub mod mode;
 pub mod painting;
 pub mod paints;
 pub mod render;

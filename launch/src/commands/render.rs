@@ -14,6 +14,7 @@ use maulstick_rig::files::check_writable;
 use maulstick_rig::{Fault, RigConfig};
 use maulstick_types::Mixture;
 use maulstick_types::command::Command;
+use maulstick_types::scene::{BrushHandling, CANVAS};
 
 use crate::backend::choose_backend;
 use crate::commands::progress_bar;
@@ -181,6 +182,20 @@ impl Easel<'_> {
                 let command = Command::LoadBeside { brush, left, right };
                 self.offline.command(command)
             }
+            Act::Handle(mode, flow, most_m) => {
+                let handling = BrushHandling {
+                    brush,
+                    mode,
+                    flow,
+                    most_m,
+                };
+                self.offline.command(Command::Handle { handling })
+            }
+            Act::FillWith(thickness_m) => self.offline.command(Command::FillWith {
+                surface: CANVAS,
+                brush,
+                thickness_m,
+            }),
             Act::Clean => self.offline.command(Command::Clean { brush }),
             Act::Take(take, loads) => return self.follow(&take, loads),
             Act::Opacity(name, opacity) => {

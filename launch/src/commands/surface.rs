@@ -12,7 +12,11 @@ use crate::performance::{library, mixture_of};
 #[derive(Args, Clone, Debug)]
 pub struct FillOptions {
     /// The paint: "Yellow Ochre=0.7,Titanium White=0.3"
-    mixture: String,
+    #[arg(required_unless_present = "with_brush", conflicts_with = "with_brush")]
+    mixture: Option<String>,
+    /// The colour that this brush carries on the whole in the place of a paint
+    #[arg(long, value_name = "BRUSH")]
+    with_brush: Option<String>,
     /// Thickness of the film, µm
     #[arg(long, default_value_t = 50.0, allow_negative_numbers = true)]
     um: f64,
@@ -55,15 +59,26 @@ fn send(target: &Target, command: Command) -> Result<i32, Fault> {
 /// # Errors
 /// A [`Fault`] for an unknown paint, or where no rig runs.
 pub fn fill(options: &FillOptions) -> Result<i32, Fault> {
-    let mixture = match mixture_of(&options.mixture, &library()?) {
+    let surface = if options.palette { PALETTE } else { CANVAS };
+    let thickness_m = options.um * 1e-6;
+    if let Some(brush) = options.with_brush.clone() {
+        let command = Command::FillWith {
+            surface,
+            brush,
+            thickness_m,
+        };
+        return send(&options.target, command);
+    }
+    let text = options.mixture.as_deref().unwrap_or_default();
+    let mixture = match mixture_of(text, &library()?) {
         Ok(mixture) => mixture,
         // The rig may have paints of its own: it knows best.
-        Err(fault) => options.mixture.parse().map_err(|_| fault)?,
+        Err(fault) => text.parse().map_err(|_| fault)?,
     };
     let command = Command::Fill {
-        surface: if options.palette { PALETTE } else { CANVAS },
+        surface,
         mixture,
-        thickness_m: options.um * 1e-6,
+        thickness_m,
     };
     send(&options.target, command)
 }

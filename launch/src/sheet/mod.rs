@@ -2,11 +2,13 @@
 //!
 //! | module | holds |
 //! | --- | --- |
+//! | [`effects`] | what the paint model is for |
 //! | [`gesture`] | what a hand does, and how it paints |
 //! | [`marks`] | the marks of a brush |
 //! | [`one_stroke`] | the six marks of a double-loaded one |
 //! | [`softening`] | what a blender does between two wet colours |
 
+pub mod effects;
 pub mod gesture;
 pub mod marks;
 pub mod one_stroke;

@@ -69,6 +69,8 @@ pub struct CanvasSection {
     pub tooth_seed: u64,
     /// Name of the ground.
     pub ground: String,
+    /// Thickness of paint that stays however hard it is brushed, µm.
+    pub stain_um: f64,
 }
 
 impl Default for CanvasSection {
@@ -80,6 +82,7 @@ impl Default for CanvasSection {
             tooth: "linen".into(),
             tooth_seed: 1,
             ground: "gesso".into(),
+            stain_um: 3.0,
         }
     }
 }
@@ -98,6 +101,16 @@ impl CanvasSection {
 pub struct PaletteSection {
     /// Mixtures in the wells.
     pub wells: Vec<String>,
+    /// One of [`PILES`].
+    #[serde(default = "default_piles")]
+    pub piles: String,
+}
+
+/// What piles of paint on the palette may do.
+pub const PILES: [&str; 2] = ["deplete", "last"];
+
+fn default_piles() -> String {
+    PILES[0].to_owned()
 }
 
 /// `[[device]]`.
@@ -454,7 +467,7 @@ mod tests {
         let text = error("driver = \"simulated\"", "driver = \"simulted\"");
         assert!(text.contains("no driver called 'simulted'"), "{text}");
         assert!(
-            text.contains("did you mean 'simulated'") && text.contains("rig.toml:29"),
+            text.contains("did you mean 'simulated'") && text.contains("rig.toml:31"),
             "{text}"
         );
         let text = error("brush = \"main\"", "brush = \"mian\"");
@@ -462,10 +475,10 @@ mod tests {
         assert!(error("model = \"impasto\"", "model = \"impatso\"").contains("'impasto'"));
         let text = error("profile = \"srgb\"", "profile = \"sgrb\"");
         assert!(text.contains("'srgb'") && text.contains("ICC"), "{text}");
-        assert!(text.contains("rig.toml:64"), "{text}");
+        assert!(text.contains("rig.toml:66"), "{text}");
         let text = error("gamut = \"soft\"", "gamut = \"sfot\"");
         assert!(
-            text.contains("did you mean 'soft'") && text.contains("rig.toml:65"),
+            text.contains("did you mean 'soft'") && text.contains("rig.toml:67"),
             "{text}"
         );
     }

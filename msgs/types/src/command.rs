@@ -3,7 +3,7 @@
 use crate::define::{message, wire_enum, wire_struct};
 use crate::mixture::Mixture;
 use crate::pose::Pose;
-use crate::scene::{Light, Tuning};
+use crate::scene::{BrushHandling, FLOWS, Light, STAINS_M, Tuning};
 use crate::stylus::FARTHEST_M;
 use crate::topics::check_name;
 
@@ -184,6 +184,34 @@ wire_enum! {
             /// Name of the version.
             name: String,
         },
+        /// Says how a brush is used.
+        Handle {
+            /// How, from now on.
+            handling: BrushHandling,
+        },
+        /// Lays an even film of the colour that a brush carries on the whole over a surface.
+        FillWith {
+            /// The surface.
+            surface: u32,
+            /// The brush.
+            brush: String,
+            /// Thickness of the film, m.
+            thickness_m: f64,
+        },
+        /// Sizes a surface, heavily or hardly.
+        Size {
+            /// The surface.
+            surface: u32,
+            /// Thickness of paint that stays however hard it is brushed, m.
+            stain_m: f64,
+        },
+        /// Says whether paint on a surface lasts, however much of it brushes take up.
+        Piles {
+            /// The surface.
+            surface: u32,
+            /// Whether it lasts.
+            last: bool,
+        },
     }
 }
 
@@ -266,13 +294,30 @@ impl Command {
                 mixture,
                 thickness_m,
                 ..
-            } => match FILM_M.contains(thickness_m) {
-                true => short(mixture),
+            } => film(*thickness_m).and_then(|()| short(mixture)),
+            Self::FillWith {
+                brush, thickness_m, ..
+            } => film(*thickness_m).and_then(|()| brush_name(brush)),
+            Self::Handle { handling } => brush_name(&handling.brush).and_then(|()| {
+                if !FLOWS.contains(&handling.flow) {
+                    return Err(format!(
+                        "a flow of {} µm/mm, but it must be .001 to 100",
+                        handling.flow * 1e3
+                    ));
+                }
+                match handling.most_m == 0.0 {
+                    true => Ok(()),
+                    false => film(handling.most_m),
+                }
+            }),
+            Self::Size { stain_m, .. } => match STAINS_M.contains(stain_m) {
+                true => Ok(()),
                 false => Err(format!(
-                    "a film of {} µm, but it must be 1 to 5000 µm",
-                    thickness_m * 1e6
+                    "a stain of {} µm, but it must be 0 to 1000 µm",
+                    stain_m * 1e6
                 )),
             },
+            Self::Piles { .. } => Ok(()),
             Self::Keep { name } | Self::Return { name } | Self::Forget { name } => {
                 version_name(name)
             }
@@ -281,6 +326,16 @@ impl Command {
                 .try_for_each(|name| version_name(name)),
             Self::Mark => Ok(()),
         }
+    }
+}
+
+fn film(thickness_m: f64) -> Result<(), String> {
+    match FILM_M.contains(&thickness_m) {
+        true => Ok(()),
+        false => Err(format!(
+            "a film of {} µm, but it must be 1 to 5000 µm",
+            thickness_m * 1e6
+        )),
     }
 }
 
@@ -317,7 +372,7 @@ fn short(mixture: &Mixture) -> Result<(), String> {
 
 message! {
     /// A command with its sender and number; sending it again with the same number is safe.
-    pub struct CommandRequest [version 4, at most 1048576 bytes] {
+    pub struct CommandRequest [version 5, at most 1048576 bytes] {
         /// A number that the client drew at random.
         pub client: u64,
         /// Counts the client's commands.

@@ -23,12 +23,14 @@ wire_struct! {
         pub film_m: f32,
         /// Kinematic viscosity of that film, m²/s.
         pub viscosity_m2_s: f32,
+        /// Length of the contact: the side of a square as large, m.
+        pub contact_m: f32,
     }
 }
 
 message! {
     /// Credit to the brushes.
-    pub struct PaintConsumed [version 1, at most 4096 bytes] {
+    pub struct PaintConsumed [version 2, at most 4096 bytes] {
         /// One a brush.
         pub brushes: Vec<BrushCredit>,
     }

@@ -14,6 +14,12 @@ pub const INTENSITY: std::ops::RangeInclusive<f64> = 0.0..=100.0;
 pub const RULES: [&str; 3] = ["gauss", "fitted", "reference"];
 /// Wavelengths of the rules `gauss` and `fitted`.
 pub const SAMPLES: std::ops::RangeInclusive<u32> = 4..=16;
+/// Flow of a marker for which nothing is said: 4 µm along a millimetre.
+pub const MARKER_FLOW: f64 = 4e-3;
+/// Flows of a marker.
+pub const FLOWS: std::ops::RangeInclusive<f64> = 1e-6..=0.1;
+/// Thickness that stays however hard it is brushed, m.
+pub const STAINS_M: std::ops::RangeInclusive<f64> = 0.0..=1e-3;
 /// The name of an illuminant has at most this many bytes.
 pub const ILLUMINANT_NAME_MAX: usize = 128;
 
@@ -64,6 +70,95 @@ wire_struct! {
         pub tooth_seed: u64,
         /// Regions of their own behaviour.
         pub wells: Vec<Well>,
+        /// Thickness of paint that stays however hard it is brushed, m: little on a canvas that is
+        /// heavily sized (Baxter 2004, § 6.4.1).
+        #[serde(default = "default_stain_m")]
+        pub stain_m: f64,
+        /// Whether paint that brushes take up from it stays there all the same (Baxter 2004, § 6.7).
+        #[serde(default)]
+        pub piles_last: bool,
+    }
+}
+
+/// Thickness that stays where nothing else is said, m.
+#[must_use]
+pub fn default_stain_m() -> f64 {
+    3e-6
+}
+
+wire_enum! {
+    /// What a brush does (Baxter 2004, § 6.8).
+    pub enum BrushMode {
+        /// It pushes paint, leaves some and takes some up.
+        Normal,
+        /// It leaves and takes up, but pushes nothing.
+        NoPush,
+        /// It stays as it is, full or empty, whatever it leaves or takes up.
+        Sponge,
+        /// As a sponge, and it pushes nothing.
+        SpongeNoPush,
+        /// It leaves as much as its flow says, and takes up nothing.
+        Marker,
+        /// It takes on the colours that it touches; the surface stays as it is.
+        Sampler,
+        /// It lifts off what it touches, and is clean.
+        Vacuum,
+    }
+}
+
+wire_struct! {
+    /// How a brush is used.
+    pub struct BrushHandling {
+        /// Name of the brush.
+        pub brush: String,
+        /// What it does.
+        pub mode: BrushMode,
+        /// Flow of the marker: thickness that it leaves along a metre of its way, m/m.
+        pub flow: f64,
+        /// It adds no paint where as much is wet, m; 0 for no such bound.
+        pub most_m: f64,
+    }
+}
+
+impl BrushMode {
+    /// All modes by name.
+    pub const NAMES: [(&str, Self); 7] = [
+        ("normal", Self::Normal),
+        ("no-push", Self::NoPush),
+        ("sponge", Self::Sponge),
+        ("sponge-no-push", Self::SpongeNoPush),
+        ("marker", Self::Marker),
+        ("sampler", Self::Sampler),
+        ("vacuum", Self::Vacuum),
+    ];
+
+    /// The mode of this name.
+    ///
+    /// # Errors
+    /// What names there are, and the nearest.
+    pub fn called(name: &str) -> Result<Self, String> {
+        if let Some((_, mode)) = Self::NAMES.iter().find(|(known, _)| *known == name) {
+            return Ok(mode.clone());
+        }
+        let names = Self::NAMES.map(|(name, _)| name);
+        let nearest = crate::nearest(name, names).unwrap_or_default();
+        let all = names.join(", ");
+        Err(format!(
+            "there is no mode called '{name}'; did you mean '{nearest}'? There are {all}"
+        ))
+    }
+}
+
+impl BrushHandling {
+    /// A brush that is used as brushes are.
+    #[must_use]
+    pub fn normal(brush: &str) -> Self {
+        Self {
+            brush: brush.to_owned(),
+            mode: BrushMode::Normal,
+            flow: MARKER_FLOW,
+            most_m: 0.0,
+        }
     }
 }
 
@@ -226,7 +321,7 @@ impl Tuning {
 
 message! {
     /// The desk; cached for late joiners.
-    pub struct Scene [version 4, at most 16777216 bytes] {
+    pub struct Scene [version 5, at most 16777216 bytes] {
         /// Grows with every change.
         pub version: u64,
         /// The canvas first.
@@ -241,6 +336,9 @@ message! {
         pub layers: Vec<Layer>,
         /// The versions that were kept, by name.
         pub versions: Vec<NamedVersion>,
+        /// Brushes that are used in a way of their own.
+        #[serde(default)]
+        pub handlings: Vec<BrushHandling>,
     }
 }
 

@@ -8,12 +8,22 @@ use maulstick_types::paint::{
     PaintConsumed, PaintStatus,
 };
 use maulstick_types::scene::{
-    Layer, Light, NamedVersion, PaintSlot, Scene, Surface, Tuning, Well, WellKind,
+    BrushHandling, BrushMode, Layer, Light, NamedVersion, PaintSlot, Scene, Surface, Tuning, Well,
+    WellKind,
 };
 use maulstick_types::stylus::{
     StylusInfo, StylusPose, StylusSample, StylusStatus, TakeEnd, TakeStatus,
 };
 use maulstick_types::{CATALOGUE, Flags, Message, Mixture, Origin, Pose, decode, encode};
+
+fn handling() -> BrushHandling {
+    BrushHandling {
+        brush: "main".into(),
+        mode: BrushMode::Marker,
+        flow: 0.004,
+        most_m: 2e-5,
+    }
+}
 
 fn pose() -> Pose {
     Pose {
@@ -203,6 +213,7 @@ fn all() -> String {
                 wetness: 0.5,
                 film_m: 1e-4,
                 viscosity_m2_s: 0.01,
+                contact_m: 0.008,
             }],
         }),
         line(&Scene {
@@ -222,6 +233,8 @@ fn all() -> String {
                         mixture: mixture.clone(),
                     }),
                 ],
+                stain_m: 1e-5,
+                piles_last: true,
             }],
             paints: vec![PaintSlot {
                 name: "Bone Black".into(),
@@ -257,6 +270,7 @@ fn all() -> String {
                 parent: "sketch".into(),
                 here: true,
             }],
+            handlings: vec![handling()],
         }),
         line(&entry(Entry::States {
             brush: "main".into(),
@@ -405,6 +419,22 @@ fn all() -> String {
         })),
         line(&command(Command::Forget {
             name: "warm".into(),
+        })),
+        line(&command(Command::Handle {
+            handling: handling(),
+        })),
+        line(&command(Command::FillWith {
+            surface: 0,
+            brush: "main".into(),
+            thickness_m: 2e-5,
+        })),
+        line(&command(Command::Size {
+            surface: 0,
+            stain_m: 1e-5,
+        })),
+        line(&command(Command::Piles {
+            surface: 1,
+            last: true,
         })),
         line(&reply(Outcome::Done {
             journal: 1,

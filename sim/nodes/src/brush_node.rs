@@ -25,7 +25,7 @@ use maulstick_types::{Flags, Origin, name_hash};
 
 use crate::arbiter::{Arbiter, Range, Stroke};
 use crate::backlog::{Backlog, Place, Waiting};
-use crate::feel::contact_model;
+use crate::feel::{contact_model, drag};
 use crate::outbox::Outbox;
 
 pub use settings::BrushSettings;
@@ -73,6 +73,8 @@ pub struct BrushNode {
     gone: BTreeSet<String>,
     tokens: Subscription,
     touching: bool,
+    /// Drag of the paint under the brush, N·s/m.
+    drag_n_s_m: f64,
     /// Number of the newest state that touches.
     newest_contact: Option<u64>,
     /// Devices of whose faulty samples it was said.
@@ -135,6 +137,7 @@ impl BrushNode {
             gone: BTreeSet::new(),
             tokens: b.watch(&topics.node("*"), wake)?,
             touching: false,
+            drag_n_s_m: 0.0,
             newest_contact: None,
             faulty: BTreeSet::new(),
             def,
@@ -205,6 +208,7 @@ impl BrushNode {
                 .filter(|b| b.brush == me.source)
             {
                 self.states.consumed(brush.epoch, brush.next, now_ns);
+                self.drag_n_s_m = drag(brush);
             }
         }
         while let Some(info) = self.infos.try_recv() {
@@ -475,7 +479,8 @@ impl BrushNode {
             self.models.insert(device.to_owned(), (sender, 0));
         }
         let (name, feel) = (&self.settings.name, self.model.feel());
-        let model = contact_model(origin, name, self.model.file(), &plane, feel);
+        let mut model = contact_model(origin, name, self.model.file(), &plane, feel);
+        model.viscous_n_s_m = self.drag_n_s_m;
         if let Some((sender, sent_ns)) = self.models.get_mut(device)
             && now_ns >= *sent_ns + MODEL_PERIOD_NS
         {

@@ -368,13 +368,17 @@ impl PaintNode {
         self.told = holds.iter().copied().collect();
         let brushes = holds
             .iter()
-            .map(|(origin, next)| BrushCredit {
-                brush: origin.source,
-                epoch: origin.epoch,
-                next: *next,
-                wetness: self.sequencer.painting().fullness(origin.source),
-                film_m: 0.0,
-                viscosity_m2_s: 0.0,
+            .map(|(origin, next)| {
+                let under = self.sequencer.painting().under_brush(origin.source);
+                BrushCredit {
+                    brush: origin.source,
+                    epoch: origin.epoch,
+                    next: *next,
+                    wetness: self.sequencer.painting().fullness(origin.source),
+                    film_m: under.film_m as f32,
+                    viscosity_m2_s: under.viscosity_m2_s as f32,
+                    contact_m: under.contact_m as f32,
+                }
             })
             .collect();
         self.consumed

@@ -32,8 +32,14 @@ fn pen(t: f64) -> StylusSample {
 }
 
 fn painted(rate_hz: f64, length: f64) -> Painting {
+    painted_on(1, rate_hz, length)
+}
+
+/// The stroke on a canvas whose cells are `finer` times as small.
+fn painted_on(finer: u32, rate_hz: f64, length: f64) -> Painting {
     let setup = PaintingSetup {
-        cells: [384, 320],
+        cells: [finer * 384, finer * 320],
+        cell_m: 2.5e-4 / f64::from(finer),
         ..PaintingSetup::default()
     };
     let painting = Painting::new(&setup, PaintLibrary::measured().expect("whole")).expect("one");
@@ -101,6 +107,22 @@ fn the_sample_rate_does_not_show() {
         assert!(volume < 0.01, "{rate} Hz: volume differs by {volume}");
         assert!(mean < 1.0 && worst < 3.0, "{rate} Hz: ΔE₀₀ {mean}, {worst}");
     }
+}
+
+/// Half as large cells: the same paint by area within 5 %.
+#[test]
+fn the_size_of_cells_hardly_shows() {
+    let volume = |finer: u32, length: f64| {
+        let painting = painted_on(finer, 250.0, length);
+        let metres: f64 = films(&painting).iter().flatten().sum();
+        metres / f64::from(finer * finer)
+    };
+    let (coarse, fine) = (volume(1, 1.0), volume(2, 1.0));
+    let apart = (fine / coarse - 1.0).abs();
+    println!("half as large cells: {:.2} %", 100.0 * apart);
+    assert!(apart < 0.05, "{apart}");
+    let fault = (volume(2, 0.8) / coarse - 1.0).abs();
+    assert!(fault > 0.05, "a shorter stroke passes: {fault}");
 }
 
 #[test]

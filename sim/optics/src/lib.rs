@@ -49,7 +49,7 @@ pub mod viewing;
 pub use backend::{BackendError, CpuFilms, FilmBackend};
 pub use cie::{Illuminant, Observer};
 pub use mixture::{Blend, Coat, Layer};
-pub use paints::{Paint, PaintError, PaintLibrary};
+pub use paints::{Paint, PaintError, PaintLibrary, THINNER};
 pub use rule::SamplingRule;
 pub use spectrum::Spectrum;
 pub use studio::{FilmPlanes, RuleKind, Studio, StudioSettings, Under};

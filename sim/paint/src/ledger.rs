@@ -1,7 +1,7 @@
 //! The ledger: where all paint came from and where it is.
 //!
-//! Tube and cleaner are booked at every transfer; brush, canvas and palette are counted afresh from
-//! what lies there. What the tubes gave must be found in the others to the quantum.
+//! Tube, cleaner and the brush modes that give or take paint are booked at every transfer; brush, canvas and palette are counted afresh from
+//! what lies there. What tubes and modes gave must be found in the others to the quantum.
 
 use std::collections::BTreeMap;
 
@@ -14,9 +14,23 @@ use crate::quantum::{Counts, SLOTS, add};
 pub struct Ledger {
     tube: Counts,
     cleaner: Counts,
+    /// What modes gave less what they took.
+    #[serde(default)]
+    mode: [i64; SLOTS],
 }
 
 impl Ledger {
+    /// A mode gave, or took where it is negative.
+    pub fn from_mode(&mut self, counts: &[i64; SLOTS]) {
+        let pairs = self.mode.iter_mut().zip(counts);
+        pairs.for_each(|(own, count)| *own += count);
+    }
+
+    /// A mode gave.
+    pub fn from_mode_counts(&mut self, counts: &Counts) {
+        self.from_mode(&counts.map(|count| count as i64));
+    }
+
     /// The tubes gave.
     pub fn from_tube(&mut self, counts: &Counts) {
         add(&mut self.tube, counts);
@@ -31,6 +45,7 @@ impl Ledger {
         Booked {
             tube: less(&self.tube, &before.tube),
             cleaner: less(&self.cleaner, &before.cleaner),
+            mode: std::array::from_fn(|slot| self.mode[slot] - before.mode[slot]),
         }
     }
 
@@ -53,12 +68,16 @@ impl Ledger {
         };
         turn(&mut self.tube, &booked.tube);
         turn(&mut self.cleaner, &booked.cleaner);
+        self.from_mode(&booked.mode.map(|count| times * count));
     }
 
-    /// By slot, what the tubes gave less what the cleaner took: as much is to be found.
+    /// By slot, what tubes and modes gave less what the cleaner took: as much is to be found.
     #[must_use]
     pub fn due(&self) -> [i64; SLOTS] {
-        std::array::from_fn(|slot| (self.tube[slot] as i64).wrapping_sub(self.cleaner[slot] as i64))
+        std::array::from_fn(|slot| {
+            let given = (self.tube[slot] as i64).wrapping_add(self.mode[slot]);
+            given.wrapping_sub(self.cleaner[slot] as i64)
+        })
     }
 
     /// The cleaner took.
@@ -72,14 +91,19 @@ impl Ledger {
 pub struct Booked {
     tube: [i64; SLOTS],
     cleaner: [i64; SLOTS],
+    #[serde(default)]
+    mode: [i64; SLOTS],
 }
 
 impl Booked {
-    /// By slot, what came from the tubes less what went to the cleaner: by as much there is more to
-    /// be found.
+    /// By slot, what came from tubes and modes less what went to the cleaner: by as much there is
+    /// more to be found.
     #[must_use]
     pub fn due(&self) -> [i64; SLOTS] {
-        std::array::from_fn(|slot| self.tube[slot].wrapping_sub(self.cleaner[slot]))
+        std::array::from_fn(|slot| {
+            let given = self.tube[slot].wrapping_add(self.mode[slot]);
+            given.wrapping_sub(self.cleaner[slot])
+        })
     }
 
     /// Adds what was booked then.
@@ -91,6 +115,7 @@ impl Booked {
         };
         sum(&mut self.tube, &later.tube);
         sum(&mut self.cleaner, &later.cleaner);
+        sum(&mut self.mode, &later.mode);
     }
 }
 
@@ -159,7 +184,15 @@ pub fn balance(
     let volume = |count: u64| count as f64 * quantum_m3;
     let sum = |counts: &Counts| counts.iter().sum::<u64>();
     let negative = |count: u64| if count == 0 { 0.0 } else { -volume(count) };
-    let mut accounts_m3 = BTreeMap::from([("tube", negative(sum(&ledger.tube)))]);
+    // What a mode gave is negative, as what a tube gave is.
+    let from_mode = |count: i64| match count {
+        0 => 0.0,
+        count => -(count as f64) * quantum_m3,
+    };
+    let mut accounts_m3 = BTreeMap::from([
+        ("tube", negative(sum(&ledger.tube))),
+        ("mode", from_mode(ledger.mode.iter().sum())),
+    ]);
     accounts_m3.extend(
         accounts
             .iter()
@@ -167,7 +200,10 @@ pub fn balance(
     );
     let mut paints_m3 = BTreeMap::new();
     for (slot, name) in names.iter().enumerate().take(SLOTS) {
-        let mut row = BTreeMap::from([("tube", negative(ledger.tube[slot]))]);
+        let mut row = BTreeMap::from([
+            ("tube", negative(ledger.tube[slot])),
+            ("mode", from_mode(ledger.mode[slot])),
+        ]);
         row.extend(
             accounts
                 .iter()
@@ -179,7 +215,7 @@ pub fn balance(
     let quanta_missing = (0..SLOTS)
         .map(|slot| {
             let found: u64 = accounts.iter().map(|(_, counts)| counts[slot]).sum();
-            ledger.tube[slot] as i64 - found as i64
+            ledger.tube[slot] as i64 + ledger.mode[slot] - found as i64
         })
         .max_by_key(|missing| missing.abs())
         .unwrap_or(0);

@@ -41,6 +41,15 @@ impl Half {
     }
 }
 
+/// By this share the film of thinner alone is thinner than one of paint.
+const RUNS_OFF: f64 = 0.7;
+
+/// Thickness of a full film by that of paint, where `thinner` is a share of it.
+#[must_use]
+pub fn film_share(thinner: f64) -> f64 {
+    1.0 - RUNS_OFF * thinner
+}
+
 /// The paint on a brush.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct BrushLoad {
@@ -174,14 +183,20 @@ impl BrushLoad {
     }
 
     /// Fills a half of a clean brush from tubes: full films, and inside as much as the brush takes,
-    /// divided by the mixture's shares.
+    /// divided by the mixture's shares. Paint with thinner in it clings in a thinner film.
     pub fn fill(
         &mut self,
         head: &Head,
         traits: &BrushTraits,
         mixture: &[(usize, f64)],
+        thinner: Option<usize>,
         half: Half,
     ) {
+        let thin = thinner.map_or(0.0, |thinner| {
+            let shares = mixture.iter().filter(|(slot, _)| *slot == thinner);
+            shares.map(|(_, share)| share).sum()
+        });
+        let film_full = traits.film_full * film_share(thin);
         for (slot, share) in mixture {
             let held = self.held_mut(*slot);
             let texels = held.film.iter_mut().zip(&mut held.inside);
@@ -189,7 +204,7 @@ impl BrushLoad {
                 let strip = texel / ALONG;
                 let taken = half.share(f64::from(head.roots()[strip][0]));
                 let part = share * taken * f64::from(head.capacity()[strip]);
-                *film += (traits.film_full * part) as u32;
+                *film += (film_full * part) as u32;
                 *inside += (traits.inside_full * part) as u32;
             }
         }

@@ -160,6 +160,8 @@ pub struct Step<'a> {
     pub handling: Handling,
     /// Quanta that stay on a cell however hard it is brushed (Baxter 2004, § 6.4.1, size).
     pub stain: f32,
+    /// Whether paint that the brush takes up stays on the surface all the same (Baxter 2004, § 6.7).
+    pub lasting: bool,
     /// The slot of the thinner, if the painting has one.
     pub thinner: Option<usize>,
 }

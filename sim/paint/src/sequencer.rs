@@ -415,6 +415,22 @@ impl Sequencer {
                 .painting
                 .set_opacity(*layer, *opacity)
                 .map(|()| String::new()),
+            Command::Handle { handling } => self.painting.handle(handling).map(|()| String::new()),
+            Command::FillWith {
+                surface,
+                brush,
+                thickness_m,
+            } => self
+                .painting
+                .fill_with(*surface, brush, *thickness_m)
+                .map(|()| String::new()),
+            Command::Size { surface, stain_m } => self
+                .painting
+                .size(*surface, *stain_m)
+                .map(|()| String::new()),
+            Command::Piles { surface, last } => {
+                self.painting.piles(*surface, *last).map(|()| String::new())
+            }
             Command::Mark => Ok(String::new()),
         };
         let (client, number) = (request.client, request.number);

@@ -52,6 +52,10 @@ pub struct PaintingSetup {
     pub tooth: String,
     /// Seed of the tooth.
     pub tooth_seed: u64,
+    /// Thickness of paint that stays on the canvas however hard it is brushed, m.
+    pub stain_m: f64,
+    /// Whether paint on the palette lasts, however much of it brushes take up.
+    pub piles_last: bool,
     /// What the palette's wells hold, from the top.
     pub wells: Vec<Mixture>,
     /// The light.
@@ -70,6 +74,8 @@ impl Default for PaintingSetup {
             ground: "gesso".to_owned(),
             tooth: "linen".to_owned(),
             tooth_seed: 1,
+            stain_m: maulstick_types::scene::default_stain_m(),
+            piles_last: false,
             wells: PALETTE_PAINTS
                 .iter()
                 .map(|name| Mixture::pure(name))
@@ -116,6 +122,8 @@ impl PaintingSetup {
             tooth: self.tooth.clone(),
             tooth_seed: self.tooth_seed,
             wells: Vec::new(),
+            stain_m: self.stain_m,
+            piles_last: false,
         };
         let canvas = surface(CANVAS, at(-0.5 * size[0], -0.5 * size[1]), self.cells);
         let left = -0.5 * size[0] - GAP_M - palette[0];
@@ -123,6 +131,7 @@ impl PaintingSetup {
         board.pose.position_m[2] = BOARD_M;
         board.ground = "grey".to_owned();
         board.tooth = "panel".to_owned();
+        board.piles_last = self.piles_last;
         board.wells = self.wells();
         Scene {
             version: 1,
@@ -135,6 +144,7 @@ impl PaintingSetup {
             },
             layers: Vec::new(),
             versions: Vec::new(),
+            handlings: Vec::new(),
         }
     }
 

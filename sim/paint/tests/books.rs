@@ -5,9 +5,11 @@ use maulstick_optics::PaintLibrary;
 use maulstick_paint::quantum::CELL_MAX;
 use maulstick_paint::{Painting, PaintingSetup};
 use maulstick_types::brush::{BrushState, Solve, solve_flags};
-use maulstick_types::scene::{CANVAS, PALETTE};
+use maulstick_types::scene::{BrushHandling, BrushMode, CANVAS, PALETTE};
 use maulstick_types::{Mixture, Pose};
 use proptest::prelude::*;
+use proptest::strategy::ValueTree as _;
+use proptest::test_runner::{RngAlgorithm, TestRng, TestRunner};
 
 const BRUSHES: [&str; 2] = ["main", "other"];
 const MIXTURES: [&str; 3] = [
@@ -134,6 +136,9 @@ enum Act {
     Redefine(usize, usize),
     Dry(u32, f32),
     Opacity(u32, f32),
+    Handle(usize, usize),
+    FillWith(usize),
+    Prepare(u32, bool),
     Undo,
     Redo,
 }
@@ -161,6 +166,9 @@ fn act() -> impl Strategy<Value = Act> {
         2 => (prop_oneof![3 => Just(CANVAS), 1 => Just(PALETTE)], 0.01..1.3f32)
             .prop_map(|(surface, share)| Act::Dry(surface, share.min(1.0))),
         1 => (1..4u32, 0.0..1.0f32).prop_map(|(layer, opacity)| Act::Opacity(layer, opacity)),
+        2 => (0..BRUSHES.len(), 0..BrushMode::NAMES.len()).prop_map(|(b, m)| Act::Handle(b, m)),
+        1 => (0..BRUSHES.len()).prop_map(Act::FillWith),
+        1 => (CANVAS..=PALETTE, any::<bool>()).prop_map(|(s, last)| Act::Prepare(s, last)),
         3 => Just(Act::Undo),
         2 => Just(Act::Redo),
     ]
@@ -184,6 +192,22 @@ fn perform(painting: &mut Painting, strokes: &mut [u64; 2], act: &Act) {
         // There may be nothing to dry, to undo or to redo.
         Act::Dry(surface, share) => drop(painting.dry(*surface, *share, "")),
         Act::Opacity(layer, opacity) => drop(painting.set_opacity(*layer, *opacity)),
+        Act::Handle(b, mode) => {
+            let handling = BrushHandling {
+                mode: BrushMode::NAMES[*mode].1.clone(),
+                flow: 1e-3,
+                most_m: [0.0, 4e-5][mode % 2],
+                brush: BRUSHES[*b].to_owned(),
+            };
+            painting.handle(&handling).expect("known");
+        }
+        // It may carry nothing.
+        Act::FillWith(b) => drop(painting.fill_with(CANVAS, BRUSHES[*b], 2e-5)),
+        Act::Prepare(surface, last) => {
+            painting.piles(*surface, *last).expect("a surface");
+            let stain_m = if *last { 0.0 } else { 1e-5 };
+            painting.size(*surface, stain_m).expect("a surface");
+        }
         Act::Undo => drop(painting.undo(None)),
         Act::Redo => drop(painting.redo(None)),
     }
@@ -230,6 +254,35 @@ proptest! {
             check(&mut painting)?;
         }
     }
+}
+
+/// A hundred thousand steps of two brushes and whatever a painter does meanwhile: not a quantum is
+/// missing, and a second run gives the same.
+#[test]
+#[ignore = "minutes: `./test --long`"]
+fn a_hundred_thousand_steps_lose_nothing() {
+    let run = || {
+        let mut runner = TestRunner::new_with_rng(
+            ProptestConfig::default(),
+            TestRng::deterministic_rng(RngAlgorithm::ChaCha),
+        );
+        let mut painting = painting(10.0);
+        let mut strokes = [1, 1];
+        let mut acts = 0;
+        while painting.work().0 < 100_000 {
+            let act = act().new_tree(&mut runner).expect("an act").current();
+            perform(&mut painting, &mut strokes, &act);
+            acts += 1;
+            if acts % 50 == 0 {
+                check(&mut painting).expect("the books balance");
+            }
+        }
+        let report = painting.report();
+        assert_eq!(report.quanta_missing, 0);
+        let store = painting.store(CANVAS).expect("a canvas");
+        (report.paints_m3, store.counts(), acts)
+    };
+    assert_eq!(run(), run());
 }
 
 const LOW: Place = Place {

@@ -51,6 +51,16 @@ impl RigConfig {
                 .help("choose a size of 1 to 65536 cells"));
             }
         }
+        if !(0.0..=1000.0).contains(&canvas.stain_um) {
+            let what = format!("stain_um = {}", canvas.stain_um);
+            return Err(fault(what, "stain_um", "").help("choose 0 to 1000 µm"));
+        }
+        choose(
+            "behaviour of piles",
+            &self.palette.piles,
+            &crate::config::PILES,
+        )
+        .map_err(|(what, help)| fault(what, "piles", "").help(help))?;
         self.light.light().check().map_err(|what| {
             let help = "`maulstick up --print-config` shows what a light may be";
             fault(what, "[light]", "").help(help)
@@ -237,7 +247,7 @@ mod tests {
         for force in ["-1", "-1e-9", "nan", "inf"] {
             let text = error("max_force_n = 3.0", &format!("max_force_n = {force}"));
             assert!(
-                text.contains("max_force_n") && text.contains("rig.toml:34"),
+                text.contains("max_force_n") && text.contains("rig.toml:36"),
                 "{text}"
             );
         }
@@ -253,14 +263,14 @@ mod tests {
                 &format!("orientation = [{turn}]"),
             );
             assert!(
-                text.contains("orientation") && text.contains("rig.toml:33"),
+                text.contains("orientation") && text.contains("rig.toml:35"),
                 "{text}"
             );
         }
         for place in ["nan, 0, 0", "0, inf, 0", "0, 0, -inf"] {
             let text = error("position_m = [0, 0, 0]", &format!("position_m = [{place}]"));
             assert!(
-                text.contains("position_m") && text.contains("rig.toml:32"),
+                text.contains("position_m") && text.contains("rig.toml:34"),
                 "{text}"
             );
         }
@@ -286,7 +296,7 @@ mod tests {
         ] {
             let text = error("name = \"phantom\"", &format!("name = \"{name}\""));
             assert!(
-                text.contains(&format!("'{name}'")) && text.contains("rig.toml:28"),
+                text.contains(&format!("'{name}'")) && text.contains("rig.toml:30"),
                 "{text}"
             );
         }

@@ -17,6 +17,8 @@ pub(crate) fn scene() -> Scene {
         tooth: "linen".into(),
         tooth_seed: 1,
         wells: Vec::new(),
+        stain_m: 3e-6,
+        piles_last: false,
     };
     let light = Light {
         direction: [0.0, 0.0, 1.0],
@@ -29,6 +31,7 @@ pub(crate) fn scene() -> Scene {
         tunings: Vec::new(),
         layers: Vec::new(),
         versions: Vec::new(),
+        handlings: Vec::new(),
         light,
     }
 }

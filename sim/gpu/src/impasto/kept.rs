@@ -15,6 +15,7 @@ struct KeptStep {
     traits: BrushTraits,
     handling: Handling,
     stain: f32,
+    lasting: bool,
     thinner: Option<usize>,
 }
 
@@ -53,6 +54,7 @@ impl KeptSteps {
             traits: step.traits,
             handling: step.handling,
             stain: step.stain,
+            lasting: step.lasting,
             thinner: step.thinner,
         });
     }
@@ -78,6 +80,7 @@ impl KeptSteps {
                 traits: kept.traits,
                 handling: kept.handling,
                 stain: kept.stain,
+                lasting: kept.lasting,
                 thinner: kept.thinner,
             });
             report.add(&did);

@@ -48,7 +48,7 @@ struct Session {
     /// Rows of the window that may have changed.
     rows: Option<(usize, usize)>,
     /// Whether paint may have come from nowhere.
-    sponge: bool,
+    uncounted: bool,
 }
 
 /// The paint model `impasto` on the device; on the processor once that is lost.
@@ -156,7 +156,7 @@ impl PaintModel for GpuImpasto {
                 batch: Batch::default(),
                 uploaded: false,
                 rows: None,
-                sponge: false,
+                uncounted: false,
             });
         }
         let Some(session) = &mut self.session else {
@@ -170,7 +170,7 @@ impl PaintModel for GpuImpasto {
         };
         batch.records.push(record);
         session.kept.keep(step);
-        session.sponge |= step.handling.transfer == Transfer::Sponge;
+        session.uncounted |= step.lasting || step.handling.transfer == Transfer::Sponge;
         let rows = record.rows();
         let (first, last) = session.rows.unwrap_or((rows.start, rows.end));
         session.rows = Some((first.min(rows.start), last.max(rows.end)));
@@ -196,7 +196,7 @@ impl PaintModel for GpuImpasto {
             .and_then(|()| workspace.read_back(&session.on, first..last, window.width()));
         match read {
             Ok((settled, mut report)) => {
-                if session.sponge {
+                if session.uncounted {
                     report.from_nowhere = session.on.gained(&settled, window, load);
                 }
                 session.on.write(&settled, window, load);

@@ -54,8 +54,9 @@ pub(crate) struct StepRecord {
     cell_max: f32,
     reach: f32,
     border: i32,
+    lasting: u32,
     /// Up to the least distance of two records.
-    rest: [u32; 16],
+    rest: [u32; 15],
 }
 
 /// Bytes from one record to the next.
@@ -125,7 +126,8 @@ impl StepRecord {
             cell_max: CELL_MAX as f32,
             reach: traits.half_thickness + traits.sink,
             border: border(traits.half_width) as i32,
-            rest: [0; 16],
+            lasting: u32::from(step.lasting),
+            rest: [0; 15],
         };
         debug_assert_eq!(after.x.len(), strips * STATIONS);
         let motion = |after: &[f32], before: &[f32], poses: &mut Vec<f32>| {

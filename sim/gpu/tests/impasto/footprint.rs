@@ -72,13 +72,15 @@ fn the_same_cells_are_touched() {
         let (off, all) = apart(&footprint.contacts, &probe.contacts);
         println!("scene {seed}: {off} of {all} contacts differ");
         assert!(all > 100, "{all}");
-        // Where two segments are equally deep, rounding decides.
-        assert!(off * 400 <= all, "scene {seed}: {off} of {all}");
+        // Where two segments are equally deep, rounding decides; and places in faces that are seen edge on
+        // are rough.
+        let few = if scene.head.skin().is_some() { 20 } else { 400 };
+        assert!(off * few <= all, "scene {seed}: {off} of {all}");
         let mut faulty = probe.contacts.clone();
         faulty
             .iter_mut()
             .for_each(|contact| contact.depth += 2.0 * NEAR);
         let (off, _) = apart(&footprint.contacts, &faulty);
-        assert!(off * 400 > all, "a fault passes");
+        assert!(off * few > all, "a fault passes");
     }
 }

@@ -13,8 +13,10 @@ use crate::scene::{Scene, lying};
 const QUANTA: [f32; 2] = [4.0, 24.0];
 
 /// Does one step and settles it.
-fn step(model: &mut impl PaintModel, scene: &mut Scene) -> StepReport {
-    let mut report = model.step(&mut scene.step());
+fn step(model: &mut impl PaintModel, scene: &mut Scene, lasting: bool) -> StepReport {
+    let mut step = scene.step();
+    step.lasting = lasting;
+    let mut report = model.step(&mut step);
     let Scene { window, load, .. } = scene;
     report.add(&model.settle(window, load));
     report
@@ -70,11 +72,13 @@ fn every_mode_does_what_the_processor_does() {
             },
             None,
         ),
+        ("lasting", painting, None),
         ("sponge", with(Transfer::Sponge), None),
         ("marker", with(Transfer::Marker { flow: 0.002 }), None),
         ("sampler", with(Transfer::Sampler), None),
         ("vacuum", with(Transfer::Vacuum), None),
     ] {
+        let lasting = name == "lasting";
         let (mut worst, mut did) = ([0.0f32; 2], 0.0f32);
         for seed in 0..4 {
             let scene = || {
@@ -84,8 +88,8 @@ fn every_mode_does_what_the_processor_does() {
             };
             let (mut on_cpu, mut on_gpu) = (scene(), scene());
             let counts = on_gpu.counts();
-            let want = step(&mut Impasto::default(), &mut on_cpu);
-            let got = step(&mut gpu, &mut on_gpu);
+            let want = step(&mut Impasto::default(), &mut on_cpu, lasting);
+            let got = step(&mut gpu, &mut on_gpu, lasting);
             assert_eq!(got.footprint_cells, want.footprint_cells, "{name} {seed}");
             assert_eq!(on_gpu.counts(), after(&counts, &got), "{name} {seed}");
             lying(&on_gpu.window);

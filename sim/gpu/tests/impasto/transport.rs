@@ -396,8 +396,10 @@ fn paint_flows_within_the_strips_that_touch() {
     for seed in 0..6 {
         // Four more steps: the same order of passes, and paint flows in the one but not in the other.
         let mut still = scene(seed, 1);
+        still.thinner = [None, Some(2)][seed as usize % 2];
         let probe = run(&mut prober, &mut still, "tend_strips");
         let mut flowed = scene(seed, 3);
+        flowed.thinner = still.thinner;
         let counts = flowed.counts();
         run(&mut prober, &mut flowed, "tend_strips");
         assert_eq!(flowed.counts(), counts, "scene {seed}");

@@ -38,6 +38,8 @@ pub struct Exchange {
     taken: Vec<f32>,
     /// Share of the wet paint on each contact's cell that goes to the brush.
     shares: Vec<f32>,
+    /// Share of what is taken up that leaves each contact's cell.
+    leaves: Vec<f32>,
     /// By how much one paint changes on each of these texels.
     change: Vec<f32>,
 }
@@ -160,19 +162,18 @@ wide! {
     /// One paint, both ways: `change` is what comes onto each texel.
     fn swap_paint(
         exchange: &Exchange,
-        cells: &[u32],
         gives: &[f32],
         plane: &mut [f32],
         change: &mut [f32],
     ) {
         let asked = exchange.wants[0].iter().zip(&exchange.shares);
-        let ways = cells.iter().zip(&exchange.places);
-        for ((cell, place), (given, share)) in ways.zip(asked) {
+        let ways = exchange.cells.iter().zip(&exchange.places);
+        for (((cell, place), (given, share)), leaves) in ways.zip(asked).zip(&exchange.leaves) {
             let count = &mut plane[*cell as usize];
             let place = *place as usize;
             let given = (given * gives[place]).floor();
             let taken = (*count * share).floor();
-            *count += given - taken;
+            *count += given - (leaves * taken).floor();
             change[place] += taken - given;
         }
     }
@@ -185,12 +186,12 @@ impl Exchange {
         self.demand(footprint, step);
         let sponge = step.handling.transfer == Transfer::Sponge;
         self.grant(step.load, &step.traits, sponge);
+        self.keep(step.lasting);
         let mut from_nowhere = [0; SLOTS];
         for slot in 0..SLOTS {
             let change = self.exchange(slot, step);
-            if sponge {
-                from_nowhere[slot] = -change;
-            } else {
+            from_nowhere[slot] = change;
+            if !sponge {
                 self.note_on_brush(slot, step.load);
             }
         }
@@ -264,7 +265,27 @@ impl Exchange {
         }));
     }
 
-    /// One slot, both ways; the quanta that the brush gained, which are noted in `change`.
+    /// Of paint that lasts only so much leaves a cell as comes there: it takes on the brush's colour,
+    /// but never becomes less.
+    fn keep(&mut self, lasting: bool) {
+        self.leaves.clear();
+        if !lasting {
+            self.leaves.resize(self.cells.len(), 1.0);
+            return;
+        }
+        let [given, offered] = &self.wants;
+        let amounts = given.iter().zip(offered).zip(&self.places);
+        let (asked, taken) = (&self.asked, &self.taken);
+        self.leaves.extend(amounts.map(|((given, offered), place)| {
+            let place = *place as usize;
+            let comes = if asked[place][0] > 0.0 { *given } else { 0.0 };
+            let goes = offered * taken[place];
+            if goes > comes { comes / goes } else { 1.0 }
+        }));
+    }
+
+    /// One slot, both ways; the quanta that came from nowhere. What the brush gains is noted in
+    /// `change`.
     fn exchange(&mut self, slot: usize, step: &mut Step<'_>) -> i64 {
         self.held.clear();
         match step.load.film_of(slot) {
@@ -287,9 +308,20 @@ impl Exchange {
         let mut change = std::mem::take(&mut self.change);
         let gives = std::mem::take(&mut self.gives);
         let plane = step.window.plane_mut(slot);
-        swap_paint(self, &self.cells, &gives, plane, &mut change);
+        let before = self.on_cells(plane);
+        swap_paint(self, &gives, plane, &mut change);
         (self.change, self.gives) = (change, gives);
-        self.change.iter().map(|change| *change as i64).sum()
+        let onto_brush: i64 = match step.handling.transfer {
+            Transfer::Sponge => 0,
+            _ => self.change.iter().map(|change| *change as i64).sum(),
+        };
+        self.on_cells(plane) - before + onto_brush
+    }
+
+    /// Quanta of a plane on the contacts.
+    fn on_cells(&self, plane: &[f32]) -> i64 {
+        let counts = self.cells.iter().map(|cell| plane[*cell as usize] as i64);
+        counts.sum()
     }
 
     fn note_on_brush(&self, slot: usize, load: &mut BrushLoad) {

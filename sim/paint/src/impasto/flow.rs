@@ -2,7 +2,7 @@
 //! what the film takes up beyond its fill goes inside, and inside it creeps along the strip.
 
 use super::footprint::Footprint;
-use crate::load::{ALONG, BrushLoad};
+use crate::load::{ALONG, BrushLoad, film_share};
 use crate::model::{BrushTraits, Step};
 use crate::quantum::SLOTS;
 
@@ -16,10 +16,29 @@ pub fn flow(footprint: &Footprint, step: &mut Step<'_>) {
         touched[contact.texel as usize / ALONG] = true;
     }
     for (strip, _) in touched.iter().enumerate().filter(|(_, touched)| **touched) {
-        let film_full = step.traits.film_full * f64::from(step.head.capacity()[strip]);
+        let capacity = f64::from(step.head.capacity()[strip]);
+        let thin = film_share(thinner_in(strip, step.load, step.thinner));
+        let film_full = step.traits.film_full * capacity * thin;
         flow_in_strip(strip, step.load, film_full, &step.traits);
     }
     step.load.count_films();
+}
+
+/// Share of thinner in what a strip carries.
+fn thinner_in(strip: usize, load: &BrushLoad, thinner: Option<usize>) -> f64 {
+    let Some(slot) = thinner.filter(|slot| load.has(*slot)) else {
+        return 0.0;
+    };
+    let there = totals(strip, load);
+    let all: f64 = there.film.iter().chain(&there.inside).sum();
+    let run = strip * ALONG..(strip + 1) * ALONG;
+    let planes = [load.film_of(slot), load.inside(slot)];
+    let counts = planes
+        .into_iter()
+        .flatten()
+        .flat_map(|plane| &plane[run.clone()]);
+    let thin: f64 = counts.map(|count| f64::from(*count)).sum();
+    if all > 0.0 { thin / all } else { 0.0 }
 }
 
 /// Counts of all paints by texel of one strip.

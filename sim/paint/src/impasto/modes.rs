@@ -6,13 +6,14 @@ use crate::load::ALONG;
 use crate::model::Step;
 use crate::quantum::{Counts, SLOTS};
 
-/// Lifts the wet paint of the touched cells off, by as much as they are covered; what was lifted.
+/// Lifts the wet paint off the cells that are at least half covered, and a part of it off the others;
+/// what was lifted.
 pub fn vacuum(footprint: &Footprint, step: &mut Step<'_>) -> Counts {
     let mut lifted = [0; SLOTS];
     for (slot, plane) in step.window.planes_mut() {
         for contact in &footprint.contacts {
             let count = &mut plane[contact.cell as usize];
-            let goes = ((*count * contact.cover) as i32) as f32;
+            let goes = ((*count * (2.0 * contact.cover).min(1.0)) as i32) as f32;
             *count -= goes;
             lifted[slot] += goes as u64;
         }

@@ -7,6 +7,7 @@ use super::footprint::Footprint;
 use super::modes::{sample, vacuum};
 use super::velocity::Faces;
 use crate::model::{PaintModel, Step, StepReport, Transfer};
+use crate::quantum::add;
 
 /// The paint model `impasto`, with room for its stages.
 #[derive(Debug, Default)]
@@ -34,7 +35,12 @@ impl PaintModel for Impasto {
                 report.from_nowhere = sample(footprint, step);
                 return report;
             }
-            Transfer::Vacuum => report.lifted = vacuum(footprint, step),
+            Transfer::Vacuum => {
+                report.lifted = vacuum(footprint, step);
+                if step.load.total() > 0 {
+                    add(&mut report.lifted, &step.load.take_all());
+                }
+            }
             _ => {
                 if step.handling.push {
                     self.faces.find(footprint, step);

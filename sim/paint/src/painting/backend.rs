@@ -3,6 +3,7 @@
 
 use std::sync::Arc;
 
+use super::modes::UnderBrush;
 use super::{PaintRefusal, Painting};
 use crate::model::{BrushTraits, PaintModel, StepReport};
 
@@ -15,6 +16,8 @@ const SETTLE_EVERY: u32 = 256;
 pub(super) struct Deferral {
     /// Deferred steps since its stroke began.
     steps: u32,
+    /// Those of them that are not settled.
+    unsettled: u32,
     /// How full the brush was when that was last seen.
     fullness: Option<f32>,
 }
@@ -84,6 +87,7 @@ impl Painting {
             return;
         };
         track.deferral.steps += 1;
+        track.deferral.unsettled += 1;
         if track.deferral.steps.is_multiple_of(SETTLE_EVERY) {
             track.deferral.fullness = None;
             self.settle();
@@ -97,18 +101,33 @@ impl Painting {
             && let Some((sheet, window)) = &mut track.window
         {
             let report = self.model.settle(window, Arc::make_mut(&mut track.load));
+            let steps = std::mem::take(&mut track.deferral.unsettled);
             let sheet = &mut self.sheets[*sheet];
             sheet.top = sheet.top.max(window.top());
-            self.note(&report);
+            self.note(&name, &report, steps);
+            self.book(Some(&name));
         }
         if let Some(what) = self.model.take_fall() {
             self.fall.found = Some(what);
         }
     }
 
-    /// Notes what steps did.
-    pub(super) fn note(&mut self, report: &StepReport) {
+    /// Notes what so many steps of a brush did; of deferred ones that is known when they are settled.
+    pub(super) fn note(&mut self, name: &str, report: &StepReport, steps: u32) {
         self.footprint_cells += report.footprint_cells;
+        self.ledger.from_mode(&report.from_nowhere);
+        self.ledger.to_cleaner(&report.lifted);
+        let is_known = !self.model.defers() || report.footprint_cells > 0;
+        if let Some(track) = self.brushes.get_mut(name).filter(|_| is_known) {
+            let mean = |sum: u64| sum / u64::from(steps.max(1));
+            let of_one = StepReport {
+                footprint_cells: mean(report.footprint_cells),
+                wet: mean(report.wet),
+                thinner: mean(report.thinner),
+                ..*report
+            };
+            track.under = UnderBrush::of(&of_one, self.sheets[0].cell_m);
+        }
     }
 
     /// Whether a sheet has wells: those are tended on the CPU, step by step.

@@ -8,6 +8,7 @@ use maulstick_types::Mixture;
 use super::{PaintRefusal, Painting};
 use crate::dry::DryStack;
 use crate::history::Place;
+use crate::ledger::Ledger;
 use crate::page::Page;
 use crate::quantum::{CELL_MAX, Counts, QUANTUM_M, SLOTS};
 use crate::tile::{Planes, TILE_CELLS, Tile, TileId};
@@ -51,6 +52,17 @@ impl Painting {
         mixture: &Mixture,
         thickness_m: f64,
     ) -> Result<(), PaintRefusal> {
+        self.lay_from(surface, mixture, thickness_m, Ledger::from_tube)
+    }
+
+    /// As [`lay`](Self::lay), from where `book` says.
+    pub(super) fn lay_from(
+        &mut self,
+        surface: u32,
+        mixture: &Mixture,
+        thickness_m: f64,
+        book: fn(&mut Ledger, &Counts),
+    ) -> Result<(), PaintRefusal> {
         self.surface(surface)?;
         let slots = self.slots(mixture)?;
         let mut quanta = [0.0f32; SLOTS];
@@ -64,7 +76,7 @@ impl Painting {
         for y in 0..up {
             for x in 0..across {
                 let place = (surface, TileId { x, y });
-                self.lay_on(place, |_, slot| quanta[slot], Some(&mut films));
+                self.lay_on(place, |_, slot| quanta[slot], Some(&mut films), book);
             }
         }
         self.end_own_step();
@@ -78,6 +90,7 @@ impl Painting {
         place: Place,
         quanta: impl Fn(usize, usize) -> f32,
         films: Option<&mut Films>,
+        book: fn(&mut Ledger, &Counts),
     ) {
         let Some(sheet) = self.sheets.iter().find(|sheet| sheet.id == place.0) else {
             return;
@@ -106,7 +119,7 @@ impl Painting {
         let tile = Tile::of_pages(Some(laid.page), dry);
         let replaced = self.put(place, Some(Arc::new(tile)));
         self.history.replaced(None, place, replaced);
-        self.ledger.from_tube(&laid.given);
+        book(&mut self.ledger, &laid.given);
         self.book(None);
         if let Some(sheet) = self.sheets.iter_mut().find(|sheet| sheet.id == place.0) {
             sheet.top = sheet.top.max(laid.top + beneath);

@@ -9,6 +9,7 @@ use maulstick_types::scene::{CANVAS, PALETTE};
 
 use super::backend::{Deferral, Fall};
 use super::lighting::paint_slot;
+use super::modes::UnderBrush;
 use super::undo::makes;
 use super::{BrushTrack, Named, PaintRefusal, Painting, Sheet, bare};
 use crate::embedded::Embedded;
@@ -314,6 +315,7 @@ fn restored_track(
         _ => (Arc::new(BrushLoad::clean(strips)), None),
     };
     Ok(BrushTrack {
+        under: UnderBrush::default(),
         file,
         head,
         load,

@@ -112,7 +112,7 @@ impl Painting {
         brush: &str,
         parts: &[(&[(usize, f64)], Half)],
     ) -> Result<(), PaintRefusal> {
-        let cell_m = self.sheets[0].cell_m;
+        let (cell_m, thinner) = (self.sheets[0].cell_m, self.thinner());
         self.settle();
         let track = self.brush(brush)?;
         track.deferral = Deferral::default();
@@ -120,7 +120,7 @@ impl Painting {
         let left = load.take_all();
         let traits = BrushTraits::of(&track.file, cell_m, 1.0);
         for (slots, half) in parts {
-            load.fill(&track.head, &traits, slots, *half);
+            load.fill(&track.head, &traits, slots, thinner, *half);
         }
         let given = load.counts();
         self.ledger.to_cleaner(&left);

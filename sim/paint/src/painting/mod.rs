@@ -8,6 +8,7 @@ mod layers;
 mod lighting;
 mod loads;
 mod makes;
+mod modes;
 mod strokes;
 mod underpainting;
 mod undo;
@@ -15,6 +16,7 @@ mod versions;
 mod wells;
 
 pub use keeping::{Checkpoint, Restored};
+pub use modes::UnderBrush;
 pub use underpainting::{LaidTile, Wetness};
 pub use versions::{NOW, Named};
 pub use wells::WELL_M;
@@ -106,6 +108,8 @@ struct BrushTrack {
     window: Option<(usize, Window)>,
     loads: Vec<Mixture>,
     next_load: usize,
+    /// What lay under it at its newest step.
+    under: UnderBrush,
     /// How far steps are deferred.
     deferral: Deferral,
 }
@@ -278,6 +282,7 @@ impl Painting {
                     window: None,
                     loads: Vec::new(),
                     next_load: 0,
+                    under: UnderBrush::default(),
                     deferral: Deferral::default(),
                 };
                 self.brushes.insert(name.to_owned(), track);

@@ -5,12 +5,12 @@ use std::sync::Arc;
 use maulstick_types::brush::{BrushState, Solve, solve_flags};
 
 use super::backend::Deferral;
+use super::modes::{Prepared, handling_of};
 use super::{PaintRefusal, Painting};
 use crate::head::{Scale, Waypoint, low_bounds};
 use crate::history::OpenStep;
-use crate::impasto::advection::STAIN;
 use crate::load::Half;
-use crate::model::{BrushTraits, Handling, Step, Sweep};
+use crate::model::{BrushTraits, Step, Sweep};
 use crate::path::PathStepper;
 use crate::quantum::QUANTUM_M;
 use crate::store::TileRect;
@@ -157,6 +157,12 @@ impl Painting {
             self.settle();
         }
         self.tend_wells(name, sheet, from, to);
+        let mut handlings = self.scene.handlings.iter();
+        let handling = handling_of(handlings.find(|handling| handling.brush == name));
+        let id = self.sheets[sheet].id;
+        let surface = self.scene.surfaces.iter().find(|surface| surface.id == id);
+        let prepared = Prepared::of(surface);
+        let thinner = self.thinner();
         let Some(track) = self.brushes.get_mut(name) else {
             return;
         };
@@ -171,10 +177,11 @@ impl Painting {
             sweep,
             bounds: (from, to),
             load: Arc::make_mut(&mut track.load),
-            traits,
-            handling: Handling::default(),
-            stain: STAIN,
-            thinner: None,
+            traits: prepared.traits(traits),
+            handling,
+            stain: prepared.stain,
+            lasting: prepared.lasting,
+            thinner,
         };
         let report = if deferred {
             self.model.step(&mut step)
@@ -182,7 +189,7 @@ impl Painting {
             self.model.step_now(&mut step)
         };
         self.sheets[sheet].top = self.sheets[sheet].top.max(window.top());
-        self.note(&report);
+        self.note(name, &report, 1);
         if deferred {
             self.defer(name);
         }

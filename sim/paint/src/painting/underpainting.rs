@@ -5,6 +5,7 @@ use maulstick_types::mixture::Part;
 
 use super::{PaintRefusal, Painting};
 use crate::embedded::Embedded;
+use crate::ledger::Ledger;
 use crate::quantum::SLOTS;
 use crate::tile::TileId;
 
@@ -82,7 +83,7 @@ impl Painting {
                 let count = by_slot[slot].get(cell);
                 count.map_or(0.0, |count| *count as f32)
             };
-            self.lay_on((surface, tile.id), quanta, None);
+            self.lay_on((surface, tile.id), quanta, None, Ledger::from_tube);
         }
         let name = match wetness {
             Wetness::Wet => None,

@@ -108,6 +108,7 @@ impl Scene {
             traits: self.traits,
             handling: self.handling,
             stain: STAIN,
+            lasting: false,
             thinner: self.thinner,
         }
     }

@@ -49,7 +49,7 @@ impl Bench {
         let head = Head::of(&file);
         let traits = BrushTraits::of(&file, CELL_M, 1.0);
         let mut load = BrushLoad::clean(head.strips());
-        load.fill(&head, &traits, &[(0, 0.7), (3, 0.3)], Half::Both);
+        load.fill(&head, &traits, &[(0, 0.7), (3, 0.3)], None, Half::Both);
         Self {
             store: TileStore::new([SIDE; 2]),
             relief: Relief::flat(CELL_M),
@@ -90,6 +90,7 @@ impl Bench {
             traits: self.traits,
             handling: Handling::default(),
             stain: STAIN,
+            lasting: false,
             thinner: None,
         });
         window.commit(&mut self.store, &mut self.versions, |_, _| {});
@@ -316,6 +317,7 @@ fn a_step_without_contact_changes_nothing() {
                 traits: bench.traits,
                 handling: Handling::default(),
                 stain: STAIN,
+                lasting: false,
                 thinner: None,
             });
             assert_eq!(report, StepReport::default());

@@ -2,11 +2,13 @@
 
 use std::collections::BTreeMap;
 
+use maulstick_paint::impasto::advection::{Advection, Axis};
 use maulstick_paint::impasto::footprint::{Contact, Footprint};
 use maulstick_paint::impasto::velocity::{EASE, FOLLOWS, Faces, SLIP, SQUISH, STABLE};
-use maulstick_paint::window::Window;
+use maulstick_paint::relief::Relief;
+use maulstick_paint::window::{Area, Window};
 
-use crate::scene::Scene;
+use crate::scene::{CELL_M, Scene, window};
 
 /// Ten operations on numbers of at most a few cells, each rounded to 2⁻²⁴ of its result.
 const TOLERANCE: f64 = 4e-6;
@@ -131,6 +133,85 @@ fn paint_goes_half_as_far_as_the_brush_and_out_of_its_way() {
         clamped > 20 && squished > 1000 && slowed > 20,
         "{clamped} {squished} {slowed}"
     );
+}
+
+/// A round pad is pressed straight down into an even film: what it penetrates must be displaced.
+#[test]
+fn what_is_penetrated_is_displaced() {
+    let squished = displaced(1.0);
+    println!("displaced by penetrated volume: {squished:.3}");
+    assert!((0.9..=1.02).contains(&squished), "{squished}");
+    let feeble = displaced(0.25);
+    println!("by a quarter of c: {feeble:.3}");
+    assert!(feeble < 0.9, "{feeble}");
+}
+
+/// Volume that has left the cells under the pad by the volume that the pad takes up below the film's
+/// surface, where c is `share` of what it is.
+fn displaced(share: f32) -> f64 {
+    const RADIUS: f64 = 10.0;
+    /// Thickness of the film and how deep the pad goes, cells, and its steps.
+    const FILM: f64 = 0.4;
+    const DEPTH: f64 = 0.3;
+    const STEPS: usize = 60;
+    let mut scene = Scene::new(0);
+    scene.window = window(&Relief::flat(CELL_M));
+    let to_cells = f64::from(scene.traits.cells_per_quantum);
+    let [right, top] = scene.window.limit();
+    let width = scene.window.width();
+    let laid = (FILM / to_cells).floor() as f32;
+    let plane = scene.window.plane_mut(0);
+    for y in 0..top {
+        plane[y * width..y * width + right].fill(laid);
+    }
+    let area = Area {
+        from: [20, 20],
+        size: [50, 50],
+    };
+    // The pad is a paraboloid that is a film's thickness higher at its rim.
+    let bottom = |x: usize, y: usize, depth: f64| {
+        let (dx, dy) = (x as f64 - 44.5, y as f64 - 44.5);
+        FILM - depth * (1.0 - (dx * dx + dy * dy) / (RADIUS * RADIUS))
+    };
+    let (mut advection, mut faces) = (Advection::default(), Faces::default());
+    for step in 1..=STEPS {
+        let depth = DEPTH * (step as f64 / STEPS as f64);
+        let mut footprint = Footprint::default();
+        footprint.around = area;
+        for local in 0..50 * 50 {
+            let (x, y) = (20 + local % 50, 20 + local / 50);
+            let wet = f64::from(scene.window.total(y * width + x)) * to_cells;
+            let reach = wet - bottom(x, y, depth);
+            let beside = bottom(x, y, depth) > FILM;
+            if reach <= 0.0 || beside {
+                continue;
+            }
+            footprint.wet.push(scene.window.total(y * width + x));
+            footprint.contacts.push(Contact {
+                cell: (y * width + x) as u32,
+                local: local as u32,
+                cover: 1.0,
+                depth: (share as f64 * reach.min(wet)) as f32,
+                fraction: (share as f64 * reach.min(wet) / wet) as f32,
+                ..Contact::default()
+            });
+        }
+        faces.find(&footprint, &scene.step());
+        let first = if step % 2 == 0 { Axis::X } else { Axis::Y };
+        advection.run(area, &faces, &mut scene.window, first, 0.0);
+    }
+    let (mut penetrated, mut left) = (0.0, 0.0);
+    for y in 20..70 {
+        for x in 20..70 {
+            let taken = FILM - bottom(x, y, DEPTH);
+            let beside = bottom(x, y, DEPTH) > FILM;
+            if taken > 0.0 && !beside {
+                penetrated += taken;
+                left += FILM - f64::from(scene.window.total(y * width + x)) * to_cells;
+            }
+        }
+    }
+    left / penetrated
 }
 
 /// A thinned film gives way to the brush sooner, and follows it less.

@@ -50,6 +50,12 @@ fn exchange_paint(@builtin(global_invocation_id) id: vec3<u32>) {
         granted.y = clamp(room / max(offered, 1.0), 0.0, 1.0);
     }
     let goes = wants[i] * granted;
+    // Of paint that lasts only so much leaves a cell as comes there.
+    var leaves = 1.0;
+    let comes = select(0.0, wants[i].x, film > 0.0);
+    if step.lasting != 0u && goes.y > comes {
+        leaves = comes / goes.y;
+    }
     let share = vec2(
         rounded(goes.x / max(film, 1.0), drawn, film),
         rounded(goes.y / max(totals[i], 1.0), goes.y, totals[i]),
@@ -61,9 +67,10 @@ fn exchange_paint(@builtin(global_invocation_id) id: vec3<u32>) {
         let there = planes[at];
         let left = trunc(f32(load[film_of(paint) + texel]) * share.x);
         let taken = min(trunc(there * share.y), there);
-        sum += there + left - taken;
+        let now = there + left - trunc(leaves * taken);
+        sum += now;
         if left != 0.0 || taken != 0.0 {
-            planes[at] = there + left - taken;
+            planes[at] = now;
             if step.transfer != SPONGE {
                 // In two's complement a negative change is added as well.
                 let change = u32(i32(taken) - i32(left));

@@ -65,6 +65,8 @@ struct Step {
     reach: f32,
     // How far a strip reaches beyond its middle line.
     border: i32,
+    // Whether no cell loses paint to the brush, whatever that takes up.
+    lasting: u32,
 }
 
 // A cell in contact.

@@ -2,10 +2,25 @@
 // inside to a film that lacks some, from one that has too much inward, and along.
 
 const FLOW_STEPS = 4u;
+// By this share the film of thinner alone is thinner than one of paint.
+const RUNS_OFF = 0.7;
 
 // What of `there` goes as a share, at most `left`.
 fn part(there: u32, share: f32, left: u32) -> u32 {
     return min(u32(f32(there) * share), left);
+}
+
+// Share of thinner in what a strip carries.
+fn thinner_in(strip: u32, all: f32) -> f32 {
+    if step.thinner == NONE {
+        return 0.0;
+    }
+    var thin = 0.0;
+    for (var k = 0u; k < ALONG; k++) {
+        let texel = strip * ALONG + k;
+        thin += f32(load[film_of(step.thinner) + texel] + load[inside_of(step.thinner) + texel]);
+    }
+    return select(0.0, thin / all, all > 0.0);
 }
 
 fn flow_in(strip: u32) {
@@ -19,7 +34,12 @@ fn flow_in(strip: u32) {
         }
     }
     let capacity = head[4u * step.faces + 2u * step.vertices + step.strips + strip];
-    let full = step.film_full * bitcast<f32>(capacity);
+    var all = 0.0;
+    for (var k = 0u; k < ALONG; k++) {
+        all += film[k] + inside[k];
+    }
+    let thin = 1.0 - RUNS_OFF * thinner_in(strip, all);
+    let full = step.film_full * bitcast<f32>(capacity) * thin;
     // Shares of what is inside that go out, on and back, and of the film that go inward.
     var out: array<f32, 16>;
     var inward: array<f32, 16>;

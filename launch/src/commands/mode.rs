@@ -1,0 +1,124 @@
+//! `maulstick brush mode`, `size` and `piles`: how brushes are used and surfaces are prepared.
+
+use clap::Args;
+use maulstick_rig::Fault;
+use maulstick_rig::config::PILES;
+use maulstick_types::command::Command;
+use maulstick_types::scene::{BrushHandling, BrushMode, CANVAS, MARKER_FLOW, PALETTE};
+
+use crate::commands::session::{PAINT, Session, Target};
+
+/// Options of `maulstick brush mode`.
+#[derive(Args, Clone, Debug)]
+pub struct ModeOptions {
+    /// normal, no-push, sponge, sponge-no-push, marker, sampler or vacuum
+    mode: String,
+    /// Flow of the marker: µm of paint that it leaves along a millimetre
+    #[arg(long, value_name = "UM_PER_MM", allow_negative_numbers = true)]
+    flow: Option<f64>,
+    /// It adds no paint where as much is wet, µm
+    #[arg(long, value_name = "UM", allow_negative_numbers = true)]
+    most_um: Option<f64>,
+    /// The brush
+    #[arg(long, default_value = "main")]
+    brush: String,
+    #[command(flatten)]
+    target: Target,
+}
+
+/// Options of `maulstick size`.
+#[derive(Args, Clone, Debug)]
+pub struct SizeOptions {
+    /// Thickness of paint that stays however hard it is brushed, µm: 0 on a canvas that is well sized
+    #[arg(allow_negative_numbers = true)]
+    stain_um: f64,
+    #[command(flatten)]
+    target: Target,
+}
+
+/// Options of `maulstick piles`.
+#[derive(Args, Clone, Debug)]
+pub struct PilesOptions {
+    /// What paint on the palette does as brushes take it up: deplete, or last
+    piles: String,
+    #[command(flatten)]
+    target: Target,
+}
+
+/// How a brush is used, as a painter says it: flow in µm/mm, most paint in µm.
+///
+/// # Errors
+/// A [`Fault`] for an unknown mode, with the nearest, or numbers out of range.
+pub fn handling(
+    brush: &str,
+    mode: &str,
+    flow: Option<f64>,
+    most_um: Option<f64>,
+) -> Result<BrushHandling, Fault> {
+    let handling = BrushHandling {
+        mode: BrushMode::called(mode).map_err(Fault::usage)?,
+        flow: flow.map_or(MARKER_FLOW, |um_per_mm| um_per_mm * 1e-3),
+        most_m: most_um.unwrap_or(0.0) * 1e-6,
+        ..BrushHandling::normal(brush)
+    };
+    let command = Command::Handle {
+        handling: handling.clone(),
+    };
+    command.check().map_err(Fault::usage)?;
+    Ok(handling)
+}
+
+/// What piles on the palette do.
+///
+/// # Errors
+/// A [`Fault`] for anything but [`PILES`].
+pub fn piles_command(piles: &str) -> Result<Command, Fault> {
+    let surface = PALETTE;
+    match piles {
+        "last" => Ok(Command::Piles {
+            surface,
+            last: true,
+        }),
+        "deplete" => Ok(Command::Piles {
+            surface,
+            last: false,
+        }),
+        _ => Err(Fault::usage(format!("piles cannot '{piles}'"))
+            .help(format!("choose one of {}", PILES.join(", ")))),
+    }
+}
+
+fn send(target: &Target, command: Command) -> Result<i32, Fault> {
+    command.check().map_err(Fault::usage)?;
+    Session::open(target)?.send(PAINT, command)?;
+    Ok(0)
+}
+
+/// Uses a brush in another way.
+///
+/// # Errors
+/// A [`Fault`] for an unknown mode or brush, or where no rig runs.
+pub fn mode(options: &ModeOptions) -> Result<i32, Fault> {
+    let handling = handling(&options.brush, &options.mode, options.flow, options.most_um)?;
+    send(&options.target, Command::Handle { handling })
+}
+
+/// Sizes the canvas.
+///
+/// # Errors
+/// A [`Fault`] for a thickness out of range, or where no rig runs.
+pub fn size(options: &SizeOptions) -> Result<i32, Fault> {
+    let command = Command::Size {
+        surface: CANVAS,
+        stain_m: options.stain_um * 1e-6,
+    };
+    send(&options.target, command)
+}
+
+/// Says what piles on the palette do.
+///
+/// # Errors
+/// A [`Fault`] for an unknown word, or where no rig runs.
+pub fn piles(options: &PilesOptions) -> Result<i32, Fault> {
+    send(&options.target, piles_command(&options.piles)?)
+}

@@ -1,0 +1,293 @@
+//! The seven effects of Baxter 2004, fig. 6.2: what the paint model is for.
+
+use maulstick_optics::PaintLibrary;
+use maulstick_paint::picture::Picture;
+use maulstick_rig::Fault;
+use maulstick_types::command::Command;
+use maulstick_types::scene::CANVAS;
+
+use super::gesture::{Gesture, Moment, swell};
+use super::marks::stroke;
+use super::{BRUSH, CELL_MM, DEPTH_SHARE, GAP, Panel, library_brush, mixture_of};
+use crate::page::Page;
+use crate::performance::refused;
+
+/// Size of a panel, mm.
+const PANEL_MM: [f64; 2] = [110.0, 62.0];
+/// Room for the words over a panel, pixels.
+const WORDS: usize = 52;
+
+const YELLOW: &str = "Hansa Yellow Opaque";
+const BLUE: &str = "Ultramarine Blue=0.6,Titanium White=0.4";
+const RED: &str = "Pyrrole Red=0.8,Titanium White=0.2";
+const WHITE: &str = "Titanium White";
+
+/// An effect: its name, what is done, and how.
+struct Effect {
+    name: &'static str,
+    words: &'static str,
+    paint: fn(PaintLibrary) -> Result<Panel, Fault>,
+}
+
+const EFFECTS: [Effect; 7] = [
+    Effect {
+        name: "bidirectional transfer",
+        words: "white, drawn down through wet blue, yellow and red",
+        paint: transfer,
+    },
+    Effect {
+        name: "complex loading",
+        words: "a flat with another colour on either half of its width",
+        paint: loading,
+    },
+    Effect {
+        name: "controlled drying",
+        words: "wet by 32, 42, 56, 75 and 100 %, and a clean brush through them",
+        paint: drying,
+    },
+    Effect {
+        name: "blending",
+        words: "wet yellow and blue, brushed into each other on the right",
+        paint: blending,
+    },
+    Effect {
+        name: "glazing",
+        words: "grey strokes, dried; thinned paint over their right half",
+        paint: glazing,
+    },
+    Effect {
+        name: "impasto",
+        words: "one full load laid on another, the light from the left",
+        paint: impasto,
+    },
+    Effect {
+        name: "scumbling",
+        words: "thick strokes, dried; white lightly over their right half",
+        paint: scumbling,
+    },
+];
+
+/// The sheet; `told` hears of each panel.
+///
+/// # Errors
+/// A [`Fault`] where a brush or a paint is refused.
+pub fn effects(
+    library: &PaintLibrary,
+    mut told: impl FnMut(usize, usize),
+) -> Result<Picture, Fault> {
+    let [across, up] = PANEL_MM.map(|mm| (mm / CELL_MM) as usize);
+    let columns = 2;
+    let rows = EFFECTS.len().div_ceil(columns);
+    let width = GAP + columns * (across + GAP);
+    let height = GAP + rows * (WORDS + up + GAP);
+    let mut page = Page::new(width, height)?;
+    for (place, effect) in EFFECTS.iter().enumerate() {
+        let x = GAP + place % columns * (across + GAP);
+        let y = GAP + place / columns * (WORDS + up + GAP);
+        page.write(effect.name, [x, y + 20], 22.0);
+        page.write(effect.words, [x, y + 40], 15.0);
+        page.paste(&(effect.paint)(library.clone())?.picture(), [x, y + WORDS]);
+        told(place + 1, EFFECTS.len());
+    }
+    Ok(page.done())
+}
+
+impl Panel {
+    fn of(kind: &str, width_mm: f64, library: PaintLibrary) -> Result<Self, Fault> {
+        Self::new(PANEL_MM, "gesso", sized(kind, width_mm)?, library)
+    }
+
+    fn take_up(&mut self, name: &str, kind: &str, width_mm: f64) -> Result<(), Fault> {
+        let taken = self
+            .offline
+            .take_up(name, sized(kind, width_mm)?, DEPTH_SHARE);
+        taken.map_err(refused)
+    }
+
+    fn dry(&mut self, share: f32) -> Result<(), Fault> {
+        let command = Command::Dry {
+            surface: CANVAS,
+            share,
+            name: String::new(),
+        };
+        self.offline.command(command).map_err(refused)
+    }
+}
+
+fn sized(kind: &str, width_mm: f64) -> Result<maulstick_brush::BrushFile, Fault> {
+    let sized = library_brush(kind)?.scaled_to(width_mm);
+    sized.map_err(|error| Fault::failure(error.to_string()))
+}
+
+/// A straight stroke, pressed evenly.
+fn line(from: [f64; 2], to: [f64; 2], pressure: f64, twist_deg: f64) -> Gesture {
+    let middle = [0, 1].map(|i| 0.5 * (from[i] + to[i]));
+    stroke(vec![from, middle, to], 1.4, twist_deg, move |t| {
+        0.03 + pressure * swell(t, 0.1)
+    })
+}
+
+/// A wavy stroke, pressed evenly.
+fn wave(points: Vec<[f64; 2]>, pressure: f64, seconds: f64) -> Gesture {
+    stroke(points, seconds, 90.0, move |t| {
+        0.03 + pressure * swell(t, 0.06)
+    })
+}
+
+fn transfer(library: PaintLibrary) -> Result<Panel, Fault> {
+    let mut panel = Panel::of("flat", 14.0, library)?;
+    for (row, mixture) in [BLUE, YELLOW, RED].into_iter().enumerate() {
+        let y = 49.0 - 18.0 * row as f64;
+        panel.load(BRUSH, mixture)?;
+        panel.paint(&line([8.0, y], [102.0, y], 0.5, 90.0))?;
+        panel.paint(&line([102.0, y], [8.0, y], 0.4, 90.0))?;
+    }
+    panel.take_up("round", "round", 7.0)?;
+    panel.load("round", WHITE)?;
+    for x in [26.0, 58.0, 90.0] {
+        let way = (0..9).map(|i| {
+            let side = if i % 2 == 0 { -1.0 } else { 1.0 };
+            [x + 9.0 * side, 58.0 - 6.6 * f64::from(i)]
+        });
+        panel.paint(&wave(way.collect(), 0.4, 3.0))?;
+    }
+    Ok(panel)
+}
+
+fn loading(library: PaintLibrary) -> Result<Panel, Fault> {
+    let mut panel = Panel::of("flat", 13.0, library)?;
+    let pairs = [
+        ["Quinacridone Magenta=0.6,Pyrrole Red=0.4", WHITE],
+        [BLUE, YELLOW],
+        ["Burnt Sienna", "Yellow Ochre=0.5,Titanium White=0.5"],
+    ];
+    for (row, [left, right]) in pairs.into_iter().enumerate() {
+        let command = Command::LoadBeside {
+            brush: BRUSH.to_owned(),
+            left: mixture_of(left)?,
+            right: mixture_of(right)?,
+        };
+        panel.offline.command(command).map_err(refused)?;
+        let y = 50.0 - 19.0 * row as f64;
+        let way = (0..7).map(|i| {
+            let side = if i % 2 == 0 { -1.0 } else { 1.0 };
+            [10.0 + 15.0 * f64::from(i), y + 3.5 * side]
+        });
+        panel.paint(&wave(way.collect(), 0.4, 2.4))?;
+    }
+    Ok(panel)
+}
+
+fn drying(library: PaintLibrary) -> Result<Panel, Fault> {
+    let mut panel = Panel::of("flat", 11.0, library)?;
+    // What was painted first dries most often: .75⁴ = .32 of it stays wet.
+    for stripe in 0..5 {
+        if stripe > 0 {
+            panel.dry(0.25)?;
+        }
+        let y = 54.0 - 11.5 * f64::from(stripe);
+        panel.load(BRUSH, "Ultramarine Blue=0.8,Titanium White=0.2")?;
+        panel.paint(&line([6.0, y], [104.0, y], 0.45, 90.0))?;
+        panel.paint(&line([104.0, y], [6.0, y], 0.4, 90.0))?;
+    }
+    panel.take_up("clean", "round", 6.0)?;
+    for x in [22.0, 46.0, 70.0, 92.0] {
+        let way = (0..6).map(|i| {
+            let side = if i % 2 == 0 { -1.0 } else { 1.0 };
+            [x + 3.0 * side, 60.0 - 11.5 * f64::from(i)]
+        });
+        panel.paint(&wave(way.collect(), 0.45, 2.2))?;
+    }
+    Ok(panel)
+}
+
+fn blending(library: PaintLibrary) -> Result<Panel, Fault> {
+    let mut panel = Panel::of("flat", 16.0, library)?;
+    for (mixture, rows) in [(YELLOW, [52.0, 39.0]), ("Ultramarine Blue", [24.0, 11.0])] {
+        for y in rows {
+            panel.load(BRUSH, mixture)?;
+            panel.paint(&line([8.0, y], [102.0, y], 0.5, 90.0))?;
+        }
+    }
+    panel.take_up("filbert", "filbert", 12.0)?;
+    for pass in 0..3 {
+        for i in 0..5 {
+            let x = 58.0 + 10.0 * f64::from(i) + 3.0 * f64::from(pass);
+            panel.paint(&line([x, 14.0], [x, 49.0], 0.4, 0.0))?;
+            panel.paint(&line([x + 4.0, 49.0], [x + 4.0, 14.0], 0.4, 0.0))?;
+        }
+    }
+    Ok(panel)
+}
+
+fn glazing(library: PaintLibrary) -> Result<Panel, Fault> {
+    let mut panel = Panel::of("filbert", 13.0, library)?;
+    let greys = [
+        "Bone Black=0.7,Titanium White=0.3",
+        "Bone Black=0.2,Titanium White=0.8",
+        "Bone Black=0.03,Titanium White=0.97",
+    ];
+    for (row, grey) in greys.into_iter().enumerate() {
+        let y = 50.0 - 19.0 * row as f64;
+        panel.load(BRUSH, grey)?;
+        panel.paint(&line([8.0, y], [102.0, y], 0.5, 90.0))?;
+        panel.paint(&line([102.0, y + 2.0], [8.0, y - 2.0], 0.4, 90.0))?;
+    }
+    panel.dry(1.0)?;
+    panel.take_up("glaze", "flat", 15.0)?;
+    let glazes = [
+        ("Quinacridone Magenta=0.15,Thinner=0.85", 66.0),
+        ("Phthalo Green Blue Shade=0.1,Thinner=0.9", 92.0),
+    ];
+    for (glaze, x) in glazes {
+        panel.load("glaze", glaze)?;
+        panel.paint(&line([x, 58.0], [x, 4.0], 0.35, 0.0))?;
+    }
+    Ok(panel)
+}
+
+fn impasto(library: PaintLibrary) -> Result<Panel, Fault> {
+    let mut panel = Panel::of("bright", 13.0, library)?;
+    let colours = [
+        "Ultramarine Blue=0.4,Titanium White=0.6",
+        "Hansa Yellow Opaque=0.5,Titanium White=0.5",
+        WHITE,
+    ];
+    for (layer, mixture) in colours.into_iter().enumerate() {
+        for i in 0..6 {
+            let x = 14.0 + 15.0 * f64::from(i) + 2.0 * layer as f64;
+            let (low, high) = (10.0 + 6.0 * layer as f64, 52.0 - 5.0 * layer as f64);
+            panel.load(BRUSH, mixture)?;
+            let lean = if i % 2 == 0 { 6.0 } else { -6.0 };
+            panel.paint(&line([x - lean, low], [x + lean, high], 0.22, 0.0))?;
+        }
+    }
+    Ok(panel)
+}
+
+fn scumbling(library: PaintLibrary) -> Result<Panel, Fault> {
+    let mut panel = Panel::of("bright", 13.0, library)?;
+    for i in 0..14 {
+        let (column, row) = (i % 7, i / 7);
+        let x = 12.0 + 14.0 * f64::from(column);
+        let y = [46.0, 18.0][row as usize];
+        panel.load(BRUSH, "Burnt Sienna=0.8,Bone Black=0.2")?;
+        panel.paint(&line([x - 3.0, y - 12.0], [x + 3.0, y + 12.0], 0.25, 0.0))?;
+    }
+    panel.dry(1.0)?;
+    panel.take_up("scumble", "flat", 16.0)?;
+    panel.load("scumble", WHITE)?;
+    for y in [50.0, 38.0, 24.0, 12.0] {
+        let gesture = Gesture {
+            seconds: 0.9,
+            hand: Box::new(move |t| Moment {
+                at: [56.0 + 48.0 * t, y],
+                pressure: 0.02 + 0.05 * swell(t, 0.2),
+                tilt_deg: [0.0; 2],
+                twist_deg: 90.0,
+            }),
+        };
+        panel.paint(&gesture)?;
+    }
+    Ok(panel)
+}
