@@ -110,6 +110,59 @@ fn what_was_done_is_there_after_a_kill_and_can_be_undone() {
     assert_eq!(there["pending"], 0);
 }
 
+/// Paint that dries by the rig's clock, in a rig whose paint node is killed meanwhile.
+#[test]
+fn a_drying_goes_on_after_a_crash_and_layers_become_wet_again() {
+    let place = Place::new();
+    let mut launcher = Launcher::up(&place, &["x.maul", "--size", "512x512"]);
+    launcher.wait_says("painting in");
+    let refused = |args: &[&str], words: &[&str]| has(&fault(&place, args, 2), words);
+    refused(&["dry", "--over", "2s"], &["nothing is wet"]);
+    place.done(&["fill", "Yellow Ochre", "--um", "40"]);
+    let all = account(&place, "canvas");
+    place.done(&["dry", "--region", "0,0,64x128", "--layer", "left"]);
+    let half = account(&place, "dry");
+    assert!((half / all - 0.5).abs() < 1e-3, "{}", half / all);
+    refused(
+        &["dry", "--region", "200,0,9x9"],
+        &["holds no cell", "128.0x128.0 mm"],
+    );
+    place.done(&["dry", "--over", "4s", "--layer", "slow"]);
+    refused(&["dry", "--over", "4s"], &["--stop"]);
+    let (bus, topics) = join(&place);
+    let mut status = listen::<PaintStatus>(&bus, &topics.paint_status(), Class::Background);
+    // Thirty ticks a round: some paint has dried by then, and is in the file.
+    let begun = hear(&mut status, |_| true).expect("a rig").journal;
+    let dries = |status: &PaintStatus| status.committed > begun + 60;
+    hear(&mut status, dries).expect("time goes by");
+    signal(
+        place.pid("maulstick-paint").expect("a paint node"),
+        Signal::SIGKILL,
+    );
+    launcher.wait_says("is started again");
+    let is_dry = || (account(&place, "canvas") == 0.0).then_some(());
+    wait_for(PATIENCE, is_dry).expect("it goes on to its end");
+    assert_eq!(account(&place, "dry"), all);
+    place.done(&["opacity", "slow", "0.5"]);
+    refused(&["wet"], &["opacity of layer 2 (slow)", "opacity 2 1"]);
+    refused(&["opacity", "sky", "0.5"], &["'sky'", "2 (slow)"]);
+    place.done(&["undo"]);
+    place.done(&["wet", "--all"]);
+    assert_eq!(
+        (account(&place, "canvas"), account(&place, "dry")),
+        (all, 0.0)
+    );
+    place.done(&["undo"]);
+    assert_eq!(account(&place, "dry"), all);
+    std::fs::write(place.path("size.csv"), "400,0.2\n700,0.6\n").expect("written");
+    place.done(&["ground", "size.csv"]);
+    bus.close();
+    close(&place, launcher);
+    let there = info(&place, "x.maul");
+    assert_eq!(there["ledger"]["quanta_missing"], 0);
+    assert_eq!(there["layers"][1]["name"], "slow");
+}
+
 /// Kills the paint node `rounds` times while a take is played into a painting, each time with the whole
 /// rig, and sees that nothing that was committed is lost.
 fn kill_at_random(rounds: u32) {

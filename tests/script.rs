@@ -94,3 +94,165 @@ fn what_is_wrong_is_told_before_anything_is_painted() {
     has(&fault(&place, &over, 2), &["overwritten", "day.toml"]);
     has(&fault(&place, &["render", "-o", "day.png"], 2), &["<TAKE>"]);
 }
+
+/// Volume of an account of a ledger file, m³.
+fn account(place: &Place, ledger: &str, name: &str) -> f64 {
+    let ledger: serde_json::Value = serde_json::from_slice(&place.bytes(ledger)).expect("a ledger");
+    assert_eq!(ledger["quanta_missing"], 0);
+    ledger["accounts_m3"][name].as_f64().expect("a volume")
+}
+
+#[test]
+fn paint_dries_in_parts_and_over_time_and_becomes_wet_again() {
+    let place = Place::new();
+    place.short_demo("flower.mcap", 3.0);
+    let paint = |steps: &str, more: &[&str]| {
+        let film = "{ fill = \"Yellow Ochre=0.4,Titanium White=0.6\", um = 40 },";
+        script(&place, "day.toml", &format!("{film}\n{steps}"));
+        let render = [
+            "render", "--script", "day.toml", "-o", "day.png", "--ledger", "l.json",
+        ];
+        place.done(&[&render[..], more].concat());
+        ["canvas", "dry"].map(|name| account(&place, "l.json", name))
+    };
+    let size = ["--size", "320x240"];
+    let [all, none] = paint("", &size);
+    assert_eq!(none, 0.0);
+    // A canvas of 80×60 mm.
+    let [wet, dry] = paint("{ dry = 0.5, region = \"0,0,40x60\" },", &size);
+    assert!((dry / all - 0.25).abs() < 1e-3 && (wet + dry - all).abs() < 1e-6 * all);
+    let slowly = "{ dry = 1.0, over = \"20s\", layer = \"slow\" },";
+    let [_, half] = paint(&format!("{slowly}\n{{ wait = \"10s\" }},"), &size);
+    assert!((half / all - 0.5).abs() < 0.05, "{}", half / all);
+    let half_picture = place.bytes("day.png");
+    let [_, again] = paint(
+        &format!("{slowly}\n{{ wait = \"4s\" }},\n{{ wait = \"6s\" }},"),
+        &size,
+    );
+    assert_eq!(half, again);
+    assert_same(&half_picture, &place.bytes("day.png"), "one wait and two");
+    let stopped =
+        format!("{slowly}\n{{ wait = \"10s\" }},\n{{ stop_drying = true }},\n{{ wait = \"1h\" }},");
+    assert_eq!(paint(&stopped, &size)[1], half);
+    let [wet, _] = paint(&format!("{slowly}\n{{ wait = \"20s\" }},"), &size);
+    assert_eq!(wet, 0.0);
+    let [wet, dry] = paint(
+        &format!("{slowly}\n{{ wait = \"20s\" }},\n{{ wet = \"all\" }},"),
+        &size,
+    );
+    assert_eq!((wet, dry), (all, 0.0));
+    // The time of a take counts; the brush is lifted before its end.
+    let take = "{ dry = 1.0, over = \"1s\" },\n{ load = \"Bone Black\" },\n{ take = \"flower.mcap\" },\n{ wait = \"1s\" },";
+    let [wet, dry] = paint(take, &size);
+    assert!(wet == 0.0 && dry > 0.5 * all, "{wet} {dry}");
+    // It goes on in a document that was closed meanwhile.
+    let file = ["--document", "day.maul"];
+    paint(
+        &format!("{slowly}\n{{ wait = \"10s\" }},"),
+        &[&size[..], &file].concat(),
+    );
+    script(&place, "later.toml", "{ wait = \"10s\" },");
+    let later = [
+        "render",
+        "--script",
+        "later.toml",
+        "-o",
+        "day.png",
+        "--ledger",
+        "l.json",
+    ];
+    place.done(&[&later[..], &file].concat());
+    assert_eq!(account(&place, "l.json", "canvas"), 0.0);
+    script(
+        &place,
+        "late.toml",
+        "{ opacity = 0.5, layer = 1 },\n{ wet = 1 },",
+    );
+    let late = [
+        "render",
+        "--script",
+        "late.toml",
+        "-o",
+        "day.png",
+        "--document",
+        "day.maul",
+    ];
+    has(
+        &fault(&place, &late, 2),
+        &["late.toml:3", "opacity of layer 1 (slow)", "opacity 1 1"],
+    );
+}
+
+#[test]
+fn a_ground_may_have_any_reflectance_and_goes_with_the_painting() {
+    let place = Place::new();
+    std::fs::write(
+        place.path("size.csv"),
+        "nm,reflectance\n400,0.1\n500,0.2\n600,0.6\n700,0.7\n",
+    )
+    .expect("written");
+    script(&place, "none.toml", "{ light = { intensity = 1.0 } },");
+    let size = ["--size", "128x64"];
+    let render = |more: &[&str]| {
+        let render = ["render", "--script", "none.toml", "-o", "day.png"];
+        place.done(&[&render[..], more].concat());
+        place.bytes("day.png")
+    };
+    let plain = render(&size);
+    let file = ["--document", "day.maul"];
+    let toned = render(&[&size[..], &["--ground", "size.csv"], &file].concat());
+    assert!(plain != toned, "a ground of its own");
+    script(&place, "ground.toml", "{ ground = \"size.csv\" },");
+    let script_ground = ["render", "--script", "ground.toml", "-o", "day.png"];
+    place.done(&[&script_ground[..], &size].concat());
+    assert!(place.bytes("day.png") != plain, "a ground by a step");
+    std::fs::remove_file(place.path("size.csv")).expect("removed");
+    assert_same(&toned, &render(&file), "opened without the file");
+    let info = place.done(&["painting", "info", "day.maul"]).stdout;
+    has(&String::from_utf8_lossy(&info), &["spectrum "]);
+
+    for (text, line, words) in [
+        ("400,0.5\n700,1.5\n", 2, "0 to 1"),
+        ("400,0.5\n390,0.5\n", 2, "rise"),
+        ("400,0.5\n", 1, "two wavelengths"),
+    ] {
+        std::fs::write(place.path("bad.csv"), text).expect("written");
+        let bad = [
+            "render",
+            "--script",
+            "none.toml",
+            "-o",
+            "x.png",
+            "--ground",
+            "bad.csv",
+        ];
+        has(
+            &fault(&place, &bad, 2),
+            &[&format!("bad.csv:{line}"), words],
+        );
+        script(&place, "bad.toml", "{ ground = \"bad.csv\" },");
+        let bad = ["render", "--script", "bad.toml", "-o", "x.png"];
+        has(
+            &fault(&place, &bad, 2),
+            &[&format!("bad.csv:{line}"), words],
+        );
+        has(
+            &fault(&place, &["ground", "bad.csv"], 2),
+            &[&format!("bad.csv:{line}"), words],
+        );
+    }
+    let late = [
+        &[
+            "render",
+            "--script",
+            "none.toml",
+            "-o",
+            "x.png",
+            "--ground",
+            "grey",
+        ][..],
+        &file,
+    ]
+    .concat();
+    has(&fault(&place, &late, 2), &["--ground", "new painting"]);
+}

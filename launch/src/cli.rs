@@ -41,6 +41,8 @@ enum Command {
     Light(light::LightOptions),
     /// Dries the wet paint of a running rig into a new layer
     Dry(layers::DryOptions),
+    /// Makes dry layers of a running rig wet again
+    Wet(layers::WetOptions),
     /// Makes a dry layer of a running rig more or less opaque
     Opacity(layers::OpacityOptions),
     /// Takes the newest step in a running rig back
@@ -103,6 +105,7 @@ pub fn run() -> Result<i32, Fault> {
         Command::Clean(options) => control::clean(&options),
         Command::Light(options) => light::run(&options),
         Command::Dry(options) => layers::dry(&options),
+        Command::Wet(options) => layers::wet(&options),
         Command::Opacity(options) => layers::opacity(&options),
         Command::Undo(options) => control::undo(&options),
         Command::Redo(options) => control::redo(&options),

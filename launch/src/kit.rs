@@ -44,6 +44,11 @@ pub fn kit_of(config: &RigConfig, brush: &BrushSection, loads: &[Mixture]) -> Re
         let power = read(Path::new(&config.light.illuminant))?;
         settings.light.illuminant = kit.add(power, "csv");
     }
+    if is_path(&config.canvas.ground) {
+        let file = Path::new(&config.canvas.ground);
+        let extension = file.extension().unwrap_or_default().to_string_lossy();
+        settings.canvas.ground = kit.add(read(file)?, &extension);
+    }
     let text = toml::to_string(&settings).map_err(|error| unwritten(error.to_string()))?;
     kit.settings = kit.add(text.into_bytes(), "toml");
     Ok(kit)
@@ -74,7 +79,10 @@ pub fn use_kit(
         fault if fault.code == EXIT_FAILURE => fault,
         fault => fault.at(place.clone()),
     })?;
-    let mut names = vec![settings.light.illuminant.clone()];
+    let mut names = vec![
+        settings.light.illuminant.clone(),
+        settings.canvas.ground.clone(),
+    ];
     names.extend(settings.brush.iter().map(|brush| brush.kind.clone()));
     names.extend(
         settings

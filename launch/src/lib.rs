@@ -14,6 +14,7 @@
 //! | [`sheet`] | the sheet of brushes and their marks |
 //! | [`backend`] | what computes the steps of the paint |
 //! | [`document`] | paintings in files |
+//! | [`duration`], [`ground`] | times and grounds as a painter names them |
 //! | [`kit`] | what a take is painted with: put into it, and taken from it |
 //! | [`lamp`] | what is changed of the light |
 //! | [`script`] | a day at the easel, a step after the other |
@@ -25,6 +26,8 @@ pub mod cli;
 pub mod commands;
 pub mod destination;
 pub mod document;
+pub mod duration;
+pub mod ground;
 pub mod kit;
 pub mod lamp;
 pub mod nodes;

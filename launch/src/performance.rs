@@ -11,6 +11,7 @@ use maulstick_rig::config::{BACKENDS, BrushSection, LightSection, RigConfig};
 use maulstick_types::Mixture;
 use maulstick_types::scene::Light;
 
+use crate::ground::GroundFile;
 use crate::viewing::illuminant;
 
 /// What is painted with, and on.
@@ -32,6 +33,9 @@ pub struct KitOptions {
     /// The light: A, D50, D65, FL2, FL8, FL11, or a CSV file of nm,power
     #[arg(long, value_name = "NAME|FILE")]
     pub illuminant: Option<String>,
+    /// The ground: gesso, grey, black, a CSV file of nm,reflectance, or a picture
+    #[arg(long, value_name = "NAME|FILE")]
+    pub ground: Option<String>,
     /// Keeps the cast of the light: the eye is not adapted to it
     #[arg(long)]
     pub no_adapt: bool,
@@ -92,6 +96,9 @@ impl KitOptions {
         if let Some(illuminant) = &self.illuminant {
             config.light.illuminant.clone_from(illuminant);
         }
+        if let Some(ground) = &self.ground {
+            config.canvas.ground.clone_from(ground);
+        }
         config.light.adapt &= !self.no_adapt;
         let section = match &self.brush {
             None => config.brush[0].clone(),
@@ -122,6 +129,7 @@ impl KitOptions {
             (self.size.is_some(), "--size"),
             (self.paints.is_some(), "--paints"),
             (self.illuminant.is_some(), "--illuminant"),
+            (self.ground.is_some(), "--ground"),
             (self.no_adapt, "--no-adapt"),
         ];
         given
@@ -259,10 +267,9 @@ pub fn painting_setup(config: &RigConfig, library: &PaintLibrary) -> Result<Pain
                 .map_err(|error| Fault::usage(error.to_string()).at("[palette] wells"))
         })
         .collect::<Result<_, _>>()?;
-    Ok(PaintingSetup {
+    let mut setup = PaintingSetup {
         cells: canvas.cells(),
         cell_m: canvas.cell_mm * 1e-3,
-        ground: canvas.ground.clone(),
         tooth: canvas.tooth.clone(),
         tooth_seed: canvas.tooth_seed,
         stain_m: canvas.stain_um * 1e-6,
@@ -271,7 +278,9 @@ pub fn painting_setup(config: &RigConfig, library: &PaintLibrary) -> Result<Pain
         light: light(&config.light)?,
         exposure: config.light.exposure,
         ..PaintingSetup::default()
-    })
+    };
+    GroundFile::read(&canvas.ground)?.prime(&mut setup)?;
+    Ok(setup)
 }
 
 #[cfg(test)]

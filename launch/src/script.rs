@@ -19,20 +19,22 @@ use maulstick_device::{Take, brush_file};
 use maulstick_optics::PaintLibrary;
 use maulstick_rig::Fault;
 use maulstick_rig::config::{BrushSection, is_path, toml_fault};
-use maulstick_types::Mixture;
 use maulstick_types::command::Command;
 use maulstick_types::scene::{BrushMode, CANVAS};
+use maulstick_types::{Mixture, Region};
 use serde::Deserialize;
 use toml::Spanned;
 
 use crate::commands::mode::{handling, piles_command};
+use crate::duration::{ticks_in, time_ns};
+use crate::ground::GroundFile;
 use crate::lamp::LightChange;
 use crate::performance::mixture_of;
 
 /// Thickness of a film for which nothing is said, µm.
 const FILM_UM: f64 = 50.0;
 /// The keys that say what is done, and those that say how.
-const STEPS: [(&str, &[&str]); 17] = [
+const STEPS: [(&str, &[&str]); 20] = [
     ("brush", &["size_mm", "depth_share"]),
     ("load", &["beside"]),
     ("clean", &[]),
@@ -41,7 +43,10 @@ const STEPS: [(&str, &[&str]); 17] = [
     ("stain_um", &[]),
     ("piles", &[]),
     ("take", &["loads"]),
-    ("dry", &["layer"]),
+    ("dry", &["layer", "region", "over"]),
+    ("wait", &[]),
+    ("stop_drying", &[]),
+    ("wet", &["region"]),
     ("opacity", &["layer"]),
     ("fill", &["um"]),
     ("ground", &[]),
@@ -67,8 +72,10 @@ pub enum Act {
     FillWith(f64),
     /// Follows a take; its strokes load these mixtures in turn.
     Take(Take, Vec<Mixture>),
-    /// Makes the dry layer of this name more or less opaque.
-    Opacity(String, f32),
+    /// Gives the canvas another ground.
+    Ground(GroundFile),
+    /// Lets time go by, in sixtieths of a second.
+    Wait(u32),
     /// Changes the light.
     Light(LightChange),
     /// Takes so many steps back.
@@ -105,7 +112,12 @@ struct Raw {
     take: Option<String>,
     loads: Option<Vec<String>>,
     dry: Option<f32>,
-    layer: Option<String>,
+    layer: Option<Word>,
+    region: Option<String>,
+    over: Option<String>,
+    wait: Option<String>,
+    stop_drying: Option<bool>,
+    wet: Option<Word>,
     opacity: Option<f32>,
     fill: Option<String>,
     um: Option<f64>,
@@ -117,6 +129,74 @@ struct Raw {
     keep: Option<String>,
     #[serde(rename = "return")]
     back: Option<String>,
+}
+
+/// A name, or a number.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(untagged)]
+enum Word {
+    Number(u32),
+    Name(String),
+}
+
+impl Word {
+    fn text(self) -> String {
+        match self {
+            Self::Number(number) => number.to_string(),
+            Self::Name(name) => name,
+        }
+    }
+
+    /// How many layers; 0 for all.
+    fn count(&self) -> Result<u32, Fault> {
+        match self {
+            Self::Number(number) if *number > 0 => Ok(*number),
+            Self::Name(name) if name == "all" => Ok(0),
+            _ => Err(
+                Fault::usage("'wet' takes how many of the newest layers, or \"all\"")
+                    .help("{ wet = 1 }, { wet = \"all\" }"),
+            ),
+        }
+    }
+}
+
+fn region(text: &str) -> Result<Region, Fault> {
+    text.parse().map_err(Fault::usage)
+}
+
+/// A drying at once, or over a time.
+fn drying(
+    share: f32,
+    name: String,
+    region: Option<Region>,
+    over: Option<&str>,
+) -> Result<Command, Fault> {
+    let surface = CANVAS;
+    let Some(time) = over else {
+        return Ok(match region {
+            None => Command::Dry {
+                surface,
+                share,
+                name,
+            },
+            Some(region) => Command::DryRegion {
+                surface,
+                share,
+                name,
+                region,
+            },
+        });
+    };
+    if share != 1.0 {
+        return Err(Fault::usage("over a time all that is wet dries")
+            .help("{ dry = 1.0, over = \"90s\" }; a `stop_drying` leaves the rest wet"));
+    }
+    Ok(Command::DryOver {
+        surface,
+        ticks: ticks_in(time).map_err(Fault::usage)?,
+        name,
+        region,
+    })
 }
 
 impl Script {
@@ -149,11 +229,12 @@ impl Script {
         steps.collect::<Result<_, _>>().map(Self)
     }
 
-    /// Length of all takes, ns.
+    /// Length of all takes and waits, ns.
     #[must_use]
     pub fn length_ns(&self) -> u64 {
         let lengths = self.0.iter().map(|(_, act)| match act {
             Act::Take(take, _) => take.length_ns(),
+            Act::Wait(ticks) => time_ns(*ticks),
             _ => 0,
         });
         lengths.sum()
@@ -180,6 +261,11 @@ impl Raw {
             ("loads", self.loads.is_some()),
             ("dry", self.dry.is_some()),
             ("layer", self.layer.is_some()),
+            ("region", self.region.is_some()),
+            ("over", self.over.is_some()),
+            ("wait", self.wait.is_some()),
+            ("stop_drying", self.stop_drying.is_some()),
+            ("wet", self.wet.is_some()),
             ("opacity", self.opacity.is_some()),
             ("fill", self.fill.is_some()),
             ("um", self.um.is_some()),
@@ -283,12 +369,8 @@ impl Raw {
             let layer = self.layer.ok_or_else(|| {
                 Fault::usage("no layer is named").help("{ opacity = 0.5, layer = \"sky\" }")
             })?;
-            return match (0.0..=1.0).contains(&opacity) {
-                true => Ok(Act::Opacity(layer, opacity)),
-                false => {
-                    Err(Fault::usage(format!("an opacity of {opacity}")).help("choose 0 to 1"))
-                }
-            };
+            let layer = layer.text();
+            return command(Command::LayerOpacity { layer, opacity });
         }
         if let Some(mut light) = self.light {
             let file = light.illuminant.iter_mut().filter(|name| is_path(name));
@@ -300,13 +382,23 @@ impl Raw {
         if let Some(times) = self.undo {
             return Ok(Act::Undo(times));
         }
+        let region = self.region.as_deref().map(region).transpose()?;
         if let Some(share) = self.dry {
-            let (surface, name) = (CANVAS, self.layer.unwrap_or_default());
-            return command(Command::Dry {
-                surface,
-                share,
-                name,
+            let name = self.layer.map_or(String::new(), Word::text);
+            return command(drying(share, name, region, self.over.as_deref())?);
+        }
+        if let Some(layers) = self.wet {
+            return command(Command::Wet {
+                surface: CANVAS,
+                layers: layers.count()?,
+                region,
             });
+        }
+        if let Some(time) = &self.wait {
+            return Ok(Act::Wait(ticks_in(time).map_err(Fault::usage)?));
+        }
+        if self.stop_drying.is_some() {
+            return command(Command::StopDrying { surface: CANVAS });
         }
         if let Some(paint) = &self.fill {
             return command(Command::Fill {
@@ -316,10 +408,12 @@ impl Raw {
             });
         }
         if let Some(ground) = self.ground {
-            return command(Command::Ground {
-                surface: CANVAS,
-                ground,
-            });
+            let file = beside(&ground);
+            let ground = match is_path(&ground) {
+                true => file.display().to_string(),
+                false => ground,
+            };
+            return Ok(Act::Ground(GroundFile::read(&ground)?));
         }
         if let Some(tooth) = self.tooth {
             return command(Command::Tooth {

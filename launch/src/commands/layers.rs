@@ -1,12 +1,14 @@
-//! `maulstick dry` and `maulstick opacity`: dry layers of a running rig.
+//! `maulstick dry`, `wet` and `opacity`: dry layers of a running rig.
 
 use clap::Args;
 use maulstick_rig::Fault;
+use maulstick_types::Region;
 use maulstick_types::command::Command;
 use maulstick_types::scene::{CANVAS, PALETTE};
 
 use crate::commands::say;
 use crate::commands::session::{PAINT, Session, Target};
+use crate::duration::ticks_in;
 
 /// Options of `maulstick dry`.
 #[derive(Args, Clone, Debug)]
@@ -17,6 +19,34 @@ pub struct DryOptions {
     /// Name of the layer; its number if absent
     #[arg(long = "layer", value_name = "NAME", default_value = "")]
     layer: String,
+    /// Only the cells of this rectangle, mm of the surface from its lower left corner
+    #[arg(long, value_name = "X,Y,WxH", allow_hyphen_values = true)]
+    region: Option<Region>,
+    /// All that is wet dries evenly within this time, such as 90s, 20min, 2h; one may paint meanwhile
+    #[arg(long, value_name = "TIME", value_parser = ticks_in, conflicts_with = "share")]
+    over: Option<u32>,
+    /// Ends a drying that goes on: what is wet still stays wet
+    #[arg(long, conflicts_with_all = ["share", "layer", "region", "over"])]
+    stop: bool,
+    /// The palette in the place of the canvas
+    #[arg(long)]
+    palette: bool,
+    #[command(flatten)]
+    target: Target,
+}
+
+/// Options of `maulstick wet`.
+#[derive(Args, Clone, Debug)]
+pub struct WetOptions {
+    /// How many of the newest dry layers
+    #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..))]
+    layers: u32,
+    /// All dry layers
+    #[arg(long, conflicts_with = "layers")]
+    all: bool,
+    /// Only the cells of this rectangle, mm of the surface from its lower left corner
+    #[arg(long, value_name = "X,Y,WxH", allow_hyphen_values = true)]
+    region: Option<Region>,
     /// The palette in the place of the canvas
     #[arg(long)]
     palette: bool,
@@ -27,8 +57,8 @@ pub struct DryOptions {
 /// Options of `maulstick opacity`.
 #[derive(Args, Clone, Debug)]
 pub struct OpacityOptions {
-    /// Number of the layer
-    layer: u32,
+    /// Name or number of the layer
+    layer: String,
     /// Factor on its optical thickness, 0 to 1; its height stays
     #[arg(allow_negative_numbers = true)]
     opacity: f32,
@@ -36,21 +66,62 @@ pub struct OpacityOptions {
     target: Target,
 }
 
+fn surface(palette: bool) -> u32 {
+    if palette { PALETTE } else { CANVAS }
+}
+
+fn send(target: &Target, command: Command) -> Result<String, Fault> {
+    command.check().map_err(Fault::usage)?;
+    Session::open(target)?.send(PAINT, command)
+}
+
 /// Dries what is wet.
 ///
 /// # Errors
 /// A [`Fault`] where nothing is wet, or no rig runs.
 pub fn dry(options: &DryOptions) -> Result<i32, Fault> {
-    let command = Command::Dry {
-        surface: if options.palette { PALETTE } else { CANVAS },
-        share: options.share,
-        name: options.layer.clone(),
+    let (surface, name) = (surface(options.palette), options.layer.clone());
+    let region = options.region.clone();
+    let command = match (options.stop, options.over, region) {
+        (true, ..) => Command::StopDrying { surface },
+        (_, Some(ticks), region) => Command::DryOver {
+            surface,
+            ticks,
+            name,
+            region,
+        },
+        (_, None, Some(region)) => Command::DryRegion {
+            surface,
+            share: options.share,
+            name,
+            region,
+        },
+        (_, None, None) => Command::Dry {
+            surface,
+            share: options.share,
+            name,
+        },
     };
-    command.check().map_err(Fault::usage)?;
-    say!(
-        "dried: {}",
-        Session::open(&options.target)?.send(PAINT, command)?
-    );
+    let done = send(&options.target, command)?;
+    match (options.stop, options.over) {
+        (true, _) => say!("the drying is ended"),
+        (_, Some(_)) => say!("dries {done}"),
+        _ => say!("dried: {done}"),
+    }
+    Ok(0)
+}
+
+/// Makes dry layers wet again.
+///
+/// # Errors
+/// A [`Fault`] where nothing has dried, or no rig runs.
+pub fn wet(options: &WetOptions) -> Result<i32, Fault> {
+    let command = Command::Wet {
+        surface: surface(options.palette),
+        layers: if options.all { 0 } else { options.layers },
+        region: options.region.clone(),
+    };
+    say!("wet again: {}", send(&options.target, command)?);
     Ok(0)
 }
 
@@ -59,11 +130,10 @@ pub fn dry(options: &DryOptions) -> Result<i32, Fault> {
 /// # Errors
 /// A [`Fault`] for an unknown layer, or where no rig runs.
 pub fn opacity(options: &OpacityOptions) -> Result<i32, Fault> {
-    let command = Command::Opacity {
-        layer: options.layer,
+    let command = Command::LayerOpacity {
+        layer: options.layer.clone(),
         opacity: options.opacity,
     };
-    command.check().map_err(Fault::usage)?;
-    Session::open(&options.target)?.send(PAINT, command)?;
+    send(&options.target, command)?;
     Ok(0)
 }

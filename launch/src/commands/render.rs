@@ -8,7 +8,9 @@ use indicatif::ProgressBar;
 use maulstick_device::{Take, TakeSample};
 use maulstick_nodes::paint_node::write_snapshot;
 use maulstick_nodes::{Keeper, Offline};
+use maulstick_paint::embedded::IMAGE;
 use maulstick_paint::light::changes_colour;
+use maulstick_paint::store::TileStore;
 use maulstick_paint::{Painting, Sequencer};
 use maulstick_rig::files::check_writable;
 use maulstick_rig::{Fault, RigConfig};
@@ -20,6 +22,8 @@ use crate::backend::choose_backend;
 use crate::commands::progress_bar;
 use crate::destination::export;
 use crate::document::{go_on, presence, wrong};
+use crate::duration::time_ns;
+use crate::ground::GroundFile;
 use crate::kit::use_kit;
 use crate::performance::{PaintingOptions, brush_file, library_from, painting_setup, refused};
 use crate::script::{Act, Script};
@@ -168,7 +172,7 @@ struct Easel<'a> {
     keeper: &'a mut Option<Keeper>,
     begun: Instant,
     bar: ProgressBar,
-    /// Time of the takes so far, ns.
+    /// Time of the takes and waits so far, ns.
     painted_ns: u64,
 }
 
@@ -198,15 +202,10 @@ impl Easel<'_> {
             }),
             Act::Clean => self.offline.command(Command::Clean { brush }),
             Act::Take(take, loads) => return self.follow(&take, loads),
-            Act::Opacity(name, opacity) => {
-                let layers = &self.offline.painting_mut().scene().layers;
-                let found = layers.iter().rev().find(|layer| layer.name == name);
-                let layer = found.map(|layer| layer.number).ok_or_else(|| {
-                    let names: Vec<&str> = layers.iter().map(|layer| layer.name.as_str()).collect();
-                    Fault::usage(format!("there is no dry layer called '{name}'"))
-                        .help(format!("there are: {}", names.join(", ")))
-                })?;
-                self.offline.command(Command::Opacity { layer, opacity })
+            Act::Ground(file) => return self.prime(file),
+            Act::Wait(ticks) => {
+                self.wait(ticks);
+                Ok(())
             }
             Act::Light(change) => {
                 let before = self.offline.painting_mut().scene().light.clone();
@@ -224,14 +223,57 @@ impl Easel<'_> {
         Ok(())
     }
 
+    fn prime(&mut self, file: GroundFile) -> Result<(), Fault> {
+        let surface = CANVAS;
+        let painting = self.offline.painting_mut();
+        let cells = painting.store(CANVAS).map_or([1, 1], TileStore::cells);
+        let command = match file.picture(cells)? {
+            Some(bytes) => {
+                let hash = painting.embed(bytes).map_err(refused)?;
+                if let Some(keeper) = self.keeper {
+                    // The document has the picture before the journal names it.
+                    keeper.settle(self.offline.sequencer_mut());
+                }
+                let ground = format!("{IMAGE}{hash}");
+                Command::Ground { surface, ground }
+            }
+            None => match file {
+                GroundFile::Spectrum(spectrum) => Command::GroundSpectrum { surface, spectrum },
+                GroundFile::Named(ground) | GroundFile::Picture(_, ground) => {
+                    Command::Ground { surface, ground }
+                }
+            },
+        };
+        self.offline.command(command).map_err(refused)?;
+        self.keep();
+        Ok(())
+    }
+
+    fn wait(&mut self, ticks: u32) {
+        let Self {
+            offline,
+            keeper,
+            begun,
+            bar,
+            painted_ns,
+        } = self;
+        offline.wait(ticks, |sequencer| {
+            if let Some(keeper) = keeper {
+                keeper.turn(sequencer, begun.elapsed().as_nanos() as u64);
+            }
+        });
+        *painted_ns += time_ns(ticks);
+        bar.set_position(*painted_ns / 1_000_000);
+    }
+
     fn follow(&mut self, take: &Take, loads: Vec<Mixture>) -> Result<(), Fault> {
         self.offline.begin_take(loads).map_err(refused)?;
         // The start does not matter to the painting; a live one has the clock's time here.
         let (start_ns, first_ns) = (PAUSE_NS + self.painted_ns, take.samples[0].time_ns);
-        let time_ns = |sample: &TakeSample| sample.time_ns - first_ns;
+        let since_ns = |sample: &TakeSample| sample.time_ns - first_ns;
         let samples = take.samples.iter();
         let samples: Vec<_> = samples
-            .map(|sample| (start_ns + time_ns(sample), &sample.sample))
+            .map(|sample| (start_ns + since_ns(sample), &sample.sample))
             .collect();
         let Self {
             offline,
@@ -242,7 +284,7 @@ impl Easel<'_> {
         } = self;
         let followed = offline.follow(&samples, |sequencer, number| {
             if number % 16 == 0 {
-                bar.set_position((*painted_ns + time_ns(&take.samples[number])) / 1_000_000);
+                bar.set_position((*painted_ns + since_ns(&take.samples[number])) / 1_000_000);
             }
             if let Some(keeper) = keeper {
                 keeper.turn(sequencer, begun.elapsed().as_nanos() as u64);

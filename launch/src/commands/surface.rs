@@ -6,6 +6,7 @@ use maulstick_types::command::Command;
 use maulstick_types::scene::{CANVAS, PALETTE};
 
 use crate::commands::session::{PAINT, Session, Target};
+use crate::ground::GroundFile;
 use crate::performance::{library, mixture_of};
 
 /// Options of `maulstick fill`.
@@ -30,7 +31,8 @@ pub struct FillOptions {
 /// Options of `maulstick ground`.
 #[derive(Args, Clone, Debug)]
 pub struct GroundOptions {
-    /// The ground: gesso, grey, black
+    /// The ground: gesso, grey, black, or a CSV file of nm,reflectance
+    #[arg(value_name = "NAME|FILE")]
     ground: String,
     #[command(flatten)]
     target: Target,
@@ -86,11 +88,20 @@ pub fn fill(options: &FillOptions) -> Result<i32, Fault> {
 /// Gives the canvas another ground.
 ///
 /// # Errors
-/// A [`Fault`] for an unknown ground, or where no rig runs.
+/// A [`Fault`] for an unknown ground or a file that is none, or where no rig runs.
 pub fn ground(options: &GroundOptions) -> Result<i32, Fault> {
-    let command = Command::Ground {
-        surface: CANVAS,
-        ground: options.ground.clone(),
+    let surface = CANVAS;
+    let command = match GroundFile::read(&options.ground)? {
+        GroundFile::Named(ground) => Command::Ground { surface, ground },
+        GroundFile::Spectrum(spectrum) => Command::GroundSpectrum { surface, spectrum },
+        GroundFile::Picture(_, name) => {
+            return Err(Fault::usage("a running rig takes no picture as ground")
+                .at(name)
+                .help(
+                    "close it: `maulstick painting import FILE PICTURE --as ground`; or begin with it: \
+                     `maulstick up --ground PICTURE`",
+                ));
+        }
     };
     send(&options.target, command)
 }

@@ -159,7 +159,7 @@ pub fn run(options: &UpOptions) -> Result<i32, Fault> {
         *paints = absolute(paints)?;
     }
     let kinds = config.brush.iter_mut().map(|brush| &mut brush.kind);
-    for text in kinds.chain([&mut config.light.illuminant]) {
+    for text in kinds.chain([&mut config.light.illuminant, &mut config.canvas.ground]) {
         if is_path(text) {
             *text = absolute(Path::new(text.as_str()))?.display().to_string();
         }

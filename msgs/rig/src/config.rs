@@ -67,7 +67,7 @@ pub struct CanvasSection {
     pub tooth: String,
     /// Seed of the tooth.
     pub tooth_seed: u64,
-    /// Name of the ground.
+    /// Name of the ground, a CSV file of nm,reflectance, or a picture.
     pub ground: String,
     /// Thickness of paint that stays however hard it is brushed, µm.
     pub stain_um: f64,
@@ -351,7 +351,11 @@ impl RigConfig {
             .iter_mut()
             .filter_map(|device| device.hand.as_mut())
             .for_each(whole);
-        let texts = [&mut self.light.illuminant, &mut self.view.profile];
+        let texts = [
+            &mut self.light.illuminant,
+            &mut self.view.profile,
+            &mut self.canvas.ground,
+        ];
         for text in texts
             .into_iter()
             .chain(self.brush.iter_mut().map(|brush| &mut brush.kind))

@@ -3,6 +3,7 @@
 use crate::define::{message, wire_enum, wire_struct};
 use crate::mixture::Mixture;
 use crate::pose::Pose;
+use crate::region::Region;
 use crate::scene::{BrushHandling, FLOWS, Light, STAINS_M, Tuning};
 use crate::stylus::FARTHEST_M;
 use crate::topics::check_name;
@@ -21,6 +22,10 @@ pub const VERSION_NAME_MAX: usize = 128;
 pub const FILM_M: std::ops::RangeInclusive<f64> = 1e-6..=5e-3;
 /// A brush file has at most this many bytes.
 pub const BRUSH_FILE_MAX: usize = 1_000_000;
+/// A spectrum of a command has at most this many bytes.
+pub const SPECTRUM_MAX: usize = 1 << 18;
+/// How long a drying may take, in sixtieths of a second: up to a year.
+pub const DRYING_TICKS: std::ops::RangeInclusive<u32> = 1..=60 * 60 * 60 * 24 * 365;
 /// Factors on the stiffness of a brush.
 pub const STIFFNESS: std::ops::RangeInclusive<f64> = 0.05..=20.0;
 
@@ -184,6 +189,56 @@ wire_enum! {
             /// Name of the version.
             name: String,
         },
+        /// Dries wet paint of a part of a surface into a new layer.
+        DryRegion {
+            /// The surface.
+            surface: u32,
+            /// The lower share of the wet film that dries, above 0 to 1.
+            share: f32,
+            /// Name of the layer.
+            name: String,
+            /// The part.
+            region: Region,
+        },
+        /// Has the wet paint of a surface, or of a part, dry evenly into one new layer while time goes by.
+        DryOver {
+            /// The surface.
+            surface: u32,
+            /// How long, in sixtieths of a second.
+            ticks: u32,
+            /// Name of the layer.
+            name: String,
+            /// The part; all of it if absent.
+            region: Option<Region>,
+        },
+        /// Ends the drying that goes on: what is wet still stays wet.
+        StopDrying {
+            /// The surface.
+            surface: u32,
+        },
+        /// Makes the newest dry layers of a surface, or of a part, wet paint again where they lie.
+        Wet {
+            /// The surface.
+            surface: u32,
+            /// How many; 0 for all.
+            layers: u32,
+            /// The part; all of it if absent.
+            region: Option<Region>,
+        },
+        /// Makes a dry layer, called by its name, more or less opaque.
+        LayerOpacity {
+            /// Its name, or its number in digits; of several of that name the newest.
+            layer: String,
+            /// Factor on its optical thickness, 0 to 1.
+            opacity: f32,
+        },
+        /// Gives a surface a ground of a measured reflectance.
+        GroundSpectrum {
+            /// The surface.
+            surface: u32,
+            /// Reflectances, a CSV file of nm,reflectance.
+            spectrum: String,
+        },
         /// Says how a brush is used.
         Handle {
             /// How, from now on.
@@ -267,19 +322,35 @@ impl Command {
                 }
             }
             Self::Relight { light, .. } => light.check(),
-            Self::Dry { share, name, .. } => match *share > 0.0 && *share <= 1.0 {
-                true if name.len() > LAYER_NAME_MAX => Err(format!(
-                    "a layer's name of {} bytes is too long",
-                    name.len()
-                )),
-                true => Ok(()),
-                false => Err(format!(
-                    "the share that dries is {share}, but must be above 0 to 1"
-                )),
+            Self::Dry { share, name, .. } => drying_share(*share).and_then(|()| layer_name(name)),
+            Self::DryRegion {
+                share,
+                name,
+                region,
+                ..
+            } => drying_share(*share)
+                .and_then(|()| layer_name(name))
+                .and_then(|()| region.check()),
+            Self::DryOver {
+                ticks,
+                name,
+                region,
+                ..
+            } => match DRYING_TICKS.contains(ticks) {
+                true => layer_name(name).and_then(|()| checked(region.as_ref())),
+                false => Err("a drying takes a sixtieth of a second to a year".to_owned()),
             },
-            Self::Opacity { opacity, .. } => match (0.0..=1.0).contains(opacity) {
-                true => Ok(()),
-                false => Err(format!("the opacity is {opacity}, but must be 0 to 1")),
+            Self::Wet { region, .. } => checked(region.as_ref()),
+            Self::Opacity { opacity, .. } => opaque(*opacity),
+            Self::LayerOpacity { layer, opacity } => {
+                layer_name(layer).and_then(|()| opaque(*opacity))
+            }
+            Self::GroundSpectrum { spectrum, .. } => match spectrum.len() > SPECTRUM_MAX {
+                true => Err(format!(
+                    "a spectrum of {} bytes is too long",
+                    spectrum.len()
+                )),
+                false => Ok(()),
             },
             Self::Undo { brush } | Self::Redo { brush } => {
                 brush.as_deref().map_or(Ok(()), brush_name)
@@ -324,7 +395,7 @@ impl Command {
             Self::Branch { from, name } => [from, name]
                 .into_iter()
                 .try_for_each(|name| version_name(name)),
-            Self::Mark => Ok(()),
+            Self::Mark | Self::StopDrying { .. } => Ok(()),
         }
     }
 }
@@ -347,6 +418,36 @@ fn brush_name(name: &str) -> Result<(), String> {
             format!("the brush's name {what}")
         }
     })
+}
+
+fn layer_name(name: &str) -> Result<(), String> {
+    match name.len() > LAYER_NAME_MAX {
+        true => Err(format!(
+            "a layer's name of {} bytes is too long",
+            name.len()
+        )),
+        false => Ok(()),
+    }
+}
+
+fn drying_share(share: f32) -> Result<(), String> {
+    match share > 0.0 && share <= 1.0 {
+        true => Ok(()),
+        false => Err(format!(
+            "the share that dries is {share}, but must be above 0 to 1"
+        )),
+    }
+}
+
+fn opaque(opacity: f32) -> Result<(), String> {
+    match (0.0..=1.0).contains(&opacity) {
+        true => Ok(()),
+        false => Err(format!("the opacity is {opacity}, but must be 0 to 1")),
+    }
+}
+
+fn checked(region: Option<&Region>) -> Result<(), String> {
+    region.map_or(Ok(()), Region::check)
 }
 
 fn version_name(name: &str) -> Result<(), String> {
@@ -429,60 +530,4 @@ message! {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::mixture::Part;
-
-    #[test]
-    fn what_is_too_long_or_too_far_is_refused_in_few_words() {
-        let long = "x".repeat(70_000);
-        let part = Part {
-            paint: long.clone(),
-            share: 1.0,
-        };
-        let load = |mixture: Mixture| Command::Load {
-            brush: "main".into(),
-            mixture,
-        };
-        let hostile = [
-            Command::Clean {
-                brush: long.clone(),
-            },
-            Command::Snapshot {
-                path: long.clone(),
-                ledger: None,
-            },
-            Command::Snapshot {
-                path: "p.png".into(),
-                ledger: Some(long.clone()),
-            },
-            load(Mixture { parts: vec![part] }),
-            load(Mixture {
-                parts: vec![Mixture::pure("A").parts[0].clone(); 5000],
-            }),
-            Command::Take {
-                brush: "main".into(),
-                device: 1,
-                device_epoch: 1,
-                loads: vec![Mixture::pure(&long)],
-                again: false,
-            },
-        ];
-        for command in hostile {
-            let what = command.check().expect_err("too long");
-            assert!(what.len() < 200, "{what}");
-        }
-        let place = |x: f64| Command::Place {
-            surface: 0,
-            pose: Pose {
-                position_m: [x, 0.0, 0.0],
-                ..Pose::IDENTITY
-            },
-            zoom: 1.0,
-        };
-        assert!(place(1e30).check().is_err() && place(f64::NAN).check().is_err());
-        assert_eq!(place(-0.1).check(), Ok(()));
-        assert_eq!(load(Mixture::pure("Bone Black")).check(), Ok(()));
-        assert_eq!(Command::Mark.check(), Ok(()));
-    }
-}
+mod tests;

@@ -23,6 +23,7 @@ pub mod header;
 pub mod mixture;
 pub mod paint;
 pub mod pose;
+pub mod region;
 pub mod scene;
 pub mod schema;
 pub mod stylus;
@@ -34,6 +35,7 @@ pub use header::{DecodeError, Flags, HEADER_BYTES, Header, Origin};
 pub use mixture::{Mixture, MixtureError};
 pub use nearest::nearest;
 pub use pose::Pose;
+pub use region::Region;
 
 /// The FNV-1a hash of `text`, by which sources, schemas and files are named.
 #[must_use]

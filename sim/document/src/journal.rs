@@ -5,7 +5,7 @@ use std::io::Read as _;
 use maulstick_paint::sequencer::{Accepted, Record};
 use maulstick_types::brush::{BrushDef, BrushState};
 use maulstick_types::paint::JournalEntry;
-use maulstick_types::{Flags, Header, Message, Origin, decode, encode, name_hash};
+use maulstick_types::{Flags, HEADER_BYTES, Header, Message, Origin, decode, encode, name_hash};
 
 use rusqlite::params;
 
@@ -138,6 +138,50 @@ fn accepted(message: &[u8]) -> Result<Accepted, DocumentError> {
             toml: def.toml,
         });
     }
+    if JournalEntry::OLDER.contains(&header.schema) {
+        let entry = JournalEntry::decode_body(&message[HEADER_BYTES..]).map_err(damaged)?;
+        return Ok(Accepted::Entry(entry.entry));
+    }
     let (_, entry) = decode::<JournalEntry>(message).map_err(damaged)?;
     Ok(Accepted::Entry(entry.entry))
+}
+
+#[cfg(test)]
+mod tests {
+    use maulstick_types::command::Command;
+    use maulstick_types::paint::Entry;
+
+    use super::*;
+
+    #[test]
+    fn entries_of_an_older_version_are_read_and_unknown_ones_refused() {
+        let entry = Entry::Command {
+            client: 1,
+            number: 2,
+            command: Command::Undo { brush: None },
+        };
+        let record = Record {
+            serial: 5,
+            index: 7,
+            what: Accepted::Entry(entry),
+        };
+        let written = write(std::slice::from_ref(&record)).expect("written");
+        assert_eq!(
+            read(5, &written).expect("read"),
+            std::slice::from_ref(&record)
+        );
+        let bytes = zstd::bulk::decompress(&written, MOST).expect("whole");
+        let of_schema = |hash: u32| {
+            let mut bytes = bytes.clone();
+            // Index and length lie before the header, magic and version before its schema.
+            bytes[16..20].copy_from_slice(&hash.to_le_bytes());
+            zstd::bulk::compress(&bytes, 1).expect("packed")
+        };
+        for hash in JournalEntry::OLDER {
+            assert_ne!(hash, JournalEntry::schema().hash, "that is this version's");
+            let older = read(5, &of_schema(hash)).expect("read");
+            assert_eq!(older, std::slice::from_ref(&record));
+        }
+        assert!(read(5, &of_schema(0x1234_5678)).is_err());
+    }
 }

@@ -157,9 +157,9 @@ pub(crate) fn file(database: &Database, hash: &str) -> Result<Vec<u8>, DocumentE
     }
 }
 
-/// The pictures of grounds and teeth.
+/// The pictures and spectra of grounds and teeth.
 fn pictures(database: &Database) -> Result<Embedded, DocumentError> {
-    let query = "SELECT hash FROM file WHERE kind = 'picture' ORDER BY hash";
+    let query = "SELECT hash FROM file WHERE kind IN ('picture', 'spectrum') ORDER BY hash";
     let mut statement = database.connection.prepare(query)?;
     let hashes = statement.query_map(params![], |row| row.get::<_, String>(0))?;
     let mut embedded = Embedded::default();

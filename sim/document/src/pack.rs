@@ -80,26 +80,14 @@ pub(crate) fn settle(path: &Path, history: History) -> Result<(), DocumentError>
     if history == History::Forgotten {
         sequencer.painting_mut().forget_history();
     }
-    let kept = sequencer.kept();
-    let painting = sequencer.painting_mut().checkpoint(since);
-    document.keep(Moment {
-        painting,
-        sequencer: kept,
-        pictures: Vec::new(),
-    });
+    document.keep(Moment::of(&mut sequencer, since));
     document.flush();
     if !document.is_ready() {
         return document.close();
     }
     // What was forgotten goes with the next moment.
     let versions = sequencer.painting().versions();
-    let kept = sequencer.kept();
-    let painting = sequencer.painting_mut().checkpoint(versions);
-    document.keep(Moment {
-        painting,
-        sequencer: kept,
-        pictures: Vec::new(),
-    });
+    document.keep(Moment::of(&mut sequencer, versions));
     document.close()
 }
 

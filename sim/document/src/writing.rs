@@ -4,7 +4,8 @@ use std::collections::BTreeSet;
 use std::sync::Arc;
 use std::time::Instant;
 
-use maulstick_paint::embedded::hash_of;
+use maulstick_paint::Sequencer;
+use maulstick_paint::embedded::{hash_of, kind_of};
 use maulstick_paint::history::{Held, Step};
 use maulstick_paint::kept::KeptSequencer;
 use maulstick_paint::load::BrushLoad;
@@ -27,8 +28,22 @@ pub struct Moment {
     pub painting: Checkpoint,
     /// The sequencer.
     pub sequencer: KeptSequencer,
-    /// Pictures of grounds and teeth, by their hash.
+    /// Pictures and spectra of grounds and teeth, by their hash.
     pub pictures: Vec<(String, Arc<[u8]>)>,
+}
+
+impl Moment {
+    /// A moment of a painting, with the tiles that are newer than the version `since`.
+    pub fn of(sequencer: &mut Sequencer, since: u64) -> Self {
+        let kept = sequencer.kept();
+        let embedded = sequencer.painting().embedded().iter();
+        let pictures = embedded.map(|(hash, bytes)| (hash.to_owned(), Arc::clone(bytes)));
+        Self {
+            pictures: pictures.collect(),
+            painting: sequencer.painting_mut().checkpoint(since),
+            sequencer: kept,
+        }
+    }
 }
 
 /// A tile as it is shown.
@@ -395,7 +410,7 @@ impl<'a, 'b> Writer<'a, 'b> {
         }
         for (hash, data) in &moment.pictures {
             if !self.has_file(hash)? {
-                self.file("picture", hash, data)?;
+                self.file(kind_of(data), hash, data)?;
             }
         }
         let painting = serde_json::to_string(&kept)?;

@@ -93,10 +93,9 @@ proptest! {
         let mut log = Vec::new();
         kept.record();
         let moment = |kept: &mut Sequencer, since: &mut u64| {
-            let sequencer = kept.kept();
-            let painting = kept.painting_mut().checkpoint(*since);
-            *since = painting.kept.versions;
-            Moment { painting, sequencer, pictures: Vec::new() }
+            let moment = Moment::of(kept, *since);
+            *since = moment.painting.kept.versions;
+            moment
         };
         document.as_ref().expect("open").keep(moment(&mut kept, &mut since));
         equip(&mut kept);

@@ -1,7 +1,5 @@
 //! Keeps a painting in its document: what was accepted at once, a moment of it each second.
 
-use std::sync::Arc;
-
 use maulstick_document::{Document, DocumentError, Moment};
 use maulstick_paint::Sequencer;
 
@@ -41,17 +39,9 @@ impl Keeper {
     }
 
     fn hand_over(&mut self, sequencer: &mut Sequencer) {
-        let kept = sequencer.kept();
-        let embedded = sequencer.painting().embedded().iter();
-        let pictures = embedded.map(|(hash, bytes)| (hash.to_owned(), Arc::clone(bytes)));
-        let pictures = pictures.collect();
-        let painting = sequencer.painting_mut().checkpoint(self.since);
-        (self.since, self.serial) = (painting.kept.versions, kept.serial);
-        self.document.keep(Moment {
-            painting,
-            sequencer: kept,
-            pictures,
-        });
+        let moment = Moment::of(sequencer, self.since);
+        (self.since, self.serial) = (moment.painting.kept.versions, moment.sequencer.serial);
+        self.document.keep(moment);
     }
 
     /// Hands over what was accepted since, and each second a moment. The journal of the sequencer was

@@ -12,6 +12,7 @@
 //! | [`frames`] | pictures of what changed, for whoever asks |
 //! | [`keeper`] | the painting in its document |
 //! | [`offline`] | the same brush and paint in one process, without a bus |
+//! | [`ticker`] | ticks of a clock |
 //! | [`worker`] | a thread that a node cannot do without |
 
 pub mod arbiter;
@@ -23,6 +24,7 @@ pub mod keeper;
 pub mod offline;
 pub mod outbox;
 pub mod paint_node;
+pub mod ticker;
 pub mod worker;
 
 pub use brush_node::{BrushNode, BrushSettings};

@@ -5,11 +5,14 @@
 use std::sync::mpsc;
 
 use maulstick_brush::{BrushFile, BrushModel};
+use maulstick_paint::painting::TICKS_A_SECOND;
 use maulstick_paint::{PaintRefusal, Painting, Sequencer};
 use maulstick_types::brush::BrushState;
 use maulstick_types::command::Command;
 use maulstick_types::stylus::StylusSample;
 use maulstick_types::{Flags, Header, Message as _, Mixture, Origin, name_hash};
+
+use crate::ticker::Ticker;
 
 /// So many states the brush may be ahead of the paint.
 const AHEAD: usize = 256;
@@ -24,6 +27,7 @@ pub struct Offline {
     me: Origin,
     next: u64,
     samples: u64,
+    ticker: Ticker,
 }
 
 impl Offline {
@@ -71,6 +75,7 @@ impl Offline {
             me,
             next: 0,
             samples: 0,
+            ticker: Ticker::default(),
         };
         offline.begin_take(loads)?;
         Ok(offline)
@@ -102,6 +107,7 @@ impl Offline {
     /// # Errors
     /// [`PaintRefusal`] where a load is wrong.
     pub fn begin_take(&mut self, loads: Vec<Mixture>) -> Result<(), PaintRefusal> {
+        self.ticker.pause();
         self.command(Command::Take {
             brush: self.brush.clone(),
             device: self.player.source,
@@ -127,6 +133,19 @@ impl Offline {
         self.model.set_scene(scene);
         self.model.tune(scene.tuning(&self.brush));
         Ok(())
+    }
+
+    /// Lets so many sixtieths of a second go by, in which nobody paints. `each` is told after each second of it where
+    /// something dries; else nothing happens.
+    pub fn wait(&mut self, ticks: u32, mut each: impl FnMut(&mut Sequencer)) {
+        let mut left = ticks;
+        while left > 0 && self.sequencer.painting().is_drying() {
+            let ticks = left.min(TICKS_A_SECOND);
+            (0..ticks).for_each(|_| self.sequencer.tick());
+            left -= ticks;
+            self.sequencer.drain_journal();
+            each(&mut self.sequencer);
+        }
     }
 
     /// Follows one sample.
@@ -158,6 +177,7 @@ impl Offline {
         };
         let (sequencer, brush, me, next) =
             (&mut self.sequencer, &self.brush, self.me, &mut self.next);
+        let ticker = &mut self.ticker;
         let mut paint = |(number, event_ns, state): (usize, u64, BrushState)| {
             let header = Header {
                 version: BrushState::VERSION,
@@ -171,6 +191,7 @@ impl Offline {
                 sent_ns: event_ns,
             };
             *next += 1;
+            (0..ticker.look(event_ns, u64::MAX)).for_each(|_| sequencer.tick());
             // Offline no command waits for a state.
             let (_, painted) = sequencer.state(brush, &header, &state);
             sequencer.drain_journal();

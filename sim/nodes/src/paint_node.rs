@@ -1,6 +1,7 @@
 //! The paint node: brush states and commands in; journal, credit, scene and frames out.
 
 mod feeding;
+mod time;
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
@@ -26,6 +27,7 @@ use maulstick_types::{Flags, Origin, encode, name_hash};
 
 use crate::Keeper;
 use crate::frames::Feed;
+use crate::ticker::Ticker;
 use feeding::FEED_PERIOD_NS;
 
 /// Time between two statuses, ns.
@@ -64,6 +66,7 @@ pub struct PaintNode {
     strangers: BTreeSet<String>,
     export: Export,
     keeper: Option<Keeper>,
+    ticker: Ticker,
 }
 
 impl PaintNode {
@@ -132,6 +135,7 @@ impl PaintNode {
             strangers: BTreeSet::new(),
             export: Export::default(),
             keeper: None,
+            ticker: Ticker::default(),
             topics: topics.clone(),
             me,
             sequencer,
@@ -209,6 +213,7 @@ impl PaintNode {
             self.note_player(&token);
         }
         self.serve_commands(now_ns);
+        self.let_time_pass(now_ns);
         self.states.poll(&*bus)?;
         let mut left = STATES_A_TURN;
         while left > 0 && self.next_state(now_ns)? {

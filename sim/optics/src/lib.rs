@@ -52,6 +52,7 @@ pub use mixture::{Blend, Coat, Layer};
 pub use paints::{Paint, PaintError, PaintLibrary, THINNER};
 pub use rule::SamplingRule;
 pub use spectrum::Spectrum;
+pub use spectrum_file::Reflectance;
 pub use studio::{FilmPlanes, RuleKind, Studio, StudioSettings, Under};
 pub use upsampling::{Smooth, Upsampler};
 pub use viewing::{Seen, Viewing};

@@ -1,6 +1,10 @@
-//! Pictures that a painting holds, by the hash of their bytes: what its grounds and teeth are made of.
+//! Pictures and spectra that a painting holds, by the hash of their bytes: what its grounds and teeth are
+//! made of.
 //!
-//! They are PNG files of two kinds: 8-bit RGB, which is sRGB, and 16-bit grey, which is heights. A name
+//! A spectrum is a CSV file of nm,reflectance; the name of a ground that begins with [`SPECTRUM`] means
+//! one of them.
+//!
+//! Pictures are PNG files of two kinds: 8-bit RGB, which is sRGB, and 16-bit grey, which is heights. A name
 //! of a ground or a tooth that begins with [`IMAGE`] means one of them.
 
 use std::collections::BTreeMap;
@@ -8,12 +12,17 @@ use std::fmt;
 use std::io::Cursor;
 use std::sync::{Arc, Mutex, PoisonError, Weak};
 
+use maulstick_optics::Reflectance;
 use sha2::{Digest as _, Sha256};
 
 use crate::painting::PaintRefusal;
 
 /// What the name of a ground or a tooth begins with that is made of a picture; its hash follows.
 pub const IMAGE: &str = "image:";
+/// What the name of a ground begins with that is made of a spectrum; its hash follows.
+pub const SPECTRUM: &str = "spectrum:";
+/// What a PNG begins with.
+const PNG: &[u8] = b"\x89PNG";
 /// Most pixels of a picture: 8192×8192.
 pub const MOST_PIXELS: u64 = 1 << 26;
 /// Digits of a hash: SHA-256, lower-case hexadecimal.
@@ -69,6 +78,25 @@ pub fn hash_of(bytes: &[u8]) -> String {
     digest.iter().map(|byte| format!("{byte:02x}")).collect()
 }
 
+/// What documents call a file of these bytes.
+#[must_use]
+pub fn kind_of(bytes: &[u8]) -> &'static str {
+    match bytes.starts_with(PNG) {
+        true => "picture",
+        false => "spectrum",
+    }
+}
+
+fn spectrum(bytes: &[u8]) -> Result<Reflectance, PaintRefusal> {
+    let text = std::str::from_utf8(bytes).unwrap_or_default();
+    Reflectance::parse(text.trim_start_matches('\u{feff}')).map_err(|error| {
+        PaintRefusal::new(
+            format!("this is no spectrum of a ground: {error}"),
+            "a row a wavelength: nm,reflectance, rising, 0 to 1",
+        )
+    })
+}
+
 fn refused(what: String) -> PaintRefusal {
     PaintRefusal::new(
         what,
@@ -91,7 +119,27 @@ impl Embedded {
         Ok(hash)
     }
 
-    /// Takes a picture in that was in a painting before, by its hash.
+    /// Takes a spectrum in and returns its hash.
+    ///
+    /// # Errors
+    /// [`PaintRefusal`] with the line where the text is no table of reflectances.
+    pub fn add_spectrum(&mut self, text: &str) -> Result<String, PaintRefusal> {
+        spectrum(text.as_bytes())?;
+        let bytes: Arc<[u8]> = text.as_bytes().into();
+        let hash = hash_of(&bytes);
+        self.know(hash.clone(), bytes);
+        Ok(hash)
+    }
+
+    /// The reflectances of a spectrum.
+    ///
+    /// # Errors
+    /// [`PaintRefusal`] where there is none of this hash, or it is a picture's.
+    pub fn reflectance(&self, hash: &str) -> Result<Reflectance, PaintRefusal> {
+        spectrum(&self.entry(hash)?.bytes)
+    }
+
+    /// Takes a picture or a spectrum in that was in a painting before, by its hash.
     pub fn know(&mut self, hash: String, bytes: Arc<[u8]>) {
         let lent = Arc::default();
         self.0.entry(hash).or_insert(Entry { bytes, lent });

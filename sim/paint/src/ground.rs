@@ -8,7 +8,7 @@ use maulstick_optics::colour::{SrgbTable, srgb_decode};
 use maulstick_optics::{Smooth, Studio, Under, Upsampler};
 use maulstick_types::paint::TILE;
 
-use crate::embedded::{Colours, Embedded, IMAGE};
+use crate::embedded::{Colours, Embedded, IMAGE, SPECTRUM};
 use crate::painting::PaintRefusal;
 use crate::setup::ground_reflectance;
 use crate::tile::{TILE_CELLS, TileId};
@@ -49,7 +49,8 @@ impl GroundTile<'_> {
 
 impl Ground {
     /// The ground called `name` of a surface of `cells`: one of [`GROUNDS`](crate::setup::GROUNDS), or
-    /// `image:` and the hash of a picture, which covers the surface.
+    /// `image:` and the hash of a picture, which covers the surface, or `spectrum:` and the hash of a
+    /// measured reflectance, which it has everywhere.
     ///
     /// # Errors
     /// [`PaintRefusal`] where there is none of this name.
@@ -59,6 +60,10 @@ impl Ground {
         studio: &Studio,
         embedded: &Embedded,
     ) -> Result<Self, PaintRefusal> {
+        if let Some(hash) = name.strip_prefix(SPECTRUM) {
+            let internal = embedded.reflectance(hash)?.internal(&studio.surface());
+            return Ok(Self::Even(studio.sample(&internal)));
+        }
         let Some(hash) = name.strip_prefix(IMAGE) else {
             return Ok(Self::Even(studio.sample(&ground_reflectance(name)?)));
         };

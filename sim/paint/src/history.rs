@@ -185,6 +185,9 @@ impl Step {
         for (name, [page, _]) in &self.deed.loads {
             before.loads.insert(name.clone(), page.clone());
         }
+        if let Some([layers, _]) = &self.deed.layers {
+            before.layers.clone_from(layers);
+        }
         let tiles = self.tiles.iter();
         OpenStep {
             id: self.id,

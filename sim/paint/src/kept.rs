@@ -9,6 +9,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::head::{KeptWaypoint, Scale};
 use crate::ledger::Ledger;
+use crate::painting::Clock;
 
 /// A brush as the painting knows it.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -72,6 +73,9 @@ pub struct KeptPainting {
     /// Most bytes of the history.
     #[serde(default = "quota")]
     pub quota: u64,
+    /// How far time went, and what dries.
+    #[serde(default)]
+    pub clock: Clock,
 }
 
 fn quota() -> u64 {

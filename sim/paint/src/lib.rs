@@ -10,7 +10,7 @@
 //! | [`tile`], [`store`], [`window`] | tiles, their versions, and windows leased on them |
 //! | [`page`] | what of them is in memory |
 //! | [`head`], [`path`] | the head of a brush in space, and its motion cut into steps |
-//! | [`dry`] | what has dried, layer over layer |
+//! | [`dry`], [`rewet`] | what has dried, layer over layer, and becomes wet again |
 //! | [`tooth`], [`tooth_picture`], [`relief`] | what catches paint |
 //! | [`embedded`], [`ground`] | pictures that a painting holds, and what lies under the paint |
 //! | [`model`], [`impasto`] | paint models |
@@ -45,6 +45,7 @@ pub mod path;
 pub mod picture;
 pub mod quantum;
 pub mod relief;
+pub mod rewet;
 pub mod sequencer;
 pub mod setup;
 pub mod store;

@@ -1,5 +1,6 @@
 //! The sequencer: it decides what enters the journal and in which order; nothing else does.
 
+mod layers;
 mod records;
 
 pub use records::{Accepted, Record};
@@ -180,9 +181,8 @@ impl Sequencer {
             self.painting.forget_loads(brush);
         }
         let painted = self.painting.state(brush, header.epoch, state);
-        if let Some(why) = self.painting.take_fall() {
-            self.decide(&format!("backend {}: {why}", self.painting.backend()));
-        }
+        self.tell_fall();
+        self.painting.note_contact(brush);
         painted
     }
 
@@ -380,11 +380,6 @@ impl Sequencer {
                 }
                 String::new()
             }),
-            Command::Dry {
-                surface,
-                share,
-                name,
-            } => self.painting.dry(*surface, *share, name),
             Command::Ground { surface, ground } => self
                 .painting
                 .set_ground(*surface, ground)
@@ -411,10 +406,6 @@ impl Sequencer {
                 self.painting.branch(from, name).map(|()| String::new())
             }
             Command::Forget { name } => self.painting.forget(name).map(|()| String::new()),
-            Command::Opacity { layer, opacity } => self
-                .painting
-                .set_opacity(*layer, *opacity)
-                .map(|()| String::new()),
             Command::Handle { handling } => self.painting.handle(handling).map(|()| String::new()),
             Command::FillWith {
                 surface,
@@ -432,6 +423,17 @@ impl Sequencer {
                 self.painting.piles(*surface, *last).map(|()| String::new())
             }
             Command::Mark => Ok(String::new()),
+            command @ (Command::Dry { .. }
+            | Command::DryRegion { .. }
+            | Command::DryOver { .. }
+            | Command::StopDrying { .. }
+            | Command::Wet { .. }
+            | Command::Opacity { .. }
+            | Command::LayerOpacity { .. }) => self.layers(command),
+            Command::GroundSpectrum { surface, spectrum } => self
+                .painting
+                .set_ground_spectrum(*surface, spectrum)
+                .map(|()| String::new()),
         };
         let (client, number) = (request.client, request.number);
         let outcome = match done {

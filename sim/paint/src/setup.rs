@@ -4,7 +4,7 @@ use maulstick_optics::{PaintLibrary, Spectrum};
 use maulstick_types::scene::{CANVAS, Light, PALETTE, Scene, Surface, Well, WellKind};
 use maulstick_types::{Mixture, Pose};
 
-use crate::embedded::{Embedded, IMAGE};
+use crate::embedded::{Embedded, IMAGE, SPECTRUM};
 use crate::light::studio_settings;
 use crate::painting::PaintRefusal;
 use crate::relief::Relief;
@@ -45,7 +45,7 @@ pub struct PaintingSetup {
     pub cells: [u32; 2],
     /// Side of a cell, m.
     pub cell_m: f64,
-    /// Name of the ground: one of [`GROUNDS`], or `image:` and the hash of a picture.
+    /// Name of the ground: one of [`GROUNDS`], or `image:` or `spectrum:` and the hash of a file.
     pub ground: String,
     /// Name of the tooth: one of [`Tooth::names`], or a picture's
     /// ([`ToothName`](crate::tooth_picture::ToothName)).
@@ -186,6 +186,9 @@ impl PaintingSetup {
 /// # Errors
 /// [`PaintRefusal`] with what there is.
 pub fn check_ground(name: &str, embedded: &Embedded) -> Result<(), PaintRefusal> {
+    if let Some(hash) = name.strip_prefix(SPECTRUM) {
+        return embedded.reflectance(hash).map(drop);
+    }
     match name.strip_prefix(IMAGE) {
         Some(hash) => embedded.colours(hash).map(drop),
         None => ground_reflectance(name).map(drop),

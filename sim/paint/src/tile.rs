@@ -6,7 +6,7 @@ use maulstick_types::paint::TILE;
 
 use crate::dry::{DryLayer, DryStack};
 use crate::page::{Backing, Content, Page, Pager};
-use crate::quantum::{Counts, SLOTS};
+use crate::quantum::{CELL_MAX, Counts, SLOTS};
 
 /// Cells of a tile.
 pub const TILE_CELLS: usize = TILE * TILE;
@@ -54,7 +54,7 @@ pub struct Tile {
     dry: Option<Arc<DryStack>>,
 }
 
-fn painted(planes: impl Iterator<Item = (usize, Arc<[f32]>)>) -> Planes {
+pub(crate) fn painted(planes: impl Iterator<Item = (usize, Arc<[f32]>)>) -> Planes {
     planes
         .filter(|(_, plane)| plane.iter().any(|count| *count != 0.0))
         .collect()
@@ -144,23 +144,33 @@ impl Tile {
     }
 
     /// The tile with the lower `share` of its wet film dried as layer `number`, but for the cells of
-    /// `wells`; none where nothing dries. All of it dries by reference, unread.
+    /// `stays`; none where nothing dries. All of it dries by reference, unread.
+    ///
+    /// Where the newest link of what has dried is of this layer, and nothing was painted since it dried,
+    /// it grows: film under film of the same mixture has the colour of one film. Else there is a new
+    /// link, for two mixtures one over the other do not look like both mixed.
     #[must_use]
-    pub fn dried(&self, number: u32, share: f32, wells: &[usize]) -> Option<Self> {
+    pub fn dried(&self, number: u32, share: f32, stays: &[usize]) -> Option<Self> {
         let page = self.wet.as_ref()?;
+        let newest = self.dry.as_ref();
+        // Numbers of pages and links rise: a wet page older than the link is what that one left.
+        let grows = newest.filter(|link| link.layer().number == number && page.id() < link.id());
         let over = |planes: Page<Planes>| {
             let layer = DryLayer { number, planes };
             Some(DryStack::over(self.dry.clone(), layer))
         };
-        if share >= 1.0 && wells.is_empty() {
+        if share >= 1.0 && stays.is_empty() && grows.is_none() {
             return Some(Self {
                 wet: None,
                 dry: over(page.clone()),
             });
         }
         let part = |plane: &Arc<[f32]>| -> Arc<[f32]> {
-            let mut lower: Vec<f32> = plane.iter().map(|count| (count * share).floor()).collect();
-            wells.iter().for_each(|cell| lower[*cell] = 0.0);
+            let mut lower: Vec<f32> = match share >= 1.0 {
+                true => plane.to_vec(),
+                false => plane.iter().map(|count| (count * share).floor()).collect(),
+            };
+            stays.iter().for_each(|cell| lower[*cell] = 0.0);
             lower.into()
         };
         let wet = page.get();
@@ -180,15 +190,40 @@ impl Tile {
             };
             (*slot, left)
         });
-        let upper: Vec<_> = upper.collect();
-        let dry = over(Page::new(page.pager(), Arc::new(lower), None));
-        Some(Self::paged(
-            page.pager(),
-            upper.into_iter(),
-            dry,
-            Some(self),
-        ))
+        let upper = painted(upper);
+        let pager = page.pager();
+        let wet = (!upper.is_empty()).then(|| Page::new(pager, Arc::new(upper), Some(page)));
+        let grown = grows.and_then(|link| Some((link, sum(&link.layer().planes.get(), &lower)?)));
+        let dry = match grown {
+            Some((link, planes)) => {
+                let planes = Page::new(pager, Arc::new(planes), Some(&link.layer().planes));
+                let layer = DryLayer { number, planes };
+                Some(DryStack::over(link.below().cloned(), layer))
+            }
+            None => over(Page::new(pager, Arc::new(lower), None)),
+        };
+        Some(Self { wet, dry })
     }
+}
+
+/// Counts of both; none where a cell would have more of a paint than is exact.
+fn sum(one: &Planes, other: &Planes) -> Option<Planes> {
+    let mut planes = one.clone();
+    for (slot, more) in other {
+        match planes.binary_search_by_key(slot, |(slot, _)| *slot) {
+            Err(place) => planes.insert(place, (*slot, Arc::clone(more))),
+            Ok(place) => {
+                let plane = &mut planes[place].1;
+                let cells = plane.iter().zip(more.iter());
+                let both: Vec<f32> = cells.map(|(one, other)| one + other).collect();
+                if both.iter().any(|count| *count > CELL_MAX as f32) {
+                    return None;
+                }
+                *plane = both.into();
+            }
+        }
+    }
+    Some(planes)
 }
 
 /// A stored tile and the number of its version; none where nothing was ever painted.

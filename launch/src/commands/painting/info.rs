@@ -145,6 +145,9 @@ pub(super) fn run(options: &InfoOptions) -> Result<i32, Fault> {
 
 /// The name of a ground or tooth; of a picture the first digits of its hash.
 fn short(name: &str) -> String {
+    if let Some(hash) = name.strip_prefix("spectrum:") {
+        return format!("spectrum {}", hash.chars().take(8).collect::<String>());
+    }
     let Some(picture) = name.strip_prefix("image:") else {
         return name.to_owned();
     };

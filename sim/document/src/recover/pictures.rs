@@ -1,9 +1,9 @@
-//! Grounds and teeth that are made of pictures: of one that is lost there is the plain one.
+//! Grounds and teeth that are made of pictures and spectra: of one that is lost there is the plain one.
 
 use std::collections::BTreeSet;
 
 use maulstick_paint::PaintingSetup;
-use maulstick_paint::embedded::IMAGE;
+use maulstick_paint::embedded::{IMAGE, SPECTRUM};
 use maulstick_paint::history::Make;
 use maulstick_types::scene::Scene;
 use rusqlite::params;
@@ -11,7 +11,7 @@ use rusqlite::params;
 use crate::database::Database;
 use crate::error::DocumentError;
 
-/// The pictures that are whole, by their hash.
+/// The pictures and spectra that are whole, by their hash.
 pub(super) struct Pictures(BTreeSet<String>);
 
 impl Pictures {
@@ -20,7 +20,7 @@ impl Pictures {
     /// # Errors
     /// What SQLite says.
     pub(super) fn read(database: &Database) -> Result<Self, DocumentError> {
-        let query = "SELECT hash FROM file WHERE kind = 'picture'";
+        let query = "SELECT hash FROM file WHERE kind IN ('picture', 'spectrum')";
         let mut statement = database.connection.prepare(query)?;
         let hashes = statement.query_map(params![], |row| row.get(0))?;
         Ok(Self(hashes.collect::<Result<_, _>>()?))
@@ -28,7 +28,10 @@ impl Pictures {
 
     /// Whether what a ground or a tooth of this name is made of is there.
     fn has(&self, name: &str) -> bool {
-        match name.strip_prefix(IMAGE) {
+        let file = name
+            .strip_prefix(IMAGE)
+            .or_else(|| name.strip_prefix(SPECTRUM));
+        match file {
             Some(rest) => self.0.contains(rest.split('@').next().unwrap_or(rest)),
             None => true,
         }

@@ -59,14 +59,9 @@ impl Easel {
     }
 
     fn hand_over(&mut self) {
-        let sequencer = self.sequencer.kept();
-        let painting = self.sequencer.painting_mut().checkpoint(self.since);
-        self.since = painting.kept.versions;
-        self.document.keep(Moment {
-            painting,
-            sequencer,
-            pictures: Vec::new(),
-        });
+        let moment = Moment::of(&mut self.sequencer, self.since);
+        self.since = moment.painting.kept.versions;
+        self.document.keep(moment);
     }
 
     pub fn act(&mut self, painter: &mut Painter, act: &Act) {

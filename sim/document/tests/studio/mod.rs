@@ -10,7 +10,7 @@ use maulstick_paint::{Painting, PaintingSetup, Sequencer};
 use maulstick_types::brush::{BrushState, Solve};
 use maulstick_types::command::{Command, CommandRequest, Outcome};
 use maulstick_types::scene::{CANVAS, PALETTE};
-use maulstick_types::{Flags, Header, Mixture, Pose, name_hash};
+use maulstick_types::{Flags, Header, Mixture, Pose, Region, name_hash};
 use proptest::prelude::ProptestConfig;
 use rand_pcg::Pcg64Mcg;
 use rand_pcg::rand_core::Rng as _;
@@ -89,6 +89,7 @@ pub enum Act {
     Paint(usize, bool, Vec<Solve>),
     Command(Command),
     Redefine(usize, usize),
+    Ticks(u32),
 }
 
 impl std::fmt::Display for Act {
@@ -100,7 +101,16 @@ impl std::fmt::Display for Act {
             }
             Self::Command(command) => write!(f, "{command:?}"),
             Self::Redefine(brush, strips) => write!(f, "{} with {strips}", BRUSHES[*brush]),
+            Self::Ticks(ticks) => write!(f, "{ticks} ticks"),
         }
+    }
+}
+
+/// A part of the canvas, or one beside it.
+fn part(dice: &mut Dice) -> Region {
+    Region {
+        corner_m: [dice.between(-5e-3, 40e-3), dice.between(-5e-3, 25e-3)],
+        size_m: [dice.between(1e-4, 30e-3), dice.between(1e-4, 30e-3)],
     }
 }
 
@@ -156,13 +166,17 @@ impl Painter {
         (0..count).map(|_| place(dice)).collect()
     }
 
+    fn region(&mut self) -> Option<Region> {
+        (self.dice.below(2) == 0).then(|| part(&mut self.dice))
+    }
+
     pub fn next(&mut self) -> Act {
         let b = self.dice.below(2) as usize;
         let brush = BRUSHES[b].to_owned();
         let mixture = mixture(MIXTURES[self.dice.below(3) as usize]);
         let named = |dice: &mut Dice| ["one", "two", "three"][dice.below(3) as usize].to_owned();
         let maybe = |dice: &mut Dice, brush: &str| (dice.below(3) == 0).then(|| brush.to_owned());
-        let command = match self.dice.below(40) {
+        let command = match self.dice.below(56) {
             0..15 => {
                 let new = self.dice.below(2) == 0;
                 self.strokes[b] += u64::from(new);
@@ -213,7 +227,34 @@ impl Painter {
             35..39 => Command::Redo {
                 brush: maybe(&mut self.dice, &brush),
             },
-            _ => return Act::Redefine(b, [31, 48][self.dice.below(2) as usize]),
+            39 => return Act::Redefine(b, [31, 48][self.dice.below(2) as usize]),
+            40..46 => return Act::Ticks([7, 45, 150, 400][self.dice.below(4) as usize]),
+            46..49 => Command::DryOver {
+                surface: CANVAS,
+                ticks: [20, 200, 2000][self.dice.below(3) as usize],
+                name: String::new(),
+                region: self.region(),
+            },
+            49 => Command::StopDrying { surface: CANVAS },
+            50..52 => Command::DryRegion {
+                surface: CANVAS,
+                share: [1.0, 0.4][self.dice.below(2) as usize],
+                name: "part".to_owned(),
+                region: part(&mut self.dice),
+            },
+            52..54 => Command::Wet {
+                surface: CANVAS,
+                layers: self.dice.below(3) as u32,
+                region: self.region(),
+            },
+            54 => Command::LayerOpacity {
+                layer: "part".to_owned(),
+                opacity: [0.5, 1.0][self.dice.below(2) as usize],
+            },
+            _ => Command::GroundSpectrum {
+                surface: CANVAS,
+                spectrum: format!("400,0.{}\n700,0.5", 1 + self.dice.below(3)),
+            },
         };
         Act::Command(command)
     }
@@ -245,6 +286,10 @@ impl Painter {
             }
             Act::Command(command) => drop(self.command(sequencer, command.clone())),
             Act::Redefine(b, strips) => sequencer.define_brush(BRUSHES[*b], brush(*strips)),
+            Act::Ticks(ticks) => {
+                (0..*ticks).for_each(|_| sequencer.tick());
+                sequencer.drain_journal();
+            }
         }
     }
 
@@ -282,6 +327,8 @@ pub fn content(held: &Held) -> Vec<u64> {
     for layer in tile.dry().into_iter().flat_map(|stack| stack.layers()) {
         add(&layer.planes.get());
     }
+    let layers = tile.dry().into_iter().flat_map(|stack| stack.layers());
+    words.extend(layers.map(|layer| u64::from(layer.number)));
     words
 }
 
@@ -307,7 +354,8 @@ pub fn print(sequencer: &mut Sequencer) -> Vec<String> {
     assert_eq!(report.quanta_missing, 0, "the books balance");
     let mut lines = vec![
         format!("{report:?}"),
-        format!("{:?}", painting.history_depth()),
+        // What undo does not bring back.
+        format!("{:?} {:?}", painting.history_depth(), painting.clock()),
     ];
     let mut scene = painting.scene().clone();
     scene.version = 0;

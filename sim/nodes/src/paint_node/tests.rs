@@ -138,3 +138,67 @@ fn an_answer_that_does_not_fit_is_given_in_short() {
     assert_eq!(reply.number, 5);
     assert!(matches!(reply.outcome, Outcome::Refused { .. }));
 }
+
+#[test]
+fn paint_dries_by_the_clock_of_the_node_and_each_tick_is_in_the_journal() {
+    let net = MemoryNet::new(1, 1_000_000_000, Faults::default());
+    let (mut node, _) = node(&net);
+    let ask = |node: &mut PaintNode, number: u64, command: Command| {
+        let request = CommandRequest {
+            client: 1,
+            number,
+            after: None,
+            command,
+        };
+        let outcome = node.sequencer.command(request).outcome;
+        assert!(matches!(outcome, Outcome::Done { .. }), "{outcome:?}");
+    };
+    let fill = Command::Fill {
+        surface: CANVAS,
+        mixture: Mixture::pure("Bone Black"),
+        thickness_m: 3e-5,
+    };
+    let over = |ticks: u32| Command::DryOver {
+        surface: CANVAS,
+        ticks,
+        name: String::new(),
+        region: None,
+    };
+    ask(&mut node, 1, fill.clone());
+    net.advance(5_000_000_000);
+    node.turn().expect("a turn");
+    assert_eq!(node.sequencer.painting().clock().ticks, 0, "nothing dries");
+    ask(&mut node, 2, over(90));
+    let begun = node.sequencer.journal_next();
+    for turn in 0..=200u64 {
+        node.turn().expect("a turn");
+        let ticks = node.sequencer.painting().clock().ticks;
+        assert_eq!(ticks, (turn * 7 * 60 / 1000).min(90), "turn {turn}");
+        net.advance(7_000_000);
+        if ticks < 90 {
+            assert!(node.sequencer.painting().is_drying());
+        }
+    }
+    let ticks = node.sequencer.painting().clock().ticks;
+    assert_eq!(node.sequencer.journal_next(), begun + ticks);
+    net.advance(2_000_000_000);
+    for _ in 0..3 {
+        node.turn().expect("a turn");
+    }
+    let painting = node.sequencer.painting();
+    assert!(!painting.is_drying());
+    let store = painting.store(CANVAS).expect("a canvas");
+    assert_eq!(store.counts(), [0; 16]);
+    // A node that stood still catches up bit by bit.
+    let before = painting.clock().ticks;
+    ask(&mut node, 3, fill);
+    ask(&mut node, 4, over(3600));
+    node.turn().expect("a turn");
+    net.advance(4_000_000_000);
+    node.turn().expect("a turn");
+    assert_eq!(node.sequencer.painting().clock().ticks, before + 60);
+    for _ in 0..9 {
+        node.turn().expect("a turn");
+    }
+    assert_eq!(node.sequencer.painting().clock().ticks, before + 240);
+}

@@ -118,6 +118,7 @@ impl Painting {
             footprint_cells: self.footprint_cells,
             span_ns: self.span_ns,
             quota: self.quota,
+            clock: self.clock.clone(),
         };
         Checkpoint {
             kept,
@@ -262,6 +263,7 @@ impl Painting {
             steps: kept.steps,
             footprint_cells: kept.footprint_cells,
             span_ns: kept.span_ns,
+            clock: kept.clock,
         };
         painting.note_look();
         Ok(painting)

@@ -5,6 +5,7 @@ use std::sync::Arc;
 use maulstick_types::scene::Surface;
 
 use super::{PaintRefusal, Painting, bare};
+use crate::embedded::SPECTRUM;
 use crate::history::Make;
 use crate::setup::{check_ground, relief_called};
 
@@ -30,6 +31,17 @@ impl Painting {
             ground.clone_into(&mut make.ground)
         });
         Ok(())
+    }
+
+    /// Gives a surface a ground of a measured reflectance, a CSV file of nm,reflectance, which the
+    /// painting holds from then on.
+    ///
+    /// # Errors
+    /// [`PaintRefusal`] for an unknown surface, or with the line of what is no reflectance.
+    pub fn set_ground_spectrum(&mut self, surface: u32, text: &str) -> Result<(), PaintRefusal> {
+        self.surface(surface)?;
+        let hash = self.embedded.add_spectrum(text)?;
+        self.set_ground(surface, &format!("{SPECTRUM}{hash}"))
     }
 
     /// Gives a surface another tooth.

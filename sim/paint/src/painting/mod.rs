@@ -2,6 +2,7 @@
 
 mod backend;
 mod books;
+mod drying;
 mod film;
 mod keeping;
 mod layers;
@@ -14,7 +15,9 @@ mod underpainting;
 mod undo;
 mod versions;
 mod wells;
+mod wetting;
 
+pub use drying::{Clock, Drying, Round, TICKS_A_SECOND};
 pub use keeping::{Checkpoint, Restored};
 pub use modes::UnderBrush;
 pub use underpainting::{LaidTile, Wetness};
@@ -142,6 +145,7 @@ pub struct Painting {
     steps: u64,
     footprint_cells: u64,
     span_ns: Option<(u64, u64)>,
+    clock: Clock,
 }
 
 impl Painting {
@@ -198,6 +202,7 @@ impl Painting {
             steps: 0,
             footprint_cells: 0,
             span_ns: None,
+            clock: Clock::default(),
         };
         painting.note_look();
         if setup.exposure.is_none() {

@@ -83,7 +83,10 @@ impl Painting {
     pub(super) fn begin_step(&mut self, what: &str, brush: Option<&str>) {
         self.book(brush);
         match brush {
-            Some(brush) => self.end_step(|step| step.brush.as_deref() == Some(brush)),
+            // A step of nobody's that is open here is a drying's: it is parted by what comes between.
+            Some(brush) => {
+                self.end_step(|step| step.brush.is_none() || step.brush.as_deref() == Some(brush))
+            }
             None => self.end_step(|_| true),
         }
         let rest = self.rest();
@@ -261,6 +264,8 @@ impl Painting {
     fn walk(&mut self, step: &Step, way: Way) -> String {
         let to = way.ends()[1];
         let deed = &step.deed;
+        // Time would do again what is taken back.
+        self.let_stay_wet(None);
         for (place, change) in &*step.tiles {
             self.put(*place, change.end(to).clone());
         }

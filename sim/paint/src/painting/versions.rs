@@ -111,6 +111,7 @@ impl Painting {
     /// [`PaintRefusal`] for an unknown version.
     pub fn return_to(&mut self, name: &str) -> Result<(), PaintRefusal> {
         let to = self.version(name)?.clone();
+        self.let_stay_wet(None);
         self.begin_step(&format!("return to '{name}'"), None);
         let before = self.rest();
         let now = self.painted();

@@ -171,7 +171,8 @@ impl Sequencer {
                 }
                 self.decide(&what);
             }
-            Accepted::Entry(Entry::Tick { .. } | Entry::States { .. }) => {}
+            Accepted::Entry(Entry::Tick { .. }) => self.painting.tick(),
+            Accepted::Entry(Entry::States { .. }) => {}
             Accepted::Brush { brush, toml } => {
                 if let Ok(file) = BrushFile::parse(&toml) {
                     self.painting.define_brush(&brush, file);
@@ -182,6 +183,13 @@ impl Sequencer {
         self.next = next;
         self.serial = record.serial + 1;
         self.records = recording;
+    }
+
+    /// Enters that something else computes the paint than before, if that is so.
+    pub(super) fn tell_fall(&mut self) {
+        if let Some(why) = self.painting.take_fall() {
+            self.decide(&format!("backend {}: {why}", self.painting.backend()));
+        }
     }
 
     fn replay_state(&mut self, header: &Header, state: &BrushState) {

@@ -1,0 +1,137 @@
+//! Grounds by name, and of files: measured reflectances and pictures.
+
+use std::path::Path;
+use std::sync::Arc;
+
+use maulstick_exchange::{Image, ImportError, embed};
+use maulstick_optics::Reflectance;
+use maulstick_paint::PaintingSetup;
+use maulstick_paint::embedded::{IMAGE, SPECTRUM};
+use maulstick_rig::Fault;
+use maulstick_rig::config::is_path;
+
+use crate::performance::refused;
+
+/// A spectrum has at most this many bytes.
+const SPECTRUM_MAX: usize = maulstick_types::command::SPECTRUM_MAX;
+/// What the names of pictures end with.
+const PICTURES: [&str; 5] = ["png", "jpg", "jpeg", "tif", "tiff"];
+
+/// What a ground is named by.
+#[derive(Clone, Debug)]
+pub enum GroundFile {
+    /// A name.
+    Named(String),
+    /// A file of reflectances: its text.
+    Spectrum(String),
+    /// A picture, and its file.
+    Picture(Arc<Image>, String),
+}
+
+impl GroundFile {
+    /// Reads a name, a CSV file of nm,reflectance, or a picture.
+    ///
+    /// # Errors
+    /// A [`Fault`] where a file cannot be read or is neither, with file and line.
+    pub fn read(name: &str) -> Result<Self, Fault> {
+        let path = Path::new(name);
+        if !is_path(name) {
+            return Ok(Self::Named(name.to_owned()));
+        }
+        let extension = path.extension().unwrap_or_default().to_ascii_lowercase();
+        if PICTURES.iter().any(|known| extension == *known) {
+            let image = Image::open(path).map_err(|error| wrong(name, &error))?;
+            return Ok(Self::Picture(Arc::new(image), name.to_owned()));
+        }
+        let text = std::fs::read_to_string(path).map_err(|error| Fault::reading(path, &error))?;
+        let text = text.trim_start_matches('\u{feff}').to_owned();
+        if text.len() > SPECTRUM_MAX {
+            return Err(Fault::usage("a file of this size is no spectrum")
+                .at(name.to_owned())
+                .help("give a row a wavelength: nm,reflectance"));
+        }
+        Reflectance::parse(&text).map_err(|error| {
+            Fault::usage(error.what)
+                .at(format!("{name}:{}", error.line))
+                .help("a row a wavelength: nm,reflectance, rising, 0 to 1")
+        })?;
+        Ok(Self::Spectrum(text))
+    }
+
+    /// A picture as surfaces of so many cells hold it, a PNG; none where it is no picture.
+    ///
+    /// # Errors
+    /// A [`Fault`] where the surface is too large for it.
+    pub fn picture(&self, cells: [u32; 2]) -> Result<Option<Arc<[u8]>>, Fault> {
+        let Self::Picture(image, name) = self else {
+            return Ok(None);
+        };
+        let bytes = embed::ground(image, cells).map_err(|error| wrong(name, &error))?;
+        Ok(Some(bytes))
+    }
+
+    /// Makes it the ground of a new painting.
+    ///
+    /// # Errors
+    /// A [`Fault`] where it is none.
+    pub fn prime(&self, setup: &mut PaintingSetup) -> Result<(), Fault> {
+        setup.ground = match self {
+            Self::Named(name) => name.clone(),
+            Self::Spectrum(text) => {
+                let hash = setup.embedded.add_spectrum(text).map_err(refused)?;
+                format!("{SPECTRUM}{hash}")
+            }
+            Self::Picture(..) => {
+                let bytes = self.picture(setup.cells)?.unwrap_or_default();
+                let hash = setup.embedded.add(bytes).map_err(refused)?;
+                format!("{IMAGE}{hash}")
+            }
+        };
+        Ok(())
+    }
+}
+
+fn wrong(name: &str, error: &ImportError) -> Fault {
+    match error {
+        ImportError::File(error) => Fault::reading(name.as_ref(), error),
+        other => Fault::usage(other.to_string())
+            .at(name.to_owned())
+            .help("give a PNG, JPEG or TIFF of at most 20,000 pixels either way"),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_ground_is_a_name_or_a_file_that_is_right() {
+        assert!(
+            matches!(GroundFile::read("gesso"), Ok(GroundFile::Named(name)) if name == "gesso")
+        );
+        let folder = tempfile::tempdir().expect("a folder");
+        let path = folder.path().join("linen.csv");
+        let name = path.display().to_string();
+        let read = |text: &str| {
+            std::fs::write(&path, text).expect("written");
+            GroundFile::read(&name)
+        };
+        let good = read("\u{feff}nm,reflectance\n400,0.4\n700,0.6\n").expect("good");
+        let mut setup = PaintingSetup::default();
+        good.prime(&mut setup).expect("a ground");
+        assert!(setup.ground.starts_with(SPECTRUM));
+        for (text, place) in [
+            ("400,0.4\n700,1.6\n", ":2"),
+            ("400,0.4\n300,0.6", ":2"),
+            ("400,1", ":1"),
+        ] {
+            let fault = read(text).expect_err(text);
+            assert!(
+                fault.place.as_deref().is_some_and(|at| at.ends_with(place)),
+                "{fault}"
+            );
+        }
+        std::fs::remove_file(&path).expect("removed");
+        assert!(GroundFile::read(&name).is_err());
+    }
+}

@@ -1,0 +1,292 @@
+//! Paint that dries while time goes by.
+//!
+//! Time is the journal's ticks of 1/60 s. A drying goes over its tiles in rounds, of which there are 32
+//! at most, half a second or more apart: in a round each tile's film dries by the share of the time left
+//! that went by since the round before, so that what was laid meanwhile dries in what is left. A tick
+//! sees to 32 tiles at most, and to none while a brush paints: time goes on, and what is
+//! due is done when the brush is lifted.
+
+use std::sync::Arc;
+
+use maulstick_types::Region;
+use serde::{Deserialize, Serialize};
+
+use super::layers::{Changed, Part};
+use super::{PaintRefusal, Painting};
+
+/// Most tiles that dry in a tick.
+const TILES_A_TICK: usize = 32;
+/// Ticks a second.
+pub const TICKS_A_SECOND: u32 = 60;
+/// Most rounds of a drying, and the fewest ticks of one.
+const ROUNDS: u32 = 32;
+const ROUND_TICKS: u32 = 30;
+/// A brush counts as painting for so many ticks after it was last in contact, .2 s: contacts less than
+/// 150 ms apart are one stroke.
+const LIFTED_TICKS: u32 = 12;
+/// One that stays in contact and of which nothing is heard counts as painting for so many.
+const STILL_TICKS: u32 = 120;
+/// What its steps are called.
+const STEP: &str = "drying";
+
+/// A drying that goes on.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Drying {
+    /// The surface.
+    pub surface: u32,
+    /// The part of it; all if absent.
+    pub region: Option<Region>,
+    /// What its layer is to be called; by its number if empty.
+    pub name: String,
+    /// Number of its layer, once something has dried into it.
+    pub layer: Option<u32>,
+    /// How long it takes, ticks.
+    pub ticks: u32,
+    /// How many of them went by.
+    pub elapsed: u32,
+    /// How many had when its newest round began.
+    pub reached: u32,
+    /// The round that is not done.
+    pub round: Option<Round>,
+}
+
+/// A walk over the tiles of a drying: each dries by the share of the time from `from` to the end that
+/// had gone by at `to`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Round {
+    /// Ticks.
+    pub from: u32,
+    /// Ticks.
+    pub to: u32,
+    /// Which tile is next, row after row from the bottom.
+    pub next: u32,
+}
+
+impl Drying {
+    /// The round that is to be gone on with now.
+    fn due(&self) -> Option<Round> {
+        let least = (self.ticks / ROUNDS).max(ROUND_TICKS);
+        let is_due = self.elapsed >= self.ticks || self.elapsed - self.reached >= least;
+        let next = Round {
+            from: self.reached,
+            to: self.elapsed,
+            next: 0,
+        };
+        self.round.or_else(|| is_due.then_some(next))
+    }
+
+    /// The share of a film that dries in a round.
+    fn share(&self, round: Round) -> f32 {
+        match self.ticks.saturating_sub(round.from) {
+            0 => 1.0,
+            left => ((round.to - round.from) as f32 / left as f32).min(1.0),
+        }
+    }
+}
+
+/// How far dryings are; what a document keeps of them.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Clock {
+    /// Ticks since the painting began.
+    pub ticks: u64,
+    /// Ticks since a brush was last in contact.
+    pub quiet: u32,
+    /// The dryings that go on, one a surface at most.
+    pub dryings: Vec<Drying>,
+}
+
+impl Painting {
+    /// Has the wet paint of a part dry evenly into one new layer over so many ticks.
+    ///
+    /// # Errors
+    /// [`PaintRefusal`] for an unknown surface, a part beside it, where nothing is wet, and where a
+    /// drying goes on.
+    pub fn dry_over(
+        &mut self,
+        surface: u32,
+        ticks: u32,
+        name: &str,
+        region: Option<&Region>,
+    ) -> Result<String, PaintRefusal> {
+        let part = self.part(surface, region)?;
+        if self.clock.dryings.iter().any(|it| it.surface == surface) {
+            return Err(PaintRefusal::new(
+                "a drying of this surface goes on already".to_owned(),
+                "wait for its end, or stop it: `maulstick dry --stop`",
+            ));
+        }
+        self.commit();
+        if !self.is_wet(&part) {
+            return Err(super::layers::nothing_wet(region));
+        }
+        self.clock.dryings.push(Drying {
+            surface,
+            region: region.cloned(),
+            name: name.to_owned(),
+            layer: None,
+            ticks,
+            elapsed: 0,
+            reached: 0,
+            round: None,
+        });
+        let seconds = f64::from(ticks) / f64::from(TICKS_A_SECOND);
+        Ok(format!("within {seconds:.1} s"))
+    }
+
+    /// Ends the drying of a surface: what is wet still stays wet.
+    ///
+    /// # Errors
+    /// [`PaintRefusal`] where none goes on.
+    pub fn stop_drying(&mut self, surface: u32) -> Result<(), PaintRefusal> {
+        let count = self.clock.dryings.len();
+        self.let_stay_wet(Some(surface));
+        match self.clock.dryings.len() < count {
+            true => Ok(()),
+            false => Err(PaintRefusal::new(
+                "no drying of this surface goes on".to_owned(),
+                "`maulstick dry --over 90s` begins one",
+            )),
+        }
+    }
+
+    /// As [`stop_drying`](Self::stop_drying), if one goes on there, or on all surfaces.
+    pub(super) fn let_stay_wet(&mut self, surface: Option<u32>) {
+        let stays = |drying: &Drying| surface.is_some_and(|surface| drying.surface != surface);
+        self.clock.dryings.retain(stays);
+    }
+
+    /// Whether time is to go by: something dries.
+    #[must_use]
+    pub fn is_drying(&self) -> bool {
+        !self.clock.dryings.is_empty()
+    }
+
+    /// The dryings that go on, and the ticks so far.
+    #[must_use]
+    pub fn clock(&self) -> &Clock {
+        &self.clock
+    }
+
+    /// Notes that a brush did something: whether it is in contact says whether paint may dry.
+    pub(crate) fn note_contact(&mut self, brush: &str) {
+        let track = self.brushes.get(brush);
+        if track.is_some_and(|track| track.path.is_some()) {
+            self.clock.quiet = 0;
+        }
+    }
+
+    /// Whether a brush paints: then no tile dries under it, and no stroke is parted.
+    fn is_painted_on(&self) -> bool {
+        let in_contact = self.brushes.values().any(|track| track.path.is_some());
+        let patience = if in_contact {
+            STILL_TICKS
+        } else {
+            LIFTED_TICKS
+        };
+        self.clock.quiet < patience
+    }
+
+    /// A sixtieth of a second goes by.
+    pub fn tick(&mut self) {
+        let clock = &mut self.clock;
+        clock.ticks += 1;
+        clock.quiet = clock.quiet.saturating_add(1);
+        for drying in &mut clock.dryings {
+            drying.elapsed = (drying.elapsed + 1).min(drying.ticks);
+        }
+        if self.is_painted_on() {
+            return;
+        }
+        let due = self.clock.dryings.iter().filter_map(|drying| {
+            let round = drying.due()?;
+            Some((drying.surface, round))
+        });
+        for (surface, round) in due.collect::<Vec<_>>() {
+            self.go_on_drying(surface, round);
+        }
+    }
+
+    /// Dries the next tiles of a round.
+    fn go_on_drying(&mut self, surface: u32, mut round: Round) {
+        let found = self
+            .clock
+            .dryings
+            .iter()
+            .position(|it| it.surface == surface);
+        let Some(place) = found else {
+            return;
+        };
+        let drying = self.clock.dryings[place].clone();
+        // It was found when the drying began, and surfaces stay as large as they are.
+        let Ok(part) = self.part(surface, drying.region.as_ref()) else {
+            self.clock.dryings.remove(place);
+            return;
+        };
+        self.close_windows();
+        let known = |number: &u32| {
+            self.scene
+                .layers
+                .iter()
+                .any(|layer| layer.number == *number)
+        };
+        let layer = drying.layer.filter(known);
+        let number = layer.unwrap_or_else(|| self.next_layer());
+        let (dried, next) = self.some_dried(&part, number, drying.share(round), round.next);
+        if !dried.is_empty() {
+            if self.history.open_of(None).is_none() {
+                self.begin_step(STEP, None);
+            }
+            self.put_changed(surface, dried);
+            if layer.is_none() {
+                self.add_layer(number, &drying.name);
+            }
+            self.clock.dryings[place].layer = Some(number);
+        }
+        let drying = &mut self.clock.dryings[place];
+        drying.reached = round.to;
+        drying.round = next.map(|next| {
+            round.next = next;
+            round
+        });
+        if next.is_none() && round.to >= drying.ticks {
+            self.clock.dryings.remove(place);
+            if !self.is_drying() {
+                self.end_own_step();
+            }
+        }
+    }
+
+    /// So many tiles as dry in a tick, from the one with number `first` on, and which is next.
+    fn some_dried(
+        &self,
+        part: &Part,
+        number: u32,
+        share: f32,
+        first: u32,
+    ) -> (Changed, Option<u32>) {
+        let store = &self.sheets[part.sheet].store;
+        let across = store.grid()[0];
+        let mut dried = Vec::new();
+        let mut seen = 0;
+        for (id, version) in store.iter().skip(first as usize) {
+            let Some(tile) = version
+                .tile
+                .as_ref()
+                .filter(|tile| tile.wet_page().is_some())
+            else {
+                continue;
+            };
+            let Some(stays) = self.staying(part, id) else {
+                continue;
+            };
+            if seen == TILES_A_TICK {
+                return (dried, Some(id.y * across + id.x));
+            }
+            seen += 1;
+            if let Some(tile) = tile.dried(number, share, &stays) {
+                dried.push((id, Arc::new(tile)));
+            }
+        }
+        (dried, None)
+    }
+}
