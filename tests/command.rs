@@ -127,6 +127,29 @@ fn the_canvas_has_the_size_that_is_asked_for() {
 }
 
 #[test]
+fn a_gpu_that_must_be_there_and_is_not_is_told() {
+    let place = Place::new();
+    place.short_demo("demo.mcap", 1.0);
+    let render = ["render", "demo.mcap", "-o", "p.png", "--backend", "gpu"];
+    let mut without = place.maulstick(&render);
+    for drivers in [
+        "VK_DRIVER_FILES",
+        "VK_ICD_FILENAMES",
+        "__EGL_VENDOR_LIBRARY_FILENAMES",
+    ] {
+        without.env(drivers, "/nonexistent");
+    }
+    let output = without.output().expect("started");
+    let told = String::from_utf8_lossy(&output.stderr);
+    assert_eq!(output.status.code(), Some(1), "{told}");
+    for part in ["by a GPU", "--backend", "Vulkan driver"] {
+        assert!(told.contains(part), "{told}");
+    }
+    assert!(!place.path("p.png").exists());
+    place.done(&render);
+}
+
+#[test]
 fn bad_tables_are_refused_with_their_line() {
     let place = Place::new();
     let import = |rows: &str| {

@@ -6,8 +6,6 @@ use std::path::Path;
 use naga::front::wgsl;
 use naga::valid::{Capabilities, ValidationFlags, Validator};
 
-const SHADERS: &str = "src/shaders";
-
 fn check(path: &Path, prefix: &str) -> Result<(), Box<dyn Error>> {
     let source = format!("{prefix}{}", std::fs::read_to_string(path)?);
     let name = path.display().to_string();
@@ -19,16 +17,16 @@ fn check(path: &Path, prefix: &str) -> Result<(), Box<dyn Error>> {
     Ok(())
 }
 
-/// Checks all shaders; `prefix` is the one that the others begin with, here as at run time.
-pub(crate) fn check_all(prefix: Option<&str>) -> Result<(), Box<dyn Error>> {
-    println!("cargo::rerun-if-changed={SHADERS}");
-    let text = match prefix {
-        Some(name) => std::fs::read_to_string(Path::new(SHADERS).join(name))?,
-        None => String::new(),
-    };
-    for entry in std::fs::read_dir(SHADERS)? {
+/// Checks all shaders of a folder; `prefixes` are those that the others begin with, here as at run time.
+pub(crate) fn check_all(folder: &str, prefixes: &[&str]) -> Result<(), Box<dyn Error>> {
+    println!("cargo::rerun-if-changed={folder}");
+    let mut text = String::new();
+    for name in prefixes {
+        text += &std::fs::read_to_string(Path::new(folder).join(name))?;
+    }
+    for entry in std::fs::read_dir(folder)? {
         let path = entry?.path();
-        if prefix.is_some_and(|prefix| path.ends_with(prefix)) {
+        if path.is_dir() || prefixes.iter().any(|prefix| path.ends_with(prefix)) {
             continue;
         }
         if let Err(error) = check(&path, &text) {

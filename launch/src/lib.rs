@@ -12,6 +12,7 @@
 //! | [`swatch`] | colours in the terminal |
 //! | [`chart`] | the mixing chart, and one mixture by four ways of mixing |
 //! | [`sheet`] | the sheet of brushes and their marks |
+//! | [`backend`] | what computes the steps of the paint |
 //! | [`document`] | paintings in files |
 //! | [`duration`], [`ground`] | times and grounds as a painter names them |
 //! | [`kit`] | what a take is painted with: put into it, and taken from it |
@@ -19,6 +20,7 @@
 //! | [`script`] | a day at the easel, a step after the other |
 //! | [`performance`] | what `render` and `up --play` share: take, brush, loads, canvas |
 
+pub mod backend;
 pub mod chart;
 pub mod cli;
 pub mod commands;

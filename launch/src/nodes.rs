@@ -25,6 +25,7 @@ use maulstick_types::Mixture;
 use nix::sys::prctl::set_pdeathsig;
 use nix::sys::signal::Signal;
 
+use crate::backend::choose_backend;
 use crate::destination::{VIEW, export};
 use crate::document::{go_on, wrong};
 use crate::performance::{brush_file, library_from, painting_setup, refused};
@@ -157,7 +158,8 @@ struct PaintOptions {
 pub fn paint() -> Result<i32, Fault> {
     let options = PaintOptions::parse();
     let mut member = options.node.join("paint", Signal::SIGKILL)?;
-    let (document, sequencer, since) = painting(&member.config)?;
+    let (document, mut sequencer, since) = painting(&member.config)?;
+    choose_backend(&mut sequencer, &member.config.paint.backend)?;
     let origin = member.origin("paint");
     let bus = Arc::clone(&member.bus);
     let (topics, wake) = (&member.topics, &member.wake);

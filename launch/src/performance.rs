@@ -7,7 +7,7 @@ pub use maulstick_device::brush_file;
 use maulstick_optics::{Illuminant, PaintError, PaintLibrary};
 use maulstick_paint::{PaintRefusal, PaintingSetup};
 use maulstick_rig::Fault;
-use maulstick_rig::config::{BrushSection, LightSection, RigConfig};
+use maulstick_rig::config::{BACKENDS, BrushSection, LightSection, RigConfig};
 use maulstick_types::Mixture;
 use maulstick_types::scene::Light;
 
@@ -54,6 +54,10 @@ pub struct PaintingOptions {
     /// to it from then on
     #[arg(long, value_name = "SIZE")]
     pub history: Option<String>,
+    /// What computes paint and colour: auto takes a graphics processor where there is one; that of
+    /// rig.toml if absent
+    #[arg(long, value_name = "NAME", value_parser = BACKENDS)]
+    pub backend: Option<String>,
     /// Writes the ledger of the paint to this JSON file
     #[arg(long, value_name = "FILE")]
     pub ledger: Option<PathBuf>,
@@ -156,13 +160,16 @@ impl KitOptions {
 }
 
 impl PaintingOptions {
-    /// As [`KitOptions::apply`], with memory and history.
+    /// As [`KitOptions::apply`], with memory, history and backend.
     ///
     /// # Errors
     /// As there, and for sizes that are none.
     pub fn apply(&self, config: &mut RigConfig) -> Result<BrushSection, Fault> {
         if let Some(memory) = &self.memory {
             config.paint.memory.clone_from(memory);
+        }
+        if let Some(backend) = &self.backend {
+            config.paint.backend.clone_from(backend);
         }
         if self.history.is_some() {
             config.paint.history.clone_from(&self.history);

@@ -4,5 +4,9 @@
 mod check_shaders;
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
-    check_shaders::check_all(Some("films.wgsl"))
+    check_shaders::check_all("src/shaders", &["films.wgsl"])?;
+    check_shaders::check_all(
+        "src/shaders/impasto",
+        &["impasto.wgsl", "shapes.wgsl", "axes.wgsl"],
+    )
 }

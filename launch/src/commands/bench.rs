@@ -5,12 +5,19 @@ use std::process::Command;
 
 use clap::Args;
 use maulstick_rig::Fault;
+use maulstick_rig::config::MODELS;
 
 /// Options of `maulstick bench`.
 #[derive(Args, Clone, Debug)]
 pub struct BenchOptions {
     /// What to measure; everything if absent
     area: Option<String>,
+    /// The paint model that `paint` measures
+    #[arg(long, value_name = "NAME", value_parser = MODELS)]
+    model: Option<String>,
+    /// What computes its steps there
+    #[arg(long, value_name = "NAME", value_parser = ["cpu", "gpu"])]
+    backend: Option<String>,
     /// As JSON
     #[arg(long)]
     json: bool,
@@ -24,6 +31,11 @@ pub fn run(options: &BenchOptions) -> Result<i32, Fault> {
     let program = beside("maulstick-bench")?;
     let mut command = Command::new(&program);
     command.args(&options.area);
+    for (option, value) in [("--model", &options.model), ("--backend", &options.backend)] {
+        if let Some(value) = value {
+            command.args([option, value]);
+        }
+    }
     if options.json {
         command.arg("--json");
     }

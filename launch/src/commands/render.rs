@@ -18,6 +18,7 @@ use maulstick_types::Mixture;
 use maulstick_types::command::Command;
 use maulstick_types::scene::{BrushHandling, CANVAS};
 
+use crate::backend::choose_backend;
 use crate::commands::progress_bar;
 use crate::destination::export;
 use crate::document::{go_on, presence, wrong};
@@ -114,7 +115,7 @@ pub fn run(options: &RenderOptions) -> Result<i32, Fault> {
         }
         check_writable(path).map_err(|error| Fault::writing(path, &error))?;
     }
-    let (mut keeper, sequencer) = match &options.document {
+    let (mut keeper, mut sequencer) = match &options.document {
         Some(path) => {
             presence(path, &options.painting)?;
             let (document, mut sequencer, since) = go_on(&config, path)?;
@@ -127,6 +128,7 @@ pub fn run(options: &RenderOptions) -> Result<i32, Fault> {
             (None, Sequencer::new(painting))
         }
     };
+    choose_backend(&mut sequencer, &config.paint.backend)?;
     let file = brush_file(&section)?;
     let (name, share) = (&section.name, section.depth_share);
     let offline = Offline::going_on(sequencer, name, file, share, loads).map_err(refused)?;

@@ -19,7 +19,7 @@ pub const DEFAULT: &str = include_str!("default.toml");
 pub const DRIVERS: [&str; 1] = ["simulated"];
 /// Paint models.
 pub const MODELS: [&str; 1] = ["impasto"];
-/// Backends of the paint model.
+/// Backends of paint and colour.
 pub const BACKENDS: [&str; 3] = ["auto", "cpu", "gpu"];
 /// Colour spaces that the window and pictures know without a file.
 pub const SPACES: [&str; 2] = ["srgb", "display-p3"];

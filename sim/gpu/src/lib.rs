@@ -4,6 +4,7 @@
 //! | --- | --- |
 //! | [`device`] | the device, its faults as values |
 //! | [`films`] | Kubelka-Munk films of many tiles at once |
+//! | [`impasto`] | the paint model `impasto` |
 //! | `stage` | a compute shader and its pipelines |
 //! | `batch` | tiles as the shaders take them |
 //! | `arena` | buffers that are used again |
@@ -14,8 +15,10 @@ mod bake_films;
 mod batch;
 pub mod device;
 pub mod films;
+pub mod impasto;
 mod shade_films;
 mod stage;
 
 pub use device::{Choice, Device, GpuError};
 pub use films::GpuFilms;
+pub use impasto::GpuImpasto;

@@ -112,8 +112,7 @@ pub fn low_bounds(
     height: f32,
 ) -> Option<([i64; 2], [i64; 2])> {
     let strips = head.strips();
-    // A ribbon covers half a cell beyond its edge, seen across at most √2 times as far.
-    let border = (std::f32::consts::SQRT_2 * (half_width + 0.5) + 0.5).ceil() as i64;
+    let border = border(half_width);
     let (mut from, mut to) = ([f32::MAX; 2], [f32::MIN; 2]);
     let row = |station: usize| station * strips..(station + 1) * strips;
     for station in 1..STATIONS {
@@ -155,6 +154,13 @@ pub fn low_bounds(
             to.map(|v| v.ceil() as i64 + border + 1),
         )
     })
+}
+
+/// How many cells a ribbon of a half width reaches beyond its middle line: it covers half a cell beyond its
+/// edge, seen across at most √2 times as far.
+#[must_use]
+pub fn border(half_width: f32) -> i64 {
+    (std::f32::consts::SQRT_2 * (half_width + 0.5) + 0.5).ceil() as i64
 }
 
 /// The farthest that a strip near the surface moves between two poses, cells: along the surface, or

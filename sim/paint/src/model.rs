@@ -181,10 +181,44 @@ pub struct StepReport {
     pub lifted: Counts,
 }
 
+impl StepReport {
+    /// Adds what another step did.
+    pub fn add(&mut self, other: &Self) {
+        self.footprint_cells += other.footprint_cells;
+        self.wet += other.wet;
+        self.thinner += other.thinner;
+        crate::quantum::add(&mut self.lifted, &other.lifted);
+        let came = self.from_nowhere.iter_mut().zip(other.from_nowhere);
+        came.for_each(|(sum, came)| *sum += came);
+    }
+}
+
 /// A paint model: how paint moves in one step.
 pub trait PaintModel: Send {
     /// Its name in `rig.toml`.
     fn name(&self) -> &'static str;
     /// Moves the paint of one step.
     fn step(&mut self, step: &mut Step<'_>) -> StepReport;
+    /// What computes its steps: `cpu`, or `gpu` and the adapter's name.
+    fn backend(&self) -> String {
+        "cpu".to_owned()
+    }
+    /// Whether steps leave what they did elsewhere until they are [settled](Self::settle). Until then
+    /// nobody else may change window and load, and all steps are of the same two.
+    fn defers(&self) -> bool {
+        false
+    }
+    /// As [`step`](Self::step), but window and load, which must be settled, have what it did at once.
+    fn step_now(&mut self, step: &mut Step<'_>) -> StepReport {
+        self.step(step)
+    }
+    /// Writes what deferred steps did into their window and load; what they did in all, besides what
+    /// they reported themselves.
+    fn settle(&mut self, _window: &mut Window, _load: &mut BrushLoad) -> StepReport {
+        StepReport::default()
+    }
+    /// Why it computes elsewhere than before, once. No paint is lost by it.
+    fn take_fall(&mut self) -> Option<String> {
+        None
+    }
 }

@@ -182,6 +182,7 @@ impl Sequencer {
             self.painting.forget_loads(brush);
         }
         let painted = self.painting.state(brush, header.epoch, state);
+        self.tell_fall();
         self.painting.note_contact(brush);
         painted
     }

@@ -8,11 +8,13 @@
 //! | [`header`] | headers of a brush's states |
 //! | [`latency`] | `latency`: from a stylus sample to the first frame that holds it |
 //! | [`optics`] | `optics`: colours of few wavelengths beside all; films on both backends beside a copy |
+//! | [`advection`] | `paint`: the advection by itself, beside a copy |
 //! | [`paint`] | `paint`: steps of the paint model by themselves, beside a copy |
 //! | [`render`] | `render`: the 30 s recording, offline |
 //! | [`report`] | rows and their table |
 //! | [`thread_cpu`] | time of the processor |
 
+mod advection;
 mod brush;
 mod bus;
 mod document;
@@ -26,6 +28,7 @@ mod thread_cpu;
 
 use clap::Parser;
 use maulstick_rig::Fault;
+use maulstick_rig::config::MODELS;
 
 use crate::report::Report;
 
@@ -35,6 +38,12 @@ use crate::report::Report;
 struct Options {
     /// What to measure: brush, bus, document, latency, optics, paint, render; everything if absent
     area: Option<String>,
+    /// The paint model that is measured
+    #[arg(long, default_value = "impasto", value_parser = MODELS)]
+    model: String,
+    /// What computes its steps
+    #[arg(long, default_value = "cpu", value_parser = ["cpu", "gpu"])]
+    backend: String,
     /// As JSON
     #[arg(long)]
     json: bool,
@@ -44,16 +53,18 @@ struct Options {
 }
 
 /// An area's name and what measures it.
-type Area = (&'static str, fn(&mut Report) -> Result<(), Fault>);
+type Area = (&'static str, fn(&mut Report, &Options) -> Result<(), Fault>);
 
 const AREAS: [Area; 7] = [
-    ("brush", brush::run),
-    ("bus", bus::run),
-    ("document", document::run),
-    ("latency", latency::run),
-    ("optics", optics::run),
-    ("paint", paint::run),
-    ("render", render::run),
+    ("brush", |report, _| brush::run(report)),
+    ("bus", |report, _| bus::run(report)),
+    ("document", |report, _| document::run(report)),
+    ("latency", |report, _| latency::run(report)),
+    ("optics", |report, _| optics::run(report)),
+    ("paint", |report, options| {
+        paint::run(report, &options.backend)
+    }),
+    ("render", |report, _| render::run(report)),
 ];
 
 fn main() {
@@ -82,7 +93,7 @@ fn measure(options: &Options) -> Result<(), Fault> {
     }
     let mut report = Report::new();
     for (_, run) in areas {
-        run(&mut report)?;
+        run(&mut report, options)?;
     }
     if options.json {
         report.print_json()

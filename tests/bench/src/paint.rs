@@ -1,8 +1,9 @@
 //! Steps of the paint model by themselves: states of a brush that were solved before, on wet paint.
 
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 use maulstick_brush::BrushFile;
+use maulstick_gpu::{Choice, Device, GpuImpasto};
 use maulstick_optics::PaintLibrary;
 use maulstick_paint::{Painting, PaintingSetup, Sequencer};
 use maulstick_rig::Fault;
@@ -11,6 +12,7 @@ use maulstick_types::brush::{BrushState, Solve};
 use maulstick_types::command::Command;
 use maulstick_types::scene::CANVAS;
 
+use crate::advection;
 use crate::header::header_of;
 use crate::report::{Report, quantile, sorted};
 use crate::thread_cpu::thread_cpu;
@@ -40,10 +42,11 @@ struct Round {
     sequencer: Sequencer,
     states: Vec<BrushState>,
     seq: u64,
+    on_gpu: bool,
 }
 
 impl Round {
-    fn new(width_mm: f64, strips: usize, side: usize) -> Result<Self, Fault> {
+    fn new(width_mm: f64, strips: usize, side: usize, gpu: Option<&Device>) -> Result<Self, Fault> {
         let mut file = BrushFile::library("round").map_err(fault)?;
         file.strips.count = strips;
         let file = file.scaled_to(width_mm).map_err(fault)?;
@@ -53,7 +56,11 @@ impl Round {
             ..PaintingSetup::default()
         };
         let library = PaintLibrary::measured().map_err(fault)?;
-        let mut sequencer = Sequencer::new(Painting::new(&setup, library).map_err(fault)?);
+        let mut painting = Painting::new(&setup, library).map_err(fault)?;
+        if let Some(gpu) = gpu {
+            painting.set_model(Box::new(GpuImpasto::new(gpu.clone()).map_err(fault)?));
+        }
+        let mut sequencer = Sequencer::new(painting);
         sequencer.define_brush(BRUSH, file.clone());
         let mixture = || FILM.parse().map_err(fault);
         let load = Command::Load {
@@ -96,13 +103,14 @@ impl Round {
             states: states.collect(),
             sequencer,
             seq: 0,
+            on_gpu: gpu.is_some(),
         })
     }
 
     /// Paints the states; steps and footprint cells of them, and the time they took.
     fn paint(&mut self) -> Result<([u64; 2], Duration), Fault> {
         let before = self.sequencer.painting().work();
-        let begun = thread_cpu();
+        let (begun, begun_at) = (thread_cpu(), Instant::now());
         for state in &self.states {
             let header = header_of(BRUSH, self.seq);
             self.seq += 1;
@@ -111,7 +119,14 @@ impl Round {
                 .1
                 .map_err(fault)?;
         }
-        let took = thread_cpu().saturating_sub(begun);
+        // What a device does is in no thread's time, and is done when it is read.
+        let took = match self.on_gpu {
+            true => {
+                self.sequencer.painting_mut().commit();
+                begun_at.elapsed()
+            }
+            false => thread_cpu().saturating_sub(begun),
+        };
         self.sequencer.drain_journal();
         let after = self.sequencer.painting().work();
         Ok(([after.0 - before.0, after.1 - before.1], took))
@@ -119,24 +134,31 @@ impl Round {
 }
 
 /// A brush whose footprint covers the share of the square that is wanted.
-fn fitted(side: usize, strips: usize) -> Result<Round, Fault> {
+fn fitted(side: usize, strips: usize, gpu: Option<&Device>) -> Result<Round, Fault> {
     let wanted = COVERED * (side * side) as f64;
     let mut width_mm = 0.25 * side as f64;
     for _ in 0..6 {
-        let ([steps, cells], _) = Round::new(width_mm, strips, side)?.paint()?;
+        let ([steps, cells], _) = Round::new(width_mm, strips, side, None)?.paint()?;
         let covered = cells as f64 / steps.max(1) as f64;
         if (0.97..1.06).contains(&(covered / wanted)) {
             break;
         }
         width_mm = (width_mm * (wanted / covered.max(1.0)).sqrt()).clamp(0.5, 250.0);
     }
-    Round::new(width_mm, strips, side)
+    Round::new(width_mm, strips, side, gpu)
 }
 
 /// Measures and reports.
-pub(crate) fn run(report: &mut Report) -> Result<(), Fault> {
+pub(crate) fn run(report: &mut Report, backend: &str) -> Result<(), Fault> {
+    let gpu = match backend {
+        "gpu" => Some(Device::open(Choice::Forced).map_err(fault)?),
+        _ => None,
+    };
+    if let Some(gpu) = &gpu {
+        report.on(gpu.name());
+    }
     for (side, strips) in SIZES {
-        let mut round = fitted(side, strips)?;
+        let mut round = fitted(side, strips, gpu.as_ref())?;
         round.paint()?;
         let (mut pairs, mut covered) = (Vec::new(), Vec::new());
         for _ in 0..ROUNDS {
@@ -151,7 +173,7 @@ pub(crate) fn run(report: &mut Report) -> Result<(), Fault> {
         let name = format!("footprint_cells.{side}");
         report.row(&name, quantile(&sorted(covered), 0.5), "cells");
     }
-    Ok(())
+    advection::run(report, gpu)
 }
 
 /// Time to copy the cells of so many steps: height and four paints, read and written.

@@ -331,7 +331,8 @@ fn highest_of(lying: &[f32], base: &[f32], to_cells: f32) -> f32 {
 
 /// By how much a strip counts as higher among those of the same depth, cells: of a head that lies to
 /// one side, the bristles rooted on that side lie on the others.
-fn rank(head: &Head, pose: &HeadPose, strip: usize) -> f32 {
+#[must_use]
+pub fn rank(head: &Head, pose: &HeadPose, strip: usize) -> f32 {
     let ([x, y], [to_x, to_y]) = (head.roots()[strip], pose.bend);
     let bent = (to_x * to_x + to_y * to_y).sqrt();
     let inner = (x * to_x + y * to_y) / bent.max(BENT);

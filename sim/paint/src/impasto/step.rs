@@ -44,7 +44,7 @@ impl PaintModel for Impasto {
             _ => {
                 if step.handling.push {
                     self.faces.find(footprint, step);
-                    let first = if step.load.steps() % 2 == 0 {
+                    let first = if step.load.steps().is_multiple_of(2) {
                         Axis::X
                     } else {
                         Axis::Y

@@ -7,6 +7,7 @@ use maulstick_brush::{BrushFile, Head};
 use maulstick_optics::{PaintLibrary, Studio};
 use maulstick_types::scene::{CANVAS, PALETTE};
 
+use super::backend::{Deferral, Fall};
 use super::lighting::paint_slot;
 use super::modes::UnderBrush;
 use super::undo::makes;
@@ -244,6 +245,8 @@ impl Painting {
             embedded: restored.embedded,
             brushes,
             model: Box::new(Impasto::default()),
+            unsettled: None,
+            fall: Fall::default(),
             accounted: kept.ledger.clone(),
             ledger: kept.ledger,
             history,
@@ -324,5 +327,6 @@ fn restored_track(
         window: None,
         loads: brush.loads,
         next_load: brush.next_load,
+        deferral: Deferral::default(),
     })
 }

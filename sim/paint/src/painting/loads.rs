@@ -5,6 +5,7 @@ use std::sync::Arc;
 use maulstick_types::Mixture;
 use maulstick_types::scene::{Scene, Tuning};
 
+use super::backend::Deferral;
 use super::lighting::paint_slot;
 use super::{PaintRefusal, Painting};
 use crate::load::{Half, by_slot};
@@ -112,7 +113,9 @@ impl Painting {
         parts: &[(&[(usize, f64)], Half)],
     ) -> Result<(), PaintRefusal> {
         let (cell_m, thinner) = (self.sheets[0].cell_m, self.thinner());
+        self.settle();
         let track = self.brush(brush)?;
+        track.deferral = Deferral::default();
         let load = Arc::make_mut(&mut track.load);
         let left = load.take_all();
         let traits = BrushTraits::of(&track.file, cell_m, 1.0);
@@ -145,7 +148,9 @@ impl Painting {
     pub fn clean(&mut self, brush: &str) -> Result<(), PaintRefusal> {
         self.brush(brush)?;
         self.begin_step(&format!("clean {brush}"), Some(brush));
-        let left = Arc::make_mut(&mut self.brush(brush)?.load).take_all();
+        let track = self.brush(brush)?;
+        track.deferral = Deferral::default();
+        let left = Arc::make_mut(&mut track.load).take_all();
         self.ledger.to_cleaner(&left);
         self.book(Some(brush));
         self.end_step(|step| step.brush.as_deref() == Some(brush));

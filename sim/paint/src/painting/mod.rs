@@ -1,5 +1,6 @@
 //! The painting: surfaces, brushes, books. It does what it is told, in the order that it is told.
 
+mod backend;
 mod books;
 mod drying;
 mod film;
@@ -47,6 +48,7 @@ use crate::relief::Relief;
 use crate::setup::{PaintingSetup, relief_called};
 use crate::store::TileStore;
 use crate::window::Window;
+use backend::{Deferral, Fall};
 
 /// Most bytes of the history of a painting for which nothing else is said.
 pub const QUOTA: u64 = 2 << 30;
@@ -111,6 +113,8 @@ struct BrushTrack {
     next_load: usize,
     /// What lay under it at its newest step.
     under: UnderBrush,
+    /// How far steps are deferred.
+    deferral: Deferral,
 }
 
 /// A painting.
@@ -122,6 +126,9 @@ pub struct Painting {
     embedded: Embedded,
     brushes: BTreeMap<String, BrushTrack>,
     model: Box<dyn PaintModel>,
+    /// The brush whose newest steps the model has not settled.
+    unsettled: Option<String>,
+    fall: Fall,
     ledger: Ledger,
     /// The books as far as their changes are booked for a step.
     accounted: Ledger,
@@ -181,6 +188,8 @@ impl Painting {
             embedded: setup.embedded.clone(),
             brushes: BTreeMap::new(),
             model: Box::new(Impasto::default()),
+            unsettled: None,
+            fall: Fall::default(),
             ledger: Ledger::default(),
             accounted: Ledger::default(),
             history: History::default(),
@@ -279,6 +288,7 @@ impl Painting {
                     loads: Vec::new(),
                     next_load: 0,
                     under: UnderBrush::default(),
+                    deferral: Deferral::default(),
                 };
                 self.brushes.insert(name.to_owned(), track);
             }

@@ -4,7 +4,8 @@ use std::sync::Arc;
 
 use maulstick_types::brush::{BrushState, Solve, solve_flags};
 
-use super::modes::{Prepared, UnderBrush, handling_of};
+use super::backend::Deferral;
+use super::modes::{Prepared, handling_of};
 use super::{PaintRefusal, Painting};
 use crate::head::{Scale, Waypoint, low_bounds};
 use crate::history::OpenStep;
@@ -65,6 +66,7 @@ impl Painting {
         let track = self.brush(name)?;
         if solve.stroke == 0 {
             track.path = None;
+            self.fall.stroke_ends();
             return Ok(());
         }
         if track.stroke != Some((epoch, solve.stroke)) {
@@ -76,7 +78,8 @@ impl Painting {
         let restarted = solve.flags & solve_flags::RESTARTED != 0;
         let track = self.brush(name)?;
         let traits = BrushTraits::of(&track.file, scale.cell_m, scale.zoom);
-        let waypoint = Waypoint::of(solve, scale, track.load.fullness(&traits));
+        let waypoint = Waypoint::of(solve, scale, self.seen_fullness(name, &traits)?);
+        let track = self.brush(name)?;
         let running = track
             .path
             .take()
@@ -108,7 +111,9 @@ impl Painting {
 
     pub(super) fn begin_stroke(&mut self, name: &str) -> Result<(), PaintRefusal> {
         self.begin_step("stroke", Some(name));
+        self.fall.stroke_ends();
         let track = self.brush(name)?;
+        track.deferral = Deferral::default();
         if track.loads.is_empty() {
             return Ok(());
         }
@@ -126,9 +131,15 @@ impl Painting {
             return;
         };
         let traits = BrushTraits::of(&track.file, scale.cell_m, scale.zoom);
-        let wet = self.sheets[sheet].top * (QUANTUM_M / scale.cell_m) as f32;
-        let film = track.load.thickest() as f32 * traits.film_cells_per_quantum;
-        let height = wet + film + traits.half_thickness + traits.sink;
+        let deferred = self.model.defers() && !self.has_wells(sheet);
+        let height = if deferred {
+            // How high paint stands is not known here.
+            f32::INFINITY
+        } else {
+            let wet = self.sheets[sheet].top * (QUANTUM_M / scale.cell_m) as f32;
+            let film = track.load.thickest() as f32 * traits.film_cells_per_quantum;
+            wet + film + traits.half_thickness + traits.sink
+        };
         let Some((from, to)) = low_bounds(&track.head, sweep.to, traits.half_width, height) else {
             return;
         };
@@ -141,6 +152,9 @@ impl Painting {
         self.claim(name, sheet, outer_from, outer_to);
         if !self.reach(name, sheet, outer_from, outer_to) {
             return;
+        }
+        if !deferred || self.unsettled.as_deref() != Some(name) {
+            self.settle();
         }
         self.tend_wells(name, sheet, from, to);
         let mut handlings = self.scene.handlings.iter();
@@ -155,7 +169,9 @@ impl Painting {
         let Some((_, window)) = &mut track.window else {
             return;
         };
-        let report = self.model.step(&mut Step {
+        // Below this the head may touch.
+        window.note_top(self.sheets[sheet].top);
+        let mut step = Step {
             window,
             head: &track.head,
             sweep,
@@ -166,12 +182,17 @@ impl Painting {
             stain: prepared.stain,
             lasting: prepared.lasting,
             thinner,
-        });
-        track.under = UnderBrush::of(&report, scale.cell_m);
-        self.ledger.from_mode(&report.from_nowhere);
-        self.ledger.to_cleaner(&report.lifted);
+        };
+        let report = if deferred {
+            self.model.step(&mut step)
+        } else {
+            self.model.step_now(&mut step)
+        };
         self.sheets[sheet].top = self.sheets[sheet].top.max(window.top());
-        self.footprint_cells += report.footprint_cells;
+        self.note(name, &report, 1);
+        if deferred {
+            self.defer(name);
+        }
     }
 
     /// Makes sure that the brush's window holds the cells `from`..`to`; false where they all lie
@@ -239,6 +260,7 @@ impl Painting {
 
     /// Writes what the windows hold back to the tiles.
     pub fn commit(&mut self) {
+        self.settle();
         for (name, track) in &mut self.brushes {
             if let Some((sheet, window)) = &mut track.window {
                 let sheet = &mut self.sheets[*sheet];

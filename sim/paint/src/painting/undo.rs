@@ -5,6 +5,7 @@ use std::sync::Arc;
 
 use maulstick_types::scene::{Layer, Scene};
 
+use super::backend::Deferral;
 use super::{PaintRefusal, Painting};
 use crate::history::{Change, Deed, Held, Make, OpenStep, Place, Rest, Step, same};
 use crate::load::BrushLoad;
@@ -318,6 +319,7 @@ impl Painting {
         };
         let load = page.get();
         track.path = None;
+        track.deferral = Deferral::default();
         if load.texels() == track.load.texels() {
             track.load = Arc::clone(&load);
             track.kept = Some((load, page.clone()));

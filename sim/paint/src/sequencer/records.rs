@@ -185,6 +185,13 @@ impl Sequencer {
         self.records = recording;
     }
 
+    /// Enters that something else computes the paint than before, if that is so.
+    pub(super) fn tell_fall(&mut self) {
+        if let Some(why) = self.painting.take_fall() {
+            self.decide(&format!("backend {}: {why}", self.painting.backend()));
+        }
+    }
+
     fn replay_state(&mut self, header: &Header, state: &BrushState) {
         let brush = self.painting.brush_of(header.source).map(str::to_owned);
         if let Some(brush) = brush.filter(|_| state.fault().is_none()) {

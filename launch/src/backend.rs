@@ -1,0 +1,33 @@
+//! What computes the steps of the paint: as `[paint] backend` or `--backend` say.
+
+use maulstick_gpu::{Choice, Device, GpuImpasto};
+use maulstick_paint::Sequencer;
+use maulstick_rig::Fault;
+
+/// Has a painting's steps computed by the GPU from now on, and journals that, where the settings want it
+/// and there is one: `auto` takes a graphics processor of its own, `gpu` any.
+///
+/// # Errors
+/// A [`Fault`] where it must be a GPU and there is none.
+pub fn choose_backend(sequencer: &mut Sequencer, backend: &str) -> Result<(), Fault> {
+    let choice = match backend {
+        "cpu" => return Ok(()),
+        "gpu" => Choice::Forced,
+        _ => Choice::Auto,
+    };
+    match (Device::open(choice).and_then(GpuImpasto::new), choice) {
+        (Ok(model), _) => {
+            tracing::info!("paint is computed by {}", model.adapter());
+            sequencer.painting_mut().set_model(Box::new(model));
+            let chosen = sequencer.painting().backend();
+            sequencer.decide(&format!("backend {chosen}"));
+            Ok(())
+        }
+        (Err(_), Choice::Auto) => Ok(()),
+        (Err(error), Choice::Forced) => Err(Fault::failure(format!(
+            "paint cannot be computed by a GPU: {error}"
+        ))
+        .at("backend of [paint], or --backend")
+        .help("install a Vulkan driver, or leave the choice to the rig: backend = \"auto\"")),
+    }
+}

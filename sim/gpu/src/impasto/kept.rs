@@ -1,0 +1,90 @@
+//! Steps that are on the device alone: kept until they are settled, so that none is lost with it.
+
+use std::sync::Arc;
+
+use maulstick_brush::{Head, HeadPose};
+use maulstick_paint::load::BrushLoad;
+use maulstick_paint::model::{BrushTraits, Handling, PaintModel, Step, StepReport, Sweep};
+use maulstick_paint::window::Window;
+
+/// A step without window and load.
+struct KeptStep {
+    from: Arc<HeadPose>,
+    to: Arc<HeadPose>,
+    bounds: ([i64; 2], [i64; 2]),
+    traits: BrushTraits,
+    handling: Handling,
+    stain: f32,
+    lasting: bool,
+    thinner: Option<usize>,
+}
+
+/// Steps of one head in one window since these were last settled.
+pub(crate) struct KeptSteps {
+    pub(crate) head: Head,
+    steps: Vec<KeptStep>,
+}
+
+impl KeptSteps {
+    /// None of a head yet.
+    pub(crate) fn of(head: Head) -> Self {
+        Self {
+            head,
+            steps: Vec::new(),
+        }
+    }
+
+    /// How many they are.
+    pub(crate) fn len(&self) -> usize {
+        self.steps.len()
+    }
+
+    /// Keeps one.
+    pub(crate) fn keep(&mut self, step: &Step<'_>) {
+        // Nearly always it goes on where the last one ended.
+        let last = self.steps.last().map(|last| &last.to);
+        let from = match last.filter(|last| ***last == *step.sweep.from) {
+            Some(last) => Arc::clone(last),
+            None => Arc::new(step.sweep.from.clone()),
+        };
+        self.steps.push(KeptStep {
+            from,
+            to: Arc::new(step.sweep.to.clone()),
+            bounds: step.bounds,
+            traits: step.traits,
+            handling: step.handling,
+            stain: step.stain,
+            lasting: step.lasting,
+            thinner: step.thinner,
+        });
+    }
+
+    /// Does them all with another model, on window and load as they were last settled.
+    pub(crate) fn replay(
+        &self,
+        model: &mut impl PaintModel,
+        window: &mut Window,
+        load: &mut BrushLoad,
+    ) -> StepReport {
+        let mut report = StepReport::default();
+        for kept in &self.steps {
+            let did = model.step(&mut Step {
+                window,
+                head: &self.head,
+                sweep: Sweep {
+                    from: &kept.from,
+                    to: &kept.to,
+                },
+                bounds: kept.bounds,
+                load,
+                traits: kept.traits,
+                handling: kept.handling,
+                stain: kept.stain,
+                lasting: kept.lasting,
+                thinner: kept.thinner,
+            });
+            report.add(&did);
+        }
+        report
+    }
+}

@@ -1,0 +1,289 @@
+//! The stages as compute pipelines, each with those buffers of impasto.wgsl that it uses.
+
+use crate::device::Device;
+
+use super::record::RECORD_BYTES;
+
+/// The buffers, by binding; 0 are the parameters of the step.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[repr(u32)]
+pub(crate) enum Binding {
+    Poses = 1,
+    Head,
+    Segments,
+    Planes,
+    Other,
+    Base,
+    Load,
+    Asks,
+    Keys,
+    Contacts,
+    Faces,
+    Totals,
+    Stats,
+    Groups,
+    Wants,
+}
+
+impl Binding {
+    fn read_only(self) -> bool {
+        matches!(self, Self::Poses | Self::Head | Self::Base)
+    }
+}
+
+/// How many workgroups a stage has.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Groups {
+    /// As many as cover the cells of the grid.
+    Grid,
+    /// As many as cover the segments, and so the strips and faces.
+    Segments,
+    /// One.
+    One,
+    /// As the plan of the step says at this place: none where nothing is touched.
+    Planned(u64),
+}
+
+/// What a stage is.
+pub(crate) struct Kernel {
+    /// Its name, also that of its entry point.
+    pub(crate) name: &'static str,
+    source: &'static str,
+    constants: &'static [(&'static str, f64)],
+    pub(crate) bindings: &'static [Binding],
+    pub(crate) groups: Groups,
+}
+
+macro_rules! source {
+    ($name:literal) => {
+        concat!(
+            include_str!("../shaders/impasto/impasto.wgsl"),
+            include_str!("../shaders/impasto/shapes.wgsl"),
+            include_str!("../shaders/impasto/axes.wgsl"),
+            include_str!(concat!("../shaders/impasto/", $name, ".wgsl")),
+        )
+    };
+}
+
+use Binding as B;
+
+/// The stages of a step, in order.
+pub(crate) static KERNELS: [Kernel; 12] = [
+    Kernel {
+        name: "weigh_films",
+        source: source!("weigh_films"),
+        constants: &[],
+        bindings: &[B::Load, B::Asks, B::Stats],
+        groups: Groups::Segments,
+    },
+    Kernel {
+        name: "bound_head",
+        source: source!("bound_head"),
+        constants: &[],
+        bindings: &[B::Poses, B::Head, B::Stats],
+        groups: Groups::Segments,
+    },
+    Kernel {
+        name: "weigh_grid",
+        source: source!("weigh_grid"),
+        constants: &[],
+        bindings: &[B::Planes, B::Base, B::Keys, B::Totals, B::Stats],
+        groups: Groups::Grid,
+    },
+    Kernel {
+        name: "draw_head",
+        source: source!("draw_head"),
+        constants: &[],
+        bindings: &[B::Poses, B::Head, B::Segments, B::Asks, B::Keys, B::Stats],
+        groups: Groups::Segments,
+    },
+    Kernel {
+        name: "find_contacts",
+        source: source!("find_contacts"),
+        constants: &[],
+        bindings: &[
+            B::Poses,
+            B::Head,
+            B::Segments,
+            B::Load,
+            B::Keys,
+            B::Contacts,
+            B::Totals,
+            B::Stats,
+        ],
+        groups: Groups::Grid,
+    },
+    Kernel {
+        name: "plan_step",
+        source: source!("plan_step"),
+        constants: &[],
+        bindings: &[B::Load, B::Stats, B::Groups],
+        groups: Groups::One,
+    },
+    Kernel {
+        name: "find_velocity",
+        source: source!("find_velocity"),
+        constants: &[],
+        bindings: &[B::Contacts, B::Faces],
+        groups: Groups::Planned(0),
+    },
+    Kernel {
+        name: "push_paint",
+        source: source!("push_paint"),
+        constants: &[("second", 0.0)],
+        bindings: &[B::Planes, B::Other, B::Faces, B::Totals, B::Stats],
+        groups: Groups::Planned(2),
+    },
+    Kernel {
+        name: "push_paint",
+        source: source!("push_paint"),
+        constants: &[("second", 1.0)],
+        bindings: &[B::Planes, B::Other, B::Faces, B::Totals, B::Stats],
+        groups: Groups::Planned(3),
+    },
+    Kernel {
+        name: "ask_paint",
+        source: source!("ask_paint"),
+        constants: &[],
+        bindings: &[B::Load, B::Asks, B::Contacts, B::Totals, B::Wants],
+        groups: Groups::Planned(0),
+    },
+    Kernel {
+        name: "exchange_paint",
+        source: source!("exchange_paint"),
+        constants: &[],
+        bindings: &[
+            B::Planes,
+            B::Load,
+            B::Asks,
+            B::Contacts,
+            B::Totals,
+            B::Wants,
+            B::Stats,
+        ],
+        groups: Groups::Planned(0),
+    },
+    Kernel {
+        name: "tend_strips",
+        source: source!("tend_strips"),
+        constants: &[],
+        bindings: &[B::Head, B::Load, B::Asks],
+        groups: Groups::Planned(1),
+    },
+];
+
+const fn copy(constants: &'static [(&'static str, f64)]) -> Kernel {
+    Kernel {
+        name: "copy_planes",
+        source: source!("copy_planes"),
+        constants,
+        bindings: &[B::Planes, B::Other],
+        groups: Groups::Grid,
+    }
+}
+
+/// What the advection is measured beside, in as many parts.
+pub(crate) static COPIES: [Kernel; 2] = [copy(&[("second", 0.0)]), copy(&[("second", 1.0)])];
+
+/// A stage on a device.
+pub(crate) struct Pipeline {
+    pub(crate) kernel: &'static Kernel,
+    layout: wgpu::BindGroupLayout,
+    pub(crate) pipeline: wgpu::ComputePipeline,
+}
+
+impl Pipeline {
+    /// Makes the pipeline.
+    pub(crate) fn new(gpu: &Device, kernel: &'static Kernel) -> Self {
+        let entry = |binding, ty, size| wgpu::BindGroupLayoutEntry {
+            binding,
+            visibility: wgpu::ShaderStages::COMPUTE,
+            ty: wgpu::BindingType::Buffer {
+                ty,
+                has_dynamic_offset: binding == 0,
+                min_binding_size: size,
+            },
+            count: None,
+        };
+        let size = wgpu::BufferSize::new(RECORD_BYTES);
+        let mut entries = vec![entry(0, wgpu::BufferBindingType::Uniform, size)];
+        entries.extend(kernel.bindings.iter().map(|binding| {
+            let read_only = binding.read_only();
+            entry(
+                *binding as u32,
+                wgpu::BufferBindingType::Storage { read_only },
+                None,
+            )
+        }));
+        let label = Some(kernel.name);
+        let layout = gpu
+            .device
+            .create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
+                label,
+                entries: &entries,
+            });
+        let whole = gpu
+            .device
+            .create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
+                label,
+                bind_group_layouts: &[Some(&layout)],
+                immediate_size: 0,
+            });
+        let module = gpu
+            .device
+            .create_shader_module(wgpu::ShaderModuleDescriptor {
+                label,
+                source: wgpu::ShaderSource::Wgsl(kernel.source.into()),
+            });
+        let pipeline = gpu
+            .device
+            .create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
+                label,
+                layout: Some(&whole),
+                module: &module,
+                entry_point: Some(kernel.name),
+                compilation_options: wgpu::PipelineCompilationOptions {
+                    constants: kernel.constants,
+                    ..Default::default()
+                },
+                cache: None,
+            });
+        Self {
+            kernel,
+            layout,
+            pipeline,
+        }
+    }
+
+    /// Its buffers, bound.
+    pub(crate) fn bind<'a>(
+        &self,
+        gpu: &Device,
+        records: &'a wgpu::Buffer,
+        buffer: impl Fn(Binding) -> &'a wgpu::Buffer,
+    ) -> wgpu::BindGroup {
+        let record = wgpu::BufferBinding {
+            buffer: records,
+            offset: 0,
+            size: wgpu::BufferSize::new(RECORD_BYTES),
+        };
+        let mut entries = vec![wgpu::BindGroupEntry {
+            binding: 0,
+            resource: wgpu::BindingResource::Buffer(record),
+        }];
+        entries.extend(
+            self.kernel
+                .bindings
+                .iter()
+                .map(|binding| wgpu::BindGroupEntry {
+                    binding: *binding as u32,
+                    resource: buffer(*binding).as_entire_binding(),
+                }),
+        );
+        gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
+            label: Some(self.kernel.name),
+            layout: &self.layout,
+            entries: &entries,
+        })
+    }
+}

@@ -1,0 +1,106 @@
+//! What stages of a step leave on the device: for the tests that hold each beside its twin.
+
+use bytemuck::pod_collect_to_vec;
+use maulstick_paint::impasto::footprint::Contact;
+use maulstick_paint::model::Step;
+
+use super::kernels::{Binding, KERNELS};
+use super::record::StepRecord;
+use super::residence::Residence;
+use super::workspace::{Batch, Workspace};
+use crate::device::{Device, GpuError};
+
+/// What is looked at.
+#[derive(Clone, Debug)]
+pub struct Probe {
+    /// Lowest column and row of the window that the step's grid holds.
+    pub from: [usize; 2],
+    /// Columns and rows of the grid.
+    pub size: [usize; 2],
+    /// The cells in contact, row after row; `local` is their place in the grid.
+    pub contacts: Vec<Contact>,
+    /// Velocities through the right and the upper face of each cell of the grid.
+    pub faces: Vec<[f32; 2]>,
+}
+
+/// Stages of steps, one after the other.
+pub struct Prober {
+    workspace: Workspace,
+}
+
+impl Prober {
+    /// The stages on a device.
+    ///
+    /// # Errors
+    /// A [`GpuError`] where the driver does not take the shaders.
+    pub fn new(gpu: Device) -> Result<Self, GpuError> {
+        let workspace = Workspace::new(gpu)?;
+        Ok(Self { workspace })
+    }
+
+    /// Does those stages of a step that come up to the last one called `last`, writes what they did to
+    /// its window and load, and tells what else they left. None where the head is beside the surface,
+    /// or its window is too large.
+    ///
+    /// # Errors
+    /// A [`GpuError`] of the device.
+    pub fn run(&mut self, step: &mut Step<'_>, last: &str) -> Result<Option<Probe>, GpuError> {
+        let Some(on) = Residence::new(step) else {
+            return Ok(None);
+        };
+        let mut batch = Batch::default();
+        let Some(record) = StepRecord::new(step, &on, 0, &mut batch.poses) else {
+            return Ok(None);
+        };
+        batch.records.push(record);
+        let workspace = &mut self.workspace;
+        let place = KERNELS.iter().rposition(|kernel| kernel.name == last);
+        workspace.stages = place.map_or(0, |place| place + 1);
+        workspace.upload(&on, (step.window, step.load), step.head)?;
+        workspace.submit(&on, &batch)?;
+        let (from, size) = (record.from, record.size);
+        let cells = record.cells();
+        let ranges = [
+            (Binding::Contacts, 0, 32 * cells),
+            (Binding::Faces, 0, 8 * cells),
+        ];
+        let (contacts, faces) = workspace.read(&ranges, |bytes| {
+            let (contacts, faces) = bytes.split_at(32 * cells as usize);
+            let contacts: Vec<[u32; 8]> = pod_collect_to_vec(contacts);
+            (contacts, pod_collect_to_vec(faces))
+        })?;
+        let width = step.window.width();
+        let (settled, _) = workspace.read_back(&on, record.rows(), width)?;
+        on.write(&settled, step.window, step.load);
+        let place = |local: usize| {
+            let [x, y] = [local % size[0] as usize, local / size[0] as usize];
+            (from[1] as usize + y) * width + from[0] as usize + x
+        };
+        let contacts = contacts.iter().enumerate();
+        let contacts = contacts.filter(|(_, words)| words[0] != u32::MAX);
+        let contacts = contacts.map(|(local, words)| {
+            let value = |word: usize| f32::from_bits(words[word]);
+            Contact {
+                cell: place(local) as u32,
+                local: local as u32,
+                texel: words[0],
+                cover: value(1),
+                moved: [value(2), value(3)],
+                depth: value(4),
+                fraction: value(5),
+            }
+        });
+        Ok(Some(Probe {
+            from: from.map(|cell| cell as usize),
+            size: size.map(|cells| cells as usize),
+            contacts: contacts.collect(),
+            faces,
+        }))
+    }
+}
+
+impl std::fmt::Debug for Prober {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("Prober").finish_non_exhaustive()
+    }
+}

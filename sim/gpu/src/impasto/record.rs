@@ -1,0 +1,182 @@
+//! A step as the shaders take it.
+
+use bytemuck::{Pod, Zeroable};
+use maulstick_brush::head::STATIONS;
+use maulstick_paint::head::border;
+use maulstick_paint::impasto::advection::STAIN;
+use maulstick_paint::impasto::footprint::rank;
+use maulstick_paint::model::{Step, Transfer};
+use maulstick_paint::quantum::CELL_MAX;
+
+use super::residence::Residence;
+
+/// Scores reach this far below and above what reaches lowest and stands highest, cells: ranks, and what
+/// covers a cell only in part.
+const MARGIN: [f32; 2] = [0.1, 0.35];
+/// No plane.
+const NONE: u32 = u32::MAX;
+
+/// `Step` of impasto.wgsl.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
+#[repr(C)]
+pub(crate) struct StepRecord {
+    half_widths: [f32; 8],
+    pub(crate) from: [u32; 2],
+    pub(crate) size: [u32; 2],
+    row: u32,
+    plane: u32,
+    limit: [u32; 2],
+    offset: [f32; 2],
+    planes: u32,
+    strips: u32,
+    faces: u32,
+    vertices: u32,
+    poses: u32,
+    pub(crate) number: u32,
+    low: f32,
+    span: f32,
+    bits: u32,
+    skin_bottom: f32,
+    cells_per_quantum: f32,
+    film_cells_per_quantum: f32,
+    film_units_per_quantum: f32,
+    cell_per_reference: f32,
+    film_full: f32,
+    refill: f32,
+    creep: f32,
+    stain: f32,
+    thinner: u32,
+    transfer: u32,
+    flow: f32,
+    most: f32,
+    push: u32,
+    inside: [[u32; 2]; 2],
+    cell_max: f32,
+    reach: f32,
+    border: i32,
+    lasting: u32,
+    /// Up to the least distance of two records.
+    rest: [u32; 15],
+}
+
+/// Bytes from one record to the next.
+pub(crate) const RECORD_BYTES: u64 = size_of::<StepRecord>() as u64;
+
+impl StepRecord {
+    /// A step of a brush and a window that are on the device; its poses go to the end of `poses`. None
+    /// where the head is beside the surface.
+    pub(crate) fn new(
+        step: &Step<'_>,
+        on: &Residence,
+        number: usize,
+        poses: &mut Vec<f32>,
+    ) -> Option<Self> {
+        let (head, traits) = (step.head, &step.traits);
+        let (after, before) = (step.sweep.to, step.sweep.from);
+        let (origin, limit) = (step.window.origin(), step.window.limit());
+        let within = |cell: i64, i: usize| (cell - origin[i]).clamp(0, limit[i] as i64) as u32;
+        let (from, to) = step.bounds;
+        let touched = [from, to].map(|edge| [0, 1].map(|i| within(edge[i], i)));
+        if (0..2).any(|i| touched[0][i] >= touched[1][i]) {
+            return None;
+        }
+        // Paint is pushed a cell farther than the brush comes.
+        let from = [0, 1].map(|i| within(from[i] - 1, i));
+        let to = [0, 1].map(|i| within(to[i] + 1, i));
+        let (transfer, flow) = match step.handling.transfer {
+            Transfer::Sponge => (1, 0.0),
+            Transfer::Marker { flow } => (2, flow),
+            Transfer::Paint | Transfer::Sampler | Transfer::Vacuum => (0, 0.0),
+        };
+        let strips = head.strips();
+        let pressed = traits.half_thickness + traits.sink * after.press;
+        let loose = traits.lift * (1.0 - after.press);
+        let record = Self {
+            half_widths: std::array::from_fn(|i| traits.half_width_before(i + 1)),
+            from,
+            size: [0, 1].map(|i| to[i] - from[i]),
+            row: step.window.width() as u32,
+            plane: (step.window.width() * step.window.height()) as u32,
+            limit: limit.map(|cells| cells as u32),
+            offset: [0, 1].map(|i| (origin[i] + i64::from(from[i])) as f32),
+            planes: on.slots.len() as u32,
+            strips: strips as u32,
+            faces: on.faces as u32,
+            vertices: on.vertices as u32,
+            poses: poses.len() as u32,
+            number: number as u32,
+            low: -pressed - MARGIN[0],
+            span: pressed + MARGIN[0] + MARGIN[1],
+            bits: on.segment_bits(),
+            skin_bottom: traits.recede * after.splay - pressed,
+            cells_per_quantum: traits.cells_per_quantum,
+            film_cells_per_quantum: traits.film_cells_per_quantum,
+            film_units_per_quantum: traits.film_units_per_quantum,
+            cell_per_reference: traits.cell_per_reference,
+            film_full: traits.film_full as f32,
+            refill: traits.refill as f32,
+            creep: traits.creep as f32,
+            stain: step.stain,
+            thinner: step.thinner.map_or(NONE, |slot| on.plane_of(slot)),
+            transfer,
+            flow,
+            most: step.handling.most.min(CELL_MAX as f32),
+            push: u32::from(step.handling.push),
+            inside: touched.map(|edge| [0, 1].map(|i| edge[i] - from[i])),
+            cell_max: CELL_MAX as f32,
+            reach: traits.half_thickness + traits.sink,
+            border: border(traits.half_width) as i32,
+            lasting: u32::from(step.lasting),
+            rest: [0; 15],
+        };
+        debug_assert_eq!(after.x.len(), strips * STATIONS);
+        let motion = |after: &[f32], before: &[f32], poses: &mut Vec<f32>| {
+            poses.extend(
+                after
+                    .iter()
+                    .zip(before)
+                    .map(|(after, before)| after - before),
+            );
+        };
+        for plane in [&after.x, &after.y, &after.z] {
+            poses.extend_from_slice(plane);
+        }
+        motion(&after.x, &before.x, poses);
+        motion(&after.y, &before.y, poses);
+        poses.extend(head.lift().iter().map(|lift| loose * lift - pressed));
+        poses.extend((0..strips).map(|strip| rank(head, after, strip)));
+        if on.vertices > 0 {
+            for plane in [&after.skin.x, &after.skin.y, &after.skin.z] {
+                poses.extend_from_slice(plane);
+            }
+            motion(&after.skin.x, &before.skin.x, poses);
+            motion(&after.skin.y, &before.skin.y, poses);
+        }
+        Some(record)
+    }
+
+    /// A square of cells in a window of that size, on which nothing but the advection works.
+    pub(crate) fn of_square(side: u32, planes: u32) -> Self {
+        Self {
+            size: [side; 2],
+            row: side,
+            plane: side * side,
+            limit: [side; 2],
+            planes,
+            stain: STAIN,
+            push: 1,
+            cell_max: CELL_MAX as f32,
+            ..Self::default()
+        }
+    }
+
+    /// Cells of the grid.
+    pub(crate) fn cells(&self) -> u64 {
+        u64::from(self.size[0]) * u64::from(self.size[1])
+    }
+
+    /// Rows of the window that the step may change.
+    pub(crate) fn rows(&self) -> std::ops::Range<usize> {
+        self.from[1] as usize..(self.from[1] + self.size[1]) as usize
+    }
+}

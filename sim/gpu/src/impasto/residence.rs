@@ -1,0 +1,232 @@
+//! A window and a load while they are on the device.
+
+use bytemuck::{cast_slice, pod_collect_to_vec};
+use maulstick_brush::Head;
+use maulstick_brush::head::STATIONS;
+use maulstick_paint::load::BrushLoad;
+use maulstick_paint::model::Step;
+use maulstick_paint::quantum::SLOTS;
+use maulstick_paint::window::Window;
+use maulstick_types::paint::TILE;
+
+/// Most bytes of a buffer that every device can bind.
+const MOST_BYTES: usize = 128 << 20;
+/// Most bits of a key that may number a segment: the rest tells scores apart.
+const MOST_BITS: u32 = 17;
+
+/// What of a window and a brush the shaders have to know.
+#[derive(Clone, Debug)]
+pub(crate) struct Residence {
+    /// The paints, in order of plane.
+    pub(crate) slots: Vec<usize>,
+    /// Cells of the window.
+    pub(crate) cells: usize,
+    /// Texels of the brush.
+    pub(crate) texels: usize,
+    /// Strips of the brush.
+    pub(crate) strips: usize,
+    /// Faces and points of its skin.
+    pub(crate) faces: usize,
+    /// See `faces`.
+    pub(crate) vertices: usize,
+    /// Steps with contact that the brush had made.
+    steps: u64,
+}
+
+/// What is read back.
+pub(crate) struct Settled {
+    /// Rows of the window.
+    pub(crate) rows: std::ops::Range<usize>,
+    /// Counts on those rows, paint after paint.
+    pub(crate) planes: Vec<f32>,
+    /// The load, as impasto.wgsl lays it out.
+    pub(crate) load: Vec<u32>,
+    /// The highest that paint ever stood, quanta.
+    pub(crate) top: f32,
+}
+
+impl Residence {
+    /// Window and load of a step; none where they are too large for the device.
+    pub(crate) fn new(step: &Step<'_>) -> Option<Self> {
+        let head = step.head;
+        let in_use = |slot: &usize| step.window.has(*slot) || step.load.has(*slot);
+        let residence = Self {
+            slots: (0..SLOTS).filter(in_use).collect(),
+            cells: step.window.width() * step.window.height(),
+            texels: step.load.texels(),
+            strips: head.strips(),
+            faces: head.skin().map_or(0, |skin| skin.faces().len()),
+            vertices: head.skin().map_or(0, |skin| skin.places().len()),
+            steps: step.load.steps(),
+        };
+        // A cell of the grid takes up to 32 bytes, of the window 4 a paint.
+        let per_cell = (4 * residence.slots.len()).max(32);
+        let largest = (residence.cells * per_cell).max(4 * residence.load_words());
+        let fits = largest <= MOST_BYTES && residence.segment_bits() <= MOST_BITS;
+        fits.then_some(residence)
+    }
+
+    /// Segments that the head is drawn as.
+    pub(crate) fn segments(&self) -> usize {
+        2 * self.faces + self.strips * (STATIONS - 1)
+    }
+
+    /// Bits that number a segment, and one value besides.
+    pub(crate) fn segment_bits(&self) -> u32 {
+        usize::BITS - self.segments().leading_zeros()
+    }
+
+    /// The plane of a paint; `u32::MAX` where it is not in use.
+    pub(crate) fn plane_of(&self, slot: usize) -> u32 {
+        let place = self.slots.iter().position(|of| *of == slot);
+        place.map_or(u32::MAX, |place| place as u32)
+    }
+
+    /// By slot, how much more there is than window and load have now.
+    pub(crate) fn gained(
+        &self,
+        settled: &Settled,
+        window: &Window,
+        load: &BrushLoad,
+    ) -> [i64; SLOTS] {
+        let mut gained = [0; SLOTS];
+        let run = settled.rows.start * window.width()..settled.rows.end * window.width();
+        let sum = |plane: &[f32]| plane.iter().map(|count| *count as i64).sum::<i64>();
+        let carried = load.counts();
+        for (place, slot) in self.slots.iter().enumerate() {
+            let lies = &settled.planes[place * run.len()..][..run.len()];
+            let lay = window
+                .plane(*slot)
+                .map_or(0, |plane| sum(&plane[run.clone()]));
+            let parts = [place, self.slots.len() + place];
+            let carries = parts
+                .iter()
+                .flat_map(|part| &settled.load[1 + (1 + part) * self.texels..][..self.texels]);
+            let carries: i64 = carries.map(|count| i64::from(*count)).sum();
+            gained[*slot] = sum(lies) - lay + carries - carried[*slot] as i64;
+        }
+        gained
+    }
+
+    /// Words of the load.
+    pub(crate) fn load_words(&self) -> usize {
+        1 + (1 + 2 * self.slots.len()) * self.texels
+    }
+
+    /// Words of what is asked of the brush.
+    pub(crate) fn asks_words(&self) -> usize {
+        (2 + self.slots.len()) * self.texels + 2 * self.strips
+    }
+
+    /// What of the head is always the same.
+    pub(crate) fn head(&self, head: &Head) -> Vec<u32> {
+        let mut words = Vec::new();
+        if let Some(skin) = head.skin() {
+            words.extend(skin.faces().iter().flatten());
+            words.extend(skin.places().iter().flatten().map(|place| place.to_bits()));
+        }
+        let around = (0..self.strips)
+            .map(|place| head.strip_around((place as f32 + 0.5) / self.strips as f32) as u32);
+        words.extend(around);
+        words.extend(head.capacity().iter().map(|share| share.to_bits()));
+        words
+    }
+
+    /// The load.
+    pub(crate) fn load(&self, load: &BrushLoad) -> Vec<u32> {
+        let mut words = Vec::with_capacity(self.load_words());
+        words.push(load.steps() as u32);
+        words.extend_from_slice(load.films());
+        let planes = [BrushLoad::film_of, BrushLoad::inside];
+        for plane in planes {
+            for slot in &self.slots {
+                match plane(load, *slot) {
+                    Some(counts) => words.extend_from_slice(counts),
+                    None => words.resize(words.len() + self.texels, 0),
+                }
+            }
+        }
+        words
+    }
+
+    /// The planes of the window, each as bytes; `nothing` are those of one without paint.
+    pub(crate) fn planes<'a>(&self, window: &'a Window, nothing: &'a [f32]) -> Vec<&'a [u8]> {
+        let plane = |slot: &usize| {
+            let mut planes = window.planes();
+            let found = planes.find(|(of, _)| of == slot);
+            cast_slice(found.map_or(nothing, |(_, plane)| plane))
+        };
+        self.slots.iter().map(plane).collect()
+    }
+
+    /// Writes what was read back into window and load.
+    pub(crate) fn write(&self, settled: &Settled, window: &mut Window, load: &mut BrushLoad) {
+        self.write_planes(settled, window);
+        self.write_load(settled, load);
+        window.note_top(settled.top);
+    }
+
+    fn write_planes(&self, settled: &Settled, window: &mut Window) {
+        let (width, first) = (window.width(), settled.rows.start);
+        let cells = settled.rows.len() * width;
+        let mut changed = Vec::new();
+        for (slot, counts) in self.slots.iter().zip(settled.planes.chunks_exact(cells)) {
+            if !window.has(*slot) && counts.iter().all(|count| *count == 0.0) {
+                continue;
+            }
+            let plane = &mut window.plane_mut(*slot)[first * width..][..cells];
+            // A row of a tile at a time.
+            let rows = plane.chunks_exact_mut(TILE).zip(counts.chunks_exact(TILE));
+            for (place, (now, counts)) in rows.enumerate() {
+                if now != counts {
+                    now.copy_from_slice(counts);
+                    changed.push(place * TILE);
+                }
+            }
+        }
+        for place in changed {
+            let (x, y) = (place % width, first + place / width);
+            window.touch(([x, y], [x + 1, y + 1]));
+        }
+    }
+
+    fn write_load(&self, settled: &Settled, load: &mut BrushLoad) {
+        let words = &settled.load;
+        // Counted modulo 2³².
+        let made = words[0].wrapping_sub(self.steps as u32);
+        let parts: Vec<&[u32]> = words[1..].chunks_exact(self.texels.max(1)).collect();
+        let Some((films, planes)) = parts.split_first() else {
+            return;
+        };
+        let (film, inside) = planes.split_at(self.slots.len());
+        let is_there = |slot: usize, parts: [&[u32]; 2]| {
+            load.has(slot) || parts.iter().any(|part| part.iter().any(|count| *count > 0))
+        };
+        let pairs = film
+            .iter()
+            .zip(inside)
+            .map(|(film, inside)| [*film, *inside]);
+        let held = self.slots.iter().zip(pairs);
+        let held = held
+            .filter(|(slot, parts)| is_there(**slot, *parts))
+            .map(|(slot, parts)| (*slot, parts.map(<[u32]>::to_vec)));
+        let steps = self.steps + u64::from(made);
+        let settled = BrushLoad::of_planes(steps, films.to_vec(), held.collect());
+        if let Some(settled) = settled.filter(|settled| settled != load) {
+            *load = settled;
+        }
+    }
+}
+
+impl Settled {
+    /// What the device wrote: counts of `words` words, then the load.
+    pub(crate) fn read(bytes: &[u8], words: usize, rows: std::ops::Range<usize>, top: f32) -> Self {
+        let (planes, load) = bytes.split_at(words * size_of::<f32>());
+        Self {
+            rows,
+            planes: pod_collect_to_vec(planes),
+            load: pod_collect_to_vec(load),
+            top,
+        }
+    }
+}

@@ -1,0 +1,209 @@
+//! The buffers of the device and what is done with them: upload, steps, read-back.
+
+use std::ops::Range;
+
+use bytemuck::cast_slice;
+use maulstick_brush::Head;
+use maulstick_paint::load::BrushLoad;
+use maulstick_paint::model::StepReport;
+use maulstick_paint::window::Window;
+use wgpu::BufferUsages as Usage;
+
+use super::kernels::{Binding, Groups, KERNELS, Pipeline};
+use super::record::{RECORD_BYTES, StepRecord};
+use super::residence::{Residence, Settled};
+use crate::arena::{Arena, read};
+use crate::device::{Device, GpuError};
+
+/// Steps of a submission.
+pub(crate) const BATCH: usize = 64;
+/// Words of the statistics of all steps: cells touched, wet paint and thinner on them, the highest paint.
+const TALLY: u64 = 4;
+/// Words of the statistics: those and sixteen a step.
+const STATS: u64 = TALLY + 16 * BATCH as u64;
+/// Invocations of a workgroup that goes over a grid, and over strips or segments.
+const GROUP: [u64; 2] = [256, 64];
+
+/// Steps that are not yet given to the device.
+#[derive(Default)]
+pub(crate) struct Batch {
+    pub(crate) records: Vec<StepRecord>,
+    pub(crate) poses: Vec<f32>,
+}
+
+/// The device with its pipelines and buffers.
+pub(crate) struct Workspace {
+    pub(crate) gpu: Device,
+    pipelines: Vec<Pipeline>,
+    records: Arena,
+    /// By binding.
+    buffers: Vec<Arena>,
+    back: Arena,
+    /// How far a step goes: fewer stages where somebody looks at one of them.
+    pub(crate) stages: usize,
+}
+
+impl Workspace {
+    /// Makes the pipelines.
+    pub(crate) fn new(gpu: Device) -> Result<Self, GpuError> {
+        let pipelines =
+            gpu.guarded(|| Ok(KERNELS.iter().map(|k| Pipeline::new(&gpu, k)).collect()))?;
+        let storage = Usage::STORAGE | Usage::COPY_DST | Usage::COPY_SRC;
+        let buffer = |binding| {
+            let extra = match binding == Binding::Groups as usize {
+                true => Usage::INDIRECT,
+                false => Usage::empty(),
+            };
+            Arena::new("impasto", storage | extra)
+        };
+        Ok(Self {
+            pipelines,
+            records: Arena::new("records", Usage::UNIFORM | Usage::COPY_DST),
+            buffers: (0..=Binding::Wants as usize).map(buffer).collect(),
+            back: Arena::new("back", Usage::MAP_READ | Usage::COPY_DST),
+            stages: KERNELS.len(),
+            gpu,
+        })
+    }
+
+    fn fill(&mut self, binding: Binding, parts: &[&[u8]]) -> Result<(), GpuError> {
+        self.buffers[binding as usize].filled(&self.gpu, parts)?;
+        Ok(())
+    }
+
+    fn room(&mut self, binding: Binding, words: u64) {
+        self.buffers[binding as usize].of(&self.gpu, 4 * words);
+    }
+
+    /// Takes window and load onto the device.
+    pub(crate) fn upload(
+        &mut self,
+        on: &Residence,
+        (window, load): (&Window, &BrushLoad),
+        head: &Head,
+    ) -> Result<(), GpuError> {
+        let gpu = self.gpu.clone();
+        gpu.guarded(|| {
+            let nothing = vec![0.0; on.cells];
+            self.fill(Binding::Planes, &on.planes(window, &nothing))?;
+            self.fill(Binding::Base, &[cast_slice(window.base())])?;
+            self.fill(Binding::Load, &[cast_slice(&on.load(load))])?;
+            self.fill(Binding::Head, &[cast_slice(&on.head(head))])?;
+            self.fill(Binding::Asks, &[&vec![0; 4 * on.asks_words()]])?;
+            let mut stats = vec![0; STATS as usize];
+            stats[TALLY as usize - 1] = window.top().to_bits();
+            self.fill(Binding::Stats, &[cast_slice(&stats)])?;
+            self.room(Binding::Other, (on.cells * on.slots.len()) as u64);
+            self.room(Binding::Segments, 16 * on.segments() as u64);
+            self.room(Binding::Groups, 16);
+            Ok(())
+        })
+    }
+
+    /// Gives the device a batch of steps.
+    pub(crate) fn submit(&mut self, on: &Residence, batch: &Batch) -> Result<(), GpuError> {
+        let gpu = self.gpu.clone();
+        gpu.guarded(|| {
+            let cells = batch.records.iter().map(StepRecord::cells).max();
+            let cells = cells.unwrap_or(0);
+            for (binding, words) in [
+                (Binding::Keys, 1),
+                (Binding::Contacts, 8),
+                (Binding::Faces, 2),
+                (Binding::Totals, 4),
+                (Binding::Wants, 2),
+            ] {
+                self.room(binding, words * cells);
+            }
+            self.fill(Binding::Poses, &[cast_slice(&batch.poses)])?;
+            self.records.filled(&gpu, &[cast_slice(&batch.records)])?;
+            let mut encoder = gpu.device.create_command_encoder(&Default::default());
+            let buffers = &mut self.buffers;
+            let buffers: Vec<&wgpu::Buffer> =
+                buffers.iter_mut().map(|arena| arena.of(&gpu, 4)).collect();
+            let stats = buffers[Binding::Stats as usize];
+            encoder.clear_buffer(stats, 4 * TALLY, Some(4 * (STATS - TALLY)));
+            let records = self.records.of(&gpu, 4);
+            let bound: Vec<wgpu::BindGroup> = self
+                .pipelines
+                .iter()
+                .map(|p| p.bind(&gpu, records, |binding| buffers[binding as usize]))
+                .collect();
+            let mut pass = encoder.begin_compute_pass(&Default::default());
+            for (step, record) in batch.records.iter().enumerate() {
+                let offset = (step as u64 * RECORD_BYTES) as u32;
+                for (pipeline, bound) in self.pipelines.iter().zip(&bound).take(self.stages) {
+                    pass.set_pipeline(&pipeline.pipeline);
+                    pass.set_bind_group(0, bound, &[offset]);
+                    let [grid, few] = GROUP;
+                    let count = match pipeline.kernel.groups {
+                        Groups::Grid => record.cells().div_ceil(grid),
+                        Groups::Segments => (on.segments() as u64).div_ceil(few),
+                        Groups::One => 1,
+                        Groups::Planned(place) => {
+                            let groups = buffers[Binding::Groups as usize];
+                            pass.dispatch_workgroups_indirect(groups, 16 * place);
+                            continue;
+                        }
+                    };
+                    pass.dispatch_workgroups(count as u32, 1, 1);
+                }
+            }
+            drop(pass);
+            gpu.queue.submit([encoder.finish()]);
+            Ok(())
+        })
+    }
+
+    /// Reads rows of the window, the load, and what the steps did.
+    pub(crate) fn read_back(
+        &mut self,
+        on: &Residence,
+        rows: Range<usize>,
+        row: usize,
+    ) -> Result<(Settled, StepReport), GpuError> {
+        let words = rows.len() * row * on.slots.len();
+        let load_words = on.load_words();
+        let plane = |place: usize| 4 * ((place * on.cells + rows.start * row) as u64);
+        let mut ranges: Vec<(Binding, u64, u64)> = (0..on.slots.len())
+            .map(|place| (Binding::Planes, plane(place), 4 * (rows.len() * row) as u64))
+            .collect();
+        ranges.push((Binding::Load, 0, 4 * load_words as u64));
+        ranges.push((Binding::Stats, 0, 4 * TALLY));
+        self.read(&ranges, |bytes| {
+            let (bytes, tally) = bytes.split_at(bytes.len() - 4 * TALLY as usize);
+            let tally: Vec<u32> = bytemuck::pod_collect_to_vec(tally);
+            let quanta = |word: usize| f64::from(f32::from_bits(tally[word])) * 256.0;
+            let report = StepReport {
+                footprint_cells: u64::from(tally[0]),
+                wet: quanta(1) as u64,
+                thinner: quanta(2) as u64,
+                ..StepReport::default()
+            };
+            let top = f32::from_bits(tally[3]);
+            (Settled::read(bytes, words, rows, top), report)
+        })
+    }
+
+    /// Reads parts of buffers, one after the other: which, from where, how many bytes.
+    pub(crate) fn read<T>(
+        &mut self,
+        ranges: &[(Binding, u64, u64)],
+        take: impl FnOnce(&[u8]) -> T,
+    ) -> Result<T, GpuError> {
+        let gpu = self.gpu.clone();
+        gpu.guarded(|| {
+            let bytes = ranges.iter().map(|(_, _, bytes)| bytes).sum();
+            let back = self.back.of(&gpu, bytes);
+            let mut encoder = gpu.device.create_command_encoder(&Default::default());
+            let mut at = 0;
+            for (binding, from, bytes) in ranges {
+                let buffer = self.buffers[*binding as usize].of(&gpu, 4);
+                encoder.copy_buffer_to_buffer(buffer, *from, back, at, *bytes);
+                at += bytes;
+            }
+            gpu.queue.submit([encoder.finish()]);
+            read(&gpu, back, bytes, take)
+        })
+    }
+}

@@ -1,0 +1,64 @@
+// What each cell wants of its texel and offers it (Baxter 2004, Algorithm 3, by path length), summed by
+// texel.
+
+// ln(1 − XFER_FRACTION), MAX_XFER_QUANTITY and EQUAL_PAINT_CUTOFF of transfer.rs in maulstick-paint.
+const LN_KEPT = -0.105360516;
+const MAX_TRANSFER = 0.001;
+const EQUAL_PAINT_CUTOFF = 1.0 / 30.0;
+// SWAP and SWAP_FILM of transfer.rs.
+const SWAP = 0.3;
+const SWAP_FILM = 0.004;
+
+// exp_f32 of maulstick-num, for x ≤ 0.
+fn decay(t: f32) -> f32 {
+    let x = max(t, -87.0);
+    let n = round(x * 1.44269504);
+    let r = x - n * 0.693359375 - n * -2.12194442e-4;
+    var p = 1.0 / 5040.0;
+    p = p * r + 1.0 / 720.0;
+    p = p * r + 1.0 / 120.0;
+    p = p * r + 1.0 / 24.0;
+    p = p * r + 1.0 / 6.0;
+    p = p * r + 0.5;
+    let mean = p * r + 1.0;
+    return (mean * r + 1.0) * bitcast<f32>((i32(n) + 127) << 23u);
+}
+
+fn transfer(on_brush: f32, on_canvas: f32, share: f32, travel: f32) -> f32 {
+    let difference = on_brush - on_canvas;
+    let nearly_equal = min(abs(difference) / EQUAL_PAINT_CUTOFF, 1.0);
+    let donor = select(on_canvas, on_brush, difference > 0.0);
+    let amount = min(donor * share * nearly_equal, MAX_TRANSFER * travel);
+    return select(-amount, amount, difference > 0.0);
+}
+
+@compute @workgroup_size(256)
+fn ask_paint(@builtin(global_invocation_id) id: vec3<u32>) {
+    let i = id.x;
+    if i >= cells() {
+        return;
+    }
+    let contact = contacts[i];
+    if contact.texel == NONE {
+        return;
+    }
+    let lying = totals[i];
+    let travel = length(contact.moved) * step.cell_per_reference;
+    let on_brush = f32(load[1u + contact.texel]) * step.film_units_per_quantum;
+    let on_canvas = lying / QUANTA_PER_UNIT * contact.fraction;
+    var net = step.flow * travel;
+    var swap = 0.0;
+    if step.transfer != MARKER {
+        let share = 1.0 - decay(LN_KEPT * travel);
+        net = transfer(on_brush, on_canvas, share, travel);
+        swap = SWAP * share * min(min(on_brush, on_canvas), SWAP_FILM);
+    }
+    let quanta = contact.cover * QUANTA_PER_UNIT;
+    let room = max(step.most - lying, 0.0);
+    let to_canvas = trunc(min((max(net, 0.0) + swap) * quanta, room));
+    let to_brush = trunc(min((max(-net, 0.0) + swap) * quanta, lying));
+    wants[i] = vec2(to_canvas, to_brush);
+    atomicAdd(&asks[contact.texel], u32(to_canvas));
+    atomicAdd(&asks[texels() + contact.texel], u32(to_brush));
+    atomicStore(&asks[touch_of(contact.texel / ALONG)], 1u);
+}

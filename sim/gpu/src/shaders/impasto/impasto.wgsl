@@ -1,0 +1,210 @@
+// What the stages of an impasto step share: its parameters and buffers. What follows adds an entry
+// point. Lengths are in cells of the surface, paint in quanta: whole numbers, in f32 exact up to 2²⁴.
+
+// Parameters of a step; `StepRecord` of record.rs.
+struct Step {
+    // Half the width of a strip by segment.
+    half_widths: array<vec4<f32>, 2>,
+    // The grid: its lower left cell in the window, its columns and rows.
+    from_x: u32,
+    from_y: u32,
+    width: u32,
+    height: u32,
+    // The window: cells of a row and of a plane, columns and rows that lie on the surface.
+    row: u32,
+    plane: u32,
+    limit_x: u32,
+    limit_y: u32,
+    // The surface's coordinates of the grid's lower left corner.
+    offset_x: f32,
+    offset_y: f32,
+    planes: u32,
+    strips: u32,
+    faces: u32,
+    vertices: u32,
+    // Where its poses begin.
+    poses: u32,
+    // Its number in the batch.
+    number: u32,
+    // The least score that a segment can have, and how far above the highest paint on surface and
+    // brush one can be.
+    low: f32,
+    span: f32,
+    // Bits of a key that number the segment.
+    bits: u32,
+    // The skin's lower side above its middle.
+    skin_bottom: f32,
+    cells_per_quantum: f32,
+    film_cells_per_quantum: f32,
+    film_units_per_quantum: f32,
+    cell_per_reference: f32,
+    film_full: f32,
+    refill: f32,
+    creep: f32,
+    // What stays on a cell however hard it is brushed.
+    stain: f32,
+    // The plane of the thinner, or NONE.
+    thinner: u32,
+    // How paint goes over: one of PAINT, SPONGE, MARKER.
+    transfer: u32,
+    // Units that a marker leaves along a reference cell.
+    flow: f32,
+    // Up to so many quanta a brush leaves paint on a cell.
+    most: f32,
+    // Whether paint is pushed.
+    push: u32,
+    // Columns and rows of the grid that may be touched; beside them paint is only pushed. Of these, the
+    // cells that what is low of the head reaches (see `inside`).
+    in_x0: u32,
+    in_y0: u32,
+    in_x1: u32,
+    in_y1: u32,
+    // The most that a cell holds.
+    cell_max: f32,
+    // From the middle of a strip down to its lower side where it is pressed most.
+    reach: f32,
+    // How far a strip reaches beyond its middle line.
+    border: i32,
+    // Whether no cell loses paint to the brush, whatever that takes up.
+    lasting: u32,
+}
+
+// A cell in contact.
+struct Contact {
+    // The brush's texel; NONE where the cell is not touched.
+    texel: u32,
+    cover: f32,
+    moved: vec2<f32>,
+    // How deep the brush is in the wet paint, and by the paint's thickness.
+    depth: f32,
+    fraction: f32,
+    // c of the squish, and the share of the brush's motion that paint follows.
+    squish: f32,
+    follows: f32,
+}
+
+const NONE = 0xffffffffu;
+const STATIONS = 9u;
+const ALONG = 16u;
+const QUANTA_PER_UNIT = 16777216.0;
+const PAINT = 0u;
+const SPONGE = 1u;
+const MARKER = 2u;
+
+@group(0) @binding(0) var<uniform> step: Step;
+// Poses: x, y, z, and motion in x and y of all stations; by strip its lower side and its rank; x, y, z
+// and motion of the skin's points.
+@group(0) @binding(1) var<storage, read> poses: array<f32>;
+// Faces of the skin, four points each; places of its points around and along; the strips in their
+// order around the head; the strips' capacities.
+@group(0) @binding(2) var<storage, read> head: array<u32>;
+// Segments as they are drawn, four vectors each.
+@group(0) @binding(3) var<storage, read_write> segments: array<vec4<f32>>;
+// Counts on the window's cells, a plane a paint; and room for as much.
+@group(0) @binding(4) var<storage, read_write> planes: array<f32>;
+@group(0) @binding(5) var<storage, read_write> other: array<f32>;
+// Height of what catches paint.
+@group(0) @binding(6) var<storage, read> base: array<f32>;
+// Steps with contact; then by texel the counts of all paints in the film, each paint's in the film,
+// each paint's inside.
+@group(0) @binding(7) var<storage, read_write> load: array<u32>;
+// By texel what is drawn and offered in the step, and how each paint's film changes; by strip whether
+// it touches and its thickest film.
+@group(0) @binding(8) var<storage, read_write> asks: array<atomic<u32>>;
+// By cell of the grid the lowest score and its segment.
+@group(0) @binding(9) var<storage, read_write> keys: array<atomic<u32>>;
+@group(0) @binding(10) var<storage, read_write> contacts: array<Contact>;
+// Velocities through the right and the upper face of each cell of the grid.
+@group(0) @binding(11) var<storage, read_write> faces: array<vec2<f32>>;
+// By cell of the grid: all paint, all paint between the passes of the advection, height of what
+// catches paint, share of thinner.
+@group(0) @binding(12) var<storage, read_write> totals: array<f32>;
+// Cells touched so far; wet paint and thinner that lay on them before their steps, as bits of f32, in 256
+// quanta; the highest that paint ever stood, as bits of f32, quanta. Then sixteen words of each step of
+// the batch, see below.
+@group(0) @binding(13) var<storage, read_write> stats: array<atomic<u32>>;
+// Workgroups of the stages that follow the footprint.
+@group(0) @binding(14) var<storage, read_write> groups: array<vec4<u32>>;
+// Quanta to the canvas and to the brush by cell of the grid.
+@group(0) @binding(15) var<storage, read_write> wants: array<vec2<f32>>;
+
+// The highest paint, cells; the thickest film and the fullest cell, quanta (as bits, none is negative).
+const TOP = 0u;
+const FILM = 1u;
+const FULLEST = 2u;
+// Cells in contact.
+const TOUCHED = 3u;
+// Steps with contact before this one.
+const STEPS = 4u;
+// Wet paint and thinner on the cells in contact, in 256 quanta.
+const WET = 5u;
+const THINNER = 6u;
+// The least and the most column and row of the grid that what is low of the head reaches: away from and
+// beside a bias, 0 where nothing is low.
+const LEAST = 7u;
+const MOST = 9u;
+const BIAS = 65536;
+const AWAY = 60000.0;
+
+// Of all steps: the highest that paint ever stood.
+const TOP_EVER = 3u;
+
+fn stat(which: u32) -> u32 {
+    return 4u + 16u * step.number + which;
+}
+
+// The columns and rows that may be touched: from, up to but not with.
+struct Inside {
+    low: vec2<u32>,
+    high: vec2<u32>,
+}
+
+fn inside() -> Inside {
+    let from_low = vec2<i32>(vec2(step.in_x0, step.in_y0));
+    let to_high = vec2<i32>(vec2(step.in_x1, step.in_y1));
+    var low = to_high;
+    var high = from_low;
+    for (var axis = 0u; axis < 2u; axis++) {
+        let least = atomicLoad(&stats[stat(LEAST) + axis]);
+        let most = atomicLoad(&stats[stat(MOST) + axis]);
+        if least != 0u {
+            low[axis] = clamp(BIAS - i32(least) - step.border, from_low[axis], to_high[axis]);
+            high[axis] = clamp(i32(most) - BIAS + step.border + 1, low[axis], to_high[axis]);
+        }
+    }
+    return Inside(vec2<u32>(low), vec2<u32>(high));
+}
+
+fn cells() -> u32 {
+    return step.width * step.height;
+}
+
+fn texels() -> u32 {
+    return step.strips * ALONG;
+}
+
+// The window's cell at a place of the grid.
+fn cell_of(x: u32, y: u32) -> u32 {
+    return (step.from_y + y) * step.row + step.from_x + x;
+}
+
+// First of each part of `load` and `asks`.
+fn film_of(paint: u32) -> u32 {
+    return 1u + (1u + paint) * texels();
+}
+
+fn inside_of(paint: u32) -> u32 {
+    return 1u + (1u + step.planes + paint) * texels();
+}
+
+fn change_of(paint: u32) -> u32 {
+    return (2u + paint) * texels();
+}
+
+fn touch_of(strip: u32) -> u32 {
+    return (2u + step.planes) * texels() + strip;
+}
+
+fn thickest_of(strip: u32) -> u32 {
+    return touch_of(step.strips) + strip;
+}

@@ -1,0 +1,117 @@
+// Segments of ribbons and triangles of skin, as they are drawn and as they are met again in the cells
+// that they win.
+
+// A piece of a strip's middle line with what it carries: values at its beginning, and their change.
+struct Ribbon {
+    start: vec2<f32>,
+    way: vec2<f32>,
+    z: vec2<f32>,
+    // Its lower side above the middle line, and by how much it counts as higher than others as deep.
+    bottom: f32,
+    rank: f32,
+    // Place along the strip in texels.
+    along: vec2<f32>,
+    // Half its width and half a cell.
+    reach: f32,
+    // How far it goes on past its end.
+    past: f32,
+    moved: vec2<f32>,
+    moves: vec2<f32>,
+}
+
+fn store_ribbon(number: u32, ribbon: Ribbon) {
+    let at = 4u * (number - 2u * step.faces);
+    segments[at] = vec4(ribbon.start, ribbon.way);
+    segments[at + 1u] = vec4(ribbon.z, ribbon.bottom, ribbon.rank);
+    segments[at + 2u] = vec4(ribbon.along, ribbon.reach, ribbon.past);
+    segments[at + 3u] = vec4(ribbon.moved, ribbon.moves);
+}
+
+fn ribbon_of(number: u32) -> Ribbon {
+    let at = 4u * (number - 2u * step.faces);
+    let a = segments[at];
+    let b = segments[at + 1u];
+    let c = segments[at + 2u];
+    let d = segments[at + 3u];
+    return Ribbon(a.xy, a.zw, b.xy, b.z, b.w, c.xy, c.z, c.w, d.xy, d.zw);
+}
+
+// The direction of a ribbon: along which axis it mostly goes, and how it leaves it.
+struct Line {
+    major: u32,
+    inverse: f32,
+    slope: f32,
+    cosine: f32,
+}
+
+fn line_of(ribbon: Ribbon) -> Line {
+    let major = select(0u, 1u, abs(ribbon.way.y) > abs(ribbon.way.x));
+    let long = abs(ribbon.way[major]) > 1e-4;
+    let inverse = select(0.0, 1.0 / ribbon.way[major], long);
+    let slope = ribbon.way[1u - major] * inverse;
+    return Line(major, inverse, slope, 1.0 / sqrt(1.0 + slope * slope));
+}
+
+// Where a column of cells (or a row, along `major`) crosses the ribbon.
+struct Crossing {
+    t: f32,
+    middle: f32,
+}
+
+fn place_on(ribbon: Ribbon, line: Line, m: f32) -> Crossing {
+    let off = m + 0.5 - ribbon.start[line.major];
+    let middle = ribbon.start[1u - line.major] + off * line.slope - 0.5;
+    return Crossing(clamp(off * line.inverse, 0.0, 1.0), middle);
+}
+
+// Share of a cell that the ribbon covers; not above 0 where it does not.
+fn cover_of(ribbon: Ribbon, line: Line, place: Crossing, n: f32) -> f32 {
+    return min(ribbon.reach - abs(n - place.middle) * line.cosine, 1.0);
+}
+
+// Half a face of the skin, in the grid's coordinates.
+struct Triangle {
+    a: vec2<f32>,
+    b: vec2<f32>,
+    c: vec2<f32>,
+    // Of each corner: height of the lower side, motion, place around and along the head.
+    z: vec3<f32>,
+    moved_x: vec3<f32>,
+    moved_y: vec3<f32>,
+    around: vec3<f32>,
+    along: vec3<f32>,
+}
+
+fn side(p: vec2<f32>, q: vec2<f32>, at: vec2<f32>) -> f32 {
+    return (q.x - p.x) * (at.y - p.y) - (q.y - p.y) * (at.x - p.x);
+}
+
+fn triangle_of(number: u32) -> Triangle {
+    let face = 4u * (number / 2u);
+    let second = 1u + number % 2u;
+    let corners = vec3(head[face], head[face + second], head[face + second + 1u]);
+    let skin = step.poses + 5u * STATIONS * step.strips + 2u * step.strips;
+    let places = 4u * step.faces;
+    let first = bitcast<f32>(head[places + 2u * corners.x]);
+    var triangle: Triangle;
+    var at: array<vec2<f32>, 3>;
+    for (var i = 0u; i < 3u; i++) {
+        let corner = corners[i];
+        let point = skin + corner;
+        at[i] = vec2(
+            poses[point] - step.offset_x,
+            poses[point + step.vertices] - step.offset_y,
+        );
+        triangle.z[i] = poses[point + 2u * step.vertices] + step.skin_bottom;
+        triangle.moved_x[i] = poses[point + 3u * step.vertices];
+        triangle.moved_y[i] = poses[point + 4u * step.vertices];
+        // A face over the seam goes on beyond 1.
+        let around = bitcast<f32>(head[places + 2u * corner]);
+        triangle.around[i] = around + round(first - around);
+        triangle.along[i] = bitcast<f32>(head[places + 2u * corner + 1u]);
+    }
+    triangle.a = at[0];
+    triangle.b = at[1];
+    triangle.c = at[2];
+    return triangle;
+}

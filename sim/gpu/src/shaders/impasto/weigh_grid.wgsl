@@ -1,0 +1,36 @@
+// What lies on each cell of the grid, and how high it stands where it may be touched.
+
+// Raises a height to at least 0 and this. Most are lower, and a look costs less than a write.
+fn raise(which: u32, height: f32) {
+    let bits = bitcast<u32>(max(height, 0.0));
+    if bits > atomicLoad(&stats[which]) {
+        atomicMax(&stats[which], bits);
+    }
+}
+
+@compute @workgroup_size(256)
+fn weigh_grid(@builtin(global_invocation_id) id: vec3<u32>) {
+    let i = id.x;
+    if i >= cells() {
+        return;
+    }
+    let at = vec2(i % step.width, i / step.width);
+    let cell = cell_of(at.x, at.y);
+    var total = 0.0;
+    for (var paint = 0u; paint < step.planes; paint++) {
+        total += planes[paint * step.plane + cell];
+    }
+    var thinner = 0.0;
+    if step.thinner != NONE && total > 0.0 {
+        thinner = planes[step.thinner * step.plane + cell] / total;
+    }
+    totals[i] = total;
+    totals[2u * cells() + i] = base[cell];
+    totals[3u * cells() + i] = thinner;
+    atomicStore(&keys[i], NONE);
+    raise(stat(FULLEST), total);
+    let touched = inside();
+    if all(at >= touched.low) && all(at < touched.high) {
+        raise(stat(TOP), base[cell] + total * step.cells_per_quantum);
+    }
+}

@@ -1,0 +1,86 @@
+//! Stage 1: the same cells are touched by the same places of the head.
+
+use maulstick_brush::head::STATIONS;
+use maulstick_brush::{BrushFile, Head};
+use maulstick_gpu::impasto::probe::Prober;
+use maulstick_paint::impasto::footprint::{Contact, Footprint};
+use maulstick_paint::model::BrushTraits;
+
+use crate::device;
+use crate::scene::{CELL_M, Random, Scene};
+
+/// Roundings of a place below 128 cells, and of scores to 2⁻¹⁸ of the height that they may have.
+const NEAR: f32 = 2e-4;
+
+/// How many of the cells that either touches have another contact.
+fn apart(one: &[Contact], two: &[Contact]) -> (usize, usize) {
+    let same = |a: &Contact, b: &Contact| {
+        let near = |a: f32, b: f32| (a - b).abs() <= NEAR;
+        a.cell == b.cell
+            && a.texel == b.texel
+            && near(a.cover, b.cover)
+            && near(a.depth, b.depth)
+            && near(a.fraction, b.fraction)
+            && near(a.moved[0], b.moved[0])
+            && near(a.moved[1], b.moved[1])
+    };
+    let alike = one
+        .iter()
+        .filter(|a| {
+            let place = two.binary_search_by_key(&a.cell, |b| b.cell);
+            place.is_ok_and(|place| same(a, &two[place]))
+        })
+        .count();
+    (one.len() + two.len() - 2 * alike, one.len())
+}
+
+/// A scene whose strips all hang high, over which the fude's skin is crumpled.
+fn crumpled(seed: u64) -> Scene {
+    let mut scene = Scene::new(seed);
+    let mut random = Random::new(seed + 100);
+    let mut file = BrushFile::library("fude").expect("fude");
+    file.strips.count = scene.head.strips();
+    scene.head = Head::of(&file);
+    scene.traits.recede = BrushTraits::of(&file, CELL_M, 1.0).recede;
+    let places = scene.head.skin().expect("a skin").places().to_vec();
+    let turn = random.range(0.0, 6.0);
+    for (pose, shift) in [(&mut scene.to, [0.0; 2]), (&mut scene.from, [-0.4, 0.3])] {
+        pose.z = vec![1e3; file.strips.count * STATIONS];
+        for [around, along] in &places {
+            let angle = f64::from(*around) * 2.0 * std::f64::consts::PI + turn;
+            let (sine, cosine) = maulstick_num::sin_cos(angle);
+            let wide = 14.0 * (1.0 - 0.6 * f64::from(*along));
+            let x = 50.0 + wide * cosine + 30.0 * f64::from(*along) + shift[0];
+            let z = 1.5 + 2.0 * sine + random.range(-0.2, 0.2);
+            pose.skin.x.push(x as f32);
+            pose.skin.y.push((45.0 + wide * sine + shift[1]) as f32);
+            pose.skin.z.push(z.max(0.0) as f32);
+        }
+    }
+    scene
+}
+
+#[test]
+fn the_same_cells_are_touched() {
+    let mut prober = Prober::new(device()).expect("taken");
+    let strips = (0..12).map(Scene::new);
+    for (seed, mut scene) in strips.chain((0..4).map(crumpled)).enumerate() {
+        let mut footprint = Footprint::default();
+        footprint.find(&mut scene.step());
+        let probe = prober.run(&mut scene.step(), "find_contacts");
+        let probe = probe.expect("done").expect("on the surface");
+        let (off, all) = apart(&footprint.contacts, &probe.contacts);
+        println!("scene {seed}: {off} of {all} contacts differ");
+        assert!(all > 100, "{all}");
+        // Where two segments are equally deep, rounding decides; and places in faces that are seen edge on
+        // are rough.
+        let few = if scene.head.skin().is_some() { 20 } else { 400 };
+        assert!(off * few <= all, "scene {seed}: {off} of {all}");
+        let mut faulty = probe.contacts.clone();
+        faulty
+            .iter_mut()
+            .for_each(|contact| contact.depth += 2.0 * NEAR);
+        let (off, _) = apart(&footprint.contacts, &faulty);
+        assert!(off * few > all, "a fault passes");
+    }
+}

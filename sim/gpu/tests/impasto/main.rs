@@ -1,0 +1,20 @@
+//! The stages of an impasto step on the device beside those of the processor, on the seeded scenes of
+//! these; whole strokes; a device that is lost.
+
+#[path = "../../../paint/tests/oracle/scene.rs"]
+#[allow(dead_code, reason = "what these tests need of it")]
+mod scene;
+
+mod easel;
+mod footprint;
+mod modes;
+mod stroke;
+mod transport;
+
+use maulstick_gpu::{Choice, Device};
+
+/// An adapter: where there is no other, lavapipe.
+fn device() -> Device {
+    Device::open(Choice::Forced)
+        .expect("a Vulkan driver: install mesa-vulkan-drivers, as ./test does")
+}

@@ -1,0 +1,431 @@
+//! Stages 2 to 5 and the flow within the head: each on what the stages before it left, beside what its
+//! documentation says in plain f64.
+
+use std::collections::BTreeMap;
+
+use maulstick_gpu::impasto::probe::{Probe, Prober};
+use maulstick_paint::impasto::flow::flow;
+use maulstick_paint::impasto::footprint::{Contact, Footprint};
+use maulstick_paint::load::BrushLoad;
+use maulstick_paint::model::BrushTraits;
+use maulstick_paint::quantum::{CELL_MAX, QUANTA_PER_UNIT, SLOTS};
+
+use crate::device;
+use crate::scene::{PAINTS, Random, Scene, lying};
+
+/// Of velocities: a few operations on numbers of at most some cells.
+const SLOW: f64 = 4e-6;
+/// Each face's count is truncated, and f32 may round it over a whole number.
+const QUANTA: f64 = 2.0;
+/// Share of what moves that roundings add.
+const ROUNDING: f64 = 3e-6;
+
+/// A scene whose brush has made so many steps; some are nearly full, and some have all their strips on few
+/// texels.
+fn scene(seed: u64, steps: u64) -> Scene {
+    let mut scene = Scene::new(seed);
+    if seed % 4 == 3 {
+        let cells = scene.window.width() * scene.window.height();
+        let mut random = Random::new(seed);
+        for slot in 0..PAINTS {
+            let plane = scene.window.plane_mut(2 * slot);
+            for count in plane.iter_mut().take(cells) {
+                *count = (random.range(0.2, 0.25) * QUANTA_PER_UNIT).floor() as f32;
+            }
+        }
+        // Beside the surface nothing lies.
+        let [right, top] = scene.window.limit();
+        let width = scene.window.width();
+        for (_, plane) in scene.window.planes_mut() {
+            for (cell, count) in plane.iter_mut().enumerate() {
+                if cell % width >= right || cell / width >= top {
+                    *count = 0.0;
+                }
+            }
+        }
+    }
+    if seed % 2 == 1 {
+        scene.traits.film_full *= 0.05;
+    }
+    scene.load = stepped(&scene.load, steps);
+    scene
+}
+
+fn stepped(load: &BrushLoad, steps: u64) -> BrushLoad {
+    let planes = (0..SLOTS).filter_map(|slot| {
+        let parts = [load.film_of(slot)?, load.inside(slot)?];
+        Some((slot, parts.map(<[u32]>::to_vec)))
+    });
+    BrushLoad::of_planes(steps, load.films().to_vec(), planes.collect()).expect("they fit")
+}
+
+fn run(prober: &mut Prober, scene: &mut Scene, last: &str) -> Probe {
+    let probe = prober.run(&mut scene.step(), last).expect("done");
+    probe.expect("on the surface")
+}
+
+/// The grid of a probe over the scene's window.
+struct Grid<'a> {
+    probe: &'a Probe,
+    touched: BTreeMap<[i64; 2], Contact>,
+    limit: [i64; 2],
+    row: i64,
+}
+
+impl<'a> Grid<'a> {
+    fn new(probe: &'a Probe, scene: &Scene) -> Self {
+        let row = scene.window.width() as i64;
+        let touched = probe.contacts.iter();
+        let touched = touched.map(|c| ([i64::from(c.cell) % row, i64::from(c.cell) / row], *c));
+        Self {
+            probe,
+            touched: touched.collect(),
+            limit: scene.window.limit().map(|cells| cells as i64),
+            row,
+        }
+    }
+
+    fn is_on_surface(&self, at: [i64; 2]) -> bool {
+        (0..2).all(|i| (0..self.limit[i]).contains(&at[i]))
+    }
+
+    /// The device's velocity through the face ahead of a cell of the window.
+    fn face(&self, at: [i64; 2], axis: usize) -> f64 {
+        let local = [0, 1].map(|i| at[i] - self.probe.from[i] as i64);
+        let inside = (0..2).all(|i| (0..self.probe.size[i] as i64).contains(&local[i]));
+        if !inside {
+            return 0.0;
+        }
+        let place = local[1] * self.probe.size[0] as i64 + local[0];
+        f64::from(self.probe.faces[place as usize][axis])
+    }
+
+    fn cell(&self, at: [i64; 2]) -> usize {
+        (at[1] * self.row + at[0]) as usize
+    }
+}
+
+fn ahead(at: [i64; 2], axis: usize, by: i64) -> [i64; 2] {
+    let mut at = at;
+    at[axis] += by;
+    at
+}
+
+/// Velocity through a face, before what leaves a cell is limited.
+fn free(grid: &Grid<'_>, scene: &Scene, at: [i64; 2], axis: usize) -> f64 {
+    let j = ahead(at, axis, 1);
+    if !grid.is_on_surface(at) || !grid.is_on_surface(j) {
+        return 0.0;
+    }
+    let of = |at: [i64; 2]| {
+        grid.touched.get(&at).map(|c| {
+            let (depth, cover) = (f64::from(c.depth), f64::from(c.cover));
+            let total = f64::from(scene.window.total(c.cell as usize));
+            // Paint that the brush does not reach resists nothing.
+            let wet = match c.fraction > 0.0 {
+                true => total * f64::from(scene.traits.cells_per_quantum),
+                false => 0.0,
+            };
+            let thinner = scene.thinner.and_then(|slot| scene.window.plane(slot));
+            let thinner = thinner.map_or(0.0, |plane| f64::from(plane[c.cell as usize]));
+            let thinner = thinner / total.max(1.0);
+            let squish = (1.5 * (1.0 + 4.0 * thinner)).min(0.2 / wet.max(1e-6));
+            let follows = 0.5 * (1.0 - 0.5 * thinner);
+            (
+                follows * cover * f64::from(c.moved[axis]),
+                depth * cover,
+                squish,
+            )
+        })
+    };
+    let (push, squish) = match (of(at), of(j)) {
+        (Some(i), Some(j)) => (0.5 * (i.0 + j.0), i.2.min(j.2) * (i.1 - j.1)),
+        (Some(i), None) => (i.0, i.2 * i.1),
+        (None, Some(j)) => (j.0, -j.2 * j.1),
+        (None, None) => return 0.0,
+    };
+    let v = (push + squish).clamp(-1.0, 1.0);
+    let upwind = if v > 0.0 { at } else { j };
+    if grid.touched.contains_key(&upwind) {
+        v
+    } else {
+        0.0
+    }
+}
+
+fn velocity(grid: &Grid<'_>, scene: &Scene, at: [i64; 2], axis: usize) -> f64 {
+    let v = free(grid, scene, at, axis);
+    let upwind = if v > 0.0 { at } else { ahead(at, axis, 1) };
+    let right = free(grid, scene, upwind, axis);
+    let left = free(grid, scene, ahead(upwind, axis, -1), axis);
+    v / (right.max(0.0) + (-left).max(0.0)).max(1.0)
+}
+
+#[test]
+fn paint_follows_the_brush_and_goes_out_of_its_way() {
+    let mut prober = Prober::new(device()).expect("taken");
+    let mut moving = 0;
+    for seed in 0..8 {
+        let mut scene = scene(seed, 0);
+        scene.thinner = [None, Some(2), Some(9)][seed as usize % 3];
+        let probe = run(&mut prober, &mut scene, "find_velocity");
+        let grid = Grid::new(&probe, &scene);
+        let mut worst = 0.0f64;
+        for y in 0..grid.limit[1] {
+            for x in 0..grid.limit[0] {
+                for axis in 0..2 {
+                    let want = velocity(&grid, &scene, [x, y], axis);
+                    worst = worst.max((grid.face([x, y], axis) - want).abs());
+                    moving += usize::from(want != 0.0);
+                }
+            }
+        }
+        println!("scene {seed}: velocities off by {worst:.2e}");
+        assert!(worst <= SLOW, "scene {seed}: {worst}");
+    }
+    assert!(moving > 4000, "{moving}");
+}
+
+/// One pass in f64, in whole quanta.
+fn pass(grid: &Grid<'_>, planes: &mut [Vec<f64>], axis: usize, stain: f64) {
+    let cells = planes.first().map_or(0, Vec::len);
+    let total: Vec<f64> = (0..cells)
+        .map(|c| planes.iter().map(|p| p[c]).sum())
+        .collect();
+    let loose = |at: [i64; 2]| (total[grid.cell(at)] - stain).max(0.0);
+    let room = |at: [i64; 2]| {
+        let mut coming = 0.0;
+        for (from, v) in [
+            (ahead(at, axis, -1), grid.face(ahead(at, axis, -1), axis)),
+            (ahead(at, axis, 1), -grid.face(at, axis)),
+        ] {
+            if v > 0.0 {
+                coming += v * (2.0 - v) * loose(from);
+            }
+        }
+        let free = (f64::from(CELL_MAX) - 64.0 - total[grid.cell(at)]).max(0.0);
+        if coming > free { free / coming } else { 1.0 }
+    };
+    for plane in planes.iter_mut() {
+        let before = plane.clone();
+        let q = |at: [i64; 2], beside: [i64; 2]| {
+            before[grid.cell(if grid.is_on_surface(beside) {
+                beside
+            } else {
+                at
+            })]
+        };
+        for y in 0..grid.limit[1] {
+            for x in 0..grid.limit[0] {
+                let at = [x, y];
+                let v = grid.face(at, axis);
+                if v == 0.0 {
+                    continue;
+                }
+                let j = ahead(at, axis, 1);
+                let (donor, to) = if v > 0.0 { (at, j) } else { (j, at) };
+                let held = q(donor, donor);
+                let a = held - q(donor, ahead(donor, axis, -1));
+                let b = q(donor, ahead(donor, axis, 1)) - held;
+                let slope = if a * b > 0.0 {
+                    2.0 * a * b / (a + b)
+                } else {
+                    0.0
+                };
+                let w = v.abs();
+                let share = loose(donor) / total[grid.cell(donor)].max(1.0) * room(to);
+                let flux = (w * (held + 0.5 * v.signum() * (1.0 - w) * slope) * share).trunc();
+                plane[grid.cell(donor)] -= flux;
+                plane[grid.cell(to)] += flux;
+            }
+        }
+    }
+}
+
+fn planes(scene: &Scene) -> Vec<Vec<f64>> {
+    let planes = scene.window.planes();
+    planes
+        .map(|(_, plane)| plane.iter().map(|count| f64::from(*count)).collect())
+        .collect()
+}
+
+#[test]
+fn paint_goes_where_it_is_pushed_and_none_is_lost() {
+    let mut prober = Prober::new(device()).expect("taken");
+    let mut moved = 0;
+    for (seed, steps) in (0..8).zip([0, 1, 6, 3].into_iter().cycle()) {
+        let mut scene = scene(seed, steps);
+        let (before, counts) = (planes(&scene), scene.counts());
+        let stain = f64::from(maulstick_paint::impasto::advection::STAIN);
+        let probe = run(&mut prober, &mut scene, "push_paint");
+        assert_eq!(scene.counts(), counts, "scene {seed}");
+        lying(&scene.window);
+        let grid = Grid::new(&probe, &scene);
+        let off = |axes: [usize; 2]| {
+            let mut want = before.clone();
+            axes.iter()
+                .for_each(|axis| pass(&grid, &mut want, *axis, stain));
+            let pairs = planes(&scene).into_iter().flatten();
+            let pairs = pairs.zip(want.into_iter().flatten());
+            pairs
+                .map(|(got, want)| (got - want).abs())
+                .fold(0.0, f64::max)
+        };
+        let axes = if steps % 2 == 0 { [0, 1] } else { [1, 0] };
+        let worst = off(axes);
+        println!("scene {seed}: counts off by {worst}");
+        assert!(worst <= QUANTA, "scene {seed}: {worst}");
+        assert!(off([axes[1], axes[0]]) > QUANTA, "the other order passes");
+        let changed = planes(&scene)
+            .into_iter()
+            .flatten()
+            .zip(before.into_iter().flatten());
+        moved += changed.filter(|(a, b)| a != b).count();
+    }
+    assert!(moved > 4000, "{moved}");
+}
+
+/// Baxter 2004, Algorithm 3, by path length, and what changes places: units to the canvas and back.
+fn wanted(a_b: f64, a_c: f64, travel: f64) -> [f64; 2] {
+    let share = 1.0 - maulstick_num::powf(0.9, travel);
+    let cutoff = ((a_b - a_c).abs() * 30.0).min(1.0);
+    let net = (a_b.max(a_c) * share * cutoff).min(0.001 * travel);
+    let swap = 0.3 * share * a_b.min(a_c).min(0.004);
+    match a_b > a_c {
+        true => [net + swap, swap],
+        false => [swap, net + swap],
+    }
+}
+
+/// What lies on cells and films after the exchange, with how far it may be off.
+fn exchanged(probe: &Probe, scene: &Scene) -> BTreeMap<(bool, usize, usize), [f64; 2]> {
+    let (window, load, traits) = (&scene.window, &scene.load, &scene.traits);
+    let mut asked = BTreeMap::<u32, [f64; 2]>::new();
+    let mut wants = Vec::new();
+    for c in &probe.contacts {
+        let lying = f64::from(window.total(c.cell as usize));
+        let film = f64::from(load.film(c.texel as usize));
+        let [u, v] = c.moved.map(f64::from);
+        let travel = (u * u + v * v).sqrt() * f64::from(traits.cell_per_reference);
+        let a_b = film * f64::from(traits.film_units_per_quantum);
+        let a_c = lying / QUANTA_PER_UNIT * f64::from(c.fraction);
+        let [out, back] = wanted(a_b, a_c, travel)
+            .map(|units| (units * f64::from(c.cover) * QUANTA_PER_UNIT).trunc());
+        let want = [out.min(QUANTA_PER_UNIT - lying), back.min(lying)];
+        let sums = asked.entry(c.texel).or_default();
+        (0..2).for_each(|i| sums[i] += want[i]);
+        wants.push(want);
+    }
+    let mut expected = BTreeMap::new();
+    for (c, want) in probe.contacts.iter().zip(&wants) {
+        let (cell, texel) = (c.cell as usize, c.texel as usize);
+        let lying = f64::from(window.total(cell));
+        let film = f64::from(load.film(texel));
+        let [drawn, offered] = asked[&c.texel];
+        let out = (film / drawn.max(1.0)).min(1.0);
+        let room = traits.film_full * BrushTraits::FILM_OVER - film + drawn * out;
+        let taken = (room / offered.max(1.0)).clamp(0.0, 1.0);
+        for slot in 0..SLOTS {
+            let of_film = load
+                .film_of(slot)
+                .map_or(0.0, |film| f64::from(film[texel]));
+            let mut planes = window.planes();
+            let of_cell = planes.find(|(of, _)| *of == slot);
+            let of_cell = of_cell.map_or(0.0, |(_, plane)| f64::from(plane[cell]));
+            let left = want[0] * out * of_film / film.max(1.0);
+            let taken = want[1] * taken * of_cell / lying.max(1.0);
+            let bound = QUANTA + ROUNDING * (left + taken);
+            let entry = expected.entry((true, slot, cell)).or_insert([of_cell, 0.0]);
+            (entry[0], entry[1]) = (entry[0] + left - taken, entry[1] + bound);
+            let entry = expected
+                .entry((false, slot, texel))
+                .or_insert([of_film, 0.0]);
+            (entry[0], entry[1]) = (entry[0] + taken - left, entry[1] + bound);
+        }
+    }
+    expected
+}
+
+#[test]
+fn paint_goes_both_ways() {
+    let mut prober = Prober::new(device()).expect("taken");
+    for seed in 0..8 {
+        let mut scene = scene(seed, 0);
+        let counts = scene.counts();
+        let probe = run(&mut prober, &mut scene, "push_paint");
+        let expected = exchanged(&probe, &scene);
+        let mut scene = self::scene(seed, 0);
+        let last = run(&mut prober, &mut scene, "tend_strips");
+        assert_eq!(last.contacts, probe.contacts);
+        assert_eq!(scene.counts(), counts, "scene {seed}");
+        lying(&scene.window);
+        assert_eq!(scene.load.steps(), 1);
+        let agrees = |scene: &Scene| {
+            let mut near = 0;
+            for ((is_cell, slot, at), [want, bound]) in &expected {
+                let got = match is_cell {
+                    true => {
+                        let mut planes = scene.window.planes();
+                        let plane = planes.find(|(of, _)| of == slot);
+                        plane.map_or(0.0, |(_, plane)| f64::from(plane[*at]))
+                    }
+                    false => scene
+                        .load
+                        .film_of(*slot)
+                        .map_or(0.0, |film| f64::from(film[*at])),
+                };
+                near += usize::from((got - want).abs() <= *bound);
+            }
+            near
+        };
+        let near = agrees(&scene);
+        println!("scene {seed}: {near} of {} counts", expected.len());
+        assert_eq!(near, expected.len(), "scene {seed}");
+        let cell = probe.contacts[probe.contacts.len() / 2].cell as usize;
+        let plane = scene.window.plane_mut(0);
+        plane[cell] += 8.0;
+        assert!(agrees(&scene) < near, "a fault passes");
+    }
+}
+
+/// The flow is the processor's, on what the exchange left: within 2 quanta of film and 6 inside, as that
+/// is of its oracle.
+#[test]
+fn paint_flows_within_the_strips_that_touch() {
+    let mut prober = Prober::new(device()).expect("taken");
+    for seed in 0..6 {
+        // Four more steps: the same order of passes, and paint flows in the one but not in the other.
+        let mut still = scene(seed, 1);
+        still.thinner = [None, Some(2)][seed as usize % 2];
+        let probe = run(&mut prober, &mut still, "tend_strips");
+        let mut flowed = scene(seed, 3);
+        flowed.thinner = still.thinner;
+        let counts = flowed.counts();
+        run(&mut prober, &mut flowed, "tend_strips");
+        assert_eq!(flowed.counts(), counts, "scene {seed}");
+        let not_flowed = still.load.clone();
+        still.load = stepped(&still.load, 3);
+        let mut footprint = Footprint::default();
+        footprint.contacts.clone_from(&probe.contacts);
+        flow(&footprint, &mut still.step());
+        let off = |one: &BrushLoad, two: &BrushLoad| {
+            let mut worst = [0u32; 2];
+            for slot in 0..SLOTS {
+                let parts = [
+                    (one.film_of(slot), two.film_of(slot)),
+                    (one.inside(slot), two.inside(slot)),
+                ];
+                for (worst, (one, two)) in worst.iter_mut().zip(parts) {
+                    let pairs = one.unwrap_or_default().iter().zip(two.unwrap_or_default());
+                    *worst = pairs.fold(*worst, |worst, (a, b)| worst.max(a.abs_diff(*b)));
+                }
+            }
+            worst
+        };
+        let worst = off(&flowed.load, &still.load);
+        println!("scene {seed}: film and inside off by {worst:?}");
+        assert!(worst[0] <= 2 && worst[1] <= 6, "scene {seed}: {worst:?}");
+        let fault = off(&flowed.load, &not_flowed);
+        assert!(fault[1] > 6, "no flow passes: {fault:?}");
+    }
+}

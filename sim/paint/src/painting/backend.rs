@@ -1,0 +1,139 @@
+//! The paint model and what computes it. Where steps are deferred, planes and load have what they did
+//! once they are settled: before anything else looks at them.
+
+use std::sync::Arc;
+
+use super::modes::UnderBrush;
+use super::{PaintRefusal, Painting};
+use crate::model::{BrushTraits, PaintModel, StepReport};
+
+/// Deferred steps are settled after so many at the latest. How full the brush is, is seen just then:
+/// when somebody looks at the painting must not matter.
+const SETTLE_EVERY: u32 = 256;
+
+/// How far the steps of a brush are deferred.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Deferral {
+    /// Deferred steps since its stroke began.
+    steps: u32,
+    /// Those of them that are not settled.
+    unsettled: u32,
+    /// How full the brush was when that was last seen.
+    fullness: Option<f32>,
+}
+
+/// Why the model computes elsewhere than before. It is told where a stroke ends.
+#[derive(Debug, Default)]
+pub(super) struct Fall {
+    found: Option<String>,
+    due: bool,
+}
+
+impl Fall {
+    /// A stroke ends or begins.
+    pub(super) fn stroke_ends(&mut self) {
+        self.due |= self.found.is_some();
+    }
+}
+
+impl Painting {
+    /// Has its steps computed by this model from now on.
+    pub fn set_model(&mut self, model: Box<dyn PaintModel>) {
+        self.close_windows();
+        self.model = model;
+    }
+
+    /// What computes its steps: `cpu`, or `gpu` and the adapter's name.
+    #[must_use]
+    pub fn backend(&self) -> String {
+        self.model.backend()
+    }
+
+    /// Why its steps are computed by something else than before, once, after the stroke in which it
+    /// changed.
+    pub fn take_fall(&mut self) -> Option<String> {
+        if !self.fall.due {
+            return None;
+        }
+        self.fall.due = false;
+        self.fall.found.take()
+    }
+
+    /// How full a brush is, as far as its stroke may know.
+    pub(super) fn seen_fullness(
+        &mut self,
+        name: &str,
+        traits: &BrushTraits,
+    ) -> Result<f32, PaintRefusal> {
+        let defers = self.model.defers();
+        let track = self.brush(name)?;
+        if !defers {
+            return Ok(track.load.fullness(traits));
+        }
+        if let Some(seen) = track.deferral.fullness {
+            return Ok(seen);
+        }
+        self.settle();
+        let track = self.brush(name)?;
+        let seen = track.load.fullness(traits);
+        track.deferral.fullness = Some(seen);
+        Ok(seen)
+    }
+
+    /// Notes a deferred step.
+    pub(super) fn defer(&mut self, name: &str) {
+        self.unsettled = Some(name.to_owned());
+        let Some(track) = self.brushes.get_mut(name) else {
+            return;
+        };
+        track.deferral.steps += 1;
+        track.deferral.unsettled += 1;
+        if track.deferral.steps.is_multiple_of(SETTLE_EVERY) {
+            track.deferral.fullness = None;
+            self.settle();
+        }
+    }
+
+    /// Has the model write back what it holds.
+    pub(super) fn settle(&mut self) {
+        if let Some(name) = self.unsettled.take()
+            && let Some(track) = self.brushes.get_mut(&name)
+            && let Some((sheet, window)) = &mut track.window
+        {
+            let report = self.model.settle(window, Arc::make_mut(&mut track.load));
+            let steps = std::mem::take(&mut track.deferral.unsettled);
+            let sheet = &mut self.sheets[*sheet];
+            sheet.top = sheet.top.max(window.top());
+            self.note(&name, &report, steps);
+            self.book(Some(&name));
+        }
+        if let Some(what) = self.model.take_fall() {
+            self.fall.found = Some(what);
+        }
+    }
+
+    /// Notes what so many steps of a brush did; of deferred ones that is known when they are settled.
+    pub(super) fn note(&mut self, name: &str, report: &StepReport, steps: u32) {
+        self.footprint_cells += report.footprint_cells;
+        self.ledger.from_mode(&report.from_nowhere);
+        self.ledger.to_cleaner(&report.lifted);
+        let is_known = !self.model.defers() || report.footprint_cells > 0;
+        if let Some(track) = self.brushes.get_mut(name).filter(|_| is_known) {
+            let mean = |sum: u64| sum / u64::from(steps.max(1));
+            let of_one = StepReport {
+                footprint_cells: mean(report.footprint_cells),
+                wet: mean(report.wet),
+                thinner: mean(report.thinner),
+                ..*report
+            };
+            track.under = UnderBrush::of(&of_one, self.sheets[0].cell_m);
+        }
+    }
+
+    /// Whether a sheet has wells: those are tended on the CPU, step by step.
+    pub(super) fn has_wells(&self, sheet: usize) -> bool {
+        let id = self.sheets[sheet].id;
+        let mut surfaces = self.scene.surfaces.iter();
+        surfaces.any(|surface| surface.id == id && !surface.wells.is_empty())
+    }
+}
