@@ -42,7 +42,7 @@ const EFFECTS: [Effect; 8] = [
     },
     Effect {
         name: "controlled drying",
-        words: "wet by 32, 42, 56, 75 and 100 %, then yellow through them",
+        words: "wet by 32, 42, 56, 75 and 100 %, then white through them",
         paint: drying,
     },
     Effect {
@@ -57,7 +57,7 @@ const EFFECTS: [Effect; 8] = [
     },
     Effect {
         name: "impasto",
-        words: "four full loads on each other, lit from the left",
+        words: "six full loads on each other, lit from the left",
         paint: impasto,
     },
     Effect {
@@ -185,7 +185,7 @@ fn loading(library: PaintLibrary) -> Result<Panel, Fault> {
 }
 
 fn drying(library: PaintLibrary) -> Result<Panel, Fault> {
-    let mut panel = Panel::of("flat", 9.0, library)?;
+    let mut panel = Panel::of("flat", 8.0, library)?;
     // What was painted first dries most often: .75⁴ = .32 of it stays wet.
     for stripe in 0..5 {
         if stripe > 0 {
@@ -196,9 +196,9 @@ fn drying(library: PaintLibrary) -> Result<Panel, Fault> {
         panel.paint(&line([5.0, y], [81.0, y], 0.45, 90.0))?;
         panel.paint(&line([81.0, y], [5.0, y], 0.4, 90.0))?;
     }
-    panel.take_up("yellow", "round", 6.0)?;
+    panel.take_up("white", "round", 5.0)?;
     for x in [16.0, 34.0, 52.0, 70.0] {
-        panel.load("yellow", "Hansa Yellow Opaque=0.4,Thinner=0.6")?;
+        panel.load("white", WHITE)?;
         let way = (0..6).map(|i| {
             let side = if i % 2 == 0 { -1.0 } else { 1.0 };
             [x + 2.5 * side, 46.5 - 9.0 * f64::from(i)]
@@ -274,7 +274,7 @@ fn impasto(library: PaintLibrary) -> Result<Panel, Fault> {
             let angle = std::f64::consts::TAU * f64::from(petal) / 7.0;
             let (sine, cosine) = maulstick_num::sin_cos(angle);
             let at = |radius: f64| [middle[0] + radius * cosine, middle[1] + radius * sine];
-            for _ in 0..4 {
+            for _ in 0..6 {
                 panel.load(BRUSH, colour)?;
                 let turned = angle.to_degrees() + 90.0;
                 panel.paint(&line(at(7.0), at(17.0), 0.2, turned))?;

@@ -107,7 +107,7 @@ impl Workspace {
             let cells = batch.records.iter().map(StepRecord::cells).max();
             let cells = cells.unwrap_or(0);
             for (binding, words) in [
-                (Binding::Keys, 1),
+                (Binding::Keys, 2),
                 (Binding::Contacts, 8),
                 (Binding::Faces, 2),
                 (Binding::Totals, 4),

@@ -6,9 +6,11 @@ use std::collections::BTreeMap;
 use maulstick_gpu::impasto::probe::{Probe, Prober};
 use maulstick_paint::impasto::flow::flow;
 use maulstick_paint::impasto::footprint::{Contact, Footprint};
+use maulstick_paint::impasto::velocity::{EASE, SQUISH, STABLE};
 use maulstick_paint::load::BrushLoad;
 use maulstick_paint::model::BrushTraits;
 use maulstick_paint::quantum::{CELL_MAX, QUANTA_PER_UNIT, SLOTS};
+use maulstick_paint::transfer::{SWAP, SWAP_FILM};
 
 use crate::device;
 use crate::scene::{PAINTS, Random, Scene, lying};
@@ -129,7 +131,8 @@ fn free(grid: &Grid<'_>, scene: &Scene, at: [i64; 2], axis: usize) -> f64 {
             let thinner = scene.thinner.and_then(|slot| scene.window.plane(slot));
             let thinner = thinner.map_or(0.0, |plane| f64::from(plane[c.cell as usize]));
             let thinner = thinner / total.max(1.0);
-            let squish = (1.5 * (1.0 + 4.0 * thinner)).min(0.2 / wet.max(1e-6));
+            let squish = (f64::from(SQUISH) * (1.0 + f64::from(EASE) * thinner))
+                .min(f64::from(STABLE) / wet.max(1e-6));
             let follows = 0.5 * (1.0 - 0.5 * thinner);
             (
                 follows * cover * f64::from(c.moved[axis]),
@@ -290,7 +293,7 @@ fn wanted(a_b: f64, a_c: f64, travel: f64) -> [f64; 2] {
     let share = 1.0 - maulstick_num::powf(0.9, travel);
     let cutoff = ((a_b - a_c).abs() * 30.0).min(1.0);
     let net = (a_b.max(a_c) * share * cutoff).min(0.001 * travel);
-    let swap = 0.3 * share * a_b.min(a_c).min(0.004);
+    let swap = f64::from(SWAP) * share * a_b.min(a_c).min(f64::from(SWAP_FILM));
     match a_b > a_c {
         true => [net + swap, swap],
         false => [swap, net + swap],

@@ -64,12 +64,9 @@ impl Line {
         (t, self.start[1 - self.major] + off * self.slope - 0.5)
     }
 
-    /// The same of a cell, with how much of it is covered.
-    #[inline(always)]
-    fn over(&self, cell: [f32; 2]) -> (f32, f32) {
-        let (t, middle) = self.at(cell[self.major]);
-        let cover = self.reach - (cell[1 - self.major] - middle).abs() * self.cosine;
-        (t, cover.min(1.0))
+    /// The place along the piece of a cell.
+    fn place(&self, cell: [f32; 2]) -> f32 {
+        self.at(cell[self.major]).0
     }
 }
 
@@ -115,6 +112,9 @@ pub(super) struct Drawing {
     stride: usize,
     score: Vec<f32>,
     number: Vec<u32>,
+    /// Share of each cell that all pieces leave open. They lie anyhow beside and over each other: what
+    /// each covers, it covers of what the others leave open.
+    open: Vec<f32>,
     pieces: Vec<Piece>,
 }
 
@@ -129,13 +129,16 @@ impl Drawing {
         self.score.resize(cells, f32::MAX);
         self.number.clear();
         self.number.resize(cells, NOTHING);
+        self.open.clear();
+        self.open.resize(cells, 1.0);
     }
 
     /// What is over a cell.
     pub(super) fn over(&self, x: usize, y: usize) -> Option<Over<'_>> {
-        let number = self.number[y * self.stride + x];
-        let piece = self.pieces.get(number as usize)?;
-        let (t, cover) = piece.line.over([x as f32, y as f32]);
+        let at = y * self.stride + x;
+        let piece = self.pieces.get(self.number[at] as usize)?;
+        let t = piece.line.place([x as f32, y as f32]);
+        let cover = 1.0 - self.open[at];
         Some(Over { piece, t, cover })
     }
 
@@ -225,7 +228,11 @@ impl Drawing {
         let scores = &mut self.score[at..at + LANES];
         let numbers = &mut self.number[at..at + LANES];
         let one = f32x8::splat(1.0);
-        let height = lowest + (one - cover.fast_min(one)) * f32x8::splat(EDGE_PENALTY);
+        let cover = cover.fast_min(one);
+        let height = lowest + (one - cover) * f32x8::splat(EDGE_PENALTY);
+        let open = &mut self.open[at..at + LANES];
+        let left = f32x8::from(&*open) * (one - cover.fast_max(f32x8::ZERO));
+        open.copy_from_slice(&left.to_array());
         let old = f32x8::from(&*scores);
         let wins = cover.simd_gt(f32x8::ZERO) & height.simd_lt(old);
         scores.copy_from_slice(&wins.select(height, old).to_array());
@@ -238,6 +245,7 @@ impl Drawing {
     /// Draws a piece over one whole cell.
     pub(super) fn draw_cell(&mut self, x: usize, y: usize, piece: Piece) {
         let at = y * self.stride + x;
+        self.open[at] = 0.0;
         if piece.z[0] < self.score[at] {
             self.score[at] = piece.z[0];
             self.number[at] = self.pieces.len() as u32;
@@ -276,7 +284,9 @@ mod tests {
             drawing.draw(&piece, columns.clone());
             for y in 0..size[1] {
                 for x in 0..size[0] {
-                    let (_, cover) = line.over([x as f32, y as f32]);
+                    let cell = [x as f32, y as f32];
+                    let (_, middle) = line.at(cell[line.major]);
+                    let cover = line.reach - (cell[1 - line.major] - middle).abs() * line.cosine;
                     let inside = columns.contains(&[x, y][line.major]) && cover > 1e-4;
                     let outside = !columns.contains(&[x, y][line.major]) || cover < -1e-4;
                     let drawn = drawing.over(x, y).is_some();

@@ -15,10 +15,10 @@ use crate::model::Step;
 /// Share of the brush's motion that paint follows.
 pub const FOLLOWS: f32 = 0.5;
 /// c of the squish: cells of flow in a step of one cell, per cell of penetration by cell.
-pub const SQUISH: f32 = 1.5;
+pub const SQUISH: f32 = 3.0;
 /// The squish diffuses paint by c·h in a step, h its height in cells; explicit steps are stable up to
 /// about this, so c is smaller in thicker paint.
-pub const STABLE: f32 = 0.2;
+pub const STABLE: f32 = 0.3;
 /// Share of its grip that paint of thinner alone has lost.
 pub const SLIP: f32 = 0.5;
 /// By how much more of the penetration thinner alone flows.

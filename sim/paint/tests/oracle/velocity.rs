@@ -135,7 +135,10 @@ fn paint_goes_half_as_far_as_the_brush_and_out_of_its_way() {
     );
 }
 
-/// A round pad is pressed straight down into an even film: what it penetrates must be displaced.
+/// A pad as wide as a few bristles is pressed down into an even film, at a pace at which brushes come
+/// down: what it penetrates must be displaced, and c is as large as is stable. Under a whole head paint
+/// is not pressed out from the middle: that takes a pressure that is solved for globally (Baxter 2004,
+/// § 6.11).
 #[test]
 fn what_is_penetrated_is_displaced() {
     let squished = displaced(1.0);
@@ -149,11 +152,11 @@ fn what_is_penetrated_is_displaced() {
 /// Volume that has left the cells under the pad by the volume that the pad takes up below the film's
 /// surface, where c is `share` of what it is.
 fn displaced(share: f32) -> f64 {
-    const RADIUS: f64 = 10.0;
+    const RADIUS: f64 = 2.5;
     /// Thickness of the film and how deep the pad goes, cells, and its steps.
     const FILM: f64 = 0.4;
     const DEPTH: f64 = 0.3;
-    const STEPS: usize = 60;
+    const STEPS: usize = 40;
     let mut scene = Scene::new(0);
     scene.window = window(&Relief::flat(CELL_M));
     let to_cells = f64::from(scene.traits.cells_per_quantum);

@@ -6,23 +6,8 @@ const LN_KEPT = -0.105360516;
 const MAX_TRANSFER = 0.001;
 const EQUAL_PAINT_CUTOFF = 1.0 / 30.0;
 // SWAP and SWAP_FILM of transfer.rs.
-const SWAP = 0.3;
+const SWAP = 0.8;
 const SWAP_FILM = 0.004;
-
-// exp_f32 of maulstick-num, for x ≤ 0.
-fn decay(t: f32) -> f32 {
-    let x = max(t, -87.0);
-    let n = round(x * 1.44269504);
-    let r = x - n * 0.693359375 - n * -2.12194442e-4;
-    var p = 1.0 / 5040.0;
-    p = p * r + 1.0 / 720.0;
-    p = p * r + 1.0 / 120.0;
-    p = p * r + 1.0 / 24.0;
-    p = p * r + 1.0 / 6.0;
-    p = p * r + 0.5;
-    let mean = p * r + 1.0;
-    return (mean * r + 1.0) * bitcast<f32>((i32(n) + 127) << 23u);
-}
 
 fn transfer(on_brush: f32, on_canvas: f32, share: f32, travel: f32) -> f32 {
     let difference = on_brush - on_canvas;

@@ -33,6 +33,27 @@ fn keep(cell: u32, score: f32, per_cell: f32, segment: u32) {
     }
 }
 
+// −ln of a share above 0; its own form, for that of a device may be off by 1e-4 near 1.
+fn minus_ln(share: f32) -> f32 {
+    let bits = bitcast<u32>(share);
+    var power = i32(bits >> 23u) - 127;
+    var part = bitcast<f32>((bits & 0x7fffffu) | 0x3f800000u);
+    if part > 1.4142135 {
+        part *= 0.5;
+        power += 1;
+    }
+    let s = (part - 1.0) / (part + 1.0);
+    let t = s * s;
+    let series = 1.0 + t * (1.0 / 3.0 + t * (0.2 + t * (1.0 / 7.0 + t / 9.0)));
+    return -(f32(power) * 0.6931472 + 2.0 * s * series);
+}
+
+// Of what the others leave open of a cell a segment leaves a share: their product, as a sum of whole
+// numbers, in which order does not matter.
+fn leave_open(cell: u32, share: f32) {
+    atomicAdd(&keys[cells() + cell], u32(minus_ln(max(share, 1e-6)) * PER_LOG));
+}
+
 fn draw_triangle(number: u32, scale: Scale) {
     let height = scale.top + scale.film;
     let face = number / 2u;
@@ -69,7 +90,9 @@ fn draw_triangle(number: u32, scale: Scale) {
                 continue;
             }
             let score = dot(vec3(u, v, w), triangle.z);
-            keep(y * step.width + x, score, scale.per_cell, number);
+            let cell = y * step.width + x;
+            leave_open(cell, 0.0);
+            keep(cell, score, scale.per_cell, number);
         }
     }
 }
@@ -149,6 +172,7 @@ fn draw_segment(number: u32, strip: u32, station: u32, scale: Scale) {
             if cover > 0.0 {
                 let score = lowest + (1.0 - cover) * EDGE_PENALTY;
                 let at = select(m * step.width + n, n * step.width + m, major == 0u);
+                leave_open(at, 1.0 - cover);
                 keep(at, score, scale.per_cell, number);
             }
         }

@@ -2,8 +2,8 @@
 // of what lies there.
 
 // Constants of velocity.rs.
-const SQUISH = 1.5;
-const STABLE = 0.2;
+const SQUISH = 3.0;
+const STABLE = 0.3;
 const FOLLOWS = 0.5;
 const SLIP = 0.5;
 const EASE = 4.0;
@@ -12,7 +12,6 @@ const EASE = 4.0;
 struct Fragment {
     texel: u32,
     bottom: f32,
-    cover: f32,
     moved: vec2<f32>,
 }
 
@@ -32,7 +31,7 @@ fn of_triangle(number: u32, x: u32, y: u32) -> Fragment {
     let strip = strip_around(dot(shares, triangle.around));
     let along = min(u32(dot(shares, triangle.along) * f32(ALONG)), ALONG - 1u);
     let moved = vec2(dot(shares, triangle.moved_x), dot(shares, triangle.moved_y));
-    return Fragment(strip * ALONG + along, dot(shares, triangle.z), 1.0, moved);
+    return Fragment(strip * ALONG + along, dot(shares, triangle.z), moved);
 }
 
 fn of_ribbon(number: u32, x: u32, y: u32) -> Fragment {
@@ -40,12 +39,11 @@ fn of_ribbon(number: u32, x: u32, y: u32) -> Fragment {
     let line = line_of(ribbon);
     let at = vec2(f32(x), f32(y));
     let place = place_on(ribbon, line, at[line.major]);
-    let cover = cover_of(ribbon, line, place, at[1u - line.major]);
     let strip = (number - 2u * step.faces) / (STATIONS - 1u);
     let along = min(u32(ribbon.along.x + place.t * ribbon.along.y), ALONG - 1u);
     let bottom = ribbon.z.x + place.t * ribbon.z.y + ribbon.bottom;
     let moved = ribbon.moved + place.t * ribbon.moves;
-    return Fragment(strip * ALONG + along, bottom, cover, moved);
+    return Fragment(strip * ALONG + along, bottom, moved);
 }
 
 @compute @workgroup_size(256)
@@ -68,6 +66,7 @@ fn find_contacts(@builtin(global_invocation_id) id: vec3<u32>) {
     } else {
         fragment = of_ribbon(number, x, y);
     }
+    let cover = 1.0 - decay(-f32(atomicLoad(&keys[cells() + i])) / PER_LOG);
     let wet = totals[i] * step.cells_per_quantum;
     let film = f32(load[1u + fragment.texel]) * step.film_cells_per_quantum;
     let reach = totals[2u * cells() + i] + wet - fragment.bottom;
@@ -84,7 +83,7 @@ fn find_contacts(@builtin(global_invocation_id) id: vec3<u32>) {
     let squish = min(SQUISH * (1.0 + EASE * thinner), STABLE / max(resists, 1e-6));
     let follows = FOLLOWS * (1.0 - SLIP * thinner);
     contacts[i] = Contact(
-        fragment.texel, fragment.cover, fragment.moved, depth, fraction, squish, follows,
+        fragment.texel, cover, fragment.moved, depth, fraction, squish, follows,
     );
     atomicAdd(&stats[stat(TOUCHED)], 1u);
     atomicAdd(&stats[stat(WET)], u32(totals[i] / 256.0 + 0.5));

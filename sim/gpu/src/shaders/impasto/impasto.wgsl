@@ -84,6 +84,8 @@ struct Contact {
 }
 
 const NONE = 0xffffffffu;
+// What a factor of e in the share of a cell that is left open counts.
+const PER_LOG = 262144.0;
 const STATIONS = 9u;
 const ALONG = 16u;
 const QUANTA_PER_UNIT = 16777216.0;
@@ -111,7 +113,8 @@ const MARKER = 2u;
 // By texel what is drawn and offered in the step, and how each paint's film changes; by strip whether
 // it touches and its thickest film.
 @group(0) @binding(8) var<storage, read_write> asks: array<atomic<u32>>;
-// By cell of the grid the lowest score and its segment.
+// By cell of the grid the lowest score and its segment; then the share that all segments leave open, as
+// −ln of it by PER_LOG.
 @group(0) @binding(9) var<storage, read_write> keys: array<atomic<u32>>;
 @group(0) @binding(10) var<storage, read_write> contacts: array<Contact>;
 // Velocities through the right and the upper face of each cell of the grid.
@@ -207,4 +210,19 @@ fn touch_of(strip: u32) -> u32 {
 
 fn thickest_of(strip: u32) -> u32 {
     return touch_of(step.strips) + strip;
+}
+
+// exp_f32 of maulstick-num, for x ≤ 0.
+fn decay(t: f32) -> f32 {
+    let x = max(t, -87.0);
+    let n = round(x * 1.44269504);
+    let r = x - n * 0.693359375 - n * -2.12194442e-4;
+    var p = 1.0 / 5040.0;
+    p = p * r + 1.0 / 720.0;
+    p = p * r + 1.0 / 120.0;
+    p = p * r + 1.0 / 24.0;
+    p = p * r + 1.0 / 6.0;
+    p = p * r + 0.5;
+    let mean = p * r + 1.0;
+    return (mean * r + 1.0) * bitcast<f32>((i32(n) + 127) << 23u);
 }

@@ -28,6 +28,7 @@ fn weigh_grid(@builtin(global_invocation_id) id: vec3<u32>) {
     totals[2u * cells() + i] = base[cell];
     totals[3u * cells() + i] = thinner;
     atomicStore(&keys[i], NONE);
+    atomicStore(&keys[cells() + i], 0u);
     raise(stat(FULLEST), total);
     let touched = inside();
     if all(at >= touched.low) && all(at < touched.high) {
