@@ -265,7 +265,7 @@ fn glazing(library: PaintLibrary) -> Result<Panel, Fault> {
 
 fn impasto(library: PaintLibrary) -> Result<Panel, Fault> {
     let mut panel = Panel::of("bright", 8.0, library)?;
-    // Petals around two hearts, each of four loads.
+    // Petals around two hearts, each of six loads.
     for (middle, colour) in [
         ([24.0, 24.0], "Hansa Yellow Opaque=0.3,Titanium White=0.7"),
         ([62.0, 24.0], "Quinacridone Magenta=0.2,Titanium White=0.8"),

@@ -2,6 +2,7 @@
 
 mod check;
 mod light;
+mod palette;
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -12,6 +13,7 @@ use crate::fault::Fault;
 use crate::size::parse_bytes;
 
 pub use light::LightSection;
+pub use palette::{PILES, PaletteSection};
 
 /// The commented default.
 pub const DEFAULT: &str = include_str!("default.toml");
@@ -93,24 +95,6 @@ impl CanvasSection {
     pub fn cells(&self) -> [u32; 2] {
         [self.width_mm, self.height_mm].map(|mm| (mm / self.cell_mm).round() as u32)
     }
-}
-
-/// `[palette]`.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct PaletteSection {
-    /// Mixtures in the wells.
-    pub wells: Vec<String>,
-    /// One of [`PILES`].
-    #[serde(default = "default_piles")]
-    pub piles: String,
-}
-
-/// What piles of paint on the palette may do.
-pub const PILES: [&str; 2] = ["deplete", "last"];
-
-fn default_piles() -> String {
-    PILES[0].to_owned()
 }
 
 /// `[[device]]`.

@@ -1,5 +1,7 @@
 //! The bytes of every message, as they were when its version was fixed.
 
+mod parts;
+
 use maulstick_types::brush::{BrushConsumed, BrushDef, BrushState, Contact, Solve};
 use maulstick_types::command::{After, Command, CommandReply, CommandRequest, GapRequest, Outcome};
 use maulstick_types::haptics::{ContactModel, FluidForce, ForceLaw, Grain, HermiteKnot};
@@ -8,36 +10,13 @@ use maulstick_types::paint::{
     PaintConsumed, PaintStatus,
 };
 use maulstick_types::scene::{
-    BrushHandling, BrushMode, Layer, Light, NamedVersion, PaintSlot, Scene, Surface, Tuning, Well,
-    WellKind,
+    Layer, Light, NamedVersion, PaintSlot, Scene, Surface, Tuning, Well, WellKind,
 };
 use maulstick_types::stylus::{
     StylusInfo, StylusPose, StylusSample, StylusStatus, TakeEnd, TakeStatus,
 };
-use maulstick_types::{CATALOGUE, Flags, Message, Mixture, Origin, Pose, Region, decode, encode};
-
-fn handling() -> BrushHandling {
-    BrushHandling {
-        brush: "main".into(),
-        mode: BrushMode::Marker,
-        flow: 0.004,
-        most_m: 2e-5,
-    }
-}
-
-fn pose() -> Pose {
-    Pose {
-        position_m: [0.1, -0.2, 0.3],
-        orientation: [0.0, 0.6, 0.0, 0.8],
-    }
-}
-
-fn region() -> Region {
-    Region {
-        corner_m: [0.01, 0.02],
-        size_m: [0.06, 0.04],
-    }
-}
+use maulstick_types::{CATALOGUE, Flags, Message, Mixture, Origin, decode, encode};
+use parts::{handling, pose, region};
 
 fn after() -> After {
     After {

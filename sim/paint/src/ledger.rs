@@ -1,7 +1,7 @@
 //! The ledger: where all paint came from and where it is.
 //!
-//! Tube, cleaner and the brush modes that give or take paint are booked at every transfer; brush, canvas and palette are counted afresh from
-//! what lies there. What tubes and modes gave must be found in the others to the quantum.
+//! Tube, cleaner and the brush modes that give or take paint are booked at every transfer; brush,
+//! canvas and palette are counted afresh from what lies there. What tubes and modes gave must be found in the others to the quantum.
 
 use std::collections::BTreeMap;
 
@@ -132,7 +132,7 @@ pub struct Stocks {
     pub dry: Counts,
 }
 
-/// The ledger as a file; volumes in m³, what the tubes gave is negative, so that all accounts sum
+/// The ledger as a file; volumes in m³, what tubes and modes gave is negative, so that all accounts sum
 /// to zero.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct LedgerReport {
@@ -140,7 +140,7 @@ pub struct LedgerReport {
     pub accounts_m3: BTreeMap<&'static str, f64>,
     /// Volume by paint and account, m³.
     pub paints_m3: BTreeMap<String, BTreeMap<&'static str, f64>>,
-    /// What the tubes gave less what was found, quanta; 0, or paint was created or destroyed.
+    /// What tubes and modes gave less what was found, quanta; 0, or paint was created or destroyed.
     pub quanta_missing: i64,
     /// Steps of the paint model.
     pub steps: u64,

@@ -259,7 +259,6 @@ proptest! {
 /// A hundred thousand steps of two brushes and whatever a painter does meanwhile: not a quantum is
 /// missing, and a second run gives the same.
 #[test]
-#[ignore = "minutes: `./test --long`"]
 fn a_hundred_thousand_steps_lose_nothing() {
     let run = || {
         let mut runner = TestRunner::new_with_rng(

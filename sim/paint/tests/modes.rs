@@ -344,6 +344,29 @@ fn thinned_paint_clings_in_thinner_films() {
     assert!(total(&easel.on(CANVAS)) > 0, "thinner alone is a film too");
 }
 
+/// Surfaces of a few cells, narrower than what the kernels go over at a time.
+#[test]
+fn narrow_surfaces_are_painted_on() {
+    for cells in [[1, 1], [1, 40], [2, 40], [40, 1], [3, 3]] {
+        let setup = PaintingSetup {
+            cells,
+            ..PaintingSetup::default()
+        };
+        let library = PaintLibrary::measured().expect("whole");
+        let mut painting = Painting::new(&setup, library).expect("a painting");
+        painting.define_brush(BRUSH, brush());
+        let white = mixture(WHITE);
+        painting.lay(CANVAS, &white, 1e-4).expect("laid");
+        let mut easel = Easel {
+            painting,
+            strokes: 0,
+        };
+        easel.load(BLUE);
+        easel.stroke(CANVAS, [-4.0, 0.2]);
+        assert!(total(&easel.on(CANVAS)) > 0);
+    }
+}
+
 #[test]
 fn what_lies_under_the_brush_is_told() {
     let under = |text: &str| {

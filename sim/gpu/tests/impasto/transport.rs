@@ -288,15 +288,16 @@ fn paint_goes_where_it_is_pushed_and_none_is_lost() {
     assert!(moved > 4000, "{moved}");
 }
 
-/// Baxter 2004, Algorithm 3, by path length, and what changes places: units to the canvas and back.
-fn wanted(a_b: f64, a_c: f64, travel: f64) -> [f64; 2] {
+/// Baxter 2004, Algorithm 3, by path length, and what changes places: units to the canvas, back, and
+/// both ways.
+fn wanted(a_b: f64, a_c: f64, travel: f64) -> [f64; 3] {
     let share = 1.0 - maulstick_num::powf(0.9, travel);
     let cutoff = ((a_b - a_c).abs() * 30.0).min(1.0);
     let net = (a_b.max(a_c) * share * cutoff).min(0.001 * travel);
     let swap = f64::from(SWAP) * share * a_b.min(a_c).min(f64::from(SWAP_FILM));
     match a_b > a_c {
-        true => [net + swap, swap],
-        false => [swap, net + swap],
+        true => [net, 0.0, swap],
+        false => [0.0, net, swap],
     }
 }
 
@@ -312,9 +313,11 @@ fn exchanged(probe: &Probe, scene: &Scene) -> BTreeMap<(bool, usize, usize), [f6
         let travel = (u * u + v * v).sqrt() * f64::from(traits.cell_per_reference);
         let a_b = film * f64::from(traits.film_units_per_quantum);
         let a_c = lying / QUANTA_PER_UNIT * f64::from(c.fraction);
-        let [out, back] = wanted(a_b, a_c, travel)
-            .map(|units| (units * f64::from(c.cover) * QUANTA_PER_UNIT).trunc());
-        let want = [out.min(QUANTA_PER_UNIT - lying), back.min(lying)];
+        let [out, back, swap] =
+            wanted(a_b, a_c, travel).map(|units| units * f64::from(c.cover) * QUANTA_PER_UNIT);
+        let room = QUANTA_PER_UNIT - lying;
+        let swap = swap.min(room);
+        let want = [(out + swap).min(room), (back + swap).min(lying)].map(f64::trunc);
         let sums = asked.entry(c.texel).or_default();
         (0..2).for_each(|i| sums[i] += want[i]);
         wants.push(want);

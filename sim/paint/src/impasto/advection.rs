@@ -162,7 +162,9 @@ impl Advection {
             let start = row * width;
             if next == 1 {
                 self.send_at_edge(velocity, next, start);
-                self.send_run(velocity, next, start + 1..start + width.max(2) - 1);
+                if width > 2 {
+                    self.send_run(velocity, next, start + 1..start + width - 1);
+                }
                 self.send_at_edge(velocity, next, start + width - 1);
             } else if row == 0 || row + 1 == height {
                 (start..start + width).for_each(|place| self.send_at_edge(velocity, next, place));

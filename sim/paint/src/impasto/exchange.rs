@@ -117,8 +117,10 @@ pub fn wanted(meeting: &Meeting, handling: &Handling) -> [f32; 2] {
     };
     let most = least(handling.most, CELL_MAX as f32);
     let room = positive(most - meeting.lying);
-    let given = least((positive(net) + swap) * quanta, room);
-    let taken = least((positive(-net) + swap) * quanta, meeting.lying);
+    // What changes places has room on both sides, or stays on both.
+    let swap = least(swap * quanta, room);
+    let given = least(positive(net) * quanta + swap, room);
+    let taken = least(positive(-net) * quanta + swap, meeting.lying);
     [given.floor(), taken.floor()]
 }
 
@@ -186,7 +188,7 @@ impl Exchange {
         self.demand(footprint, step);
         let sponge = step.handling.transfer == Transfer::Sponge;
         self.grant(step.load, &step.traits, sponge);
-        self.keep(step.lasting);
+        self.keep(step.lasting, step.load.films());
         let mut from_nowhere = [0; SLOTS];
         for slot in 0..SLOTS {
             let change = self.exchange(slot, step);
@@ -267,7 +269,7 @@ impl Exchange {
 
     /// Of paint that lasts only so much leaves a cell as comes there: it takes on the brush's colour,
     /// but never becomes less.
-    fn keep(&mut self, lasting: bool) {
+    fn keep(&mut self, lasting: bool, films: &[u32]) {
         self.leaves.clear();
         if !lasting {
             self.leaves.resize(self.cells.len(), 1.0);
@@ -275,10 +277,10 @@ impl Exchange {
         }
         let [given, offered] = &self.wants;
         let amounts = given.iter().zip(offered).zip(&self.places);
-        let (asked, taken) = (&self.asked, &self.taken);
+        let (asked, taken, texels) = (&self.asked, &self.taken, &self.texels);
         self.leaves.extend(amounts.map(|((given, offered), place)| {
             let place = *place as usize;
-            let comes = if asked[place][0] > 0.0 { *given } else { 0.0 };
+            let comes = given * asked[place][0] * films[texels[place] as usize] as f32;
             let goes = offered * taken[place];
             if goes > comes { comes / goes } else { 1.0 }
         }));
@@ -308,12 +310,18 @@ impl Exchange {
         let mut change = std::mem::take(&mut self.change);
         let gives = std::mem::take(&mut self.gives);
         let plane = step.window.plane_mut(slot);
-        let before = self.on_cells(plane);
+        let sponge = step.handling.transfer == Transfer::Sponge;
+        let counted = sponge || step.lasting;
+        let before = if counted { self.on_cells(plane) } else { 0 };
         swap_paint(self, &gives, plane, &mut change);
         (self.change, self.gives) = (change, gives);
-        let onto_brush: i64 = match step.handling.transfer {
-            Transfer::Sponge => 0,
-            _ => self.change.iter().map(|change| *change as i64).sum(),
+        // Otherwise what one side gains the other loses.
+        if !counted {
+            return 0;
+        }
+        let onto_brush: i64 = match sponge {
+            true => 0,
+            false => self.change.iter().map(|change| *change as i64).sum(),
         };
         self.on_cells(plane) - before + onto_brush
     }

@@ -22,6 +22,13 @@ pub(super) struct Deferral {
     fullness: Option<f32>,
 }
 
+impl Deferral {
+    /// Deferred steps that are not settled.
+    pub(super) fn unsettled_steps(&self) -> u32 {
+        self.unsettled
+    }
+}
+
 /// Why the model computes elsewhere than before. It is told where a stroke ends.
 #[derive(Debug, Default)]
 pub(super) struct Fall {

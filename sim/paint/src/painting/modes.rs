@@ -10,7 +10,8 @@ use crate::model::{BrushTraits, Handling, StepReport, Transfer};
 use crate::quantum::{CELL_MAX, QUANTUM_M, REFERENCE_CELL_M, UNIT_M};
 
 /// Share of what a film lacks that comes from inside, and of its surplus that goes there, each time
-/// that paint flows in a brush on the palette: there it is filled through and through.
+/// that paint flows in a brush on the palette, on reference cells: there it is filled through and
+/// through.
 const DIP: f64 = 0.6;
 /// Where a brush is filled, its way counts as so many times as long: it is stirred and turned.
 const STIRRED: f32 = 4.0;
@@ -68,10 +69,12 @@ impl Prepared {
         }
     }
 
-    pub(super) fn traits(&self, traits: BrushTraits) -> BrushTraits {
-        match self.fills {
+    /// Traits of a brush on it; one that is stirred is used to take paint up.
+    pub(super) fn traits(&self, traits: BrushTraits, transfer: Transfer) -> BrushTraits {
+        let stirred = matches!(transfer, Transfer::Paint | Transfer::Sponge);
+        match self.fills && stirred {
             true => BrushTraits {
-                refill: DIP,
+                refill: 1.0 - maulstick_num::powf(1.0 - DIP, f64::from(traits.cell_per_reference)),
                 cell_per_reference: STIRRED * traits.cell_per_reference,
                 ..traits
             },
@@ -144,15 +147,10 @@ impl Painting {
         change: impl FnOnce(&mut Surface),
     ) -> Result<(), PaintRefusal> {
         self.surface(id)?;
-        let surfaces = &mut self.scene.surfaces;
-        surfaces.iter_mut().filter(|own| own.id == id).for_each({
-            let mut change = Some(change);
-            move |surface| {
-                if let Some(change) = change.take() {
-                    change(surface);
-                }
-            }
-        });
+        let mut surfaces = self.scene.surfaces.iter_mut();
+        if let Some(surface) = surfaces.find(|own| own.id == id) {
+            change(surface);
+        }
         self.scene.version += 1;
         Ok(())
     }
@@ -169,6 +167,7 @@ impl Painting {
         thickness_m: f64,
     ) -> Result<(), PaintRefusal> {
         self.surface(surface)?;
+        self.commit();
         let counts = self.brush(brush)?.load.counts();
         let total: u64 = counts.iter().sum();
         if total == 0 {

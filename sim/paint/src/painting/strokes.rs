@@ -177,7 +177,7 @@ impl Painting {
             sweep,
             bounds: (from, to),
             load: Arc::make_mut(&mut track.load),
-            traits: prepared.traits(traits),
+            traits: prepared.traits(traits, handling.transfer),
             handling,
             stain: prepared.stain,
             lasting: prepared.lasting,
@@ -189,7 +189,13 @@ impl Painting {
             self.model.step_now(&mut step)
         };
         self.sheets[sheet].top = self.sheets[sheet].top.max(window.top());
-        self.note(name, &report, 1);
+        // What is told of deferred steps is told of all that were not settled.
+        let unsettled = if deferred {
+            track.deferral.unsettled_steps()
+        } else {
+            0
+        };
+        self.note(name, &report, 1 + unsettled);
         if deferred {
             self.defer(name);
         }

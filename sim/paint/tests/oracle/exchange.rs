@@ -65,9 +65,10 @@ fn wants(
     }
     let quanta = |units: f64| units * f64::from(c.cover) * QUANTA_PER_UNIT;
     let room = (QUANTA_PER_UNIT.min(f64::from(handling.most)) - lying).max(0.0);
+    let both = quanta(both).min(room);
     [
-        quanta(net.max(0.0) + both).min(room),
-        quanta((-net).max(0.0) + both).min(lying),
+        (quanta(net.max(0.0)) + both).min(room),
+        (quanta((-net).max(0.0)) + both).min(lying),
     ]
 }
 

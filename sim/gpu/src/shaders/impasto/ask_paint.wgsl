@@ -40,8 +40,10 @@ fn ask_paint(@builtin(global_invocation_id) id: vec3<u32>) {
     }
     let quanta = contact.cover * QUANTA_PER_UNIT;
     let room = max(step.most - lying, 0.0);
-    let to_canvas = trunc(min((max(net, 0.0) + swap) * quanta, room));
-    let to_brush = trunc(min((max(-net, 0.0) + swap) * quanta, lying));
+    // What changes places has room on both sides, or stays on both.
+    swap = min(swap * quanta, room);
+    let to_canvas = trunc(min(max(net, 0.0) * quanta + swap, room));
+    let to_brush = trunc(min(max(-net, 0.0) * quanta + swap, lying));
     wants[i] = vec2(to_canvas, to_brush);
     atomicAdd(&asks[contact.texel], u32(to_canvas));
     atomicAdd(&asks[texels() + contact.texel], u32(to_brush));

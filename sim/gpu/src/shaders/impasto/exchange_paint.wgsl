@@ -52,9 +52,8 @@ fn exchange_paint(@builtin(global_invocation_id) id: vec3<u32>) {
     let goes = wants[i] * granted;
     // Of paint that lasts only so much leaves a cell as comes there.
     var leaves = 1.0;
-    let comes = select(0.0, wants[i].x, film > 0.0);
-    if step.lasting != 0u && goes.y > comes {
-        leaves = comes / goes.y;
+    if step.lasting != 0u && goes.y > goes.x {
+        leaves = goes.x / goes.y;
     }
     let share = vec2(
         rounded(goes.x / max(film, 1.0), drawn, film),

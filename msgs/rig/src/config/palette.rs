@@ -1,0 +1,21 @@
+//! What lies on the palette.
+
+use serde::{Deserialize, Serialize};
+
+/// `[palette]`.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct PaletteSection {
+    /// Mixtures in the wells.
+    pub wells: Vec<String>,
+    /// One of [`PILES`].
+    #[serde(default = "default_piles")]
+    pub piles: String,
+}
+
+/// What piles of paint on the palette may do.
+pub const PILES: [&str; 2] = ["deplete", "last"];
+
+fn default_piles() -> String {
+    PILES[0].to_owned()
+}
