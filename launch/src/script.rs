@@ -284,6 +284,11 @@ impl Raw {
     /// Sees that the step does one thing, and that the other keys are that thing's.
     fn check(&self) -> Result<(), Fault> {
         let keys = self.keys();
+        let switches = [self.clean, self.fill_with_brush, self.stop_drying];
+        if switches.contains(&Some(false)) {
+            return Err(Fault::usage("a step that is 'false' does nothing")
+                .help("write it as `true`, or leave it out"));
+        }
         let what: Vec<_> = STEPS
             .iter()
             .filter(|(step, _)| keys.contains(step))
@@ -314,6 +319,12 @@ impl Raw {
             command.check().map_err(Fault::usage)?;
             Ok(Act::Command(command))
         };
+        if let Some(share) = self
+            .depth_share
+            .filter(|share| !(0.0..=0.9).contains(share))
+        {
+            return Err(Fault::usage(format!("depth_share = {share}")).help("choose 0 to 0.9"));
+        }
         if let Some(kind) = self.brush {
             let stem = Path::new(&kind).file_stem();
             let section = BrushSection {
@@ -483,5 +494,8 @@ mod tests {
         says("{ mode = \"marker\", flow = -1 }", &["day.toml:3", "µm/mm"]);
         says("{ stain_um = -2 }", &["day.toml:3", "0 to 1000"]);
         says("{ piles = \"stay\" }", &["day.toml:3", "deplete"]);
+        says("{ clean = false }", &["day.toml:3", "does nothing"]);
+        let deep = "{ brush = \"flat\", depth_share = 5.0 }";
+        says(deep, &["day.toml:3", "0 to 0.9"]);
     }
 }

@@ -366,8 +366,8 @@ impl RigConfig {
                 depth_share: 0.5,
             });
         }
-        if config.palette.wells.is_empty() && !text.contains("[palette]") {
-            config.palette = Self::default().palette;
+        if config.palette.wells.is_empty() && !text.contains("wells") {
+            config.palette.wells = Self::default().palette.wells;
         }
         config.check(text, name)?;
         for device in &mut config.device {

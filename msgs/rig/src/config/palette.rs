@@ -3,14 +3,24 @@
 use serde::{Deserialize, Serialize};
 
 /// `[palette]`.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct PaletteSection {
     /// Mixtures in the wells.
+    #[serde(default)]
     pub wells: Vec<String>,
     /// One of [`PILES`].
     #[serde(default = "default_piles")]
     pub piles: String,
+}
+
+impl Default for PaletteSection {
+    fn default() -> Self {
+        Self {
+            wells: Vec::new(),
+            piles: default_piles(),
+        }
+    }
 }
 
 /// What piles of paint on the palette may do.

@@ -156,7 +156,7 @@ impl Painting {
         if !deferred || self.unsettled.as_deref() != Some(name) {
             self.settle();
         }
-        self.tend_wells(name, sheet, from, to);
+        self.tend_wells(name, sheet, (from, to), (sweep.to, &traits));
         let mut handlings = self.scene.handlings.iter();
         let handling = handling_of(handlings.find(|handling| handling.brush == name));
         let id = self.sheets[sheet].id;

@@ -5,16 +5,20 @@
 
 use std::sync::Arc;
 
+use maulstick_brush::HeadPose;
 use maulstick_types::Mixture;
 use maulstick_types::scene::{Well, WellKind};
 
 use super::Painting;
 use crate::ledger::Ledger;
+use crate::model::BrushTraits;
 use crate::quantum::{QUANTUM_M, SLOTS};
 use crate::window::Window;
 
 /// How thick paint lies in a well, m.
 pub const WELL_M: f64 = 2e-3;
+/// A strip is down within this of the surface, cells.
+const DIPS: f32 = 1.0;
 
 /// The cells of a window that lie in a well and in a rectangle.
 fn cells_within<'a>(
@@ -44,9 +48,27 @@ fn cells_within<'a>(
         .map(move |(x, y)| y as usize * width + x as usize)
 }
 
+/// Whether a strip is down on the surface within a well.
+fn is_in((pose, traits): (&HeadPose, &BrushTraits), well: &Well, cell_m: f64) -> bool {
+    let low = traits.half_thickness + traits.sink + DIPS;
+    let [x, y] = well.center_m.map(|m| (m / cell_m) as f32);
+    let radius = (well.radius_m / cell_m) as f32;
+    let places = pose.x.iter().zip(&pose.y).zip(&pose.z);
+    places.into_iter().any(|((at_x, at_y), z)| {
+        let (dx, dy) = (at_x - x, at_y - y);
+        *z < low && dx * dx + dy * dy < radius * radius
+    })
+}
+
 impl Painting {
     /// Sees to the wells that lie in the cells `from`..`to` of a sheet before a brush steps there.
-    pub(super) fn tend_wells(&mut self, name: &str, sheet: usize, from: [i64; 2], to: [i64; 2]) {
+    pub(super) fn tend_wells(
+        &mut self,
+        name: &str,
+        sheet: usize,
+        (from, to): ([i64; 2], [i64; 2]),
+        head: (&HeadPose, &BrushTraits),
+    ) {
         let id = self.sheets[sheet].id;
         let Some(surface) = self.scene.surfaces.iter().find(|surface| surface.id == id) else {
             return;
@@ -68,7 +90,11 @@ impl Painting {
                 WellKind::Paint { mixture } => {
                     self.fill_well(name, cell_m, &well, mixture, (from, to));
                 }
-                WellKind::Cleaner => self.clean_in(name, cell_m, &well, (from, to)),
+                // Whatever else of the head is low, the jar cleans a brush that is in it.
+                WellKind::Cleaner if is_in(head, &well, cell_m) => {
+                    self.clean_in(name, cell_m, &well, (from, to));
+                }
+                WellKind::Cleaner => {}
             }
         }
     }
