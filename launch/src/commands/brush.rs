@@ -19,7 +19,7 @@ use serde_json::json;
 use crate::commands::mode::{self, ModeOptions};
 use crate::commands::say;
 use crate::commands::session::{Session, Target};
-use crate::commands::{print_json, print_text};
+use crate::commands::{print_json, print_text, write_picture};
 use crate::performance::{brush_file, library};
 use crate::sheet::sheet;
 
@@ -190,8 +190,7 @@ fn draw_sheet(options: &SheetOptions) -> Result<i32, Fault> {
         bar.set_position(done as u64);
     })?;
     bar.finish_and_clear();
-    write_whole(path, |file| picture.encode_png(file))
-        .map_err(|error| Fault::writing(path, &error))?;
+    write_picture(&picture, path)?;
     say!(
         "{}: {}×{} pixels",
         path.display(),

@@ -6,9 +6,9 @@ use clap::Args;
 use indicatif::ProgressBar;
 use maulstick_device::demo::{Subject, performance};
 use maulstick_rig::Fault;
-use maulstick_rig::files::{check_writable, write_whole};
+use maulstick_rig::files::check_writable;
 
-use crate::commands::{say, write_take};
+use crate::commands::{say, write_picture, write_take};
 use crate::performance::library;
 use crate::sheet::effects::effects;
 
@@ -50,8 +50,7 @@ pub fn run(options: &DemoOptions) -> Result<i32, Fault> {
             bar.set_position(done as u64);
         })?;
         bar.finish_and_clear();
-        write_whole(path, |file| picture.encode_png(file))
-            .map_err(|error| Fault::writing(path, &error))?;
+        write_picture(&picture, path)?;
         say!("{}", path.display());
     }
     Ok(0)

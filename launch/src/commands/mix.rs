@@ -8,11 +8,11 @@ use maulstick_optics::surface::SurfaceCorrection;
 use maulstick_optics::{Blend, Coat, Layer, PaintLibrary, Seen, Spectrum};
 use maulstick_paint::picture::Picture;
 use maulstick_rig::Fault;
-use maulstick_rig::files::{check_writable, write_whole};
+use maulstick_rig::files::check_writable;
 use serde_json::json;
 
 use crate::chart::{every_pair, four_ways};
-use crate::commands::{print_json, print_text};
+use crate::commands::{print_json, print_text, write_picture};
 use crate::performance::{library_from, mixture_of};
 use crate::swatch::{Terminal, hex, in_words, sparkline};
 use crate::viewing::ViewingOptions;
@@ -163,8 +163,7 @@ fn swatch(text: &str, reflectance: &Spectrum, seen: &Seen) -> String {
 }
 
 fn write(picture: &Picture, path: &Path) -> Result<(), Fault> {
-    write_whole(path, |file| picture.encode_png(file))
-        .map_err(|error| Fault::writing(path, &error))?;
+    write_picture(picture, path)?;
     let (width, height) = (picture.width, picture.height);
     print_text(&format!("{}: {width}×{height} pixels\n", path.display()))
 }
@@ -215,8 +214,7 @@ fn four(options: &MixOptions, library: &PaintLibrary) -> Result<(), Fault> {
         if !options.json {
             return write(&picture, path);
         }
-        write_whole(path, |file| picture.encode_png(file))
-            .map_err(|error| Fault::writing(path, &error))?;
+        write_picture(&picture, path)?;
     }
     if options.json {
         let rows: Vec<_> = rows

@@ -258,9 +258,7 @@ impl Easel<'_> {
             painted_ns,
         } = self;
         offline.wait(ticks, |sequencer| {
-            if let Some(keeper) = keeper {
-                keeper.turn(sequencer, begun.elapsed().as_nanos() as u64);
-            }
+            turn(keeper, *begun, sequencer);
         });
         *painted_ns += time_ns(ticks);
         bar.set_position(*painted_ns / 1_000_000);
@@ -286,9 +284,7 @@ impl Easel<'_> {
             if number % 16 == 0 {
                 bar.set_position((*painted_ns + since_ns(&take.samples[number])) / 1_000_000);
             }
-            if let Some(keeper) = keeper {
-                keeper.turn(sequencer, begun.elapsed().as_nanos() as u64);
-            }
+            turn(keeper, *begun, sequencer);
         });
         followed.map_err(refused)?;
         self.painted_ns += take.length_ns() + PAUSE_NS;
@@ -296,10 +292,14 @@ impl Easel<'_> {
     }
 
     fn keep(&mut self) {
-        if let Some(keeper) = self.keeper {
-            let now_ns = self.begun.elapsed().as_nanos() as u64;
-            keeper.turn(self.offline.sequencer_mut(), now_ns);
-        }
+        turn(self.keeper, self.begun, self.offline.sequencer_mut());
+    }
+}
+
+/// Hands what is new to the document, if there is one.
+fn turn(keeper: &mut Option<Keeper>, begun: Instant, sequencer: &mut Sequencer) {
+    if let Some(keeper) = keeper {
+        keeper.turn(sequencer, begun.elapsed().as_nanos() as u64);
     }
 }
 

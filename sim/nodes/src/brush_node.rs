@@ -478,9 +478,8 @@ impl BrushNode {
             let sender = Sender::new(&*self.bus, &topic, Class::RealTime, me)?;
             self.models.insert(device.to_owned(), (sender, 0));
         }
-        let (name, feel) = (&self.settings.name, self.model.feel());
-        let mut model = contact_model(origin, name, self.model.file(), &plane, feel);
-        model.viscous_n_s_m = self.drag_n_s_m;
+        let (name, feel, drag) = (&self.settings.name, self.model.feel(), self.drag_n_s_m);
+        let model = contact_model(origin, name, self.model.file(), &plane, feel, drag);
         if let Some((sender, sent_ns)) = self.models.get_mut(device)
             && now_ns >= *sent_ns + MODEL_PERIOD_NS
         {

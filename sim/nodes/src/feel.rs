@@ -39,7 +39,7 @@ pub fn drag(credit: &BrushCredit) -> f64 {
     }
 }
 
-/// What the hand feels of a surface through a brush.
+/// What the hand feels of a surface through a brush, and of the paint's [`drag`].
 #[must_use]
 pub fn contact_model(
     device: Origin,
@@ -47,6 +47,7 @@ pub fn contact_model(
     file: &BrushFile,
     plane: &Plane,
     feel: Feel,
+    drag_n_s_m: f64,
 ) -> ContactModel {
     let friction = file.contact.friction;
     ContactModel {
@@ -57,7 +58,7 @@ pub fn contact_model(
         plane_normal: plane.normal().to_array(),
         friction_static: file.contact.friction_static.unwrap_or(friction),
         friction_kinetic: friction,
-        viscous_n_s_m: 0.0,
+        viscous_n_s_m: drag_n_s_m,
         grain: Grain {
             amplitude: 0.0,
             wavelength_m: 1e-3,

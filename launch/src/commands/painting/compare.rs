@@ -8,12 +8,12 @@ use maulstick_paint::Sequencer;
 use maulstick_paint::painting::NOW;
 use maulstick_paint::picture::{Picture, picture};
 use maulstick_rig::Fault;
-use maulstick_rig::files::{check_writable, write_whole};
+use maulstick_rig::files::check_writable;
 use maulstick_types::command::Command;
 use maulstick_types::scene::CANVAS;
 use serde_json::json;
 
-use crate::commands::{print_json, say};
+use crate::commands::{print_json, say, write_picture};
 use crate::document::{read, wrong};
 use crate::performance::refused;
 
@@ -59,8 +59,7 @@ pub(super) fn compare(
     }
     let count = (width * height).max(1) as f64;
     let picture = Picture::srgb(3 * width, height, rgb);
-    write_whole(output, |file| picture.encode_png(file))
-        .map_err(|error| Fault::writing(output, &error))?;
+    write_picture(&picture, output)?;
     let (mean, share) = (sum / count, changed as f64 / count);
     if as_json {
         print_json(&json!({

@@ -2,7 +2,10 @@
 //! these; whole strokes; a device that is lost.
 
 #[path = "../../../paint/tests/oracle/scene.rs"]
-#[allow(dead_code, reason = "what these tests need of it")]
+#[allow(
+    dead_code,
+    reason = "the scenes of the paint's oracle: not all of it is used here"
+)]
 mod scene;
 
 mod easel;
