@@ -192,14 +192,17 @@ fn a_stopped_paint_node_comes_back_with_loaded_brushes() {
 
 /// Kills a node as often as the rig starts it, and sees that the rig gives up with words.
 fn kill_until_the_rig_gives_up(place: &Place, launcher: &mut Launcher, program: &str, node: &str) {
-    let mut last = None;
-    for _ in 0..3 {
-        let pid = wait_for(PATIENCE, || {
-            place.pid(program).filter(|pid| Some(*pid) != last)
-        });
-        last = pid;
-        signal(pid.expect("a node"), Signal::SIGKILL);
+    let (mut last, mut killed) = (None, 0);
+    // Three within ten seconds are too many: a machine that is slow takes some more.
+    while launcher.is_running() && killed < 12 {
+        let next = place.pid(program).filter(|pid| Some(*pid) != last);
+        if let Some(pid) = next {
+            signal(pid, Signal::SIGKILL);
+            (last, killed) = (next, killed + 1);
+        }
+        std::thread::yield_now();
     }
+    assert!(killed >= 3, "after {killed}: {}", launcher.said());
     let status = launcher.wait(PATIENCE);
     assert_eq!(status.code(), Some(1), "{}", launcher.said());
     let said = launcher.said();
@@ -220,7 +223,7 @@ fn a_node_that_does_not_stay_up_ends_the_rig_with_words() {
 #[test]
 fn a_player_that_does_not_stay_up_ends_the_rig_with_words() {
     let place = Place::new();
-    place.short_demo("take.mcap", 5.0);
+    place.short_demo("take.mcap", 60.0);
     let mut launcher = play(&place, "take.mcap", "1");
     launcher.wait_says("is up");
     kill_until_the_rig_gives_up(&place, &mut launcher, "maulstick-player", "player");

@@ -210,6 +210,11 @@ impl Launcher {
         assert!(heard.is_some(), "never said '{text}', but: {}", self.said());
     }
 
+    /// Whether it has not ended yet.
+    pub fn is_running(&mut self) -> bool {
+        self.child.try_wait().expect("waited").is_none()
+    }
+
     /// Waits for its end.
     pub fn wait(&mut self, limit: Duration) -> ExitStatus {
         wait_for(limit, || self.child.try_wait().expect("waited"))
