@@ -16,6 +16,7 @@ use maulstick_haptic::daemon::{self, HapticSettings};
 use maulstick_nodes::frames::FrameServer;
 use maulstick_nodes::worker::Fallen;
 use maulstick_nodes::{BrushNode, BrushSettings, PaintNode, Worker};
+use maulstick_num::cores::with_help_beyond;
 use maulstick_optics::backend::{CpuFilms, FilmBackend};
 use maulstick_paint::{Painting, Sequencer};
 use maulstick_rig::config::{FOREIGN_PRIORITY, MOUSE_PRIORITY, PLAYER_PRIORITY, RigConfig};
@@ -188,9 +189,13 @@ pub fn paint() -> Result<i32, Fault> {
     };
     // Its token says that commands to the rig's brushes and takes of them are done: it has to know
     // their files.
-    let result = wait_for_brushes(&member, &mut node, &mut turn)
-        .and_then(|()| member.ready())
-        .and_then(|()| member.run(|| turn(&mut node)));
+    let run = || {
+        wait_for_brushes(&member, &mut node, &mut turn)
+            .and_then(|()| member.ready())
+            .and_then(|()| member.run(|| turn(&mut node)))
+    };
+    // The brush, the window and the frames have work for two cores.
+    let result = with_help_beyond(2, run);
     member.stop.request();
     feed.ring();
     let ended = thread.join().map_err(fallen);

@@ -5,6 +5,7 @@
 use std::sync::mpsc;
 
 use maulstick_brush::{BrushFile, BrushModel};
+use maulstick_num::cores::with_help_beyond;
 use maulstick_paint::painting::TICKS_A_SECOND;
 use maulstick_paint::{PaintRefusal, Painting, Sequencer};
 use maulstick_types::brush::BrushState;
@@ -215,7 +216,8 @@ impl Offline {
                     }
                 }
             });
-            states.into_iter().try_for_each(&mut paint)
+            // The brush takes one core already.
+            with_help_beyond(2, || states.into_iter().try_for_each(&mut paint))
         })
     }
 

@@ -5,8 +5,10 @@
 //! `libm` crate, plain Rust without such dispatch; those of f32 are written so that a loop over a
 //! plane vectorises and so that a shader can hold the same polynomial.
 
+pub mod cores;
 mod elementary;
 pub mod geometry;
+pub mod lanes;
 mod wide;
 
 pub use elementary::{Decay, acos, atan2, cos, decay_f32, exp, exp_f32, ln, powf, sin, sin_cos};

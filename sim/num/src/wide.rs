@@ -7,6 +7,31 @@
 /// must be `#[inline(always)]` to gain from it.
 #[macro_export]
 macro_rules! wide {
+    // With a parameter for the [lanes](crate::lanes) of what it is compiled for.
+    ($(#[$meta:meta])* $visible:vis fn $name:ident<$lanes:ident>($($argument:ident: $type:ty),* $(,)?) $body:block) => {
+        $(#[$meta])*
+        $visible fn $name($($argument: $type),*) {
+            #[inline(always)]
+            fn narrow<$lanes: $crate::lanes::Lanes>($($argument: $type),*) $body
+
+            #[cfg(target_arch = "x86_64")]
+            {
+                #[target_feature(enable = "avx2")]
+                fn wide($($argument: $type),*) {
+                    narrow::<$crate::lanes::Avx>($($argument),*);
+                }
+                if std::arch::is_x86_feature_detected!("avx2") {
+                    #[allow(unsafe_code, reason = "the processor has what `wide` is compiled for")]
+                    // SAFETY: AVX2 was detected on the line above.
+                    unsafe {
+                        wide($($argument),*);
+                    }
+                    return;
+                }
+            }
+            narrow::<$crate::lanes::Plain>($($argument),*);
+        }
+    };
     ($(#[$meta:meta])* $visible:vis fn $name:ident($($argument:ident: $type:ty),* $(,)?) $body:block) => {
         $(#[$meta])*
         $visible fn $name($($argument: $type),*) {

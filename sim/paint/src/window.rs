@@ -26,6 +26,24 @@ impl Area {
         self.size.contains(&0)
     }
 
+    /// Its lower and its upper rows, half of them each.
+    #[must_use]
+    pub fn halves(&self) -> [Self; 2] {
+        let lower = self.size[1] / 2;
+        let upper = Self {
+            from: [self.from[0], self.from[1] + lower],
+            size: [self.size[0], self.size[1] - lower],
+        };
+        let size = [self.size[0], lower];
+        [Self { size, ..*self }, upper]
+    }
+
+    /// Number of its cells.
+    #[must_use]
+    pub fn cells(&self) -> usize {
+        self.size[0] * self.size[1]
+    }
+
     /// Its rows as ranges of the planes of a window of this width.
     pub fn rows(&self, width: usize) -> impl Iterator<Item = std::ops::Range<usize>> + use<> {
         let (from, size) = (self.from, self.size);
@@ -192,6 +210,19 @@ impl Window {
             .filter_map(|(slot, plane)| Some((slot, plane.as_mut()?)))
     }
 
+    /// The planes in two parts, each with as many that are in use, or one more.
+    pub fn planes_halved(&mut self) -> [&mut [Option<Vec<f32>>]; 2] {
+        let used = self.wet.iter().flatten().count();
+        let mut left = used.div_ceil(2);
+        let first = self.wet.iter().position(|plane| {
+            let over = left == 0;
+            left -= usize::from(plane.is_some() && !over);
+            over
+        });
+        let (one, other) = self.wet.split_at_mut(first.unwrap_or(SLOTS));
+        [one, other]
+    }
+
     /// Counts of all paints in a cell.
     #[must_use]
     pub fn total(&self, cell: usize) -> f32 {
@@ -212,9 +243,8 @@ impl Window {
     }
 
     /// Wet quanta of all paints on each cell of an area, row after row.
-    pub fn weigh(&self, area: &Area, totals: &mut Vec<f32>) {
-        totals.clear();
-        totals.resize(area.size[0] * area.size[1], 0.0);
+    pub fn weigh(&self, area: &Area, totals: &mut [f32]) {
+        totals.fill(0.0);
         for plane in self.wet.iter().flatten() {
             let sums = totals.chunks_exact_mut(area.size[0].max(1));
             for (sums, row) in sums.zip(area.rows(self.width)) {

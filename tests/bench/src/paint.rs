@@ -4,6 +4,7 @@ use std::time::{Duration, Instant};
 
 use maulstick_brush::BrushFile;
 use maulstick_gpu::{Choice, Device, GpuImpasto};
+use maulstick_num::cores::with_help;
 use maulstick_optics::PaintLibrary;
 use maulstick_paint::{Painting, PaintingSetup, Sequencer};
 use maulstick_rig::Fault;
@@ -15,7 +16,6 @@ use maulstick_types::scene::CANVAS;
 use crate::advection;
 use crate::header::header_of;
 use crate::report::{Report, quantile, sorted};
-use crate::thread_cpu::thread_cpu;
 
 const BRUSH: &str = "main";
 /// The paints on the canvas and on the brush.
@@ -110,7 +110,7 @@ impl Round {
     /// Paints the states; steps and footprint cells of them, and the time they took.
     fn paint(&mut self) -> Result<([u64; 2], Duration), Fault> {
         let before = self.sequencer.painting().work();
-        let (begun, begun_at) = (thread_cpu(), Instant::now());
+        let begun = Instant::now();
         for state in &self.states {
             let header = header_of(BRUSH, self.seq);
             self.seq += 1;
@@ -119,14 +119,11 @@ impl Round {
                 .1
                 .map_err(fault)?;
         }
-        // What a device does is in no thread's time, and is done when it is read.
-        let took = match self.on_gpu {
-            true => {
-                self.sequencer.painting_mut().commit();
-                begun_at.elapsed()
-            }
-            false => thread_cpu().saturating_sub(begun),
-        };
+        // What a device does is done when it is read.
+        if self.on_gpu {
+            self.sequencer.painting_mut().commit();
+        }
+        let took = begun.elapsed();
         self.sequencer.drain_journal();
         let after = self.sequencer.painting().work();
         Ok(([after.0 - before.0, after.1 - before.1], took))
@@ -157,8 +154,14 @@ pub(crate) fn run(report: &mut Report, backend: &str) -> Result<(), Fault> {
     if let Some(gpu) = &gpu {
         report.on(gpu.name());
     }
+    with_help(|| rounds(report, gpu.as_ref()))?;
+    advection::run(report, gpu)
+}
+
+/// Both sizes.
+fn rounds(report: &mut Report, gpu: Option<&Device>) -> Result<(), Fault> {
     for (side, strips) in SIZES {
-        let mut round = fitted(side, strips, gpu.as_ref())?;
+        let mut round = fitted(side, strips, gpu)?;
         round.paint()?;
         let (mut pairs, mut covered) = (Vec::new(), Vec::new());
         for _ in 0..ROUNDS {
@@ -173,19 +176,17 @@ pub(crate) fn run(report: &mut Report, backend: &str) -> Result<(), Fault> {
         let name = format!("footprint_cells.{side}");
         report.row(&name, quantile(&sorted(covered), 0.5), "cells");
     }
-    advection::run(report, gpu)
+    Ok(())
 }
 
 /// Time to copy the cells of so many steps: height and four paints, read and written.
 fn copy(side: usize, steps: u64) -> Duration {
     let from = vec![1.0f32; side * side * 5];
     let mut to = vec![0.0f32; from.len()];
-    let begun = thread_cpu();
+    let begun = Instant::now();
     for _ in 0..steps {
         to.copy_from_slice(std::hint::black_box(&from));
         std::hint::black_box(&mut to);
     }
-    thread_cpu()
-        .saturating_sub(begun)
-        .max(Duration::from_nanos(1))
+    begun.elapsed().max(Duration::from_nanos(1))
 }

@@ -4,7 +4,7 @@ use bytemuck::{Pod, Zeroable};
 use maulstick_brush::head::STATIONS;
 use maulstick_paint::head::border;
 use maulstick_paint::impasto::advection::STAIN;
-use maulstick_paint::impasto::footprint::rank;
+use maulstick_paint::impasto::band::rank;
 use maulstick_paint::model::{Step, Transfer};
 use maulstick_paint::quantum::CELL_MAX;
 

@@ -8,8 +8,10 @@
 
 use std::ops::Range;
 
+use maulstick_num::cores::both_if;
 use maulstick_num::wide;
 
+use super::SHARED;
 use super::velocity::Faces;
 use crate::quantum::CELL_MAX;
 use crate::window::{Area, Window};
@@ -31,10 +33,33 @@ pub struct Advection {
     loose: Vec<f32>,
     /// Share of what comes that a cell has room for.
     room: Vec<f32>,
-    /// One paint.
+    movers: [Mover; 2],
+}
+
+/// Room to move one paint.
+#[derive(Clone, Debug, Default)]
+struct Mover {
+    /// Its quanta.
     plane: Vec<f32>,
     /// Quanta that leave each cell for the next and for the one before.
     sent: [Vec<f32>; 2],
+}
+
+/// What moves all paints along an axis.
+#[derive(Clone, Copy, Debug)]
+struct Flux<'a> {
+    /// Of the window.
+    area: Area,
+    /// Columns of the window.
+    width: usize,
+    /// Through the face of each cell towards the next.
+    velocity: &'a [f32],
+    /// How far apart cells are along the axis.
+    next: usize,
+    /// See [`Advection`].
+    loose: &'a [f32],
+    /// See [`Advection`]; empty where all that comes has room.
+    room: &'a [f32],
 }
 
 /// Which axis paint is moved along.
@@ -47,19 +72,30 @@ pub enum Axis {
 }
 
 wide! {
-    /// Moves the paint of an area along one axis, on which cells are `next` apart.
-    fn along(
-        room: &mut Advection,
-        window: &mut Window,
-        area: &Area,
-        velocity: &[f32],
-        next: usize,
-        stain: f32,
-    ) {
-        window.weigh(area, &mut room.totals);
-        room.find_loose(stain);
-        room.find_room(velocity, next);
-        room.shift(area, window, velocity, next);
+    /// Moves these paints.
+    fn move_planes(mover: &mut Mover, flux: &Flux<'_>, planes: &mut [Option<Vec<f32>>]) {
+        // In a closure it would not be compiled for wide registers.
+        for plane in planes {
+            if let Some(plane) = plane {
+                mover.shift(flux, plane);
+            }
+        }
+    }
+}
+
+wide! {
+    fn find_room(advection: &mut Advection, velocity: &[f32], next: usize) {
+        advection.find_room(velocity, next);
+    }
+}
+
+wide! {
+    /// Wet quanta of all paints on each cell, and what share of them is loose.
+    fn weigh(window: &Window, area: &Area, stain: f32, totals: &mut [f32], loose: &mut [f32]) {
+        window.weigh(area, totals);
+        for (loose, total) in loose.iter_mut().zip(totals) {
+            *loose = (*total - stain).max(0.0) / total.max(1.0);
+        }
     }
 }
 
@@ -79,15 +115,33 @@ impl Advection {
                 Axis::X => (&faces.right, 1),
                 Axis::Y => (&faces.above, area.size[0]),
             };
-            along(self, window, &area, velocity, next, stain);
+            self.weigh(window, &area, stain);
+            find_room(self, velocity, next);
+            let flux = Flux {
+                area,
+                width: window.width(),
+                velocity,
+                next,
+                loose: &self.loose,
+                room: &self.room,
+            };
+            let ([one, other], [first, rest]) = (&mut self.movers, window.planes_halved());
+            let one = || move_planes(one, &flux, first);
+            let other = || move_planes(other, &flux, rest);
+            both_if(area.cells() >= SHARED, one, other);
         }
     }
 
-    #[inline(always)]
-    fn find_loose(&mut self, stain: f32) {
-        let share = |total: &f32| (total - stain).max(0.0) / total.max(1.0);
-        self.loose.clear();
-        self.loose.extend(self.totals.iter().map(share));
+    fn weigh(&mut self, window: &Window, area: &Area, stain: f32) {
+        self.totals.resize(area.cells(), 0.0);
+        self.loose.resize(area.cells(), 0.0);
+        let [low, high] = area.halves();
+        let cut = low.cells();
+        let (below, above) = self.totals.split_at_mut(cut);
+        let (loose, loose_above) = self.loose.split_at_mut(cut);
+        let one = || weigh(window, &low, stain, below, loose);
+        let other = || weigh(window, &high, stain, above, loose_above);
+        both_if(area.cells() >= SHARED, one, other);
     }
 
     /// A cell holds at most one unit: inflow beyond it stays with its donors.
@@ -117,41 +171,41 @@ impl Advection {
             *room = if *room > free { free / *room } else { 1.0 };
         }
     }
+}
 
+impl Mover {
     #[inline(always)]
-    fn shift(&mut self, area: &Area, window: &mut Window, velocity: &[f32], next: usize) {
-        let width = window.width();
-        let cells = self.totals.len();
-        for (_, plane) in window.planes_mut() {
-            self.plane.clear();
-            for row in area.rows(width) {
-                self.plane.extend_from_slice(&plane[row]);
-            }
-            if self.plane.iter().all(|count| *count == 0.0) {
-                continue;
-            }
-            self.send(velocity, next, area.size[0]);
-            let [on, back] = &self.sent;
-            let sent = on.iter().zip(back);
-            for (count, (on, back)) in self.plane.iter_mut().zip(sent) {
-                *count -= on + back;
-            }
-            if cells > next {
-                let on = self.plane[next..].iter_mut().zip(on);
-                on.for_each(|(count, sent)| *count += sent);
-                let back = self.plane.iter_mut().zip(&back[next..]);
-                back.for_each(|(count, sent)| *count += sent);
-            }
-            let rows = self.plane.chunks_exact(area.size[0]);
-            for (row, moved) in area.rows(width).zip(rows) {
-                plane[row].copy_from_slice(moved);
-            }
+    fn shift(&mut self, flux: &Flux<'_>, plane: &mut [f32]) {
+        self.plane.clear();
+        for row in flux.area.rows(flux.width) {
+            self.plane.extend_from_slice(&plane[row]);
+        }
+        if self.plane.iter().all(|count| *count == 0.0) {
+            return;
+        }
+        self.send(flux);
+        let next = flux.next;
+        let [on, back] = &self.sent;
+        let sent = on.iter().zip(back);
+        for (count, (on, back)) in self.plane.iter_mut().zip(sent) {
+            *count -= on + back;
+        }
+        if self.plane.len() > next {
+            let on = self.plane[next..].iter_mut().zip(on);
+            on.for_each(|(count, sent)| *count += sent);
+            let back = self.plane.iter_mut().zip(&back[next..]);
+            back.for_each(|(count, sent)| *count += sent);
+        }
+        let rows = self.plane.chunks_exact(flux.area.size[0]);
+        for (row, moved) in flux.area.rows(flux.width).zip(rows) {
+            plane[row].copy_from_slice(moved);
         }
     }
 
     /// What of one paint leaves each cell.
     #[inline(always)]
-    fn send(&mut self, velocity: &[f32], next: usize, width: usize) {
+    fn send(&mut self, flux: &Flux<'_>) {
+        let (next, width) = (flux.next, flux.area.size[0]);
         let cells = self.plane.len();
         for sent in &mut self.sent {
             sent.clear();
@@ -161,28 +215,29 @@ impl Advection {
         for row in 0..height {
             let start = row * width;
             if next == 1 {
-                self.send_at_edge(velocity, next, start);
+                self.send_at_edge(flux, start);
                 if width > 2 {
-                    self.send_run(velocity, next, start + 1..start + width - 1);
+                    self.send_run(flux, start + 1..start + width - 1);
                 }
-                self.send_at_edge(velocity, next, start + width - 1);
+                self.send_at_edge(flux, start + width - 1);
             } else if row == 0 || row + 1 == height {
-                (start..start + width).for_each(|place| self.send_at_edge(velocity, next, place));
+                (start..start + width).for_each(|place| self.send_at_edge(flux, place));
             } else {
-                self.send_run(velocity, next, start..start + width);
+                self.send_run(flux, start..start + width);
             }
         }
     }
 
     /// What leaves cells that have a neighbour on both sides.
     #[inline(always)]
-    fn send_run(&mut self, velocity: &[f32], next: usize, run: Range<usize>) {
+    fn send_run(&mut self, flux: &Flux<'_>, run: Range<usize>) {
+        let (velocity, next) = (flux.velocity, flux.next);
         let on_by = |range: &Range<usize>| range.start + next..range.end + next;
         let back_by = |range: &Range<usize>| range.start - next..range.end - next;
         let [on, back] = &mut self.sent;
         let (on, back) = (&mut on[run.clone()], &mut back[run.clone()]);
         let count = on.len();
-        let (q, loose) = (&self.plane[run.clone()], &self.loose[run.clone()]);
+        let (q, loose) = (&self.plane[run.clone()], &flux.loose[run.clone()]);
         let (before, after) = (&self.plane[back_by(&run)], &self.plane[on_by(&run)]);
         let (ahead, behind) = (&velocity[run.clone()], &velocity[back_by(&run)]);
         let leaves = |i: usize, room: [f32; 2]| {
@@ -190,12 +245,12 @@ impl Advection {
             let out = [ahead[i], -behind[i]];
             leaving(q[i], slope, out, [loose[i] * room[0], loose[i] * room[1]])
         };
-        if self.room.is_empty() {
+        if flux.room.is_empty() {
             for i in 0..count {
                 [on[i], back[i]] = leaves(i, [1.0; 2]);
             }
         } else {
-            let (to, from) = (&self.room[on_by(&run)], &self.room[back_by(&run)]);
+            let (to, from) = (&flux.room[on_by(&run)], &flux.room[back_by(&run)]);
             for i in 0..count {
                 [on[i], back[i]] = leaves(i, [to[i], from[i]]);
             }
@@ -203,9 +258,10 @@ impl Advection {
     }
 
     /// What leaves a cell at the edge of the surface, beyond which it goes on as it is.
-    fn send_at_edge(&mut self, velocity: &[f32], next: usize, place: usize) {
-        let room = |place: usize| self.room.get(place).copied().unwrap_or(1.0);
-        let loose = self.loose[place];
+    fn send_at_edge(&mut self, flux: &Flux<'_>, place: usize) {
+        let (velocity, next) = (flux.velocity, flux.next);
+        let room = |place: usize| flux.room.get(place).copied().unwrap_or(1.0);
+        let loose = flux.loose[place];
         let below = place.checked_sub(next);
         let behind = below.map_or(0.0, |below| velocity[below]);
         if velocity[place] <= 0.0 && behind >= 0.0 {

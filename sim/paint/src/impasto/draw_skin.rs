@@ -1,7 +1,7 @@
 //! The skin of a head in its footprint: triangles over the middles of cells.
 
+use super::band::Band;
 use super::drawing::{Line, Piece};
-use super::footprint::Footprint;
 use crate::load::ALONG;
 use crate::model::Step;
 
@@ -14,7 +14,7 @@ struct Corner {
     place: [f32; 2],
 }
 
-impl Footprint {
+impl Band {
     /// Draws the faces of the skin that come below `height`; the paint of its strips is on it.
     pub(super) fn draw_skin(&mut self, step: &Step<'_>, height: f32, bottom: f32) {
         let Some(skin) = step.head.skin() else {
@@ -66,9 +66,9 @@ impl Footprint {
             let cell = |edge: f32| (edge + 0.5).clamp(0.0, last) as usize;
             cell(low)..cell(high)
         };
-        let (columns, rows) = (range(0), range(1));
+        let (columns, rows, drawn) = (range(0), range(1), self.drawing.rows());
         let inverse = 1.0 / area;
-        for row in rows {
+        for row in rows.start.max(drawn.start)..rows.end.min(drawn.end) {
             let y = row as f32 + 0.5;
             for column in columns.clone() {
                 let x = column as f32 + 0.5;

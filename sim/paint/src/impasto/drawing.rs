@@ -5,14 +5,14 @@
 
 use std::ops::Range;
 
-use wide::{f32x8, u32x8};
+use maulstick_num::lanes::Lanes;
 
 use crate::load::ALONG;
 
 /// A ribbon that covers a cell only in part counts as higher by this much.
 const EDGE_PENALTY: f32 = 0.3;
 /// Nothing here.
-const NOTHING: u32 = u32::MAX;
+const NOTHING: f32 = -1.0;
 /// Cells drawn at a time; rows are padded so that such a run never ends in the next one.
 const LANES: usize = 8;
 const LANE: [f32; LANES] = [0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0];
@@ -109,9 +109,12 @@ impl Over<'_> {
 #[derive(Clone, Debug, Default)]
 pub(super) struct Drawing {
     size: [usize; 2],
+    /// The rows that are drawn.
+    rows: Range<usize>,
     stride: usize,
     score: Vec<f32>,
-    number: Vec<u32>,
+    /// The lowest piece; whole numbers.
+    number: Vec<f32>,
     /// Share of each cell that all pieces leave open. They lie anyhow beside and over each other: what
     /// each covers, it covers of what the others leave open.
     open: Vec<f32>,
@@ -119,12 +122,13 @@ pub(super) struct Drawing {
 }
 
 impl Drawing {
-    /// An empty grid of so many columns and rows.
-    pub(super) fn begin(&mut self, size: [usize; 2]) {
+    /// An empty grid of so many columns and rows, of which only those `rows` are drawn.
+    pub(super) fn begin(&mut self, size: [usize; 2], rows: Range<usize>) {
         self.size = size;
         self.stride = size[0].next_multiple_of(LANES) + LANES;
         self.pieces.clear();
-        let cells = self.stride * size[1];
+        let cells = self.stride * rows.len();
+        self.rows = rows;
         self.score.clear();
         self.score.resize(cells, f32::MAX);
         self.number.clear();
@@ -133,10 +137,16 @@ impl Drawing {
         self.open.resize(cells, 1.0);
     }
 
-    /// What is over a cell.
+    /// The rows that are drawn.
+    pub(super) fn rows(&self) -> Range<usize> {
+        self.rows.clone()
+    }
+
+    /// What is over a cell of these rows.
     pub(super) fn over(&self, x: usize, y: usize) -> Option<Over<'_>> {
-        let at = y * self.stride + x;
-        let piece = self.pieces.get(self.number[at] as usize)?;
+        let at = (y - self.rows.start) * self.stride + x;
+        let number = self.number[at];
+        let piece = (number >= 0.0).then(|| &self.pieces[number as usize])?;
         let t = piece.line.place([x as f32, y as f32]);
         let cover = 1.0 - self.open[at];
         Some(Over { piece, t, cover })
@@ -144,33 +154,33 @@ impl Drawing {
 
     /// Draws a piece of a ribbon over those columns of its major axis.
     #[inline(always)]
-    pub(super) fn draw(&mut self, piece: &Piece, columns: Range<usize>) {
-        let number = self.pieces.len() as u32;
+    pub(super) fn draw<L: Lanes>(&mut self, piece: &Piece, columns: Range<usize>) {
+        let number = self.pieces.len() as f32;
         self.pieces.push(*piece);
         match piece.line.major {
-            0 => self.draw_across(piece, number, columns),
-            _ => self.draw_up(piece, number, columns),
+            0 => self.draw_across::<L>(piece, number, columns),
+            _ => self.draw_up::<L>(piece, number, columns),
         }
     }
 
     /// A piece that goes rather up than across: in each row all is the same but the cover.
     #[inline(always)]
-    fn draw_up(&mut self, piece: &Piece, number: u32, rows: Range<usize>) {
+    fn draw_up<L: Lanes>(&mut self, piece: &Piece, number: f32, rows: Range<usize>) {
         let line = &piece.line;
         let across = line.reach / line.cosine;
         let edge = self.size[0] as f32;
-        let [reach, cosine] = [line.reach, line.cosine].map(f32x8::splat);
-        for row in rows {
+        let [reach, cosine] = [line.reach, line.cosine].map(L::splat);
+        for row in rows.start.max(self.rows.start)..rows.end.min(self.rows.end) {
             let (t, middle) = line.at(row as f32);
             let lowest = piece.lower_side(t) + piece.rank;
             let from = (middle - across + 1.0).clamp(0.0, edge) as usize;
             let to = (middle + across + 1.0).clamp(0.0, edge) as usize;
             let mut x = from;
             while x < to {
-                let column = f32x8::splat(x as f32) + f32x8::from(LANE);
-                let off = (column - f32x8::splat(middle)).abs();
+                let column = L::splat(x as f32) + L::of(&LANE);
+                let off = (column - L::splat(middle)).abs();
                 let cover = reach - off * cosine;
-                self.lanes(row, x, number, cover, f32x8::splat(lowest));
+                self.lanes::<L>(row, x, number, cover, L::splat(lowest));
                 x += LANES;
             }
         }
@@ -178,7 +188,7 @@ impl Drawing {
 
     /// A piece that goes rather across than up: of each row the columns near its middle line.
     #[inline(always)]
-    fn draw_across(&mut self, piece: &Piece, number: u32, columns: Range<usize>) {
+    fn draw_across<L: Lanes>(&mut self, piece: &Piece, number: f32, columns: Range<usize>) {
         let line = &piece.line;
         let across = line.reach / line.cosine;
         let (_, first) = line.at(columns.start as f32);
@@ -191,12 +201,12 @@ impl Drawing {
         // Where it hardly rises, a row has all of its columns.
         let steep = line.slope.abs() * (high - low) > across;
         let per_row = if steep { 1.0 / line.slope } else { 0.0 };
-        let [start, aside] = line.start.map(f32x8::splat);
-        let [inverse, slope] = [line.inverse, line.slope].map(f32x8::splat);
-        let [reach, cosine] = [line.reach, line.cosine].map(f32x8::splat);
-        let [z, rise] = piece.z.map(f32x8::splat);
-        let [bottom, rank] = [piece.bottom, piece.rank].map(f32x8::splat);
-        for row in from..to {
+        let [start, aside] = line.start.map(L::splat);
+        let [inverse, slope] = [line.inverse, line.slope].map(L::splat);
+        let [reach, cosine] = [line.reach, line.cosine].map(L::splat);
+        let [z, rise] = piece.z.map(L::splat);
+        let [bottom, rank] = [piece.bottom, piece.rank].map(L::splat);
+        for row in from.max(self.rows.start)..to.min(self.rows.end) {
             let y = row as f32;
             let (x, end) = if steep {
                 let middle = (y - origin) * per_row;
@@ -208,14 +218,14 @@ impl Drawing {
             };
             let mut x = x;
             while x < end {
-                let column = f32x8::splat(x as f32) + f32x8::from(LANE);
-                let off = column + f32x8::splat(0.5) - start;
-                let middle = aside + off * slope - f32x8::splat(0.5);
-                let cover = reach - (f32x8::splat(y) - middle).abs() * cosine;
-                let inside = (f32x8::splat(high) - column) * f32x8::splat(BEYOND);
-                let t = (off * inverse).fast_max(f32x8::ZERO).fast_min(f32x8::ONE);
+                let column = L::splat(x as f32) + L::of(&LANE);
+                let off = column + L::splat(0.5) - start;
+                let middle = aside + off * slope - L::splat(0.5);
+                let cover = reach - (L::splat(y) - middle).abs() * cosine;
+                let inside = (L::splat(high) - column) * L::splat(BEYOND);
+                let t = (off * inverse).most(L::splat(0.0)).least(L::splat(1.0));
                 let lowest = z + t * rise + bottom + rank;
-                self.lanes(row, x, number, cover.fast_min(inside), lowest);
+                self.lanes::<L>(row, x, number, cover.least(inside), lowest);
                 x += LANES;
             }
         }
@@ -223,32 +233,36 @@ impl Drawing {
 
     /// Eight cells of a row from `x` on, with the cover and the height of each.
     #[inline(always)]
-    fn lanes(&mut self, row: usize, x: usize, number: u32, cover: f32x8, lowest: f32x8) {
-        let at = row * self.stride + x;
-        let scores = &mut self.score[at..at + LANES];
-        let numbers = &mut self.number[at..at + LANES];
-        let one = f32x8::splat(1.0);
-        let cover = cover.fast_min(one);
-        let height = lowest + (one - cover) * f32x8::splat(EDGE_PENALTY);
-        let open = &mut self.open[at..at + LANES];
-        let left = f32x8::from(&*open) * (one - cover.fast_max(f32x8::ZERO));
-        open.copy_from_slice(&left.to_array());
-        let old = f32x8::from(&*scores);
-        let wins = cover.simd_gt(f32x8::ZERO) & height.simd_lt(old);
-        scores.copy_from_slice(&wins.select(height, old).to_array());
-        let wins: u32x8 = bytemuck::cast(wins);
-        let old = u32x8::from(&*numbers);
-        let drawn = wins.select(u32x8::splat(number), old);
-        numbers.copy_from_slice(&drawn.to_array());
+    fn lanes<L: Lanes>(&mut self, row: usize, x: usize, number: f32, cover: L, lowest: L) {
+        let at = (row - self.rows.start) * self.stride + x;
+        let (Some(scores), Some(numbers), Some(open)) = (
+            self.score[at..].first_chunk_mut(),
+            self.number[at..].first_chunk_mut(),
+            self.open[at..].first_chunk_mut(),
+        ) else {
+            return;
+        };
+        let (zero, one) = (L::splat(0.0), L::splat(1.0));
+        let cover = cover.least(one);
+        let height = lowest + (one - cover) * L::splat(EDGE_PENALTY);
+        *open = (L::of(open) * (one - cover.most(zero))).values();
+        let old = L::of(scores);
+        let height = zero.less(cover).choose(height, L::splat(f32::MAX));
+        let wins = height.less(old).choose(one, zero);
+        *scores = height.least(old).values();
+        // Of a choice between what lies there and another, compilers make a store of some lanes, which
+        // takes many times as long on some processors.
+        let before = L::of(numbers);
+        *numbers = (before + wins * (L::splat(number) - before)).values();
     }
 
     /// Draws a piece over one whole cell.
     pub(super) fn draw_cell(&mut self, x: usize, y: usize, piece: Piece) {
-        let at = y * self.stride + x;
+        let at = (y - self.rows.start) * self.stride + x;
         self.open[at] = 0.0;
         if piece.z[0] < self.score[at] {
             self.score[at] = piece.z[0];
-            self.number[at] = self.pieces.len() as u32;
+            self.number[at] = self.pieces.len() as f32;
             self.pieces.push(piece);
         }
     }
@@ -256,6 +270,8 @@ impl Drawing {
 
 #[cfg(test)]
 mod tests {
+    use maulstick_num::lanes::Plain;
+
     use super::*;
 
     /// Whatever is drawn in runs of eight is what each cell by itself would say.
@@ -265,7 +281,7 @@ mod tests {
         let size = [37, 29];
         let mut won = 0;
         for case in 0..400u32 {
-            drawing.begin(size);
+            drawing.begin(size, 0..size[1]);
             let unit = |n: u32| ((case.wrapping_mul(2_654_435_761) >> n) & 255) as f32 / 255.0;
             let line = Line {
                 major: (case & 1) as usize,
@@ -281,7 +297,7 @@ mod tests {
                 ..Piece::default()
             };
             let columns = (size[line.major] / 5)..(size[line.major] * 4 / 5);
-            drawing.draw(&piece, columns.clone());
+            drawing.draw::<Plain>(&piece, columns.clone());
             for y in 0..size[1] {
                 for x in 0..size[0] {
                     let cell = [x as f32, y as f32];

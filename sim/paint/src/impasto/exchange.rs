@@ -5,8 +5,10 @@
 //! there, still takes on the colour that it meets. Cells that draw on one brush texel have their
 //! demands summed, scaled together where they exceed what it holds, and truncated once.
 
+use maulstick_num::cores::{Balance, both};
 use maulstick_num::wide;
 
+use super::SHARED;
 use super::footprint::{Contact, Footprint};
 use crate::load::BrushLoad;
 use crate::model::{BrushTraits, Handling, Step, Transfer};
@@ -17,30 +19,46 @@ use crate::transfer::{share, swap, transfer};
 /// step, so that the others cost nothing.
 #[derive(Clone, Debug, Default)]
 pub struct Exchange {
+    /// The contacts, half of them each.
+    halves: [Half; 2],
+    /// The texels that touch.
+    texels: Vec<u32>,
+    /// The place of each texel of the brush in `texels`; [`NOWHERE`] but for those that touch.
+    place_of: Vec<u32>,
+    granted: Granted,
+    balance: Balance,
+    /// Of one paint: what each of these texels gives by quantum that is wanted of it.
+    gives: Vec<f32>,
+    /// Of one paint: quanta on each of these texels.
+    held: Vec<f32>,
+}
+
+/// What each texel that touches gives and takes.
+#[derive(Clone, Debug, Default)]
+struct Granted {
+    /// Quanta wanted of it, and offered to it; then what it gives by quantum in its film.
+    asked: Vec<[f32; 2]>,
+    /// Share of its offers that it takes.
+    taken: Vec<f32>,
+    /// Quanta in its film.
+    film: Vec<f32>,
+}
+
+/// One core's contacts.
+#[derive(Clone, Debug, Default)]
+struct Half {
     meetings: Meetings,
     /// Quanta that each contact wants from the brush, and that it gives to it.
     wants: [Vec<f32>; 2],
     /// Its cell.
     cells: Vec<u32>,
-    /// The place of each contact's texel in `texels`.
+    /// The place of each contact's texel among those that touch.
     places: Vec<u32>,
-    /// The texels that touch.
-    texels: Vec<u32>,
-    /// The place of each texel of the brush in `texels`; [`NOWHERE`] but for those that touch.
-    place_of: Vec<u32>,
-    /// Quanta wanted of each texel that touches, and offered to it.
-    asked: Vec<[f32; 2]>,
-    /// Of one paint: what each of these texels gives by quantum that is wanted of it.
-    gives: Vec<f32>,
-    /// Of one paint: quanta on each of these texels.
-    held: Vec<f32>,
-    /// Share of its offers that each of these texels takes.
-    taken: Vec<f32>,
     /// Share of the wet paint on each contact's cell that goes to the brush.
     shares: Vec<f32>,
     /// Share of what is taken up that leaves each contact's cell.
     leaves: Vec<f32>,
-    /// By how much one paint changes on each of these texels.
+    /// By how much one paint changes on each of the texels.
     change: Vec<f32>,
 }
 
@@ -162,33 +180,55 @@ wide! {
 
 wide! {
     /// One paint, both ways: `change` is what comes onto each texel.
-    fn swap_paint(
-        exchange: &Exchange,
-        gives: &[f32],
-        plane: &mut [f32],
-        change: &mut [f32],
-    ) {
-        let asked = exchange.wants[0].iter().zip(&exchange.shares);
-        let ways = exchange.cells.iter().zip(&exchange.places);
-        for (((cell, place), (given, share)), leaves) in ways.zip(asked).zip(&exchange.leaves) {
-            let count = &mut plane[*cell as usize];
+    fn swap_paint(half: &mut Half, gives: &[f32], plane: Cells<'_>) {
+        let asked = half.wants[0].iter().zip(&half.shares);
+        let ways = half.cells.iter().zip(&half.places);
+        for (((cell, place), (given, share)), leaves) in ways.zip(asked).zip(&half.leaves) {
+            let count = &mut plane.cells[*cell as usize - plane.first];
             let place = *place as usize;
             let given = (given * gives[place]).floor();
             let taken = (*count * share).floor();
             *count += given - (leaves * taken).floor();
-            change[place] += taken - given;
+            half.change[place] += taken - given;
         }
     }
+}
+
+/// Cells of a plane from the place `first` on.
+struct Cells<'a> {
+    first: usize,
+    cells: &'a mut [f32],
 }
 
 impl Exchange {
     /// Exchanges the paint of one step; by slot, what came onto the canvas from nowhere.
     pub fn run(&mut self, footprint: &Footprint, step: &mut Step<'_>) -> [i64; SLOTS] {
-        self.find_texels(footprint, step.load.texels());
-        self.demand(footprint, step);
+        let contacts = footprint.contacts.len();
+        let middle = match contacts >= SHARED {
+            true => self.balance.cut(contacts),
+            false => contacts,
+        };
+        self.find_texels(footprint, middle, step.load.texels());
+        let (texels, [low, high]) = (self.texels.len(), &mut self.halves);
+        let contacts = footprint.contacts.split_at(middle);
+        let shared = &*step;
+        self.balance.both(
+            || low.demand(contacts.0, shared),
+            || high.demand(contacts.1, shared),
+        );
+        let granted = &mut self.granted;
+        granted.asked.clear();
+        granted.asked.resize(texels, [0.0; 2]);
+        for half in [&*low, high] {
+            half.ask(&mut granted.asked);
+        }
         let sponge = step.handling.transfer == Transfer::Sponge;
-        self.grant(step.load, &step.traits, sponge);
-        self.keep(step.lasting, step.load.films());
+        granted.grant(&self.texels, step.load, &step.traits, sponge);
+        let (granted, lasting) = (&*granted, step.lasting);
+        both(
+            || low.share(granted, lasting),
+            || high.share(granted, lasting),
+        );
         let mut from_nowhere = [0; SLOTS];
         for slot in 0..SLOTS {
             let change = self.exchange(slot, step);
@@ -201,46 +241,151 @@ impl Exchange {
         from_nowhere
     }
 
-    fn find_texels(&mut self, footprint: &Footprint, texels: usize) {
+    fn find_texels(&mut self, footprint: &Footprint, middle: usize, texels: usize) {
         for texel in self.texels.drain(..) {
             self.place_of[texel as usize] = NOWHERE;
         }
         self.place_of.resize(texels, NOWHERE);
-        self.places.clear();
-        for contact in &footprint.contacts {
-            let place = &mut self.place_of[contact.texel as usize];
-            if *place == NOWHERE {
-                *place = self.texels.len() as u32;
-                self.texels.push(contact.texel);
+        let (low, high) = footprint.contacts.split_at(middle);
+        for (half, contacts) in self.halves.iter_mut().zip([low, high]) {
+            half.places.clear();
+            for contact in contacts {
+                let place = &mut self.place_of[contact.texel as usize];
+                if *place == NOWHERE {
+                    *place = self.texels.len() as u32;
+                    self.texels.push(contact.texel);
+                }
+                half.places.push(*place);
             }
-            self.places.push(*place);
         }
     }
 
+    /// One slot, both ways; the quanta that came from nowhere. What the brush gains is noted in the
+    /// halves' `change`.
+    fn exchange(&mut self, slot: usize, step: &mut Step<'_>) -> i64 {
+        self.held.clear();
+        match step.load.film_of(slot) {
+            Some(film) => {
+                let there = self.texels.iter().map(|texel| film[*texel as usize] as f32);
+                self.held.extend(there);
+            }
+            None => self.held.resize(self.texels.len(), 0.0),
+        }
+        let on_brush = self.held.iter().any(|count| *count > 0.0);
+        for half in &mut self.halves {
+            half.change.clear();
+            half.change.resize(self.texels.len(), 0.0);
+        }
+        if !on_brush && !step.window.has(slot) {
+            return 0;
+        }
+        let held = self.held.iter().zip(&self.granted.asked);
+        self.gives.clear();
+        self.gives
+            .extend(held.map(|(held, [drawn, _])| held * drawn));
+        let plane = step.window.plane_mut(slot);
+        let sponge = step.handling.transfer == Transfer::Sponge;
+        let counted = sponge || step.lasting;
+        let before = if counted { self.on_cells(plane) } else { 0 };
+        let (gives, [low, high]) = (&self.gives, &mut self.halves);
+        // Contacts come in the order of their cells.
+        let first = high
+            .cells
+            .first()
+            .map_or(plane.len(), |cell| *cell as usize);
+        let (below, above) = plane.split_at_mut(first);
+        let [below, above] =
+            [(0, below), (first, above)].map(|(first, cells)| Cells { first, cells });
+        both(
+            || swap_paint(low, gives, below),
+            || swap_paint(high, gives, above),
+        );
+        // Otherwise what one side gains the other loses.
+        if !counted {
+            return 0;
+        }
+        let changes = self.halves.iter().flat_map(|half| &half.change);
+        let onto_brush: i64 = match sponge {
+            true => 0,
+            false => changes.map(|change| *change as i64).sum(),
+        };
+        self.on_cells(step.window.plane_mut(slot)) - before + onto_brush
+    }
+
+    /// Quanta of a plane on the contacts.
+    fn on_cells(&self, plane: &[f32]) -> i64 {
+        let cells = self.halves.iter().flat_map(|half| &half.cells);
+        cells.map(|cell| plane[*cell as usize] as i64).sum()
+    }
+
+    fn note_on_brush(&self, slot: usize, load: &mut BrushLoad) {
+        let [low, high] = &self.halves;
+        let changes = low.change.iter().zip(&high.change);
+        for (texel, (low, high)) in self.texels.iter().zip(changes) {
+            let change = (low + high) as i32;
+            if change != 0 {
+                load.change_film(slot, *texel as usize, change);
+            }
+        }
+    }
+}
+
+impl Half {
     /// What each contact wants of its texel and offers to it.
-    fn demand(&mut self, footprint: &Footprint, step: &Step<'_>) {
-        let contacts = &footprint.contacts;
+    fn demand(&mut self, contacts: &[Contact], step: &Step<'_>) {
         self.cells.clear();
         self.cells
             .extend(contacts.iter().map(|contact| contact.cell));
         step.window.totals(&self.cells, &mut self.meetings.lying);
         self.meetings.of(contacts, step.load.films(), &step.traits);
         want(&self.meetings, &step.handling, &mut self.wants);
-        self.asked.clear();
-        self.asked.resize(self.texels.len(), [0.0; 2]);
+    }
+
+    /// Adds up what is wanted of each texel, and offered to it.
+    fn ask(&self, asked: &mut [[f32; 2]]) {
         let [given, taken] = &self.wants;
         for (place, (given, taken)) in self.places.iter().zip(given.iter().zip(taken)) {
-            let asked = &mut self.asked[*place as usize];
+            let asked = &mut asked[*place as usize];
             asked[0] += given;
             asked[1] += taken;
         }
     }
 
+    /// What of the paint on each contact's cell goes to the brush.
+    ///
+    /// Of paint that lasts only so much leaves a cell as comes there: it takes on the brush's colour,
+    /// but never becomes less.
+    fn share(&mut self, granted: &Granted, lasting: bool) {
+        self.shares.clear();
+        let offers = self.wants[1].iter().zip(&self.places);
+        let offers = offers.zip(&self.meetings.lying);
+        self.shares.extend(offers.map(|((offered, place), lying)| {
+            let goes = offered * granted.taken[*place as usize];
+            if *lying > 0.0 { goes / lying } else { 0.0 }
+        }));
+        self.leaves.clear();
+        if !lasting {
+            self.leaves.resize(self.cells.len(), 1.0);
+            return;
+        }
+        let [given, offered] = &self.wants;
+        let amounts = given.iter().zip(offered).zip(&self.places);
+        self.leaves.extend(amounts.map(|((given, offered), place)| {
+            let place = *place as usize;
+            let comes = given * granted.asked[place][0] * granted.film[place];
+            let goes = offered * granted.taken[place];
+            if goes > comes { comes / goes } else { 1.0 }
+        }));
+    }
+}
+
+impl Granted {
     /// Scales what is wanted of each texel, and offered to it, to what it has and has room for.
-    fn grant(&mut self, load: &BrushLoad, traits: &BrushTraits, sponge: bool) {
+    fn grant(&mut self, texels: &[u32], load: &BrushLoad, traits: &BrushTraits, sponge: bool) {
         let most = (traits.film_full * BrushTraits::FILM_OVER) as f32;
         self.taken.clear();
-        for (texel, [drawn, offered]) in self.texels.iter().zip(&mut self.asked) {
+        self.film.clear();
+        for (texel, [drawn, offered]) in texels.iter().zip(&mut self.asked) {
             let film = load.film(*texel as usize) as f32;
             let granted = if *drawn > film && !sponge {
                 ALL * film / *drawn
@@ -256,87 +401,7 @@ impl Exchange {
             // By quantum of all paints in the film, so that a paint's share comes out.
             *drawn = if film > 0.0 { granted / film } else { 0.0 };
             self.taken.push(taken);
-        }
-        self.shares.clear();
-        let taken = &self.taken;
-        let offers = self.wants[1].iter().zip(&self.places);
-        let offers = offers.zip(&self.meetings.lying);
-        self.shares.extend(offers.map(|((offered, place), lying)| {
-            let goes = offered * taken[*place as usize];
-            if *lying > 0.0 { goes / lying } else { 0.0 }
-        }));
-    }
-
-    /// Of paint that lasts only so much leaves a cell as comes there: it takes on the brush's colour,
-    /// but never becomes less.
-    fn keep(&mut self, lasting: bool, films: &[u32]) {
-        self.leaves.clear();
-        if !lasting {
-            self.leaves.resize(self.cells.len(), 1.0);
-            return;
-        }
-        let [given, offered] = &self.wants;
-        let amounts = given.iter().zip(offered).zip(&self.places);
-        let (asked, taken, texels) = (&self.asked, &self.taken, &self.texels);
-        self.leaves.extend(amounts.map(|((given, offered), place)| {
-            let place = *place as usize;
-            let comes = given * asked[place][0] * films[texels[place] as usize] as f32;
-            let goes = offered * taken[place];
-            if goes > comes { comes / goes } else { 1.0 }
-        }));
-    }
-
-    /// One slot, both ways; the quanta that came from nowhere. What the brush gains is noted in
-    /// `change`.
-    fn exchange(&mut self, slot: usize, step: &mut Step<'_>) -> i64 {
-        self.held.clear();
-        match step.load.film_of(slot) {
-            Some(film) => {
-                let there = self.texels.iter().map(|texel| film[*texel as usize] as f32);
-                self.held.extend(there);
-            }
-            None => self.held.resize(self.texels.len(), 0.0),
-        }
-        let on_brush = self.held.iter().any(|count| *count > 0.0);
-        self.change.clear();
-        self.change.resize(self.texels.len(), 0.0);
-        if !on_brush && !step.window.has(slot) {
-            return 0;
-        }
-        let held = self.held.iter().zip(&self.asked);
-        self.gives.clear();
-        self.gives
-            .extend(held.map(|(held, [drawn, _])| held * drawn));
-        let mut change = std::mem::take(&mut self.change);
-        let gives = std::mem::take(&mut self.gives);
-        let plane = step.window.plane_mut(slot);
-        let sponge = step.handling.transfer == Transfer::Sponge;
-        let counted = sponge || step.lasting;
-        let before = if counted { self.on_cells(plane) } else { 0 };
-        swap_paint(self, &gives, plane, &mut change);
-        (self.change, self.gives) = (change, gives);
-        // Otherwise what one side gains the other loses.
-        if !counted {
-            return 0;
-        }
-        let onto_brush: i64 = match sponge {
-            true => 0,
-            false => self.change.iter().map(|change| *change as i64).sum(),
-        };
-        self.on_cells(plane) - before + onto_brush
-    }
-
-    /// Quanta of a plane on the contacts.
-    fn on_cells(&self, plane: &[f32]) -> i64 {
-        let counts = self.cells.iter().map(|cell| plane[*cell as usize] as i64);
-        counts.sum()
-    }
-
-    fn note_on_brush(&self, slot: usize, load: &mut BrushLoad) {
-        for (texel, change) in self.texels.iter().zip(&self.change) {
-            if *change != 0.0 {
-                load.change_film(slot, *texel as usize, *change as i32);
-            }
+            self.film.push(film);
         }
     }
 }

@@ -5,6 +5,7 @@
 //! | module | stage |
 //! | --- | --- |
 //! | [`footprint`] | 1: what of the head reaches which cell, and how deep |
+//! | [`band`] | … in rows, those of one core each |
 //! | [`velocity`] | 2: where the paint under it goes |
 //! | [`advection`] | 3: the paint goes there, counted |
 //! | [`exchange`] | 4 and 5: Algorithm 3, both ways |
@@ -12,6 +13,7 @@
 //! | [`modes`] | the sampler and the vacuum cleaner, in place of 2 to 5 |
 
 pub mod advection;
+pub mod band;
 mod draw_skin;
 mod drawing;
 pub mod exchange;
@@ -22,3 +24,6 @@ pub mod step;
 pub mod velocity;
 
 pub use step::Impasto;
+
+/// Fewer cells are one core's: the other would hardly come in time.
+const SHARED: usize = 400;

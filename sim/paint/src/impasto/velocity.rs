@@ -7,8 +7,10 @@
 //!
 //! Thinned paint slips under the bristles and gives way sooner.
 
+use maulstick_num::cores::both_if;
 use maulstick_num::wide;
 
+use super::SHARED;
 use super::footprint::{Contact, Footprint};
 use crate::model::Step;
 
@@ -52,16 +54,25 @@ pub struct Faces {
     depth: Vec<f32>,
     /// c; 0 where nothing touches.
     squish: Vec<f32>,
-    /// What would leave a cell along one axis, at least 1.
-    leaves: Vec<f32>,
+    /// What would leave a cell along either axis, at least 1.
+    leaves: [Vec<f32>; 2],
+}
+
+/// The contacts along one axis.
+struct Along<'a> {
+    push: &'a [f32],
+    depth: &'a [f32],
+    squish: &'a [f32],
+    /// Columns of cells, and how far apart neighbours are.
+    width: usize,
+    next: usize,
 }
 
 wide! {
-    fn through_faces(faces: &mut Faces, width: usize) {
-        faces.through(0, 1);
-        faces.limit(width, 1);
-        faces.through(1, width);
-        faces.limit(width, width);
+    /// Velocities through the faces across one axis; no cell loses more than it holds.
+    fn through_faces(along: &Along<'_>, faces: &mut Vec<f32>, leaves: &mut Vec<f32>) {
+        along.through(faces);
+        along.limit(faces, leaves);
     }
 }
 
@@ -87,24 +98,32 @@ impl Faces {
             self.depth[place] = contact.depth * contact.cover;
             self.squish[place] = squish(wet, thinner);
         }
-        through_faces(self, width);
+        let along = |push, next| Along {
+            push,
+            depth: &self.depth,
+            squish: &self.squish,
+            width,
+            next,
+        };
+        let (across, up) = (along(&self.push[0], 1), along(&self.push[1], width));
+        let [leaves_x, leaves_y] = &mut self.leaves;
+        let x = || through_faces(&across, &mut self.right, leaves_x);
+        let y = || through_faces(&up, &mut self.above, leaves_y);
+        both_if(width * height >= SHARED, x, y);
     }
+}
 
+impl Along<'_> {
     /// Velocities through the faces between cells that are `next` apart.
     #[inline(always)]
-    fn through(&mut self, axis: usize, next: usize) {
-        let faces = if axis == 0 {
-            &mut self.right
-        } else {
-            &mut self.above
-        };
-        let cells = self.depth.len();
+    fn through(&self, faces: &mut Vec<f32>) {
+        let (cells, next) = (self.depth.len(), self.next);
         faces.clear();
         faces.resize(cells, 0.0);
         if cells < next {
             return;
         }
-        let push = self.push[axis].iter().zip(&self.push[axis][next..]);
+        let push = self.push.iter().zip(&self.push[next..]);
         let depth = self.depth.iter().zip(&self.depth[next..]);
         let squish = self.squish.iter().zip(&self.squish[next..]);
         let sides = push.zip(depth).zip(squish);
@@ -122,31 +141,24 @@ impl Faces {
 
     /// Slows what leaves a cell through both faces of an axis to what it holds.
     #[inline(always)]
-    fn limit(&mut self, width: usize, next: usize) {
-        let faces = if next == 1 {
-            &mut self.right
-        } else {
-            &mut self.above
-        };
+    fn limit(&self, faces: &mut [f32], leaves: &mut Vec<f32>) {
+        let next = self.next;
         // The last column has its neighbour in the row above: there is no face between them.
         if next == 1 {
-            for row in faces.chunks_exact_mut(width.max(1)) {
+            for row in faces.chunks_exact_mut(self.width.max(1)) {
                 if let Some(last) = row.last_mut() {
                     *last = 0.0;
                 }
             }
         }
-        self.leaves.clear();
-        self.leaves.extend(faces.iter().map(|face| face.max(0.0)));
-        let before = self.leaves.iter_mut().skip(next).zip(&*faces);
+        leaves.clear();
+        leaves.extend(faces.iter().map(|face| face.max(0.0)));
+        let before = leaves.iter_mut().skip(next).zip(&*faces);
         before.for_each(|(leaves, face)| *leaves -= face.min(0.0));
-        self.leaves
+        leaves
             .iter_mut()
             .for_each(|leaves| *leaves = leaves.max(1.0));
-        let donors = self
-            .leaves
-            .iter()
-            .zip(&self.leaves[next.min(self.leaves.len())..]);
+        let donors = leaves.iter().zip(&leaves[next.min(leaves.len())..]);
         for (face, (cell, beside)) in faces.iter_mut().zip(donors) {
             *face /= if *face > 0.0 { *cell } else { *beside };
         }

@@ -1,0 +1,226 @@
+//! A band of the footprint: the rows of it that one core finds.
+
+use std::ops::Range;
+
+use maulstick_brush::head::STATIONS;
+use maulstick_brush::{Head, HeadPose};
+use maulstick_num::lanes::Lanes;
+use maulstick_num::wide;
+
+use super::drawing::{Drawing, Line, Piece};
+use super::footprint::Contact;
+use crate::load::ALONG;
+use crate::model::Step;
+use crate::window::Area;
+
+/// Strips of the same depth lie over each other in the order of their roots along the way that the
+/// head is bent (Baxter 2004, § 3.5.2), the last this much higher, cells.
+const RANKS: f32 = 0.02;
+/// A head that is bent by this share of its length has that order in full.
+const BENT: f32 = 0.2;
+/// A point of a ribbon's middle line.
+#[derive(Clone, Copy, Debug)]
+struct Point {
+    at: [f32; 3],
+    moved: [f32; 2],
+    /// Place along the strip in texels.
+    along: f32,
+}
+
+/// What of a ribbon is the same along it.
+#[derive(Clone, Copy, Debug)]
+struct Ribbon {
+    strip: usize,
+    /// Its lower side above the middle line, cells.
+    bottom: f32,
+    /// Among strips of the same depth it counts as higher by this much, cells.
+    rank: f32,
+    /// How far it goes on past its end, cells.
+    past: f32,
+}
+
+impl Point {
+    fn toward(&self, other: &Self, t: f32) -> Self {
+        let mix = |a: f32, b: f32| a + (b - a) * t;
+        Self {
+            at: [0, 1, 2].map(|i| mix(self.at[i], other.at[i])),
+            moved: [0, 1].map(|i| mix(self.moved[i], other.moved[i])),
+            along: mix(self.along, other.along),
+        }
+    }
+}
+
+wide! {
+    pub(super) fn draw_strips<L>(band: &mut Band, step: &Step<'_>, top: f32, loose: f32, pressed: f32) {
+        for strip in 0..step.head.strips() {
+            let ribbon = Ribbon {
+                strip,
+                bottom: loose * step.head.lift()[strip] - pressed,
+                rank: rank(step.head, step.sweep.to, strip),
+                past: 0.0,
+            };
+            let film = step.load.thickest_of(strip) as f32 * step.traits.film_cells_per_quantum;
+            band.draw_strip::<L>(step, ribbon, top + film - ribbon.bottom);
+        }
+    }
+}
+
+/// The rows of a footprint that one core finds.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Band {
+    /// The cells in contact, row after row; their local places are those on the grid.
+    pub(super) contacts: Vec<Contact>,
+    /// Wet quanta of all paints on each contact, before the step.
+    pub(super) wet: Vec<f32>,
+    /// The columns and rows of the grid in which the contacts lie: from, up to but not with.
+    pub(super) reach: ([usize; 2], [usize; 2]),
+    /// The whole footprint's cells.
+    pub(super) grid: Area,
+    /// The surface's coordinates of the grid's lower left corner.
+    pub(super) offset: [f32; 2],
+    pub(super) drawing: Drawing,
+}
+
+impl Band {
+    /// Nothing on those rows of a grid.
+    pub(super) fn begin(&mut self, grid: Area, offset: [f32; 2], rows: Range<usize>) {
+        self.contacts.clear();
+        self.wet.clear();
+        self.reach = ([usize::MAX; 2], [0; 2]);
+        self.grid = grid;
+        self.offset = offset;
+        self.drawing.begin(grid.size, rows);
+    }
+
+    /// Draws those segments of a strip that come below `height`.
+    #[inline(always)]
+    fn draw_strip<L: Lanes>(&mut self, step: &Step<'_>, mut ribbon: Ribbon, height: f32) {
+        let (before, after) = (step.sweep.from, step.sweep.to);
+        let strips = step.head.strips();
+        let point = |station: usize| {
+            let i = station * strips + ribbon.strip;
+            Point {
+                at: [after.x[i], after.y[i], after.z[i]],
+                moved: [after.x[i] - before.x[i], after.y[i] - before.y[i]],
+                along: station as f32 * (ALONG as f32 / (STATIONS - 1) as f32),
+            }
+        };
+        for station in 1..STATIONS {
+            let i = station * strips + ribbon.strip;
+            if after.z[i - strips].min(after.z[i]) >= height {
+                continue;
+            }
+            let (p, q) = below(&point(station - 1), &point(station), height);
+            ribbon.past = if station == STATIONS - 1 { 0.5 } else { 0.0 };
+            let half_width = step.traits.half_width_before(station);
+            self.draw::<L>(&ribbon, half_width, &p, &q);
+        }
+    }
+
+    /// Draws a ribbon from `a` to `b`: of each column of cells, or each row where it goes rather up
+    /// than across, those whose middle it covers, and with a soft edge half a cell to either side.
+    #[inline(always)]
+    fn draw<L: Lanes>(&mut self, ribbon: &Ribbon, half_width: f32, a: &Point, b: &Point) {
+        let start = [a.at[0] - self.offset[0], a.at[1] - self.offset[1]];
+        let d = [b.at[0] - a.at[0], b.at[1] - a.at[1]];
+        let major = usize::from(d[1].abs() > d[0].abs());
+        let length = d[major].abs();
+        // Segments of a strip share their ends: each has the columns from its first up to its last,
+        // and the last segment goes on past the tip.
+        let (low, high) = if d[major] >= 0.0 {
+            (start[major], start[major] + length + ribbon.past)
+        } else {
+            (start[major] - length - ribbon.past, start[major])
+        };
+        let last = self.grid.size[major] as f32;
+        let column = |edge: f32| ((edge + 0.5).clamp(0.0, last)) as usize;
+        let columns = column(low)..column(high);
+        if columns.is_empty() {
+            return;
+        }
+        let inverse = if length > 1e-4 { 1.0 / d[major] } else { 0.0 };
+        let slope = d[1 - major] * inverse;
+        let piece = Piece {
+            texel: (ribbon.strip * ALONG) as u32,
+            along: [a.along, b.along - a.along],
+            z: [a.at[2], b.at[2] - a.at[2]],
+            bottom: ribbon.bottom,
+            rank: ribbon.rank,
+            moved: [a.moved, [0, 1].map(|i| b.moved[i] - a.moved[i])],
+            line: Line {
+                major,
+                start,
+                inverse,
+                slope,
+                cosine: 1.0 / (1.0 + slope * slope).sqrt(),
+                reach: half_width + 0.5,
+            },
+        };
+        self.drawing.draw::<L>(&piece, columns);
+    }
+
+    /// Which of the covered cells are touched.
+    pub(super) fn touch(&mut self, step: &Step<'_>, lying: &[f32]) {
+        let window = &*step.window;
+        let to_cells = step.traits.cells_per_quantum;
+        let film_cells = step.traits.film_cells_per_quantum;
+        let films = step.load.films();
+        let width = self.grid.size[0];
+        let (from, to) = &mut self.reach;
+        for y in self.drawing.rows() {
+            let row = (self.grid.from[1] + y) * window.width() + self.grid.from[0];
+            let lying = &lying[y * width..(y + 1) * width];
+            let base = &window.base()[row..row + width];
+            let (mut first, mut last) = (usize::MAX, 0);
+            for x in 0..width {
+                let Some(over) = self.drawing.over(x, y) else {
+                    continue;
+                };
+                let texel = over.texel();
+                let wet = lying[x] * to_cells;
+                let reach = base[x] + wet - over.bottom();
+                if reach + films[texel as usize] as f32 * film_cells <= 0.0 {
+                    continue;
+                }
+                (first, last) = (first.min(x), x);
+                let depth = reach.clamp(0.0, wet);
+                self.wet.push(lying[x]);
+                self.contacts.push(Contact {
+                    cell: (row + x) as u32,
+                    local: (y * width + x) as u32,
+                    texel,
+                    cover: over.cover,
+                    moved: over.moved(),
+                    depth,
+                    fraction: if wet > 0.0 { depth / wet } else { 0.0 },
+                });
+            }
+            if first <= last {
+                *from = [from[0].min(first), from[1].min(y)];
+                *to = [to[0].max(last + 1), y + 1];
+            }
+        }
+    }
+}
+
+/// By how much a strip counts as higher among those of the same depth, cells: of a head that lies to
+/// one side, the bristles rooted on that side lie on the others.
+#[must_use]
+pub fn rank(head: &Head, pose: &HeadPose, strip: usize) -> f32 {
+    let ([x, y], [to_x, to_y]) = (head.roots()[strip], pose.bend);
+    let bent = (to_x * to_x + to_y * to_y).sqrt();
+    let inner = (x * to_x + y * to_y) / bent.max(BENT);
+    RANKS * (0.5 + 0.25 * (inner + head.lift()[strip]))
+}
+
+/// The part of a ribbon that lies below `height`.
+fn below(a: &Point, b: &Point, height: f32) -> (Point, Point) {
+    let (za, zb) = (a.at[2], b.at[2]);
+    if za > height {
+        (a.toward(b, (za - height) / (za - zb)), *b)
+    } else if zb > height {
+        (*a, a.toward(b, (height - za) / (zb - za)))
+    } else {
+        (*a, *b)
+    }
+}
