@@ -11,6 +11,9 @@ use toml::de::{DeArray, DeInteger, DeTable, DeValue};
 /// What a script looks like.
 const EXAMPLE: &str = "a script is `step = [ { load = \"Bone Black\" }, … ]`";
 
+/// Longer texts are cut where they are quoted.
+const SHORT: usize = 40;
+
 /// Where a script is from.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Source<'a> {
@@ -80,7 +83,13 @@ pub(super) struct Entries<'a> {
 /// A value as it is spoken of.
 fn described(value: &DeValue<'_>) -> String {
     match value {
-        DeValue::String(text) => format!("the text \"{text}\""),
+        DeValue::String(text) if text.chars().count() > SHORT => {
+            format!(
+                "the text {:?}…",
+                text.chars().take(SHORT).collect::<String>()
+            )
+        }
+        DeValue::String(text) => format!("the text {text:?}"),
         DeValue::Integer(number) => format!("the number {number}"),
         DeValue::Float(number) => format!("the number {number}"),
         DeValue::Boolean(switch) => switch.to_string(),

@@ -246,6 +246,10 @@ fn another_kind_of_value_is_told_with_key_and_line() {
             &["'layer' takes a name or a number, not true"],
         ),
         ("{ fill = 1979-05-27 }", &["the date 1979-05-27"]),
+        (
+            "{ dry = \"\"\"all\nof it, as soon as it can be managed at all\"\"\" }",
+            &["day.toml:3", r#"not the text "all\nof it"#, "managed \"…"],
+        ),
     ] {
         says(read(steps), words);
     }
