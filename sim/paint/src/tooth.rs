@@ -60,7 +60,6 @@ pub struct Tooth {
 
 impl Tooth {
     /// The names of the teeth.
-    #[must_use]
     pub fn names() -> impl Iterator<Item = &'static str> {
         KINDS.iter().map(|kind| kind.name)
     }
