@@ -95,6 +95,144 @@ fn what_is_wrong_is_told_before_anything_is_painted() {
     has(&fault(&place, &["render", "-o", "day.png"], 2), &["<TAKE>"]);
 }
 
+#[test]
+fn options_that_do_nothing_beside_a_script_are_refused() {
+    let place = Place::new();
+    script(&place, "day.toml", "{ fill = \"Bone Black\" },");
+    let render = ["render", "--script", "day.toml", "-o", "day.png"];
+    for (option, words) in [
+        (
+            ["--load", "Bone Black"],
+            ["--load does nothing", "{ load = \"Bone Black\" }"],
+        ),
+        (
+            ["--memory", "512M"],
+            ["--memory does nothing", "--document"],
+        ),
+        (
+            ["--history", "2G"],
+            ["--history does nothing", "--document"],
+        ),
+    ] {
+        let said = fault(&place, &[&render[..], &option].concat(), 2);
+        has(&said, &words);
+        has(&said, &["help: "]);
+    }
+    let take = ["render", "day.toml", "-o", "day.png"];
+    has(&fault(&place, &take, 2), &["day.toml", "--script day.toml"]);
+    assert!(!place.path("day.png").exists());
+}
+
+#[test]
+fn more_steps_than_there_are_cannot_be_taken_back() {
+    let place = Place::new();
+    let render = [
+        "render", "--script", "day.toml", "-o", "day.png", "--size", "64x64",
+    ];
+    let fills = "{ fill = \"Bone Black\" },\n{ fill = \"Titanium White\" },";
+    script(&place, "day.toml", &format!("{fills}\n{{ undo = 9 }},"));
+    has(
+        &fault(&place, &render, 2),
+        &[
+            "9 steps cannot be taken back: 2 can be",
+            "day.toml:4",
+            "help: { undo = 2 }",
+        ],
+    );
+    script(&place, "day.toml", "{ undo = 1 },");
+    has(
+        &fault(&place, &render, 2),
+        &["nothing yet to take back", "day.toml:2", "help: "],
+    );
+    script(&place, "day.toml", &format!("{fills}\n{{ undo = 2 }},"));
+    place.done(&render);
+}
+
+#[test]
+fn a_tooth_may_be_a_picture_and_goes_with_the_painting() {
+    let place = Place::new();
+    let picture = std::fs::File::create(place.path("weave.png")).expect("made");
+    let mut encoder = png::Encoder::new(picture, 8, 8);
+    encoder.set_color(png::ColorType::Grayscale);
+    let mut writer = encoder.write_header().expect("a header");
+    let stripes: Vec<u8> = (0..64).map(|i| 255 * (i % 2) as u8).collect();
+    writer.write_image_data(&stripes).expect("pixels");
+    writer.finish().expect("whole");
+    let size = ["--size", "128x64"];
+    let film = "{ fill = \"Ultramarine Blue\", um = 20 },";
+    let paint = |tooth: &str, more: &[&str]| {
+        script(&place, "day.toml", &format!("{tooth}\n{film}"));
+        let render = ["render", "--script", "day.toml", "-o", "day.png"];
+        place.done(&[&render[..], more].concat());
+        place.bytes("day.png")
+    };
+    let plain = paint("", &size);
+    let deep = paint("{ tooth = \"weave.png\", width_mm = 4 },", &size);
+    let shallow = paint(
+        "{ tooth = \"weave.png\", width_mm = 4, depth_um = 20 },",
+        &size,
+    );
+    assert!(plain != deep && deep != shallow);
+    let file = ["--document", "day.maul"];
+    let kept = paint(
+        "{ tooth = \"weave.png\", width_mm = 4 },",
+        &[&size[..], &file].concat(),
+    );
+    assert_same(&deep, &kept, "in a document");
+    std::fs::remove_file(place.path("weave.png")).expect("removed");
+    script(&place, "none.toml", "{ light = { intensity = 1.0 } },");
+    let again = ["render", "--script", "none.toml", "-o", "again.png"];
+    place.done(&[&again[..], &file].concat());
+    assert_same(
+        &deep,
+        &place.bytes("again.png"),
+        "opened without the picture",
+    );
+    let info = place.done(&["painting", "info", "day.maul"]).stdout;
+    has(&String::from_utf8_lossy(&info), &["tooth"]);
+}
+
+#[test]
+fn a_script_goes_on_with_the_paints_of_the_document() {
+    let place = Place::new();
+    let table = maulstick_optics::paints::MEASURED.replace("Bone Black", "Tyrian Purple");
+    std::fs::write(place.path("own.csv"), table).expect("written");
+    script(&place, "day.toml", "{ fill = \"Tyrian Purple\" },");
+    let render = ["render", "--script", "day.toml", "-o", "day.png"];
+    let file = ["--document", "day.maul"];
+    has(
+        &fault(&place, &render, 2),
+        &["'Tyrian Purple'", "day.toml:2"],
+    );
+    let own = ["--size", "64x64", "--paints", "own.csv"];
+    place.done(&[&render[..], &own, &file].concat());
+    place.done(&[&render[..], &file].concat());
+}
+
+#[test]
+fn nothing_is_said_where_nothing_is_wrong() {
+    let place = Place::new();
+    script(&place, "day.toml", "{ fill = \"Bone Black\" },");
+    let render = [
+        "render", "--script", "day.toml", "-o", "day.png", "--size", "64x64",
+    ];
+    let mut quiet = place.maulstick(&render);
+    let output = quiet
+        .env_remove("XDG_RUNTIME_DIR")
+        .output()
+        .expect("started");
+    let said = String::from_utf8_lossy(&output.stderr);
+    assert!(output.status.success(), "{said}");
+    let processor = ["/dev/dri", "/dev/nvidiactl", "/dev/dxg"];
+    // Where there is a graphics processor its drivers say what they like.
+    if !processor
+        .iter()
+        .any(|node| std::path::Path::new(node).exists())
+    {
+        assert_eq!(said, "");
+    }
+}
+
 /// Volume of an account of a ledger file, m³.
 fn account(place: &Place, ledger: &str, name: &str) -> f64 {
     let ledger: serde_json::Value = serde_json::from_slice(&place.bytes(ledger)).expect("a ledger");

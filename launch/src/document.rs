@@ -50,10 +50,11 @@ pub fn read(path: &Path) -> Result<(Document, Opened), Fault> {
 /// # Errors
 /// A [`Fault`] where the file cannot be used, or the settings are wrong.
 pub fn go_on(config: &RigConfig, path: &Path) -> Result<(Document, Sequencer, u64), Fault> {
-    let (memory, history) = config
-        .paint
-        .bytes()
-        .map_err(|what| Fault::usage(what).at("[paint]"))?;
+    let (memory, history) = config.paint.bytes().map_err(|what| {
+        Fault::usage(what)
+            .at("[paint]")
+            .help("write sizes as 512M or 2G")
+    })?;
     let settings = DocumentSettings {
         memory: usize::try_from(memory).unwrap_or(usize::MAX),
         ..DocumentSettings::new(path, Access::Paint)

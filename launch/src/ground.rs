@@ -38,9 +38,8 @@ impl GroundFile {
         if !is_path(name) {
             return Ok(Self::Named(name.to_owned()));
         }
-        let extension = path.extension().unwrap_or_default().to_ascii_lowercase();
-        if PICTURES.iter().any(|known| extension == *known) {
-            let image = Image::open(path).map_err(|error| wrong(name, &error))?;
+        if is_picture(path) {
+            let image = Image::open(path).map_err(|error| no_picture(name, &error))?;
             return Ok(Self::Picture(Arc::new(image), name.to_owned()));
         }
         let text = std::fs::read_to_string(path).map_err(|error| Fault::reading(path, &error))?;
@@ -66,7 +65,7 @@ impl GroundFile {
         let Self::Picture(image, name) = self else {
             return Ok(None);
         };
-        let bytes = embed::ground(image, cells).map_err(|error| wrong(name, &error))?;
+        let bytes = embed::ground(image, cells).map_err(|error| no_picture(name, &error))?;
         Ok(Some(bytes))
     }
 
@@ -91,7 +90,16 @@ impl GroundFile {
     }
 }
 
-fn wrong(name: &str, error: &ImportError) -> Fault {
+/// Whether a file is called as pictures are.
+#[must_use]
+pub fn is_picture(path: &Path) -> bool {
+    let extension = path.extension().unwrap_or_default().to_ascii_lowercase();
+    PICTURES.iter().any(|known| extension == *known)
+}
+
+/// Why a file is no picture, as the user sees it.
+#[must_use]
+pub fn no_picture(name: &str, error: &ImportError) -> Fault {
     match error {
         ImportError::File(error) => Fault::reading(name.as_ref(), error),
         other => Fault::usage(other.to_string())

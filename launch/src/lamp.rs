@@ -3,13 +3,11 @@
 use maulstick_optics::Illuminant;
 use maulstick_rig::Fault;
 use maulstick_types::scene::Light;
-use serde::Deserialize;
 
 use crate::viewing::illuminant;
 
 /// What is changed of a light; what is not given stays as it is. The names are those of [`Light`].
-#[derive(Clone, Debug, Default, Deserialize)]
-#[serde(deny_unknown_fields)]
+#[derive(Clone, Debug, Default)]
 pub struct LightChange {
     /// A name, or a CSV file of nm,power.
     pub illuminant: Option<String>,
@@ -64,7 +62,7 @@ impl LightChange {
         if let Some(rule) = &self.rule {
             light.rule.clone_from(rule);
         }
-        light.check().map_err(Fault::usage)?;
+        light.check().map_err(Fault::told)?;
         Ok(light)
     }
 }

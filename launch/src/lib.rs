@@ -14,7 +14,7 @@
 //! | [`sheet`] | the sheet of brushes and their marks |
 //! | [`backend`] | what computes the steps of the paint |
 //! | [`document`] | paintings in files |
-//! | [`duration`], [`ground`] | times and grounds as a painter names them |
+//! | [`duration`], [`ground`], [`tooth`] | times, grounds and teeth as a painter names them |
 //! | [`kit`] | what a take is painted with: put into it, and taken from it |
 //! | [`lamp`] | what is changed of the light |
 //! | [`script`] | a day at the easel, a step after the other |
@@ -36,6 +36,7 @@ pub mod performance;
 pub mod script;
 pub mod sheet;
 pub mod swatch;
+pub mod tooth;
 pub mod up;
 pub mod viewing;
 

@@ -18,7 +18,7 @@ use maulstick_nodes::worker::Fallen;
 use maulstick_nodes::{BrushNode, BrushSettings, PaintNode, Worker};
 use maulstick_num::cores::with_help_beyond;
 use maulstick_optics::backend::{CpuFilms, FilmBackend};
-use maulstick_paint::{Painting, Sequencer};
+use maulstick_paint::{PaintRefusal, Painting, Sequencer};
 use maulstick_rig::config::{FOREIGN_PRIORITY, MOUSE_PRIORITY, PLAYER_PRIORITY, RigConfig};
 use maulstick_rig::member::log_to_stderr;
 use maulstick_rig::{Fault, Member, MemberArgs};
@@ -95,9 +95,14 @@ pub fn brush_node_name(brush: &str) -> String {
 }
 
 fn brush_settings(config: &RigConfig, brush: &str) -> Result<BrushSettings, Fault> {
-    let section = config
-        .brush_named(brush)
-        .ok_or_else(|| Fault::usage(format!("there is no brush '{brush}' in rig.toml")))?;
+    let section = config.brush_named(brush).ok_or_else(|| {
+        let what = format!("there is no brush '{brush}' in rig.toml");
+        Fault::unknown(
+            what,
+            brush,
+            config.brush.iter().map(|brush| brush.name.as_str()),
+        )
+    })?;
     let first = config.brush[0].name == brush;
     let mut devices = BTreeMap::from([(PLAYER.to_owned(), PLAYER_PRIORITY)]);
     if first {
@@ -277,25 +282,12 @@ pub fn haptic() -> Result<i32, Fault> {
     let options = HapticOptions::parse();
     // The servo takes its force back before it ends, so it is asked, not killed.
     let mut member = options.node.join(&options.device, Signal::SIGTERM)?;
-    let names = member
-        .config
-        .device
-        .iter()
-        .map(|device| device.name.as_str());
-    let nearest = Fault::nearest(&options.device, names)
-        .unwrap_or_default()
-        .to_owned();
-    let device = member
-        .config
-        .device
-        .iter()
-        .find(|device| device.name == options.device);
+    let devices = member.config.device.iter();
+    let device = devices.clone().find(|device| device.name == options.device);
     let device = device.cloned().ok_or_else(|| {
-        Fault::usage(format!(
-            "there is no device '{}' in rig.toml",
-            options.device
-        ))
-        .help(format!("did you mean '{nearest}'?"))
+        let what = format!("there is no device '{}' in rig.toml", options.device);
+        let names = devices.map(|device| device.name.as_str());
+        Fault::unknown(what, &options.device, names)
     })?;
     daemon::run(
         &mut member,
@@ -348,7 +340,7 @@ pub fn player() -> Result<i32, Fault> {
         .iter()
         .map(|text| {
             text.parse::<Mixture>()
-                .map_err(|error| Fault::usage(error.to_string()))
+                .map_err(|error| refused(PaintRefusal::paint(error.into())))
         })
         .collect::<Result<_, _>>()?;
     let settings = PlayerSettings {

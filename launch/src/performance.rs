@@ -264,7 +264,7 @@ pub fn painting_setup(config: &RigConfig, library: &PaintLibrary) -> Result<Pain
         .iter()
         .map(|text| {
             text.parse::<Mixture>()
-                .map_err(|error| Fault::usage(error.to_string()).at("[palette] wells"))
+                .map_err(|error| refused(PaintRefusal::paint(error.into())).at("[palette] wells"))
         })
         .collect::<Result<_, _>>()?;
     let mut setup = PaintingSetup {

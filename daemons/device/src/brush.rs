@@ -15,7 +15,8 @@ pub fn brush_file(section: &BrushSection) -> Result<BrushFile, Fault> {
     let named = path.components().count() == 1 && path.extension().is_none();
     let file = if named {
         BrushFile::library(&section.kind).map_err(|error| {
-            Fault::usage(error.to_string()).help("`--brush FILE.toml` takes a brush file")
+            Fault::usage(error.to_string())
+                .help("`maulstick brush list` shows them; a file of your own is named with its ending: own.toml")
         })?
     } else {
         read_brush(path)?
@@ -23,7 +24,7 @@ pub fn brush_file(section: &BrushSection) -> Result<BrushFile, Fault> {
     match section.size_mm {
         Some(size_mm) => file
             .scaled_to(size_mm)
-            .map_err(|error| Fault::usage(error.to_string())),
+            .map_err(|error| Fault::usage(error.to_string()).help("choose another size_mm")),
         None => Ok(file),
     }
 }

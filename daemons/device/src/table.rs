@@ -126,13 +126,8 @@ fn header(cells: &[&str], place: &str) -> Result<Places, Fault> {
         match COLUMNS.iter().position(|column| *column == word) {
             Some(column) => places[column] = Some(at),
             None => {
-                let nearest = Fault::nearest(&word, COLUMNS).unwrap_or_default();
-                return Err(Fault::usage(format!("there is no column '{cell}'"))
-                    .at(place)
-                    .help(format!(
-                        "did you mean '{nearest}'? There are: {}",
-                        COLUMNS.join(", ")
-                    )));
+                let what = format!("there is no column '{cell}'");
+                return Err(Fault::unknown(what, &word, COLUMNS).at(place));
             }
         }
     }

@@ -121,7 +121,7 @@ pub fn tune(options: &TuneOptions) -> Result<i32, Fault> {
             wetness: options.wetness,
         },
     };
-    command.check().map_err(Fault::usage)?;
+    command.check().map_err(Fault::told)?;
     send(&options.target, PAINT, command)?;
     Ok(0)
 }

@@ -3,6 +3,7 @@
 use clap::Args;
 use maulstick_rig::Fault;
 use maulstick_rig::config::PILES;
+use maulstick_types::advice::choice;
 use maulstick_types::command::Command;
 use maulstick_types::scene::{BrushHandling, BrushMode, CANVAS, MARKER_FLOW, PALETTE};
 
@@ -48,15 +49,29 @@ pub struct PilesOptions {
 /// How a brush is used, as a painter says it: flow in µm/mm, most paint in µm.
 ///
 /// # Errors
-/// A [`Fault`] for an unknown mode, with the nearest, or numbers out of range.
+/// A [`Fault`] for an unknown mode, with the nearest, for numbers out of range, or for one that does nothing
+/// with this mode.
 pub fn handling(
     brush: &str,
     mode: &str,
     flow: Option<f64>,
     most_um: Option<f64>,
 ) -> Result<BrushHandling, Fault> {
+    let called = BrushMode::called(mode).map_err(Fault::told)?;
+    if flow.is_some() && called != BrushMode::Marker {
+        return Err(
+            Fault::usage(format!("a flow does nothing with the mode {mode}"))
+                .help("leave the flow out, or choose the mode marker"),
+        );
+    }
+    if most_um.is_some() && matches!(called, BrushMode::Sampler | BrushMode::Vacuum) {
+        return Err(
+            Fault::usage(format!("most_um does nothing with the mode {mode}"))
+                .help("leave it out: the mode adds no paint to the canvas"),
+        );
+    }
     let handling = BrushHandling {
-        mode: BrushMode::called(mode).map_err(Fault::usage)?,
+        mode: called,
         flow: flow.map_or(MARKER_FLOW, |um_per_mm| um_per_mm * 1e-3),
         most_m: most_um.unwrap_or(0.0) * 1e-6,
         ..BrushHandling::normal(brush)
@@ -64,7 +79,7 @@ pub fn handling(
     let command = Command::Handle {
         handling: handling.clone(),
     };
-    command.check().map_err(Fault::usage)?;
+    command.check().map_err(Fault::told)?;
     Ok(handling)
 }
 
@@ -83,13 +98,12 @@ pub fn piles_command(piles: &str) -> Result<Command, Fault> {
             surface,
             last: false,
         }),
-        _ => Err(Fault::usage(format!("piles cannot '{piles}'"))
-            .help(format!("choose one of {}", PILES.join(", ")))),
+        _ => Err(Fault::usage(format!("piles cannot '{piles}'")).help(choice(piles, PILES))),
     }
 }
 
 fn send(target: &Target, command: Command) -> Result<i32, Fault> {
-    command.check().map_err(Fault::usage)?;
+    command.check().map_err(Fault::told)?;
     Session::open(target)?.send(PAINT, command)?;
     Ok(0)
 }

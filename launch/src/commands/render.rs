@@ -1,6 +1,7 @@
 //! `maulstick render`: a take, or a script, painted in one process.
 
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 use std::time::Instant;
 
 use clap::Args;
@@ -21,12 +22,13 @@ use maulstick_types::scene::{BrushHandling, CANVAS};
 use crate::backend::choose_backend;
 use crate::commands::progress_bar;
 use crate::destination::export;
-use crate::document::{go_on, presence, wrong};
+use crate::document::{Presence, go_on, presence, wrong};
 use crate::duration::time_ns;
 use crate::ground::GroundFile;
 use crate::kit::use_kit;
 use crate::performance::{PaintingOptions, brush_file, library_from, painting_setup, refused};
 use crate::script::{Act, Script};
+use crate::tooth::ToothPicture;
 
 /// Time before a take, ns: strokes of two takes are never one.
 const PAUSE_NS: u64 = 1_000_000_000;
@@ -60,6 +62,40 @@ pub struct RenderOptions {
     painting: PaintingOptions,
 }
 
+impl RenderOptions {
+    /// Refuses options that would do nothing.
+    fn check_idle(&self) -> Result<(), Fault> {
+        let painting = &self.painting;
+        if let (Some(_), Some(load)) = (&self.script, painting.kit.load.first()) {
+            return Err(Fault::usage("--load does nothing beside --script")
+                .help(format!("load in the script: {{ load = {load:?} }}")));
+        }
+        for (option, given) in [
+            ("--memory", &painting.memory),
+            ("--history", &painting.history),
+        ] {
+            if given.is_some() && self.document.is_none() {
+                return Err(
+                    Fault::usage(format!("{option} does nothing without --document"))
+                        .help("it is for a painting in a file: --document FILE.maul"),
+                );
+            }
+        }
+        Ok(())
+    }
+}
+
+/// Reads a take; who gives a script in its place is told how.
+fn read_take(path: &Path) -> Result<Take, Fault> {
+    Take::read(path).map_err(|fault| match path.extension() {
+        Some(extension) if extension == "toml" && path.exists() => fault.help(format!(
+            "a script is painted with `--script {}`",
+            path.display()
+        )),
+        _ => fault,
+    })
+}
+
 /// Paints the take.
 ///
 /// # Errors
@@ -69,8 +105,9 @@ pub fn run(options: &RenderOptions) -> Result<i32, Fault> {
         Some(path) => RigConfig::read(path)?,
         None => RigConfig::default(),
     };
+    options.check_idle()?;
     let take = match &options.take {
-        Some(path) => Some((path, Take::read(path)?)),
+        Some(path) => Some((path, read_take(path)?)),
         None => None,
     };
     let folder = tempfile::tempdir().map_err(|error| Fault::failure(error.to_string()))?;
@@ -88,7 +125,17 @@ pub fn run(options: &RenderOptions) -> Result<i32, Fault> {
         }
     }
     let export = export(&config.view, "--profile, --gamut")?;
-    let library = library_from(config.paint.paints.as_deref())?;
+    let begun = match &options.document {
+        Some(path) if presence(path, &options.painting)? == Presence::There => {
+            Some(go_on(&config, path)?)
+        }
+        _ => None,
+    };
+    let library = match &begun {
+        // It has paints of its own.
+        Some((_, sequencer, _)) => sequencer.painting().library().clone(),
+        None => library_from(config.paint.paints.as_deref())?,
+    };
     let loads = options.painting.kit.mixtures(&embedded, &library)?;
     let unloaded = loads.is_empty() && options.script.is_none();
     let script = match (&options.script, take) {
@@ -117,8 +164,10 @@ pub fn run(options: &RenderOptions) -> Result<i32, Fault> {
     }
     let (mut keeper, mut sequencer) = match &options.document {
         Some(path) => {
-            presence(path, &options.painting)?;
-            let (document, mut sequencer, since) = go_on(&config, path)?;
+            let (document, mut sequencer, since) = match begun {
+                Some(begun) => begun,
+                None => go_on(&config, path)?,
+            };
             let keeper = Keeper::new(document, &mut sequencer, since);
             (Some(keeper), sequencer)
         }
@@ -203,6 +252,7 @@ impl Easel<'_> {
             Act::Clean => self.offline.command(Command::Clean { brush }),
             Act::Take(take, loads) => return self.follow(&take, loads),
             Act::Ground(file) => return self.prime(file),
+            Act::Tooth(picture) => return self.weave(&picture),
             Act::Wait(ticks) => {
                 self.wait(ticks);
                 Ok(())
@@ -213,9 +263,7 @@ impl Easel<'_> {
                 let expose = change.exposure.is_none() && changes_colour(&light, &before);
                 self.offline.command(Command::Relight { light, expose })
             }
-            Act::Undo(times) => {
-                (0..times).try_for_each(|_| self.offline.command(Command::Undo { brush: None }))
-            }
+            Act::Undo(times) => return self.take_back(times),
             Act::Command(command) => self.offline.command(command),
         };
         done.map_err(refused)?;
@@ -229,12 +277,7 @@ impl Easel<'_> {
         let cells = painting.store(CANVAS).map_or([1, 1], TileStore::cells);
         let command = match file.picture(cells)? {
             Some(bytes) => {
-                let hash = painting.embed(bytes).map_err(refused)?;
-                if let Some(keeper) = self.keeper {
-                    // The document has the picture before the journal names it.
-                    keeper.settle(self.offline.sequencer_mut());
-                }
-                let ground = format!("{IMAGE}{hash}");
+                let ground = format!("{IMAGE}{}", self.embed(bytes)?);
                 Command::Ground { surface, ground }
             }
             None => match file {
@@ -245,6 +288,57 @@ impl Easel<'_> {
             },
         };
         self.offline.command(command).map_err(refused)?;
+        self.keep();
+        Ok(())
+    }
+
+    fn weave(&mut self, picture: &ToothPicture) -> Result<(), Fault> {
+        let canvas = &self.offline.painting_mut().scene().surfaces[0];
+        let (cells, cell_m) = (canvas.cells, canvas.cell_m);
+        let hash = self.embed(picture.png(cells, cell_m)?)?;
+        let command = Command::Tooth {
+            surface: CANVAS,
+            tooth: picture.name(hash, cells, cell_m),
+            seed: 1,
+        };
+        self.offline.command(command).map_err(refused)?;
+        self.keep();
+        Ok(())
+    }
+
+    /// Takes a picture into the painting, and returns its hash.
+    fn embed(&mut self, bytes: Arc<[u8]>) -> Result<String, Fault> {
+        let painting = self.offline.painting_mut();
+        let hash = painting.embed(bytes).map_err(refused)?;
+        if let Some(keeper) = self.keeper {
+            // The document has the picture before the journal names it.
+            keeper.settle(self.offline.sequencer_mut());
+        }
+        Ok(hash)
+    }
+
+    fn take_back(&mut self, times: u32) -> Result<(), Fault> {
+        let painting = self.offline.painting_mut();
+        painting.commit();
+        let (there, _) = painting.history_depth();
+        if there < times as usize {
+            let (what, help) = match there {
+                0 => (
+                    "there is nothing yet to take back".to_owned(),
+                    "a load, a stroke, a film, a drying, another ground or tooth can be taken back"
+                        .to_owned(),
+                ),
+                _ => (
+                    format!("{times} steps cannot be taken back: {there} can be"),
+                    format!("{{ undo = {there} }} takes all of them back"),
+                ),
+            };
+            return Err(Fault::usage(what).help(help));
+        }
+        for _ in 0..times {
+            let undo = Command::Undo { brush: None };
+            self.offline.command(undo).map_err(refused)?;
+        }
         self.keep();
         Ok(())
     }

@@ -34,11 +34,9 @@ pub fn run(options: &SchemaOptions) -> Result<i32, Fault> {
         .filter(|entry| wanted(entry.name))
         .collect();
     if let (true, Some(message)) = (entries.is_empty(), &options.message) {
-        let nearest = Fault::nearest(message, CATALOGUE.iter().map(|entry| entry.name));
-        return Err(
-            Fault::usage(format!("there is no message called '{message}'"))
-                .help(format!("did you mean '{}'?", nearest.unwrap_or_default())),
-        );
+        let what = format!("there is no message called '{message}'");
+        let names = CATALOGUE.iter().map(|entry| entry.name);
+        return Err(Fault::unknown(what, message, names));
     }
     if options.json {
         let messages: Vec<_> = entries

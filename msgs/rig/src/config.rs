@@ -409,17 +409,10 @@ pub fn toml_fault(text: &str, name: &str, error: &toml::de::Error) -> Fault {
         Fault::usage(message.lines().next().unwrap_or(message)).at(format!("{name}:{line}"));
     let quoted: Vec<&str> = message.split('`').skip(1).step_by(2).collect();
     match quoted.as_slice() {
-        [key, keys @ ..] if message.starts_with("unknown field") && !keys.is_empty() => {
-            let nearest = Fault::nearest(key, keys.iter().copied()).unwrap_or_default();
-            Fault {
-                what: format!("unknown key '{key}'"),
-                ..fault
-            }
-            .help(format!(
-                "did you mean '{nearest}'? There are: {}",
-                keys.join(", ")
-            ))
-        }
+        [key, keys @ ..] if message.starts_with("unknown field") && !keys.is_empty() => Fault {
+            place: fault.place,
+            ..Fault::unknown(format!("unknown key '{key}'"), key, keys.iter().copied())
+        },
         _ => fault.help("see the commented default: `maulstick up --print-config`"),
     }
 }

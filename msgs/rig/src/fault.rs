@@ -34,6 +34,17 @@ impl Fault {
         }
     }
 
+    /// Bad usage, of a line that says what is wrong and what to do, as
+    /// [`parted`](maulstick_types::advice::parted) tells them apart.
+    #[must_use]
+    pub fn told(line: impl AsRef<str>) -> Self {
+        let (what, help) = maulstick_types::advice::parted(line.as_ref());
+        Self {
+            help: help.map(str::to_owned),
+            ..Self::usage(what)
+        }
+    }
+
     /// A failure.
     #[must_use]
     pub fn failure(what: impl Into<String>) -> Self {
@@ -81,15 +92,23 @@ impl Fault {
             std::io::ErrorKind::PermissionDenied => "check the permissions",
             std::io::ErrorKind::StorageFull => "free some space",
             std::io::ErrorKind::AlreadyExists => "give another name",
+            std::io::ErrorKind::IsADirectory => "this is a folder: name a file",
+            std::io::ErrorKind::InvalidData => {
+                "this is no text, or not UTF-8: see that it is the file that is meant"
+            }
             _ => "check the path and the disk",
         };
         self.at(path.display().to_string()).help(help)
     }
 
-    /// The nearest of `names` to `name`.
+    /// A name that is none of `names`: the nearest is proposed.
     #[must_use]
-    pub fn nearest<'a>(name: &str, names: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
-        maulstick_types::nearest(name, names)
+    pub fn unknown<'a>(
+        what: impl Into<String>,
+        name: &str,
+        names: impl IntoIterator<Item = &'a str>,
+    ) -> Self {
+        Self::usage(what).help(maulstick_types::advice::choice(name, names))
     }
 }
 

@@ -9,12 +9,13 @@
 //! | [`header`] | the header, flags, and the errors of reading a message |
 //! | [`schema`] | field tables and their hash |
 //! | [`topics`] | the key expressions of a rig |
+//! | [`advice`] | what to do about something that is wrong |
 //! | [`stylus`], [`haptics`], [`brush`], [`scene`], [`paint`], [`command`] | the messages |
 
 mod codec;
 mod define;
-mod nearest;
 
+pub mod advice;
 pub mod brush;
 pub mod catalogue;
 pub mod command;
@@ -29,11 +30,11 @@ pub mod schema;
 pub mod stylus;
 pub mod topics;
 
+pub use advice::nearest;
 pub use catalogue::{CATALOGUE, CatalogueEntry};
 pub use codec::{Message, decode, encode};
 pub use header::{DecodeError, Flags, HEADER_BYTES, Header, Origin};
 pub use mixture::{Mixture, MixtureError};
-pub use nearest::nearest;
 pub use pose::Pose;
 pub use region::Region;
 

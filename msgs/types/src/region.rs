@@ -23,7 +23,7 @@ impl Region {
     /// Checks that it is finite and not empty.
     ///
     /// # Errors
-    /// What is wrong, in few words.
+    /// What is wrong and what to do, as [`parted`](crate::advice::parted) tells them apart.
     pub fn check(&self) -> Result<(), String> {
         let near = self.corner_m.iter().all(|m| m.abs() <= FARTHEST_M);
         let wide = self.size_m.iter().all(|m| *m > 0.0 && *m <= FARTHEST_M);

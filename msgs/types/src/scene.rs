@@ -135,17 +135,14 @@ impl BrushMode {
     /// The mode of this name.
     ///
     /// # Errors
-    /// What names there are, and the nearest.
+    /// What names there are, and the nearest, as [`parted`](crate::advice::parted) tells them apart.
     pub fn called(name: &str) -> Result<Self, String> {
         if let Some((_, mode)) = Self::NAMES.iter().find(|(known, _)| *known == name) {
             return Ok(mode.clone());
         }
         let names = Self::NAMES.map(|(name, _)| name);
-        let nearest = crate::nearest(name, names).unwrap_or_default();
-        let all = names.join(", ");
-        Err(format!(
-            "there is no mode called '{name}'; did you mean '{nearest}'? There are {all}"
-        ))
+        let help = crate::advice::choice(name, names);
+        Err(format!("there is no mode called '{name}'; {help}"))
     }
 }
 
@@ -264,7 +261,7 @@ impl Light {
     /// Checks that it shines, in bounds.
     ///
     /// # Errors
-    /// What is wrong, in few words.
+    /// What is wrong and what to do, as [`parted`](crate::advice::parted) tells them apart.
     pub fn check(&self) -> Result<(), String> {
         let bounded = [
             ("intensity", self.intensity, INTENSITY),
@@ -275,25 +272,27 @@ impl Light {
         for (name, value, range) in bounded {
             if !range.contains(&value) {
                 let (least, most) = (range.start(), range.end());
-                return Err(format!(
-                    "the {name} is {value}, but must be {least} to {most}"
-                ));
+                return Err(format!("the {name} is {value}; choose {least} to {most}"));
             }
         }
         let length: f64 = self.direction.iter().map(|v| v * v).sum();
         if !(1e-6..=1e6).contains(&length) || self.direction[2] <= 0.0 {
             return Err(
-                "the light must come from above the canvas: give x, y, z with z > 0".into(),
+                "the light must come from above the canvas; give x, y, z with z > 0".into(),
             );
         }
         if self.illuminant.len() > ILLUMINANT_NAME_MAX {
             let bytes = self.illuminant.len();
-            return Err(format!("an illuminant's name of {bytes} bytes is too long"));
+            return Err(format!(
+                "an illuminant's name of {bytes} bytes; choose one of at most {ILLUMINANT_NAME_MAX}"
+            ));
         }
         let power = &self.spectrum;
         let good = power.iter().all(|v| (0.0..=1e9).contains(v)) && power.iter().any(|v| *v > 0.0);
         if !power.is_empty() && (power.len() != 101 || !good) {
-            return Err("a spectrum has 101 powers of 0 or more, not all of them 0".into());
+            return Err(
+                "this is no spectrum; give 101 powers of 0 or more, not all of them 0".into(),
+            );
         }
         if ![1931, 1964].contains(&self.observer) {
             return Err(format!(
@@ -302,7 +301,10 @@ impl Light {
             ));
         }
         if !RULES.contains(&self.rule.as_str()) {
-            return Err(format!("the sampling rule is one of {}", RULES.join(", ")));
+            return Err(format!(
+                "there is no such sampling rule; choose one of {}",
+                RULES.join(", ")
+            ));
         }
         if self.rule != "reference" && !SAMPLES.contains(&self.samples) {
             return Err(format!("a rule of {} samples; take 4 to 16", self.samples));

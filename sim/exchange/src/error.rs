@@ -6,7 +6,7 @@ use std::io;
 #[derive(Debug, thiserror::Error)]
 pub enum ExchangeError {
     /// The painting has no such surface.
-    #[error("there is no surface {0}: the canvas is 0, the palette 1")]
+    #[error("there is no surface {0}; the canvas is 0, the palette 1")]
     NoSurface(u32),
     /// A part of the painting cannot be read back from its document, so the file lacks paint.
     #[error("the painting's document is damaged: {0}")]
@@ -18,7 +18,7 @@ pub enum ExchangeError {
     #[error("the OpenEXR file cannot be written: {0}")]
     OpenExr(String),
     /// A measure of a relief is out of its range.
-    #[error("a {what} of {value}: choose {least} to {most}")]
+    #[error("a {what} of {value}; choose {least} to {most}")]
     OutOfRange {
         /// Which one, with its unit.
         what: &'static str,
@@ -30,7 +30,7 @@ pub enum ExchangeError {
         most: f64,
     },
     /// A relief would have more triangles than its format can count.
-    #[error("{triangles} triangles are too many for STL: choose a step of at least {step} cells")]
+    #[error("{triangles} triangles are too many for STL; choose a step of at least {step} cells")]
     TooManyTriangles {
         /// How many it would have.
         triangles: u64,

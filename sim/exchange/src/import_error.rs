@@ -22,10 +22,10 @@ pub enum ImportError {
     #[error("a canvas of {0}×{1} cells is too large for a picture: it may have 67 million cells")]
     Canvas(usize, usize),
     /// The film is too thin or too thick.
-    #[error("a film of {0} µm cannot be laid: choose 1 to 5000 µm")]
+    #[error("a film of {0} µm cannot be laid; choose 1 to 5000 µm")]
     Thickness(f64),
     /// There is nothing to mix, or too much.
-    #[error("{0} paints cannot be mixed to a picture: choose 1 to 16")]
+    #[error("{0} paints cannot be mixed to a picture; choose 1 to 16")]
     Paints(usize),
     /// The painting refuses.
     #[error("{}", .0.what)]

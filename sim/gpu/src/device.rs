@@ -2,6 +2,7 @@
 //! nobody asked about, and to a device lost while someone waits for it, is to panic.
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::path::Path;
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::Duration;
 
@@ -67,6 +68,22 @@ fn rank(info: &wgpu::AdapterInfo, choice: Choice) -> Option<u32> {
     }
 }
 
+/// Whether the kernel has a graphics processor that drivers might open, as far as it tells. Where it has none
+/// the drivers need not be loaded to find the emulated adapters alone; Mesa's layer before them would besides
+/// look for a Wayland display, and complain on stderr where no session runs.
+fn has_processor(devices: &Path) -> bool {
+    // WSL; NVIDIA's; those of telephones and single-board computers; all others are in `dri`.
+    const NODES: [&str; 5] = ["dxg", "nvidia", "mali", "kgsl", "pvr"];
+    let holds = |folder: &Path, starts: &[&str]| {
+        let entries = std::fs::read_dir(folder).into_iter().flatten().flatten();
+        let mut names = entries.map(|entry| entry.file_name().to_string_lossy().into_owned());
+        names.any(|name| starts.iter().any(|start| name.starts_with(start)))
+    };
+    !cfg!(target_os = "linux")
+        || holds(&devices.join("dri"), &["renderD"])
+        || holds(devices, &NODES)
+}
+
 fn keep<T>(place: &Mutex<Option<T>>, first: T) {
     let mut held = place.lock().unwrap_or_else(PoisonError::into_inner);
     held.get_or_insert(first);
@@ -89,8 +106,13 @@ impl Device {
     /// [`GpuError::None`].
     pub fn open(choice: Choice) -> Result<Self, GpuError> {
         let mut refusals = Vec::new();
-        // OpenGL only where there is nothing better: it shows the same adapters once more.
-        for backends in [wgpu::Backends::PRIMARY, wgpu::Backends::GL] {
+        let backends: &[wgpu::Backends] = match choice {
+            Choice::Auto if !has_processor(Path::new("/dev")) => &[],
+            Choice::Auto => &[wgpu::Backends::PRIMARY],
+            // OpenGL only where there is nothing better: it shows the same adapters once more.
+            Choice::Forced => &[wgpu::Backends::PRIMARY, wgpu::Backends::GL],
+        };
+        for backends in backends.iter().copied() {
             let mut descriptor = wgpu::InstanceDescriptor::new_without_display_handle();
             descriptor.backends = backends;
             let instance = wgpu::Instance::new(descriptor);
@@ -206,5 +228,33 @@ impl Device {
         let lost = self.lost.lock().unwrap_or_else(PoisonError::into_inner);
         lost.clone()
             .map_or(Ok(()), |reason| Err(GpuError::Lost(reason)))
+    }
+}
+
+#[cfg(test)]
+#[cfg(target_os = "linux")]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_processor_is_known_by_its_device() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let devices = folder.path();
+        let with = |node: &str| {
+            let path = devices.join(node);
+            std::fs::create_dir_all(path.parent().expect("a folder")).expect("made");
+            std::fs::write(&path, []).expect("written");
+            let found = has_processor(devices);
+            std::fs::remove_file(path).expect("removed");
+            found
+        };
+        assert!(!has_processor(devices) && !has_processor(&devices.join("none")));
+        for node in ["dri/renderD128", "nvidia0", "nvidiactl", "dxg", "mali0"] {
+            assert!(with(node), "{node}");
+        }
+        // A screen that is drawn by the processor itself.
+        for node in ["dri/card0", "null", "fb0"] {
+            assert!(!with(node), "{node}");
+        }
     }
 }

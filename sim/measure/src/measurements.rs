@@ -1,5 +1,7 @@
 //! Samples of a table of measurements: what they are made of, and what the instrument read of them.
 
+use maulstick_types::advice::{choice, nearest};
+
 use crate::error::MeasureError;
 use crate::headings::Headings;
 use crate::instrument;
@@ -203,8 +205,7 @@ fn reading(table: &Table, headings: &Headings, row: &Row) -> Result<Reading, Mea
         let given = row.cells[column].to_lowercase().replace(' ', "");
         let known = KINDS.iter().find(|(name, _)| *name == given);
         let Some((_, found)) = known else {
-            let nearest = maulstick_types::nearest(&given, KINDS.map(|(name, _)| name));
-            let help = format!("did you mean '{}'?", nearest.unwrap_or("sample"));
+            let help = choice(&given, KINDS.map(|(name, _)| name));
             let what = format!("'{}' is no kind of row", row.cells[column]);
             return Err(table.fault(row.line, column, what, &help));
         };
@@ -287,11 +288,13 @@ fn shares(table: &Table, headings: &Headings, row: &Row) -> Result<Vec<f64>, Mea
         "are these per cent? divide by 100".to_owned()
     } else if sum > 1.0 + SHARE_TOLERANCE && last.is_some_and(|(share, _)| *share > 1.0) {
         let name = &table.headings[column];
-        let nearest = maulstick_types::nearest(name, crate::headings::RESERVED);
-        format!(
-            "shares are 0 to 1: divide weights by their sum; if '{name}' is no paint, did you mean '{}'?",
-            nearest.unwrap_or_default()
-        )
+        let divide = "shares are 0 to 1: divide weights by their sum";
+        match nearest(name, crate::headings::RESERVED) {
+            Some(nearest) => {
+                format!("{divide}; if '{name}' is no paint, did you mean '{nearest}'?")
+            }
+            None => divide.to_owned(),
+        }
     } else {
         "divide each weight by the sum of the row's weights".to_owned()
     };
@@ -383,9 +386,8 @@ fn ground(
                 .iter()
                 .map(|(name, _)| *name)
                 .chain(["black", "white"]);
-            let nearest = maulstick_types::nearest(text, names).unwrap_or("black");
             let what = format!("no row of kind ground is called '{text}'");
-            Err(table.fault(line, column, what, &format!("did you mean '{nearest}'?")))
+            Err(table.fault(line, column, what, &choice(text, names)))
         }
     }
 }

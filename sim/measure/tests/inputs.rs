@@ -105,7 +105,7 @@ fn shares_that_do_not_sum_to_one() {
         (
             "1,5",
             "column 4 (Cobalt Blue): the shares sum to 6.0000, not to 1",
-            "did you mean",
+            "divide weights",
         ),
         (
             "-0.5,1.5",
@@ -180,7 +180,11 @@ fn paints_that_are_unknown_or_not_measured() {
     };
     let error = bad_with(&table(""), &named("Titanum White"));
     assert_eq!(error.to_string(), "no column is called 'Titanum White'");
-    assert_eq!(error.help, "did you mean 'Titanium White'?");
+    assert!(
+        error.help.starts_with("did you mean 'Titanium White'?"),
+        "{}",
+        error.help
+    );
     let text = format!("# reference white: Kobalt Blue\n{}", table(""));
     let error = bad_with(&text, &FitOptions::default());
     assert_eq!(

@@ -50,12 +50,12 @@ impl Paint {
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum PaintError {
     /// No such paint; the nearest name is proposed.
-    #[error("there is no paint called '{name}'; did you mean '{nearest}'?")]
+    #[error("there is no paint called '{name}'{}", meant(.nearest.as_deref()))]
     Unknown {
         /// What was asked for.
         name: String,
-        /// The nearest name.
-        nearest: String,
+        /// The nearest name, if one is near.
+        nearest: Option<String>,
     },
     /// The mixture itself is wrong.
     #[error(transparent)]
@@ -68,6 +68,10 @@ pub enum PaintError {
         /// What is wrong.
         what: String,
     },
+}
+
+fn meant(nearest: Option<&str>) -> String {
+    nearest.map_or(String::new(), |name| format!("; did you mean '{name}'?"))
 }
 
 /// Largest K or S relative to titanium white's S: a black of which 0.02 µm hide.
@@ -245,12 +249,9 @@ impl PaintLibrary {
             return Ok(paint);
         }
         let names = all().map(|paint| paint.name.as_str());
-        let nearest = maulstick_types::nearest(name, names)
-            .unwrap_or_default()
-            .to_owned();
         Err(PaintError::Unknown {
             name: name.to_owned(),
-            nearest,
+            nearest: maulstick_types::nearest(name, names).map(str::to_owned),
         })
     }
 
@@ -292,6 +293,8 @@ mod tests {
             error.to_string(),
             "there is no paint called 'Colbat Blue'; did you mean 'Cobalt Blue'?"
         );
+        let error = library.find("zzz").expect_err("far from all");
+        assert_eq!(error.to_string(), "there is no paint called 'zzz'");
     }
 
     #[test]

@@ -2,7 +2,7 @@
 
 use maulstick_optics::colour::apply;
 use maulstick_optics::{Illuminant, Observer, RuleKind, Spectrum, StudioSettings};
-use maulstick_types::nearest;
+use maulstick_types::advice::{choice, parted};
 use maulstick_types::scene::Light;
 
 use crate::painting::PaintRefusal;
@@ -12,8 +12,10 @@ use crate::painting::PaintRefusal;
 /// # Errors
 /// [`PaintRefusal`] for a light out of bounds, or a name of no illuminant.
 pub fn studio_settings(light: &Light) -> Result<StudioSettings, PaintRefusal> {
-    light.check().map_err(|what| {
-        PaintRefusal::new(what, "`maulstick light --help` lists what a light may be")
+    light.check().map_err(|line| {
+        let (what, help) = parted(&line);
+        let other = "`maulstick light --help` lists what a light may be";
+        PaintRefusal::new(what.to_owned(), help.unwrap_or(other))
     })?;
     let spectrum: Result<[f64; maulstick_optics::spectrum::SAMPLES], _> =
         light.spectrum.as_slice().try_into();
@@ -49,13 +51,9 @@ pub fn studio_settings(light: &Light) -> Result<StudioSettings, PaintRefusal> {
 pub fn illuminant_named(name: &str) -> Result<Illuminant, PaintRefusal> {
     let names = maulstick_optics::cie::ILLUMINANTS;
     Illuminant::named(name).ok_or_else(|| {
-        let like = nearest(name, names).unwrap_or_default();
         PaintRefusal::new(
             format!("there is no illuminant called '{name}'"),
-            &format!(
-                "did you mean '{like}'? There are {}, and any spectrum from a CSV file",
-                names.join(", ")
-            ),
+            &format!("{}, and any spectrum from a CSV file", choice(name, names)),
         )
     })
 }

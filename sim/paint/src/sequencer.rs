@@ -8,6 +8,7 @@ pub use records::{Accepted, Record};
 
 use std::collections::{BTreeMap, BTreeSet};
 
+use maulstick_types::advice::parted;
 use maulstick_types::brush::BrushState;
 use maulstick_types::command::{Command, CommandRequest, Outcome};
 use maulstick_types::paint::{Entry, JournalEntry};
@@ -276,10 +277,13 @@ impl Sequencer {
             effect: None,
         };
         // Whatever is answered may be quoted, and is journalled: it has to fit.
-        if let Err(what) = request.command.check() {
-            let help =
-                "see the messages of `maulstick schema` for what a command may say".to_owned();
-            return reply(Outcome::Refused { what, help });
+        if let Err(line) = request.command.check() {
+            let (what, help) = parted(&line);
+            let other = "see the messages of `maulstick schema` for what a command may say";
+            return reply(Outcome::Refused {
+                what: what.to_owned(),
+                help: help.unwrap_or(other).to_owned(),
+            });
         }
         if let Some(answered) = self.answered.get(&client) {
             if answered.number == number {

@@ -1,6 +1,7 @@
 //! The scene of a new painting.
 
 use maulstick_optics::{PaintLibrary, Spectrum};
+use maulstick_types::advice::choice;
 use maulstick_types::scene::{CANVAS, Light, PALETTE, Scene, Surface, Well, WellKind};
 use maulstick_types::{Mixture, Pose};
 
@@ -225,10 +226,9 @@ pub fn ground_reflectance(name: &str) -> Result<Spectrum, PaintRefusal> {
         .find(|(ground, _)| *ground == name)
         .map(|(_, reflectance)| Spectrum::flat(*reflectance))
         .ok_or_else(|| {
-            let names = GROUNDS.map(|(ground, _)| ground).join(", ");
             PaintRefusal::new(
                 format!("there is no ground called '{name}'"),
-                &format!("choose one of {names}"),
+                &choice(name, GROUNDS.map(|(ground, _)| ground)),
             )
         })
 }
@@ -250,7 +250,7 @@ pub fn relief_called(
     let tooth = Tooth::new(name, seed, cell_m).ok_or_else(|| {
         PaintRefusal::new(
             format!("there is no tooth called '{name}'"),
-            &format!("choose one of {}", Tooth::names()),
+            &choice(name, Tooth::names()),
         )
     })?;
     Ok(Relief::new(tooth, cell_m))

@@ -60,9 +60,8 @@ pub struct Tooth {
 
 impl Tooth {
     /// The names of the teeth.
-    #[must_use]
-    pub fn names() -> String {
-        KINDS.map(|kind| kind.name).join(", ")
+    pub fn names() -> impl Iterator<Item = &'static str> {
+        KINDS.iter().map(|kind| kind.name)
     }
 
     /// The tooth called `name` on cells of `cell_m`; none if there is no such tooth.

@@ -13,9 +13,9 @@ use crate::painting::PaintRefusal;
 use crate::tile::{TILE_CELLS, TileId};
 
 /// Widths that a picture may have on a surface, mm.
-const WIDTH_MM: std::ops::RangeInclusive<f64> = 1.0..=10_000.0;
+pub const WIDTH_MM: std::ops::RangeInclusive<f64> = 1.0..=10_000.0;
 /// Depths that it may have, µm.
-const DEPTH_UM: std::ops::RangeInclusive<f64> = 1.0..=1000.0;
+pub const DEPTH_UM: std::ops::RangeInclusive<f64> = 1.0..=1000.0;
 
 /// The name of such a tooth.
 #[derive(Clone, Debug, PartialEq)]

@@ -83,13 +83,8 @@ fn measure(options: &Options) -> Result<(), Fault> {
     let areas: Vec<&Area> = AREAS.iter().filter(|(name, _)| wanted(name)).collect();
     if let (true, Some(area)) = (areas.is_empty(), &options.area) {
         let names = AREAS.map(|(name, _)| name);
-        let nearest = Fault::nearest(area, names).unwrap_or_default();
-        return Err(
-            Fault::usage(format!("there is no benchmark called '{area}'")).help(format!(
-                "did you mean '{nearest}'? There are: {}",
-                names.join(", ")
-            )),
-        );
+        let what = format!("there is no benchmark called '{area}'");
+        return Err(Fault::unknown(what, area, names));
     }
     let mut report = Report::new();
     for (_, run) in areas {

@@ -15,6 +15,7 @@ use maulstick_types::scene::{CANVAS, WellKind};
 use crate::commands::say;
 use crate::document::{go_on, there, wrong};
 use crate::performance::refused;
+use crate::tooth::{DEPTH, ToothPicture};
 
 /// What becomes of a picture.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
@@ -55,7 +56,7 @@ pub struct ImportOptions {
     #[arg(long, value_name = "MM", allow_negative_numbers = true)]
     width_mm: Option<f64>,
     /// Depth of a tooth from white to black, µm
-    #[arg(long, default_value_t = 80.0, allow_negative_numbers = true)]
+    #[arg(long, default_value_t = DEPTH, allow_negative_numbers = true)]
     depth_um: f64,
 }
 
@@ -72,7 +73,7 @@ pub(super) fn run(options: &ImportOptions) -> Result<i32, Fault> {
     let done = match options.purpose {
         Purpose::Underpainting => options.paint(&mut sequencer, &image),
         Purpose::Ground => options.ground(&mut sequencer, &image),
-        Purpose::Tooth => options.tooth(&mut sequencer, &image),
+        Purpose::Tooth => options.tooth(&mut sequencer, image),
     };
     let closed = keeper.close(&mut sequencer);
     let said = done?;
@@ -85,8 +86,8 @@ impl ImportOptions {
     fn fault(&self, error: &ImportError) -> Fault {
         match error {
             ImportError::File(error) => Fault::reading(&self.picture, error),
-            ImportError::Thickness(_) => Fault::usage(error.to_string()).at("--um"),
-            ImportError::Paints(_) => Fault::usage(error.to_string()).at("--paint"),
+            ImportError::Thickness(_) => Fault::told(error.to_string()).at("--um"),
+            ImportError::Paints(_) => Fault::told(error.to_string()).at("--paint"),
             ImportError::Refused(refusal) => refused(refusal.clone()).at("--paint"),
             ImportError::Canvas(..) => Fault::usage(error.to_string())
                 .at(self.file.display().to_string())
@@ -137,33 +138,22 @@ impl ImportOptions {
         Ok("the picture is its ground".to_owned())
     }
 
-    fn tooth(&self, sequencer: &mut Sequencer, image: &Image) -> Result<String, Fault> {
+    fn tooth(&self, sequencer: &mut Sequencer, image: Image) -> Result<String, Fault> {
+        let file = self.picture.display().to_string();
+        let picture = ToothPicture::new(image, &file, self.width_mm, self.depth_um)
+            .map_err(|fault| fault.at("--width-mm, --depth-um"))?;
         let canvas = &sequencer.painting().scene().surfaces[0];
-        let cell_m = canvas.cell_m;
-        let width_mm = self
-            .width_mm
-            .unwrap_or(f64::from(canvas.cells[0]) * cell_m * 1e3);
-        let good = (1.0..=1e4).contains(&width_mm) && (1.0..=1e3).contains(&self.depth_um);
-        if !good {
-            let depth_um = self.depth_um;
-            return Err(
-                Fault::usage(format!("a tooth {width_mm} mm wide, {depth_um} µm deep"))
-                    .at("--width-mm, --depth-um")
-                    .help("choose 1 to 10000 mm and 1 to 1000 µm"),
-            );
-        }
-        let bytes = embed::tooth(image, width_mm, cell_m).map_err(|error| self.fault(&error))?;
+        let (cells, cell_m) = (canvas.cells, canvas.cell_m);
+        let bytes = picture.png(cells, cell_m)?;
         let hash = sequencer.painting_mut().embed(bytes).map_err(refused)?;
         let command = Command::Tooth {
             surface: CANVAS,
-            tooth: format!("image:{hash}@{width_mm}mm,{}um", self.depth_um),
+            tooth: picture.name(hash, cells, cell_m),
             seed: 1,
         };
         sequencer.ask(command).map_err(refused)?;
-        Ok(format!(
-            "the picture is its tooth, {} µm deep",
-            self.depth_um
-        ))
+        let depth_um = self.depth_um;
+        Ok(format!("the picture is its tooth, {depth_um} µm deep"))
     }
 }
 

@@ -69,7 +69,7 @@ impl VersionsOptions {
 pub(super) fn run(options: &VersionsOptions) -> Result<i32, Fault> {
     let command = options.command();
     if let Some(command) = &command {
-        command.check().map_err(Fault::usage)?;
+        command.check().map_err(Fault::told)?;
     }
     let Some(path) = &options.file else {
         let session = Session::open(&options.target)?;

@@ -1,5 +1,6 @@
 //! What values the settings of a rig may have.
 
+use maulstick_types::advice::choice;
 use maulstick_types::topics::check_name;
 
 use super::{
@@ -62,8 +63,7 @@ impl RigConfig {
         )
         .map_err(|(what, help)| fault(what, "piles", "").help(help))?;
         self.light.light().check().map_err(|what| {
-            let help = "`maulstick up --print-config` shows what a light may be";
-            fault(what, "[light]", "").help(help)
+            Fault::told(what).at(format!("{name}:{}", line_of(text, "[light]", "")))
         })?;
         choose("paint model", &self.paint.model, &MODELS)
             .and_then(|()| choose("backend", &self.paint.backend, &BACKENDS))
@@ -189,16 +189,10 @@ fn check_brush(brush: &BrushSection) -> Result<(), Wrong> {
     Ok(())
 }
 
-fn unknown<'a>(
-    kind: &str,
-    name: &str,
-    names: impl Iterator<Item = &'a str> + Clone,
-) -> (String, String) {
-    let all = names.clone().collect::<Vec<_>>().join(", ");
-    let nearest = Fault::nearest(name, names).unwrap_or_default();
+fn unknown<'a>(kind: &str, name: &str, names: impl Iterator<Item = &'a str>) -> (String, String) {
     (
         format!("there is no {kind} called '{name}'"),
-        format!("did you mean '{nearest}'? There are: {all}"),
+        choice(name, names),
     )
 }
 

@@ -10,7 +10,7 @@ impl Command {
     /// and that no surface is put out of reach.
     ///
     /// # Errors
-    /// What is wrong, in few words.
+    /// What is wrong and what to do, in few words, as [`parted`](crate::advice::parted) tells them apart.
     pub fn check(&self) -> Result<(), String> {
         match self {
             Self::Load { brush, mixture } => brush_name(brush).and_then(|()| short(mixture)),
@@ -20,7 +20,10 @@ impl Command {
             }
             Self::Define { brush, toml } => {
                 brush_name(brush).and_then(|()| match toml.len() > BRUSH_FILE_MAX {
-                    true => Err(format!("a brush file of {} bytes is too long", toml.len())),
+                    true => Err(format!(
+                        "a brush file of {} bytes; give one of at most {BRUSH_FILE_MAX}",
+                        toml.len()
+                    )),
                     false => Ok(()),
                 })
             }
@@ -30,7 +33,7 @@ impl Command {
                 match good {
                     true => Ok(()),
                     false => Err(format!(
-                        "stiffness is {}, wetness {}, but must be 0.05 to 20 and 0 to 1",
+                        "a stiffness of {} and a wetness of {}; choose 0.05 to 20, and 0 to 1",
                         tuning.stiffness, tuning.wetness
                     )),
                 }
@@ -42,7 +45,7 @@ impl Command {
                 let paths = std::iter::once(path).chain(ledger);
                 match paths.map(String::len).find(|length| *length > PATH_MAX) {
                     Some(length) => Err(format!(
-                        "a path of {length} bytes is longer than {PATH_MAX}"
+                        "a path of {length} bytes; give one of at most {PATH_MAX}"
                     )),
                     None => Ok(()),
                 }
@@ -52,7 +55,7 @@ impl Command {
                 match pose.position_m.iter().all(near) {
                     true => Ok(()),
                     false => Err(format!(
-                        "the surface's place is not within {FARTHEST_M} m of the desk's origin"
+                        "the surface is out of reach; place it within {FARTHEST_M} m of the desk's origin"
                     )),
                 }
             }
@@ -73,7 +76,9 @@ impl Command {
                 ..
             } => match DRYING_TICKS.contains(ticks) {
                 true => layer_name(name).and_then(|()| checked(region.as_ref())),
-                false => Err("a drying takes a sixtieth of a second to a year".to_owned()),
+                false => Err(format!(
+                    "a drying that takes {ticks} sixtieths of a second; choose one to a year"
+                )),
             },
             Self::Wet { region, .. } => checked(region.as_ref()),
             Self::Opacity { opacity, .. } => opaque(*opacity),
@@ -82,7 +87,7 @@ impl Command {
             }
             Self::GroundSpectrum { spectrum, .. } => match spectrum.len() > SPECTRUM_MAX {
                 true => Err(format!(
-                    "a spectrum of {} bytes is too long",
+                    "a spectrum of {} bytes; give one of at most {SPECTRUM_MAX}",
                     spectrum.len()
                 )),
                 false => Ok(()),
@@ -92,7 +97,10 @@ impl Command {
             }
             Self::Ground { ground: name, .. } | Self::Tooth { tooth: name, .. } => {
                 match name.len() > PATH_MAX {
-                    true => Err(format!("a name of {} bytes is too long", name.len())),
+                    true => Err(format!(
+                        "a name of {} bytes; give one of at most {PATH_MAX}",
+                        name.len()
+                    )),
                     false => Ok(()),
                 }
             }
@@ -107,8 +115,8 @@ impl Command {
             Self::Handle { handling } => brush_name(&handling.brush).and_then(|()| {
                 if !FLOWS.contains(&handling.flow) {
                     return Err(format!(
-                        "a flow of {} µm/mm, but it must be .001 to 100",
-                        handling.flow * 1e3
+                        "a flow of {} µm/mm; choose .001 to 100",
+                        micrometres(handling.flow * 1e-3)
                     ));
                 }
                 match handling.most_m == 0.0 {
@@ -119,8 +127,8 @@ impl Command {
             Self::Size { stain_m, .. } => match STAINS_M.contains(stain_m) {
                 true => Ok(()),
                 false => Err(format!(
-                    "a stain of {} µm, but it must be 0 to 1000 µm",
-                    stain_m * 1e6
+                    "a stain of {} µm; choose 0 to 1000 µm",
+                    micrometres(*stain_m)
                 )),
             },
             Self::Piles { .. } => Ok(()),
@@ -135,12 +143,17 @@ impl Command {
     }
 }
 
+/// Micrometres without the noise of the last digits.
+fn micrometres(m: f64) -> f64 {
+    (m * 1e12).round() * 1e-6
+}
+
 fn film(thickness_m: f64) -> Result<(), String> {
     match FILM_M.contains(&thickness_m) {
         true => Ok(()),
         false => Err(format!(
-            "a film of {} µm, but it must be 1 to 5000 µm",
-            thickness_m * 1e6
+            "a film of {} µm; choose 1 to 5000 µm",
+            micrometres(thickness_m)
         )),
     }
 }
@@ -148,9 +161,12 @@ fn film(thickness_m: f64) -> Result<(), String> {
 fn brush_name(name: &str) -> Result<(), String> {
     check_name(name).map_err(|what| {
         if name.len() > 2 * PAINT_NAME_MAX {
-            format!("a brush's name of {} bytes is too long", name.len())
+            format!(
+                "a brush's name of {} bytes; choose a shorter one",
+                name.len()
+            )
         } else {
-            format!("the brush's name {what}")
+            format!("the brush's name {what}; give it another one")
         }
     })
 }
@@ -158,7 +174,7 @@ fn brush_name(name: &str) -> Result<(), String> {
 fn layer_name(name: &str) -> Result<(), String> {
     match name.len() > LAYER_NAME_MAX {
         true => Err(format!(
-            "a layer's name of {} bytes is too long",
+            "a layer's name of {} bytes; give one of at most {LAYER_NAME_MAX}",
             name.len()
         )),
         false => Ok(()),
@@ -169,7 +185,7 @@ fn drying_share(share: f32) -> Result<(), String> {
     match share > 0.0 && share <= 1.0 {
         true => Ok(()),
         false => Err(format!(
-            "the share that dries is {share}, but must be above 0 to 1"
+            "a share of {share} that dries; choose one above 0, at most 1"
         )),
     }
 }
@@ -177,7 +193,7 @@ fn drying_share(share: f32) -> Result<(), String> {
 fn opaque(opacity: f32) -> Result<(), String> {
     match (0.0..=1.0).contains(&opacity) {
         true => Ok(()),
-        false => Err(format!("the opacity is {opacity}, but must be 0 to 1")),
+        false => Err(format!("an opacity of {opacity}; choose 0 to 1")),
     }
 }
 
@@ -188,7 +204,7 @@ fn checked(region: Option<&Region>) -> Result<(), String> {
 fn version_name(name: &str) -> Result<(), String> {
     if name.trim().is_empty() || name.len() > VERSION_NAME_MAX || name.contains(char::is_control) {
         return Err(format!(
-            "a version's name has 1 to {VERSION_NAME_MAX} bytes, and no line breaks"
+            "a version cannot be called this; give it 1 to {VERSION_NAME_MAX} bytes, and no line breaks"
         ));
     }
     Ok(())
@@ -197,11 +213,15 @@ fn version_name(name: &str) -> Result<(), String> {
 fn short(mixture: &Mixture) -> Result<(), String> {
     if mixture.parts.len() > PARTS_MAX {
         let parts = mixture.parts.len();
-        return Err(format!("a mixture of {parts} paints has over {PARTS_MAX}"));
+        return Err(format!(
+            "a mixture of {parts} paints; give one of at most {PARTS_MAX}"
+        ));
     }
     let longest = mixture.parts.iter().map(|part| part.paint.len()).max();
     match longest.filter(|length| *length > PAINT_NAME_MAX) {
-        Some(length) => Err(format!("a paint's name of {length} bytes is too long")),
+        Some(length) => Err(format!(
+            "a paint's name of {length} bytes; give one of at most {PAINT_NAME_MAX}"
+        )),
         None => Ok(()),
     }
 }

@@ -27,10 +27,9 @@ impl BrushFile {
             return Ok(text);
         }
         let names = LIBRARY.iter().map(|(name, _)| *name);
-        let nearest = maulstick_types::nearest(kind, names).unwrap_or_default();
         Err(BrushError::Unknown {
             name: kind.to_owned(),
-            nearest: nearest.to_owned(),
+            nearest: maulstick_types::nearest(kind, names).map(str::to_owned),
         })
     }
 
@@ -72,6 +71,12 @@ mod tests {
                 .expect_err("misspelt")
                 .to_string()
                 .contains("'round'")
+        );
+        assert_eq!(
+            BrushFile::library("sable")
+                .expect_err("none is near")
+                .to_string(),
+            "there is no brush called 'sable'"
         );
     }
 }

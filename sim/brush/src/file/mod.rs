@@ -44,12 +44,12 @@ use crate::tuft::Tuft;
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum BrushError {
     /// No such brush; the nearest name is proposed.
-    #[error("there is no brush called '{name}'; did you mean '{nearest}'?")]
+    #[error("there is no brush called '{name}'{}", meant(.nearest.as_deref()))]
     Unknown {
         /// What was asked for.
         name: String,
-        /// The nearest name.
-        nearest: String,
+        /// The nearest name, if one is near.
+        nearest: Option<String>,
     },
     /// The file is no brush file.
     #[error("{0}")]
@@ -64,6 +64,10 @@ pub enum BrushError {
         /// What it may be.
         range: String,
     },
+}
+
+fn meant(nearest: Option<&str>) -> String {
+    nearest.map_or(String::new(), |name| format!("; did you mean '{name}'?"))
 }
 
 /// A brush file.

@@ -3,6 +3,7 @@
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
+use maulstick_types::advice::choice;
 use maulstick_types::scene::NamedVersion;
 
 use super::{PaintRefusal, Painting};
@@ -40,9 +41,9 @@ impl Painting {
     fn version(&self, name: &str) -> Result<&Named, PaintRefusal> {
         self.named.get(name).ok_or_else(|| {
             let names: Vec<&str> = self.named.keys().map(String::as_str).collect();
-            let help = match maulstick_types::nearest(name, names.iter().copied()) {
-                None => "this painting has none yet: keep one first".to_owned(),
-                Some(_) => format!("there are: {}", names.join(", ")),
+            let help = match names.is_empty() {
+                true => "this painting has none yet: keep one first".to_owned(),
+                false => choice(name, names),
             };
             PaintRefusal::new(format!("there is no version called '{name}'"), &help)
         })

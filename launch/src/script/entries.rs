@@ -1,0 +1,261 @@
+//! The keys of a script and what they hold, each with its line: who wrote something else than is due is told
+//! the key, what it takes and what was given.
+
+use std::path::Path;
+
+use maulstick_rig::Fault;
+use maulstick_rig::config::is_path;
+use toml::Spanned;
+use toml::de::{DeArray, DeInteger, DeTable, DeValue};
+
+/// What a script looks like.
+const EXAMPLE: &str = "a script is `step = [ { load = \"Bone Black\" }, … ]`";
+
+/// Longer texts are cut where they are quoted.
+const SHORT: usize = 40;
+
+/// Where a script is from.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Source<'a> {
+    pub(super) text: &'a str,
+    /// Its file, as the user named it.
+    pub(super) name: &'a str,
+    /// From where its paths count.
+    pub(super) folder: &'a Path,
+}
+
+impl<'a> Source<'a> {
+    /// File and line of a byte.
+    pub(super) fn place(&self, byte: usize) -> String {
+        let before = &self.text.as_bytes()[..byte.min(self.text.len())];
+        let line = 1 + before.iter().filter(|byte| **byte == b'\n').count();
+        format!("{}:{line}", self.name)
+    }
+
+    /// A script that TOML's reader does not understand.
+    pub(super) fn no_toml(&self, error: &toml::de::Error) -> Fault {
+        let message = error.message().lines().next().unwrap_or_default();
+        Fault::usage(format!("this is no TOML: {message}"))
+            .at(self.place(error.span().map_or(0, |span| span.start)))
+            .help(EXAMPLE)
+    }
+
+    /// What the only key of a script lists: tables, each with its first byte.
+    pub(super) fn listed(
+        &self,
+        file: &'a DeTable<'a>,
+    ) -> Result<Vec<(usize, &'a DeTable<'a>)>, Fault> {
+        let fault =
+            |what: String, byte: usize| Fault::usage(what).at(self.place(byte)).help(EXAMPLE);
+        if let Some((key, _)) = file.iter().find(|(key, _)| key.get_ref() != "step") {
+            let what = format!("a script has no key '{}', only 'step'", key.get_ref());
+            return Err(fault(what, key.span().start));
+        }
+        let Some((_, step)) = file.iter().next() else {
+            return Err(Fault::usage("there are no steps")
+                .at(self.name)
+                .help(EXAMPLE));
+        };
+        let no_list = |value: &Spanned<DeValue<'_>>, due: &str| {
+            let what = format!("'step' is {due}, not {}", described(value.get_ref()));
+            fault(what, value.span().start)
+        };
+        let DeValue::Array(steps) = step.get_ref() else {
+            return Err(no_list(step, "a list of steps"));
+        };
+        let tables = steps.iter().map(|value| match value.get_ref() {
+            DeValue::Table(table) => Ok((value.span().start, table)),
+            _ => Err(no_list(value, "a list of steps in braces")),
+        });
+        tables.collect()
+    }
+}
+
+/// Keys and what they hold.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Entries<'a> {
+    pub(super) source: Source<'a>,
+    pub(super) table: &'a DeTable<'a>,
+    /// How they may be written, for help.
+    pub(super) example: &'static str,
+}
+
+/// A value as it is spoken of.
+fn described(value: &DeValue<'_>) -> String {
+    match value {
+        DeValue::String(text) if text.chars().count() > SHORT => {
+            format!(
+                "the text {:?}…",
+                text.chars().take(SHORT).collect::<String>()
+            )
+        }
+        DeValue::String(text) => format!("the text {text:?}"),
+        DeValue::Integer(number) => format!("the number {number}"),
+        DeValue::Float(number) => format!("the number {number}"),
+        DeValue::Boolean(switch) => switch.to_string(),
+        DeValue::Datetime(date) => format!("the date {date}"),
+        DeValue::Array(_) => "a list".to_owned(),
+        DeValue::Table(_) => "a table".to_owned(),
+    }
+}
+
+fn whole_of(number: &DeInteger<'_>) -> Option<u64> {
+    u64::from_str_radix(number.as_str(), number.radix()).ok()
+}
+
+fn number_of(value: &DeValue<'_>) -> Option<f64> {
+    match value {
+        DeValue::Integer(number) => i64::from_str_radix(number.as_str(), number.radix())
+            .ok()
+            .map(|number| number as f64),
+        DeValue::Float(number) => number.as_str().parse().ok(),
+        _ => None,
+    }
+}
+
+fn text_of<'a>(value: &'a DeValue<'_>) -> Option<&'a str> {
+    match value {
+        DeValue::String(text) => Some(text),
+        _ => None,
+    }
+}
+
+impl<'a> Entries<'a> {
+    /// The keys that are given, as they stand in the file.
+    pub(super) fn keys(&self) -> Vec<&'a str> {
+        let mut keys: Vec<_> = self.table.keys().collect();
+        keys.sort_by_key(|key| key.span().start);
+        keys.into_iter().map(|key| key.get_ref().as_ref()).collect()
+    }
+
+    /// File and line of a key.
+    pub(super) fn place(&self, key: &str) -> String {
+        let found = self.table.keys().find(|found| found.get_ref() == key);
+        self.source.place(found.map_or(0, |key| key.span().start))
+    }
+
+    /// Something wrong at a key.
+    pub(super) fn fault(&self, key: &str, what: impl Into<String>) -> Fault {
+        Fault::usage(what).at(self.place(key))
+    }
+
+    /// The example as help.
+    pub(super) fn for_example(&self) -> String {
+        format!("for example {}", self.example)
+    }
+
+    fn find(&self, key: &str) -> Option<&'a DeValue<'a>> {
+        let found = self.table.iter().find(|(found, _)| found.get_ref() == key);
+        found.map(|(_, value)| value.get_ref())
+    }
+
+    fn due<T>(
+        &self,
+        key: &str,
+        due: &str,
+        read: impl Fn(&'a DeValue<'a>) -> Option<T>,
+    ) -> Result<Option<T>, Fault> {
+        let Some(value) = self.find(key) else {
+            return Ok(None);
+        };
+        read(value).map(Some).ok_or_else(|| {
+            let what = format!("'{key}' takes {due}, not {}", described(value));
+            self.fault(key, what).help(self.for_example())
+        })
+    }
+
+    pub(super) fn text(&self, key: &str) -> Result<Option<&'a str>, Fault> {
+        self.due(key, "a text", text_of)
+    }
+
+    pub(super) fn number(&self, key: &str) -> Result<Option<f64>, Fault> {
+        self.due(key, "a number", number_of)
+    }
+
+    /// A whole number that is not negative.
+    pub(super) fn whole<T: TryFrom<u64>>(&self, key: &str) -> Result<Option<T>, Fault> {
+        self.due(key, "a whole number, 0 or more", |value| match value {
+            DeValue::Integer(number) => whole_of(number)?.try_into().ok(),
+            _ => None,
+        })
+    }
+
+    pub(super) fn switch(&self, key: &str) -> Result<Option<bool>, Fault> {
+        self.due(key, "true or false", |value| match value {
+            DeValue::Boolean(switch) => Some(*switch),
+            _ => None,
+        })
+    }
+
+    /// A name, or a whole number in its digits.
+    pub(super) fn word(&self, key: &str) -> Result<Option<String>, Fault> {
+        self.due(key, "a name or a number", |value| match value {
+            DeValue::Integer(number) => whole_of(number).map(|number| number.to_string()),
+            value => text_of(value).map(str::to_owned),
+        })
+    }
+
+    pub(super) fn texts(&self, key: &str) -> Result<Option<Vec<&'a str>>, Fault> {
+        self.due(key, "a list of texts", |value| {
+            list_of(value)?
+                .iter()
+                .map(|value| text_of(value.get_ref()))
+                .collect()
+        })
+    }
+
+    /// A vector.
+    pub(super) fn three(&self, key: &str) -> Result<Option<[f64; 3]>, Fault> {
+        self.due(key, "three numbers", |value| {
+            let list = list_of(value)?.iter();
+            let numbers: Option<Vec<f64>> = list.map(|value| number_of(value.get_ref())).collect();
+            numbers?.try_into().ok()
+        })
+    }
+
+    pub(super) fn table(&self, key: &str) -> Result<Option<Self>, Fault> {
+        self.due(key, "a table in braces", |value| match value {
+            DeValue::Table(table) => Some(Self { table, ..*self }),
+            _ => None,
+        })
+    }
+
+    /// A name, or the path of a file beside the script.
+    pub(super) fn beside(&self, name: &str) -> String {
+        match is_path(name) {
+            true => self.source.folder.join(name).display().to_string(),
+            false => name.to_owned(),
+        }
+    }
+
+    /// What became of what a key names, perhaps a file: what is wrong with it is told with both places.
+    pub(super) fn named<T>(
+        &self,
+        key: &str,
+        file: Option<&str>,
+        read: Result<T, Fault>,
+    ) -> Result<T, Fault> {
+        read.map_err(|mut fault| {
+            if file.is_some_and(|file| !Path::new(file).exists()) {
+                fault = fault.help("check the path: it counts from the script's folder");
+            }
+            let place = self.place(key);
+            match fault.place.take() {
+                Some(file) => fault.at(format!("{file}, named at {place}")),
+                None => fault.at(place),
+            }
+        })
+    }
+}
+
+/// A name that is that of a file.
+pub(super) fn file(name: &str) -> Option<&str> {
+    is_path(name).then_some(name)
+}
+
+fn list_of<'a>(value: &'a DeValue<'a>) -> Option<&'a DeArray<'a>> {
+    match value {
+        DeValue::Array(list) => Some(list),
+        _ => None,
+    }
+}

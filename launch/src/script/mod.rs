@@ -1,0 +1,117 @@
+//! A script: a day at the easel, a step after the other.
+//!
+//! ```toml
+//! step = [
+//!     { brush = "filbert", size_mm = 12 },
+//!     { load = "Ultramarine Blue=0.6,Titanium White=0.4" },
+//!     { take = "sky.mcap" },
+//!     { dry = 1.0, layer = "sky" },
+//! ]
+//! ```
+//!
+//! A step has one key that says what is done, and perhaps others that say how. Paths count from the
+//! script's folder. All of it is read before anything is painted.
+//!
+//! | module | holds |
+//! | --- | --- |
+//! | `entries` | keys and what they hold, each with its line |
+//! | `steps` | which steps there are, and what keys each has |
+//! | `acts` | what each step does |
+
+mod acts;
+mod entries;
+mod steps;
+#[cfg(test)]
+mod tests;
+
+use std::path::Path;
+
+use maulstick_brush::BrushFile;
+use maulstick_device::Take;
+use maulstick_optics::PaintLibrary;
+use maulstick_rig::Fault;
+use maulstick_types::Mixture;
+use maulstick_types::command::Command;
+use maulstick_types::scene::BrushMode;
+use toml::de::DeTable;
+
+use self::entries::Source;
+use crate::duration::time_ns;
+use crate::ground::GroundFile;
+use crate::lamp::LightChange;
+use crate::tooth::ToothPicture;
+
+/// What is done in a step.
+#[derive(Clone, Debug)]
+pub enum Act {
+    /// Takes up a brush: its name, its file, the share of its head that full pressure presses in.
+    Brush(String, Box<BrushFile>, f64),
+    /// Loads the brush; with two mixtures a half of its width with each.
+    Load(Mixture, Option<Mixture>),
+    /// Takes all paint off the brush.
+    Clean,
+    /// Uses the brush in another way: mode, flow of the marker, most paint, m.
+    Handle(BrushMode, f64, f64),
+    /// Lays a film of what the brush carries over the canvas, m.
+    FillWith(f64),
+    /// Follows a take; its strokes load these mixtures in turn.
+    Take(Take, Vec<Mixture>),
+    /// Gives the canvas another ground.
+    Ground(GroundFile),
+    /// Gives the canvas the tooth of a picture.
+    Tooth(ToothPicture),
+    /// Lets time go by, in sixtieths of a second.
+    Wait(u32),
+    /// Changes the light.
+    Light(LightChange),
+    /// Takes so many steps back.
+    Undo(u32),
+    /// Anything else.
+    Command(Command),
+}
+
+/// The steps of a script, each with its place, file and line.
+#[derive(Clone, Debug)]
+pub struct Script(pub Vec<(String, Act)>);
+
+impl Script {
+    /// Reads a script, its takes, brushes and pictures.
+    ///
+    /// # Errors
+    /// A [`Fault`] with file and line, and what to do.
+    pub fn read(path: &Path, library: &PaintLibrary) -> Result<Self, Fault> {
+        let text = std::fs::read_to_string(path).map_err(|error| {
+            let fault = Fault::reading(path, &error);
+            match path
+                .extension()
+                .is_some_and(|extension| extension == "mcap")
+            {
+                true => fault.help("a take is painted without `--script`: `maulstick render TAKE`"),
+                false => fault,
+            }
+        })?;
+        let text = text.trim_start_matches('\u{feff}');
+        let source = Source {
+            text,
+            name: &path.display().to_string(),
+            folder: path.parent().unwrap_or(Path::new("")),
+        };
+        let file = DeTable::parse(text).map_err(|error| source.no_toml(&error))?;
+        steps::listed(source, file.get_ref())?
+            .into_iter()
+            .map(|step| Ok((step.place(), steps::act(&step, library)?)))
+            .collect::<Result<_, _>>()
+            .map(Self)
+    }
+
+    /// Length of all takes and waits, ns.
+    #[must_use]
+    pub fn length_ns(&self) -> u64 {
+        let lengths = self.0.iter().map(|(_, act)| match act {
+            Act::Take(take, _) => take.length_ns(),
+            Act::Wait(ticks) => time_ns(*ticks),
+            _ => 0,
+        });
+        lengths.sum()
+    }
+}

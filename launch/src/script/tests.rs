@@ -1,0 +1,322 @@
+use super::steps::KINDS;
+use super::*;
+
+fn read_text(text: &str) -> Result<Script, Fault> {
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = folder.path().join("day.toml");
+    std::fs::write(&path, text).expect("written");
+    let linen = folder.path().join("linen.csv");
+    std::fs::write(linen, "400,0.5\n700,1.5\n").expect("written");
+    std::fs::write(folder.path().join("no.png"), "no picture").expect("written");
+    Script::read(&path, &PaintLibrary::measured().expect("whole"))
+}
+
+fn read(steps: &str) -> Result<Script, Fault> {
+    read_text(&format!("# a day\nstep = [\n{steps}\n]\n"))
+}
+
+#[test]
+fn steps_are_read_in_their_order() {
+    let steps = "{ brush = \"flat\", size_mm = 20 },\n{ load = \"Bone Black\" },\n{ clean = true },\n\
+        { fill = \"Titanium White\", um = 30 },\n{ dry = 0.5, layer = \"sky\" },\n\
+        { opacity = 0.3, layer = \"sky\" },\n{ light = { intensity = 2 } },\n{ undo = 2 }";
+    let script = read(steps).expect("a script");
+    assert_eq!(script.0.len(), 8);
+    assert!(
+        matches!(&script.0[0].1, Act::Brush(name, file, _) if name == "flat" && file.head.width_mm == 20.0)
+    );
+    assert!(matches!(script.0[7].1, Act::Undo(2)));
+    assert!(script.0[4].0.ends_with("day.toml:7"));
+    let long = "\u{feff}[[step]]\nload = \"Bone Black\"\n\n[[step]]\nundo = 0x2\n";
+    let script = read_text(long).expect("a script in its long form");
+    assert!(matches!(script.0[1].1, Act::Undo(2)));
+    assert!(script.0[1].0.ends_with("day.toml:5"), "{}", script.0[1].0);
+    assert_eq!(read_text("step = []").expect("a day off").0.len(), 0);
+}
+
+#[test]
+fn the_examples_of_the_help_are_right() {
+    for kind in &KINDS {
+        match read(&format!("{},", kind.example)) {
+            Ok(_) => {}
+            // It names a file that is not here.
+            Err(fault) => assert!(fault.what.contains("read the file"), "{fault}"),
+        }
+    }
+}
+
+/// What is said of a script has these words, a place and help.
+fn says(fault: Result<Script, Fault>, words: &[&str]) {
+    let fault = fault.expect_err(words[0]);
+    let text = fault.to_string();
+    for word in words {
+        assert!(text.contains(word), "{word}: {text}");
+    }
+    assert!(
+        fault.place.is_some_and(|place| place.contains("day.toml")),
+        "{text}"
+    );
+    assert!(fault.help.is_some_and(|help| !help.is_empty()), "{text}");
+    assert!(!text.contains("did you mean ''"), "{text}");
+}
+
+#[test]
+fn what_is_wrong_has_its_line_the_nearest_name_and_help() {
+    for (steps, words) in [
+        (
+            "{ load = \"Bone Black\" },\n{ dri = 1.0 },",
+            &["day.toml:4", "'dri'", "'dry'"][..],
+        ),
+        (
+            "{ load = \"Bone Black\", besides = \"Bone Black\" }",
+            &["'besides'", "'beside'"],
+        ),
+        ("{ load = \"Bone Balck\" }", &["day.toml:3", "'Bone Black'"]),
+        ("{ size_mm = 3 }", &["day.toml:3", "does nothing"]),
+        ("{}", &["day.toml:3", "does nothing"]),
+        (
+            "{ dry = 1.0, undo = 1 }",
+            &["several things: dry, undo", "brush, load"],
+        ),
+        (
+            "{ fill = \"Bone Black\", layer = \"x\" }",
+            &["'layer'", "'fill' takes: um"],
+        ),
+        (
+            "{ clean = true, um = 3 }",
+            &["'um' does nothing", "no other key"],
+        ),
+        (
+            "{ take = \"none.mcap\" }",
+            &["none.mcap, named at", "day.toml:3", "script's folder"],
+        ),
+        (
+            "{ brush = \"none.toml\" }",
+            &["none.toml, named at", "day.toml:3", "script's folder"],
+        ),
+        (
+            "{ ground = \"none.csv\" }",
+            &["none.csv, named at", "day.toml:3", "script's folder"],
+        ),
+        (
+            "{ tooth = \"none.png\" }",
+            &["none.png, named at", "day.toml:3", "script's folder"],
+        ),
+        (
+            "{ light = { illuminant = \"none.csv\" } }",
+            &["none.csv, named at", "day.toml:3"],
+        ),
+        (
+            "{ ground = \"linen.csv\" }",
+            &["linen.csv:2, named at", "day.toml:3"],
+        ),
+        (
+            "{ tooth = \"no.png\" }",
+            &["no.png, named at", "day.toml:3"],
+        ),
+        (
+            "{ brush = \"flta\" }",
+            &["day.toml:3", "'flat'", "brush list"],
+        ),
+        (
+            "{ ground = \"gesoo\" }",
+            &["day.toml:3", "'gesoo'", "gesso"],
+        ),
+        ("{ tooth = \"lines\" }", &["day.toml:3", "'lines'", "linen"]),
+        ("{ mode = \"spunge\" }", &["day.toml:3", "'sponge'"]),
+        ("{ piles = \"stay\" }", &["day.toml:3", "deplete"]),
+        (
+            "{ light = { illuminant = \"D66\" } }",
+            &["day.toml:3", "'D65'"],
+        ),
+        (
+            "{ light = { intensty = 2 } }",
+            &["day.toml:3", "'intensity'"],
+        ),
+        ("{ load = \"Bone Black=2\" }", &["day.toml:3", "'2'"]),
+        (
+            "{ wait = \"5 minutes\" }",
+            &["day.toml:3", "help: give one such as 90s"],
+        ),
+        (
+            "{ dry = 1, region = \"1,2\" }",
+            &["day.toml:3", "help: give X,Y,WxH"],
+        ),
+    ] {
+        says(read(steps), words);
+    }
+    let far = read("{ fill = \"zzz\" }")
+        .expect_err("no paint")
+        .to_string();
+    assert!(!far.contains("did you mean"), "{far}");
+}
+
+#[test]
+fn what_is_out_of_range_says_what_to_choose() {
+    for (steps, words) in [
+        (
+            "{ opacity = 3, layer = \"x\" }",
+            &["opacity of 3", "help: choose 0 to 1"][..],
+        ),
+        ("{ dry = 0 }", &["share of 0", "help: choose"]),
+        (
+            "{ fill = \"Bone Black\", um = 6000 }",
+            &["6000 µm", "help: choose 1 to 5000"],
+        ),
+        (
+            "{ mode = \"marker\", flow = -1 }",
+            &["-1 µm/mm", "help: choose .001"],
+        ),
+        ("{ stain_um = -2 }", &["-2 µm", "help: choose 0 to 1000"]),
+        (
+            "{ light = { intensity = -1 } }",
+            &["-1", "help: choose 0 to 100"],
+        ),
+        (
+            "{ light = { direction = [0, 0, -1] } }",
+            &["above", "help: give x, y, z"],
+        ),
+        (
+            "{ brush = \"flat\", depth_share = 5.0 }",
+            &["5", "help: choose 0 to 0.9"],
+        ),
+        (
+            "{ brush = \"flat\", size_mm = 3000 }",
+            &["3000", "0.1 to 300", "help: "],
+        ),
+        (
+            "{ wet = 0 }",
+            &["\"all\", not 0", "help: for example { wet = 1 }"],
+        ),
+        ("{ tooth = \"no.png\", width_mm = 0 }", &["day.toml:3"]),
+        ("{ keep = \"\" }", &["help: give it 1 to 128"]),
+        (
+            "{ opacity = 0.5 }",
+            &["no layer is named", "layer = \"sky\""],
+        ),
+    ] {
+        says(read(steps), words);
+    }
+}
+
+#[test]
+fn another_kind_of_value_is_told_with_key_and_line() {
+    for (steps, words) in [
+        (
+            "{ dry = \"all\" }",
+            &[
+                "day.toml:3",
+                "'dry' takes a number, not the text \"all\"",
+                "{ dry = 0.5",
+            ][..],
+        ),
+        (
+            "{ load = 3 }",
+            &["'load' takes a text, not the number 3", "{ load = \""],
+        ),
+        (
+            "{ brush = \"flat\",\n size_mm = \"big\" }",
+            &["day.toml:4", "'size_mm'", "\"big\""],
+        ),
+        ("{ clean = \"yes\" }", &["'clean' takes true or false"]),
+        (
+            "{ undo = 1.5 }",
+            &["'undo' takes a whole number, 0 or more, not the number 1.5"],
+        ),
+        ("{ undo = -1 }", &["not the number -1"]),
+        ("{ undo = 5000000000 }", &["whole number"]),
+        (
+            "{ take = \"x\", loads = \"Bone Black\" }",
+            &["'loads' takes a list of texts"],
+        ),
+        (
+            "{ take = \"x\", loads = [3] }",
+            &["'loads' takes a list of texts"],
+        ),
+        (
+            "{ light = \"A\" }",
+            &["'light' takes a table", "{ light = {"],
+        ),
+        (
+            "{ light = { direction = [1, 2] } }",
+            &["'direction' takes three numbers"],
+        ),
+        (
+            "{ opacity = 1, layer = true }",
+            &["'layer' takes a name or a number, not true"],
+        ),
+        ("{ fill = 1979-05-27 }", &["the date 1979-05-27"]),
+        (
+            "{ dry = \"\"\"all\nof it, as soon as it can be managed at all\"\"\" }",
+            &["day.toml:3", r#"not the text "all\nof it"#, "managed \"…"],
+        ),
+    ] {
+        says(read(steps), words);
+    }
+}
+
+#[test]
+fn what_would_do_nothing_is_refused() {
+    for (steps, words) in [
+        ("{ clean = false }", &["does nothing", "leave it out"][..]),
+        ("{ undo = 0 }", &["does nothing", "leave it out"]),
+        (
+            "{ mode = \"sponge\", flow = 3 }",
+            &["flow does nothing", "sponge", "marker"],
+        ),
+        (
+            "{ mode = \"sampler\", most_um = 3 }",
+            &["most_um does nothing", "sampler"],
+        ),
+        (
+            "{ tooth = \"linen\", width_mm = 30 }",
+            &["'width_mm' does nothing", "weave.png"],
+        ),
+        (
+            "{ tooth = \"linen.png\", seed = 3 }",
+            &["'seed' does nothing", "leave it out"],
+        ),
+        ("{ light = {} }", &["changes nothing"]),
+        (
+            "{ light = { rule = \"reference\", samples = 8 } }",
+            &["'samples' does nothing"],
+        ),
+        (
+            "{ take = \"x\", loads = [] }",
+            &["does nothing", "leave it out"],
+        ),
+        (
+            "{ dry = 0.5, over = \"9s\" }",
+            &["all that is wet dries", "dry = 1.0"],
+        ),
+    ] {
+        says(read(steps), words);
+    }
+}
+
+#[test]
+fn what_is_no_script_is_told_what_one_is() {
+    for (text, words) in [
+        ("", &["there are no steps"][..]),
+        ("steps = []", &["day.toml:1", "'steps'", "only 'step'"]),
+        (
+            "\n[step]\nload = 1",
+            &["day.toml:2", "a list of steps, not a table"],
+        ),
+        (
+            "step = [ \"a\" ]",
+            &["day.toml:1", "steps in braces, not the text \"a\""],
+        ),
+        (
+            "step = [\n{ load = \"Bone Black } ]",
+            &["day.toml:2", "no TOML"],
+        ),
+        (
+            "step = [\n{ dry = 1.0, dry = 2 } ]",
+            &["day.toml:2", "duplicate key"],
+        ),
+    ] {
+        says(read_text(text), words);
+        says(read_text(text), &["step = ["]);
+    }
+}
