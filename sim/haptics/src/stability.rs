@@ -11,7 +11,8 @@ use maulstick_types::haptics::ForceLaw;
 use crate::contact::tests::model;
 use crate::contact::{Contact, Held};
 use crate::plant::{Hand, Plant};
-use crate::servo::{Limits, Sender, Servo};
+use crate::servo::limits::Limits;
+use crate::servo::{Sender, Servo};
 
 const DT: f64 = 1e-3;
 /// Ticks between two models: those of the brush node come 4 ms apart.
@@ -47,6 +48,10 @@ impl Press {
         let mut servo = Servo::new(Limits {
             max_stiffness_n_m: 1e9,
             max_force_n: 3.3,
+            // As if the device took all that sampling gives: these are the bounds of the bare wall.
+            damping_n_s_m: 1e9,
+            shaking_m: f64::INFINITY,
+            max_speed_m_s: f64::INFINITY,
             ..Limits::default()
         });
         let mut plant = Plant::omni(self.hand, DVec3::new(0.0, 0.0, 0.025));
