@@ -331,6 +331,46 @@ mod tests {
         }
     }
 
+    /// A device whose reading fails after a while.
+    struct Failing(Still, u32);
+
+    impl Driver for Failing {
+        fn abilities(&self) -> Abilities {
+            self.0.abilities()
+        }
+
+        fn read(&mut self, dt: f64) -> Reading {
+            self.1 += 1;
+            assert!(self.1 < 100, "the seeded fault");
+            self.0.read(dt)
+        }
+
+        fn write(&mut self, force: DVec3) {
+            // A force that nobody asked for, so that its end shows.
+            self.0.write(if self.1 < 100 { DVec3::X } else { force });
+        }
+    }
+
+    #[test]
+    fn a_servo_that_fails_leaves_no_force() {
+        let written = Arc::new([const { AtomicU64::new(0) }; 3]);
+        let still = Still {
+            held: Held {
+                position: DVec3::Z,
+                orientation: DQuat::IDENTITY,
+                velocity: DVec3::ZERO,
+            },
+            written: Arc::clone(&written),
+        };
+        let device = Placed::new(Box::new(Failing(still, 0)), Rigid::IDENTITY);
+        let mut host = Host::start(device, Limits::default()).expect("started");
+        tick(&mut host, |_| true).expect("a tick");
+        if let Some(thread) = host.thread.take() {
+            assert!(thread.join().is_err(), "the servo fails");
+        }
+        assert_eq!(f64::from_bits(written[0].load(Ordering::Relaxed)), 0.0);
+    }
+
     /// A rigid wall of 100 N/m at the desk's z = 0, for a head of 25 mm.
     fn wall() -> Contact {
         Contact::new(&ContactModel {

@@ -92,6 +92,21 @@ pub fn tuples(file: &BrushFile) -> Vec<HermiteKnot> {
     rows.iter().map(knot).collect()
 }
 
+/// The same tuples of a head made stiffer by a factor: all but the stop of the handle.
+#[must_use]
+pub fn tuned(tuples: &[HermiteKnot], factor: f64) -> Vec<HermiteKnot> {
+    let mut tuned = tuples.to_vec();
+    let handle = tuples.len().saturating_sub(1);
+    for knot in &mut tuned[..handle] {
+        knot.force_n *= factor;
+        knot.slope_n *= factor;
+    }
+    if let [.., before, _] = tuples {
+        tuned[handle].force_n += (factor - 1.0) * before.force_n;
+    }
+    tuned
+}
+
 /// A head that is pressed onto a surface, solved.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Press {
@@ -105,7 +120,7 @@ pub struct Press {
 
 /// How far a head is pressed at once, m, and further for the derivative: over a much shorter way its
 /// joints stick, and it is ten times as stiff as the hand that goes on will feel it.
-const AT_ONCE_M: f64 = 5e-4;
+pub(crate) const AT_ONCE_M: f64 = 5e-4;
 
 /// Lowers a brush, leaning by `theta`, onto the surface z = 0 and solves it where its undeformed
 /// point is at each of the rising `depths_m`. The ferrule is not lowered into the surface: below, the
@@ -231,6 +246,16 @@ mod tests {
             let by = tuples(&bare)[3].force_n / own[3].force_n;
             assert!((0.4..2.5).contains(&by), "{name}: {by}");
         }
+    }
+
+    #[test]
+    fn a_softer_head_keeps_the_stop_of_its_handle() {
+        let own = tuples(&BrushFile::library("round").expect("round"));
+        let soft = tuned(&own, 0.5);
+        assert!((soft[1].force_n - 0.25).abs() < 1e-12 && (soft[3].force_n - 0.4).abs() < 1e-12);
+        assert!((soft[4].force_n - soft[3].force_n - 0.7).abs() < 1e-12);
+        assert_eq!(soft[4].slope_n, own[4].slope_n);
+        assert_eq!(tuned(&own, 1.0), own);
     }
 
     #[test]
