@@ -469,13 +469,14 @@ mod tests {
         );
         let text = error("brush = \"main\"", "brush = \"mian\"");
         assert!(text.contains("'mian'") && text.contains("'main'"), "{text}");
+        assert!(error("force = \"linear\"", "force = \"linaer\"").contains("'linear'"));
         assert!(error("model = \"impasto\"", "model = \"impatso\"").contains("'impasto'"));
         let text = error("profile = \"srgb\"", "profile = \"sgrb\"");
         assert!(text.contains("'srgb'") && text.contains("ICC"), "{text}");
-        assert!(text.contains("rig.toml:66"), "{text}");
+        assert!(text.contains("rig.toml:67"), "{text}");
         let text = error("gamut = \"soft\"", "gamut = \"sfot\"");
         assert!(
-            text.contains("did you mean 'soft'") && text.contains("rig.toml:67"),
+            text.contains("did you mean 'soft'") && text.contains("rig.toml:68"),
             "{text}"
         );
     }

@@ -164,8 +164,8 @@ impl Servo {
 
     /// Makes all force weaker: a share from 0 to 1.
     pub fn set_strength(&mut self, share: f64) {
-        // Not `clamp`, which would let a share that is no number through.
-        self.strength = share.max(0.0).min(1.0);
+        // A share that is no number is none.
+        self.strength = if share > 0.0 { share.min(1.0) } else { 0.0 };
     }
 
     /// What the device says of its motors: 0 cold to 1 hot, the hottest of them.

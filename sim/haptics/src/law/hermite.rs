@@ -69,7 +69,11 @@ impl Segment {
         let asked = (to.force_n - from.force_n) / length;
         // Where the chord comes near the bound the cubic goes over into the chord: no point of it is
         // steeper than `most`, and nothing jumps as the bound goes with the angle.
-        let straight = (2.0 * asked / most - 1.0).clamp(0.0, 1.0);
+        let straight = if asked < most {
+            (2.0 * asked / most - 1.0).max(0.0)
+        } else {
+            1.0
+        };
         let chord = asked.min(most);
         let bounded = |slope: f64| {
             let slope = slope.min(STEEPEST * asked).min(most);
@@ -287,6 +291,15 @@ pub(crate) mod tests {
         assert!((1..=100).any(|i| plain(t(i)) < plain(t(i - 1)) - 1e-3));
         let bounded = Segment::new(0.0, [&from, &to], f64::INFINITY);
         assert!((1..=100).all(|i| bounded.at(t(i))[0] >= bounded.at(t(i - 1))[0]));
+    }
+
+    #[test]
+    fn a_device_that_bears_nothing_gets_nothing() {
+        let curve = Curve::new(&tuples()).expect("a curve");
+        for degrees in [0.0, 20.0, 45.0, 70.0] {
+            let normal = curve.normal(&meeting(0.03, f64::to_radians(degrees)), 0.0);
+            assert_eq!(normal, Normal::default(), "{degrees}°");
+        }
     }
 
     #[test]
