@@ -44,7 +44,7 @@ fn the_curve_rises_at_every_angle_and_its_first_touch_goes_with_the_angle() {
     // The second tuple, at 6 % of the length along the normal, is .5 N by cos² 2θ.
     for (degrees, factor) in [("0", 1.0), ("15", 0.75), ("30", 0.25), ("45", 0.0)] {
         let angle: f64 = f64::to_radians(degrees.parse().expect("a number"));
-        let depth = (0.06 * 25.0 * angle.cos()).to_string();
+        let depth = (0.06 * 25.0 * maulstick_num::cos(angle)).to_string();
         let row = &self::rows(&place, &["--depth-mm", &depth, "--angle-deg", degrees])[0];
         assert!((row[2] - 0.5 * factor).abs() < 1e-9, "{degrees}°: {row:?}");
     }
