@@ -5,7 +5,7 @@ use maulstick_rig::Fault;
 use maulstick_rig::files::clear_on_signals;
 
 use crate::commands::{
-    bench, brush, control, demo, endpoint, fit, import, layers, light, matching, mix, mode,
+    bench, brush, control, demo, endpoint, fit, force, import, layers, light, matching, mix, mode,
     painting, paints, render, schema, surface, take,
 };
 use crate::up;
@@ -81,6 +81,8 @@ enum Command {
     Fit(fit::FitCommand),
     /// Measures, beside peers
     Bench(bench::BenchOptions),
+    /// Shows the force that a brush gives to the hand, by depth and angle
+    Force(force::ForceOptions),
 }
 
 /// Runs the command line and returns the exit code.
@@ -124,6 +126,7 @@ pub fn run() -> Result<i32, Fault> {
         Command::Match(options) => matching::run(&options),
         Command::Fit(options) => fit::run(&options),
         Command::Bench(options) => bench::run(&options),
+        Command::Force(options) => force::run(&options),
     }
 }
 

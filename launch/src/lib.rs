@@ -7,6 +7,7 @@
 //! | [`up`] | the supervisor |
 //! | [`nodes`] | the mains of the nodes |
 //! | [`page`] | pictures made of patches, pictures and words |
+//! | [`plot`] | curves over two axes |
 //! | [`destination`] | the display or file that colours go to: profile and gamut |
 //! | [`viewing`] | options of light, observer and rule |
 //! | [`swatch`] | colours in the terminal |
@@ -33,6 +34,7 @@ pub mod lamp;
 pub mod nodes;
 pub mod page;
 pub mod performance;
+pub mod plot;
 pub mod script;
 pub mod sheet;
 pub mod swatch;

@@ -13,6 +13,7 @@ use maulstick_device::player::{self, PlayerSettings, Rate};
 use maulstick_document::{Document, DocumentError};
 use maulstick_gpu::{Choice, Device, GpuFilms};
 use maulstick_haptic::daemon::{self, HapticSettings};
+use maulstick_nodes::feel::ForceKind;
 use maulstick_nodes::frames::FrameServer;
 use maulstick_nodes::worker::Fallen;
 use maulstick_nodes::{BrushNode, BrushSettings, PaintNode, Worker};
@@ -108,9 +109,12 @@ fn brush_settings(config: &RigConfig, brush: &str) -> Result<BrushSettings, Faul
     if first {
         devices.insert(MOUSE.to_owned(), MOUSE_PRIORITY);
     }
-    let mut others = Vec::new();
+    let (mut others, mut laws) = (Vec::new(), BTreeMap::new());
     for device in &config.device {
         if device.brush == brush {
+            if let Some(law) = ForceKind::of(&device.force) {
+                laws.insert(device.name.clone(), law);
+            }
             devices.insert(device.name.clone(), device.priority);
         } else {
             others.push(device.name.clone());
@@ -121,6 +125,7 @@ fn brush_settings(config: &RigConfig, brush: &str) -> Result<BrushSettings, Faul
         file: brush_file(section)?,
         depth_share: section.depth_share,
         devices,
+        laws,
         others,
         foreign_priority: first.then_some(FOREIGN_PRIORITY),
         epoch: random_epoch(),

@@ -65,6 +65,30 @@ impl Page {
         }
     }
 
+    /// Draws a line between two places, pixels, `width` pixels wide, with round ends.
+    pub fn line(&mut self, from: [f32; 2], to: [f32; 2], width: f32, colour: [u8; 3]) {
+        let reach = 0.5 * width + 1.0;
+        let span = |axis: usize, end: usize| {
+            let low = from[axis].min(to[axis]) - reach;
+            let high = from[axis].max(to[axis]) + reach;
+            (low.max(0.0) as usize)..(high.max(0.0) as usize + 1).min(end)
+        };
+        let along = [to[0] - from[0], to[1] - from[1]];
+        let square = (along[0] * along[0] + along[1] * along[1]).max(1e-12);
+        for y in span(1, self.picture.height) {
+            for x in span(0, self.picture.width) {
+                let off = [x as f32 + 0.5 - from[0], y as f32 + 0.5 - from[1]];
+                let t = ((off[0] * along[0] + off[1] * along[1]) / square).clamp(0.0, 1.0);
+                let away = [off[0] - t * along[0], off[1] - t * along[1]];
+                let distance = (away[0] * away[0] + away[1] * away[1]).sqrt();
+                let cover = (0.5 * width + 0.5 - distance).clamp(0.0, 1.0);
+                if cover > 0.0 {
+                    self.mix([x, y], colour.map(f32::from), cover);
+                }
+            }
+        }
+    }
+
     /// Puts a brush with its upper left corner here.
     pub fn portray(&mut self, portrait: &Portrait, [x, y]: [usize; 2]) {
         for (i, pixel) in portrait.rgba.chunks_exact(4).enumerate() {

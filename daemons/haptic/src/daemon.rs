@@ -8,8 +8,8 @@ use maulstick_bus::credit::Stamp;
 use maulstick_bus::typed::{Receiver, Sender};
 use maulstick_bus::{Class, CreditSender, Queue};
 use maulstick_device::{Take, brush_file};
-use maulstick_haptics::Limits;
 use maulstick_haptics::contact::Contact;
+use maulstick_haptics::{Address, Limits};
 use maulstick_num::geometry::{Rigid, canonical};
 use maulstick_rig::config::DeviceSection;
 use maulstick_rig::{Fault, Member};
@@ -49,7 +49,7 @@ struct Daemon {
     bus: std::sync::Arc<dyn maulstick_bus::Bus>,
     host: Host,
     senses: u32,
-    brush: String,
+    address: Address,
     samples: CreditSender<StylusSample>,
     models: Receiver<ContactModel>,
     status: Sender<StylusStatus>,
@@ -98,7 +98,9 @@ impl Daemon {
         let abilities = placed.abilities();
         let limits = Limits {
             max_force_n: device.max_force_n.min(abilities.max_force_n),
+            continuous_force_n: device.max_force_n.min(abilities.continuous_force_n),
             max_stiffness_n_m: abilities.max_stiffness_n_m,
+            damping_n_s_m: abilities.damping_n_s_m,
             ..Limits::default()
         };
         let host = Host::start(placed, limits)
@@ -129,16 +131,20 @@ impl Daemon {
         };
         info.send(now, now, &told)?;
         let topic = topics.contact_model(&device.name);
+        let samples = CreditSender::new(
+            bus,
+            topics,
+            &topics.sample(&device.name),
+            origin,
+            &member.wake,
+        )?;
         Ok(Self {
             senses: abilities.senses,
-            brush: device.brush.clone(),
-            samples: CreditSender::new(
-                bus,
-                topics,
-                &topics.sample(&device.name),
-                origin,
-                &member.wake,
-            )?,
+            address: Address {
+                device: samples.origin(),
+                brush: device.brush.clone(),
+            },
+            samples,
             models: Receiver::new(bus, &topic, Class::RealTime, Queue::Latest, &member.wake)?,
             status: Sender::new(
                 bus,
@@ -189,9 +195,8 @@ impl Daemon {
         let Some(received) = self.models.newest() else {
             return;
         };
-        let (me, model) = (self.samples.origin(), received.message);
-        if model.device != me.source || model.device_epoch != me.epoch || model.brush != self.brush
-        {
+        let model = received.message;
+        if !self.address.takes(&model) {
             self.told.foreign_models += 1;
             return;
         }
@@ -218,10 +223,11 @@ impl Daemon {
         self.told.lateness[bin(ticked.late_ns)] += 1;
         self.told.execution[bin(ticked.spent_ns)] += 1;
         self.told.force_n = ticked.force.length();
-        if ticked.latched && self.told.faults.is_empty() {
-            self.told
-                .faults
-                .push("a reading was not finite: force is off until re-armed".into());
+        if let Some(fault) = ticked.tick.fault
+            && self.told.faults.is_empty()
+        {
+            let what = format!("{fault}: force is off until re-armed");
+            self.told.faults.push(what);
         }
         let event_ns = ticked.monotonic_ns + self.offset_ns;
         let reading = &ticked.reading;

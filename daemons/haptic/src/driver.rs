@@ -1,6 +1,7 @@
 //! What a device is to the servo, and where it stands on the desk.
 
 use glam::DVec3;
+use maulstick_haptics::Switch;
 use maulstick_haptics::contact::Held;
 use maulstick_num::geometry::{Rigid, canonical};
 
@@ -14,6 +15,8 @@ pub struct Reading {
     pub switches: u32,
     /// Whether the stylus counts.
     pub in_range: bool,
+    /// The hottest motor, 0 cold to 1 hot; 0 where the device does not say.
+    pub motor_temperature: f64,
 }
 
 /// What a device can do.
@@ -25,8 +28,12 @@ pub struct Abilities {
     pub drives: u32,
     /// Largest force, N.
     pub max_force_n: f64,
+    /// Largest force that warm motors bear, N.
+    pub continuous_force_n: f64,
     /// Largest stiffness, N/m.
     pub max_stiffness_n_m: f64,
+    /// Its own viscous friction, at least, N·s/m.
+    pub damping_n_s_m: f64,
     /// Working area in the device frame: least x, y, z, then greatest, m.
     pub workspace_m: [f64; 6],
 }
@@ -40,6 +47,8 @@ pub trait Driver: Send {
     fn read(&mut self, dt: f64) -> Reading;
     /// Sets the force on the hand, N, device frame.
     fn write(&mut self, force: DVec3);
+    /// Switches its amplifiers, where they can be.
+    fn switch(&mut self, _amplifiers: Switch) {}
 }
 
 /// A device where it stands on the desk. Contact models are in the desk frame, so the servo sees
@@ -100,6 +109,19 @@ impl Placed {
     /// Sets the force on the hand, N, desk frame.
     pub fn write(&mut self, force: DVec3) {
         self.driver.write(self.to_device.vector(force));
+    }
+
+    /// Switches its amplifiers, where they can be.
+    pub fn switch(&mut self, amplifiers: Switch) {
+        self.driver.switch(amplifiers);
+    }
+}
+
+/// However the servo ends, also by a panic, no force stays on the hand.
+impl Drop for Placed {
+    fn drop(&mut self) {
+        self.driver.write(DVec3::ZERO);
+        self.driver.switch(Switch::Off);
     }
 }
 

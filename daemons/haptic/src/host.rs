@@ -6,7 +6,7 @@ use std::thread::JoinHandle;
 
 use glam::DVec3;
 use maulstick_haptics::contact::Contact;
-use maulstick_haptics::{Limits, Sender, Servo};
+use maulstick_haptics::{Limits, Sender, Servo, Switch, Tick};
 use maulstick_types::Origin;
 use nix::sys::time::TimeSpec;
 use nix::time::{ClockId, ClockNanosleepFlags, clock_gettime, clock_nanosleep};
@@ -37,8 +37,8 @@ pub struct Ticked {
     pub late_ns: u64,
     /// How long the tick took, ns.
     pub spent_ns: u64,
-    /// Whether a fault holds the force at zero.
-    pub latched: bool,
+    /// What the servo did.
+    pub tick: Tick,
 }
 
 /// A model on its way to the servo.
@@ -113,6 +113,7 @@ impl Host {
                 tell.send(become_real_time()).ok();
                 let mut servo = Servo::new(limits);
                 let (mut seen, mut sender) = (0, None);
+                let mut amplifiers = Switch::On;
                 let mut last_ns = monotonic_ns();
                 let mut deadline_ns = last_ns + PERIOD_NS;
                 while !stopped.load(Ordering::Relaxed) {
@@ -133,15 +134,25 @@ impl Host {
                         (seen, sender) = (delivery.number, delivery.sender);
                     }
                     let reading = device.read(dt);
-                    let (force, _) = servo.step(&reading.held, dt);
+                    servo.measure(reading.motor_temperature);
+                    let (force, tick) = servo.step(&reading.held, dt);
                     device.write(force);
+                    let wanted = if tick.resting {
+                        Switch::Off
+                    } else {
+                        Switch::On
+                    };
+                    if wanted != amplifiers {
+                        amplifiers = wanted;
+                        device.switch(amplifiers);
+                    }
                     let ticked = Ticked {
                         monotonic_ns: now_ns,
                         reading,
                         force,
                         late_ns: now_ns.saturating_sub(deadline_ns),
                         spent_ns: monotonic_ns() - now_ns,
-                        latched: servo.is_latched(),
+                        tick,
                     };
                     if to_publisher.push(ticked).is_err() {
                         drops.fetch_add(1, Ordering::Relaxed);
@@ -153,7 +164,8 @@ impl Host {
                         deadline_ns += (now_ns - deadline_ns).div_ceil(PERIOD_NS) * PERIOD_NS;
                     }
                 }
-                device.write(DVec3::ZERO);
+                // Leaves no force: see what drops a device.
+                drop(device);
             })?;
         let warnings = told.recv().unwrap_or_default();
         Ok(Self {
@@ -308,6 +320,7 @@ mod tests {
                 held: self.held,
                 switches: 0,
                 in_range: true,
+                motor_temperature: 0.0,
             }
         }
 
@@ -316,6 +329,46 @@ mod tests {
                 cell.store(part.to_bits(), Ordering::Relaxed);
             }
         }
+    }
+
+    /// A device whose reading fails after a while.
+    struct Failing(Still, u32);
+
+    impl Driver for Failing {
+        fn abilities(&self) -> Abilities {
+            self.0.abilities()
+        }
+
+        fn read(&mut self, dt: f64) -> Reading {
+            self.1 += 1;
+            assert!(self.1 < 100, "the seeded fault");
+            self.0.read(dt)
+        }
+
+        fn write(&mut self, force: DVec3) {
+            // A force that nobody asked for, so that its end shows.
+            self.0.write(if self.1 < 100 { DVec3::X } else { force });
+        }
+    }
+
+    #[test]
+    fn a_servo_that_fails_leaves_no_force() {
+        let written = Arc::new([const { AtomicU64::new(0) }; 3]);
+        let still = Still {
+            held: Held {
+                position: DVec3::Z,
+                orientation: DQuat::IDENTITY,
+                velocity: DVec3::ZERO,
+            },
+            written: Arc::clone(&written),
+        };
+        let device = Placed::new(Box::new(Failing(still, 0)), Rigid::IDENTITY);
+        let mut host = Host::start(device, Limits::default()).expect("started");
+        tick(&mut host, |_| true).expect("a tick");
+        if let Some(thread) = host.thread.take() {
+            assert!(thread.join().is_err(), "the servo fails");
+        }
+        assert_eq!(f64::from_bits(written[0].load(Ordering::Relaxed)), 0.0);
     }
 
     /// A rigid wall of 100 N/m at the desk's z = 0, for a head of 25 mm.

@@ -15,6 +15,13 @@ use crate::driver::{Abilities, Driver, Reading};
 /// Where the hand rests, device frame, m.
 const REST: DVec3 = DVec3::new(0.2, -0.2, 0.1);
 
+/// Force that its warm motors bear, N: an Omni's.
+const CONTINUOUS_N: f64 = 0.88;
+/// Temperature of motors that give that force for ever.
+const STEADY: f64 = 0.6;
+/// Time in which they warm, s.
+const WARMING_S: f64 = 60.0;
+
 /// Where the hand wants to be at a time.
 #[derive(Clone, Copy, Debug)]
 struct Target {
@@ -33,6 +40,7 @@ pub struct Simulated {
     targets: Vec<Target>,
     next: usize,
     time_s: f64,
+    temperature: f64,
 }
 
 impl Simulated {
@@ -45,6 +53,7 @@ impl Simulated {
             targets: Vec::new(),
             next: 0,
             time_s: 0.0,
+            temperature: 0.0,
         }
     }
 
@@ -103,7 +112,9 @@ impl Driver for Simulated {
             senses: axes::POSITION | axes::ORIENTATION | axes::VELOCITY | axes::SWITCHES,
             drives: axes::FORCE,
             max_force_n: self.plant.max_force_n,
+            continuous_force_n: CONTINUOUS_N,
             max_stiffness_n_m: 500.0,
+            damping_n_s_m: self.plant.damping,
             workspace_m: [-0.3, -0.3, -0.05, 0.3, 0.3, 0.3],
         }
     }
@@ -112,6 +123,10 @@ impl Driver for Simulated {
         let target = self.target();
         self.plant.advance(self.force, target.position, dt);
         self.time_s += dt;
+        // The heat of the coils goes with the square of the force; at the continuous force they end
+        // up where the servo holds the force, between warm and cool.
+        let load = self.force.length() / CONTINUOUS_N;
+        self.temperature += (STEADY * load * load - self.temperature) * (dt / WARMING_S).min(1.0);
         Reading {
             held: Held {
                 position: self.plant.read_position(),
@@ -120,6 +135,7 @@ impl Driver for Simulated {
             },
             switches: target.switches,
             in_range: target.in_range,
+            motor_temperature: self.temperature,
         }
     }
 

@@ -6,6 +6,7 @@ pub mod control;
 pub mod demo;
 pub mod endpoint;
 pub mod fit;
+pub mod force;
 pub mod import;
 pub mod layers;
 pub mod light;

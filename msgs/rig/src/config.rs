@@ -19,6 +19,8 @@ pub use palette::{PILES, PaletteSection};
 pub const DEFAULT: &str = include_str!("default.toml");
 /// Drivers of devices.
 pub const DRIVERS: [&str; 1] = ["simulated"];
+/// How a brush pushes back.
+pub const FORCES: [&str; 5] = ["linear", "hermite", "local", "rigid", "none"];
 /// Paint models.
 pub const MODELS: [&str; 1] = ["impasto"];
 /// Backends of paint and colour.
@@ -119,6 +121,9 @@ pub struct DeviceSection {
     /// Largest force, N.
     #[serde(default = "default_force")]
     pub max_force_n: f64,
+    /// One of [`FORCES`]: how the brush pushes back.
+    #[serde(default = "default_law")]
+    pub force: String,
     /// A take that a simulated hand follows, feeling the canvas.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub hand: Option<PathBuf>,
@@ -130,6 +135,10 @@ fn no_turn() -> [f64; 4] {
 
 fn default_force() -> f64 {
     3.0
+}
+
+fn default_law() -> String {
+    FORCES[0].into()
 }
 
 /// `[[brush]]`.
@@ -453,13 +462,14 @@ mod tests {
         );
         let text = error("brush = \"main\"", "brush = \"mian\"");
         assert!(text.contains("'mian'") && text.contains("'main'"), "{text}");
+        assert!(error("force = \"linear\"", "force = \"linaer\"").contains("'linear'"));
         assert!(error("model = \"impasto\"", "model = \"impatso\"").contains("'impasto'"));
         let text = error("profile = \"srgb\"", "profile = \"sgrb\"");
         assert!(text.contains("'srgb'") && text.contains("ICC"), "{text}");
-        assert!(text.contains("rig.toml:66"), "{text}");
+        assert!(text.contains("rig.toml:67"), "{text}");
         let text = error("gamut = \"soft\"", "gamut = \"sfot\"");
         assert!(
-            text.contains("did you mean 'soft'") && text.contains("rig.toml:67"),
+            text.contains("did you mean 'soft'") && text.contains("rig.toml:68"),
             "{text}"
         );
     }

@@ -3,11 +3,12 @@
 use maulstick_num::geometry::Rigid;
 use maulstick_types::Origin;
 use maulstick_types::brush::{BrushState, Solve, solve_flags};
+use maulstick_types::haptics::HermiteKnot;
 use maulstick_types::scene::{CANVAS, Scene};
 use maulstick_types::stylus::StylusSample;
 
 use crate::desk::{Desk, Obstacle, Plane, aim, ferrule};
-use crate::feel::Feel;
+use crate::feel::{AT_ONCE_M, Feel, Press, tuned, tuples};
 use crate::file::BrushFile;
 use crate::held::{HeadSolver, HeldHead, settings_of};
 use crate::solver::Settings;
@@ -117,6 +118,34 @@ impl BrushModel {
             Some(held) => Feel::bent(&self.tuft, length, &held.newest.pose, held.force_n),
             None => Feel::at_rest(&self.tuft, length),
         }
+    }
+
+    /// The tuples of the Hermite curve of the head as it is tuned.
+    #[must_use]
+    pub fn tuples(&self) -> Vec<HermiteKnot> {
+        tuned(&tuples(&self.file), self.tuned)
+    }
+
+    /// The head as it is pressed now, in the desk frame, and how its force goes with depth: one more
+    /// solve, half a millimetre deeper. None in the air.
+    #[must_use]
+    pub fn press(&mut self) -> Option<Press> {
+        let held = self.held.as_ref().filter(|held| held.force_n > 0.0)?;
+        let desk = self.desk.as_ref()?;
+        let plane = desk.plane(held.surface)?;
+        let (here, force_n, mut further) = (held.newest.pose, held.force_n, held.head.clone());
+        let mut deeper = here;
+        deeper.translation.z -= AT_ONCE_M;
+        let obstacles = desk.obstacles(plane, deeper.translation, self.file.length_m());
+        let pose = plane.to_desk.after(&here);
+        self.raise(&mut deeper);
+        let (tuft, settings) = (&self.tuft, &self.settings);
+        further.solve(&mut self.solver, tuft, &deeper, &obstacles, settings);
+        Some(Press {
+            pose,
+            force_n,
+            stiffness_n_m: ((further.force_n() - force_n) / AT_ONCE_M).max(0.0),
+        })
     }
 
     /// Whether there is a scene.

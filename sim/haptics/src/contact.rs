@@ -1,7 +1,11 @@
 //! The force of one contact model (Baxter 2004, § 8.7.2), evaluated beside the device.
 
-use glam::{DMat3, DQuat, DVec3};
-use maulstick_types::haptics::{ContactModel, ForceLaw, HermiteKnot};
+use glam::{DQuat, DVec3};
+use maulstick_types::haptics::ContactModel;
+
+use crate::friction::{drag, friction, ramp};
+use crate::grain::Texture;
+use crate::law::{Law, Meeting, Normal};
 
 /// The brush in the hand.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -14,38 +18,16 @@ pub struct Held {
     pub velocity: DVec3,
 }
 
-/// Knots of a Hermite curve at most.
-pub const KNOTS: usize = 5;
-
-/// Force by depth, ready for the servo: no allocation in it.
-#[derive(Clone, Copy, Debug, PartialEq)]
-enum Law {
-    None,
-    Linear {
-        k1_n: f64,
-        k2_n: f64,
-    },
-    Hermite {
-        knots: [[f64; 3]; KNOTS],
-        count: usize,
-    },
-    Local {
-        at: DVec3,
-        force: DVec3,
-        stiffness: DMat3,
-    },
-    Rigid {
-        stiffness: f64,
-    },
-}
-
 /// A contact model in the form that the servo evaluates.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Contact {
     point: DVec3,
     normal: DVec3,
     friction: f64,
+    /// Friction at rest, which bounds the tangential part of a local force.
+    sticking: f64,
     viscous: f64,
+    grain: Texture,
     law: Law,
     head_length: f64,
     /// Age beyond which it decays, s.
@@ -54,20 +36,31 @@ pub struct Contact {
     pub recovery_s: f64,
 }
 
+/// What a hand feels of a contact.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Felt {
+    /// The force on the hand, N.
+    pub force: DVec3,
+    /// What of it depends on where the hand is alone, N: without friction and drag.
+    pub conservative: DVec3,
+    /// Depth of the undeformed point below the plane, m; negative above it.
+    pub depth_m: f64,
+    /// Stiffness along the normal that the model asks for, N/m.
+    pub asked_n_m: f64,
+    /// Stiffness along the normal that is given, N/m.
+    pub stiffness_n_m: f64,
+}
+
 /// The head counts as projected onto the normal by at least this share of its length: as it is laid
 /// flat, eq. 8.1's stiffness k₁/l_p would grow without bound.
 const LEAST_PROJECTION: f64 = 0.2;
-/// Friction grows to its full size over this depth, m.
-const FRICTION_RAMP_M: f64 = 5e-4;
-/// Speed at which friction reaches its bound μ·f_n, m/s.
-const FRICTION_SPEED: f64 = 0.02;
 
 impl Contact {
     /// Reads a model.
     ///
     /// # Errors
     /// What is wrong with it: a number that is not finite, a normal that is not a unit vector, a
-    /// negative stiffness or more than five knots.
+    /// negative stiffness, a force that falls with depth, more than five knots, a grain out of range.
     pub fn new(model: &ContactModel) -> Result<Self, &'static str> {
         let point = DVec3::from_array(model.plane_point_m);
         let normal = DVec3::from_array(model.plane_normal);
@@ -90,7 +83,9 @@ impl Contact {
             point,
             normal,
             friction: model.friction_kinetic,
+            sticking: model.friction_static.max(model.friction_kinetic),
             viscous: model.viscous_n_s_m,
+            grain: Texture::new(&model.grain)?,
             law: Law::new(&model.law)?,
             head_length: model.head_length_m,
             time_to_live_s: model.time_to_live_ns as f64 * 1e-9,
@@ -98,142 +93,92 @@ impl Contact {
         })
     }
 
-    /// The depth of the undeformed point below the plane and the head's length along the normal, m.
-    fn depth(&self, held: &Held) -> (f64, f64) {
-        let along = held.orientation * DVec3::NEG_Z;
-        let tip = held.position + along * self.head_length;
-        let projected =
-            (self.head_length * -along.dot(self.normal)).max(LEAST_PROJECTION * self.head_length);
-        ((self.point - tip).dot(self.normal), projected)
+    /// The plane's unit normal, toward the painter.
+    #[must_use]
+    pub fn normal(&self) -> DVec3 {
+        self.normal
+    }
+
+    /// The undeformed point of the head, desk frame, m.
+    fn tip(&self, held: &Held) -> DVec3 {
+        held.position + held.orientation * DVec3::NEG_Z * self.head_length
+    }
+
+    /// How the head meets the plane.
+    #[must_use]
+    pub fn meeting(&self, held: &Held) -> Meeting {
+        let cosine = -(held.orientation * DVec3::NEG_Z).dot(self.normal);
+        Meeting {
+            depth_m: (self.point - self.tip(held)).dot(self.normal),
+            projected_m: self.head_length * cosine.max(LEAST_PROJECTION),
+            cosine,
+        }
+    }
+
+    /// What the hand feels; stiffness never exceeds `max_stiffness`, N/m.
+    #[must_use]
+    pub fn felt(&self, held: &Held, max_stiffness: f64) -> Felt {
+        let meeting = self.meeting(held);
+        let depth_m = meeting.depth_m;
+        let none = Felt {
+            depth_m,
+            ..Felt::default()
+        };
+        if depth_m <= 0.0 {
+            return none;
+        }
+        let n = self.normal;
+        let (normal, asked_n_m, leaning) = match &self.law {
+            Law::Local(local) => {
+                let force = local.force(held.position, max_stiffness);
+                // A force that is there at the first touch would be a step in the hand.
+                let force_n = force.dot(n).max(0.0).min(max_stiffness * depth_m);
+                let normal = Normal {
+                    force_n,
+                    stiffness_n_m: local.stiffness_along(n, max_stiffness),
+                };
+                let asked = local.stiffness_along(n, f64::INFINITY);
+                (normal, asked, force - n * force.dot(n))
+            }
+            law => (
+                law.normal(&meeting, max_stiffness),
+                law.normal(&meeting, f64::INFINITY).stiffness_n_m,
+                DVec3::ZERO,
+            ),
+        };
+        let velocity = held.velocity - n * held.velocity.dot(n);
+        let ramp = ramp(depth_m);
+        let leaning = leaning.clamp_length_max(self.sticking * normal.force_n * ramp);
+        // What leans already sticks the less.
+        let bound = (self.friction * normal.force_n * ramp)
+            .min(self.sticking * normal.force_n * ramp - leaning.length());
+        let sliding = friction(velocity, bound) + drag(velocity, self.viscous * ramp);
+        let place = self.tip(held) - self.point;
+        let grain = self
+            .grain
+            .force(place, n, velocity, normal.force_n * ramp, max_stiffness);
+        let conservative = n * normal.force_n + leaning + grain;
+        Felt {
+            force: conservative + sliding,
+            conservative,
+            asked_n_m,
+            stiffness_n_m: normal.stiffness_n_m,
+            ..none
+        }
     }
 
     /// The force on the hand, N; stiffness never exceeds `max_stiffness`, N/m.
     #[must_use]
     pub fn force(&self, held: &Held, max_stiffness: f64) -> DVec3 {
-        let (depth, projected) = self.depth(held);
-        if let Law::Local {
-            at,
-            force,
-            stiffness,
-        } = self.law
-        {
-            return if depth > 0.0 {
-                force + stiffness * (held.position - at)
-            } else {
-                DVec3::ZERO
-            };
-        }
-        if depth <= 0.0 {
-            return DVec3::ZERO;
-        }
-        let normal_force = self
-            .law
-            .normal_force(depth, projected, max_stiffness)
-            .max(0.0);
-        let across = held.velocity - self.normal * held.velocity.dot(self.normal);
-        let ramp = (depth / FRICTION_RAMP_M).min(1.0);
-        let bound = self.friction * normal_force * ramp;
-        let speed = across.length();
-        let sliding = if speed > 0.0 {
-            across * (-bound * (speed / FRICTION_SPEED).min(1.0) / speed)
-        } else {
-            DVec3::ZERO
-        };
-        self.normal * normal_force + sliding - across * (self.viscous * ramp)
+        self.felt(held, max_stiffness).force
     }
-}
-
-impl Law {
-    fn new(law: &ForceLaw) -> Result<Self, &'static str> {
-        let good = |values: &[f64]| values.iter().all(|v| v.is_finite() && *v >= 0.0);
-        match law {
-            ForceLaw::None => Ok(Self::None),
-            ForceLaw::Linear { k1_n, k2_n } if good(&[*k1_n, *k2_n]) => Ok(Self::Linear {
-                k1_n: *k1_n,
-                k2_n: *k2_n,
-            }),
-            ForceLaw::Hermite { knots } => Self::hermite(knots),
-            ForceLaw::Local {
-                pose,
-                force_n,
-                stiffness_n_m,
-            } => {
-                let force = DVec3::from_array(*force_n);
-                let stiffness = DMat3::from_cols_array_2d(stiffness_n_m).transpose();
-                if !(pose.is_valid() && force.is_finite() && stiffness.is_finite()) {
-                    return Err("the local force is not finite");
-                }
-                Ok(Self::Local {
-                    at: DVec3::from_array(pose.position_m),
-                    force,
-                    stiffness,
-                })
-            }
-            ForceLaw::Rigid { stiffness_n_m } if good(&[*stiffness_n_m]) => Ok(Self::Rigid {
-                stiffness: *stiffness_n_m,
-            }),
-            _ => Err("a stiffness is negative or not finite"),
-        }
-    }
-
-    fn hermite(knots: &[HermiteKnot]) -> Result<Self, &'static str> {
-        if !(2..=KNOTS).contains(&knots.len()) {
-            return Err("a Hermite curve has two to five knots");
-        }
-        let mut table = [[0.0; 3]; KNOTS];
-        for (row, knot) in table.iter_mut().zip(knots) {
-            *row = [knot.depth, knot.force_n, knot.slope_n];
-        }
-        let rising = knots.windows(2).all(|pair| pair[0].depth < pair[1].depth);
-        if !rising || !table.iter().flatten().all(|value| value.is_finite()) {
-            return Err("a Hermite curve's knots are not finite and in order of depth");
-        }
-        Ok(Self::Hermite {
-            knots: table,
-            count: knots.len(),
-        })
-    }
-
-    /// Normal force at `depth` for a head of `projected` length along the normal.
-    fn normal_force(&self, depth: f64, projected: f64, max_stiffness: f64) -> f64 {
-        match *self {
-            Self::None | Self::Local { .. } => 0.0,
-            Self::Linear { k1_n, k2_n } => {
-                let soft = (k1_n / projected).min(max_stiffness);
-                let hard = (k2_n / projected).min(max_stiffness);
-                soft * depth.min(projected) + hard * (depth - projected).max(0.0)
-            }
-            Self::Hermite { knots, count } => {
-                (hermite(&knots[..count], depth / projected)).min(max_stiffness * depth)
-            }
-            Self::Rigid { stiffness } => stiffness.min(max_stiffness) * depth,
-        }
-    }
-}
-
-/// The cubic through knots of (place, value, slope); beyond the ends it goes on straight.
-fn hermite(knots: &[[f64; 3]], x: f64) -> f64 {
-    let (first, last) = (knots[0], knots[knots.len() - 1]);
-    if x <= first[0] {
-        return first[1] + first[2] * (x - first[0]);
-    }
-    if x >= last[0] {
-        return last[1] + last[2] * (x - last[0]);
-    }
-    let place = knots.iter().rposition(|knot| knot[0] <= x).unwrap_or(0);
-    let ([x0, y0, m0], [x1, y1, m1]) = (knots[place], knots[place + 1]);
-    let h = x1 - x0;
-    let t = (x - x0) / h;
-    let u = 1.0 - t;
-    y0 * (1.0 + 2.0 * t) * u * u + h * m0 * t * u * u + y1 * t * t * (3.0 - 2.0 * t)
-        - h * m1 * t * t * u
 }
 
 #[cfg(test)]
 pub(crate) mod tests {
     use maulstick_num::geometry::rotation;
     use maulstick_types::Pose;
-    use maulstick_types::haptics::Grain;
+    use maulstick_types::haptics::{ForceLaw, Grain};
     use proptest::prelude::*;
 
     use super::*;
@@ -305,22 +250,6 @@ pub(crate) mod tests {
     }
 
     #[test]
-    fn hermite_goes_through_its_knots() {
-        let knots = [
-            [0.0, 0.0, 5.0],
-            [0.1, 0.4, 0.0],
-            [0.5, 0.5, 1.0],
-            [1.0, 1.2, 2.0],
-        ];
-        for knot in knots {
-            assert!((hermite(&knots, knot[0]) - knot[1]).abs() < 1e-12);
-            let slope = (hermite(&knots, knot[0] + 1e-6) - hermite(&knots, knot[0] - 1e-6)) / 2e-6;
-            assert!((slope - knot[2]).abs() < 1e-4, "{slope} {}", knot[2]);
-        }
-        assert!((hermite(&knots, 1.5) - 2.2).abs() < 1e-12);
-    }
-
-    #[test]
     fn bad_models_are_refused() {
         let refused = |change: fn(&mut ContactModel)| {
             let mut model = model(linear());
@@ -341,6 +270,50 @@ pub(crate) mod tests {
             force_n: [f64::NAN; 3],
             stiffness_n_m: [[0.0; 3]; 3],
         }));
+        assert!(refused(|m| m.grain.wavelength_m = 0.0));
+    }
+
+    #[test]
+    fn a_soft_device_gives_what_it_can_and_says_so() {
+        let rigid = ForceLaw::Rigid {
+            stiffness_n_m: 800.0,
+        };
+        let felt = Contact::new(&model(rigid))
+            .expect("a model")
+            .felt(&at(0.002, 0.0, DVec3::ZERO), 300.0);
+        assert_eq!((felt.asked_n_m, felt.stiffness_n_m), (800.0, 300.0));
+        assert!((felt.force.z - 0.6).abs() < 1e-12);
+    }
+
+    #[test]
+    fn a_local_force_acts_in_contact_alone_and_within_friction() {
+        let law = ForceLaw::Local {
+            pose: Pose::IDENTITY,
+            force_n: [9.0, 0.0, 0.5],
+            stiffness_n_m: [[0.0; 3], [0.0; 3], [0.0, 0.0, -50.0]],
+        };
+        let contact = Contact::new(&model(law)).expect("a model");
+        let felt = |depth: f64| contact.felt(&at(depth, 0.0, DVec3::ZERO), 500.0);
+        assert_eq!(felt(-1e-3).force, DVec3::ZERO);
+        assert!(felt(1e-5).force.length() < 0.01, "no step at the touch");
+        let pressed = felt(0.025).force;
+        // The pose of the linearisation: the ferrule at the plane.
+        assert!((pressed.z - 0.5).abs() < 1e-12, "{pressed}");
+        assert!((pressed.x - 0.3 * 0.5).abs() < 1e-12, "{pressed}");
+    }
+
+    #[test]
+    fn grain_is_felt_in_contact_alone() {
+        let mut grainy = model(linear());
+        grainy.grain.amplitude = 0.1;
+        let contact = Contact::new(&grainy).expect("a model");
+        let across = |depth| {
+            contact
+                .force(&at(depth, 0.0, DVec3::ZERO), 400.0)
+                .truncate()
+        };
+        assert!(across(0.01).length() > 0.0 && across(0.01).length() < 0.1 * 0.32);
+        assert_eq!(across(-0.01).length(), 0.0);
     }
 
     proptest! {

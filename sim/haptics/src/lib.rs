@@ -4,16 +4,28 @@
 //!
 //! | module | holds |
 //! | --- | --- |
+//! | [`law`] | normal force by depth: eq. 8.1, the Hermite curve, a local force |
+//! | [`friction`], [`grain`] | what is felt across the normal |
 //! | [`contact`] | the force of one contact model at one pose |
+//! | [`address`] | whom a model is for |
 //! | [`servo`] | one tick: models, ageing, limits |
 //! | [`plant`] | a device and a hand that hold each other, for the simulated stylus and for tests |
 
+pub mod address;
 pub mod contact;
+pub mod friction;
+pub mod grain;
+#[cfg(test)]
+mod grid;
+pub mod law;
 pub mod plant;
 pub mod servo;
 #[cfg(test)]
 mod stability;
 
-pub use contact::Contact;
+pub use address::Address;
+pub use contact::{Contact, Felt};
 pub use plant::{Hand, Plant};
-pub use servo::{Limits, Sender, Servo, Tick};
+pub use servo::fault::Fault;
+pub use servo::limits::Limits;
+pub use servo::{Sender, Servo, Switch, Tick};

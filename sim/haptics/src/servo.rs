@@ -5,56 +5,57 @@
 //! correction, shrinks to nothing over the recovery time, however many models come meanwhile. As
 //! the pose is the same, a model that says the same as the one before corrects nothing: the force
 //! follows the hand without lag.
+//!
+//! | module | holds |
+//! | --- | --- |
+//! | [`limits`] | what a force may be |
+//! | [`fault`] | what latches the force at zero |
+//! | [`heat`] | the largest force by the motors' temperature |
+//! | [`passivity`] | the energy that sampling gives, taken back |
+//! | [`shaking`] | a hand that shakes makes the force softer |
+
+pub mod fault;
+pub mod heat;
+pub mod limits;
+pub mod passivity;
+pub mod shaking;
 
 use glam::DVec3;
 
-use crate::contact::{Contact, Held};
-
-/// What a force may be, whatever the models say.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Limits {
-    /// Largest force, N: the least of the device's nominal and the configured one.
-    pub max_force_n: f64,
-    /// Largest stiffness, N/m.
-    pub max_stiffness_n_m: f64,
-    /// Fastest change of the force, N/s.
-    pub slew_n_s: f64,
-    /// Time over which a model past its time to live fades to nothing, s.
-    pub fade_s: f64,
-    /// Time over which force comes up after a start, a fault or another sender, s.
-    pub engage_s: f64,
-    /// A tick longer than this has stood still: no force, and engage anew, s.
-    pub longest_tick_s: f64,
-}
-
-impl Default for Limits {
-    fn default() -> Self {
-        Self {
-            max_force_n: 3.0,
-            max_stiffness_n_m: 400.0,
-            slew_n_s: 400.0,
-            fade_s: 0.075,
-            engage_s: 0.5,
-            longest_tick_s: 0.005,
-        }
-    }
-}
+use self::fault::Fault;
+use self::heat::Heat;
+use self::limits::Limits;
+use self::passivity::Passivity;
+use self::shaking::{Shaking, Touch};
+use crate::contact::{Contact, Felt, Held};
 
 /// What happened in a tick.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[expect(
     clippy::struct_excessive_bools,
     reason = "each may be so without the others"
 )]
 pub struct Tick {
-    /// A number that was not finite: the servo gives no force until it is re-armed.
-    pub fault: bool,
+    /// Why the servo gives no force until it is re-armed.
+    pub fault: Option<Fault>,
     /// The tick took too long.
     pub late: bool,
     /// The force was cut to its largest size.
     pub clamped: bool,
     /// The model is past its time to live.
     pub stale: bool,
+    /// The head touches.
+    pub contact: bool,
+    /// Energy was taken back from the hand.
+    pub braked: bool,
+    /// The amplifiers are off: switched off, or nothing was touched for long.
+    pub resting: bool,
+    /// Largest force now, N.
+    pub cap_n: f64,
+    /// Stiffness along the normal that the model asks for, N/m.
+    pub asked_n_m: f64,
+    /// Stiffness along the normal that is given, N/m.
+    pub stiffness_n_m: f64,
 }
 
 /// Who sent a model.
@@ -66,10 +67,21 @@ pub enum Sender {
     Another,
 }
 
+/// The painter's switch.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Switch {
+    /// Force is given.
+    On,
+    /// No force is given.
+    Off,
+}
+
 /// The servo's state.
 #[derive(Clone, Copy, Debug)]
 pub struct Servo {
     limits: Limits,
+    switch: Switch,
+    strength: f64,
     model: Option<Active>,
     /// Received since the last step.
     arrived: Option<Contact>,
@@ -78,8 +90,13 @@ pub struct Servo {
     /// How fast the correction shrinks, N/s.
     correction_speed: f64,
     engaged_s: f64,
+    idle_s: f64,
+    heat: Heat,
+    passivity: Passivity,
+    shaking: Shaking,
+    last: Option<Last>,
     force: DVec3,
-    latched: bool,
+    fault: Option<Fault>,
 }
 
 /// A model and how long ago it arrived.
@@ -89,19 +106,37 @@ struct Active {
     age_s: f64,
 }
 
+/// The end of the tick before.
+#[derive(Clone, Copy, Debug)]
+struct Last {
+    position: DVec3,
+    /// What the models asked for, with all that bounds it, without what depends on velocity, N.
+    models: DVec3,
+    /// What that was multiplied by.
+    share: f64,
+    cap_n: f64,
+}
+
 impl Servo {
-    /// A servo without a model.
+    /// A servo without a model, switched on at full strength.
     #[must_use]
     pub fn new(limits: Limits) -> Self {
         Self {
             limits,
+            switch: Switch::On,
+            strength: 1.0,
             model: None,
             arrived: None,
             correction: DVec3::ZERO,
             correction_speed: 0.0,
             engaged_s: 0.0,
+            idle_s: 0.0,
+            heat: Heat::cold(limits.max_force_n),
+            passivity: Passivity::default(),
+            shaking: Shaking::default(),
+            last: None,
             force: DVec3::ZERO,
-            latched: false,
+            fault: None,
         }
     }
 
@@ -115,8 +150,27 @@ impl Servo {
 
     /// Allows force again after a fault; it engages anew.
     pub fn rearm(&mut self) {
-        self.latched = false;
+        self.fault = None;
+        self.heat = Heat::cold(self.limits.max_force_n);
+        self.shaking = Shaking::default();
         self.engage_anew();
+    }
+
+    /// Switches the force off, at once, or on: it engages anew.
+    pub fn switch(&mut self, switch: Switch) {
+        self.switch = switch;
+        self.engaged_s = 0.0;
+    }
+
+    /// Makes all force weaker: a share from 0 to 1.
+    pub fn set_strength(&mut self, share: f64) {
+        // A share that is no number is none.
+        self.strength = if share > 0.0 { share.min(1.0) } else { 0.0 };
+    }
+
+    /// What the device says of its motors: 0 cold to 1 hot, the hottest of them.
+    pub fn measure(&mut self, temperature: f64) {
+        self.heat.measure(temperature);
     }
 
     /// Nothing of what was felt holds any more.
@@ -125,42 +179,49 @@ impl Servo {
         self.model = None;
         self.arrived = None;
         self.correction = DVec3::ZERO;
+        self.last = None;
+        self.passivity.forgive();
     }
 
-    /// Whether a fault holds the force at zero.
+    /// What holds the force at zero, if something does.
     #[must_use]
-    pub fn is_latched(&self) -> bool {
-        self.latched
+    pub fn fault(&self) -> Option<Fault> {
+        self.fault
     }
 
     /// The force on the hand for the next tick, N, `dt` s after the tick before.
     pub fn step(&mut self, held: &Held, dt: f64) -> (DVec3, Tick) {
         let mut tick = Tick::default();
-        let sane = dt.is_finite()
-            && held.position.is_finite()
-            && held.velocity.is_finite()
-            && held.orientation.is_finite();
-        if !sane {
-            self.latched = true;
-        }
-        if self.latched {
-            self.force = DVec3::ZERO;
-            tick.fault = true;
-            return (self.force, tick);
+        self.check(held, dt);
+        if self.fault.is_some() {
+            return self.nothing(tick);
         }
         if dt > self.limits.longest_tick_s || dt < 0.0 {
             self.force = DVec3::ZERO;
             self.engaged_s = 0.0;
+            self.last = None;
             tick.late = true;
         }
         let dt = dt.clamp(0.0, self.limits.longest_tick_s);
+        self.observe(held, dt);
         self.age(dt);
         self.take_in(held, dt);
-        let wanted = self.wanted(held, &mut tick);
+        let felt = self.felt_of_newest(held);
+        tick.contact = felt.is_some_and(|felt| felt.depth_m > 0.0);
+        self.watch(held, tick.contact, dt);
+        self.rest(tick.contact, dt);
+        tick.resting = self.switch == Switch::Off || self.idle_s >= self.limits.idle_s;
+        if self.fault.is_some() || tick.resting {
+            return self.nothing(tick);
+        }
+        tick.cap_n = self
+            .heat
+            .cap_n(self.limits.max_force_n, self.limits.continuous_force_n, dt);
+        let wanted = self.wanted(held, felt, dt, &mut tick);
         let size = wanted.length();
-        tick.clamped = size > self.limits.max_force_n;
+        tick.clamped = size > tick.cap_n;
         let limited = if tick.clamped {
-            wanted * (self.limits.max_force_n / size)
+            wanted * (tick.cap_n / size)
         } else {
             wanted
         };
@@ -174,11 +235,52 @@ impl Servo {
         self.force += change;
         // Last of all: whatever went wrong above, no such number reaches the motors.
         if !self.force.is_finite() {
-            self.latched = true;
-            self.force = DVec3::ZERO;
-            tick.fault = true;
+            self.fault = Some(Fault::NotANumber);
+            return self.nothing(tick);
         }
         (self.force, tick)
+    }
+
+    /// No force, and why.
+    fn nothing(&mut self, tick: Tick) -> (DVec3, Tick) {
+        self.force = DVec3::ZERO;
+        self.last = None;
+        let fault = self.fault;
+        (DVec3::ZERO, Tick { fault, ..tick })
+    }
+
+    /// Latches what is no number, and a hand that the device drives.
+    fn check(&mut self, held: &Held, dt: f64) {
+        let sane = dt.is_finite()
+            && held.position.is_finite()
+            && held.velocity.is_finite()
+            && held.orientation.is_finite()
+            && self.heat.is_known();
+        if !sane {
+            self.fault = Some(Fault::NotANumber);
+        } else if self.force != DVec3::ZERO && held.velocity.length() > self.limits.max_speed_m_s {
+            self.fault = Some(self.fault.unwrap_or(Fault::TooFast));
+        }
+    }
+
+    /// Sums the energy of the step that ends, by the force that was held over it and the models as
+    /// they were in it.
+    fn observe(&mut self, held: &Held, dt: f64) {
+        let (Some(last), Some(model)) = (self.last, &self.model) else {
+            return;
+        };
+        let felt = model.contact.felt(held, self.limits.max_stiffness_n_m);
+        let here = cut(
+            (felt.conservative + self.correction) * last.share,
+            last.cap_n,
+        );
+        let way = held.position - last.position;
+        let models = (last.models + here) * 0.5;
+        let damping = self.limits.damping_n_s_m;
+        self.passivity.observe(self.force, models, way, damping, dt);
+        if felt.depth_m <= 0.0 && self.force == DVec3::ZERO {
+            self.passivity.forgive();
+        }
     }
 
     fn age(&mut self, dt: f64) {
@@ -200,33 +302,90 @@ impl Servo {
         let Some(contact) = self.arrived.take() else {
             return;
         };
-        let before = self.model.as_ref().map(|model| self.felt(model, held));
-        let arrived = Active { contact, age_s: dt };
-        self.model = Some(arrived);
+        let before = self.model.as_ref().map(|model| {
+            (model.contact.force(held, self.limits.max_stiffness_n_m) + self.correction)
+                * self.fading(model)
+        });
+        self.model = Some(Active { contact, age_s: dt });
+        let now = contact.force(held, self.limits.max_stiffness_n_m);
         if let Some(before) = before
             && contact.recovery_s > 0.0
-            && before != self.felt(&arrived, held)
+            && before != now + self.correction
         {
-            self.correction = before - contact.force(held, self.limits.max_stiffness_n_m);
+            self.correction = before - now;
             // An earlier, larger jump still ends in its own time.
             let speed = self.correction.length() / contact.recovery_s;
             self.correction_speed = self.correction_speed.max(speed);
         }
     }
 
-    /// What a model makes the hand feel, with what is left of those before it.
-    fn felt(&self, model: &Active, held: &Held) -> DVec3 {
-        let fading = (1.0 - model.overdue_s().max(0.0) / self.limits.fade_s).max(0.0);
-        (model.contact.force(held, self.limits.max_stiffness_n_m) + self.correction) * fading
+    /// What the newest model makes the hand feel.
+    fn felt_of_newest(&self, held: &Held) -> Option<Felt> {
+        let model = self.model.as_ref()?;
+        Some(model.contact.felt(held, self.limits.max_stiffness_n_m))
     }
 
-    /// The force that the models ask for.
-    fn wanted(&self, held: &Held, tick: &mut Tick) -> DVec3 {
+    /// What is left of a model past its time to live.
+    fn fading(&self, model: &Active) -> f64 {
+        (1.0 - model.overdue_s().max(0.0) / self.limits.fade_s).max(0.0)
+    }
+
+    /// Latches a hand that goes on shaking.
+    fn watch(&mut self, held: &Held, contact: bool, dt: f64) {
         let Some(model) = &self.model else {
+            return;
+        };
+        let touch = if contact { Touch::Contact } else { Touch::Air };
+        let place = held.position.dot(model.contact.normal());
+        if self.shaking.watch(place, self.limits.shaking_m, touch, dt) {
+            self.fault = Some(self.fault.unwrap_or(Fault::Shaking));
+        }
+    }
+
+    /// Counts the time without contact; a touch brings the force up anew.
+    fn rest(&mut self, contact: bool, dt: f64) {
+        if !contact {
+            self.idle_s += dt;
+            return;
+        }
+        if self.idle_s >= self.limits.idle_s {
+            self.engaged_s = 0.0;
+        }
+        self.idle_s = 0.0;
+    }
+
+    /// The force that the models ask for, and the brake.
+    fn wanted(&mut self, held: &Held, felt: Option<Felt>, dt: f64, tick: &mut Tick) -> DVec3 {
+        let (Some(model), Some(felt)) = (&self.model, felt) else {
+            self.last = None;
             return DVec3::ZERO;
         };
         tick.stale = model.overdue_s() > 0.0;
-        self.felt(model, held) * (self.engaged_s / self.limits.engage_s).min(1.0)
+        let softer = self.strength * self.shaking.softness();
+        tick.asked_n_m = felt.asked_n_m;
+        tick.stiffness_n_m = felt.stiffness_n_m * softer;
+        let ramp = (self.engaged_s / self.limits.engage_s).min(1.0);
+        let share = self.fading(model) * ramp * softer;
+        let (correction, cap_n) = (self.correction, tick.cap_n);
+        self.last = Some(Last {
+            position: held.position,
+            models: cut((felt.conservative + correction) * share, cap_n),
+            share,
+            cap_n,
+        });
+        let brake = self.passivity.brake(dt);
+        tick.braked = brake != DVec3::ZERO;
+        (felt.force + correction) * share + brake
+    }
+}
+
+/// A force cut to the largest size.
+fn cut(force: DVec3, most_n: f64) -> DVec3 {
+    let size = force.length();
+    if size > most_n {
+        force * (most_n / size)
+    } else {
+        force
     }
 }
 
@@ -237,5 +396,7 @@ impl Active {
     }
 }
 
+#[cfg(test)]
+mod guards;
 #[cfg(test)]
 mod tests;

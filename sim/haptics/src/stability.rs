@@ -10,8 +10,10 @@ use maulstick_types::haptics::ForceLaw;
 
 use crate::contact::tests::model;
 use crate::contact::{Contact, Held};
+use crate::law::hermite::tests::tuples;
 use crate::plant::{Hand, Plant};
-use crate::servo::{Limits, Sender, Servo};
+use crate::servo::limits::Limits;
+use crate::servo::{Sender, Servo};
 
 const DT: f64 = 1e-3;
 /// Ticks between two models: those of the brush node come 4 ms apart.
@@ -47,6 +49,10 @@ impl Press {
         let mut servo = Servo::new(Limits {
             max_stiffness_n_m: 1e9,
             max_force_n: 3.3,
+            // As if the device took all that sampling gives: these are the bounds of the bare wall.
+            damping_n_s_m: 1e9,
+            shaking_m: f64::INFINITY,
+            max_speed_m_s: f64::INFINITY,
             ..Limits::default()
         });
         let mut plant = Plant::omni(self.hand, DVec3::new(0.0, 0.0, 0.025));
@@ -148,4 +154,73 @@ fn beyond_the_bound_or_with_a_force_sent_over_a_network_a_fingertip_shakes() {
         .wobble()
             < STILL
     );
+}
+
+/// A hand strokes a round brush of 25 mm over linen for two seconds and stops: how far the tip moves,
+/// peak to peak, in the last half second of three, m; `by` multiplies the force of its curve.
+fn stroke(hand: Hand, by: f64, limits: Limits) -> f64 {
+    let knots = tuples().into_iter().map(|mut knot| {
+        knot.force_n *= by;
+        knot.slope_n *= by;
+        knot
+    });
+    let mut linen = model(ForceLaw::Hermite {
+        knots: knots.collect(),
+    });
+    linen.grain.amplitude = 0.028;
+    linen.grain.wavelength_m = 0.9e-3;
+    linen.viscous_n_s_m = 0.1;
+    linen.recovery_ns = 15_000_000;
+    let contact = Contact::new(&linen).expect("a model");
+    let mut servo = Servo::new(limits);
+    let mut plant = Plant::omni(hand, DVec3::new(0.0, 0.0, 0.03));
+    let (mut low, mut high) = (DVec3::MAX, DVec3::MIN);
+    for tick in 0..3000 {
+        if tick % MODEL_TICKS == 0 {
+            servo.receive(contact, Sender::Same);
+        }
+        let held = Held {
+            position: plant.read_position(),
+            orientation: DQuat::IDENTITY,
+            velocity: plant.read_velocity(),
+        };
+        let (force, told) = servo.step(&held, DT);
+        assert_eq!(told.fault, None);
+        let s = tick.min(2000) as f64 * DT;
+        let place = DVec3::new(0.03 * maulstick_num::sin(4.0 * s), 0.0, 0.022);
+        plant.advance(force, place, DT);
+        if tick >= 2500 {
+            (low, high) = (
+                low.min(plant.true_position()),
+                high.max(plant.true_position()),
+            );
+        }
+    }
+    (high - low).max_element()
+}
+
+#[test]
+fn a_brush_that_has_stroked_over_linen_comes_to_rest_in_every_hand() {
+    for hand in HANDS {
+        for by in [0.2, 1.0, 3.0] {
+            let limits = Limits {
+                max_stiffness_n_m: 500.0,
+                damping_n_s_m: 0.3,
+                ..Limits::default()
+            };
+            let wobble = stroke(hand, by, limits);
+            assert!(wobble < STILL, "{hand:?} {by}: {wobble} m");
+        }
+    }
+    // The seeded fault: a wall of 2.5 N in the place of the brush, and nobody to stop what shakes.
+    let unguarded = Limits {
+        max_stiffness_n_m: 1e9,
+        damping_n_s_m: 1e9,
+        slew_n_s: 1e6,
+        shaking_m: f64::INFINITY,
+        max_speed_m_s: f64::INFINITY,
+        ..Limits::default()
+    };
+    let wobble = stroke(Hand::FINGERTIP, 50.0, unguarded);
+    assert!(wobble > STILL, "{wobble} m");
 }

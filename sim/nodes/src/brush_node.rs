@@ -1,6 +1,7 @@
 //! The brush node: stylus samples in; brush states, credit and contact models out.
 
 mod commands;
+mod felt;
 mod settings;
 
 use std::collections::{BTreeMap, BTreeSet};
@@ -16,7 +17,7 @@ use maulstick_bus::{
     Bus, BusError, Class, CreditReceiver, CreditSender, Queue, Server, Subscription, Wake,
 };
 use maulstick_types::brush::{BrushConsumed, BrushDef, BrushState, Solve};
-use maulstick_types::haptics::ContactModel;
+use maulstick_types::haptics::{ContactModel, Grain};
 use maulstick_types::paint::PaintConsumed;
 use maulstick_types::scene::Scene;
 use maulstick_types::stylus::{StylusInfo, StylusPose, StylusSample, axes};
@@ -25,15 +26,13 @@ use maulstick_types::{Flags, Origin, name_hash};
 
 use crate::arbiter::{Arbiter, Range, Stroke};
 use crate::backlog::{Backlog, Place, Waiting};
-use crate::feel::{contact_model, drag};
+use crate::feel::{NO_GRAIN, drag, grain};
 use crate::outbox::Outbox;
 
 pub use settings::BrushSettings;
 
 /// Live, states older than this are not added to: the brush merges, ns.
 const OLDEST_NS: u64 = 50_000_000;
-/// Least time between two contact models, ns.
-const MODEL_PERIOD_NS: u64 = 4_000_000;
 
 /// A take being played, from its first sample to its last: no other device moves the brush
 /// meanwhile, however long it is silent.
@@ -75,6 +74,8 @@ pub struct BrushNode {
     touching: bool,
     /// Drag of the paint under the brush, N·s/m.
     drag_n_s_m: f64,
+    /// Grain of the canvas.
+    grain: Grain,
     /// Number of the newest state that touches.
     newest_contact: Option<u64>,
     /// Devices of whose faulty samples it was said.
@@ -138,6 +139,7 @@ impl BrushNode {
             tokens: b.watch(&topics.node("*"), wake)?,
             touching: false,
             drag_n_s_m: 0.0,
+            grain: NO_GRAIN,
             newest_contact: None,
             faulty: BTreeSet::new(),
             def,
@@ -185,6 +187,7 @@ impl BrushNode {
             if scene.message.version >= self.scene_version {
                 self.scene_version = scene.message.version;
                 self.model.set_scene(&scene.message);
+                self.grain = grain(&scene.message);
                 self.model.tune(scene.message.tuning(&self.settings.name));
             }
         }
@@ -460,31 +463,6 @@ impl BrushNode {
                 self.told.insert(device.clone(), progress.next);
                 self.consumed.send(now_ns, now_ns, progress)?;
             }
-        }
-        Ok(())
-    }
-
-    /// Gives a force-feedback device its contact model.
-    fn feel(&mut self, device: &str, origin: Origin, now_ns: u64) -> Result<(), BusError> {
-        if !self.drives_force.contains(device) {
-            return Ok(());
-        }
-        let Some(plane) = self.model.plane().copied() else {
-            return Ok(());
-        };
-        if !self.models.contains_key(device) {
-            let topic = self.topics.contact_model(device);
-            let me = self.states.origin();
-            let sender = Sender::new(&*self.bus, &topic, Class::RealTime, me)?;
-            self.models.insert(device.to_owned(), (sender, 0));
-        }
-        let (name, feel, drag) = (&self.settings.name, self.model.feel(), self.drag_n_s_m);
-        let model = contact_model(origin, name, self.model.file(), &plane, feel, drag);
-        if let Some((sender, sent_ns)) = self.models.get_mut(device)
-            && now_ns >= *sent_ns + MODEL_PERIOD_NS
-        {
-            *sent_ns = now_ns;
-            sender.send(now_ns, now_ns, &model)?;
         }
         Ok(())
     }

@@ -6,6 +6,7 @@ use maulstick_brush::BrushFile;
 use maulstick_bus::credit::Stamp;
 use maulstick_bus::typed::{Receiver, Sender};
 use maulstick_bus::{Class, CreditSender, Faults, MemoryNet, Queue, Wake};
+use maulstick_nodes::feel::ForceKind;
 use maulstick_types::brush::{BrushDef, BrushState};
 use maulstick_types::command::{Command, Outcome};
 use maulstick_types::haptics::{ContactModel, ForceLaw};
@@ -64,6 +65,55 @@ fn a_force_device_with_a_number_of_its_own_gets_its_model() {
     turn(&mut live);
     let model = models.try_recv().expect("a model").message;
     assert_eq!((model.device, model.device_epoch), (42, 11));
+}
+
+/// What a pressed brush gives to a device that feels it by a law.
+fn pressed(kind: ForceKind) -> ForceLaw {
+    let net = MemoryNet::new(1, START_NS, Faults::default());
+    let mut settings = support::settings();
+    settings.laws.insert("arm".into(), kind);
+    let mut live = Live::with(net, settings);
+    let (bus, wake) = (live.net.bus(), Wake::new());
+    let topic = live.topics.contact_model("arm");
+    let mut models =
+        Receiver::<ContactModel>::new(&bus, &topic, Class::RealTime, Queue::Ring(64), &wake)
+            .expect("subscribed");
+    let mut arm = force_device(&live);
+    turn(&mut live);
+    let mut law = None;
+    for _ in 0..8 {
+        arm.send(&pen(0.0, 0.0, 0.4));
+        turn(&mut live);
+        while let Some(model) = models.try_recv() {
+            maulstick_haptics::Contact::new(&model.message).expect("a servo takes it");
+            law = Some(model.message.law);
+        }
+    }
+    law.expect("a model")
+}
+
+#[test]
+fn each_device_feels_the_brush_by_its_own_law() {
+    assert!(matches!(pressed(ForceKind::None), ForceLaw::None));
+    assert!(matches!(pressed(ForceKind::Rigid), ForceLaw::Rigid { .. }));
+    assert!(matches!(
+        pressed(ForceKind::Linear),
+        ForceLaw::Linear { .. }
+    ));
+    let ForceLaw::Hermite { knots } = pressed(ForceKind::Hermite) else {
+        panic!("a curve");
+    };
+    assert_eq!((knots.len(), knots[3].depth), (5, 1.0));
+    let ForceLaw::Local {
+        force_n,
+        stiffness_n_m,
+        ..
+    } = pressed(ForceKind::Local)
+    else {
+        panic!("a local force");
+    };
+    assert!(force_n[2] > 0.05 && force_n[2] < 3.0, "{force_n:?}");
+    assert!(stiffness_n_m[2][2] < 0.0, "{stiffness_n_m:?}");
 }
 
 #[test]

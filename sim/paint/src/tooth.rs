@@ -71,6 +71,16 @@ impl Tooth {
         Some(Self { kind, seed, cell_m })
     }
 
+    /// From the highest peak to the deepest valley, and from bump to bump, m.
+    #[must_use]
+    pub fn relief_m(&self) -> [f64; 2] {
+        let wide = match self.kind.make {
+            Make::Woven { pitch_m } => pitch_m,
+            Make::Grained { size_m } => size_m,
+        };
+        [self.kind.depth_m, wide]
+    }
+
     /// Heights of a tile's cells, m, row after row from the bottom.
     #[must_use]
     pub fn tile(&self, id: TileId) -> Box<[f32]> {

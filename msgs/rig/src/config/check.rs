@@ -4,7 +4,8 @@ use maulstick_types::advice::choice;
 use maulstick_types::topics::check_name;
 
 use super::{
-    BACKENDS, BRUSH_NODE, BrushSection, DRIVERS, DeviceSection, GAMUTS, MODELS, RESERVED, RigConfig,
+    BACKENDS, BRUSH_NODE, BrushSection, DRIVERS, DeviceSection, FORCES, GAMUTS, MODELS, RESERVED,
+    RigConfig,
 };
 use crate::fault::Fault;
 
@@ -103,6 +104,8 @@ impl RigConfig {
         };
         choose("driver", &device.driver, &DRIVERS)
             .map_err(|told| wrong(told, "driver", &device.driver))?;
+        choose("force", &device.force, &FORCES)
+            .map_err(|told| wrong(told, "force", &device.force))?;
         if self.brush_named(&device.brush).is_none() {
             let names = self.brush.iter().map(|brush| brush.name.as_str());
             let told = unknown("brush", &device.brush, names);

@@ -92,6 +92,56 @@ pub fn check(file: &BrushFile) -> Result<(), BrushError> {
     for size in &file.sizes_mm {
         within("sizes_mm", *size, 0.1..=300.0)?;
     }
+    file.force
+        .as_ref()
+        .map_or(Ok(()), |force| tuples(&force.hermite))
+}
+
+/// Checks the tuples of the Hermite curve: the force rises with depth throughout, which a cubic does
+/// where its slopes are at most three times that of the chord (Fritsch and Carlson 1980).
+fn tuples(tuples: &[[f64; 3]]) -> Result<(), BrushError> {
+    let count = tuples.len();
+    must("force.hermite", count, count == 5, "five tuples")?;
+    for (place, [depth, force, slope]) in tuples.iter().enumerate() {
+        let depths = match place {
+            0 => 0.0..=0.0,
+            3 => 1.0..=1.0,
+            _ => 0.0..=3.0,
+        };
+        within("force.hermite (depth)", *depth, depths)?;
+        let most = if place == 0 { 0.0 } else { 50.0 };
+        within("force.hermite (force)", *force, 0.0..=most)?;
+        within("force.hermite (slope)", *slope, 0.0..=1000.0)?;
+    }
+    for pair in tuples.windows(2) {
+        let [[x0, y0, m0], [x1, y1, m1]] = [pair[0], pair[1]];
+        let rising = |field: &str, value: f64, holds: bool, range: String| match holds {
+            true => Ok(()),
+            false => Err(BrushError::Range {
+                field: field.to_owned(),
+                value,
+                range,
+            }),
+        };
+        rising(
+            "force.hermite (depth)",
+            x1,
+            x1 > x0,
+            "in rising order".into(),
+        )?;
+        rising(
+            "force.hermite (force)",
+            y1,
+            y1 >= y0,
+            format!("at least {y0}"),
+        )?;
+        let most = 3.0 * (y1 - y0) / (x1 - x0);
+        // What is written with a few digits may be over by its rounding.
+        let within = |slope: f64| slope <= most * (1.0 + 1e-9);
+        let range = format!("at most {most:.3} for the force to rise from depth {x0} to {x1}");
+        rising("force.hermite (slope)", m0, within(m0), range.clone())?;
+        rising("force.hermite (slope)", m1, within(m1), range)?;
+    }
     Ok(())
 }
 

@@ -26,6 +26,8 @@
 //! [load]
 //! film_um = 200.0          # on the strips of a freshly loaded head
 //! inside_um = 200.0        # within them, as if spread over them
+//! [force]                  # that the hand feels: depth along the normal, N, N a head's length
+//! hermite = [[0.0, 0.0, 6.0], [0.06, 0.2, 0.8], [0.5, 0.45, 0.5], [1.0, 0.8, 1.2], [1.2, 1.5, 6.0]]
 //! ```
 //!
 //! All keys are in `docs/brushes.md`.
@@ -37,7 +39,7 @@ pub mod sections;
 use serde::{Deserialize, Serialize};
 
 use self::check::within;
-use self::sections::{Contact, Head, Load, Spines, Strips, Surface};
+use self::sections::{Contact, Force, Head, Load, Spines, Strips, Surface};
 use crate::tuft::Tuft;
 
 /// Why a brush cannot be had.
@@ -95,6 +97,9 @@ pub struct BrushFile {
     pub contact: Contact,
     /// What the head carries.
     pub load: Load,
+    /// What the hand feels; by the head's stiffness if absent.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub force: Option<Force>,
 }
 
 impl BrushFile {
@@ -258,6 +263,10 @@ mod tests {
         assert!(error("[0.25, 1.0]", "[0.95, 1.0]").contains("rising order"));
         assert!(error("[[0.0, 0.82]", "[[0.0, 0.0]").contains("share at the ferrule"));
         assert!(error("friction_static = 0.32", "friction_static = 0.1").contains("static is 0.1"));
+        assert!(error("[1.0, 0.8, ", "[1.0, 0.5, ").contains("force.hermite (force) is 0.5"));
+        assert!(error("[1.0, 0.8, ", "[0.9, 0.8, ").contains("force.hermite (depth) is 0.9"));
+        assert!(error("[0.06, 0.5, ", "[0.06, 0.5, 9").contains("force.hermite (slope) is 9"));
+        assert!(error(", [1.2, 1.5, 6.0]]", "]").contains("force.hermite is 4"));
         assert!(error("focus = 2.0", "focus = 1.0").contains("contact.focus is 1"));
         assert!(error("clumping = [0.0,", "clumping = [2.0,").contains("strips.clumping is 2"));
         let chain = "[[spines.chain]]\nroot_mm = [0, 0, 0]\nsegments_mm = []\n\

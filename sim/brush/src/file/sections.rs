@@ -226,3 +226,14 @@ pub struct Load {
     /// Paint inside them, as thick as if it were spread over them, µm.
     pub inside_um: f64,
 }
+
+/// What the hand feels.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Force {
+    /// The five tuples of the piecewise cubic (Baxter 2004, fig. 8.2): depth as a fraction of the
+    /// head's length along the surface's normal, force, N, and slope, N per such fraction. The first
+    /// is no force at no depth, the first two are the compressive part, the fourth, at depth 1, is
+    /// where the handle meets the surface.
+    pub hermite: Vec<[f64; 3]>,
+}

@@ -232,6 +232,8 @@ fn brush(
             film_um: properties.number("film_um").unwrap_or(like.load.film_um),
             ..like.load
         },
+        // Felt by its own stiffness.
+        force: None,
     })
 }
 

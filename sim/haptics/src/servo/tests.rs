@@ -1,7 +1,6 @@
 //! The servo against its promises: ramps, recovery, faults, limits.
 
 use glam::DQuat;
-use maulstick_types::Pose;
 use maulstick_types::haptics::ForceLaw;
 use proptest::prelude::*;
 
@@ -166,7 +165,10 @@ fn a_number_that_is_none_latches_the_fault() {
     {
         let mut servo = engaged(0.0125);
         let (force, tick) = servo.step(&held, dt);
-        assert!(tick.fault && force == DVec3::ZERO, "{held:?} {dt}: {force}");
+        assert!(
+            tick.fault == Some(Fault::NotANumber) && force == DVec3::ZERO,
+            "{held:?} {dt}: {force}"
+        );
         for _ in 0..100 {
             servo.receive(contact(linear()), Sender::Another);
             assert_eq!(servo.step(&whole, DT).0, DVec3::ZERO, "latched");
@@ -181,17 +183,14 @@ fn a_number_that_is_none_latches_the_fault() {
 #[test]
 fn a_model_beyond_all_numbers_latches_the_fault() {
     let mut servo = engaged(0.0125);
-    servo.receive(
-        contact(ForceLaw::Local {
-            pose: Pose::IDENTITY,
-            force_n: [f64::MAX; 3],
-            stiffness_n_m: [[f64::MAX; 3]; 3],
-        }),
-        Sender::Same,
-    );
-    let (force, tick) = servo.step(&held(0.0125), DT);
+    let mut endless = model(linear());
+    endless.viscous_n_s_m = f64::MAX;
+    servo.receive(Contact::new(&endless).expect("a model"), Sender::Same);
+    let mut fast = held(0.0125);
+    fast.velocity.x = 1.2;
+    let (force, tick) = servo.step(&fast, DT);
     assert!(
-        tick.fault && servo.is_latched() && force == DVec3::ZERO,
+        tick.fault == Some(Fault::NotANumber) && force == DVec3::ZERO,
         "{force}"
     );
 }
@@ -258,7 +257,7 @@ proptest! {
     #[test]
     fn force_and_its_change_stay_within_their_limits(
         moves in prop::collection::vec(
-            (-0.06..0.06f64, -3.0..3.0f64, 0.0..0.02f64, 0u8..5, 0.0..2000.0f64), 1..200),
+            (-0.06..0.06f64, -0.8..0.8f64, 0.0..0.02f64, 0u8..5, 0.0..2000.0f64), 1..200),
     ) {
         let limits = Limits::default();
         let mut servo = Servo::new(limits);

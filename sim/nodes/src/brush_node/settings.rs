@@ -4,6 +4,8 @@ use std::collections::BTreeMap;
 
 use maulstick_brush::BrushFile;
 
+use crate::feel::ForceKind;
+
 /// What a brush node is told at its start.
 #[derive(Clone, Debug)]
 pub struct BrushSettings {
@@ -15,6 +17,8 @@ pub struct BrushSettings {
     pub depth_share: f64,
     /// The devices that move it, by name, with their priority.
     pub devices: BTreeMap<String, i32>,
+    /// How the brush pushes back on devices, by name; two straight pieces where none is said.
+    pub laws: BTreeMap<String, ForceKind>,
     /// Devices that move other brushes.
     pub others: Vec<String>,
     /// Priority of a device that is in neither list, if it may move this brush.

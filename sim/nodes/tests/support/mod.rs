@@ -115,6 +115,7 @@ pub fn settings() -> BrushSettings {
         file: file(),
         depth_share: 0.5,
         devices: BTreeMap::new(),
+        laws: BTreeMap::new(),
         others: Vec::new(),
         foreign_priority: Some(0),
         epoch: 77,

@@ -1,0 +1,22 @@
+//! Why a servo gives no force until it is re-armed.
+
+/// A latched fault.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Fault {
+    /// A reading or a force was not a number.
+    NotANumber,
+    /// The hand was faster than any hand is, with force on it.
+    TooFast,
+    /// It went on shaking, however soft the force was made.
+    Shaking,
+}
+
+impl std::fmt::Display for Fault {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str(match self {
+            Self::NotANumber => "a reading was not finite",
+            Self::TooFast => "the hand was faster than its limit",
+            Self::Shaking => "the hand shook, however soft the force was made",
+        })
+    }
+}

@@ -1,0 +1,151 @@
+//! A tick of the servo allocates nothing, whatever happens in it.
+
+#![allow(
+    unsafe_code,
+    reason = "an allocator is unsafe; this one hands all on to the system's"
+)]
+
+use std::alloc::{GlobalAlloc, Layout, System};
+use std::cell::Cell;
+
+use glam::{DQuat, DVec3};
+use maulstick_haptics::contact::Held;
+use maulstick_haptics::{Contact, Limits, Sender, Servo, Switch};
+use maulstick_num::sin;
+use maulstick_types::Pose;
+use maulstick_types::haptics::{ContactModel, ForceLaw, Grain, HermiteKnot};
+
+thread_local! {
+    static ALLOCATIONS: Cell<usize> = const { Cell::new(0) };
+}
+
+/// Counts what each thread allocates.
+struct Counting;
+
+fn count() {
+    ALLOCATIONS.set(ALLOCATIONS.get() + 1);
+}
+
+// SAFETY: every call goes to the system's allocator as it came.
+unsafe impl GlobalAlloc for Counting {
+    unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
+        count();
+        // SAFETY: as the caller promises.
+        unsafe { System.alloc(layout) }
+    }
+
+    unsafe fn dealloc(&self, at: *mut u8, layout: Layout) {
+        // SAFETY: as the caller promises.
+        unsafe { System.dealloc(at, layout) }
+    }
+
+    unsafe fn realloc(&self, at: *mut u8, layout: Layout, size: usize) -> *mut u8 {
+        count();
+        // SAFETY: as the caller promises.
+        unsafe { System.realloc(at, layout, size) }
+    }
+}
+
+#[global_allocator]
+static COUNTING: Counting = Counting;
+
+/// How often this thread allocates while `work` is done.
+fn allocations(work: impl FnOnce()) -> usize {
+    let before = ALLOCATIONS.get();
+    work();
+    ALLOCATIONS.get() - before
+}
+
+fn contact(law: ForceLaw) -> Contact {
+    Contact::new(&ContactModel {
+        device: 1,
+        device_epoch: 1,
+        brush: "main".into(),
+        plane_point_m: [0.0; 3],
+        plane_normal: [0.0, 0.0, 1.0],
+        friction_static: 0.3,
+        friction_kinetic: 0.2,
+        viscous_n_s_m: 0.1,
+        grain: Grain {
+            amplitude: 0.03,
+            wavelength_m: 1e-3,
+            seed: 1,
+        },
+        law,
+        head_length_m: 0.025,
+        time_to_live_ns: 20_000_000,
+        recovery_ns: 15_000_000,
+    })
+    .expect("a model")
+}
+
+#[test]
+fn a_tick_allocates_nothing() {
+    let knots = [
+        [0.0, 0.0, 12.0],
+        [0.06, 0.5, 0.3],
+        [0.5, 0.6, 0.2],
+        [1.0, 0.8, 0.8],
+    ];
+    let knots = knots.map(|[depth, force_n, slope_n]| HermiteKnot {
+        depth,
+        force_n,
+        slope_n,
+    });
+    let laws = [
+        ForceLaw::None,
+        ForceLaw::Linear {
+            k1_n: 0.8,
+            k2_n: 6.0,
+        },
+        ForceLaw::Hermite {
+            knots: knots.to_vec(),
+        },
+        ForceLaw::Local {
+            pose: Pose::IDENTITY,
+            force_n: [0.0, 0.0, 0.5],
+            stiffness_n_m: [[0.0; 3], [0.0; 3], [0.0, 0.0, -50.0]],
+        },
+        ForceLaw::Rigid {
+            stiffness_n_m: 900.0,
+        },
+    ];
+    let contacts = laws.map(contact);
+    let mut servo = Servo::new(Limits::default());
+    let mut pressed = 0;
+    let mut run = |servo: &mut Servo| {
+        for tick in 0..20_000 {
+            let t = f64::from(tick) * 1e-3;
+            if tick % 50 == 0 {
+                servo.receive(contacts[(tick / 50) as usize % 5], Sender::Same);
+            }
+            match tick % 7000 {
+                1000 => servo.measure(0.9),
+                2000 => servo.switch(Switch::Off),
+                2100 => servo.switch(Switch::On),
+                3000 => servo.set_strength(0.5),
+                4000 => servo.measure(f64::NAN),
+                4100 => {
+                    servo.measure(0.0);
+                    servo.rearm();
+                }
+                _ => {}
+            }
+            let shake = 0.002 * sin(130.0 * t);
+            let held = Held {
+                position: DVec3::new(0.01 * sin(3.0 * t), 0.0, 0.02 + shake),
+                orientation: DQuat::IDENTITY,
+                velocity: DVec3::X * 0.03,
+            };
+            let dt = if tick % 3000 == 0 { 0.1 } else { 1e-3 };
+            pressed += usize::from(servo.step(&held, dt).0 != DVec3::ZERO);
+        }
+    };
+    assert_eq!(allocations(|| run(&mut servo)), 0);
+    let fault = allocations(|| {
+        run(&mut servo);
+        std::hint::black_box(Vec::<u8>::with_capacity(1));
+    });
+    assert_eq!(fault, 1, "an allocation would pass");
+    assert!(pressed > 5000, "{pressed} ticks with force");
+}

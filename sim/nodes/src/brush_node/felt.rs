@@ -1,0 +1,51 @@
+//! Contact models for the hands that hold the brush.
+
+use maulstick_bus::typed::Sender;
+use maulstick_bus::{BusError, Class};
+use maulstick_types::Origin;
+
+use super::BrushNode;
+use crate::feel::{Felt, contact_model, law};
+
+/// Least time between two contact models, ns.
+const MODEL_PERIOD_NS: u64 = 4_000_000;
+
+impl BrushNode {
+    /// Gives a force-feedback device its contact model.
+    pub(super) fn feel(
+        &mut self,
+        device: &str,
+        origin: Origin,
+        now_ns: u64,
+    ) -> Result<(), BusError> {
+        if !self.drives_force.contains(device) {
+            return Ok(());
+        }
+        let Some(plane) = self.model.plane().copied() else {
+            return Ok(());
+        };
+        if !self.models.contains_key(device) {
+            let topic = self.topics.contact_model(device);
+            let me = self.states.origin();
+            let sender = Sender::new(&*self.bus, &topic, Class::RealTime, me)?;
+            self.models.insert(device.to_owned(), (sender, 0));
+        }
+        let Some((sender, sent_ns)) = self.models.get_mut(device) else {
+            return Ok(());
+        };
+        if now_ns < *sent_ns + MODEL_PERIOD_NS {
+            return Ok(());
+        }
+        *sent_ns = now_ns;
+        let kind = self.settings.laws.get(device).copied().unwrap_or_default();
+        let felt = Felt {
+            law: law(kind, &mut self.model, &plane),
+            drag_n_s_m: self.drag_n_s_m,
+            grain: self.grain.clone(),
+        };
+        let name = &self.settings.name;
+        let model = contact_model(origin, name, self.model.file(), &plane, felt);
+        sender.send(now_ns, now_ns, &model)?;
+        Ok(())
+    }
+}
