@@ -17,6 +17,17 @@ struct Held {
     inside: Vec<u32>,
 }
 
+/// One paint on a brush, to be moved: counts by texel.
+#[derive(Debug)]
+pub struct PaintOnBrush<'a> {
+    /// Its slot.
+    pub slot: usize,
+    /// Its films.
+    pub film: &'a mut [u32],
+    /// What it has inside.
+    pub inside: &'a mut [u32],
+}
+
 /// Which bristles take paint up.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Half {
@@ -256,6 +267,16 @@ impl BrushLoad {
     pub fn planes_mut(&mut self, slot: usize) -> Option<(&mut [u32], &mut [u32])> {
         let held = self.held[slot].as_mut()?;
         Some((&mut held.film, &mut held.inside))
+    }
+
+    /// All paints' films as last counted; then each paint's slot, its films, and what it has inside.
+    pub fn parts_mut(&mut self) -> (&mut [u32], impl Iterator<Item = PaintOnBrush<'_>>) {
+        let held = self.held.iter_mut().enumerate();
+        let paints = held.filter_map(|(slot, held)| {
+            let Held { film, inside } = held.as_deref_mut()?;
+            Some(PaintOnBrush { slot, film, inside })
+        });
+        (&mut self.films, paints)
     }
 
     /// What a paint has inside each texel.

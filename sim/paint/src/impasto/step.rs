@@ -58,7 +58,7 @@ impl PaintModel for Impasto {
                     );
                 }
                 report.from_nowhere = self.exchange.run(footprint, step);
-                flow(footprint, step);
+                flow(step);
             }
         }
         footprint.note_left(step);

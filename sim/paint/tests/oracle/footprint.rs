@@ -8,7 +8,7 @@ use maulstick_paint::load::ALONG;
 use crate::scene::{CELLS, Scene};
 
 /// The constants of the stage.
-const EDGE_PENALTY: f64 = 0.3;
+const EDGE_PENALTY: f64 = 0.6;
 const RANKS: f64 = 0.02;
 const BENT: f64 = 0.2;
 /// Sixteen roundings of a place below 128 cells in f32.

@@ -2,7 +2,7 @@
 // cell the lowest is kept. An invocation draws one.
 
 // A ribbon that covers a cell only in part counts as higher by this much.
-const EDGE_PENALTY = 0.3;
+const EDGE_PENALTY = 0.6;
 
 // How the paint stands: the highest, cells; the thickest film, cells; and by how much a key grows with a
 // score.

@@ -1,5 +1,5 @@
-// The films have what came and went. Every few steps paint moves within the strips that touch: from
-// inside to a film that lacks some, from one that has too much inward, and along.
+// The films of strips that touch have what came and went. Every few steps paint moves within all
+// strips: from inside to a film that lacks some, from one that has too much inward, and along.
 
 const FLOW_STEPS = 4u;
 // By this share the film of thinner alone is thinner than one of paint.
@@ -95,7 +95,11 @@ fn flow_in(strip: u32) {
 @compute @workgroup_size(64)
 fn tend_strips(@builtin(global_invocation_id) id: vec3<u32>) {
     let strip = id.x;
-    if strip >= step.strips || atomicLoad(&asks[touch_of(strip)]) == 0u {
+    if strip >= step.strips {
+        return;
+    }
+    let flows = load[0] % FLOW_STEPS == 0u;
+    if atomicLoad(&asks[touch_of(strip)]) == 0u && !flows {
         return;
     }
     atomicStore(&asks[touch_of(strip)], 0u);
@@ -109,7 +113,7 @@ fn tend_strips(@builtin(global_invocation_id) id: vec3<u32>) {
             atomicStore(&asks[change], 0u);
         }
     }
-    if load[0] % FLOW_STEPS == 0u {
+    if flows {
         flow_in(strip);
     }
     for (var k = 0u; k < ALONG; k++) {
