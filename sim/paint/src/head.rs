@@ -3,8 +3,12 @@
 use maulstick_brush::head::STATIONS;
 use maulstick_brush::{Head, HeadPose, Hold};
 use maulstick_num::geometry::{Rigid, nlerp};
+use maulstick_num::lanes::Lanes;
+use maulstick_num::wide;
 use maulstick_types::brush::Solve;
 
+/// Strips looked at at a time.
+const LANES: usize = 8;
 /// A strip lower than this may touch, cells.
 const NEAR: f32 = 3.0;
 
@@ -101,6 +105,42 @@ impl Waypoint {
     }
 }
 
+/// Eight of a plane from `start` on; all of a plane of fewer, in turn.
+#[inline(always)]
+fn run<L: Lanes>(plane: &[f32], start: usize) -> L {
+    match plane[start..].first_chunk() {
+        Some(run) => L::of(run),
+        None => L::of(&std::array::from_fn(|i| plane[i % plane.len()])),
+    }
+}
+
+wide! {
+    /// Widens a range by those segments, with their two ends, that come below `height`.
+    fn reach<L>(
+        ends: [&[f32]; 2],
+        heights: [&[f32]; 2],
+        height: f32,
+        least: &mut f32,
+        most: &mut f32,
+    ) {
+        let (mut low, mut high) = (L::splat(*least), L::splat(*most));
+        let (none_low, none_high) = (L::splat(f32::MAX), L::splat(f32::MIN));
+        let height = L::splat(height);
+        let strips = ends[0].len();
+        for start in (0..strips).step_by(LANES) {
+            // The last few come with others before them.
+            let start = start.min(strips.saturating_sub(LANES));
+            let (a, b) = (run::<L>(ends[0], start), run::<L>(ends[1], start));
+            let (za, zb) = (run::<L>(heights[0], start), run::<L>(heights[1], start));
+            let below = za.least(zb).less(height);
+            low = low.least(below.choose(a.least(b), none_low));
+            high = high.most(below.choose(a.most(b), none_high));
+        }
+        *least = low.values().into_iter().fold(f32::MAX, f32::min);
+        *most = high.values().into_iter().fold(f32::MIN, f32::max);
+    }
+}
+
 /// The cells that strips of `half_width` cells lower than `height` cells cover, and those beside
 /// them that paint may be pushed to, from the first up to but not with the second; none where all
 /// strips are higher.
@@ -116,22 +156,13 @@ pub fn low_bounds(
     let (mut from, mut to) = ([f32::MAX; 2], [f32::MIN; 2]);
     let row = |station: usize| station * strips..(station + 1) * strips;
     for station in 1..STATIONS {
-        let (before, after) = (row(station - 1), row(station));
+        let rows = [row(station - 1), row(station)];
+        let heights = rows.clone().map(|row| &pose.z[row]);
         for (axis, plane) in [&pose.x, &pose.y].into_iter().enumerate() {
-            let ends = plane[before.clone()].iter().zip(&plane[after.clone()]);
-            let heights = pose.z[before.clone()].iter().zip(&pose.z[after.clone()]);
-            for ((a, b), (za, zb)) in ends.zip(heights) {
-                let low = za.min(*zb) < height;
-                let (least, most) = if a < b { (*a, *b) } else { (*b, *a) };
-                let least = if low { least } else { f32::MAX };
-                let most = if low { most } else { f32::MIN };
-                from[axis] = if least < from[axis] {
-                    least
-                } else {
-                    from[axis]
-                };
-                to[axis] = if most > to[axis] { most } else { to[axis] };
-            }
+            let ends = rows.clone().map(|row| &plane[row]);
+            let (mut least, mut most) = (from[axis], to[axis]);
+            reach(ends, heights, height, &mut least, &mut most);
+            (from[axis], to[axis]) = (least, most);
         }
     }
     if let Some(skin) = head.skin() {

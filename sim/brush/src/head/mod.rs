@@ -8,6 +8,7 @@
 //! pressed down the strips open, and wet ones come together in clumps.
 
 pub mod curve;
+mod lay;
 pub mod place;
 pub mod weights;
 
@@ -16,6 +17,7 @@ use maulstick_num::atan2;
 use maulstick_num::geometry::{Rigid, shortest_arc};
 
 use self::curve::{Curve, curve, middle};
+use self::lay::{add_weighted, turn_offsets};
 use self::place::Random;
 use self::weights::{nearest_in_hull, weights_of};
 use crate::file::BrushFile;
@@ -309,15 +311,10 @@ impl Head {
                 // Places are kept small until the end: far from the origin f32 is coarse.
                 let center = mean[station][axis];
                 let plane = &mut plane[row.clone()];
-                for (i, p) in plane.iter_mut().enumerate() {
-                    *p = turn[0] * off[0][i] + turn[1] * off[1][i] + turn[2] * off[2][i];
-                }
+                turn_offsets(plane, &off, turn);
                 for (curve, weights) in curves.iter().zip(&self.weights) {
                     let place = ((curve[station][axis] - center) * hold.per_m) as f32;
-                    plane
-                        .iter_mut()
-                        .zip(weights)
-                        .for_each(|(p, w)| *p += w * place);
+                    add_weighted(plane, weights, place);
                 }
                 let center = (center * hold.per_m) as f32;
                 plane.iter_mut().for_each(|p| *p = (*p + center).max(floor));

@@ -74,11 +74,9 @@ pub enum Axis {
 wide! {
     /// Moves these paints.
     fn move_planes(mover: &mut Mover, flux: &Flux<'_>, planes: &mut [Option<Vec<f32>>]) {
-        // In a closure it would not be compiled for wide registers.
-        for plane in planes {
-            if let Some(plane) = plane {
-                mover.shift(flux, plane);
-            }
+        // A loop, as a closure would not be compiled for wide registers.
+        for plane in planes.iter_mut().flatten() {
+            mover.shift(flux, plane);
         }
     }
 }
