@@ -2,15 +2,13 @@
 
 mod support;
 
-use std::path::Path;
 use std::process::Command;
 use std::time::Duration;
 
 use maulstick_brush::BrushFile;
 use maulstick_bus::{Bus as _, Class};
-use maulstick_device::{Take, TakeSample};
 use maulstick_types::paint::PaintStatus;
-use maulstick_types::stylus::{DEFAULT_TILT_RAD, StylusPose, StylusSample, TakeStatus, axes};
+use maulstick_types::stylus::{StylusPose, StylusSample, TakeStatus};
 use nix::sys::signal::Signal;
 use support::display::Display;
 use support::{
@@ -393,34 +391,6 @@ fn a_mouse_stroke_in_the_window_is_painted_and_shown() {
     assert!(undone.is_some(), "the undone stroke is still shown");
 }
 
-/// A take of a hand that moves to and fro on the canvas, fully pressed, for three minutes.
-fn press_for_minutes(path: &Path) {
-    let samples = (0..18_000u64).map(|number| {
-        let way = (number % 400) as f64 / 400.0;
-        let x = 0.2 * (way - 0.5).abs() - 0.05;
-        TakeSample {
-            time_ns: number * 10_000_000,
-            sample: StylusSample {
-                senses: axes::POSITION | axes::PRESSURE | axes::TILT,
-                pose: StylusPose::Contact {
-                    point_m: [x, 0.0, 0.0],
-                    tilt_rad: DEFAULT_TILT_RAD,
-                    twist_rad: 0.0,
-                    pressure: 1.0,
-                },
-                in_range: true,
-                ..StylusSample::away()
-            },
-        }
-    });
-    let take = Take {
-        kit: None,
-        device: "hand".into(),
-        samples: samples.collect(),
-    };
-    take.write(path).expect("written");
-}
-
 /// Whether the tip of the undeformed head is a millimetre below the canvas at the least.
 fn pressed(sample: &StylusSample, head_length_m: f64) -> bool {
     let StylusPose::Ferrule { pose } = &sample.pose else {
@@ -435,7 +405,7 @@ fn pressed(sample: &StylusSample, head_length_m: f64) -> bool {
 #[test]
 fn a_simulated_hand_paints_and_feels_the_canvas() {
     let place = Place::new();
-    press_for_minutes(&place.path("press.mcap"));
+    support::press_for_minutes(&place.path("press.mcap"));
     let brush = BrushFile::library("round").expect("a brush");
     std::fs::write(place.path("file.toml"), brush.to_toml().expect("a file")).expect("written");
     let head_length_m = brush.scaled_to(10.0).expect("a size").length_m();
@@ -466,6 +436,21 @@ fn a_simulated_hand_paints_and_feels_the_canvas() {
     };
     let felt = hear(&mut samples, presses_back);
     assert!(felt.is_some(), "no force: {}", launcher.said());
+    for (order, gives, told) in [
+        (&["off"][..], false, "force off"),
+        (&["on"], true, "force on, 100 %"),
+        (&["strength", "0%"], false, "force on, 0 %"),
+        (&["strength", "60%"], true, "force on, 60 %"),
+        (&["rearm", "--device", "phantom"], true, "force on, 60 %"),
+    ] {
+        let said = place.done(&[&["force"], order].concat()).stdout;
+        assert_eq!(String::from_utf8_lossy(&said), format!("phantom: {told}\n"));
+        let done = |sample: &StylusSample| match gives {
+            true => presses_back(sample),
+            false => pressed(sample, head_length_m) && sample.force_n == [0.0; 3],
+        };
+        assert!(hear(&mut samples, done).is_some(), "{order:?}");
+    }
     let painted = wait_for(PATIENCE, || {
         (support::on_canvas(&place) > 0.0).then_some(())
     });

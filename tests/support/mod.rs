@@ -11,14 +11,16 @@
 pub mod display;
 
 use std::io::{BufRead as _, BufReader};
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::process::{Child, Command, ExitStatus, Output, Stdio};
 use std::sync::{Arc, Mutex};
 use std::time::{Duration, Instant};
 
 use maulstick_bus::typed::Receiver;
 use maulstick_bus::{Class, Dial, Queue, RigClock, RigFolder, Wake, ZenohBus};
+use maulstick_device::{Take, TakeSample};
 use maulstick_types::Message;
+use maulstick_types::stylus::{DEFAULT_TILT_RAD, StylusPose, StylusSample, axes};
 use maulstick_types::topics::Topics;
 use nix::sys::signal::{Signal, kill};
 use nix::unistd::Pid;
@@ -292,4 +294,32 @@ pub fn account(place: &Place, name: &str) -> f64 {
     let ledger: serde_json::Value = serde_json::from_slice(&place.bytes("l.json")).expect("JSON");
     assert_eq!(ledger["quanta_missing"], 0);
     ledger["accounts_m3"][name].as_f64().expect("a number")
+}
+
+/// A take of a hand that moves to and fro on the canvas, fully pressed, for three minutes.
+pub fn press_for_minutes(path: &Path) {
+    let samples = (0..18_000u64).map(|number| {
+        let way = (number % 400) as f64 / 400.0;
+        let x = 0.2 * (way - 0.5).abs() - 0.05;
+        TakeSample {
+            time_ns: number * 10_000_000,
+            sample: StylusSample {
+                senses: axes::POSITION | axes::PRESSURE | axes::TILT,
+                pose: StylusPose::Contact {
+                    point_m: [x, 0.0, 0.0],
+                    tilt_rad: DEFAULT_TILT_RAD,
+                    twist_rad: 0.0,
+                    pressure: 1.0,
+                },
+                in_range: true,
+                ..StylusSample::away()
+            },
+        }
+    });
+    let take = Take {
+        kit: None,
+        device: "hand".into(),
+        samples: samples.collect(),
+    };
+    take.write(path).expect("written");
 }

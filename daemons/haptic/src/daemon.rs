@@ -5,21 +5,22 @@ use std::time::Duration;
 
 use glam::DQuat;
 use maulstick_bus::credit::Stamp;
-use maulstick_bus::typed::{Receiver, Sender};
-use maulstick_bus::{Class, CreditSender, Queue};
+use maulstick_bus::typed::{Reader, Receiver, Sender};
+use maulstick_bus::{Class, CreditSender, Queue, Server};
 use maulstick_device::{Take, brush_file};
 use maulstick_haptics::contact::Contact;
-use maulstick_haptics::{Address, Limits};
+use maulstick_haptics::{Address, Limits, Switch};
 use maulstick_num::geometry::{Rigid, canonical};
 use maulstick_rig::config::DeviceSection;
 use maulstick_rig::{Fault, Member};
-use maulstick_types::Flags;
-use maulstick_types::haptics::ContactModel;
+use maulstick_types::haptics::{ContactModel, ForceOrder, ForceReply, ForceRequest};
 use maulstick_types::stylus::{StylusInfo, StylusPose, StylusSample, StylusStatus};
+use maulstick_types::{Flags, encode};
 
 use crate::driver::{Driver, Placed};
 use crate::host::{BINS, Delivery, Host, Ticked, bin};
 use crate::simulated::Simulated;
+use crate::wish::Wish;
 
 /// What a haptic daemon is told.
 #[derive(Clone, Debug)]
@@ -52,6 +53,9 @@ struct Daemon {
     address: Address,
     samples: CreditSender<StylusSample>,
     models: Receiver<ContactModel>,
+    orders: Server,
+    reader: Reader,
+    wish: Wish,
     status: Sender<StylusStatus>,
     _info: Sender<StylusInfo>,
     /// From `CLOCK_MONOTONIC`, which stamps the ticks, to the rig's clock, ns.
@@ -146,6 +150,9 @@ impl Daemon {
             },
             samples,
             models: Receiver::new(bus, &topic, Class::RealTime, Queue::Latest, &member.wake)?,
+            orders: bus.serve(&topics.force(&device.name), 16, &member.wake)?,
+            reader: Reader::default(),
+            wish: Wish::default(),
             status: Sender::new(
                 bus,
                 &topics.stylus_status(&device.name),
@@ -175,9 +182,14 @@ impl Daemon {
 
     fn turn(&mut self) -> Result<Duration, Fault> {
         let now_ns = self.bus.now_ns();
+        self.obey(now_ns);
         self.deliver();
         while let Ok(ticked) = self.host.ticks.pop() {
             self.publish(&ticked, now_ns)?;
+        }
+        if self.host.ticks.is_abandoned() {
+            return Err(Fault::failure("the servo has ended by a fault of its own")
+                .help("its own message above says why"));
         }
         // Nobody waits for credit on a live device; the ring is there for who missed something.
         self.samples.forgive();
@@ -188,6 +200,44 @@ impl Daemon {
             self.status.send(now_ns, now_ns, &self.told)?;
         }
         Ok(Duration::from_millis(1))
+    }
+
+    /// Does what is asked of the force, and tells how it is then.
+    fn obey(&mut self, now_ns: u64) {
+        while let Some(request) = self.orders.try_recv() {
+            let read = self
+                .reader
+                .read::<ForceRequest>(&request.key, &request.bytes);
+            let Some((_, asked)) = read else { continue };
+            match asked.order {
+                ForceOrder::Off => self.wish.switch = Switch::Off,
+                ForceOrder::On => self.wish.switch = Switch::On,
+                // A share that is no number is none.
+                ForceOrder::Strength { share } if share > 0.0 => {
+                    self.wish.strength = share.min(1.0);
+                }
+                ForceOrder::Strength { .. } => self.wish.strength = 0.0,
+                ForceOrder::Rearm => {
+                    self.wish.armings += 1;
+                    self.told.faults.clear();
+                }
+            }
+            self.host.wishes.write(self.wish);
+            let reply = ForceReply {
+                is_on: self.wish.switch == Switch::On,
+                strength: self.wish.strength,
+                fault: self.told.faults.join("; "),
+            };
+            let me = self.samples.origin();
+            match encode(&me, Flags::NONE, 0, now_ns, now_ns, &reply) {
+                Ok(bytes) => {
+                    if let Err(error) = request.answer(bytes) {
+                        tracing::debug!("a client is gone: {error}");
+                    }
+                }
+                Err(error) => tracing::error!("an order cannot be answered: {error}"),
+            }
+        }
     }
 
     /// Hands the newest model to the servo, if it is meant for this device as it is now.
@@ -225,8 +275,9 @@ impl Daemon {
         self.told.force_n = ticked.force.length();
         if let Some(fault) = ticked.tick.fault
             && self.told.faults.is_empty()
+            && ticked.armings == self.wish.armings
         {
-            let what = format!("{fault}: force is off until re-armed");
+            let what = format!("{fault}: no force until `maulstick force rearm`");
             self.told.faults.push(what);
         }
         let event_ns = ticked.monotonic_ns + self.offset_ns;

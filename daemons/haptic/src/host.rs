@@ -14,6 +14,7 @@ use thread_priority::unix::{RealtimeThreadSchedulePolicy, ThreadSchedulePolicy};
 use thread_priority::{ThreadPriority, ThreadPriorityValue};
 
 use crate::driver::{Placed, Reading};
+use crate::wish::Wish;
 
 /// Period of the servo, ns.
 pub const PERIOD_NS: u64 = 1_000_000;
@@ -39,6 +40,8 @@ pub struct Ticked {
     pub spent_ns: u64,
     /// What the servo did.
     pub tick: Tick,
+    /// The [`Wish`]'s armings that it has done.
+    pub armings: u64,
 }
 
 /// A model on its way to the servo.
@@ -58,6 +61,8 @@ pub struct Host {
     pub ticks: rtrb::Consumer<Ticked>,
     /// Where models go in.
     pub models: triple_buffer::Input<Delivery>,
+    /// Where wishes go in.
+    pub wishes: triple_buffer::Input<Wish>,
     /// What hindered real-time scheduling, if anything did.
     pub warnings: Vec<String>,
     stop: Arc<AtomicBool>,
@@ -102,6 +107,7 @@ impl Host {
     fn with_ring(mut device: Placed, limits: Limits, ring: usize) -> std::io::Result<Self> {
         let (mut to_publisher, ticks) = rtrb::RingBuffer::new(ring);
         let (models, mut from_rig) = triple_buffer::triple_buffer(&Delivery::default());
+        let (wishes, mut wished) = triple_buffer::triple_buffer(&Wish::default());
         let (tell, told) = std::sync::mpsc::channel();
         let stop = Arc::new(AtomicBool::new(false));
         let stopped = Arc::clone(&stop);
@@ -113,6 +119,7 @@ impl Host {
                 tell.send(become_real_time()).ok();
                 let mut servo = Servo::new(limits);
                 let (mut seen, mut sender) = (0, None);
+                let mut followed = Wish::default();
                 let mut amplifiers = Switch::On;
                 let mut last_ns = monotonic_ns();
                 let mut deadline_ns = last_ns + PERIOD_NS;
@@ -133,11 +140,12 @@ impl Host {
                         servo.receive(contact, whose);
                         (seen, sender) = (delivery.number, delivery.sender);
                     }
+                    followed.follow(*wished.read(), &mut servo);
                     let reading = device.read(dt);
                     servo.measure(reading.motor_temperature);
                     let (force, tick) = servo.step(&reading.held, dt);
                     device.write(force);
-                    let wanted = if tick.resting {
+                    let wanted = if tick.resting || tick.fault.is_some() {
                         Switch::Off
                     } else {
                         Switch::On
@@ -153,6 +161,7 @@ impl Host {
                         late_ns: now_ns.saturating_sub(deadline_ns),
                         spent_ns: monotonic_ns() - now_ns,
                         tick,
+                        armings: followed.armings,
                     };
                     if to_publisher.push(ticked).is_err() {
                         drops.fetch_add(1, Ordering::Relaxed);
@@ -171,6 +180,7 @@ impl Host {
         Ok(Self {
             ticks,
             models,
+            wishes,
             warnings,
             stop,
             dropped,
@@ -240,225 +250,4 @@ pub fn bin(ns: u64) -> usize {
 }
 
 #[cfg(test)]
-mod tests {
-    use std::time::{Duration, Instant};
-
-    use glam::DQuat;
-    use maulstick_haptics::contact::Held;
-    use maulstick_num::geometry::{Rigid, canonical, rotation};
-    use maulstick_types::haptics::{ContactModel, ForceLaw, Grain};
-
-    use super::*;
-    use crate::driver::{Abilities, Driver};
-    use crate::simulated::Simulated;
-
-    #[test]
-    fn bins_double() {
-        assert_eq!(
-            (bin(0), bin(49_999), bin(50_000), bin(99_999), bin(100_000)),
-            (0, 0, 1, 1, 2)
-        );
-        assert_eq!(bin(u64::MAX), BINS - 1);
-    }
-
-    /// The first tick that `look` accepts.
-    fn tick(host: &mut Host, mut look: impl FnMut(&Ticked) -> bool) -> Option<Ticked> {
-        let give_up = Instant::now() + Duration::from_secs(20);
-        while Instant::now() < give_up {
-            while let Ok(ticked) = host.ticks.pop() {
-                if look(&ticked) {
-                    return Some(ticked);
-                }
-            }
-            std::thread::yield_now();
-        }
-        None
-    }
-
-    #[test]
-    fn the_servo_ticks_and_its_ticks_come_out_in_order() {
-        let device = Placed::new(Box::new(Simulated::at_rest()), Rigid::IDENTITY);
-        let mut host = Host::start(device, Limits::default()).expect("started");
-        let (mut count, mut last_ns) = (0, 0);
-        let enough = tick(&mut host, |ticked| {
-            assert!(ticked.monotonic_ns > last_ns);
-            last_ns = ticked.monotonic_ns;
-            count += 1;
-            count == 200
-        });
-        assert!(enough.is_some());
-    }
-
-    #[test]
-    fn ticks_that_do_not_fit_are_counted() {
-        let device = Placed::new(Box::new(Simulated::at_rest()), Rigid::IDENTITY);
-        let mut host = Host::with_ring(device, Limits::default(), 4).expect("started");
-        let give_up = Instant::now() + Duration::from_secs(20);
-        while host.dropped() < 3 && Instant::now() < give_up {
-            std::thread::yield_now();
-        }
-        assert!(host.dropped() >= 3);
-        assert_eq!(
-            std::iter::from_fn(|| host.ticks.pop().ok()).take(4).count(),
-            4
-        );
-    }
-
-    /// A device that stands still and remembers the newest force written to it.
-    struct Still {
-        held: Held,
-        written: Arc<[AtomicU64; 3]>,
-    }
-
-    impl Driver for Still {
-        fn abilities(&self) -> Abilities {
-            Simulated::at_rest().abilities()
-        }
-
-        fn read(&mut self, _: f64) -> Reading {
-            Reading {
-                held: self.held,
-                switches: 0,
-                in_range: true,
-                motor_temperature: 0.0,
-            }
-        }
-
-        fn write(&mut self, force: DVec3) {
-            for (cell, part) in self.written.iter().zip(force.to_array()) {
-                cell.store(part.to_bits(), Ordering::Relaxed);
-            }
-        }
-    }
-
-    /// A device whose reading fails after a while.
-    struct Failing(Still, u32);
-
-    impl Driver for Failing {
-        fn abilities(&self) -> Abilities {
-            self.0.abilities()
-        }
-
-        fn read(&mut self, dt: f64) -> Reading {
-            self.1 += 1;
-            assert!(self.1 < 100, "the seeded fault");
-            self.0.read(dt)
-        }
-
-        fn write(&mut self, force: DVec3) {
-            // A force that nobody asked for, so that its end shows.
-            self.0.write(if self.1 < 100 { DVec3::X } else { force });
-        }
-    }
-
-    #[test]
-    fn a_servo_that_fails_leaves_no_force() {
-        let written = Arc::new([const { AtomicU64::new(0) }; 3]);
-        let still = Still {
-            held: Held {
-                position: DVec3::Z,
-                orientation: DQuat::IDENTITY,
-                velocity: DVec3::ZERO,
-            },
-            written: Arc::clone(&written),
-        };
-        let device = Placed::new(Box::new(Failing(still, 0)), Rigid::IDENTITY);
-        let mut host = Host::start(device, Limits::default()).expect("started");
-        tick(&mut host, |_| true).expect("a tick");
-        if let Some(thread) = host.thread.take() {
-            assert!(thread.join().is_err(), "the servo fails");
-        }
-        assert_eq!(f64::from_bits(written[0].load(Ordering::Relaxed)), 0.0);
-    }
-
-    /// A rigid wall of 100 N/m at the desk's z = 0, for a head of 25 mm.
-    fn wall() -> Contact {
-        Contact::new(&ContactModel {
-            device: 1,
-            device_epoch: 1,
-            brush: "main".into(),
-            plane_point_m: [0.0; 3],
-            plane_normal: [0.0, 0.0, 1.0],
-            friction_static: 0.0,
-            friction_kinetic: 0.0,
-            viscous_n_s_m: 2.0,
-            grain: Grain {
-                amplitude: 0.0,
-                wavelength_m: 1e-3,
-                seed: 1,
-            },
-            law: ForceLaw::Rigid {
-                stiffness_n_m: 100.0,
-            },
-            head_length_m: 0.025,
-            time_to_live_ns: u64::MAX,
-            recovery_ns: 0,
-        })
-        .expect("a model")
-    }
-
-    #[test]
-    fn a_turned_and_shifted_device_feels_the_desk_where_it_is() {
-        // What the hand does on the desk: the tip 4 mm below the wall, sliding along x.
-        let on_desk = Held {
-            position: DVec3::new(0.01, -0.02, 0.021),
-            orientation: DQuat::IDENTITY,
-            velocity: DVec3::new(0.1, 0.0, 0.0),
-        };
-        let expected = DVec3::new(-0.2, 0.0, 0.4);
-        let turn = rotation(DVec3::new(0.6, 0.0, 0.8), 2.0);
-        for to_desk in [
-            Rigid::IDENTITY,
-            Rigid {
-                rotation: turn,
-                translation: DVec3::new(0.3, -0.1, 0.2),
-            },
-        ] {
-            let to_device = to_desk.inverse();
-            let written = Arc::new([const { AtomicU64::new(0) }; 3]);
-            let still = Still {
-                held: Held {
-                    position: to_device.point(on_desk.position),
-                    orientation: canonical(to_device.rotation * on_desk.orientation),
-                    velocity: to_device.vector(on_desk.velocity),
-                },
-                written: Arc::clone(&written),
-            };
-            // However late the ticks of a busy machine come, the force comes up.
-            let limits = Limits {
-                engage_s: 1e-3,
-                longest_tick_s: 1e3,
-                ..Limits::default()
-            };
-            let mut host =
-                Host::start(Placed::new(Box::new(still), to_desk), limits).expect("started");
-            host.models.write(Delivery {
-                contact: Some(wall()),
-                sender: None,
-                number: 1,
-            });
-            // The tick after the first is there once the force of the first is written.
-            let mut seen = 0;
-            let felt = tick(&mut host, |ticked| {
-                seen += u32::from((ticked.force - expected).length() < 1e-12);
-                seen == 2
-            });
-            let felt = felt.expect("the force in the desk frame");
-            let off = (felt.reading.held.position - on_desk.position).length()
-                + (felt.reading.held.velocity - on_desk.velocity).length()
-                + felt
-                    .reading
-                    .held
-                    .orientation
-                    .angle_between(on_desk.orientation);
-            assert!(off < 1e-7, "{:?}", felt.reading.held);
-            let written = DVec3::from_array(
-                [0, 1, 2].map(|i| f64::from_bits(written[i].load(Ordering::Relaxed))),
-            );
-            assert!(
-                (written - to_device.vector(expected)).length() < 1e-12,
-                "{written} in the device frame"
-            );
-        }
-    }
-}
+mod tests;

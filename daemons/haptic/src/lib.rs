@@ -9,11 +9,13 @@
 //! | [`driver`] | what a device is to the servo |
 //! | [`simulated`] | a device and a hand, simulated |
 //! | [`host`] | the real-time thread |
+//! | [`wish`] | what a painter wants of the force |
 //! | [`daemon`] | the thread that talks to the rig |
 
 pub mod daemon;
 pub mod driver;
 pub mod host;
 pub mod simulated;
+pub mod wish;
 
 pub use driver::Driver;

@@ -12,11 +12,12 @@ use maulstick_num::cos;
 use maulstick_num::geometry::rotation;
 use maulstick_rig::Fault;
 use maulstick_rig::config::BrushSection;
-use maulstick_rig::files::check_writable;
 use maulstick_types::haptics::{ContactModel, ForceLaw, Grain};
 use serde_json::json;
 
+use crate::commands::force_order::{Order, give};
 use crate::commands::{print_text, write_picture};
+use crate::outputs::{UsedFile, check_outputs};
 use crate::performance::brush_file;
 use crate::plot::{Axis, Curve, Panel, from_zero, plot};
 
@@ -49,7 +50,10 @@ impl Model {
 
 /// Options of `maulstick force`.
 #[derive(Args, Clone, Debug)]
+#[command(args_conflicts_with_subcommands = true)]
 pub struct ForceOptions {
+    #[command(subcommand)]
+    order: Option<Order>,
     /// How the force goes with depth
     #[arg(long, default_value = "hermite")]
     model: Model,
@@ -66,9 +70,9 @@ pub struct ForceOptions {
     /// Angles between the canvas's normal and the handle, a list
     #[arg(long, value_name = "ANGLES", default_value = "0,15,30,45", value_parser = angles)]
     angle_deg: List,
-    /// Stiffness of the hard wall, N/m
-    #[arg(long, value_name = "N/M", default_value_t = 500.0, value_parser = stiffness)]
-    stiffness_n_m: f64,
+    /// Stiffness of the hard wall, N/m; 500 if absent
+    #[arg(long, value_name = "N/M", value_parser = stiffness)]
+    stiffness_n_m: Option<f64>,
     /// What the device bears, N/m: no force rises faster
     #[arg(long, value_name = "N/M", default_value_t = 500.0, value_parser = stiffness)]
     max_stiffness_n_m: f64,
@@ -86,6 +90,8 @@ struct List(Vec<f64>);
 
 /// Step of a range of depths, mm.
 const STEP_MM: f64 = 0.5;
+/// Stiffness of a wall for which nothing is said, N/m.
+const WALL_N_M: f64 = 500.0;
 /// Depths of any brush, mm.
 const DEEPEST_MM: f64 = 1000.0;
 /// The head of a brush that is held flatter is solved nowhere, degrees.
@@ -107,7 +113,12 @@ fn depths(text: &str) -> Result<List, String> {
     let what = "depths from 0 to 1000 mm, such as 0..40 or 0,5,10";
     let within = |mm: f64| (0.0..=DEEPEST_MM).contains(&mm);
     let Some((from, to)) = text.split_once("..") else {
-        return numbers(text, within, what);
+        // A head is pressed down, and a curve has one force at a depth.
+        return numbers(text, within, what).map(|List(mut depths)| {
+            depths.sort_by(f64::total_cmp);
+            depths.dedup();
+            List(depths)
+        });
     };
     let (from, to) = (numbers(from, within, what)?, numbers(to, within, what)?);
     match (from.0.as_slice(), to.0.as_slice()) {
@@ -116,16 +127,17 @@ fn depths(text: &str) -> Result<List, String> {
             let place = |i: usize| (from + STEP_MM * i as f64).min(*to);
             Ok(List((0..=steps).map(place).collect()))
         }
+        ([_], [_]) => Err(format!("'{text}': FROM must be less than TO, as in 0..40")),
         _ => Err(format!("'{text}' is not {what}")),
     }
 }
 
 fn angles(text: &str) -> Result<List, String> {
-    let within = |degrees: f64| (0.0..=180.0).contains(&degrees);
+    let within = |degrees: f64| (0.0..=90.0).contains(&degrees);
     numbers(
         text,
         within,
-        "angles from 0 to 180 degrees, such as 0,15,30,45",
+        "angles from 0 to 90 degrees, such as 0,15,30,45",
     )
 }
 
@@ -145,11 +157,23 @@ struct Row {
 /// Prints and draws the force by depth and angle.
 ///
 /// # Errors
-/// A [`Fault`] for a bad brush file or a picture that cannot be written.
+/// A [`Fault`] for a bad brush file or a picture that cannot be written; for an order where no device of
+/// a rig takes it.
 pub fn run(options: &ForceOptions) -> Result<i32, Fault> {
-    if let Some(path) = &options.plot {
-        check_writable(path).map_err(|error| Fault::writing(path, &error))?;
+    if let Some(order) = &options.order {
+        return give(order);
     }
+    if options.stiffness_n_m.is_some() && options.model != Model::Rigid {
+        let what = format!(
+            "--stiffness-n-m does nothing beside --model {}",
+            options.model.name()
+        );
+        return Err(Fault::usage(what)
+            .help("it is the hard wall's: --model rigid; --max-stiffness-n-m bounds any model"));
+    }
+    let plot_file = UsedFile::given("the plot", options.plot.as_ref());
+    let brush = UsedFile::named("the brush", &options.brush);
+    check_outputs(plot_file.as_slice(), brush.as_slice())?;
     let file = brush_file(&BrushSection {
         name: "main".into(),
         kind: options.brush.clone(),
@@ -235,7 +259,7 @@ fn rows(options: &ForceOptions, file: &BrushFile, degrees: f64) -> Result<Vec<Ro
         },
         Model::Hermite => ForceLaw::Hermite { knots },
         Model::Rigid => ForceLaw::Rigid {
-            stiffness_n_m: options.stiffness_n_m,
+            stiffness_n_m: options.stiffness_n_m.unwrap_or(WALL_N_M),
         },
         Model::Local => return solved(options, file, degrees, &depths),
     };
@@ -261,11 +285,6 @@ fn solved(
         return Err(Fault::usage(format!("a head is not solved at {degrees}°"))
             .at("--angle-deg")
             .help(format!("hold it at {FLATTEST_SOLVED}° or steeper")));
-    }
-    if depths.windows(2).any(|pair| pair[0] > pair[1]) {
-        return Err(Fault::usage("the depths do not rise")
-            .at("--depth-mm")
-            .help("a head is pressed down: give them from the least to the greatest"));
     }
     let angle = degrees.to_radians();
     let (lean, length) = (rotation(DVec3::Y, angle), file.length_m());
@@ -337,14 +356,16 @@ mod tests {
         let list = |text| depths(text).map(|list| list.0);
         assert_eq!(list("0..1.2"), Ok(vec![0.0, 0.5, 1.0, 1.2]));
         assert_eq!(list("0..40").map(|list| list.len()), Ok(81));
-        assert_eq!(list("3, 1.5"), Ok(vec![3.0, 1.5]));
+        assert_eq!(list("3, 1.5, 3"), Ok(vec![1.5, 3.0]));
+        let same = list("5..5").expect_err("no range");
+        assert!(same.contains("FROM must be less than TO"), "{same}");
         for text in [
             "", "5..1", "1..", "0..1..2", "-1..2", "0..nan", "0..2000", "0,,1",
         ] {
             assert!(list(text).is_err(), "{text}");
         }
         assert_eq!(angles("0,45"), Ok(List(vec![0.0, 45.0])));
-        for text in ["", "-1", "181", "x"] {
+        for text in ["", "-1", "91", "x"] {
             assert!(angles(text).is_err(), "{text}");
         }
     }

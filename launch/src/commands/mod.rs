@@ -7,6 +7,7 @@ pub mod demo;
 pub mod endpoint;
 pub mod fit;
 pub mod force;
+pub mod force_order;
 pub mod import;
 pub mod layers;
 pub mod light;

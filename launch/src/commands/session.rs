@@ -4,13 +4,13 @@ use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 use clap::Args;
-use maulstick_bus::typed::{Received, Receiver};
+use maulstick_bus::typed::{Received, Receiver, ask, random_epoch};
 use maulstick_bus::{Bus, BusError, Class, Dial, Queue, RigClock, RigFolder, Wake, ZenohBus};
 use maulstick_device::commander::Commander;
 use maulstick_rig::Fault;
-use maulstick_types::Message;
 use maulstick_types::command::Command;
 use maulstick_types::topics::Topics;
+use maulstick_types::{Message, Origin, name_hash};
 
 /// Which rig a command is for.
 #[derive(Args, Clone, Debug)]
@@ -72,6 +72,19 @@ impl Session {
         Commander::of(bus, &self.topics, node).send(command, None, PATIENCE, &|| false)
     }
 
+    /// Asks a node a question of its own.
+    ///
+    /// # Errors
+    /// A [`Fault`] where nobody answers.
+    pub fn ask<Q: Message, A: Message>(&self, topic: &str, question: &Q) -> Result<A, Fault> {
+        let me = Origin {
+            source: name_hash("cli"),
+            epoch: random_epoch(),
+        };
+        let answer = ask(&*self.bus, topic, Class::Control, me, question, PATIENCE);
+        answer.map_err(Fault::from)
+    }
+
     /// Follows a topic.
     ///
     /// # Errors
@@ -102,6 +115,20 @@ pub struct Feed<M> {
 }
 
 impl<M: Message> Feed<M> {
+    /// Waits for the next message until then.
+    pub fn next_before(&mut self, until: Instant) -> Option<M> {
+        loop {
+            if let Some(received) = self.messages.try_recv() {
+                return Some(received.message);
+            }
+            let left = until.saturating_duration_since(Instant::now());
+            if left.is_zero() {
+                return None;
+            }
+            self.wake.wait(left);
+        }
+    }
+
     /// Waits for the next message.
     ///
     /// # Errors

@@ -47,6 +47,8 @@ pub static CATALOGUE: &[CatalogueEntry] = &[
     entry!(stylus::TakeStatus, "stylus/<device>/take"),
     entry!(haptics::ContactModel, "haptics/<device>/model"),
     entry!(haptics::FluidForce, "haptics/<device>/fluid"),
+    entry!(haptics::ForceRequest, "haptics/<device>/force (query)"),
+    entry!(haptics::ForceReply, "haptics/<device>/force (reply)"),
     entry!(brush::BrushDef, "brush/<brush>/def"),
     entry!(brush::BrushState, "brush/<brush>/state"),
     entry!(brush::BrushConsumed, "brush/<brush>/consumed"),

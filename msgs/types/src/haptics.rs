@@ -94,6 +94,43 @@ message! {
     }
 }
 
+wire_enum! {
+    /// What a painter wants of a device's force.
+    pub enum ForceOrder {
+        /// None, at once.
+        Off,
+        /// Force, from nothing on.
+        On,
+        /// Weaker force.
+        Strength {
+            /// Share of what the models ask for, 0 to 1.
+            share: f64,
+        },
+        /// Force again after a fault, from nothing on.
+        Rearm,
+    }
+}
+
+message! {
+    /// Asks a device to do so; asking again is safe.
+    pub struct ForceRequest [version 1, at most 256 bytes] {
+        /// What is wanted.
+        pub order: ForceOrder,
+    }
+}
+
+message! {
+    /// How a device gives force after what was asked.
+    pub struct ForceReply [version 1, at most 1024 bytes] {
+        /// Whether it is switched on.
+        pub is_on: bool,
+        /// Share of what the models ask for, 0 to 1.
+        pub strength: f64,
+        /// What keeps it without force until it is armed again, in words; empty where nothing does.
+        pub fault: String,
+    }
+}
+
 message! {
     /// A force from the paint's fields with all that makes it a model.
     pub struct FluidForce [version 1, at most 2048 bytes] {

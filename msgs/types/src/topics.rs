@@ -47,6 +47,9 @@ topics! {
     contact_model(device) = "haptics/{device}/model";
     /// What the hand feels of moving paint: [`FluidForce`](crate::haptics::FluidForce).
     fluid_force(device) = "haptics/{device}/fluid";
+    /// Whether and how strongly a device gives force, a query:
+    /// [`ForceRequest`](crate::haptics::ForceRequest).
+    force(device) = "haptics/{device}/force";
     /// A brush file: [`BrushDef`](crate::brush::BrushDef), cached.
     brush_def(brush) = "brush/{brush}/def";
     /// Solved states: [`BrushState`](crate::brush::BrushState).

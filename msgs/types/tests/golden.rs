@@ -4,7 +4,9 @@ mod parts;
 
 use maulstick_types::brush::{BrushConsumed, BrushDef, BrushState, Contact, Solve};
 use maulstick_types::command::{After, Command, CommandReply, CommandRequest, GapRequest, Outcome};
-use maulstick_types::haptics::{ContactModel, FluidForce, ForceLaw, Grain, HermiteKnot};
+use maulstick_types::haptics::{
+    ContactModel, FluidForce, ForceLaw, ForceOrder, ForceRequest, Grain, HermiteKnot,
+};
 use maulstick_types::paint::{
     BrushCredit, Entry, FrameHolds, FrameReply, FrameRequest, FrameTile, JournalEntry,
     PaintConsumed, PaintStatus,
@@ -16,7 +18,7 @@ use maulstick_types::stylus::{
     StylusInfo, StylusPose, StylusSample, StylusStatus, TakeEnd, TakeStatus,
 };
 use maulstick_types::{CATALOGUE, Flags, Message, Mixture, Origin, decode, encode};
-use parts::{handling, pose, region};
+use parts::{force_reply, handling, pose, region};
 
 fn after() -> After {
     After {
@@ -161,6 +163,10 @@ fn all() -> String {
             time_to_live_ns: 4,
             recovery_ns: 5,
         }),
+        line(&ForceRequest {
+            order: ForceOrder::Strength { share: 0.5 },
+        }),
+        line(&force_reply()),
         line(&BrushDef {
             brush: "main".into(),
             toml: "kind = 1".into(),

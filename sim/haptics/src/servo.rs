@@ -151,7 +151,7 @@ impl Servo {
     /// Allows force again after a fault; it engages anew.
     pub fn rearm(&mut self) {
         self.fault = None;
-        self.heat = Heat::cold(self.limits.max_force_n);
+        self.heat.forget_unknown();
         self.shaking = Shaking::default();
         self.engage_anew();
     }
@@ -200,16 +200,23 @@ impl Servo {
             self.force = DVec3::ZERO;
             self.engaged_s = 0.0;
             self.last = None;
+            self.passivity.forgive();
             tick.late = true;
         }
-        let dt = dt.clamp(0.0, self.limits.longest_tick_s);
+        let passed_s = dt.max(0.0);
+        let dt = passed_s.min(self.limits.longest_tick_s);
         self.observe(held, dt);
-        self.age(dt);
+        self.age(dt, passed_s);
         self.take_in(held, dt);
         let felt = self.felt_of_newest(held);
         tick.contact = felt.is_some_and(|felt| felt.depth_m > 0.0);
-        self.watch(held, tick.contact, dt);
-        self.rest(tick.contact, dt);
+        let touch = if tick.contact {
+            Touch::Contact
+        } else {
+            Touch::Air
+        };
+        self.watch(held, touch, dt);
+        self.rest(touch, dt);
         tick.resting = self.switch == Switch::Off || self.idle_s >= self.limits.idle_s;
         if self.fault.is_some() || tick.resting {
             return self.nothing(tick);
@@ -245,6 +252,7 @@ impl Servo {
     fn nothing(&mut self, tick: Tick) -> (DVec3, Tick) {
         self.force = DVec3::ZERO;
         self.last = None;
+        self.passivity.forgive();
         let fault = self.fault;
         (DVec3::ZERO, Tick { fault, ..tick })
     }
@@ -283,10 +291,11 @@ impl Servo {
         }
     }
 
-    fn age(&mut self, dt: f64) {
+    /// The ramp and the recovery go on by a tick, and models age by all the time that has passed.
+    fn age(&mut self, dt: f64, passed_s: f64) {
         self.engaged_s += dt;
         if let Some(model) = &mut self.model {
-            model.age_s += dt;
+            model.age_s += passed_s;
         }
         let (size, shrunk) = (self.correction.length(), self.correction_speed * dt);
         if size > shrunk {
@@ -330,12 +339,15 @@ impl Servo {
         (1.0 - model.overdue_s().max(0.0) / self.limits.fade_s).max(0.0)
     }
 
-    /// Latches a hand that goes on shaking.
-    fn watch(&mut self, held: &Held, contact: bool, dt: f64) {
+    /// Latches a hand that goes on shaking; without force no device shakes it.
+    fn watch(&mut self, held: &Held, touch: Touch, dt: f64) {
         let Some(model) = &self.model else {
             return;
         };
-        let touch = if contact { Touch::Contact } else { Touch::Air };
+        let touch = match self.force == DVec3::ZERO {
+            true => Touch::Air,
+            false => touch,
+        };
         let place = held.position.dot(model.contact.normal());
         if self.shaking.watch(place, self.limits.shaking_m, touch, dt) {
             self.fault = Some(self.fault.unwrap_or(Fault::Shaking));
@@ -343,8 +355,8 @@ impl Servo {
     }
 
     /// Counts the time without contact; a touch brings the force up anew.
-    fn rest(&mut self, contact: bool, dt: f64) {
-        if !contact {
+    fn rest(&mut self, touch: Touch, dt: f64) {
+        if touch == Touch::Air {
             self.idle_s += dt;
             return;
         }

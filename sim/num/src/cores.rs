@@ -25,7 +25,7 @@ const AWAKE: u32 = KEEN + 200;
 const EMPTY: u32 = 0;
 /// A job lies there.
 const OFFERED: u32 = 1;
-/// The helper does it.
+/// One of the two threads does it.
 const TAKEN: u32 = 2;
 /// It is done.
 const DONE: u32 = 3;
@@ -47,8 +47,8 @@ struct Desk {
     unsafe_code,
     reason = "a desk hands a job from one thread to the other"
 )]
-// SAFETY: `job` and `panic` are written by the owner while the state is EMPTY, OFFERED or DONE, and by
-// the helper while it is TAKEN alone; the state's releases and acquires order the accesses.
+// SAFETY: `job` and `panic` are used by the owner while the state is EMPTY or DONE, and by the thread that
+// has made it TAKEN while it is; the state's releases and acquires order the accesses.
 unsafe impl Sync for Desk {}
 #[allow(
     unsafe_code,
@@ -125,19 +125,24 @@ impl Desk {
         if self.sleeping.swap(false, Ordering::SeqCst) {
             helper.unpark();
         }
-        Offer { desk: self }
+        Offer {
+            desk: self,
+            ended: false,
+        }
     }
 }
 
 /// A job that was offered.
 struct Offer<'a> {
     desk: &'a Desk,
+    ended: bool,
 }
 
 impl Offer<'_> {
     /// Does the job if nobody has begun it, or waits for its end; what it panicked with.
     fn end(&mut self) -> Option<Box<dyn Any + Send>> {
         let desk = self.desk;
+        self.ended = true;
         let (from, to) = (Ordering::Acquire, Ordering::Relaxed);
         let mine = desk.state.compare_exchange(OFFERED, TAKEN, from, to);
         if mine.is_ok() {
@@ -165,7 +170,7 @@ impl Offer<'_> {
 
 impl Drop for Offer<'_> {
     fn drop(&mut self) {
-        if std::thread::panicking() {
+        if !self.ended {
             self.end();
         }
     }
@@ -334,10 +339,14 @@ mod tests {
             assert_eq!(has_help(), cores > 1);
             for round in 0..2000 {
                 assert_eq!(sum(&numbers), expected, "{round}");
-                if round % 500 == 0 {
-                    // Long enough for the helper to fall asleep.
-                    let end = std::time::Instant::now() + std::time::Duration::from_millis(20);
-                    while std::time::Instant::now() < end {}
+                let asleep = || {
+                    HELP.with_borrow(|help| {
+                        help.as_ref()
+                            .is_none_or(|(desk, _)| desk.sleeping.load(Ordering::SeqCst))
+                    })
+                };
+                while round % 500 == 0 && !asleep() {
+                    yield_now();
                 }
             }
         });

@@ -76,6 +76,7 @@ mod avx {
 
     /// Eight numbers in one register; [`wide!`](crate::wide) alone names it, in what it runs where the
     /// processor has AVX2.
+    #[doc(hidden)]
     #[derive(Clone, Copy, Debug)]
     pub struct Avx(__m256);
 

@@ -1,5 +1,6 @@
 //! Parts of the messages whose bytes are golden.
 
+use maulstick_types::haptics::ForceReply;
 use maulstick_types::scene::{BrushHandling, BrushMode};
 use maulstick_types::{Pose, Region};
 
@@ -9,6 +10,14 @@ pub(crate) fn handling() -> BrushHandling {
         mode: BrushMode::Marker,
         flow: 0.004,
         most_m: 2e-5,
+    }
+}
+
+pub(crate) fn force_reply() -> ForceReply {
+    ForceReply {
+        is_on: true,
+        strength: 0.6,
+        fault: "it shakes".into(),
     }
 }
 

@@ -14,7 +14,7 @@ pub enum Fault {
 impl std::fmt::Display for Fault {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         f.write_str(match self {
-            Self::NotANumber => "a reading was not finite",
+            Self::NotANumber => "a reading or a force was not a number",
             Self::TooFast => "the hand was faster than its limit",
             Self::Shaking => "the hand shook, however soft the force was made",
         })

@@ -40,6 +40,13 @@ impl Heat {
         self.temperature.is_finite()
     }
 
+    /// What is known of the motors stays; a temperature that is no number is cold until the next.
+    pub fn forget_unknown(&mut self) {
+        if !self.is_known() {
+            self.temperature = 0.0;
+        }
+    }
+
     /// The largest force, N, `dt` s later.
     pub fn cap_n(&mut self, peak_n: f64, continuous_n: f64, dt: f64) -> f64 {
         if self.temperature > WARM {

@@ -5,7 +5,7 @@
 //! there, still takes on the colour that it meets. Cells that draw on one brush texel have their
 //! demands summed, scaled together where they exceed what it holds, and truncated once.
 
-use maulstick_num::cores::{Balance, both};
+use maulstick_num::cores::{Balance, both_if};
 use maulstick_num::wide;
 
 use super::SHARED;
@@ -212,10 +212,12 @@ impl Exchange {
         let (texels, [low, high]) = (self.texels.len(), &mut self.halves);
         let contacts = footprint.contacts.split_at(middle);
         let shared = &*step;
-        self.balance.both(
-            || low.demand(contacts.0, shared),
-            || high.demand(contacts.1, shared),
-        );
+        let mut one = || low.demand(contacts.0, shared);
+        let mut other = || high.demand(contacts.1, shared);
+        match contacts.1.is_empty() {
+            true => (one(), other()),
+            false => self.balance.both(one, other),
+        };
         let granted = &mut self.granted;
         granted.asked.clear();
         granted.asked.resize(texels, [0.0; 2]);
@@ -225,7 +227,8 @@ impl Exchange {
         let sponge = step.handling.transfer == Transfer::Sponge;
         granted.grant(&self.texels, step.load, &step.traits, sponge);
         let (granted, lasting) = (&*granted, step.lasting);
-        both(
+        both_if(
+            !contacts.1.is_empty(),
             || low.share(granted, lasting),
             || high.share(granted, lasting),
         );
@@ -296,7 +299,8 @@ impl Exchange {
         let (below, above) = plane.split_at_mut(first);
         let [below, above] =
             [(0, below), (first, above)].map(|(first, cells)| Cells { first, cells });
-        both(
+        both_if(
+            !high.cells.is_empty(),
             || swap_paint(low, gives, below),
             || swap_paint(high, gives, above),
         );

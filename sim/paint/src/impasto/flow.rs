@@ -2,8 +2,7 @@
 //! what the film takes up beyond its fill goes inside, and inside it creeps along the strip.
 //!
 //! It does so in every strip, also in one that is the lowest of no cell just now: how many are depends
-//! on the size of cells. Where paint flowed in those alone, a brush that ran out left 9.7 % more on
-//! cells half as large, all of it from inside; so it is 5.0 %.
+//! on the size of cells.
 
 use maulstick_num::wide;
 

@@ -1,0 +1,146 @@
+//! `maulstick force off`, `on`, `strength` and `rearm`: orders to the devices of a running rig.
+
+use std::time::{Duration, Instant};
+
+use clap::{Args, Subcommand};
+use maulstick_bus::Class;
+use maulstick_rig::Fault;
+use maulstick_types::haptics::{ForceOrder, ForceReply, ForceRequest};
+use maulstick_types::stylus::{StylusInfo, axes};
+
+use crate::commands::session::{Session, Target};
+use crate::commands::{print_text, session};
+
+/// What is wanted of the force.
+#[derive(Clone, Debug, Subcommand)]
+pub enum Order {
+    /// Gives no force any more, at once
+    Off(Whose),
+    /// Gives force again, from nothing on
+    On(Whose),
+    /// Gives a share of the force
+    Strength {
+        /// The share: 60% or 0.6
+        #[arg(value_parser = share)]
+        share: f64,
+        /// Of which devices
+        #[command(flatten)]
+        whose: Whose,
+    },
+    /// Gives force again after a fault
+    Rearm(Whose),
+}
+
+/// Which devices an order is for.
+#[derive(Args, Clone, Debug)]
+pub struct Whose {
+    /// The device of rig.toml; all that give force if absent
+    #[arg(long, value_name = "DEVICE")]
+    device: Option<String>,
+    #[command(flatten)]
+    target: Target,
+}
+
+/// How long the devices of a rig have to show themselves.
+const PATIENCE: Duration = Duration::from_secs(3);
+/// After the first, others come this soon.
+const TOGETHER: Duration = Duration::from_millis(300);
+
+fn share(text: &str) -> Result<f64, String> {
+    let (number, unit) = match text.trim().strip_suffix('%') {
+        Some(number) => (number.trim(), 0.01),
+        None => (text.trim(), 1.0),
+    };
+    let share = number.parse().ok().map(|value: f64| value * unit);
+    let good = share.filter(|share| (0.0..=1.0).contains(share));
+    good.ok_or_else(|| format!("'{text}' is not a share from 0 to 100 %, such as 60% or 0.6"))
+}
+
+/// Gives an order to devices and says how they are then.
+///
+/// # Errors
+/// A [`Fault`] where no rig runs, or no device of it gives force or answers.
+pub fn give(order: &Order) -> Result<i32, Fault> {
+    let (whose, order) = match order {
+        Order::Off(whose) => (whose, ForceOrder::Off),
+        Order::On(whose) => (whose, ForceOrder::On),
+        Order::Strength { share, whose } => (whose, ForceOrder::Strength { share: *share }),
+        Order::Rearm(whose) => (whose, ForceOrder::Rearm),
+    };
+    let session = Session::open(&whose.target)?;
+    let devices = match &whose.device {
+        Some(device) => vec![device.clone()],
+        None => devices(&session)?,
+    };
+    let request = ForceRequest { order };
+    let mut text = String::new();
+    for device in devices {
+        let topic = session.topics().force(&device);
+        let reply: ForceReply = session.ask(&topic, &request).map_err(|fault| {
+            fault.help("see which devices of the rig give force: `maulstick up` shows its nodes")
+        })?;
+        text += &told(&device, &reply);
+    }
+    print_text(&text)?;
+    Ok(0)
+}
+
+fn told(device: &str, reply: &ForceReply) -> String {
+    let percent = (reply.strength * 100.0).round();
+    let fault = match reply.fault.as_str() {
+        "" => String::new(),
+        fault => format!("; {fault}"),
+    };
+    match reply.is_on {
+        true => format!("{device}: force on, {percent} %{fault}\n"),
+        false => format!("{device}: force off{fault}\n"),
+    }
+}
+
+/// The devices of a rig that give force.
+fn devices(session: &Session) -> Result<Vec<String>, Fault> {
+    let mut infos: session::Feed<StylusInfo> =
+        session.follow(&session.topics().stylus_info("*"), Class::Cached)?;
+    let mut found = Vec::new();
+    let mut until = Instant::now() + PATIENCE;
+    while let Some(info) = infos.next_before(until) {
+        if info.drives & axes::FORCE != 0 && !found.contains(&info.device) {
+            until = until.min(Instant::now() + TOGETHER);
+            found.push(info.device);
+        }
+    }
+    match found.is_empty() {
+        true => Err(Fault::failure("no device of the rig gives force")
+            .at(session.topics().stylus_info("*"))
+            .help("see `[[device]]` of rig.toml")),
+        false => Ok(found),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn shares_are_read_in_percent_and_as_numbers() {
+        assert_eq!(share("60%"), Ok(0.6));
+        assert_eq!(share(" 100 %"), Ok(1.0));
+        assert_eq!(share("0.25"), Ok(0.25));
+        for wrong in ["", "%", "-1", "101%", "60", "NaN", "inf", "six"] {
+            assert!(share(wrong).is_err(), "{wrong}");
+        }
+    }
+
+    #[test]
+    fn a_fault_is_told_beside_the_state() {
+        let mut reply = ForceReply {
+            is_on: true,
+            strength: 0.6,
+            fault: String::new(),
+        };
+        assert_eq!(told("arm", &reply), "arm: force on, 60 %\n");
+        reply.fault = "it shakes".into();
+        reply.is_on = false;
+        assert_eq!(told("arm", &reply), "arm: force off; it shakes\n");
+    }
+}
