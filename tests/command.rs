@@ -1,5 +1,6 @@
 //! The command as its users call it: what it makes, and what it says to bad input.
 
+mod inputs;
 mod support;
 
 use support::{Place, fault, has};

@@ -104,7 +104,7 @@ fn bad_options_are_refused_in_one_line() {
     let place = Place::new();
     let refused = |arguments: &[&str]| fault(&place, &[&["force"], arguments].concat(), 2);
     has(&refused(&["--depth-mm", "9..1"]), &["'9..1'", "0..40"]);
-    has(&refused(&["--angle-deg", "200"]), &["'200'", "0 to 180"]);
+    has(&refused(&["--angle-deg", "200"]), &["'200'", "0 to 90"]);
     has(&refused(&["--brush", "rond"]), &["'rond'", "'round'"]);
     let flat = ["--model", "local", "--angle-deg", "85"];
     has(&refused(&flat), &["85°", "--angle-deg", "80°"]);

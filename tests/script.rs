@@ -91,8 +91,53 @@ fn what_is_wrong_is_told_before_anything_is_painted() {
     );
     let over = ["render", "--script", "day.toml", "-o", "day.toml"];
     script(&place, "day.toml", "{ fill = \"Bone Black\" },");
-    has(&fault(&place, &over, 2), &["overwritten", "day.toml"]);
+    has(
+        &fault(&place, &over, 2),
+        &["the picture would take the place of the script", "day.toml"],
+    );
     has(&fault(&place, &["render", "-o", "day.png"], 2), &["<TAKE>"]);
+}
+
+#[test]
+fn what_is_refused_is_advised_as_steps() {
+    let place = Place::new();
+    let render = [
+        "render", "--script", "day.toml", "-o", "day.png", "--size", "64x64",
+    ];
+    let fill = "{ fill = \"Bone Black\" },";
+    for (steps, advice) in [
+        ("{ wet = 1 },".to_owned(), "{ dry = 1.0 }"),
+        (
+            format!("{fill}\n{{ stop_drying = true }},"),
+            "{ dry = 1.0, over = \"90s\" }",
+        ),
+        (
+            format!("{fill}\n{{ dry = 1.0, over = \"9s\" }},\n{{ dry = 1.0, over = \"9s\" }},"),
+            "{ stop_drying = true }",
+        ),
+    ] {
+        script(&place, "day.toml", &steps);
+        let said = fault(&place, &render, 2);
+        has(&said, &["day.toml:", "help: ", advice]);
+        assert!(!said.contains("`maulstick dry"), "{said}");
+    }
+}
+
+#[test]
+fn a_broken_brush_file_is_told_of_brushes() {
+    let place = Place::new();
+    let render = ["render", "--script", "day.toml", "-o", "day.png"];
+    script(&place, "day.toml", "{ brush = \"own.toml\" },");
+    let brush = maulstick_brush::BrushFile::library("round").and_then(|brush| brush.to_toml());
+    let brush = brush.expect("a file");
+    let line = brush.lines().find(|line| line.starts_with("width_mm"));
+    let wide = brush.replace(line.expect("a width"), "width_mm = \"wide\"");
+    for text in ["[head\n", &wide] {
+        std::fs::write(place.path("own.toml"), text).expect("written");
+        let said = fault(&place, &render, 2);
+        has(&said, &["own.toml:", "named at", "docs/brushes.md"]);
+        assert!(!said.contains("print-config"), "{said}");
+    }
 }
 
 #[test]
@@ -317,7 +362,11 @@ fn paint_dries_in_parts_and_over_time_and_becomes_wet_again() {
     ];
     has(
         &fault(&place, &late, 2),
-        &["late.toml:3", "opacity of layer 1 (slow)", "opacity 1 1"],
+        &[
+            "late.toml:3",
+            "opacity of layer 1 (slow)",
+            "{ opacity = 1.0, layer = 1 }",
+        ],
     );
 }
 

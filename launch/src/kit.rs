@@ -2,13 +2,15 @@
 
 use std::path::Path;
 
-use maulstick_device::{Kit, Take, brush_file};
+use maulstick_device::{Kit, Take};
 use maulstick_optics::paints::MEASURED;
 use maulstick_rig::Fault;
 use maulstick_rig::config::{BrushSection, RigConfig, is_path};
 use maulstick_rig::fault::EXIT_FAILURE;
 use maulstick_rig::files::write_whole;
 use maulstick_types::Mixture;
+
+use crate::performance::brush_file;
 
 /// The canvas, palette, brush, paints and light of a rig, with the files that they name.
 ///

@@ -18,6 +18,7 @@
 //! | [`duration`], [`ground`], [`tooth`] | times, grounds and teeth as a painter names them |
 //! | [`kit`] | what a take is painted with: put into it, and taken from it |
 //! | [`lamp`] | what is changed of the light |
+//! | [`outputs`] | files that are written, none in the place of one that is read |
 //! | [`script`] | a day at the easel, a step after the other |
 //! | [`performance`] | what `render` and `up --play` share: take, brush, loads, canvas |
 
@@ -32,6 +33,7 @@ pub mod ground;
 pub mod kit;
 pub mod lamp;
 pub mod nodes;
+pub mod outputs;
 pub mod page;
 pub mod performance;
 pub mod plot;

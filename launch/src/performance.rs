@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use clap::Args;
-pub use maulstick_device::brush_file;
+use maulstick_brush::BrushFile;
 use maulstick_optics::{Illuminant, PaintError, PaintLibrary};
 use maulstick_paint::{PaintRefusal, PaintingSetup};
 use maulstick_rig::Fault;
@@ -61,6 +61,26 @@ pub struct PaintingOptions {
     /// Writes the ledger of the paint to this JSON file
     #[arg(long, value_name = "FILE")]
     pub ledger: Option<PathBuf>,
+}
+
+/// The brush file of a section, at its size, as [`maulstick_device::brush_file`] has it.
+///
+/// # Errors
+/// A [`Fault`] for an unknown kind or a bad file, with what tells how one is written.
+pub fn brush_file(section: &BrushSection) -> Result<BrushFile, Fault> {
+    maulstick_device::brush_file(section).map_err(of_a_brush)
+}
+
+/// What is wrong with a brush file: help for settings of a rig is none for it.
+#[must_use]
+pub fn of_a_brush(fault: Fault) -> Fault {
+    let is_of_settings = |help: &String| help.contains("--print-config");
+    match fault.help.as_ref().is_some_and(is_of_settings) {
+        true => fault.help(
+            "docs/brushes.md says what a brush file holds; `maulstick brush list` shows the library",
+        ),
+        false => fault,
+    }
 }
 
 /// Reads `WxH`.

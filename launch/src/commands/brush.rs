@@ -20,7 +20,8 @@ use crate::commands::mode::{self, ModeOptions};
 use crate::commands::say;
 use crate::commands::session::{Session, Target};
 use crate::commands::{print_json, print_text, write_picture};
-use crate::performance::{brush_file, library};
+use crate::outputs::{UsedFile, check_outputs};
+use crate::performance::{brush_file, library, of_a_brush};
 use crate::sheet::sheet;
 
 /// `maulstick brush`.
@@ -153,7 +154,12 @@ fn list(options: &ListOptions) -> Result<i32, Fault> {
 
 fn import(options: &ImportOptions) -> Result<i32, Fault> {
     let path = &options.output;
-    let text = read_brush(&options.model)?
+    check_outputs(
+        &[UsedFile::new("the brush file", path)],
+        &[UsedFile::new("the model", &options.model)],
+    )?;
+    let text = read_brush(&options.model)
+        .map_err(of_a_brush)?
         .to_toml()
         .map_err(|error| Fault::failure(error.to_string()))?;
     write_whole(path, |file| file.write_all(text.as_bytes()))

@@ -12,6 +12,7 @@ use maulstick_types::scene::Tuning;
 
 use crate::commands::say;
 use crate::commands::session::{PAINT, Session, Target};
+use crate::outputs::{UsedFile, check_apart};
 use crate::performance::refused;
 
 /// Options of `maulstick load`.
@@ -173,6 +174,10 @@ pub fn snapshot(options: &SnapshotOptions) -> Result<i32, Fault> {
             .map(|path| path.display().to_string())
             .map_err(|error| Fault::writing(path, &error))
     };
+    let picture = UsedFile::new("the picture", &options.output);
+    let ledger = UsedFile::given("the ledger", options.ledger.as_ref());
+    let outputs: Vec<_> = std::iter::once(picture).chain(ledger).collect();
+    check_apart(&outputs, &[])?;
     let path = whole(&options.output)?;
     let ledger = options.ledger.as_ref().map(whole).transpose()?;
     say!(

@@ -6,9 +6,9 @@ use clap::Args;
 use indicatif::ProgressBar;
 use maulstick_device::demo::{Subject, performance};
 use maulstick_rig::Fault;
-use maulstick_rig::files::check_writable;
 
 use crate::commands::{say, write_picture, write_take};
+use crate::outputs::{UsedFile, check_outputs};
 use crate::performance::library;
 use crate::sheet::effects::effects;
 
@@ -19,15 +19,39 @@ pub struct DemoOptions {
     #[arg(short, long, value_name = "TAKE", required_unless_present = "sheet")]
     output: Option<PathBuf>,
     /// A sheet of marks instead of the flower
-    #[arg(long, requires = "output")]
+    #[arg(long)]
     marks: bool,
     /// Paints what the paint model is for, with words, into this PNG: transfer both ways, loading,
     /// drying, blending, glazing, impasto, scumbling
     #[arg(long, value_name = "PNG")]
     sheet: Option<PathBuf>,
-    /// The same seed gives the same performance
-    #[arg(long, default_value_t = 1)]
-    seed: u64,
+    /// The same seed gives the same performance; 1 if absent
+    #[arg(long)]
+    seed: Option<u64>,
+}
+
+impl DemoOptions {
+    /// Refuses options that would do nothing.
+    fn check_idle(&self) -> Result<(), Fault> {
+        for (option, given, help) in [
+            (
+                "--marks",
+                self.marks,
+                "these marks are a take: -o TAKE writes it",
+            ),
+            (
+                "--seed",
+                self.seed.is_some(),
+                "it is for a performance: -o TAKE writes one; the sheet is always the same",
+            ),
+        ] {
+            if given && self.output.is_none() {
+                let what = format!("{option} does nothing beside --sheet alone");
+                return Err(Fault::usage(what).help(help));
+            }
+        }
+        Ok(())
+    }
 }
 
 /// Writes the performance and the sheet.
@@ -35,15 +59,19 @@ pub struct DemoOptions {
 /// # Errors
 /// A [`Fault`] where either cannot be written.
 pub fn run(options: &DemoOptions) -> Result<i32, Fault> {
+    options.check_idle()?;
+    let take = UsedFile::given("the take", options.output.as_ref());
+    let sheet = UsedFile::given("the sheet", options.sheet.as_ref());
+    let outputs: Vec<_> = take.into_iter().chain(sheet).collect();
+    check_outputs(&outputs, &[])?;
     if let Some(output) = &options.output {
         let subject = match options.marks {
             true => Subject::Marks,
             false => Subject::Flower,
         };
-        write_take(&performance(subject, options.seed), output)?;
+        write_take(&performance(subject, options.seed.unwrap_or(1)), output)?;
     }
     if let Some(path) = &options.sheet {
-        check_writable(path).map_err(|error| Fault::writing(path, &error))?;
         let bar = ProgressBar::new(1);
         let picture = effects(&library()?, |done, of| {
             bar.set_length(of as u64);

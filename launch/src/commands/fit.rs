@@ -8,10 +8,11 @@ use clap::Args;
 use maulstick_measure::{Fit, FitOptions, MeasureError, paint_file, parse_surface};
 use maulstick_optics::surface::SurfaceCorrection;
 use maulstick_rig::Fault;
-use maulstick_rig::files::{check_writable, write_whole};
+use maulstick_rig::files::write_whole;
 use serde_json::json;
 
 use crate::commands::{print_json, print_text};
+use crate::outputs::{UsedFile, check_outputs};
 
 /// Options of `maulstick fit`.
 #[derive(Args, Clone, Debug)]
@@ -54,15 +55,10 @@ pub fn run(options: &FitCommand) -> Result<i32, Fault> {
     })?;
     let output = &options.output;
     let writing = |error: std::io::Error| Fault::writing(output, &error);
-    let real = |path: &Path| std::fs::canonicalize(path).ok();
-    if real(output).is_some_and(|output| Some(output) == real(path)) {
-        return Err(
-            Fault::usage("the paints would take the place of the measurements")
-                .at(path.display().to_string())
-                .help("give another file for the paints: -o paints.csv"),
-        );
-    }
-    check_writable(output).map_err(writing)?;
+    check_outputs(
+        &[UsedFile::new("the paints", output)],
+        &[UsedFile::new("the measurements", path)],
+    )?;
     let surface = if options.no_surface {
         Some(SurfaceCorrection { k1: 0.0, k2: 0.0 })
     } else {

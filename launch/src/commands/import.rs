@@ -7,6 +7,7 @@ use maulstick_device::table::{TableLayout, import};
 use maulstick_rig::Fault;
 
 use crate::commands::write_take;
+use crate::outputs::{UsedFile, check_outputs};
 use crate::performance::parse_size;
 
 /// Options of `maulstick import`.
@@ -33,6 +34,10 @@ pub fn run(options: &ImportOptions) -> Result<i32, Fault> {
     if !(options.unit_mm > 0.0 && options.unit_mm.is_finite()) {
         return Err(Fault::usage(format!("--unit-mm {}", options.unit_mm)).help("choose above 0"));
     }
+    check_outputs(
+        &[UsedFile::new("the take", &options.output)],
+        &[UsedFile::new("the table", &options.table)],
+    )?;
     let size = options.size.map(f64::from);
     let layout = TableLayout {
         unit_mm: options.unit_mm,

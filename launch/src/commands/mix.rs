@@ -8,11 +8,11 @@ use maulstick_optics::surface::SurfaceCorrection;
 use maulstick_optics::{Blend, Coat, Layer, PaintLibrary, Seen, Spectrum};
 use maulstick_paint::picture::Picture;
 use maulstick_rig::Fault;
-use maulstick_rig::files::check_writable;
 use serde_json::json;
 
 use crate::chart::{every_pair, four_ways};
 use crate::commands::{print_json, print_text, write_picture};
+use crate::outputs::{UsedFile, check_outputs};
 use crate::performance::{library_from, mixture_of};
 use crate::swatch::{Terminal, hex, in_words, sparkline};
 use crate::viewing::ViewingOptions;
@@ -108,6 +108,12 @@ impl FilmOptions {
 /// A [`Fault`] for a bad mixture, paint file or light, or a picture that cannot be written.
 pub fn run(options: &MixOptions) -> Result<i32, Fault> {
     let library = library_from(options.paints.as_deref())?;
+    let output = UsedFile::given("the picture", options.output.as_ref());
+    let inputs: Vec<_> = UsedFile::given("the paints", options.paints.as_ref())
+        .into_iter()
+        .chain(UsedFile::light(&options.viewing.illuminant))
+        .collect();
+    check_outputs(output.as_slice(), &inputs)?;
     if options.chart {
         draw_chart(options, &library)?;
     } else if options.compare {
@@ -172,7 +178,6 @@ fn draw_chart(options: &MixOptions, library: &PaintLibrary) -> Result<(), Fault>
     let Some(path) = &options.output else {
         return Ok(());
     };
-    check_writable(path).map_err(|error| Fault::writing(path, &error))?;
     let viewing = options.viewing.viewing(library)?;
     write(&every_pair::chart(library, &viewing)?, path)
 }
@@ -208,7 +213,6 @@ fn four(options: &MixOptions, library: &PaintLibrary) -> Result<(), Fault> {
     let rows = compare([&from, &to], &shares, &reference, &viewing);
     let rule = options.viewing.rule_in_words();
     if let Some(path) = &options.output {
-        check_writable(path).map_err(|error| Fault::writing(path, &error))?;
         let ends = [names[0].as_str(), names[1].as_str()];
         let picture = four_ways::picture(&rows, ends, &rule)?;
         if !options.json {

@@ -13,7 +13,6 @@ use maulstick_paint::embedded::IMAGE;
 use maulstick_paint::light::changes_colour;
 use maulstick_paint::store::TileStore;
 use maulstick_paint::{Painting, Sequencer};
-use maulstick_rig::files::check_writable;
 use maulstick_rig::{Fault, RigConfig};
 use maulstick_types::Mixture;
 use maulstick_types::command::Command;
@@ -26,8 +25,9 @@ use crate::document::{Presence, go_on, presence, wrong};
 use crate::duration::time_ns;
 use crate::ground::GroundFile;
 use crate::kit::use_kit;
+use crate::outputs::{UsedFile, check_apart, check_outputs, named_by};
 use crate::performance::{PaintingOptions, brush_file, library_from, painting_setup, refused};
-use crate::script::{Act, Script};
+use crate::script::{Act, Script, in_steps};
 use crate::tooth::ToothPicture;
 
 /// Time before a take, ns: strokes of two takes are never one.
@@ -63,6 +63,25 @@ pub struct RenderOptions {
 }
 
 impl RenderOptions {
+    /// The files that are read, but for those that the script names.
+    fn inputs(&self, config: &RigConfig) -> Vec<UsedFile> {
+        let document = self.document.iter();
+        named_by(config)
+            .into_iter()
+            .chain(UsedFile::given("the take", self.take.as_ref()))
+            .chain(UsedFile::given("the script", self.script.as_ref()))
+            .chain(UsedFile::given("the settings", self.rig.as_ref()))
+            .chain(document.flat_map(|path| UsedFile::painting(path)))
+            .collect()
+    }
+
+    /// The files that are written, but for the painting.
+    fn outputs(&self) -> Vec<UsedFile> {
+        std::iter::once(UsedFile::new("the picture", &self.output))
+            .chain(UsedFile::given("the ledger", self.painting.ledger.as_ref()))
+            .collect()
+    }
+
     /// Refuses options that would do nothing.
     fn check_idle(&self) -> Result<(), Fault> {
         let painting = &self.painting;
@@ -125,6 +144,8 @@ pub fn run(options: &RenderOptions) -> Result<i32, Fault> {
         }
     }
     let export = export(&config.view, "--profile, --gamut")?;
+    let outputs = options.outputs();
+    check_outputs(&outputs, &options.inputs(&config))?;
     let begun = match &options.document {
         Some(path) if presence(path, &options.painting)? == Presence::There => {
             Some(go_on(&config, path)?)
@@ -140,28 +161,20 @@ pub fn run(options: &RenderOptions) -> Result<i32, Fault> {
     let unloaded = loads.is_empty() && options.script.is_none();
     let script = match (&options.script, take) {
         (Some(path), _) => Script::read(path, &library)?,
-        (None, Some((path, take))) => Script(vec![(
-            path.display().to_string(),
-            Act::Take(take, loads.clone()),
-        )]),
-        (None, None) => Script(Vec::new()),
+        (None, Some((path, take))) => Script {
+            steps: vec![(path.display().to_string(), Act::Take(take, loads.clone()))],
+            files: Vec::new(),
+        },
+        (None, None) => Script::default(),
     };
-    for path in [Some(&options.output), options.painting.ledger.as_ref()]
-        .into_iter()
-        .flatten()
-    {
-        let inputs = [&options.take, &options.script];
-        if inputs
-            .into_iter()
-            .flatten()
-            .any(|input| is_same(path, input))
-        {
-            return Err(Fault::usage("what is painted would be overwritten")
-                .at(path.display().to_string())
-                .help("give the picture another name"));
-        }
-        check_writable(path).map_err(|error| Fault::writing(path, &error))?;
-    }
+    let mut written = outputs;
+    written.extend(
+        options
+            .document
+            .iter()
+            .flat_map(|path| UsedFile::painting(path)),
+    );
+    check_apart(&written, &script.files)?;
     let (mut keeper, mut sequencer) = match &options.document {
         Some(path) => {
             let (document, mut sequencer, since) = match begun {
@@ -188,10 +201,13 @@ pub fn run(options: &RenderOptions) -> Result<i32, Fault> {
         bar: progress_bar(script.length_ns()).with_message("painting"),
         painted_ns: 0,
     };
-    let painted = script
-        .0
-        .into_iter()
-        .try_for_each(|(place, act)| easel.act(act).map_err(|fault| fault.at(place)));
+    let painted = script.steps.into_iter().try_for_each(|(place, act)| {
+        let done = easel.act(act).map_err(|fault| fault.at(place));
+        done.map_err(|fault| match options.script {
+            Some(_) => in_steps(fault),
+            None => fault,
+        })
+    });
     easel.bar.finish_and_clear();
     let mut offline = easel.offline;
     let mut close = |offline: &mut Offline| match (keeper.take(), &options.document) {
@@ -395,10 +411,4 @@ fn turn(keeper: &mut Option<Keeper>, begun: Instant, sequencer: &mut Sequencer) 
     if let Some(keeper) = keeper {
         keeper.turn(sequencer, begun.elapsed().as_nanos() as u64);
     }
-}
-
-/// Whether two names lead to one file.
-fn is_same(one: &Path, other: &Path) -> bool {
-    let real = |path: &Path| std::fs::canonicalize(path).ok();
-    real(one).is_some_and(|one| real(other) == Some(one))
 }

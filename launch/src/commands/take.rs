@@ -10,6 +10,7 @@ use serde_json::json;
 
 use crate::commands::{print_json, say, write_take};
 use crate::kit::{kit_of, use_kit};
+use crate::outputs::{UsedFile, check_outputs, named_by};
 use crate::performance::{KitOptions, library_from, painting_setup, refused};
 
 /// Subcommands of `maulstick take`.
@@ -61,6 +62,10 @@ fn embed(options: &EmbedOptions) -> Result<i32, Fault> {
     let folder = tempfile::tempdir().map_err(|error| Fault::failure(error.to_string()))?;
     let embedded = use_kit(&take, &options.take, folder.path(), &mut config)?;
     let brush = options.kit.apply(&mut config)?;
+    let mut inputs = named_by(&config);
+    inputs.push(UsedFile::new("the take that stays as it is", &options.take));
+    inputs.extend(UsedFile::given("the settings", options.rig.as_ref()));
+    check_outputs(&[UsedFile::new("the take", &options.output)], &inputs)?;
     let library = library_from(config.paint.paints.as_deref())?;
     let loads = options.kit.mixtures(&embedded, &library)?;
     painting_setup(&config, &library)?
@@ -126,11 +131,10 @@ pub fn run(command: &TakeCommand) -> Result<i32, Fault> {
             Ok(0)
         }
         TakeCommand::Recover { take, output } => {
-            if take == output {
-                return Err(Fault::usage("the damaged take would be overwritten")
-                    .at(output.display().to_string())
-                    .help("name another file after -o"));
-            }
+            check_outputs(
+                &[UsedFile::new("the recovered take", output)],
+                &[UsedFile::new("the damaged take", take)],
+            )?;
             let salvage = Take::salvage(take)?;
             salvage.take.write(output)?;
             let damage = salvage

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use maulstick_device::{Take, brush_file};
+use maulstick_device::Take;
 use maulstick_optics::PaintLibrary;
 use maulstick_paint::PaintingSetup;
 use maulstick_paint::embedded::{Embedded, IMAGE, SPECTRUM};
@@ -21,7 +21,8 @@ use crate::commands::mode::handling;
 use crate::duration::ticks_in;
 use crate::ground::GroundFile;
 use crate::lamp::LightChange;
-use crate::performance::{mixture_of, refused};
+use crate::outputs::UsedFile;
+use crate::performance::{brush_file, mixture_of, refused};
 use crate::tooth::ToothPicture;
 
 /// Thickness of a film for which nothing is said, µm.
@@ -43,6 +44,29 @@ const LIGHT: [&str; 10] = [
 pub(super) fn command(command: Command) -> Result<Act, Fault> {
     command.check().map_err(Fault::told)?;
     Ok(Act::Command(command))
+}
+
+/// The file that a step names, if it names one.
+pub(super) fn file_of(step: &Step<'_>) -> Result<Option<UsedFile>, Fault> {
+    let keys = &step.keys;
+    let does = step.kind.does;
+    let what = format!("the {does} at {}", step.place());
+    Ok(match does {
+        "take" => {
+            let path = keys.text(does)?.map(|name| keys.source.folder.join(name));
+            UsedFile::given(&what, path)
+        }
+        "brush" | "ground" | "tooth" => {
+            let name = keys.text(does)?.map(|name| keys.beside(name));
+            name.and_then(|name| UsedFile::named(&what, &name))
+        }
+        "light" => {
+            let light = keys.table(does)?.map(|light| light.text("illuminant"));
+            let name = light.transpose()?.flatten().map(|name| keys.beside(name));
+            name.and_then(|name| UsedFile::light(&name))
+        }
+        _ => None,
+    })
 }
 
 pub(super) fn switched_on(step: &Step<'_>) -> Result<(), Fault> {

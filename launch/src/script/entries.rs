@@ -63,6 +63,9 @@ impl<'a> Source<'a> {
         let DeValue::Array(steps) = step.get_ref() else {
             return Err(no_list(step, "a list of steps"));
         };
+        if steps.is_empty() {
+            return Err(fault("there are no steps".to_owned(), step.span().start));
+        }
         let tables = steps.iter().map(|value| match value.get_ref() {
             DeValue::Table(table) => Ok((value.span().start, table)),
             _ => Err(no_list(value, "a list of steps in braces")),
@@ -206,11 +209,21 @@ impl<'a> Entries<'a> {
 
     /// A vector.
     pub(super) fn three(&self, key: &str) -> Result<Option<[f64; 3]>, Fault> {
-        self.due(key, "three numbers", |value| {
-            let list = list_of(value)?.iter();
-            let numbers: Option<Vec<f64>> = list.map(|value| number_of(value.get_ref())).collect();
-            numbers?.try_into().ok()
-        })
+        let Some(list) = self.due(key, "three numbers", list_of)? else {
+            return Ok(None);
+        };
+        let wrong = |what: String| {
+            let fault = self.fault(key, format!("'{key}' takes three numbers, not {what}"));
+            fault.help(self.for_example())
+        };
+        let number = |value: &Spanned<DeValue<'_>>| {
+            let value = value.get_ref();
+            number_of(value).ok_or_else(|| wrong(described(value)))
+        };
+        let numbers: Vec<f64> = list.iter().map(number).collect::<Result<_, _>>()?;
+        let count = numbers.len();
+        let three = numbers.try_into();
+        three.map(Some).map_err(|_| wrong(count.to_string()))
     }
 
     pub(super) fn table(&self, key: &str) -> Result<Option<Self>, Fault> {

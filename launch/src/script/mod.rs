@@ -39,6 +39,7 @@ use self::entries::Source;
 use crate::duration::time_ns;
 use crate::ground::GroundFile;
 use crate::lamp::LightChange;
+use crate::outputs::UsedFile;
 use crate::tooth::ToothPicture;
 
 /// What is done in a step.
@@ -70,9 +71,41 @@ pub enum Act {
     Command(Command),
 }
 
-/// The steps of a script, each with its place, file and line.
-#[derive(Clone, Debug)]
-pub struct Script(pub Vec<(String, Act)>);
+/// A script that is read.
+#[derive(Clone, Debug, Default)]
+pub struct Script {
+    /// Its steps, each with its place, file and line.
+    pub steps: Vec<(String, Act)>,
+    /// The files that they name.
+    pub files: Vec<UsedFile>,
+}
+
+/// What the painting advises of a running rig, and the step that does the same.
+const ADVICE: [(&str, &str); 3] = [
+    ("`maulstick dry --stop`", "{ stop_drying = true }"),
+    (
+        "`maulstick dry --over 90s`",
+        "{ dry = 1.0, over = \"90s\" }",
+    ),
+    ("`maulstick dry`", "{ dry = 1.0 }"),
+];
+
+/// A refusal of a step: its help names steps in the place of commands to a running rig.
+#[must_use]
+pub fn in_steps(fault: Fault) -> Fault {
+    let Some(mut help) = fault.help.clone() else {
+        return fault;
+    };
+    for (command, step) in ADVICE {
+        help = help.replace(command, step);
+    }
+    if let Some((before, rest)) = help.split_once("`maulstick opacity ")
+        && let Some((layer, after)) = rest.split_once(" 1`")
+    {
+        help = format!("{before}{{ opacity = 1.0, layer = {layer} }}{after}");
+    }
+    fault.help(help)
+}
 
 impl Script {
     /// Reads a script, its takes, brushes and pictures.
@@ -97,17 +130,19 @@ impl Script {
             folder: path.parent().unwrap_or(Path::new("")),
         };
         let file = DeTable::parse(text).map_err(|error| source.no_toml(&error))?;
-        steps::listed(source, file.get_ref())?
-            .into_iter()
-            .map(|step| Ok((step.place(), steps::act(&step, library)?)))
-            .collect::<Result<_, _>>()
-            .map(Self)
+        let mut script = Self::default();
+        for step in steps::listed(source, file.get_ref())? {
+            let act = steps::act(&step, library)?;
+            script.files.extend(acts::file_of(&step)?);
+            script.steps.push((step.place(), act));
+        }
+        Ok(script)
     }
 
     /// Length of all takes and waits, ns.
     #[must_use]
     pub fn length_ns(&self) -> u64 {
-        let lengths = self.0.iter().map(|(_, act)| match act {
+        let lengths = self.steps.iter().map(|(_, act)| match act {
             Act::Take(take, _) => take.length_ns(),
             Act::Wait(ticks) => time_ns(*ticks),
             _ => 0,

@@ -21,17 +21,20 @@ fn steps_are_read_in_their_order() {
         { fill = \"Titanium White\", um = 30 },\n{ dry = 0.5, layer = \"sky\" },\n\
         { opacity = 0.3, layer = \"sky\" },\n{ light = { intensity = 2 } },\n{ undo = 2 }";
     let script = read(steps).expect("a script");
-    assert_eq!(script.0.len(), 8);
+    assert_eq!(script.steps.len(), 8);
     assert!(
-        matches!(&script.0[0].1, Act::Brush(name, file, _) if name == "flat" && file.head.width_mm == 20.0)
+        matches!(&script.steps[0].1, Act::Brush(name, file, _) if name == "flat" && file.head.width_mm == 20.0)
     );
-    assert!(matches!(script.0[7].1, Act::Undo(2)));
-    assert!(script.0[4].0.ends_with("day.toml:7"));
+    assert!(matches!(script.steps[7].1, Act::Undo(2)));
+    assert!(script.steps[4].0.ends_with("day.toml:7"));
     let long = "\u{feff}[[step]]\nload = \"Bone Black\"\n\n[[step]]\nundo = 0x2\n";
     let script = read_text(long).expect("a script in its long form");
-    assert!(matches!(script.0[1].1, Act::Undo(2)));
-    assert!(script.0[1].0.ends_with("day.toml:5"), "{}", script.0[1].0);
-    assert_eq!(read_text("step = []").expect("a day off").0.len(), 0);
+    assert!(matches!(script.steps[1].1, Act::Undo(2)));
+    assert!(
+        script.steps[1].0.ends_with("day.toml:5"),
+        "{}",
+        script.steps[1].0
+    );
 }
 
 #[test]
@@ -239,7 +242,15 @@ fn another_kind_of_value_is_told_with_key_and_line() {
         ),
         (
             "{ light = { direction = [1, 2] } }",
-            &["'direction' takes three numbers"],
+            &["'direction' takes three numbers, not 2"],
+        ),
+        (
+            "{ light = { direction = [1, \"up\", 2] } }",
+            &["'direction' takes three numbers, not the text \"up\""],
+        ),
+        (
+            "{ light = { direction = 1 } }",
+            &["'direction' takes three numbers, not the number 1"],
         ),
         (
             "{ opacity = 1, layer = true }",
@@ -298,6 +309,7 @@ fn what_would_do_nothing_is_refused() {
 fn what_is_no_script_is_told_what_one_is() {
     for (text, words) in [
         ("", &["there are no steps"][..]),
+        ("step = []", &["day.toml:1", "there are no steps"]),
         ("steps = []", &["day.toml:1", "'steps'", "only 'step'"]),
         (
             "\n[step]\nload = 1",

@@ -20,13 +20,13 @@ use maulstick_device::Take;
 use maulstick_device::player::Rate;
 use maulstick_optics::PaintLibrary;
 use maulstick_rig::config::{DEFAULT, RigConfig, is_path};
-use maulstick_rig::files::check_writable;
 use maulstick_rig::{Fault, member};
 use maulstick_types::Mixture;
 
 use crate::destination::{VIEW, export};
 use crate::document::{Presence, presence};
 use crate::kit::use_kit;
+use crate::outputs::{UsedFile, check_outputs, named_by};
 use crate::performance::{PaintingOptions, library_from, painting_setup, refused};
 use crate::up::conductor::Performance;
 use crate::up::plan::{Hands, Window};
@@ -81,6 +81,24 @@ pub struct UpOptions {
     print_config: bool,
 }
 
+impl UpOptions {
+    /// What is written at the end of the take is none of the files that the rig uses.
+    fn check_files(&self, take: &Path, config: &RigConfig) -> Result<(), Fault> {
+        let outputs: Vec<_> = UsedFile::given("the picture", self.snapshot.as_ref())
+            .into_iter()
+            .chain(UsedFile::given("the ledger", self.painting.ledger.as_ref()))
+            .collect();
+        let document = config.paint.document.iter();
+        let inputs: Vec<_> = named_by(config)
+            .into_iter()
+            .chain([UsedFile::new("the take", take)])
+            .chain(UsedFile::given("the settings", self.rig.as_ref()))
+            .chain(document.flat_map(|path| UsedFile::painting(path)))
+            .collect();
+        check_outputs(&outputs, &inputs)
+    }
+}
+
 /// Runs the rig until it is told to stop.
 ///
 /// # Errors
@@ -127,12 +145,7 @@ pub fn run(options: &UpOptions) -> Result<i32, Fault> {
     let performance = match &take {
         None => None,
         Some((path, take)) => {
-            for file in [&options.snapshot, &options.painting.ledger]
-                .into_iter()
-                .flatten()
-            {
-                check_writable(file).map_err(|error| Fault::writing(file, &error))?;
-            }
+            options.check_files(path, &config)?;
             Some(Performance {
                 take: absolute(path)?,
                 rate: options.rate,

@@ -8,13 +8,13 @@ use maulstick_paint::Sequencer;
 use maulstick_paint::painting::NOW;
 use maulstick_paint::picture::{Picture, picture};
 use maulstick_rig::Fault;
-use maulstick_rig::files::check_writable;
 use maulstick_types::command::Command;
 use maulstick_types::scene::CANVAS;
 use serde_json::json;
 
 use crate::commands::{print_json, say, write_picture};
 use crate::document::{read, wrong};
+use crate::outputs::{UsedFile, check_outputs};
 use crate::performance::refused;
 
 /// A difference that is shown as white, ΔE₀₀.
@@ -30,7 +30,8 @@ pub(super) fn compare(
     output: &Path,
     as_json: bool,
 ) -> Result<i32, Fault> {
-    check_writable(output).map_err(|error| Fault::writing(output, &error))?;
+    let painting: Vec<_> = UsedFile::painting(path).collect();
+    check_outputs(&[UsedFile::new("the picture", output)], &painting)?;
     let (document, opened) = read(path)?;
     let mut sequencer = opened.sequencer().map_err(refused)?;
     sequencer.ask(Command::Mark).map_err(refused)?;

@@ -11,13 +11,13 @@ use maulstick_exchange::{
 use maulstick_paint::Painting;
 use maulstick_paint::picture::Depth;
 use maulstick_rig::config::ViewSection;
-use maulstick_rig::files::check_writable;
 use maulstick_rig::{Fault, files};
 use maulstick_types::scene::{CANVAS, PALETTE};
 
 use crate::commands::say;
 use crate::destination::export;
 use crate::document::{read, wrong};
+use crate::outputs::{UsedFile, check_outputs};
 use crate::performance::refused;
 
 /// Formats of an export.
@@ -104,7 +104,10 @@ pub(super) fn run(options: &ExportOptions) -> Result<i32, Fault> {
     };
     let look = export(&view, "--profile, --gamut")?;
     let out = &options.output;
-    check_writable(out).map_err(|error| Fault::writing(out, &error))?;
+    let inputs: Vec<_> = UsedFile::painting(&options.file)
+        .chain(UsedFile::given("the profile", view.file()))
+        .collect();
+    check_outputs(&[UsedFile::new("the export", out)], &inputs)?;
     let (_document, opened) = read(&options.file)?;
     let mut sequencer = opened.sequencer().map_err(refused)?;
     let painting = sequencer.painting_mut();
