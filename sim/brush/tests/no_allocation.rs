@@ -1,13 +1,9 @@
 //! A solve allocates nothing: neither that of one spine nor that of a whole head.
 
-#![allow(
-    unsafe_code,
-    reason = "an allocator is unsafe; this one hands all on to the system's"
-)]
+#[path = "../../num/tests/counting/mod.rs"]
+mod counting;
 
-use std::alloc::{GlobalAlloc, Layout, System};
-use std::cell::Cell;
-
+use counting::allocations;
 use glam::{DQuat, DVec3};
 use maulstick_brush::desk::Obstacle;
 use maulstick_brush::held::settings_of;
@@ -15,47 +11,6 @@ use maulstick_brush::held::{HeadSolver, HeldHead};
 use maulstick_brush::solver::{Settings, Solver, Stop};
 use maulstick_brush::{BrushFile, Spine, SpineShape};
 use maulstick_num::geometry::{Rigid, rotation};
-
-thread_local! {
-    static ALLOCATIONS: Cell<usize> = const { Cell::new(0) };
-}
-
-/// Counts what each thread allocates.
-struct Counting;
-
-fn count() {
-    ALLOCATIONS.set(ALLOCATIONS.get() + 1);
-}
-
-// SAFETY: every call goes to the system's allocator as it came.
-unsafe impl GlobalAlloc for Counting {
-    unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
-        count();
-        // SAFETY: as the caller promises.
-        unsafe { System.alloc(layout) }
-    }
-
-    unsafe fn dealloc(&self, at: *mut u8, layout: Layout) {
-        // SAFETY: as the caller promises.
-        unsafe { System.dealloc(at, layout) }
-    }
-
-    unsafe fn realloc(&self, at: *mut u8, layout: Layout, size: usize) -> *mut u8 {
-        count();
-        // SAFETY: as the caller promises.
-        unsafe { System.realloc(at, layout, size) }
-    }
-}
-
-#[global_allocator]
-static COUNTING: Counting = Counting;
-
-/// How often this thread allocates while `work` is done.
-fn allocations(work: impl FnOnce()) -> usize {
-    let before = ALLOCATIONS.get();
-    work();
-    ALLOCATIONS.get() - before
-}
 
 /// A tilted ferrule that slides, presses and lifts.
 fn place(step: usize, length: f64) -> Rigid {
