@@ -1,9 +1,12 @@
-//! Elementary functions with the same bytes on every machine, and rigid motions.
+//! Elementary functions with the same bytes on every machine, rigid motions, loops for wide registers
+//! and work for two cores.
 //!
 //! std's transcendentals call the system's library, which uses fused multiply-add where the
 //! processor has it: two machines would paint two pictures. The functions of f64 are those of the
 //! `libm` crate, plain Rust without such dispatch; those of f32 are written so that a loop over a
 //! plane vectorises and so that a shader can hold the same polynomial.
+//!
+//! Neither the registers ([`lanes`], [`wide!`]) nor the cores ([`cores`]) change a byte of what comes out.
 
 pub mod cores;
 mod elementary;
