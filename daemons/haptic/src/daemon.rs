@@ -1,38 +1,28 @@
 //! The thread that talks to the rig: samples and status out, models in.
 
-use std::path::PathBuf;
 use std::time::Duration;
 
-use glam::DQuat;
 use maulstick_bus::credit::Stamp;
 use maulstick_bus::typed::{Reader, Receiver, Sender};
 use maulstick_bus::{Class, CreditSender, Queue, Server};
-use maulstick_device::{Take, brush_file};
 use maulstick_haptics::contact::Contact;
 use maulstick_haptics::{Address, Limits, Switch};
-use maulstick_num::geometry::{Rigid, canonical};
-use maulstick_rig::config::DeviceSection;
-use maulstick_rig::{Fault, Member};
+use maulstick_num::geometry::Rigid;
+use maulstick_rig::{Fault, Member, RigConfig};
 use maulstick_types::haptics::{ContactModel, ForceOrder, ForceReply, ForceRequest};
 use maulstick_types::stylus::{StylusInfo, StylusPose, StylusSample, StylusStatus};
 use maulstick_types::{Flags, encode};
 
-use crate::driver::{Driver, Placed};
-use crate::host::{BINS, Delivery, Host, Ticked, bin};
-use crate::simulated::Simulated;
+use crate::beat::{Delivery, Ticked};
+use crate::host::{BINS, Host, bin};
+use crate::open::{HapticSettings, open, to_desk};
+use crate::placed::Placed;
 use crate::wish::Wish;
-
-/// What a haptic daemon is told.
-#[derive(Clone, Debug)]
-pub struct HapticSettings {
-    /// The device's section of `rig.toml`.
-    pub device: DeviceSection,
-    /// A take that a simulated hand follows.
-    pub hand: Option<PathBuf>,
-}
 
 /// Time between two statuses, ns.
 const STATUS_PERIOD_NS: u64 = 100_000_000;
+/// Time between two attempts to open a device that is not there, ns.
+const ATTEMPT_PERIOD_NS: u64 = 1_000_000_000;
 /// Out of range a sample goes out only this often, ns.
 const IDLE_PERIOD_NS: u64 = 50_000_000;
 
@@ -48,7 +38,12 @@ pub fn run(member: &mut Member, settings: &HapticSettings) -> Result<(), Fault> 
 
 struct Daemon {
     bus: std::sync::Arc<dyn maulstick_bus::Bus>,
-    host: Host,
+    config: RigConfig,
+    settings: HapticSettings,
+    /// The servo, while there is a device.
+    host: Option<Host>,
+    /// When to look for the device again.
+    attempt_ns: u64,
     senses: u32,
     address: Address,
     samples: CreditSender<StylusSample>,
@@ -57,83 +52,25 @@ struct Daemon {
     reader: Reader,
     wish: Wish,
     status: Sender<StylusStatus>,
-    _info: Sender<StylusInfo>,
+    info: Sender<StylusInfo>,
     /// From `CLOCK_MONOTONIC`, which stamps the ticks, to the rig's clock, ns.
     offset_ns: u64,
     told: StylusStatus,
+    /// Ticks that did not fit with devices that are gone.
+    dropped_before: u64,
     deliveries: u64,
     status_ns: u64,
     published_ns: u64,
-    was_in_range: bool,
+    newest: StylusSample,
     /// Whether a bad model was told of.
     warned: bool,
-}
-
-/// Device frame to desk frame.
-fn to_desk(device: &DeviceSection) -> Rigid {
-    Rigid {
-        rotation: canonical(DQuat::from_array(device.orientation)),
-        translation: device.position_m.into(),
-    }
-}
-
-fn driver(member: &Member, settings: &HapticSettings) -> Result<Box<dyn Driver>, Fault> {
-    let Some(path) = settings.hand.as_ref().or(settings.device.hand.as_ref()) else {
-        return Ok(Box::new(Simulated::at_rest()));
-    };
-    let take = Take::read(path)?;
-    let section = member
-        .config
-        .brush_named(&settings.device.brush)
-        .ok_or_else(|| Fault::usage(format!("no brush '{}'", settings.device.brush)))?;
-    let file = brush_file(section)?;
-    Ok(Box::new(Simulated::following(
-        &take,
-        file.length_m(),
-        section.depth_share,
-        &to_desk(&settings.device),
-    )))
 }
 
 impl Daemon {
     fn new(member: &Member, settings: &HapticSettings) -> Result<Self, Fault> {
         let device = &settings.device;
-        let placed = Placed::new(driver(member, settings)?, to_desk(device));
-        let abilities = placed.abilities();
-        let limits = Limits {
-            max_force_n: device.max_force_n.min(abilities.max_force_n),
-            continuous_force_n: device.max_force_n.min(abilities.continuous_force_n),
-            max_stiffness_n_m: abilities.max_stiffness_n_m,
-            damping_n_s_m: abilities.damping_n_s_m,
-            ..Limits::default()
-        };
-        let host = Host::start(placed, limits)
-            .map_err(|error| Fault::failure(format!("the servo cannot start: {error}")))?;
-        for warning in &host.warnings {
-            tracing::warn!("{}: {warning}", device.name);
-        }
         let (bus, topics) = (&*member.bus, &member.topics);
         let origin = member.origin(&device.name);
-        let now = bus.now_ns();
-        let mut info = Sender::new(
-            bus,
-            &topics.stylus_info(&device.name),
-            Class::Cached,
-            origin,
-        )?;
-        let told = StylusInfo {
-            device: device.name.clone(),
-            driver: device.driver.clone(),
-            brush: device.brush.clone(),
-            priority: device.priority,
-            senses: abilities.senses,
-            drives: abilities.drives,
-            rate_hz: 1000.0,
-            max_force_n: limits.max_force_n,
-            max_stiffness_n_m: limits.max_stiffness_n_m,
-            workspace_m: abilities.workspace_m,
-        };
-        info.send(now, now, &told)?;
         let topic = topics.contact_model(&device.name);
         let samples = CreditSender::new(
             bus,
@@ -142,8 +79,18 @@ impl Daemon {
             origin,
             &member.wake,
         )?;
+        let info = Sender::new(
+            bus,
+            &topics.stylus_info(&device.name),
+            Class::Cached,
+            origin,
+        )?;
         Ok(Self {
-            senses: abilities.senses,
+            config: member.config.clone(),
+            settings: settings.clone(),
+            host: None,
+            attempt_ns: 0,
+            senses: 0,
             address: Address {
                 device: samples.origin(),
                 brush: device.brush.clone(),
@@ -159,47 +106,127 @@ impl Daemon {
                 Class::Background,
                 origin,
             )?,
-            _info: info,
+            info,
             offset_ns: member.clock.offset_ns(),
-            told: StylusStatus {
-                samples: 0,
-                dropped: 0,
-                faults: Vec::new(),
-                lateness: vec![0; BINS],
-                execution: vec![0; BINS],
-                force_n: 0.0,
-                foreign_models: 0,
-            },
+            told: StylusStatus::fresh(BINS),
+            dropped_before: 0,
             deliveries: 0,
             status_ns: 0,
             published_ns: 0,
-            was_in_range: false,
+            newest: StylusSample::away(),
             warned: false,
-            host,
             bus: member.bus.clone(),
         })
     }
 
     fn turn(&mut self) -> Result<Duration, Fault> {
         let now_ns = self.bus.now_ns();
+        if self.host.is_none() && now_ns >= self.attempt_ns {
+            self.attempt_ns = now_ns + ATTEMPT_PERIOD_NS;
+            self.attempt(now_ns)?;
+        }
         self.obey(now_ns);
         self.deliver();
-        while let Ok(ticked) = self.host.ticks.pop() {
+        while let Some(Ok(ticked)) = self.host.as_mut().map(|host| host.ticks.pop()) {
             self.publish(&ticked, now_ns)?;
         }
-        if self.host.ticks.is_abandoned() {
-            return Err(Fault::failure("the servo has ended by a fault of its own")
-                .help("its own message above says why"));
+        if self.host.as_ref().is_some_and(Host::has_ended) {
+            self.lose(now_ns)?;
         }
         // Nobody waits for credit on a live device; the ring is there for who missed something.
         self.samples.forgive();
         self.samples.serve(now_ns)?;
         if now_ns >= self.status_ns + STATUS_PERIOD_NS {
             self.status_ns = now_ns;
-            self.told.dropped = self.host.dropped();
+            self.told.dropped = self.dropped();
             self.status.send(now_ns, now_ns, &self.told)?;
         }
         Ok(Duration::from_millis(1))
+    }
+
+    fn dropped(&self) -> u64 {
+        self.dropped_before + self.host.as_ref().map_or(0, Host::dropped)
+    }
+
+    /// Opens the device, if it is there.
+    fn attempt(&mut self, now_ns: u64) -> Result<(), Fault> {
+        let opened = match open(&self.config, &self.settings) {
+            Ok(opened) => opened,
+            Err(fault) => {
+                self.miss(&fault);
+                return Ok(());
+            }
+        };
+        let device = &self.settings.device;
+        tracing::info!("{}: {}", device.name, opened.what);
+        let placed = Placed::new(opened.driver, to_desk(device));
+        let abilities = placed.abilities();
+        let limits = Limits {
+            max_force_n: device.max_force_n.min(abilities.max_force_n),
+            continuous_force_n: device.max_force_n.min(abilities.continuous_force_n),
+            max_stiffness_n_m: abilities.max_stiffness_n_m,
+            damping_n_s_m: abilities.damping_n_s_m,
+            ..Limits::default()
+        };
+        let mut host = Host::start(placed, opened.pace, limits)
+            .map_err(|error| Fault::failure(format!("the servo cannot start: {error}")))?;
+        for warning in &host.warnings {
+            tracing::warn!("{}: {warning}", device.name);
+        }
+        host.wishes.write(self.wish);
+        let told = StylusInfo {
+            device: device.name.clone(),
+            driver: device.driver.clone(),
+            brush: device.brush.clone(),
+            priority: device.priority,
+            senses: abilities.senses,
+            drives: abilities.drives,
+            rate_hz: 1000.0,
+            max_force_n: limits.max_force_n,
+            max_stiffness_n_m: limits.max_stiffness_n_m,
+            workspace_m: abilities.workspace_m,
+        };
+        self.info.send(now_ns, now_ns, &told)?;
+        self.senses = abilities.senses;
+        self.told.trouble.clear();
+        self.host = Some(host);
+        Ok(())
+    }
+
+    /// Says, once, why there is no device.
+    fn miss(&mut self, fault: &Fault) {
+        let trouble = match &fault.help {
+            Some(help) => format!("{}; {help}", fault.what),
+            None => fault.what.clone(),
+        };
+        if trouble != self.told.trouble {
+            let name = &self.settings.device.name;
+            tracing::warn!("{name}: {trouble} (tried again each second)");
+            self.told.trouble = trouble;
+        }
+    }
+
+    /// The servo has ended: lifts the brush, and looks for the device again if it is that which is
+    /// lost.
+    fn lose(&mut self, now_ns: u64) -> Result<(), Fault> {
+        self.dropped_before = self.dropped();
+        let Some(trouble) = self.host.take().and_then(|host| host.trouble()) else {
+            return Err(Fault::failure("the servo has ended by a fault of its own")
+                .help("its own message above says why"));
+        };
+        if self.newest.in_range {
+            let away = StylusSample {
+                in_range: false,
+                force_n: [0.0; 3],
+                velocity_m_s: [0.0; 3],
+                ..self.newest.clone()
+            };
+            self.send(now_ns, now_ns, away)?;
+        }
+        self.told.force_n = 0.0;
+        self.attempt_ns = now_ns + ATTEMPT_PERIOD_NS;
+        self.miss(&Fault::failure(trouble.to_string()).help(trouble.help));
+        Ok(())
     }
 
     /// Does what is asked of the force, and tells how it is then.
@@ -222,11 +249,15 @@ impl Daemon {
                     self.told.faults.clear();
                 }
             }
-            self.host.wishes.write(self.wish);
+            (self.told.is_on, self.told.strength) =
+                (self.wish.switch == Switch::On, self.wish.strength);
+            if let Some(host) = &mut self.host {
+                host.wishes.write(self.wish);
+            }
             let reply = ForceReply {
                 is_on: self.wish.switch == Switch::On,
                 strength: self.wish.strength,
-                fault: self.told.faults.join("; "),
+                fault: self.fault(),
             };
             let me = self.samples.origin();
             match encode(&me, Flags::NONE, 0, now_ns, now_ns, &reply) {
@@ -250,10 +281,13 @@ impl Daemon {
             self.told.foreign_models += 1;
             return;
         }
+        let Some(host) = &mut self.host else {
+            return;
+        };
         match Contact::new(&model) {
             Ok(contact) => {
                 self.deliveries += 1;
-                self.host.models.write(Delivery {
+                host.models.write(Delivery {
                     contact: Some(contact),
                     sender: Some(received.header.origin()),
                     number: self.deliveries,
@@ -280,14 +314,17 @@ impl Daemon {
             let what = format!("{fault}: no force until `maulstick force rearm`");
             self.told.faults.push(what);
         }
-        let event_ns = ticked.monotonic_ns + self.offset_ns;
+        let tick = &ticked.tick;
+        self.told.resting = tick.resting;
+        (self.told.asked_n_m, self.told.stiffness_n_m) = (tick.asked_n_m, tick.stiffness_n_m);
+        self.told.cap_n = tick.cap_n;
         let reading = &ticked.reading;
-        let left = self.was_in_range && !reading.in_range;
-        self.was_in_range = reading.in_range;
+        self.told.motor_temperature = reading.motor_temperature;
+        let event_ns = ticked.monotonic_ns + self.offset_ns;
+        let left = self.newest.in_range && !reading.in_range;
         if !reading.in_range && !left && event_ns < self.published_ns + IDLE_PERIOD_NS {
             return Ok(());
         }
-        self.published_ns = event_ns;
         let held = Rigid {
             rotation: reading.held.orientation,
             translation: reading.held.position,
@@ -302,9 +339,23 @@ impl Daemon {
             switches: reading.switches,
             in_range: reading.in_range,
         };
+        self.send(now_ns, event_ns, sample)
+    }
+
+    fn send(&mut self, now_ns: u64, event_ns: u64, sample: StylusSample) -> Result<(), Fault> {
+        self.published_ns = event_ns;
         self.told.samples += 1;
         self.samples
             .send(Flags::NONE, Stamp { now_ns, event_ns }, &sample)?;
+        self.newest = sample;
         Ok(())
+    }
+
+    /// What keeps the device without force, in words.
+    fn fault(&self) -> String {
+        match self.told.faults.is_empty() {
+            true => self.told.trouble.clone(),
+            false => self.told.faults.join("; "),
+        }
     }
 }

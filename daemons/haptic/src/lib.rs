@@ -7,15 +7,24 @@
 //! | module | holds |
 //! | --- | --- |
 //! | [`driver`] | what a device is to the servo |
+//! | [`open`] | the device that `rig.toml` asks for |
+//! | [`placed`] | a device where it stands on the desk |
 //! | [`simulated`] | a device and a hand, simulated |
+//! | [`beat`] | one tick of the servo over a device |
+//! | [`pace`] | our own clock, which calls it |
 //! | [`host`] | the real-time thread |
 //! | [`wish`] | what a painter wants of the force |
 //! | [`daemon`] | the thread that talks to the rig |
 
+pub mod beat;
 pub mod daemon;
 pub mod driver;
 pub mod host;
+pub mod open;
+pub mod pace;
+pub mod placed;
 pub mod simulated;
 pub mod wish;
 
 pub use driver::Driver;
+pub use placed::Placed;

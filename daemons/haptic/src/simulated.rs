@@ -10,7 +10,7 @@ use maulstick_haptics::{Hand, Plant};
 use maulstick_num::geometry::Rigid;
 use maulstick_types::stylus::{DEFAULT_TILT_RAD, axes};
 
-use crate::driver::{Abilities, Driver, Reading};
+use crate::driver::{Abilities, Driver, Reading, Trouble, Wrench};
 
 /// Where the hand rests, device frame, m.
 const REST: DVec3 = DVec3::new(0.2, -0.2, 0.1);
@@ -113,13 +113,14 @@ impl Driver for Simulated {
             drives: axes::FORCE,
             max_force_n: self.plant.max_force_n,
             continuous_force_n: CONTINUOUS_N,
+            max_torque_nm: 0.0,
             max_stiffness_n_m: 500.0,
             damping_n_s_m: self.plant.damping,
             workspace_m: [-0.3, -0.3, -0.05, 0.3, 0.3, 0.3],
         }
     }
 
-    fn read(&mut self, dt: f64) -> Reading {
+    fn read(&mut self, dt: f64) -> Result<Option<Reading>, Trouble> {
         let target = self.target();
         self.plant.advance(self.force, target.position, dt);
         self.time_s += dt;
@@ -127,7 +128,7 @@ impl Driver for Simulated {
         // up where the servo holds the force, between warm and cool.
         let load = self.force.length() / CONTINUOUS_N;
         self.temperature += (STEADY * load * load - self.temperature) * (dt / WARMING_S).min(1.0);
-        Reading {
+        Ok(Some(Reading {
             held: Held {
                 position: self.plant.read_position(),
                 orientation: target.orientation,
@@ -135,12 +136,14 @@ impl Driver for Simulated {
             },
             switches: target.switches,
             in_range: target.in_range,
+            is_permitted: true,
             motor_temperature: self.temperature,
-        }
+        }))
     }
 
-    fn write(&mut self, force: DVec3) {
-        self.force = force;
+    fn write(&mut self, wrench: Wrench) -> Result<(), Trouble> {
+        self.force = wrench.force;
+        Ok(())
     }
 }
 
@@ -151,7 +154,11 @@ mod tests {
     use maulstick_num::geometry::rotation;
 
     use super::*;
-    use crate::driver::Placed;
+    use crate::Placed;
+
+    fn read(device: &mut Simulated) -> Reading {
+        device.read(1e-3).expect("there").expect("new")
+    }
 
     #[test]
     fn a_free_hand_follows_its_take_with_the_lag_of_its_grip() {
@@ -159,7 +166,7 @@ mod tests {
         let mut device = Simulated::following(&take, 0.025, 0.5, &Rigid::IDENTITY);
         let (mut sum, mut count) = (0.0, 0);
         for tick in 0..10_000 {
-            let reading = device.read(1e-3);
+            let reading = read(&mut device);
             let target = device.target();
             if tick > 500 && reading.in_range {
                 sum += (reading.held.position - target.position).length();
@@ -185,7 +192,8 @@ mod tests {
         let turned = Simulated::following(&take, 0.025, 0.5, &to_desk);
         let mut turned = Placed::new(Box::new(turned), to_desk);
         for _ in 0..3000 {
-            let (plain, turned) = (plain.read(1e-3).held, turned.read(1e-3).held);
+            let plain = read(&mut plain).held;
+            let turned = turned.read(1e-3).expect("there").expect("new").held;
             // The encoders' steps lie along the device's own axes, and friction follows them.
             assert!((plain.position - turned.position).length() < 1e-3);
             assert!(plain.orientation.angle_between(turned.orientation) < 1e-6);
@@ -196,7 +204,7 @@ mod tests {
     fn without_a_take_it_rests_out_of_range() {
         let mut device = Simulated::at_rest();
         let reading = (0..1000)
-            .map(|_| device.read(1e-3))
+            .map(|_| read(&mut device))
             .last()
             .expect("a reading");
         assert!(!reading.in_range && (reading.held.position - REST).length() < 1e-3);

@@ -167,6 +167,9 @@ pub fn run(options: &UpOptions) -> Result<i32, Fault> {
             Take::read(hand)?;
             *hand = absolute(hand)?;
         }
+        if let Some(replay) = &mut device.replay {
+            *replay = absolute(replay)?;
+        }
     }
     if let Some(paints) = &mut config.paint.paints {
         *paints = absolute(paints)?;

@@ -108,13 +108,11 @@ pub fn nodes(config: &RigConfig, window: Window, hands: Hands) -> Result<Vec<Nod
     if hands == Hands::Devices {
         for device in &config.device {
             let args = vec!["--device".to_owned(), device.name.clone()];
-            nodes.push(node(
-                config,
-                &device.name,
-                Role::Device,
-                "maulstick-haptic",
-                args,
-            )?);
+            let program = match device.is_hid() {
+                true => "maulstick-hid",
+                false => "maulstick-haptic",
+            };
+            nodes.push(node(config, &device.name, Role::Device, program, args)?);
         }
     }
     if window == Window::Shown {

@@ -216,7 +216,9 @@ impl Supervisor {
                 Ended::Refused(code) if role == Role::Player => return Ok(Some(code)),
                 Ended::Refused(_) => {
                     self.nodes[place].state = State::Failed;
-                    return Err(self.failed(&name));
+                    if role != Role::Device {
+                        return Err(self.failed(&name));
+                    }
                 }
                 // A node that somebody stopped is missed like one that crashed.
                 Ended::Well | Ended::Badly => {

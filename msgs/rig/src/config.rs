@@ -1,6 +1,7 @@
 //! The settings of a rig: `rig.toml`, with the defaults of `default.toml`.
 
 mod check;
+mod device;
 mod light;
 mod palette;
 
@@ -12,15 +13,12 @@ use serde::{Deserialize, Serialize};
 use crate::fault::Fault;
 use crate::size::parse_bytes;
 
+pub use device::{ACTIONS, DRIVERS, DeviceSection, FORCES, HID_DRIVERS};
 pub use light::LightSection;
 pub use palette::{PILES, PaletteSection};
 
 /// The commented default.
 pub const DEFAULT: &str = include_str!("default.toml");
-/// Drivers of devices.
-pub const DRIVERS: [&str; 1] = ["simulated"];
-/// How a brush pushes back.
-pub const FORCES: [&str; 5] = ["linear", "hermite", "local", "rigid", "none"];
 /// Paint models.
 pub const MODELS: [&str; 1] = ["impasto"];
 /// Backends of paint and colour.
@@ -97,48 +95,6 @@ impl CanvasSection {
     pub fn cells(&self) -> [u32; 2] {
         [self.width_mm, self.height_mm].map(|mm| (mm / self.cell_mm).round() as u32)
     }
-}
-
-/// `[[device]]`.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct DeviceSection {
-    /// Name in the topics.
-    pub name: String,
-    /// One of [`DRIVERS`].
-    pub driver: String,
-    /// Of devices in range the highest paints.
-    #[serde(default)]
-    pub priority: i32,
-    /// The brush that it moves.
-    pub brush: String,
-    /// Device frame to desk frame, m.
-    #[serde(default)]
-    pub position_m: [f64; 3],
-    /// Device frame to desk frame, a unit quaternion.
-    #[serde(default = "no_turn")]
-    pub orientation: [f64; 4],
-    /// Largest force, N.
-    #[serde(default = "default_force")]
-    pub max_force_n: f64,
-    /// One of [`FORCES`]: how the brush pushes back.
-    #[serde(default = "default_law")]
-    pub force: String,
-    /// A take that a simulated hand follows, feeling the canvas.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub hand: Option<PathBuf>,
-}
-
-fn no_turn() -> [f64; 4] {
-    [0.0, 0.0, 0.0, 1.0]
-}
-
-fn default_force() -> f64 {
-    3.0
-}
-
-fn default_law() -> String {
-    FORCES[0].into()
 }
 
 /// `[[brush]]`.
@@ -342,7 +298,8 @@ impl RigConfig {
         self.paint.document.iter_mut().for_each(whole);
         self.device
             .iter_mut()
-            .filter_map(|device| device.hand.as_mut())
+            .flat_map(|device| [&mut device.hand, &mut device.replay])
+            .flatten()
             .for_each(whole);
         let texts = [
             &mut self.light.illuminant,

@@ -3,7 +3,7 @@
 use crate::codec::Message;
 use crate::header::DecodeError;
 use crate::schema::Schema;
-use crate::{brush, command, haptics, paint, scene, stylus};
+use crate::{brush, command, control, haptics, paint, scene, stylus};
 
 /// One message of the rig.
 #[derive(Debug)]
@@ -45,6 +45,7 @@ pub static CATALOGUE: &[CatalogueEntry] = &[
     entry!(stylus::StylusInfo, "stylus/<device>/info"),
     entry!(stylus::StylusStatus, "stylus/<device>/status"),
     entry!(stylus::TakeStatus, "stylus/<device>/take"),
+    entry!(control::ControlSample, "control/<device>/sample"),
     entry!(haptics::ContactModel, "haptics/<device>/model"),
     entry!(haptics::FluidForce, "haptics/<device>/fluid"),
     entry!(haptics::ForceRequest, "haptics/<device>/force (query)"),

@@ -10,7 +10,7 @@
 //! | [`schema`] | field tables and their hash |
 //! | [`topics`] | the key expressions of a rig |
 //! | [`advice`] | what to do about something that is wrong |
-//! | [`stylus`], [`haptics`], [`brush`], [`scene`], [`paint`], [`command`] | the messages |
+//! | [`stylus`], [`control`], [`haptics`], [`brush`], [`scene`], [`paint`], [`command`] | the messages |
 
 mod codec;
 mod define;
@@ -19,6 +19,7 @@ pub mod advice;
 pub mod brush;
 pub mod catalogue;
 pub mod command;
+pub mod control;
 pub mod haptics;
 pub mod header;
 pub mod mixture;

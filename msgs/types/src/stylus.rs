@@ -24,6 +24,14 @@ pub mod axes {
     pub const FORCE: u32 = 128;
     /// Velocity.
     pub const VELOCITY: u32 = 256;
+    /// Torque (driven by force-feedback devices).
+    pub const TORQUE: u32 = 512;
+}
+
+/// Bits of [`StylusSample::switches`] that are no switch of the handle.
+pub mod switch {
+    /// The pen is turned round: its eraser is near.
+    pub const ERASER: u32 = 1 << 31;
 }
 
 /// Tilt of a pen that senses none: 30° toward the lower right, radians about y and x as in
@@ -72,6 +80,30 @@ message! {
         pub switches: u32,
         /// Whether the stylus is near enough to count.
         pub in_range: bool,
+    }
+}
+
+impl StylusStatus {
+    /// Of a device that has just been started.
+    #[must_use]
+    pub fn fresh(bins: usize) -> Self {
+        Self {
+            samples: 0,
+            dropped: 0,
+            faults: Vec::new(),
+            lateness: vec![0; bins],
+            execution: vec![0; bins],
+            force_n: 0.0,
+            foreign_models: 0,
+            trouble: String::new(),
+            is_on: true,
+            strength: 1.0,
+            resting: false,
+            asked_n_m: 0.0,
+            stiffness_n_m: 0.0,
+            cap_n: 0.0,
+            motor_temperature: 0.0,
+        }
     }
 }
 
@@ -168,7 +200,7 @@ message! {
 
 message! {
     /// How a device fares, ten times a second.
-    pub struct StylusStatus [version 1, at most 4096 bytes] {
+    pub struct StylusStatus [version 2, at most 4096 bytes] {
         /// Samples published since the start.
         pub samples: u64,
         /// Samples that did not fit into the ring to the publisher.
@@ -183,6 +215,22 @@ message! {
         pub force_n: f64,
         /// Messages dropped because they named another device, epoch or brush.
         pub foreign_models: u64,
+        /// Why there is no device now, and what to do about it; empty while there is one.
+        pub trouble: String,
+        /// Whether force is switched on.
+        pub is_on: bool,
+        /// Share of what the models ask for, 0 to 1.
+        pub strength: f64,
+        /// Whether the amplifiers rest for want of contact.
+        pub resting: bool,
+        /// Stiffness that the model asks for, N/m.
+        pub asked_n_m: f64,
+        /// Stiffness that is given, N/m.
+        pub stiffness_n_m: f64,
+        /// Largest force as warm as the motors are, N.
+        pub cap_n: f64,
+        /// The hottest motor, 0 cold to 1 hot.
+        pub motor_temperature: f64,
     }
 }
 

@@ -43,6 +43,8 @@ topics! {
     stylus_status(device) = "stylus/{device}/status";
     /// Where a played take stands: [`TakeStatus`](crate::stylus::TakeStatus).
     take_status(device) = "stylus/{device}/take";
+    /// What the free hand does: [`ControlSample`](crate::control::ControlSample).
+    control(device) = "control/{device}/sample";
     /// What the hand feels: [`ContactModel`](crate::haptics::ContactModel).
     contact_model(device) = "haptics/{device}/model";
     /// What the hand feels of moving paint: [`FluidForce`](crate::haptics::FluidForce).

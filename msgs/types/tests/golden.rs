@@ -14,11 +14,9 @@ use maulstick_types::paint::{
 use maulstick_types::scene::{
     Layer, Light, NamedVersion, PaintSlot, Scene, Surface, Tuning, Well, WellKind,
 };
-use maulstick_types::stylus::{
-    StylusInfo, StylusPose, StylusSample, StylusStatus, TakeEnd, TakeStatus,
-};
+use maulstick_types::stylus::{StylusInfo, StylusPose, StylusSample, TakeEnd, TakeStatus};
 use maulstick_types::{CATALOGUE, Flags, Message, Mixture, Origin, decode, encode};
-use parts::{force_reply, handling, pose, region};
+use parts::{control, force_reply, handling, pose, region, status};
 
 fn after() -> After {
     After {
@@ -123,15 +121,7 @@ fn all() -> String {
             max_stiffness_n_m: 400.0,
             workspace_m: [1.0; 6],
         }),
-        line(&StylusStatus {
-            samples: 1,
-            dropped: 2,
-            faults: vec!["late".into()],
-            lateness: vec![3, 4],
-            execution: vec![5],
-            force_n: 0.5,
-            foreign_models: 6,
-        }),
+        line(&status()),
         line(&TakeStatus {
             epoch: 1,
             position_ns: 2,
@@ -143,6 +133,7 @@ fn all() -> String {
                 samples: 6,
             }),
         }),
+        line(&control()),
         line(&model(ForceLaw::None)),
         line(&model(ForceLaw::Linear {
             k1_n: 0.8,

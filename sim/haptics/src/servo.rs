@@ -81,6 +81,7 @@ pub enum Switch {
 pub struct Servo {
     limits: Limits,
     switch: Switch,
+    permitted: Switch,
     strength: f64,
     model: Option<Active>,
     /// Received since the last step.
@@ -124,6 +125,7 @@ impl Servo {
         Self {
             limits,
             switch: Switch::On,
+            permitted: Switch::On,
             strength: 1.0,
             model: None,
             arrived: None,
@@ -160,6 +162,14 @@ impl Servo {
     pub fn switch(&mut self, switch: Switch) {
         self.switch = switch;
         self.engaged_s = 0.0;
+    }
+
+    /// Follows the dead man's switch: let go, there is no force, and it engages anew.
+    pub fn permit(&mut self, held: Switch) {
+        self.permitted = held;
+        if held == Switch::Off {
+            self.engaged_s = 0.0;
+        }
     }
 
     /// Makes all force weaker: a share from 0 to 1.
@@ -217,7 +227,8 @@ impl Servo {
         };
         self.watch(held, touch, dt);
         self.rest(touch, dt);
-        tick.resting = self.switch == Switch::Off || self.idle_s >= self.limits.idle_s;
+        let off = [self.switch, self.permitted].contains(&Switch::Off);
+        tick.resting = off || self.idle_s >= self.limits.idle_s;
         if self.fault.is_some() || tick.resting {
             return self.nothing(tick);
         }

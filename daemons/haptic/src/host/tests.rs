@@ -2,13 +2,15 @@
 
 use std::time::{Duration, Instant};
 
-use glam::DQuat;
-use maulstick_haptics::contact::Held;
+use glam::{DQuat, DVec3};
+use maulstick_haptics::Switch;
+use maulstick_haptics::contact::{Contact, Held};
 use maulstick_num::geometry::{Rigid, canonical, rotation};
 use maulstick_types::haptics::{ContactModel, ForceLaw, Grain};
 
 use super::*;
-use crate::driver::{Abilities, Driver};
+use crate::driver::{Abilities, Driver, Reading, Wrench};
+use crate::pace::OwnClock;
 use crate::simulated::Simulated;
 
 #[test]
@@ -18,6 +20,11 @@ fn bins_double() {
         (0, 0, 1, 1, 2)
     );
     assert_eq!(bin(u64::MAX), BINS - 1);
+}
+
+/// A servo on our own clock.
+fn start(device: Placed, limits: Limits) -> Host {
+    Host::start(device, Box::new(OwnClock), limits).expect("started")
 }
 
 /// The first tick that `look` accepts.
@@ -37,7 +44,7 @@ fn tick(host: &mut Host, mut look: impl FnMut(&Ticked) -> bool) -> Option<Ticked
 #[test]
 fn the_servo_ticks_and_its_ticks_come_out_in_order() {
     let device = Placed::new(Box::new(Simulated::at_rest()), Rigid::IDENTITY);
-    let mut host = Host::start(device, Limits::default()).expect("started");
+    let mut host = start(device, Limits::default());
     let (mut count, mut last_ns) = (0, 0);
     let enough = tick(&mut host, |ticked| {
         assert!(ticked.monotonic_ns > last_ns);
@@ -51,7 +58,8 @@ fn the_servo_ticks_and_its_ticks_come_out_in_order() {
 #[test]
 fn ticks_that_do_not_fit_are_counted() {
     let device = Placed::new(Box::new(Simulated::at_rest()), Rigid::IDENTITY);
-    let mut host = Host::with_ring(device, Limits::default(), 4).expect("started");
+    let mut host =
+        Host::with_ring(device, Box::new(OwnClock), Limits::default(), 4).expect("started");
     let give_up = Instant::now() + Duration::from_secs(20);
     while host.dropped() < 3 && Instant::now() < give_up {
         std::thread::yield_now();
@@ -61,6 +69,17 @@ fn ticks_that_do_not_fit_are_counted() {
         std::iter::from_fn(|| host.ticks.pop().ok()).take(4).count(),
         4
     );
+}
+
+/// A reading of what is held.
+fn at(held: Held) -> Reading {
+    Reading {
+        held,
+        switches: 0,
+        in_range: true,
+        is_permitted: true,
+        motor_temperature: 0.0,
+    }
 }
 
 /// A device that stands still and remembers the newest force written to it.
@@ -74,19 +93,15 @@ impl Driver for Still {
         Simulated::at_rest().abilities()
     }
 
-    fn read(&mut self, _: f64) -> Reading {
-        Reading {
-            held: self.held,
-            switches: 0,
-            in_range: true,
-            motor_temperature: 0.0,
-        }
+    fn read(&mut self, _: f64) -> Result<Option<Reading>, Trouble> {
+        Ok(Some(at(self.held)))
     }
 
-    fn write(&mut self, force: DVec3) {
-        for (cell, part) in self.written.iter().zip(force.to_array()) {
+    fn write(&mut self, wrench: Wrench) -> Result<(), Trouble> {
+        for (cell, part) in self.written.iter().zip(wrench.force.to_array()) {
             cell.store(part.to_bits(), Ordering::Relaxed);
         }
+        Ok(())
     }
 }
 
@@ -98,15 +113,19 @@ impl Driver for Failing {
         self.0.abilities()
     }
 
-    fn read(&mut self, dt: f64) -> Reading {
+    fn read(&mut self, dt: f64) -> Result<Option<Reading>, Trouble> {
         self.1 += 1;
         assert!(self.1 < 100, "the seeded fault");
         self.0.read(dt)
     }
 
-    fn write(&mut self, force: DVec3) {
+    fn write(&mut self, wrench: Wrench) -> Result<(), Trouble> {
         // A force that nobody asked for, so that its end shows.
-        self.0.write(if self.1 < 100 { DVec3::X } else { force });
+        let asked = Wrench {
+            force: DVec3::X,
+            ..wrench
+        };
+        self.0.write(if self.1 < 100 { asked } else { wrench })
     }
 }
 
@@ -122,7 +141,7 @@ fn a_servo_that_fails_leaves_no_force() {
         written: Arc::clone(&written),
     };
     let device = Placed::new(Box::new(Failing(still, 0)), Rigid::IDENTITY);
-    let mut host = Host::start(device, Limits::default()).expect("started");
+    let mut host = start(device, Limits::default());
     tick(&mut host, |_| true).expect("a tick");
     if let Some(thread) = host.thread.take() {
         assert!(thread.join().is_err(), "the servo fails");
@@ -138,21 +157,17 @@ impl Driver for Nowhere {
         Simulated::at_rest().abilities()
     }
 
-    fn read(&mut self, _: f64) -> Reading {
-        Reading {
-            held: Held {
-                position: DVec3::NAN,
-                orientation: DQuat::IDENTITY,
-                velocity: DVec3::ZERO,
-            },
-            switches: 0,
-            in_range: true,
-            motor_temperature: 0.0,
-        }
+    fn read(&mut self, _: f64) -> Result<Option<Reading>, Trouble> {
+        Ok(Some(at(Held {
+            position: DVec3::NAN,
+            orientation: DQuat::IDENTITY,
+            velocity: DVec3::ZERO,
+        })))
     }
 
-    fn write(&mut self, force: DVec3) {
-        assert_eq!(force, DVec3::ZERO);
+    fn write(&mut self, wrench: Wrench) -> Result<(), Trouble> {
+        assert_eq!(wrench, Wrench::ZERO);
+        Ok(())
     }
 
     fn switch(&mut self, amplifiers: Switch) {
@@ -164,7 +179,7 @@ impl Driver for Nowhere {
 fn a_fault_switches_the_amplifiers_off_and_arming_on_until_the_next() {
     let powered = Arc::new(AtomicBool::new(true));
     let device = Placed::new(Box::new(Nowhere(Arc::clone(&powered))), Rigid::IDENTITY);
-    let mut host = Host::start(device, Limits::default()).expect("started");
+    let mut host = start(device, Limits::default());
     let latched = tick(&mut host, |ticked| ticked.tick.fault.is_some());
     assert!(latched.is_some());
     assert!(tick(&mut host, |_| !powered.load(Ordering::SeqCst)).is_some());
@@ -237,7 +252,7 @@ fn a_turned_and_shifted_device_feels_the_desk_where_it_is() {
             longest_tick_s: 1e3,
             ..Limits::default()
         };
-        let mut host = Host::start(Placed::new(Box::new(still), to_desk), limits).expect("started");
+        let mut host = start(Placed::new(Box::new(still), to_desk), limits);
         host.models.write(Delivery {
             contact: Some(wall()),
             sender: None,

@@ -4,8 +4,8 @@ use maulstick_types::advice::choice;
 use maulstick_types::topics::check_name;
 
 use super::{
-    BACKENDS, BRUSH_NODE, BrushSection, DRIVERS, DeviceSection, FORCES, GAMUTS, MODELS, RESERVED,
-    RigConfig,
+    ACTIONS, BACKENDS, BRUSH_NODE, BrushSection, DRIVERS, DeviceSection, FORCES, GAMUTS, MODELS,
+    RESERVED, RigConfig,
 };
 use crate::fault::Fault;
 
@@ -124,8 +124,58 @@ impl RigConfig {
             let help = "choose 0 or more newtons; the device's own limit holds too";
             return Err(Wrong::value(name, "max_force_n", device.max_force_n, help));
         }
+        if let Some(scale) = device.scale
+            && !(SCALES[0]..=SCALES[1]).contains(&scale)
+        {
+            let help = "choose 0.05 to 20 desk lengths per device length";
+            return Err(Wrong::value(name, "scale", scale, help));
+        }
+        if !device.ferrule_m.iter().all(|value| value.abs() <= 0.5) {
+            let help = "write three numbers in metres, none beyond half a metre";
+            return Err(Wrong::value(name, "ferrule_m", device.ferrule_m, help));
+        }
+        if let Some(corners) = device.corners_m
+            && !are_corners(&corners)
+        {
+            let help =
+                "three places in metres, not on one line, as `maulstick calibrate` writes them";
+            return Err(Wrong::value(name, "corners_m", corners, help));
+        }
+        if !is_curve(&device.pressure_curve) {
+            let help = "points [sensed, given] that rise from [0, 0] to [1, 1], at most 32";
+            let curve = &device.pressure_curve;
+            return Err(Wrong::value(name, "pressure_curve", curve, help));
+        }
+        for action in device.switches.iter().flatten() {
+            choose("action of a switch", action, &ACTIONS)
+                .map_err(|told| wrong(told, "switches", action))?;
+        }
         Ok(())
     }
+}
+
+/// Desk lengths per device length.
+const SCALES: [f64; 2] = [0.05, 20.0];
+
+/// Whether three places span a plane: sides of 5 mm to 10 m, at least 10 degrees apart.
+fn are_corners(corners: &[[f64; 3]; 3]) -> bool {
+    let side = |to: usize| [0, 1, 2].map(|i| corners[to][i] - corners[0][i]);
+    let (a, b) = (side(1), side(2));
+    let dot = |u: &[f64; 3], v: &[f64; 3]| u.iter().zip(v).map(|(u, v)| u * v).sum::<f64>();
+    let (long, wide) = (dot(&a, &a).sqrt(), dot(&b, &b).sqrt());
+    let sides = [long, wide]
+        .iter()
+        .all(|side| (0.005..=10.0).contains(side));
+    sides && dot(&a, &b).abs() < 0.985 * long * wide
+}
+
+/// Whether points rise from (0, 0) to (1, 1).
+fn is_curve(points: &[[f64; 2]]) -> bool {
+    let rises = |pair: &[[f64; 2]]| pair[0][0] < pair[1][0] && pair[0][1] <= pair[1][1];
+    (2..=32).contains(&points.len())
+        && points.first() == Some(&[0.0, 0.0])
+        && points.last() == Some(&[1.0, 1.0])
+        && points.windows(2).all(rises)
 }
 
 /// A wrong value: what is wrong, the key and value by which its line is found, what to do.
@@ -263,6 +313,27 @@ mod tests {
                 text.contains("orientation") && text.contains("rig.toml:35"),
                 "{text}"
             );
+        }
+        for (line, help) in [
+            ("scale = 0", "0.05"),
+            ("scale = nan", "0.05"),
+            ("ferrule_m = [0, 0, 3]", "half a metre"),
+            ("ferrule_m = [0, nan, 0]", "half a metre"),
+            ("corners_m = [[0, 0, 0], [1, 0, 0], [2, 0, 0]]", "one line"),
+            ("corners_m = [[0, 0, 0], [0, 0, 0], [0, 1, 0]]", "one line"),
+            ("pressure_curve = [[0, 0]]", "rise"),
+            (
+                "pressure_curve = [[0, 0], [0.5, 0.6], [0.4, 0.7], [1, 1]]",
+                "rise",
+            ),
+            ("pressure_curve = [[0, 0], [0.5, nan], [1, 1]]", "rise"),
+            ("switches = [\"undo\", \"cluch\"]", "'clutch'"),
+        ] {
+            let text = error("max_force_n = 3.0", &format!("{line}\nmax_force_n = 3.0"));
+            let key = line.split(' ').next().expect("a key");
+            let told = if key == "switches" { "cluch" } else { key };
+            assert!(text.contains(told) && text.contains(help), "{text}");
+            assert!(text.contains("rig.toml:36"), "{text}");
         }
         for place in ["nan, 0, 0", "0, inf, 0", "0, 0, -inf"] {
             let text = error("position_m = [0, 0, 0]", &format!("position_m = [{place}]"));

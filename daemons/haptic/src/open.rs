@@ -1,0 +1,62 @@
+//! The device that a section of `rig.toml` asks for.
+
+use std::path::PathBuf;
+
+use glam::DQuat;
+use maulstick_device::{Take, brush_file};
+use maulstick_num::geometry::{Rigid, canonical};
+use maulstick_rig::config::DeviceSection;
+use maulstick_rig::{Fault, RigConfig};
+
+use crate::driver::Opened;
+use crate::pace::OwnClock;
+use crate::simulated::Simulated;
+
+/// What a haptic daemon is told.
+#[derive(Clone, Debug)]
+pub struct HapticSettings {
+    /// The device's section of `rig.toml`.
+    pub device: DeviceSection,
+    /// A take that a simulated hand follows.
+    pub hand: Option<PathBuf>,
+}
+
+/// Device frame to desk frame.
+#[must_use]
+pub fn to_desk(device: &DeviceSection) -> Rigid {
+    Rigid {
+        rotation: canonical(DQuat::from_array(device.orientation)),
+        translation: device.position_m.into(),
+    }
+}
+
+/// Opens the device.
+///
+/// # Errors
+/// A [`Fault`] that says what is missing: tried again later, it may be there.
+pub fn open(config: &RigConfig, settings: &HapticSettings) -> Result<Opened, Fault> {
+    let device = &settings.device;
+    match device.driver.as_str() {
+        "simulated" => simulated(config, settings),
+        other => Err(Fault::usage(format!("this daemon has no driver '{other}'"))),
+    }
+}
+
+fn simulated(config: &RigConfig, settings: &HapticSettings) -> Result<Opened, Fault> {
+    let opened = |driver: Simulated, what: &str| Opened {
+        driver: Box::new(driver),
+        pace: Box::new(OwnClock),
+        what: what.to_owned(),
+    };
+    let Some(path) = settings.hand.as_ref().or(settings.device.hand.as_ref()) else {
+        return Ok(opened(Simulated::at_rest(), "a simulated hand at rest"));
+    };
+    let take = Take::read(path)?;
+    let section = config
+        .brush_named(&settings.device.brush)
+        .ok_or_else(|| Fault::usage(format!("no brush '{}'", settings.device.brush)))?;
+    let file = brush_file(section)?;
+    let (length_m, share) = (file.length_m(), section.depth_share);
+    let driver = Simulated::following(&take, length_m, share, &to_desk(&settings.device));
+    Ok(opened(driver, "a simulated hand that follows a take"))
+}

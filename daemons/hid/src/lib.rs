@@ -1,0 +1,1 @@
+//! Pens and 6-DOF mice over HID.

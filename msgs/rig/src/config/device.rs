@@ -1,0 +1,137 @@
+//! `[[device]]`: what is in a hand, and how it is fitted to the desk.
+
+use std::path::PathBuf;
+
+use serde::{Deserialize, Serialize};
+
+/// Drivers of devices.
+pub const DRIVERS: [&str; 6] = [
+    "simulated",
+    "openhaptics",
+    "polhem",
+    "inverse3",
+    "pen",
+    "spacemouse",
+];
+/// Those of them that `maulstick-hid` serves; the others are `maulstick-haptic`'s.
+pub const HID_DRIVERS: [&str; 2] = ["pen", "spacemouse"];
+/// How a brush pushes back.
+pub const FORCES: [&str; 5] = ["linear", "hermite", "local", "rigid", "none"];
+/// What a switch on a stylus may do.
+pub const ACTIONS: [&str; 6] = ["none", "clutch", "pick", "palette", "undo", "clean"];
+
+/// `[[device]]`.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct DeviceSection {
+    /// Name in the topics.
+    pub name: String,
+    /// One of [`DRIVERS`].
+    pub driver: String,
+    /// Which of several: the name that OpenHaptics gives it, a serial port, a WebSocket's URL,
+    /// `vendor:product` of a HID device in hexadecimal or its path below /dev. The first that fits if
+    /// absent.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub address: Option<String>,
+    /// The vendor's library of `openhaptics`, where it is not in the system's folders.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub library: Option<PathBuf>,
+    /// A recording of a HID device that is played in its place, in hid-recorder's text format.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub replay: Option<PathBuf>,
+    /// Of devices in range the highest paints.
+    #[serde(default)]
+    pub priority: i32,
+    /// The brush that it moves.
+    pub brush: String,
+    /// Device frame to desk frame, m.
+    #[serde(default)]
+    pub position_m: [f64; 3],
+    /// Device frame to desk frame, a unit quaternion.
+    #[serde(default = "no_turn")]
+    pub orientation: [f64; 4],
+    /// Desk lengths per device length. If absent 1; for a pen such that its tablet covers the canvas.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub scale: Option<f64>,
+    /// Where the canvas's lower left, lower right and upper left corners are in the device frame, m,
+    /// as `maulstick calibrate` finds them; then position, orientation and scale follow from these.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub corners_m: Option<[[f64; 3]; 3]>,
+    /// From the point that a 6-DOF device senses to where head and ferrule meet, brush frame, m.
+    #[serde(default)]
+    pub ferrule_m: [f64; 3],
+    /// Largest force, N.
+    #[serde(default = "default_force")]
+    pub max_force_n: f64,
+    /// One of [`FORCES`]: how the brush pushes back.
+    #[serde(default = "default_law")]
+    pub force: String,
+    /// Points (sensed, given) from (0, 0) to (1, 1) between which pressure goes in straight lines.
+    #[serde(default = "straight")]
+    pub pressure_curve: Vec<[f64; 2]>,
+    /// One of [`ACTIONS`] for each switch, the first switch first; the driver's own if absent.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub switches: Option<Vec<String>>,
+    /// A take that a simulated hand follows, feeling the canvas.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub hand: Option<PathBuf>,
+}
+
+impl DeviceSection {
+    /// A device of which nothing else is said.
+    #[must_use]
+    pub fn new(name: &str, driver: &str, brush: &str) -> Self {
+        Self {
+            name: name.to_owned(),
+            driver: driver.to_owned(),
+            address: None,
+            library: None,
+            replay: None,
+            priority: 0,
+            brush: brush.to_owned(),
+            position_m: [0.0; 3],
+            orientation: no_turn(),
+            scale: None,
+            corners_m: None,
+            ferrule_m: [0.0; 3],
+            max_force_n: default_force(),
+            force: default_law(),
+            pressure_curve: straight(),
+            switches: None,
+            hand: None,
+        }
+    }
+
+    /// Whether `maulstick-hid` serves it.
+    #[must_use]
+    pub fn is_hid(&self) -> bool {
+        HID_DRIVERS.contains(&self.driver.as_str())
+    }
+
+    /// What each switch does, the first one first.
+    #[must_use]
+    pub fn actions(&self) -> Vec<&str> {
+        match (&self.switches, self.driver.as_str()) {
+            (Some(actions), _) => actions.iter().map(String::as_str).collect(),
+            (None, "pen") => vec!["pick", "undo"],
+            (None, "openhaptics" | "polhem" | "inverse3") => vec!["clutch", "undo"],
+            (None, _) => Vec::new(),
+        }
+    }
+}
+
+fn no_turn() -> [f64; 4] {
+    [0.0, 0.0, 0.0, 1.0]
+}
+
+fn default_force() -> f64 {
+    3.0
+}
+
+fn default_law() -> String {
+    FORCES[0].into()
+}
+
+fn straight() -> Vec<[f64; 2]> {
+    vec![[0.0, 0.0], [1.0, 1.0]]
+}

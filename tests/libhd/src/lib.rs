@@ -1,0 +1,1 @@
+//! A libHD for tests.
