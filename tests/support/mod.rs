@@ -296,7 +296,8 @@ pub fn account(place: &Place, name: &str) -> f64 {
     ledger["accounts_m3"][name].as_f64().expect("a number")
 }
 
-/// A take of a hand that moves to and fro on the canvas, fully pressed, for three minutes.
+/// A take of a hand that moves to and fro on the canvas for three minutes, fully pressed but for a moment
+/// every four seconds.
 pub fn press_for_minutes(path: &Path) {
     let samples = (0..18_000u64).map(|number| {
         let way = (number % 400) as f64 / 400.0;
@@ -309,7 +310,8 @@ pub fn press_for_minutes(path: &Path) {
                     point_m: [x, 0.0, 0.0],
                     tilt_rad: DEFAULT_TILT_RAD,
                     twist_rad: 0.0,
-                    pressure: 1.0,
+                    // A hand that stays deep gets no force back: force begins where little is asked for.
+                    pressure: if number % 400 < 340 { 1.0 } else { 0.0 },
                 },
                 in_range: true,
                 ..StylusSample::away()
@@ -322,4 +324,15 @@ pub fn press_for_minutes(path: &Path) {
         samples: samples.collect(),
     };
     take.write(path).expect("written");
+}
+
+/// Whether the tip of the undeformed head is a millimetre below the canvas at the least.
+pub fn pressed(sample: &StylusSample, head_length_m: f64) -> bool {
+    let StylusPose::Ferrule { pose } = &sample.pose else {
+        return false;
+    };
+    // The bristles lie along −z of the brush.
+    let [x, y, ..] = pose.orientation;
+    let tip_z = pose.position_m[2] - head_length_m * (1.0 - 2.0 * (x * x + y * y));
+    sample.in_range && tip_z < -1e-3
 }

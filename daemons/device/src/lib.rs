@@ -9,11 +9,13 @@
 //! | [`player`] | a device that plays a take |
 //! | [`brush`] | the brush that a section of `rig.toml` asks for |
 //! | [`commander`] | commands to the paint node, repeated until answered |
+//! | [`mover`] | the free hand moves the canvas |
 
 pub mod brush;
 pub mod commander;
 pub mod demo;
 pub mod kit;
+pub mod mover;
 pub mod player;
 pub mod sheet;
 pub mod table;

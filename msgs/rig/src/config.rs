@@ -423,10 +423,10 @@ mod tests {
         assert!(error("model = \"impasto\"", "model = \"impatso\"").contains("'impasto'"));
         let text = error("profile = \"srgb\"", "profile = \"sgrb\"");
         assert!(text.contains("'srgb'") && text.contains("ICC"), "{text}");
-        assert!(text.contains("rig.toml:67"), "{text}");
+        assert!(text.contains("rig.toml:74"), "{text}");
         let text = error("gamut = \"soft\"", "gamut = \"sfot\"");
         assert!(
-            text.contains("did you mean 'soft'") && text.contains("rig.toml:68"),
+            text.contains("did you mean 'soft'") && text.contains("rig.toml:75"),
             "{text}"
         );
     }

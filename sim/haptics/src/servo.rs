@@ -232,6 +232,8 @@ impl Servo {
         if self.fault.is_some() || tick.resting {
             return self.nothing(tick);
         }
+        self.heat
+            .warm(self.force.length(), self.limits.continuous_force_n, dt);
         tick.cap_n = self
             .heat
             .cap_n(self.limits.max_force_n, self.limits.continuous_force_n, dt);

@@ -7,6 +7,8 @@ use maulstick_types::Origin;
 use super::BrushNode;
 use crate::feel::{Felt, contact_model, law};
 
+/// Who paints what is felt.
+const PAINT: &str = "paint";
 /// Least time between two contact models, ns.
 const MODEL_PERIOD_NS: u64 = 4_000_000;
 
@@ -18,7 +20,8 @@ impl BrushNode {
         origin: Origin,
         now_ns: u64,
     ) -> Result<(), BusError> {
-        if !self.drives_force.contains(device) {
+        // Nothing is painted where the paint node is gone, and nothing is felt there.
+        if !self.drives_force.contains(device) || self.gone.contains(PAINT) {
             return Ok(());
         }
         let Some(plane) = self.model.plane().copied() else {

@@ -1,0 +1,229 @@
+//! The free hand moves the canvas: what a 6-DOF mouse says becomes [`Command::Place`].
+//!
+//! Pushing right and up pans, pushing away from the desk zooms in, turning about the axis out of the
+//! desk turns the canvas; all about the middle of the desk, where the painter looks. The commands go
+//! into the journal, so a replay knows where the canvas lay.
+
+use std::sync::Arc;
+use std::sync::mpsc::{Receiver as Ear, RecvTimeoutError, SyncSender, sync_channel};
+use std::thread::JoinHandle;
+use std::time::{Duration, Instant};
+
+use glam::DVec3;
+use maulstick_bus::typed::Receiver;
+use maulstick_bus::{Bus, BusError, Class, Queue, Wake};
+use maulstick_num::exp;
+use maulstick_num::geometry::{Rigid, canonical, rotation};
+use maulstick_types::command::Command;
+use maulstick_types::control::ControlSample;
+use maulstick_types::scene::{CANVAS, Scene};
+use maulstick_types::topics::Topics;
+
+use crate::commander::Commander;
+
+/// Pushed to the stop the canvas goes this fast, m/s.
+const PAN_M_S: f64 = 0.2;
+/// Pushed to the stop it grows by e this often a second.
+const ZOOM_S: f64 = 1.0;
+/// Turned to the stop it turns this fast, rad/s.
+const TURN_S: f64 = 1.5;
+/// Zooms that a painter can use.
+const ZOOMS: [f64; 2] = [0.1, 20.0];
+/// How far the canvas goes from the middle of the desk, m, before its zoom.
+const FARTHEST_M: f64 = 1.0;
+/// Time between two commands while the hand pushes.
+const PERIOD: Duration = Duration::from_millis(33);
+/// A push counts for so long at most, however late it is followed.
+const LONGEST: Duration = Duration::from_millis(100);
+/// How long a command waits for its answer.
+const PATIENCE: Duration = Duration::from_secs(2);
+
+/// Where a surface lies.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Lie {
+    /// Surface frame to desk frame.
+    pub pose: Rigid,
+    /// Desk lengths per surface length.
+    pub zoom: f64,
+}
+
+impl Lie {
+    /// Where it lies after a push of `dt` s.
+    #[must_use]
+    pub fn pushed(&self, control: &ControlSample, dt: f64) -> Self {
+        // Slow where the push is light: the third power leaves the stops where they are.
+        let eased = |value: f64| value * value * value;
+        let [x, y, z] = control.push.map(eased);
+        let turn = rotation(DVec3::Z, eased(control.turn[2]) * TURN_S * dt);
+        let zoom = (self.zoom * exp(z * ZOOM_S * dt)).clamp(ZOOMS[0], ZOOMS[1]);
+        let moved = turn * (self.pose.translation * (zoom / self.zoom));
+        let bound = FARTHEST_M * zoom.max(1.0);
+        let translation = moved + DVec3::new(x, y, 0.0) * (PAN_M_S * dt);
+        Self {
+            pose: Rigid {
+                rotation: canonical(turn * self.pose.rotation),
+                translation: translation.clamp(DVec3::splat(-bound), DVec3::splat(bound)),
+            },
+            zoom,
+        }
+    }
+
+    fn command(&self) -> Command {
+        Command::Place {
+            surface: CANVAS,
+            pose: self.pose.to_pose(),
+            zoom: self.zoom,
+        }
+    }
+}
+
+/// Whether a hand pushes or turns what moves the canvas.
+#[must_use]
+pub fn pushes(control: &ControlSample) -> bool {
+    control.push != [0.0; 3] || control.turn[2] != 0.0
+}
+
+/// Sends the commands from a thread of its own: nobody who reads a device waits for an answer.
+pub struct Mover {
+    controls: Option<SyncSender<ControlSample>>,
+    thread: Option<JoinHandle<()>>,
+}
+
+impl Mover {
+    /// A mover of the canvas of a rig.
+    ///
+    /// # Errors
+    /// [`BusError`] where the bus is closed.
+    pub fn start(bus: &Arc<dyn Bus>, topics: &Topics) -> Result<Self, BusError> {
+        let wake = Wake::new();
+        let topic = topics.scene();
+        let scenes = Receiver::new(&**bus, &topic, Class::Cached, Queue::Latest, &wake)?;
+        let commander = Commander::new(Arc::clone(bus), topics);
+        let (controls, heard) = sync_channel(64);
+        let thread = std::thread::Builder::new()
+            .name("mover".into())
+            .spawn(move || follow(&heard, scenes, commander))
+            .ok();
+        Ok(Self {
+            controls: Some(controls),
+            thread,
+        })
+    }
+
+    /// Takes in a sample; one that finds no room is followed by the next.
+    pub fn hear(&self, control: &ControlSample) {
+        if let Some(controls) = &self.controls {
+            controls.try_send(control.clone()).ok();
+        }
+    }
+}
+
+impl Drop for Mover {
+    fn drop(&mut self) {
+        self.controls = None;
+        if let Some(thread) = self.thread.take() {
+            thread.join().ok();
+        }
+    }
+}
+
+impl std::fmt::Debug for Mover {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("Mover").finish_non_exhaustive()
+    }
+}
+
+fn follow(heard: &Ear<ControlSample>, mut scenes: Receiver<Scene>, mut commander: Commander) {
+    let mut lie: Option<Lie> = None;
+    while let Ok(mut control) = heard.recv() {
+        // Where it lies is the scene's until the hand pushes, and our own while it does.
+        lie = scenes
+            .newest()
+            .and_then(|scene| canvas(&scene.message))
+            .or(lie);
+        let mut moved = Instant::now();
+        while pushes(&control) {
+            // Commands keep their distance however often the device speaks.
+            let due = moved + PERIOD;
+            while let Some(wait) = due.checked_duration_since(Instant::now()) {
+                match heard.recv_timeout(wait) {
+                    Ok(newest) => control = newest,
+                    Err(RecvTimeoutError::Timeout) => break,
+                    Err(RecvTimeoutError::Disconnected) => return,
+                }
+            }
+            let Some(from) = lie else { break };
+            let to = from.pushed(&control, moved.elapsed().min(LONGEST).as_secs_f64());
+            moved = Instant::now();
+            match commander.send(to.command(), None, PATIENCE, &|| false) {
+                Ok(_) => lie = Some(to),
+                Err(fault) => tracing::warn!("the canvas is not moved: {}", fault.what),
+            }
+        }
+    }
+}
+
+fn canvas(scene: &Scene) -> Option<Lie> {
+    let surface = scene.surfaces.iter().find(|surface| surface.id == CANVAS)?;
+    Some(Lie {
+        pose: Rigid::from(&surface.pose),
+        zoom: surface.zoom,
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn lie() -> Lie {
+        Lie {
+            pose: Rigid {
+                translation: DVec3::new(-0.128, -0.128, 0.0),
+                ..Rigid::IDENTITY
+            },
+            zoom: 1.0,
+        }
+    }
+
+    /// The place on the surface that lies in the middle of the desk, m.
+    fn middle(lie: &Lie) -> DVec3 {
+        lie.pose.inverse().point(DVec3::ZERO) / lie.zoom
+    }
+
+    #[test]
+    fn zoom_and_turn_keep_what_is_in_the_middle() {
+        let mut control = ControlSample::at_rest();
+        (control.push[2], control.turn[2]) = (0.7, -0.5);
+        let mut now = lie();
+        (0..200).for_each(|_| now = now.pushed(&control, 0.033));
+        assert!(now.zoom > 3.0, "{now:?}");
+        assert!((middle(&now) - middle(&lie())).length() < 1e-12, "{now:?}");
+        let quarter = now.pose.vector(DVec3::X);
+        assert!(quarter.y < -0.1 && quarter.z == 0.0, "{quarter}");
+        assert_eq!(now.command().check(), Ok(()));
+    }
+
+    #[test]
+    fn a_push_pans_at_its_speed_and_a_light_one_more_slowly() {
+        let pan = |by: f64| {
+            let mut control = ControlSample::at_rest();
+            control.push[0] = by;
+            lie().pushed(&control, 0.5).pose.translation.x - lie().pose.translation.x
+        };
+        assert!((pan(1.0) - 0.1).abs() < 1e-12);
+        assert!((pan(-0.5) + 0.0125).abs() < 1e-12);
+        assert!(!pushes(&ControlSample::at_rest()));
+    }
+
+    #[test]
+    fn whatever_is_pushed_the_canvas_stays_within_reach() {
+        let mut control = ControlSample::at_rest();
+        for sign in [1.0, -1.0] {
+            control.push = [sign; 3];
+            let mut now = lie();
+            (0..2000).for_each(|_| now = now.pushed(&control, 0.033));
+            assert!((ZOOMS[0]..=ZOOMS[1]).contains(&now.zoom));
+            assert!(now.pose.translation.abs().max_element() <= FARTHEST_M * ZOOMS[1]);
+        }
+    }
+}
