@@ -3,6 +3,7 @@
 use std::time::{Duration, Instant};
 
 use glam::{DQuat, DVec3};
+use maulstick_device::fitting::{Fitting, Similarity};
 use maulstick_haptics::Switch;
 use maulstick_haptics::contact::{Contact, Held};
 use maulstick_num::geometry::{Rigid, canonical, rotation};
@@ -20,6 +21,16 @@ fn bins_double() {
         (0, 0, 1, 1, 2)
     );
     assert_eq!(bin(u64::MAX), BINS - 1);
+}
+
+/// A device that stands somewhere, with the point that it senses as its ferrule.
+fn placed(device: impl Driver + 'static, rigid: Rigid, scale: f64) -> Placed {
+    let fitting = Fitting {
+        to_desk: Similarity { rigid, scale },
+        ferrule_m: DVec3::ZERO,
+        corners: None,
+    };
+    Placed::new(Box::new(device), fitting, 0)
 }
 
 /// A servo on our own clock.
@@ -43,7 +54,7 @@ fn tick(host: &mut Host, mut look: impl FnMut(&Ticked) -> bool) -> Option<Ticked
 
 #[test]
 fn the_servo_ticks_and_its_ticks_come_out_in_order() {
-    let device = Placed::new(Box::new(Simulated::at_rest()), Rigid::IDENTITY);
+    let device = placed(Simulated::at_rest(), Rigid::IDENTITY, 1.0);
     let mut host = start(device, Limits::default());
     let (mut count, mut last_ns) = (0, 0);
     let enough = tick(&mut host, |ticked| {
@@ -57,7 +68,7 @@ fn the_servo_ticks_and_its_ticks_come_out_in_order() {
 
 #[test]
 fn ticks_that_do_not_fit_are_counted() {
-    let device = Placed::new(Box::new(Simulated::at_rest()), Rigid::IDENTITY);
+    let device = placed(Simulated::at_rest(), Rigid::IDENTITY, 1.0);
     let mut host =
         Host::with_ring(device, Box::new(OwnClock), Limits::default(), 4).expect("started");
     let give_up = Instant::now() + Duration::from_secs(20);
@@ -140,7 +151,7 @@ fn a_servo_that_fails_leaves_no_force() {
         },
         written: Arc::clone(&written),
     };
-    let device = Placed::new(Box::new(Failing(still, 0)), Rigid::IDENTITY);
+    let device = placed(Failing(still, 0), Rigid::IDENTITY, 1.0);
     let mut host = start(device, Limits::default());
     tick(&mut host, |_| true).expect("a tick");
     if let Some(thread) = host.thread.take() {
@@ -178,7 +189,7 @@ impl Driver for Nowhere {
 #[test]
 fn a_fault_switches_the_amplifiers_off_and_arming_on_until_the_next() {
     let powered = Arc::new(AtomicBool::new(true));
-    let device = Placed::new(Box::new(Nowhere(Arc::clone(&powered))), Rigid::IDENTITY);
+    let device = placed(Nowhere(Arc::clone(&powered)), Rigid::IDENTITY, 1.0);
     let mut host = start(device, Limits::default());
     let latched = tick(&mut host, |ticked| ticked.tick.fault.is_some());
     assert!(latched.is_some());
