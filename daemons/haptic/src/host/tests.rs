@@ -231,51 +231,50 @@ fn wall() -> Contact {
 }
 
 #[test]
-fn a_turned_and_shifted_device_feels_the_desk_where_it_is() {
+fn a_turned_shifted_and_scaled_device_feels_the_desk_where_it_is() {
     // What the hand does on the desk: the tip 4 mm below the wall, sliding along x.
     let on_desk = Held {
         position: DVec3::new(0.01, -0.02, 0.021),
         orientation: DQuat::IDENTITY,
         velocity: DVec3::new(0.1, 0.0, 0.0),
     };
-    let expected = DVec3::new(-0.2, 0.0, 0.4);
-    let turn = rotation(DVec3::new(0.6, 0.0, 0.8), 2.0);
-    for to_desk in [
-        Rigid::IDENTITY,
-        Rigid {
-            rotation: turn,
-            translation: DVec3::new(0.3, -0.1, 0.2),
-        },
-    ] {
-        let to_device = to_desk.inverse();
+    let asked = DVec3::new(-0.2, 0.0, 0.4);
+    let turned = Rigid {
+        rotation: canonical(rotation(DVec3::new(0.6, 0.0, 0.8), 2.0)),
+        translation: DVec3::new(0.3, -0.1, 0.2),
+    };
+    for (rigid, scale) in [(Rigid::IDENTITY, 1.0), (turned, 1.0), (turned, 2.0)] {
+        let to_desk = Similarity { rigid, scale };
         let written = Arc::new([const { AtomicU64::new(0) }; 3]);
         let still = Still {
             held: Held {
-                position: to_device.point(on_desk.position),
-                orientation: canonical(to_device.rotation * on_desk.orientation),
-                velocity: to_device.vector(on_desk.velocity),
+                position: to_desk.point_back(on_desk.position),
+                orientation: to_desk.turned_back(on_desk.orientation),
+                velocity: to_desk.turn_back(on_desk.velocity) / scale,
             },
             written: Arc::clone(&written),
         };
-        // However late the ticks of a busy machine come, the force comes up.
+        // However late the ticks of a busy machine come, the force comes up; and this hand cannot come up
+        // from the wall first.
         let limits = Limits {
             engage_s: 1e-3,
+            engage_n: f64::INFINITY,
             longest_tick_s: 1e3,
             ..Limits::default()
         };
-        let mut host = start(Placed::new(Box::new(still), to_desk), limits);
+        let mut host = start(placed(still, rigid, scale), limits.scaled(scale));
         host.models.write(Delivery {
             contact: Some(wall()),
             sender: None,
             number: 1,
         });
         // The tick after the first is there once the force of the first is written.
-        let mut seen = 0;
+        let (mut seen, expected) = (0, asked / scale);
         let felt = tick(&mut host, |ticked| {
             seen += u32::from((ticked.force - expected).length() < 1e-12);
             seen == 2
         });
-        let felt = felt.expect("the force in the desk frame");
+        let felt = felt.expect("the force on the hand");
         let off = (felt.reading.held.position - on_desk.position).length()
             + (felt.reading.held.velocity - on_desk.velocity).length()
             + felt
@@ -284,11 +283,12 @@ fn a_turned_and_shifted_device_feels_the_desk_where_it_is() {
                 .orientation
                 .angle_between(on_desk.orientation);
         assert!(off < 1e-7, "{:?}", felt.reading.held);
+        assert!((felt.tick.cap_n - 3.0).abs() < 1e-12, "the device's own");
         let written = DVec3::from_array(
             [0, 1, 2].map(|i| f64::from_bits(written[i].load(Ordering::Relaxed))),
         );
         assert!(
-            (written - to_device.vector(expected)).length() < 1e-12,
+            (written - to_desk.turn_back(expected)).length() < 1e-12,
             "{written} in the device frame"
         );
     }
