@@ -20,6 +20,7 @@ pub struct Commander {
     client: u64,
     number: u64,
     me: Origin,
+    ask: Duration,
 }
 
 impl Commander {
@@ -42,7 +43,15 @@ impl Commander {
             client: random_u64(),
             number: 0,
             me,
+            ask: ASK,
         }
+    }
+
+    /// Asks again after `ask` in the place of two seconds: who has to stop soon does not wait longer.
+    #[must_use]
+    pub fn asking(mut self, ask: Duration) -> Self {
+        self.ask = ask;
+        self
     }
 
     /// Sends a command and waits until it is done or refused, at most for `patience`; gives up
@@ -73,7 +82,7 @@ impl Commander {
         let give_up = Instant::now() + patience;
         loop {
             let asked = Instant::now();
-            let limit = ASK.min(patience);
+            let limit = self.ask.min(patience);
             match ask::<_, CommandReply>(
                 &*self.bus,
                 &self.topic,

@@ -10,10 +10,16 @@
 //! | [`brush`] | the brush that a section of `rig.toml` asks for |
 //! | [`commander`] | commands to the paint node, repeated until answered |
 //! | [`mover`] | the free hand moves the canvas |
+//! | [`fitting`] | a device's frame on the desk |
+//! | [`corners`] | the corners of the canvas, as a hand shows them |
+//! | [`actions`] | what the switches of a stylus do |
 
+pub mod actions;
 pub mod brush;
 pub mod commander;
+pub mod corners;
 pub mod demo;
+pub mod fitting;
 pub mod kit;
 pub mod mover;
 pub mod player;

@@ -21,13 +21,13 @@ pub struct Ticked {
     pub monotonic_ns: u64,
     /// What was read, desk frame.
     pub reading: Reading,
-    /// The force applied, N, desk frame.
+    /// The force on the hand, N, in the desk's axes.
     pub force: DVec3,
     /// How late the wake-up was, ns.
     pub late_ns: u64,
     /// How long the tick took, ns.
     pub spent_ns: u64,
-    /// What the servo did.
+    /// What the servo did; its largest force is that on the hand.
     pub tick: Tick,
     /// The [`Wish`]'s armings that it has done.
     pub armings: u64,
@@ -132,8 +132,9 @@ impl Beat {
             true => Switch::On,
             false => Switch::Off,
         });
-        let (force, tick) = self.servo.step(&reading.held, dt);
+        let (force, mut tick) = self.servo.step(&reading.held, dt);
         self.device.write(force)?;
+        tick.cap_n /= self.device.scale();
         let wanted = match tick.resting || tick.fault.is_some() {
             true => Switch::Off,
             false => Switch::On,
@@ -145,7 +146,7 @@ impl Beat {
         let ticked = Ticked {
             monotonic_ns: now_ns,
             reading,
-            force,
+            force: self.device.on_hand(force),
             late_ns,
             spent_ns: monotonic_ns().saturating_sub(now_ns),
             tick,

@@ -5,6 +5,8 @@ use std::time::Duration;
 use maulstick_bus::credit::Stamp;
 use maulstick_bus::typed::{Reader, Receiver, Sender};
 use maulstick_bus::{Class, CreditSender, Queue, Server};
+use maulstick_device::actions::{Action, Actions, Actor};
+use maulstick_device::fitting::Fitting;
 use maulstick_haptics::contact::Contact;
 use maulstick_haptics::{Address, Limits, Switch};
 use maulstick_num::geometry::Rigid;
@@ -15,7 +17,7 @@ use maulstick_types::{Flags, encode};
 
 use crate::beat::{Delivery, Ticked};
 use crate::host::{BINS, Host, bin};
-use crate::open::{HapticSettings, open, to_desk};
+use crate::open::{HapticSettings, open};
 use crate::placed::Placed;
 use crate::wish::Wish;
 
@@ -42,6 +44,10 @@ struct Daemon {
     settings: HapticSettings,
     /// The servo, while there is a device.
     host: Option<Host>,
+    /// What the switches do, but the clutch; ended after the servo, for it may wait for the paint node.
+    actor: Actor,
+    /// Where the device stands.
+    fitting: Fitting,
     /// When to look for the device again.
     attempt_ns: u64,
     senses: u32,
@@ -71,6 +77,13 @@ impl Daemon {
         let device = &settings.device;
         let (bus, topics) = (&*member.bus, &member.topics);
         let origin = member.origin(&device.name);
+        let fitting = Fitting::of(device, &member.config.canvas)?;
+        if let Some(warning) = fitting.warning() {
+            let name = &device.name;
+            tracing::warn!("{name}: {warning}; touch them again: `maulstick calibrate {name}`");
+        }
+        let actions = Actions::of(device);
+        let actor = Actor::start(member.bus.clone(), topics, &device.brush, actions)?;
         let topic = topics.contact_model(&device.name);
         let samples = CreditSender::new(
             bus,
@@ -89,6 +102,8 @@ impl Daemon {
             config: member.config.clone(),
             settings: settings.clone(),
             host: None,
+            actor,
+            fitting,
             attempt_ns: 0,
             senses: 0,
             address: Address {
@@ -159,8 +174,10 @@ impl Daemon {
         };
         let device = &self.settings.device;
         tracing::info!("{}: {}", device.name, opened.what);
-        let placed = Placed::new(opened.driver, to_desk(device));
+        let clutch = Actions::of(device).bits(Action::Clutch);
+        let placed = Placed::new(opened.driver, self.fitting, clutch);
         let abilities = placed.abilities();
+        let scale = placed.scale();
         let limits = Limits {
             max_force_n: device.max_force_n.min(abilities.max_force_n),
             continuous_force_n: device.max_force_n.min(abilities.continuous_force_n),
@@ -168,7 +185,7 @@ impl Daemon {
             damping_n_s_m: abilities.damping_n_s_m,
             ..Limits::default()
         };
-        let mut host = Host::start(placed, opened.pace, limits)
+        let mut host = Host::start(placed, opened.pace, limits.scaled(scale))
             .map_err(|error| Fault::failure(format!("the servo cannot start: {error}")))?;
         for warning in &host.warnings {
             tracing::warn!("{}: {warning}", device.name);
@@ -214,13 +231,15 @@ impl Daemon {
             return Err(Fault::failure("the servo has ended by a fault of its own")
                 .help("its own message above says why"));
         };
+        let away = StylusSample {
+            in_range: false,
+            switches: 0,
+            force_n: [0.0; 3],
+            velocity_m_s: [0.0; 3],
+            ..self.newest.clone()
+        };
+        self.actor.hear(&away);
         if self.newest.in_range {
-            let away = StylusSample {
-                in_range: false,
-                force_n: [0.0; 3],
-                velocity_m_s: [0.0; 3],
-                ..self.newest.clone()
-            };
             self.send(now_ns, now_ns, away)?;
         }
         self.told.force_n = 0.0;
@@ -321,10 +340,6 @@ impl Daemon {
         let reading = &ticked.reading;
         self.told.motor_temperature = reading.motor_temperature;
         let event_ns = ticked.monotonic_ns + self.offset_ns;
-        let left = self.newest.in_range && !reading.in_range;
-        if !reading.in_range && !left && event_ns < self.published_ns + IDLE_PERIOD_NS {
-            return Ok(());
-        }
         let held = Rigid {
             rotation: reading.held.orientation,
             translation: reading.held.position,
@@ -339,6 +354,11 @@ impl Daemon {
             switches: reading.switches,
             in_range: reading.in_range,
         };
+        self.actor.hear(&sample);
+        let left = self.newest.in_range && !sample.in_range;
+        if !sample.in_range && !left && event_ns < self.published_ns + IDLE_PERIOD_NS {
+            return Ok(());
+        }
         self.send(now_ns, event_ns, sample)
     }
 

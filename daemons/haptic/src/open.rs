@@ -2,9 +2,8 @@
 
 use std::path::PathBuf;
 
-use glam::DQuat;
+use maulstick_device::fitting::Fitting;
 use maulstick_device::{Take, brush_file};
-use maulstick_num::geometry::{Rigid, canonical};
 use maulstick_rig::config::DeviceSection;
 use maulstick_rig::{Fault, RigConfig};
 
@@ -19,15 +18,6 @@ pub struct HapticSettings {
     pub device: DeviceSection,
     /// A take that a simulated hand follows.
     pub hand: Option<PathBuf>,
-}
-
-/// Device frame to desk frame.
-#[must_use]
-pub fn to_desk(device: &DeviceSection) -> Rigid {
-    Rigid {
-        rotation: canonical(DQuat::from_array(device.orientation)),
-        translation: device.position_m.into(),
-    }
 }
 
 /// Opens the device.
@@ -57,6 +47,7 @@ fn simulated(config: &RigConfig, settings: &HapticSettings) -> Result<Opened, Fa
         .ok_or_else(|| Fault::usage(format!("no brush '{}'", settings.device.brush)))?;
     let file = brush_file(section)?;
     let (length_m, share) = (file.length_m(), section.depth_share);
-    let driver = Simulated::following(&take, length_m, share, &to_desk(&settings.device));
+    let fitting = Fitting::of(&settings.device, &config.canvas)?;
+    let driver = Simulated::following(&take, length_m, share, &fitting);
     Ok(opened(driver, "a simulated hand that follows a take"))
 }

@@ -1,32 +1,100 @@
-//! Where a device stands on the desk.
+//! A device where it stands on the desk: its frame, the brush in its hand, the clutch.
+//!
+//! Desk lengths are s device lengths. The hand is given f/s where the desk asks for f, so stiffness
+//! and damping are the same in both frames; see [`Limits::scaled`](maulstick_haptics::Limits::scaled)
+//! for what that means to the servo's bounds.
 
 use glam::DVec3;
+use maulstick_device::fitting::Fitting;
 use maulstick_haptics::Switch;
 use maulstick_haptics::contact::Held;
-use maulstick_num::geometry::{Rigid, canonical};
 
 use crate::driver::{Abilities, Driver, Reading, Trouble, Wrench};
+
+/// Corner of the filter on the velocity of the ferrule about the point that is sensed, rad/s (60 Hz):
+/// it is a difference of readings.
+const VELOCITY_CORNER: f64 = 377.0;
+
+/// What lets the hand move without the brush, as a mouse is lifted and put down elsewhere. While one
+/// of its switches is held the ferrule stays where it was put aside, the brush is out of range and
+/// turns on the spot with the hand, and there is no force; let go, the desk goes on from that place.
+/// It is there until the device is opened again.
+#[derive(Clone, Copy, Debug, Default)]
+struct Clutch {
+    /// Its switches.
+    switches: u32,
+    /// How far from where the device stands the hand has been moved so, desk frame, m.
+    moved: DVec3,
+    /// Where the ferrule was put aside, desk frame, m.
+    aside: Option<DVec3>,
+}
+
+impl Clutch {
+    /// Where the ferrule is, if the device alone would have it at `place`.
+    fn follow(&mut self, place: DVec3, switches: u32) -> DVec3 {
+        let aside = self.aside.unwrap_or(place + self.moved);
+        if switches & self.switches != 0 {
+            self.aside = Some(aside);
+            return aside;
+        }
+        if self.aside.take().is_some() {
+            self.moved = aside - place;
+        }
+        aside
+    }
+}
+
+/// The ferrule about the point that a device senses, device frame.
+#[derive(Clone, Copy, Debug, Default)]
+struct Lever {
+    /// From the point to the ferrule, m.
+    arm: DVec3,
+    /// Its velocity about the point, m/s.
+    velocity: DVec3,
+    /// Whether there was a reading before.
+    is_known: bool,
+}
+
+impl Lever {
+    fn turn(&mut self, arm: DVec3, dt: f64) {
+        // Velocity from a difference, as the vendors' libraries do where a device senses none.
+        if self.is_known && dt > 0.0 {
+            let raw = (arm - self.arm) / dt;
+            self.velocity += (raw - self.velocity) * (VELOCITY_CORNER * dt).min(1.0);
+        }
+        (self.arm, self.is_known) = (arm, true);
+    }
+}
 
 /// A device where it stands on the desk. Contact models are in the desk frame, so the servo sees
 /// the device through this.
 pub struct Placed {
     driver: Box<dyn Driver>,
-    to_desk: Rigid,
-    to_device: Rigid,
+    fitting: Fitting,
+    max_torque_nm: f64,
+    lever: Lever,
+    clutch: Clutch,
 }
 
 impl Placed {
-    /// A device whose frame goes to the desk frame by `to_desk`.
+    /// A device as it is fitted to the desk; the switches of the bits `clutch` are its clutch.
     #[must_use]
-    pub fn new(driver: Box<dyn Driver>, to_desk: Rigid) -> Self {
+    pub fn new(driver: Box<dyn Driver>, fitting: Fitting, clutch: u32) -> Self {
+        let max_torque_nm = driver.abilities().max_torque_nm.max(0.0);
         Self {
             driver,
-            to_desk,
-            to_device: to_desk.inverse(),
+            fitting,
+            max_torque_nm,
+            lever: Lever::default(),
+            clutch: Clutch {
+                switches: clutch,
+                ..Clutch::default()
+            },
         }
     }
 
-    /// What it can do; the working area is the box, in the desk frame, around the turned one.
+    /// What it can do: forces are those of the motors; the working area is the box, in the desk frame,
+    /// around the turned one.
     #[must_use]
     pub fn abilities(&self) -> Abilities {
         let abilities = self.driver.abilities();
@@ -35,7 +103,7 @@ impl Placed {
         for x in [x0, x1] {
             for y in [y0, y1] {
                 for z in [z0, z1] {
-                    let corner = self.to_desk.point(DVec3::new(x, y, z));
+                    let corner = self.fitting.to_desk.point(DVec3::new(x, y, z));
                     (least, greatest) = (least.min(corner), greatest.max(corner));
                 }
             }
@@ -48,6 +116,12 @@ impl Placed {
         }
     }
 
+    /// Desk lengths per device length.
+    #[must_use]
+    pub fn scale(&self) -> f64 {
+        self.fitting.to_desk.scale
+    }
+
     /// Reads it, `dt` s after the reading before; desk frame.
     ///
     /// # Errors
@@ -56,25 +130,47 @@ impl Placed {
         let Some(reading) = self.driver.read(dt)? else {
             return Ok(None);
         };
-        let held = reading.held;
-        Ok(Some(Reading {
-            held: Held {
-                position: self.to_desk.point(held.position),
-                orientation: canonical(self.to_desk.rotation * held.orientation),
-                velocity: self.to_desk.vector(held.velocity),
+        let (held, to_desk) = (reading.held, &self.fitting.to_desk);
+        self.lever
+            .turn(held.orientation * self.fitting.ferrule_m, dt);
+        let place = to_desk.point(held.position + self.lever.arm);
+        let place = self.clutch.follow(place, reading.switches);
+        let held = Held {
+            position: place,
+            orientation: to_desk.turned(held.orientation),
+            velocity: to_desk.vector(held.velocity + self.lever.velocity),
+        };
+        Ok(Some(match self.clutch.aside {
+            None => Reading { held, ..reading },
+            Some(_) => Reading {
+                held: Held {
+                    velocity: DVec3::ZERO,
+                    ..held
+                },
+                in_range: false,
+                is_permitted: false,
+                ..reading
             },
-            ..reading
         }))
     }
 
-    /// Sets the force on the hand, N, desk frame.
+    /// What the hand gets of a force of the desk, N, in the desk's axes.
+    #[must_use]
+    pub fn on_hand(&self, force: DVec3) -> DVec3 {
+        force / self.scale()
+    }
+
+    /// Sets the force of the desk, N, desk frame. It is at the ferrule, so a device that drives torque
+    /// drives that of it about the point that it senses, as far as it can.
     ///
     /// # Errors
     /// As [`Driver::write`].
     pub fn write(&mut self, force: DVec3) -> Result<(), Trouble> {
+        let force = self.fitting.to_desk.turn_back(self.on_hand(force));
+        let torque = self.lever.arm.cross(force);
         self.driver.write(Wrench {
-            force: self.to_device.vector(force),
-            torque: DVec3::ZERO,
+            force,
+            torque: torque.clamp_length_max(self.max_torque_nm),
         })
     }
 
@@ -93,27 +189,4 @@ impl Drop for Placed {
 }
 
 #[cfg(test)]
-mod tests {
-    use std::f64::consts::FRAC_PI_2;
-
-    use maulstick_num::geometry::rotation;
-
-    use super::*;
-    use crate::simulated::Simulated;
-
-    #[test]
-    fn the_working_area_turns_with_the_device() {
-        let to_desk = Rigid {
-            rotation: rotation(DVec3::X, FRAC_PI_2),
-            translation: DVec3::new(1.0, 0.0, 0.0),
-        };
-        let driver = Simulated::at_rest();
-        let [x0, y0, z0, x1, y1, z1] = driver.abilities().workspace_m;
-        let placed = Placed::new(Box::new(driver), to_desk);
-        // A quarter turn about x: y is minus what z was, z is what y was.
-        let expected = [x0 + 1.0, -z1, y0, x1 + 1.0, -z0, y1];
-        let got = placed.abilities().workspace_m;
-        let off = got.iter().zip(expected).map(|(a, b)| (a - b).abs());
-        assert!(off.fold(0.0, f64::max) < 1e-12, "{got:?} {expected:?}");
-    }
-}
+mod tests;

@@ -19,6 +19,8 @@ pub mod grain;
 mod grid;
 pub mod law;
 pub mod plant;
+#[cfg(test)]
+mod scaled;
 pub mod servo;
 #[cfg(test)]
 mod stability;

@@ -50,6 +50,8 @@ pub struct Tick {
     pub braked: bool,
     /// The amplifiers are off: switched off, or nothing was touched for long.
     pub resting: bool,
+    /// Force has yet to begin: the hand is so deep that it would be pushed.
+    pub waiting: bool,
     /// Largest force now, N.
     pub cap_n: f64,
     /// Stiffness along the normal that the model asks for, N/m.
@@ -76,6 +78,20 @@ pub enum Switch {
     Off,
 }
 
+/// Whether force has begun. Given to a hand that is deep in the canvas it would push it out; so it
+/// begins where the models ask for little, and a hand that stays deep feels nothing until it has
+/// come up.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Engagement {
+    /// The models have asked for little in so many ticks running.
+    Waiting(u32),
+    /// It has.
+    Begun,
+}
+
+/// Ticks in which little must be asked for before force begins: one alone may be chance.
+const CALM_TICKS: u32 = 4;
+
 /// The servo's state.
 #[derive(Clone, Copy, Debug)]
 pub struct Servo {
@@ -90,6 +106,7 @@ pub struct Servo {
     correction: DVec3,
     /// How fast the correction shrinks, N/s.
     correction_speed: f64,
+    engagement: Engagement,
     engaged_s: f64,
     idle_s: f64,
     heat: Heat,
@@ -131,6 +148,7 @@ impl Servo {
             arrived: None,
             correction: DVec3::ZERO,
             correction_speed: 0.0,
+            engagement: Engagement::Waiting(0),
             engaged_s: 0.0,
             idle_s: 0.0,
             heat: Heat::cold(limits.max_force_n),
@@ -161,14 +179,14 @@ impl Servo {
     /// Switches the force off, at once, or on: it engages anew.
     pub fn switch(&mut self, switch: Switch) {
         self.switch = switch;
-        self.engaged_s = 0.0;
+        self.engagement = Engagement::Waiting(0);
     }
 
     /// Follows the dead man's switch: let go, there is no force, and it engages anew.
     pub fn permit(&mut self, held: Switch) {
         self.permitted = held;
         if held == Switch::Off {
-            self.engaged_s = 0.0;
+            self.engagement = Engagement::Waiting(0);
         }
     }
 
@@ -185,7 +203,7 @@ impl Servo {
 
     /// Nothing of what was felt holds any more.
     fn engage_anew(&mut self) {
-        self.engaged_s = 0.0;
+        self.engagement = Engagement::Waiting(0);
         self.model = None;
         self.arrived = None;
         self.correction = DVec3::ZERO;
@@ -389,9 +407,26 @@ impl Servo {
         let softer = self.strength * self.shaking.softness();
         tick.asked_n_m = felt.asked_n_m;
         tick.stiffness_n_m = felt.stiffness_n_m * softer;
-        let ramp = (self.engaged_s / self.limits.engage_s).min(1.0);
-        let share = self.fading(model) * ramp * softer;
         let (correction, cap_n) = (self.correction, tick.cap_n);
+        let most = self.fading(model) * softer;
+        if let Engagement::Waiting(calm) = self.engagement {
+            let asked_n = ((felt.force + correction) * most).length();
+            // Written so that a bound that is no number lets no force begin.
+            let calm = match asked_n <= self.limits.engage_n {
+                true => calm + 1,
+                false => 0,
+            };
+            self.engaged_s = 0.0;
+            self.engagement = match calm >= CALM_TICKS {
+                true => Engagement::Begun,
+                false => Engagement::Waiting(calm),
+            };
+            tick.waiting = true;
+            self.last = None;
+            return DVec3::ZERO;
+        }
+        let ramp = (self.engaged_s / self.limits.engage_s).min(1.0);
+        let share = most * ramp;
         self.last = Some(Last {
             position: held.position,
             models: cut((felt.conservative + correction) * share, cap_n),

@@ -3,6 +3,7 @@
 use std::time::{Duration, Instant};
 
 use glam::{DQuat, DVec3};
+use maulstick_device::fitting::{Fitting, Similarity};
 use maulstick_haptics::Switch;
 use maulstick_haptics::contact::{Contact, Held};
 use maulstick_num::geometry::{Rigid, canonical, rotation};
@@ -20,6 +21,16 @@ fn bins_double() {
         (0, 0, 1, 1, 2)
     );
     assert_eq!(bin(u64::MAX), BINS - 1);
+}
+
+/// A device that stands somewhere, with the point that it senses as its ferrule.
+fn placed(device: impl Driver + 'static, rigid: Rigid, scale: f64) -> Placed {
+    let fitting = Fitting {
+        to_desk: Similarity { rigid, scale },
+        ferrule_m: DVec3::ZERO,
+        corners: None,
+    };
+    Placed::new(Box::new(device), fitting, 0)
 }
 
 /// A servo on our own clock.
@@ -43,7 +54,7 @@ fn tick(host: &mut Host, mut look: impl FnMut(&Ticked) -> bool) -> Option<Ticked
 
 #[test]
 fn the_servo_ticks_and_its_ticks_come_out_in_order() {
-    let device = Placed::new(Box::new(Simulated::at_rest()), Rigid::IDENTITY);
+    let device = placed(Simulated::at_rest(), Rigid::IDENTITY, 1.0);
     let mut host = start(device, Limits::default());
     let (mut count, mut last_ns) = (0, 0);
     let enough = tick(&mut host, |ticked| {
@@ -57,7 +68,7 @@ fn the_servo_ticks_and_its_ticks_come_out_in_order() {
 
 #[test]
 fn ticks_that_do_not_fit_are_counted() {
-    let device = Placed::new(Box::new(Simulated::at_rest()), Rigid::IDENTITY);
+    let device = placed(Simulated::at_rest(), Rigid::IDENTITY, 1.0);
     let mut host =
         Host::with_ring(device, Box::new(OwnClock), Limits::default(), 4).expect("started");
     let give_up = Instant::now() + Duration::from_secs(20);
@@ -140,7 +151,7 @@ fn a_servo_that_fails_leaves_no_force() {
         },
         written: Arc::clone(&written),
     };
-    let device = Placed::new(Box::new(Failing(still, 0)), Rigid::IDENTITY);
+    let device = placed(Failing(still, 0), Rigid::IDENTITY, 1.0);
     let mut host = start(device, Limits::default());
     tick(&mut host, |_| true).expect("a tick");
     if let Some(thread) = host.thread.take() {
@@ -178,7 +189,7 @@ impl Driver for Nowhere {
 #[test]
 fn a_fault_switches_the_amplifiers_off_and_arming_on_until_the_next() {
     let powered = Arc::new(AtomicBool::new(true));
-    let device = Placed::new(Box::new(Nowhere(Arc::clone(&powered))), Rigid::IDENTITY);
+    let device = placed(Nowhere(Arc::clone(&powered)), Rigid::IDENTITY, 1.0);
     let mut host = start(device, Limits::default());
     let latched = tick(&mut host, |ticked| ticked.tick.fault.is_some());
     assert!(latched.is_some());
@@ -220,51 +231,50 @@ fn wall() -> Contact {
 }
 
 #[test]
-fn a_turned_and_shifted_device_feels_the_desk_where_it_is() {
+fn a_turned_shifted_and_scaled_device_feels_the_desk_where_it_is() {
     // What the hand does on the desk: the tip 4 mm below the wall, sliding along x.
     let on_desk = Held {
         position: DVec3::new(0.01, -0.02, 0.021),
         orientation: DQuat::IDENTITY,
         velocity: DVec3::new(0.1, 0.0, 0.0),
     };
-    let expected = DVec3::new(-0.2, 0.0, 0.4);
-    let turn = rotation(DVec3::new(0.6, 0.0, 0.8), 2.0);
-    for to_desk in [
-        Rigid::IDENTITY,
-        Rigid {
-            rotation: turn,
-            translation: DVec3::new(0.3, -0.1, 0.2),
-        },
-    ] {
-        let to_device = to_desk.inverse();
+    let asked = DVec3::new(-0.2, 0.0, 0.4);
+    let turned = Rigid {
+        rotation: canonical(rotation(DVec3::new(0.6, 0.0, 0.8), 2.0)),
+        translation: DVec3::new(0.3, -0.1, 0.2),
+    };
+    for (rigid, scale) in [(Rigid::IDENTITY, 1.0), (turned, 1.0), (turned, 2.0)] {
+        let to_desk = Similarity { rigid, scale };
         let written = Arc::new([const { AtomicU64::new(0) }; 3]);
         let still = Still {
             held: Held {
-                position: to_device.point(on_desk.position),
-                orientation: canonical(to_device.rotation * on_desk.orientation),
-                velocity: to_device.vector(on_desk.velocity),
+                position: to_desk.point_back(on_desk.position),
+                orientation: to_desk.turned_back(on_desk.orientation),
+                velocity: to_desk.turn_back(on_desk.velocity) / scale,
             },
             written: Arc::clone(&written),
         };
-        // However late the ticks of a busy machine come, the force comes up.
+        // However late the ticks of a busy machine come, the force comes up; and this hand cannot come up
+        // from the wall first.
         let limits = Limits {
             engage_s: 1e-3,
+            engage_n: f64::INFINITY,
             longest_tick_s: 1e3,
             ..Limits::default()
         };
-        let mut host = start(Placed::new(Box::new(still), to_desk), limits);
+        let mut host = start(placed(still, rigid, scale), limits.scaled(scale));
         host.models.write(Delivery {
             contact: Some(wall()),
             sender: None,
             number: 1,
         });
         // The tick after the first is there once the force of the first is written.
-        let mut seen = 0;
+        let (mut seen, expected) = (0, asked / scale);
         let felt = tick(&mut host, |ticked| {
             seen += u32::from((ticked.force - expected).length() < 1e-12);
             seen == 2
         });
-        let felt = felt.expect("the force in the desk frame");
+        let felt = felt.expect("the force on the hand");
         let off = (felt.reading.held.position - on_desk.position).length()
             + (felt.reading.held.velocity - on_desk.velocity).length()
             + felt
@@ -273,11 +283,12 @@ fn a_turned_and_shifted_device_feels_the_desk_where_it_is() {
                 .orientation
                 .angle_between(on_desk.orientation);
         assert!(off < 1e-7, "{:?}", felt.reading.held);
+        assert!((felt.tick.cap_n - 3.0).abs() < 1e-12, "the device's own");
         let written = DVec3::from_array(
             [0, 1, 2].map(|i| f64::from_bits(written[i].load(Ordering::Relaxed))),
         );
         assert!(
-            (written - to_device.vector(expected)).length() < 1e-12,
+            (written - to_desk.turn_back(expected)).length() < 1e-12,
             "{written} in the device frame"
         );
     }

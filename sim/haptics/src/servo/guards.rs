@@ -24,10 +24,19 @@ fn rigid(stiffness_n_m: f64) -> Contact {
     Contact::new(&model).expect("a model")
 }
 
+/// A hand that comes up from the wall, so that force may begin.
+fn come_up(servo: &mut Servo) {
+    for _ in 0..CALM_TICKS {
+        let (force, tick) = servo.step(&held(-0.001), DT);
+        assert!(tick.waiting && force == DVec3::ZERO);
+    }
+}
+
 /// A servo that holds 1 N at 2.5 mm.
 fn pressed(limits: Limits) -> Servo {
     let mut servo = Servo::new(limits);
     servo.receive(rigid(400.0), Sender::Same);
+    come_up(&mut servo);
     for _ in 0..1000 {
         servo.step(&held(0.0025), DT);
     }
@@ -117,9 +126,87 @@ fn switched_off_there_is_no_force_at_once_and_switched_on_it_comes_up() {
         assert_eq!(servo.step(&held(0.0025), DT).0, DVec3::ZERO);
     }
     servo.switch(Switch::On);
+    come_up(&mut servo);
     assert!(servo.step(&held(0.0025), DT).0.z < 0.01);
     let last = (0..600).fold(0.0, |_, _| servo.step(&held(0.0025), DT).0.z);
     assert!((last - 1.0).abs() < 1e-9);
+}
+
+/// What has force begin anew.
+const BEGINNINGS: [(&str, fn(&mut Servo)); 5] = [
+    ("a start", |servo| *servo = Servo::new(servo.limits)),
+    ("another sender", |servo| {
+        servo.receive(rigid(400.0), Sender::Another);
+    }),
+    ("an arming", Servo::rearm),
+    ("the switch", |servo| {
+        servo.switch(Switch::Off);
+        servo.step(&held(0.0025), DT);
+        servo.switch(Switch::On);
+    }),
+    ("the dead man's switch", |servo| {
+        servo.permit(Switch::Off);
+        servo.step(&held(0.0025), DT);
+        servo.permit(Switch::On);
+    }),
+];
+
+/// The largest force within two seconds on a hand that stays 2.5 mm deep, where 1 N is asked for, after
+/// `begin`; and then, once it has come up and pressed again.
+fn deep(begin: fn(&mut Servo), limits: Limits) -> [f64; 2] {
+    let mut servo = pressed(limits);
+    begin(&mut servo);
+    servo.receive(rigid(400.0), Sender::Same);
+    let most = |servo: &mut Servo, skip: usize| {
+        let forces = (0..2000).map(|_| servo.step(&held(0.0025), DT).0.z);
+        forces.skip(skip).fold(0.0, f64::max)
+    };
+    // What was there before goes by its slew.
+    let stayed = most(&mut servo, 10);
+    servo.step(&held(0.000_4), DT);
+    for _ in 0..CALM_TICKS {
+        servo.step(&held(0.000_4), DT);
+    }
+    [stayed, most(&mut servo, 0)]
+}
+
+#[test]
+fn a_hand_that_is_deep_in_the_canvas_feels_nothing_until_it_has_come_up() {
+    for (what, begin) in BEGINNINGS {
+        let [stayed, came_up] = deep(begin, Limits::default());
+        assert!(
+            stayed == 0.0 && (came_up - 1.0).abs() < 1e-9,
+            "{what}: {stayed} {came_up}"
+        );
+        // The seeded fault: without the rule such a hand is pushed out.
+        let careless = Limits {
+            engage_n: f64::INFINITY,
+            ..Limits::default()
+        };
+        assert!(deep(begin, careless)[0] > 0.99, "{what}");
+    }
+}
+
+#[test]
+fn a_chance_reading_above_the_canvas_begins_nothing_and_a_small_force_does() {
+    let mut servo = Servo::new(Limits::default());
+    servo.receive(rigid(400.0), Sender::Same);
+    for tick in 0..1000 {
+        let depth = if tick % 5 < 3 { -0.001 } else { 0.0025 };
+        assert_eq!(servo.step(&held(depth), DT).0, DVec3::ZERO);
+    }
+    // Half the strength asks for half the force: .18 N at .9 mm.
+    servo.set_strength(0.5);
+    let last = (0..600).fold(0.0, |_, _| servo.step(&held(0.000_9), DT).0.z);
+    assert!((last - 0.18).abs() < 1e-9, "{last} N");
+}
+
+#[test]
+fn a_tick_that_came_late_in_a_stroke_does_not_take_its_force_away() {
+    let mut servo = pressed(Limits::default());
+    assert!(servo.step(&held(0.0025), 0.02).1.late);
+    let last = (0..600).fold(0.0, |_, _| servo.step(&held(0.0025), DT).0.z);
+    assert!((last - 1.0).abs() < 1e-9, "{last} N");
 }
 
 #[test]
@@ -279,6 +366,7 @@ fn where_no_softness_stills_the_hand_the_fault_latches() {
     let mut servo = Servo::new(bare());
     servo.limits.shaking_m = 3e-4;
     servo.receive(rigid(400.0), Sender::Same);
+    come_up(&mut servo);
     let mut fault = None;
     for tick in 0..3000 {
         let turn = 2.0 * std::f64::consts::PI * 20.0 * f64::from(tick) * DT;

@@ -20,6 +20,8 @@ pub struct Limits {
     pub shaking_m: f64,
     /// Time over which a model past its time to live fades to nothing, s.
     pub fade_s: f64,
+    /// Force comes up first where the models ask for no more than this, N.
+    pub engage_n: f64,
     /// Time over which force comes up after a start, a fault or another sender, s.
     pub engage_s: f64,
     /// A tick longer than this has stood still: no force, and engage anew, s.
@@ -39,9 +41,33 @@ impl Default for Limits {
             max_speed_m_s: 1.5,
             shaking_m: 3e-4,
             fade_s: 0.075,
+            engage_n: 0.2,
             engage_s: 0.5,
             longest_tick_s: 0.005,
             idle_s: 60.0,
+        }
+    }
+}
+
+impl Limits {
+    /// The same bounds of the device, for a servo in the desk frame where a desk length is `scale`
+    /// device lengths.
+    ///
+    /// The desk's place of the hand is x = s·y, for its place y in the device, and the hand is given
+    /// f(x)/s. So a wall f = −K·x − B·ẋ is on the hand −K·y − B·ẏ: stiffness and damping are the same
+    /// numbers in both frames, and so is every bound of a sampled wall, b > K·T/2. Forces, speeds and
+    /// lengths of the device are s times as large on the desk. Work done on the hand is f/s·dx/s, the
+    /// desk's by s²: where the one is never above 0, the other is not.
+    #[must_use]
+    pub fn scaled(&self, scale: f64) -> Self {
+        Self {
+            max_force_n: scale * self.max_force_n,
+            continuous_force_n: scale * self.continuous_force_n,
+            slew_n_s: scale * self.slew_n_s,
+            max_speed_m_s: scale * self.max_speed_m_s,
+            shaking_m: scale * self.shaking_m,
+            engage_n: scale * self.engage_n,
+            ..*self
         }
     }
 }

@@ -27,9 +27,19 @@ fn rigid(stiffness_n_m: f64, z: f64) -> Contact {
     Contact::new(&model).expect("a model")
 }
 
+/// A servo whose hand is above the plane of a model, so that force may begin.
+fn begun(limits: Limits) -> Servo {
+    let mut servo = Servo::new(limits);
+    for _ in 0..CALM_TICKS {
+        servo.receive(contact(linear()), Sender::Same);
+        servo.step(&held(-0.001), DT);
+    }
+    servo
+}
+
 /// A servo whose force has come up at `depth`, kept alive by a model a tick.
 fn engaged(depth: f64) -> Servo {
-    let mut servo = Servo::new(Limits::default());
+    let mut servo = begun(Limits::default());
     for _ in 0..1000 {
         servo.receive(contact(linear()), Sender::Same);
         servo.step(&held(depth), DT);
@@ -39,15 +49,10 @@ fn engaged(depth: f64) -> Servo {
 
 #[test]
 fn the_force_comes_up_over_the_ramp_and_reaches_the_model() {
-    let mut servo = Servo::new(Limits::default());
+    let mut servo = begun(Limits::default());
     let mut last = 0.0;
     for tick in 1..=600 {
-        let sender = if tick == 1 {
-            Sender::Another
-        } else {
-            Sender::Same
-        };
-        servo.receive(contact(linear()), sender);
+        servo.receive(contact(linear()), Sender::Same);
         let (force, _) = servo.step(&held(0.0125), DT);
         assert!(force.z >= last - 1e-12 && force.z <= 0.4 * f64::from(tick) * DT / 0.5 + 1e-9);
         last = force.z;
@@ -206,10 +211,11 @@ fn limits_that_make_no_sense_give_no_force() {
         limits(|l| l.max_force_n = -1.0),
         limits(|l| l.slew_n_s = f64::NAN),
         limits(|l| l.engage_s = f64::NAN),
+        limits(|l| l.engage_n = f64::NAN),
         limits(|l| l.max_stiffness_n_m = f64::NAN),
         limits(|l| l.fade_s = f64::NAN),
     ] {
-        let mut servo = Servo::new(bad);
+        let mut servo = begun(bad);
         for _ in 0..600 {
             servo.receive(contact(linear()), Sender::Same);
             let (force, _) = servo.step(&held(0.0125), DT);
@@ -219,7 +225,7 @@ fn limits_that_make_no_sense_give_no_force() {
             );
         }
     }
-    let mut servo = Servo::new(limits(|l| l.max_force_n = -1.0));
+    let mut servo = begun(limits(|l| l.max_force_n = -1.0));
     for _ in 0..600 {
         servo.receive(contact(linear()), Sender::Same);
         assert_eq!(servo.step(&held(0.0), DT).0, DVec3::ZERO);
@@ -258,8 +264,9 @@ proptest! {
     fn force_and_its_change_stay_within_their_limits(
         moves in prop::collection::vec(
             (-0.06..0.06f64, -0.8..0.8f64, 0.0..0.02f64, 0u8..5, 0.0..2000.0f64), 1..200),
+        engage_n in prop_oneof![Just(0.2), Just(f64::INFINITY)],
     ) {
-        let limits = Limits::default();
+        let limits = Limits { engage_n, ..Limits::default() };
         let mut servo = Servo::new(limits);
         let mut last = DVec3::ZERO;
         for (depth, speed, dt, kind, stiffness) in moves {
