@@ -9,6 +9,7 @@
 //! | [`driver`] | what a device is to the servo |
 //! | [`open`] | the device that `rig.toml` asks for |
 //! | [`placed`] | a device where it stands on the desk |
+//! | [`openhaptics`] | Phantoms, through the vendor's library |
 //! | [`simulated`] | a device and a hand, simulated |
 //! | [`beat`] | one tick of the servo over a device |
 //! | [`pace`] | our own clock, which calls it |
@@ -21,6 +22,7 @@ pub mod daemon;
 pub mod driver;
 pub mod host;
 pub mod open;
+pub mod openhaptics;
 pub mod pace;
 pub mod placed;
 pub mod simulated;

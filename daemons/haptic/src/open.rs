@@ -8,6 +8,7 @@ use maulstick_rig::config::DeviceSection;
 use maulstick_rig::{Fault, RigConfig};
 
 use crate::driver::Opened;
+use crate::openhaptics;
 use crate::pace::OwnClock;
 use crate::simulated::Simulated;
 
@@ -28,6 +29,7 @@ pub fn open(config: &RigConfig, settings: &HapticSettings) -> Result<Opened, Fau
     let device = &settings.device;
     match device.driver.as_str() {
         "simulated" => simulated(config, settings),
+        "openhaptics" => openhaptics::open(device),
         other => Err(Fault::usage(format!("this daemon has no driver '{other}'"))),
     }
 }

@@ -1,0 +1,159 @@
+//! Where the vendor's scheduler finds what it is to call.
+//!
+//! Its callbacks carry a bare pointer, and nothing but its manual says when it makes the last call.
+//! So it calls a function that looks here, where there is something only while it is lent: a call
+//! that comes late finds nothing, and does nothing.
+
+#![allow(
+    unsafe_code,
+    reason = "a borrow that another thread uses while its owner waits"
+)]
+
+use std::cell::UnsafeCell;
+use std::ffi::c_void;
+use std::sync::atomic::{AtomicU8, Ordering};
+
+use super::abi::next;
+
+/// Whether to be called again.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Next {
+    /// In the next tick.
+    Again,
+    /// Never.
+    Done,
+}
+
+type Work = dyn FnMut() -> Next + Send;
+
+/// Nothing is lent.
+const EMPTY: u8 = 0;
+/// Something is lent, and nobody is calling it.
+const READY: u8 = 1;
+/// It is being called.
+const INSIDE: u8 = 2;
+/// Something is lent that is not to be called yet, or not any more.
+const CLOSED: u8 = 3;
+
+struct Seat {
+    state: AtomicU8,
+    work: UnsafeCell<Option<*mut Work>>,
+}
+
+// SAFETY: `work` is touched by whoever has moved `state` from READY to INSIDE or from EMPTY to CLOSED,
+// and by nobody else.
+unsafe impl Sync for Seat {}
+
+/// There is one scheduler in a process.
+static SEAT: Seat = Seat {
+    state: AtomicU8::new(EMPTY),
+    work: UnsafeCell::new(None),
+};
+
+/// What the scheduler calls.
+pub extern "C" fn call(_: *mut c_void) -> u32 {
+    let seat = &SEAT;
+    let free = seat
+        .state
+        .compare_exchange(READY, INSIDE, Ordering::Acquire, Ordering::Relaxed);
+    if free.is_err() {
+        return next::DONE;
+    }
+    // SAFETY: INSIDE is ours alone, and what is lent is not taken back before it is left.
+    let answer = unsafe { (*seat.work.get()).map(|work| (*work)()) };
+    let (state, code) = match answer {
+        Some(Next::Again) => (READY, next::CONTINUE),
+        _ => (CLOSED, next::DONE),
+    };
+    seat.state.store(state, Ordering::Release);
+    code
+}
+
+/// Takes back what was lent, also if what goes on meanwhile panics.
+struct Lent;
+
+impl Drop for Lent {
+    fn drop(&mut self) {
+        let close = || {
+            SEAT.state
+                .compare_exchange(READY, CLOSED, Ordering::Acquire, Ordering::Acquire)
+        };
+        while close() == Err(INSIDE) {
+            std::thread::yield_now();
+        }
+        SEAT.state.store(EMPTY, Ordering::Release);
+    }
+}
+
+/// Lends `work` to [`call`] while `during` runs. None, and neither is run, where something is lent
+/// already.
+pub fn lend<T>(work: &mut (dyn FnMut() -> Next + Send), during: impl FnOnce() -> T) -> Option<T> {
+    let claimed = SEAT
+        .state
+        .compare_exchange(EMPTY, CLOSED, Ordering::Acquire, Ordering::Relaxed);
+    if claimed.is_err() {
+        return None;
+    }
+    let lent = Lent;
+    let work: *mut (dyn FnMut() -> Next + Send + '_) = work;
+    // SAFETY: the longer life is never used: `Lent` closes the seat before the borrow ends.
+    let work =
+        unsafe { std::mem::transmute::<*mut (dyn FnMut() -> Next + Send + '_), *mut Work>(work) };
+    // SAFETY: the seat is closed, and only who has claimed it opens it.
+    unsafe { *SEAT.work.get() = Some(work) };
+    SEAT.state.store(READY, Ordering::Release);
+    let done = during();
+    drop(lent);
+    Some(done)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_is_lent_is_called_until_it_is_done_and_a_late_call_finds_nothing() {
+        let mut calls = 0;
+        let mut work = || {
+            calls += 1;
+            match calls < 3 {
+                true => Next::Again,
+                false => Next::Done,
+            }
+        };
+        let codes = lend(&mut work, || {
+            let inner = lend(&mut || Next::Done, || ());
+            assert_eq!(inner, None, "one at a time");
+            [(); 5].map(|()| call(std::ptr::null_mut()))
+        });
+        assert_eq!(codes, Some([1, 1, 0, 0, 0]));
+        assert_eq!((calls, call(std::ptr::null_mut())), (3, 0));
+        assert!(lend(&mut || Next::Done, || ()).is_some());
+    }
+
+    #[test]
+    fn a_call_that_runs_is_waited_for() {
+        // Both tests of this file lend the one seat that a process has.
+        let (entered, has_entered) = std::sync::mpsc::channel();
+        let (leave, may_leave) = std::sync::mpsc::channel::<()>();
+        let mut left = false;
+        let mut work = || {
+            entered.send(()).ok();
+            may_leave.recv().ok();
+            left = true;
+            Next::Again
+        };
+        let mut caller = None;
+        while lend(&mut work, || {
+            caller = Some(std::thread::spawn(|| call(std::ptr::null_mut())));
+            has_entered.recv().ok();
+            leave.send(()).ok();
+        })
+        .is_none()
+        {
+            std::thread::yield_now();
+        }
+        assert!(left, "what is lent is done before it is taken back");
+        assert_eq!(caller.map(|caller| caller.join().ok()), Some(Some(1)));
+    }
+}

@@ -1,0 +1,206 @@
+//! A device that has been initiated, as the driver and the vendor's clock share it. All of it is
+//! atomic: the scheduler's thread takes no lock.
+
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, AtomicI32, AtomicU32, Ordering};
+
+use super::abi::{CURRENT_FORCE, CURRENT_TORQUE, Handle};
+use super::faults::{Class, class, is_wrong_call, trouble};
+use super::frame::MILLI;
+use super::library::{Library, MOST_ERRORS};
+use crate::driver::{Trouble, Wrench};
+
+static TAKEN: AtomicBool = AtomicBool::new(false);
+
+/// The right to the library: it has one scheduler in a process, so one device is used at a time.
+#[derive(Debug)]
+pub struct Claim(());
+
+impl Claim {
+    /// The right, unless somebody has it.
+    #[must_use]
+    pub fn take() -> Option<Self> {
+        let was_taken = TAKEN.swap(true, Ordering::AcqRel);
+        (!was_taken).then_some(Self(()))
+    }
+}
+
+impl Drop for Claim {
+    fn drop(&mut self) {
+        TAKEN.store(false, Ordering::Release);
+    }
+}
+
+/// What the motors can do.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Drives {
+    /// Force.
+    Force,
+    /// Force and torque.
+    ForceAndTorque,
+}
+
+/// The device.
+#[derive(Debug)]
+pub struct Session {
+    /// The vendor's library.
+    pub library: &'static Library,
+    /// The device in it.
+    pub device: Handle,
+    drives: Drives,
+    is_open: AtomicBool,
+    has_force: AtomicBool,
+    is_calibrated: AtomicBool,
+    told: AtomicU32,
+    ended: AtomicU32,
+    internal: AtomicI32,
+    _claim: Claim,
+}
+
+impl Session {
+    /// A device that has just been initiated; it is disabled as the session ends.
+    #[must_use]
+    pub fn new(library: &'static Library, device: Handle, claim: Claim) -> Self {
+        Self {
+            library,
+            device,
+            drives: Drives::Force,
+            is_open: AtomicBool::new(false),
+            has_force: AtomicBool::new(false),
+            is_calibrated: AtomicBool::new(false),
+            told: AtomicU32::new(0),
+            ended: AtomicU32::new(0),
+            internal: AtomicI32::new(0),
+            _claim: claim,
+        }
+    }
+
+    /// Says what its motors can do, and shares it.
+    #[must_use]
+    pub fn driving(mut self, drives: Drives) -> Arc<Self> {
+        self.drives = drives;
+        Arc::new(self)
+    }
+
+    /// Begins a frame.
+    pub fn begin(&self) {
+        self.library.begin_frame(self.device);
+        self.is_open.store(true, Ordering::Relaxed);
+    }
+
+    /// Whether a frame is open.
+    #[must_use]
+    pub fn is_open(&self) -> bool {
+        self.is_open.load(Ordering::Relaxed)
+    }
+
+    /// Whether the motors were told to give a force, and not since to give none.
+    #[must_use]
+    pub fn has_force(&self) -> bool {
+        self.has_force.load(Ordering::Relaxed)
+    }
+
+    /// Ends the frame; the motors do this from now on, HD's base frame.
+    pub fn end(&self, wrench: Wrench) {
+        let library = self.library;
+        library.set_doubles(CURRENT_FORCE, &wrench.force.to_array());
+        if self.drives == Drives::ForceAndTorque {
+            library.set_doubles(CURRENT_TORQUE, &(wrench.torque / MILLI).to_array());
+        }
+        library.end_frame(self.device);
+        self.is_open.store(false, Ordering::Relaxed);
+        self.has_force
+            .store(wrench != Wrench::ZERO, Ordering::Relaxed);
+    }
+
+    /// Ends the frame, if one is open, without force.
+    pub fn quieten(&self) {
+        if self.is_open() {
+            self.end(Wrench::ZERO);
+        }
+    }
+
+    /// Whether the device knows where it is.
+    #[must_use]
+    pub fn is_calibrated(&self) -> bool {
+        self.is_calibrated.load(Ordering::Acquire)
+    }
+
+    /// Says whether it does.
+    pub fn set_calibrated(&self, state: Calibrated) {
+        let is_calibrated = state == Calibrated::Yes;
+        self.is_calibrated.store(is_calibrated, Ordering::Release);
+    }
+
+    /// Takes note of all errors since. Why the device is lost, if it is.
+    pub fn trouble(&self) -> Option<Trouble> {
+        self.look();
+        self.ended().map(|(code, _)| trouble(code))
+    }
+
+    /// Takes note of all errors since; whether none of them says that a call was wrong.
+    #[must_use]
+    pub fn answers(&self) -> bool {
+        self.note(&mut |code| is_wrong_call(code)) == 0
+    }
+
+    fn look(&self) {
+        self.note(&mut |_| false);
+    }
+
+    /// Takes note of errors but of those that are `excepted`, which it counts.
+    fn note(&self, excepted: &mut dyn FnMut(u32) -> bool) -> usize {
+        let mut count = 0;
+        for _ in 0..MOST_ERRORS {
+            let Some(error) = self.library.next_error() else {
+                break;
+            };
+            if excepted(error.code) {
+                count += 1;
+                continue;
+            }
+            match class(error.code) {
+                Class::Told(notice) => {
+                    self.told.fetch_or(notice.bit(), Ordering::Relaxed);
+                }
+                Class::Ends => {
+                    // The newest comes first: the oldest is the cause.
+                    self.internal.store(error.internal, Ordering::Relaxed);
+                    self.ended.store(error.code, Ordering::Relaxed);
+                }
+            }
+        }
+        count
+    }
+
+    /// The code and the internal code of the error that has ended the device.
+    #[must_use]
+    pub fn ended(&self) -> Option<(u32, i32)> {
+        match self.ended.load(Ordering::Relaxed) {
+            0 => None,
+            code => Some((code, self.internal.load(Ordering::Relaxed))),
+        }
+    }
+
+    /// Notices since this was last asked, a bit each.
+    #[must_use]
+    pub fn take_told(&self) -> u32 {
+        self.told.swap(0, Ordering::Relaxed)
+    }
+}
+
+/// Whether a device knows where it is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Calibrated {
+    /// It does.
+    Yes,
+    /// It does not.
+    No,
+}
+
+/// However it ends, the device is free for the next one.
+impl Drop for Session {
+    fn drop(&mut self) {
+        self.library.disable_device(self.device);
+    }
+}
