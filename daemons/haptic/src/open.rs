@@ -38,6 +38,8 @@ pub fn open(config: &RigConfig, settings: &HapticSettings) -> Result<Opened, Fau
     let device = &settings.device;
     match device.driver.as_str() {
         "simulated" => simulated(config, settings),
+        "polhem" => crate::polhem::open(device),
+        "inverse3" => crate::inverse3::open(device),
         other => Err(Fault::usage(format!("this daemon has no driver '{other}'"))),
     }
 }
