@@ -11,6 +11,9 @@
 //! | [`placed`] | a device where it stands on the desk |
 //! | [`openhaptics`] | Phantoms, through the vendor's library |
 //! | [`simulated`] | a device and a hand, simulated |
+//! | [`polhem`] | WoodenHaptics and Polhem styluses, at a serial port |
+//! | [`inverse3`] | Haply's Inverse3, by its service |
+//! | [`velocity`] | velocity of devices that say only where they are |
 //! | [`beat`] | one tick of the servo over a device |
 //! | [`pace`] | our own clock, which calls it |
 //! | [`host`] | the real-time thread |
@@ -21,11 +24,14 @@ pub mod beat;
 pub mod daemon;
 pub mod driver;
 pub mod host;
+pub mod inverse3;
 pub mod open;
 pub mod openhaptics;
 pub mod pace;
 pub mod placed;
+pub mod polhem;
 pub mod simulated;
+pub mod velocity;
 pub mod wish;
 
 pub use driver::Driver;

@@ -8,7 +8,7 @@ use maulstick_rig::config::DeviceSection;
 use maulstick_rig::{Fault, RigConfig};
 
 use crate::driver::Opened;
-use crate::openhaptics;
+use crate::{inverse3, openhaptics, polhem};
 use crate::pace::OwnClock;
 use crate::simulated::Simulated;
 
@@ -30,6 +30,8 @@ pub fn open(config: &RigConfig, settings: &HapticSettings) -> Result<Opened, Fau
     match device.driver.as_str() {
         "simulated" => simulated(config, settings),
         "openhaptics" => openhaptics::open(device),
+        "polhem" => polhem::open(device),
+        "inverse3" => inverse3::open(device),
         other => Err(Fault::usage(format!("this daemon has no driver '{other}'"))),
     }
 }

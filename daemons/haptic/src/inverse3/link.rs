@@ -1,0 +1,298 @@
+//! The thread that talks to Haply's Inverse service, so that the servo never waits for it.
+//!
+//! The service answers each message by one state, so a round trip is a force out and a state in. The
+//! newest state goes to the servo and its newest force comes back through triple buffers. A force that
+//! the servo has not renewed for 20 ms is none: it may have stopped.
+
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, AtomicU8, Ordering};
+use std::thread::JoinHandle;
+use std::time::{Duration, Instant};
+
+use glam::{DQuat, DVec3};
+use maulstick_haptics::Switch;
+use thread_priority::unix::{RealtimeThreadSchedulePolicy, ThreadSchedulePolicy};
+use thread_priority::{ThreadPriority, ThreadPriorityValue};
+
+use super::connection::{Connection, End, SILENCE};
+use super::follow::{Follower, Pose, Seen};
+use super::message::{Dialect, Hindrance, Update, Wanted, request};
+use crate::driver::Trouble;
+use crate::pace::monotonic_ns;
+
+/// Age beyond which a state or a force is none, ns.
+pub const FRESH_NS: u64 = 20_000_000;
+/// A round trip begins no sooner after the one before: four states a tick are enough.
+const TRIP: Duration = Duration::from_micros(250);
+/// `SCHED_FIFO` priority: below the servo's 80.
+const PRIORITY: u8 = 70;
+
+/// The newest state.
+#[derive(Clone, Copy, Debug)]
+pub struct Told {
+    /// How the device is held.
+    pub pose: Pose,
+    /// When it came, `CLOCK_MONOTONIC`, ns.
+    pub at_ns: u64,
+    /// Counts states, from 1.
+    pub number: u64,
+}
+
+/// The newest force.
+#[derive(Clone, Copy, Debug)]
+pub struct Asked {
+    /// N, device frame.
+    pub force: DVec3,
+    /// When it was asked for, `CLOCK_MONOTONIC`, ns.
+    pub at_ns: u64,
+    /// Off where nothing but the position is wanted.
+    pub amplifiers: Switch,
+}
+
+/// Why there is nothing more.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Loss {
+    Closed,
+    Silent,
+    Foreign,
+    Unplugged,
+    Hindered(Hindrance),
+}
+
+/// All of them, as they are numbered between the threads from 1 on.
+const LOSSES: [Loss; 7] = [
+    Loss::Closed,
+    Loss::Silent,
+    Loss::Foreign,
+    Loss::Unplugged,
+    Loss::Hindered(Hindrance::NoPower),
+    Loss::Hindered(Hindrance::NotCalibrated),
+    Loss::Hindered(Hindrance::NotReady),
+];
+
+impl Loss {
+    fn number(self) -> u8 {
+        let place = LOSSES.iter().position(|loss| *loss == self);
+        place.map_or(0, |place| place as u8 + 1)
+    }
+
+    fn trouble(self) -> Trouble {
+        let restart = "look whether it runs: `systemctl status haply-inverse-service`";
+        let (what, help) = match self {
+            Self::Closed => ("the Inverse service has closed the connection", restart),
+            Self::Silent => ("the Inverse service does not answer any more", restart),
+            Self::Foreign => (
+                "the Inverse service sends what cannot be read",
+                "bring the service up to date, or name its own address as the device's `address`",
+            ),
+            Self::Unplugged => ("the Inverse3 is unplugged", "plug it in again"),
+            Self::Hindered(hindrance) => (hindrance.what(), hindrance.help()),
+        };
+        Trouble {
+            what,
+            code: 0,
+            help,
+        }
+    }
+}
+
+/// The servo's end of the thread.
+#[derive(Debug)]
+pub struct Link {
+    told: triple_buffer::Output<Told>,
+    asked: triple_buffer::Input<Asked>,
+    stop: Arc<AtomicBool>,
+    lost: Arc<AtomicU8>,
+    thread: Option<JoinHandle<()>>,
+}
+
+impl Link {
+    /// Starts the thread over a connection.
+    ///
+    /// # Errors
+    /// What the system says where no thread can be started.
+    pub fn start(
+        connection: Connection,
+        follower: Follower,
+        dialect: Dialect,
+    ) -> std::io::Result<Self> {
+        let nothing = Told {
+            pose: Pose {
+                position: DVec3::ZERO,
+                velocity: None,
+                orientation: DQuat::IDENTITY,
+                switches: 0,
+            },
+            at_ns: 0,
+            number: 0,
+        };
+        let none = Asked {
+            force: DVec3::ZERO,
+            at_ns: 0,
+            amplifiers: Switch::On,
+        };
+        let (tell, told) = triple_buffer::triple_buffer(&nothing);
+        let (asked, wanted) = triple_buffer::triple_buffer(&none);
+        let stop = Arc::new(AtomicBool::new(false));
+        let lost = Arc::new(AtomicU8::new(0));
+        let mut courier = Courier {
+            connection,
+            follower,
+            dialect,
+            tell,
+            wanted,
+            stop: Arc::clone(&stop),
+            number: 0,
+        };
+        let loss = Arc::clone(&lost);
+        let thread = std::thread::Builder::new()
+            .name("inverse3".into())
+            .spawn(move || {
+                become_real_time();
+                if let Some(why) = courier.run() {
+                    loss.store(why.number(), Ordering::Release);
+                }
+                courier.part();
+            })?;
+        Ok(Self {
+            told,
+            asked,
+            stop,
+            lost,
+            thread: Some(thread),
+        })
+    }
+
+    /// The newest state.
+    ///
+    /// # Errors
+    /// Why there will be none any more.
+    pub fn newest(&mut self) -> Result<Told, Trouble> {
+        match usize::from(self.lost.load(Ordering::Acquire)) {
+            0 => Ok(*self.told.read()),
+            number => Err(LOSSES[(number - 1).min(LOSSES.len() - 1)].trouble()),
+        }
+    }
+
+    /// Asks for a force.
+    pub fn ask(&mut self, asked: Asked) {
+        self.asked.write(asked);
+    }
+}
+
+/// The thread ends with a message of no force, then closes the connection.
+impl Drop for Link {
+    fn drop(&mut self) {
+        self.stop.store(true, Ordering::Relaxed);
+        if let Some(thread) = self.thread.take() {
+            thread.join().ok();
+        }
+    }
+}
+
+/// What runs on the thread.
+struct Courier {
+    connection: Connection,
+    follower: Follower,
+    dialect: Dialect,
+    tell: triple_buffer::Input<Told>,
+    wanted: triple_buffer::Output<Asked>,
+    stop: Arc<AtomicBool>,
+    number: u64,
+}
+
+impl Courier {
+    /// Goes to and fro until it is told to stop, or loses the device.
+    fn run(&mut self) -> Option<Loss> {
+        let mut seen = Instant::now();
+        let mut why = Loss::Silent;
+        while !self.stop.load(Ordering::Relaxed) {
+            let begun = Instant::now();
+            match self.trip() {
+                Ok(Seen::Pose(_)) => seen = begun,
+                Ok(Seen::Nothing) => why = Loss::Unplugged,
+                Ok(Seen::Hindered(hindrance)) => return Some(Loss::Hindered(hindrance)),
+                Err(Missed::Unread) => why = Loss::Foreign,
+                Err(Missed::Ended(end)) => {
+                    return match end {
+                        End::Stopped => None,
+                        End::Closed => Some(Loss::Closed),
+                        End::Silent => Some(Loss::Silent),
+                        End::Foreign => Some(Loss::Foreign),
+                    };
+                }
+            }
+            if seen.elapsed() >= SILENCE {
+                return Some(why);
+            }
+            std::thread::sleep(TRIP.saturating_sub(begun.elapsed()));
+        }
+        None
+    }
+
+    /// A force out, a state in.
+    fn trip(&mut self) -> Result<Seen, Missed> {
+        let asked = *self.wanted.read();
+        let is_fresh = monotonic_ns().saturating_sub(asked.at_ns) <= FRESH_NS;
+        let wanted = match (asked.amplifiers, is_fresh) {
+            (Switch::Off, _) => Wanted::Position,
+            (Switch::On, true) => Wanted::Force(self.follower.basis().to_session(asked.force)),
+            (Switch::On, false) => Wanted::Force(DVec3::ZERO),
+        };
+        self.send(wanted)?;
+        let bytes = self.connection.receive(&self.stop)?;
+        let at_ns = monotonic_ns();
+        let update = Update::read(&bytes).map_err(|_| Missed::Unread)?;
+        let seen = self.follower.take(&update);
+        if let Seen::Pose(pose) = seen {
+            self.number += 1;
+            self.tell.write(Told {
+                pose,
+                at_ns,
+                number: self.number,
+            });
+        }
+        Ok(seen)
+    }
+
+    fn send(&mut self, wanted: Wanted) -> Result<(), Missed> {
+        let text = request(self.follower.device(), wanted, self.dialect)
+            .map_err(|_| Missed::Unread)?;
+        Ok(self.connection.send(text)?)
+    }
+
+    /// The last words: no force.
+    fn part(mut self) {
+        if self.send(Wanted::Force(DVec3::ZERO)).is_ok() {
+            self.connection.close();
+        }
+    }
+}
+
+/// Why a round trip brought nothing.
+enum Missed {
+    /// What came cannot be read.
+    Unread,
+    /// Nothing came, and nothing will.
+    Ended(End),
+}
+
+impl From<End> for Missed {
+    fn from(end: End) -> Self {
+        Self::Ended(end)
+    }
+}
+
+/// A force waits for no picture. Where it is not permitted the servo's thread says so already.
+fn become_real_time() {
+    let policy = ThreadSchedulePolicy::Realtime(RealtimeThreadSchedulePolicy::Fifo);
+    let Ok(priority) = ThreadPriorityValue::try_from(PRIORITY) else {
+        return;
+    };
+    thread_priority::set_thread_priority_and_policy(
+        thread_priority::thread_native_id(),
+        ThreadPriority::Crossplatform(priority),
+        policy,
+    )
+    .ok();
+}

@@ -1,0 +1,213 @@
+//! WoodenHaptics and Polhem styluses at a serial port, which do their own kinematics: they get forces and
+//! tell poses (forsslund/haptikfabrikenapi, uAPI v0.2).
+//!
+//! | module | holds |
+//! | --- | --- |
+//! | [`frame`] | the lines of both sides |
+//! | [`placing`] | from the device's axes to the device frame |
+//! | [`link`] | the dialogue: one line, one answer |
+//! | [`wake`] | the first words |
+//! | [`port`] | a serial port |
+//! | [`find`] | which serial port it is |
+
+pub mod find;
+pub mod frame;
+pub mod link;
+pub mod placing;
+pub mod port;
+pub mod wake;
+
+use std::time::Duration;
+
+use glam::DVec3;
+use maulstick_haptics::Switch;
+use maulstick_haptics::contact::Held;
+use maulstick_rig::Fault;
+use maulstick_rig::config::DeviceSection;
+use maulstick_types::stylus::axes;
+
+use self::frame::{Answer, Length, Line, MAX_FORCE_N, PROBE, Pose};
+use self::link::{Link, Wire};
+use self::port::Port;
+use self::wake::{Refusal, wake};
+use crate::driver::{Abilities, Driver, Opened, Reading, Trouble, Wrench};
+use crate::pace::OwnClock;
+use crate::velocity::Velocity;
+
+/// Force that warm motors bear, N: of 5 N as much as a Phantom Desktop's of its 7.9 N. The device tells
+/// no temperature.
+const CONTINUOUS_N: f64 = 1.1;
+/// Largest stiffness that its authors name, N/m.
+const MAX_STIFFNESS_N_M: f64 = 1000.0;
+/// Its own viscous friction, N·s/m, is published by nobody: the least of devices of its kind.
+const DAMPING_N_S_M: f64 = 0.1;
+/// Half of its working area, m.
+const REACH_M: f64 = 0.2;
+/// Time between two questions for the button, s.
+const BUTTON_S: f64 = 0.05;
+
+/// Opens the stylus of a section: at its `address`, a serial port, or at the only port that may be one.
+///
+/// # Errors
+/// A [`Fault`] that says what is missing.
+pub fn open(device: &DeviceSection) -> Result<Opened, Fault> {
+    let path = match &device.address {
+        Some(path) => path.clone(),
+        None => find::only(&find::ports()?)?.to_owned(),
+    };
+    let mut port = Port::open(&path)?;
+    let length = wake(&mut port, &mut || {
+        std::thread::sleep(Duration::from_millis(1))
+    })
+    .map_err(|refusal| refused(&path, refusal))?;
+    Ok(Opened {
+        driver: Box::new(Polhem::new(port, length)),
+        pace: Box::new(OwnClock),
+        what: format!("a WoodenHaptics or Polhem stylus at {path}"),
+    })
+}
+
+fn refused(path: &str, refusal: Refusal) -> Fault {
+    match refusal {
+        Refusal::Silent => Fault::failure(format!("nothing answers at {path}")).help(
+            "switch the stylus on; if this is another device's port, name the stylus' own as the \
+             device's `address`",
+        ),
+        Refusal::Foreign(said) => Fault::failure(format!(
+            "what answers at {path} is no WoodenHaptics or Polhem stylus: it says {said:?}"
+        ))
+        .help("name the stylus' own port as the device's `address`"),
+        Refusal::NoPoses => {
+            Fault::failure(format!("the stylus at {path} tells encoders, but no poses"))
+                .help("give it firmware that knows forces (command 2), of November 2020 or later")
+        }
+        Refusal::Broken(errno) => Fault::failure(format!("{path} is gone: {errno}"))
+            .help("unplug the stylus and plug it in again"),
+    }
+}
+
+/// A stylus at a wire.
+#[derive(Debug)]
+pub struct Polhem<W: Wire> {
+    link: Link<W>,
+    length: Length,
+    amplifiers: Switch,
+    velocity: Velocity,
+    /// What has passed of the time since the last reading, s.
+    waited_s: f64,
+    /// Time since the button was asked for, s.
+    unasked_s: f64,
+    pressed: bool,
+}
+
+impl<W: Wire> Polhem<W> {
+    /// A stylus that is awake and takes lines of `length`.
+    pub fn new(wire: W, length: Length) -> Self {
+        Self {
+            link: Link::new(wire),
+            length,
+            amplifiers: Switch::On,
+            velocity: Velocity::default(),
+            waited_s: 0.0,
+            unasked_s: 0.0,
+            pressed: false,
+        }
+    }
+
+    /// Answers that were given up so far.
+    #[must_use]
+    pub fn lost(&self) -> u64 {
+        self.link.lost()
+    }
+
+    fn reading(&mut self, pose: &Pose, dt: f64) -> Reading {
+        let position = placing::position(pose);
+        Reading {
+            held: Held {
+                position,
+                orientation: placing::orientation(pose),
+                velocity: self.velocity.after(position, dt),
+            },
+            switches: u32::from(self.pressed),
+            in_range: true,
+            is_permitted: true,
+            motor_temperature: 0.0,
+        }
+    }
+
+    /// Sends what is to be said next: a force; where there is none, from time to time the question for
+    /// the button, which poses do not tell; while the amplifiers rest, only what does not hold off the
+    /// watchdog that switches them off.
+    fn say(&mut self, force: DVec3) -> Result<(), Trouble> {
+        if !self.link.is_free() {
+            return Ok(());
+        }
+        if self.amplifiers == Switch::Off {
+            return self.link.send(PROBE);
+        }
+        if force == DVec3::ZERO && self.unasked_s >= BUTTON_S {
+            self.unasked_s = 0.0;
+            return self.link.send(Line::encoders(self.length).as_bytes());
+        }
+        let line = Line::force(placing::to_theirs(force), self.length);
+        self.link.send(line.as_bytes())
+    }
+}
+
+impl<W: Wire> Driver for Polhem<W> {
+    fn abilities(&self) -> Abilities {
+        Abilities {
+            senses: axes::POSITION | axes::ORIENTATION | axes::VELOCITY | axes::SWITCHES,
+            drives: axes::FORCE,
+            max_force_n: MAX_FORCE_N,
+            continuous_force_n: CONTINUOUS_N,
+            max_torque_nm: 0.0,
+            max_stiffness_n_m: MAX_STIFFNESS_N_M,
+            damping_n_s_m: DAMPING_N_S_M,
+            workspace_m: [-REACH_M, -REACH_M, -REACH_M, REACH_M, REACH_M, REACH_M],
+        }
+    }
+
+    fn read(&mut self, dt: f64) -> Result<Option<Reading>, Trouble> {
+        let step_s = match dt >= self.waited_s {
+            true => dt - self.waited_s,
+            false => dt,
+        };
+        self.unasked_s += step_s;
+        self.waited_s = dt;
+        match self.link.poll(step_s)? {
+            Some(Answer::Pose(pose)) => {
+                self.waited_s = 0.0;
+                return Ok(Some(self.reading(&pose, dt)));
+            }
+            Some(Answer::Encoders(encoders)) => {
+                self.pressed = encoders.is_pressed();
+                // They are told for as long as no force is asked for: resting motors need one line more.
+                if self.amplifiers == Switch::Off {
+                    self.link
+                        .send(Line::force(DVec3::ZERO, self.length).as_bytes())?;
+                }
+            }
+            None => {}
+        }
+        // Nobody writes where nothing was read, so the dialogue goes on by itself, without force.
+        self.say(DVec3::ZERO)?;
+        Ok(None)
+    }
+
+    fn write(&mut self, wrench: Wrench) -> Result<(), Trouble> {
+        self.say(wrench.force)
+    }
+
+    fn switch(&mut self, amplifiers: Switch) {
+        self.amplifiers = amplifiers;
+    }
+}
+
+/// However it ends, the last word is no force.
+impl<W: Wire> Drop for Polhem<W> {
+    fn drop(&mut self) {
+        self.link
+            .part(Line::force(DVec3::ZERO, self.length).as_bytes());
+    }
+}

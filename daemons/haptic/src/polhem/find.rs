@@ -1,0 +1,128 @@
+//! Which serial port a stylus is at.
+
+use std::path::Path;
+
+use maulstick_rig::Fault;
+use serialport::{SerialPortInfo, SerialPortType};
+
+/// USB vendor of the Teensy boards that the devices are built around.
+const VENDOR: u16 = 0x16C0;
+/// USB products of a Teensy that has a serial port.
+const PRODUCTS: std::ops::RangeInclusive<u16> = 0x0483..=0x048F;
+
+/// The serial ports of this machine.
+///
+/// # Errors
+/// A [`Fault`] where the system does not tell them.
+pub fn ports() -> Result<Vec<SerialPortInfo>, Fault> {
+    // Where the system has no terminals at all, serialport panics.
+    if cfg!(target_os = "linux") && !Path::new("/sys/class/tty").is_dir() {
+        return Ok(Vec::new());
+    }
+    serialport::available_ports().map_err(|error| {
+        Fault::failure(format!("serial ports cannot be listed: {error}"))
+            .help("name the stylus' port as the device's `address`")
+    })
+}
+
+/// The one of `ports` that a stylus is at.
+///
+/// # Errors
+/// A [`Fault`] where none or several may be.
+pub fn only(ports: &[SerialPortInfo]) -> Result<&str, Fault> {
+    let mut fits = ports.iter().filter(|port| fits(port));
+    match (fits.next(), fits.next()) {
+        (Some(port), None) => Ok(&port.port_name),
+        (None, _) => Err(Fault::failure(
+            "no WoodenHaptics or Polhem stylus is plugged in",
+        )
+        .help(match ports.is_empty() {
+            true => "plug it in; this machine has no serial port now".to_owned(),
+            false => format!(
+                "plug it in, or name its port as the device's `address`; there are: {}",
+                listed(ports.iter())
+            ),
+        })),
+        (Some(_), Some(_)) => {
+            let names = listed(ports.iter().filter(|port| self::fits(port)));
+            Err(Fault::failure(format!(
+                "several ports may be a WoodenHaptics or Polhem stylus: {names}"
+            ))
+            .help("name one as the device's `address`"))
+        }
+    }
+}
+
+fn fits(port: &SerialPortInfo) -> bool {
+    matches!(&port.port_type, SerialPortType::UsbPort(usb)
+        if usb.vid == VENDOR && PRODUCTS.contains(&usb.pid))
+}
+
+fn listed<'a>(ports: impl Iterator<Item = &'a SerialPortInfo>) -> String {
+    let words: Vec<String> = ports
+        .map(|port| match &port.port_type {
+            SerialPortType::UsbPort(usb) => {
+                let product = usb.product.as_deref().unwrap_or("USB");
+                let (name, vid, pid) = (&port.port_name, usb.vid, usb.pid);
+                format!("{name} ({product} {vid:04X}:{pid:04X})")
+            }
+            _ => port.port_name.clone(),
+        })
+        .collect();
+    words.join(", ")
+}
+
+#[cfg(test)]
+mod tests {
+    use serialport::UsbPortInfo;
+
+    use super::*;
+
+    fn usb(name: &str, vid: u16, pid: u16) -> SerialPortInfo {
+        SerialPortInfo {
+            port_name: name.into(),
+            port_type: SerialPortType::UsbPort(UsbPortInfo {
+                vid,
+                pid,
+                serial_number: None,
+                manufacturer: None,
+                product: Some("USB Serial".into()),
+            }),
+        }
+    }
+
+    #[test]
+    fn the_one_teensy_among_other_ports_is_the_stylus() {
+        let other = SerialPortInfo {
+            port_name: "/dev/ttyS0".into(),
+            port_type: SerialPortType::Unknown,
+        };
+        let modem = usb("/dev/ttyACM0", 0x2341, 0x0483);
+        let programmer = usb("/dev/ttyACM1", 0x16C0, 0x05DC);
+        let teensy = usb("/dev/ttyACM2", 0x16C0, 0x0487);
+        let ports = [other, modem, programmer, teensy];
+        assert_eq!(only(&ports).ok(), Some("/dev/ttyACM2"));
+
+        let fault = only(&ports[..3]).expect_err("none is a Teensy");
+        assert!(fault.what.starts_with("no WoodenHaptics"), "{}", fault.what);
+        let help = fault.help.expect("what there is");
+        assert!(help.contains("/dev/ttyS0, /dev/ttyACM0 (USB Serial 2341:0483)"));
+        let fault = only(&[]).expect_err("no port");
+        assert!(fault.help.expect("help").contains("no serial port"));
+    }
+
+    #[test]
+    fn of_two_teensies_the_painter_names_one() {
+        let ports = [
+            usb("/dev/ttyACM0", 0x16C0, 0x0483),
+            usb("/dev/ttyACM1", 0x16C0, 0x048F),
+        ];
+        let fault = only(&ports).expect_err("two");
+        assert!(fault.what.contains("/dev/ttyACM0") && fault.what.contains("/dev/ttyACM1"));
+    }
+
+    #[test]
+    fn the_ports_of_this_machine_can_be_asked_for() {
+        assert!(ports().is_ok());
+    }
+}

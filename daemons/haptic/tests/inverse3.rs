@@ -1,0 +1,428 @@
+//! The driver of Haply's Inverse3 against a service that speaks as Haply's does, or does not.
+
+#[path = "../../../sim/num/tests/counting/mod.rs"]
+mod counting;
+#[path = "inverse3/messages.rs"]
+mod messages;
+#[path = "inverse3/service.rs"]
+mod service;
+
+use std::time::{Duration, Instant};
+
+use counting::allocations;
+use glam::DVec3;
+use maulstick_haptic::driver::{Driver, Reading, Trouble, Wrench};
+use maulstick_haptic::inverse3;
+use maulstick_haptics::Switch;
+use maulstick_rig::Fault;
+use maulstick_rig::config::DeviceSection;
+use maulstick_types::stylus::axes;
+use serde_json::{Value, json};
+use service::{Act, Service, inventory, old_inventory, state, update};
+use tungstenite::Message;
+
+/// Waits until `look` has it; None where that takes too long.
+fn wait_for<T>(mut look: impl FnMut() -> Option<T>) -> Option<T> {
+    let give_up = Instant::now() + Duration::from_secs(20);
+    while Instant::now() < give_up {
+        if let Some(seen) = look() {
+            return Some(seen);
+        }
+        std::thread::yield_now();
+    }
+    None
+}
+
+fn at(address: &str) -> DeviceSection {
+    DeviceSection {
+        address: Some(address.to_owned()),
+        ..DeviceSection::new("stylus", "inverse3", "round")
+    }
+}
+
+fn opened(address: &str) -> Box<dyn Driver> {
+    match inverse3::open(&at(address)) {
+        Ok(opened) => opened.driver,
+        Err(fault) => panic!("{fault:?}"),
+    }
+}
+
+fn fault(address: &str) -> Fault {
+    match inverse3::open(&at(address)) {
+        Ok(_) => panic!("{address} was opened"),
+        Err(fault) => fault,
+    }
+}
+
+fn push(force: DVec3) -> Wrench {
+    Wrench {
+        force,
+        torque: DVec3::ZERO,
+    }
+}
+
+/// The next reading.
+fn reading(driver: &mut dyn Driver) -> Result<Option<Reading>, Trouble> {
+    let read = wait_for(|| driver.read(1e-3).transpose());
+    read.transpose()
+}
+
+/// Beats with a force until `look` has seen enough.
+fn beat<T>(
+    driver: &mut dyn Driver,
+    force: DVec3,
+    mut look: impl FnMut() -> Option<T>,
+) -> Option<T> {
+    wait_for(|| {
+        driver.read(1e-3).expect("there");
+        driver.write(push(force)).expect("there");
+        look()
+    })
+}
+
+/// What a device loses itself by, beating on.
+fn trouble(driver: &mut dyn Driver) -> Trouble {
+    wait_for(|| driver.read(1e-3).err()).expect("it is lost")
+}
+
+/// A service that always tells the same state of the device 049D.
+fn steady(first: Value) -> Service {
+    Service::start(Act::Say(first), |_| Act::Say(update("049D", state())))
+}
+
+fn force(commands: &Value, dialect: &str) -> Option<[f64; 3]> {
+    let parts = &commands["set_cursor_force"][dialect];
+    Some([parts["x"].as_f64()?, parts["y"].as_f64()?, parts["z"].as_f64()?])
+}
+
+#[test]
+fn states_are_read_and_forces_arrive_in_the_services_axes() {
+    // Device (1, 2, 3) is Haply's (1, −3, 2).
+    for (permutation, expected) in [
+        ("XYZ", [1.0, -3.0, 2.0]),
+        ("XZ-Y", [1.0, 2.0, 3.0]),
+        ("X-YZ", [1.0, 3.0, 2.0]),
+        ("ZXY", [2.0, 1.0, -3.0]),
+    ] {
+        let mut first = inventory();
+        first["inverse3"][0]["config"]["basis"]["permutation"] = json!(permutation);
+        let service = steady(first);
+        let mut driver = opened(&service.url);
+        let arrived = beat(&mut *driver, DVec3::new(1.0, 2.0, 3.0), || {
+            let heard = service.heard();
+            let force = force(heard.newest("049D")?, "vector")?;
+            (force == expected).then_some(())
+        });
+        assert_eq!(arrived, Some(()), "{permutation}");
+    }
+    let service = steady(inventory());
+    let mut driver = opened(&service.url);
+    let read = reading(&mut *driver).expect("there").expect("new");
+    assert_eq!(read.held.position, DVec3::new(0.01, 0.15, 0.12));
+    assert_eq!(read.held.velocity, DVec3::new(0.1, 0.3, -0.2));
+    assert_eq!((read.switches, read.in_range), (0b101, true));
+    let able = driver.abilities();
+    assert!(able.senses & axes::ORIENTATION != 0 && able.max_force_n == 10.0);
+}
+
+#[test]
+fn a_service_before_3_5_is_spoken_to_as_it_wants() {
+    let service = Service::start(Act::Say(old_inventory()), |_| {
+        Act::Say(update("04BA", state()))
+    });
+    let mut driver = opened(&service.url);
+    let heard = |driver: &mut dyn Driver, wanted: [f64; 3]| {
+        beat(driver, DVec3::new(0.0, 0.5, 0.0), || {
+            let heard = service.heard();
+            (force(heard.newest("04BA")?, "values")? == wanted).then_some(())
+        })
+    };
+    assert_eq!(heard(&mut *driver, [0.0, 0.0, 0.5]), Some(()));
+    // Its position is told only for a force, so resting amplifiers are asked for none.
+    driver.switch(Switch::Off);
+    assert_eq!(heard(&mut *driver, [0.0; 3]), Some(()));
+    let probes = |message: &Value| message.to_string().contains("probe_position");
+    assert!(!service.heard().messages.iter().any(probes));
+}
+
+#[test]
+fn resting_amplifiers_are_only_asked_for_the_position() {
+    let service = steady(inventory());
+    let mut driver = opened(&service.url);
+    driver.switch(Switch::Off);
+    let probed = || (service.heard().newest("049D")? == &json!({ "probe_position": {} })).then_some(());
+    assert_eq!(beat(&mut *driver, DVec3::X, probed), Some(()));
+    driver.switch(Switch::On);
+    let pushed = || (force(service.heard().newest("049D")?, "vector")? == [1.0, 0.0, 0.0]).then_some(());
+    assert_eq!(beat(&mut *driver, DVec3::X, pushed), Some(()));
+}
+
+#[test]
+fn a_force_beyond_the_devices_is_cut_to_it_and_one_that_is_no_number_is_none() {
+    let service = steady(inventory());
+    let mut driver = opened(&service.url);
+    let mut arrives = |asked: DVec3, wanted: [f64; 3]| {
+        beat(&mut *driver, asked, || {
+            let got = force(service.heard().newest("049D")?, "vector")?;
+            let off = got.iter().zip(wanted).map(|(a, b)| (a - b).abs());
+            (off.fold(0.0, f64::max) < 1e-9).then_some(())
+        })
+    };
+    assert_eq!(arrives(DVec3::X * 4.0, [4.0, 0.0, 0.0]), Some(()));
+    assert_eq!(arrives(DVec3::new(30.0, 40.0, 0.0), [6.0, 0.0, 8.0]), Some(()));
+    assert_eq!(arrives(DVec3::new(f64::NAN, 1.0, 0.0), [0.0; 3]), Some(()));
+}
+
+#[test]
+fn a_force_that_is_not_renewed_is_none() {
+    let service = steady(inventory());
+    let mut driver = opened(&service.url);
+    let newest = || force(service.heard().newest("049D")?, "vector");
+    let pushed = || (newest()? == [1.0, 0.0, 0.0]).then_some(());
+    assert_eq!(beat(&mut *driver, DVec3::X, pushed), Some(()));
+    assert_eq!(wait_for(|| (newest()? == [0.0; 3]).then_some(())), Some(()));
+}
+
+#[test]
+fn the_last_word_is_no_force_and_then_the_connection_is_closed() {
+    let service = steady(inventory());
+    let mut driver = opened(&service.url);
+    let pushed = || (force(service.heard().newest("049D")?, "vector")? != [0.0; 3]).then_some(());
+    assert_eq!(beat(&mut *driver, DVec3::Y, pushed), Some(()));
+    drop(driver);
+    assert_eq!(wait_for(|| service.heard().closed.then_some(())), Some(()));
+    let last = service.heard().newest("049D").and_then(|c| force(c, "vector"));
+    assert_eq!(last, Some([0.0; 3]));
+}
+
+#[test]
+fn the_last_word_is_no_force_also_where_the_service_has_gone_silent() {
+    let service = Service::start(Act::Say(inventory()), |count| match count {
+        0..50 => Act::Say(update("049D", state())),
+        _ => Act::Rest,
+    });
+    let mut driver = opened(&service.url);
+    let silent = wait_for(|| {
+        driver.write(push(DVec3::X)).expect("there");
+        (service.heard().messages.len() > 50).then_some(())
+    });
+    assert_eq!(silent, Some(()));
+    drop(driver);
+    let last = || service.heard().newest("049D").and_then(|c| force(c, "vector"));
+    assert_eq!(wait_for(|| service.heard().closed.then_some(())), Some(()));
+    assert_eq!(last(), Some([0.0; 3]));
+}
+
+#[test]
+fn of_two_devices_the_one_that_is_named_is_read_and_pushed() {
+    let two = |z: f64| {
+        let mut message = update("049D", state());
+        let mut other = state();
+        other["cursor_position"]["z"] = json!(z);
+        let other = update("0AAA", other)["inverse3"][0].clone();
+        message["inverse3"].as_array_mut().expect("a list").push(other);
+        message
+    };
+    let mut first = two(0.25);
+    first["session_id"] = json!(1);
+    let service = Service::start(Act::Say(first), move |_| Act::Say(two(0.25)));
+    let several = fault(&service.url);
+    assert!(several.what.contains("several Inverse3s: 049D, 0AAA"), "{}", several.what);
+    assert!(several.help.is_some_and(|help| help.contains("#id")));
+    let unknown = fault(&format!("{}#0BBB", service.url));
+    assert!(unknown.what.ends_with("sees no Inverse3 0BBB"));
+    assert!(unknown.help.is_some_and(|help| help.contains("049D, 0AAA")));
+    let grip = fault(&format!("{}#0AAA+9", service.url));
+    assert!(grip.what.ends_with("sees no VerseGrip 9") && grip.help.is_some_and(|h| h.contains("61548")));
+
+    let mut driver = opened(&format!("{}#0AAA+61548", service.url));
+    let read = reading(&mut *driver).expect("there").expect("new");
+    assert_eq!(read.held.position.y, 0.25);
+    let pushed = || (force(service.heard().newest("0AAA")?, "vector")? != [0.0; 3]).then_some(());
+    assert_eq!(beat(&mut *driver, DVec3::Y, pushed), Some(()));
+    let asked_of = |message: &Value| message["inverse3"][0]["device_id"].clone();
+    assert!(service.heard().messages.iter().all(|message| asked_of(message) == "0AAA"));
+}
+
+#[test]
+fn what_is_missing_at_the_start_is_told_with_what_to_do() {
+    let closed = std::net::TcpListener::bind("127.0.0.1:0").expect("a port");
+    let port = closed.local_addr().expect("an address");
+    drop(closed);
+    let absent = fault(&format!("ws://{port}"));
+    assert!(absent.what.starts_with("no Inverse service answers at"), "{}", absent.what);
+    let help = absent.help.expect("what to do");
+    assert!(help.contains("systemctl start") && help.contains(":10000"));
+
+    let first = |act| {
+        let service = Service::start(act, |_| Act::Rest);
+        fault(&service.url)
+    };
+    let none = first(Act::Say(json!({ "inverse3": [] })));
+    assert!(none.what.ends_with("sees no Inverse3"), "{}", none.what);
+    for act in [
+        Act::Send(Message::text("hello")),
+        Act::Send(Message::binary(vec![0xff; 9])),
+        Act::Send(Message::text("x".repeat(2 << 20))),
+        Act::Say(json!({ "inverse3": 3 })),
+        Act::Rest,
+        Act::Close,
+        Act::Vanish,
+    ] {
+        let foreign = first(act);
+        assert!(foreign.what.contains("is no Inverse service"), "{}", foreign.what);
+    }
+    for (key, what) in [("calibrated", "is not calibrated"), ("power_supply", "has no power")] {
+        let mut message = inventory();
+        message["inverse3"][0]["status"][key] = json!(false);
+        let hindered = first(Act::Say(message));
+        assert!(hindered.what.contains(what) && hindered.what.contains("049D"), "{}", hindered.what);
+        assert!(hindered.help.is_some());
+    }
+}
+
+#[test]
+fn a_listener_that_is_no_websocket_is_told_as_that() {
+    let listener = std::net::TcpListener::bind("127.0.0.1:0").expect("a port");
+    let url = format!("ws://{}", listener.local_addr().expect("an address"));
+    let thread = std::thread::spawn(move || {
+        let (mut stream, _) = listener.accept().expect("a client");
+        std::io::Write::write_all(&mut stream, b"SSH-2.0-OpenSSH_9\r\n\r\n").ok();
+    });
+    let foreign = fault(&url);
+    assert!(foreign.what.contains("is no Inverse service"), "{}", foreign.what);
+    thread.join().expect("it ends");
+}
+
+/// A service that is as it should be for 50 messages, and then acts so.
+fn turning(act: fn() -> Act) -> Service {
+    Service::start(Act::Say(inventory()), move |count| match count {
+        0..50 => Act::Say(update("049D", state())),
+        _ => act(),
+    })
+}
+
+#[test]
+fn a_service_or_device_that_goes_is_told_as_how_it_went() {
+    let closed = "the Inverse service has closed the connection";
+    let foreign = "the Inverse service sends what cannot be read";
+    let cases: [(fn() -> Act, &str); 9] = [
+        (|| Act::Close, closed),
+        (|| Act::Vanish, closed),
+        (|| Act::Rest, "the Inverse service does not answer any more"),
+        (|| Act::Send(Message::text("{\"inverse3\": [")), foreign),
+        (|| Act::Send(Message::binary(vec![0; 1000])), foreign),
+        (|| Act::Send(Message::binary(vec![b' '; 2 << 20])), foreign),
+        (|| Act::Say(json!({ "inverse3": [] })), "the Inverse3 is unplugged"),
+        (
+            || Act::Say(json!({ "inverse3": [{ "device_id": "049D", "state": state(),
+                "status": { "calibrated": false } }] })),
+            "the Inverse3 is not calibrated",
+        ),
+        (
+            || Act::Send(Message::text(
+                r#"{"inverse3":[{"device_id":"049D","state":{"cursor_position":{"x":1e999,"y":0,"z":0}}}]}"#,
+            )),
+            foreign,
+        ),
+    ];
+    for (act, what) in cases {
+        let service = turning(act);
+        let mut driver = opened(&service.url);
+        let trouble = trouble(&mut *driver);
+        assert_eq!(trouble.what, what);
+        assert!(!trouble.help.is_empty());
+    }
+    // One that goes on as it should is not lost.
+    let service = turning(|| Act::Say(update("049D", state())));
+    let mut driver = opened(&service.url);
+    let long = || (service.heard().messages.len() > 500).then_some(());
+    assert_eq!(beat(&mut *driver, DVec3::ZERO, long), Some(()));
+}
+
+#[test]
+fn what_cannot_be_read_between_states_is_passed_over() {
+    let service = Service::start(Act::Say(inventory()), |count| match count % 6 {
+        1 => Act::Send(Message::text("nonsense")),
+        2 => Act::Send(Message::binary(vec![0xfe, 0xff])),
+        3 => Act::Say(json!({ "inverse3": [{ "device_id": "049D", "state": {
+            "cursor_position": { "x": 50.0, "y": 0, "z": 0 } } }] })),
+        4 => Act::Say(update("0AAA", state())),
+        _ => Act::Say(update("049D", state())),
+    });
+    let mut driver = opened(&service.url);
+    for _ in 0..100 {
+        let read = reading(&mut *driver).expect("there").expect("new");
+        assert_eq!(read.held.position, DVec3::new(0.01, 0.15, 0.12));
+    }
+}
+
+#[test]
+fn states_in_binary_messages_are_read() {
+    let service = Service::start(Act::Say(inventory()), |_| {
+        Act::Send(Message::binary(update("049D", state()).to_string().into_bytes()))
+    });
+    let mut driver = opened(&service.url);
+    for _ in 0..20 {
+        assert!(reading(&mut *driver).expect("there").is_some());
+    }
+}
+
+#[test]
+fn a_state_of_long_ago_is_nothing_new() {
+    let service = Service::start(Act::Say(inventory()), |count| match count {
+        0 => Act::Say(update("049D", state())),
+        _ => Act::Rest,
+    });
+    let silent = || {
+        let heard = service.heard();
+        let last = heard.last?;
+        (heard.messages.len() == 2 && last.elapsed() > Duration::from_millis(60)).then_some(())
+    };
+    let mut driver = opened(&service.url);
+    assert_eq!(wait_for(silent), Some(()));
+    // Its only state came, as the next question shows, and has never been read.
+    assert!(!matches!(driver.read(1e-3), Ok(Some(_))));
+}
+
+#[test]
+fn without_a_grip_there_is_no_orientation_and_without_velocities_they_are_found() {
+    let still = |x: f64| {
+        json!({ "inverse3": [{ "device_id": "049D", "state": {
+            "cursor_position": { "x": x, "y": 0.0, "z": 0.1 } } }] })
+    };
+    let service = Service::start(Act::Say(still(0.0)), move |count| {
+        Act::Say(still(1e-6 * count.min(900_000) as f64))
+    });
+    let mut driver = opened(&service.url);
+    assert_eq!(driver.abilities().senses, axes::POSITION | axes::VELOCITY);
+    let mut before = None;
+    for _ in 0..50 {
+        let read = reading(&mut *driver).expect("there").expect("new");
+        assert!(before.is_none_or(|x| x < read.held.position.x));
+        before = Some(read.held.position.x);
+        if before.is_some_and(|x| x > 0.0) && read.held.velocity.x > 0.0 {
+            return;
+        }
+    }
+    panic!("no velocity");
+}
+
+#[test]
+fn reading_and_writing_allocate_nothing() {
+    let service = steady(inventory());
+    let mut driver = opened(&service.url);
+    let (mut ticks, mut counted) = (0, 0);
+    let done = wait_for(|| {
+        let mut came = false;
+        counted += allocations(|| {
+            came = driver.read(1e-3).is_ok_and(|reading| reading.is_some());
+            driver.write(push(DVec3::X)).ok();
+            driver.switch(Switch::On);
+        });
+        ticks += usize::from(came);
+        (ticks == 200).then_some(())
+    });
+    assert_eq!((done, counted), (Some(()), 0));
+    assert!(allocations(|| drop(Box::new(1))) > 0);
+}

@@ -1,0 +1,257 @@
+//! Messages of the service, right and wrong, and the axes that they are in.
+
+use glam::{DQuat, DVec3};
+use maulstick_haptic::inverse3::basis::Basis;
+use maulstick_haptic::inverse3::follow::{FARTHEST_M, FASTEST_M_S, Follower, Pose, Seen};
+use maulstick_haptic::inverse3::message::{Dialect, Hindrance, Update, Wanted, request};
+use maulstick_num::geometry::rotation;
+use proptest::prelude::*;
+use serde_json::{Value, json};
+
+use super::service::{inventory, old_inventory, state, update};
+
+fn read(value: &Value) -> Update {
+    Update::read(value.to_string().as_bytes()).expect("a message")
+}
+
+fn pose(seen: Seen) -> Pose {
+    match seen {
+        Seen::Pose(pose) => pose,
+        other => panic!("{other:?}"),
+    }
+}
+
+#[test]
+fn the_services_first_message_is_read_in_the_device_frame() {
+    let message = read(&inventory());
+    assert_eq!(message.dialect(), Dialect::Vector);
+    let pose = pose(Follower::new("049D", None).take(&message));
+    // x right, y forward, z up to x right, y up, z toward the user.
+    assert_eq!(pose.position, DVec3::new(0.01, 0.15, 0.12));
+    assert_eq!(pose.velocity, Some(DVec3::new(0.1, 0.3, -0.2)));
+    assert_eq!((pose.orientation, pose.switches), (DQuat::IDENTITY, 0b101));
+}
+
+#[test]
+fn what_services_before_3_5_say_is_read_as_well() {
+    let message = read(&old_inventory());
+    assert_eq!(message.dialect(), Dialect::Values);
+    let pose = pose(Follower::new("04BA", None).take(&message));
+    assert_eq!(pose.position, DVec3::new(0.07842738, 0.14297646, 0.14836666));
+    assert_eq!(pose.switches, 1);
+    assert!((pose.orientation.length() - 1.0).abs() < 1e-12);
+}
+
+#[test]
+fn what_we_ask_is_what_the_service_documents() {
+    let force = Wanted::Force(DVec3::new(0.0, -1.5, 2.0));
+    let asked = |wanted, dialect| request("049D", wanted, dialect).expect("a message");
+    assert_eq!(
+        asked(force, Dialect::Vector),
+        r#"{"inverse3":[{"device_id":"049D","commands":{"set_cursor_force":{"vector":{"x":0.0,"y":-1.5,"z":2.0}}}}]}"#
+    );
+    assert_eq!(
+        asked(force, Dialect::Values),
+        r#"{"inverse3":[{"device_id":"049D","commands":{"set_cursor_force":{"values":{"x":0.0,"y":-1.5,"z":2.0}}}}]}"#
+    );
+    assert_eq!(
+        asked(Wanted::Position, Dialect::Vector),
+        r#"{"inverse3":[{"device_id":"049D","commands":{"probe_position":{}}}]}"#
+    );
+    assert_eq!(
+        asked(Wanted::Position, Dialect::Values),
+        r#"{"inverse3":[{"device_id":"049D","commands":{"set_cursor_force":{"values":{"x":0.0,"y":0.0,"z":0.0}}}}]}"#
+    );
+}
+
+#[test]
+fn what_a_state_leaves_out_is_as_it_was() {
+    let mut follower = Follower::new("049D", None);
+    follower.take(&read(&inventory()));
+    let partly = json!({ "inverse3": [{
+        "device_id": "049D", "state": { "cursor_position": { "y": -0.2 } }
+    }], "wireless_verse_grip": null });
+    let pose = pose(follower.take(&read(&partly)));
+    assert_eq!(pose.position, DVec3::new(0.01, 0.15, 0.2));
+    assert_eq!((pose.velocity, pose.switches), (Some(DVec3::new(0.1, 0.3, -0.2)), 0b101));
+    // Where nothing was before, a part is no place.
+    let seen = Follower::new("049D", None).take(&read(&partly));
+    assert_eq!(seen, Seen::Nothing);
+    let silent = json!({ "inverse3": [{ "device_id": "049D" }], "session": {} });
+    assert_eq!(follower.take(&read(&silent)), Seen::Nothing);
+    assert_eq!(follower.take(&read(&json!({}))), Seen::Nothing);
+}
+
+#[test]
+fn numbers_that_no_device_sends_make_no_pose() {
+    for metres in [1.001, -30.0, 1e300] {
+        let mut wrong = state();
+        wrong["cursor_position"]["z"] = json!(metres);
+        let mut follower = Follower::new("049D", None);
+        follower.take(&read(&inventory()));
+        assert_eq!(follower.take(&read(&update("049D", wrong))), Seen::Nothing);
+    }
+    let mut fast = state();
+    fast["cursor_velocity"]["x"] = json!(1e9);
+    let pose = pose(Follower::new("049D", None).take(&read(&update("049D", fast))));
+    assert_eq!(pose.velocity, None);
+    let mut message = inventory();
+    message["wireless_verse_grip"][0]["state"]["orientation"]["w"] = json!(1e200);
+    let held = self::pose(Follower::new("049D", None).take(&read(&message)));
+    assert_eq!(held.orientation, DQuat::IDENTITY);
+    for text in [r#"{"inverse3":[{"device_id":"049D","state":{"cursor_position":{"x":1e999}}}]}"#,
+        r#"{"inverse3":[{"device_id":"049D","state":{"cursor_position":{"x":NaN}}}]}"#,
+        r#"{"inverse3":7}"#, "", "[", "null", "\u{0}"]
+    {
+        assert!(Update::read(text.as_bytes()).is_err(), "{text}");
+    }
+}
+
+#[test]
+fn what_hinders_a_device_is_told_most_important_first() {
+    for (key, hindrance) in [
+        ("power_supply", Hindrance::NoPower),
+        ("calibrated", Hindrance::NotCalibrated),
+        ("ready", Hindrance::NotReady),
+    ] {
+        let mut message = inventory();
+        message["inverse3"][0]["status"][key] = json!(false);
+        let mut follower = Follower::new("049D", None);
+        assert_eq!(follower.take(&read(&message)), Seen::Hindered(hindrance));
+        message["inverse3"][0]["status"] = json!(null);
+        assert!(matches!(follower.take(&read(&message)), Seen::Pose(_)));
+    }
+    let mut message = inventory();
+    message["inverse3"][0]["status"] = json!({ "calibrated": false, "power_supply": false });
+    let seen = Follower::new("049D", None).take(&read(&message));
+    assert_eq!(seen, Seen::Hindered(Hindrance::NoPower));
+}
+
+#[test]
+fn a_grip_is_followed_by_its_id() {
+    let mut message = inventory();
+    message["verse_grip"] = json!([{
+        "device_id": "12", "state": { "button": true, "orientation": { "x": 1.0, "y": 0, "z": 0, "w": 0 } }
+    }]);
+    let switches = |grip| pose(Follower::new("049D", grip).take(&read(&message))).switches;
+    assert_eq!(
+        (switches(None), switches(Some("61548")), switches(Some("12"))),
+        (0b101, 0b101, 0b1)
+    );
+    assert_eq!(switches(Some("13")), 0);
+}
+
+#[test]
+fn a_grip_that_points_forward_holds_the_bristles_away_from_the_user() {
+    // A grip points along its own +y, forward in Haply's frame: away from the user.
+    let basis = Basis::HAPLY;
+    let ahead = basis.orientation(DQuat::IDENTITY) * DVec3::NEG_Z;
+    assert_eq!(ahead, basis.to_device(DVec3::Y));
+    // Turned about z, which is up, by a quarter it points left.
+    let left = basis.orientation(rotation(DVec3::Z, std::f64::consts::FRAC_PI_2));
+    assert!((left * DVec3::NEG_Z - DVec3::NEG_X).length() < 1e-12);
+}
+
+const PERMUTATIONS: [&str; 6] = ["XYZ", "XZY", "X-YZ", "ZXY", "-X+Z-Y", "yzx"];
+
+#[test]
+fn a_permutation_says_which_of_haplys_axes_each_of_ours_is() {
+    let up = |permutation| Basis::read(permutation).expect("a basis").to_device(DVec3::Y);
+    // Haply's z is up, its y forward: device y and −z.
+    assert_eq!(up("XZY"), DVec3::Y);
+    assert_eq!(up("XYZ"), DVec3::NEG_Z);
+    assert_eq!(up("X-YZ"), DVec3::Z);
+    for wrong in ["", "XY", "XXY", "XYW", "XYZZ", "X--YZ", "-"] {
+        assert_eq!(Basis::read(wrong), None, "{wrong}");
+    }
+}
+
+/// Whether all numbers are in their ranges.
+fn is_sound(pose: &Pose) -> bool {
+    let within = |vector: DVec3, most: f64| vector.to_array().iter().all(|x| x.abs() <= most);
+    within(pose.position, FARTHEST_M)
+        && pose.velocity.is_none_or(|v| within(v, FASTEST_M_S))
+        && (pose.orientation.length() - 1.0).abs() < 1e-9
+}
+
+fn is_safe(bytes: &[u8]) -> bool {
+    let Ok(update) = Update::read(bytes) else {
+        return true;
+    };
+    let mut follower = Follower::new("A", None);
+    match (follower.take(&update), follower.take(&update)) {
+        (Seen::Pose(first), Seen::Pose(again)) => is_sound(&first) && is_sound(&again),
+        _ => true,
+    }
+}
+
+/// As short a message as has all that we read.
+const MESSAGE: &[u8] = br#"{"inverse3":[{"device_id":"A","config":{"basis":{"permutation":"X-ZY"}},"state":{"cursor_position":{"x":0.1,"y":-0.2,"z":0.3},"cursor_velocity":{"x":1,"y":2,"z":3}},"status":{"ready":true}}],"verse_grip":[{"device_id":"B","state":{"button":true,"orientation":{"x":0.1,"y":0.7,"z":0.1,"w":0.7}}}]}"#;
+
+fn byte() -> impl Strategy<Value = u8> {
+    prop_oneof![
+        6 => prop::sample::select(&b"0123456789.-+eE{}[]:,\"xyzw truefalsn"[..]),
+        1 => any::<u8>(),
+    ]
+}
+
+proptest! {
+    #[test]
+    fn no_bytes_make_an_inverse3_message_panic_or_leave_its_range(
+        bytes in prop::collection::vec(byte(), 0..64),
+    ) {
+        prop_assert!(is_safe(&bytes));
+    }
+
+    #[test]
+    fn no_mutation_of_an_inverse3_message_leaves_its_range(
+        changes in prop::collection::vec((0..MESSAGE.len(), byte()), 0..3),
+        cut in 0..2 * MESSAGE.len(),
+    ) {
+        let mut message = MESSAGE.to_vec();
+        for (place, byte) in changes {
+            message[place] = byte;
+        }
+        message.truncate(cut);
+        prop_assert!(is_safe(&message));
+    }
+
+    #[test]
+    fn no_bytes_make_an_inverse3_basis_that_is_none(
+        text in "[-+XYZxyzW]{0,7}",
+        v in (-1.0..1.0f64, -1.0..1.0f64, -1.0..1.0f64),
+    ) {
+        let v = DVec3::new(v.0, v.1, v.2);
+        if let Some(basis) = Basis::read(&text) {
+            prop_assert_eq!(basis.to_session(basis.to_device(v)), v);
+            prop_assert_eq!(basis.to_device(v).abs().to_array().iter().sum::<f64>(),
+                basis.to_device(v.abs()).abs().to_array().iter().sum::<f64>());
+        }
+    }
+
+    /// Turned as the session says and then seen in the device frame is seen there and then turned.
+    #[test]
+    fn orientations_go_with_vectors_also_where_axes_are_left_handed(
+        place in 0..PERMUTATIONS.len(),
+        axis in (-1.0..1.0f64, -1.0..1.0f64, 0.1..1.0f64),
+        angle in -3.0..3.0f64,
+        v in (-1.0..1.0f64, -1.0..1.0f64, -1.0..1.0f64),
+    ) {
+        let basis = Basis::read(PERMUTATIONS[place]).expect("a basis");
+        let v = DVec3::new(v.0, v.1, v.2);
+        let turn = rotation(DVec3::new(axis.0, axis.1, axis.2).normalize(), angle);
+        let expected = basis.to_device(turn * v);
+        prop_assert!((basis.orientation(turn) * basis.to_device(v) - expected).length() < 1e-12);
+    }
+}
+
+#[test]
+fn the_message_that_is_mutated_has_a_pose() {
+    let seen = Follower::new("A", None).take(&Update::read(MESSAGE).expect("a message"));
+    assert!(is_sound(&pose(seen)));
+    let wrong = Pose {
+        position: DVec3::X * 1.1,
+        ..pose(seen)
+    };
+    assert!(!is_sound(&wrong));
+}
