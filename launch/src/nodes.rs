@@ -14,6 +14,7 @@ use maulstick_document::{Document, DocumentError};
 use maulstick_gpu::{Choice, Device, GpuFilms};
 use maulstick_haptic::daemon;
 use maulstick_haptic::open::HapticSettings;
+use maulstick_hid::daemon::HidSettings;
 use maulstick_nodes::feel::ForceKind;
 use maulstick_nodes::frames::FrameServer;
 use maulstick_nodes::worker::Fallen;
@@ -21,7 +22,9 @@ use maulstick_nodes::{BrushNode, BrushSettings, PaintNode, Worker};
 use maulstick_num::cores::with_help_beyond;
 use maulstick_optics::backend::{CpuFilms, FilmBackend};
 use maulstick_paint::{PaintRefusal, Painting, Sequencer};
-use maulstick_rig::config::{FOREIGN_PRIORITY, MOUSE_PRIORITY, PLAYER_PRIORITY, RigConfig};
+use maulstick_rig::config::{
+    DeviceSection, FOREIGN_PRIORITY, MOUSE_PRIORITY, PLAYER_PRIORITY, RigConfig,
+};
 use maulstick_rig::member::log_to_stderr;
 use maulstick_rig::{Fault, Member, MemberArgs};
 use maulstick_types::Mixture;
@@ -31,6 +34,7 @@ use nix::sys::signal::Signal;
 use crate::backend::choose_backend;
 use crate::destination::{VIEW, export};
 use crate::document::{go_on, wrong};
+use crate::outputs::{UsedFile, check_outputs, named_by};
 use crate::performance::{brush_file, library_from, painting_setup, refused};
 
 /// Name of the mouse over the window as a device.
@@ -280,6 +284,15 @@ struct HapticOptions {
     hand: Option<PathBuf>,
 }
 
+fn device_named(config: &RigConfig, name: &str) -> Result<DeviceSection, Fault> {
+    let devices = config.device.iter();
+    let device = devices.clone().find(|device| device.name == name);
+    device.cloned().ok_or_else(|| {
+        let what = format!("there is no device '{name}' in rig.toml");
+        Fault::unknown(what, name, devices.map(|device| device.name.as_str()))
+    })
+}
+
 /// Main of the haptic daemon.
 ///
 /// # Errors
@@ -288,13 +301,7 @@ pub fn haptic() -> Result<i32, Fault> {
     let options = HapticOptions::parse();
     // The servo takes its force back before it ends, so it is asked, not killed.
     let mut member = options.node.join(&options.device, Signal::SIGTERM)?;
-    let devices = member.config.device.iter();
-    let device = devices.clone().find(|device| device.name == options.device);
-    let device = device.cloned().ok_or_else(|| {
-        let what = format!("there is no device '{}' in rig.toml", options.device);
-        let names = devices.map(|device| device.name.as_str());
-        Fault::unknown(what, &options.device, names)
-    })?;
+    let device = device_named(&member.config, &options.device)?;
     daemon::run(
         &mut member,
         &HapticSettings {
@@ -302,6 +309,50 @@ pub fn haptic() -> Result<i32, Fault> {
             hand: options.hand,
         },
     )?;
+    member.leave();
+    Ok(0)
+}
+
+/// Reads a pen tablet or a 6-DOF mouse
+#[derive(Parser)]
+#[command(name = "maulstick-hid", version)]
+struct HidOptions {
+    #[command(flatten)]
+    node: NodeOptions,
+    /// The device of rig.toml
+    #[arg(long, value_name = "DEVICE")]
+    device: String,
+    /// A recording to play in the device's place
+    #[arg(long, value_name = "FILE")]
+    replay: Option<PathBuf>,
+    /// Where to write what the device says, as a recording
+    #[arg(long, value_name = "FILE")]
+    record: Option<PathBuf>,
+}
+
+/// Main of the daemon of pens and 6-DOF mice.
+///
+/// # Errors
+/// A [`Fault`].
+pub fn hid() -> Result<i32, Fault> {
+    let options = HidOptions::parse();
+    // What is recorded gets its name at the end, so it is asked, not killed.
+    let mut member = options.node.join(&options.device, Signal::SIGTERM)?;
+    let settings = HidSettings {
+        device: device_named(&member.config, &options.device)?,
+        canvas: member.config.canvas.clone(),
+        replay: options.replay,
+        record: options.record,
+    };
+    let played = settings.replay.as_ref().or(settings.device.replay.as_ref());
+    let inputs: Vec<_> = named_by(&member.config)
+        .into_iter()
+        .chain(UsedFile::given("the recording that is played", played))
+        .collect();
+    let output = UsedFile::given("the recording", settings.record.as_ref());
+    let outputs: Vec<_> = output.into_iter().collect();
+    check_outputs(&outputs, &inputs)?;
+    maulstick_hid::daemon::run(&mut member, &settings)?;
     member.leave();
     Ok(0)
 }

@@ -1,0 +1,364 @@
+//! The daemon: looks for its device, hears it, and tells the rig.
+
+use std::path::PathBuf;
+use std::sync::Arc;
+use std::time::Duration;
+
+use glam::DQuat;
+use maulstick_bus::typed::Sender;
+use maulstick_bus::{Bus, Class, Wake};
+use maulstick_num::geometry::canonical;
+use maulstick_rig::config::{CanvasSection, DeviceSection};
+use maulstick_rig::{Fault, Member};
+use maulstick_types::Origin;
+use maulstick_types::stylus::StylusStatus;
+use maulstick_types::topics::Topics;
+
+use crate::feed::{Feed, Heard, Live, Played};
+use crate::free_hand::FreeHand;
+use crate::hidraw::Hidraw;
+use crate::open::{self, Address, Kind, Means};
+use crate::recorder::Recorder;
+use crate::recording::{self, Recorded};
+use crate::source::{Identity, Ports};
+use crate::spacemouse::SpaceMouse;
+use crate::stylus::Stylus;
+use crate::tablet::Tablet;
+
+/// Time between two statuses, ns.
+const STATUS_PERIOD_NS: u64 = 100_000_000;
+/// Time between two attempts to open a device that is not there, ns.
+const ATTEMPT_PERIOD_NS: u64 = 1_000_000_000;
+/// Longest time between two turns.
+const LONGEST_TURN: Duration = Duration::from_millis(20);
+/// What `StylusStatus` says of a daemon without a servo: no bins.
+const NO_BINS: usize = 0;
+
+/// What a HID daemon is told.
+#[derive(Clone, Debug)]
+pub struct HidSettings {
+    /// The device's section of `rig.toml`.
+    pub device: DeviceSection,
+    /// The canvas that a tablet is fitted to.
+    pub canvas: CanvasSection,
+    /// A recording that is played in the device's place.
+    pub replay: Option<PathBuf>,
+    /// Where to write what the device says.
+    pub record: Option<PathBuf>,
+}
+
+/// Runs a device in the rig of `member`.
+///
+/// # Errors
+/// A [`Fault`] where the device or the rig cannot be used.
+pub fn run(member: &mut Member, settings: &HidSettings) -> Result<(), Fault> {
+    let origin = member.origin(&settings.device.name);
+    let mut daemon = Daemon::new(
+        Arc::clone(&member.bus),
+        &member.topics,
+        &member.wake,
+        origin,
+        settings,
+        Box::new(Hidraw),
+    )?;
+    member.ready()?;
+    let result = member.run(|| daemon.turn());
+    result.and(daemon.end())
+}
+
+/// What the device is to the rig.
+#[derive(Debug)]
+enum Hand {
+    Stylus(Stylus),
+    Free(FreeHand),
+}
+
+/// A device in a rig.
+pub struct Daemon {
+    bus: Arc<dyn Bus>,
+    wake: Wake,
+    settings: HidSettings,
+    kind: Kind,
+    address: Address,
+    ports: Box<dyn Ports>,
+    /// The recording that is played, until it is.
+    replay: Option<Recorded>,
+    recorder: Option<Recorder>,
+    hand: Hand,
+    /// The device, while there is one.
+    feed: Option<Feed>,
+    /// When to look for the device again; never where a recording takes its place.
+    attempt_ns: Option<u64>,
+    status: Sender<StylusStatus>,
+    told: StylusStatus,
+    status_ns: u64,
+    /// Reports that devices that are gone had no room for.
+    dropped_before: u64,
+    heard_ns: u64,
+}
+
+impl Daemon {
+    /// A daemon on `bus` that sends as `origin` and finds its device at `ports`.
+    ///
+    /// # Errors
+    /// A [`Fault`] where the settings are wrong, the recording cannot be read, or the bus is closed.
+    pub fn new(
+        bus: Arc<dyn Bus>,
+        topics: &Topics,
+        wake: &Wake,
+        origin: Origin,
+        settings: &HidSettings,
+        ports: Box<dyn Ports>,
+    ) -> Result<Self, Fault> {
+        let device = &settings.device;
+        let kind = Kind::of(&device.driver).ok_or_else(|| {
+            Fault::usage(format!("this daemon has no driver '{}'", device.driver))
+        })?;
+        let replay = settings.replay.as_ref().or(device.replay.as_ref());
+        let replay = match replay {
+            Some(path) => Some(
+                playable(kind, recording::read(path)?)
+                    .map_err(|fault| fault.at(path.display().to_string()))?,
+            ),
+            None => None,
+        };
+        let hand = match kind {
+            Kind::Pen => Hand::Stylus(Stylus::new(&bus, topics, &device.name, origin, wake)?),
+            Kind::SpaceMouse => Hand::Free(FreeHand::new(&bus, topics, &device.name, origin)?),
+        };
+        let topic = topics.stylus_status(&device.name);
+        Ok(Self {
+            kind,
+            address: Address::parse(device.address.as_deref())?,
+            ports,
+            replay,
+            recorder: settings
+                .record
+                .as_deref()
+                .map(Recorder::begin)
+                .transpose()?,
+            hand,
+            feed: None,
+            attempt_ns: Some(0),
+            status: Sender::new(&*bus, &topic, Class::Background, origin)?,
+            told: StylusStatus::fresh(NO_BINS),
+            status_ns: 0,
+            dropped_before: 0,
+            heard_ns: 0,
+            settings: settings.clone(),
+            wake: wake.clone(),
+            bus,
+        })
+    }
+
+    /// Does what is to be done now; how long there is then nothing to do unless the wake rings.
+    ///
+    /// # Errors
+    /// A [`Fault`] where the rig is gone.
+    pub fn turn(&mut self) -> Result<Duration, Fault> {
+        let now_ns = self.bus.now_ns();
+        if self.feed.is_none() && self.attempt_ns.is_some_and(|at| now_ns >= at) {
+            self.attempt(now_ns)?;
+        }
+        let due_ns = self.listen(now_ns)?;
+        if let Hand::Stylus(stylus) = &mut self.hand {
+            stylus.serve(now_ns)?;
+        }
+        if now_ns >= self.status_ns + STATUS_PERIOD_NS {
+            self.status_ns = now_ns;
+            self.told.dropped = self.dropped();
+            self.told.samples = match &self.hand {
+                Hand::Stylus(stylus) => stylus.sent(),
+                Hand::Free(hand) => hand.sent(),
+            };
+            self.status.send(now_ns, now_ns, &self.told)?;
+        }
+        let again_ns = match &self.hand {
+            Hand::Stylus(stylus) => stylus.due_ns(),
+            Hand::Free(hand) => hand.due_ns(),
+        };
+        let next_ns = [due_ns, again_ns].into_iter().flatten().min();
+        let wait = next_ns.map_or(LONGEST_TURN, |at| {
+            Duration::from_nanos(at.saturating_sub(now_ns))
+        });
+        Ok(wait.min(LONGEST_TURN))
+    }
+
+    /// Ends: the pen is lifted, and what was recorded is whole.
+    ///
+    /// # Errors
+    /// A [`Fault`] where the recording could not be written or the rig is gone.
+    pub fn end(mut self) -> Result<(), Fault> {
+        let now_ns = self.bus.now_ns();
+        let lifted = self.lift(now_ns, now_ns);
+        self.feed = None;
+        let ended = self.recorder.take().map_or(Ok(()), Recorder::end);
+        lifted.and(ended)
+    }
+
+    fn dropped(&self) -> u64 {
+        self.dropped_before + self.feed.as_ref().map_or(0, Feed::dropped)
+    }
+
+    /// Takes in what the device has said; when it will say something, where that is known.
+    fn listen(&mut self, now_ns: u64) -> Result<Option<u64>, Fault> {
+        loop {
+            let Some(feed) = &mut self.feed else {
+                return Ok(None);
+            };
+            match feed.hear(now_ns) {
+                Heard::Report(event) => {
+                    if let Some(recorder) = &mut self.recorder {
+                        recorder.event(&event);
+                    }
+                    self.heard_ns = event.time_ns;
+                    let (report, event_ns) = (&event.report, event.time_ns);
+                    match &mut self.hand {
+                        Hand::Stylus(stylus) => stylus.report(report, event_ns, now_ns)?,
+                        Hand::Free(hand) => hand.report(report, event_ns, now_ns)?,
+                    }
+                }
+                Heard::Nothing(due_ns) => {
+                    match &mut self.hand {
+                        Hand::Stylus(stylus) => stylus.silent(now_ns, now_ns)?,
+                        Hand::Free(hand) => hand.silent(now_ns, now_ns)?,
+                    }
+                    return Ok(due_ns);
+                }
+                Heard::Over => {
+                    // At its last report's time, whenever this turn is.
+                    self.lift(self.heard_ns, now_ns)?;
+                    self.feed = None;
+                    tracing::info!("{}: the recording is over", self.settings.device.name);
+                }
+                Heard::Lost(fault) => {
+                    self.lift(now_ns, now_ns)?;
+                    self.dropped_before = self.dropped();
+                    self.feed = None;
+                    self.attempt_ns = Some(now_ns + ATTEMPT_PERIOD_NS);
+                    self.miss(&fault);
+                }
+            }
+        }
+    }
+
+    fn lift(&mut self, event_ns: u64, now_ns: u64) -> Result<(), Fault> {
+        match &mut self.hand {
+            Hand::Stylus(stylus) => stylus.end(event_ns, now_ns)?,
+            Hand::Free(hand) => hand.end(event_ns, now_ns)?,
+        }
+        Ok(())
+    }
+
+    /// Opens the device, if it is there, or begins to play in its place.
+    fn attempt(&mut self, now_ns: u64) -> Result<(), Fault> {
+        if let Some(recorded) = self.replay.take() {
+            self.attempt_ns = None;
+            let Recorded {
+                identity,
+                descriptor,
+                events,
+            } = recorded;
+            let means = open::means(self.kind, &identity, &descriptor)?;
+            self.begin(means, &identity, &descriptor, now_ns)?;
+            self.feed = Some(Feed::Played(Played::start(events, now_ns)));
+            return Ok(());
+        }
+        self.attempt_ns = Some(now_ns + ATTEMPT_PERIOD_NS);
+        let opened = match open::open(&mut *self.ports, self.kind, &self.address) {
+            Ok(opened) => opened,
+            Err(fault) => {
+                self.miss(&fault);
+                return Ok(());
+            }
+        };
+        let (identity, descriptor) = (opened.identity, opened.source.descriptor().to_vec());
+        match (opened.means, &mut self.recorder) {
+            (Ok(means), _) => {
+                self.told.trouble.clear();
+                self.begin(means, &identity, &descriptor, now_ns)?;
+            }
+            (Err(fault), None) => {
+                self.miss(&fault);
+                return Ok(());
+            }
+            // What cannot be read can be recorded, for who will teach us to read it.
+            (Err(fault), Some(recorder)) => {
+                recorder.device(&identity, &descriptor);
+                self.miss(&fault);
+            }
+        }
+        self.feed = Some(Feed::Live(Live::start(
+            opened.source,
+            Arc::clone(&self.bus),
+            &self.wake,
+        )?));
+        Ok(())
+    }
+
+    fn begin(
+        &mut self,
+        means: Means,
+        identity: &Identity,
+        descriptor: &[u8],
+        now_ns: u64,
+    ) -> Result<(), Fault> {
+        let device = &self.settings.device;
+        tracing::info!("{}: {}", device.name, open::told(identity, &means));
+        if let Some(recorder) = &mut self.recorder {
+            recorder.device(identity, descriptor);
+        }
+        match (means, &mut self.hand) {
+            (Means::Pen(decoder), Hand::Stylus(stylus)) => {
+                let (area_m, senses) = (decoder.area_m(), decoder.senses());
+                let tablet = Tablet::fit(area_m, senses, device, &self.settings.canvas)?;
+                stylus.begin(decoder, tablet, device, now_ns)?;
+            }
+            (Means::SpaceMouse, Hand::Free(hand)) => {
+                let to_desk = canonical(DQuat::from_array(device.orientation));
+                hand.begin(SpaceMouse::new(identity.vendor, identity.product, to_desk));
+            }
+            // A kind has one hand.
+            (Means::Pen(_), Hand::Free(_)) | (Means::SpaceMouse, Hand::Stylus(_)) => {}
+        }
+        Ok(())
+    }
+
+    /// Says, once, why there is no device.
+    fn miss(&mut self, fault: &Fault) {
+        let place = fault.place.as_ref().map(|place| format!(" ({place})"));
+        let mut trouble = format!("{}{}", fault.what, place.unwrap_or_default());
+        if let Some(help) = &fault.help {
+            trouble = format!("{trouble}; {help}");
+        }
+        trouble.truncate(trouble.floor_char_boundary(LONGEST_TROUBLE));
+        if trouble != self.told.trouble {
+            let name = &self.settings.device.name;
+            tracing::warn!("{name}: {trouble} (tried again each second)");
+            self.told.trouble = trouble;
+        }
+    }
+}
+
+/// A status has no room for more, bytes.
+const LONGEST_TROUBLE: usize = 2048;
+
+/// The first device of a recording that can stand in for one of `kind`.
+fn playable(kind: Kind, recorded: Vec<Recorded>) -> Result<Recorded, Fault> {
+    let mut first = None;
+    for device in recorded {
+        match open::means(kind, &device.identity, &device.descriptor) {
+            Ok(_) => return Ok(device),
+            Err(fault) => first = first.or(Some(fault)),
+        }
+    }
+    Err(first.unwrap_or_else(|| Fault::usage("there is no device in the recording")))
+}
+
+impl std::fmt::Debug for Daemon {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("Daemon")
+            .field("hand", &self.hand)
+            .finish_non_exhaustive()
+    }
+}

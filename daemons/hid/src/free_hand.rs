@@ -1,0 +1,130 @@
+//! A 6-DOF mouse on the bus.
+
+use std::sync::Arc;
+
+use maulstick_bus::typed::Sender;
+use maulstick_bus::{Bus, BusError, Class};
+use maulstick_types::Origin;
+use maulstick_types::control::ControlSample;
+use maulstick_types::topics::Topics;
+
+use crate::spacemouse::{SILENCE_NS, SpaceMouse};
+
+/// A mouse that comes to rest by itself is told of this often, ns.
+const DECAY_STEP_NS: u64 = 10_000_000;
+/// What a mouse does is told of again after this time, ns: a sample may be lost, and it may be the last.
+const REPEAT_NS: u64 = 100_000_000;
+
+/// A mouse, from its reports to its samples.
+pub struct FreeHand {
+    mouse: Option<SpaceMouse>,
+    samples: Sender<ControlSample>,
+    /// When it was last told of, and when it last reported, ns.
+    told_ns: u64,
+    heard_ns: u64,
+    sent: u64,
+}
+
+impl FreeHand {
+    /// The mouse called `name`.
+    ///
+    /// # Errors
+    /// [`BusError::Topic`].
+    pub fn new(
+        bus: &Arc<dyn Bus>,
+        topics: &Topics,
+        name: &str,
+        origin: Origin,
+    ) -> Result<Self, BusError> {
+        let topic = topics.control(name);
+        Ok(Self {
+            mouse: None,
+            samples: Sender::new(&**bus, &topic, Class::RealTime, origin)?,
+            told_ns: 0,
+            heard_ns: 0,
+            sent: 0,
+        })
+    }
+
+    /// A mouse is there.
+    pub fn begin(&mut self, mouse: SpaceMouse) {
+        self.mouse = Some(mouse);
+    }
+
+    /// A report of time `event_ns`.
+    ///
+    /// # Errors
+    /// [`BusError`].
+    pub fn report(&mut self, report: &[u8], event_ns: u64, now_ns: u64) -> Result<(), BusError> {
+        let mouse = self.mouse.as_mut();
+        if !mouse.is_some_and(|mouse| mouse.follow(report, event_ns)) {
+            return Ok(());
+        }
+        self.heard_ns = event_ns;
+        self.tell(event_ns, now_ns)
+    }
+
+    /// Nothing came until `until_ns`.
+    ///
+    /// # Errors
+    /// [`BusError`].
+    pub fn silent(&mut self, until_ns: u64, now_ns: u64) -> Result<(), BusError> {
+        match self.due_ns() {
+            Some(due_ns) if due_ns <= until_ns => self.tell(until_ns, now_ns),
+            _ => Ok(()),
+        }
+    }
+
+    /// The mouse is gone: nobody pushes it.
+    ///
+    /// # Errors
+    /// [`BusError`].
+    pub fn end(&mut self, event_ns: u64, now_ns: u64) -> Result<(), BusError> {
+        if let Some(mouse) = &mut self.mouse {
+            mouse.leave();
+            self.tell(event_ns, now_ns)?;
+        }
+        self.mouse = None;
+        Ok(())
+    }
+
+    /// When to tell of it again, ns.
+    #[must_use]
+    pub fn due_ns(&self) -> Option<u64> {
+        let mouse = self.mouse.as_ref()?;
+        let again_ns = self.told_ns + REPEAT_NS;
+        Some(match mouse.is_deflected() {
+            true => {
+                let decay_ns = (self.heard_ns + SILENCE_NS).max(self.told_ns) + DECAY_STEP_NS;
+                again_ns.min(decay_ns)
+            }
+            false => again_ns,
+        })
+    }
+
+    /// Samples sent.
+    #[must_use]
+    pub fn sent(&self) -> u64 {
+        self.sent
+    }
+
+    fn tell(&mut self, event_ns: u64, now_ns: u64) -> Result<(), BusError> {
+        let Some(mouse) = &mut self.mouse else {
+            return Ok(());
+        };
+        let sample = mouse.sample(event_ns);
+        self.samples.send(now_ns, event_ns, &sample)?;
+        self.told_ns = event_ns;
+        self.sent += 1;
+        Ok(())
+    }
+}
+
+impl std::fmt::Debug for FreeHand {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("FreeHand")
+            .field("mouse", &self.mouse)
+            .field("sent", &self.sent)
+            .finish_non_exhaustive()
+    }
+}

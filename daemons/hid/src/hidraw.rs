@@ -1,0 +1,176 @@
+//! The devices of this machine, through hidapi.
+
+use std::ffi::CString;
+use std::io::ErrorKind;
+use std::time::Duration;
+
+use hidapi::{BusType, HidApi, HidDevice, HidError};
+use maulstick_rig::Fault;
+
+use crate::descriptor::LONGEST;
+use crate::source::{Found, HidSource, Identity, Ports};
+
+/// The machine's own ports.
+#[derive(Debug, Default)]
+pub struct Hidraw;
+
+struct Device {
+    device: HidDevice,
+    descriptor: Vec<u8>,
+    name: String,
+}
+
+fn failed(what: &str, error: &HidError) -> Fault {
+    Fault::failure(format!("{what}: {error}")).help("see what the kernel says of it: `dmesg`")
+}
+
+impl Ports for Hidraw {
+    fn list(&mut self) -> Result<Vec<Found>, Fault> {
+        let api = HidApi::new().map_err(|error| failed("the devices cannot be listed", &error))?;
+        let mut found: Vec<Found> = Vec::new();
+        for info in api.device_list() {
+            let place = info.path().to_string_lossy().into_owned();
+            let usage = (info.usage_page(), info.usage());
+            // A device comes once for each of its collections.
+            if let Some(known) = found.iter_mut().find(|found| found.identity.place == place) {
+                known.usages.push(usage);
+                continue;
+            }
+            let words = [info.manufacturer_string(), info.product_string()];
+            let words: Vec<_> = words
+                .into_iter()
+                .flatten()
+                .filter(|word| !word.is_empty())
+                .collect();
+            found.push(Found {
+                identity: Identity {
+                    bus: match info.bus_type() {
+                        BusType::Usb => 3,
+                        BusType::Bluetooth => 5,
+                        BusType::I2c => 0x18,
+                        BusType::Spi => 0x1C,
+                        BusType::Unknown => 0,
+                    },
+                    vendor: info.vendor_id(),
+                    product: info.product_id(),
+                    name: words.join(" "),
+                    place,
+                },
+                usages: vec![usage],
+            });
+        }
+        found.sort_by(|a, b| a.identity.place.cmp(&b.identity.place));
+        Ok(found)
+    }
+
+    fn open(&mut self, found: &Found) -> Result<Box<dyn HidSource>, Fault> {
+        let Identity { place, .. } = &found.identity;
+        let name = found.identity.to_string();
+        // hidapi says in words alone why a device does not open.
+        std::fs::OpenOptions::new()
+            .read(true)
+            .write(true)
+            .open(place)
+            .map_err(|error| closed(&name, place, error.kind(), &error))?;
+        let api = HidApi::new_without_enumerate()
+            .map_err(|error| failed("hidapi cannot begin", &error))?;
+        let path = CString::new(place.as_bytes())
+            .map_err(|_| Fault::usage(format!("'{place}' is no path")))?;
+        let what = format!("{name} cannot be opened");
+        let device = api
+            .open_path(&path)
+            .map_err(|error| failed(&what, &error))?;
+        let mut descriptor = vec![0; LONGEST];
+        let length = device
+            .get_report_descriptor(&mut descriptor)
+            .map_err(|error| failed(&format!("{name} does not describe itself"), &error))?;
+        descriptor.truncate(length);
+        Ok(Box::new(Device {
+            device,
+            descriptor,
+            name,
+        }))
+    }
+}
+
+/// Why a device does not open.
+fn closed(name: &str, place: &str, kind: ErrorKind, error: &std::io::Error) -> Fault {
+    let (what, help) = match kind {
+        ErrorKind::PermissionDenied => (
+            format!("you may not read {name}"),
+            "`maulstick devices --udev` prints the rule to install",
+        ),
+        ErrorKind::ResourceBusy => (
+            format!("{name} is in use"),
+            "end the program that holds it, a vendor's driver perhaps",
+        ),
+        ErrorKind::NotFound => (format!("{name} is gone"), "plug it in again"),
+        _ => (
+            format!("{name} cannot be opened: {error}"),
+            "plug it in again",
+        ),
+    };
+    Fault::failure(what).at(place).help(help)
+}
+
+impl HidSource for Device {
+    fn descriptor(&self) -> &[u8] {
+        &self.descriptor
+    }
+
+    fn read(&mut self, report: &mut [u8], limit: Duration) -> Result<usize, Fault> {
+        let limit = i32::try_from(limit.as_millis()).unwrap_or(i32::MAX);
+        match self.device.read_timeout(report, limit) {
+            Ok(length) => Ok(length),
+            Err(HidError::IoError { error }) if error.kind() == ErrorKind::Interrupted => Ok(0),
+            Err(_) => {
+                Err(Fault::failure(format!("{} was unplugged", self.name)).help("plug it in again"))
+            }
+        }
+    }
+
+    fn write(&mut self, report: &[u8]) -> Result<(), Fault> {
+        let what = format!("{} does not take an order", self.name);
+        self.device
+            .write(report)
+            .map(drop)
+            .map_err(|error| failed(&what, &error))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_keeps_a_device_closed_says_what_to_do() {
+        for (kind, help) in [
+            (ErrorKind::PermissionDenied, "--udev"),
+            (ErrorKind::ResourceBusy, "in use"),
+            (ErrorKind::NotFound, "plug it in"),
+            (ErrorKind::Other, "cannot be opened"),
+        ] {
+            let error = std::io::Error::from(kind);
+            let fault = closed("056a:0357", "/dev/hidraw3", kind, &error).to_string();
+            assert!(
+                fault.contains(help) && fault.contains("/dev/hidraw3"),
+                "{fault}"
+            );
+        }
+    }
+
+    #[test]
+    fn a_path_where_nothing_is_and_a_file_that_is_no_device_do_not_open() {
+        let file = tempfile::NamedTempFile::new().expect("a file");
+        for place in ["/dev/hidraw-none".into(), file.path().display().to_string()] {
+            let found = Found {
+                identity: Identity {
+                    place,
+                    ..Identity::default()
+                },
+                usages: Vec::new(),
+            };
+            assert!(Hidraw.open(&found).is_err());
+        }
+    }
+}

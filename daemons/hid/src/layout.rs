@@ -1,0 +1,399 @@
+//! Where in a tablet's reports its pen is, by the report descriptor.
+//!
+//! Usages are those of the digitizers' page 0x0D and of X and Y of page 0x01 (HID usage tables), and Wacom's
+//! page 0xFF0D, which mirrors them and is finer. A tablet may have reports of both kinds for one pen: of
+//! those, Wacom's are read alone. Lengths come from physical ranges and units. Where there are none:
+//!
+//! | what | is taken for |
+//! | --- | --- |
+//! | X, Y | 5080 counts an inch; an area of less than 1 cm or more than 2 m is taken for 25 cm on its longer side |
+//! | tilts | degrees, where the range is within ±180, else the range is ±90° |
+//! | twist | degrees, where the range is within ±360, else the range is once round |
+//! | distance | the range is 1 cm |
+//! | pressure | a touch of a pen without has half |
+//! | tip switch | a pen without touches while it has pressure |
+//! | in range | a pen without is near from its first report on |
+
+use std::f64::consts::{FRAC_PI_2, PI, TAU};
+
+use hidreport::{Field, Report, ReportDescriptor, VariableField};
+use maulstick_num::{atan2, sin_cos};
+use maulstick_types::stylus::axes;
+
+use crate::descriptor::{lies_in, page, pair};
+use crate::pen::{End, Presence, Reading};
+use crate::units::{metres, radians};
+
+/// Counts a metre of a tablet that does not say, 5080 an inch.
+const COUNTS_M: f64 = 200_000.0;
+/// Sides of a tablet, m; beyond them its descriptor is wrong.
+const SIDES_M: [f64; 2] = [0.01, 2.0];
+/// Longer side of a tablet whose descriptor is wrong, m.
+const LONGER_M: f64 = 0.25;
+/// How high a pen hovers at the end of a range without units, m.
+const HIGHEST_M: f64 = 0.01;
+/// Pressure of a touch where there is none.
+const PRESSED: f64 = 0.5;
+/// No tilt is farther from upright, rad: 85°.
+pub const STEEPEST_RAD: f64 = 85.0 * PI / 180.0;
+
+/// What a field of a report is of a pen.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+enum Role {
+    X,
+    Y,
+    /// Grows with the height.
+    Distance,
+    /// Shrinks with the height, for HID's Z points down.
+    Depth,
+    Pressure,
+    Tip,
+    Eraser,
+    Invert,
+    InRange,
+    /// By its bit.
+    Switch(u32),
+    TiltX,
+    TiltY,
+    Azimuth,
+    Altitude,
+    Twist,
+}
+
+impl Role {
+    fn of(usage: (u16, u16)) -> Option<Self> {
+        Some(match usage {
+            (page::DESKTOP, 0x30) | (page::WACOM, 0x130) => Self::X,
+            (page::DESKTOP, 0x31) | (page::WACOM, 0x131) => Self::Y,
+            (page::DESKTOP, 0x32) => Self::Depth,
+            (page::WACOM, 0x132) => Self::Distance,
+            (page::DIGITIZER | page::WACOM, id) => match id {
+                0x30 => Self::Pressure,
+                0x32 => Self::InRange,
+                0x3C => Self::Invert,
+                0x3D => Self::TiltX,
+                0x3E => Self::TiltY,
+                0x3F => Self::Azimuth,
+                0x40 => Self::Altitude,
+                0x41 => Self::Twist,
+                0x42 | 0x43 => Self::Tip,
+                0x44 => Self::Switch(0),
+                // Tablet pick is what XP-Pen calls its second switch.
+                0x5A | 0x46 => Self::Switch(1),
+                0x45 => Self::Eraser,
+                _ => return None,
+            },
+            _ => return None,
+        })
+    }
+}
+
+/// A number in a report.
+#[derive(Clone, Debug)]
+struct Number {
+    field: VariableField,
+    least: f64,
+    most: f64,
+    /// What a count is, where the descriptor says: m or rad.
+    metres: Option<f64>,
+    radians: Option<f64>,
+    /// Of the least count, in the unit of the physical range.
+    at_least: f64,
+    physical: f64,
+}
+
+impl Number {
+    fn new(field: &VariableField) -> Option<Self> {
+        if field.bits.is_empty() || field.bits.len() > 32 {
+            return None;
+        }
+        let (least, most) = (
+            f64::from(i32::from(field.logical_minimum)),
+            f64::from(i32::from(field.logical_maximum)),
+        );
+        // A largest value that was written in too few bytes reads as a negative one.
+        let most = match most < least && least >= 0.0 {
+            true => ((1_u64 << field.bits.len()) - 1) as f64,
+            false => most,
+        };
+        if most <= least {
+            return None;
+        }
+        let range = match (field.physical_minimum, field.physical_maximum) {
+            (Some(least), Some(most)) => [i32::from(least), i32::from(most)],
+            _ => [0, 0],
+        };
+        let unit = field.unit.map_or(0, u32::from);
+        let exponent = field.unit_exponent.map_or(0, i32::from);
+        // Without a physical range the logical one is it.
+        let [low, high] = match range[1] > range[0] {
+            true => range.map(f64::from),
+            false => [least, most],
+        };
+        let count = (high - low) / (most - least);
+        Some(Self {
+            field: field.clone(),
+            least,
+            most,
+            metres: metres(unit, exponent).map(|unit| unit * count),
+            radians: radians(unit, exponent).map(|unit| unit * count),
+            at_least: low,
+            physical: count,
+        })
+    }
+
+    /// The count, within the logical range.
+    fn count(&self, report: &[u8]) -> f64 {
+        let Ok(value) = self.field.extract(report) else {
+            return self.least;
+        };
+        let value = match self.field.is_signed() {
+            true => f64::from(i32::from(value)),
+            false => f64::from(u32::from(value)),
+        };
+        value.clamp(self.least, self.most)
+    }
+
+    /// Share of the range, 0 to 1.
+    fn share(&self, report: &[u8]) -> f64 {
+        (self.count(report) - self.least) / (self.most - self.least)
+    }
+
+    /// An angle, rad; `within` degrees a range without unit is of degrees, else it is `whole` rad wide, with
+    /// zero in its middle where it has no negative half.
+    fn angle(&self, report: &[u8], within: f64, whole: f64) -> f64 {
+        let from_least = self.count(report) - self.least;
+        if let Some(radians) = self.radians {
+            return radians * (self.at_least / self.physical + from_least);
+        }
+        let highest = self.at_least + self.physical * (self.most - self.least);
+        if self.at_least < 0.0 && self.at_least.abs().max(highest.abs()) <= within {
+            return (self.at_least + self.physical * from_least).to_radians();
+        }
+        (self.share(report) - 0.5) * whole
+    }
+}
+
+/// The reports of one pen.
+#[derive(Clone, Debug)]
+pub struct Layout {
+    reports: Vec<PenReport>,
+    area_m: [f64; 2],
+    senses: u32,
+}
+
+/// A report that says where the pen is.
+#[derive(Clone, Debug)]
+struct PenReport {
+    id: Option<u8>,
+    /// Its size, with its number.
+    bytes: usize,
+    is_wacoms: bool,
+    numbers: Vec<(Role, Number)>,
+}
+
+impl Layout {
+    /// Finds the pen of a descriptor; none where it has none.
+    #[must_use]
+    pub fn of(descriptor: &ReportDescriptor) -> Option<Self> {
+        let reports = descriptor.input_reports().iter();
+        let mut reports: Vec<_> = reports.filter_map(PenReport::of).collect();
+        let wacoms = reports.iter().any(|report| report.is_wacoms);
+        reports.retain(|report| report.is_wacoms == wacoms);
+        let first = reports.first()?;
+        let area_m = first.area_m();
+        let mut senses = axes::POSITION | axes::PROXIMITY;
+        for (role, _) in reports.iter().flat_map(|report| &report.numbers) {
+            senses |= match role {
+                Role::Pressure => axes::PRESSURE,
+                Role::TiltX | Role::Azimuth => axes::TILT,
+                Role::Twist => axes::TWIST,
+                Role::Switch(_) => axes::SWITCHES,
+                _ => 0,
+            };
+        }
+        Some(Self {
+            reports,
+            area_m,
+            senses,
+        })
+    }
+
+    /// Width and height of the active area, m.
+    #[must_use]
+    pub fn area_m(&self) -> [f64; 2] {
+        self.area_m
+    }
+
+    /// What the pen senses, see [`axes`].
+    #[must_use]
+    pub fn senses(&self) -> u32 {
+        self.senses
+    }
+
+    /// Reads a report; nothing where it is another's than the pen's, or too short.
+    #[must_use]
+    pub fn decode(&self, report: &[u8]) -> Option<Reading> {
+        let fits = |pen: &&PenReport| match pen.id {
+            Some(id) => report.first() == Some(&id),
+            None => true,
+        };
+        let pen = self.reports.iter().find(fits)?;
+        (report.len() >= pen.bytes).then(|| pen.decode(report, self.area_m))
+    }
+}
+
+impl PenReport {
+    fn of(report: &impl Report) -> Option<Self> {
+        let is_pen = |usage: (u16, u16)| match usage {
+            (page::DIGITIZER, id) => matches!(id, 0x01 | 0x02 | 0x20),
+            (page::WACOM, _) => true,
+            _ => false,
+        };
+        let mut is_wacoms = false;
+        let mut numbers: Vec<(Role, Number)> = Vec::new();
+        for field in report
+            .fields()
+            .iter()
+            .filter(|field| lies_in(field, is_pen))
+        {
+            let Field::Variable(variable) = field else {
+                continue;
+            };
+            let usage = pair(&variable.usage);
+            let Some(role) = Role::of(usage) else {
+                continue;
+            };
+            // Of several pens in a report the first is read, but both tip switches are the tip.
+            let is_known = numbers.iter().any(|(known, _)| *known == role);
+            if let (false, Some(number)) = (is_known && role != Role::Tip, Number::new(variable)) {
+                is_wacoms |= role == Role::X && usage.0 == page::WACOM;
+                numbers.push((role, number));
+            }
+        }
+        let has = |role: Role| numbers.iter().any(|(known, _)| *known == role);
+        let is_pen = has(Role::X) && has(Role::Y) && (has(Role::Tip) || has(Role::Pressure));
+        is_pen.then(|| Self {
+            id: report.report_id().map(u8::from),
+            bytes: report.size_in_bytes(),
+            is_wacoms,
+            numbers,
+        })
+    }
+
+    fn number(&self, role: Role) -> Option<&Number> {
+        let found = self.numbers.iter().find(|(known, _)| *known == role);
+        found.map(|(_, number)| number)
+    }
+
+    fn area_m(&self) -> [f64; 2] {
+        let counts = [Role::X, Role::Y].map(|role| {
+            let number = self.number(role);
+            number.map_or((1.0, None), |number| {
+                (number.most - number.least, number.metres)
+            })
+        });
+        // One axis may say what both are.
+        let known = counts[0].1.or(counts[1].1).unwrap_or(1.0 / COUNTS_M);
+        let sides = counts.map(|(count, metres)| count * metres.unwrap_or(known));
+        let [least, most] = SIDES_M;
+        if sides.iter().all(|side| (least..=most).contains(side)) {
+            return sides;
+        }
+        let longer = counts[0].0.max(counts[1].0);
+        counts.map(|(count, _)| (count / longer * LONGER_M).max(least))
+    }
+
+    /// Whether a switch is on; none where there is no such switch.
+    fn is_on(&self, report: &[u8], role: Role) -> Option<bool> {
+        let mut all = self.numbers.iter().filter(|(known, _)| *known == role);
+        let first = all.next()?.1.count(report) > 0.0;
+        Some(first || all.any(|(_, number)| number.count(report) > 0.0))
+    }
+
+    fn decode(&self, report: &[u8], area_m: [f64; 2]) -> Reading {
+        let share = |role| self.number(role).map(|number| number.share(report));
+        let is_on = |role| self.is_on(report, role);
+        let pressure = share(Role::Pressure);
+        let touches = is_on(Role::Tip).unwrap_or(pressure > Some(0.0));
+        let erases = is_on(Role::Eraser).unwrap_or(false);
+        let presence = match touches || erases {
+            true => Presence::Touching,
+            false if is_on(Role::InRange).unwrap_or(true) => Presence::Hovering,
+            false => Presence::Away,
+        };
+        let switches = self.numbers.iter().filter_map(|(role, number)| match role {
+            Role::Switch(bit) if number.count(report) > 0.0 => Some(1 << bit),
+            _ => None,
+        });
+        Reading {
+            presence,
+            end: match erases || is_on(Role::Invert).unwrap_or(false) {
+                true => End::Eraser,
+                false => End::Tip,
+            },
+            point_m: [
+                share(Role::X).unwrap_or(0.0) * area_m[0],
+                // A tablet counts toward the hand.
+                (1.0 - share(Role::Y).unwrap_or(0.0)) * area_m[1],
+            ],
+            height_m: self.height_m(report),
+            pressure: pressure.unwrap_or(PRESSED),
+            tilt_rad: self.tilt_rad(report),
+            twist_rad: self.twist_rad(report),
+            switches: switches.fold(0, |all: u32, bit: u32| all | bit),
+        }
+    }
+
+    fn height_m(&self, report: &[u8]) -> f64 {
+        let height = |number: &Number, share: f64| {
+            let range = number
+                .metres
+                .map(|count| count * (number.most - number.least));
+            share * range.unwrap_or(HIGHEST_M)
+        };
+        if let Some(distance) = self.number(Role::Distance) {
+            return height(distance, distance.share(report));
+        }
+        self.number(Role::Depth)
+            .map_or(0.0, |depth| height(depth, 1.0 - depth.share(report)))
+    }
+
+    /// X tilt is to the right, Y tilt toward the hand; azimuth goes counter-clockwise from x, and altitude
+    /// up from the tablet.
+    fn tilt_rad(&self, report: &[u8]) -> Option<[f64; 2]> {
+        let tilt = |role| {
+            let number = self.number(role)?;
+            Some(number.angle(report, 180.0, PI))
+        };
+        if let (Some(x), Some(y)) = (tilt(Role::TiltX), tilt(Role::TiltY)) {
+            return Some([x, -y].map(|tilt| tilt.clamp(-STEEPEST_RAD, STEEPEST_RAD)));
+        }
+        let azimuth = self.number(Role::Azimuth)?.angle(report, 360.0, TAU);
+        let altitude = self.number(Role::Altitude)?;
+        let altitude = match altitude.least < 0.0 {
+            true => altitude.angle(report, 90.0, PI).abs(),
+            // Altitudes above the tablet alone are no signed range.
+            false => match altitude.radians {
+                Some(_) => altitude.angle(report, 90.0, PI),
+                None => altitude.share(report) * FRAC_PI_2,
+            },
+        };
+        let ((sin_up, cos_up), (sin, cos)) = (sin_cos(altitude), sin_cos(azimuth));
+        Some([cos, sin].map(|along| {
+            atan2(along * cos_up, sin_up.max(1e-9)).clamp(-STEEPEST_RAD, STEEPEST_RAD)
+        }))
+    }
+
+    /// HID counts a twist clockwise for who looks from above.
+    fn twist_rad(&self, report: &[u8]) -> Option<f64> {
+        let clockwise = self.number(Role::Twist)?.angle(report, 360.0, TAU);
+        Some(wrapped(-clockwise))
+    }
+}
+
+/// The same angle within −π and π, rad.
+#[must_use]
+pub fn wrapped(angle: f64) -> f64 {
+    angle - TAU * (angle / TAU).round()
+}

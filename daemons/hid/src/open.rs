@@ -1,0 +1,302 @@
+//! The device that a section of `rig.toml` asks for, and how it is read.
+
+use maulstick_rig::Fault;
+
+use crate::descriptor::{self, describe, page};
+use crate::layout::Layout;
+use crate::pen::Reading;
+use crate::source::{Found, HidSource, Identity, Ports};
+use crate::spacemouse::{LIGHT, SpaceMouse, VENDORS};
+use crate::wacom::Wacom;
+
+/// What `maulstick-hid` drives.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Kind {
+    /// A tablet with a pen.
+    Pen,
+    /// A 6-DOF mouse.
+    SpaceMouse,
+}
+
+impl Kind {
+    /// The kind of a driver of `rig.toml`; none where it is another daemon's.
+    #[must_use]
+    pub fn of(driver: &str) -> Option<Self> {
+        match driver {
+            "pen" => Some(Self::Pen),
+            "spacemouse" => Some(Self::SpaceMouse),
+            _ => None,
+        }
+    }
+
+    fn word(self) -> &'static str {
+        match self {
+            Self::Pen => "pen tablet",
+            Self::SpaceMouse => "6-DOF mouse",
+        }
+    }
+
+    /// Whether a device is of this kind by what anyone may know of it.
+    fn suits(self, found: &Found) -> bool {
+        let Identity {
+            vendor, product, ..
+        } = found.identity;
+        let has = |wanted: fn(&(u16, u16)) -> bool| found.usages.iter().any(wanted);
+        match self {
+            Self::Pen => {
+                let described = has(|usage| {
+                    matches!(
+                        usage,
+                        (page::DIGITIZER, 0x01 | 0x02 | 0x20) | (page::WACOM, _)
+                    )
+                });
+                described || Wacom::of(vendor, product).is_some()
+            }
+            Self::SpaceMouse => {
+                VENDORS.contains(&vendor) && has(|usage| *usage == (page::DESKTOP, 0x08))
+            }
+        }
+    }
+}
+
+/// Which device.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Address {
+    /// The first that suits.
+    Any,
+    /// Vendor and product.
+    Numbers(u16, u16),
+    /// Its path below /dev.
+    Path(String),
+}
+
+impl Address {
+    /// Reads `address` of `rig.toml`.
+    ///
+    /// # Errors
+    /// A [`Fault`] where it is neither.
+    pub fn parse(text: Option<&str>) -> Result<Self, Fault> {
+        let Some(text) = text else {
+            return Ok(Self::Any);
+        };
+        if text.starts_with('/') {
+            return Ok(Self::Path(text.to_owned()));
+        }
+        let numbers = text.split_once(':').and_then(|(vendor, product)| {
+            let number = |text| u16::from_str_radix(text, 16).ok();
+            Some(Self::Numbers(number(vendor)?, number(product)?))
+        });
+        numbers.ok_or_else(|| {
+            Fault::usage(format!("'{text}' is no address of a HID device")).help(
+                "write vendor:product in hexadecimal as in 056a:0357, or a path as /dev/hidraw3",
+            )
+        })
+    }
+
+    fn names(&self, found: &Found) -> bool {
+        let identity = &found.identity;
+        match self {
+            Self::Any => true,
+            Self::Numbers(vendor, product) => {
+                (identity.vendor, identity.product) == (*vendor, *product)
+            }
+            Self::Path(path) => identity.place == *path,
+        }
+    }
+}
+
+/// How a pen's reports are read.
+#[derive(Clone, Debug)]
+pub enum Decoder {
+    /// By the descriptor.
+    Described(Layout),
+    /// By a table.
+    Wacom(Wacom),
+}
+
+impl Decoder {
+    /// Width and height of the active area, m.
+    #[must_use]
+    pub fn area_m(&self) -> [f64; 2] {
+        match self {
+            Self::Described(layout) => layout.area_m(),
+            Self::Wacom(table) => table.area_m(),
+        }
+    }
+
+    /// What the pen senses, see [`maulstick_types::stylus::axes`].
+    #[must_use]
+    pub fn senses(&self) -> u32 {
+        match self {
+            Self::Described(layout) => layout.senses(),
+            Self::Wacom(table) => table.senses(),
+        }
+    }
+
+    /// Reads a report; nothing where it is no pen's, or too short.
+    pub fn decode(&mut self, report: &[u8]) -> Option<Reading> {
+        match self {
+            Self::Described(layout) => layout.decode(report),
+            Self::Wacom(table) => table.decode(report),
+        }
+    }
+}
+
+/// How a device is read.
+#[derive(Clone, Debug)]
+pub enum Means {
+    /// A pen.
+    Pen(Decoder),
+    /// A 6-DOF mouse.
+    SpaceMouse,
+}
+
+/// How a device is read, by its numbers and its descriptor.
+///
+/// # Errors
+/// A [`Fault`] that says what the device is instead.
+pub fn means(kind: Kind, identity: &Identity, bytes: &[u8]) -> Result<Means, Fault> {
+    if let (Kind::Pen, Some(table)) = (kind, Wacom::of(identity.vendor, identity.product)) {
+        return Ok(Means::Pen(Decoder::Wacom(table)));
+    }
+    let descriptor = descriptor::read(bytes).map_err(|what| {
+        Fault::failure(format!("{identity} describes itself wrongly: {what}"))
+            .help("choose another device by `address` in rig.toml")
+    })?;
+    let other = |help: &str| {
+        let what = describe(&descriptor);
+        Fault::failure(format!("{identity} is {what}, no {}", kind.word())).help(help)
+    };
+    match kind {
+        Kind::Pen => {
+            let layout = Layout::of(&descriptor).ok_or_else(|| {
+                other(
+                    "choose another device by `address`; if it is a tablet, its reports are in a format \
+                     of its maker's own: record it with `maulstick-hid --record` and send us that",
+                )
+            })?;
+            Ok(Means::Pen(Decoder::Described(layout)))
+        }
+        Kind::SpaceMouse => {
+            let has_axes = has_six_axes(&descriptor);
+            match VENDORS.contains(&identity.vendor) && has_axes {
+                true => Ok(Means::SpaceMouse),
+                false => Err(other("choose another device by `address` in rig.toml")),
+            }
+        }
+    }
+}
+
+/// Whether a descriptor is of a multi-axis controller.
+fn has_six_axes(descriptor: &hidreport::ReportDescriptor) -> bool {
+    use hidreport::Report as _;
+    let reports = descriptor.input_reports().iter();
+    reports
+        .flat_map(|report| report.fields().iter())
+        .any(|field| descriptor::lies_in(field, |usage| usage == (page::DESKTOP, 0x08)))
+}
+
+/// What some tablets are told before they report: XP-Pen's Deco L (from OpenTabletDriver).
+const BEGINNINGS: [(u16, u16, &[u8]); 1] = [(0x28BD, 0x0935, &[0x02, 0xB0, 0x04])];
+
+/// A device that is open.
+pub struct Opened {
+    /// It.
+    pub source: Box<dyn HidSource>,
+    /// What it is.
+    pub identity: Identity,
+    /// How it is read; a device that was asked for by its address and cannot be read may still be recorded.
+    pub means: Result<Means, Fault>,
+}
+
+/// Opens the first device that suits.
+///
+/// # Errors
+/// A [`Fault`] that says what is missing: tried again later, it may be there.
+pub fn open(ports: &mut dyn Ports, kind: Kind, address: &Address) -> Result<Opened, Fault> {
+    let all = ports.list()?;
+    let mut found: Vec<_> = all.iter().filter(|found| address.names(found)).collect();
+    if found.is_empty() {
+        return Err(missing(kind, address, &all));
+    }
+    // One that is asked for is looked at even if it seems to be something else.
+    let is_any = *address == Address::Any;
+    found.sort_by_key(|found| !kind.suits(found));
+    found.retain(|found| !is_any || kind.suits(found));
+    let mut first: Option<Result<Opened, Fault>> = None;
+    for found in found {
+        let opened = ports.open(found).map(|source| {
+            let identity = found.identity.clone();
+            let means = means(kind, &identity, source.descriptor());
+            Opened {
+                source,
+                identity,
+                means,
+            }
+        });
+        match opened {
+            Ok(mut opened) if opened.means.is_ok() => {
+                begin(kind, &mut opened);
+                return Ok(opened);
+            }
+            other => first = first.or(Some(other)),
+        }
+    }
+    match first {
+        None => Err(missing(kind, address, &all)),
+        Some(Ok(Opened {
+            means: Err(fault), ..
+        })) if is_any => Err(fault),
+        Some(other) => other,
+    }
+}
+
+/// Tells a device what it waits for. That it refuses is no reason not to listen.
+fn begin(kind: Kind, opened: &mut Opened) {
+    let numbers = (opened.identity.vendor, opened.identity.product);
+    let order = match kind {
+        Kind::SpaceMouse => Some(&LIGHT[..]),
+        Kind::Pen => BEGINNINGS
+            .iter()
+            .find(|(vendor, product, _)| (*vendor, *product) == numbers)
+            .map(|(.., order)| *order),
+    };
+    if let Some(Err(fault)) = order.map(|order| opened.source.write(order)) {
+        tracing::warn!("{}", fault.what);
+    }
+}
+
+fn missing(kind: Kind, address: &Address, all: &[Found]) -> Fault {
+    let mut there: Vec<_> = all.iter().map(|found| found.identity.to_string()).collect();
+    there.dedup();
+    let there = match there.is_empty() {
+        true => "no HID device is plugged in".to_owned(),
+        false => format!("there are {}", there.join(", ")),
+    };
+    let what = match address {
+        Address::Any => format!("no {} is plugged in", kind.word()),
+        Address::Numbers(vendor, product) => format!("no {vendor:04x}:{product:04x} is plugged in"),
+        Address::Path(path) => format!("{path} is no HID device"),
+    };
+    Fault::failure(what).help(format!("plug it in; {there}"))
+}
+
+/// What a device is in words, as the log tells it.
+#[must_use]
+pub fn told(identity: &Identity, means: &Means) -> String {
+    match means {
+        Means::Pen(decoder) => {
+            let [width, height] = decoder.area_m().map(|side| (1e3 * side).round());
+            let place = &identity.place;
+            format!("{identity} at {place}, {width} x {height} mm")
+        }
+        Means::SpaceMouse => {
+            let known = SpaceMouse::called(identity.vendor, identity.product);
+            format!(
+                "{identity} at {} ({})",
+                identity.place,
+                known.unwrap_or("6-DOF mouse")
+            )
+        }
+    }
+}

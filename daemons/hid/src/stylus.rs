@@ -1,0 +1,189 @@
+//! A pen on the bus: its samples, in order of time.
+//!
+//! A brush takes a leap of more than a tenth of a second for a new beginning, and many tablets say nothing
+//! while nothing changes. So a pen that is near and silent is told of again, and a stroke that rests
+//! goes on.
+
+use std::sync::Arc;
+
+use maulstick_bus::credit::Stamp;
+use maulstick_bus::typed::Sender;
+use maulstick_bus::{Bus, BusError, Class, CreditSender, Wake};
+use maulstick_rig::config::DeviceSection;
+use maulstick_types::stylus::{StylusInfo, StylusSample};
+use maulstick_types::topics::Topics;
+use maulstick_types::{Flags, Origin};
+
+use crate::open::Decoder;
+use crate::pen::{Pen, Reading};
+use crate::tablet::Tablet;
+
+/// A silent pen is told of again after this time, ns.
+pub const REPEAT_NS: u64 = 50_000_000;
+/// Samples are at least this far apart, ns: reports that were read together did not come together.
+pub const SPACING_NS: u64 = 500_000;
+/// A silence of more than this, ns, is not filled: the machine slept.
+const LONGEST_NS: u64 = 60_000_000_000;
+/// Reports a second of most tablets, which do not say.
+const RATE_HZ: f64 = 200.0;
+
+/// A pen, from its reports to its samples.
+pub struct Stylus {
+    pen: Pen,
+    /// How reports are read, and where they lie on the desk; none while there is no tablet.
+    tablet: Option<(Decoder, Tablet)>,
+    samples: CreditSender<StylusSample>,
+    info: Sender<StylusInfo>,
+    newest: StylusSample,
+    event_ns: u64,
+    sent: u64,
+}
+
+impl Stylus {
+    /// The pen called `name`.
+    ///
+    /// # Errors
+    /// [`BusError::Topic`].
+    pub fn new(
+        bus: &Arc<dyn Bus>,
+        topics: &Topics,
+        name: &str,
+        origin: Origin,
+        wake: &Wake,
+    ) -> Result<Self, BusError> {
+        let samples = CreditSender::new(&**bus, topics, &topics.sample(name), origin, wake)?;
+        let topic = topics.stylus_info(name);
+        Ok(Self {
+            pen: Pen::default(),
+            tablet: None,
+            samples,
+            info: Sender::new(&**bus, &topic, Class::Cached, origin)?,
+            newest: StylusSample::away(),
+            event_ns: 0,
+            sent: 0,
+        })
+    }
+
+    /// A tablet is there.
+    ///
+    /// # Errors
+    /// [`BusError::Topic`].
+    pub fn begin(
+        &mut self,
+        decoder: Decoder,
+        tablet: Tablet,
+        device: &DeviceSection,
+        now_ns: u64,
+    ) -> Result<(), BusError> {
+        let told = StylusInfo {
+            device: device.name.clone(),
+            driver: device.driver.clone(),
+            brush: device.brush.clone(),
+            priority: device.priority,
+            senses: decoder.senses(),
+            drives: 0,
+            rate_hz: RATE_HZ,
+            max_force_n: 0.0,
+            max_stiffness_n_m: 0.0,
+            workspace_m: tablet.workspace_m(),
+        };
+        self.tablet = Some((decoder, tablet));
+        self.info.send(now_ns, now_ns, &told)
+    }
+
+    /// A report of time `event_ns`.
+    ///
+    /// # Errors
+    /// [`BusError`].
+    pub fn report(&mut self, report: &[u8], event_ns: u64, now_ns: u64) -> Result<(), BusError> {
+        let decoder = self.tablet.as_mut().map(|(decoder, _)| decoder);
+        let Some(said) = decoder.and_then(|decoder| decoder.decode(report)) else {
+            return Ok(());
+        };
+        self.silent(event_ns, now_ns)?;
+        let mut readings = Vec::with_capacity(3);
+        self.pen.follow(said, &mut |reading| readings.push(reading));
+        self.tell(&readings, event_ns, now_ns)
+    }
+
+    /// Nothing came until `until_ns`.
+    ///
+    /// # Errors
+    /// [`BusError`].
+    pub fn silent(&mut self, until_ns: u64, now_ns: u64) -> Result<(), BusError> {
+        if until_ns.saturating_sub(self.event_ns) > LONGEST_NS {
+            return Ok(());
+        }
+        while self.newest.in_range && self.event_ns + REPEAT_NS <= until_ns {
+            self.send(self.newest.clone(), self.event_ns + REPEAT_NS, now_ns)?;
+        }
+        Ok(())
+    }
+
+    /// The tablet is gone, at `event_ns`: the pen is lifted, and leaves.
+    ///
+    /// # Errors
+    /// [`BusError`].
+    pub fn end(&mut self, event_ns: u64, now_ns: u64) -> Result<(), BusError> {
+        let mut readings = Vec::with_capacity(2);
+        self.pen.leave(&mut |reading| readings.push(reading));
+        self.tell(&readings, event_ns, now_ns)?;
+        self.tablet = None;
+        Ok(())
+    }
+
+    /// Answers for lost samples. Nobody waits for credit on a live device.
+    ///
+    /// # Errors
+    /// [`BusError`].
+    pub fn serve(&mut self, now_ns: u64) -> Result<(), BusError> {
+        self.samples.forgive();
+        self.samples.serve(now_ns)
+    }
+
+    /// When to tell of a silent pen again, ns.
+    #[must_use]
+    pub fn due_ns(&self) -> Option<u64> {
+        self.newest.in_range.then_some(self.event_ns + REPEAT_NS)
+    }
+
+    /// Samples sent.
+    #[must_use]
+    pub fn sent(&self) -> u64 {
+        self.sent
+    }
+
+    fn tell(&mut self, readings: &[Reading], event_ns: u64, now_ns: u64) -> Result<(), BusError> {
+        for reading in readings {
+            let sample = self
+                .tablet
+                .as_ref()
+                .map(|(_, tablet)| tablet.sample(reading));
+            if let Some(sample) = sample {
+                self.send(sample, event_ns, now_ns)?;
+            }
+        }
+        Ok(())
+    }
+
+    fn send(&mut self, sample: StylusSample, event_ns: u64, now_ns: u64) -> Result<(), BusError> {
+        self.event_ns = event_ns.max(self.event_ns + SPACING_NS);
+        let stamp = Stamp {
+            now_ns,
+            event_ns: self.event_ns,
+        };
+        self.samples.send(Flags::NONE, stamp, &sample)?;
+        self.newest = sample;
+        self.sent += 1;
+        Ok(())
+    }
+}
+
+impl std::fmt::Debug for Stylus {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("Stylus")
+            .field("pen", &self.pen)
+            .field("sent", &self.sent)
+            .finish_non_exhaustive()
+    }
+}

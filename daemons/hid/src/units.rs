@@ -1,0 +1,58 @@
+//! Units of report descriptors (HID 1.11, section 6.2.2.7): a code of nibbles, and an exponent of ten.
+
+/// What one physical unit is, m, where the unit is one of length.
+#[must_use]
+pub fn metres(unit: u32, exponent: i32) -> Option<f64> {
+    let base = match unit {
+        0x11 => 0.01,
+        0x13 => 0.0254,
+        _ => return None,
+    };
+    Some(base * ten_to(exponent)?)
+}
+
+/// What one physical unit is, rad, where the unit is one of angle.
+#[must_use]
+pub fn radians(unit: u32, exponent: i32) -> Option<f64> {
+    let base = match unit {
+        0x12 => 1.0,
+        0x14 => std::f64::consts::PI / 180.0,
+        _ => return None,
+    };
+    Some(base * ten_to(exponent)?)
+}
+
+/// Exponents are nibbles of two's complement, and some devices write them as whole bytes.
+fn ten_to(exponent: i32) -> Option<f64> {
+    let exponent = match exponent {
+        -8..=7 => exponent,
+        8..=15 => exponent - 16,
+        _ => return None,
+    };
+    Some(10_f64.powi(exponent))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn lengths_and_angles_in_either_system() {
+        let near = |got: Option<f64>, wanted: f64| {
+            assert!(
+                got.is_some_and(|got| (got / wanted - 1.0).abs() < 1e-12),
+                "{got:?} {wanted}"
+            );
+        };
+        near(metres(0x11, -3), 1e-5);
+        near(metres(0x11, 0x0D), 1e-5);
+        near(metres(0x13, -3), 2.54e-5);
+        near(radians(0x14, -2), (0.01_f64).to_radians());
+        near(radians(0x12, 0), 1.0);
+        // Seconds, square centimetres, no unit, an exponent beyond a nibble.
+        for (unit, exponent) in [(0x1001, 0), (0x21, 0), (0, 0), (0x11, 40)] {
+            assert_eq!(metres(unit, exponent), None, "{unit:#x}");
+            assert_eq!(radians(unit, exponent), None, "{unit:#x}");
+        }
+    }
+}

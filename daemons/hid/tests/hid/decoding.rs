@@ -1,0 +1,360 @@
+//! Reports of tablets, packed by their descriptors.
+
+use std::f64::consts::PI;
+
+use maulstick_hid::descriptor;
+use maulstick_hid::layout::Layout;
+use maulstick_hid::open::{Kind, Means, means};
+use maulstick_hid::pen::{End, Presence, Reading};
+use maulstick_hid::wacom::Wacom;
+use maulstick_rig::config::{CanvasSection, DeviceSection};
+use maulstick_hid::tablet::Tablet;
+use maulstick_types::stylus::axes;
+use proptest::prelude::*;
+
+use crate::support::{
+    DESKTOP, DIGITIZER, Descriptor, WACOM, azimuths, deco_l, identity, intuos_pro, intuos_s,
+    pointer,
+};
+
+fn layout(descriptor: &Descriptor) -> Layout {
+    let read = descriptor::read(&descriptor.bytes).expect("a descriptor");
+    Layout::of(&read).expect("a pen")
+}
+
+/// What a report must be read as, from the values that were packed, by the words of the specification.
+struct Wanted {
+    presence: Presence,
+    end: End,
+    point_m: [f64; 2],
+    pressure: f64,
+    tilt_rad: Option<[f64; 2]>,
+    twist_rad: Option<f64>,
+    switches: u32,
+}
+
+fn wanted(which: usize, values: &[((u16, u16), i64)]) -> Wanted {
+    let get = |usage: (u16, u16)| {
+        let found = values.iter().find(|(known, _)| *known == usage);
+        found.map(|(_, value)| *value as f64)
+    };
+    let page = if which < 2 { WACOM } else { DIGITIZER };
+    let dig = |usage| get((page, usage));
+    let on = |usage| dig(usage) == Some(1.0);
+    let (area, counts) = [
+        ([0.263, 0.148], [52_600.0, 29_600.0]),
+        ([0.152, 0.095], [15_200.0, 9500.0]),
+        ([0.254, 0.1524], [50_800.0, 30_480.0]),
+    ][which];
+    let x = get((WACOM, 0x130)).or(get((DESKTOP, 0x30))).expect("x");
+    let y = get((WACOM, 0x131)).or(get((DESKTOP, 0x31))).expect("y");
+    let most = [8191.0, 4095.0, 8191.0][which];
+    let touches = on(0x42) || on(0x45);
+    let second = if which == 2 { on(0x46) } else { on(0x5A) };
+    let lean = |usage: u16, sign: f64| dig(usage).map(|degrees| sign * degrees.clamp(-85.0, 85.0).to_radians());
+    Wanted {
+        presence: match (touches, on(0x32)) {
+            (true, _) => Presence::Touching,
+            (false, true) => Presence::Hovering,
+            (false, false) => Presence::Away,
+        },
+        end: if on(0x3C) || on(0x45) { End::Eraser } else { End::Tip },
+        point_m: [x / counts[0] * area[0], (1.0 - y / counts[1]) * area[1]],
+        pressure: dig(0x30).expect("pressure") / most,
+        tilt_rad: lean(0x3D, 1.0).zip(lean(0x3E, -1.0)).map(|(x, y)| [x, y]),
+        // -900..899 stands for -180..179 degrees, clockwise.
+        twist_rad: dig(0x41).map(|count| -(-180.0 + (count + 900.0) * 359.0 / 1799.0).to_radians()),
+        switches: u32::from(on(0x44)) | u32::from(second) << 1,
+    }
+}
+
+/// The largest difference, none where what is no number differs.
+fn off(got: &Reading, wanted: &Wanted) -> Option<f64> {
+    let exact = (got.presence, got.end, got.switches)
+        == (wanted.presence, wanted.end, wanted.switches)
+        && got.tilt_rad.is_some() == wanted.tilt_rad.is_some()
+        && got.twist_rad.is_some() == wanted.twist_rad.is_some();
+    let tilt = |tilt: Option<[f64; 2]>| tilt.unwrap_or_default();
+    // −π and π are one angle.
+    let turn = (got.twist_rad.unwrap_or(0.0) - wanted.twist_rad.unwrap_or(0.0)).abs();
+    let pairs = [
+        (got.point_m[0], wanted.point_m[0]),
+        (got.point_m[1], wanted.point_m[1]),
+        (got.pressure, wanted.pressure),
+        (tilt(got.tilt_rad)[0], tilt(wanted.tilt_rad)[0]),
+        (tilt(got.tilt_rad)[1], tilt(wanted.tilt_rad)[1]),
+        (turn.min((turn - 2.0 * PI).abs()), 0.0),
+    ];
+    let most = pairs.iter().map(|(got, wanted)| (got - wanted).abs()).fold(0.0, f64::max);
+    exact.then_some(most)
+}
+
+fn tablets() -> [(Descriptor, u8); 3] {
+    [(intuos_pro(), 30), (intuos_s(), 16), (deco_l(), 2)]
+}
+
+fn values(of: &Descriptor, report: u8, shares: &[f64]) -> Vec<((u16, u16), i64)> {
+    let fields = of.of(report).into_iter().zip(shares.iter().cycle());
+    fields
+        .map(|(field, share)| {
+            let [least, most] = field.range;
+            (field.usage, least + (share * (most - least) as f64).round() as i64)
+        })
+        .collect()
+}
+
+proptest! {
+    #[test]
+    fn what_a_tablet_packs_is_what_is_read(
+        which in 0..3_usize,
+        shares in prop::collection::vec(0.0..=1.0_f64, 20),
+        beyond in prop::collection::vec(any::<u8>(), 0..8),
+    ) {
+        let (tablet, report) = &tablets()[which];
+        let values = values(tablet, *report, &shares);
+        let mut bytes = tablet.pack(*report, &values);
+        // A longer report than described has the same at its beginning.
+        bytes.extend(beyond);
+        let got = layout(tablet).decode(&bytes).expect("a pen's");
+        let off = off(&got, &wanted(which, &values));
+        prop_assert!(off.is_some_and(|off| off < 1e-9), "{off:?} {got:?} {values:?}");
+    }
+
+    #[test]
+    fn no_bytes_make_a_descriptor_panic(
+        start in 0..5_usize,
+        changes in prop::collection::vec((any::<prop::sample::Index>(), any::<u8>()), 0..6),
+        bytes in prop::collection::vec(any::<u8>(), 0..64),
+        report in prop::collection::vec(any::<u8>(), 0..40),
+    ) {
+        let mut text = match start {
+            0 => bytes.clone(),
+            1 => deco_l().bytes,
+            2 => azimuths().bytes,
+            3 => intuos_s().bytes,
+            _ => intuos_pro().bytes,
+        };
+        for (at, byte) in &changes {
+            if !text.is_empty() {
+                let at = at.index(text.len());
+                text[at] = *byte;
+            }
+        }
+        if let Some(layout) = descriptor::read(&text).ok().and_then(|read| Layout::of(&read)) {
+            check(&layout, &report);
+        }
+    }
+
+    #[test]
+    fn no_bytes_make_a_report_panic(
+        which in 0..3_usize,
+        report in prop::collection::vec(any::<u8>(), 0..40),
+        product in prop::sample::select(vec![0x0357_u16, 0x0317]),
+    ) {
+        thread_local!(static LAYOUTS: [(Layout, u8); 3] = tablets().map(|(tablet, id)| (layout(&tablet), id)));
+        LAYOUTS.with(|layouts| {
+            let (layout, id) = &layouts[which];
+            check(layout, &report);
+            let mut numbered = report.clone();
+            if let Some(first) = numbered.first_mut() {
+                *first = *id;
+            }
+            check(layout, &numbered);
+        });
+        let mut table = Wacom::of(0x056A, product).expect("known");
+        let mut numbered = report;
+        if let Some(first) = numbered.first_mut() {
+            *first = if product == 0x0357 { 0x10 } else { 2 };
+        }
+        if let Some(reading) = table.decode(&numbered) {
+            fits(&reading, table.area_m(), table.senses());
+        }
+    }
+}
+
+/// Whatever was read, the sample that follows from it is in range.
+fn check(layout: &Layout, report: &[u8]) {
+    if let Some(reading) = layout.decode(report) {
+        fits(&reading, layout.area_m(), layout.senses());
+    }
+}
+
+fn fits(reading: &Reading, area_m: [f64; 2], senses: u32) {
+    let device = DeviceSection::new("pen", "pen", "main");
+    let tablet = Tablet::fit(area_m, senses, &device, &CanvasSection::default()).expect("fitted");
+    let sample = tablet.sample(reading);
+    assert_eq!(sample.fault(), None, "{reading:?} {area_m:?}");
+}
+
+#[test]
+fn the_comparison_finds_a_field_that_is_one_bit_off() {
+    for (which, (tablet, report)) in tablets().into_iter().enumerate() {
+        for field in tablet.of(report) {
+            let mut values = values(&tablet, report, &[0.25]);
+            let sound = wanted(which, &values);
+            let serials = matches!(field.usage, (WACOM, 0x5B | 0x5C | 0x77 | 0x132 | 0x36 | 0xD03));
+            for (usage, value) in &mut values {
+                if *usage == field.usage {
+                    *value += 1;
+                }
+            }
+            let got = layout(&tablet).decode(&tablet.pack(report, &values)).expect("a pen's");
+            let finds = off(&got, &sound).is_none_or(|off| off > 1e-9);
+            assert_eq!(finds, !serials, "{field:?}");
+        }
+    }
+}
+
+#[test]
+fn wacoms_own_page_is_read_and_the_standard_one_beside_it_is_not() {
+    let tablet = intuos_pro();
+    let layout = layout(&tablet);
+    let standard = tablet.pack(6, &[((DIGITIZER, 0x32), 1), ((DESKTOP, 0x30), 13_150)]);
+    assert_eq!(layout.decode(&standard), None);
+    let own = tablet.pack(30, &[((WACOM, 0x32), 1), ((WACOM, 0x130), 26_300)]);
+    let middle = layout.decode(&own).expect("a pen's").point_m[0];
+    assert!((middle - 0.1315).abs() < 1e-12, "{middle}");
+    assert_ne!(layout.senses() & axes::TWIST, 0);
+}
+
+#[test]
+fn a_tablet_of_the_standard_page_alone_is_read_by_it() {
+    let mut tablet = intuos_pro();
+    // Nothing of the second collection.
+    let cut = tablet.bytes.windows(3).position(|three| three == [0x06, 0x0D, 0xFF]);
+    tablet.bytes.truncate(cut.expect("Wacom's page"));
+    let report = tablet.pack(6, &[
+        ((DIGITIZER, 0x32), 1),
+        ((DIGITIZER, 0x3C), 1),
+        ((DESKTOP, 0x30), 26_300),
+        ((DIGITIZER, 0x3D), 3000),
+        ((DIGITIZER, 0x3E), 6000),
+    ]);
+    let reading = layout(&tablet).decode(&report).expect("a pen's");
+    assert_eq!((reading.presence, reading.end), (Presence::Hovering, End::Eraser));
+    let tilt = reading.tilt_rad.expect("tilts");
+    assert!((reading.point_m[0] - 0.263).abs() < 1e-12);
+    assert!((reading.point_m[1] - 0.148).abs() < 1e-12, "y counts toward the hand");
+    assert!((tilt[0] - PI / 6.0).abs() < 1e-12 && (tilt[1] + PI / 3.0).abs() < 1e-12, "{tilt:?}");
+    // Z of HID points down: 0 is the highest.
+    assert!((reading.height_m - 0.01).abs() < 1e-12, "{}", reading.height_m);
+}
+
+#[test]
+fn azimuth_and_altitude_are_tilts_too() {
+    let tablet = azimuths();
+    let layout = layout(&tablet);
+    // 40,000 counts of 5080 an inch.
+    assert!((layout.area_m()[0] - 0.2).abs() < 1e-12 && (layout.area_m()[1] - 0.1).abs() < 1e-12);
+    for (azimuth, altitude, wanted) in [
+        (0, 600, [PI / 6.0, 0.0]),
+        (900, 600, [0.0, PI / 6.0]),
+        (1800, 450, [-PI / 4.0, 0.0]),
+        (2700, 900, [0.0, 0.0]),
+    ] {
+        let values = [
+            ((DIGITIZER, 0x32), 1),
+            ((DIGITIZER, 0x3F), azimuth),
+            ((DIGITIZER, 0x40), altitude),
+        ];
+        let got = layout.decode(&tablet.pack(1, &values)).expect("a pen's");
+        let tilt = got.tilt_rad.expect("tilts");
+        let off = (tilt[0] - wanted[0]).abs().max((tilt[1] - wanted[1]).abs());
+        assert!(off < 1e-9, "{azimuth} {altitude}: {tilt:?} {wanted:?}");
+    }
+}
+
+#[test]
+fn a_report_that_is_too_short_or_another_s_is_no_pen_s() {
+    for (tablet, report) in tablets() {
+        let layout = layout(&tablet);
+        let whole = tablet.pack(report, &[]);
+        assert!(layout.decode(&whole).is_some());
+        for length in 0..whole.len() {
+            assert_eq!(layout.decode(&whole[..length]), None, "{length}");
+        }
+        let mut other = whole;
+        other[0] = 99;
+        assert_eq!(layout.decode(&other), None);
+    }
+}
+
+#[test]
+fn what_is_no_tablet_says_what_it_is() {
+    let told = |descriptor: &Descriptor, kind| {
+        let identity = identity(0x1234, 0x0001, "Thing");
+        means(kind, &identity, &descriptor.bytes).expect_err("refused").to_string()
+    };
+    for (page, usage, word) in [
+        (DESKTOP, 0x02, "a mouse"),
+        (DESKTOP, 0x06, "a keyboard"),
+        (DIGITIZER, 0x05, "a touch pad"),
+        (DIGITIZER, 0x04, "a touch screen"),
+        (0xFF00, 0x01, "a format of its maker's own"),
+    ] {
+        let fault = told(&pointer(page, usage), Kind::Pen);
+        assert!(fault.contains(word) && fault.contains("1234:0001 Thing"), "{fault}");
+        assert!(fault.contains("help:"), "{fault}");
+    }
+    assert!(told(&deco_l(), Kind::SpaceMouse).contains("is a pen, no 6-DOF mouse"));
+    let cut = Descriptor { bytes: vec![0x05, 0x0D, 0x26, 0x01], ..Descriptor::default() };
+    assert!(told(&cut, Kind::Pen).contains("describes itself wrongly: an item is cut off at byte 2"));
+}
+
+#[test]
+fn a_descriptor_that_asks_for_too_much_is_refused_before_it_is_read() {
+    let with = |tail: &[u8]| {
+        let mut bytes = vec![0x05, 0x0D];
+        bytes.extend(tail);
+        descriptor::read(&bytes).map(drop).expect_err("refused")
+    };
+    // A billion fields; a billion usages; a usage before any page; globals that were never kept.
+    assert!(with(&[0x09, 1, 0x75, 1, 0x97, 0, 0, 0, 0x40, 0x81, 2]).contains("too long"));
+    let usages = [0x19, 0, 0x2B, 0, 0, 0, 0x40, 0x75, 1, 0x95, 1, 0x81, 2];
+    assert!(with(&usages).contains("too much"));
+    assert!(with(&[0xB4]).contains("not kept"));
+    let early = descriptor::read(&[0x09, 1, 0xA1, 1]).map(drop).expect_err("refused");
+    assert!(early.contains("before any usage page"), "{early}");
+    let deep: Vec<u8> = [0x09, 1, 0xA1, 1].repeat(13);
+    assert!(with(&deep).contains("too much"));
+}
+
+#[test]
+fn intuos_of_wacoms_tables_are_read_by_them() {
+    let mut pro2 = Wacom::of(0x056A, 0x0357).expect("known");
+    let mut report = vec![0_u8; 20];
+    report[..12].copy_from_slice(&[0x10, 0x23, 0x80, 0x57, 0, 0xA0, 0x73, 0, 0xFF, 0x1F, 30, 60]);
+    let reading = pro2.decode(&report).expect("a pen's");
+    assert_eq!((reading.presence, reading.switches), (Presence::Touching, 1));
+    assert!((reading.point_m[0] - 0.112).abs() < 1e-12, "{reading:?}");
+    assert!(reading.point_m[1].abs() < 1e-12 && (reading.pressure - 1.0).abs() < 1e-12);
+    let tilt = reading.tilt_rad.expect("tilts");
+    assert!((tilt[0] - PI / 6.0).abs() < 1e-12 && (tilt[1] + PI / 3.0).abs() < 1e-12);
+    report[1] = 0x30;
+    let eraser = pro2.decode(&report).expect("a pen's");
+    assert_eq!((eraser.presence, eraser.end), (Presence::Hovering, End::Eraser));
+    report[1] = 0;
+    assert_eq!(pro2.decode(&report).expect("a pen's").presence, Presence::Away);
+
+    let mut pro1 = Wacom::of(0x056A, 0x0315).expect("known");
+    // An eraser (tool 0x80A) comes near, touches with 2047 of 2047, and goes.
+    assert_eq!(pro1.decode(&[2, 0xC2, 0x80, 0xA0, 0, 0, 0, 0, 0, 0]), None);
+    let touch = [2, 0xE3, 0x57, 0x50, 0x36, 0x92, 0xFF, 0xC0 | 0x20, 0x40, 0];
+    let reading = pro1.decode(&touch).expect("a pen's");
+    assert_eq!((reading.presence, reading.end), (Presence::Touching, End::Eraser));
+    assert_eq!(reading.switches, 1);
+    assert!((reading.pressure - 1.0).abs() < 1e-12, "{}", reading.pressure);
+    assert!((reading.point_m[0] - 0.111_76).abs() < 1e-12, "{reading:?}");
+    assert!(reading.point_m[1].abs() < 1e-12, "{reading:?}");
+    let tilt = reading.tilt_rad.expect("tilts");
+    assert!(tilt[0].abs() < 1e-12 && tilt[1].abs() < 1e-12, "{tilt:?}");
+    assert_eq!(pro1.decode(&[2, 0x80, 0, 0, 0, 0, 0, 0, 0, 0]).expect("a pen's").presence, Presence::Away);
+    assert!(Wacom::of(0x1234, 0x0315).is_none());
+}
+
+#[test]
+fn a_wacom_of_the_tables_needs_no_pen_in_its_descriptor() {
+    let identity = identity(0x056A, 0x0357, "Intuos Pro M");
+    let means = means(Kind::Pen, &identity, &pointer(0xFF00, 1).bytes);
+    assert!(matches!(means, Ok(Means::Pen(_))));
+}

@@ -1,0 +1,11 @@
+//! Pens and 6-DOF mice without any: descriptors that have the layouts of real ones, reports packed by them,
+//! recordings of them, and devices that are made up below decoding.
+
+mod daemon;
+mod decoding;
+mod live;
+mod proximity;
+mod recordings;
+mod spacemice;
+mod support;
+mod tablets;

@@ -1,0 +1,5 @@
+//! A pen or a 6-DOF mouse of a rig.
+
+fn main() {
+    maulstick::finish(maulstick::nodes::hid());
+}
