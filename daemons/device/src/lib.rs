@@ -9,8 +9,10 @@
 //! | [`player`] | a device that plays a take |
 //! | [`brush`] | the brush that a section of `rig.toml` asks for |
 //! | [`commander`] | commands to the paint node, repeated until answered |
+//! | [`collections`] | what a HID device says that it is |
 
 pub mod brush;
+pub mod collections;
 pub mod commander;
 pub mod demo;
 pub mod kit;
