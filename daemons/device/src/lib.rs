@@ -13,9 +13,11 @@
 //! | [`fitting`] | a device's frame on the desk |
 //! | [`corners`] | the corners of the canvas, as a hand shows them |
 //! | [`actions`] | what the switches of a stylus do |
+//! | [`collections`] | what a HID device says that it is |
 
 pub mod actions;
 pub mod brush;
+pub mod collections;
 pub mod commander;
 pub mod corners;
 pub mod demo;

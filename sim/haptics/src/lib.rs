@@ -10,13 +10,13 @@
 //! | [`address`] | whom a model is for |
 //! | [`servo`] | one tick: models, ageing, limits |
 //! | [`plant`] | a device and a hand that hold each other, for the simulated stylus and for tests |
+//! | [`grid`] | hands, walls, rates and losses by the thousand: whether the servo is stable |
 
 pub mod address;
 pub mod contact;
 pub mod friction;
 pub mod grain;
-#[cfg(test)]
-mod grid;
+pub mod grid;
 pub mod law;
 pub mod plant;
 #[cfg(test)]
