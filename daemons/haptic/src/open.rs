@@ -8,9 +8,9 @@ use maulstick_rig::config::DeviceSection;
 use maulstick_rig::{Fault, RigConfig};
 
 use crate::driver::Opened;
-use crate::{inverse3, openhaptics, polhem};
 use crate::pace::OwnClock;
 use crate::simulated::Simulated;
+use crate::{inverse3, openhaptics, polhem};
 
 /// What a haptic daemon is told.
 #[derive(Clone, Debug)]

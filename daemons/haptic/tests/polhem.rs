@@ -61,8 +61,7 @@ fn a_stylus_that_wakes_late_and_through_garbage_is_woken() {
     );
     let garbled = woken(firmware(), |cable| {
         let mut bench = cable.bench();
-        (bench.garbage, bench.piece, bench.latency_s) =
-            (b"\x00\xff 1 2 nan\n".to_vec(), 3, 0.004);
+        (bench.garbage, bench.piece, bench.latency_s) = (b"\x00\xff 1 2 nan\n".to_vec(), 3, 0.004);
     });
     assert_eq!(garbled, Ok(Length::Short));
 }
@@ -162,7 +161,10 @@ fn a_late_answer_is_not_taken_for_the_next_one() {
         let reading = beat.tick(DVec3::ZERO).expect("there");
         let z = reading.map(|reading| reading.held.position.z * 1e3);
         // Each reading is the answer to the line of the tick before.
-        assert!(z.is_none_or(|z| (z - f64::from(step - 1)).abs() < 1e-9), "{step}: {z:?}");
+        assert!(
+            z.is_none_or(|z| (z - f64::from(step - 1)).abs() < 1e-9),
+            "{step}: {z:?}"
+        );
     }
     assert_eq!(beat.polhem.lost(), 1);
 }

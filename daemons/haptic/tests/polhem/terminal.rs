@@ -218,7 +218,9 @@ fn each_port_that_cannot_be_opened_says_why() {
     for path in ["/dev/null", &folder] {
         let no_port = fault(path);
         assert!(
-            no_port.what.starts_with(&format!("{path} is no serial port")),
+            no_port
+                .what
+                .starts_with(&format!("{path} is no serial port")),
             "{}",
             no_port.what
         );
@@ -243,7 +245,11 @@ fn what_answers_as_no_stylus_does_is_told_with_what_it_says() {
     firmware.reads = Reads::Nothing;
     let plugged = Plugged::new(firmware.clone(), 64);
     let silent = fault(&plugged.path);
-    assert!(silent.what.starts_with("nothing answers at"), "{}", silent.what);
+    assert!(
+        silent.what.starts_with("nothing answers at"),
+        "{}",
+        silent.what
+    );
     firmware.reads = Reads::Modem;
     let plugged = Plugged::new(firmware, 64);
     let modem = fault(&plugged.path);

@@ -1,0 +1,189 @@
+//! Devices of a real rig: several at once, and those that are not there. Tablets are played from
+//! recordings.
+
+mod support;
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use maulstick_bus::{Class, ZenohBus};
+use maulstick_types::brush::BrushState;
+use maulstick_types::name_hash;
+use maulstick_types::stylus::{StylusInfo, StylusStatus};
+use maulstick_types::topics::Topics;
+use support::{Launcher, PATIENCE, Place, hear, listen, wait_for};
+
+/// A pen that draws a wave again and again, for a minute and a half.
+fn waves(place: &Place, name: &str) {
+    let wave = include_str!("../docs/examples/pen.hid");
+    let (head, events): (Vec<&str>, Vec<&str>) =
+        wave.lines().partition(|line| !line.starts_with("E:"));
+    let mut text = head.join("\n") + "\n";
+    for turn in 0..45 {
+        for event in &events {
+            let (time, report) = event["E: ".len()..].split_once(' ').expect("an event");
+            let seconds: f64 = time.parse().expect("a time");
+            text += &format!("E: {:.6} {report}\n", seconds + 2.0 * f64::from(turn));
+        }
+    }
+    std::fs::write(place.path(name), text).expect("written");
+}
+
+/// The built-in settings with other devices, each `(name, brush, priority, lines of its own)`, and a
+/// second brush.
+fn settings(place: &Place, devices: &[(&str, &str, i32, &str)]) {
+    let config = String::from_utf8(place.done(&["up", "--print-config"]).stdout).expect("UTF-8");
+    let start = config.find("[[device]]").expect("a device");
+    let end = start + config[start..].find("\n\n").expect("its end");
+    let mut sections = String::new();
+    for (name, brush, priority, own) in devices {
+        sections += &format!(
+            "[[device]]\nname = \"{name}\"\nbrush = \"{brush}\"\npriority = {priority}\n{own}\n"
+        );
+    }
+    sections += "[[brush]]\nname = \"second\"\nkind = \"flat\"\n";
+    std::fs::write(
+        place.path("rig.toml"),
+        format!("{}{sections}{}", &config[..start], &config[end..]),
+    )
+    .expect("written");
+}
+
+const PEN: &str = "driver = \"pen\"\nreplay = \"waves.hid\"\n";
+
+fn touches(state: &BrushState) -> bool {
+    state.solves.iter().any(|solve| solve.stroke != 0)
+}
+
+#[test]
+fn a_second_stylus_drives_a_second_brush() {
+    let place = Place::new();
+    waves(&place, "waves.hid");
+    // The other tablet lies turned: its waves go up the canvas.
+    let turned = format!("{PEN}scale = 1.0\norientation = [0, 0, 0.7071068, 0.7071068]\n");
+    settings(
+        &place,
+        &[("left", "main", 0, PEN), ("right", "second", 0, &turned)],
+    );
+    let launcher = Launcher::up(&place, &["--rig", "rig.toml"]);
+    let (bus, topics) = support::join(&place);
+    for (device, brush) in [("left", "main"), ("right", "second")] {
+        let mut states = listen::<BrushState>(&bus, &topics.brush_state(brush), Class::RealTime);
+        let moved = |state: &BrushState| touches(state) && state.device == name_hash(device);
+        assert!(
+            hear(&mut states, moved).is_some(),
+            "{brush}: {}",
+            launcher.said()
+        );
+    }
+    place.done(&["load", "Pyrrole Red", "--brush", "second"]);
+    let painted = wait_for(PATIENCE, || {
+        (support::on_canvas(&place) > 0.0).then_some(())
+    });
+    assert!(painted.is_some(), "{}", launcher.said());
+    bus.close();
+}
+
+/// Which devices have a part in each stroke of a brush, until `enough` says so.
+fn strokes(
+    bus: &ZenohBus,
+    topics: &Topics,
+    enough: impl Fn(&BTreeMap<u64, BTreeSet<u32>>) -> bool,
+) -> Option<BTreeMap<u64, BTreeSet<u32>>> {
+    let mut states = listen::<BrushState>(bus, &topics.brush_state("main"), Class::RealTime);
+    let mut of: BTreeMap<u64, BTreeSet<u32>> = BTreeMap::new();
+    wait_for(PATIENCE, || {
+        while let Some(state) = states.try_recv() {
+            let state = state.message;
+            for solve in state.solves.iter().filter(|solve| solve.stroke != 0) {
+                of.entry(solve.stroke).or_default().insert(state.device);
+            }
+        }
+        enough(&of).then_some(())
+    })?;
+    Some(of)
+}
+
+#[test]
+fn of_two_pens_the_one_of_higher_priority_paints_and_no_stroke_has_two() {
+    let place = Place::new();
+    waves(&place, "waves.hid");
+    settings(&place, &[("low", "main", 1, PEN), ("high", "main", 2, PEN)]);
+    let launcher = Launcher::up(&place, &["--rig", "rig.toml"]);
+    let (bus, topics) = support::join(&place);
+    let high = |of: &BTreeMap<u64, BTreeSet<u32>>| {
+        let its = of
+            .values()
+            .filter(|devices| devices.contains(&name_hash("high")));
+        its.count() >= 3
+    };
+    let of = strokes(&bus, &topics, high).unwrap_or_else(|| panic!("{}", launcher.said()));
+    assert!(of.values().all(|devices| devices.len() == 1), "{of:?}");
+    bus.close();
+}
+
+#[test]
+fn devices_that_are_not_there_are_told_once_and_the_rig_goes_on_with_the_others() {
+    let place = Place::new();
+    waves(&place, "waves.hid");
+    let missing = |driver: &str| format!("driver = \"{driver}\"\n");
+    settings(
+        &place,
+        &[
+            (
+                "phantom",
+                "main",
+                9,
+                "driver = \"openhaptics\"\nlibrary = \"nowhere/libHD.so\"\n",
+            ),
+            (
+                "wooden",
+                "main",
+                8,
+                "driver = \"polhem\"\naddress = \"/dev/nothing\"\n",
+            ),
+            (
+                "haply",
+                "main",
+                7,
+                "driver = \"inverse3\"\naddress = \"ws://127.0.0.1:9\"\n",
+            ),
+            ("tablet", "main", 6, &missing("pen")),
+            ("puck", "main", 5, &missing("spacemouse")),
+            ("played", "main", 0, PEN),
+        ],
+    );
+    let mut launcher = Launcher::up(&place, &["--rig", "rig.toml"]);
+    let (bus, topics) = support::join(&place);
+    let mut troubles = BTreeMap::new();
+    for (name, word) in [
+        ("phantom", "libHD"),
+        ("wooden", "/dev/nothing"),
+        ("haply", "127.0.0.1:9"),
+        ("tablet", "pen"),
+        ("puck", "mouse"),
+    ] {
+        let topic = topics.stylus_status(name);
+        let mut statuses = listen::<StylusStatus>(&bus, &topic, Class::Background);
+        let told = hear(&mut statuses, |status| !status.trouble.is_empty());
+        let trouble = told
+            .unwrap_or_else(|| panic!("{name}: {}", launcher.said()))
+            .trouble;
+        assert!(
+            trouble.to_lowercase().contains(&word.to_lowercase()),
+            "{name}: {trouble}"
+        );
+        troubles.insert(name, trouble);
+    }
+    let mut states = listen::<BrushState>(&bus, &topics.brush_state("main"), Class::RealTime);
+    let played = |state: &BrushState| touches(state) && state.device == name_hash("played");
+    assert!(hear(&mut states, played).is_some(), "{}", launcher.said());
+    assert!(launcher.is_running());
+    for (name, trouble) in troubles {
+        let said = launcher.said().matches(&trouble).count();
+        assert_eq!(said, 1, "{name}: {}", launcher.said());
+    }
+    let mut infos = listen::<StylusInfo>(&bus, &topics.stylus_info("played"), Class::Cached);
+    let info = hear(&mut infos, |_| true).expect("what it is");
+    assert_eq!((info.driver.as_str(), info.priority), ("pen", 0));
+    bus.close();
+}
