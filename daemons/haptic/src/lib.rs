@@ -9,6 +9,7 @@
 //! | [`driver`] | what a device is to the servo |
 //! | [`open`] | the device that `rig.toml` asks for |
 //! | [`placed`] | a device where it stands on the desk |
+//! | [`showing`] | a device without a rig, in a hand that shows places |
 //! | [`simulated`] | a device and a hand, simulated |
 //! | [`beat`] | one tick of the servo over a device |
 //! | [`pace`] | our own clock, which calls it |
@@ -23,6 +24,7 @@ pub mod host;
 pub mod open;
 pub mod pace;
 pub mod placed;
+pub mod showing;
 pub mod simulated;
 pub mod wish;
 

@@ -60,12 +60,7 @@ impl Simulated {
     /// A hand that follows a take with a brush whose head is `head_length_m` long. A take is in the
     /// desk frame; `fitting` says where the device stands, and which point of it is the ferrule.
     #[must_use]
-    pub fn following(
-        take: &Take,
-        head_length_m: f64,
-        depth_share: f64,
-        fitting: &Fitting,
-    ) -> Self {
+    pub fn following(take: &Take, head_length_m: f64, depth_share: f64, fitting: &Fitting) -> Self {
         let start_ns = take.samples.first().map_or(0, |first| first.time_ns);
         let targets: Vec<Target> = take
             .samples

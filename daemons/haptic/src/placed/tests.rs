@@ -195,7 +195,10 @@ fn the_brush_turns_with_the_hand_while_the_clutch_holds_its_place() {
     assert!((read(&mut placed).held.position - aside).length() < 1e-15);
     put.put(DVec3::new(-0.05, 0.05, 0.01), 0);
     let after = read(&mut placed).held.position;
-    assert!((after - aside - DVec3::Y * 0.01).length() < 1e-15, "{after} {before:?}");
+    assert!(
+        (after - aside - DVec3::Y * 0.01).length() < 1e-15,
+        "{after} {before:?}"
+    );
 }
 
 /// A hand with the working area of an Omni, which wants to have its ferrule at a place of the desk: it
@@ -250,7 +253,10 @@ fn a_phantom_reaches_every_place_of_a_canvas_that_is_larger_by_clutching() {
             out_of_reach += u32::from(reach(&mut bound, &put, goal, CLUTCH).1 > 1e-3);
         }
     }
-    assert!(clutched > 10 && out_of_reach == 22, "{clutched} {out_of_reach}");
+    assert!(
+        clutched > 10 && out_of_reach == 22,
+        "{clutched} {out_of_reach}"
+    );
 }
 
 #[test]
@@ -268,10 +274,18 @@ fn the_ferrule_is_where_it_is_held_and_as_fast() {
     }
     let held = last.expect("read");
     let expected = DVec3::new(0.0, 0.1, 0.0);
-    assert!((held.position - expected).length() < 1e-12, "{}", held.position);
+    assert!(
+        (held.position - expected).length() < 1e-12,
+        "{}",
+        held.position
+    );
     // ω × r = 2·x × .05·y = .1·z, twice as fast on the desk; a filter of 60 Hz lags by 2.7 ms.
     let expected = DVec3::new(0.0, 0.0, 0.2);
-    assert!((held.velocity - expected).length() < 0.005, "{}", held.velocity);
+    assert!(
+        (held.velocity - expected).length() < 0.005,
+        "{}",
+        held.velocity
+    );
 }
 
 #[test]
