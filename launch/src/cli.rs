@@ -5,8 +5,8 @@ use maulstick_rig::Fault;
 use maulstick_rig::files::clear_on_signals;
 
 use crate::commands::{
-    bench, brush, control, demo, endpoint, fit, force, import, layers, light, matching, mix, mode,
-    painting, paints, render, schema, surface, take,
+    bench, brush, calibrate, control, demo, endpoint, fit, force, import, layers, light, matching,
+    mix, mode, painting, paints, render, schema, surface, take,
 };
 use crate::up;
 
@@ -81,6 +81,8 @@ enum Command {
     Fit(fit::FitCommand),
     /// Measures, beside peers
     Bench(bench::BenchOptions),
+    /// Fits a device to the canvas by three corners that a hand touches
+    Calibrate(calibrate::CalibrateOptions),
     /// Shows the force that a brush gives to the hand, by depth and angle
     Force(force::ForceOptions),
 }
@@ -91,8 +93,8 @@ enum Command {
 /// A [`Fault`] as the user sees it.
 pub fn run() -> Result<i32, Fault> {
     let command = Cli::parse().command;
-    // A rig has processes to end first.
-    if !matches!(command, Command::Up(_)) {
+    // A rig has processes to end first, a device to be let go.
+    if !matches!(command, Command::Up(_) | Command::Calibrate(_)) {
         clear_on_signals(crate::EXIT_INTERRUPTED)
             .map_err(|error| Fault::failure(format!("cannot watch for signals: {error}")))?;
     }
@@ -126,6 +128,7 @@ pub fn run() -> Result<i32, Fault> {
         Command::Match(options) => matching::run(&options),
         Command::Fit(options) => fit::run(&options),
         Command::Bench(options) => bench::run(&options),
+        Command::Calibrate(options) => calibrate::run(&options),
         Command::Force(options) => force::run(&options),
     }
 }

@@ -10,6 +10,7 @@
 //! | [`open`] | the device that `rig.toml` asks for |
 //! | [`placed`] | a device where it stands on the desk |
 //! | [`openhaptics`] | Phantoms, through the vendor's library |
+//! | [`showing`] | a device without a rig, in a hand that shows places |
 //! | [`simulated`] | a device and a hand, simulated |
 //! | [`polhem`] | WoodenHaptics and Polhem styluses, at a serial port |
 //! | [`inverse3`] | Haply's Inverse3, by its service |
@@ -30,6 +31,7 @@ pub mod openhaptics;
 pub mod pace;
 pub mod placed;
 pub mod polhem;
+pub mod showing;
 pub mod simulated;
 pub mod velocity;
 pub mod wish;

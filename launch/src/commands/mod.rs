@@ -2,6 +2,7 @@
 
 pub mod bench;
 pub mod brush;
+pub mod calibrate;
 pub mod control;
 pub mod demo;
 pub mod endpoint;

@@ -408,11 +408,11 @@ impl Servo {
         tick.asked_n_m = felt.asked_n_m;
         tick.stiffness_n_m = felt.stiffness_n_m * softer;
         let (correction, cap_n) = (self.correction, tick.cap_n);
-        let most = self.fading(model) * softer;
         if let Engagement::Waiting(calm) = self.engagement {
-            let asked_n = ((felt.force + correction) * most).length();
-            // Written so that a bound that is no number lets no force begin.
-            let calm = match asked_n <= self.limits.engage_n {
+            let asked_n = (felt.force + correction).length();
+            // A model that is past its time says nothing of the canvas. Written so that a bound that is no
+            // number lets no force begin.
+            let calm = match asked_n <= self.limits.engage_n && !tick.stale {
                 true => calm + 1,
                 false => 0,
             };
@@ -426,7 +426,7 @@ impl Servo {
             return DVec3::ZERO;
         }
         let ramp = (self.engaged_s / self.limits.engage_s).min(1.0);
-        let share = most * ramp;
+        let share = self.fading(model) * ramp * softer;
         self.last = Some(Last {
             position: held.position,
             models: cut((felt.conservative + correction) * share, cap_n),

@@ -1,0 +1,214 @@
+//! A device in a hand that shows something: it is read, gives no force, and there is no rig.
+
+use std::ops::ControlFlow;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::mpsc::{RecvTimeoutError, sync_channel};
+use std::time::Duration;
+
+use glam::DVec3;
+use maulstick_device::corners::{Seen, Touch};
+use maulstick_device::fitting::{Fitting, Similarity};
+use maulstick_haptics::Switch;
+
+use crate::driver::{Opened, Reading, Trouble};
+use crate::pace::monotonic_ns;
+use crate::placed::Placed;
+
+/// Readings that may wait: two seconds.
+const WAITING: usize = 2048;
+/// Without readings whoever looks is asked so often whether to go on.
+const SILENCE: Duration = Duration::from_millis(50);
+/// The switch that means a place.
+const FIRST_SWITCH: u32 = 1;
+
+/// What is seen of the hand.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Glimpse {
+    /// Where its ferrule is; a pressed first switch is a touch.
+    Seen(Seen),
+    /// It is out of range, or the device says nothing.
+    Away,
+}
+
+/// Reads a device whose ferrule is `ferrule_m` from the point that it senses, and hands on what is
+/// seen, until `look` breaks off.
+///
+/// # Errors
+/// A [`Trouble`] where the device is lost.
+pub fn watch(
+    opened: Opened,
+    ferrule_m: DVec3,
+    mut look: impl FnMut(Glimpse) -> ControlFlow<()>,
+) -> Result<(), Trouble> {
+    let fitting = Fitting {
+        to_desk: Similarity::IDENTITY,
+        ferrule_m,
+        corners: None,
+    };
+    let mut pace = opened.pace;
+    let mut device = Placed::new(opened.driver, fitting, 0);
+    let (tell, told) = sync_channel(WAITING);
+    let stop = AtomicBool::new(false);
+    std::thread::scope(|scope| {
+        let reading = scope.spawn(|| {
+            device.switch(Switch::Off);
+            let (mut last_ns, mut lost) = (monotonic_ns(), None);
+            let mut beat = |_: u64| {
+                if stop.load(Ordering::Relaxed) {
+                    return ControlFlow::Break(());
+                }
+                let now_ns = monotonic_ns();
+                let dt = now_ns.saturating_sub(last_ns) as f64 * 1e-9;
+                let read = device.read(dt).and_then(|reading| match reading {
+                    Some(reading) => device.write(DVec3::ZERO).map(|()| Some(reading)),
+                    None => Ok(None),
+                });
+                match read {
+                    Ok(Some(reading)) => {
+                        last_ns = now_ns;
+                        // Whoever does not keep up sees the older ones.
+                        tell.try_send(glimpse(&reading, now_ns)).ok();
+                    }
+                    Ok(None) => {}
+                    Err(trouble) => {
+                        lost = Some(trouble);
+                        return ControlFlow::Break(());
+                    }
+                }
+                ControlFlow::Continue(())
+            };
+            let run = pace.run(&mut beat);
+            // Whoever looks sees the end by it.
+            drop(tell);
+            lost.map_or(run, Err)
+        });
+        loop {
+            let glimpse = match told.recv_timeout(SILENCE) {
+                Ok(glimpse) => glimpse,
+                Err(RecvTimeoutError::Timeout) => Glimpse::Away,
+                Err(RecvTimeoutError::Disconnected) => break,
+            };
+            if look(glimpse).is_break() {
+                break;
+            }
+        }
+        stop.store(true, Ordering::Relaxed);
+        reading.join().unwrap_or(Err(Trouble {
+            what: "the device's driver has failed",
+            code: 0,
+            help: "its own message above says why",
+        }))
+    })
+}
+
+fn glimpse(reading: &Reading, now_ns: u64) -> Glimpse {
+    if !reading.in_range {
+        return Glimpse::Away;
+    }
+    let touch = match reading.switches & FIRST_SWITCH {
+        0 => Touch::Unknown,
+        _ => Touch::Down,
+    };
+    Glimpse::Seen(Seen {
+        point: reading.held.position,
+        touch,
+        time_s: now_ns as f64 * 1e-9,
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use std::sync::Arc;
+    use std::sync::atomic::AtomicU32;
+
+    use glam::DQuat;
+    use maulstick_haptics::contact::Held;
+
+    use super::*;
+    use crate::driver::{Abilities, Driver, Wrench};
+    use crate::pace::OwnClock;
+    use crate::simulated::Simulated;
+
+    /// A device that is lost at its hundredth reading; counts what is written to it.
+    struct Fleeting {
+        read: u32,
+        written: Arc<AtomicU32>,
+        powered: Arc<AtomicBool>,
+    }
+
+    const LOST: Trouble = Trouble {
+        what: "the plug is out",
+        code: 7,
+        help: "put it in",
+    };
+
+    impl Driver for Fleeting {
+        fn abilities(&self) -> Abilities {
+            Simulated::at_rest().abilities()
+        }
+
+        fn read(&mut self, _: f64) -> Result<Option<Reading>, Trouble> {
+            self.read += 1;
+            let held = Held {
+                position: DVec3::X * f64::from(self.read),
+                orientation: DQuat::IDENTITY,
+                velocity: DVec3::ZERO,
+            };
+            match self.read {
+                100 => Err(LOST),
+                read if read % 3 == 0 => Ok(None),
+                read => Ok(Some(Reading {
+                    held,
+                    switches: u32::from(read > 50),
+                    in_range: read > 10,
+                    is_permitted: true,
+                    motor_temperature: 0.0,
+                })),
+            }
+        }
+
+        fn write(&mut self, wrench: Wrench) -> Result<(), Trouble> {
+            assert_eq!(wrench, Wrench::ZERO);
+            self.written.fetch_add(1, Ordering::SeqCst);
+            Ok(())
+        }
+
+        fn switch(&mut self, amplifiers: Switch) {
+            self.powered
+                .store(amplifiers == Switch::On, Ordering::SeqCst);
+        }
+    }
+
+    #[test]
+    fn a_hand_is_seen_without_force_until_its_device_is_lost() {
+        let (written, powered) = (Arc::new(AtomicU32::new(0)), Arc::new(AtomicBool::new(true)));
+        let opened = || Opened {
+            driver: Box::new(Fleeting {
+                read: 0,
+                written: Arc::clone(&written),
+                powered: Arc::clone(&powered),
+            }),
+            pace: Box::new(OwnClock),
+            what: String::new(),
+        };
+        let (mut seen, mut pressed) = (Vec::new(), 0);
+        let lost = watch(opened(), DVec3::Z, |glimpse| {
+            if let Glimpse::Seen(hand) = glimpse {
+                assert_eq!(hand.point.z, 1.0, "the ferrule");
+                seen.push(hand.point.x);
+                pressed += usize::from(hand.touch == Touch::Down);
+            }
+            ControlFlow::Continue(())
+        });
+        assert_eq!(lost, Err(LOST));
+        let expected: Vec<f64> = (11..100).filter(|i| i % 3 != 0).map(f64::from).collect();
+        assert_eq!((seen, pressed), (expected, 32));
+        // A writing a reading, and the last as it is dropped.
+        assert_eq!(written.load(Ordering::SeqCst), 66 + 1);
+        assert!(!powered.load(Ordering::SeqCst));
+        assert_eq!(
+            watch(opened(), DVec3::Z, |_| ControlFlow::Break(())),
+            Ok(())
+        );
+    }
+}

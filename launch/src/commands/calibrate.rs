@@ -1,0 +1,250 @@
+//! `maulstick calibrate`: the corners of the canvas, as a hand shows them with its device, written into
+//! `rig.toml`.
+
+use std::io::Write as _;
+use std::ops::ControlFlow;
+use std::path::{Path, PathBuf};
+
+use clap::Args;
+use glam::DVec3;
+use maulstick_bus::{RigFolder, Wake};
+use maulstick_device::corners::{Corners, Progress};
+use maulstick_device::fitting::{by_corners, canvas_m};
+use maulstick_haptic::open::{HapticSettings, open};
+use maulstick_haptic::showing::{Glimpse, watch};
+use maulstick_rig::files::{check_writable, write_whole};
+use maulstick_rig::{Fault, RigConfig, Stop};
+use toml_edit::{Array, DocumentMut, Item, TableLike, Value};
+
+use crate::EXIT_INTERRUPTED;
+use crate::commands::say;
+
+/// Options of `maulstick calibrate`.
+#[derive(Args, Clone, Debug)]
+pub struct CalibrateOptions {
+    /// The device of rig.toml: one with a ferrule, no pen
+    device: String,
+    /// Settings of the rig; the corners are written into them
+    #[arg(long, value_name = "FILE")]
+    rig: Option<PathBuf>,
+}
+
+/// Has a hand show the corners and writes them.
+///
+/// # Errors
+/// A [`Fault`] for a device that is not there, corners that do not fit the canvas, or settings that
+/// cannot be written.
+pub fn run(options: &CalibrateOptions) -> Result<i32, Fault> {
+    let Some(path) = &options.rig else {
+        let help = "make them with `maulstick up --print-config > rig.toml`, and name them: --rig rig.toml";
+        return Err(Fault::usage("there are no settings to write the corners into").help(help));
+    };
+    let config = RigConfig::read(path)?;
+    let place = path.display().to_string();
+    let names = || config.device.iter().map(|device| device.name.as_str());
+    let device = config.device.iter().find(|d| d.name == options.device);
+    let device = device.cloned().ok_or_else(|| {
+        let what = format!("there is no [[device]] called '{}'", options.device);
+        Fault::unknown(what, &options.device, names()).at(place.clone())
+    })?;
+    if device.is_hid() {
+        let what = format!("'{}' has no ferrule to touch corners with", device.name);
+        let help =
+            "a tablet covers the canvas by itself; position_m, orientation and scale say otherwise";
+        return Err(Fault::usage(what).at(place).help(help));
+    }
+    if RigFolder::join(&config.rig.name).is_ok() {
+        let what = format!("the rig '{}' runs and has the device", config.rig.name);
+        return Err(Fault::usage(what).help("end it first: Ctrl-C where `maulstick up` runs"));
+    }
+    check_writable(path).map_err(|error| Fault::writing(path, &error))?;
+    let stop = Stop::on_signals(&Wake::new())
+        .map_err(|error| Fault::failure(format!("cannot watch for signals: {error}")))?;
+    let ferrule_m = DVec3::from(device.ferrule_m);
+    let opened = open(&config, &HapticSettings { device, hand: None })?;
+    say!("{}: {}", options.device, opened.what);
+    let mut showing = Showing::default();
+    showing.ask()?;
+    let mut broken = None;
+    let watched = watch(opened, ferrule_m, |glimpse| {
+        if stop.requested() {
+            return ControlFlow::Break(());
+        }
+        match showing.see(glimpse) {
+            Ok(flow) => flow,
+            Err(fault) => {
+                broken = Some(fault);
+                ControlFlow::Break(())
+            }
+        }
+    });
+    watched.map_err(|trouble| Fault::failure(trouble.to_string()).help(trouble.help))?;
+    if let Some(fault) = broken {
+        return Err(fault);
+    }
+    let Some(corners) = showing.corners.all() else {
+        say!("nothing is written");
+        return Ok(EXIT_INTERRUPTED);
+    };
+    let (to_desk, fit) = by_corners(&corners, canvas_m(&config.canvas))?;
+    say!("{fit}");
+    if !fit.is_good() {
+        return Err(Fault::failure("the three places are no corners of the canvas; nothing is written")
+            .help("its width by height has to fit within 10 %, and its corner to be a right one; begin again"));
+    }
+    say!(
+        "the canvas is {:.2} times as large; at worst a corner comes to lie {:.1} mm off",
+        to_desk.scale,
+        fit.off_m * 1e3
+    );
+    write(path, &options.device, &corners)?;
+    say!("written into {}", path.display());
+    Ok(0)
+}
+
+/// A hand on its way around the canvas.
+#[derive(Default)]
+struct Showing {
+    corners: Corners,
+}
+
+impl Showing {
+    fn ask(&self) -> Result<(), Fault> {
+        if let Some(corner) = self.corners.wanted() {
+            say!(
+                "touch the {corner} corner of the canvas with the ferrule, and keep still for a second \
+                 or press the first switch"
+            );
+        }
+        Ok(())
+    }
+
+    fn see(&mut self, glimpse: Glimpse) -> Result<ControlFlow<()>, Fault> {
+        let progress = match glimpse {
+            Glimpse::Seen(seen) => self.corners.see(&seen),
+            Glimpse::Away => {
+                self.corners.lose();
+                Progress::Going
+            }
+        };
+        match progress {
+            Progress::Going => {}
+            Progress::Found(corner, place) => {
+                let [x, y, z] = (place * 1e3).to_array();
+                say!("{corner}: {x:.1}, {y:.1}, {z:.1} mm");
+                self.ask()?;
+            }
+            Progress::Refused(why) => say!("{why}"),
+        }
+        Ok(match self.corners.wanted() {
+            Some(_) => ControlFlow::Continue(()),
+            None => ControlFlow::Break(()),
+        })
+    }
+}
+
+/// Writes the corners of a device into the settings, and nothing else of them.
+fn write(path: &Path, device: &str, corners: &[DVec3; 3]) -> Result<(), Fault> {
+    // What was changed in the file meanwhile stays.
+    let text = std::fs::read_to_string(path).map_err(|error| Fault::reading(path, &error))?;
+    let place = path.display().to_string();
+    let text = with_corners(&text, device, corners).map_err(|what| {
+        Fault::failure(what)
+            .at(place.clone())
+            .help("see what was changed in the file")
+    })?;
+    RigConfig::parse(&text, &place)?;
+    write_whole(path, |file| file.write_all(text.as_bytes()))
+        .map_err(|error| Fault::writing(path, &error))
+}
+
+/// The settings with other corners of a device, to a thousandth of a millimetre; comments and all else
+/// are as they were.
+fn with_corners(text: &str, device: &str, corners: &[DVec3; 3]) -> Result<String, String> {
+    let mut settings: DocumentMut = text.parse().map_err(|error| format!("{error}"))?;
+    let missing = || format!("there is no [[device]] called '{device}' any more");
+    let is_meant = |table: &dyn TableLike| table.get("name").and_then(Item::as_str) == Some(device);
+    match settings.get_mut("device").ok_or_else(missing)? {
+        Item::ArrayOfTables(tables) => {
+            let mut tables = tables.iter_mut();
+            let table = tables.find(|table| is_meant(*table)).ok_or_else(missing)?;
+            set(table, corners);
+        }
+        Item::Value(Value::Array(tables)) => {
+            let mut tables = tables.iter_mut().filter_map(Value::as_inline_table_mut);
+            let table = tables.find(|table| is_meant(*table)).ok_or_else(missing)?;
+            set(table, corners);
+        }
+        _ => return Err(missing()),
+    }
+    Ok(settings.to_string())
+}
+
+fn set(table: &mut dyn TableLike, corners: &[DVec3; 3]) {
+    const KEY: &str = "corners_m";
+    let round = |metres: f64| (metres * 1e6).round() * 1e-6;
+    let corner = |corner: &DVec3| {
+        let metres = corner.to_array().map(round);
+        // A multiple of a power of ten is not always the nearest number to its digits.
+        Value::from_iter(metres.map(|metres| format!("{metres:.6}").parse().unwrap_or(metres)))
+    };
+    let mut value = Value::Array(Array::from_iter(corners.iter().map(corner)));
+    match table.get_mut(KEY).and_then(Item::as_value_mut) {
+        Some(before) => {
+            *value.decor_mut() = before.decor().clone();
+            *before = value;
+        }
+        None => {
+            table.insert(KEY, Item::Value(value));
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use maulstick_rig::config::DEFAULT;
+
+    use super::*;
+
+    const CORNERS: [DVec3; 3] = [
+        DVec3::new(-0.064_000_4, -0.048, 0.0),
+        DVec3::new(0.064, -0.048, 1e-9),
+        DVec3::new(-0.064, 0.048, 0.02),
+    ];
+    const LINE: &str =
+        "corners_m = [[-0.064, -0.048, 0.0], [0.064, -0.048, 0.0], [-0.064, 0.048, 0.02]]";
+
+    #[test]
+    fn only_the_corners_change() {
+        let written = with_corners(DEFAULT, "phantom", &CORNERS).expect("written");
+        let added: Vec<&str> = written
+            .lines()
+            .filter(|line| !DEFAULT.contains(line))
+            .collect();
+        assert_eq!(added, [LINE]);
+        let without = written.replace(&format!("{LINE}\n"), "");
+        assert_eq!(without, DEFAULT);
+        let config = RigConfig::parse(&written, "rig.toml").expect("valid");
+        assert_eq!(config.device[0].corners_m.map(|c| c[2][2]), Some(0.02));
+        // And again, with what was written beside it.
+        let before = written.replace(LINE, &format!("{LINE} # by hand"));
+        let moved = CORNERS.map(|corner| corner + DVec3::Z * 0.1);
+        let again = with_corners(&before, "phantom", &moved).expect("written");
+        assert_eq!(again.matches("corners_m").count(), 1);
+        assert!(again.contains("0.12]] # by hand\n"), "{again}");
+    }
+
+    #[test]
+    fn of_several_devices_the_meant_one_is_fitted_in_whatever_way_they_are_written() {
+        let inline = "device = [ # two\n  {name = 'a', driver = 'polhem', brush = 'main'},\n  \
+                      {name = 'b', driver = 'polhem', brush = 'main'}, # the second\n]\n";
+        let written = with_corners(inline, "b", &CORNERS).expect("written");
+        let config = RigConfig::parse(&written, "rig.toml").expect("valid");
+        assert!(config.device[0].corners_m.is_none() && config.device[1].corners_m.is_some());
+        assert!(written.contains("# two") && written.contains("# the second"));
+        for (text, name) in [(inline, "c"), ("", "a"), ("device = 3", "a")] {
+            let wrong = with_corners(text, name, &CORNERS).expect_err(text);
+            assert!(wrong.contains(&format!("'{name}'")), "{wrong}");
+        }
+    }
+}
