@@ -301,6 +301,12 @@ impl RigConfig {
             .flat_map(|device| [&mut device.hand, &mut device.replay])
             .flatten()
             .for_each(whole);
+        // A library's name alone is for the system to find.
+        self.device
+            .iter_mut()
+            .filter_map(|device| device.library.as_mut())
+            .filter(|library| library.components().count() > 1)
+            .for_each(whole);
         let texts = [
             &mut self.light.illuminant,
             &mut self.view.profile,
@@ -444,6 +450,20 @@ mod tests {
             "profiles/eizo",
         ] {
             assert_eq!(parse(path), Ok(Some(PathBuf::from(path))));
+        }
+    }
+
+    #[test]
+    fn a_library_lies_beside_the_settings_unless_it_is_a_name_alone() {
+        for (library, expected) in [
+            ("libHD.so.3.4", "libHD.so.3.4"),
+            ("vendor/libHD.so", "/rigs/vendor/libHD.so"),
+            ("/opt/libHD.so", "/opt/libHD.so"),
+        ] {
+            let mut config = RigConfig::default();
+            config.device[0].library = Some(library.into());
+            config.resolve(Path::new("/rigs"));
+            assert_eq!(config.device[0].library, Some(PathBuf::from(expected)));
         }
     }
 }

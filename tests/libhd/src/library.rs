@@ -1,5 +1,6 @@
 //! The state behind the interface: one device, one frame, a stack of errors, a log.
 
+use std::cell::Cell;
 use std::collections::BTreeSet;
 use std::ffi::c_void;
 use std::sync::{Mutex, MutexGuard, PoisonError};
@@ -45,6 +46,11 @@ pub(crate) struct State {
 }
 
 static STATE: Mutex<Option<State>> = Mutex::new(None);
+
+thread_local! {
+    /// The device of which this thread asks; what a thread does not say it does not know.
+    static CURRENT: Cell<u32> = const { Cell::new(codes::INVALID_HANDLE) };
+}
 
 /// The state, for a moment.
 pub(crate) fn with<T>(work: impl FnOnce(&mut State) -> T) -> T {
@@ -107,6 +113,7 @@ impl State {
             return self.script.failed_handle;
         }
         self.device = Some(Phantom::new(&self.script));
+        CURRENT.set(HANDLE);
         HANDLE
     }
 
@@ -120,23 +127,36 @@ impl State {
         }
     }
 
+    /// The device that this thread has made the current one, while there is one.
     pub(crate) fn current(&self) -> u32 {
-        self.device
-            .as_ref()
-            .map_or(codes::INVALID_HANDLE, |_| HANDLE)
+        match self.device {
+            Some(_) => CURRENT.get(),
+            None => codes::INVALID_HANDLE,
+        }
     }
 
     pub(crate) fn make_current(&mut self, handle: u32) {
-        if handle != self.current() {
-            self.report(codes::BAD_HANDLE, 0);
+        match self.device {
+            Some(_) if handle == HANDLE => CURRENT.set(handle),
+            _ => self.report(codes::BAD_HANDLE, 0),
         }
+    }
+
+    /// Whether this thread asks of a device; an error where it does not.
+    fn has_current(&mut self) -> bool {
+        let has = self.current() == HANDLE;
+        if !has {
+            self.report(codes::INVALID_OPERATION, 0);
+        }
+        has
     }
 
     pub(crate) fn begin(&mut self, handle: u32) {
         self.log.push(Call::Begin(self.tick));
-        if handle != self.current() {
+        if handle != HANDLE || self.device.is_none() {
             return self.report(codes::BAD_HANDLE, 0);
         }
+        CURRENT.set(handle);
         if self.frame.is_some() {
             return self.report(codes::ILLEGAL_BEGIN, 0);
         }
@@ -163,7 +183,7 @@ impl State {
     }
 
     pub(crate) fn end(&mut self, handle: u32) {
-        let Some(force) = self.frame.take().filter(|_| handle == self.current()) else {
+        let Some(force) = self.frame.take().filter(|_| handle == HANDLE) else {
             return self.report(codes::ILLEGAL_END, 0);
         };
         let force = match self.capabilities.contains(&codes::FORCE_OUTPUT) {
@@ -242,7 +262,7 @@ impl State {
             is_limit || (codes::FORCE_OUTPUT..=codes::ONE_FRAME_LIMIT).contains(&capability);
         if !is_known || self.script.unknown.contains(&capability) {
             self.report(codes::INVALID_ENUM, 0);
-        } else if self.device.is_none() || (self.is_running && self.frame.is_none()) {
+        } else if self.current() != HANDLE || (self.is_running && self.frame.is_none()) {
             self.report(codes::INVALID_OPERATION, 0);
         } else if on == Capability::On {
             self.capabilities.insert(capability);
@@ -263,10 +283,10 @@ impl State {
     ) -> Option<T> {
         let of_a_frame = matches!(parameter, 0x2000..=0x24FF | 0x2700..=0x28FF)
             || parameter == codes::TEMPERATURE;
-        let Some(device) = &self.device else {
-            self.report(codes::INVALID_OPERATION, 0);
+        if !self.has_current() {
             return None;
-        };
+        }
+        let device = self.device.as_ref()?;
         let known = !self.script.unknown.contains(&parameter);
         let value = get(device, parameter).filter(|_| known);
         let of_another_type = known
@@ -306,6 +326,7 @@ impl State {
     }
 
     pub(crate) fn check(&mut self) -> u32 {
+        self.has_current();
         let device = self.device.as_ref();
         let state = device.and_then(|device| device.script.calibration.first().copied());
         let state = state.unwrap_or(0x5000);
@@ -320,8 +341,11 @@ impl State {
             codes::INKWELL => !self.is_running,
             _ => false,
         };
+        if !self.has_current() {
+            return;
+        }
         let Some(device) = &mut self.device else {
-            return self.report(codes::INVALID_OPERATION, 0);
+            return;
         };
         if device.script.styles as u32 & style == 0 {
             self.report(codes::INVALID_VALUE, 0);

@@ -68,19 +68,19 @@ const OTHER: Model = TOUCH;
 
 impl Model {
     /// The model of this name, as `HD_DEVICE_MODEL_TYPE` gives it: with or without the maker's name,
-    /// in whatever capitals.
+    /// in whatever capitals and spaces.
     #[must_use]
     pub fn named(name: &str) -> Self {
-        let name = name.to_lowercase();
+        let mut name = name.to_lowercase();
+        name.retain(char::is_alphanumeric);
         let has = |part: &str| name.contains(part);
-        // "Touch X" before "Touch", and 3.0 before the other Premiums.
+        // Touch X before Touch, and 3.0 before the other Premiums.
         let known = [
-            ("touch x", DESKTOP),
             ("touchx", DESKTOP),
             ("desktop", DESKTOP),
             ("omni", OMNI),
             ("touch", TOUCH),
-            ("premium 3", LARGE_PREMIUM),
+            ("premium3", LARGE_PREMIUM),
             ("premium", PREMIUM),
         ];
         known
@@ -101,6 +101,7 @@ mod tests {
             ("Geomagic Touch", TOUCH),
             ("Touch X", DESKTOP),
             ("Geomagic Touch X", DESKTOP),
+            ("Touch_X", DESKTOP),
             ("PHANToM Desktop", DESKTOP),
             ("PHANTOM Omni", OMNI),
             ("PHANTOM Premium 1.5 6DOF", PREMIUM),

@@ -78,6 +78,8 @@ impl Pace for VendorClock {
         &mut self,
         beat: &mut (dyn FnMut(u64) -> ControlFlow<()> + Send),
     ) -> Result<(), Trouble> {
+        // What is asked of no device in particular is asked of this thread's.
+        self.session.library.make_current(self.session.device);
         self.calibration.before_start(&self.session)?;
         let calls = Calls::default();
         let (session, waiting) = (Arc::clone(&self.session), std::thread::current());
@@ -122,7 +124,6 @@ impl VendorClock {
     /// Has the scheduler call until it is over.
     fn serve(&mut self, calls: &Calls) -> Result<(), Trouble> {
         let library = self.session.library;
-        library.make_current(self.session.device);
         // A model that has one rate only says that it cannot be set: it is this one.
         library.set_rate(RATE_HZ);
         library.forget_errors();

@@ -1,0 +1,198 @@
+//! What the tests share: a section of `rig.toml`, a servo with a wall, the log, what is told.
+
+use std::io::Write;
+use std::sync::{Mutex, PoisonError};
+use std::time::{Duration, Instant};
+
+use maulstick_haptic::Placed;
+use maulstick_haptic::beat::{Delivery, Ticked};
+use maulstick_haptic::driver::Opened;
+use maulstick_haptic::host::Host;
+use maulstick_haptic::open::HapticSettings;
+use maulstick_haptics::{Contact, Limits};
+use maulstick_libhd::{Call, Control, Script};
+use maulstick_num::geometry::Rigid;
+use maulstick_rig::config::DeviceSection;
+use maulstick_rig::{Fault, RigConfig};
+use maulstick_types::haptics::{ContactModel, ForceLaw, Grain};
+
+/// Beyond this a test gives up.
+const PATIENCE: Duration = Duration::from_secs(60);
+
+/// A device of our libHD, of which nothing else is said.
+pub(crate) fn section() -> DeviceSection {
+    DeviceSection {
+        library: Some(maulstick_libhd::control::path().expect("a path")),
+        ..DeviceSection::new("phantom", "openhaptics", "main")
+    }
+}
+
+/// Opens the device of a section, as the daemon does.
+pub(crate) fn open(section: &DeviceSection) -> Result<Opened, Fault> {
+    let settings = HapticSettings {
+        device: section.clone(),
+        hand: None,
+    };
+    maulstick_haptic::open::open(&RigConfig::default(), &settings)
+}
+
+/// Why a device cannot be opened.
+pub(crate) fn refusal(section: &DeviceSection) -> Fault {
+    open(section).err().expect("a fault")
+}
+
+/// Plays a script.
+pub(crate) fn play(script: &Script) -> Control {
+    Control::play(script).expect("played")
+}
+
+/// However late the ticks of a busy machine come, the force comes up.
+pub(crate) fn patient() -> Limits {
+    Limits {
+        engage_s: 1e-3,
+        longest_tick_s: 1e3,
+        ..Limits::default()
+    }
+}
+
+/// A servo over the opened device, which stands on the desk as it is.
+pub(crate) fn start(opened: Opened, limits: Limits) -> Host {
+    let placed = Placed::new(opened.driver, Rigid::IDENTITY);
+    Host::start(placed, opened.pace, limits).expect("started")
+}
+
+/// A servo over a device of our libHD.
+pub(crate) fn serve() -> Host {
+    start(open(&section()).expect("opened"), patient())
+}
+
+/// Sends a rigid wall of 100 N/m at the desk's z = 0, for a head of 25 mm.
+pub(crate) fn wall(host: &mut Host) {
+    let contact = Contact::new(&ContactModel {
+        device: 1,
+        device_epoch: 1,
+        brush: "main".into(),
+        plane_point_m: [0.0; 3],
+        plane_normal: [0.0, 0.0, 1.0],
+        friction_static: 0.0,
+        friction_kinetic: 0.0,
+        viscous_n_s_m: 0.0,
+        grain: Grain {
+            amplitude: 0.0,
+            wavelength_m: 1e-3,
+            seed: 1,
+        },
+        law: ForceLaw::Rigid {
+            stiffness_n_m: 100.0,
+        },
+        head_length_m: 0.025,
+        time_to_live_ns: u64::MAX,
+        recovery_ns: 0,
+    });
+    host.models.write(Delivery {
+        contact: Some(contact.expect("a model")),
+        sender: None,
+        number: 1,
+    });
+}
+
+/// Waits until something is so.
+pub(crate) fn wait(what: &str, mut is_so: impl FnMut() -> bool) {
+    let give_up = Instant::now() + PATIENCE;
+    while !is_so() {
+        assert!(Instant::now() < give_up, "waited in vain for {what}");
+        std::thread::yield_now();
+    }
+}
+
+/// The first tick that `look` accepts.
+pub(crate) fn tick(host: &mut Host, mut look: impl FnMut(&Ticked) -> bool) -> Ticked {
+    let give_up = Instant::now() + PATIENCE;
+    while Instant::now() < give_up {
+        match host.ticks.pop() {
+            Ok(ticked) if look(&ticked) => return ticked,
+            Ok(_) => {}
+            Err(_) => std::thread::yield_now(),
+        }
+    }
+    panic!("no such tick");
+}
+
+/// All that was called.
+pub(crate) fn calls(control: &Control) -> Vec<Call> {
+    control.calls(0).expect("a log")
+}
+
+/// What is wrong with a log from opening to closing, if anything: its errors, frames that are not one
+/// a tick, a force at the end, another order of the end than the vendor asks for.
+pub(crate) fn disorder(calls: &[Call]) -> Option<String> {
+    let (mut open, mut last_tick, mut force) = (false, 0, [0.0; 3]);
+    for (place, call) in calls.iter().enumerate() {
+        let wrong = match call {
+            Call::Error(_) => true,
+            Call::Begin(tick) => {
+                let wrong = open || *tick <= last_tick;
+                (open, last_tick) = (true, *tick);
+                wrong
+            }
+            Call::End(given) => {
+                force = *given;
+                !std::mem::replace(&mut open, false)
+            }
+            Call::Stop => open || force != [0.0; 3],
+            _ => false,
+        };
+        if wrong {
+            return Some(format!("{call:?} at {place}"));
+        }
+    }
+    let end: Vec<&Call> = calls
+        .iter()
+        .filter(|call| {
+            matches!(
+                call,
+                Call::Stop | Call::Unschedule(_) | Call::DisableDevice(_)
+            )
+        })
+        .collect();
+    match end[..] {
+        [Call::Stop, Call::Unschedule(_), Call::DisableDevice(_)] => None,
+        _ => Some(format!("it ends with {end:?}")),
+    }
+}
+
+/// Where in a log a call is.
+pub(crate) fn place(calls: &[Call], what: impl Fn(&Call) -> bool) -> usize {
+    calls.iter().position(what).expect("such a call")
+}
+
+static TOLD: Mutex<Vec<u8>> = Mutex::new(Vec::new());
+
+struct Ear;
+
+impl Write for Ear {
+    fn write(&mut self, bytes: &[u8]) -> std::io::Result<usize> {
+        let mut told = TOLD.lock().unwrap_or_else(PoisonError::into_inner);
+        told.extend_from_slice(bytes);
+        Ok(bytes.len())
+    }
+
+    fn flush(&mut self) -> std::io::Result<()> {
+        Ok(())
+    }
+}
+
+/// Listens to what is told from now on; to be called while a [`Control`] is held.
+pub(crate) fn listen() {
+    let ear = tracing_subscriber::fmt()
+        .with_ansi(false)
+        .with_writer(|| Ear);
+    ear.try_init().ok();
+    TOLD.lock().unwrap_or_else(PoisonError::into_inner).clear();
+}
+
+/// What was told since.
+pub(crate) fn told() -> String {
+    let told = TOLD.lock().unwrap_or_else(PoisonError::into_inner);
+    String::from_utf8_lossy(&told).into_owned()
+}

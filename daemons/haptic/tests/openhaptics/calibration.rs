@@ -1,0 +1,154 @@
+//! How a device learns where it is.
+
+use glam::DVec3;
+use maulstick_libhd::{Call, Event, Script};
+
+use crate::bench::{calls, disorder, listen, place, play, serve, tick, told, wait, wall};
+
+const OK: u32 = 0x5000;
+const NEEDS_UPDATE: u32 = 0x5001;
+const NEEDS_MANUAL_INPUT: u32 = 0x5002;
+
+/// A device of these styles and states.
+fn script(styles: i32, calibration: &[u32]) -> Script {
+    Script {
+        styles,
+        calibration: calibration.to_vec(),
+        position: [0.0, 0.0, 21.0],
+        ..Script::default()
+    }
+}
+
+#[test]
+fn encoders_are_set_to_zero_before_the_scheduler_starts() {
+    let control = play(&script(1, &[NEEDS_UPDATE, OK]));
+    let mut host = serve();
+    tick(&mut host, |ticked| ticked.reading.in_range);
+    drop(host);
+    let log = calls(&control);
+    let updated = place(&log, |call| *call == Call::Update(1));
+    assert!(updated < place(&log, |call| *call == Call::Start));
+    let updates = log.iter().filter(|call| matches!(call, Call::Update(_)));
+    assert_eq!(updates.count(), 1);
+    assert_eq!(disorder(&log), None);
+}
+
+#[test]
+fn encoders_that_have_their_zero_keep_it() {
+    let control = play(&script(1, &[OK]));
+    let mut host = serve();
+    tick(&mut host, |ticked| ticked.reading.in_range);
+    drop(host);
+    let log = calls(&control);
+    assert!(!log.iter().any(|call| matches!(call, Call::Update(_))));
+}
+
+#[test]
+fn other_styles_are_updated_while_the_scheduler_runs() {
+    // All styles: by itself. The inkwell and the encoders: the inkwell.
+    for (styles, style) in [(7, 2), (5, 4)] {
+        let control = play(&script(styles, &[NEEDS_UPDATE, OK]));
+        let mut host = serve();
+        let first = tick(&mut host, |_| true);
+        assert!(!first.reading.in_range && !first.reading.is_permitted);
+        tick(&mut host, |ticked| ticked.reading.in_range);
+        drop(host);
+        let log = calls(&control);
+        let start = place(&log, |call| *call == Call::Start);
+        let updated = place(&log, |call| *call == Call::Update(style));
+        assert!(start < updated);
+        let frames = log[start..updated]
+            .iter()
+            .filter(|call| matches!(call, Call::Begin(_)));
+        assert!(
+            frames.count() >= 2,
+            "frames have seen that it does not know its place"
+        );
+        assert_eq!(disorder(&log), None);
+    }
+}
+
+#[test]
+fn a_device_that_needs_the_user_says_so_and_gives_no_force_until_then() {
+    for (styles, words) in [
+        (4, "put the stylus into the inkwell"),
+        (2, "move the stylus slowly through all of its reach"),
+        (0, "calibrate it by the vendor's setup program"),
+    ] {
+        let control = play(&script(styles, &[NEEDS_MANUAL_INPUT]));
+        listen();
+        let mut host = serve();
+        wall(&mut host);
+        wait("the words", || told().contains(words));
+        let checks = || {
+            let log = calls(&control);
+            let checks = log.iter().filter(|call| matches!(call, Call::Check(_)));
+            checks.count()
+        };
+        wait("two more looks", || {
+            while let Ok(ticked) = host.ticks.pop() {
+                assert!(!ticked.reading.in_range && ticked.force == DVec3::ZERO);
+            }
+            checks() >= 4
+        });
+        let states = match styles {
+            0 => vec![OK],
+            _ => vec![NEEDS_UPDATE, OK],
+        };
+        control
+            .happen(&Event::Calibration(states))
+            .expect("happens");
+        tick(&mut host, |ticked| {
+            ticked.reading.in_range && ticked.force.z > 0.39
+        });
+        wait("the good news", || {
+            told().contains("phantom: the device is calibrated")
+        });
+        drop(host);
+        assert_eq!(told().matches(words).count(), 1, "{}", told());
+        assert_eq!(disorder(&calls(&control)), None);
+    }
+}
+
+#[test]
+fn a_device_that_loses_its_place_is_out_of_range_until_it_is_updated() {
+    let control = play(&script(2, &[OK]));
+    let mut host = serve();
+    wall(&mut host);
+    tick(&mut host, |ticked| ticked.force.z > 0.39);
+    let lost = Event::Calibration(vec![NEEDS_UPDATE, OK]);
+    control.happen(&lost).expect("happens");
+    let ticked = tick(&mut host, |ticked| !ticked.reading.in_range);
+    assert_eq!(ticked.force, DVec3::ZERO);
+    tick(&mut host, |ticked| ticked.force.z > 0.39);
+    drop(host);
+    let log = calls(&control);
+    assert!(log.contains(&Call::Update(2)));
+    assert_eq!(disorder(&log), None);
+}
+
+#[test]
+fn encoders_that_lose_their_zero_end_the_servo_and_get_it_again_as_it_is_opened() {
+    let control = play(&script(1, &[OK]));
+    let mut host = serve();
+    wall(&mut host);
+    tick(&mut host, |ticked| ticked.force.z > 0.39);
+    control
+        .happen(&Event::Calibration(vec![NEEDS_UPDATE]))
+        .expect("happens");
+    wait("the end", || {
+        while host.ticks.pop().is_ok() {}
+        host.has_ended()
+    });
+    let trouble = host.trouble().expect("a trouble");
+    assert!(trouble.what.contains("lost their zero"), "{trouble}");
+    drop(host);
+    assert_eq!(disorder(&calls(&control)), None);
+    drop(control);
+    let control = play(&script(1, &[NEEDS_UPDATE, NEEDS_UPDATE]));
+    let host = serve();
+    let trouble = host.trouble().expect("a trouble");
+    assert!(trouble.what.contains("lost their zero"), "{trouble}");
+    drop(host);
+    assert!(!calls(&control).contains(&Call::Start));
+}

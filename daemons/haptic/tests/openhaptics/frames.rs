@@ -1,0 +1,315 @@
+//! Frames: poses, units, axes both ways, switches, heat.
+
+use std::ops::ControlFlow;
+
+use glam::{DQuat, DVec3};
+use maulstick_haptic::Placed;
+use maulstick_haptic::driver::{Opened, Reading, Wrench};
+use maulstick_libhd::script::Grip;
+use maulstick_libhd::{Call, Event, Script};
+use maulstick_num::geometry::{Rigid, rotation};
+use maulstick_types::stylus::axes;
+
+use crate::bench::{calls, disorder, open, patient, play, section, serve, start, tick, wall};
+use crate::counting::allocations;
+
+/// Has the scheduler call `work` so often.
+fn during(opened: &mut Opened, times: usize, mut work: impl FnMut(&mut Opened) + Send) {
+    let mut pace = std::mem::replace(&mut opened.pace, Box::new(maulstick_haptic::pace::OwnClock));
+    let mut left = times;
+    pace.run(&mut |_| {
+        work(opened);
+        left -= 1;
+        match left {
+            0 => ControlFlow::Break(()),
+            _ => ControlFlow::Continue(()),
+        }
+    })
+    .expect("ran");
+    opened.pace = pace;
+}
+
+fn read(opened: &mut Opened) -> Reading {
+    opened.driver.read(1e-3).expect("there").expect("new")
+}
+
+#[test]
+fn a_stylus_is_on_the_desk_where_it_is_and_as_it_is_turned() {
+    let turn = rotation(DVec3::new(0.48, 0.6, 0.64), 0.9);
+    let _control = play(&Script {
+        position: [10.0, -20.0, 30.0],
+        velocity: [100.0, 200.0, -300.0],
+        axes: [DVec3::X, DVec3::Y, DVec3::Z].map(|axis| (turn * axis).to_array()),
+        buttons: 0b101,
+        ..Script::default()
+    });
+    // The base stands a quarter turn about the desk's x, and to the right.
+    let to_desk = Rigid {
+        rotation: rotation(DVec3::X, std::f64::consts::FRAC_PI_2),
+        translation: DVec3::new(0.3, 0.0, 0.1),
+    };
+    let opened = open(&section()).expect("opened");
+    let placed = Placed::new(opened.driver, to_desk);
+    assert_eq!(
+        placed.abilities().senses,
+        axes::POSITION | axes::ORIENTATION | axes::VELOCITY | axes::SWITCHES
+    );
+    let mut host =
+        maulstick_haptic::host::Host::start(placed, opened.pace, patient()).expect("started");
+    let reading = tick(&mut host, |ticked| ticked.reading.in_range).reading;
+    let held = reading.held;
+    assert!((held.position - DVec3::new(0.31, -0.03, 0.08)).length() < 1e-12);
+    assert!((held.velocity - DVec3::new(0.1, 0.3, 0.2)).length() < 1e-12);
+    assert!(held.orientation.angle_between(to_desk.rotation * turn) < 1e-7);
+    assert_eq!(reading.switches, 0b101);
+    assert!(reading.is_permitted);
+}
+
+#[test]
+fn a_stylus_that_senses_no_turning_points_away_from_the_user() {
+    let _control = play(&Script {
+        input_dof: 3,
+        axes: [[0.0; 3]; 3],
+        ..Script::default()
+    });
+    let mut opened = open(&section()).expect("opened");
+    assert_eq!(opened.driver.abilities().senses & axes::ORIENTATION, 0);
+    let mut seen = None;
+    during(&mut opened, 1, |opened| {
+        seen = Some(read(opened));
+        opened.driver.write(Wrench::ZERO).expect("written");
+    });
+    let orientation = seen.expect("a reading").held.orientation;
+    assert!(orientation.angle_between(DQuat::IDENTITY) < 1e-12);
+}
+
+#[test]
+fn a_force_on_the_desk_arrives_in_newtons_in_the_base_s_frame() {
+    // Desk x is the base's z, y its x, z its y.
+    let third = rotation(DVec3::ONE.normalize(), std::f64::consts::TAU / 3.0);
+    for (to_desk, expected) in [
+        (
+            DQuat::IDENTITY,
+            [[1.5, 0.0, 0.0], [0.0, 1.5, 0.0], [0.0, 0.0, 1.5]],
+        ),
+        (third, [[0.0, 0.0, 1.5], [1.5, 0.0, 0.0], [0.0, 1.5, 0.0]]),
+    ] {
+        let control = play(&Script::default());
+        let opened = open(&section()).expect("opened");
+        let (mut pace, to_desk) = (
+            opened.pace,
+            Rigid {
+                rotation: to_desk,
+                translation: DVec3::new(0.1, 0.2, 0.3),
+            },
+        );
+        let mut placed = Placed::new(opened.driver, to_desk);
+        let mut forces = vec![DVec3::Z, DVec3::Y, DVec3::X];
+        pace.run(&mut |_| {
+            placed.read(1e-3).expect("there");
+            match forces.pop() {
+                Some(force) => {
+                    placed.write(force * 1.5).expect("written");
+                    ControlFlow::Continue(())
+                }
+                None => ControlFlow::Break(()),
+            }
+        })
+        .expect("ran");
+        drop((placed, pace));
+        let log = calls(&control);
+        let given: Vec<DVec3> = log
+            .iter()
+            .filter_map(|call| match call {
+                Call::End(force) => Some(DVec3::from_array(*force)),
+                _ => None,
+            })
+            .collect();
+        assert_eq!(given.len(), 4, "{log:?}");
+        for (given, expected) in given.iter().zip(expected) {
+            assert!(
+                (*given - DVec3::from_array(expected)).length() < 1e-12,
+                "{given}"
+            );
+        }
+        assert_eq!(disorder(&log), None);
+    }
+}
+
+#[test]
+fn torque_goes_out_in_thousandths_where_the_device_drives_it() {
+    for (output_dof, expected) in [(6, Some([50.0, -20.0, 10.0])), (3, None)] {
+        let control = play(&Script {
+            model: "PHANTOM Premium 1.5 6DOF".into(),
+            output_dof,
+            max_torque: 188.0,
+            ..Script::default()
+        });
+        let mut opened = open(&section()).expect("opened");
+        let wrench = Wrench {
+            force: DVec3::ZERO,
+            torque: DVec3::new(0.05, -0.02, 0.01),
+        };
+        let mut asked = vec![Wrench::ZERO, wrench];
+        during(&mut opened, 2, |opened| {
+            read(opened);
+            let wrench = asked.pop().unwrap_or_default();
+            opened.driver.write(wrench).expect("written");
+        });
+        drop(opened);
+        let log = calls(&control);
+        let sent: Vec<[f64; 3]> = log
+            .iter()
+            .filter_map(|call| match call {
+                Call::Torque(torque) => Some(*torque),
+                _ => None,
+            })
+            .collect();
+        match expected {
+            Some(expected) => {
+                let off = sent[0].iter().zip(expected).map(|(a, b)| (a - b).abs());
+                assert!(off.fold(0.0, f64::max) < 1e-9, "{sent:?}");
+                assert_eq!(sent[1..], [[0.0; 3]]);
+            }
+            None => assert!(sent.is_empty()),
+        }
+        assert_eq!(disorder(&log), None);
+    }
+}
+
+#[test]
+fn more_than_the_device_can_give_is_never_asked_of_it() {
+    let control = play(&Script::default());
+    let mut opened = open(&section()).expect("opened");
+    let mut forces = vec![DVec3::NAN, DVec3::new(0.0, -99.0, 0.0)];
+    during(&mut opened, 3, |opened| {
+        read(opened);
+        let force = forces.pop().unwrap_or_default();
+        let torque = DVec3::ZERO;
+        opened
+            .driver
+            .write(Wrench { force, torque })
+            .expect("written");
+    });
+    drop(opened);
+    let log = calls(&control);
+    let sent: Vec<&Call> = log
+        .iter()
+        .filter(|call| matches!(call, Call::Force(_)))
+        .collect();
+    let zero = Call::Force([0.0; 3]);
+    assert_eq!(sent, [&Call::Force([0.0, -3.3, 0.0]), &zero, &zero]);
+}
+
+#[test]
+fn a_stylus_in_its_inkwell_is_out_of_range() {
+    let control = play(&Script {
+        inkwell: 1,
+        ..Script::default()
+    });
+    let mut host = serve();
+    assert!(
+        !tick(&mut host, |ticked| ticked.tick.fault.is_none())
+            .reading
+            .in_range
+    );
+    control.happen(&Event::Inkwell(0)).expect("happens");
+    tick(&mut host, |ticked| ticked.reading.in_range);
+    control.happen(&Event::Inkwell(1)).expect("happens");
+    tick(&mut host, |ticked| !ticked.reading.in_range);
+}
+
+#[test]
+fn a_hand_that_lets_go_of_a_touch_x_feels_nothing_and_a_touch_has_no_such_switch() {
+    for (model, senses) in [("Touch X", true), ("Touch", false)] {
+        let control = play(&Script {
+            model: model.into(),
+            position: [0.0, 0.0, 21.0],
+            ..Script::default()
+        });
+        let mut host = serve();
+        wall(&mut host);
+        tick(&mut host, |ticked| ticked.force.z > 0.39);
+        control.happen(&Event::Safety(0)).expect("happens");
+        if senses {
+            let ticked = tick(&mut host, |ticked| !ticked.reading.is_permitted);
+            assert_eq!(ticked.force, DVec3::ZERO);
+            control.happen(&Event::Safety(1)).expect("happens");
+            tick(&mut host, |ticked| ticked.force.z > 0.39);
+        } else {
+            let mut left = 100;
+            tick(&mut host, |ticked| {
+                assert!(ticked.reading.is_permitted && ticked.force.z > 0.39);
+                left -= 1;
+                left == 0
+            });
+        }
+    }
+}
+
+#[test]
+fn warm_motors_give_their_continuous_force() {
+    let control = play(&Script {
+        position: [0.0, 0.0, 5.0],
+        continuous_force: 0.5,
+        ..Script::default()
+    });
+    let opened = open(&section()).expect("opened");
+    let can = opened.driver.abilities();
+    let limits = maulstick_haptics::Limits {
+        continuous_force_n: can.continuous_force_n,
+        ..patient()
+    };
+    let mut host = start(opened, limits);
+    wall(&mut host);
+    // 20 mm into a wall of 100 N/m.
+    tick(&mut host, |ticked| (ticked.force.z - 2.0).abs() < 1e-9);
+    let hot = Event::Temperatures([0.1, 0.2, 0.1, 0.1, 0.95, 0.1]);
+    control.happen(&hot).expect("happens");
+    let ticked = tick(&mut host, |ticked| ticked.tick.cap_n < 0.51);
+    assert_eq!(ticked.reading.motor_temperature, 0.95);
+    tick(&mut host, |ticked| (ticked.force.z - 0.5).abs() < 0.01);
+}
+
+#[test]
+fn a_hand_that_presses_onto_the_wall_is_held_up_by_it() {
+    // It wants to be 10 mm in: its 200 N/m against the wall's 100 leave it at two thirds of that.
+    let control = play(&Script {
+        grip: Grip::Hand,
+        position: [0.0, 0.0, 15.0],
+        ..Script::default()
+    });
+    let mut host = serve();
+    wall(&mut host);
+    let depth = |z: f64| 0.025 - z;
+    let mut rest = 0;
+    let ticked = tick(&mut host, |ticked| {
+        let near = (depth(ticked.reading.held.position.z) - 0.0067).abs() < 0.0012;
+        rest = if near { rest + 1 } else { 0 };
+        rest > 100
+    });
+    assert!(ticked.force.z > 0.4, "{}", ticked.force);
+    drop(host);
+    assert_eq!(disorder(&calls(&control)), None);
+}
+
+#[test]
+fn a_frame_allocates_nothing() {
+    let _control = play(&Script::default());
+    let mut opened = open(&section()).expect("opened");
+    let (mut counted, mut seeded) = (0, 0);
+    let frame = |opened: &mut Opened| {
+        read(opened);
+        let force = DVec3::X;
+        let torque = DVec3::ZERO;
+        opened
+            .driver
+            .write(Wrench { force, torque })
+            .expect("written");
+    };
+    during(&mut opened, 200, |opened| {
+        counted += allocations(|| frame(opened));
+        seeded += allocations(|| drop(std::hint::black_box(Vec::<u8>::with_capacity(1))));
+    });
+    assert_eq!((counted, seeded), (0, 200));
+}
