@@ -160,8 +160,10 @@ fn chosen<'a>(update: &'a Update, address: &Address) -> Result<&'a Device, Fault
                 .help("plug it in and switch it on, and look whether Haply Hub sees it"),
         ),
         (Some(id), _) => update.device(id).ok_or_else(|| {
-            Fault::failure(format!("the Inverse service at {url} sees no Inverse3 {id}"))
-                .help(format!("switch it on; there are: {}", ids()))
+            Fault::failure(format!(
+                "the Inverse service at {url} sees no Inverse3 {id}"
+            ))
+            .help(format!("switch it on; there are: {}", ids()))
         }),
         (None, [device]) => Ok(device),
         (None, _) => Err(Fault::failure(format!(

@@ -6,6 +6,7 @@ mod counting;
 mod messages;
 #[path = "inverse3/service.rs"]
 mod service;
+mod wall;
 
 use std::time::{Duration, Instant};
 
@@ -41,17 +42,11 @@ fn at(address: &str) -> DeviceSection {
 }
 
 fn opened(address: &str) -> Box<dyn Driver> {
-    match inverse3::open(&at(address)) {
-        Ok(opened) => opened.driver,
-        Err(fault) => panic!("{fault:?}"),
-    }
+    inverse3::open(&at(address)).expect("an Inverse3").driver
 }
 
 fn fault(address: &str) -> Fault {
-    match inverse3::open(&at(address)) {
-        Ok(_) => panic!("{address} was opened"),
-        Err(fault) => fault,
-    }
+    inverse3::open(&at(address)).map(|_| ()).expect_err(address)
 }
 
 fn push(force: DVec3) -> Wrench {
@@ -92,7 +87,11 @@ fn steady(first: Value) -> Service {
 
 fn force(commands: &Value, dialect: &str) -> Option<[f64; 3]> {
     let parts = &commands["set_cursor_force"][dialect];
-    Some([parts["x"].as_f64()?, parts["y"].as_f64()?, parts["z"].as_f64()?])
+    Some([
+        parts["x"].as_f64()?,
+        parts["y"].as_f64()?,
+        parts["z"].as_f64()?,
+    ])
 }
 
 #[test]
@@ -126,6 +125,25 @@ fn states_are_read_and_forces_arrive_in_the_services_axes() {
 }
 
 #[test]
+fn a_servo_pushes_a_device_out_of_a_wall_and_leaves_no_force() {
+    // 21 mm toward the user: a head of 25 mm is 4 mm deep in a wall of 100 N/m.
+    let deep = || {
+        let mut deep = inventory();
+        deep["inverse3"][0]["state"] = json!({
+            "cursor_position": { "x": 0.01, "y": -0.021, "z": 0.15 },
+            "cursor_velocity": { "x": 0, "y": 0, "z": 0 }
+        });
+        deep
+    };
+    let service = Service::start(Act::Say(deep()), move |_| Act::Say(deep()));
+    let newest = || force(service.heard().newest("049D")?, "vector");
+    let felt = || newest().is_some_and(|[x, y, z]| x == 0.0 && z == 0.0 && (y + 0.4).abs() < 1e-9);
+    assert!(wall::push(&at(&service.url), felt));
+    let closed = wait_for(|| service.heard().closed.then_some(()));
+    assert_eq!((closed, newest()), (Some(()), Some([0.0; 3])));
+}
+
+#[test]
 fn a_service_before_3_5_is_spoken_to_as_it_wants() {
     let service = Service::start(Act::Say(old_inventory()), |_| {
         Act::Say(update("04BA", state()))
@@ -150,10 +168,12 @@ fn resting_amplifiers_are_only_asked_for_the_position() {
     let service = steady(inventory());
     let mut driver = opened(&service.url);
     driver.switch(Switch::Off);
-    let probed = || (service.heard().newest("049D")? == &json!({ "probe_position": {} })).then_some(());
+    let probed =
+        || (service.heard().newest("049D")? == &json!({ "probe_position": {} })).then_some(());
     assert_eq!(beat(&mut *driver, DVec3::X, probed), Some(()));
     driver.switch(Switch::On);
-    let pushed = || (force(service.heard().newest("049D")?, "vector")? == [1.0, 0.0, 0.0]).then_some(());
+    let pushed =
+        || (force(service.heard().newest("049D")?, "vector")? == [1.0, 0.0, 0.0]).then_some(());
     assert_eq!(beat(&mut *driver, DVec3::X, pushed), Some(()));
 }
 
@@ -169,7 +189,10 @@ fn a_force_beyond_the_devices_is_cut_to_it_and_one_that_is_no_number_is_none() {
         })
     };
     assert_eq!(arrives(DVec3::X * 4.0, [4.0, 0.0, 0.0]), Some(()));
-    assert_eq!(arrives(DVec3::new(30.0, 40.0, 0.0), [6.0, 0.0, 8.0]), Some(()));
+    assert_eq!(
+        arrives(DVec3::new(30.0, 40.0, 0.0), [6.0, 0.0, 8.0]),
+        Some(())
+    );
     assert_eq!(arrives(DVec3::new(f64::NAN, 1.0, 0.0), [0.0; 3]), Some(()));
 }
 
@@ -191,7 +214,10 @@ fn the_last_word_is_no_force_and_then_the_connection_is_closed() {
     assert_eq!(beat(&mut *driver, DVec3::Y, pushed), Some(()));
     drop(driver);
     assert_eq!(wait_for(|| service.heard().closed.then_some(())), Some(()));
-    let last = service.heard().newest("049D").and_then(|c| force(c, "vector"));
+    let last = service
+        .heard()
+        .newest("049D")
+        .and_then(|c| force(c, "vector"));
     assert_eq!(last, Some([0.0; 3]));
 }
 
@@ -208,7 +234,12 @@ fn the_last_word_is_no_force_also_where_the_service_has_gone_silent() {
     });
     assert_eq!(silent, Some(()));
     drop(driver);
-    let last = || service.heard().newest("049D").and_then(|c| force(c, "vector"));
+    let last = || {
+        service
+            .heard()
+            .newest("049D")
+            .and_then(|c| force(c, "vector"))
+    };
     assert_eq!(wait_for(|| service.heard().closed.then_some(())), Some(()));
     assert_eq!(last(), Some([0.0; 3]));
 }
@@ -220,20 +251,30 @@ fn of_two_devices_the_one_that_is_named_is_read_and_pushed() {
         let mut other = state();
         other["cursor_position"]["z"] = json!(z);
         let other = update("0AAA", other)["inverse3"][0].clone();
-        message["inverse3"].as_array_mut().expect("a list").push(other);
+        message["inverse3"]
+            .as_array_mut()
+            .expect("a list")
+            .push(other);
         message
     };
     let mut first = two(0.25);
     first["session_id"] = json!(1);
     let service = Service::start(Act::Say(first), move |_| Act::Say(two(0.25)));
     let several = fault(&service.url);
-    assert!(several.what.contains("several Inverse3s: 049D, 0AAA"), "{}", several.what);
+    assert!(
+        several.what.contains("several Inverse3s: 049D, 0AAA"),
+        "{}",
+        several.what
+    );
     assert!(several.help.is_some_and(|help| help.contains("#id")));
     let unknown = fault(&format!("{}#0BBB", service.url));
     assert!(unknown.what.ends_with("sees no Inverse3 0BBB"));
     assert!(unknown.help.is_some_and(|help| help.contains("049D, 0AAA")));
     let grip = fault(&format!("{}#0AAA+9", service.url));
-    assert!(grip.what.ends_with("sees no VerseGrip 9") && grip.help.is_some_and(|h| h.contains("61548")));
+    assert!(
+        grip.what.ends_with("sees no VerseGrip 9")
+            && grip.help.is_some_and(|h| h.contains("61548"))
+    );
 
     let mut driver = opened(&format!("{}#0AAA+61548", service.url));
     let read = reading(&mut *driver).expect("there").expect("new");
@@ -241,7 +282,13 @@ fn of_two_devices_the_one_that_is_named_is_read_and_pushed() {
     let pushed = || (force(service.heard().newest("0AAA")?, "vector")? != [0.0; 3]).then_some(());
     assert_eq!(beat(&mut *driver, DVec3::Y, pushed), Some(()));
     let asked_of = |message: &Value| message["inverse3"][0]["device_id"].clone();
-    assert!(service.heard().messages.iter().all(|message| asked_of(message) == "0AAA"));
+    assert!(
+        service
+            .heard()
+            .messages
+            .iter()
+            .all(|message| asked_of(message) == "0AAA")
+    );
 }
 
 #[test]
@@ -250,7 +297,11 @@ fn what_is_missing_at_the_start_is_told_with_what_to_do() {
     let port = closed.local_addr().expect("an address");
     drop(closed);
     let absent = fault(&format!("ws://{port}"));
-    assert!(absent.what.starts_with("no Inverse service answers at"), "{}", absent.what);
+    assert!(
+        absent.what.starts_with("no Inverse service answers at"),
+        "{}",
+        absent.what
+    );
     let help = absent.help.expect("what to do");
     assert!(help.contains("systemctl start") && help.contains(":10000"));
 
@@ -270,13 +321,24 @@ fn what_is_missing_at_the_start_is_told_with_what_to_do() {
         Act::Vanish,
     ] {
         let foreign = first(act);
-        assert!(foreign.what.contains("is no Inverse service"), "{}", foreign.what);
+        assert!(
+            foreign.what.contains("is no Inverse service"),
+            "{}",
+            foreign.what
+        );
     }
-    for (key, what) in [("calibrated", "is not calibrated"), ("power_supply", "has no power")] {
+    for (key, what) in [
+        ("calibrated", "is not calibrated"),
+        ("power_supply", "has no power"),
+    ] {
         let mut message = inventory();
         message["inverse3"][0]["status"][key] = json!(false);
         let hindered = first(Act::Say(message));
-        assert!(hindered.what.contains(what) && hindered.what.contains("049D"), "{}", hindered.what);
+        assert!(
+            hindered.what.contains(what) && hindered.what.contains("049D"),
+            "{}",
+            hindered.what
+        );
         assert!(hindered.help.is_some());
     }
 }
@@ -290,9 +352,16 @@ fn a_listener_that_is_no_websocket_is_told_as_that() {
         std::io::Write::write_all(&mut stream, b"SSH-2.0-OpenSSH_9\r\n\r\n").ok();
     });
     let foreign = fault(&url);
-    assert!(foreign.what.contains("is no Inverse service"), "{}", foreign.what);
+    assert!(
+        foreign.what.contains("is no Inverse service"),
+        "{}",
+        foreign.what
+    );
     thread.join().expect("it ends");
 }
+
+/// How a service acts, and what is told of it.
+type Case = (fn() -> Act, &'static str);
 
 /// A service that is as it should be for 50 messages, and then acts so.
 fn turning(act: fn() -> Act) -> Service {
@@ -306,23 +375,32 @@ fn turning(act: fn() -> Act) -> Service {
 fn a_service_or_device_that_goes_is_told_as_how_it_went() {
     let closed = "the Inverse service has closed the connection";
     let foreign = "the Inverse service sends what cannot be read";
-    let cases: [(fn() -> Act, &str); 9] = [
+    let cases: [Case; 9] = [
         (|| Act::Close, closed),
         (|| Act::Vanish, closed),
         (|| Act::Rest, "the Inverse service does not answer any more"),
         (|| Act::Send(Message::text("{\"inverse3\": [")), foreign),
         (|| Act::Send(Message::binary(vec![0; 1000])), foreign),
         (|| Act::Send(Message::binary(vec![b' '; 2 << 20])), foreign),
-        (|| Act::Say(json!({ "inverse3": [] })), "the Inverse3 is unplugged"),
         (
-            || Act::Say(json!({ "inverse3": [{ "device_id": "049D", "state": state(),
-                "status": { "calibrated": false } }] })),
+            || Act::Say(json!({ "inverse3": [] })),
+            "the Inverse3 is unplugged",
+        ),
+        (
+            || {
+                Act::Say(
+                    json!({ "inverse3": [{ "device_id": "049D", "state": state(),
+                "status": { "calibrated": false } }] }),
+                )
+            },
             "the Inverse3 is not calibrated",
         ),
         (
-            || Act::Send(Message::text(
-                r#"{"inverse3":[{"device_id":"049D","state":{"cursor_position":{"x":1e999,"y":0,"z":0}}}]}"#,
-            )),
+            || {
+                Act::Send(Message::text(
+                    r#"{"inverse3":[{"device_id":"049D","state":{"cursor_position":{"x":1e999,"y":0,"z":0}}}]}"#,
+                ))
+            },
             foreign,
         ),
     ];
@@ -360,7 +438,9 @@ fn what_cannot_be_read_between_states_is_passed_over() {
 #[test]
 fn states_in_binary_messages_are_read() {
     let service = Service::start(Act::Say(inventory()), |_| {
-        Act::Send(Message::binary(update("049D", state()).to_string().into_bytes()))
+        Act::Send(Message::binary(
+            update("049D", state()).to_string().into_bytes(),
+        ))
     });
     let mut driver = opened(&service.url);
     for _ in 0..20 {

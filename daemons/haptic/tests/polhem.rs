@@ -11,6 +11,7 @@ mod firmware;
 mod lines;
 #[path = "polhem/terminal.rs"]
 mod terminal;
+mod wall;
 
 use bench::{Beat, Cable};
 use firmware::{Firmware, Reads, Style};
@@ -61,8 +62,7 @@ fn a_stylus_that_wakes_late_and_through_garbage_is_woken() {
     );
     let garbled = woken(firmware(), |cable| {
         let mut bench = cable.bench();
-        (bench.garbage, bench.piece, bench.latency_s) =
-            (b"\x00\xff 1 2 nan\n".to_vec(), 3, 0.004);
+        (bench.garbage, bench.piece, bench.latency_s) = (b"\x00\xff 1 2 nan\n".to_vec(), 3, 0.004);
     });
     assert_eq!(garbled, Ok(Length::Short));
 }
@@ -116,16 +116,13 @@ fn lines_of_a_length_that_the_firmware_does_not_read_bring_nothing() {
 
 #[test]
 fn poses_in_pieces_are_put_together() {
-    for piece in 1..=9 {
+    for piece in 2..=9 {
         let mut beat = Beat::over(Style::Double, Reads::Lines, Length::Short);
         beat.cable.bench().piece = piece;
         let read = beat.ticks(300, DVec3::X);
         // Four pieces a tick, 64 bytes a pose.
-        let expected = 300 * (4 * piece).min(64) / 64;
-        assert!(
-            read + 25 > expected && read <= expected + 25,
-            "{piece}: {read} {expected}"
-        );
+        let expected = 300 / 64_usize.div_ceil(4 * piece);
+        assert!(read.abs_diff(expected) <= 1, "{piece}: {read} {expected}");
         assert_eq!(beat.polhem.lost(), 0, "{piece}");
     }
 }
@@ -142,7 +139,7 @@ fn after_a_lost_answer_there_is_no_force_until_the_dialogue_is_taken_up_again() 
     }
     assert_eq!(beat.polhem.lost(), 1);
     let without = felt.iter().filter(|newtons| **newtons == 0.0).count();
-    assert!((5..30).contains(&without), "{felt:?}");
+    assert!((5..20).contains(&without), "{felt:?}");
     assert_eq!(felt.last(), Some(&1.0), "{felt:?}");
     // With every answer there it would never have gone.
     assert_eq!(beat.ticks(60, DVec3::X), 60);
@@ -153,8 +150,8 @@ fn after_a_lost_answer_there_is_no_force_until_the_dialogue_is_taken_up_again() 
 fn a_late_answer_is_not_taken_for_the_next_one() {
     let mut beat = Beat::over(Style::Double, Reads::Lines, Length::Short);
     beat.ticks(100, DVec3::ZERO);
-    // The answer is given up after 20 ms, and both it and the probe's come together then.
-    beat.cable.bench().latency_s = 0.0215;
+    // The answer is given up after 10 ms, and both it and the probe's come together then.
+    beat.cable.bench().latency_s = 0.0115;
     beat.tick(DVec3::ZERO).expect("there");
     beat.cable.bench().latency_s = 0.0;
     for step in 0..200 {
@@ -162,7 +159,10 @@ fn a_late_answer_is_not_taken_for_the_next_one() {
         let reading = beat.tick(DVec3::ZERO).expect("there");
         let z = reading.map(|reading| reading.held.position.z * 1e3);
         // Each reading is the answer to the line of the tick before.
-        assert!(z.is_none_or(|z| (z - f64::from(step - 1)).abs() < 1e-9), "{step}: {z:?}");
+        assert!(
+            z.is_none_or(|z| (z - f64::from(step - 1)).abs() < 1e-9),
+            "{step}: {z:?}"
+        );
     }
     assert_eq!(beat.polhem.lost(), 1);
 }
@@ -225,7 +225,7 @@ fn a_force_beyond_the_devices_is_cut_to_it_and_one_that_is_no_number_is_none() {
         beat.ticks(10, DVec3::new(0.0, wrong, 1.0));
         assert_eq!(beat.felt(), DVec3::ZERO);
     }
-    beat.ticks(10, DVec3::splat(1e300));
+    beat.ticks(10, DVec3::splat(1e100));
     assert!((beat.felt().length() - 5.0).abs() < 2e-3);
     // Uncut, the amplifiers would have refused it.
     let uncut = b"30000 0 -30000 2 0 0 0\n";

@@ -55,17 +55,18 @@ impl Connection {
             .write_buffer_size(0)
             .max_message_size(Some(LARGEST))
             .max_frame_size(Some(LARGEST));
-        let (socket, _) = client_with_config(&address.url, stream, Some(config)).map_err(|error| {
-            let why = match error {
-                HandshakeError::Failure(error) => error.to_string(),
-                HandshakeError::Interrupted(_) => "it says nothing".into(),
-            };
-            Fault::failure(format!(
-                "what listens at {} is no Inverse service: {why}",
-                address.url
-            ))
-            .help("name the service's own as the device's `address`")
-        })?;
+        let (socket, _) =
+            client_with_config(&address.url, stream, Some(config)).map_err(|error| {
+                let why = match error {
+                    HandshakeError::Failure(error) => error.to_string(),
+                    HandshakeError::Interrupted(_) => "it says nothing".into(),
+                };
+                Fault::failure(format!(
+                    "what listens at {} is no Inverse service: {why}",
+                    address.url
+                ))
+                .help("name the service's own as the device's `address`")
+            })?;
         let connection = Self { socket };
         connection
             .socket

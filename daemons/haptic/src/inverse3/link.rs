@@ -256,8 +256,8 @@ impl Courier {
     }
 
     fn send(&mut self, wanted: Wanted) -> Result<(), Missed> {
-        let text = request(self.follower.device(), wanted, self.dialect)
-            .map_err(|_| Missed::Unread)?;
+        let text =
+            request(self.follower.device(), wanted, self.dialect).map_err(|_| Missed::Unread)?;
         Ok(self.connection.send(text)?)
     }
 

@@ -33,16 +33,17 @@ pub fn only(ports: &[SerialPortInfo]) -> Result<&str, Fault> {
     let mut fits = ports.iter().filter(|port| fits(port));
     match (fits.next(), fits.next()) {
         (Some(port), None) => Ok(&port.port_name),
-        (None, _) => Err(Fault::failure(
-            "no WoodenHaptics or Polhem stylus is plugged in",
-        )
-        .help(match ports.is_empty() {
-            true => "plug it in; this machine has no serial port now".to_owned(),
-            false => format!(
-                "plug it in, or name its port as the device's `address`; there are: {}",
-                listed(ports.iter())
+        (None, _) => Err(
+            Fault::failure("no WoodenHaptics or Polhem stylus is plugged in").help(
+                match ports.is_empty() {
+                    true => "plug it in; this machine has no serial port now".to_owned(),
+                    false => format!(
+                        "plug it in, or name its port as the device's `address`; there are: {}",
+                        listed(ports.iter())
+                    ),
+                },
             ),
-        })),
+        ),
         (Some(_), Some(_)) => {
             let names = listed(ports.iter().filter(|port| self::fits(port)));
             Err(Fault::failure(format!(

@@ -16,9 +16,10 @@ fn read(value: &Value) -> Update {
 
 fn pose(seen: Seen) -> Pose {
     match seen {
-        Seen::Pose(pose) => pose,
-        other => panic!("{other:?}"),
+        Seen::Pose(pose) => Some(pose),
+        _ => None,
     }
+    .expect("a pose")
 }
 
 #[test]
@@ -37,7 +38,10 @@ fn what_services_before_3_5_say_is_read_as_well() {
     let message = read(&old_inventory());
     assert_eq!(message.dialect(), Dialect::Values);
     let pose = pose(Follower::new("04BA", None).take(&message));
-    assert_eq!(pose.position, DVec3::new(0.07842738, 0.14297646, 0.14836666));
+    assert_eq!(
+        pose.position,
+        DVec3::new(0.07842738, 0.14297646, 0.14836666)
+    );
     assert_eq!(pose.switches, 1);
     assert!((pose.orientation.length() - 1.0).abs() < 1e-12);
 }
@@ -73,7 +77,10 @@ fn what_a_state_leaves_out_is_as_it_was() {
     }], "wireless_verse_grip": null });
     let pose = pose(follower.take(&read(&partly)));
     assert_eq!(pose.position, DVec3::new(0.01, 0.15, 0.2));
-    assert_eq!((pose.velocity, pose.switches), (Some(DVec3::new(0.1, 0.3, -0.2)), 0b101));
+    assert_eq!(
+        (pose.velocity, pose.switches),
+        (Some(DVec3::new(0.1, 0.3, -0.2)), 0b101)
+    );
     // Where nothing was before, a part is no place.
     let seen = Follower::new("049D", None).take(&read(&partly));
     assert_eq!(seen, Seen::Nothing);
@@ -99,10 +106,15 @@ fn numbers_that_no_device_sends_make_no_pose() {
     message["wireless_verse_grip"][0]["state"]["orientation"]["w"] = json!(1e200);
     let held = self::pose(Follower::new("049D", None).take(&read(&message)));
     assert_eq!(held.orientation, DQuat::IDENTITY);
-    for text in [r#"{"inverse3":[{"device_id":"049D","state":{"cursor_position":{"x":1e999}}}]}"#,
+    for text in [
+        r#"{"inverse3":[{"device_id":"049D","state":{"cursor_position":{"x":1e999}}}]}"#,
         r#"{"inverse3":[{"device_id":"049D","state":{"cursor_position":{"x":NaN}}}]}"#,
-        r#"{"inverse3":7}"#, "", "[", "null", "\u{0}"]
-    {
+        r#"{"inverse3":7}"#,
+        "",
+        "[",
+        "null",
+        "\u{0}",
+    ] {
         assert!(Update::read(text.as_bytes()).is_err(), "{text}");
     }
 }
@@ -135,7 +147,11 @@ fn a_grip_is_followed_by_its_id() {
     }]);
     let switches = |grip| pose(Follower::new("049D", grip).take(&read(&message))).switches;
     assert_eq!(
-        (switches(None), switches(Some("61548")), switches(Some("12"))),
+        (
+            switches(None),
+            switches(Some("61548")),
+            switches(Some("12"))
+        ),
         (0b101, 0b101, 0b1)
     );
     assert_eq!(switches(Some("13")), 0);
@@ -156,7 +172,11 @@ const PERMUTATIONS: [&str; 6] = ["XYZ", "XZY", "X-YZ", "ZXY", "-X+Z-Y", "yzx"];
 
 #[test]
 fn a_permutation_says_which_of_haplys_axes_each_of_ours_is() {
-    let up = |permutation| Basis::read(permutation).expect("a basis").to_device(DVec3::Y);
+    let up = |permutation| {
+        Basis::read(permutation)
+            .expect("a basis")
+            .to_device(DVec3::Y)
+    };
     // Haply's z is up, its y forward: device y and −z.
     assert_eq!(up("XZY"), DVec3::Y);
     assert_eq!(up("XYZ"), DVec3::NEG_Z);

@@ -53,10 +53,7 @@ pub(crate) struct Service {
 
 impl Service {
     /// A service that sends `first` to whoever connects, and then acts on the n-th message as `act` says.
-    pub(crate) fn start(
-        first: Act,
-        mut act: impl FnMut(usize) -> Act + Send + 'static,
-    ) -> Self {
+    pub(crate) fn start(first: Act, mut act: impl FnMut(usize) -> Act + Send + 'static) -> Self {
         let listener = TcpListener::bind("127.0.0.1:0").expect("a port");
         listener.set_nonblocking(true).expect("no waiting");
         let url = format!("ws://{}", listener.local_addr().expect("an address"));
