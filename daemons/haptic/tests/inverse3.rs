@@ -4,8 +4,11 @@
 mod counting;
 #[path = "inverse3/messages.rs"]
 mod messages;
+#[path = "inverse3/misbehaving.rs"]
+mod misbehaving;
 #[path = "inverse3/service.rs"]
 mod service;
+mod wall;
 
 use std::time::{Duration, Instant};
 
@@ -19,7 +22,6 @@ use maulstick_rig::config::DeviceSection;
 use maulstick_types::stylus::axes;
 use serde_json::{Value, json};
 use service::{Act, Service, inventory, old_inventory, state, update};
-use tungstenite::Message;
 
 /// Waits until `look` has it; None where that takes too long.
 fn wait_for<T>(mut look: impl FnMut() -> Option<T>) -> Option<T> {
@@ -41,17 +43,11 @@ fn at(address: &str) -> DeviceSection {
 }
 
 fn opened(address: &str) -> Box<dyn Driver> {
-    match inverse3::open(&at(address)) {
-        Ok(opened) => opened.driver,
-        Err(fault) => panic!("{fault:?}"),
-    }
+    inverse3::open(&at(address)).expect("an Inverse3").driver
 }
 
 fn fault(address: &str) -> Fault {
-    match inverse3::open(&at(address)) {
-        Ok(_) => panic!("{address} was opened"),
-        Err(fault) => fault,
-    }
+    inverse3::open(&at(address)).map(|_| ()).expect_err(address)
 }
 
 fn push(force: DVec3) -> Wrench {
@@ -78,11 +74,6 @@ fn beat<T>(
         driver.write(push(force)).expect("there");
         look()
     })
-}
-
-/// What a device loses itself by, beating on.
-fn trouble(driver: &mut dyn Driver) -> Trouble {
-    wait_for(|| driver.read(1e-3).err()).expect("it is lost")
 }
 
 /// A service that always tells the same state of the device 049D.
@@ -127,6 +118,25 @@ fn states_are_read_and_forces_arrive_in_the_services_axes() {
     assert_eq!((read.switches, read.in_range), (0b101, true));
     let able = driver.abilities();
     assert!(able.senses & axes::ORIENTATION != 0 && able.max_force_n == 10.0);
+}
+
+#[test]
+fn a_servo_pushes_a_device_out_of_a_wall_and_leaves_no_force() {
+    // 21 mm toward the user: a head of 25 mm is 4 mm deep in a wall of 100 N/m.
+    let deep = || {
+        let mut deep = inventory();
+        deep["inverse3"][0]["state"] = json!({
+            "cursor_position": { "x": 0.01, "y": -0.021, "z": 0.15 },
+            "cursor_velocity": { "x": 0, "y": 0, "z": 0 }
+        });
+        deep
+    };
+    let service = Service::start(Act::Say(deep()), move |_| Act::Say(deep()));
+    let newest = || force(service.heard().newest("049D")?, "vector");
+    let felt = || newest().is_some_and(|[x, y, z]| x == 0.0 && z == 0.0 && (y + 0.4).abs() < 1e-9);
+    assert!(wall::push(&at(&service.url), felt));
+    let closed = wait_for(|| service.heard().closed.then_some(()));
+    assert_eq!((closed, newest()), (Some(()), Some([0.0; 3])));
 }
 
 #[test]
@@ -275,160 +285,6 @@ fn of_two_devices_the_one_that_is_named_is_read_and_pushed() {
             .iter()
             .all(|message| asked_of(message) == "0AAA")
     );
-}
-
-#[test]
-fn what_is_missing_at_the_start_is_told_with_what_to_do() {
-    let closed = std::net::TcpListener::bind("127.0.0.1:0").expect("a port");
-    let port = closed.local_addr().expect("an address");
-    drop(closed);
-    let absent = fault(&format!("ws://{port}"));
-    assert!(
-        absent.what.starts_with("no Inverse service answers at"),
-        "{}",
-        absent.what
-    );
-    let help = absent.help.expect("what to do");
-    assert!(help.contains("systemctl start") && help.contains(":10000"));
-
-    let first = |act| {
-        let service = Service::start(act, |_| Act::Rest);
-        fault(&service.url)
-    };
-    let none = first(Act::Say(json!({ "inverse3": [] })));
-    assert!(none.what.ends_with("sees no Inverse3"), "{}", none.what);
-    for act in [
-        Act::Send(Message::text("hello")),
-        Act::Send(Message::binary(vec![0xff; 9])),
-        Act::Send(Message::text("x".repeat(2 << 20))),
-        Act::Say(json!({ "inverse3": 3 })),
-        Act::Rest,
-        Act::Close,
-        Act::Vanish,
-    ] {
-        let foreign = first(act);
-        assert!(
-            foreign.what.contains("is no Inverse service"),
-            "{}",
-            foreign.what
-        );
-    }
-    for (key, what) in [
-        ("calibrated", "is not calibrated"),
-        ("power_supply", "has no power"),
-    ] {
-        let mut message = inventory();
-        message["inverse3"][0]["status"][key] = json!(false);
-        let hindered = first(Act::Say(message));
-        assert!(
-            hindered.what.contains(what) && hindered.what.contains("049D"),
-            "{}",
-            hindered.what
-        );
-        assert!(hindered.help.is_some());
-    }
-}
-
-#[test]
-fn a_listener_that_is_no_websocket_is_told_as_that() {
-    let listener = std::net::TcpListener::bind("127.0.0.1:0").expect("a port");
-    let url = format!("ws://{}", listener.local_addr().expect("an address"));
-    let thread = std::thread::spawn(move || {
-        let (mut stream, _) = listener.accept().expect("a client");
-        std::io::Write::write_all(&mut stream, b"SSH-2.0-OpenSSH_9\r\n\r\n").ok();
-    });
-    let foreign = fault(&url);
-    assert!(
-        foreign.what.contains("is no Inverse service"),
-        "{}",
-        foreign.what
-    );
-    thread.join().expect("it ends");
-}
-
-/// A service that is as it should be for 50 messages, and then acts so.
-fn turning(act: fn() -> Act) -> Service {
-    Service::start(Act::Say(inventory()), move |count| match count {
-        0..50 => Act::Say(update("049D", state())),
-        _ => act(),
-    })
-}
-
-#[test]
-fn a_service_or_device_that_goes_is_told_as_how_it_went() {
-    let closed = "the Inverse service has closed the connection";
-    let foreign = "the Inverse service sends what cannot be read";
-    let cases: [(fn() -> Act, &str); 9] = [
-        (|| Act::Close, closed),
-        (|| Act::Vanish, closed),
-        (|| Act::Rest, "the Inverse service does not answer any more"),
-        (|| Act::Send(Message::text("{\"inverse3\": [")), foreign),
-        (|| Act::Send(Message::binary(vec![0; 1000])), foreign),
-        (|| Act::Send(Message::binary(vec![b' '; 2 << 20])), foreign),
-        (
-            || Act::Say(json!({ "inverse3": [] })),
-            "the Inverse3 is unplugged",
-        ),
-        (
-            || {
-                Act::Say(
-                    json!({ "inverse3": [{ "device_id": "049D", "state": state(),
-                "status": { "calibrated": false } }] }),
-                )
-            },
-            "the Inverse3 is not calibrated",
-        ),
-        (
-            || {
-                Act::Send(Message::text(
-                    r#"{"inverse3":[{"device_id":"049D","state":{"cursor_position":{"x":1e999,"y":0,"z":0}}}]}"#,
-                ))
-            },
-            foreign,
-        ),
-    ];
-    for (act, what) in cases {
-        let service = turning(act);
-        let mut driver = opened(&service.url);
-        let trouble = trouble(&mut *driver);
-        assert_eq!(trouble.what, what);
-        assert!(!trouble.help.is_empty());
-    }
-    // One that goes on as it should is not lost.
-    let service = turning(|| Act::Say(update("049D", state())));
-    let mut driver = opened(&service.url);
-    let long = || (service.heard().messages.len() > 500).then_some(());
-    assert_eq!(beat(&mut *driver, DVec3::ZERO, long), Some(()));
-}
-
-#[test]
-fn what_cannot_be_read_between_states_is_passed_over() {
-    let service = Service::start(Act::Say(inventory()), |count| match count % 6 {
-        1 => Act::Send(Message::text("nonsense")),
-        2 => Act::Send(Message::binary(vec![0xfe, 0xff])),
-        3 => Act::Say(json!({ "inverse3": [{ "device_id": "049D", "state": {
-            "cursor_position": { "x": 50.0, "y": 0, "z": 0 } } }] })),
-        4 => Act::Say(update("0AAA", state())),
-        _ => Act::Say(update("049D", state())),
-    });
-    let mut driver = opened(&service.url);
-    for _ in 0..100 {
-        let read = reading(&mut *driver).expect("there").expect("new");
-        assert_eq!(read.held.position, DVec3::new(0.01, 0.15, 0.12));
-    }
-}
-
-#[test]
-fn states_in_binary_messages_are_read() {
-    let service = Service::start(Act::Say(inventory()), |_| {
-        Act::Send(Message::binary(
-            update("049D", state()).to_string().into_bytes(),
-        ))
-    });
-    let mut driver = opened(&service.url);
-    for _ in 0..20 {
-        assert!(reading(&mut *driver).expect("there").is_some());
-    }
 }
 
 #[test]

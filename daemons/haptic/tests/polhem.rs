@@ -11,6 +11,7 @@ mod firmware;
 mod lines;
 #[path = "polhem/terminal.rs"]
 mod terminal;
+mod wall;
 
 use bench::{Beat, Cable};
 use firmware::{Firmware, Reads, Style};
@@ -115,16 +116,13 @@ fn lines_of_a_length_that_the_firmware_does_not_read_bring_nothing() {
 
 #[test]
 fn poses_in_pieces_are_put_together() {
-    for piece in 1..=9 {
+    for piece in 2..=9 {
         let mut beat = Beat::over(Style::Double, Reads::Lines, Length::Short);
         beat.cable.bench().piece = piece;
         let read = beat.ticks(300, DVec3::X);
         // Four pieces a tick, 64 bytes a pose.
-        let expected = 300 * (4 * piece).min(64) / 64;
-        assert!(
-            read + 25 > expected && read <= expected + 25,
-            "{piece}: {read} {expected}"
-        );
+        let expected = 300 / 64_usize.div_ceil(4 * piece);
+        assert!(read.abs_diff(expected) <= 1, "{piece}: {read} {expected}");
         assert_eq!(beat.polhem.lost(), 0, "{piece}");
     }
 }
@@ -141,7 +139,7 @@ fn after_a_lost_answer_there_is_no_force_until_the_dialogue_is_taken_up_again() 
     }
     assert_eq!(beat.polhem.lost(), 1);
     let without = felt.iter().filter(|newtons| **newtons == 0.0).count();
-    assert!((5..30).contains(&without), "{felt:?}");
+    assert!((5..20).contains(&without), "{felt:?}");
     assert_eq!(felt.last(), Some(&1.0), "{felt:?}");
     // With every answer there it would never have gone.
     assert_eq!(beat.ticks(60, DVec3::X), 60);
@@ -151,22 +149,29 @@ fn after_a_lost_answer_there_is_no_force_until_the_dialogue_is_taken_up_again() 
 #[test]
 fn a_late_answer_is_not_taken_for_the_next_one() {
     let mut beat = Beat::over(Style::Double, Reads::Lines, Length::Short);
-    beat.ticks(100, DVec3::ZERO);
-    // The answer is given up after 20 ms, and both it and the probe's come together then.
-    beat.cable.bench().latency_s = 0.0215;
-    beat.tick(DVec3::ZERO).expect("there");
-    beat.cable.bench().latency_s = 0.0;
-    for step in 0..200 {
+    beat.ticks(100, DVec3::X);
+    // The answer is given up after 10 ms, and comes a little before that to the probe.
+    beat.cable.bench().latency_s = 0.0115;
+    beat.tick(DVec3::X).expect("there");
+    beat.cable.bench().latency_s = 0.004;
+    let (mut lost, mut asked, mut compared) = (0, None, 0);
+    for step in 0..300 {
         beat.cable.bench().firmware.pose[0] = f64::from(step);
-        let reading = beat.tick(DVec3::ZERO).expect("there");
-        let z = reading.map(|reading| reading.held.position.z * 1e3);
-        // Each reading is the answer to the line of the tick before.
+        let reading = beat.tick(DVec3::X).expect("there");
+        if beat.polhem.lost() > lost {
+            (lost, asked) = (beat.polhem.lost(), None);
+        }
+        let Some(reading) = reading else { continue };
+        // The answer to the line that was written with the reading before.
+        let told = (reading.held.position.z * 1e3).round() as i32;
         assert!(
-            z.is_none_or(|z| (z - f64::from(step - 1)).abs() < 1e-9),
-            "{step}: {z:?}"
+            asked.is_none_or(|asked| asked == told),
+            "{step}: {told} {asked:?}"
         );
+        compared += usize::from(asked.is_some());
+        asked = Some(step);
     }
-    assert_eq!(beat.polhem.lost(), 1);
+    assert!(lost == 1 && compared > 40, "{lost} {compared}");
 }
 
 #[test]
@@ -203,19 +208,52 @@ fn a_host_that_stalls_leaves_no_force_after_the_watchdogs_time() {
 
 #[test]
 fn amplifiers_that_rest_are_off_while_poses_go_on() {
+    // Also where they were switched off while the button was asked for.
+    for phase in 0..60 {
+        let mut beat = Beat::over(Style::Double, Reads::Lines, Length::Short);
+        beat.ticks(200 + phase, DVec3::ZERO);
+        assert!(beat.cable.bench().firmware.enabled);
+        beat.polhem.switch(Switch::Off);
+        beat.ticks(300, DVec3::ZERO);
+        let commands = beat.cable.bench().firmware.commands;
+        assert_eq!(beat.ticks(300, DVec3::ZERO), 300, "{phase}");
+        let firmware = beat.cable.bench().firmware.clone();
+        assert!(!firmware.enabled && firmware.commands == commands);
+        beat.polhem.switch(Switch::On);
+        beat.ticks(10, DVec3::X);
+        assert_eq!(beat.felt(), DVec3::X);
+    }
+}
+
+#[test]
+fn a_wire_that_is_full_gets_the_line_later() {
     let mut beat = Beat::over(Style::Double, Reads::Lines, Length::Short);
-    beat.ticks(300, DVec3::ZERO);
-    assert!(beat.cable.bench().firmware.enabled);
-    beat.polhem.switch(Switch::Off);
-    beat.ticks(300, DVec3::ZERO);
-    let commands = beat.cable.bench().firmware.commands;
-    assert!(beat.ticks(300, DVec3::ZERO) > 290);
-    let bench = beat.cable.bench();
-    assert!(!bench.firmware.enabled && bench.firmware.commands == commands);
-    drop(bench);
-    beat.polhem.switch(Switch::On);
     beat.ticks(10, DVec3::X);
+    beat.cable.bench().room = 0;
+    beat.ticks(3, DVec3::X * 2.0);
     assert_eq!(beat.felt(), DVec3::X);
+    beat.cable.bench().room = usize::MAX;
+    beat.ticks(3, DVec3::X * 2.0);
+    assert_eq!((beat.felt(), beat.polhem.lost()), (DVec3::X * 2.0, 0));
+}
+
+#[test]
+fn a_line_that_is_cut_off_pushes_nobody() {
+    for room in 2..63 {
+        let mut beat = Beat::over(Style::Single, Reads::Lines, Length::Short);
+        beat.ticks(10, DVec3::X);
+        beat.cable.bench().room = room;
+        let mut felt = Vec::new();
+        for _ in 0..20 {
+            beat.tick(DVec3::X).expect("there");
+            felt.push(beat.felt());
+        }
+        let wrong = |newtons: &DVec3| *newtons != DVec3::X && *newtons != DVec3::ZERO;
+        assert!(!felt.iter().any(wrong), "{room}: {felt:?}");
+        beat.cable.bench().room = usize::MAX;
+        beat.ticks(40, DVec3::X);
+        assert_eq!(beat.felt(), DVec3::X, "{room}");
+    }
 }
 
 #[test]
@@ -227,7 +265,7 @@ fn a_force_beyond_the_devices_is_cut_to_it_and_one_that_is_no_number_is_none() {
         beat.ticks(10, DVec3::new(0.0, wrong, 1.0));
         assert_eq!(beat.felt(), DVec3::ZERO);
     }
-    beat.ticks(10, DVec3::splat(1e300));
+    beat.ticks(10, DVec3::splat(1e100));
     assert!((beat.felt().length() - 5.0).abs() < 2e-3);
     // Uncut, the amplifiers would have refused it.
     let uncut = b"30000 0 -30000 2 0 0 0\n";

@@ -25,8 +25,8 @@ pub trait Wire: Send {
     fn write(&mut self, bytes: &[u8]) -> Result<usize, Errno>;
 }
 
-/// Time after which an answer is given up, s: ten times what an exchange over USB takes.
-pub const ANSWER_S: f64 = 0.02;
+/// Time after which an answer is given up, s: five times what an exchange over USB takes.
+pub const ANSWER_S: f64 = 0.01;
 /// Time without a byte after which the line is quiet, s.
 pub const QUIET_S: f64 = 0.005;
 /// Time between two probes, s, which is that of the devices' own host.

@@ -144,3 +144,31 @@ fn refused(path: &str, error: &serialport::Error) -> Fault {
             .help("name a serial port as the device's `address`, such as /dev/ttyACM0"),
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn each_reason_has_its_own_words_and_says_what_to_do() {
+        use std::io::ErrorKind::{NotFound, PermissionDenied};
+        let told = |kind| {
+            let fault = refused(
+                "/dev/ttyACM0",
+                &serialport::Error::new(kind, "Not a typewriter"),
+            );
+            (fault.what, fault.help.expect("what to do"))
+        };
+        let (what, help) = told(ErrorKind::Io(PermissionDenied));
+        assert_eq!(what, "/dev/ttyACM0 may not be opened by you");
+        assert!(help.contains("devices --udev") && help.contains("dialout"));
+        assert_eq!(told(ErrorKind::Io(NotFound)).0, "there is no /dev/ttyACM0");
+        assert!(
+            told(ErrorKind::NoDevice)
+                .0
+                .ends_with("in use by another program")
+        );
+        let what = told(ErrorKind::Unknown).0;
+        assert_eq!(what, "/dev/ttyACM0 is no serial port: Not a typewriter");
+    }
+}

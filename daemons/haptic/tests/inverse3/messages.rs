@@ -16,9 +16,10 @@ fn read(value: &Value) -> Update {
 
 fn pose(seen: Seen) -> Pose {
     match seen {
-        Seen::Pose(pose) => pose,
-        other => panic!("{other:?}"),
+        Seen::Pose(pose) => Some(pose),
+        _ => None,
     }
+    .expect("a pose")
 }
 
 #[test]

@@ -24,6 +24,8 @@ pub(crate) struct Bench {
     pub(crate) latency_s: f64,
     /// Bytes that a read gives at most.
     pub(crate) piece: usize,
+    /// Bytes that a write takes at most; none where 0.
+    pub(crate) room: usize,
     /// Answers to come that are lost.
     pub(crate) losses: usize,
     /// Sent ahead of each answer.
@@ -47,6 +49,7 @@ impl Cable {
             now_s: 0.0,
             latency_s: 0.0,
             piece: usize::MAX,
+            room: usize::MAX,
             losses: 0,
             garbage: Vec::new(),
             broken: None,
@@ -94,6 +97,10 @@ impl Wire for Cable {
         if let Some(errno) = bench.broken {
             return Err(errno);
         }
+        if bench.room == 0 {
+            return Err(Errno::EAGAIN);
+        }
+        let bytes = &bytes[..bytes.len().min(bench.room)];
         bench.sent.push(bytes.to_vec());
         let now_s = bench.now_s;
         let answer = bench.firmware.hear(bytes, now_s);

@@ -15,6 +15,7 @@ use serialport::{SerialPort, TTYPort};
 
 use super::counting::allocations;
 use super::firmware::{Firmware, Reads, Style};
+use super::wall;
 
 /// A stylus at a pseudo-terminal, until it is pulled out.
 struct Plugged {
@@ -91,7 +92,7 @@ fn at(path: &str) -> DeviceSection {
 }
 
 fn opened(path: &str) -> Box<dyn Driver> {
-    let opened = polhem::open(&at(path)).unwrap_or_else(|fault| panic!("{fault:?}"));
+    let opened = polhem::open(&at(path)).expect("a stylus");
     assert!(opened.what.contains(path), "{}", opened.what);
     opened.driver
 }
@@ -140,12 +141,31 @@ fn a_stylus_at_a_terminal_is_opened_read_and_pushes() {
         });
         assert_eq!(seen, Ok(Some(())), "{style:?} {reads:?}");
         drop(driver);
-        let give_up = Instant::now() + Duration::from_secs(20);
-        while plugged.firmware().force() != [0.0; 3] && Instant::now() < give_up {
-            std::thread::yield_now();
-        }
-        assert_eq!(plugged.firmware().force(), [0.0; 3]);
+        assert!(comes_to(&plugged, [0.0; 3]));
     }
+}
+
+/// Waits until the firmware pushes so, its own axes.
+fn comes_to(plugged: &Plugged, force: [f64; 3]) -> bool {
+    let give_up = Instant::now() + Duration::from_secs(20);
+    while plugged.firmware().force() != force && Instant::now() < give_up {
+        std::thread::yield_now();
+    }
+    plugged.firmware().force() == force
+}
+
+#[test]
+fn a_servo_pushes_a_stylus_out_of_a_wall_and_leaves_no_force() {
+    let mut firmware = Firmware::new(Style::Double, Reads::Lines);
+    // Straight, 21 mm toward the user: a head of 25 mm is 4 mm deep in a wall of 100 N/m.
+    firmware.pose = [21.0, 5.0, -3.0, 0.0, 0.0, 0.0, 0.0];
+    let plugged = Plugged::new(firmware, 64);
+    let felt = || {
+        let [x, y, z] = plugged.firmware().force();
+        (x - 0.4).abs() < 2e-3 && y == 0.0 && z == 0.0
+    };
+    assert!(wall::push(&at(&plugged.path), felt));
+    assert!(comes_to(&plugged, [0.0; 3]));
 }
 
 #[test]
@@ -204,10 +224,7 @@ fn reading_and_writing_a_terminal_allocate_nothing() {
 }
 
 fn fault(path: &str) -> Fault {
-    match polhem::open(&at(path)) {
-        Ok(_) => panic!("{path} was opened"),
-        Err(fault) => fault,
-    }
+    polhem::open(&at(path)).map(|_| ()).expect_err(path)
 }
 
 #[test]

@@ -1,0 +1,171 @@
+//! Services that are absent, others', or go wrong in mid-run.
+
+use glam::DVec3;
+use maulstick_haptic::driver::{Driver, Trouble};
+use serde_json::json;
+use tungstenite::Message;
+
+use super::service::{Act, Service, inventory, state, update};
+use super::{beat, fault, opened, reading, wait_for};
+
+/// What a device is lost by, in the end.
+fn trouble(driver: &mut dyn Driver) -> Trouble {
+    wait_for(|| driver.read(1e-3).err()).expect("it is lost")
+}
+
+#[test]
+fn what_is_missing_at_the_start_is_told_with_what_to_do() {
+    let closed = std::net::TcpListener::bind("127.0.0.1:0").expect("a port");
+    let port = closed.local_addr().expect("an address");
+    drop(closed);
+    let absent = fault(&format!("ws://{port}"));
+    assert!(
+        absent.what.starts_with("no Inverse service answers at"),
+        "{}",
+        absent.what
+    );
+    let help = absent.help.expect("what to do");
+    assert!(help.contains("systemctl start") && help.contains(":10000"));
+
+    let first = |act| {
+        let service = Service::start(act, |_| Act::Rest);
+        fault(&service.url)
+    };
+    let none = first(Act::Say(json!({ "inverse3": [] })));
+    assert!(none.what.ends_with("sees no Inverse3"), "{}", none.what);
+    for act in [
+        Act::Send(Message::text("hello")),
+        Act::Send(Message::binary(vec![0xff; 9])),
+        Act::Send(Message::text("x".repeat(2 << 20))),
+        Act::Say(json!({ "inverse3": 3 })),
+        Act::Rest,
+        Act::Close,
+        Act::Vanish,
+    ] {
+        let foreign = first(act);
+        assert!(
+            foreign.what.contains("is no Inverse service"),
+            "{}",
+            foreign.what
+        );
+    }
+    for (key, what) in [
+        ("calibrated", "is not calibrated"),
+        ("power_supply", "has no power"),
+    ] {
+        let mut message = inventory();
+        message["inverse3"][0]["status"][key] = json!(false);
+        let hindered = first(Act::Say(message));
+        assert!(
+            hindered.what.contains(what) && hindered.what.contains("049D"),
+            "{}",
+            hindered.what
+        );
+        assert!(hindered.help.is_some());
+    }
+}
+
+#[test]
+fn a_listener_that_is_no_websocket_is_told_as_that() {
+    let listener = std::net::TcpListener::bind("127.0.0.1:0").expect("a port");
+    let url = format!("ws://{}", listener.local_addr().expect("an address"));
+    let thread = std::thread::spawn(move || {
+        let (mut stream, _) = listener.accept().expect("a client");
+        std::io::Write::write_all(&mut stream, b"SSH-2.0-OpenSSH_9\r\n\r\n").ok();
+    });
+    let foreign = fault(&url);
+    assert!(
+        foreign.what.contains("is no Inverse service"),
+        "{}",
+        foreign.what
+    );
+    thread.join().expect("it ends");
+}
+
+/// How a service acts, and what is told of it.
+type Case = (fn() -> Act, &'static str);
+
+/// A service that is as it should be for 50 messages, and then acts so.
+fn turning(act: fn() -> Act) -> Service {
+    Service::start(Act::Say(inventory()), move |count| match count {
+        0..50 => Act::Say(update("049D", state())),
+        _ => act(),
+    })
+}
+
+#[test]
+fn a_service_or_device_that_goes_is_told_as_how_it_went() {
+    let closed = "the Inverse service has closed the connection";
+    let foreign = "the Inverse service sends what cannot be read";
+    let cases: [Case; 9] = [
+        (|| Act::Close, closed),
+        (|| Act::Vanish, closed),
+        (|| Act::Rest, "the Inverse service does not answer any more"),
+        (|| Act::Send(Message::text("{\"inverse3\": [")), foreign),
+        (|| Act::Send(Message::binary(vec![0; 1000])), foreign),
+        (|| Act::Send(Message::binary(vec![b' '; 2 << 20])), foreign),
+        (
+            || Act::Say(json!({ "inverse3": [] })),
+            "the Inverse3 is unplugged",
+        ),
+        (
+            || {
+                Act::Say(
+                    json!({ "inverse3": [{ "device_id": "049D", "state": state(),
+                "status": { "calibrated": false } }] }),
+                )
+            },
+            "the Inverse3 is not calibrated",
+        ),
+        (
+            || {
+                Act::Send(Message::text(
+                    r#"{"inverse3":[{"device_id":"049D","state":{"cursor_position":{"x":1e999,"y":0,"z":0}}}]}"#,
+                ))
+            },
+            foreign,
+        ),
+    ];
+    for (act, what) in cases {
+        let service = turning(act);
+        let mut driver = opened(&service.url);
+        let trouble = trouble(&mut *driver);
+        assert_eq!(trouble.what, what);
+        assert!(!trouble.help.is_empty());
+    }
+    // One that goes on as it should is not lost.
+    let service = turning(|| Act::Say(update("049D", state())));
+    let mut driver = opened(&service.url);
+    let long = || (service.heard().messages.len() > 500).then_some(());
+    assert_eq!(beat(&mut *driver, DVec3::ZERO, long), Some(()));
+}
+
+#[test]
+fn what_cannot_be_read_between_states_is_passed_over() {
+    let service = Service::start(Act::Say(inventory()), |count| match count % 6 {
+        1 => Act::Send(Message::text("nonsense")),
+        2 => Act::Send(Message::binary(vec![0xfe, 0xff])),
+        3 => Act::Say(json!({ "inverse3": [{ "device_id": "049D", "state": {
+            "cursor_position": { "x": 50.0, "y": 0, "z": 0 } } }] })),
+        4 => Act::Say(update("0AAA", state())),
+        _ => Act::Say(update("049D", state())),
+    });
+    let mut driver = opened(&service.url);
+    for _ in 0..100 {
+        let read = reading(&mut *driver).expect("there").expect("new");
+        assert_eq!(read.held.position, DVec3::new(0.01, 0.15, 0.12));
+    }
+}
+
+#[test]
+fn states_in_binary_messages_are_read() {
+    let service = Service::start(Act::Say(inventory()), |_| {
+        Act::Send(Message::binary(
+            update("049D", state()).to_string().into_bytes(),
+        ))
+    });
+    let mut driver = opened(&service.url);
+    for _ in 0..20 {
+        assert!(reading(&mut *driver).expect("there").is_some());
+    }
+}

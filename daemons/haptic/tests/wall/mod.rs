@@ -1,0 +1,70 @@
+//! A servo over a device as a rig opens it by the name of its driver, at a wall.
+
+use std::time::{Duration, Instant};
+
+use maulstick_haptic::Placed;
+use maulstick_haptic::beat::Delivery;
+use maulstick_haptic::host::Host;
+use maulstick_haptic::open::{HapticSettings, open, to_desk};
+use maulstick_haptics::Limits;
+use maulstick_haptics::contact::Contact;
+use maulstick_rig::RigConfig;
+use maulstick_rig::config::DeviceSection;
+use maulstick_types::haptics::{ContactModel, ForceLaw, Grain};
+
+/// A rigid wall of 100 N/m at z = 0, for a head of 25 mm.
+fn wall() -> Contact {
+    Contact::new(&ContactModel {
+        device: 1,
+        device_epoch: 1,
+        brush: "main".into(),
+        plane_point_m: [0.0; 3],
+        plane_normal: [0.0, 0.0, 1.0],
+        friction_static: 0.0,
+        friction_kinetic: 0.0,
+        viscous_n_s_m: 0.0,
+        grain: Grain {
+            amplitude: 0.0,
+            wavelength_m: 1e-3,
+            seed: 1,
+        },
+        law: ForceLaw::Rigid {
+            stiffness_n_m: 100.0,
+        },
+        head_length_m: 0.025,
+        time_to_live_ns: u64::MAX,
+        recovery_ns: 0,
+    })
+    .expect("a model")
+}
+
+/// Opens the device, holds it at the wall, and waits until `is_felt`; then ends the servo.
+pub(crate) fn push(device: &DeviceSection, mut is_felt: impl FnMut() -> bool) -> bool {
+    let settings = HapticSettings {
+        device: device.clone(),
+        hand: None,
+    };
+    let opened = open(&RigConfig::default(), &settings).expect("the device");
+    // However late the ticks of a busy machine come, the force comes up.
+    let limits = Limits {
+        engage_s: 1e-3,
+        longest_tick_s: 1e3,
+        ..Limits::default()
+    };
+    let placed = Placed::new(opened.driver, to_desk(device));
+    let mut host = Host::start(placed, opened.pace, limits).expect("started");
+    host.models.write(Delivery {
+        contact: Some(wall()),
+        sender: None,
+        number: 1,
+    });
+    let give_up = Instant::now() + Duration::from_secs(20);
+    while Instant::now() < give_up && !host.has_ended() {
+        if is_felt() {
+            return true;
+        }
+        while host.ticks.pop().is_ok() {}
+        std::thread::yield_now();
+    }
+    false
+}
