@@ -100,7 +100,8 @@ impl Stylus {
         let Some(said) = decoder.and_then(|decoder| decoder.decode(report)) else {
             return Ok(());
         };
-        self.silent(event_ns, now_ns)?;
+        // What comes at the very time needs no filling.
+        self.silent(event_ns.saturating_sub(1), now_ns)?;
         let mut readings = Vec::with_capacity(3);
         self.pen.follow(said, &mut |reading| readings.push(reading));
         self.tell(&readings, event_ns, now_ns)
