@@ -69,7 +69,7 @@ pub fn run(member: &mut Member, settings: &HidSettings) -> Result<(), Fault> {
 /// What the device is to the rig.
 #[derive(Debug)]
 enum Hand {
-    Stylus(Stylus),
+    Stylus(Box<Stylus>),
     Free(FreeHand),
 }
 
@@ -123,7 +123,10 @@ impl Daemon {
             None => None,
         };
         let hand = match kind {
-            Kind::Pen => Hand::Stylus(Stylus::new(&bus, topics, &device.name, origin, wake)?),
+            Kind::Pen => {
+                let stylus = Stylus::new(&bus, topics, &device.name, origin, wake)?;
+                Hand::Stylus(Box::new(stylus))
+            }
             Kind::SpaceMouse => Hand::Free(FreeHand::new(&bus, topics, &device.name, origin)?),
         };
         let topic = topics.stylus_status(&device.name);

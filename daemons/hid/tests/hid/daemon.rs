@@ -338,8 +338,8 @@ fn a_recorded_mouse_pushes_and_comes_to_rest() {
     let told = rig.controls();
     let at = |millis: u64| {
         let until = START_NS + millis * 1_000_000;
-        let before = told.iter().filter(|told| told.header.event_ns <= until);
-        before.last().expect("told").message.clone()
+        let mut before = told.iter().filter(|told| told.header.event_ns <= until);
+        before.next_back().expect("told").message.clone()
     };
     assert_eq!((at(0).push, at(0).turn), ([1.0, 0.0, 0.0], [0.0; 3]));
     assert_eq!((at(16).turn, at(16).switches), ([0.0, 0.0, -1.0], 2));

@@ -196,6 +196,21 @@ fn unplugged_in_a_stroke_the_pen_is_lifted_and_found_again() {
 }
 
 #[test]
+fn a_machine_that_slept_does_not_catch_up() {
+    let (plugs, mut rig) = tablet();
+    plugs.say(stroke_report(&deco_l(), 0, 1, 25_400, 0));
+    until(&mut rig, |told| !told.is_empty());
+    // Awake, a pen that rests is told of 20 times a second.
+    rig.run(1_000_000_000, 10_000_000);
+    let awake = rig.samples().len();
+    assert!((19..=21).contains(&awake), "{awake}");
+    rig.net.advance(3_600_000_000_000);
+    rig.run(1_000_000_000, 10_000_000);
+    let after = rig.samples().len();
+    assert!((19..=21).contains(&after), "{after}");
+}
+
+#[test]
 fn a_device_that_is_not_there_is_looked_for_each_second() {
     let plugs = Plugs::default();
     plugs.plug(identity(0x28BD, 0x0935, "Deco L"), &deco_l(), PEN);

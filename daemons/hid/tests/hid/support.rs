@@ -221,7 +221,7 @@ pub(crate) fn deco_l() -> Descriptor {
     all
 }
 
-/// A pen that says how it leans by azimuth and altitude, on a tablet that says nothing of lengths.
+/// A pen that says how it leans by azimuth and altitude, and how it is twisted by no unit, on a tablet that says nothing of lengths.
 pub(crate) fn azimuths() -> Descriptor {
     let mut all = Descriptor::default();
     all.page(DIGITIZER)
@@ -235,7 +235,9 @@ pub(crate) fn azimuths() -> Descriptor {
     all.page(DIGITIZER).usage(0x3F).range(0, 3600);
     all.physical([0, 3600], 0x14, 0x0F).input(16);
     all.usage(0x40).range(0, 900);
-    all.physical([0, 900], 0x14, 0x0F).input(16).end();
+    all.physical([0, 900], 0x14, 0x0F).input(16);
+    all.usage(0x41).range(0, 1000);
+    all.physical([0, 0], 0, 0).input(16).end();
     all
 }
 
