@@ -3,6 +3,7 @@
 use std::path::Path;
 use std::sync::Arc;
 
+use maulstick_bus::bus::Token;
 use maulstick_bus::typed::{Received, Receiver};
 use maulstick_bus::{Bus, Class, Faults, MemoryNet, Queue, Wake};
 use maulstick_hid::daemon::{Daemon, HidSettings};
@@ -28,6 +29,7 @@ pub(crate) struct Rig {
     controls: Receiver<ControlSample>,
     infos: Receiver<StylusInfo>,
     statuses: Receiver<StylusStatus>,
+    brush: Option<Token>,
 }
 
 /// Nothing is plugged in.
@@ -67,6 +69,7 @@ impl Rig {
         let infos = Receiver::new(at, &topics.stylus_info("pen"), Class::Cached, all, &wake)?;
         let topic = topics.stylus_status("pen");
         let statuses = Receiver::new(at, &topic, Class::Background, all, &wake)?;
+        let brush = Some(at.token(&topics.node("brush-main"))?);
         let daemon = Daemon::new(Arc::clone(&bus), &topics, &wake, origin, settings, ports)?;
         Ok(Self {
             net,
@@ -76,6 +79,7 @@ impl Rig {
             controls,
             infos,
             statuses,
+            brush,
         })
     }
 
@@ -253,6 +257,25 @@ fn after_a_recording_the_pen_is_away_and_the_daemon_stays() {
     assert_eq!((status.samples, status.trouble.as_str()), (before, ""));
     assert_eq!((info.driver.as_str(), info.drives), ("pen", 0));
     assert!((info.workspace_m[4] - 0.128).abs() < 1e-12, "{info:?}");
+}
+
+#[test]
+fn a_recording_waits_for_its_brush() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = folder.path().join("stroke.hid");
+    write(&path, &stroke());
+    let mut settings = settings("pen");
+    settings.replay = Some(path);
+    settings.device.brush = "other".into();
+    let mut rig = Rig::new(&settings, Box::new(Bare)).expect("a daemon");
+    rig.run(2_000_000_000, 10_000_000);
+    assert!(rig.samples().is_empty());
+    let topic = Topics::new("studio").node("brush-other");
+    rig.brush = Some(rig.net.bus().token(&topic).expect("declared"));
+    rig.run(700_000_000, 10_000_000);
+    let samples = rig.samples();
+    assert!(samples.len() > 30, "{}", samples.len());
+    assert!(samples[0].header.event_ns >= START_NS + 2_000_000_000);
 }
 
 #[test]
