@@ -344,7 +344,7 @@ pub fn hid() -> Result<i32, Fault> {
         replay: options.replay,
         record: options.record,
     };
-    let played = settings.replay.as_ref().or(settings.device.replay.as_ref());
+    let played = settings.replay.as_ref();
     let inputs: Vec<_> = named_by(&member.config)
         .into_iter()
         .chain(UsedFile::given("the recording that is played", played))

@@ -65,6 +65,8 @@ pub fn named_by(config: &RigConfig) -> Vec<UsedFile> {
         .device
         .iter()
         .filter_map(|device| device.hand.as_ref());
+    let replays = config.device.iter();
+    let replays = replays.filter_map(|device| device.replay.as_ref());
     brushes
         .filter_map(|brush| UsedFile::named("the brush", &brush.kind))
         .chain(UsedFile::given("the paints", config.paint.paints.as_ref()))
@@ -72,6 +74,7 @@ pub fn named_by(config: &RigConfig) -> Vec<UsedFile> {
         .chain(UsedFile::named("the ground", &config.canvas.ground))
         .chain(UsedFile::given("the profile", config.view.file()))
         .chain(hands.map(|hand| UsedFile::new("the take of a hand", hand)))
+        .chain(replays.map(|played| UsedFile::new("the recording of a device", played)))
         .collect()
 }
 

@@ -6,9 +6,9 @@ use std::time::Duration;
 
 use glam::DQuat;
 use maulstick_bus::typed::Sender;
-use maulstick_bus::{Bus, Class, Wake};
+use maulstick_bus::{Bus, Class, Subscription, Wake};
 use maulstick_num::geometry::canonical;
-use maulstick_rig::config::{CanvasSection, DeviceSection};
+use maulstick_rig::config::{BRUSH_NODE, CanvasSection, DeviceSection};
 use maulstick_rig::{Fault, Member};
 use maulstick_types::Origin;
 use maulstick_types::stylus::StylusStatus;
@@ -69,7 +69,7 @@ pub fn run(member: &mut Member, settings: &HidSettings) -> Result<(), Fault> {
 /// What the device is to the rig.
 #[derive(Debug)]
 enum Hand {
-    Stylus(Stylus),
+    Stylus(Box<Stylus>),
     Free(FreeHand),
 }
 
@@ -83,6 +83,8 @@ pub struct Daemon {
     ports: Box<dyn Ports>,
     /// The recording that is played, until it is.
     replay: Option<Recorded>,
+    /// What a played pen waits for: without its brush its stroke would be lost.
+    brush: Option<Subscription>,
     recorder: Option<Recorder>,
     hand: Hand,
     /// The device, while there is one.
@@ -123,11 +125,20 @@ impl Daemon {
             None => None,
         };
         let hand = match kind {
-            Kind::Pen => Hand::Stylus(Stylus::new(&bus, topics, &device.name, origin, wake)?),
+            Kind::Pen => {
+                let stylus = Stylus::new(&bus, topics, &device.name, origin, wake)?;
+                Hand::Stylus(Box::new(stylus))
+            }
             Kind::SpaceMouse => Hand::Free(FreeHand::new(&bus, topics, &device.name, origin)?),
+        };
+        let node = topics.node(&format!("{BRUSH_NODE}{}", device.brush));
+        let brush = match (kind, &replay) {
+            (Kind::Pen, Some(_)) => Some(bus.watch(&node, wake)?),
+            _ => None,
         };
         let topic = topics.stylus_status(&device.name);
         Ok(Self {
+            brush,
             kind,
             address: Address::parse(device.address.as_deref())?,
             ports,
@@ -252,6 +263,13 @@ impl Daemon {
 
     /// Opens the device, if it is there, or begins to play in its place.
     fn attempt(&mut self, now_ns: u64) -> Result<(), Fault> {
+        if let Some(brush) = &self.brush {
+            // Tokens come and go; the wake rings for the next.
+            if !std::iter::from_fn(|| brush.try_recv()).any(|token| token.present) {
+                return Ok(());
+            }
+            self.brush = None;
+        }
         if let Some(recorded) = self.replay.take() {
             self.attempt_ns = None;
             let Recorded {

@@ -72,8 +72,7 @@ impl Ports for Hidraw {
             .write(true)
             .open(place)
             .map_err(|error| closed(&name, place, error.kind(), &error))?;
-        let api = HidApi::new_without_enumerate()
-            .map_err(|error| failed("hidapi cannot begin", &error))?;
+        let api = HidApi::new().map_err(|error| failed("the devices cannot be listed", &error))?;
         let path = CString::new(place.as_bytes())
             .map_err(|_| Fault::usage(format!("'{place}' is no path")))?;
         let what = format!("{name} cannot be opened");

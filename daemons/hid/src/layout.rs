@@ -7,8 +7,9 @@
 //! | what | is taken for |
 //! | --- | --- |
 //! | X, Y | 5080 counts an inch; an area of less than 1 cm or more than 2 m is taken for 25 cm on its longer side |
-//! | tilts | degrees, where the range is within ±180, else the range is ±90° |
-//! | twist | degrees, where the range is within ±360, else the range is once round |
+//! | tilts | degrees, where the range is signed and within ±180, else the range is ±90° |
+//! | twist, azimuth | degrees, where the range is signed and within ±360, else the range is once round |
+//! | altitude | degrees, where the range is signed and within ±90, else the range is up to upright |
 //! | distance | the range is 1 cm |
 //! | pressure | a touch of a pen without has half |
 //! | tip switch | a pen without touches while it has pressure |
@@ -159,18 +160,20 @@ impl Number {
         (self.count(report) - self.least) / (self.most - self.least)
     }
 
-    /// An angle, rad; `within` degrees a range without unit is of degrees, else it is `whole` rad wide, with
-    /// zero in its middle where it has no negative half.
-    fn angle(&self, report: &[u8], within: f64, whole: f64) -> f64 {
+    /// An angle, rad. Without a unit a signed range within ±`within` is degrees; another is `whole` rad wide,
+    /// and `zero` of the way along it an unsigned one is 0.
+    fn angle(&self, report: &[u8], within: f64, whole: f64, zero: f64) -> f64 {
         let from_least = self.count(report) - self.least;
         if let Some(radians) = self.radians {
             return radians * (self.at_least / self.physical + from_least);
         }
         let highest = self.at_least + self.physical * (self.most - self.least);
-        if self.at_least < 0.0 && self.at_least.abs().max(highest.abs()) <= within {
+        let is_signed = self.at_least < 0.0;
+        if is_signed && self.at_least.abs().max(highest.abs()) <= within {
             return (self.at_least + self.physical * from_least).to_radians();
         }
-        (self.share(report) - 0.5) * whole
+        let zero = if is_signed { 0.5 } else { zero };
+        (self.share(report) - zero) * whole
     }
 }
 
@@ -364,20 +367,17 @@ impl PenReport {
     fn tilt_rad(&self, report: &[u8]) -> Option<[f64; 2]> {
         let tilt = |role| {
             let number = self.number(role)?;
-            Some(number.angle(report, 180.0, PI))
+            Some(number.angle(report, 180.0, PI, 0.5))
         };
         if let (Some(x), Some(y)) = (tilt(Role::TiltX), tilt(Role::TiltY)) {
             return Some([x, -y].map(|tilt| tilt.clamp(-STEEPEST_RAD, STEEPEST_RAD)));
         }
-        let azimuth = self.number(Role::Azimuth)?.angle(report, 360.0, TAU);
+        let azimuth = self.number(Role::Azimuth)?.angle(report, 360.0, TAU, 0.0);
         let altitude = self.number(Role::Altitude)?;
-        let altitude = match altitude.least < 0.0 {
-            true => altitude.angle(report, 90.0, PI).abs(),
-            // Altitudes above the tablet alone are no signed range.
-            false => match altitude.radians {
-                Some(_) => altitude.angle(report, 90.0, PI),
-                None => altitude.share(report) * FRAC_PI_2,
-            },
+        let altitude = match altitude.at_least < 0.0 {
+            true => altitude.angle(report, 90.0, PI, 0.5).abs(),
+            // Altitudes above the tablet alone.
+            false => altitude.angle(report, 90.0, FRAC_PI_2, 0.0),
         };
         let ((sin_up, cos_up), (sin, cos)) = (sin_cos(altitude), sin_cos(azimuth));
         Some([cos, sin].map(|along| {
@@ -387,7 +387,7 @@ impl PenReport {
 
     /// HID counts a twist clockwise for who looks from above.
     fn twist_rad(&self, report: &[u8]) -> Option<f64> {
-        let clockwise = self.number(Role::Twist)?.angle(report, 360.0, TAU);
+        let clockwise = self.number(Role::Twist)?.angle(report, 360.0, TAU, 0.0);
         Some(wrapped(-clockwise))
     }
 }

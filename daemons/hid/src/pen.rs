@@ -38,7 +38,7 @@ pub struct Reading {
     pub end: End,
     /// The point under it, m.
     pub point_m: [f64; 2],
-    /// How high it hovers, m; 0 where the tablet does not say.
+    /// How high it hovers, m; 0 where the tablet does not say, and while it touches.
     pub height_m: f64,
     /// 0 to 1; while it touches at least [`LIGHTEST`], else 0.
     pub pressure: f64,
@@ -95,11 +95,16 @@ impl Pen {
         if said.end != self.newest.end {
             self.leave(tell);
         }
-        let pressure = match said.presence {
-            Presence::Touching => said.pressure.clamp(LIGHTEST, 1.0),
-            _ => 0.0,
+        let (pressure, height_m) = match said.presence {
+            Presence::Touching => (said.pressure.clamp(LIGHTEST, 1.0), 0.0),
+            _ => (0.0, said.height_m),
         };
-        self.tell(Reading { pressure, ..said }, tell);
+        let followed = Reading {
+            pressure,
+            height_m,
+            ..said
+        };
+        self.tell(followed, tell);
     }
 
     /// The pen is gone, or its tablet: it is lifted where it was, and leaves. Of one that is away already

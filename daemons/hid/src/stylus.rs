@@ -100,7 +100,8 @@ impl Stylus {
         let Some(said) = decoder.and_then(|decoder| decoder.decode(report)) else {
             return Ok(());
         };
-        self.silent(event_ns, now_ns)?;
+        // What comes at the very time needs no filling.
+        self.silent(event_ns.saturating_sub(1), now_ns)?;
         let mut readings = Vec::with_capacity(3);
         self.pen.follow(said, &mut |reading| readings.push(reading));
         self.tell(&readings, event_ns, now_ns)
@@ -111,8 +112,8 @@ impl Stylus {
     /// # Errors
     /// [`BusError`].
     pub fn silent(&mut self, until_ns: u64, now_ns: u64) -> Result<(), BusError> {
-        if until_ns.saturating_sub(self.event_ns) > LONGEST_NS {
-            return Ok(());
+        if self.newest.in_range && until_ns.saturating_sub(self.event_ns) > LONGEST_NS {
+            self.event_ns = until_ns;
         }
         while self.newest.in_range && self.event_ns + REPEAT_NS <= until_ns {
             self.send(self.newest.clone(), self.event_ns + REPEAT_NS, now_ns)?;

@@ -1,6 +1,8 @@
 //! Pens and 6-DOF mice without any: descriptors that have the layouts of real ones, reports packed by them,
 //! recordings of them, and devices that are made up below decoding.
 
+#![allow(clippy::panic, reason = "a test that meets what cannot be fails")]
+
 mod daemon;
 mod decoding;
 mod live;

@@ -37,7 +37,10 @@ fn followed(said: &[Reading]) -> Vec<Reading> {
 /// Pairs of neighbours that no pen can have gone through.
 fn impossible(told: &[Reading]) -> usize {
     let from_away = std::iter::once(Reading::AWAY).chain(told.iter().copied());
-    from_away.zip(told).filter(|(from, to)| !may(from, to)).count()
+    from_away
+        .zip(told)
+        .filter(|(from, to)| !may(from, to))
+        .count()
 }
 
 fn any_reading() -> impl Strategy<Value = Reading> {
@@ -66,8 +69,14 @@ proptest! {
 #[test]
 fn what_is_passed_on_as_it_was_said_is_found_impossible() {
     for said in [
-        vec![reading(Touching, End::Tip, 0.5), reading(Away, End::Tip, 0.0)],
-        vec![reading(Hovering, End::Tip, 0.0), reading(Hovering, End::Eraser, 0.0)],
+        vec![
+            reading(Touching, End::Tip, 0.5),
+            reading(Away, End::Tip, 0.0),
+        ],
+        vec![
+            reading(Hovering, End::Tip, 0.0),
+            reading(Hovering, End::Eraser, 0.0),
+        ],
         vec![reading(Away, End::Tip, 0.0)],
     ] {
         assert_ne!(impossible(&said), 0, "{said:?}");
@@ -82,7 +91,10 @@ fn a_pen_that_is_snatched_away_is_lifted_where_it_was() {
         ..reading(Away, End::Tip, 0.0)
     };
     let told = followed(&[reading(Touching, End::Tip, 0.5), gone]);
-    let states: Vec<_> = told.iter().map(|told| (told.presence, told.pressure)).collect();
+    let states: Vec<_> = told
+        .iter()
+        .map(|told| (told.presence, told.pressure))
+        .collect();
     assert_eq!(states, [(Touching, 0.5), (Hovering, 0.0), (Away, 0.0)]);
     assert!(told.iter().all(|told| told.point_m == [0.1, 0.05]));
 }
@@ -97,7 +109,12 @@ fn a_pen_that_is_turned_round_has_been_away() {
     let (tip, eraser) = (End::Tip, End::Eraser);
     assert_eq!(
         states,
-        [(Touching, tip), (Hovering, tip), (Away, tip), (Touching, eraser)]
+        [
+            (Touching, tip),
+            (Hovering, tip),
+            (Away, tip),
+            (Touching, eraser)
+        ]
     );
 }
 

@@ -221,17 +221,23 @@ pub(crate) fn deco_l() -> Descriptor {
     all
 }
 
-/// A pen that says how it leans by azimuth and altitude, on a tablet that says nothing of lengths.
+/// A pen that says how it leans by azimuth and altitude, and how it is twisted by no unit, on a tablet that says nothing of lengths.
 pub(crate) fn azimuths() -> Descriptor {
     let mut all = Descriptor::default();
-    all.page(DIGITIZER).usage(0x02).begin(1).report(1).range(0, 1);
+    all.page(DIGITIZER)
+        .usage(0x02)
+        .begin(1)
+        .report(1)
+        .range(0, 1);
     all.usage(0x42).usage(0x32).input(1).pad(6);
     all.page(DESKTOP).usage(0x30).range(0, 40_000).input(16);
     all.usage(0x31).range(0, 20_000).input(16);
     all.page(DIGITIZER).usage(0x3F).range(0, 3600);
     all.physical([0, 3600], 0x14, 0x0F).input(16);
     all.usage(0x40).range(0, 900);
-    all.physical([0, 900], 0x14, 0x0F).input(16).end();
+    all.physical([0, 900], 0x14, 0x0F).input(16);
+    all.usage(0x41).range(0, 1000);
+    all.physical([0, 0], 0, 0).input(16).end();
     all
 }
 
@@ -248,10 +254,20 @@ pub(crate) fn pointer(page: u16, usage: u16) -> Descriptor {
 /// A SpaceMouse: three pushes in report 1, three turns in report 2, buttons in report 3.
 pub(crate) fn spacemouse() -> Descriptor {
     let mut all = Descriptor::default();
-    all.page(DESKTOP).usage(0x08).begin(1).report(1).range(-350, 350);
+    all.page(DESKTOP)
+        .usage(0x08)
+        .begin(1)
+        .report(1)
+        .range(-350, 350);
     all.usage(0x30).usage(0x31).usage(0x32).input(16).report(2);
     all.usage(0x33).usage(0x34).usage(0x35).input(16).report(3);
-    all.page(0x09).usage(1).usage(2).range(0, 1).input(1).pad(14).end();
+    all.page(0x09)
+        .usage(1)
+        .usage(2)
+        .range(0, 1)
+        .input(1)
+        .pad(14)
+        .end();
     all
 }
 
