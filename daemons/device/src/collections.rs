@@ -106,11 +106,7 @@ fn item(mut bytes: &[u8]) -> Option<(u8, u32, &[u8])> {
         let length = [0, 1, 2, 4][usize::from(prefix & 3)];
         let data = rest.get(..length)?;
         let number = |sum: u32, byte: &u8| sum << 8 | u32::from(*byte);
-        return Some((
-            prefix,
-            data.iter().rev().fold(0, number),
-            &rest[length..],
-        ));
+        return Some((prefix, data.iter().rev().fold(0, number), &rest[length..]));
     }
 }
 

@@ -4,6 +4,7 @@ pub mod bench;
 pub mod brush;
 pub mod control;
 pub mod demo;
+pub mod devices;
 pub mod endpoint;
 pub mod fit;
 pub mod force;
