@@ -5,7 +5,7 @@ use maulstick_rig::Fault;
 use maulstick_rig::files::clear_on_signals;
 
 use crate::commands::{
-    bench, brush, calibrate, control, demo, endpoint, fit, force, import, layers, light, matching,
+    bench, brush, calibrate, control, demo, devices, endpoint, fit, force, import, layers, light, matching,
     mix, mode, painting, paints, render, schema, surface, take,
 };
 use crate::up;
@@ -51,6 +51,8 @@ enum Command {
     Redo(control::HistoryOptions),
     /// Writes the picture of a running rig
     Snapshot(control::SnapshotOptions),
+    /// Lists what is attached, and how to use it
+    Devices(devices::DevicesOptions),
     /// Tells a program in any language how to join a running rig
     Endpoint(endpoint::EndpointOptions),
     /// Prints the messages of the rig
@@ -114,6 +116,7 @@ pub fn run() -> Result<i32, Fault> {
         Command::Undo(options) => control::undo(&options),
         Command::Redo(options) => control::redo(&options),
         Command::Snapshot(options) => control::snapshot(&options),
+        Command::Devices(options) => devices::run(&options),
         Command::Endpoint(options) => endpoint::run(&options),
         Command::Schema(options) => schema::run(&options),
         Command::Brush(command) => brush::run(&command),

@@ -13,6 +13,7 @@
 //! | [`swatch`] | colours in the terminal |
 //! | [`chart`] | the mixing chart, and one mixture by four ways of mixing |
 //! | [`sheet`] | the sheet of brushes and their marks |
+//! | [`attached`] | devices that are attached, as the system tells of them |
 //! | [`backend`] | what computes the steps of the paint |
 //! | [`document`] | paintings in files |
 //! | [`duration`], [`ground`], [`tooth`] | times, grounds and teeth as a painter names them |
@@ -22,6 +23,7 @@
 //! | [`script`] | a day at the easel, a step after the other |
 //! | [`performance`] | what `render` and `up --play` share: take, brush, loads, canvas |
 
+pub mod attached;
 pub mod backend;
 pub mod chart;
 pub mod cli;

@@ -5,6 +5,7 @@ pub mod brush;
 pub mod calibrate;
 pub mod control;
 pub mod demo;
+pub mod devices;
 pub mod endpoint;
 pub mod fit;
 pub mod force;

@@ -117,9 +117,14 @@ pub struct Feed<M> {
 impl<M: Message> Feed<M> {
     /// Waits for the next message until then.
     pub fn next_before(&mut self, until: Instant) -> Option<M> {
+        self.received_before(until).map(|received| received.message)
+    }
+
+    /// Waits for the next message, with its topic, until then.
+    pub fn received_before(&mut self, until: Instant) -> Option<Received<M>> {
         loop {
             if let Some(received) = self.messages.try_recv() {
-                return Some(received.message);
+                return Some(received);
             }
             let left = until.saturating_duration_since(Instant::now());
             if left.is_zero() {

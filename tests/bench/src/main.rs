@@ -5,6 +5,7 @@
 //! | [`brush`] | `brush`: the solver of the spines beside slsqp, a head, its strips |
 //! | [`bus`] | `bus`: a sample from a device to the brush node, beside a bare zenoh put |
 //! | [`document`] | `document`: vast canvases, long histories, opening and packing a painting's file |
+//! | [`haptics`] | `haptics`: how late the servo wakes beside cyclictest, what a tick takes, how stable it is |
 //! | [`header`] | headers of a brush's states |
 //! | [`latency`] | `latency`: from a stylus sample to the first frame that holds it |
 //! | [`optics`] | `optics`: colours of few wavelengths beside all; films on both backends beside a copy |
@@ -18,6 +19,7 @@ mod advection;
 mod brush;
 mod bus;
 mod document;
+mod haptics;
 mod header;
 mod latency;
 mod optics;
@@ -36,7 +38,8 @@ use crate::report::Report;
 #[derive(Parser)]
 #[command(name = "maulstick-bench", version)]
 struct Options {
-    /// What to measure: brush, bus, document, latency, optics, paint, render; everything if absent
+    /// What to measure: brush, bus, document, haptics, latency, optics, paint, render; everything if
+    /// absent
     area: Option<String>,
     /// The paint model that is measured
     #[arg(long, default_value = "impasto", value_parser = MODELS)]
@@ -55,10 +58,11 @@ struct Options {
 /// An area's name and what measures it.
 type Area = (&'static str, fn(&mut Report, &Options) -> Result<(), Fault>);
 
-const AREAS: [Area; 7] = [
+const AREAS: [Area; 8] = [
     ("brush", |report, _| brush::run(report)),
     ("bus", |report, _| bus::run(report)),
     ("document", |report, _| document::run(report)),
+    ("haptics", |report, _| haptics::run(report)),
     ("latency", |report, _| latency::run(report)),
     ("optics", |report, _| optics::run(report)),
     ("paint", |report, options| {

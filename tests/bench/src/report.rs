@@ -62,6 +62,11 @@ impl Report {
         });
     }
 
+    /// The median of numbers.
+    pub(crate) fn median(&mut self, name: &str, unit: &'static str, values: Vec<f64>) {
+        self.row(name, quantile(&sorted(values), 0.5), unit);
+    }
+
     /// A number and that of a peer; `ratio` is ours over theirs.
     pub(crate) fn beside(
         &mut self,

@@ -1,0 +1,143 @@
+//! What is attached to this machine: HID devices and serial ports as Linux tells of them in sysfs,
+//! whoever may read them, and programs that drive devices.
+//!
+//! | module | holds |
+//! | --- | --- |
+//! | [`hid`] | HID devices, `/sys/class/hidraw` |
+//! | [`serial`] | serial ports of USB devices, `/sys/class/tty` |
+//! | [`vendors`] | OpenHaptics' library, Haply's service |
+
+pub mod hid;
+pub mod serial;
+pub mod vendors;
+
+use std::path::{Path, PathBuf};
+
+use nix::errno::Errno;
+use nix::unistd::{AccessFlags, access};
+use serde::Serialize;
+
+/// The rule by which udev lets a person at the machine use its devices.
+pub const UDEV_RULES: &str = include_str!("../../../tools/udev/70-maulstick.rules");
+
+/// A device at a node below `/dev`.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+pub struct Attached {
+    /// What it calls itself.
+    pub name: String,
+    /// Vendor and product, in hexadecimal: as `address` of `[[device]]`.
+    pub id: String,
+    /// Its node.
+    pub path: PathBuf,
+    /// The driver that fits, if one does.
+    pub driver: Option<&'static str>,
+    /// Whether this user may use the node.
+    pub permission: Permission,
+    /// What is missing before the driver can use it, and what to do; none where nothing is.
+    pub missing: Option<String>,
+}
+
+/// Whether a node may be used.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Permission {
+    /// It may be read and written.
+    Granted,
+    /// It may not.
+    Denied,
+    /// The node is not there.
+    Absent,
+}
+
+/// What this user may do with a node.
+#[must_use]
+pub fn permission(node: &Path) -> Permission {
+    match access(node, AccessFlags::R_OK | AccessFlags::W_OK) {
+        Ok(()) => Permission::Granted,
+        Err(Errno::ENOENT) => Permission::Absent,
+        Err(_) => Permission::Denied,
+    }
+}
+
+/// Where devices are looked for, and how it is found out whether they may be used.
+pub struct Places<'a> {
+    /// `/sys`, or what stands for it.
+    pub sys: &'a Path,
+    /// `/dev`, or what stands for it.
+    pub dev: &'a Path,
+    /// What the user may do with a node.
+    pub permission: &'a dyn Fn(&Path) -> Permission,
+}
+
+impl Places<'static> {
+    /// Those of this machine.
+    #[must_use]
+    pub fn here() -> Self {
+        Self {
+            sys: Path::new("/sys"),
+            dev: Path::new("/dev"),
+            permission: &permission,
+        }
+    }
+}
+
+impl Places<'_> {
+    /// The entries of a class of devices, by name; none where there is no such class.
+    fn class(&self, class: &str) -> Vec<(String, PathBuf)> {
+        let entries = std::fs::read_dir(self.sys.join("class").join(class));
+        let named = |entry: std::fs::DirEntry| {
+            let name = entry.file_name().into_string().ok()?;
+            Some((name, entry.path()))
+        };
+        let entries = entries.into_iter().flatten().flatten();
+        let mut found: Vec<_> = entries.filter_map(named).collect();
+        // hidraw2 comes before hidraw10.
+        found.sort_by(|(a, _), (b, _)| (a.len(), a).cmp(&(b.len(), b)));
+        found
+    }
+}
+
+/// Whether the rule is about a vendor's devices.
+fn is_ruled(vendor: u16) -> bool {
+    let names = [
+        format!("\"*:{vendor:04X}:"),
+        format!("ATTRS{{idVendor}}==\"{vendor:04x}\""),
+    ];
+    names.iter().any(|name| UDEV_RULES.contains(name))
+}
+
+/// The rule, and a line for each HID device that a driver fits and of whose vendor it does not know.
+#[must_use]
+pub fn rules(devices: &[Attached]) -> String {
+    let mut text = UDEV_RULES.to_owned();
+    let mut vendors: Vec<&str> = devices
+        .iter()
+        .filter(|device| {
+            device
+                .driver
+                .is_some_and(|driver| hid::DRIVERS.contains(&driver))
+        })
+        .map(|device| device.id.split(':').next().unwrap_or_default())
+        .filter(|vendor| u16::from_str_radix(vendor, 16).is_ok_and(|vendor| !is_ruled(vendor)))
+        .collect();
+    vendors.sort_unstable();
+    vendors.dedup();
+    if !vendors.is_empty() {
+        text += "\n# Attached to this machine.\n";
+    }
+    for vendor in vendors {
+        let vendor = vendor.to_uppercase();
+        text += &format!("SUBSYSTEM==\"hidraw\", KERNELS==\"*:{vendor}:*\", TAG+=\"uaccess\"\n");
+    }
+    text
+}
+
+/// A name as a terminal may show it: a device may call itself anything.
+fn printable(name: &str) -> String {
+    const LONGEST: usize = 80;
+    let shown = |c: char| if c.is_control() { '?' } else { c };
+    name.trim().chars().take(LONGEST).map(shown).collect()
+}
+
+#[cfg(test)]
+mod tests;

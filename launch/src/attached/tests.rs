@@ -1,0 +1,208 @@
+//! Devices in a folder that looks like sysfs.
+
+use std::cell::Cell;
+use std::fs::{create_dir_all, write};
+use std::os::unix::fs::symlink;
+
+use super::vendors::{listens, open_haptics};
+use super::*;
+
+/// A pen's descriptor, a keyboard's, a 6-DOF mouse's: each the collection alone.
+const PEN: [u8; 7] = [0x05, 0x0d, 0x09, 0x02, 0xa1, 0x01, 0xc0];
+const KEYBOARD: [u8; 7] = [0x05, 0x01, 0x09, 0x06, 0xa1, 0x01, 0xc0];
+const SIX_AXES: [u8; 7] = [0x05, 0x01, 0x09, 0x08, 0xa1, 0x01, 0xc0];
+
+/// A machine in a folder.
+struct Machine {
+    folder: tempfile::TempDir,
+    allowed: Cell<Permission>,
+}
+
+impl Machine {
+    fn new() -> Self {
+        let folder = tempfile::tempdir().expect("a folder");
+        create_dir_all(folder.path().join("dev")).expect("made");
+        Self {
+            folder,
+            allowed: Cell::new(Permission::Granted),
+        }
+    }
+
+    fn hid(&self, number: usize, id: &str, name: &str, descriptor: &[u8]) {
+        let root = self.folder.path();
+        // As the kernel has it: the class holds links to the devices' own folders.
+        let device = root.join(format!("devices/usb/{number}/0003.{number}"));
+        create_dir_all(device.join(format!("hidraw/hidraw{number}"))).expect("made");
+        let uevent = format!("DRIVER=hid-generic\nHID_ID=0003:{id}\nHID_NAME={name}\nHID_UNIQ=\n");
+        write(device.join("uevent"), uevent).expect("written");
+        write(device.join("report_descriptor"), descriptor).expect("written");
+        let node = device.join(format!("hidraw/hidraw{number}"));
+        symlink(&device, node.join("device")).expect("linked");
+        let class = root.join("class/hidraw");
+        create_dir_all(&class).expect("made");
+        symlink(&node, class.join(format!("hidraw{number}"))).expect("linked");
+    }
+
+    fn serial(&self, node: &str, usb: Option<(&str, &str, &str)>) {
+        let root = self.folder.path();
+        let device = root.join(format!("devices/{node}-usb"));
+        let interface = device.join("1-2:1.0");
+        create_dir_all(interface.join("tty").join(node)).expect("made");
+        if let Some((vendor, product, name)) = usb {
+            for (file, text) in [
+                ("idVendor", vendor),
+                ("idProduct", product),
+                ("product", name),
+            ] {
+                write(device.join(file), format!("{text}\n")).expect("written");
+            }
+        }
+        let entry = interface.join("tty").join(node);
+        symlink(&interface, entry.join("device")).expect("linked");
+        let class = root.join("class/tty");
+        create_dir_all(&class).expect("made");
+        symlink(&entry, class.join(node)).expect("linked");
+    }
+
+    /// What is found of each: name, id, node, driver.
+    fn found(&self, look: fn(&Places<'_>) -> Vec<Attached>) -> Vec<Attached> {
+        let root = self.folder.path();
+        look(&Places {
+            sys: root,
+            dev: &root.join("dev"),
+            permission: &|_| self.allowed.get(),
+        })
+    }
+}
+
+fn brief(device: &Attached) -> (&str, &str, Option<&str>) {
+    (&device.name, &device.id, device.driver)
+}
+
+#[test]
+fn a_machine_without_devices_has_none() {
+    let machine = Machine::new();
+    assert!(machine.found(hid::devices).is_empty());
+    assert!(machine.found(serial::ports).is_empty());
+}
+
+#[test]
+fn hid_devices_are_known_by_what_they_say_that_they_are() {
+    let machine = Machine::new();
+    machine.hid(10, "0000056A:00000374", "Wacom Intuos S", &PEN);
+    machine.hid(2, "0000046D:0000C31C", "Logitech Keyboard", &KEYBOARD);
+    machine.hid(
+        3,
+        "0000256F:0000C635",
+        "SpaceMouse \u{1b}[2JCompact",
+        &SIX_AXES,
+    );
+    // Six axes of a vendor whose reports nobody knows, and a descriptor that breaks off.
+    machine.hid(4, "00001234:00000001", "Something", &SIX_AXES);
+    machine.hid(5, "00001234:00000002", "Broken", &PEN[..5]);
+    let found = machine.found(hid::devices);
+    let brief: Vec<_> = found.iter().map(brief).collect();
+    assert_eq!(
+        brief,
+        [
+            ("Logitech Keyboard", "046d:c31c", None),
+            ("SpaceMouse ?[2JCompact", "256f:c635", Some("spacemouse")),
+            ("Something", "1234:0001", None),
+            ("Broken", "1234:0002", None),
+            ("Wacom Intuos S", "056a:0374", Some("pen")),
+        ]
+    );
+    assert!(found.iter().all(|device| device.missing.is_none()));
+    assert_eq!(found[4].path, machine.folder.path().join("dev/hidraw10"));
+}
+
+#[test]
+fn a_device_that_may_not_be_read_is_listed_with_what_to_do() {
+    let machine = Machine::new();
+    machine.hid(0, "0000056A:00000374", "Wacom Intuos S", &PEN);
+    machine.hid(1, "0000046D:0000C31C", "Logitech Keyboard", &KEYBOARD);
+    machine.serial("ttyACM0", Some(("16c0", "0483", "USB Serial")));
+    machine.serial("ttyACM1", Some(("2341", "003d", "Due")));
+    machine.allowed.set(Permission::Denied);
+    let found = machine.found(hid::devices);
+    let missing = found[0].missing.as_deref().expect("something is missing");
+    assert!(
+        missing.contains("no permission") && missing.contains("--udev"),
+        "{missing}"
+    );
+    assert_eq!(found[1].missing, None, "nobody asks for a keyboard");
+    let found = machine.found(serial::ports);
+    let missing = found[0].missing.as_deref().expect("something is missing");
+    assert!(missing.contains("dialout"), "{missing}");
+    assert_eq!((found[1].driver, &found[1].missing), (None, &None));
+    machine.allowed.set(Permission::Absent);
+    let missing = machine.found(hid::devices)[0].missing.clone();
+    assert!(missing.expect("its node").contains("node is not there"));
+}
+
+#[test]
+fn serial_ports_of_usb_devices_are_known_by_their_vendor() {
+    let machine = Machine::new();
+    machine.serial("ttyACM0", Some(("16c0", "0483", "Teensyduino")));
+    machine.serial("ttyACM1", Some(("16c0", "05dc", "USBasp")));
+    machine.serial("ttyACM2", Some(("2988", "0302", "Touch")));
+    machine.serial("ttyS0", None);
+    machine.serial("ttyUSB0", Some(("nonsense", "0001", "?")));
+    let found = machine.found(serial::ports);
+    let brief: Vec<_> = found.iter().map(brief).collect();
+    assert_eq!(
+        brief,
+        [
+            ("Teensyduino", "16c0:0483", Some("polhem")),
+            ("USBasp", "16c0:05dc", None),
+            ("Touch", "2988:0302", Some("openhaptics")),
+        ]
+    );
+}
+
+#[test]
+fn the_rule_has_every_vendor_that_a_driver_fits() {
+    for vendor in [0x056a, 0x256c, 0x28bd, 0x256f, 0x046d, 0x16c0] {
+        assert!(is_ruled(vendor), "{vendor:04x}");
+    }
+    assert!(!is_ruled(0x1234));
+    let machine = Machine::new();
+    machine.hid(0, "0000056A:00000374", "Wacom Intuos S", &PEN);
+    machine.hid(1, "00001A2B:00000001", "A pen of another vendor", &PEN);
+    machine.hid(2, "00001A2C:00000001", "A keyboard", &KEYBOARD);
+    let rules = rules(&machine.found(hid::devices));
+    assert!(rules.starts_with(UDEV_RULES));
+    let added = &rules[UDEV_RULES.len()..];
+    let lines: Vec<&str> = added
+        .lines()
+        .filter(|line| line.starts_with("SUB"))
+        .collect();
+    assert_eq!(
+        lines,
+        ["SUBSYSTEM==\"hidraw\", KERNELS==\"*:1A2B:*\", TAG+=\"uaccess\""]
+    );
+}
+
+#[test]
+fn the_vendors_library_and_service_are_found_where_they_are() {
+    let folder = tempfile::tempdir().expect("a folder");
+    assert_eq!(open_haptics(&[folder.path()]), None);
+    let library = folder.path().join("libHD.so.3.4");
+    write(&library, "").expect("written");
+    let folders = [Path::new("/nowhere"), folder.path()];
+    assert_eq!(open_haptics(&folders), Some(library));
+    let listener = std::net::TcpListener::bind("127.0.0.1:0").expect("a port");
+    let address = listener.local_addr().expect("an address").to_string();
+    assert!(listens(&address));
+    drop(listener);
+    assert!(!listens(&address) && !listens("nonsense"));
+}
+
+#[test]
+fn a_node_that_is_there_may_be_used_and_one_that_is_not_is_absent() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let node = folder.path().join("hidraw0");
+    assert_eq!(permission(&node), Permission::Absent);
+    write(&node, "").expect("written");
+    assert_eq!(permission(&node), Permission::Granted);
+}

@@ -1,0 +1,47 @@
+//! What vendors put between a device and a program: OpenHaptics' library, Haply's service.
+
+use std::net::{TcpStream, ToSocketAddrs as _};
+use std::path::{Path, PathBuf};
+use std::time::Duration;
+
+/// Names of OpenHaptics' library.
+const LIBRARY: [&str; 3] = ["libHD.so", "libHD.so.3.4", "libHD.so.3.0"];
+/// The folders of libraries, besides those that LD_LIBRARY_PATH names.
+const FOLDERS: [&str; 5] = [
+    "/usr/lib",
+    "/usr/lib/x86_64-linux-gnu",
+    "/usr/lib64",
+    "/usr/local/lib",
+    "/usr/local/lib64",
+];
+/// Where Haply's Inverse Service listens.
+pub const INVERSE_SERVICE: &str = "localhost:10001";
+/// How long a service of this machine has to take a connection.
+const PATIENCE: Duration = Duration::from_millis(300);
+
+/// The folders in which OpenHaptics' library is looked for.
+#[must_use]
+pub fn library_folders() -> Vec<PathBuf> {
+    let named = std::env::var_os("LD_LIBRARY_PATH").unwrap_or_default();
+    let named = std::env::split_paths(&named).filter(|path| path.is_absolute());
+    named.chain(FOLDERS.map(PathBuf::from)).collect()
+}
+
+/// OpenHaptics' library in the first of `folders` that has it. It is not loaded: its driver may ask
+/// for the device, and bears no second loading.
+#[must_use]
+pub fn open_haptics(folders: &[impl AsRef<Path>]) -> Option<PathBuf> {
+    let in_folder = |folder: &Path| {
+        let names = LIBRARY.map(|name| folder.join(name));
+        names.into_iter().find(|path| path.exists())
+    };
+    folders.iter().find_map(|folder| in_folder(folder.as_ref()))
+}
+
+/// Whether something listens at an address.
+#[must_use]
+pub fn listens(address: &str) -> bool {
+    let addresses = address.to_socket_addrs().into_iter().flatten();
+    let mut addresses = addresses.filter(|address| address.ip().is_loopback());
+    addresses.any(|address| TcpStream::connect_timeout(&address, PATIENCE).is_ok())
+}

@@ -1,0 +1,300 @@
+//! `maulstick devices`: what is attached, which driver fits, and what is missing before it works.
+
+use std::time::{Duration, Instant};
+
+use clap::Args;
+use maulstick_bus::Class;
+use maulstick_rig::Fault;
+use maulstick_types::stylus::{StylusInfo, StylusStatus};
+use serde::Serialize;
+use serde_json::json;
+
+use crate::attached::vendors::{INVERSE_SERVICE, library_folders, listens, open_haptics};
+use crate::attached::{Attached, Places, hid, rules, serial};
+use crate::commands::session::{Feed, Session, Target};
+use crate::commands::{print_json, print_text};
+
+/// Options of `maulstick devices`.
+#[derive(Args, Clone, Debug)]
+pub struct DevicesOptions {
+    /// As JSON
+    #[arg(long)]
+    json: bool,
+    /// Prints a rule for udev, by which who sits at this machine may use its devices
+    ///
+    /// Install it: maulstick devices --udev | sudo tee /etc/udev/rules.d/70-maulstick.rules &&
+    /// sudo udevadm control --reload && sudo udevadm trigger
+    #[arg(long, conflicts_with = "json")]
+    udev: bool,
+    #[command(flatten)]
+    target: Target,
+}
+
+/// How long the devices of a rig have to show themselves.
+const PATIENCE: Duration = Duration::from_secs(1);
+/// After the first, others come this soon; a status comes each tenth of a second.
+const TOGETHER: Duration = Duration::from_millis(300);
+
+/// All that is found.
+#[derive(Clone, Debug, Serialize)]
+struct Findings {
+    hid: Vec<Attached>,
+    serial: Vec<Attached>,
+    openhaptics: Library,
+    inverse_service: Service,
+    /// The devices of the rig; none where it does not run.
+    rig: Option<Vec<Used>>,
+}
+
+/// OpenHaptics' library.
+#[derive(Clone, Debug, Serialize)]
+struct Library {
+    path: Option<std::path::PathBuf>,
+    looked_in: Vec<std::path::PathBuf>,
+}
+
+/// Haply's service.
+#[derive(Clone, Debug, Serialize)]
+struct Service {
+    address: &'static str,
+    listens: bool,
+}
+
+/// A device of a running rig.
+#[derive(Clone, Debug, Serialize)]
+struct Used {
+    name: String,
+    /// What it says of itself once it is there.
+    #[serde(flatten)]
+    told: Option<Told>,
+    /// Why it gives nothing now; empty where it does.
+    trouble: String,
+}
+
+/// What a device of a rig says of itself.
+#[derive(Clone, Debug, Serialize)]
+struct Told {
+    driver: String,
+    brush: String,
+    priority: i32,
+}
+
+/// Lists what is attached.
+///
+/// # Errors
+/// A [`Fault`] where it cannot be printed.
+pub fn run(options: &DevicesOptions) -> Result<i32, Fault> {
+    let places = Places::here();
+    if options.udev {
+        print_text(&rules(&hid::devices(&places)))?;
+        return Ok(0);
+    }
+    let looked_in = library_folders();
+    let findings = Findings {
+        hid: hid::devices(&places),
+        serial: serial::ports(&places),
+        openhaptics: Library {
+            path: open_haptics(&looked_in),
+            looked_in,
+        },
+        inverse_service: Service {
+            address: INVERSE_SERVICE,
+            listens: listens(INVERSE_SERVICE),
+        },
+        rig: used(&options.target),
+    };
+    match options.json {
+        true => print_json(&json!(findings))?,
+        false => print_text(&table(&findings))?,
+    }
+    Ok(0)
+}
+
+/// The devices of a rig, if it runs.
+fn used(target: &Target) -> Option<Vec<Used>> {
+    let session = Session::open(target).ok()?;
+    let topics = session.topics();
+    let mut infos: Feed<StylusInfo> = session
+        .follow(&topics.stylus_info("*"), Class::Cached)
+        .ok()?;
+    let mut statuses: Feed<StylusStatus> = session
+        .follow(&topics.stylus_status("*"), Class::Background)
+        .ok()?;
+    let mut found: Vec<Used> = Vec::new();
+    let mut until = Instant::now() + PATIENCE;
+    while let Some(info) = infos.next_before(until) {
+        until = until.min(Instant::now() + TOGETHER);
+        found.retain(|other| other.name != info.device);
+        found.push(Used {
+            name: info.device,
+            told: Some(Told {
+                driver: info.driver,
+                brush: info.brush,
+                priority: info.priority,
+            }),
+            trouble: String::new(),
+        });
+    }
+    // Heard while the devices showed themselves; one that has never been there has nothing else.
+    while let Some(received) = statuses.received_before(Instant::now()) {
+        let device = received.key.rsplit('/').nth(1).unwrap_or_default();
+        let status = received.message;
+        let trouble = match status.faults.is_empty() {
+            true => status.trouble,
+            false => status.faults.join("; "),
+        };
+        match found.iter_mut().find(|used| used.name == device) {
+            Some(used) => used.trouble = trouble,
+            None => found.push(Used {
+                name: device.to_owned(),
+                told: None,
+                trouble,
+            }),
+        }
+    }
+    // The highest priority first.
+    let rank = |used: &Used| used.told.as_ref().map_or(i32::MIN, |told| told.priority);
+    found.sort_by(|a, b| rank(b).cmp(&rank(a)).then(a.name.cmp(&b.name)));
+    Some(found)
+}
+
+/// What is told of a device.
+type Row = [String; 5];
+
+/// What is found, for people.
+fn table(findings: &Findings) -> String {
+    let mut rows: Vec<Row> = Vec::new();
+    let all = || findings.hid.iter().chain(&findings.serial);
+    for fits in [true, false] {
+        let these = all().filter(|device| device.driver.is_some() == fits);
+        rows.extend(these.map(row));
+    }
+    let service = &findings.inverse_service;
+    if let Some(path) = &findings.openhaptics.path {
+        rows.push(program(
+            "OpenHaptics",
+            "openhaptics",
+            &path.display().to_string(),
+        ));
+    }
+    if service.listens {
+        rows.push(program(
+            "Haply Inverse Service",
+            "inverse3",
+            service.address,
+        ));
+    }
+    let mut text = String::new();
+    if !rows.is_empty() {
+        let heads = ["device", "id", "at", "driver", ""].map(str::to_owned);
+        text += &aligned(&[vec![heads], rows].concat());
+    }
+    if !all().any(|device| device.driver.is_some())
+        && findings.openhaptics.path.is_none()
+        && !service.listens
+    {
+        text += &nothing(findings);
+    } else if let Some(device) = all().find(|device| is_usable(device)) {
+        text += &advice(device);
+    }
+    text + &in_rig(findings.rig.as_deref())
+}
+
+fn is_usable(device: &Attached) -> bool {
+    let known = device.driver.is_some_and(|driver| driver != "openhaptics");
+    known && device.missing.is_none()
+}
+
+fn row(device: &Attached) -> Row {
+    let missing = device.missing.clone();
+    let state = match device.driver {
+        Some("openhaptics") => missing.unwrap_or_else(|| "through its vendor's library".into()),
+        Some(_) => missing.unwrap_or_else(|| "ready".into()),
+        None => String::new(),
+    };
+    [
+        device.name.clone(),
+        device.id.clone(),
+        device.path.display().to_string(),
+        device.driver.unwrap_or("-").to_owned(),
+        state,
+    ]
+}
+
+fn program(name: &str, driver: &str, at: &str) -> Row {
+    [name, "-", at, driver, "found"].map(str::to_owned)
+}
+
+/// Rows with columns as wide as their widest cell.
+fn aligned(rows: &[Row]) -> String {
+    let wide = |column: usize| rows.iter().map(|row| row[column].chars().count()).max();
+    let widths = [0, 1, 2, 3].map(|column| wide(column).unwrap_or(0));
+    let line = |row: &Row| {
+        let mut line = String::new();
+        for (cell, width) in row.iter().zip(widths) {
+            line += &format!("{cell:<width$}  ");
+        }
+        line += &row[4];
+        line.trim_end().to_owned() + "\n"
+    };
+    rows.iter().map(line).collect()
+}
+
+/// What is said where there is nothing to paint with.
+fn nothing(findings: &Findings) -> String {
+    let folders: Vec<String> = findings
+        .openhaptics
+        .looked_in
+        .iter()
+        .map(|path| path.display().to_string())
+        .collect();
+    format!(
+        "Nothing attached that a driver fits; the mouse paints, and so does `driver = \"simulated\"`.\n\
+         Shown would be pens (pen) and 6-DOF mice (spacemouse) at /dev/hidraw*, Polhem and\n\
+         WoodenHaptics (polhem) at serial ports, an Inverse3 (inverse3) with Haply's service at\n\
+         {}, and a Touch (openhaptics) with libHD.so in\n\
+         {}.\n",
+        findings.inverse_service.address,
+        folders.join(", ")
+    )
+}
+
+/// How a device is used.
+fn advice(device: &Attached) -> String {
+    let driver = device.driver.unwrap_or_default();
+    // A serial port is asked for by its node, a HID device by what it is, wherever it is plugged in.
+    let address = match driver {
+        "polhem" => device.path.display().to_string(),
+        _ => device.id.clone(),
+    };
+    format!(
+        "\nTo paint with it, in rig.toml:\n\n[[device]]\nname = \"{driver}\"\ndriver = \"{driver}\"\n\
+         address = \"{address}\"\nbrush = \"main\"\n"
+    )
+}
+
+fn in_rig(used: Option<&[Used]>) -> String {
+    let Some(used) = used else {
+        return "\nThe rig does not run: `maulstick up` starts it.\n".into();
+    };
+    if used.is_empty() {
+        return "\nThe rig that runs has no device.\n".into();
+    }
+    let row = |used: &Used| -> Row {
+        let state = match used.trouble.as_str() {
+            "" => "in use",
+            trouble => trouble,
+        };
+        let [driver, brush, priority] = match &used.told {
+            Some(told) => [&told.driver, &told.brush, &told.priority.to_string()].map(Clone::clone),
+            None => ["-"; 3].map(str::to_owned),
+        };
+        [used.name.clone(), driver, brush, priority, state.to_owned()]
+    };
+    let heads = ["in the rig", "driver", "brush", "priority", ""].map(str::to_owned);
+    let rows: Vec<Row> = [heads].into_iter().chain(used.iter().map(row)).collect();
+    format!("\n{}", aligned(&rows))
+}
+
+#[cfg(test)]
+mod tests;

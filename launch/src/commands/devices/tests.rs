@@ -1,0 +1,136 @@
+//! The table and the JSON of what is found.
+
+use std::path::PathBuf;
+
+use super::*;
+use crate::attached::Permission;
+
+fn attached(name: &str, id: &str, node: &str, driver: Option<&'static str>) -> Attached {
+    Attached {
+        name: name.into(),
+        id: id.into(),
+        path: PathBuf::from("/dev").join(node),
+        driver,
+        permission: Permission::Granted,
+        missing: None,
+    }
+}
+
+fn findings(hid: Vec<Attached>, serial: Vec<Attached>) -> Findings {
+    Findings {
+        hid,
+        serial,
+        openhaptics: Library {
+            path: None,
+            looked_in: vec!["/usr/lib".into()],
+        },
+        inverse_service: Service {
+            address: INVERSE_SERVICE,
+            listens: false,
+        },
+        rig: None,
+    }
+}
+
+#[test]
+fn nothing_attached_is_said_and_what_would_be_seen() {
+    let keyboard = attached("A keyboard", "046d:c31c", "hidraw0", None);
+    for found in [findings(vec![], vec![]), findings(vec![keyboard], vec![])] {
+        let text = table(&found);
+        for word in [
+            "Nothing attached",
+            "/usr/lib.",
+            "localhost:10001",
+            "does not run",
+        ] {
+            assert!(text.contains(word), "'{word}' is missing in: {text}");
+        }
+    }
+    let pen = attached("A pen", "056a:0374", "hidraw0", Some("pen"));
+    assert!(!table(&findings(vec![pen], vec![])).contains("Nothing"));
+}
+
+#[test]
+fn what_a_driver_fits_comes_first_in_columns_and_how_it_is_used_below() {
+    let mut denied = attached("Intuos S", "056a:0374", "hidraw3", Some("pen"));
+    denied.permission = Permission::Denied;
+    denied.missing = Some("no permission".into());
+    let mut found = findings(
+        vec![attached("A keyboard", "046d:c31c", "hidraw0", None), denied],
+        vec![attached(
+            "Teensyduino",
+            "16c0:0483",
+            "ttyACM0",
+            Some("polhem"),
+        )],
+    );
+    found.openhaptics.path = Some("/usr/lib/libHD.so".into());
+    found.inverse_service.listens = true;
+    let text = table(&found);
+    let expected = "\
+device                 id         at                 driver
+Intuos S               056a:0374  /dev/hidraw3       pen          no permission
+Teensyduino            16c0:0483  /dev/ttyACM0       polhem       ready
+A keyboard             046d:c31c  /dev/hidraw0       -
+OpenHaptics            -          /usr/lib/libHD.so  openhaptics  found
+Haply Inverse Service  -          localhost:10001    inverse3     found
+";
+    assert!(text.starts_with(expected), "{text}");
+    // The one that is ready, by its port.
+    assert!(
+        text.contains("driver = \"polhem\"\naddress = \"/dev/ttyACM0\""),
+        "{text}"
+    );
+}
+
+#[test]
+fn the_devices_of_a_rig_are_listed_with_their_trouble() {
+    let used = |name: &str, trouble: &str| Used {
+        name: name.into(),
+        told: Some(Told {
+            driver: "pen".into(),
+            brush: "main".into(),
+            priority: 0,
+        }),
+        trouble: trouble.into(),
+    };
+    let never = Used {
+        told: None,
+        ..used("arm", "there is no libHD.so")
+    };
+    let text = in_rig(Some(&[
+        used("left", ""),
+        used("right", "it is unplugged"),
+        never,
+    ]));
+    let rows: Vec<&str> = text.trim().lines().collect();
+    assert_eq!(
+        rows,
+        [
+            "in the rig  driver  brush  priority",
+            "left        pen     main   0         in use",
+            "right       pen     main   0         it is unplugged",
+            "arm         -       -      -         there is no libHD.so",
+        ]
+    );
+    assert!(in_rig(Some(&[])).contains("no device"));
+}
+
+#[test]
+fn json_has_the_same() {
+    let mut found = findings(
+        vec![attached("A pen", "056a:0374", "hidraw0", Some("pen"))],
+        vec![],
+    );
+    found.rig = Some(Vec::new());
+    let value = json!(found);
+    let pen = &value["hid"][0];
+    assert_eq!(
+        (&pen["driver"], &pen["path"], &pen["permission"]),
+        (&json!("pen"), &json!("/dev/hidraw0"), &json!("granted"))
+    );
+    assert_eq!(pen["missing"], json!(null));
+    assert_eq!(value["openhaptics"]["path"], json!(null));
+    assert_eq!(value["inverse_service"]["listens"], json!(false));
+    assert_eq!(value["rig"], json!([]));
+}

@@ -1,0 +1,110 @@
+//! How late our servo wakes beside cyclictest, in turns, under the load of a rig that paints.
+//!
+//! Both sleep to absolute deadlines a millisecond apart on a thread of SCHED_FIFO, priority 80, with
+//! memory locked, and measure from the deadline to the first instruction after it. Ours is the whole
+//! servo over a simulated device; what it does in a tick delays no wake-up, as deadlines are absolute.
+
+use std::path::Path;
+use std::time::{Duration, Instant};
+
+use maulstick_haptic::Placed;
+use maulstick_haptic::host::Host;
+use maulstick_haptic::pace::OwnClock;
+use maulstick_haptic::simulated::Simulated;
+use maulstick_haptics::Limits;
+use maulstick_num::geometry::Rigid;
+use maulstick_rig::Fault;
+
+use super::histogram::Histogram;
+use super::load::Load;
+use super::{cyclictest, fault};
+use crate::report::Report;
+
+/// Pairs, ours and the peer's in turns.
+const PAIRS: usize = 10;
+/// Ticks of each of a pair: 4 s.
+const TICKS: u64 = 4000;
+/// Ticks from which nothing came for so long have stopped.
+const PATIENCE: Duration = Duration::from_secs(30);
+
+/// Who runs first.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Scheduling {
+    /// Real time, priority 80.
+    Fifo,
+    /// As every other thread, where real time is not permitted.
+    Other,
+}
+
+/// Measures and reports. Without the peer there are our own numbers, and it is said what is missing.
+pub(super) fn run(report: &mut Report) -> Result<(), Fault> {
+    let place = tempfile::tempdir().map_err(fault)?;
+    let (_, scheduling) = ours(10)?;
+    if let Scheduling::Other = scheduling {
+        report.on("cpu; without the right to SCHED_FIFO, so is the peer");
+    }
+    let peer = match cyclictest::run(place.path(), 10, scheduling) {
+        Ok(_) => true,
+        Err(missing) => {
+            eprintln!("{missing}");
+            false
+        }
+    };
+    let mut load = Load::start(place.path())?;
+    let mut pairs = Vec::new();
+    let (start, before_s) = (Instant::now(), load.seconds());
+    for _ in 0..PAIRS {
+        let (ours, _) = ours(TICKS)?;
+        let theirs = match peer {
+            true => Some(theirs(place.path(), scheduling)?),
+            false => None,
+        };
+        load.check()?;
+        pairs.push((ours, theirs));
+    }
+    let cores = (load.seconds() - before_s) / start.elapsed().as_secs_f64();
+    report.row("lateness.load", cores, "cores");
+    for (name, share) in [("lateness.p50", 0.5), ("lateness.p90", 0.9)] {
+        let of = |(ours, theirs): &(Histogram, Option<Histogram>)| {
+            let theirs = theirs.as_ref().map_or(f64::NAN, |it| it.quantile(share));
+            (ours.quantile(share), theirs)
+        };
+        let values: Vec<(f64, f64)> = pairs.iter().map(of).collect();
+        match peer {
+            true => report.paired(name, "µs", "cyclictest", &values),
+            false => report.median(name, "µs", values.iter().map(|pair| pair.0).collect()),
+        }
+    }
+    Ok(())
+}
+
+fn theirs(place: &Path, scheduling: Scheduling) -> Result<Histogram, Fault> {
+    cyclictest::run(place, TICKS, scheduling)
+}
+
+/// How late so many ticks of our servo are, and how it was scheduled.
+fn ours(ticks: u64) -> Result<(Histogram, Scheduling), Fault> {
+    let device = Placed::new(Box::new(Simulated::at_rest()), Rigid::IDENTITY);
+    let mut host = Host::start(device, Box::new(OwnClock), Limits::default()).map_err(fault)?;
+    let scheduling = match host.warnings.iter().any(|what| what.contains("real-time")) {
+        true => Scheduling::Other,
+        false => Scheduling::Fifo,
+    };
+    let mut histogram = Histogram::default();
+    let mut heard = Instant::now();
+    let mut seen = 0;
+    while seen < ticks {
+        // Half of the ring comes together.
+        std::thread::sleep(Duration::from_millis((ticks - seen).min(1000)));
+        while seen < ticks
+            && let Ok(ticked) = host.ticks.pop()
+        {
+            histogram.add(ticked.late_ns / 1000, 1);
+            (seen, heard) = (seen + 1, Instant::now());
+        }
+        if heard.elapsed() > PATIENCE {
+            return Err(fault("the servo stands still"));
+        }
+    }
+    Ok((histogram, scheduling))
+}

@@ -1,0 +1,162 @@
+//! A rig without a window that paints as fast as it can, beside what is measured.
+
+use std::path::Path;
+use std::process::{Child, Command, Stdio};
+use std::time::{Duration, Instant};
+
+use maulstick_bus::typed::Receiver;
+use maulstick_bus::{Class, Dial, Queue, RigClock, RigFolder, Wake, ZenohBus};
+use maulstick_device::{Take, TakeSample};
+use maulstick_rig::Fault;
+use maulstick_types::brush::BrushState;
+use maulstick_types::stylus::{DEFAULT_TILT_RAD, StylusPose, StylusSample, axes};
+use maulstick_types::topics::Topics;
+
+use super::fault;
+use crate::latency::maulstick;
+
+/// Samples a second of its take.
+const RATE_HZ: u64 = 250;
+/// Length of its take, s.
+const LENGTH_S: u64 = 400;
+/// A hand goes to and fro over 20 cm so often a second: at 1 m/s, a way of 4,000 cells a second, the
+/// brush and the paint have a core's work each.
+const TURNS_HZ: f64 = 2.5;
+/// How long a rig may take to begin to paint.
+const PATIENCE: Duration = Duration::from_secs(60);
+
+/// The rig; it ends with this value.
+pub(super) struct Load(Child);
+
+impl Drop for Load {
+    fn drop(&mut self) {
+        self.0.kill().ok();
+        self.0.wait().ok();
+    }
+}
+
+impl Load {
+    /// Starts it and waits until it paints.
+    ///
+    /// # Errors
+    /// A [`Fault`] where it does not.
+    pub(super) fn start(place: &Path) -> Result<Self, Fault> {
+        const NAME: &str = "load";
+        let take = place.join("load.mcap");
+        to_and_fro().write(&take)?;
+        let child = Command::new(maulstick()?)
+            .args(["up", "--headless", "--name", NAME, "--rate", "1"])
+            .args(["--load", "Bone Black", "--play"])
+            .arg(&take)
+            .current_dir(place)
+            .env("XDG_RUNTIME_DIR", place)
+            .stdin(Stdio::null())
+            .stdout(Stdio::null())
+            .stderr(Stdio::null())
+            .spawn()
+            .map_err(fault)?;
+        let mut load = Self(child);
+        let path = place.join("maulstick").join(NAME);
+        let give_up = Instant::now() + PATIENCE;
+        let (_, info) = loop {
+            match RigFolder::join_at(&path) {
+                Ok(joined) => break joined,
+                Err(error) if Instant::now() > give_up => return Err(error.into()),
+                Err(_) => std::thread::sleep(Duration::from_millis(5)),
+            }
+        };
+        let dial = Dial {
+            name: "bench".into(),
+            listen: None,
+            connect: vec![info.endpoint],
+        };
+        let bus = ZenohBus::open(&dial, RigClock::with_offset(info.clock_offset_ns))?;
+        let (topic, wake) = (Topics::new(NAME).brush_state("main"), Wake::new());
+        let queue = Queue::Ring(64);
+        let mut states = Receiver::<BrushState>::new(&bus, &topic, Class::RealTime, queue, &wake)?;
+        let paints = |state: BrushState| state.solves.iter().any(|solve| solve.stroke > 0);
+        while !states.try_recv().is_some_and(|state| paints(state.message)) {
+            load.check()?;
+            if Instant::now() > give_up {
+                return Err(fault("the rig that is to be the load does not paint"));
+            }
+            wake.wait(Duration::from_millis(10));
+        }
+        drop(states);
+        bus.close();
+        Ok(load)
+    }
+
+    /// Processor time that its nodes have had, s.
+    pub(super) fn seconds(&self) -> f64 {
+        let processes = std::fs::read_dir("/proc").into_iter().flatten().flatten();
+        let lines = processes.filter_map(|it| std::fs::read_to_string(it.path().join("stat")).ok());
+        let nodes = lines.filter_map(|line| parent_and_time(&line));
+        let ours = nodes.filter(|(parent, _)| *parent == self.0.id());
+        ours.map(|(_, seconds)| seconds).sum()
+    }
+
+    /// Whether it is still there.
+    ///
+    /// # Errors
+    /// A [`Fault`] where it has ended: what was measured then was measured without load.
+    pub(super) fn check(&mut self) -> Result<(), Fault> {
+        match self.0.try_wait().map_err(fault)? {
+            None => Ok(()),
+            Some(status) => Err(fault(format!("the load has ended: {status}"))),
+        }
+    }
+}
+
+/// Parts of a second in which Linux tells of processor time (`USER_HZ`).
+const USER_HZ: f64 = 100.0;
+
+/// Whose child a process is, and the processor time that it has had, s; by its line in `/proc`.
+fn parent_and_time(stat: &str) -> Option<(u32, f64)> {
+    // Its name, in parentheses, may hold anything.
+    let (_, rest) = stat.rsplit_once(") ")?;
+    let cells: Vec<&str> = rest.split(' ').collect();
+    let number = |place: usize| cells.get(place)?.parse::<u64>().ok();
+    let parent = u32::try_from(number(1)?).ok()?;
+    Some((parent, (number(11)? + number(12)?) as f64 / USER_HZ))
+}
+
+/// A hand that goes to and fro, well pressed.
+fn to_and_fro() -> Take {
+    let samples = (0..LENGTH_S * RATE_HZ).map(|number| {
+        let turns = number as f64 / RATE_HZ as f64 * TURNS_HZ;
+        let x = 0.4 * (turns.fract() - 0.5).abs() - 0.1;
+        TakeSample {
+            time_ns: number * 1_000_000_000 / RATE_HZ,
+            sample: StylusSample {
+                senses: axes::POSITION | axes::PRESSURE | axes::TILT,
+                pose: StylusPose::Contact {
+                    // Strokes beside each other, so that each meets what others have left.
+                    point_m: [x, 0.02 * (turns * 0.07).fract(), 0.0],
+                    tilt_rad: DEFAULT_TILT_RAD,
+                    twist_rad: 0.0,
+                    pressure: 0.7,
+                },
+                in_range: true,
+                ..StylusSample::away()
+            },
+        }
+    });
+    Take {
+        kit: None,
+        device: "load".into(),
+        samples: samples.collect(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_processor_time_of_a_node_is_read_whatever_it_is_called() {
+        let line = "28183 (a ) b (c) S 714 1 1 0 -1 4194560 2 0 0 0 130 20 7 9 20 0 5 0 10 11";
+        assert_eq!(parent_and_time(line), Some((714, 1.5)));
+        assert_eq!(parent_and_time("28183 (a) S 714"), None);
+    }
+}
