@@ -5,8 +5,8 @@ use maulstick_rig::Fault;
 use maulstick_rig::files::clear_on_signals;
 
 use crate::commands::{
-    bench, brush, calibrate, control, demo, devices, endpoint, fit, force, import, layers, light, matching,
-    mix, mode, painting, paints, render, schema, surface, take,
+    bench, brush, calibrate, control, demo, devices, endpoint, fit, force, import, layers, light,
+    matching, mix, mode, painting, paints, render, schema, surface, take,
 };
 use crate::up;
 

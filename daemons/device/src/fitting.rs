@@ -113,6 +113,13 @@ pub struct Fitting {
 }
 
 impl Fitting {
+    /// A device that is its own desk.
+    pub const IDENTITY: Self = Self {
+        to_desk: Similarity::IDENTITY,
+        ferrule_m: DVec3::ZERO,
+        corners: None,
+    };
+
     /// As a section of `rig.toml` says: by its corners where it has them, else by position,
     /// orientation and scale.
     ///

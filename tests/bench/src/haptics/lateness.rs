@@ -7,12 +7,12 @@
 use std::path::Path;
 use std::time::{Duration, Instant};
 
+use maulstick_device::fitting::Fitting;
 use maulstick_haptic::Placed;
 use maulstick_haptic::host::Host;
 use maulstick_haptic::pace::OwnClock;
 use maulstick_haptic::simulated::Simulated;
 use maulstick_haptics::Limits;
-use maulstick_num::geometry::Rigid;
 use maulstick_rig::Fault;
 
 use super::histogram::Histogram;
@@ -84,7 +84,7 @@ fn theirs(place: &Path, scheduling: Scheduling) -> Result<Histogram, Fault> {
 
 /// How late so many ticks of our servo are, and how it was scheduled.
 fn ours(ticks: u64) -> Result<(Histogram, Scheduling), Fault> {
-    let device = Placed::new(Box::new(Simulated::at_rest()), Rigid::IDENTITY);
+    let device = Placed::new(Box::new(Simulated::at_rest()), Fitting::IDENTITY, 0);
     let mut host = Host::start(device, Box::new(OwnClock), Limits::default()).map_err(fault)?;
     let scheduling = match host.warnings.iter().any(|what| what.contains("real-time")) {
         true => Scheduling::Other,

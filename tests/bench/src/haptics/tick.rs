@@ -7,6 +7,7 @@ use std::time::{Duration, Instant};
 
 use maulstick_brush::BrushFile;
 use maulstick_brush::feel::tuples;
+use maulstick_device::fitting::Fitting;
 use maulstick_device::{Take, TakeSample};
 use maulstick_haptic::Placed;
 use maulstick_haptic::beat::Delivery;
@@ -16,7 +17,6 @@ use maulstick_haptic::pace::OwnClock;
 use maulstick_haptic::simulated::Simulated;
 use maulstick_haptics::Limits;
 use maulstick_haptics::contact::Contact;
-use maulstick_num::geometry::Rigid;
 use maulstick_num::{cos, sin};
 use maulstick_rig::Fault;
 use maulstick_types::haptics::{ContactModel, ForceLaw, Grain};
@@ -61,11 +61,11 @@ impl Pace for Timed {
 pub(super) fn run(report: &mut Report) -> Result<(), Fault> {
     let brush = BrushFile::library("round").map_err(fault)?;
     let take = sliding();
-    let (length_m, desk) = (brush.length_m(), Rigid::IDENTITY);
-    let device = Simulated::following(&take, length_m, DEPTH_SHARE, &desk);
+    let desk = Fitting::IDENTITY;
+    let device = Simulated::following(&take, brush.length_m(), DEPTH_SHARE, &desk);
     let all = TICKS + WARM_UP;
     let (to_us, mut spent) = rtrb::RingBuffer::new(all);
-    let placed = Placed::new(Box::new(device), desk);
+    let placed = Placed::new(Box::new(device), desk, 0);
     let limits = Limits {
         max_stiffness_n_m: placed.abilities().max_stiffness_n_m,
         ..Limits::default()
