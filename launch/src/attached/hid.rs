@@ -1,8 +1,9 @@
 //! HID devices. Their report descriptors and names lie in sysfs, where everybody may read them: so a
 //! pen is known by what it says that it is, and is listed too where its node may not be opened.
 
+use std::path::{Path, PathBuf};
+
 use maulstick_device::collections::{Collection, collections};
-use std::path::Path;
 
 use super::{Attached, Permission, Places, printable};
 
@@ -16,7 +17,7 @@ const TOUCH: u16 = 0x2988;
 /// All HID devices, in the order of their nodes.
 #[must_use]
 pub fn devices(places: &Places<'_>) -> Vec<Attached> {
-    let device = |(node, entry): (String, std::path::PathBuf)| {
+    let device = |(node, entry): (String, PathBuf)| {
         let path = places.dev.join(node);
         let told = Told::read(&entry.join("device"))?;
         let driver = told.driver();

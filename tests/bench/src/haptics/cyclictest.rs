@@ -9,22 +9,18 @@ use serde_json::Value;
 
 use super::fault;
 use super::histogram::Histogram;
-use super::lateness::Scheduling;
 
 /// Lateness that it counts, µs; what is later is beyond all quantiles that are reported.
 const MOST_US: u64 = 100_000;
 
-/// Runs it for so many ticks, a millisecond apart.
+/// Runs it for so many ticks, a millisecond apart, with memory locked and SCHED_FIFO, priority 80.
 ///
 /// # Errors
 /// A [`Fault`] where it is not installed or fails.
-pub(super) fn run(place: &Path, ticks: u64, scheduling: Scheduling) -> Result<Histogram, Fault> {
+pub(super) fn run(place: &Path, ticks: u64) -> Result<Histogram, Fault> {
     let json = place.join("cyclictest.json");
     let mut command = Command::new("cyclictest");
-    command.args(["-q", "-i1000"]);
-    if scheduling == Scheduling::Fifo {
-        command.args(["-m", "-p80"]);
-    }
+    command.args(["-q", "-m", "-p80", "-i1000"]);
     command.args(["-l", &ticks.to_string(), "-h", &MOST_US.to_string()]);
     command.arg(format!("--json={}", json.display()));
     let output = command.output().map_err(|error| match error.kind() {

@@ -4,7 +4,6 @@
 //! memory locked, and measure from the deadline to the first instruction after it. Ours is the whole
 //! servo over a simulated device; what it does in a tick delays no wake-up, as deadlines are absolute.
 
-use std::path::Path;
 use std::time::{Duration, Instant};
 
 use maulstick_device::fitting::Fitting;
@@ -27,9 +26,9 @@ const TICKS: u64 = 4000;
 /// Ticks from which nothing came for so long have stopped.
 const PATIENCE: Duration = Duration::from_secs(30);
 
-/// Who runs first.
+/// How our servo was scheduled.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Scheduling {
+enum Scheduling {
     /// Real time, priority 80.
     Fifo,
     /// As every other thread, where real time is not permitted.
@@ -40,23 +39,27 @@ pub(super) enum Scheduling {
 pub(super) fn run(report: &mut Report) -> Result<(), Fault> {
     let place = tempfile::tempdir().map_err(fault)?;
     let (_, scheduling) = ours(10)?;
-    if let Scheduling::Other = scheduling {
-        report.on("cpu; without the right to SCHED_FIFO, so is the peer");
-    }
-    let peer = match cyclictest::run(place.path(), 10, scheduling) {
-        Ok(_) => true,
-        Err(missing) => {
-            eprintln!("{missing}");
-            false
+    let tried = match scheduling {
+        Scheduling::Fifo => cyclictest::run(place.path(), 10),
+        Scheduling::Other => {
+            report.on("cpu; the servo without real-time priority");
+            Err(
+                fault("cyclictest, the peer of `lateness`, runs with real-time priority alone")
+                    .help("add 'rtprio 99' for your user to /etc/security/limits.conf"),
+            )
         }
     };
+    let peer = tried.is_ok();
+    if let Err(missing) = tried {
+        eprintln!("{missing}");
+    }
     let mut load = Load::start(place.path())?;
     let mut pairs = Vec::new();
     let (start, before_s) = (Instant::now(), load.seconds());
     for _ in 0..PAIRS {
         let (ours, _) = ours(TICKS)?;
         let theirs = match peer {
-            true => Some(theirs(place.path(), scheduling)?),
+            true => Some(cyclictest::run(place.path(), TICKS)?),
             false => None,
         };
         load.check()?;
@@ -76,10 +79,6 @@ pub(super) fn run(report: &mut Report) -> Result<(), Fault> {
         }
     }
     Ok(())
-}
-
-fn theirs(place: &Path, scheduling: Scheduling) -> Result<Histogram, Fault> {
-    cyclictest::run(place, TICKS, scheduling)
 }
 
 /// How late so many ticks of our servo are, and how it was scheduled.
