@@ -201,6 +201,8 @@ impl<W: Wire> Driver for Polhem<W> {
 
     fn switch(&mut self, amplifiers: Switch) {
         self.amplifiers = amplifiers;
+        // Resting amplifiers leave the button unseen, and what is not seen is not held.
+        self.pressed &= amplifiers == Switch::On;
     }
 }
 

@@ -338,6 +338,10 @@ fn the_button_is_asked_for_where_there_is_no_force_and_costs_no_late_tick() {
     // A force is not taken from the hand to look at the button.
     assert_eq!(switches(&mut beat, DVec3::X), Some(1));
     assert_eq!(switches(&mut beat, DVec3::ZERO), Some(0));
+    beat.cable.bench().firmware.encoders[3] = 10_042;
+    assert_eq!(switches(&mut beat, DVec3::ZERO), Some(1));
+    beat.polhem.switch(Switch::Off);
+    assert_eq!(switches(&mut beat, DVec3::ZERO), Some(0));
     assert!(beat.longest_s < 0.0035, "{}", beat.longest_s);
 }
 
