@@ -118,7 +118,7 @@ impl Stay {
     }
 
     fn add(&mut self, seen: &Seen) {
-        self.moved |= !(seen.point.distance(self.first) <= STILL_M);
+        self.moved |= seen.point.distance(self.first) > STILL_M;
         self.sum += seen.point;
         self.count += 1.0;
         self.last_s = seen.time_s;

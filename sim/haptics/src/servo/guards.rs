@@ -132,8 +132,11 @@ fn switched_off_there_is_no_force_at_once_and_switched_on_it_comes_up() {
     assert!((last - 1.0).abs() < 1e-9);
 }
 
-/// What has force begin anew.
-const BEGINNINGS: [(&str, fn(&mut Servo)); 5] = [
+/// Something that has force begin anew, in words and done.
+type Beginning = (&'static str, fn(&mut Servo));
+
+/// What does.
+const BEGINNINGS: [Beginning; 5] = [
     ("a start", |servo| *servo = Servo::new(servo.limits)),
     ("another sender", |servo| {
         servo.receive(rigid(400.0), Sender::Another);
