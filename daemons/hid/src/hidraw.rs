@@ -71,7 +71,7 @@ impl Ports for Hidraw {
             .read(true)
             .write(true)
             .open(place)
-            .map_err(|error| closed(&name, place, error.kind(), &error))?;
+            .map_err(|error| closed(&found.identity, &error))?;
         let api = HidApi::new().map_err(|error| failed("the devices cannot be listed", &error))?;
         let path = CString::new(place.as_bytes())
             .map_err(|_| Fault::usage(format!("'{place}' is no path")))?;
@@ -92,9 +92,11 @@ impl Ports for Hidraw {
     }
 }
 
-/// Why a device does not open.
-fn closed(name: &str, place: &str, kind: ErrorKind, error: &std::io::Error) -> Fault {
-    let (what, help) = match kind {
+/// Why a device does not open, and what to do.
+#[must_use]
+pub fn closed(device: &Identity, error: &std::io::Error) -> Fault {
+    let name = device.to_string();
+    let (what, help) = match error.kind() {
         ErrorKind::PermissionDenied => (
             format!("you may not read {name}"),
             "`maulstick devices --udev` prints the rule to install",
@@ -109,7 +111,7 @@ fn closed(name: &str, place: &str, kind: ErrorKind, error: &std::io::Error) -> F
             "plug it in again",
         ),
     };
-    Fault::failure(what).at(place).help(help)
+    Fault::failure(what).at(device.place.clone()).help(help)
 }
 
 impl HidSource for Device {
@@ -134,42 +136,5 @@ impl HidSource for Device {
             .write(report)
             .map(drop)
             .map_err(|error| failed(&what, &error))
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn what_keeps_a_device_closed_says_what_to_do() {
-        for (kind, help) in [
-            (ErrorKind::PermissionDenied, "--udev"),
-            (ErrorKind::ResourceBusy, "in use"),
-            (ErrorKind::NotFound, "plug it in"),
-            (ErrorKind::Other, "cannot be opened"),
-        ] {
-            let error = std::io::Error::from(kind);
-            let fault = closed("056a:0357", "/dev/hidraw3", kind, &error).to_string();
-            assert!(
-                fault.contains(help) && fault.contains("/dev/hidraw3"),
-                "{fault}"
-            );
-        }
-    }
-
-    #[test]
-    fn a_path_where_nothing_is_and_a_file_that_is_no_device_do_not_open() {
-        let file = tempfile::NamedTempFile::new().expect("a file");
-        for place in ["/dev/hidraw-none".into(), file.path().display().to_string()] {
-            let found = Found {
-                identity: Identity {
-                    place,
-                    ..Identity::default()
-                },
-                usages: Vec::new(),
-            };
-            assert!(Hidraw.open(&found).is_err());
-        }
     }
 }

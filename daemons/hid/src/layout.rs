@@ -108,27 +108,27 @@ impl Number {
         if field.bits.is_empty() || field.bits.len() > 32 {
             return None;
         }
+        let bits = field.bits.len();
         let (least, most) = (
-            f64::from(i32::from(field.logical_minimum)),
-            f64::from(i32::from(field.logical_maximum)),
+            i32::from(field.logical_minimum),
+            i32::from(field.logical_maximum),
         );
-        // A largest value that was written in too few bytes reads as a negative one.
-        let most = match most < least && least >= 0.0 {
-            true => ((1_u64 << field.bits.len()) - 1) as f64,
-            false => most,
-        };
+        let (least, most) = (f64::from(least), greatest(least, most, bits));
         if most <= least {
             return None;
         }
         let range = match (field.physical_minimum, field.physical_maximum) {
-            (Some(least), Some(most)) => [i32::from(least), i32::from(most)],
-            _ => [0, 0],
+            (Some(least), Some(most)) => {
+                let (least, most) = (i32::from(least), i32::from(most));
+                [f64::from(least), greatest(least, most, bits)]
+            }
+            _ => [0.0, 0.0],
         };
         let unit = field.unit.map_or(0, u32::from);
         let exponent = field.unit_exponent.map_or(0, i32::from);
         // Without a physical range the logical one is it.
         let [low, high] = match range[1] > range[0] {
-            true => range.map(f64::from),
+            true => range,
             false => [least, most],
         };
         let count = (high - low) / (most - least);
@@ -175,6 +175,18 @@ impl Number {
         let zero = if is_signed { 0.5 } else { zero };
         (self.share(report) - zero) * whole
     }
+}
+
+/// The greatest value of a range for a field of so many bits. Where no value is negative, devices write it
+/// without room for a sign, and Linux reads it so: it comes here as a negative one of 8, 16 or 32 bits.
+fn greatest(least: i32, most: i32, bits: usize) -> f64 {
+    let above = match most {
+        _ if most >= least || least < 0 => 0_u64,
+        -128..0 if bits <= 8 => 1 << 8,
+        -32_768..0 => 1 << 16,
+        _ => 1 << 32,
+    };
+    f64::from(most) + above as f64
 }
 
 /// The reports of one pen.

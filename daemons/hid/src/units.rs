@@ -31,28 +31,3 @@ fn ten_to(exponent: i32) -> Option<f64> {
     };
     Some(10_f64.powi(exponent))
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn lengths_and_angles_in_either_system() {
-        let near = |got: Option<f64>, wanted: f64| {
-            assert!(
-                got.is_some_and(|got| (got / wanted - 1.0).abs() < 1e-12),
-                "{got:?} {wanted}"
-            );
-        };
-        near(metres(0x11, -3), 1e-5);
-        near(metres(0x11, 0x0D), 1e-5);
-        near(metres(0x13, -3), 2.54e-5);
-        near(radians(0x14, -2), (0.01_f64).to_radians());
-        near(radians(0x12, 0), 1.0);
-        // Seconds, square centimetres, no unit, an exponent beyond a nibble.
-        for (unit, exponent) in [(0x1001, 0), (0x21, 0), (0, 0), (0x11, 40)] {
-            assert_eq!(metres(unit, exponent), None, "{unit:#x}");
-            assert_eq!(radians(unit, exponent), None, "{unit:#x}");
-        }
-    }
-}

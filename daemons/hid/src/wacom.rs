@@ -1,4 +1,4 @@
-//! Wacom's tablets whose descriptors do not say where the pen is: Intuos 5, Intuos Pro 1 and 2.
+//! Wacom's tablets whose descriptors do not say where the pen is: Intuos 4 and 5, Intuos Pro 1 and 2.
 //!
 //! Bits and sizes are facts of Linux's `wacom_wac.c` and of OpenTabletDriver. X and Y have 200 counts a
 //! millimetre and count from the upper left corner.
@@ -17,7 +17,7 @@ pub const VENDOR: u16 = 0x056A;
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Format {
     /// Report 2 of ten bytes, big endian, 2047 of pressure.
-    Intuos5,
+    Intuos4,
     /// Report 0x10, little endian, 8191 of pressure.
     IntuosPro2,
 }
@@ -27,20 +27,24 @@ enum Format {
 pub struct Wacom {
     format: Format,
     counts: [u32; 2],
-    /// Intuos 5: which end was brought near; a report of it comes once each time.
+    /// Intuos 4: which end was brought near; a report of it comes once each time.
     end: End,
 }
 
 /// Product, its format, X and Y counts.
-const TABLETS: [(u16, Format, [u32; 2]); 10] = [
-    (0x0026, Format::Intuos5, [31_496, 19_685]),
-    (0x0027, Format::Intuos5, [44_704, 27_940]),
-    (0x0028, Format::Intuos5, [65_024, 40_640]),
-    (0x0029, Format::Intuos5, [31_496, 19_685]),
-    (0x002A, Format::Intuos5, [44_704, 27_940]),
-    (0x0314, Format::Intuos5, [31_496, 19_685]),
-    (0x0315, Format::Intuos5, [44_704, 27_940]),
-    (0x0317, Format::Intuos5, [65_024, 40_640]),
+const TABLETS: [(u16, Format, [u32; 2]); 14] = [
+    (0x00B8, Format::Intuos4, [31_496, 19_685]),
+    (0x00B9, Format::Intuos4, [44_704, 27_940]),
+    (0x00BA, Format::Intuos4, [65_024, 40_640]),
+    (0x00BB, Format::Intuos4, [97_536, 60_960]),
+    (0x0026, Format::Intuos4, [31_496, 19_685]),
+    (0x0027, Format::Intuos4, [44_704, 27_940]),
+    (0x0028, Format::Intuos4, [65_024, 40_640]),
+    (0x0029, Format::Intuos4, [31_496, 19_685]),
+    (0x002A, Format::Intuos4, [44_704, 27_940]),
+    (0x0314, Format::Intuos4, [31_496, 19_685]),
+    (0x0315, Format::Intuos4, [44_704, 27_940]),
+    (0x0317, Format::Intuos4, [65_024, 40_640]),
     (0x0357, Format::IntuosPro2, [44_800, 29_600]),
     (0x0358, Format::IntuosPro2, [62_200, 43_200]),
 ];
@@ -74,12 +78,12 @@ impl Wacom {
     /// Reads a report; nothing where it is no pen's, or too short.
     pub fn decode(&mut self, report: &[u8]) -> Option<Reading> {
         match self.format {
-            Format::Intuos5 => self.intuos5(report),
+            Format::Intuos4 => self.intuos4(report),
             Format::IntuosPro2 => self.intuos_pro2(report),
         }
     }
 
-    fn intuos5(&mut self, report: &[u8]) -> Option<Reading> {
+    fn intuos4(&mut self, report: &[u8]) -> Option<Reading> {
         let [2, flags, x0, x1, y0, y1, d6, d7, d8, d9, ..] = *report else {
             return None;
         };

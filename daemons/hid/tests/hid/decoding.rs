@@ -308,6 +308,48 @@ fn azimuth_and_altitude_are_tilts_too() {
 }
 
 #[test]
+fn a_greatest_value_without_room_for_a_sign_is_read_all_the_same() {
+    let mut tablet = Descriptor::default();
+    tablet
+        .page(DIGITIZER)
+        .usage(0x02)
+        .begin(1)
+        .report(1)
+        .range(0, 1);
+    tablet.usage(0x42).usage(0x32).input(1).pad(6);
+    tablet.page(DESKTOP).usage(0x30).unsigned(0x24, 50_800);
+    tablet
+        .physical([0, 0], 0x11, 0x0D)
+        .unsigned(0x44, 50_800)
+        .input(16);
+    tablet.usage(0x31).unsigned(0x24, 0xFFFF);
+    tablet.physical([0, 25_000], 0x11, 0x0D).input(16);
+    tablet
+        .page(DIGITIZER)
+        .usage(0x30)
+        .range(0, -1)
+        .input(8)
+        .end();
+    let layout = layout(&tablet);
+    let [width, height] = layout.area_m();
+    assert!(
+        (width - 0.508).abs() < 1e-12 && (height - 0.25).abs() < 1e-12,
+        "{width} {height}"
+    );
+    let values = [
+        ((DIGITIZER, 0x42), 1),
+        ((DESKTOP, 0x30), 40_640),
+        ((DIGITIZER, 0x30), 0xFF),
+    ];
+    let reading = layout.decode(&tablet.pack(1, &values)).expect("a pen's");
+    assert!(
+        (reading.point_m[0] - 0.8 * 0.508).abs() < 1e-12,
+        "{reading:?}"
+    );
+    assert!((reading.pressure - 1.0).abs() < 1e-12, "{reading:?}");
+}
+
+#[test]
 fn a_report_that_is_too_short_or_another_s_is_no_pen_s() {
     for (tablet, report) in tablets() {
         let layout = layout(&tablet);

@@ -6,6 +6,7 @@
 mod daemon;
 mod decoding;
 mod live;
+mod ports;
 mod proximity;
 mod recordings;
 mod spacemice;

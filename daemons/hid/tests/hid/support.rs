@@ -79,6 +79,15 @@ impl Descriptor {
         self.item(0x14, least).item(0x24, most)
     }
 
+    /// From 0 to a greatest value that is written in two bytes, with no room for a sign.
+    pub(crate) fn unsigned(&mut self, head: u8, most: u16) -> &mut Self {
+        self.range = [0, i64::from(most)];
+        self.item(head - 0x10, 0);
+        self.bytes.push(head | 2);
+        self.bytes.extend(most.to_le_bytes());
+        self
+    }
+
     /// Physical range, unit and exponent; all 0 for none.
     pub(crate) fn physical(&mut self, range: [i64; 2], unit: i64, exponent: u8) -> &mut Self {
         self.item(0x34, range[0])
