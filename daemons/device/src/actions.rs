@@ -139,7 +139,16 @@ impl Actor {
             true => u32::MAX,
             false => !switch::ERASER,
         };
-        let changed = (sample.switches & near) ^ self.told;
+        self.follow(sample.switches & near);
+    }
+
+    /// The same of a device that is no stylus: only as many switches as a stylus has count.
+    pub fn press(&mut self, switches: u64) {
+        self.follow(switches as u32 & !switch::ERASER);
+    }
+
+    fn follow(&mut self, switches: u32) {
+        let changed = switches ^ self.told;
         for place in (0..u32::BITS).filter(|place| changed & 1 << place != 0) {
             let bit = 1 << place;
             let edge = match self.told & bit == 0 {

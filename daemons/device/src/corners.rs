@@ -29,6 +29,15 @@ pub struct Seen {
     pub time_s: f64,
 }
 
+/// What is seen of the hand at a time.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Glimpse {
+    /// Where it is.
+    Seen(Seen),
+    /// It is out of range, or the device says nothing.
+    Away,
+}
+
 /// A corner of the canvas, in the order in which they are shown.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Corner {

@@ -120,6 +120,16 @@ impl Fitting {
         corners: None,
     };
 
+    /// A device that stands so on a desk as large as it is.
+    #[must_use]
+    pub fn standing(rigid: Rigid) -> Self {
+        let scale = 1.0;
+        Self {
+            to_desk: Similarity { rigid, scale },
+            ..Self::IDENTITY
+        }
+    }
+
     /// As a section of `rig.toml` says: by its corners where it has them, else by position,
     /// orientation and scale.
     ///

@@ -6,7 +6,7 @@ use std::sync::mpsc::{RecvTimeoutError, sync_channel};
 use std::time::Duration;
 
 use glam::DVec3;
-use maulstick_device::corners::{Seen, Touch};
+use maulstick_device::corners::{Glimpse, Seen, Touch};
 use maulstick_device::fitting::{Fitting, Similarity};
 use maulstick_haptics::Switch;
 
@@ -20,15 +20,6 @@ const WAITING: usize = 2048;
 const SILENCE: Duration = Duration::from_millis(50);
 /// The switch that means a place.
 const FIRST_SWITCH: u32 = 1;
-
-/// What is seen of the hand.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Glimpse {
-    /// Where its ferrule is; a pressed first switch is a touch.
-    Seen(Seen),
-    /// It is out of range, or the device says nothing.
-    Away,
-}
 
 /// Reads a device whose ferrule is `ferrule_m` from the point that it senses, and hands on what is
 /// seen, until `look` breaks off.

@@ -119,7 +119,7 @@ impl Daemon {
         let replay = settings.replay.as_ref().or(device.replay.as_ref());
         let replay = match replay {
             Some(path) => Some(
-                playable(kind, recording::read(path)?)
+                recording::playable(kind, recording::read(path)?)
                     .map_err(|fault| fault.at(path.display().to_string()))?,
             ),
             None => None,
@@ -129,7 +129,7 @@ impl Daemon {
                 let stylus = Stylus::new(&bus, topics, &device.name, origin, wake)?;
                 Hand::Stylus(Box::new(stylus))
             }
-            Kind::SpaceMouse => Hand::Free(FreeHand::new(&bus, topics, &device.name, origin)?),
+            Kind::SpaceMouse => Hand::Free(FreeHand::new(&bus, topics, device, origin)?),
         };
         let node = topics.node(&format!("{BRUSH_NODE}{}", device.brush));
         let brush = match (kind, &replay) {
@@ -360,18 +360,6 @@ impl Daemon {
 
 /// A status has no room for more, bytes.
 const LONGEST_TROUBLE: usize = 2048;
-
-/// The first device of a recording that can stand in for one of `kind`.
-fn playable(kind: Kind, recorded: Vec<Recorded>) -> Result<Recorded, Fault> {
-    let mut first = None;
-    for device in recorded {
-        match open::means(kind, &device.identity, &device.descriptor) {
-            Ok(_) => return Ok(device),
-            Err(fault) => first = first.or(Some(fault)),
-        }
-    }
-    Err(first.unwrap_or_else(|| Fault::usage("there is no device in the recording")))
-}
 
 impl std::fmt::Debug for Daemon {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {

@@ -4,6 +4,10 @@ use std::sync::Arc;
 
 use maulstick_bus::typed::Sender;
 use maulstick_bus::{Bus, BusError, Class};
+use maulstick_device::actions::{Actions, Actor};
+use maulstick_device::mover::Mover;
+use maulstick_rig::Fault;
+use maulstick_rig::config::DeviceSection;
 use maulstick_types::Origin;
 use maulstick_types::control::ControlSample;
 use maulstick_types::topics::Topics;
@@ -19,6 +23,10 @@ const REPEAT_NS: u64 = 100_000_000;
 pub struct FreeHand {
     mouse: Option<SpaceMouse>,
     samples: Sender<ControlSample>,
+    /// Moves the canvas.
+    mover: Mover,
+    /// Does what its switches ask for.
+    actor: Actor,
     /// When it was last told of, and when it last reported, ns.
     told_ns: u64,
     heard_ns: u64,
@@ -26,20 +34,22 @@ pub struct FreeHand {
 }
 
 impl FreeHand {
-    /// The mouse called `name`.
+    /// The mouse of a section.
     ///
     /// # Errors
-    /// [`BusError::Topic`].
+    /// A [`Fault`] where the rig or the system refuses.
     pub fn new(
         bus: &Arc<dyn Bus>,
         topics: &Topics,
-        name: &str,
+        device: &DeviceSection,
         origin: Origin,
-    ) -> Result<Self, BusError> {
-        let topic = topics.control(name);
+    ) -> Result<Self, Fault> {
+        let (topic, actions) = (topics.control(&device.name), Actions::of(device));
         Ok(Self {
             mouse: None,
             samples: Sender::new(&**bus, &topic, Class::RealTime, origin)?,
+            mover: Mover::start(bus, topics)?,
+            actor: Actor::start(Arc::clone(bus), topics, &device.brush, actions)?,
             told_ns: 0,
             heard_ns: 0,
             sent: 0,
@@ -114,6 +124,8 @@ impl FreeHand {
         };
         let sample = mouse.sample(event_ns);
         self.samples.send(now_ns, event_ns, &sample)?;
+        self.mover.hear(&sample);
+        self.actor.press(sample.switches);
         self.told_ns = event_ns;
         self.sent += 1;
         Ok(())

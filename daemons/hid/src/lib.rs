@@ -17,6 +17,7 @@
 //! | [`spacemouse`] | 6-DOF mice |
 //! | [`tablet`] | a tablet on the desk |
 //! | [`open`] | the device that `rig.toml` asks for |
+//! | [`showing`] | a pen without a rig, in a hand that shows places |
 //! | [`feed`] | reports with their times, live or played |
 //! | [`stylus`] | a pen on the bus |
 //! | [`free_hand`] | a 6-DOF mouse on the bus |
@@ -32,6 +33,7 @@ pub mod open;
 pub mod pen;
 pub mod recorder;
 pub mod recording;
+pub mod showing;
 pub mod source;
 pub mod spacemouse;
 pub mod stylus;

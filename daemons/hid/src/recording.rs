@@ -15,6 +15,7 @@ use std::path::Path;
 use maulstick_rig::Fault;
 
 use crate::descriptor::LONGEST;
+use crate::open::{self, Kind};
 use crate::source::Identity;
 
 /// A report is no longer than this, bytes: the kernel's limit.
@@ -55,6 +56,21 @@ pub fn read(path: &Path) -> Result<Vec<Recorded>, Fault> {
             .at(format!("{}:{line}", path.display()))
             .help(HELP)
     })
+}
+
+/// The first device of a recording that can stand in for one of `kind`.
+///
+/// # Errors
+/// A [`Fault`] that says what the first of them is instead.
+pub fn playable(kind: Kind, recorded: Vec<Recorded>) -> Result<Recorded, Fault> {
+    let mut first = None;
+    for device in recorded {
+        match open::means(kind, &device.identity, &device.descriptor) {
+            Ok(_) => return Ok(device),
+            Err(fault) => first = first.or(Some(fault)),
+        }
+    }
+    Err(first.unwrap_or_else(|| Fault::usage("there is no device in the recording")))
 }
 
 /// Reads the text of a recording: its devices, at least one.

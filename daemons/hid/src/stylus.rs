@@ -9,6 +9,8 @@ use std::sync::Arc;
 use maulstick_bus::credit::Stamp;
 use maulstick_bus::typed::Sender;
 use maulstick_bus::{Bus, BusError, Class, CreditSender, Wake};
+use maulstick_device::actions::{Actions, Actor};
+use maulstick_rig::Fault;
 use maulstick_rig::config::DeviceSection;
 use maulstick_types::stylus::{StylusInfo, StylusSample};
 use maulstick_types::topics::Topics;
@@ -34,23 +36,26 @@ pub struct Stylus {
     tablet: Option<(Decoder, Tablet)>,
     samples: CreditSender<StylusSample>,
     info: Sender<StylusInfo>,
+    /// Does what its switches ask for.
+    actor: Actor,
     newest: StylusSample,
     event_ns: u64,
     sent: u64,
 }
 
 impl Stylus {
-    /// The pen called `name`.
+    /// The pen of a section.
     ///
     /// # Errors
-    /// [`BusError::Topic`].
+    /// A [`Fault`] where the rig or the system refuses.
     pub fn new(
         bus: &Arc<dyn Bus>,
         topics: &Topics,
-        name: &str,
+        device: &DeviceSection,
         origin: Origin,
         wake: &Wake,
-    ) -> Result<Self, BusError> {
+    ) -> Result<Self, Fault> {
+        let (name, actions) = (&device.name, Actions::of(device));
         let samples = CreditSender::new(&**bus, topics, &topics.sample(name), origin, wake)?;
         let topic = topics.stylus_info(name);
         Ok(Self {
@@ -58,6 +63,7 @@ impl Stylus {
             tablet: None,
             samples,
             info: Sender::new(&**bus, &topic, Class::Cached, origin)?,
+            actor: Actor::start(Arc::clone(bus), topics, &device.brush, actions)?,
             newest: StylusSample::away(),
             event_ns: 0,
             sent: 0,
@@ -174,6 +180,7 @@ impl Stylus {
             event_ns: self.event_ns,
         };
         self.samples.send(Flags::NONE, stamp, &sample)?;
+        self.actor.hear(&sample);
         self.newest = sample;
         self.sent += 1;
         Ok(())

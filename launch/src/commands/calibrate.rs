@@ -8,10 +8,12 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 use glam::DVec3;
 use maulstick_bus::{RigFolder, Wake};
-use maulstick_device::corners::{Corners, Progress};
+use maulstick_device::corners::{Corners, Glimpse, Progress};
 use maulstick_device::fitting::{by_corners, canvas_m};
 use maulstick_haptic::open::{HapticSettings, open};
-use maulstick_haptic::showing::{Glimpse, watch};
+use maulstick_haptic::showing::watch;
+use maulstick_hid::hidraw::Hidraw;
+use maulstick_rig::config::DeviceSection;
 use maulstick_rig::files::{check_writable, write_whole};
 use maulstick_rig::{Fault, RigConfig, Stop};
 use toml_edit::{Array, DocumentMut, Item, TableLike, Value};
@@ -22,7 +24,7 @@ use crate::commands::say;
 /// Options of `maulstick calibrate`.
 #[derive(Args, Clone, Debug)]
 pub struct CalibrateOptions {
-    /// The device of rig.toml: one with a ferrule, no pen
+    /// The device of rig.toml
     device: String,
     /// Settings of the rig; the corners are written into them
     #[arg(long, value_name = "FILE")]
@@ -47,11 +49,12 @@ pub fn run(options: &CalibrateOptions) -> Result<i32, Fault> {
         let what = format!("there is no [[device]] called '{}'", options.device);
         Fault::unknown(what, &options.device, names()).at(place.clone())
     })?;
-    if device.is_hid() {
-        let what = format!("'{}' has no ferrule to touch corners with", device.name);
-        let help =
-            "a tablet covers the canvas by itself; position_m, orientation and scale say otherwise";
-        return Err(Fault::usage(what).at(place).help(help));
+    if device.driver == "spacemouse" {
+        let what = format!(
+            "'{}' moves the canvas itself: there is nothing to fit",
+            device.name
+        );
+        return Err(Fault::usage(what).at(place));
     }
     if RigFolder::join(&config.rig.name).is_ok() {
         let what = format!("the rig '{}' runs and has the device", config.rig.name);
@@ -60,13 +63,9 @@ pub fn run(options: &CalibrateOptions) -> Result<i32, Fault> {
     check_writable(path).map_err(|error| Fault::writing(path, &error))?;
     let stop = Stop::on_signals(&Wake::new())
         .map_err(|error| Fault::failure(format!("cannot watch for signals: {error}")))?;
-    let ferrule_m = DVec3::from(device.ferrule_m);
-    let opened = open(&config, &HapticSettings { device, hand: None })?;
-    say!("{}: {}", options.device, opened.what);
-    let mut showing = Showing::default();
-    showing.ask()?;
+    let mut showing = Showing::of(&device);
     let mut broken = None;
-    let watched = watch(opened, ferrule_m, |glimpse| {
+    let look = |glimpse| {
         if stop.requested() {
             return ControlFlow::Break(());
         }
@@ -77,8 +76,11 @@ pub fn run(options: &CalibrateOptions) -> Result<i32, Fault> {
                 ControlFlow::Break(())
             }
         }
-    });
-    watched.map_err(|trouble| Fault::failure(trouble.to_string()).help(trouble.help))?;
+    };
+    match device.is_hid() {
+        true => watch_pen(&device, look)?,
+        false => watch_ferrule(&config, &device, look)?,
+    }
     if let Some(fault) = broken {
         return Err(fault);
     }
@@ -88,7 +90,8 @@ pub fn run(options: &CalibrateOptions) -> Result<i32, Fault> {
     };
     let (to_desk, fit) = by_corners(&corners, canvas_m(&config.canvas))?;
     say!("{fit}");
-    if !fit.is_good() {
+    // A tablet may be stretched over a canvas of another shape; a hand in the air may not.
+    if !fit.is_good() && !device.is_hid() {
         return Err(Fault::failure("the three places are no corners of the canvas; nothing is written")
             .help("its width by height has to fit within 10 %, and its corner to be a right one; begin again"));
     }
@@ -102,19 +105,53 @@ pub fn run(options: &CalibrateOptions) -> Result<i32, Fault> {
     Ok(0)
 }
 
+fn watch_pen(
+    device: &DeviceSection,
+    look: impl FnMut(Glimpse) -> ControlFlow<()>,
+) -> Result<(), Fault> {
+    let shown = maulstick_hid::showing::open(&mut Hidraw, device)?;
+    say!("{}: {}", device.name, shown.what);
+    Showing::of(device).ask()?;
+    shown.watch(look)
+}
+
+fn watch_ferrule(
+    config: &RigConfig,
+    device: &DeviceSection,
+    look: impl FnMut(Glimpse) -> ControlFlow<()>,
+) -> Result<(), Fault> {
+    let settings = HapticSettings {
+        device: device.clone(),
+        hand: None,
+    };
+    let opened = open(config, &settings)?;
+    say!("{}: {}", device.name, opened.what);
+    Showing::of(device).ask()?;
+    watch(opened, DVec3::from(device.ferrule_m), look)
+        .map_err(|trouble| Fault::failure(trouble.to_string()).help(trouble.help))
+}
+
 /// A hand on its way around the canvas.
-#[derive(Default)]
 struct Showing {
     corners: Corners,
+    /// How it says that it is at a corner.
+    how: &'static str,
 }
 
 impl Showing {
+    fn of(device: &DeviceSection) -> Self {
+        Self {
+            corners: Corners::new(),
+            how: match device.is_hid() {
+                true => "with the pen on its tablet",
+                false => "with the ferrule, and keep still for a second or press the first switch",
+            },
+        }
+    }
+
     fn ask(&self) -> Result<(), Fault> {
         if let Some(corner) = self.corners.wanted() {
-            say!(
-                "touch the {corner} corner of the canvas with the ferrule, and keep still for a second \
-                 or press the first switch"
-            );
+            say!("touch the {corner} corner of the canvas {}", self.how);
         }
         Ok(())
     }

@@ -4,6 +4,7 @@ use std::io::Write;
 use std::sync::{Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
+use maulstick_device::fitting::Fitting;
 use maulstick_haptic::Placed;
 use maulstick_haptic::beat::{Delivery, Ticked};
 use maulstick_haptic::driver::Opened;
@@ -11,7 +12,6 @@ use maulstick_haptic::host::Host;
 use maulstick_haptic::open::HapticSettings;
 use maulstick_haptics::{Contact, Limits};
 use maulstick_libhd::{Call, Control, Script};
-use maulstick_num::geometry::Rigid;
 use maulstick_rig::config::DeviceSection;
 use maulstick_rig::{Fault, RigConfig};
 use maulstick_types::haptics::{ContactModel, ForceLaw, Grain};
@@ -49,6 +49,7 @@ pub(crate) fn play(script: &Script) -> Control {
 /// However late the ticks of a busy machine come, the force comes up.
 pub(crate) fn patient() -> Limits {
     Limits {
+        engage_n: f64::MAX,
         engage_s: 1e-3,
         longest_tick_s: 1e3,
         ..Limits::default()
@@ -57,7 +58,7 @@ pub(crate) fn patient() -> Limits {
 
 /// A servo over the opened device, which stands on the desk as it is.
 pub(crate) fn start(opened: Opened, limits: Limits) -> Host {
-    let placed = Placed::new(opened.driver, Rigid::IDENTITY);
+    let placed = Placed::new(opened.driver, Fitting::IDENTITY, 0);
     Host::start(placed, opened.pace, limits).expect("started")
 }
 

@@ -3,6 +3,7 @@
 use std::ops::ControlFlow;
 
 use glam::{DQuat, DVec3};
+use maulstick_device::fitting::Fitting;
 use maulstick_haptic::Placed;
 use maulstick_haptic::driver::{Opened, Reading, Wrench};
 use maulstick_libhd::script::Grip;
@@ -49,7 +50,7 @@ fn a_stylus_is_on_the_desk_where_it_is_and_as_it_is_turned() {
         translation: DVec3::new(0.3, 0.0, 0.1),
     };
     let opened = open(&section()).expect("opened");
-    let placed = Placed::new(opened.driver, to_desk);
+    let placed = Placed::new(opened.driver, Fitting::standing(to_desk), 0);
     assert_eq!(
         placed.abilities().senses,
         axes::POSITION | axes::ORIENTATION | axes::VELOCITY | axes::SWITCHES
@@ -103,7 +104,7 @@ fn a_force_on_the_desk_arrives_in_newtons_in_the_base_s_frame() {
                 translation: DVec3::new(0.1, 0.2, 0.3),
             },
         );
-        let mut placed = Placed::new(opened.driver, to_desk);
+        let mut placed = Placed::new(opened.driver, Fitting::standing(to_desk), 0);
         let mut forces = vec![DVec3::Z, DVec3::Y, DVec3::X];
         pace.run(&mut |_| {
             placed.read(1e-3).expect("there");

@@ -2,10 +2,11 @@
 
 use std::time::{Duration, Instant};
 
+use maulstick_device::fitting::Fitting;
 use maulstick_haptic::Placed;
 use maulstick_haptic::beat::Delivery;
 use maulstick_haptic::host::Host;
-use maulstick_haptic::open::{HapticSettings, open, to_desk};
+use maulstick_haptic::open::{HapticSettings, open};
 use maulstick_haptics::Limits;
 use maulstick_haptics::contact::Contact;
 use maulstick_rig::RigConfig;
@@ -44,14 +45,17 @@ pub(crate) fn push(device: &DeviceSection, mut is_felt: impl FnMut() -> bool) ->
         device: device.clone(),
         hand: None,
     };
-    let opened = open(&RigConfig::default(), &settings).expect("the device");
-    // However late the ticks of a busy machine come, the force comes up.
+    let config = RigConfig::default();
+    let opened = open(&config, &settings).expect("the device");
+    // However late the ticks of a busy machine come, and deep in the wall, the force comes up.
     let limits = Limits {
+        engage_n: f64::MAX,
         engage_s: 1e-3,
         longest_tick_s: 1e3,
         ..Limits::default()
     };
-    let placed = Placed::new(opened.driver, to_desk(device));
+    let fitting = Fitting::of(device, &config.canvas).expect("a fitting");
+    let placed = Placed::new(opened.driver, fitting, 0);
     let mut host = Host::start(placed, opened.pace, limits).expect("started");
     host.models.write(Delivery {
         contact: Some(wall()),

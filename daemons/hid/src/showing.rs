@@ -1,0 +1,127 @@
+//! A pen in a hand that shows something: it is read, and there is no rig.
+
+use std::ops::ControlFlow;
+use std::time::{Duration, Instant};
+
+use glam::DVec3;
+use maulstick_device::corners::{Glimpse, Seen, Touch};
+use maulstick_rig::Fault;
+use maulstick_rig::config::DeviceSection;
+
+use crate::open::{self, Address, Decoder, Kind, Means};
+use crate::pen::{Pen, Presence};
+use crate::recording::{self, Event, LONGEST_REPORT};
+use crate::source::{HidSource, Identity, Ports};
+
+/// A pen that says nothing is looked at again after this: nothing has changed.
+const SILENCE: Duration = Duration::from_millis(50);
+
+/// A pen that is open, or a recording of one.
+pub struct Shown {
+    /// What it is, in words.
+    pub what: String,
+    decoder: Decoder,
+    reports: Reports,
+}
+
+enum Reports {
+    Live(Box<dyn HidSource>),
+    Played(Vec<Event>),
+}
+
+/// Opens the pen of a section of `rig.toml`, or the recording that is played in its place.
+///
+/// # Errors
+/// A [`Fault`] where it is not there, may not be read, or is no pen.
+pub fn open(ports: &mut dyn Ports, device: &DeviceSection) -> Result<Shown, Fault> {
+    let pen = |identity: &Identity, means: Means, reports| {
+        let what = open::told(identity, &means);
+        match means {
+            Means::Pen(decoder) => Ok(Shown {
+                what,
+                decoder,
+                reports,
+            }),
+            Means::SpaceMouse => Err(Fault::usage(format!("{identity} has no pen"))),
+        }
+    };
+    let Some(path) = &device.replay else {
+        let address = Address::parse(device.address.as_deref())?;
+        let opened = open::open(ports, Kind::Pen, &address)?;
+        return pen(
+            &opened.identity,
+            opened.means?,
+            Reports::Live(opened.source),
+        );
+    };
+    let recorded = recording::playable(Kind::Pen, recording::read(path)?)
+        .map_err(|fault| fault.at(path.display().to_string()))?;
+    let means = open::means(Kind::Pen, &recorded.identity, &recorded.descriptor)?;
+    pen(&recorded.identity, means, Reports::Played(recorded.events))
+}
+
+impl Shown {
+    /// Hands on what is seen of the pen, in the tablet's frame, until `look` breaks off.
+    ///
+    /// # Errors
+    /// A [`Fault`] where the tablet is lost, or the recording ends before.
+    pub fn watch(self, mut look: impl FnMut(Glimpse) -> ControlFlow<()>) -> Result<(), Fault> {
+        let Self {
+            mut decoder,
+            reports,
+            ..
+        } = self;
+        let mut pen = Pen::default();
+        let mut see = |report: &[u8], time_s: f64| {
+            if let Some(said) = decoder.decode(report) {
+                pen.follow(said, &mut |_| ());
+            }
+            look(glimpse(&pen, time_s))
+        };
+        match reports {
+            Reports::Played(events) => {
+                for event in events {
+                    if see(&event.report, event.time_ns as f64 * 1e-9).is_break() {
+                        return Ok(());
+                    }
+                }
+                Err(Fault::failure(
+                    "the recording is over before three corners are shown",
+                ))
+            }
+            Reports::Live(mut source) => {
+                let (begin, mut report) = (Instant::now(), vec![0; LONGEST_REPORT]);
+                loop {
+                    let length = source.read(&mut report, SILENCE)?;
+                    let now_s = begin.elapsed().as_secs_f64();
+                    if see(&report[..length.min(LONGEST_REPORT)], now_s).is_break() {
+                        return Ok(());
+                    }
+                }
+            }
+        }
+    }
+}
+
+fn glimpse(pen: &Pen, time_s: f64) -> Glimpse {
+    let newest = pen.newest();
+    let touch = match newest.presence {
+        Presence::Away => return Glimpse::Away,
+        Presence::Hovering => Touch::Up,
+        Presence::Touching => Touch::Down,
+    };
+    let [x, y] = newest.point_m;
+    Glimpse::Seen(Seen {
+        point: DVec3::new(x, y, 0.0),
+        touch,
+        time_s,
+    })
+}
+
+impl std::fmt::Debug for Shown {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("Shown")
+            .field("what", &self.what)
+            .finish_non_exhaustive()
+    }
+}
