@@ -1,7 +1,8 @@
 //! Wacom's tablets whose descriptors do not say where the pen is: Intuos 4 and 5, Intuos Pro 1 and 2.
 //!
-//! Bits and sizes are facts of Linux's `wacom_wac.c` and of OpenTabletDriver. X and Y have 200 counts a
-//! millimetre and count from the upper left corner.
+//! Bits are facts of Linux's `wacom_wac.c` and of OpenTabletDriver, sizes of the former, those of Intuos Pro 2
+//! its active area as Wacom gives it. X and Y have 200 counts a millimetre and count from the upper left
+//! corner.
 
 use maulstick_types::stylus::axes;
 
