@@ -143,10 +143,11 @@ mod tests {
         let (entered, has_entered) = std::sync::mpsc::channel();
         let (leave, may_leave) = std::sync::mpsc::channel::<()>();
         let mut left = false;
-        let mut work = || {
+        let leaving = &mut left;
+        let mut work = move || {
             entered.send(()).ok();
             may_leave.recv().ok();
-            left = true;
+            *leaving = true;
             Next::Again
         };
         let mut caller = None;
