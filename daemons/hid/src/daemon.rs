@@ -126,7 +126,7 @@ impl Daemon {
         };
         let hand = match kind {
             Kind::Pen => {
-                let stylus = Stylus::new(&bus, topics, &device.name, origin, wake)?;
+                let stylus = Stylus::new(&bus, topics, device, origin, wake)?;
                 Hand::Stylus(Box::new(stylus))
             }
             Kind::SpaceMouse => Hand::Free(FreeHand::new(&bus, topics, device, origin)?),

@@ -142,12 +142,12 @@ mod tests {
         let _turn = TURN.lock().unwrap_or_else(PoisonError::into_inner);
         let (entered, has_entered) = std::sync::mpsc::channel();
         let (leave, may_leave) = std::sync::mpsc::channel::<()>();
-        let has_left = std::sync::atomic::AtomicBool::new(false);
-        let left = &has_left;
+        let mut left = false;
+        let leaving = &mut left;
         let mut work = move || {
             entered.send(()).ok();
             may_leave.recv().ok();
-            left.store(true, Ordering::SeqCst);
+            *leaving = true;
             Next::Again
         };
         let mut caller = None;
@@ -157,10 +157,7 @@ mod tests {
             leave.send(()).ok();
         });
         assert_eq!(lent, Some(()));
-        assert!(
-            has_left.load(Ordering::SeqCst),
-            "what is lent is done before it is taken back"
-        );
+        assert!(left, "what is lent is done before it is taken back");
         assert_eq!(caller.map(|caller| caller.join().ok()), Some(Some(1)));
     }
 }

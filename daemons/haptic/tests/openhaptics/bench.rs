@@ -108,15 +108,16 @@ pub(crate) fn wait(what: &str, mut is_so: impl FnMut() -> bool) {
 
 /// The first tick that `look` accepts.
 pub(crate) fn tick(host: &mut Host, mut look: impl FnMut(&Ticked) -> bool) -> Ticked {
-    let give_up = Instant::now() + PATIENCE;
-    while Instant::now() < give_up {
-        match host.ticks.pop() {
-            Ok(ticked) if look(&ticked) => return ticked,
-            Ok(_) => {}
-            Err(_) => std::thread::yield_now(),
+    let mut found = None;
+    wait("such a tick", || {
+        while found.is_none()
+            && let Ok(ticked) = host.ticks.pop()
+        {
+            found = Some(ticked).filter(&mut look);
         }
-    }
-    panic!("no such tick");
+        found.is_some()
+    });
+    found.expect("found")
 }
 
 /// All that was called.
