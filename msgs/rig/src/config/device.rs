@@ -28,9 +28,9 @@ pub struct DeviceSection {
     pub name: String,
     /// One of [`DRIVERS`].
     pub driver: String,
-    /// Which of several: the name that OpenHaptics gives it, a serial port, a WebSocket's URL,
-    /// `vendor:product` of a HID device in hexadecimal or its path below /dev. The first that fits if
-    /// absent.
+    /// Which of several: the name that OpenHaptics gives it; a serial port; a WebSocket's URL with
+    /// `#device+grip`; `vendor:product` of a HID device in hexadecimal, or its path below /dev. The first
+    /// that fits if absent.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub address: Option<String>,
     /// The vendor's library of `openhaptics`, where it is not in the system's folders.
