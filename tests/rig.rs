@@ -453,11 +453,13 @@ fn a_simulated_hand_paints_and_feels_the_canvas() {
         while let Some(received) = samples.try_recv() {
             let (stamp_ns, sample) = (received.header.event_ns, received.message);
             assert!(stamp_ns <= bus.now_ns(), "a stamp from the future");
-            if !pressed(&sample, head_length_m) {
-                continue;
-            }
             let none = sample.force_n == [0.0; 3];
-            without = if none { without + 1 } else { 0 };
+            without = match pressed(&sample, head_length_m) {
+                true if none => without + 1,
+                // It has lifted for a moment.
+                false => without,
+                true => 0,
+            };
         }
         (without >= 50).then_some(())
     });

@@ -296,12 +296,16 @@ pub fn account(place: &Place, name: &str) -> f64 {
     ledger["accounts_m3"][name].as_f64().expect("a number")
 }
 
-/// A take of a hand that moves to and fro on the canvas for three minutes, fully pressed but for a moment
-/// every four seconds.
+/// A take of a hand that moves to and fro on the canvas, fully pressed, for three minutes; each four
+/// seconds it lifts for half of one, for force begins only above the canvas.
 pub fn press_for_minutes(path: &Path) {
     let samples = (0..18_000u64).map(|number| {
         let way = (number % 400) as f64 / 400.0;
         let x = 0.2 * (way - 0.5).abs() - 0.05;
+        let pressure = match way {
+            way if way > 0.875 => 0.0,
+            way => (8.0 * way).clamp(0.01, 1.0),
+        };
         TakeSample {
             time_ns: number * 10_000_000,
             sample: StylusSample {
@@ -310,8 +314,7 @@ pub fn press_for_minutes(path: &Path) {
                     point_m: [x, 0.0, 0.0],
                     tilt_rad: DEFAULT_TILT_RAD,
                     twist_rad: 0.0,
-                    // A hand that stays deep gets no force back: force begins where little is asked for.
-                    pressure: if number % 400 < 340 { 1.0 } else { 0.0 },
+                    pressure,
                 },
                 in_range: true,
                 ..StylusSample::away()

@@ -50,7 +50,7 @@ pub struct Tick {
     pub braked: bool,
     /// The amplifiers are off: switched off, or nothing was touched for long.
     pub resting: bool,
-    /// Force has yet to begin: the hand is so deep that it would be pushed.
+    /// Force has yet to begin: there is no model, or the hand may be so deep that it would be pushed.
     pub waiting: bool,
     /// Largest force now, N.
     pub cap_n: f64,
@@ -399,6 +399,7 @@ impl Servo {
 
     /// The force that the models ask for, and the brake.
     fn wanted(&mut self, held: &Held, felt: Option<Felt>, dt: f64, tick: &mut Tick) -> DVec3 {
+        tick.waiting = self.engagement != Engagement::Begun;
         let (Some(model), Some(felt)) = (&self.model, felt) else {
             self.last = None;
             return DVec3::ZERO;
@@ -421,7 +422,6 @@ impl Servo {
                 true => Engagement::Begun,
                 false => Engagement::Waiting(calm),
             };
-            tick.waiting = true;
             self.last = None;
             return DVec3::ZERO;
         }

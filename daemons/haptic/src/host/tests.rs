@@ -293,3 +293,91 @@ fn a_turned_shifted_and_scaled_device_feels_the_desk_where_it_is() {
         );
     }
 }
+
+/// A device whose height, m, and switches a test sets.
+#[derive(Clone, Default)]
+struct Moved {
+    height: Arc<AtomicU64>,
+    switches: Arc<AtomicU64>,
+}
+
+impl Moved {
+    fn put(&self, height: f64, switches: u64) {
+        self.height.store(height.to_bits(), Ordering::SeqCst);
+        self.switches.store(switches, Ordering::SeqCst);
+    }
+}
+
+impl Driver for Moved {
+    fn abilities(&self) -> Abilities {
+        Simulated::at_rest().abilities()
+    }
+
+    fn read(&mut self, _: f64) -> Result<Option<Reading>, Trouble> {
+        let switches = self.switches.load(Ordering::SeqCst) as u32;
+        let position = DVec3::Z * f64::from_bits(self.height.load(Ordering::SeqCst));
+        Ok(Some(Reading {
+            switches,
+            ..at(Held {
+                position,
+                orientation: DQuat::IDENTITY,
+                velocity: DVec3::ZERO,
+            })
+        }))
+    }
+
+    fn write(&mut self, _: Wrench) -> Result<(), Trouble> {
+        Ok(())
+    }
+}
+
+#[test]
+fn a_clutch_in_mid_stroke_takes_the_force_away_until_the_hand_has_come_up() {
+    for (clutch, lets_go) in [(1, true), (0, false)] {
+        let device = Moved::default();
+        let fitting = Fitting {
+            to_desk: Similarity::IDENTITY,
+            ferrule_m: DVec3::ZERO,
+            corners: None,
+        };
+        let limits = Limits {
+            engage_s: 1e-3,
+            longest_tick_s: 1e3,
+            ..Limits::default()
+        };
+        device.put(0.03, 0);
+        let placed = Placed::new(Box::new(device.clone()), fitting, clutch);
+        let mut host = start(placed, limits);
+        host.models.write(Delivery {
+            contact: Some(wall()),
+            sender: None,
+            number: 1,
+        });
+        let pressed = |ticked: &Ticked| (ticked.force.z - 0.4).abs() < 1e-9;
+        let up = |ticked: &Ticked| !ticked.tick.waiting && ticked.reading.held.position.z > 0.025;
+        tick(&mut host, |ticked| up(ticked) && !ticked.tick.resting).expect("begun");
+        device.put(0.021, 0);
+        tick(&mut host, pressed).expect("the wall");
+        device.put(0.021, 1);
+        let held = tick(&mut host, |ticked| ticked.reading.switches == 1).expect("a tick");
+        if !lets_go {
+            assert!(pressed(&held), "the seeded fault: no clutch");
+            continue;
+        }
+        assert!(held.force == DVec3::ZERO && held.tick.resting && !held.reading.in_range);
+        device.put(0.06, 1);
+        device.put(0.06, 0);
+        let released = |ticked: &Ticked| ticked.reading.switches == 0;
+        let on = tick(&mut host, released).expect("let go");
+        assert!(
+            (on.reading.held.position.z - 0.021).abs() < 1e-12,
+            "no jump"
+        );
+        assert!(on.force == DVec3::ZERO && on.tick.waiting && on.reading.in_range);
+        // Up by a centimetre, and down again.
+        device.put(0.07, 0);
+        tick(&mut host, |ticked| up(ticked)).expect("come up");
+        device.put(0.06, 0);
+        tick(&mut host, pressed).expect("the wall again");
+    }
+}
