@@ -8,6 +8,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use maulstick_bus::{Class, ZenohBus};
 use maulstick_types::brush::BrushState;
 use maulstick_types::name_hash;
+use maulstick_types::scene::{CANVAS, Scene};
 use maulstick_types::stylus::{StylusInfo, StylusStatus};
 use maulstick_types::topics::Topics;
 use support::{Launcher, PATIENCE, Place, hear, listen, wait_for};
@@ -118,6 +119,48 @@ fn of_two_pens_the_one_of_higher_priority_paints_and_no_stroke_has_two() {
     };
     let of = strokes(&bus, &topics, high).unwrap_or_else(|| panic!("{}", launcher.said()));
     assert!(of.values().all(|devices| devices.len() == 1), "{of:?}");
+    bus.close();
+}
+
+/// A SpaceNavigator, by its descriptor's layout: three pushes, three turns, two buttons.
+const PUCK: &str = "\
+D: 0
+R: 78 05 01 09 08 a1 01 a1 00 85 01 16 a2 fe 26 5e 01 36 88 fa 46 78 05 09 30 09 31 09 32 75 10 95 03 81 02 c0 \
+a1 00 85 02 09 33 09 34 09 35 75 10 95 03 81 02 c0 \
+a1 02 85 03 05 09 19 01 29 02 15 00 25 01 75 01 95 02 81 02 95 0e 81 03 c0 c0
+N: a puck
+P: none
+I: 3 046d c626
+";
+
+#[test]
+fn the_free_hand_moves_the_canvas() {
+    let place = Place::new();
+    // Pushed to the right for a minute: the stop is 350.
+    let mut text = PUCK.to_owned();
+    for report in 0..7500 {
+        let seconds = f64::from(report) * 0.008;
+        text += &format!("E: {seconds:.6} 7 01 5e 01 00 00 00 00\n");
+    }
+    std::fs::write(place.path("puck.hid"), text).expect("written");
+    let puck = "driver = \"spacemouse\"\nreplay = \"puck.hid\"\n";
+    settings(&place, &[("puck", "main", 0, puck)]);
+    let launcher = Launcher::up(&place, &["--rig", "rig.toml"]);
+    let (bus, topics) = support::join(&place);
+    let mut scenes = listen::<Scene>(&bus, &topics.scene(), Class::Cached);
+    let canvas = |scene: &Scene| {
+        let surface = scene.surfaces.iter().find(|surface| surface.id == CANVAS);
+        surface.map(|surface| surface.pose.position_m)
+    };
+    // At rest the canvas of 256 mm lies with its lower left corner at -128 mm.
+    let moved = hear(&mut scenes, |scene| {
+        canvas(scene).is_some_and(|at| at[0] > -0.05)
+    });
+    let at = moved
+        .as_ref()
+        .and_then(canvas)
+        .unwrap_or_else(|| panic!("{}", launcher.said()));
+    assert!((at[1] + 0.128).abs() < 1e-9 && at[2] == 0.0, "{at:?}");
     bus.close();
 }
 

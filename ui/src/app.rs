@@ -26,7 +26,7 @@ use crate::mouse::{Mouse, Pointer};
 use crate::progress::WorkProgress;
 use crate::show_surface::Place;
 use crate::surface::{Passes, SurfaceView};
-use crate::view::{DESK_COLOUR, View, level};
+use crate::view::{DESK_COLOUR, View, are_alike, at_rest, level};
 
 /// A pressed pointer that stands still is told this often: a longer silence would lift the brush.
 const STILL: Duration = Duration::from_millis(30);
@@ -61,6 +61,8 @@ pub struct App {
     frame_topic: String,
     scenes: Receiver<Scene>,
     scene: Option<(Scene, Desk)>,
+    /// What the view holds: the surfaces as they lay when they were first seen, so that one sees them move.
+    framed: Vec<Surface>,
     surfaces: [Pulled; SURFACES.len()],
     follower: Follower,
     progress: WorkProgress,
@@ -106,6 +108,7 @@ impl App {
             wake: member.wake.clone(),
             frame_topic: topics.frame(),
             scene: None,
+            framed: Vec::new(),
             surfaces: Default::default(),
             view: None,
             pressed: false,
@@ -163,6 +166,10 @@ impl App {
     fn take_in(&mut self, now_ns: u64) {
         while let Some(scene) = self.scenes.try_recv() {
             let desk = Desk::of(&scene.message);
+            let surfaces = &scene.message.surfaces;
+            if !are_alike(&self.framed, surfaces) {
+                self.framed = at_rest(surfaces);
+            }
             self.scene = Some((scene.message, desk));
         }
         self.follower.take_in(now_ns);
@@ -303,8 +310,7 @@ impl eframe::App for App {
         self.progress.show(ui.ctx());
         CentralPanel::default().frame(Frame::NONE).show(ui, |ui| {
             let area = ui.max_rect();
-            let surfaces = self.scene.as_ref().map(|(scene, _)| &scene.surfaces[..]);
-            self.view = View::fit(area, surfaces.unwrap_or_default());
+            self.view = View::fit(area, &self.framed);
             match self.view {
                 Some(view) => {
                     ui.ctx().set_cursor_icon(CursorIcon::Crosshair);

@@ -3,7 +3,8 @@
 use eframe::egui::{Color32, Pos2, Rect, Vec2, vec2};
 use glam::{DVec2, DVec3};
 use maulstick_num::geometry::Rigid;
-use maulstick_types::scene::Surface;
+use maulstick_types::Pose;
+use maulstick_types::scene::{CANVAS, Surface};
 
 /// What lies around the surfaces.
 pub const DESK_COLOUR: Color32 = Color32::from_gray(60);
@@ -35,6 +36,32 @@ fn size_m(surface: &Surface) -> [f64; 2] {
     surface
         .cells
         .map(|cells| f64::from(cells) * surface.cell_m * surface.zoom)
+}
+
+/// The surfaces before the free hand moves them: the canvas unzoomed, its middle in the desk's origin;
+/// others as they are.
+#[must_use]
+pub fn at_rest(surfaces: &[Surface]) -> Vec<Surface> {
+    let rest = |surface: &Surface| {
+        let mut surface = surface.clone();
+        if surface.id == CANVAS {
+            surface.zoom = 1.0;
+            let [width, height] = size_m(&surface);
+            surface.pose = Pose {
+                position_m: [-0.5 * width, -0.5 * height, 0.0],
+                ..Pose::IDENTITY
+            };
+        }
+        surface
+    };
+    surfaces.iter().map(rest).collect()
+}
+
+/// Whether these are surfaces of the same sizes, wherever they lie.
+#[must_use]
+pub fn are_alike(some: &[Surface], others: &[Surface]) -> bool {
+    let size = |surface: &Surface| (surface.id, surface.cells, surface.cell_m);
+    some.iter().map(size).eq(others.iter().map(size))
 }
 
 impl View {
@@ -122,12 +149,10 @@ pub fn level(cells: u32, pixels: f32) -> u32 {
 
 #[cfg(test)]
 mod tests {
+    use super::*;
     use eframe::egui::pos2;
     use maulstick_num::geometry::rotation;
     use maulstick_paint::PaintingSetup;
-    use maulstick_types::Pose;
-
-    use super::*;
 
     fn surfaces() -> Vec<Surface> {
         PaintingSetup::default().scene().surfaces
@@ -159,6 +184,22 @@ mod tests {
             corner(&surfaces[0], 2).y < corner(&surfaces[0], 0).y,
             "up is up"
         );
+    }
+
+    #[test]
+    fn a_canvas_that_is_moved_moves_in_the_window() {
+        let first = surfaces();
+        assert_eq!(at_rest(&first), first, "nobody has moved it yet");
+        let mut moved = first.clone();
+        moved[0].pose.position_m[0] += 0.05;
+        moved[0].zoom = 2.0;
+        assert!(are_alike(&first, &moved) && at_rest(&moved) == first);
+        let view = view(&at_rest(&moved));
+        let corner = |surface: &Surface| view.to_window(corners(surface)[0]).x;
+        let right = f64::from(corner(&moved[0]) - corner(&first[0]));
+        assert!((right - 0.05 * view.scale).abs() < 0.01, "{right} points");
+        moved[0].cells[0] += 1;
+        assert!(!are_alike(&first, &moved));
     }
 
     #[test]
