@@ -135,9 +135,11 @@ impl Beat {
         let (force, mut tick) = self.servo.step(&reading.held, dt);
         self.device.write(force)?;
         tick.cap_n /= self.device.scale();
-        let wanted = match tick.resting || tick.fault.is_some() {
-            true => Switch::Off,
-            false => Switch::On,
+        // A clutch or a dead man's switch ends the force, but its amplifiers do not rest.
+        let wanted = match (tick.fault, tick.resting, reading.is_permitted) {
+            (Some(_), ..) | (None, true, true) => Switch::Off,
+            (None, true, false) => self.amplifiers,
+            (None, false, _) => Switch::On,
         };
         if wanted != self.amplifiers {
             self.amplifiers = wanted;

@@ -27,7 +27,7 @@ use maulstick_rig::config::DeviceSection;
 use maulstick_types::stylus::axes;
 
 use self::address::Address;
-use self::connection::{Connection, End};
+use self::connection::{Connection, End, SILENCE};
 use self::follow::Follower;
 use self::link::{Asked, FRESH_NS, Link};
 use self::message::{Device, Update};
@@ -35,11 +35,13 @@ use crate::driver::{Abilities, Driver, Opened, Reading, Trouble, Wrench};
 use crate::pace::{OwnClock, monotonic_ns};
 use crate::velocity::Velocity;
 
-/// Largest force, N.
-const MAX_FORCE_N: f64 = 10.0;
-/// Force that warm motors bear, N, is not published: a third, as of an Omni's. The device tells no
-/// temperature.
-const CONTINUOUS_N: f64 = 3.0;
+/// Largest force by what the service calls the device, N; see [`WEAKEST_N`] for others.
+const MAX_FORCES_N: [(&str, f64); 2] = [("inverse3", 10.0), ("inverse3x", 10.0)];
+/// Largest force of a Minverse, which is not published, and of what we do not know, N: as an Omni's.
+const WEAKEST_N: f64 = 3.0;
+/// Share of the largest force that warm motors bear is not published: as of an Omni's. The device tells
+/// no temperature.
+const CONTINUOUS: f64 = 0.3;
 /// Largest stiffness, N/m.
 const MAX_STIFFNESS_N_M: f64 = 1000.0;
 /// Its own viscous friction, N·s/m, is published by nobody: the least of devices of its kind.
@@ -67,6 +69,8 @@ pub struct Inverse3 {
     link: Link,
     id: String,
     senses: u32,
+    /// Largest force, N.
+    max_force_n: f64,
     /// The number of the state that was read last.
     seen: u64,
     velocity: Velocity,
@@ -81,7 +85,16 @@ impl Inverse3 {
     pub fn connect(address: &Address) -> Result<Self, Fault> {
         let mut connection = Connection::open(address)?;
         let update = inventory(&mut connection, address)?;
-        let id = chosen(&update, address)?.device_id.clone();
+        let device = chosen(&update, address)?;
+        let id = device.device_id.clone();
+        if device.is_in_use() {
+            let what = format!(
+                "the Inverse3 {id} at {} is in use by another program",
+                address.url
+            );
+            return Err(Fault::failure(what).help("end the other program"));
+        }
+        let max_force_n = max_force_n(device.kind());
         let has_grip = update.grip(address.grip.as_deref()).is_some();
         if let (Some(grip), false) = (&address.grip, has_grip) {
             let ids: Vec<&str> = update.grips().collect();
@@ -95,7 +108,7 @@ impl Inverse3 {
             }));
         }
         let mut follower = Follower::new(&id, address.grip.as_deref());
-        if let follow::Seen::Hindered(hindrance) = follower.take(&update) {
+        if let follow::Seen::Hindered(hindrance) = follower.take(&update, monotonic_ns()) {
             let what = format!("{} ({id} at {})", hindrance.what(), address.url);
             return Err(Fault::failure(what).help(hindrance.help()));
         }
@@ -109,19 +122,30 @@ impl Inverse3 {
             link,
             id,
             senses: axes::POSITION | axes::VELOCITY | held,
+            max_force_n,
             seen: 0,
             velocity: Velocity::default(),
             amplifiers: Switch::On,
         })
     }
 
+    /// Asks for a force; resting amplifiers are asked for none, which must be said as well.
     fn ask(&mut self, force: DVec3) {
         self.link.ask(Asked {
-            force,
+            force: match self.amplifiers {
+                Switch::On => force,
+                Switch::Off => DVec3::ZERO,
+            },
             at_ns: monotonic_ns(),
-            amplifiers: self.amplifiers,
         });
     }
+}
+
+fn max_force_n(kind: Option<&str>) -> f64 {
+    MAX_FORCES_N
+        .into_iter()
+        .find_map(|(known, newtons)| (kind == Some(known)).then_some(newtons))
+        .unwrap_or(WEAKEST_N)
 }
 
 /// The service's first message, which names all devices.
@@ -134,7 +158,7 @@ fn inventory(connection: &mut Connection, address: &Address) -> Result<Update, F
         .help("name the service's own as the device's `address`")
     };
     let bytes = connection
-        .receive(&AtomicBool::new(false))
+        .receive(&AtomicBool::new(false), SILENCE)
         .map_err(|end| match end {
             End::Closed | End::Stopped => foreign("it closes the connection".into()),
             End::Silent => foreign("it does not say what devices there are".into()),
@@ -179,8 +203,8 @@ impl Driver for Inverse3 {
         Abilities {
             senses: self.senses,
             drives: axes::FORCE,
-            max_force_n: MAX_FORCE_N,
-            continuous_force_n: CONTINUOUS_N,
+            max_force_n: self.max_force_n,
+            continuous_force_n: self.max_force_n * CONTINUOUS,
             max_torque_nm: 0.0,
             max_stiffness_n_m: MAX_STIFFNESS_N_M,
             damping_n_s_m: DAMPING_N_S_M,
@@ -206,7 +230,7 @@ impl Driver for Inverse3 {
                 velocity: pose.velocity.unwrap_or(found),
             },
             switches: pose.switches,
-            in_range: true,
+            in_range: pose.in_range,
             is_permitted: true,
             motor_temperature: 0.0,
         }))
@@ -214,7 +238,7 @@ impl Driver for Inverse3 {
 
     fn write(&mut self, wrench: Wrench) -> Result<(), Trouble> {
         let force = match wrench.force.is_finite() {
-            true => wrench.force.clamp_length_max(MAX_FORCE_N),
+            true => wrench.force.clamp_length_max(self.max_force_n),
             false => DVec3::ZERO,
         };
         self.ask(force);

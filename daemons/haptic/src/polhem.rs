@@ -26,7 +26,7 @@ use maulstick_rig::Fault;
 use maulstick_rig::config::DeviceSection;
 use maulstick_types::stylus::axes;
 
-use self::frame::{Answer, Length, Line, MAX_FORCE_N, PROBE, Pose};
+use self::frame::{Answer, Length, Line, MAX_FORCE_N, Pose};
 use self::link::{Link, Wire};
 use self::port::Port;
 use self::wake::{Refusal, wake};
@@ -95,6 +95,10 @@ pub struct Polhem<W: Wire> {
     velocity: Velocity,
     /// What has passed of the time since the last reading, s.
     waited_s: f64,
+    /// Time since the last pose, s.
+    since_pose_s: f64,
+    /// How it was held then.
+    last: Option<Held>,
     /// Time since the button was asked for, s.
     unasked_s: f64,
     pressed: bool,
@@ -109,6 +113,8 @@ impl<W: Wire> Polhem<W> {
             amplifiers: Switch::On,
             velocity: Velocity::default(),
             waited_s: 0.0,
+            since_pose_s: 0.0,
+            last: None,
             unasked_s: 0.0,
             pressed: false,
         }
@@ -120,14 +126,20 @@ impl<W: Wire> Polhem<W> {
         self.link.lost()
     }
 
-    fn reading(&mut self, pose: &Pose, dt: f64) -> Reading {
+    fn held(&mut self, pose: &Pose) -> Held {
         let position = placing::position(pose);
+        let since_s = std::mem::take(&mut self.since_pose_s);
+        Held {
+            position,
+            orientation: placing::orientation(pose),
+            velocity: self.velocity.after(position, since_s),
+        }
+    }
+
+    fn reading(&mut self, held: Held) -> Reading {
+        self.waited_s = 0.0;
         Reading {
-            held: Held {
-                position,
-                orientation: placing::orientation(pose),
-                velocity: self.velocity.after(position, dt),
-            },
+            held,
             switches: u32::from(self.pressed),
             in_range: true,
             is_permitted: true,
@@ -136,15 +148,16 @@ impl<W: Wire> Polhem<W> {
     }
 
     /// Sends what is to be said next: a force; where there is none, from time to time the question for
-    /// the button, which poses do not tell; while the amplifiers rest, only what does not hold off the
-    /// watchdog that switches them off.
+    /// the button, which poses do not tell. Each is a command and holds off the watchdog, so amplifiers
+    /// that rest have no current but are not off: neither poses nor the button are told without one.
     fn say(&mut self, force: DVec3) -> Result<(), Trouble> {
         if !self.link.is_free() {
             return Ok(());
         }
-        if self.amplifiers == Switch::Off {
-            return self.link.send(PROBE);
-        }
+        let force = match self.amplifiers {
+            Switch::On => force,
+            Switch::Off => DVec3::ZERO,
+        };
         if force == DVec3::ZERO && self.unasked_s >= BUTTON_S {
             self.unasked_s = 0.0;
             return self.link.send(Line::encoders(self.length).as_bytes());
@@ -174,18 +187,22 @@ impl<W: Wire> Driver for Polhem<W> {
             false => dt,
         };
         self.unasked_s += step_s;
+        self.since_pose_s += step_s;
         self.waited_s = dt;
         match self.link.poll(step_s)? {
             Some(Answer::Pose(pose)) => {
-                self.waited_s = 0.0;
-                return Ok(Some(self.reading(&pose, dt)));
+                let held = self.held(&pose);
+                self.last = Some(held);
+                return Ok(Some(self.reading(held)));
             }
             Some(Answer::Encoders(encoders)) => {
                 self.pressed = encoders.is_pressed();
-                // They are told for as long as no force is asked for: resting motors need one line more.
-                if self.amplifiers == Switch::Off {
-                    self.link
-                        .send(Line::force(DVec3::ZERO, self.length).as_bytes())?;
+                // However slow the exchange was, a pose comes before the next question.
+                self.unasked_s = 0.0;
+                // Our own question is no stall of the device's: the hand is where it was, an exchange
+                // ago, and there was no force.
+                if let Some(held) = self.last {
+                    return Ok(Some(self.reading(held)));
                 }
             }
             None => {}
@@ -201,8 +218,6 @@ impl<W: Wire> Driver for Polhem<W> {
 
     fn switch(&mut self, amplifiers: Switch) {
         self.amplifiers = amplifiers;
-        // Resting amplifiers leave the button unseen, and what is not seen is not held.
-        self.pressed &= amplifiers == Switch::On;
     }
 }
 

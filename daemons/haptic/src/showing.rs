@@ -41,6 +41,7 @@ pub fn watch(
     let (tell, told) = sync_channel(WAITING);
     let stop = AtomicBool::new(false);
     std::thread::scope(|scope| {
+        let ending = Ending(&stop);
         let reading = scope.spawn(|| {
             device.switch(Switch::Off);
             let (mut last_ns, mut lost) = (monotonic_ns(), None);
@@ -83,13 +84,22 @@ pub fn watch(
                 break;
             }
         }
-        stop.store(true, Ordering::Relaxed);
+        drop(ending);
         reading.join().unwrap_or(Err(Trouble {
             what: "the device's driver has failed",
             code: 0,
             help: "its own message above says why",
         }))
     })
+}
+
+/// Ends the reading, also where whoever looks panics: the scope would wait for it.
+struct Ending<'a>(&'a AtomicBool);
+
+impl Drop for Ending<'_> {
+    fn drop(&mut self) {
+        self.0.store(true, Ordering::Relaxed);
+    }
 }
 
 fn glimpse(reading: &Reading, now_ns: u64) -> Glimpse {

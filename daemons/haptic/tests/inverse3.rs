@@ -152,25 +152,84 @@ fn a_service_before_3_5_is_spoken_to_as_it_wants() {
         })
     };
     assert_eq!(heard(&mut *driver, [0.0, 0.0, 0.5]), Some(()));
-    // Its position is told only for a force, so resting amplifiers are asked for none.
     driver.switch(Switch::Off);
     assert_eq!(heard(&mut *driver, [0.0; 3]), Some(()));
-    let probes = |message: &Value| message.to_string().contains("probe_position");
-    assert!(!service.heard().messages.iter().any(probes));
 }
 
 #[test]
-fn resting_amplifiers_are_only_asked_for_the_position() {
+fn amplifiers_that_rest_are_told_so_by_no_force_in_the_tick_that_rests() {
     let service = steady(inventory());
     let mut driver = opened(&service.url);
+    let comes = |wanted: [f64; 3]| {
+        let newest = force(service.heard().newest("049D")?, "vector")?;
+        (newest == wanted).then_some(())
+    };
+    let pushed = [1.0, 0.0, 0.0];
+    assert_eq!(beat(&mut *driver, DVec3::X, || comes(pushed)), Some(()));
+    driver.write(Wrench::ZERO).expect("there");
     driver.switch(Switch::Off);
-    let probed =
-        || (service.heard().newest("049D")? == &json!({ "probe_position": {} })).then_some(());
-    assert_eq!(beat(&mut *driver, DVec3::X, probed), Some(()));
+    assert_eq!(wait_for(|| comes([0.0; 3])), Some(()));
+    assert_eq!(beat(&mut *driver, DVec3::X, || comes([0.0; 3])), Some(()));
     driver.switch(Switch::On);
-    let pushed =
-        || (force(service.heard().newest("049D")?, "vector")? == [1.0, 0.0, 0.0]).then_some(());
-    assert_eq!(beat(&mut *driver, DVec3::X, pushed), Some(()));
+    assert_eq!(beat(&mut *driver, DVec3::X, || comes(pushed)), Some(()));
+}
+
+#[test]
+fn a_grip_is_told_of_also_while_amplifiers_rest() {
+    let held = |pressed: bool| {
+        let mut held = inventory();
+        held["wireless_verse_grip"] = json!([]);
+        held["verse_grip"] = json!([{ "device_id": "12", "state": { "button": pressed } }]);
+        held
+    };
+    let service = Service::start(Act::Say(held(false)), move |count| {
+        Act::Say(held(count > 50))
+    });
+    let mut driver = opened(&service.url);
+    driver.switch(Switch::Off);
+    let pressed = wait_for(|| {
+        let read = driver.read(1e-3).expect("there")?;
+        (read.switches == 1).then_some(())
+    });
+    assert_eq!(pressed, Some(()));
+}
+
+#[test]
+fn a_force_that_is_not_answered_is_taken_back_once_and_comes_again_with_the_answers() {
+    // The answer to the force comes too late, with that to what took it back.
+    let service = Service::start(Act::Say(inventory()), |count| match count {
+        50 => Act::Rest,
+        51 => Act::Twice(update("049D", state())),
+        _ => Act::Say(update("049D", state())),
+    });
+    let mut driver = opened(&service.url);
+    let done = || (service.heard().messages.len() > 300).then_some(());
+    assert_eq!(beat(&mut *driver, DVec3::X, done), Some(()));
+    let heard = service.heard();
+    let told = |count: usize| {
+        let commands = &heard.messages[count]["inverse3"][0]["commands"];
+        force(commands, "vector").expect("a force")
+    };
+    assert!((50..54).any(|count| told(count) == [0.0; 3]));
+    assert!((52..300).any(|count| told(count) == [1.0, 0.0, 0.0]));
+}
+
+#[test]
+fn a_device_gives_the_force_of_its_kind_and_one_that_nobody_knows_the_least() {
+    for (kind, newtons) in [("inverse3", 10.0), ("minverse", 3.0), ("inverse9", 3.0)] {
+        let mut first = inventory();
+        first["inverse3"][0]["config"]["type"] = json!(kind);
+        let service = steady(first);
+        let mut driver = opened(&service.url);
+        let able = driver.abilities();
+        assert_eq!(able.max_force_n, newtons, "{kind}");
+        assert!((able.continuous_force_n - 0.3 * newtons).abs() < 1e-12);
+        let cut = beat(&mut *driver, DVec3::X * 100.0, || {
+            let newest = force(service.heard().newest("049D")?, "vector")?;
+            (newest == [newtons, 0.0, 0.0]).then_some(())
+        });
+        assert_eq!(cut, Some(()), "{kind}");
+    }
 }
 
 #[test]
@@ -296,7 +355,7 @@ fn a_state_of_long_ago_is_nothing_new() {
     let silent = || {
         let heard = service.heard();
         let last = heard.last?;
-        (heard.messages.len() == 2 && last.elapsed() > Duration::from_millis(60)).then_some(())
+        (heard.messages.len() == 3 && last.elapsed() > Duration::from_millis(60)).then_some(())
     };
     let mut driver = opened(&service.url);
     assert_eq!(wait_for(silent), Some(()));

@@ -3,6 +3,8 @@
 
 #[path = "polhem/bench.rs"]
 mod bench;
+#[path = "polhem/button.rs"]
+mod button;
 #[path = "../../../sim/num/tests/counting/mod.rs"]
 mod counting;
 #[path = "polhem/firmware.rs"]
@@ -207,18 +209,16 @@ fn a_host_that_stalls_leaves_no_force_after_the_watchdogs_time() {
 }
 
 #[test]
-fn amplifiers_that_rest_are_off_while_poses_go_on() {
+fn amplifiers_that_rest_have_no_current_while_poses_go_on() {
     // Also where they were switched off while the button was asked for.
     for phase in 0..60 {
         let mut beat = Beat::over(Style::Double, Reads::Lines, Length::Short);
         beat.ticks(200 + phase, DVec3::ZERO);
-        assert!(beat.cable.bench().firmware.enabled);
         beat.polhem.switch(Switch::Off);
-        beat.ticks(300, DVec3::ZERO);
-        let commands = beat.cable.bench().firmware.commands;
-        assert_eq!(beat.ticks(300, DVec3::ZERO), 300, "{phase}");
-        let firmware = beat.cable.bench().firmware.clone();
-        assert!(!firmware.enabled && firmware.commands == commands);
+        for _ in 0..300 {
+            assert!(beat.tick(DVec3::X).expect("there").is_some(), "{phase}");
+            assert_eq!(beat.cable.bench().firmware.currents, [0; 3]);
+        }
         beat.polhem.switch(Switch::On);
         beat.ticks(10, DVec3::X);
         assert_eq!(beat.felt(), DVec3::X);
@@ -339,10 +339,40 @@ fn the_button_is_asked_for_where_there_is_no_force_and_costs_no_late_tick() {
     assert_eq!(switches(&mut beat, DVec3::X), Some(1));
     assert_eq!(switches(&mut beat, DVec3::ZERO), Some(0));
     beat.cable.bench().firmware.encoders[3] = 10_042;
-    assert_eq!(switches(&mut beat, DVec3::ZERO), Some(1));
     beat.polhem.switch(Switch::Off);
-    assert_eq!(switches(&mut beat, DVec3::ZERO), Some(0));
-    assert!(beat.longest_s < 0.0035, "{}", beat.longest_s);
+    assert_eq!(switches(&mut beat, DVec3::ZERO), Some(1));
+    beat.cable.bench().firmware.encoders[3] = 42;
+    assert_eq!(switches(&mut beat, DVec3::X), Some(0));
+    assert!(beat.longest_s < 0.0015, "{}", beat.longest_s);
+}
+
+#[test]
+fn the_question_for_the_button_is_no_stall_however_slow_the_exchange() {
+    for (latency_s, exchange_s) in [(0.0015, 0.002), (0.0025, 0.003)] {
+        let mut beat = Beat::over(Style::Single, Reads::Lines, Length::Short);
+        beat.cable.bench().latency_s = latency_s;
+        for step in 0..600 {
+            beat.cable.bench().firmware.pose[1] += 0.1;
+            let reading = beat.tick(DVec3::ZERO).expect("there");
+            let speed = reading.map_or(0.1, |reading| reading.held.velocity.x);
+            assert!(step < 100 || (speed - 0.1).abs() < 1e-3, "{speed}");
+        }
+        assert!(beat.longest_s < exchange_s + 5e-4, "{}", beat.longest_s);
+    }
+}
+
+#[test]
+fn the_last_word_is_read_also_after_a_line_that_was_cut_off() {
+    for left in 1..30 {
+        let mut beat = Beat::over(Style::Single, Reads::Lines, Length::Short);
+        beat.ticks(10, DVec3::Z);
+        beat.cable.bench().left = left;
+        beat.tick(DVec3::Z).expect("there");
+        let cable = beat.cable.clone();
+        cable.bench().left = usize::MAX;
+        drop(beat);
+        assert_eq!(cable.bench().firmware.currents, [0; 3], "{left}");
+    }
 }
 
 #[test]

@@ -14,7 +14,7 @@ use super::address::Address;
 /// Time without a message after which the service is gone.
 pub const SILENCE: Duration = Duration::from_secs(1);
 /// Waits so long at a time for a message, then looks whether it is time to end.
-const WAIT: Duration = Duration::from_millis(20);
+const WAIT: Duration = Duration::from_millis(10);
 /// Waits so long for each of a host's addresses.
 const REACH: Duration = Duration::from_millis(500);
 /// Largest message, bytes: of a service with a hundred devices.
@@ -22,7 +22,7 @@ const LARGEST: usize = 1 << 20;
 /// Buffer for what comes and what goes, bytes.
 const BUFFER: usize = 16 << 10;
 /// Waits so often for the service to close its side.
-const FAREWELLS: usize = 5;
+const FAREWELLS: usize = 10;
 
 /// Why nothing more comes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -76,11 +76,11 @@ impl Connection {
         Ok(connection)
     }
 
-    /// The next message, unless `stop` is set before it comes.
+    /// The next message, unless `stop` is set before it comes, or it takes longer than `patience`.
     ///
     /// # Errors
     /// Why there is none.
-    pub fn receive(&mut self, stop: &AtomicBool) -> Result<Bytes, End> {
+    pub fn receive(&mut self, stop: &AtomicBool, patience: Duration) -> Result<Bytes, End> {
         let since = Instant::now();
         loop {
             match self.socket.read() {
@@ -88,14 +88,34 @@ impl Connection {
                 Ok(Message::Binary(bytes)) => return Ok(bytes),
                 Ok(Message::Close(_)) => return Err(End::Closed),
                 Ok(Message::Ping(_) | Message::Pong(_) | Message::Frame(_)) => {}
-                Err(error) => patience(&error)?,
+                Err(error) => bear(&error)?,
             }
             if stop.load(Ordering::Relaxed) {
                 return Err(End::Stopped);
             }
-            if since.elapsed() >= SILENCE {
+            if since.elapsed() >= patience {
                 return Err(End::Silent);
             }
+        }
+    }
+
+    /// A message that has already come, if one has.
+    ///
+    /// # Errors
+    /// Why there will be none.
+    pub fn waiting(&mut self) -> Result<Option<Bytes>, End> {
+        let broken = |_| End::Closed;
+        let stream = self.socket.get_ref();
+        stream.set_nonblocking(true).map_err(broken)?;
+        let read = self.socket.read();
+        let stream = self.socket.get_ref();
+        stream.set_nonblocking(false).map_err(broken)?;
+        match read {
+            Ok(Message::Text(text)) => Ok(Some(text.into())),
+            Ok(Message::Binary(bytes)) => Ok(Some(bytes)),
+            Ok(Message::Close(_)) => Err(End::Closed),
+            Ok(Message::Ping(_) | Message::Pong(_) | Message::Frame(_)) => Ok(None),
+            Err(error) => bear(&error).map(|()| None),
         }
     }
 
@@ -106,7 +126,7 @@ impl Connection {
     pub fn send(&mut self, text: String) -> Result<(), End> {
         self.socket
             .send(Message::text(text))
-            .map_err(|error| patience(&error).err().unwrap_or(End::Silent))
+            .map_err(|error| bear(&error).err().unwrap_or(End::Silent))
     }
 
     /// Closes it as is proper, but does not wait long for the service to agree.
@@ -117,7 +137,7 @@ impl Connection {
         for _ in 0..FAREWELLS {
             match self.socket.read() {
                 Ok(_) => {}
-                Err(error) if patience(&error).is_ok() => {}
+                Err(error) if bear(&error).is_ok() => {}
                 Err(_) => return,
             }
         }
@@ -125,7 +145,7 @@ impl Connection {
 }
 
 /// Whether to go on after an error: where it only says that nothing has come yet.
-fn patience(error: &Error) -> Result<(), End> {
+fn bear(error: &Error) -> Result<(), End> {
     use std::io::ErrorKind::{Interrupted, TimedOut, WouldBlock};
     match error {
         Error::Io(error) if matches!(error.kind(), WouldBlock | TimedOut | Interrupted) => Ok(()),

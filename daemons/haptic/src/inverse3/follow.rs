@@ -10,6 +10,11 @@ pub const FARTHEST_M: f64 = 1.0;
 /// No hand moves a cursor faster along an axis, m/s.
 pub const FASTEST_M_S: f64 = 20.0;
 
+/// Time without a word of the grip after which its buttons are not held, ns.
+pub const LET_GO_NS: u64 = 100_000_000;
+/// Time without a word of the grip after which nobody knows how the brush is held, ns.
+pub const AWAY_NS: u64 = 1_000_000_000;
+
 /// How a device and its grip are held, in the device frame; all numbers are finite.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Pose {
@@ -21,6 +26,8 @@ pub struct Pose {
     pub orientation: DQuat,
     /// A bit a pressed button.
     pub switches: u32,
+    /// Whether the grip, if there ever was one, still says how it is held.
+    pub in_range: bool,
 }
 
 /// What a message says of a device.
@@ -28,8 +35,10 @@ pub struct Pose {
 pub enum Seen {
     /// How it is held.
     Pose(Pose),
-    /// Nothing, or numbers that no device sends.
+    /// Nothing.
     Nothing,
+    /// A place where no cursor can be.
+    Nowhere,
     /// It cannot be used now.
     Hindered(Hindrance),
 }
@@ -38,7 +47,10 @@ pub enum Seen {
 #[derive(Clone, Debug)]
 pub struct Follower {
     device: String,
+    /// The first that was there, where none is asked for.
     grip: Option<String>,
+    /// When the grip was last told of, `CLOCK_MONOTONIC`, ns.
+    gripped_ns: Option<u64>,
     basis: Basis,
     /// In the session's axes: messages may leave out what has not changed.
     position: Option<DVec3>,
@@ -54,6 +66,7 @@ impl Follower {
         Self {
             device: device.to_owned(),
             grip: grip.map(str::to_owned),
+            gripped_ns: None,
             basis: Basis::HAPLY,
             position: None,
             velocity: None,
@@ -74,25 +87,19 @@ impl Follower {
         self.basis
     }
 
-    /// Takes in a message.
-    pub fn take(&mut self, update: &Update) -> Seen {
+    /// Takes in a message that came at `now_ns`, `CLOCK_MONOTONIC`.
+    pub fn take(&mut self, update: &Update, now_ns: u64) -> Seen {
         let Some(device) = update.device(&self.device) else {
             return Seen::Nothing;
         };
         if let Some(hindrance) = device.status.and_then(|status| status.hindrance()) {
             return Seen::Hindered(hindrance);
         }
-        if let Some(basis) = device.basis() {
-            self.basis = basis;
+        match device.basis() {
+            Ok(basis) => self.basis = basis.unwrap_or(self.basis),
+            Err(hindrance) => return Seen::Hindered(hindrance),
         }
-        if let Some(grip) = update
-            .grip(self.grip.as_deref())
-            .and_then(|grip| grip.state)
-        {
-            let turned = grip.orientation.and_then(|turned| turned.unit());
-            self.orientation = turned.unwrap_or(self.orientation);
-            self.switches = grip.switches().unwrap_or(self.switches);
-        }
+        self.grasp(update, now_ns);
         let Some(state) = device.state else {
             return Seen::Nothing;
         };
@@ -101,7 +108,10 @@ impl Follower {
             .over(self.position)
             .filter(|position| is_within(*position, FARTHEST_M))
         else {
-            return Seen::Nothing;
+            return match told.over(self.position) {
+                Some(_) => Seen::Nowhere,
+                None => Seen::Nothing,
+            };
         };
         self.position = Some(position);
         let velocity = state.cursor_velocity.unwrap_or_default();
@@ -113,7 +123,30 @@ impl Follower {
             velocity: self.velocity.map(|v| self.basis.to_device(v)),
             orientation: self.basis.orientation(self.orientation),
             switches: self.switches,
+            in_range: self
+                .gripped_ns
+                .is_none_or(|at_ns| now_ns.saturating_sub(at_ns) < AWAY_NS),
         })
+    }
+
+    /// Takes in what is told of the grip, if it is.
+    fn grasp(&mut self, update: &Update, now_ns: u64) {
+        let grip = update.grip(self.grip.as_deref());
+        if let Some((id, grip)) = grip.and_then(|grip| Some((&grip.device_id, grip.state?))) {
+            // Lists may come in another order: one hand does not change its grip.
+            if self.grip.is_none() {
+                self.grip = Some(id.clone());
+            }
+            self.gripped_ns = Some(now_ns);
+            let turned = grip.orientation.and_then(|turned| turned.unit());
+            self.orientation = turned.unwrap_or(self.orientation);
+            self.switches = grip.switches().unwrap_or(self.switches);
+        } else if self
+            .gripped_ns
+            .is_none_or(|at_ns| now_ns.saturating_sub(at_ns) >= LET_GO_NS)
+        {
+            self.switches = 0;
+        }
     }
 }
 

@@ -2,7 +2,8 @@
 //!
 //! The service answers each message by one state, so a round trip is a force out and a state in. The
 //! newest state goes to the servo and its newest force comes back through triple buffers. A force that
-//! the servo has not renewed for 20 ms is none: it may have stopped.
+//! the servo has not renewed for 20 ms is none: it may have stopped. So is one that the service has not
+//! answered for as long: it is told so before its answer is there.
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicU8, Ordering};
@@ -10,13 +11,13 @@ use std::thread::JoinHandle;
 use std::time::{Duration, Instant};
 
 use glam::{DQuat, DVec3};
-use maulstick_haptics::Switch;
 use thread_priority::unix::{RealtimeThreadSchedulePolicy, ThreadSchedulePolicy};
 use thread_priority::{ThreadPriority, ThreadPriorityValue};
+use tungstenite::Bytes;
 
 use super::connection::{Connection, End, SILENCE};
 use super::follow::{Follower, Pose, Seen};
-use super::message::{Dialect, Hindrance, Update, Wanted, request};
+use super::message::{Dialect, Hindrance, Update, request};
 use crate::driver::Trouble;
 use crate::pace::monotonic_ns;
 
@@ -45,8 +46,6 @@ pub struct Asked {
     pub force: DVec3,
     /// When it was asked for, `CLOCK_MONOTONIC`, ns.
     pub at_ns: u64,
-    /// Off where nothing but the position is wanted.
-    pub amplifiers: Switch,
 }
 
 /// Why there is nothing more.
@@ -56,18 +55,24 @@ enum Loss {
     Silent,
     Foreign,
     Unplugged,
+    Nowhere,
+    /// The thread has panicked.
+    Failed,
     Hindered(Hindrance),
 }
 
 /// All of them, as they are numbered between the threads from 1 on.
-const LOSSES: [Loss; 7] = [
+const LOSSES: [Loss; 10] = [
     Loss::Closed,
     Loss::Silent,
     Loss::Foreign,
     Loss::Unplugged,
+    Loss::Nowhere,
+    Loss::Failed,
     Loss::Hindered(Hindrance::NoPower),
     Loss::Hindered(Hindrance::NotCalibrated),
     Loss::Hindered(Hindrance::NotReady),
+    Loss::Hindered(Hindrance::UnknownAxes),
 ];
 
 impl Loss {
@@ -86,6 +91,14 @@ impl Loss {
                 "bring the service up to date, or name its own address as the device's `address`",
             ),
             Self::Unplugged => ("the Inverse3 is unplugged", "plug it in again"),
+            Self::Nowhere => (
+                "the Inverse3 tells places where its cursor cannot be",
+                "put the grip into its rest, and switch the Inverse3 off and on",
+            ),
+            Self::Failed => (
+                "the Inverse3's driver has failed",
+                "its own message above says why",
+            ),
             Self::Hindered(hindrance) => (hindrance.what(), hindrance.help()),
         };
         Trouble {
@@ -122,6 +135,7 @@ impl Link {
                 velocity: None,
                 orientation: DQuat::IDENTITY,
                 switches: 0,
+                in_range: false,
             },
             at_ns: 0,
             number: 0,
@@ -129,7 +143,6 @@ impl Link {
         let none = Asked {
             force: DVec3::ZERO,
             at_ns: 0,
-            amplifiers: Switch::On,
         };
         let (tell, told) = triple_buffer::triple_buffer(&nothing);
         let (asked, wanted) = triple_buffer::triple_buffer(&none);
@@ -143,14 +156,15 @@ impl Link {
             wanted,
             stop: Arc::clone(&stop),
             number: 0,
+            is_owed: false,
         };
-        let loss = Arc::clone(&lost);
+        let ending = Ending(Arc::clone(&lost));
         let thread = std::thread::Builder::new()
             .name("inverse3".into())
             .spawn(move || {
                 become_real_time();
                 if let Some(why) = courier.run() {
-                    loss.store(why.number(), Ordering::Release);
+                    ending.tell(why);
                 }
                 courier.part();
             })?;
@@ -190,6 +204,23 @@ impl Drop for Link {
     }
 }
 
+/// Tells the servo that there is nothing more, also where the thread panics.
+struct Ending(Arc<AtomicU8>);
+
+impl Ending {
+    fn tell(&self, why: Loss) {
+        self.0.store(why.number(), Ordering::Release);
+    }
+}
+
+impl Drop for Ending {
+    fn drop(&mut self) {
+        if std::thread::panicking() {
+            self.tell(Loss::Failed);
+        }
+    }
+}
+
 /// What runs on the thread.
 struct Courier {
     connection: Connection,
@@ -199,6 +230,8 @@ struct Courier {
     wanted: triple_buffer::Output<Asked>,
     stop: Arc<AtomicBool>,
     number: u64,
+    /// Whether a message that asked for no force before its time may yet be answered.
+    is_owed: bool,
 }
 
 impl Courier {
@@ -211,6 +244,7 @@ impl Courier {
             match self.trip() {
                 Ok(Seen::Pose(_)) => seen = begun,
                 Ok(Seen::Nothing) => why = Loss::Unplugged,
+                Ok(Seen::Nowhere) => why = Loss::Nowhere,
                 Ok(Seen::Hindered(hindrance)) => return Some(Loss::Hindered(hindrance)),
                 Err(Missed::Unread) => why = Loss::Foreign,
                 Err(Missed::Ended(end)) => {
@@ -232,18 +266,20 @@ impl Courier {
 
     /// A force out, a state in.
     fn trip(&mut self) -> Result<Seen, Missed> {
+        // The answer to a message too many would be one of long ago to each that follows.
+        if self.is_owed && self.connection.waiting()?.is_some() {
+            self.is_owed = false;
+        }
         let asked = *self.wanted.read();
         let is_fresh = monotonic_ns().saturating_sub(asked.at_ns) <= FRESH_NS;
-        let wanted = match (asked.amplifiers, is_fresh) {
-            (Switch::Off, _) => Wanted::Position,
-            (Switch::On, true) => Wanted::Force(self.follower.basis().to_session(asked.force)),
-            (Switch::On, false) => Wanted::Force(DVec3::ZERO),
-        };
-        self.send(wanted)?;
-        let bytes = self.connection.receive(&self.stop)?;
+        self.send(match is_fresh {
+            true => self.follower.basis().to_session(asked.force),
+            false => DVec3::ZERO,
+        })?;
+        let bytes = self.answer()?;
         let at_ns = monotonic_ns();
         let update = Update::read(&bytes).map_err(|_| Missed::Unread)?;
-        let seen = self.follower.take(&update);
+        let seen = self.follower.take(&update, at_ns);
         if let Seen::Pose(pose) = seen {
             self.number += 1;
             self.tell.write(Told {
@@ -255,15 +291,28 @@ impl Courier {
         Ok(seen)
     }
 
-    fn send(&mut self, wanted: Wanted) -> Result<(), Missed> {
+    /// The service's answer. A force that is not answered in time is taken back.
+    fn answer(&mut self) -> Result<Bytes, Missed> {
+        let patience = Duration::from_nanos(FRESH_NS);
+        match self.connection.receive(&self.stop, patience) {
+            Err(End::Silent) => {}
+            answer => return Ok(answer?),
+        }
+        self.send(DVec3::ZERO)?;
+        self.is_owed = true;
+        Ok(self.connection.receive(&self.stop, SILENCE)?)
+    }
+
+    /// Asks for a force, N, in the session's axes.
+    fn send(&mut self, force: DVec3) -> Result<(), Missed> {
         let text =
-            request(self.follower.device(), wanted, self.dialect).map_err(|_| Missed::Unread)?;
+            request(self.follower.device(), force, self.dialect).map_err(|_| Missed::Unread)?;
         Ok(self.connection.send(text)?)
     }
 
     /// The last words: no force.
     fn part(mut self) {
-        if self.send(Wanted::Force(DVec3::ZERO)).is_ok() {
+        if self.send(DVec3::ZERO).is_ok() {
             self.connection.close();
         }
     }

@@ -35,6 +35,8 @@ pub struct Device {
 
 #[derive(Clone, Debug, Default, Deserialize)]
 struct Config {
+    #[serde(rename = "type")]
+    kind: Option<String>,
     basis: Option<Permutation>,
     /// What `basis` was called before 3.5.
     coordinate_system: Option<Permutation>,
@@ -76,6 +78,8 @@ impl Vector {
 #[derive(Clone, Copy, Debug, Default, Deserialize)]
 pub struct Status {
     calibrated: Option<bool>,
+    /// Whether a session uses it: in the first message one that is not ours.
+    in_use: Option<bool>,
     power_supply: Option<bool>,
     ready: Option<bool>,
 }
@@ -89,6 +93,8 @@ pub enum Hindrance {
     NotCalibrated,
     /// It says no more than that it is not ready.
     NotReady,
+    /// It speaks in axes that cannot be read, and a guess would push the wrong way.
+    UnknownAxes,
 }
 
 impl Hindrance {
@@ -99,6 +105,7 @@ impl Hindrance {
             Self::NoPower => "the Inverse3 has no power",
             Self::NotCalibrated => "the Inverse3 is not calibrated",
             Self::NotReady => "the Inverse3 is not ready",
+            Self::UnknownAxes => "the Inverse3 speaks in axes that cannot be read",
         }
     }
 
@@ -109,6 +116,7 @@ impl Hindrance {
             Self::NoPower => "plug its power supply in",
             Self::NotCalibrated => "put the grip into its rest, and wait until the light stays on",
             Self::NotReady => "wait a little, or look at it in Haply Hub",
+            Self::UnknownAxes => "set its basis to XYZ in Haply Hub",
         }
     }
 }
@@ -129,13 +137,31 @@ impl Status {
 
 impl Device {
     /// The axes that it speaks in, where it tells them.
+    ///
+    /// # Errors
+    /// Where it tells what are none.
+    pub fn basis(&self) -> Result<Option<Basis>, Hindrance> {
+        let told = self.config.as_ref().and_then(|config| {
+            [&config.basis, &config.coordinate_system]
+                .into_iter()
+                .flatten()
+                .find_map(|basis| basis.permutation.as_deref())
+        });
+        told.map(|told| Basis::read(told).ok_or(Hindrance::UnknownAxes))
+            .transpose()
+    }
+
+    /// What it is, such as "inverse3" or "minverse", where it tells it.
     #[must_use]
-    pub fn basis(&self) -> Option<Basis> {
-        let config = self.config.as_ref()?;
-        [&config.basis, &config.coordinate_system]
-            .into_iter()
-            .flatten()
-            .find_map(|basis| Basis::read(basis.permutation.as_deref()?))
+    pub fn kind(&self) -> Option<&str> {
+        self.config.as_ref()?.kind.as_deref()
+    }
+
+    /// Whether a session uses it.
+    #[must_use]
+    pub fn is_in_use(&self) -> bool {
+        self.status
+            .is_some_and(|status| status.in_use == Some(true))
     }
 
     fn tells_basis(&self) -> bool {
@@ -147,8 +173,9 @@ impl Device {
 /// A VerseGrip, at a wire or without.
 #[derive(Clone, Debug, Default, Deserialize)]
 pub struct Grip {
+    /// Its id, such as "61548".
     #[serde(default)]
-    device_id: String,
+    pub device_id: String,
     /// How it is held.
     pub state: Option<GripState>,
 }
@@ -264,15 +291,6 @@ pub enum Dialect {
     Values,
 }
 
-/// What we ask of a device.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Wanted {
-    /// Where it is, and no more: its motors go idle.
-    Position,
-    /// A force, N, in the session's axes.
-    Force(DVec3),
-}
-
 #[derive(Serialize)]
 struct Request<'a> {
     inverse3: [Asked<'a>; 1],
@@ -288,7 +306,6 @@ struct Asked<'a> {
 #[serde(rename_all = "snake_case")]
 enum Commands {
     SetCursorForce(Force),
-    ProbePosition {},
 }
 
 #[derive(Serialize)]
@@ -305,37 +322,30 @@ struct Parts {
     z: f64,
 }
 
-/// The message that asks `wanted` of a device. A service before 3.5 is asked for no force where only
-/// the position is wanted: it tells it for nothing less.
+/// The message that asks a device for a force, N, in the session's axes. Also no force is one: a
+/// service tells a grip at a wire to a session that commands its device, and before 3.5 it tells
+/// nothing for less.
 ///
 /// # Errors
 /// Never, for numbers that are finite.
 pub fn request(
     device_id: &str,
-    wanted: Wanted,
+    force: DVec3,
     dialect: Dialect,
 ) -> Result<String, serde_json::Error> {
-    let parts = |force: DVec3| Parts {
+    let parts = Parts {
         x: force.x,
         y: force.y,
         z: force.z,
     };
-    let commands = match (wanted, dialect) {
-        (Wanted::Position, Dialect::Vector) => Commands::ProbePosition {},
-        (Wanted::Position, Dialect::Values) => {
-            Commands::SetCursorForce(Force::Values(parts(DVec3::ZERO)))
-        }
-        (Wanted::Force(force), Dialect::Vector) => {
-            Commands::SetCursorForce(Force::Vector(parts(force)))
-        }
-        (Wanted::Force(force), Dialect::Values) => {
-            Commands::SetCursorForce(Force::Values(parts(force)))
-        }
+    let force = match dialect {
+        Dialect::Vector => Force::Vector(parts),
+        Dialect::Values => Force::Values(parts),
     };
     serde_json::to_string(&Request {
         inverse3: [Asked {
             device_id,
-            commands,
+            commands: Commands::SetCursorForce(force),
         }],
     })
 }

@@ -153,8 +153,10 @@ impl<W: Wire> Link<W> {
         }
     }
 
-    /// Sends a last line, whatever is on its way.
+    /// Sends a last line, whatever is on its way. A newline goes first: a line that was cut off would
+    /// make another of this one.
     pub fn part(&mut self, line: &[u8]) {
+        self.wire.write(PROBE).ok();
         self.wire.write(line).ok();
     }
 

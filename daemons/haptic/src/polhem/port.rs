@@ -41,6 +41,7 @@ impl Port {
         // What was sent to whoever had it before; where it cannot be thrown away it is no answer of ours.
         port.port.clear(ClearBuffer::All).ok();
         port.lower_latency();
+        port.close_at_once();
         Ok(port)
     }
 
@@ -53,6 +54,18 @@ impl Port {
     /// FTDI's gather them for 16 ms otherwise.
     #[cfg(target_os = "linux")]
     fn lower_latency(&self) {
+        self.set(|settings| settings.flags |= ASYNC_LOW_LATENCY);
+    }
+
+    /// Has the port not wait, half a minute by default, for what a device that hangs does not take. A
+    /// setting of its own: most drivers permit it to root only, and refuse all that is set with it.
+    #[cfg(target_os = "linux")]
+    fn close_at_once(&self) {
+        self.set(|settings| settings.closing_wait = ASYNC_CLOSING_WAIT_NONE);
+    }
+
+    #[cfg(target_os = "linux")]
+    fn set(&self, change: impl FnOnce(&mut SerialSettings)) {
         let mut settings = SerialSettings::default();
         // SAFETY: the kernel fills the structure, which is laid out as its `serial_struct`.
         let got = unsafe {
@@ -65,7 +78,7 @@ impl Port {
         if got != 0 {
             return;
         }
-        settings.flags |= ASYNC_LOW_LATENCY;
+        change(&mut settings);
         // SAFETY: the kernel reads the structure that it has just filled.
         unsafe {
             nix::libc::ioctl(
@@ -78,6 +91,9 @@ impl Port {
 
     #[cfg(not(target_os = "linux"))]
     fn lower_latency(&self) {}
+
+    #[cfg(not(target_os = "linux"))]
+    fn close_at_once(&self) {}
 }
 
 impl Wire for Port {
@@ -93,6 +109,10 @@ impl Wire for Port {
 /// `ASYNC_LOW_LATENCY` of linux/tty_flags.h.
 #[cfg(target_os = "linux")]
 const ASYNC_LOW_LATENCY: i32 = 1 << 13;
+
+/// `ASYNC_CLOSING_WAIT_NONE` of linux/serial.h.
+#[cfg(target_os = "linux")]
+const ASYNC_CLOSING_WAIT_NONE: u16 = 65_535;
 
 /// `struct serial_struct` of linux/serial.h.
 #[cfg(target_os = "linux")]

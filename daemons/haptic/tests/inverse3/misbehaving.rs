@@ -49,12 +49,19 @@ fn what_is_missing_at_the_start_is_told_with_what_to_do() {
             foreign.what
         );
     }
-    for (key, what) in [
-        ("calibrated", "is not calibrated"),
-        ("power_supply", "has no power"),
+    for (part, key, value, what) in [
+        ("status", "calibrated", json!(false), "is not calibrated"),
+        ("status", "power_supply", json!(false), "has no power"),
+        ("status", "in_use", json!(true), "in use by another program"),
+        (
+            "config",
+            "basis",
+            json!({ "permutation": "XXX" }),
+            "axes that cannot be read",
+        ),
     ] {
         let mut message = inventory();
-        message["inverse3"][0]["status"][key] = json!(false);
+        message["inverse3"][0][part][key] = value;
         let hindered = first(Act::Say(message));
         assert!(
             hindered.what.contains(what) && hindered.what.contains("049D"),
@@ -97,7 +104,7 @@ fn turning(act: fn() -> Act) -> Service {
 fn a_service_or_device_that_goes_is_told_as_how_it_went() {
     let closed = "the Inverse service has closed the connection";
     let foreign = "the Inverse service sends what cannot be read";
-    let cases: [Case; 9] = [
+    let cases: [Case; 10] = [
         (|| Act::Close, closed),
         (|| Act::Vanish, closed),
         (|| Act::Rest, "the Inverse service does not answer any more"),
@@ -107,6 +114,14 @@ fn a_service_or_device_that_goes_is_told_as_how_it_went() {
         (
             || Act::Say(json!({ "inverse3": [] })),
             "the Inverse3 is unplugged",
+        ),
+        (
+            || {
+                let mut far = state();
+                far["cursor_position"]["x"] = json!(50.0);
+                Act::Say(update("049D", far))
+            },
+            "the Inverse3 tells places where its cursor cannot be",
         ),
         (
             || {

@@ -13,6 +13,8 @@ use tungstenite::{Message, WebSocket};
 pub(crate) enum Act {
     /// Answers by a state.
     Say(Value),
+    /// Answers by a state, twice.
+    Twice(Value),
     /// Answers by something else.
     Send(Message),
     /// Says nothing.
@@ -112,12 +114,19 @@ fn serve(
     while !stop.load(Ordering::Relaxed) {
         match socket.read() {
             Ok(Message::Text(text)) => {
-                let message = serde_json::from_str(&text).expect("JSON");
+                let message: Value = serde_json::from_str(&text).expect("JSON");
+                let is_command = text.contains("set_cursor_force");
                 let mut heard = heard.lock().expect("heard");
                 heard.messages.push(message);
                 heard.last = Some(Instant::now());
                 drop(heard);
-                if perform(&mut socket, &act(count)).is_break() {
+                let mut act = act(count);
+                // A session that does not command its device is told of no grip.
+                if let (Act::Say(value), false) = (&mut act, is_command) {
+                    value["verse_grip"] = json!([]);
+                    value["wireless_verse_grip"] = json!([]);
+                }
+                if perform(&mut socket, &act).is_break() {
                     return;
                 }
                 count += 1;
@@ -138,6 +147,11 @@ fn perform(socket: &mut WebSocket<TcpStream>, act: &Act) -> std::ops::ControlFlo
     use std::ops::ControlFlow::{Break, Continue};
     let sent = match act {
         Act::Say(value) => socket.send(Message::text(value.to_string())),
+        Act::Twice(value) => {
+            let text = value.to_string();
+            let first = socket.send(Message::text(text.clone()));
+            first.and_then(|()| socket.send(Message::text(text)))
+        }
         Act::Send(message) => socket.send(message.clone()),
         Act::Rest => Ok(()),
         Act::Close => {

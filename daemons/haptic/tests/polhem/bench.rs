@@ -26,6 +26,8 @@ pub(crate) struct Bench {
     pub(crate) piece: usize,
     /// Bytes that a write takes at most; none where 0.
     pub(crate) room: usize,
+    /// Bytes after which the wire is full.
+    pub(crate) left: usize,
     /// Answers to come that are lost.
     pub(crate) losses: usize,
     /// Sent ahead of each answer.
@@ -50,6 +52,7 @@ impl Cable {
             latency_s: 0.0,
             piece: usize::MAX,
             room: usize::MAX,
+            left: usize::MAX,
             losses: 0,
             garbage: Vec::new(),
             broken: None,
@@ -97,10 +100,12 @@ impl Wire for Cable {
         if let Some(errno) = bench.broken {
             return Err(errno);
         }
-        if bench.room == 0 {
+        let room = bench.room.min(bench.left);
+        if room == 0 {
             return Err(Errno::EAGAIN);
         }
-        let bytes = &bytes[..bytes.len().min(bench.room)];
+        let bytes = &bytes[..bytes.len().min(room)];
+        bench.left -= bytes.len();
         bench.sent.push(bytes.to_vec());
         let now_s = bench.now_s;
         let answer = bench.firmware.hear(bytes, now_s);
