@@ -119,7 +119,9 @@ fn a_device_that_is_unplugged_is_lost_and_found_again() {
         "the haptic device does not answer (0x302)"
     );
     assert!(told().contains("(0x302, internal -28)"), "{}", told());
-    let log = calls(&control);
+    let mut log = calls(&control);
+    // The last call may still be on its way back as the scheduler is told to stop.
+    log.retain(|call| !matches!(call, Call::Returned(..)));
     assert_eq!(forces(&log).last(), Some(&DVec3::ZERO));
     let end = place(&log, |call| *call == Call::Stop);
     assert!(matches!(
