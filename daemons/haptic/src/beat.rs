@@ -6,7 +6,7 @@ use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 
 use glam::DVec3;
 use maulstick_haptics::contact::Contact;
-use maulstick_haptics::{Limits, Sender, Servo, Switch, Tick};
+use maulstick_haptics::{Kept, Limits, Sender, Servo, Switch, Tick};
 use maulstick_types::Origin;
 
 use crate::driver::{Reading, Trouble};
@@ -44,6 +44,15 @@ pub struct Delivery {
     pub number: u64,
 }
 
+/// What a servo knows of the one before it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Before {
+    /// Its fault and its heat.
+    pub kept: Kept,
+    /// The [`Wish`]'s armings that it had done.
+    pub armings: u64,
+}
+
 /// What the servo shares with the thread that talks to the rig.
 pub struct Channels {
     /// Ticks go out here.
@@ -74,20 +83,33 @@ pub struct Beat {
 }
 
 impl Beat {
-    /// A servo that has not ticked yet.
+    /// A servo that has not ticked yet, in the place of another.
     #[must_use]
-    pub fn new(device: Placed, limits: Limits, channels: Channels) -> Self {
+    pub fn new(device: Placed, limits: Limits, before: Before, channels: Channels) -> Self {
         Self {
             device,
-            servo: Servo::new(limits),
+            servo: Servo::after(limits, before.kept),
             longest_s: limits.longest_tick_s,
             channels,
             seen: 0,
             sender: None,
-            followed: Wish::default(),
+            // What was armed before was another servo: its fault is to outlast it.
+            followed: Wish {
+                armings: before.armings,
+                ..Wish::default()
+            },
             amplifiers: Switch::On,
             read_ns: monotonic_ns(),
             trouble: None,
+        }
+    }
+
+    /// What the next servo over the device is to know.
+    #[must_use]
+    pub fn kept(&self) -> Before {
+        Before {
+            kept: self.servo.kept(),
+            armings: self.followed.armings,
         }
     }
 

@@ -8,15 +8,15 @@ use maulstick_bus::{Class, CreditSender, Queue, Server};
 use maulstick_device::actions::{Action, Actions, Actor};
 use maulstick_device::fitting::Fitting;
 use maulstick_haptics::contact::Contact;
-use maulstick_haptics::{Address, Limits, Switch};
+use maulstick_haptics::{Address, Kept, Limits, Switch};
 use maulstick_num::geometry::Rigid;
 use maulstick_rig::{Fault, Member, RigConfig};
 use maulstick_types::haptics::{ContactModel, ForceOrder, ForceReply, ForceRequest};
 use maulstick_types::stylus::{StylusInfo, StylusPose, StylusSample, StylusStatus};
 use maulstick_types::{Flags, encode};
 
-use crate::beat::{Delivery, Ticked};
-use crate::host::{BINS, Host, bin};
+use crate::beat::{Before, Delivery, Ticked};
+use crate::host::{BINS, Ended, Host, bin};
 use crate::open::{HapticSettings, open};
 use crate::placed::Placed;
 use crate::wish::Wish;
@@ -27,6 +27,9 @@ const STATUS_PERIOD_NS: u64 = 100_000_000;
 const ATTEMPT_PERIOD_NS: u64 = 1_000_000_000;
 /// Out of range a sample goes out only this often, ns.
 const IDLE_PERIOD_NS: u64 = 50_000_000;
+
+/// A status has no room for more, bytes.
+const LONGEST_TROUBLE: usize = 2048;
 
 /// Runs a device in the rig of `member`.
 ///
@@ -44,6 +47,10 @@ struct Daemon {
     settings: HapticSettings,
     /// The servo, while there is a device.
     host: Option<Host>,
+    /// What the servo before it has left, and when, ns.
+    before: Option<(Before, u64)>,
+    /// The device that was told of last, in words.
+    what: String,
     /// What the switches do, but the clutch; ended after the servo, for it may wait for the paint node.
     actor: Actor,
     /// Where the device stands.
@@ -102,6 +109,8 @@ impl Daemon {
             config: member.config.clone(),
             settings: settings.clone(),
             host: None,
+            before: None,
+            what: String::new(),
             actor,
             fitting,
             attempt_ns: 0,
@@ -173,7 +182,10 @@ impl Daemon {
             }
         };
         let device = &self.settings.device;
-        tracing::info!("{}: {}", device.name, opened.what);
+        if self.what != opened.what {
+            tracing::info!("{}: {}", device.name, opened.what);
+            self.what = opened.what;
+        }
         let clutch = Actions::of(device).bits(Action::Clutch);
         let placed = Placed::new(opened.driver, self.fitting, clutch);
         let abilities = placed.abilities();
@@ -185,7 +197,10 @@ impl Daemon {
             damping_n_s_m: abilities.damping_n_s_m,
             ..Limits::default()
         };
-        let mut host = Host::start(placed, opened.pace, limits.scaled(scale))
+        let unscaled = limits;
+        let limits = limits.scaled(scale);
+        let before = self.before_of(limits, now_ns);
+        let mut host = Host::resume(placed, opened.pace, limits, before)
             .map_err(|error| Fault::failure(format!("the servo cannot start: {error}")))?;
         for warning in &host.warnings {
             tracing::warn!("{}: {warning}", device.name);
@@ -199,23 +214,44 @@ impl Daemon {
             senses: abilities.senses,
             drives: abilities.drives,
             rate_hz: 1000.0,
-            max_force_n: limits.max_force_n,
-            max_stiffness_n_m: limits.max_stiffness_n_m,
+            max_force_n: unscaled.max_force_n,
+            max_stiffness_n_m: unscaled.max_stiffness_n_m,
             workspace_m: abilities.workspace_m,
         };
         self.info.send(now_ns, now_ns, &told)?;
         self.senses = abilities.senses;
-        self.told.trouble.clear();
         self.host = Some(host);
         Ok(())
     }
 
+    /// What a new servo is to know: a device that is lost and found again is still without force after a
+    /// fault, and its motors have cooled only for as long as it was away.
+    fn before_of(&self, limits: Limits, now_ns: u64) -> Before {
+        let (mut before, since_ns) = self.before.unwrap_or((
+            Before {
+                kept: Kept::nothing(limits),
+                armings: self.wish.armings,
+            },
+            now_ns,
+        ));
+        if before.armings != self.wish.armings {
+            before.kept.fault = None;
+            before.armings = self.wish.armings;
+        }
+        before.kept = before
+            .kept
+            .rested(now_ns.saturating_sub(since_ns) as f64 * 1e-9);
+        before
+    }
+
     /// Says, once, why there is no device.
     fn miss(&mut self, fault: &Fault) {
-        let trouble = match &fault.help {
-            Some(help) => format!("{}; {help}", fault.what),
-            None => fault.what.clone(),
-        };
+        let place = fault.place.as_ref().map(|place| format!(" ({place})"));
+        let mut trouble = format!("{}{}", fault.what, place.unwrap_or_default());
+        if let Some(help) = &fault.help {
+            trouble = format!("{trouble}; {help}");
+        }
+        trouble.truncate(trouble.floor_char_boundary(LONGEST_TROUBLE));
         if trouble != self.told.trouble {
             let name = &self.settings.device.name;
             tracing::warn!("{name}: {trouble} (tried again each second)");
@@ -227,10 +263,16 @@ impl Daemon {
     /// lost.
     fn lose(&mut self, now_ns: u64) -> Result<(), Fault> {
         self.dropped_before = self.dropped();
-        let Some(trouble) = self.host.take().and_then(|host| host.trouble()) else {
+        let Some(Ended { trouble, before }) = self.host.take().and_then(|host| host.ended()) else {
             return Err(Fault::failure("the servo has ended by a fault of its own")
                 .help("its own message above says why"));
         };
+        if let Some(fault) = before.kept.fault
+            && before.armings == self.wish.armings
+        {
+            self.latch(fault);
+        }
+        self.before = Some((before, now_ns));
         let away = StylusSample {
             in_range: false,
             switches: 0,
@@ -326,12 +368,12 @@ impl Daemon {
         self.told.lateness[bin(ticked.late_ns)] += 1;
         self.told.execution[bin(ticked.spent_ns)] += 1;
         self.told.force_n = ticked.force.length();
+        // A device that is lost before it says anything is still the same trouble.
+        self.told.trouble.clear();
         if let Some(fault) = ticked.tick.fault
-            && self.told.faults.is_empty()
             && ticked.armings == self.wish.armings
         {
-            let what = format!("{fault}: no force until `maulstick force rearm`");
-            self.told.faults.push(what);
+            self.latch(fault);
         }
         let tick = &ticked.tick;
         self.told.resting = tick.resting;
@@ -360,6 +402,14 @@ impl Daemon {
             return Ok(());
         }
         self.send(now_ns, event_ns, sample)
+    }
+
+    /// Tells of a latched fault, once.
+    fn latch(&mut self, fault: maulstick_haptics::Fault) {
+        if self.told.faults.is_empty() {
+            let what = format!("{fault}: no force until `maulstick force rearm`");
+            self.told.faults.push(what);
+        }
     }
 
     fn send(&mut self, now_ns: u64, event_ns: u64, sample: StylusSample) -> Result<(), Fault> {

@@ -100,6 +100,15 @@ pub trait Driver: Send {
     fn switch(&mut self, _amplifiers: Switch) {}
 }
 
+/// Whose thread a servo is called on.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Caller {
+    /// The one that runs the clock.
+    Us,
+    /// The vendor's, who has seen to its priority.
+    Vendor,
+}
+
 /// Who calls the servo: our own clock, or the thread of a vendor's library.
 pub trait Pace: Send {
     /// Calls `beat` a thousand times a second, with how late it is, ns, until it says that it is over;
@@ -109,6 +118,10 @@ pub trait Pace: Send {
     /// A [`Trouble`] where the clock itself fails.
     fn run(&mut self, beat: &mut (dyn FnMut(u64) -> ControlFlow<()> + Send))
     -> Result<(), Trouble>;
+    /// On whose thread it calls.
+    fn caller(&self) -> Caller {
+        Caller::Us
+    }
 }
 
 /// A device that has been opened.

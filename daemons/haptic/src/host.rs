@@ -5,12 +5,12 @@ use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::sync::mpsc::Receiver;
 use std::thread::JoinHandle;
 
-use maulstick_haptics::Limits;
+use maulstick_haptics::{Kept, Limits};
 use thread_priority::unix::{RealtimeThreadSchedulePolicy, ThreadSchedulePolicy};
 use thread_priority::{ThreadPriority, ThreadPriorityValue};
 
-use crate::beat::{Beat, Channels, Delivery, Ticked};
-use crate::driver::{Pace, Trouble};
+use crate::beat::{Beat, Before, Channels, Delivery, Ticked};
+use crate::driver::{Caller, Pace, Trouble};
 use crate::placed::Placed;
 use crate::wish::Wish;
 
@@ -20,6 +20,15 @@ pub const BINS: usize = 12;
 const RING: usize = 2048;
 /// SCHED_FIFO priority of the servo.
 const PRIORITY: u8 = 80;
+
+/// How a servo has ended that has lost its device.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Ended {
+    /// Why it was lost.
+    pub trouble: Trouble,
+    /// What the next servo is to know.
+    pub before: Before,
+}
 
 /// The running servo.
 pub struct Host {
@@ -33,7 +42,7 @@ pub struct Host {
     pub warnings: Vec<String>,
     stop: Arc<AtomicBool>,
     dropped: Arc<AtomicU64>,
-    lost: Receiver<Trouble>,
+    ended: Receiver<Ended>,
     thread: Option<JoinHandle<()>>,
 }
 
@@ -43,7 +52,24 @@ impl Host {
     /// # Errors
     /// What the system says where no thread can be started.
     pub fn start(device: Placed, pace: Box<dyn Pace>, limits: Limits) -> std::io::Result<Self> {
-        Self::with_ring(device, pace, limits, RING)
+        let before = Before {
+            kept: Kept::nothing(limits),
+            armings: 0,
+        };
+        Self::resume(device, pace, limits, before)
+    }
+
+    /// The same, in the place of a servo that has lost the device.
+    ///
+    /// # Errors
+    /// As [`Host::start`].
+    pub fn resume(
+        device: Placed,
+        pace: Box<dyn Pace>,
+        limits: Limits,
+        before: Before,
+    ) -> std::io::Result<Self> {
+        Self::with_ring(device, pace, limits, before, RING)
     }
 
     /// Whether the servo has ended.
@@ -52,10 +78,16 @@ impl Host {
         self.ticks.is_abandoned()
     }
 
+    /// Why it has lost its device, once it has, and what the next servo is to know.
+    #[must_use]
+    pub fn ended(&self) -> Option<Ended> {
+        self.ended.recv().ok()
+    }
+
     /// Why it has lost its device, once it has.
     #[must_use]
     pub fn trouble(&self) -> Option<Trouble> {
-        self.lost.recv().ok()
+        self.ended().map(|ended| ended.trouble)
     }
 
     /// How many ticks did not fit into the ring, as the publisher was late.
@@ -68,13 +100,14 @@ impl Host {
         device: Placed,
         mut pace: Box<dyn Pace>,
         limits: Limits,
+        before: Before,
         ring: usize,
     ) -> std::io::Result<Self> {
         let (to_publisher, ticks) = rtrb::RingBuffer::new(ring);
         let (models, from_rig) = triple_buffer::triple_buffer(&Delivery::default());
         let (wishes, wished) = triple_buffer::triple_buffer(&Wish::default());
         let (tell, told) = std::sync::mpsc::channel();
-        let (lose, lost) = std::sync::mpsc::channel();
+        let (end, ended) = std::sync::mpsc::channel();
         let stop = Arc::new(AtomicBool::new(false));
         let dropped = Arc::new(AtomicU64::new(0));
         let channels = Channels {
@@ -87,11 +120,12 @@ impl Host {
         let thread = std::thread::Builder::new()
             .name("servo".into())
             .spawn(move || {
-                tell.send(become_real_time()).ok();
-                let mut servo = Beat::new(device, limits, channels);
+                tell.send(become_real_time(pace.caller())).ok();
+                let mut servo = Beat::new(device, limits, before, channels);
                 let clock = pace.run(&mut |late_ns| servo.beat(late_ns)).err();
                 if let Some(trouble) = servo.trouble().or(clock) {
-                    lose.send(trouble).ok();
+                    let before = servo.kept();
+                    end.send(Ended { trouble, before }).ok();
                 }
                 // Leaves no force: see what drops a device. The clock of a vendor's library stands by now.
                 drop(servo);
@@ -104,7 +138,7 @@ impl Host {
             warnings,
             stop,
             dropped,
-            lost,
+            ended,
             thread: Some(thread),
         })
     }
@@ -127,8 +161,9 @@ impl std::fmt::Debug for Host {
     }
 }
 
-/// Locks memory and asks for real-time scheduling; returns what was not permitted, with the fix.
-fn become_real_time() -> Vec<String> {
+/// Locks memory and asks for real-time scheduling where the servo is called on this thread; returns
+/// what was not permitted, with the fix.
+fn become_real_time(caller: Caller) -> Vec<String> {
     let mut warnings = Vec::new();
     let all =
         nix::sys::mman::MlockAllFlags::MCL_CURRENT | nix::sys::mman::MlockAllFlags::MCL_FUTURE;
@@ -136,6 +171,9 @@ fn become_real_time() -> Vec<String> {
         warnings.push(format!(
             "memory is not locked ({error}): add 'memlock unlimited' for your user to /etc/security/limits.conf"
         ));
+    }
+    if caller == Caller::Vendor {
+        return warnings;
     }
     let policy = ThreadSchedulePolicy::Realtime(RealtimeThreadSchedulePolicy::Fifo);
     let priority = ThreadPriorityValue::try_from(PRIORITY).map(ThreadPriority::Crossplatform);

@@ -29,5 +29,6 @@ pub use address::Address;
 pub use contact::{Contact, Felt};
 pub use plant::{Hand, Plant};
 pub use servo::fault::Fault;
+pub use servo::kept::Kept;
 pub use servo::limits::Limits;
 pub use servo::{Sender, Servo, Switch, Tick};

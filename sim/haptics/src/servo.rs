@@ -11,11 +11,13 @@
 //! | [`limits`] | what a force may be |
 //! | [`fault`] | what latches the force at zero |
 //! | [`heat`] | the largest force by the motors' temperature |
+//! | [`kept`] | what outlasts a servo |
 //! | [`passivity`] | the energy that sampling gives, taken back |
 //! | [`shaking`] | a hand that shakes makes the force softer |
 
 pub mod fault;
 pub mod heat;
+pub mod kept;
 pub mod limits;
 pub mod passivity;
 pub mod shaking;
@@ -24,6 +26,7 @@ use glam::DVec3;
 
 use self::fault::Fault;
 use self::heat::Heat;
+use self::kept::Kept;
 use self::limits::Limits;
 use self::passivity::Passivity;
 use self::shaking::{Shaking, Touch};
@@ -139,6 +142,12 @@ impl Servo {
     /// A servo without a model, switched on at full strength.
     #[must_use]
     pub fn new(limits: Limits) -> Self {
+        Self::after(limits, Kept::nothing(limits))
+    }
+
+    /// A servo in the place of one that has lost its device: a fault stays latched, motors warm.
+    #[must_use]
+    pub fn after(limits: Limits, kept: Kept) -> Self {
         Self {
             limits,
             switch: Switch::On,
@@ -151,12 +160,12 @@ impl Servo {
             engagement: Engagement::Waiting(0),
             engaged_s: 0.0,
             idle_s: 0.0,
-            heat: Heat::cold(limits.max_force_n),
+            heat: kept.heat,
             passivity: Passivity::default(),
             shaking: Shaking::default(),
             last: None,
             force: DVec3::ZERO,
-            fault: None,
+            fault: kept.fault,
         }
     }
 
@@ -217,9 +226,21 @@ impl Servo {
         self.fault
     }
 
+    /// What the next servo over the device is to know.
+    #[must_use]
+    pub fn kept(&self) -> Kept {
+        let mut heat = self.heat;
+        heat.forget_unknown();
+        Kept {
+            fault: self.fault,
+            heat,
+        }
+    }
+
     /// The force on the hand for the next tick, N, `dt` s after the tick before.
     pub fn step(&mut self, held: &Held, dt: f64) -> (DVec3, Tick) {
         let mut tick = Tick::default();
+        let cap_n = self.heat.follow(self.force.length(), &self.limits, dt);
         self.check(held, dt);
         if self.fault.is_some() {
             return self.nothing(tick);
@@ -230,6 +251,10 @@ impl Servo {
             self.last = None;
             self.passivity.forgive();
             tick.late = true;
+            if dt > self.limits.standstill_s {
+                // Who knows where the hand has gone meanwhile.
+                self.engagement = Engagement::Waiting(0);
+            }
         }
         let passed_s = dt.max(0.0);
         let dt = passed_s.min(self.limits.longest_tick_s);
@@ -250,11 +275,7 @@ impl Servo {
         if self.fault.is_some() || tick.resting {
             return self.nothing(tick);
         }
-        self.heat
-            .warm(self.force.length(), self.limits.continuous_force_n, dt);
-        tick.cap_n = self
-            .heat
-            .cap_n(self.limits.max_force_n, self.limits.continuous_force_n, dt);
+        tick.cap_n = cap_n;
         let wanted = self.wanted(held, felt, dt, &mut tick);
         let size = wanted.length();
         tick.clamped = size > tick.cap_n;
@@ -328,6 +349,12 @@ impl Servo {
         if let Some(model) = &mut self.model {
             model.age_s += passed_s;
         }
+        if self.model.is_some_and(|model| self.fading(&model) <= 0.0) {
+            // Nothing of it is felt any more: a hand that has gone deep meanwhile is not to be pushed out as
+            // models come again.
+            self.engagement = Engagement::Waiting(0);
+            self.correction = DVec3::ZERO;
+        }
         let (size, shrunk) = (self.correction.length(), self.correction_speed * dt);
         if size > shrunk {
             self.correction *= (size - shrunk) / size;
@@ -342,7 +369,8 @@ impl Servo {
         let Some(contact) = self.arrived.take() else {
             return;
         };
-        let before = self.model.as_ref().map(|model| {
+        let felt = |model: &&Active| self.fading(model) > 0.0;
+        let before = self.model.as_ref().filter(felt).map(|model| {
             (model.contact.force(held, self.limits.max_stiffness_n_m) + self.correction)
                 * self.fading(model)
         });

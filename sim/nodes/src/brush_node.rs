@@ -42,6 +42,18 @@ struct Take {
     origin: Origin,
 }
 
+/// The paint node's name.
+const PAINT: &str = "paint";
+
+/// Whether the paint node is there: where it is not, nothing is painted and nothing is felt.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Painter {
+    /// It is, or was never heard of.
+    There,
+    /// It has gone.
+    Gone,
+}
+
 /// The brush node.
 pub struct BrushNode {
     bus: Arc<dyn Bus>,
@@ -70,6 +82,8 @@ pub struct BrushNode {
     take: Option<Take>,
     /// Devices that are gone: their takes have ended.
     gone: BTreeSet<String>,
+    /// Whether the paint node is there, as far as it is known.
+    painter: Painter,
     tokens: Subscription,
     touching: bool,
     /// Drag of the paint under the brush, N·s/m.
@@ -136,6 +150,7 @@ impl BrushNode {
             told: BTreeMap::new(),
             take: None,
             gone: BTreeSet::new(),
+            painter: Painter::There,
             tokens: b.watch(&topics.node("*"), wake)?,
             touching: false,
             drag_n_s_m: 0.0,
@@ -193,7 +208,12 @@ impl BrushNode {
         }
         while let Some(token) = self.tokens.try_recv() {
             let node = self.topics.node_of(&token.key).unwrap_or_default();
-            if token.present {
+            if node == PAINT {
+                self.painter = match token.present {
+                    true => Painter::There,
+                    false => Painter::Gone,
+                };
+            } else if token.present {
                 self.gone.remove(node);
             } else {
                 self.gone.insert(node.to_owned());

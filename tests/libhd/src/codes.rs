@@ -39,7 +39,6 @@ pub(crate) const FORCE_OUTPUT: u32 = 0x4000;
 /// The last of the capabilities.
 pub(crate) const ONE_FRAME_LIMIT: u32 = 0x4004;
 
-pub(crate) const ENCODER_RESET: u32 = 1;
 pub(crate) const INKWELL: u32 = 4;
 
 /// What the library says of a code.

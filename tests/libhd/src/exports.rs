@@ -72,7 +72,7 @@ extern "C" fn hdEndFrame(handle: u32) {
 #[unsafe(no_mangle)]
 extern "C" fn hdGetError() -> ErrorInfo {
     with(|state| {
-        let (code, internal) = state.pop();
+        let (code, internal) = state.pop_from(scheduler::whose());
         ErrorInfo {
             code,
             internal,

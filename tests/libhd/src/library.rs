@@ -325,8 +325,27 @@ impl State {
         }
     }
 
+    /// While the scheduler runs, the errors belong to what it calls.
+    pub(crate) fn pop_from(&mut self, whose: Whose) -> (u32, i32) {
+        if self.is_running && whose == Whose::Other {
+            self.log.push(Call::Error(codes::INVALID_OPERATION));
+        }
+        self.pop()
+    }
+
+    /// Whether calibration is looked at within a frame, as it has to be while the scheduler runs; an error
+    /// where it is not.
+    fn is_in_turn(&mut self) -> bool {
+        let is_in_turn = !self.is_running || self.frame.is_some();
+        if !is_in_turn {
+            self.report(codes::INVALID_OPERATION, 0);
+        }
+        is_in_turn
+    }
+
     pub(crate) fn check(&mut self) -> u32 {
         self.has_current();
+        self.is_in_turn();
         let device = self.device.as_ref();
         let state = device.and_then(|device| device.script.calibration.first().copied());
         let state = state.unwrap_or(0x5000);
@@ -337,11 +356,10 @@ impl State {
     pub(crate) fn update(&mut self, style: u32) {
         self.log.push(Call::Update(style));
         let out_of_turn = match style {
-            codes::ENCODER_RESET => self.is_running,
             codes::INKWELL => !self.is_running,
             _ => false,
         };
-        if !self.has_current() {
+        if !self.has_current() || !self.is_in_turn() {
             return;
         }
         let Some(device) = &mut self.device else {
@@ -359,6 +377,15 @@ impl State {
     pub(crate) fn model(&self) -> &str {
         &self.script.model
     }
+}
+
+/// On whose thread something is asked.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Whose {
+    /// The scheduler's.
+    Scheduler,
+    /// Another.
+    Other,
 }
 
 /// Whether a capability is wanted.

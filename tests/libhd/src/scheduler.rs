@@ -1,15 +1,25 @@
 //! The thread that calls back a thousand times a second.
 
+use std::cell::Cell;
 use std::ffi::c_void;
 use std::sync::{Mutex, PoisonError};
 use std::thread::{JoinHandle, ThreadId};
 use std::time::{Duration, Instant};
 
-use crate::library::with;
+use crate::library::{Whose, with};
 use crate::log::Call;
 
 /// Its period.
 const PERIOD: Duration = Duration::from_millis(1);
+
+thread_local! {
+    static WHOSE: Cell<Whose> = const { Cell::new(Whose::Other) };
+}
+
+/// Whose thread this is.
+pub(crate) fn whose() -> Whose {
+    WHOSE.get()
+}
 
 static THREAD: Mutex<Option<JoinHandle<()>>> = Mutex::new(None);
 
@@ -36,6 +46,7 @@ pub(crate) fn stop() {
 }
 
 fn run() {
+    WHOSE.set(Whose::Scheduler);
     let mut deadline = Instant::now();
     loop {
         deadline += PERIOD;

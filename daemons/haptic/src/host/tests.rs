@@ -69,8 +69,12 @@ fn the_servo_ticks_and_its_ticks_come_out_in_order() {
 #[test]
 fn ticks_that_do_not_fit_are_counted() {
     let device = placed(Simulated::at_rest(), Rigid::IDENTITY, 1.0);
-    let mut host =
-        Host::with_ring(device, Box::new(OwnClock), Limits::default(), 4).expect("started");
+    let limits = Limits::default();
+    let before = Before {
+        kept: Kept::nothing(limits),
+        armings: 0,
+    };
+    let mut host = Host::with_ring(device, Box::new(OwnClock), limits, before, 4).expect("started");
     let give_up = Instant::now() + Duration::from_secs(20);
     while host.dropped() < 3 && Instant::now() < give_up {
         std::thread::yield_now();
@@ -202,6 +206,43 @@ fn a_fault_switches_the_amplifiers_off_and_arming_on_until_the_next() {
     let again = |ticked: &Ticked| ticked.armings == 1 && ticked.tick.fault.is_some();
     assert!(tick(&mut host, again).is_some());
     assert!(!powered.load(Ordering::SeqCst));
+}
+
+#[test]
+fn a_fault_outlasts_the_device_until_it_is_armed_anew() {
+    let still = || Still {
+        held: Held {
+            position: DVec3::Z,
+            orientation: DQuat::IDENTITY,
+            velocity: DVec3::ZERO,
+        },
+        written: Arc::default(),
+    };
+    let limits = Limits::default();
+    let before = Before {
+        kept: Kept {
+            fault: Some(maulstick_haptics::Fault::Shaking),
+            ..Kept::nothing(limits)
+        },
+        armings: 3,
+    };
+    let device = placed(still(), Rigid::IDENTITY, 1.0);
+    let mut host = Host::resume(device, Box::new(OwnClock), limits, before).expect("started");
+    let wish = |armings| Wish {
+        armings,
+        ..Wish::default()
+    };
+    // What the daemon wishes of every servo that it starts.
+    host.wishes.write(wish(3));
+    let mut ticks = 0;
+    let ticked = tick(&mut host, |ticked| {
+        assert!(ticked.tick.fault.is_some());
+        ticks += 1;
+        ticks == 20
+    });
+    assert!(ticked.is_some());
+    host.wishes.write(wish(4));
+    assert!(tick(&mut host, |ticked| ticked.tick.fault.is_none()).is_some());
 }
 
 /// A rigid wall of 100 N/m at the desk's z = 0, for a head of 25 mm.

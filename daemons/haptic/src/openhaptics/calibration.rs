@@ -1,13 +1,16 @@
 //! How a Phantom learns where it is.
 //!
 //! Of the styles that a model has, the one that asks least of the user is taken: it finds its marks by
-//! itself, or the stylus is put into the inkwell, or its encoders are set to zero as the arm stands,
-//! which has to be done before the scheduler starts. While it does not know where it is, it is out of
-//! range and gives no force.
+//! itself, or the stylus is put into the inkwell, or its encoders are set to zero as the arm stands. The
+//! last is done only where the user says that the arm stands in its reset position, by the stylus's
+//! first button: zero anywhere else would have it push at random. While a device does not know where
+//! it is, it is out of range and gives no force.
+//!
+//! All of it is done within a frame, by the thread that has it: a frame and an update are never under
+//! way together.
 
 use super::abi::{calibration, style};
-use super::session::{Calibrated, Session};
-use crate::driver::Trouble;
+use super::session::Session;
 
 /// How a model is calibrated.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -38,21 +41,73 @@ impl Style {
     }
 }
 
-/// The encoders can be set to zero only as the device is opened.
-const LOST_ZERO: Trouble = Trouble {
-    what: "the encoders of the haptic device have lost their zero",
-    code: 0,
-    help: "hold its arm in the reset position of its manual: it is opened again and set to zero there",
-};
+/// How a device stands with its calibration.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Standing {
+    /// It is not known yet, or about to be updated.
+    Unknown,
+    /// It knows where it is.
+    Calibrated,
+    /// It waits for the stylus in the inkwell.
+    Inkwell,
+    /// It waits until it has found its marks.
+    Marks,
+    /// It waits for the button, the arm in its reset position.
+    Reset,
+    /// We cannot calibrate it.
+    Foreign,
+}
 
-/// What the user is told.
-pub type Words = &'static str;
+impl Standing {
+    const ALL: [Self; 6] = [
+        Self::Unknown,
+        Self::Calibrated,
+        Self::Inkwell,
+        Self::Marks,
+        Self::Reset,
+        Self::Foreign,
+    ];
+
+    /// The one of a number, as `as u8` makes it.
+    #[must_use]
+    pub fn numbered(number: u8) -> Self {
+        let standing = Self::ALL.get(usize::from(number));
+        standing.copied().unwrap_or(Self::Unknown)
+    }
+
+    /// What the user is to do, if it is up to the user.
+    #[must_use]
+    pub fn words(self) -> Option<&'static str> {
+        Some(match self {
+            Self::Unknown | Self::Calibrated => return None,
+            Self::Inkwell => "the device is not calibrated: put the stylus into the inkwell",
+            Self::Marks => {
+                "the device is not calibrated: move the stylus slowly through all of its reach"
+            }
+            Self::Reset => {
+                "the device is not calibrated: put its arm into the reset position of its manual and press the stylus's first button"
+            }
+            Self::Foreign => {
+                "the device is not calibrated: calibrate it by the vendor's setup program"
+            }
+        })
+    }
+}
+
+/// Bit of the stylus's first button.
+const BUTTON: i32 = 1;
+/// Frames without force before an update.
+const SETTLING: u32 = 2;
 
 /// The calibration of a device.
 #[derive(Debug)]
 pub struct Calibration {
     style: Option<Style>,
-    told: Option<Words>,
+    standing: Standing,
+    /// Frames before the update that is to come.
+    settling: Option<u32>,
+    /// Whether the button was down: one that is held at opening says nothing.
+    was_down: bool,
 }
 
 impl Calibration {
@@ -61,87 +116,69 @@ impl Calibration {
     pub fn new(mask: i32) -> Self {
         Self {
             style: Style::of(mask),
-            told: None,
+            standing: Standing::Unknown,
+            settling: None,
+            was_down: true,
         }
     }
 
-    /// What is to be done before the scheduler starts.
-    ///
-    /// # Errors
-    /// [`Trouble`] where the encoders cannot be set to zero.
-    pub fn before_start(&self, session: &Session) -> Result<(), Trouble> {
-        let library = session.library;
-        let mut state = library.check_calibration();
-        if state != calibration::OK
-            && let Some(style @ Style::EncoderReset) = self.style
-        {
-            library.update_calibration(style.bit());
-            state = library.check_calibration();
-            if state != calibration::OK {
-                return Err(session.trouble().unwrap_or(LOST_ZERO));
+    /// Looks at the state, where the session wants it, and does what can be done; within a frame that
+    /// says these buttons.
+    pub fn follow(&mut self, session: &Session, buttons: i32) {
+        let is_down = buttons & BUTTON != 0;
+        let was_down = std::mem::replace(&mut self.was_down, is_down);
+        let is_pressed = is_down && !was_down;
+        let is_due = session.takes_look();
+        let is_new = match self.settling {
+            Some(0) => {
+                self.settling = None;
+                self.update(session);
+                true
             }
-        }
-        session.set_calibrated(match state {
-            calibration::OK => Calibrated::Yes,
-            _ => Calibrated::No,
-        });
-        session.trouble().map_or(Ok(()), Err)
-    }
-
-    /// Looks at the state, and does what can be done; `settle` waits until no frame is on its way that
-    /// has not seen that the device does not know where it is. Returns what to tell the user.
-    ///
-    /// # Errors
-    /// [`Trouble`] where the device has to be opened anew.
-    pub fn look(
-        &mut self,
-        session: &Session,
-        settle: impl FnOnce(),
-    ) -> Result<Option<Words>, Trouble> {
-        let library = session.library;
-        let mut state = library.check_calibration();
-        if state != calibration::OK {
-            session.set_calibrated(Calibrated::No);
-        }
-        if state == calibration::NEEDS_UPDATE {
-            match self.style {
-                Some(Style::EncoderReset) => return Err(LOST_ZERO),
-                Some(style) => {
-                    settle();
-                    library.update_calibration(style.bit());
-                    state = library.check_calibration();
-                }
-                None => {}
+            Some(left) => {
+                self.settling = Some(left - 1);
+                return;
             }
+            None if is_pressed && self.standing == Standing::Reset => {
+                self.update(session);
+                true
+            }
+            None => false,
+        };
+        if !is_new && !is_due {
+            return;
         }
-        if let Some(trouble) = session.trouble() {
-            return Err(trouble);
+        let state = session.library.check_calibration();
+        let updates = matches!(self.style, Some(Style::Auto | Style::Inkwell));
+        if state == calibration::NEEDS_UPDATE && updates && !is_new {
+            self.settling = Some(SETTLING);
         }
-        if state == calibration::OK {
-            session.set_calibrated(Calibrated::Yes);
-            return Ok(self.told.take().map(|_| "the device is calibrated"));
-        }
-        let words = self.words(state);
-        let is_new = self.told != words;
-        self.told = words.or(self.told);
-        Ok(words.filter(|_| is_new))
+        self.standing = self.standing(state);
+        session.stand(self.standing);
     }
 
-    /// What the user is to do, if it is up to the user.
-    fn words(&self, state: u32) -> Option<Words> {
+    /// Updates it by its style; one that the library refuses is none.
+    fn update(&mut self, session: &Session) {
+        let Some(style) = self.style else { return };
+        // What went wrong so far is not put down to it.
+        session.trouble();
+        session.library.update_calibration(style.bit());
+        if !session.answers() {
+            self.style = None;
+        }
+    }
+
+    fn standing(&self, state: u32) -> Standing {
         match (state, self.style) {
-            // The next look does it.
-            (calibration::NEEDS_UPDATE, Some(_)) => None,
-            (calibration::NEEDS_MANUAL_INPUT, Some(Style::Inkwell)) => {
-                Some("the device is not calibrated: put the stylus into the inkwell")
-            }
-            (calibration::NEEDS_MANUAL_INPUT, Some(Style::Auto)) => Some(
-                "the device is not calibrated: move the stylus slowly through all of its reach",
-            ),
-            (calibration::NEEDS_MANUAL_INPUT, Some(Style::EncoderReset)) => Some(
-                "the device is not calibrated: hold its arm in the reset position of its manual and start anew",
-            ),
-            _ => Some("the device is not calibrated: calibrate it by the vendor's setup program"),
+            (calibration::OK, _) => Standing::Calibrated,
+            (
+                calibration::NEEDS_UPDATE | calibration::NEEDS_MANUAL_INPUT,
+                Some(Style::EncoderReset),
+            ) => Standing::Reset,
+            (calibration::NEEDS_UPDATE, Some(_)) => Standing::Unknown,
+            (calibration::NEEDS_MANUAL_INPUT, Some(Style::Inkwell)) => Standing::Inkwell,
+            (calibration::NEEDS_MANUAL_INPUT, Some(Style::Auto)) => Standing::Marks,
+            _ => Standing::Foreign,
         }
     }
 }
@@ -162,5 +199,13 @@ mod tests {
             styles,
             [None, encoder, auto, auto, inkwell, inkwell, auto, auto]
         );
+    }
+
+    #[test]
+    fn standings_have_numbers() {
+        for standing in Standing::ALL {
+            assert_eq!(Standing::numbered(standing as u8), standing);
+        }
+        assert_eq!(Standing::numbered(99), Standing::Unknown);
     }
 }

@@ -10,6 +10,8 @@ use super::abi::{
     CURRENT_BUTTONS, CURRENT_INKWELL_SWITCH, CURRENT_SAFETY_SWITCH, CURRENT_TRANSFORM,
     CURRENT_VELOCITY, FORCE_OUTPUT, MOTOR_TEMPERATURE,
 };
+use super::calibration::Calibration;
+use super::faults::Notice;
 use super::frame::{Frame, bounded};
 use super::model::DeadMan;
 use super::session::Session;
@@ -17,6 +19,11 @@ use crate::driver::{Abilities, Driver, Reading, Trouble, Wrench};
 
 /// Frames in a row that say nothing of use, after which the device is lost: a second's.
 const MOST_UNREAD: u32 = 1000;
+
+/// Over frames that say nothing of use the force is held for so long, as with a device of which nothing
+/// new has come; the servo takes a longer one for a stand-still. Dropped and given again it would be a
+/// blow, s.
+const HELD_S: f64 = 0.005;
 
 const UNREADABLE: Trouble = Trouble {
     what: "the haptic device says no place that it could be at",
@@ -40,22 +47,31 @@ pub struct Device {
     session: Arc<Session>,
     abilities: Abilities,
     dead_man: DeadMan,
+    calibration: Calibration,
     inkwell: Answers,
     safety: Answers,
     temperature: Answers,
     /// What the amplifiers are to be from the next frame on.
     amplifiers: Option<Switch>,
     unread: u32,
+    /// What the motors give.
+    given: Wrench,
 }
 
 impl Device {
     /// The device of a session.
     #[must_use]
-    pub fn new(session: Arc<Session>, abilities: Abilities, dead_man: DeadMan) -> Self {
+    pub fn new(
+        session: Arc<Session>,
+        abilities: Abilities,
+        dead_man: DeadMan,
+        calibration: Calibration,
+    ) -> Self {
         Self {
             session,
             abilities,
             dead_man,
+            calibration,
             inkwell: Answers::Unknown,
             safety: match dead_man {
                 DeadMan::Senses => Answers::Unknown,
@@ -64,6 +80,7 @@ impl Device {
             temperature: Answers::Unknown,
             amplifiers: None,
             unread: 0,
+            given: Wrench::ZERO,
         }
     }
 
@@ -89,9 +106,13 @@ impl Device {
         frame.inkwell = asked(session, &mut self.inkwell, frame.inkwell, || {
             library.boolean(CURRENT_INKWELL_SWITCH, 0)
         });
+        let was_asked = self.safety != Answers::Unknown;
         frame.safety = asked(session, &mut self.safety, frame.safety, || {
             library.boolean(CURRENT_SAFETY_SWITCH, 0)
         });
+        if !was_asked && self.safety == Answers::No {
+            session.tell(Notice::NoSwitch);
+        }
         frame.temperatures = asked(session, &mut self.temperature, frame.temperatures, || {
             library.doubles(MOTOR_TEMPERATURE, 0.0)
         });
@@ -122,20 +143,26 @@ impl Driver for Device {
         self.abilities
     }
 
-    fn read(&mut self, _: f64) -> Result<Option<Reading>, Trouble> {
+    fn read(&mut self, dt: f64) -> Result<Option<Reading>, Trouble> {
         self.session.begin();
         match self.amplifiers.take() {
             Some(Switch::On) => self.session.library.enable(FORCE_OUTPUT),
             Some(Switch::Off) => self.session.library.disable(FORCE_OUTPUT),
             None => {}
         }
-        let reading = self.frame().reading(self.dead_man);
+        let frame = self.frame();
+        self.calibration.follow(&self.session, frame.buttons);
+        let reading = frame.reading(self.dead_man);
+        let is_calibrated = self.session.is_calibrated();
         if let Some(trouble) = self.session.trouble() {
             self.session.quieten();
             return Err(trouble);
         }
         let Some(reading) = reading else {
-            self.session.quieten();
+            if dt > HELD_S || !is_calibrated {
+                self.given = Wrench::ZERO;
+            }
+            self.session.end(self.given);
             self.unread += 1;
             return match self.unread < MOST_UNREAD {
                 true => Ok(None),
@@ -143,7 +170,6 @@ impl Driver for Device {
             };
         };
         self.unread = 0;
-        let is_calibrated = self.session.is_calibrated();
         Ok(Some(Reading {
             in_range: reading.in_range && is_calibrated,
             // A device that does not know where it is would push at random.
@@ -163,8 +189,8 @@ impl Driver for Device {
             max_torque_nm,
             ..
         } = self.abilities;
-        self.session
-            .end(bounded(wrench, max_force_n, max_torque_nm));
+        self.given = bounded(wrench, max_force_n, max_torque_nm);
+        self.session.end(self.given);
         self.session.trouble().map_or(Ok(()), Err)
     }
 

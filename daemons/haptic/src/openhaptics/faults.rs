@@ -23,16 +23,19 @@ pub enum Notice {
     TooFastHand,
     /// 0x204.
     OtherForce,
+    /// A model with a dead man's switch of which the library says nothing.
+    NoSwitch,
 }
 
 impl Notice {
     /// All of them.
-    pub const ALL: [Self; 5] = [
+    pub const ALL: [Self; 6] = [
         Self::WarmMotors,
         Self::TooMuchForce,
         Self::TooFastForce,
         Self::TooFastHand,
         Self::OtherForce,
+        Self::NoSwitch,
     ];
 
     /// Its bit in a mask.
@@ -59,6 +62,9 @@ impl Notice {
             }
             Self::OtherForce => {
                 "the device had a trouble with its motors and cut them for a moment"
+            }
+            Self::NoSwitch => {
+                "the library does not say whether the stylus is held, so there is no force: install the driver that fits this model"
             }
         }
     }
@@ -172,7 +178,7 @@ mod tests {
         let mask = Notice::ALL
             .iter()
             .fold(0, |mask, notice| mask | notice.bit());
-        assert_eq!(mask, 0b1_1111, "each has a bit of its own");
+        assert_eq!(mask, 0b11_1111, "each has a bit of its own");
     }
 
     #[test]

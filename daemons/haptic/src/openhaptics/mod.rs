@@ -88,8 +88,13 @@ pub fn open(section: &DeviceSection) -> Result<Opened, Fault> {
     });
     let (calibration, name) = (Calibration::new(styles), section.name.clone());
     Ok(Opened {
-        driver: Box::new(Device::new(session.clone(), abilities, model.dead_man)),
-        pace: Box::new(VendorClock::new(session, calibration, name)),
+        driver: Box::new(Device::new(
+            session.clone(),
+            abilities,
+            model.dead_man,
+            calibration,
+        )),
+        pace: Box::new(VendorClock::new(session, name)),
         what,
     })
 }

@@ -1,7 +1,8 @@
 //! The vendor's clock: its scheduler calls the servo, on a thread of its own.
 //!
-//! The thread that runs it waits beside and does what is no work for a real-time thread: it looks at
-//! the calibration each second, and tells what the device has to say. However the servo ends, a frame
+//! The thread that runs it waits beside and does what is no work for a real-time thread: it asks for a
+//! look at the calibration each second, and tells what the device has to say. It calls nothing of the
+//! library that needs a frame or takes an error meanwhile. However the servo ends, a frame
 //! without force is the last one before the scheduler stops; then its callback goes, and with the
 //! session the device.
 
@@ -13,12 +14,12 @@ use std::thread::park_timeout;
 use std::time::{Duration, Instant};
 
 use super::abi::{MAX_SCHEDULER_PRIORITY, RATE_HZ};
-use super::calibration::Calibration;
+use super::calibration::Standing;
 use super::faults::Notice;
 use super::library::{Library, Scheduled};
 use super::seat::{Next, call, lend};
 use super::session::Session;
-use crate::driver::{Pace, Trouble};
+use crate::driver::{Caller, Pace, Trouble};
 use crate::pace::{PERIOD_NS, monotonic_ns};
 
 /// Time between two looks at the calibration.
@@ -44,8 +45,9 @@ const IN_USE: Trouble = Trouble {
 /// The vendor's clock over a device.
 pub struct VendorClock {
     session: Arc<Session>,
-    calibration: Calibration,
     notices: Notices,
+    /// What was told of the calibration.
+    heard: Standing,
     /// The device's name, for what is told.
     name: String,
 }
@@ -53,11 +55,11 @@ pub struct VendorClock {
 impl VendorClock {
     /// The clock of a session, for the device of this name.
     #[must_use]
-    pub fn new(session: Arc<Session>, calibration: Calibration, name: String) -> Self {
+    pub fn new(session: Arc<Session>, name: String) -> Self {
         Self {
             session,
-            calibration,
             notices: Notices::default(),
+            heard: Standing::Calibrated,
             name,
         }
     }
@@ -67,8 +69,6 @@ impl VendorClock {
 #[derive(Default)]
 struct Calls {
     count: AtomicU64,
-    /// The waiting thread wants no more.
-    enough: AtomicBool,
     /// There are no more.
     over: AtomicBool,
 }
@@ -80,13 +80,12 @@ impl Pace for VendorClock {
     ) -> Result<(), Trouble> {
         // What is asked of no device in particular is asked of this thread's.
         self.session.library.make_current(self.session.device);
-        self.calibration.before_start(&self.session)?;
         let calls = Calls::default();
         let (session, waiting) = (Arc::clone(&self.session), std::thread::current());
         let (mut before_ns, mut is_beating, mut panic) = (None, true, None);
         let mut work = || {
             calls.count.fetch_add(1, Ordering::Relaxed);
-            if is_beating && !calls.enough.load(Ordering::Relaxed) {
+            if is_beating {
                 let now_ns = monotonic_ns();
                 let due_ns = before_ns.map_or(now_ns, |before_ns| before_ns + PERIOD_NS);
                 before_ns = Some(now_ns);
@@ -118,6 +117,10 @@ impl Pace for VendorClock {
             None => served.unwrap_or(Err(IN_USE)),
         }
     }
+
+    fn caller(&self) -> Caller {
+        Caller::Vendor
+    }
 }
 
 impl VendorClock {
@@ -131,43 +134,48 @@ impl VendorClock {
         if let Some(trouble) = self.session.trouble() {
             return Err(trouble);
         }
-        let _running = Running { library, scheduled };
+        let mut running = Running {
+            library,
+            scheduled: Some(scheduled),
+        };
         library.start_scheduler();
-        if let Some(trouble) = self.session.trouble() {
-            return Err(trouble);
-        }
-        self.wait(calls)
+        self.wait(calls, &mut running)
     }
 
     /// Waits until the calls are over, and looks after the device meanwhile.
-    fn wait(&mut self, calls: &Calls) -> Result<(), Trouble> {
+    fn wait(&mut self, calls: &Calls, running: &mut Running) -> Result<(), Trouble> {
         let mut pulse = Pulse::new(calls);
-        let (mut look, mut ending) = (Instant::now(), None);
+        let mut look = Instant::now() + LOOK;
         while !calls.over.load(Ordering::Acquire) {
             if pulse.is_dead() {
-                return Err(ending.unwrap_or(DEAD));
+                // Only now are the errors ours.
+                running.stop();
+                return Err(self.session.trouble().unwrap_or(DEAD));
             }
-            if ending.is_none() && Instant::now() >= look {
+            if Instant::now() >= look {
                 look = Instant::now() + LOOK;
-                match self.calibration.look(&self.session, || settle(calls)) {
-                    Ok(Some(words)) => tracing::warn!("{}: {words}", self.name),
-                    Ok(None) => {}
-                    Err(trouble) => {
-                        calls.enough.store(true, Ordering::Relaxed);
-                        ending = Some(trouble);
-                    }
-                }
+                self.session.ask_look();
             }
             self.tell();
             park_timeout(GLANCE);
         }
-        ending.map_or(Ok(()), Err)
+        Ok(())
     }
 
     /// Tells what the device has had to say.
     fn tell(&mut self) {
         for notice in self.notices.due(self.session.take_told(), Instant::now()) {
             tracing::warn!("{}: {}", self.name, notice.words());
+        }
+        let standing = self.session.standing();
+        if standing != self.heard {
+            if let Some(words) = standing.words() {
+                tracing::warn!("{}: {words}", self.name);
+                self.heard = standing;
+            } else if standing == Standing::Calibrated {
+                tracing::info!("{}: the device is calibrated", self.name);
+                self.heard = standing;
+            }
         }
         if let Some((code, internal)) = self.session.ended()
             && !std::mem::replace(&mut self.notices.is_over, true)
@@ -178,18 +186,6 @@ impl VendorClock {
                 self.name
             );
         }
-    }
-}
-
-/// Waits until two more calls have come, so that one has begun since.
-fn settle(calls: &Calls) {
-    let from = calls.count.load(Ordering::Relaxed);
-    let mut pulse = Pulse::new(calls);
-    while calls.count.load(Ordering::Relaxed) < from + 2
-        && !calls.over.load(Ordering::Acquire)
-        && !pulse.is_dead()
-    {
-        park_timeout(Duration::from_nanos(PERIOD_NS));
     }
 }
 
@@ -221,13 +217,21 @@ impl<'a> Pulse<'a> {
 /// A running scheduler.
 struct Running {
     library: &'static Library,
-    scheduled: Scheduled,
+    scheduled: Option<Scheduled>,
+}
+
+impl Running {
+    fn stop(&mut self) {
+        if let Some(scheduled) = self.scheduled.take() {
+            self.library.stop_scheduler();
+            self.library.unschedule(scheduled);
+        }
+    }
 }
 
 impl Drop for Running {
     fn drop(&mut self) {
-        self.library.stop_scheduler();
-        self.library.unschedule(self.scheduled);
+        self.stop();
         self.library.forget_errors();
     }
 }

@@ -2,7 +2,8 @@
 //!
 //! Its callbacks carry a bare pointer, and nothing but its manual says when it makes the last call.
 //! So it calls a function that looks here, where there is something only while it is lent: a call
-//! that comes late finds nothing, and does nothing.
+//! that comes late finds nothing, and does nothing. A call that never comes back from the vendor's
+//! driver cannot be waited for, nor can what it uses be taken from it: the process ends.
 
 #![allow(
     unsafe_code,
@@ -12,6 +13,8 @@
 use std::cell::UnsafeCell;
 use std::ffi::c_void;
 use std::sync::atomic::{AtomicU8, Ordering};
+use std::thread::park_timeout;
+use std::time::{Duration, Instant};
 
 use super::abi::next;
 
@@ -69,17 +72,42 @@ pub extern "C" fn call(_: *mut c_void) -> u32 {
     code
 }
 
+/// A call that has not come back for so long never does: a tick is a millisecond.
+const PATIENCE: Duration = Duration::from_secs(5);
+/// Time between two looks whether it has.
+const GLANCE: Duration = Duration::from_millis(1);
+
+/// A call is still under way.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+struct Stuck;
+
+/// Has no call begin any more, and waits for the one that runs.
+fn close(patience: Duration) -> Result<(), Stuck> {
+    let give_up = Instant::now() + patience;
+    let close = || {
+        SEAT.state
+            .compare_exchange(READY, CLOSED, Ordering::Acquire, Ordering::Acquire)
+    };
+    while close() == Err(INSIDE) {
+        if Instant::now() >= give_up {
+            return Err(Stuck);
+        }
+        park_timeout(GLANCE);
+    }
+    Ok(())
+}
+
 /// Takes back what was lent, also if what goes on meanwhile panics.
 struct Lent;
 
 impl Drop for Lent {
     fn drop(&mut self) {
-        let close = || {
-            SEAT.state
-                .compare_exchange(READY, CLOSED, Ordering::Acquire, Ordering::Acquire)
-        };
-        while close() == Err(INSIDE) {
-            std::thread::yield_now();
+        if close(PATIENCE).is_err() {
+            // The borrow must not end, and the scheduler was told to stop, which takes the force away.
+            tracing::error!(
+                "the driver of the haptic device does not come back from a call, so this process ends: switch the device off and on, and start the rig anew"
+            );
+            std::process::abort();
         }
         SEAT.state.store(EMPTY, Ordering::Release);
     }
@@ -154,6 +182,7 @@ mod tests {
         let lent = lend(&mut work, || {
             caller = Some(std::thread::spawn(|| call(std::ptr::null_mut())));
             has_entered.recv().ok();
+            assert_eq!(close(GLANCE), Err(Stuck), "it is not waited for for ever");
             leave.send(()).ok();
         });
         assert_eq!(lent, Some(()));

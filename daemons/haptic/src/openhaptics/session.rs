@@ -2,10 +2,11 @@
 //! atomic: the scheduler's thread takes no lock.
 
 use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, AtomicI32, AtomicU32, Ordering};
+use std::sync::atomic::{AtomicBool, AtomicI32, AtomicU8, AtomicU32, Ordering};
 
 use super::abi::{CURRENT_FORCE, CURRENT_TORQUE, Handle};
-use super::faults::{Class, class, is_wrong_call, trouble};
+use super::calibration::Standing;
+use super::faults::{Class, Notice, class, is_wrong_call, trouble};
 use super::frame::MILLI;
 use super::library::{Library, MOST_ERRORS};
 use crate::driver::{Trouble, Wrench};
@@ -50,7 +51,8 @@ pub struct Session {
     drives: Drives,
     is_open: AtomicBool,
     has_force: AtomicBool,
-    is_calibrated: AtomicBool,
+    is_look_due: AtomicBool,
+    standing: AtomicU8,
     told: AtomicU32,
     ended: AtomicU32,
     internal: AtomicI32,
@@ -67,7 +69,8 @@ impl Session {
             drives: Drives::Force,
             is_open: AtomicBool::new(false),
             has_force: AtomicBool::new(false),
-            is_calibrated: AtomicBool::new(false),
+            is_look_due: AtomicBool::new(true),
+            standing: AtomicU8::new(Standing::Unknown as u8),
             told: AtomicU32::new(0),
             ended: AtomicU32::new(0),
             internal: AtomicI32::new(0),
@@ -123,16 +126,38 @@ impl Session {
     /// Whether the device knows where it is.
     #[must_use]
     pub fn is_calibrated(&self) -> bool {
-        self.is_calibrated.load(Ordering::Acquire)
+        self.standing() == Standing::Calibrated
     }
 
-    /// Says whether it does.
-    pub fn set_calibrated(&self, state: Calibrated) {
-        let is_calibrated = state == Calibrated::Yes;
-        self.is_calibrated.store(is_calibrated, Ordering::Release);
+    /// How it stands with its calibration.
+    #[must_use]
+    pub fn standing(&self) -> Standing {
+        Standing::numbered(self.standing.load(Ordering::Acquire))
     }
 
-    /// Takes note of all errors since. Why the device is lost, if it is.
+    /// Says how it stands.
+    pub fn stand(&self, standing: Standing) {
+        self.standing.store(standing as u8, Ordering::Release);
+    }
+
+    /// Asks for a look at the calibration, in one of the next frames.
+    pub fn ask_look(&self) {
+        self.is_look_due.store(true, Ordering::Relaxed);
+    }
+
+    /// Whether one was asked for, since this was last asked.
+    #[must_use]
+    pub fn takes_look(&self) -> bool {
+        self.is_look_due.swap(false, Ordering::Relaxed)
+    }
+
+    /// Has the user told something.
+    pub fn tell(&self, notice: Notice) {
+        self.told.fetch_or(notice.bit(), Ordering::Relaxed);
+    }
+
+    /// Takes note of all errors since. Why the device is lost, if it is. While the scheduler runs, only what
+    /// it calls asks this: the library has one stack of errors.
     pub fn trouble(&self) -> Option<Trouble> {
         self.look();
         self.ended().map(|(code, _)| trouble(code))
@@ -150,7 +175,7 @@ impl Session {
 
     /// Takes note of errors but of those that are `excepted`, which it counts.
     fn note(&self, excepted: &mut dyn FnMut(u32) -> bool) -> usize {
-        let mut count = 0;
+        let (mut count, mut cause) = (0, None);
         for _ in 0..MOST_ERRORS {
             let Some(error) = self.library.next_error() else {
                 break;
@@ -160,15 +185,17 @@ impl Session {
                 continue;
             }
             match class(error.code) {
-                Class::Told(notice) => {
-                    self.told.fetch_or(notice.bit(), Ordering::Relaxed);
-                }
-                Class::Ends => {
-                    // The newest comes first: the oldest is the cause.
-                    self.internal.store(error.internal, Ordering::Relaxed);
-                    self.ended.store(error.code, Ordering::Relaxed);
-                }
+                Class::Told(notice) => self.tell(notice),
+                // The newest comes first: the oldest is the cause.
+                Class::Ends => cause = Some(error),
             }
+        }
+        // What was noted earlier is the cause of what comes later.
+        if let Some(error) = cause
+            && self.ended().is_none()
+        {
+            self.internal.store(error.internal, Ordering::Relaxed);
+            self.ended.store(error.code, Ordering::Release);
         }
         count
     }
@@ -176,7 +203,7 @@ impl Session {
     /// The code and the internal code of the error that has ended the device.
     #[must_use]
     pub fn ended(&self) -> Option<(u32, i32)> {
-        match self.ended.load(Ordering::Relaxed) {
+        match self.ended.load(Ordering::Acquire) {
             0 => None,
             code => Some((code, self.internal.load(Ordering::Relaxed))),
         }
@@ -187,15 +214,6 @@ impl Session {
     pub fn take_told(&self) -> u32 {
         self.told.swap(0, Ordering::Relaxed)
     }
-}
-
-/// Whether a device knows where it is.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Calibrated {
-    /// It does.
-    Yes,
-    /// It does not.
-    No,
 }
 
 /// However it ends, the device is free for the next one.

@@ -1,6 +1,7 @@
 //! How a device learns where it is.
 
 use glam::DVec3;
+use maulstick_haptic::host::Host;
 use maulstick_libhd::{Call, Event, Script};
 
 use crate::bench::{calls, disorder, listen, place, play, serve, tick, told, wait, wall};
@@ -19,18 +20,55 @@ fn script(styles: i32, calibration: &[u32]) -> Script {
     }
 }
 
+/// The words of a device whose encoders have no zero.
+const RESET: &str = "put its arm into the reset position of its manual and press";
+
+/// So many more ticks, each out of range and without force.
+fn forceless(host: &mut Host, ticks: usize) {
+    let mut left = ticks;
+    tick(host, |ticked| {
+        assert!(!ticked.reading.in_range && ticked.force == DVec3::ZERO);
+        left -= 1;
+        left == 0
+    });
+}
+
 #[test]
-fn encoders_are_set_to_zero_before_the_scheduler_starts() {
-    let control = play(&script(1, &[NEEDS_UPDATE, OK]));
-    let mut host = serve();
-    tick(&mut host, |ticked| ticked.reading.in_range);
-    drop(host);
-    let log = calls(&control);
-    let updated = place(&log, |call| *call == Call::Update(1));
-    assert!(updated < place(&log, |call| *call == Call::Start));
-    let updates = log.iter().filter(|call| matches!(call, Call::Update(_)));
-    assert_eq!(updates.count(), 1);
-    assert_eq!(disorder(&log), None);
+fn encoders_are_set_to_zero_where_the_user_says_that_the_arm_stands_right() {
+    for state in [NEEDS_UPDATE, NEEDS_MANUAL_INPUT] {
+        // A button that is held as the device is opened says nothing.
+        let control = play(&Script {
+            buttons: 1,
+            ..script(1, &[state, OK])
+        });
+        listen();
+        let mut host = serve();
+        wall(&mut host);
+        wait("the words", || told().contains(RESET));
+        forceless(&mut host, 100);
+        for buttons in [0, 2] {
+            control.happen(&Event::Buttons(buttons)).expect("happens");
+            tick(&mut host, |ticked| {
+                ticked.reading.switches == buttons as u32
+            });
+            forceless(&mut host, 100);
+        }
+        let updates = || {
+            let log = calls(&control);
+            log.iter()
+                .filter(|call| matches!(call, Call::Update(_)))
+                .count()
+        };
+        assert_eq!(updates(), 0);
+        control.happen(&Event::Buttons(1)).expect("happens");
+        tick(&mut host, |ticked| {
+            ticked.reading.in_range && ticked.force.z > 0.39
+        });
+        drop(host);
+        assert_eq!(updates(), 1);
+        assert_eq!(told().matches(RESET).count(), 1, "{}", told());
+        assert_eq!(disorder(&calls(&control)), None);
+    }
 }
 
 #[test]
@@ -128,27 +166,36 @@ fn a_device_that_loses_its_place_is_out_of_range_until_it_is_updated() {
 }
 
 #[test]
-fn encoders_that_lose_their_zero_end_the_servo_and_get_it_again_as_it_is_opened() {
+fn encoders_that_lose_their_zero_give_no_force_until_the_button() {
     let control = play(&script(1, &[OK]));
+    listen();
     let mut host = serve();
     wall(&mut host);
     tick(&mut host, |ticked| ticked.force.z > 0.39);
-    control
-        .happen(&Event::Calibration(vec![NEEDS_UPDATE]))
-        .expect("happens");
-    wait("the end", || {
-        while host.ticks.pop().is_ok() {}
-        host.has_ended()
-    });
-    let trouble = host.trouble().expect("a trouble");
-    assert!(trouble.what.contains("lost their zero"), "{trouble}");
+    let lost = Event::Calibration(vec![NEEDS_UPDATE, OK]);
+    control.happen(&lost).expect("happens");
+    tick(&mut host, |ticked| !ticked.reading.in_range);
+    forceless(&mut host, 100);
+    wait("the words", || told().contains(RESET));
+    control.happen(&Event::Buttons(1)).expect("happens");
+    tick(&mut host, |ticked| ticked.force.z > 0.39);
     drop(host);
     assert_eq!(disorder(&calls(&control)), None);
-    drop(control);
-    let control = play(&script(1, &[NEEDS_UPDATE, NEEDS_UPDATE]));
-    let host = serve();
-    let trouble = host.trouble().expect("a trouble");
-    assert!(trouble.what.contains("lost their zero"), "{trouble}");
+}
+
+#[test]
+fn calibration_is_looked_at_within_frames_only() {
+    let control = play(&script(2, &[NEEDS_UPDATE, OK]));
+    let mut host = serve();
+    tick(&mut host, |ticked| ticked.reading.in_range);
     drop(host);
-    assert!(!calls(&control).contains(&Call::Start));
+    let mut is_open = false;
+    for call in calls(&control) {
+        match call {
+            Call::Begin(_) => is_open = true,
+            Call::End(_) => is_open = false,
+            Call::Check(_) | Call::Update(_) => assert!(is_open, "{call:?}"),
+            _ => {}
+        }
+    }
 }

@@ -11,7 +11,9 @@ use maulstick_libhd::{Call, Event, Script};
 use maulstick_num::geometry::{Rigid, rotation};
 use maulstick_types::stylus::axes;
 
-use crate::bench::{calls, disorder, open, patient, play, section, serve, start, tick, wall};
+use crate::bench::{
+    calls, disorder, listen, open, patient, play, section, serve, start, tick, told, wait, wall,
+};
 use crate::counting::allocations;
 
 /// Has the scheduler call `work` so often.
@@ -313,4 +315,68 @@ fn a_frame_allocates_nothing() {
         seeded += allocations(|| drop(std::hint::black_box(Vec::<u8>::with_capacity(1))));
     });
     assert_eq!((counted, seeded), (0, 200));
+}
+
+#[test]
+fn over_a_frame_that_says_nothing_the_force_is_held_and_not_for_long() {
+    let control = play(&Script::default());
+    let mut opened = open(&section()).expect("opened");
+    let axes =
+        |size: f64| Event::Axes([DVec3::X, DVec3::Y, DVec3::Z].map(|a| (a * size).to_array()));
+    let mut frame = 0;
+    during(&mut opened, 4, |opened| {
+        frame += 1;
+        match frame {
+            2 => control.happen(&axes(0.0)).expect("happens"),
+            4 => control.happen(&axes(1.0)).expect("happens"),
+            _ => {}
+        }
+        let dt = if frame == 3 { 6e-3 } else { 1e-3 };
+        let reading = opened.driver.read(dt).expect("there");
+        assert_eq!(reading.is_some(), [1, 4].contains(&frame));
+        if frame == 1 {
+            let force = DVec3::X;
+            opened
+                .driver
+                .write(Wrench {
+                    force,
+                    ..Wrench::ZERO
+                })
+                .expect("written");
+        } else if frame == 4 {
+            opened.driver.write(Wrench::ZERO).expect("written");
+        }
+    });
+    let log = calls(&control);
+    let forces: Vec<f64> = log
+        .iter()
+        .filter_map(|call| match call {
+            Call::End(force) => Some(force[0]),
+            _ => None,
+        })
+        .collect();
+    assert_eq!(forces[..4], [1.0, 1.0, 0.0, 0.0]);
+}
+
+#[test]
+fn a_model_whose_dead_man_s_switch_is_silent_gives_no_force_and_says_so() {
+    let control = play(&Script {
+        model: "Touch X".into(),
+        unknown: vec![0x2001],
+        position: [0.0, 0.0, 21.0],
+        ..Script::default()
+    });
+    listen();
+    let mut host = serve();
+    wall(&mut host);
+    let words = "does not say whether the stylus is held";
+    wait("the words", || told().contains(words));
+    let mut left = 100;
+    tick(&mut host, |ticked| {
+        assert_eq!(ticked.force, DVec3::ZERO);
+        left -= 1;
+        left == 0
+    });
+    drop((host, control));
+    assert_eq!(told().matches(words).count(), 1, "{}", told());
 }

@@ -235,6 +235,16 @@ fn a_tick_that_came_late_in_a_stroke_does_not_take_its_force_away() {
 }
 
 #[test]
+fn a_long_stand_still_in_a_stroke_gives_no_force_until_the_hand_has_come_up() {
+    let mut servo = pressed(Limits::default());
+    assert!(servo.step(&held(0.0025), 0.2).1.late);
+    let most = (0..600).fold(0.0, |most: f64, _| {
+        most.max(servo.step(&held(0.0025), DT).0.z)
+    });
+    assert_eq!(most, 0.0);
+}
+
+#[test]
 fn strength_is_a_share_and_never_more_than_all() {
     for (share, expected) in [
         (0.6, 0.6),

@@ -9,6 +9,8 @@
 //! with the square of the force, and at the continuous force they end up between warm and cool. The
 //! warmer of the two counts. A Phantom's 3.3 N with .88 N continuous is so borne for five seconds.
 
+use super::limits::Limits;
+
 /// Above this the motors are warm.
 const WARM: f64 = 0.7;
 /// Below this they have cooled.
@@ -66,6 +68,13 @@ impl Heat {
         if !self.is_known() {
             self.temperature = 0.0;
         }
+    }
+
+    /// `dt` s passed with this force, or at rest, or after a fault: the largest force now, N.
+    pub fn follow(&mut self, force_n: f64, limits: &Limits, dt: f64) -> f64 {
+        let dt = if dt.is_finite() { dt.max(0.0) } else { 0.0 };
+        self.warm(force_n, limits.continuous_force_n, dt);
+        self.cap_n(limits.max_force_n, limits.continuous_force_n, dt)
     }
 
     /// The largest force, N, `dt` s later.

@@ -24,8 +24,10 @@ pub struct Limits {
     pub engage_n: f64,
     /// Time over which force comes up after a start, a fault or another sender, s.
     pub engage_s: f64,
-    /// A tick longer than this has stood still: no force, and engage anew, s.
+    /// A tick longer than this has stood still: no force, and the ramp anew, s.
     pub longest_tick_s: f64,
+    /// After one that is longer than this too, force waits for a hand that has come up, s.
+    pub standstill_s: f64,
     /// Time without contact after which the amplifiers go off, s.
     pub idle_s: f64,
 }
@@ -44,6 +46,7 @@ impl Default for Limits {
             engage_n: 0.2,
             engage_s: 0.5,
             longest_tick_s: 0.005,
+            standstill_s: 0.1,
             idle_s: 60.0,
         }
     }

@@ -134,22 +134,68 @@ fn models_that_say_the_same_add_no_lag() {
 }
 
 #[test]
-fn a_sender_that_was_silent_comes_back_over_the_recovery_time() {
+fn a_sender_that_was_silent_gives_no_force_to_a_hand_that_has_stayed_deep() {
     let mut servo = engaged(0.0125);
     while servo.force != DVec3::ZERO {
         servo.step(&held(0.0125), DT);
     }
-    let mut last = 0.0;
-    for tick in 0..=15 {
+    for tick in 0..1000 {
         servo.receive(plane_at(0.0), Sender::Same);
-        let force = servo.step(&held(0.0125), DT).0.z;
-        assert!(
-            (0.0..=0.4 / 15.0 + 1e-9).contains(&(force - last)),
-            "{tick}: {force} N"
-        );
-        last = force;
+        let (force, told) = servo.step(&held(0.0125), DT);
+        assert!(force == DVec3::ZERO && told.waiting, "{tick}: {force}");
     }
-    assert!((last - 0.4).abs() < 1e-9, "{last} N");
+    let mut last = 0.0;
+    for tick in 0..1000 {
+        servo.receive(plane_at(0.0), Sender::Same);
+        let depth = if tick < 100 { -0.001 } else { 0.0125 };
+        last = servo.step(&held(depth), DT).0.z;
+    }
+    assert!((last - 0.4).abs() < 1e-9, "once it has come up: {last} N");
+}
+
+#[test]
+fn what_is_kept_of_a_servo_latches_the_next_and_its_motors_stay_warm() {
+    let mut servo = engaged(0.0125);
+    let mut fast = held(0.0125);
+    fast.velocity.x = 2.0;
+    servo.step(&fast, DT);
+    assert_eq!(servo.kept().fault, Some(Fault::TooFast));
+    let mut next = Servo::after(Limits::default(), servo.kept().rested(1.0));
+    assert_ne!(next.kept().heat, Kept::nothing(Limits::default()).heat);
+    for depth in [-0.001, 0.0125] {
+        for _ in 0..100 {
+            next.receive(contact(linear()), Sender::Same);
+            let (force, tick) = next.step(&held(depth), DT);
+            assert_eq!((force, tick.fault), (DVec3::ZERO, Some(Fault::TooFast)));
+        }
+    }
+    next.rearm();
+    next.receive(contact(linear()), Sender::Same);
+    assert_eq!(next.step(&held(0.0), DT).1.fault, None);
+}
+
+#[test]
+fn motors_cool_at_rest_and_after_a_fault() {
+    let mut warm = Servo::new(Limits {
+        continuous_force_n: 0.1,
+        ..Limits::default()
+    });
+    for tick in 0..10_000 {
+        warm.receive(contact(linear()), Sender::Same);
+        warm.step(&held(if tick < 10 { 0.0 } else { 0.0125 }), DT);
+    }
+    let rests: [fn(&mut Servo); 2] = [
+        |servo| servo.switch(Switch::Off),
+        |servo| servo.fault = Some(Fault::Shaking),
+    ];
+    for rest in rests {
+        let mut servo = warm;
+        rest(&mut servo);
+        servo.step(&held(0.0), DT);
+        let before = servo.heat;
+        servo.step(&held(0.0), 60.0);
+        assert_ne!(servo.heat, before);
+    }
 }
 
 #[test]

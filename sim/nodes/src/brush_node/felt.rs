@@ -4,11 +4,9 @@ use maulstick_bus::typed::Sender;
 use maulstick_bus::{BusError, Class};
 use maulstick_types::Origin;
 
-use super::BrushNode;
+use super::{BrushNode, Painter};
 use crate::feel::{Felt, contact_model, law};
 
-/// Who paints what is felt.
-const PAINT: &str = "paint";
 /// Least time between two contact models, ns.
 const MODEL_PERIOD_NS: u64 = 4_000_000;
 
@@ -20,8 +18,7 @@ impl BrushNode {
         origin: Origin,
         now_ns: u64,
     ) -> Result<(), BusError> {
-        // Nothing is painted where the paint node is gone, and nothing is felt there.
-        if !self.drives_force.contains(device) || self.gone.contains(PAINT) {
+        if !self.drives_force.contains(device) || self.painter == Painter::Gone {
             return Ok(());
         }
         let Some(plane) = self.model.plane().copied() else {
