@@ -31,7 +31,8 @@ fn stand() -> Similarity {
     }
 }
 
-/// A take in which a hand goes to places of the desk and stays at each for three seconds.
+/// A take in which a hand goes to places of the desk and stays at each for eight seconds, of which one without a
+/// stall is enough.
 fn showing(places: &[[f64; 2]]) -> Take {
     let mut samples = Vec::new();
     let mut sample = |place: DVec3| {
@@ -55,7 +56,7 @@ fn showing(places: &[[f64; 2]]) -> Take {
     for place in places {
         let to = DVec3::new(place[0], place[1], 0.0);
         (0..150).for_each(|i| sample(at.lerp(to, f64::from(i) / 150.0)));
-        (0..750).for_each(|_| sample(to));
+        (0..2000).for_each(|_| sample(to));
         at = to;
     }
     Take {
@@ -180,10 +181,11 @@ fn what_cannot_be_calibrated_says_what_to_do() {
         &fault(&place, &["calibrate", "phantm", "--rig", "rig.toml"], 2),
         &["no [[device]] called 'phantm'", "rig.toml", "'phantom'"],
     );
-    let pen = text.replace("driver = \"simulated\"", "driver = \"pen\"");
-    std::fs::write(place.path("pen.toml"), pen).expect("written");
+    let mouse = text.replace("driver = \"simulated\"", "driver = \"spacemouse\"");
+    let mouse = mouse.replace("hand = \"corners.mcap\"", "");
+    std::fs::write(place.path("mouse.toml"), mouse).expect("written");
     has(
-        &fault(&place, &["calibrate", "phantom", "--rig", "pen.toml"], 2),
-        &["'phantom' has no ferrule", "help: "],
+        &fault(&place, &["calibrate", "phantom", "--rig", "mouse.toml"], 2),
+        &["'phantom' moves the canvas itself"],
     );
 }

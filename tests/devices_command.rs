@@ -22,7 +22,7 @@ fn the_devices_of_a_rig_are_listed_while_it_runs() {
         let row = rig
             .as_array()?
             .iter()
-            .find(|row| row["name"] == "phantom")?;
+            .find(|row| row["name"] == "phantom" && row["driver"].is_string())?;
         Some(row.clone())
     });
     let row = rows.unwrap_or_else(|| panic!("no phantom: {}", launcher.said()));
@@ -34,8 +34,12 @@ fn the_devices_of_a_rig_are_listed_while_it_runs() {
         (&row["priority"], &row["trouble"]),
         (&10.into(), &"".into())
     );
-    let text = String::from_utf8(place.done(&["devices"]).stdout).expect("UTF-8");
-    has(&text, &["in the rig", "phantom", "simulated", "in use"]);
+    let text = wait_for(PATIENCE, || {
+        let text = String::from_utf8(place.done(&["devices"]).stdout).expect("UTF-8");
+        text.contains("simulated").then_some(text)
+    });
+    let text = text.unwrap_or_else(|| panic!("no phantom: {}", launcher.said()));
+    has(&text, &["in the rig", "phantom", "in use"]);
     // Another rig has none of it.
     let text =
         String::from_utf8(place.done(&["devices", "--name", "other"]).stdout).expect("UTF-8");

@@ -23,6 +23,8 @@ pub enum Touch {
 pub struct Seen {
     /// Where it is, device frame, m.
     pub point: DVec3,
+    /// Where its handle points, away from the canvas, device frame; none where that is not sensed.
+    pub handle: Option<DVec3>,
     /// Whether it says that it is at a corner.
     pub touch: Touch,
     /// When, s.
@@ -107,6 +109,7 @@ const GAP_S: f64 = 0.25;
 struct Stay {
     first: DVec3,
     sum: DVec3,
+    handle: DVec3,
     count: f64,
     since_s: f64,
     last_s: f64,
@@ -119,6 +122,7 @@ impl Stay {
         Self {
             first: seen.point,
             sum: seen.point,
+            handle: seen.handle.unwrap_or_default(),
             count: 1.0,
             since_s: seen.time_s,
             last_s: seen.time_s,
@@ -142,6 +146,8 @@ impl Stay {
 #[derive(Clone, Copy, Debug)]
 pub struct Corners {
     found: [DVec3; 3],
+    /// Sum over the found corners of where the handle pointed.
+    handle: DVec3,
     count: usize,
     touch: Touch,
     stay: Option<Stay>,
@@ -162,6 +168,7 @@ impl Corners {
     pub fn new() -> Self {
         Self {
             found: [DVec3::ZERO; 3],
+            handle: DVec3::ZERO,
             count: 0,
             touch: Touch::Up,
             stay: None,
@@ -180,6 +187,12 @@ impl Corners {
     #[must_use]
     pub fn all(&self) -> Option<[DVec3; 3]> {
         (self.count == 3).then_some(self.found)
+    }
+
+    /// Where the handle pointed at the corners, of any length; 0 where that is not sensed.
+    #[must_use]
+    pub fn handle(&self) -> DVec3 {
+        self.handle
     }
 
     /// The hand is out of sight: what it began is void.
@@ -242,7 +255,7 @@ impl Corners {
         }
         let still = seen.time_s - stay.since_s >= STILL_S;
         if still && self.start.is_none() && self.is_apart(stay.mean()) {
-            return self.find(corner, stay.mean());
+            return self.find(corner, &stay);
         }
         self.stay = Some(stay);
         Progress::Going
@@ -254,7 +267,7 @@ impl Corners {
             return Progress::Refused(Refusal::Moved);
         }
         match self.is_apart(stay.mean()) {
-            true => self.find(corner, stay.mean()),
+            true => self.find(corner, stay),
             false => Progress::Refused(Refusal::SamePlace),
         }
     }
@@ -264,7 +277,9 @@ impl Corners {
         before.iter().all(|other| other.distance(place) > APART_M)
     }
 
-    fn find(&mut self, corner: Corner, place: DVec3) -> Progress {
+    fn find(&mut self, corner: Corner, stay: &Stay) -> Progress {
+        let place = stay.mean();
+        self.handle += stay.handle;
         self.found[self.count] = place;
         self.count += 1;
         (self.start, self.stay) = (Some(place), None);
@@ -311,6 +326,7 @@ mod tests {
             let shake = self.tremor_m * sin(2.0 * std::f64::consts::PI * 10.0 * self.time_s);
             let seen = Seen {
                 point: point + DVec3::new(shake, 0.0, -shake),
+                handle: Some(DVec3::Z),
                 touch,
                 time_s: self.time_s,
             };
@@ -461,7 +477,7 @@ mod tests {
                 let touch = [Touch::Down, Touch::Up, Touch::Unknown][usize::from(touch)];
                 for _ in 0..times {
                     time_s += if kind == 5 { passed_s } else { 0.1 };
-                    corners.see(&Seen { point: at, touch, time_s });
+                    corners.see(&Seen { point: at, handle: None, touch, time_s });
                 }
             }
             if let Some(found) = corners.all() {

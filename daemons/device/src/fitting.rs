@@ -174,6 +174,22 @@ pub fn canvas_m(canvas: &CanvasSection) -> DVec2 {
     DVec2::new(across, up) * (canvas.cell_mm * 1e-3)
 }
 
+/// Checks that the canvas whose corners are `places` is seen from the side of the hand, whose handle
+/// points to `handle`, of any length; 0 where that is not known.
+///
+/// # Errors
+/// A [`Fault`] where it would be seen from behind.
+pub fn check_side(places: &[DVec3; 3], handle: DVec3) -> Result<(), Fault> {
+    let normal = (places[1] - places[0]).cross(places[2] - places[0]);
+    if normal.dot(handle) < 0.0 {
+        let what =
+            "the corners were touched in another order: the canvas would be seen from behind";
+        let help = "touch lower left, then lower right, then upper left; begin again";
+        return Err(Fault::failure(what).help(help));
+    }
+    Ok(())
+}
+
 /// The similarity that takes three places nearest to the lower left, lower right and upper left
 /// corners of a canvas of `size`, m, by least squares, and how near that is. As the places span a plane
 /// and the corners another, it is found within these, where turning and scaling is multiplying by a
@@ -347,6 +363,17 @@ mod tests {
         let tiny = corners().map(|corner| corner * 0.04);
         assert!(by_corners(&tiny, SIZE).is_err());
         assert!(by_corners(&[DVec3::NAN; 3], SIZE).is_err());
+    }
+
+    #[test]
+    fn a_canvas_that_would_be_seen_from_behind_is_refused() {
+        let [origin, right, up] = corners();
+        let leaning = DVec3::new(0.7, 0.0, 0.3);
+        for handle in [DVec3::Z, leaning, DVec3::ZERO] {
+            assert_eq!(check_side(&[origin, right, up], handle), Ok(()));
+        }
+        let refused = check_side(&[origin, up, right], leaning).expect_err("the other way round");
+        assert!(refused.what.contains("from behind"), "{refused}");
     }
 
     #[test]

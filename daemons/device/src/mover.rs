@@ -5,15 +5,17 @@
 //! into the journal, so a replay knows where the canvas lay.
 
 use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{Receiver as Ear, RecvTimeoutError, SyncSender, sync_channel};
 use std::thread::JoinHandle;
 use std::time::{Duration, Instant};
 
 use glam::DVec3;
 use maulstick_bus::typed::Receiver;
-use maulstick_bus::{Bus, BusError, Class, Queue, Wake};
+use maulstick_bus::{Bus, Class, Queue, Wake};
 use maulstick_num::exp;
 use maulstick_num::geometry::{Rigid, canonical, rotation};
+use maulstick_rig::Fault;
 use maulstick_types::command::Command;
 use maulstick_types::control::ControlSample;
 use maulstick_types::scene::{CANVAS, Scene};
@@ -37,6 +39,8 @@ const PERIOD: Duration = Duration::from_millis(33);
 const LONGEST: Duration = Duration::from_millis(100);
 /// How long a command waits for its answer.
 const PATIENCE: Duration = Duration::from_secs(2);
+/// A command is asked again after this; so long at most a daemon's end waits for it.
+const ASK: Duration = Duration::from_millis(300);
 
 /// Where a surface lies.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -55,7 +59,9 @@ impl Lie {
         let eased = |value: f64| value * value * value;
         let [x, y, z] = control.push.map(eased);
         let turn = rotation(DVec3::Z, eased(control.turn[2]) * TURN_S * dt);
-        let zoom = (self.zoom * exp(z * ZOOM_S * dt)).clamp(ZOOMS[0], ZOOMS[1]);
+        // A zoom that was told otherwise, beyond ours, goes no farther; it does not leap to the bound.
+        let [least, most] = [ZOOMS[0].min(self.zoom), ZOOMS[1].max(self.zoom)];
+        let zoom = (self.zoom * exp(z * ZOOM_S * dt)).clamp(least, most);
         let moved = turn * (self.pose.translation * (zoom / self.zoom));
         let bound = FARTHEST_M * zoom.max(1.0);
         let translation = moved + DVec3::new(x, y, 0.0) * (PAN_M_S * dt);
@@ -86,6 +92,7 @@ pub fn pushes(control: &ControlSample) -> bool {
 /// Sends the commands from a thread of its own: nobody who reads a device waits for an answer.
 pub struct Mover {
     controls: Option<SyncSender<ControlSample>>,
+    stop: Arc<AtomicBool>,
     thread: Option<JoinHandle<()>>,
 }
 
@@ -93,20 +100,32 @@ impl Mover {
     /// A mover of the canvas of a rig.
     ///
     /// # Errors
-    /// [`BusError`] where the bus is closed.
-    pub fn start(bus: &Arc<dyn Bus>, topics: &Topics) -> Result<Self, BusError> {
+    /// A [`Fault`] where the rig or the system refuses.
+    pub fn start(bus: &Arc<dyn Bus>, topics: &Topics) -> Result<Self, Fault> {
         let wake = Wake::new();
         let topic = topics.scene();
-        let scenes = Receiver::new(&**bus, &topic, Class::Cached, Queue::Latest, &wake)?;
-        let commander = Commander::new(Arc::clone(bus), topics);
+        let mut scenes: Receiver<Scene> =
+            Receiver::new(&**bus, &topic, Class::Cached, Queue::Latest, &wake)?;
+        let mut commander = Commander::new(Arc::clone(bus), topics).asking(ASK);
         let (controls, heard) = sync_channel(64);
+        let stop = Arc::new(AtomicBool::new(false));
+        let ends = Arc::clone(&stop);
+        let run = move || {
+            let stopped = || ends.load(Ordering::SeqCst);
+            follow(
+                &heard,
+                || scenes.newest().and_then(|scene| canvas(&scene.message)),
+                |command| commander.send(command, None, PATIENCE, &stopped).map(drop),
+            );
+        };
         let thread = std::thread::Builder::new()
             .name("mover".into())
-            .spawn(move || follow(&heard, scenes, commander))
-            .ok();
+            .spawn(run)
+            .map_err(|error| Fault::failure(format!("no thread for the free hand: {error}")))?;
         Ok(Self {
             controls: Some(controls),
-            thread,
+            stop,
+            thread: Some(thread),
         })
     }
 
@@ -120,6 +139,7 @@ impl Mover {
 
 impl Drop for Mover {
     fn drop(&mut self) {
+        self.stop.store(true, Ordering::SeqCst);
         self.controls = None;
         if let Some(thread) = self.thread.take() {
             thread.join().ok();
@@ -133,30 +153,35 @@ impl std::fmt::Debug for Mover {
     }
 }
 
-fn follow(heard: &Ear<ControlSample>, mut scenes: Receiver<Scene>, mut commander: Commander) {
+/// Follows the hand until nobody can push any more; `shown` is where the canvas has newly been seen.
+fn follow(
+    heard: &Ear<ControlSample>,
+    mut shown: impl FnMut() -> Option<Lie>,
+    mut send: impl FnMut(Command) -> Result<(), Fault>,
+) {
     let mut lie: Option<Lie> = None;
     while let Ok(mut control) = heard.recv() {
         // Where it lies is the scene's until the hand pushes, and our own while it does.
-        lie = scenes
-            .newest()
-            .and_then(|scene| canvas(&scene.message))
-            .or(lie);
+        lie = shown().or(lie);
         let mut moved = Instant::now();
         while pushes(&control) {
-            // Commands keep their distance however often the device speaks.
+            // Commands keep their distance however often the device speaks; and however long one
+            // takes, what the hand has done meanwhile is heard before the next.
             let due = moved + PERIOD;
-            while let Some(wait) = due.checked_duration_since(Instant::now()) {
-                match heard.recv_timeout(wait) {
+            loop {
+                match heard.recv_timeout(due.saturating_duration_since(Instant::now())) {
                     Ok(newest) => control = newest,
                     Err(RecvTimeoutError::Timeout) => break,
                     Err(RecvTimeoutError::Disconnected) => return,
                 }
             }
-            let Some(from) = lie else { break };
+            let Some(from) = lie.filter(|_| pushes(&control)) else {
+                break;
+            };
             let to = from.pushed(&control, moved.elapsed().min(LONGEST).as_secs_f64());
             moved = Instant::now();
-            match commander.send(to.command(), None, PATIENCE, &|| false) {
-                Ok(_) => lie = Some(to),
+            match send(to.command()) {
+                Ok(()) => lie = Some(to),
                 Err(fault) => tracing::warn!("the canvas is not moved: {}", fault.what),
             }
         }
@@ -224,6 +249,49 @@ mod tests {
             (0..2000).for_each(|_| now = now.pushed(&control, 0.033));
             assert!((ZOOMS[0]..=ZOOMS[1]).contains(&now.zoom));
             assert!(now.pose.translation.abs().max_element() <= FARTHEST_M * ZOOMS[1]);
+        }
+    }
+
+    #[test]
+    fn a_zoom_beyond_what_a_hand_may_choose_stays_in_a_pan_and_comes_back_without_a_leap() {
+        let mut control = ControlSample::at_rest();
+        control.push[0] = 1.0;
+        let far = Lie {
+            zoom: 0.05,
+            ..lie()
+        };
+        assert_eq!(far.pushed(&control, 0.033).zoom, 0.05);
+        control.push[2] = 1.0;
+        let nearer = far.pushed(&control, 0.033).zoom;
+        assert!(nearer > 0.05 && nearer < 0.06, "{nearer}");
+        control.push[2] = -1.0;
+        assert_eq!(far.pushed(&control, 0.033).zoom, 0.05);
+    }
+
+    /// A paint node that takes longer than [`PERIOD`] for a command must not keep the canvas running
+    /// once the hand has let go, nor the daemon once nobody can push any more.
+    #[test]
+    fn however_long_a_command_takes_the_hand_and_the_end_are_heard() {
+        for letting_go in [Some(ControlSample::at_rest()), None] {
+            let (hand, heard) = sync_channel(64);
+            let mut push = ControlSample::at_rest();
+            push.push[0] = 1.0;
+            hand.send(push).expect("room");
+            let (mut hand, mut letting_go, mut count) = (Some(hand), letting_go, 0);
+            let slow = |_| {
+                count += 1;
+                assert!(count < 5, "the canvas runs on by itself");
+                let over = Instant::now() + 2 * PERIOD;
+                if let (Some(hand), Some(rest)) = (hand.take(), letting_go.take()) {
+                    hand.send(rest).expect("room");
+                }
+                while Instant::now() < over {
+                    std::thread::yield_now();
+                }
+                Err(Fault::failure("the node does not answer"))
+            };
+            follow(&heard, || Some(lie()), slow);
+            assert_eq!(count, 1);
         }
     }
 }

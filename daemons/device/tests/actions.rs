@@ -248,6 +248,64 @@ fn a_daemon_that_ends_while_a_switch_is_held_leaves_the_brush_as_it_was() {
     ending.join().expect("ended");
 }
 
+/// Two pens on one brush, or one daemon after another that was killed while its eraser was near: what
+/// one holds is not how the other uses the brush as before.
+#[test]
+fn what_another_device_holds_is_not_restored() {
+    let (mut rig, mut one) = Rig::new();
+    let mut other = actor(&rig.live.net, &rig.live, "main");
+    hold(&mut one, switch::ERASER);
+    rig.until_mode(&BrushMode::Vacuum);
+    hold(&mut other, PICK);
+    rig.until_mode(&BrushMode::Sampler);
+    hold(&mut one, 0);
+    rig.until_mode(&BrushMode::Normal);
+    hold(&mut other, 0);
+    rig.until("both to let go", |rig| rig.modes().len() == 4);
+    assert_eq!(rig.modes()[3], BrushMode::Normal);
+}
+
+#[test]
+fn a_letting_go_that_nobody_answers_is_asked_for_until_somebody_does() {
+    let (mut rig, mut actor) = Rig::new();
+    hold(&mut actor, PICK);
+    rig.until_mode(&BrushMode::Sampler);
+    rig.live.net.set_faults(Faults {
+        loss: 1.0,
+        ..Faults::default()
+    });
+    hold(&mut actor, 0);
+    // Longer than a command is patient.
+    let since = Instant::now();
+    rig.until("the end of patience", |_| {
+        since.elapsed() > Duration::from_secs(3)
+    });
+    assert_eq!(rig.mode(), BrushMode::Sampler);
+    rig.live.net.set_faults(Faults::default());
+    rig.until_mode(&BrushMode::Normal);
+}
+
+#[test]
+fn a_palette_over_a_canvas_that_has_moved_since_goes_back_to_where_it_was() {
+    let (mut rig, mut actor) = Rig::new();
+    let rest = rig.surface(PALETTE).pose;
+    hold(&mut actor, PALETTE_SWITCH);
+    rig.until("over", |rig| rig.surface(PALETTE).pose != rest);
+    let mut pose = rig.surface(CANVAS).pose;
+    pose.position_m[0] += 0.05;
+    let (surface, zoom) = (CANVAS, 1.0);
+    let moved = Command::Place {
+        surface,
+        pose: pose.clone(),
+        zoom,
+    };
+    rig.live.command(1, moved);
+    rig.until("moved", |rig| rig.surface(CANVAS).pose == pose);
+    hold(&mut actor, 0);
+    hold(&mut actor, PALETTE_SWITCH);
+    rig.until("at rest", |rig| rig.surface(PALETTE).pose == rest);
+}
+
 #[test]
 fn a_rig_without_a_paint_node_does_not_hold_the_device_up() {
     let net = net();

@@ -9,6 +9,7 @@ use glam::DVec3;
 use maulstick_device::corners::{Glimpse, Seen, Touch};
 use maulstick_device::fitting::{Fitting, Similarity};
 use maulstick_haptics::Switch;
+use maulstick_types::stylus::axes;
 
 use crate::driver::{Opened, Reading, Trouble};
 use crate::pace::monotonic_ns;
@@ -37,6 +38,7 @@ pub fn watch(
         corners: None,
     };
     let mut pace = opened.pace;
+    let senses = opened.driver.abilities().senses;
     let mut device = Placed::new(opened.driver, fitting, 0);
     let (tell, told) = sync_channel(WAITING);
     let stop = AtomicBool::new(false);
@@ -59,7 +61,7 @@ pub fn watch(
                     Ok(Some(reading)) => {
                         last_ns = now_ns;
                         // Whoever does not keep up sees the older ones.
-                        tell.try_send(glimpse(&reading, now_ns)).ok();
+                        tell.try_send(glimpse(&reading, senses, now_ns)).ok();
                     }
                     Ok(None) => {}
                     Err(trouble) => {
@@ -102,7 +104,7 @@ impl Drop for Ending<'_> {
     }
 }
 
-fn glimpse(reading: &Reading, now_ns: u64) -> Glimpse {
+fn glimpse(reading: &Reading, senses: u32, now_ns: u64) -> Glimpse {
     if !reading.in_range {
         return Glimpse::Away;
     }
@@ -112,6 +114,7 @@ fn glimpse(reading: &Reading, now_ns: u64) -> Glimpse {
     };
     Glimpse::Seen(Seen {
         point: reading.held.position,
+        handle: (senses & axes::ORIENTATION != 0).then(|| reading.held.orientation * DVec3::Z),
         touch,
         time_s: now_ns as f64 * 1e-9,
     })

@@ -152,7 +152,12 @@ impl Daemon {
             feed: None,
             attempt_ns: Some(0),
             status: Sender::new(&*bus, &topic, Class::Background, origin)?,
-            told: StylusStatus::fresh(NO_BINS),
+            told: StylusStatus {
+                // It has no force.
+                is_on: false,
+                strength: 0.0,
+                ..StylusStatus::fresh(NO_BINS)
+            },
             status_ns: 0,
             dropped_before: 0,
             heard_ns: 0,

@@ -113,6 +113,7 @@ fn glimpse(pen: &Pen, time_s: f64) -> Glimpse {
     let [x, y] = newest.point_m;
     Glimpse::Seen(Seen {
         point: DVec3::new(x, y, 0.0),
+        handle: Some(DVec3::Z),
         touch,
         time_s,
     })

@@ -7,6 +7,7 @@
 //! 3. Neither: the same, with the least scale at which the tablet covers the canvas.
 
 use glam::{DMat2, DQuat, DVec2, DVec3};
+use maulstick_device::fitting::canvas_m;
 use maulstick_num::{atan2, sin_cos};
 use maulstick_rig::Fault;
 use maulstick_rig::config::{CanvasSection, DeviceSection};
@@ -40,7 +41,7 @@ impl Tablet {
         device: &DeviceSection,
         canvas: &CanvasSection,
     ) -> Result<Self, Fault> {
-        let size = DVec2::new(canvas.width_mm, canvas.height_mm) * 1e-3;
+        let size = canvas_m(canvas);
         let (linear, translation) = match &device.corners_m {
             Some(corners) => by_corners(corners, size)?,
             None => in_the_middle(DVec2::from_array(area_m), size, device),

@@ -97,37 +97,38 @@ impl Places<'_> {
     }
 }
 
-/// Whether the rule is about a vendor's devices.
-fn is_ruled(vendor: u16) -> bool {
-    let names = [
-        format!("\"*:{vendor:04X}:"),
-        format!("ATTRS{{idVendor}}==\"{vendor:04x}\""),
-    ];
-    names.iter().any(|name| UDEV_RULES.contains(name))
+/// Whether the rule is about a HID device of these numbers, as `VVVV:PPPP`.
+fn is_ruled(id: &str) -> bool {
+    let mut beginnings = UDEV_RULES.lines().filter_map(|line| {
+        let (_, after) = line.split_once("KERNELS==\"*:")?;
+        Some(after.split_once("*\"")?.0)
+    });
+    let id = id.to_uppercase();
+    beginnings.any(|beginning| id.starts_with(beginning))
 }
 
-/// The rule, and a line for each HID device that a driver fits and of whose vendor it does not know.
+/// The rule, and a line for each HID device that a driver fits and that it does not know.
 #[must_use]
 pub fn rules(devices: &[Attached]) -> String {
     let mut text = UDEV_RULES.to_owned();
-    let mut vendors: Vec<&str> = devices
+    let mut ids: Vec<&str> = devices
         .iter()
         .filter(|device| {
             device
                 .driver
                 .is_some_and(|driver| hid::DRIVERS.contains(&driver))
         })
-        .map(|device| device.id.split(':').next().unwrap_or_default())
-        .filter(|vendor| u16::from_str_radix(vendor, 16).is_ok_and(|vendor| !is_ruled(vendor)))
+        .map(|device| device.id.as_str())
+        .filter(|id| !is_ruled(id))
         .collect();
-    vendors.sort_unstable();
-    vendors.dedup();
-    if !vendors.is_empty() {
+    ids.sort_unstable();
+    ids.dedup();
+    if !ids.is_empty() {
         text += "\n# Attached to this machine.\n";
     }
-    for vendor in vendors {
-        let vendor = vendor.to_uppercase();
-        text += &format!("SUBSYSTEM==\"hidraw\", KERNELS==\"*:{vendor}:*\", TAG+=\"uaccess\"\n");
+    for id in ids {
+        let id = id.to_uppercase();
+        text += &format!("SUBSYSTEM==\"hidraw\", KERNELS==\"*:{id}.*\", TAG+=\"uaccess\"\n");
     }
     text
 }

@@ -2,11 +2,10 @@
 
 use std::path::{Path, PathBuf};
 
+use maulstick_haptic::polhem::find::is_board;
+
 use super::{Attached, Permission, Places, printable};
 
-/// Vendor of the Teensy, the board of Polhem and WoodenHaptics, and its products with a serial port.
-const TEENSY: u16 = 0x16c0;
-const TEENSY_SERIAL: std::ops::RangeInclusive<u16> = 0x0470..=0x049f;
 /// Vendor of the Touch, which OpenHaptics drives.
 const TOUCH: u16 = 0x2988;
 /// A port's USB device is so many folders above its interface, at most.
@@ -23,7 +22,7 @@ pub fn ports(places: &Places<'_>) -> Vec<Attached> {
             .find(|folder| folder.join("idVendor").exists())?;
         let (vendor, product) = (number(device, "idVendor")?, number(device, "idProduct")?);
         let driver = match vendor {
-            TEENSY if TEENSY_SERIAL.contains(&product) => Some("polhem"),
+            _ if is_board(vendor, product) => Some("polhem"),
             TOUCH => Some("openhaptics"),
             _ => None,
         };

@@ -162,10 +162,17 @@ fn serial_ports_of_usb_devices_are_known_by_their_vendor() {
 
 #[test]
 fn the_rule_has_every_vendor_that_a_driver_fits() {
-    for vendor in [0x056a, 0x256c, 0x28bd, 0x256f, 0x046d, 0x16c0] {
-        assert!(is_ruled(vendor), "{vendor:04x}");
+    for id in [
+        "056a:0374",
+        "256c:006d",
+        "28bd:0935",
+        "256f:c635",
+        "046d:c626",
+    ] {
+        assert!(is_ruled(id), "{id}");
     }
-    assert!(!is_ruled(0x1234));
+    // A Logitech that is no 6-DOF mouse.
+    assert!(!is_ruled("1234:0001") && !is_ruled("046d:c31c"));
     let machine = Machine::new();
     machine.hid(0, "0000056A:00000374", "Wacom Intuos S", &PEN);
     machine.hid(1, "00001A2B:00000001", "A pen of another vendor", &PEN);
@@ -179,7 +186,7 @@ fn the_rule_has_every_vendor_that_a_driver_fits() {
         .collect();
     assert_eq!(
         lines,
-        ["SUBSYSTEM==\"hidraw\", KERNELS==\"*:1A2B:*\", TAG+=\"uaccess\""]
+        ["SUBSYSTEM==\"hidraw\", KERNELS==\"*:1A2B:0001.*\", TAG+=\"uaccess\""]
     );
 }
 

@@ -9,10 +9,11 @@ use clap::Args;
 use glam::DVec3;
 use maulstick_bus::{RigFolder, Wake};
 use maulstick_device::corners::{Corners, Glimpse, Progress};
-use maulstick_device::fitting::{by_corners, canvas_m};
+use maulstick_device::fitting::{by_corners, canvas_m, check_side};
 use maulstick_haptic::open::{HapticSettings, open};
 use maulstick_haptic::showing::watch;
 use maulstick_hid::hidraw::Hidraw;
+use maulstick_hid::tablet::Tablet;
 use maulstick_rig::config::DeviceSection;
 use maulstick_rig::files::{check_writable, write_whole};
 use maulstick_rig::{Fault, RigConfig, Stop};
@@ -88,10 +89,42 @@ pub fn run(options: &CalibrateOptions) -> Result<i32, Fault> {
         say!("nothing is written");
         return Ok(EXIT_INTERRUPTED);
     };
-    let (to_desk, fit) = by_corners(&corners, canvas_m(&config.canvas))?;
+    check_side(&corners, showing.corners.handle())?;
+    match device.is_hid() {
+        true => fit_tablet(&config, device, &corners)?,
+        false => fit_ferrule(&config, &corners)?,
+    }
+    write(path, &options.device, &corners)?;
+    say!("written into {}", path.display());
+    Ok(0)
+}
+
+/// Checks that the daemon of a tablet takes the corners, and says how it fits: it may be stretched
+/// over a canvas of another shape.
+fn fit_tablet(
+    config: &RigConfig,
+    mut device: DeviceSection,
+    corners: &[DVec3; 3],
+) -> Result<(), Fault> {
+    device.corners_m = Some(corners.map(|corner| corner.to_array()));
+    // Where the corners say it, neither its area nor what it senses has a part.
+    Tablet::fit([1.0; 2], 0, &device, &config.canvas)?;
+    let size = canvas_m(&config.canvas);
+    let [width, height] = [1, 2].map(|to| corners[to].distance(corners[0]));
+    say!(
+        "the canvas is {:.2} times as wide and {:.2} times as high",
+        size.x / width,
+        size.y / height
+    );
+    Ok(())
+}
+
+/// Checks that the corners are those of the canvas, and says how they fit: a hand in the air may not
+/// be stretched.
+fn fit_ferrule(config: &RigConfig, corners: &[DVec3; 3]) -> Result<(), Fault> {
+    let (to_desk, fit) = by_corners(corners, canvas_m(&config.canvas))?;
     say!("{fit}");
-    // A tablet may be stretched over a canvas of another shape; a hand in the air may not.
-    if !fit.is_good() && !device.is_hid() {
+    if !fit.is_good() {
         return Err(Fault::failure("the three places are no corners of the canvas; nothing is written")
             .help("its width by height has to fit within 10 %, and its corner to be a right one; begin again"));
     }
@@ -100,9 +133,7 @@ pub fn run(options: &CalibrateOptions) -> Result<i32, Fault> {
         to_desk.scale,
         fit.off_m * 1e3
     );
-    write(path, &options.device, &corners)?;
-    say!("written into {}", path.display());
-    Ok(0)
+    Ok(())
 }
 
 fn watch_pen(
@@ -267,7 +298,7 @@ mod tests {
         let before = written.replace(LINE, &format!("{LINE} # by hand"));
         let moved = CORNERS.map(|corner| corner + DVec3::Z * 0.1);
         let again = with_corners(&before, "phantom", &moved).expect("written");
-        assert_eq!(again.matches("corners_m").count(), 1);
+        assert_eq!(again.matches("\ncorners_m").count(), 1);
         assert!(again.contains("0.12]] # by hand\n"), "{again}");
     }
 

@@ -194,8 +194,11 @@ fn table(findings: &Findings) -> String {
         && !service.listens
     {
         text += &nothing(findings);
-    } else if let Some(device) = all().find(|device| is_usable(device)) {
-        text += &advice(device);
+    } else {
+        // Rather what paints than what moves the canvas.
+        let usable = all().filter(|device| is_usable(device));
+        let device = usable.min_by_key(|device| device.driver == Some("spacemouse"));
+        text += &device.map(advice).unwrap_or_default();
     }
     text + &in_rig(findings.rig.as_deref())
 }
@@ -267,8 +270,12 @@ fn advice(device: &Attached) -> String {
         "polhem" => device.path.display().to_string(),
         _ => device.id.clone(),
     };
+    let purpose = match driver {
+        "spacemouse" => "To move the canvas with it",
+        _ => "To paint with it",
+    };
     format!(
-        "\nTo paint with it, in rig.toml:\n\n[[device]]\nname = \"{driver}\"\ndriver = \"{driver}\"\n\
+        "\n{purpose}, in rig.toml:\n\n[[device]]\nname = \"{driver}\"\ndriver = \"{driver}\"\n\
          address = \"{address}\"\nbrush = \"main\"\n"
     )
 }

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
-use std::sync::mpsc::Receiver as Edges;
+use std::sync::mpsc::{Receiver as Edges, RecvTimeoutError};
 use std::time::{Duration, Instant};
 
 use glam::DVec3;
@@ -10,6 +10,7 @@ use maulstick_bus::typed::Receiver;
 use maulstick_bus::{Bus, Class, Queue, Wake};
 use maulstick_num::geometry::Rigid;
 use maulstick_rig::Fault;
+use maulstick_rig::fault::EXIT_USAGE;
 use maulstick_types::Pose;
 use maulstick_types::command::Command;
 use maulstick_types::scene::{BrushHandling, BrushMode, CANVAS, PALETTE, Scene, Surface};
@@ -22,6 +23,8 @@ use crate::commander::Commander;
 const PATIENCE: Duration = Duration::from_secs(2);
 /// A command is asked again after this.
 const ASK: Duration = Duration::from_millis(300);
+/// A way of using the brush that is still to be restored is asked for again after this.
+const AGAIN: Duration = Duration::from_secs(1);
 /// How long the scene may take to show what was done.
 const SHOWN: Duration = Duration::from_secs(1);
 /// Height of the palette above the canvas, m: its board is 4 mm thick, and paint lies under it.
@@ -48,6 +51,23 @@ impl Held {
     }
 }
 
+/// What became of a command.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Told {
+    Done,
+    /// The node has said no.
+    Refused,
+    /// Nobody has answered: it may be done, or be done yet.
+    Unknown,
+}
+
+/// What was held, as the brush was used by it, and what is so again since.
+#[derive(Clone, Debug)]
+struct Restored {
+    held: BrushHandling,
+    before: BrushHandling,
+}
+
 /// The thread that talks to the paint node.
 pub(super) struct Worker {
     commander: Commander,
@@ -56,10 +76,16 @@ pub(super) struct Worker {
     scene: Option<Scene>,
     brush: String,
     held: Held,
-    /// How the brush was used before something was held.
+    /// How the brush was used before something was held, until it is so again.
     before: Option<BrushHandling>,
+    /// What this has asked for last while something was held.
+    asked: Option<BrushHandling>,
+    /// The newest restoring: the scene may not show it yet.
+    restored: Option<Restored>,
     /// Where the palette was before it was slid over the canvas.
     rest: Option<Pose>,
+    /// Whether it was told that nobody answers.
+    unheard: bool,
     stop: Arc<AtomicBool>,
 }
 
@@ -82,22 +108,38 @@ impl Worker {
             brush: brush.to_owned(),
             held: Held::default(),
             before: None,
+            asked: None,
+            restored: None,
             rest: None,
+            unheard: false,
             stop,
         })
     }
 
     /// Does what comes, one after the other, until nobody can press a switch any more.
     pub(super) fn run(&mut self, edges: &Edges<Deed>) {
-        while let Ok(deed) = edges.recv() {
+        loop {
+            let next = match self.owes() {
+                true => edges.recv_timeout(AGAIN),
+                false => edges.recv().map_err(RecvTimeoutError::from),
+            };
             // What was pressed long ago and is still to do at the end is no longer wanted.
             if self.stop.load(Ordering::SeqCst) {
                 break;
             }
-            self.act(deed);
+            match next {
+                Ok(deed) => self.act(deed),
+                Err(RecvTimeoutError::Timeout) => self.follow(),
+                Err(RecvTimeoutError::Disconnected) => break,
+            }
         }
         self.held = Held::default();
         self.follow();
+    }
+
+    /// Whether the brush is still to be used as before.
+    fn owes(&self) -> bool {
+        self.before.is_some() && self.held.mode().is_none()
     }
 
     fn act(&mut self, deed: Deed) {
@@ -123,40 +165,63 @@ impl Worker {
     }
 
     /// Uses the brush as what is held says, or as before.
+    ///
+    /// How it was before is kept until the node has answered that it is so again: a command that
+    /// nobody answers may have been done.
     fn follow(&mut self) {
         let Some(mode) = self.held.mode() else {
-            if let Some(handling) = self.before.take() {
-                self.handle(handling);
+            let Some(before) = self.before.clone() else {
+                return;
+            };
+            match self.handle(before.clone()) {
+                Told::Done => {
+                    let restored = |held| Restored { held, before };
+                    self.restored = self.asked.take().map(restored);
+                    self.before = None;
+                }
+                Told::Refused => self.before = None,
+                Told::Unknown => {}
             }
             return;
         };
         let begins = self.before.is_none();
         if begins {
-            let brush = self.brush.clone();
-            let scene = self.look(SHOWN, |_| true);
-            let now = scene.map(|scene| handling(scene, &brush));
-            self.before = Some(now.unwrap_or_else(|| BrushHandling::normal(&brush)));
+            self.before = Some(self.now());
         }
-        let told = self.handle(BrushHandling {
+        let wanted = BrushHandling {
             mode,
             ..BrushHandling::normal(&self.brush)
-        });
-        if !told && begins {
-            self.before = None;
+        };
+        match self.handle(wanted.clone()) {
+            Told::Refused if begins => self.before = None,
+            Told::Refused => {}
+            Told::Done | Told::Unknown => self.asked = Some(wanted),
         }
     }
 
-    /// Says how the brush is used; whether it is so then.
-    fn handle(&mut self, wanted: BrushHandling) -> bool {
+    /// How the brush is used while nothing is held.
+    fn now(&mut self) -> BrushHandling {
         let brush = self.brush.clone();
-        let command = Command::Handle {
-            handling: wanted.clone(),
-        };
-        // The next that is held asks the scene how the brush is used: it has to have come.
-        self.send(command)
-            && self
-                .look(SHOWN, |scene| handling(scene, &brush) == wanted)
-                .is_some()
+        let scene = self.look(SHOWN, |_| true);
+        let now = scene.map(|scene| handling(scene, &brush));
+        let now = now.unwrap_or_else(|| BrushHandling::normal(&brush));
+        if let Some(Restored { held, before }) = &self.restored
+            && *held == now
+        {
+            return before.clone();
+        }
+        match now.mode {
+            // Another device's switch, or that of a daemon that was killed: nobody would end it.
+            BrushMode::Vacuum | BrushMode::Sampler => BrushHandling {
+                mode: BrushMode::Normal,
+                ..now
+            },
+            _ => now,
+        }
+    }
+
+    fn handle(&mut self, handling: BrushHandling) -> Told {
+        self.send(Command::Handle { handling })
     }
 
     /// Slides the palette over the canvas, or back to where it was.
@@ -171,19 +236,20 @@ impl Worker {
         };
         let (over, beside) = (over(canvas, palette), beside(canvas, palette));
         let (zoom, now) = (palette.zoom, palette.pose.clone());
-        let to = match is_same(&now, &over) {
-            true => self.rest.take().unwrap_or(beside),
-            false => {
-                self.rest = Some(now);
-                over
-            }
+        // The canvas may have moved since; what was slid over it goes back all the same.
+        let (to, rest) = match &self.rest {
+            Some(rest) => (rest.clone(), None),
+            None if is_same(&now, &over) => (beside, None),
+            None => (over, Some(now)),
         };
         let told = self.send(Command::Place {
             surface: PALETTE,
             pose: to.clone(),
             zoom,
         });
-        if told {
+        if told == Told::Done {
+            self.rest = rest;
+            // The next slide asks the scene where the palette is: it has to have come.
             self.look(SHOWN, |scene| {
                 let mut surfaces = scene.surfaces.iter();
                 surfaces.any(|surface| surface.id == PALETTE && is_same(&surface.pose, &to))
@@ -208,18 +274,29 @@ impl Worker {
         }
     }
 
-    /// Sends a command; whether it was done. What is refused is told.
-    fn send(&mut self, command: Command) -> bool {
+    /// Sends a command. What is not done is told.
+    fn send(&mut self, command: Command) -> Told {
         let stop = Arc::clone(&self.stop);
         let stopped = || stop.load(Ordering::SeqCst);
-        match self.commander.send(command, None, PATIENCE, &stopped) {
-            Ok(_) => true,
-            Err(fault) => {
-                let help = fault.help.map(|help| format!("; {help}"));
-                tracing::warn!("a switch: {}{}", fault.what, help.unwrap_or_default());
-                false
+        let fault = match self.commander.send(command, None, PATIENCE, &stopped) {
+            Ok(_) => {
+                self.unheard = false;
+                return Told::Done;
             }
+            Err(fault) => fault,
+        };
+        // None of these commands fails but by its node's word or its silence.
+        let told = match fault.code {
+            EXIT_USAGE => Told::Refused,
+            _ => Told::Unknown,
+        };
+        // Silence is told once: what is to be restored is asked for again and again.
+        let unheard = told == Told::Unknown;
+        if !(std::mem::replace(&mut self.unheard, unheard) && unheard) {
+            let help = fault.help.map(|help| format!("; {help}"));
+            tracing::warn!("a switch: {}{}", fault.what, help.unwrap_or_default());
         }
+        told
     }
 }
 

@@ -55,8 +55,13 @@ pub fn only(ports: &[SerialPortInfo]) -> Result<&str, Fault> {
 }
 
 fn fits(port: &SerialPortInfo) -> bool {
-    matches!(&port.port_type, SerialPortType::UsbPort(usb)
-        if usb.vid == VENDOR && PRODUCTS.contains(&usb.pid))
+    matches!(&port.port_type, SerialPortType::UsbPort(usb) if is_board(usb.vid, usb.pid))
+}
+
+/// Whether USB's numbers of a vendor and a product are those of a board that a stylus may be built around.
+#[must_use]
+pub fn is_board(vendor: u16, product: u16) -> bool {
+    vendor == VENDOR && PRODUCTS.contains(&product)
 }
 
 fn listed<'a>(ports: impl Iterator<Item = &'a SerialPortInfo>) -> String {

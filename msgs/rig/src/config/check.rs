@@ -150,8 +150,52 @@ impl RigConfig {
             choose("action of a switch", action, &ACTIONS)
                 .map_err(|told| wrong(told, "switches", action))?;
         }
-        Ok(())
+        check_driver(device)
     }
+}
+
+/// Refuses what the driver of a device would pass over.
+fn check_driver(device: &DeviceSection) -> Result<(), Wrong> {
+    let driver = device.driver.as_str();
+    let wrong = |key: &'static str, help: &str| {
+        Err(Wrong {
+            what: format!(
+                "{key} of '{}' does nothing: its driver is {driver}",
+                device.name
+            ),
+            key,
+            value: String::new(),
+            help: help.into(),
+        })
+    };
+    if device.hand.is_some() && driver != "simulated" {
+        return wrong(
+            "hand",
+            "take it out: only a simulated device follows a take",
+        );
+    }
+    if device.library.is_some() && driver != "openhaptics" {
+        return wrong("library", "take it out: it is the library of openhaptics");
+    }
+    if device.replay.is_some() && !device.is_hid() {
+        let help = "take it out: it is played in the place of a pen or a spacemouse; \
+                    a take is the `hand` of a simulated device";
+        return wrong("replay", help);
+    }
+    let mut actions = device.switches.iter().flatten();
+    if device.is_hid() && actions.any(|action| action == "clutch") {
+        let help = "choose another action: who lifts a pen, or lets go of a 6-DOF mouse, has let go of the desk";
+        return Err(Wrong {
+            what: format!(
+                "the switch 'clutch' of '{}' does nothing: its driver is {driver}",
+                device.name
+            ),
+            key: "switches",
+            value: "clutch".into(),
+            help: help.into(),
+        });
+    }
+    Ok(())
 }
 
 /// Desk lengths per device length.
@@ -341,6 +385,39 @@ mod tests {
                 text.contains("position_m") && text.contains("rig.toml:34"),
                 "{text}"
             );
+        }
+    }
+
+    #[test]
+    fn what_the_driver_would_pass_over_is_refused_with_what_to_do() {
+        let section = |driver: &str, line: &str| {
+            let text = DEFAULT.replace("driver = \"simulated\"", &format!("driver = \"{driver}\""));
+            text.replace("max_force_n = 3.0", &format!("{line}\nmax_force_n = 3.0"))
+        };
+        for (line, fits, others) in [
+            ("hand = \"a.mcap\"", "simulated", ["pen", "polhem"]),
+            (
+                "library = \"libHD.so\"",
+                "openhaptics",
+                ["simulated", "inverse3"],
+            ),
+            ("replay = \"a.hid\"", "spacemouse", ["simulated", "polhem"]),
+            (
+                "switches = [\"undo\", \"clutch\"]",
+                "polhem",
+                ["pen", "spacemouse"],
+            ),
+        ] {
+            RigConfig::parse(&section(fits, line), "rig.toml").expect("it has an effect");
+            for driver in others {
+                let refused = RigConfig::parse(&section(driver, line), "rig.toml").expect_err(line);
+                let text = refused.to_string();
+                assert!(
+                    text.contains(driver) && text.contains("rig.toml:36"),
+                    "{text}"
+                );
+                assert!(refused.help.is_some(), "{text}");
+            }
         }
     }
 
