@@ -264,8 +264,9 @@ impl Daemon {
     /// Opens the device, if it is there, or begins to play in its place.
     fn attempt(&mut self, now_ns: u64) -> Result<(), Fault> {
         if let Some(brush) = &self.brush {
-            // Tokens come and go; the wake rings for the next.
-            if !std::iter::from_fn(|| brush.try_recv()).any(|token| token.present) {
+            // Tokens come and go, and the newest counts; the wake rings for the next.
+            let newest = std::iter::from_fn(|| brush.try_recv()).last();
+            if !newest.is_some_and(|token| token.present) {
                 return Ok(());
             }
             self.brush = None;
@@ -279,6 +280,8 @@ impl Daemon {
             } = recorded;
             let means = open::means(self.kind, &identity, &descriptor)?;
             self.begin(means, &identity, &descriptor, now_ns)?;
+            // One without reports is over when it begins.
+            self.heard_ns = now_ns;
             self.feed = Some(Feed::Played(Played::start(events, now_ns)));
             return Ok(());
         }
@@ -334,7 +337,8 @@ impl Daemon {
             }
             (Means::SpaceMouse, Hand::Free(hand)) => {
                 let to_desk = canonical(DQuat::from_array(device.orientation));
-                hand.begin(SpaceMouse::new(identity.vendor, identity.product, to_desk));
+                let mouse = SpaceMouse::new(identity.vendor, identity.product, to_desk);
+                hand.begin(mouse, device, now_ns)?;
             }
             // A kind has one hand.
             (Means::Pen(_), Hand::Free(_)) | (Means::SpaceMouse, Hand::Stylus(_)) => {}
