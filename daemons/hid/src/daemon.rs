@@ -52,6 +52,7 @@ pub struct HidSettings {
 /// # Errors
 /// A [`Fault`] where the device or the rig cannot be used.
 pub fn run(member: &mut Member, settings: &HidSettings) -> Result<(), Fault> {
+    warn_of_twins(&settings.device, &member.config.device);
     let origin = member.origin(&settings.device.name);
     let mut daemon = Daemon::new(
         Arc::clone(&member.bus),
@@ -64,6 +65,21 @@ pub fn run(member: &mut Member, settings: &HidSettings) -> Result<(), Fault> {
     member.ready()?;
     let result = member.run(|| daemon.turn());
     result.and(daemon.end())
+}
+
+/// Says of two sections that open the same device that they do; the second one says it.
+fn warn_of_twins(device: &DeviceSection, all: &[DeviceSection]) {
+    let before = all.iter().take_while(|other| other.name != device.name);
+    let is_twin = |other: &&DeviceSection| {
+        other.driver == device.driver
+            && other.address == device.address
+            && other.replay.is_none()
+            && device.replay.is_none()
+    };
+    if let Some(twin) = before.filter(is_twin).last() {
+        let names = format!("{} and {}", twin.name, device.name);
+        tracing::warn!("{names} read the same device: give each an `address` in rig.toml");
+    }
 }
 
 /// What the device is to the rig.
