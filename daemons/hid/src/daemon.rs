@@ -86,7 +86,7 @@ fn warn_of_twins(device: &DeviceSection, all: &[DeviceSection]) {
 #[derive(Debug)]
 enum Hand {
     Stylus(Box<Stylus>),
-    Free(FreeHand),
+    Free(Box<FreeHand>),
 }
 
 /// A device in a rig.
@@ -145,7 +145,10 @@ impl Daemon {
                 let stylus = Stylus::new(&bus, topics, device, origin, wake)?;
                 Hand::Stylus(Box::new(stylus))
             }
-            Kind::SpaceMouse => Hand::Free(FreeHand::new(&bus, topics, device, origin)?),
+            Kind::SpaceMouse => {
+                let hand = FreeHand::new(&bus, topics, device, origin)?;
+                Hand::Free(Box::new(hand))
+            }
         };
         let node = topics.node(&format!("{BRUSH_NODE}{}", device.brush));
         let brush = match (kind, &replay) {
