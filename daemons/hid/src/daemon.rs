@@ -52,6 +52,7 @@ pub struct HidSettings {
 /// # Errors
 /// A [`Fault`] where the device or the rig cannot be used.
 pub fn run(member: &mut Member, settings: &HidSettings) -> Result<(), Fault> {
+    warn_of_twins(&settings.device, &member.config.device);
     let origin = member.origin(&settings.device.name);
     let mut daemon = Daemon::new(
         Arc::clone(&member.bus),
@@ -66,11 +67,26 @@ pub fn run(member: &mut Member, settings: &HidSettings) -> Result<(), Fault> {
     result.and(daemon.end())
 }
 
+/// Says of two sections that open the same device that they do; the second one says it.
+fn warn_of_twins(device: &DeviceSection, all: &[DeviceSection]) {
+    let before = all.iter().take_while(|other| other.name != device.name);
+    let is_twin = |other: &&DeviceSection| {
+        other.driver == device.driver
+            && other.address == device.address
+            && other.replay.is_none()
+            && device.replay.is_none()
+    };
+    if let Some(twin) = before.filter(is_twin).last() {
+        let names = format!("{} and {}", twin.name, device.name);
+        tracing::warn!("{names} read the same device: give each an `address` in rig.toml");
+    }
+}
+
 /// What the device is to the rig.
 #[derive(Debug)]
 enum Hand {
     Stylus(Box<Stylus>),
-    Free(FreeHand),
+    Free(Box<FreeHand>),
 }
 
 /// A device in a rig.
@@ -129,7 +145,10 @@ impl Daemon {
                 let stylus = Stylus::new(&bus, topics, device, origin, wake)?;
                 Hand::Stylus(Box::new(stylus))
             }
-            Kind::SpaceMouse => Hand::Free(FreeHand::new(&bus, topics, device, origin)?),
+            Kind::SpaceMouse => {
+                let hand = FreeHand::new(&bus, topics, device, origin)?;
+                Hand::Free(Box::new(hand))
+            }
         };
         let node = topics.node(&format!("{BRUSH_NODE}{}", device.brush));
         let brush = match (kind, &replay) {
@@ -269,8 +288,9 @@ impl Daemon {
     /// Opens the device, if it is there, or begins to play in its place.
     fn attempt(&mut self, now_ns: u64) -> Result<(), Fault> {
         if let Some(brush) = &self.brush {
-            // Tokens come and go; the wake rings for the next.
-            if !std::iter::from_fn(|| brush.try_recv()).any(|token| token.present) {
+            // Tokens come and go, and the newest counts; the wake rings for the next.
+            let newest = std::iter::from_fn(|| brush.try_recv()).last();
+            if !newest.is_some_and(|token| token.present) {
                 return Ok(());
             }
             self.brush = None;
@@ -284,6 +304,8 @@ impl Daemon {
             } = recorded;
             let means = open::means(self.kind, &identity, &descriptor)?;
             self.begin(means, &identity, &descriptor, now_ns)?;
+            // One without reports is over when it begins.
+            self.heard_ns = now_ns;
             self.feed = Some(Feed::Played(Played::start(events, now_ns)));
             return Ok(());
         }
@@ -339,7 +361,8 @@ impl Daemon {
             }
             (Means::SpaceMouse, Hand::Free(hand)) => {
                 let to_desk = canonical(DQuat::from_array(device.orientation));
-                hand.begin(SpaceMouse::new(identity.vendor, identity.product, to_desk));
+                let mouse = SpaceMouse::new(identity.vendor, identity.product, to_desk);
+                hand.begin(mouse, device, now_ns)?;
             }
             // A kind has one hand.
             (Means::Pen(_), Hand::Free(_)) | (Means::SpaceMouse, Hand::Stylus(_)) => {}

@@ -8,7 +8,8 @@ use hidreport::{Field, Report as _, ReportDescriptor, Usage};
 
 /// A descriptor is no longer than this, bytes: the kernel gives no more.
 pub const LONGEST: usize = 4096;
-/// All main items together have no more fields.
+/// All main items together have no more fields. Each has a copy of the usages of the collections that it
+/// lies in, [`DEPTH`] times [`COLLECTION_USAGES`] at most.
 const FIELDS: usize = 8192;
 /// Bits of one main item.
 const BITS: usize = 1 << 16;
@@ -46,51 +47,93 @@ pub fn pair(usage: &Usage) -> (u16, u16) {
     (usage.usage_page.into(), usage.usage_id.into())
 }
 
-/// What is known of the globals, as far as it bears on what a descriptor may cost.
+/// What is known of globals and locals, as far as it bears on what a descriptor may cost. Of the
+/// specification Push keeps globals alone; `hidreport` keeps and takes back the locals too.
 #[derive(Clone, Copy, Default)]
-struct Globals {
+struct Known {
     has_page: bool,
     bits: usize,
     count: usize,
+    locals: Locals,
+}
+
+/// The usages that the next main item has.
+#[derive(Clone, Copy, Default)]
+struct Locals {
+    named: u64,
+    least: Option<u64>,
+    most: Option<u64>,
+}
+
+impl Locals {
+    fn usages(&self) -> u64 {
+        let range = match (self.least, self.most) {
+            (Some(least), Some(most)) => most.saturating_sub(least) + 1,
+            _ => 0,
+        };
+        self.named + range
+    }
+}
+
+/// The short item at a place: its head without its size, its value, and where the next one is.
+fn item(bytes: &[u8], at: usize) -> Option<(u8, u64, usize)> {
+    let head = *bytes.get(at)?;
+    let end = at + 1 + [0, 1, 2, 4][usize::from(head & 3)];
+    let data = bytes.get(at + 1..end)?.iter().rev();
+    let value = data.fold(0_u64, |all, byte| all << 8 | u64::from(*byte));
+    Some((head & 0xFC, value, end))
+}
+
+/// Bytes of the input report of a number, which is one of them; none where there is no such report. What is
+/// wrong with a descriptor ends it.
+#[must_use]
+pub fn input_bytes(bytes: &[u8], number: u8) -> Option<u64> {
+    let (mut at, mut bits) = (0, 0_u64);
+    let (mut size, mut count, mut report) = (0_u64, 0_u64, None);
+    while let Some((head, value, next)) = item(bytes, at) {
+        match head {
+            0x74 => size = value,
+            0x84 => report = Some(value),
+            0x94 => count = value,
+            0x80 if report == Some(u64::from(number)) => {
+                bits = bits.saturating_add(size.saturating_mul(count));
+            }
+            _ => {}
+        }
+        at = next;
+    }
+    (bits > 0).then(|| 1 + bits.div_ceil(8))
 }
 
 fn check(bytes: &[u8]) -> Result<(), String> {
     if bytes.is_empty() || bytes.len() > LONGEST {
         return Err(format!("it has {} bytes, not 1 to {LONGEST}", bytes.len()));
     }
-    let (mut globals, mut kept) = (Globals::default(), Vec::new());
+    let (mut known, mut kept) = (Known::default(), Vec::new());
     let (mut depth, mut fields, mut usages) = (0_usize, 0_usize, 0_u64);
-    let (mut named, mut least, mut most) = (0_u64, None, None);
     let mut at = 0;
-    while let Some(&head) = bytes.get(at) {
-        let size = [0, 1, 2, 4][usize::from(head & 3)];
+    while at < bytes.len() {
         let wrong = |what: &str| Err(format!("{what} at byte {at}"));
-        let Some(data) = bytes.get(at + 1..at + 1 + size) else {
+        let Some((head, value, next)) = item(bytes, at) else {
             return wrong("an item is cut off");
         };
-        let value = data
-            .iter()
-            .rev()
-            .fold(0_u64, |all, byte| all << 8 | u64::from(*byte));
-        match head & 0xFC {
-            0x04 => globals.has_page = true,
-            0x74 => globals.bits = usize::try_from(value).unwrap_or(usize::MAX),
-            0x94 => globals.count = usize::try_from(value).unwrap_or(usize::MAX),
-            0xA4 => kept.push(globals),
+        match head {
+            0x04 => known.has_page = true,
+            0x74 => known.bits = usize::try_from(value).unwrap_or(usize::MAX),
+            0x94 => known.count = usize::try_from(value).unwrap_or(usize::MAX),
+            0xA4 => kept.push(known),
             0xB4 => match kept.pop() {
-                Some(before) => globals = before,
+                Some(before) => known = before,
                 None => return wrong("globals are taken back that were not kept"),
             },
-            0x08 => named += 1,
-            0x18 => least = Some(value),
-            0x28 => most = Some(value),
+            0x08 => known.locals.named += 1,
+            0x18 => known.locals.least = Some(value),
+            0x28 => known.locals.most = Some(value),
             main @ (0x80 | 0x90 | 0xB0 | 0xA0) => {
-                if !globals.has_page {
+                if !known.has_page {
                     return wrong("a main item comes before any usage page");
                 }
-                if let (Some(least), Some(most)) = (least, most) {
-                    named += u64::saturating_sub(most, least) + 1;
-                }
+                let named = known.locals.usages();
                 usages += named;
                 if main == 0xA0 {
                     depth += 1;
@@ -98,24 +141,24 @@ fn check(bytes: &[u8]) -> Result<(), String> {
                         return wrong("a collection has too many usages");
                     }
                 } else {
-                    let bits = globals.bits.saturating_mul(globals.count);
+                    let bits = known.bits.saturating_mul(known.count);
                     if bits > BITS {
                         return wrong("a field is too long");
                     }
-                    fields += globals.count;
+                    fields += known.count;
                 }
-                (named, least, most) = (0, None, None);
+                known.locals = Locals::default();
             }
             0xC0 => {
                 depth = depth.saturating_sub(1);
-                (named, least, most) = (0, None, None);
+                known.locals = Locals::default();
             }
             _ => {}
         }
         if depth > DEPTH || kept.len() > DEPTH || fields > FIELDS || usages > USAGES {
             return wrong("it asks for too much");
         }
-        at += 1 + size;
+        at = next;
     }
     Ok(())
 }

@@ -2,7 +2,7 @@
 //!
 //! A live device is read on a thread of its own into a bounded queue, so that no stroke waits for the bus.
 //! A recording is played by the rig's clock, and its reports have the times at which they were recorded:
-//! what is painted does not depend on when the daemon takes its turns.
+//! the samples that follow do not depend on when the daemon takes its turns.
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};

@@ -10,6 +10,7 @@ use maulstick_rig::Fault;
 use maulstick_rig::config::DeviceSection;
 use maulstick_types::Origin;
 use maulstick_types::control::ControlSample;
+use maulstick_types::stylus::StylusInfo;
 use maulstick_types::topics::Topics;
 
 use crate::spacemouse::{SILENCE_NS, SpaceMouse};
@@ -19,10 +20,14 @@ const DECAY_STEP_NS: u64 = 10_000_000;
 /// What a mouse does is told of again after this time, ns: a sample may be lost, and it may be the last.
 const REPEAT_NS: u64 = 100_000_000;
 
+/// Reports a second of most mice while they are pushed.
+const RATE_HZ: f64 = 125.0;
+
 /// A mouse, from its reports to its samples.
 pub struct FreeHand {
     mouse: Option<SpaceMouse>,
     samples: Sender<ControlSample>,
+    info: Sender<StylusInfo>,
     /// Moves the canvas.
     mover: Mover,
     /// Does what its switches ask for.
@@ -48,6 +53,12 @@ impl FreeHand {
         Ok(Self {
             mouse: None,
             samples: Sender::new(&**bus, &topic, Class::RealTime, origin)?,
+            info: Sender::new(
+                &**bus,
+                &topics.stylus_info(&device.name),
+                Class::Cached,
+                origin,
+            )?,
             mover: Mover::start(bus, topics)?,
             actor: Actor::start(Arc::clone(bus), topics, &device.brush, actions)?,
             told_ns: 0,
@@ -57,8 +68,30 @@ impl FreeHand {
     }
 
     /// A mouse is there.
-    pub fn begin(&mut self, mouse: SpaceMouse) {
+    ///
+    /// # Errors
+    /// [`BusError`].
+    pub fn begin(
+        &mut self,
+        mouse: SpaceMouse,
+        device: &DeviceSection,
+        now_ns: u64,
+    ) -> Result<(), BusError> {
         self.mouse = Some(mouse);
+        // It is no stylus, but is listed with them.
+        let told = StylusInfo {
+            device: device.name.clone(),
+            driver: device.driver.clone(),
+            brush: device.brush.clone(),
+            priority: device.priority,
+            senses: 0,
+            drives: 0,
+            rate_hz: RATE_HZ,
+            max_force_n: 0.0,
+            max_stiffness_n_m: 0.0,
+            workspace_m: [0.0; 6],
+        };
+        self.info.send(now_ns, now_ns, &told)
     }
 
     /// A report of time `event_ns`.

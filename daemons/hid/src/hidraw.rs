@@ -59,7 +59,11 @@ impl Ports for Hidraw {
                 usages: vec![usage],
             });
         }
-        found.sort_by(|a, b| a.identity.place.cmp(&b.identity.place));
+        // hidraw9 before hidraw10.
+        found.sort_by(|a, b| {
+            let [a, b] = [a, b].map(|found| &found.identity.place);
+            (a.len(), a).cmp(&(b.len(), b))
+        });
         Ok(found)
     }
 
@@ -124,8 +128,10 @@ impl HidSource for Device {
         match self.device.read_timeout(report, limit) {
             Ok(length) => Ok(length),
             Err(HidError::IoError { error }) if error.kind() == ErrorKind::Interrupted => Ok(0),
-            Err(_) => {
-                Err(Fault::failure(format!("{} was unplugged", self.name)).help("plug it in again"))
+            Err(error) => {
+                let name = &self.name;
+                let what = format!("{name} was unplugged, or does not answer: {error}");
+                Err(Fault::failure(what).help("plug it in again"))
             }
         }
     }

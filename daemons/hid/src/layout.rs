@@ -13,7 +13,7 @@
 //! | distance | the range is 1 cm |
 //! | pressure | a touch of a pen without has half |
 //! | tip switch | a pen without touches while it has pressure |
-//! | in range | a pen without is near from its first report on |
+//! | in range | a pen without is near from a report on, until it has neither touched nor reported for a second |
 
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
@@ -195,6 +195,7 @@ pub struct Layout {
     reports: Vec<PenReport>,
     area_m: [f64; 2],
     senses: u32,
+    tells_range: bool,
 }
 
 /// A report that says where the pen is.
@@ -227,10 +228,14 @@ impl Layout {
                 _ => 0,
             };
         }
+        let tells_range = reports
+            .iter()
+            .any(|report| report.number(Role::InRange).is_some());
         Some(Self {
             reports,
             area_m,
             senses,
+            tells_range,
         })
     }
 
@@ -244,6 +249,12 @@ impl Layout {
     #[must_use]
     pub fn senses(&self) -> u32 {
         self.senses
+    }
+
+    /// Whether the reports say that the pen is away.
+    #[must_use]
+    pub fn tells_range(&self) -> bool {
+        self.tells_range
     }
 
     /// Reads a report; nothing where it is another's than the pen's, or too short.

@@ -1,8 +1,9 @@
 //! The device that a section of `rig.toml` asks for, and how it is read.
 
+use maulstick_device::collections::Collection;
 use maulstick_rig::Fault;
 
-use crate::descriptor::{self, describe, page};
+use crate::descriptor::{self, describe};
 use crate::layout::Layout;
 use crate::pen::Reading;
 use crate::source::{Found, HidSource, Identity, Ports};
@@ -41,19 +42,14 @@ impl Kind {
         let Identity {
             vendor, product, ..
         } = found.identity;
-        let has = |wanted: fn(&(u16, u16)) -> bool| found.usages.iter().any(wanted);
+        let usages = found.usages.iter();
+        let mut collections = usages.map(|&(page, usage)| Collection { page, usage });
         match self {
             Self::Pen => {
-                let described = has(|usage| {
-                    matches!(
-                        usage,
-                        (page::DIGITIZER, 0x01 | 0x02 | 0x20) | (page::WACOM, _)
-                    )
-                });
-                described || Wacom::of(vendor, product).is_some()
+                collections.any(|one| one.is_pen()) || Wacom::of(vendor, product).is_some()
             }
             Self::SpaceMouse => {
-                VENDORS.contains(&vendor) && has(|usage| *usage == (page::DESKTOP, 0x08))
+                VENDORS.contains(&vendor) && collections.any(|one| one.has_six_axes())
             }
         }
     }
@@ -133,6 +129,15 @@ impl Decoder {
         }
     }
 
+    /// Whether the reports say that the pen is away.
+    #[must_use]
+    pub fn tells_range(&self) -> bool {
+        match self {
+            Self::Described(layout) => layout.tells_range(),
+            Self::Wacom(_) => true,
+        }
+    }
+
     /// Reads a report; nothing where it is no pen's, or too short.
     pub fn decode(&mut self, report: &[u8]) -> Option<Reading> {
         match self {
@@ -156,16 +161,25 @@ pub enum Means {
 /// # Errors
 /// A [`Fault`] that says what the device is instead.
 pub fn means(kind: Kind, identity: &Identity, bytes: &[u8]) -> Result<Means, Fault> {
-    if let (Kind::Pen, Some(table)) = (kind, Wacom::of(identity.vendor, identity.product)) {
+    let table = Wacom::of(identity.vendor, identity.product);
+    if let (Kind::Pen, Some(table)) = (kind, table.filter(|table| table.fits(bytes))) {
         return Ok(Means::Pen(Decoder::Wacom(table)));
     }
     let descriptor = descriptor::read(bytes).map_err(|what| {
         Fault::failure(format!("{identity} describes itself wrongly: {what}"))
             .help("choose another device by `address` in rig.toml")
     })?;
+    let seems = match kind {
+        Kind::Pen => lies_anywhere(&descriptor, is_pen),
+        Kind::SpaceMouse => lies_anywhere(&descriptor, has_six_axes),
+    };
     let other = |help: &str| {
-        let what = describe(&descriptor);
-        Fault::failure(format!("{identity} is {what}, no {}", kind.word())).help(help)
+        let what = match (seems, kind) {
+            (true, Kind::Pen) => "is a pen whose reports do not say where it is".to_owned(),
+            (true, Kind::SpaceMouse) => "is a 6-DOF mouse of an unknown maker".to_owned(),
+            (false, _) => format!("is {}, no {}", describe(&descriptor), kind.word()),
+        };
+        Fault::failure(format!("{identity} {what}")).help(help)
     };
     match kind {
         Kind::Pen => {
@@ -177,23 +191,31 @@ pub fn means(kind: Kind, identity: &Identity, bytes: &[u8]) -> Result<Means, Fau
             })?;
             Ok(Means::Pen(Decoder::Described(layout)))
         }
-        Kind::SpaceMouse => {
-            let has_axes = has_six_axes(&descriptor);
-            match VENDORS.contains(&identity.vendor) && has_axes {
-                true => Ok(Means::SpaceMouse),
-                false => Err(other("choose another device by `address` in rig.toml")),
-            }
-        }
+        Kind::SpaceMouse => match VENDORS.contains(&identity.vendor) && seems {
+            true => Ok(Means::SpaceMouse),
+            false => Err(other("choose another device by `address` in rig.toml")),
+        },
     }
 }
 
-/// Whether a descriptor is of a multi-axis controller.
-fn has_six_axes(descriptor: &hidreport::ReportDescriptor) -> bool {
+fn is_pen((page, usage): (u16, u16)) -> bool {
+    Collection { page, usage }.is_pen()
+}
+
+fn has_six_axes((page, usage): (u16, u16)) -> bool {
+    Collection { page, usage }.has_six_axes()
+}
+
+/// Whether a device reports anything in a collection of such a usage.
+fn lies_anywhere(
+    descriptor: &hidreport::ReportDescriptor,
+    wanted: impl Fn((u16, u16)) -> bool,
+) -> bool {
     use hidreport::Report as _;
     let reports = descriptor.input_reports().iter();
     reports
         .flat_map(|report| report.fields().iter())
-        .any(|field| descriptor::lies_in(field, |usage| usage == (page::DESKTOP, 0x08)))
+        .any(|field| descriptor::lies_in(field, &wanted))
 }
 
 /// What some tablets are told before they report: XP-Pen's Deco L (from OpenTabletDriver).
@@ -276,7 +298,7 @@ fn missing(kind: Kind, address: &Address, all: &[Found]) -> Fault {
     let what = match address {
         Address::Any => format!("no {} is plugged in", kind.word()),
         Address::Numbers(vendor, product) => format!("no {vendor:04x}:{product:04x} is plugged in"),
-        Address::Path(path) => format!("{path} is no HID device"),
+        Address::Path(path) => format!("no HID device is plugged in at {path}"),
     };
     Fault::failure(what).help(format!("plug it in; {there}"))
 }

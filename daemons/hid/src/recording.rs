@@ -242,6 +242,12 @@ fn bytes(text: &str, most: usize) -> Result<Vec<u8>, String> {
 fn time_ns(text: &str) -> Result<u64, String> {
     let wrong = || format!("'{}' is no time in seconds", start(text));
     let (seconds, micros) = text.split_once('.').ok_or_else(wrong)?;
+    if micros.len() != 6 {
+        return Err(format!(
+            "'{}' is no time in seconds with six digits behind the point",
+            start(text)
+        ));
+    }
     let number = |digits: &str| {
         let all = !digits.is_empty() && digits.bytes().all(|digit| digit.is_ascii_digit());
         digits.parse::<u64>().ok().filter(|_| all).ok_or_else(wrong)

@@ -9,12 +9,14 @@ use maulstick_rig::Fault;
 use maulstick_rig::config::DeviceSection;
 
 use crate::open::{self, Address, Decoder, Kind, Means};
-use crate::pen::{Pen, Presence};
+use crate::pen::{Pen, Presence, Reading};
 use crate::recording::{self, Event, LONGEST_REPORT};
 use crate::source::{HidSource, Identity, Ports};
 
 /// A pen that says nothing is looked at again after this: nothing has changed.
 const SILENCE: Duration = Duration::from_millis(50);
+/// The same of a recording, ns.
+const SILENCE_NS: u64 = 50_000_000;
 
 /// A pen that is open, or a recording of one.
 pub struct Shown {
@@ -72,16 +74,32 @@ impl Shown {
             ..
         } = self;
         let mut pen = Pen::default();
+        let mut readings = Vec::with_capacity(3);
         let mut see = |report: &[u8], time_s: f64| {
+            readings.clear();
             if let Some(said) = decoder.decode(report) {
-                pen.follow(said, &mut |_| ());
+                // A pen that goes while it touches is lifted in between, and only that shows the corner.
+                pen.follow(said, &mut |reading| readings.push(reading));
             }
-            look(glimpse(&pen, time_s))
+            if readings.is_empty() {
+                readings.push(*pen.newest());
+            }
+            let mut glimpses = readings.iter().map(|reading| glimpse(reading, time_s));
+            glimpses.try_for_each(&mut look)
         };
         match reports {
             Reports::Played(events) => {
+                let seconds = |time_ns: u64| time_ns as f64 * 1e-9;
+                let mut seen_ns = events.first().map_or(0, |event| event.time_ns);
                 for event in events {
-                    if see(&event.report, event.time_ns as f64 * 1e-9).is_break() {
+                    while seen_ns + SILENCE_NS < event.time_ns {
+                        seen_ns += SILENCE_NS;
+                        if see(&[], seconds(seen_ns)).is_break() {
+                            return Ok(());
+                        }
+                    }
+                    seen_ns = event.time_ns;
+                    if see(&event.report, seconds(seen_ns)).is_break() {
                         return Ok(());
                     }
                 }
@@ -103,14 +121,13 @@ impl Shown {
     }
 }
 
-fn glimpse(pen: &Pen, time_s: f64) -> Glimpse {
-    let newest = pen.newest();
-    let touch = match newest.presence {
+fn glimpse(reading: &Reading, time_s: f64) -> Glimpse {
+    let touch = match reading.presence {
         Presence::Away => return Glimpse::Away,
         Presence::Hovering => Touch::Up,
         Presence::Touching => Touch::Down,
     };
-    let [x, y] = newest.point_m;
+    let [x, y] = reading.point_m;
     Glimpse::Seen(Seen {
         point: DVec3::new(x, y, 0.0),
         handle: Some(DVec3::Z),

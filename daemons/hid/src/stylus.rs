@@ -2,7 +2,7 @@
 //!
 //! A brush takes a leap of more than a tenth of a second for a new beginning, and many tablets say nothing
 //! while nothing changes. So a pen that is near and silent is told of again, and a stroke that rests
-//! goes on.
+//! goes on. Of a tablet that never says that its pen is away, one that hovers in silence for a second is.
 
 use std::sync::Arc;
 
@@ -17,11 +17,13 @@ use maulstick_types::topics::Topics;
 use maulstick_types::{Flags, Origin};
 
 use crate::open::Decoder;
-use crate::pen::{Pen, Reading};
+use crate::pen::{Pen, Presence, Reading};
 use crate::tablet::Tablet;
 
 /// A silent pen is told of again after this time, ns.
 pub const REPEAT_NS: u64 = 50_000_000;
+/// A pen that hovers in silence for so long is away, where the tablet would not say so, ns.
+pub const GONE_NS: u64 = 1_000_000_000;
 /// Samples are at least this far apart, ns: reports that were read together did not come together.
 pub const SPACING_NS: u64 = 500_000;
 /// A silence of more than this, ns, is not filled: the machine slept.
@@ -40,6 +42,8 @@ pub struct Stylus {
     actor: Actor,
     newest: StylusSample,
     event_ns: u64,
+    /// When the pen was last reported, ns.
+    heard_ns: u64,
     sent: u64,
 }
 
@@ -66,6 +70,7 @@ impl Stylus {
             actor: Actor::start(Arc::clone(bus), topics, &device.brush, actions)?,
             newest: StylusSample::away(),
             event_ns: 0,
+            heard_ns: 0,
             sent: 0,
         })
     }
@@ -108,6 +113,7 @@ impl Stylus {
         };
         // What comes at the very time needs no filling.
         self.silent(event_ns.saturating_sub(1), now_ns)?;
+        self.heard_ns = event_ns;
         let mut readings = Vec::with_capacity(3);
         self.pen.follow(said, &mut |reading| readings.push(reading));
         self.tell(&readings, event_ns, now_ns)
@@ -121,10 +127,28 @@ impl Stylus {
         if self.newest.in_range && until_ns.saturating_sub(self.event_ns) > LONGEST_NS {
             self.event_ns = until_ns;
         }
-        while self.newest.in_range && self.event_ns + REPEAT_NS <= until_ns {
+        let gone_ns = self.gone_ns().filter(|gone_ns| *gone_ns <= until_ns);
+        let near_ns = gone_ns.unwrap_or(until_ns);
+        while self.newest.in_range && self.event_ns + REPEAT_NS <= near_ns {
             self.send(self.newest.clone(), self.event_ns + REPEAT_NS, now_ns)?;
         }
-        Ok(())
+        match gone_ns {
+            Some(gone_ns) => self.leave(gone_ns, now_ns),
+            None => Ok(()),
+        }
+    }
+
+    /// When a pen that hovers is taken for one that is away, ns; never where the tablet tells.
+    fn gone_ns(&self) -> Option<u64> {
+        let (decoder, _) = self.tablet.as_ref()?;
+        let hovers = self.pen.newest().presence == Presence::Hovering;
+        (hovers && !decoder.tells_range()).then_some(self.heard_ns + GONE_NS)
+    }
+
+    fn leave(&mut self, event_ns: u64, now_ns: u64) -> Result<(), BusError> {
+        let mut readings = Vec::with_capacity(2);
+        self.pen.leave(&mut |reading| readings.push(reading));
+        self.tell(&readings, event_ns, now_ns)
     }
 
     /// The tablet is gone, at `event_ns`: the pen is lifted, and leaves.
@@ -132,9 +156,7 @@ impl Stylus {
     /// # Errors
     /// [`BusError`].
     pub fn end(&mut self, event_ns: u64, now_ns: u64) -> Result<(), BusError> {
-        let mut readings = Vec::with_capacity(2);
-        self.pen.leave(&mut |reading| readings.push(reading));
-        self.tell(&readings, event_ns, now_ns)?;
+        self.leave(event_ns, now_ns)?;
         self.tablet = None;
         Ok(())
     }

@@ -6,6 +6,7 @@
 
 use maulstick_types::stylus::axes;
 
+use crate::descriptor::input_bytes;
 use crate::layout::STEEPEST_RAD;
 use crate::pen::{End, Presence, Reading};
 
@@ -28,8 +29,9 @@ enum Format {
 pub struct Wacom {
     format: Format,
     counts: [u32; 2],
-    /// Intuos 4: which end was brought near; a report of it comes once each time.
-    end: End,
+    /// Intuos 4: which end was brought near. A report of it comes once each time, so of a pen that was near
+    /// before the first report nothing is known until it was away.
+    end: Option<End>,
 }
 
 /// Product, its format, X and Y counts.
@@ -60,8 +62,20 @@ impl Wacom {
             .map(|(_, format, counts)| Self {
                 format: *format,
                 counts: *counts,
-                end: End::Tip,
+                end: None,
             })
+    }
+
+    /// Whether an interface is the pen's, by its descriptor; such a tablet may have another for touch, whose
+    /// report 2 has 64 bytes.
+    #[must_use]
+    pub fn fits(&self, descriptor: &[u8]) -> bool {
+        match self.format {
+            Format::Intuos4 => {
+                input_bytes(descriptor, 2).is_some_and(|bytes| (10..64).contains(&bytes))
+            }
+            Format::IntuosPro2 => input_bytes(descriptor, 0x10).is_some_and(|bytes| bytes >= 17),
+        }
     }
 
     /// Width and height of the active area, m.
@@ -92,15 +106,16 @@ impl Wacom {
             // The pen came near: its tool's number, of which bit 3 is that of the eraser.
             flags if flags & 0xFC == 0xC0 => {
                 let tool = u16::from(x0) << 4 | u16::from(x1) >> 4;
-                self.end = match tool & 8 != 0 {
+                self.end = Some(match tool & 8 != 0 {
                     true => End::Eraser,
                     false => End::Tip,
-                };
+                });
                 return None;
             }
-            flags if flags & 0xFE == 0x80 => {
+            // It is gone, or is about to go: sensed still, but no more said of.
+            flags if matches!(flags & 0xFE, 0x80 | 0x20) => {
                 return Some(Reading {
-                    end: self.end,
+                    end: self.end.unwrap_or(End::Tip),
                     ..Reading::AWAY
                 });
             }
@@ -108,6 +123,7 @@ impl Wacom {
             flags if flags & 0xB8 != 0xA0 => return None,
             _ => {}
         }
+        let end = self.end?;
         let wide = |high: u8, low: u8, bit: u8| {
             u32::from(high) << 9 | u32::from(low) << 1 | u32::from(bit & 1)
         };
@@ -124,7 +140,7 @@ impl Wacom {
             [f64::from(pressure) / 2047.0, f64::from(d9 >> 2) / 63.0],
             tilt,
             touches,
-            self.end,
+            end,
             u32::from(flags >> 1 & 3),
         ))
     }

@@ -24,7 +24,6 @@ pub(crate) const START_NS: u64 = 1_000_000_000_000;
 pub(crate) struct Rig {
     pub(crate) net: MemoryNet,
     pub(crate) daemon: Daemon,
-    pub(crate) wake: Wake,
     samples: Receiver<StylusSample>,
     controls: Receiver<ControlSample>,
     infos: Receiver<StylusInfo>,
@@ -74,7 +73,6 @@ impl Rig {
         Ok(Self {
             net,
             daemon,
-            wake,
             samples,
             controls,
             infos,
@@ -279,6 +277,63 @@ fn a_recording_waits_for_its_brush() {
 }
 
 #[test]
+fn a_brush_that_came_and_went_is_none_to_begin_for() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = folder.path().join("stroke.hid");
+    write(&path, &stroke());
+    let mut settings = settings("pen");
+    settings.replay = Some(path);
+    let mut rig = Rig::new(&settings, Box::new(Bare)).expect("a daemon");
+    // Both tokens wait when the daemon takes its first turn.
+    rig.brush = None;
+    rig.net.advance(1_000_000);
+    rig.run(2_000_000_000, 10_000_000);
+    assert!(rig.samples().is_empty());
+}
+
+#[test]
+fn a_pen_whose_tablet_never_says_that_it_is_away_is_after_a_second_of_silence() {
+    let mut tablet = Descriptor::default();
+    tablet.page(DIGITIZER).usage(0x02).begin(1).report(2);
+    tablet.range(0, 1).usage(0x42).input(1).pad(7);
+    tablet.page(DESKTOP).usage(0x30).range(0, 40_000).input(16);
+    tablet.usage(0x31).range(0, 20_000).input(16).end();
+    let event = |millis: u64, tip: i64| Event {
+        time_ns: millis * 1_000_000,
+        report: tablet.pack(2, &[((DIGITIZER, 0x42), tip), ((DESKTOP, 0x30), 9000)]),
+    };
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = folder.path().join("pen.hid");
+    let recorded = Recorded {
+        identity: identity(0x1234, 1, "Pen"),
+        descriptor: tablet.bytes.clone(),
+        // It rests for 3 s while it touches, and then hovers for 5.
+        events: vec![event(0, 1), event(3000, 0), event(8000, 1)],
+    };
+    write(&path, &recorded);
+    let mut settings = settings("pen");
+    settings.replay = Some(path);
+    let run = |step_ns| {
+        let mut rig = Rig::new(&settings, Box::new(Bare)).expect("a daemon");
+        rig.run(9_000_000_000, step_ns);
+        let told = rig.samples().into_iter();
+        told.map(|told| ((told.header.event_ns - START_NS) / 1_000_000, told.message))
+            .collect::<Vec<_>>()
+    };
+    let told = run(10_000_000);
+    let away: Vec<_> = told
+        .iter()
+        .filter(|(_, sample)| !sample.in_range)
+        .map(|(millis, _)| *millis)
+        .collect();
+    assert_eq!(away.len(), 2, "{away:?}");
+    assert!((4000..4002).contains(&away[0]), "{away:?}");
+    let touches = told.iter().filter(|(_, sample)| !sample.in_air());
+    assert!(touches.count() > 60, "a touch rests as long as it likes");
+    assert_eq!(told, run(770_000_000));
+}
+
+#[test]
 fn the_example_in_the_documents_has_a_hover_a_stroke_and_an_eraser() {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../docs/examples/pen.hid");
     let mut settings = settings("pen");
@@ -331,7 +386,11 @@ fn a_recording_of_something_else_is_refused_at_once() {
     );
     let mut mouse = settings("spacemouse");
     mouse.replay = Some(path);
-    assert!(Rig::new(&mouse, Box::new(Bare)).is_ok());
+    let mut rig = Rig::new(&mouse, Box::new(Bare)).expect("a daemon");
+    rig.run(10_000_000, 1_000_000);
+    // One that says nothing is over when it begins, not before the rig did.
+    let told = rig.controls();
+    assert!(!told.is_empty() && told.iter().all(|told| told.header.event_ns >= START_NS));
 }
 
 #[test]
@@ -372,5 +431,10 @@ fn a_recorded_mouse_pushes_and_comes_to_rest() {
     assert_eq!((at(400).push, at(400).turn), ([0.0; 3], [0.0; 3]));
     assert!(told.iter().all(|told| told.message.fault().is_none()));
     assert!(rig.samples().is_empty(), "it is no stylus");
+    let info = rig.info().expect("it is listed all the same");
+    assert_eq!(
+        (info.driver.as_str(), info.senses, info.drives),
+        ("spacemouse", 0, 0)
+    );
     assert!(rig.status().expect("told").samples > 10);
 }

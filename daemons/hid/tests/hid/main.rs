@@ -6,9 +6,11 @@
 mod daemon;
 mod decoding;
 mod live;
+mod means;
 mod ports;
 mod proximity;
 mod recordings;
+mod showing;
 mod spacemice;
 mod support;
 mod tablets;

@@ -51,7 +51,7 @@ proptest! {
         cut in any::<prop::sample::Index>(),
     ) {
         const WHOLE: &str = "D: 0\nR: 3 05 0d 09\nN: a pen\nP: usb\nI: 3 056a 0357\n\
-                             E: 000000.004000 2 06 20\n# c\nD: 1\nR: 1 06\nE: 1.5 1 ff\n";
+                             E: 000000.004000 2 06 20\n# c\nD: 1\nR: 1 06\nE: 000001.500000 1 ff\n";
         let mut bytes = WHOLE.as_bytes().to_vec();
         for (at, byte) in &changes {
             let at = at.index(bytes.len());
@@ -77,6 +77,7 @@ fn a_wrong_line_is_named_by_its_number() {
         ("hello", "no line of a recording"),
         ("X: 1", "none of D:, R:"),
         ("E: 1 2 3", "no time in seconds"),
+        ("E: 1.5 1 ff", "six digits behind the point"),
         ("E: 000001.000000 3 01 02", "3 bytes are said, 2 follow"),
         ("E: 000001.000000 1 0g", "no byte in hexadecimal"),
         ("E: 000001.000000 x", "number of bytes comes first"),
