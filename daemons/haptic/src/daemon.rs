@@ -19,6 +19,7 @@ use crate::beat::{Before, Delivery, Ticked};
 use crate::host::{BINS, Ended, Host, bin};
 use crate::open::{HapticSettings, open};
 use crate::placed::Placed;
+use crate::standing::{Orders, Standing};
 use crate::wish::Wish;
 
 /// Time between two statuses, ns.
@@ -49,6 +50,9 @@ struct Daemon {
     host: Option<Host>,
     /// What the servo before it has left, and when, ns.
     before: Option<(Before, u64)>,
+    /// What of all this outlives this daemon, and the fault that is latched.
+    standing: Standing,
+    latched: Option<maulstick_haptics::Fault>,
     /// The device that was told of last, in words.
     what: String,
     /// What the switches do, but the clutch; ended after the servo, for it may wait for the paint node.
@@ -84,6 +88,8 @@ impl Daemon {
         let device = &settings.device;
         let (bus, topics) = (&*member.bus, &member.topics);
         let origin = member.origin(&device.name);
+        let standing = Standing::of(&member.folder, &device.name, member.clock.offset_ns());
+        let orders = standing.recall();
         let fitting = Fitting::of(device, &member.config.canvas)?;
         if let Some(warning) = fitting.warning() {
             let name = &device.name;
@@ -105,7 +111,7 @@ impl Daemon {
             Class::Cached,
             origin,
         )?;
-        Ok(Self {
+        let mut daemon = Self {
             config: member.config.clone(),
             settings: settings.clone(),
             host: None,
@@ -123,7 +129,13 @@ impl Daemon {
             models: Receiver::new(bus, &topic, Class::RealTime, Queue::Latest, &member.wake)?,
             orders: bus.serve(&topics.force(&device.name), 16, &member.wake)?,
             reader: Reader::default(),
-            wish: Wish::default(),
+            wish: Wish {
+                switch: orders.switch,
+                strength: orders.strength,
+                ..Wish::default()
+            },
+            standing,
+            latched: None,
             status: Sender::new(
                 bus,
                 &topics.stylus_status(&device.name),
@@ -140,7 +152,12 @@ impl Daemon {
             newest: StylusSample::away(),
             warned: false,
             bus: member.bus.clone(),
-        })
+        };
+        (daemon.told.is_on, daemon.told.strength) = (orders.switch == Switch::On, orders.strength);
+        if let Some(fault) = orders.fault {
+            daemon.latch(fault);
+        }
+        Ok(daemon)
     }
 
     fn turn(&mut self) -> Result<Duration, Fault> {
@@ -229,7 +246,10 @@ impl Daemon {
     fn before_of(&self, limits: Limits, now_ns: u64) -> Before {
         let (mut before, since_ns) = self.before.unwrap_or((
             Before {
-                kept: Kept::nothing(limits),
+                kept: Kept {
+                    fault: self.latched,
+                    ..Kept::nothing(limits)
+                },
                 armings: self.wish.armings,
             },
             now_ns,
@@ -308,6 +328,7 @@ impl Daemon {
                 ForceOrder::Rearm => {
                     self.wish.armings += 1;
                     self.told.faults.clear();
+                    self.latched = None;
                 }
             }
             (self.told.is_on, self.told.strength) =
@@ -315,6 +336,7 @@ impl Daemon {
             if let Some(host) = &mut self.host {
                 host.wishes.write(self.wish);
             }
+            self.keep();
             let reply = ForceReply {
                 is_on: self.wish.switch == Switch::On,
                 strength: self.wish.strength,
@@ -408,7 +430,22 @@ impl Daemon {
     fn latch(&mut self, fault: maulstick_haptics::Fault) {
         if self.told.faults.is_empty() {
             let what = format!("{fault}: no force until `maulstick force rearm`");
+            tracing::warn!("{}: {what}", self.settings.device.name);
             self.told.faults.push(what);
+            self.latched = Some(fault);
+            self.keep();
+        }
+    }
+
+    /// Has what is ordered, and what is latched, hold though this daemon dies.
+    fn keep(&self) {
+        let orders = Orders {
+            switch: self.wish.switch,
+            strength: self.wish.strength,
+            fault: self.latched,
+        };
+        if let Err(error) = self.standing.keep(&orders) {
+            tracing::warn!("orders do not outlive this daemon: {error}");
         }
     }
 

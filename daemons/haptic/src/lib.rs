@@ -18,6 +18,7 @@
 //! | [`beat`] | one tick of the servo over a device |
 //! | [`pace`] | our own clock, which calls it |
 //! | [`host`] | the real-time thread |
+//! | [`standing`] | what holds of a device's force though its daemon died |
 //! | [`wish`] | what a painter wants of the force |
 //! | [`daemon`] | the thread that talks to the rig |
 
@@ -33,6 +34,7 @@ pub mod placed;
 pub mod polhem;
 pub mod showing;
 pub mod simulated;
+pub mod standing;
 pub mod velocity;
 pub mod wish;
 

@@ -74,7 +74,12 @@ fn refused(path: &str, refusal: Refusal) -> Fault {
              device's `address`",
         ),
         Refusal::Foreign(said) => Fault::failure(format!(
-            "what answers at {path} is no WoodenHaptics or Polhem stylus: it says {said:?}"
+            "what answers at {path} is no WoodenHaptics or Polhem stylus: it says {}",
+            match said.chars().all(|c| c.is_ascii_graphic() || c == ' ') {
+                true => format!("{said:?}"),
+                // Noise is other noise each time, and is told once.
+                false => "what cannot be read".into(),
+            }
         ))
         .help("name the stylus' own port as the device's `address`"),
         Refusal::NoPoses => {

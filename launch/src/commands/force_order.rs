@@ -5,6 +5,7 @@ use std::time::{Duration, Instant};
 use clap::{Args, Subcommand};
 use maulstick_bus::Class;
 use maulstick_rig::Fault;
+use maulstick_rig::config::DeviceSection;
 use maulstick_types::haptics::{ForceOrder, ForceReply, ForceRequest};
 use maulstick_types::stylus::{StylusInfo, axes};
 
@@ -43,6 +44,8 @@ pub struct Whose {
 
 /// How long the devices of a rig have to show themselves.
 const PATIENCE: Duration = Duration::from_secs(3);
+/// How long a device's daemon has to answer.
+const ANSWER: Duration = Duration::from_secs(3);
 /// After the first, others come this soon.
 const TOGETHER: Duration = Duration::from_millis(300);
 
@@ -68,45 +71,64 @@ pub fn give(order: &Order) -> Result<i32, Fault> {
         Order::Rearm(whose) => (whose, ForceOrder::Rearm),
     };
     let session = Session::open(&whose.target)?;
+    let known = session.config()?.device;
     let devices = match &whose.device {
-        Some(device) => vec![device.clone()],
-        None => devices(&session)?,
+        Some(device) => vec![chosen(&known, device, &session)?],
+        None => all(&known, &session)?,
     };
     let request = ForceRequest { order };
-    let mut text = String::new();
+    let (mut text, mut silent) = (String::new(), Vec::new());
     for device in devices {
         let topic = session.topics().force(&device);
-        let reply: ForceReply = session.ask(&topic, &request).map_err(|fault| {
-            fault.help("see which devices of the rig give force: `maulstick up` shows its nodes")
-        })?;
-        text += &told(&device, &reply);
+        match session.ask_within::<_, ForceReply>(&topic, &request, ANSWER) {
+            Ok(reply) => text += &told(&device, &reply),
+            Err(_) => silent.push(device),
+        }
     }
     print_text(&text)?;
-    Ok(0)
-}
-
-fn told(device: &str, reply: &ForceReply) -> String {
-    let percent = (reply.strength * 100.0).round();
-    let fault = match reply.fault.as_str() {
-        "" => String::new(),
-        fault => format!("; {fault}"),
-    };
-    match reply.is_on {
-        true => format!("{device}: force on, {percent} %{fault}\n"),
-        false => format!("{device}: force off{fault}\n"),
+    match silent.is_empty() {
+        true => Ok(0),
+        false => Err(Fault::failure(format!(
+            "{}: its daemon does not answer, so nothing is changed",
+            silent.join(", ")
+        ))
+        .at(session.topics().force("*"))
+        .help("`maulstick up` shows its nodes; ended by Ctrl-C they leave no force")),
     }
 }
 
-/// The devices of a rig that give force.
-fn devices(session: &Session) -> Result<Vec<String>, Fault> {
-    let mut infos: session::Feed<StylusInfo> =
-        session.follow(&session.topics().stylus_info("*"), Class::Cached)?;
-    let mut found = Vec::new();
-    let mut until = Instant::now() + PATIENCE;
-    while let Some(info) = infos.next_before(until) {
-        if info.drives & axes::FORCE != 0 && !found.contains(&info.device) {
-            until = until.min(Instant::now() + TOGETHER);
-            found.push(info.device);
+/// The device of that name, if it is one that gives force.
+fn chosen(known: &[DeviceSection], name: &str, session: &Session) -> Result<String, Fault> {
+    match known.iter().find(|device| device.name == name) {
+        Some(device) if device.is_hid() => Err(Fault::usage(format!("'{name}' gives no force"))
+            .help(format!("its driver is {}", device.driver))),
+        Some(_) => Ok(name.to_owned()),
+        None => {
+            let others = told_of(session, Instant::now() + TOGETHER)?;
+            match others.iter().any(|other| other == name) {
+                true => Ok(name.to_owned()),
+                false => {
+                    let names = known.iter().map(|device| device.name.as_str());
+                    let what = format!("there is no device '{name}' in the rig");
+                    Err(Fault::unknown(what, name, names))
+                }
+            }
+        }
+    }
+}
+
+/// All devices that give force: those of rig.toml, be they there or not, and what else tells that it
+/// does.
+fn all(known: &[DeviceSection], session: &Session) -> Result<Vec<String>, Fault> {
+    let own = known.iter().filter(|device| !device.is_hid());
+    let mut found: Vec<String> = own.map(|device| device.name.clone()).collect();
+    let wait = match found.is_empty() {
+        true => PATIENCE,
+        false => TOGETHER,
+    };
+    for other in told_of(session, Instant::now() + wait)? {
+        if !found.contains(&other) {
+            found.push(other);
         }
     }
     match found.is_empty() {
@@ -115,6 +137,36 @@ fn devices(session: &Session) -> Result<Vec<String>, Fault> {
             .help("see `[[device]]` of rig.toml")),
         false => Ok(found),
     }
+}
+
+fn told(device: &str, reply: &ForceReply) -> String {
+    let percent = (reply.strength * 100.0).round();
+    let weaker = match reply.strength < 1.0 {
+        true => format!(", {percent} % when it is on"),
+        false => String::new(),
+    };
+    let fault = match reply.fault.as_str() {
+        "" => String::new(),
+        fault => format!("; {fault}"),
+    };
+    match reply.is_on {
+        true => format!("{device}: force on, {percent} %{fault}\n"),
+        false => format!("{device}: force off{weaker}{fault}\n"),
+    }
+}
+
+/// The devices that tell that they give force.
+fn told_of(session: &Session, mut until: Instant) -> Result<Vec<String>, Fault> {
+    let mut infos: session::Feed<StylusInfo> =
+        session.follow(&session.topics().stylus_info("*"), Class::Cached)?;
+    let mut found = Vec::new();
+    while let Some(info) = infos.next_before(until) {
+        if info.drives & axes::FORCE != 0 && !found.contains(&info.device) {
+            until = until.min(Instant::now() + TOGETHER);
+            found.push(info.device);
+        }
+    }
+    Ok(found)
 }
 
 #[cfg(test)]

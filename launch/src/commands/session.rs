@@ -1,5 +1,6 @@
 //! A client of a running rig.
 
+use std::path::PathBuf;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
@@ -7,7 +8,8 @@ use clap::Args;
 use maulstick_bus::typed::{Received, Receiver, ask, random_epoch};
 use maulstick_bus::{Bus, BusError, Class, Dial, Queue, RigClock, RigFolder, Wake, ZenohBus};
 use maulstick_device::commander::Commander;
-use maulstick_rig::Fault;
+use maulstick_rig::member::CONFIG_FILE;
+use maulstick_rig::{Fault, RigConfig};
 use maulstick_types::command::Command;
 use maulstick_types::topics::Topics;
 use maulstick_types::{Message, Origin, name_hash};
@@ -30,6 +32,7 @@ const PATIENCE: Duration = Duration::from_secs(10);
 pub struct Session {
     bus: Arc<ZenohBus>,
     topics: Topics,
+    folder: PathBuf,
 }
 
 impl Session {
@@ -48,7 +51,16 @@ impl Session {
         Ok(Self {
             bus: Arc::new(bus),
             topics: Topics::new(folder.rig()),
+            folder: folder.path().to_owned(),
         })
+    }
+
+    /// The settings of the rig, as its nodes read them.
+    ///
+    /// # Errors
+    /// A [`Fault`] where they cannot be read.
+    pub fn config(&self) -> Result<RigConfig, Fault> {
+        RigConfig::read(&self.folder.join(CONFIG_FILE))
     }
 
     /// The topics of the rig.
@@ -77,11 +89,24 @@ impl Session {
     /// # Errors
     /// A [`Fault`] where nobody answers.
     pub fn ask<Q: Message, A: Message>(&self, topic: &str, question: &Q) -> Result<A, Fault> {
+        self.ask_within(topic, question, PATIENCE)
+    }
+
+    /// The same of a node that has to answer within `limit`.
+    ///
+    /// # Errors
+    /// A [`Fault`] where nobody answers.
+    pub fn ask_within<Q: Message, A: Message>(
+        &self,
+        topic: &str,
+        question: &Q,
+        limit: Duration,
+    ) -> Result<A, Fault> {
         let me = Origin {
             source: name_hash("cli"),
             epoch: random_epoch(),
         };
-        let answer = ask(&*self.bus, topic, Class::Control, me, question, PATIENCE);
+        let answer = ask(&*self.bus, topic, Class::Control, me, question, limit);
         answer.map_err(Fault::from)
     }
 

@@ -39,6 +39,8 @@ pub struct Member {
     pub bus: Arc<dyn Bus>,
     /// The rig's topics.
     pub topics: Topics,
+    /// The rig's folder.
+    pub folder: PathBuf,
     /// The rig's settings.
     pub config: RigConfig,
     /// The rig's clock.
@@ -77,6 +79,7 @@ impl Member {
             node: args.node.clone(),
             bus: Arc::clone(&session) as Arc<dyn Bus>,
             topics: Topics::new(&info.rig),
+            folder: folder.path().to_owned(),
             config,
             clock,
             wake,

@@ -58,8 +58,10 @@ impl Connection {
         let (socket, _) =
             client_with_config(&address.url, stream, Some(config)).map_err(|error| {
                 let why = match error {
-                    HandshakeError::Failure(error) => error.to_string(),
-                    HandshakeError::Interrupted(_) => "it says nothing".into(),
+                    HandshakeError::Failure(error) if bear(&error).is_err() => error.to_string(),
+                    HandshakeError::Failure(_) | HandshakeError::Interrupted(_) => {
+                        "it says nothing".into()
+                    }
                 };
                 Fault::failure(format!(
                     "what listens at {} is no Inverse service: {why}",

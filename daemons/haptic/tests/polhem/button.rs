@@ -8,14 +8,14 @@ use glam::DVec3;
 use maulstick_device::corners::{Glimpse, Touch};
 use maulstick_device::fitting::{Fitting, Similarity};
 use maulstick_haptic::Placed;
-use maulstick_haptic::beat::{Beat, Channels, Delivery, Ticked};
+use maulstick_haptic::beat::{Beat, Before, Channels, Delivery, Ticked};
 use maulstick_haptic::driver::Opened;
 use maulstick_haptic::pace::OwnClock;
 use maulstick_haptic::polhem::Polhem;
 use maulstick_haptic::polhem::frame::Length;
 use maulstick_haptic::showing::watch;
 use maulstick_haptic::wish::Wish;
-use maulstick_haptics::Limits;
+use maulstick_haptics::{Kept, Limits};
 
 use super::bench::Cable;
 use super::firmware::{Firmware, Reads, Style};
@@ -68,7 +68,12 @@ fn a_clutch_at_the_button_holds_for_as_long_as_it_is_pressed() {
         stop: std::sync::Arc::default(),
         dropped: std::sync::Arc::default(),
     };
-    let mut beat = Beat::new(placed, Limits::default(), channels);
+    let limits = Limits::default();
+    let before = Before {
+        kept: Kept::nothing(limits),
+        armings: 0,
+    };
+    let mut beat = Beat::new(placed, limits, before, channels);
 
     press(RELEASED);
     assert!(until(&mut beat, &mut told, |ticked| ticked
