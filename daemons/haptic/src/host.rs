@@ -1,5 +1,7 @@
 //! The real-time thread.
 
+use std::fs::File;
+use std::io::Write as _;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::sync::mpsc::Receiver;
@@ -44,6 +46,8 @@ pub struct Host {
     dropped: Arc<AtomicU64>,
     ended: Receiver<Ended>,
     thread: Option<JoinHandle<()>>,
+    /// Keeps the processor from sleeping deeply.
+    _awake: Option<File>,
 }
 
 impl Host {
@@ -140,6 +144,7 @@ impl Host {
             dropped,
             ended,
             thread: Some(thread),
+            _awake: awake(),
         })
     }
 }
@@ -159,6 +164,17 @@ impl std::fmt::Debug for Host {
             .field("warnings", &self.warnings)
             .finish_non_exhaustive()
     }
+}
+
+/// Asks the system for wake-ups without delay, for as long as the file is open: a processor that sleeps
+/// deeply wakes late (the kernel's `pm_qos_interface`). It takes root, and works without.
+fn awake() -> Option<File> {
+    let mut file = File::options()
+        .write(true)
+        .open("/dev/cpu_dma_latency")
+        .ok()?;
+    file.write_all(&0_i32.to_ne_bytes()).ok()?;
+    Some(file)
 }
 
 /// Locks memory and asks for real-time scheduling where the servo is called on this thread; returns

@@ -193,6 +193,9 @@ mod tests {
         assert_eq!(told("arm", &reply), "arm: force on, 60 %\n");
         reply.fault = "it shakes".into();
         reply.is_on = false;
-        assert_eq!(told("arm", &reply), "arm: force off; it shakes\n");
+        assert_eq!(
+            told("arm", &reply),
+            "arm: force off, 60 % when it is on; it shakes\n"
+        );
     }
 }

@@ -66,7 +66,9 @@ pub(super) fn run(report: &mut Report) -> Result<(), Fault> {
     let all = TICKS + WARM_UP;
     let (to_us, mut spent) = rtrb::RingBuffer::new(all);
     let placed = Placed::new(Box::new(device), desk, 0);
+    // The hand begins pressed: force comes up all the same.
     let limits = Limits {
+        engage_n: f64::MAX,
         max_stiffness_n_m: placed.abilities().max_stiffness_n_m,
         ..Limits::default()
     };
