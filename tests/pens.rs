@@ -61,3 +61,29 @@ fn a_recorded_pen_paints_and_is_recorded_as_it_was() {
     assert_eq!(events(&again), events(&wanted));
     bus.close();
 }
+
+#[test]
+fn a_recorder_runs_beside_the_daemon_of_its_device() {
+    let place = Place::new();
+    let launcher = rig(&place);
+    let (bus, topics) = join(&place);
+    let topic = topics.sample("tablet-recorder");
+    let mut samples = listen::<StylusSample>(&bus, &topic, Class::RealTime);
+    let recording = Path::new(env!("CARGO_MANIFEST_DIR")).join("../docs/examples/pen.hid");
+    let mut recorder = Command::new(env!("CARGO_BIN_EXE_maulstick-hid"))
+        .arg("--folder")
+        .arg(place.path("maulstick/studio"))
+        .args(["--device", "tablet", "--record", "beside.hid", "--replay"])
+        .arg(&recording)
+        .current_dir(place.path("."))
+        .stderr(Stdio::null())
+        .spawn()
+        .expect("started");
+    let heard = hear(&mut samples, |sample| sample.in_range);
+    assert!(heard.is_some(), "{}", launcher.said());
+    signal(recorder.id(), Signal::SIGTERM);
+    recorder.wait().expect("ended");
+    let text = String::from_utf8(place.bytes("beside.hid")).expect("text");
+    assert!(text.lines().any(|line| line.starts_with("E:")), "{text}");
+    bus.close();
+}

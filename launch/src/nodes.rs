@@ -39,6 +39,8 @@ use crate::performance::{brush_file, library_from, painting_setup, refused};
 
 /// Name of the mouse over the window as a device.
 pub const MOUSE: &str = "mouse";
+/// What is added to a device's name for what records it.
+const RECORDER: &str = "-recorder";
 /// Name of the player as a device.
 pub const PLAYER: &str = "player";
 
@@ -336,10 +338,21 @@ struct HidOptions {
 /// A [`Fault`].
 pub fn hid() -> Result<i32, Fault> {
     let options = HidOptions::parse();
+    // Beside the device's own daemon a recorder is a device by itself: two of them move no brush twice,
+    // for one alone has it at a time.
+    let beside = options.record.is_some() && options.node.node.is_none();
+    let name = match beside {
+        true => format!("{}{RECORDER}", options.device),
+        false => options.device.clone(),
+    };
     // What is recorded gets its name at the end, so it is asked, not killed.
-    let mut member = options.node.join(&options.device, Signal::SIGTERM)?;
+    let mut member = options.node.join(&name, Signal::SIGTERM)?;
+    let mut device = device_named(&member.config, &options.device)?;
+    if beside {
+        device.name = name;
+    }
     let settings = HidSettings {
-        device: device_named(&member.config, &options.device)?,
+        device,
         canvas: member.config.canvas.clone(),
         replay: options.replay,
         record: options.record,
