@@ -4,7 +4,6 @@ mod support;
 
 use std::io::{BufRead as _, BufReader};
 use std::process::{Child, Stdio};
-use std::time::{Duration, Instant};
 
 use glam::{DQuat, DVec3};
 use maulstick_device::fitting::{Fitting, Similarity};
@@ -15,7 +14,7 @@ use maulstick_types::stylus::{StylusPose, StylusSample, axes};
 use nix::sys::signal::{Signal, kill};
 use nix::unistd::Pid;
 
-use crate::support::{PATIENCE, Place, fault, has};
+use crate::support::{PATIENCE, Place, fault, has, wait_for};
 
 /// Corners of the canvas of the default settings, m.
 const CORNERS: [[f64; 2]; 3] = [[-0.128, -0.128], [0.128, -0.128], [-0.128, 0.128]];
@@ -142,15 +141,11 @@ fn places_that_are_no_corners_of_the_canvas_are_refused() {
 
 /// Waits for a process that is to end.
 fn end(child: &mut Child) -> Option<i32> {
-    let give_up = Instant::now() + PATIENCE;
-    while Instant::now() < give_up {
-        if let Some(status) = child.try_wait().expect("watched") {
-            return status.code();
-        }
-        std::thread::sleep(Duration::from_millis(5));
+    let ended = wait_for(PATIENCE, || child.try_wait().expect("watched"));
+    if ended.is_none() {
+        child.kill().ok();
     }
-    child.kill().ok();
-    None
+    ended?.code()
 }
 
 #[test]

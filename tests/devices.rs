@@ -3,14 +3,13 @@
 
 mod support;
 
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeMap;
 
-use maulstick_bus::{Class, ZenohBus};
+use maulstick_bus::{Bus as _, Class};
 use maulstick_types::brush::BrushState;
 use maulstick_types::name_hash;
 use maulstick_types::scene::{CANVAS, Scene};
-use maulstick_types::stylus::{StylusInfo, StylusStatus};
-use maulstick_types::topics::Topics;
+use maulstick_types::stylus::{StylusInfo, StylusSample, StylusStatus};
 use support::{Launcher, PATIENCE, Place, hear, listen, wait_for};
 
 /// A pen that draws a wave again and again, for a minute and a half.
@@ -84,42 +83,74 @@ fn a_second_stylus_drives_a_second_brush() {
     bus.close();
 }
 
-/// Which devices have a part in each stroke of a brush, until `enough` says so.
-fn strokes(
-    bus: &ZenohBus,
-    topics: &Topics,
-    enough: impl Fn(&BTreeMap<u64, BTreeSet<u32>>) -> bool,
-) -> Option<BTreeMap<u64, BTreeSet<u32>>> {
-    let mut states = listen::<BrushState>(bus, &topics.brush_state("main"), Class::RealTime);
-    let mut of: BTreeMap<u64, BTreeSet<u32>> = BTreeMap::new();
-    wait_for(PATIENCE, || {
-        while let Some(state) = states.try_recv() {
-            let state = state.message;
-            for solve in state.solves.iter().filter(|solve| solve.stroke != 0) {
-                of.entry(solve.stroke).or_default().insert(state.device);
-            }
+/// Whether a pen that draws waves paints beside one that only hovers, by their priorities: what the brush
+/// does between two leaves of the drawing one, once the other is near.
+fn paints_beside_a_hovering_pen(drawing: i32, hovering: i32) -> bool {
+    let place = Place::new();
+    waves(&place, "waves.hid");
+    let text = String::from_utf8(place.bytes("waves.hid")).expect("text");
+    // The tip is bit 0 of the second byte: this pen never touches, and never leaves.
+    let hovers = text.lines().filter(|line| !line.contains(" 10 01 00 "));
+    let hovers = hovers.map(|line| line.replace(" 10 01 11 ", " 10 01 10 "));
+    let hovers: Vec<String> = hovers
+        .filter(|line| !line.starts_with("E:") || line.contains(" 10 01 10 "))
+        .collect();
+    std::fs::write(place.path("hovers.hid"), hovers.join("\n") + "\n").expect("written");
+    let still = PEN.replace("waves.hid", "hovers.hid");
+    settings(
+        &place,
+        &[
+            ("draws", "main", drawing, PEN),
+            ("hovers", "main", hovering, &still),
+        ],
+    );
+    let launcher = Launcher::up(&place, &["--rig", "rig.toml"]);
+    let (bus, topics) = support::join(&place);
+    let mut hovers = listen::<StylusSample>(&bus, &topics.sample("hovers"), Class::RealTime);
+    let mut draws = listen::<StylusSample>(&bus, &topics.sample("draws"), Class::RealTime);
+    let mut states = listen::<BrushState>(&bus, &topics.brush_state("main"), Class::RealTime);
+    assert!(
+        hear(&mut hovers, |sample| sample.in_range).is_some(),
+        "{}",
+        launcher.said()
+    );
+    // A stroke that began before goes on until its pen is lifted; after that two more are drawn.
+    let mut strokes = 0;
+    for drawn in 0..3 {
+        assert!(
+            hear(&mut draws, |sample| !sample.in_air()).is_some(),
+            "{}",
+            launcher.said()
+        );
+        assert!(
+            hear(&mut draws, |sample| sample.in_air()).is_some(),
+            "{}",
+            launcher.said()
+        );
+        // What is drawn is solved by the time the brush knows of the next hover.
+        let since = bus.now_ns();
+        let solved = |state: &BrushState| state.solves.iter().any(|solve| solve.event_ns > since);
+        let mut its = 0;
+        let known = hear(&mut states, |state| {
+            its += usize::from(touches(state) && state.device == name_hash("draws"));
+            solved(state)
+        });
+        assert!(known.is_some(), "{}", launcher.said());
+        if drawn > 0 {
+            strokes += its;
         }
-        enough(&of).then_some(())
-    })?;
-    Some(of)
+    }
+    bus.close();
+    strokes > 0
 }
 
 #[test]
-fn of_two_pens_the_one_of_higher_priority_paints_and_no_stroke_has_two() {
-    let place = Place::new();
-    waves(&place, "waves.hid");
-    settings(&place, &[("low", "main", 1, PEN), ("high", "main", 2, PEN)]);
-    let launcher = Launcher::up(&place, &["--rig", "rig.toml"]);
-    let (bus, topics) = support::join(&place);
-    let high = |of: &BTreeMap<u64, BTreeSet<u32>>| {
-        let its = of
-            .values()
-            .filter(|devices| devices.contains(&name_hash("high")));
-        its.count() >= 3
-    };
-    let of = strokes(&bus, &topics, high).unwrap_or_else(|| panic!("{}", launcher.said()));
-    assert!(of.values().all(|devices| devices.len() == 1), "{of:?}");
-    bus.close();
+fn of_two_pens_in_range_the_one_of_higher_priority_has_the_brush() {
+    assert!(!paints_beside_a_hovering_pen(1, 2));
+    assert!(
+        paints_beside_a_hovering_pen(2, 1),
+        "the same with priorities turned round"
+    );
 }
 
 /// A SpaceNavigator, by its descriptor's layout: three pushes, three turns, two buttons.

@@ -64,7 +64,10 @@ fn whichever_of_brush_and_paint_dies_the_force_fades_without_a_leap_and_comes_ba
     let (bus, topics) = support::join(&place);
     let mut samples = listen::<StylusSample>(&bus, &topics.sample("phantom"), Class::RealTime);
     let felt = |sample: &StylusSample| size(sample) > 0.1;
-    for program in ["maulstick-brush", "maulstick-paint"] {
+    for (program, node) in [
+        ("maulstick-brush", "brush-main"),
+        ("maulstick-paint", "paint"),
+    ] {
         let pressed = hear(&mut samples, felt);
         assert!(pressed.is_some(), "no force: {}", launcher.said());
         let pid = wait_for(Duration::from_secs(20), || place.pid(program)).expect(program);
@@ -74,7 +77,7 @@ fn whichever_of_brush_and_paint_dies_the_force_fades_without_a_leap_and_comes_ba
             fades(&mut samples, head_length_m).is_some(),
             "{program}: the force is held"
         );
-        launcher.wait_says("is started again");
+        launcher.wait_says(&format!("node '{node}' failed and is started again"));
     }
     assert!(hear(&mut samples, felt).is_some(), "{}", launcher.said());
     bus.close();

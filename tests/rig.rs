@@ -10,7 +10,7 @@ use maulstick_bus::{Bus as _, Class};
 use maulstick_types::paint::PaintStatus;
 use maulstick_types::stylus::{StylusSample, TakeStatus};
 use nix::sys::signal::Signal;
-use support::display::Display;
+use support::display::{Display, over};
 use support::{
     Launcher, PATIENCE, Place, account, assert_same, drain, hear, listen, pressed, signal, wait_for,
 };
@@ -323,7 +323,7 @@ fn commands_reach_a_running_rig() {
 /// Waits until the window shows the wood of a handle to the lower right of a point of it, which is
 /// where a mouse holds a brush; whether it did.
 fn shows_brush(display: &Display, window: u32, [x, y]: [i16; 2]) -> bool {
-    let wood = |[red, _, blue]: [u8; 3]| red > blue.saturating_add(60);
+    let wood = |[red, _, blue]: [u8; 3]| red > blue.saturating_add(35);
     let along = || (40..90).map(|i| display.pixel(window, x + i, y + i));
     wait_for(PATIENCE, || along().any(wood).then_some(())).is_some()
 }
@@ -339,9 +339,12 @@ fn the_mouse_paints_on_the_palette_with_the_brush_that_is_shown() {
     let window = display.window("Maulstick");
     let (bus, topics) = support::join(&place);
     let mut mouse = listen::<StylusSample>(&bus, &topics.sample("mouse"), Class::RealTime);
-    // On the palette, which lies to the left of the canvas, from 16 to 363.
-    let points: Vec<_> = (0..40).map(|i| [150 + 4 * i, 500 + i]).collect();
-    let column = || (480..560).map(|y| display.pixel(window, 220, y));
+    // On the palette, which lies to the left of the canvas.
+    let points: Vec<_> = (0..40)
+        .map(|i| over(-245.0 + 1.5 * f64::from(i), -10.0 + 0.3 * f64::from(i)))
+        .collect();
+    let [x, y] = points[20];
+    let column = || (y - 40..y + 40).map(|y| display.pixel(window, x, y));
     let white = |pixel: [u8; 3]| pixel.iter().all(|channel| *channel > 180);
     let grey = |pixel: [u8; 3]| pixel.iter().all(|channel| (90..140).contains(channel));
     let bare = wait_for(PATIENCE, || column().all(grey).then_some(()));
@@ -365,17 +368,19 @@ fn a_mouse_stroke_in_the_window_is_painted_and_shown() {
     let mut launcher = Launcher::start(command);
     launcher.wait_says("is up");
     let window = display.window("Maulstick");
+    let points: Vec<_> = (0..60)
+        .map(|i| over(-100.0 + 2.0 * f64::from(i), 30.0 - f64::from(i)))
+        .collect();
+    let [x, y] = points[20];
     // The canvas is light before anything is painted.
     let light = |pixel: [u8; 3]| pixel.iter().all(|channel| *channel > 180);
     let dark = |pixel: [u8; 3]| pixel.iter().all(|channel| *channel < 140);
     let shown = wait_for(PATIENCE, || {
-        light(display.pixel(window, 550, 500)).then_some(())
+        light(display.pixel(window, x, y)).then_some(())
     });
     assert!(shown.is_some(), "the canvas is not shown");
     let (bus, topics) = support::join(&place);
     let mut mouse = listen::<StylusSample>(&bus, &topics.sample("mouse"), Class::RealTime);
-    // On the canvas, which lies to the right of the palette, from 390 to 1084.
-    let points: Vec<_> = (0..60).map(|i| [420 + 6 * i, 400 + 4 * i]).collect();
     display.drag(&points, &mut mouse);
     bus.close();
     assert!(
@@ -383,7 +388,7 @@ fn a_mouse_stroke_in_the_window_is_painted_and_shown() {
         "the brush is not shown"
     );
     // The tip trails behind the pointer: the stroke crosses this column somewhere.
-    let column = || (400..700).map(|y| display.pixel(window, 550, y));
+    let column = || (y - 100..y + 200).map(|y| display.pixel(window, x, y));
     let painted = wait_for(PATIENCE, || column().any(dark).then_some(()));
     assert!(painted.is_some(), "the stroke is not shown");
     place.done(&["undo"]);

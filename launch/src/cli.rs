@@ -5,8 +5,9 @@ use maulstick_rig::Fault;
 use maulstick_rig::files::clear_on_signals;
 
 use crate::commands::{
-    bench, brush, calibrate, control, demo, devices, endpoint, fit, force, import, layers, light,
-    matching, mix, mode, painting, paints, render, schema, surface, take,
+    begin, bench, brush, calibrate, control, demo, devices, endpoint, export, fit, force, import,
+    layers, light, matching, mix, mode, open, painting, paints, render, save_as, schema, surface,
+    take,
 };
 use crate::up;
 
@@ -51,6 +52,14 @@ enum Command {
     Redo(control::HistoryOptions),
     /// Writes the picture of a running rig
     Snapshot(control::SnapshotOptions),
+    /// Goes on in another painting in a running rig
+    Open(open::OpenOptions),
+    /// Begins a painting in a running rig
+    New(begin::NewOptions),
+    /// Puts the painting of a running rig into another file, where it goes on
+    SaveAs(save_as::SaveAsOptions),
+    /// Writes the painting of a running rig for other programs
+    Export(export::ExportOptions),
     /// Lists what is attached, and how to use it
     Devices(devices::DevicesOptions),
     /// Tells a program in any language how to join a running rig
@@ -116,6 +125,10 @@ pub fn run() -> Result<i32, Fault> {
         Command::Undo(options) => control::undo(&options),
         Command::Redo(options) => control::redo(&options),
         Command::Snapshot(options) => control::snapshot(&options),
+        Command::Open(options) => open::run(&options),
+        Command::New(options) => begin::run(&options),
+        Command::SaveAs(options) => save_as::run(&options),
+        Command::Export(options) => export::run(&options),
         Command::Devices(options) => devices::run(&options),
         Command::Endpoint(options) => endpoint::run(&options),
         Command::Schema(options) => schema::run(&options),

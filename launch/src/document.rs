@@ -5,9 +5,10 @@ use std::path::Path;
 use maulstick_document::{Access, Document, DocumentError, DocumentSettings, Opened, glance};
 use maulstick_paint::{Painting, Sequencer};
 use maulstick_rig::Fault;
-use maulstick_rig::config::RigConfig;
+use maulstick_rig::config::{CanvasSection, RigConfig};
 use maulstick_rig::fault::EXIT_FAILURE;
 use maulstick_rig::files::check_writable;
+use maulstick_types::scene::{CANVAS, Scene};
 
 use crate::performance::{PaintingOptions, library_from, painting_setup, refused};
 
@@ -126,5 +127,42 @@ pub fn there(path: &Path) -> Result<(), Fault> {
     match found.map_err(|error| wrong(path, &error))? {
         true => Ok(()),
         false => Err(wrong(path, &DocumentError::NoPainting)),
+    }
+}
+
+/// Devices are fitted to the canvas that a painting has, whatever the settings say.
+pub fn measure(section: &mut CanvasSection, scene: &Scene) {
+    let mut surfaces = scene.surfaces.iter();
+    if let Some(canvas) = surfaces.find(|surface| surface.id == CANVAS) {
+        section.cell_mm = round(canvas.cell_m * 1e3);
+        [section.width_mm, section.height_mm] = canvas
+            .cells
+            .map(|cells| round(f64::from(cells) * section.cell_mm));
+    }
+}
+
+/// A length without the noise of its last digits.
+#[must_use]
+pub fn round(value: f64) -> f64 {
+    (value * 1e9).round() / 1e9
+}
+
+#[cfg(test)]
+mod tests {
+    use maulstick_paint::PaintingSetup;
+
+    use super::*;
+
+    #[test]
+    fn a_canvas_is_measured_to_its_cells() {
+        let setup = PaintingSetup {
+            cells: [1000, 333],
+            cell_m: 1e-4,
+            ..PaintingSetup::default()
+        };
+        let mut section = CanvasSection::default();
+        measure(&mut section, &setup.scene());
+        assert_eq!((section.width_mm, section.cell_mm), (100.0, 0.1));
+        assert_eq!(section.cells(), [1000, 333]);
     }
 }

@@ -1,7 +1,7 @@
 //! The mains of the rig's nodes. The launcher starts them; they can be started by hand too.
 
 use std::collections::BTreeMap;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::Duration;
 
@@ -41,6 +41,8 @@ use crate::performance::{brush_file, library_from, painting_setup, refused};
 pub const MOUSE: &str = "mouse";
 /// What is added to a device's name for what records it.
 const RECORDER: &str = "-recorder";
+/// A paint node that is to stop takes at most so many turns more: it is waited for.
+const LAST_TURNS: u32 = 8;
 /// Name of the player as a device.
 pub const PLAYER: &str = "player";
 
@@ -184,8 +186,10 @@ pub fn paint() -> Result<i32, Fault> {
     let mut node = PaintNode::going_on(Arc::clone(&bus), topics, wake, origin, sequencer)?
         .exporting(export(&member.config.view, VIEW)?);
     let (topic, feed) = (member.topics.frame(), node.feed());
-    let mut frames = FrameServer::new(bus, &topic, feed.clone(), &member.wake, origin)?;
-    let path = document.as_ref().map(|document| document.path().to_owned());
+    let mut frames =
+        FrameServer::new(bus, &topic, feed.clone(), &member.wake, origin)?.telling_brushes(topics);
+    let (memory, _) = member.config.paint.bytes().map_err(Fault::usage)?;
+    node = node.with_memory(usize::try_from(memory).unwrap_or(usize::MAX));
     if let Some(document) = document {
         frames = frames.with_shelf(document.shelf());
         node = node.keeping(document, since);
@@ -199,7 +203,7 @@ pub fn paint() -> Result<i32, Fault> {
     let mut turn = |node: &mut PaintNode| {
         thread.check().map_err(fallen)?;
         let wait = node.turn()?;
-        match (node.fault(), &path) {
+        match (node.fault(), node.document_path()) {
             (Some(what), Some(path)) => Err(wrong(path, &DocumentError::Damaged(what.to_owned()))),
             _ => Ok(wait),
         }
@@ -210,18 +214,32 @@ pub fn paint() -> Result<i32, Fault> {
         wait_for_brushes(&member, &mut node, &mut turn)
             .and_then(|()| member.ready())
             .and_then(|()| member.run(|| turn(&mut node)))
+            .and_then(|()| paint_what_has_come(&mut node, &mut turn))
     };
     // The brush, the window and the frames have work for two cores.
     let result = with_help_beyond(2, run);
     member.stop.request();
     feed.ring();
     let ended = thread.join().map_err(fallen);
+    let path = node.document_path().map(Path::to_owned);
     let closed = node.close().map_err(|error| match &path {
         Some(path) => wrong(path, &error),
         None => Fault::failure(error.to_string()),
     });
     member.leave();
     result.and(ended).and(closed).map(|()| 0)
+}
+
+/// Has the node take turns until it has painted what had come when it was to stop.
+fn paint_what_has_come(
+    node: &mut PaintNode,
+    turn: &mut impl FnMut(&mut PaintNode) -> Result<Duration, Fault>,
+) -> Result<(), Fault> {
+    let mut left = LAST_TURNS;
+    while left > 0 && turn(node)?.is_zero() {
+        left -= 1;
+    }
+    Ok(())
 }
 
 /// The painting that the settings ask for: in its document, or in memory.
@@ -445,7 +463,8 @@ pub fn ui() -> Result<i32, Fault> {
     let member = options.node.join("ui", Signal::SIGKILL)?;
     let by_signal = member.stop.clone();
     let export = export(&member.config.view, VIEW)?;
-    maulstick_ui::run(member, MOUSE, &export)?;
+    let library = library_from(member.config.paint.paints.as_deref())?;
+    maulstick_ui::run(member, MOUSE, &export, library)?;
     // Ended by a signal it has not been closed by the painter.
     Ok(i32::from(by_signal.by_signal()))
 }

@@ -3,17 +3,47 @@
 use std::io::{BufRead as _, BufReader};
 use std::process::{Child, Command, Stdio};
 
+use eframe::egui::{Pos2, Rect};
+use glam::DVec3;
+use maulstick_brush::palette_place::Side;
 use maulstick_bus::typed::Receiver;
+use maulstick_paint::PaintingSetup;
 use maulstick_types::stylus::StylusSample;
+use maulstick_ui::habits::Habits;
+use maulstick_ui::rack;
+use maulstick_ui::view::View;
 use x11rb::connection::Connection as _;
 use x11rb::protocol::xproto::{
     AtomEnum, BUTTON_PRESS_EVENT, BUTTON_RELEASE_EVENT, ClientMessageEvent, ConnectionExt as _,
-    EventMask, ImageFormat, MOTION_NOTIFY_EVENT, MapState, Window,
+    EventMask, ImageFormat, InputFocus, KEY_PRESS_EVENT, KEY_RELEASE_EVENT, MOTION_NOTIFY_EVENT,
+    MapState, Window,
 };
 use x11rb::protocol::xtest::ConnectionExt as _;
 use x11rb::rust_connection::RustConnection;
 
 use super::{PATIENCE, hear, wait_for};
+
+/// Keysyms that have no letter.
+pub const SHIFT: u32 = 0xffe1;
+pub const CONTROL: u32 = 0xffe3;
+pub const RETURN: u32 = 0xff0d;
+pub const TAB: u32 = 0xff09;
+pub const ESCAPE: u32 = 0xff1b;
+
+/// Where a new painting of the default size lies in a window of the default size.
+pub fn desk_view() -> View {
+    let scene = PaintingSetup::default().scene();
+    let size = Habits::default().size;
+    let area = Rect::from_min_size(Pos2::ZERO, size.into());
+    let (canvas, palette) = (&scene.surfaces[0], scene.surfaces.get(1));
+    View::of(area, canvas, palette, Side::Left, rack::WIDTH).expect("a view")
+}
+
+/// The point of the window over one of the desk, mm.
+pub fn over(x: f64, y: f64) -> [i16; 2] {
+    let at = desk_view().to_window(1e-3 * DVec3::new(x, y, 0.0));
+    [at.x, at.y].map(|at| at.round() as i16)
+}
 
 /// An X server without a screen.
 pub struct Display {
@@ -57,15 +87,22 @@ impl Display {
         }
     }
 
-    /// The window whose title begins with `title`, once it is there.
+    /// The window whose title begins with `title`, once it is there; it has the keyboard.
     pub fn window(&self, title: &str) -> Window {
-        wait_for(PATIENCE, || {
+        let window = wait_for(PATIENCE, || {
             let tree = self.connection.query_tree(self.root).ok()?.reply().ok()?;
             tree.children
                 .into_iter()
                 .find(|window| self.visible(*window) && self.title(*window).starts_with(title))
         })
-        .unwrap_or_else(|| panic!("no window '{title}'"))
+        .unwrap_or_else(|| panic!("no window '{title}'"));
+        // No window manager does it here.
+        self.connection
+            .set_input_focus(InputFocus::POINTER_ROOT, window, x11rb::CURRENT_TIME)
+            .expect("sent")
+            .check()
+            .expect("focused");
+        window
     }
 
     fn visible(&self, window: Window) -> bool {
@@ -131,6 +168,80 @@ impl Display {
         self.fake(BUTTON_RELEASE_EVENT, 1, points[points.len() - 1]);
         hear(mouse, |sample| sample.switches == 1).expect("the press is heard");
         hear(mouse, |sample| sample.switches == 0).expect("the release is heard");
+    }
+
+    /// Moves the pointer over a point of the screen.
+    pub fn point(&self, at: [i16; 2]) {
+        self.fake(MOTION_NOTIFY_EVENT, 0, at);
+    }
+
+    /// Presses and lets go a button of the mouse, or turns its wheel a notch: 4 is up, 5 is down.
+    pub fn click(&self, button: u8, at: [i16; 2]) {
+        self.point(at);
+        self.fake(BUTTON_PRESS_EVENT, button, at);
+        self.fake(BUTTON_RELEASE_EVENT, button, at);
+    }
+
+    /// Presses a button at the first of some points and holds it along them.
+    pub fn press(&self, button: u8, points: &[[i16; 2]]) {
+        self.point(points[0]);
+        self.fake(BUTTON_PRESS_EVENT, button, points[0]);
+        for point in points {
+            self.point(*point);
+        }
+    }
+
+    /// Goes on with a held button, and lets it go.
+    pub fn release(&self, button: u8, points: &[[i16; 2]]) {
+        for point in points {
+            self.point(*point);
+        }
+        self.fake(BUTTON_RELEASE_EVENT, button, [0, 0]);
+    }
+
+    /// Turns the wheel while another button is held.
+    pub fn click_held(&self, button: u8, at: [i16; 2]) {
+        self.fake(BUTTON_PRESS_EVENT, button, at);
+        self.fake(BUTTON_RELEASE_EVENT, button, at);
+    }
+
+    /// Presses keys together, named by their X keysyms, and lets them go.
+    pub fn keys(&self, keysyms: &[u32]) {
+        let setup = self.connection.setup();
+        let (least, most) = (setup.min_keycode, setup.max_keycode);
+        let mapping = self
+            .connection
+            .get_keyboard_mapping(least, most - least + 1)
+            .expect("sent")
+            .reply()
+            .expect("a keyboard");
+        let wide = usize::from(mapping.keysyms_per_keycode);
+        let code = |keysym: &u32| {
+            let place = mapping
+                .keysyms
+                .chunks(wide)
+                .position(|row| row.contains(keysym));
+            least + place.unwrap_or_else(|| panic!("no key {keysym:#x}")) as u8
+        };
+        let codes: Vec<u8> = keysyms.iter().map(code).collect();
+        for code in &codes {
+            self.fake(KEY_PRESS_EVENT, *code, [0, 0]);
+        }
+        for code in codes.iter().rev() {
+            self.fake(KEY_RELEASE_EVENT, *code, [0, 0]);
+        }
+    }
+
+    /// A picture of a window, rows from the top.
+    pub fn picture(&self, window: Window, width: u16, height: u16) -> Vec<[u8; 3]> {
+        let image = self
+            .connection
+            .get_image(ImageFormat::Z_PIXMAP, window, 0, 0, width, height, u32::MAX)
+            .expect("sent")
+            .reply()
+            .expect("pixels");
+        let pixels = image.data.chunks_exact(4);
+        pixels.map(|bgrx| [bgrx[2], bgrx[1], bgrx[0]]).collect()
     }
 
     /// A pixel of a window.

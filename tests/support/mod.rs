@@ -70,7 +70,8 @@ impl Place {
         command
             .args(args)
             .current_dir(self.folder.path())
-            .env("XDG_RUNTIME_DIR", self.folder.path());
+            .env("XDG_RUNTIME_DIR", self.folder.path())
+            .env("XDG_CONFIG_HOME", self.folder.path());
         command
     }
 
@@ -267,7 +268,7 @@ pub fn listen<M: Message>(bus: &ZenohBus, topic: &str, class: Class) -> Receiver
 }
 
 /// The next message that `wanted` accepts.
-pub fn hear<M: Message>(heard: &mut Receiver<M>, wanted: impl Fn(&M) -> bool) -> Option<M> {
+pub fn hear<M: Message>(heard: &mut Receiver<M>, mut wanted: impl FnMut(&M) -> bool) -> Option<M> {
     wait_for(PATIENCE, || {
         while let Some(received) = heard.try_recv() {
             if wanted(&received.message) {

@@ -1,91 +1,118 @@
 //! The window.
 
+use std::path::PathBuf;
 use std::sync::Arc;
-use std::thread::JoinHandle;
 use std::time::Duration;
 
-use eframe::egui::{
-    self, CentralPanel, Context, CursorIcon, Event, Frame, PointerButton, Shape, Visuals,
-};
-use eframe::egui_wgpu::{RenderState, wgpu};
-use maulstick_brush::desk::Desk;
-use maulstick_bus::typed::{Receiver, random_epoch};
-use maulstick_bus::{Bus, Class, Queue, Wake};
-use maulstick_paint::lamp::lamp_over;
+use eframe::egui::{self, CentralPanel, Context, CursorIcon, Frame, Visuals};
+use eframe::egui_wgpu::RenderState;
+use maulstick_brush::palette_place::Side;
+use maulstick_bus::typed::{ask, random_epoch};
+use maulstick_bus::{Bus, Class, Wake};
+use maulstick_optics::PaintLibrary;
 use maulstick_paint::picture::Export;
 use maulstick_rig::{Fault, Member, Stop};
-use maulstick_types::scene::{CANVAS, PALETTE, Scene, Surface};
+use maulstick_types::paint::{ThumbnailReply, ThumbnailRequest};
+use maulstick_types::scene::Surface;
+use maulstick_types::topics::Topics;
 use maulstick_types::{Origin, name_hash};
 
-use crate::backdrop::Backdrop;
-use crate::brushes::Brushes;
+use self::acts::side;
+use crate::courier::Courier;
 use crate::follow::{Follower, SILENCE_NS};
-use crate::frames::{FrameInbox, FrameSource, pull};
-use crate::gpu::Gpu;
-use crate::mouse::{Mouse, Pointer};
-use crate::progress::WorkProgress;
-use crate::show_surface::Place;
-use crate::surface::{Passes, SurfaceView};
-use crate::view::{DESK_COLOUR, View, are_alike, at_rest, level};
+use crate::glide::Glide;
+use crate::habits::Habits;
+use crate::hand::Hand;
+use crate::hearing::Hearing;
+use crate::lifting::LiftingKey;
+use crate::lost::LostDevice;
+use crate::mouse::Mouse;
+use crate::orders::Orders;
+use crate::presented::Presenter;
+use crate::progress::Progress;
+use crate::rack;
+use crate::shell::Shell;
+use crate::stage::{Source, Stage};
+use crate::studio::Studio;
+use crate::thumbnails::{Picture, ThumbnailFetcher};
+use crate::tint::Tint;
+use crate::toasts::Toasts;
+use crate::view::{DESK_COLOUR, View};
+use crate::watch::Watch;
+use crate::wave::Wave;
+use crate::work::Work;
 
+mod acts;
+
+/// Longer side of a version's small picture, pixels, and how long one may take.
+const THUMBNAIL: u32 = 128;
+const FETCH: Duration = Duration::from_secs(1);
 /// A pressed pointer that stands still is told this often: a longer silence would lift the brush.
 const STILL: Duration = Duration::from_millis(30);
-/// The window is drawn anew at most this often for frames and samples, of which a device sends up to
-/// 1,000 a second; where the processor draws, less often, for the paint needs it too.
-const REPAINT: Duration = Duration::from_millis(16);
-const REPAINT_BY_PROCESSOR: Duration = Duration::from_millis(40);
-/// The surfaces that are shown, the lowest first.
-const SURFACES: [u32; 2] = [CANVAS, PALETTE];
-
-/// Frames of a surface and what they make.
-#[derive(Debug, Default)]
-struct Pulled {
-    inbox: FrameInbox,
-    view: SurfaceView,
-}
-
-/// What draws.
-#[derive(Debug)]
-struct Painter {
-    gpu: Gpu,
-    passes: Passes,
-    backdrop: Backdrop,
-    brushes: Brushes,
-}
 
 /// The painter's view.
 pub struct App {
     bus: Arc<dyn Bus>,
     stop: Stop,
     wake: Wake,
-    frame_topic: String,
-    scenes: Receiver<Scene>,
-    scene: Option<(Scene, Desk)>,
-    /// What the view holds: the surfaces as they lay when they were first seen, so that one sees them move.
-    framed: Vec<Surface>,
-    surfaces: [Pulled; SURFACES.len()],
+    topics: Topics,
+    hearing: Hearing,
+    studio: Studio,
+    stage: Stage,
+    presenter: Option<Presenter>,
+    lost: LostDevice,
     follower: Follower,
-    progress: WorkProgress,
+    progress: Progress,
+    watch: Watch,
     mouse: Mouse,
     view: Option<View>,
     pressed: bool,
-    painter: Option<Painter>,
-    threads: Vec<JoinHandle<()>>,
+    hand: Hand,
+    glide: Glide,
+    lifting: LiftingKey,
+    wave: Wave,
+    /// The side of the palette as it was last looked at, and the start of the paint node then.
+    side: Option<(Side, u64)>,
+    shell: Shell,
+    orders: Orders,
+    courier: Courier,
+    fetcher: ThumbnailFetcher,
+    toasts: Toasts,
+    habits: Habits,
+    /// Habits as they were last kept, and where.
+    kept: (Habits, Option<PathBuf>),
     member: Option<Member>,
 }
 
 impl App {
-    /// The view of a rig.
+    /// The view of a rig whose paints are those of `library`.
     ///
     /// # Errors
     /// A [`Fault`] where the bus is closed.
-    pub fn new(member: &Member, mouse: &str) -> Result<Self, Fault> {
+    pub fn new(member: &Member, mouse: &str, library: PaintLibrary) -> Result<Self, Fault> {
         let (bus, topics, brushes) = (&member.bus, &member.topics, &member.config.brush);
-        let brush = brushes.first().map_or("main", |brush| brush.name.as_str());
+        let names: Vec<String> = brushes.iter().map(|brush| brush.name.clone()).collect();
+        let brush = names.first().map_or("main", String::as_str);
         let depth_shares = brushes
             .iter()
             .map(|brush| (brush.name.clone(), brush.depth_share));
         let me = member.origin(mouse);
+        let mut toasts = Toasts::default();
+        let place = Habits::place();
+        let read = place
+            .as_deref()
+            .map_or_else(|| Ok(Habits::default()), Habits::read);
+        let habits = read.unwrap_or_else(|fault| {
+            toasts.of(&fault);
+            Habits::default()
+        });
+        let lost = LostDevice::new(&member.folder);
+        if let Some(why) = lost.word() {
+            toasts.fault(
+                format!("The graphics device was lost: {why}"),
+                "The window was opened again, and nothing is missing.",
+            );
+        }
         Ok(Self {
             mouse: Mouse::new(&**bus, topics, mouse, brush, me)?,
             follower: Follower::new(
@@ -95,25 +122,31 @@ impl App {
                 depth_shares.collect(),
                 me.source,
             )?,
-            progress: WorkProgress::new(&**bus, topics, &member.wake)?,
-            scenes: Receiver::new(
-                &**bus,
-                &topics.scene(),
-                Class::Cached,
-                Queue::Ring(16),
-                &member.wake,
-            )?,
+            progress: Progress::default(),
+            watch: Watch::default(),
+            hearing: Hearing::new(&**bus, topics, &member.wake)?,
+            studio: Studio::new(&member.config.rig.name, &names, Arc::new(library)),
+            courier: Courier::new(Arc::clone(bus), topics, &member.wake),
+            fetcher: fetcher(member),
             bus: Arc::clone(bus),
             stop: member.stop.clone(),
             wake: member.wake.clone(),
-            frame_topic: topics.frame(),
-            scene: None,
-            framed: Vec::new(),
-            surfaces: Default::default(),
+            topics: topics.clone(),
+            hand: Hand::default(),
+            glide: Glide::default(),
+            lifting: LiftingKey::default(),
+            wave: Wave::default(),
+            side: None,
+            stage: Stage::default(),
+            presenter: None,
+            lost,
             view: None,
             pressed: false,
-            painter: None,
-            threads: Vec::new(),
+            shell: Shell::default(),
+            orders: Orders::default(),
+            toasts,
+            kept: (habits.clone(), place),
+            habits,
             member: None,
         })
     }
@@ -125,207 +158,189 @@ impl App {
         self
     }
 
+    /// Width and height that the window had, points.
+    #[must_use]
+    pub fn size(&self) -> [f32; 2] {
+        self.habits.size
+    }
+
+    /// What watches over the graphics device.
+    #[must_use]
+    pub fn lost(&self) -> LostDevice {
+        self.lost.clone()
+    }
+
     /// Starts to pull frames and to draw them, for a window on the display of `export`.
     pub fn begin(&mut self, context: &Context, state: &RenderState, export: &Export) {
-        let gpu = Gpu {
-            device: state.device.clone(),
-            queue: state.queue.clone(),
-            target: state.target_format,
-        };
-        self.painter = Some(Painter {
-            passes: Passes::new(&gpu, export),
-            backdrop: Backdrop::new(&gpu),
-            brushes: Brushes::new(&gpu, export),
-            gpu,
-        });
         let me = Origin {
             source: name_hash("ui"),
             epoch: random_epoch(),
         };
-        for (pulled, surface) in self.surfaces.iter().zip(SURFACES) {
-            let source = FrameSource {
-                bus: Arc::clone(&self.bus),
-                topic: self.frame_topic.clone(),
-                me,
-                surface,
-            };
-            let inbox = pulled.inbox.clone();
-            let (wake, stop) = (self.wake.clone(), self.stop.clone());
-            let run = move || pull(&source, &inbox, &wake, &stop);
-            self.threads.extend(thread("frames", run));
-        }
-        let (wake, context, stop) = (self.wake.clone(), context.clone(), self.stop.clone());
-        let rest = match state.adapter.get_info().device_type {
-            wgpu::DeviceType::Cpu => REPAINT_BY_PROCESSOR,
-            _ => REPAINT,
+        let presenter = Presenter::new(Arc::clone(&self.bus), &self.topics, me, &state.device);
+        self.presenter = presenter
+            .inspect_err(|error| tracing::warn!("frames are not told of: {error}"))
+            .ok();
+        let completion = self.presenter.as_ref().map(Presenter::completion);
+        let source = Source {
+            bus: Arc::clone(&self.bus),
+            topic: self.topics.frame(),
+            wake: self.wake.clone(),
+            stop: self.stop.clone(),
+            completion: completion.unwrap_or_default(),
         };
-        let run = move || repaint(&wake, &context, &stop, rest);
-        self.threads.extend(thread("repaint", run));
+        self.studio.tint = Arc::new(Tint::new(export));
+        self.stage.begin(context, state, export, source);
+        self.lost.follow(&state.device, context);
     }
 
     fn take_in(&mut self, now_ns: u64) {
-        while let Some(scene) = self.scenes.try_recv() {
-            let desk = Desk::of(&scene.message);
-            let surfaces = &scene.message.surfaces;
-            if !are_alike(&self.framed, surfaces) {
-                self.framed = at_rest(surfaces);
-            }
-            self.scene = Some((scene.message, desk));
-        }
+        self.hearing.take_in(now_ns, &mut self.studio);
         self.follower.take_in(now_ns);
-        self.progress.take_in();
-        let (Some(painter), Some((scene, _))) = (&self.painter, &self.scene) else {
-            return;
-        };
-        for (pulled, id) in self.surfaces.iter_mut().zip(SURFACES) {
-            for shown in pulled.inbox.take() {
-                pulled.view.update(&painter.gpu, &painter.passes, &shown);
-            }
-            if let Some(surface) = find(scene, id) {
-                let lamp = lamp_over(scene, id);
-                let (gpu, passes) = (&painter.gpu, &painter.passes);
-                pulled.view.light(gpu, passes, &lamp, surface.cell_m);
-            }
+        let (studio, toasts) = (&mut self.studio, &mut self.toasts);
+        self.watch.look(studio, &self.topics, toasts);
+        self.stage.take_in(&mut self.studio);
+        self.fetcher.exchange(&mut self.studio.thumbnails, now_ns);
+        for told in self.courier.told() {
+            self.shell.hear(
+                &told,
+                &mut Work {
+                    studio: &mut self.studio,
+                    orders: &mut self.orders,
+                    habits: &mut self.habits,
+                    toasts: &mut self.toasts,
+                },
+            );
         }
     }
 
-    /// Where the pointer went since the last frame, on the desk.
-    fn pointer(&mut self, context: &Context) -> Vec<Pointer> {
-        let (Some((scene, _)), Some(view)) = (&self.scene, &self.view) else {
-            return Vec::new();
-        };
-        let mut pressed = self.pressed;
-        let place = |at: egui::Pos2, pressed: bool| {
-            let counts = view.area.contains(at) || pressed;
-            counts.then(|| Pointer {
-                at: view.to_desk(at, &scene.surfaces).to_array(),
-                pressed,
-            })
-        };
-        let places = context.input(|input| {
-            let mut places = Vec::new();
-            for event in &input.events {
-                match event {
-                    Event::PointerMoved(at) => places.extend(place(*at, pressed)),
-                    Event::PointerButton {
-                        pos,
-                        button: PointerButton::Primary,
-                        pressed: p,
-                        ..
-                    } => {
-                        pressed = *p && view.area.contains(*pos);
-                        places.extend(place(*pos, pressed));
-                    }
-                    _ => {}
-                }
-            }
-            // A still pointer is still there.
-            if places.is_empty() {
-                places.extend(input.pointer.latest_pos().and_then(|at| place(at, pressed)));
-            }
-            places
+    /// Remembers how large the window is, once nobody drags at it.
+    fn remember_size(&mut self, context: &Context) {
+        let size = context.input(|input| {
+            let whole = input.viewport().fullscreen.unwrap_or(false);
+            let rests = !whole && !input.pointer.any_down() && input.stable_dt < 0.5;
+            rests.then(|| input.content_rect().size())
         });
-        self.pressed = pressed;
-        places
+        if let Some(size) = size {
+            self.habits.size = size.round().into();
+        }
     }
 
-    /// The desk from the bottom: surfaces, brushes.
-    fn shapes(&mut self, view: &View, pixels_per_point: f32) -> Vec<Shape> {
-        let (Some(painter), Some((scene, desk))) = (&mut self.painter, &self.scene) else {
-            return Vec::new();
+    /// Keeps the habits where they have changed.
+    fn keep(&mut self) {
+        let (kept, place) = &mut self.kept;
+        if *kept == self.habits {
+            return;
+        }
+        kept.clone_from(&self.habits);
+        if let Some(Err(fault)) = place.as_deref().map(|place| kept.keep(place)) {
+            self.toasts.of(&fault);
+        }
+    }
+}
+
+/// Fetches small pictures of versions from the paint node.
+fn fetcher(member: &Member) -> ThumbnailFetcher {
+    let (bus, topic) = (Arc::clone(&member.bus), member.topics.thumbnail());
+    let me = member.origin("ui");
+    let fetch = move |version: &str| {
+        let request = ThumbnailRequest {
+            version: version.to_owned(),
+            side: THUMBNAIL,
         };
-        let mut laid = Vec::new();
-        for (pulled, id) in self.surfaces.iter_mut().zip(SURFACES) {
-            let Some(surface) = find(scene, id) else {
-                continue;
-            };
-            let [across, _] = Place::pixels(surface, view, pixels_per_point);
-            pulled.inbox.want_level(level(surface.cells[0], across));
-            let gpu = &painter.gpu;
-            laid.extend(pulled.view.lay(gpu, surface, view, pixels_per_point));
-        }
-        let size = view.pixels(pixels_per_point);
-        let (gpu, passes) = (&painter.gpu, &painter.passes);
-        painter.backdrop.update(gpu, passes, size, &laid);
-        let mut shapes: Vec<Shape> = painter.backdrop.shape(view).into_iter().collect();
-        for held in self.follower.held(desk) {
-            if let Some(head) = self.follower.head(held.name) {
-                let lamp = lamp_over(scene, held.plane.id);
-                let brushes = &mut painter.brushes;
-                shapes.extend(brushes.shapes(
-                    &painter.gpu,
-                    &held,
-                    head,
-                    &lamp,
-                    view,
-                    pixels_per_point,
-                ));
-            }
-        }
-        shapes
-    }
-}
-
-/// Draws the window anew when something has come, but not too often: whatever comes, nothing is drawn
-/// for `rest` after a request.
-fn repaint(wake: &Wake, context: &Context, stop: &Stop, rest: Duration) {
-    while !stop.requested() {
-        if wake.wait(Duration::from_millis(200)) {
-            context.request_repaint();
-            std::thread::sleep(rest);
-        }
-    }
-    context.request_repaint();
-}
-
-fn thread(name: &str, run: impl FnOnce() + Send + 'static) -> Option<JoinHandle<()>> {
-    let thread = std::thread::Builder::new().name(name.into()).spawn(run);
-    thread
-        .inspect_err(|error| tracing::error!("the thread '{name}' cannot be started: {error}"))
-        .ok()
-}
-
-fn find(scene: &Scene, id: u32) -> Option<&Surface> {
-    scene.surfaces.iter().find(|surface| surface.id == id)
+        let reply = ask(&*bus, &topic, Class::Data, me, &request, FETCH).ok()?;
+        let ThumbnailReply {
+            width, height, rgb, ..
+        } = reply;
+        Picture::new([width as usize, height as usize], rgb.into_vec())
+    };
+    ThumbnailFetcher::new(fetch, &member.wake)
 }
 
 impl eframe::App for App {
     fn logic(&mut self, context: &Context, _frame: &mut eframe::Frame) {
-        if self.stop.requested() {
+        if self.stop.requested() || self.lost.is_lost() {
             context.send_viewport_cmd(egui::ViewportCommand::Close);
         }
         let places = self.pointer(context);
         let now_ns = self.bus.now_ns();
-        if let Err(error) = self.mouse.send(now_ns, &places) {
+        let brush = self.studio.brush_name();
+        let taken = self.mouse.take(now_ns, brush);
+        if let Err(error) = taken.and_then(|()| self.mouse.send(now_ns, &places)) {
             tracing::warn!("the mouse: {error}");
         }
         // After the mouse has told where it is: its brush is drawn there.
         self.take_in(now_ns);
+        self.follow(context, now_ns);
         if self.pressed {
             context.request_repaint_after(STILL);
         }
     }
 
     fn ui(&mut self, ui: &mut egui::Ui, _frame: &mut eframe::Frame) {
-        self.progress.show(ui.ctx());
         CentralPanel::default().frame(Frame::NONE).show(ui, |ui| {
-            let area = ui.max_rect();
-            self.view = View::fit(area, &self.framed);
-            match self.view {
-                Some(view) => {
-                    ui.ctx().set_cursor_icon(CursorIcon::Crosshair);
-                    let pixels_per_point = ui.ctx().pixels_per_point();
-                    let shapes = self.shapes(&view, pixels_per_point);
-                    ui.painter().extend(shapes);
-                    // Nothing tells when a device falls silent.
-                    let silence = Duration::from_nanos(SILENCE_NS);
-                    ui.ctx().request_repaint_after(silence);
-                }
-                None => {
-                    ui.centered_and_justified(|ui| ui.label("waiting for the paint …"));
-                }
+            let side = side(&self.habits);
+            let (canvas, palette) = (self.studio.canvas(), self.studio.palette());
+            self.view = canvas
+                .and_then(|canvas| View::of(ui.max_rect(), canvas, palette, side, rack::WIDTH));
+            let Some(view) = self.view else {
+                ui.centered_and_justified(|ui| ui.label("waiting for the paint …"));
+                return;
+            };
+            ui.ctx().set_cursor_icon(CursorIcon::Crosshair);
+            let surfaces = self.studio.scene.iter().flat_map(|scene| &scene.surfaces);
+            let mut surfaces: Vec<Surface> = surfaces.cloned().collect();
+            let now_s = ui.input(|input| input.time);
+            if self.glide.show(now_s, &mut surfaces) {
+                ui.ctx().request_repaint();
             }
+            let pixels_per_point = ui.ctx().pixels_per_point();
+            let shapes = self.stage.shapes(
+                &self.studio,
+                &surfaces,
+                &self.follower,
+                &view,
+                pixels_per_point,
+            );
+            ui.painter().extend(shapes);
+            self.name_wells(ui.painter(), &view, &surfaces);
+            self.draw_force(ui.painter(), &view);
+            if let Some(presenter) = &mut self.presenter {
+                let (begun_ns, holding) = (self.studio.now_ns, self.stage.holding());
+                ui.painter()
+                    .add(presenter.shape(view.area, begun_ns, holding));
+            }
+            // Nothing tells when a device falls silent.
+            let silence = Duration::from_nanos(SILENCE_NS);
+            ui.ctx().request_repaint_after(silence);
         });
+        let waits = self.courier.waits();
+        let work = &mut Work {
+            studio: &mut self.studio,
+            orders: &mut self.orders,
+            habits: &mut self.habits,
+            toasts: &mut self.toasts,
+        };
+        if self.progress.show(ui.ctx(), work, &waits) {
+            self.courier.give_up();
+        }
+        let acts = self.shell.show(
+            ui,
+            &mut Work {
+                studio: &mut self.studio,
+                orders: &mut self.orders,
+                habits: &mut self.habits,
+                toasts: &mut self.toasts,
+            },
+        );
+        for act in acts {
+            self.act(act, ui.ctx().pixels_per_point());
+        }
+        self.change_hands();
+        self.remember_size(ui.ctx());
+        for order in self.orders.take() {
+            self.courier.send(order);
+        }
+        self.keep();
     }
 
     fn clear_color(&self, _visuals: &Visuals) -> [f32; 4] {
@@ -335,9 +350,7 @@ impl eframe::App for App {
     fn on_exit(&mut self) {
         self.stop.request();
         self.wake.ring();
-        for thread in self.threads.drain(..) {
-            thread.join().ok();
-        }
+        self.stage.end();
         if let Some(member) = self.member.take() {
             member.leave();
         }

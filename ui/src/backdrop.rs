@@ -125,6 +125,12 @@ impl Backdrop {
         };
         Some(egui_wgpu::Callback::new_paint_callback(view.area, copy).into())
     }
+
+    /// What it holds, for what reads the ground that it draws on; none before there is a surface.
+    #[must_use]
+    pub fn pixels(&self) -> Option<&wgpu::TextureView> {
+        self.drawn.as_ref().map(|drawn| &drawn.view)
+    }
 }
 
 /// A copy into the window.
@@ -177,7 +183,9 @@ mod tests {
         let mut view = SurfaceView::default();
         let turn = |view: &mut SurfaceView, backdrop: &mut Backdrop| {
             view.light(&gpu, &passes, &lamp(), 2.5e-4);
-            let laid = [view.lay(&gpu, &surface, &look, 1.0).expect("a picture")];
+            let laid = [view
+                .lay(&gpu, &passes, &surface, &look, 1.0)
+                .expect("a picture")];
             backdrop.update(&gpu, &passes, size, &laid)
         };
         let mut backdrop = Backdrop::new(&gpu);

@@ -1,4 +1,5 @@
-//! The shape of a brush over a surface: its ferrule and handle as a chain of discs, its shadow.
+//! The shape of a brush over a surface: ferrule and handle as elliptical sections, the discs of its
+//! shadows.
 //!
 //! Lengths are desk lengths in the frame of the surface below, m; z is the height above it.
 
@@ -6,23 +7,35 @@ use glam::{DVec2, DVec3};
 use maulstick_brush::head::STATIONS;
 use maulstick_brush::{BrushFile, HeadPose};
 use maulstick_num::geometry::Rigid;
+use maulstick_num::sin_cos;
 
 /// Length of the handle, m.
 const HANDLE_M: f64 = 0.15;
 /// Length of the ferrule by the width of the head.
 const FERRULE: f64 = 2.3;
-/// Half the angle under which the lamp is seen, as a slope: by it a shadow blurs with height.
+/// Radius of the handle where the ferrule ends, by its thickest part's diameter.
+const JOINT: f64 = 0.36;
+/// Half the angle under which the lamp and the others are seen, as a slope: by it a shadow blurs with
+/// height.
 const LAMP_SIZE: f64 = 0.09;
+const OTHER_SIZE: f64 = 0.14;
+/// Softness of a shadow by the radius of what casts it, for a tuft lets light through at its edge.
+const LOOSE: f64 = 0.32;
 /// How dark a shadow is, and how much darker under what touches.
 const SHADOW: f64 = 0.3;
-const TOUCH: f64 = 0.2;
+const TOUCH: f64 = 0.14;
+/// Darkness of the others' shadows by that of the lamp's.
+const OTHER: f64 = 0.4;
+/// How far the others stand round the desk from the lamp, rad, and how steeply their light falls: z of
+/// the unit vector toward them.
+const AROUND: f64 = 2.0;
+const OTHER_Z: f64 = 0.75;
+/// A lamp beside the desk is taken to be at least so high.
+const LOWEST_Z: f64 = 0.2;
 /// Height at which the darkness of touching has halved, m.
 const NEAR_M: f64 = 1.5e-3;
 /// Height at which a shadow has faded to half, m.
 const FAR_M: f64 = 0.12;
-
-/// Cross-sections of ferrule and handle.
-pub const SECTIONS: usize = 11;
 
 /// What a part is made of.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -35,13 +48,13 @@ pub enum Material {
     Wood,
 }
 
-/// A round cross-section of a brush, and the part that begins there toward the handle's end.
+/// An elliptical cross-section of a brush, and the part that begins there toward the handle's end.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Section {
     /// Its middle.
     pub at: DVec3,
-    /// m.
-    pub radius: f64,
+    /// Its half axes, along x and y of the brush, m.
+    pub half: [DVec3; 2],
     /// What begins here.
     pub material: Material,
 }
@@ -59,44 +72,81 @@ pub struct Shade {
     pub darkness: f64,
 }
 
-/// Ferrule and handle of a brush at `brush` (brush frame to surface frame) whose head is `width_m`
-/// wide and leaves the ferrule with `root_m` radius: from the head upward.
-#[must_use]
-pub fn sections(brush: &Rigid, width_m: f64, root_m: f64) -> [Section; SECTIONS] {
-    use Material::{Groove, Metal, Wood};
-    let top = 0.36 * width_m;
-    let metal = |place: f64, material: Material| {
-        let radius = root_m * 1.04 + (top - root_m * 1.04) * place;
-        (place * FERRULE * width_m, radius, material)
-    };
-    let wood = |place: f64, radius: f64| {
-        let z = FERRULE * width_m + place * HANDLE_M;
-        (z, radius * width_m, Wood)
-    };
+/// The ferrule: place along it, how far it has become round and as wide as the handle there, its size
+/// by that, and what begins there. Two grooves crimp it.
+const METAL: [(f64, f64, f64, Material); 12] = {
+    use Material::{Groove, Metal};
     [
-        metal(0.0, Metal),
-        metal(0.66, Groove),
-        metal(0.71, Metal),
-        metal(0.8, Groove),
-        metal(0.85, Metal),
-        wood(0.0, 0.36),
-        wood(0.05, 0.44),
-        wood(0.14, 0.5),
-        wood(0.32, 0.42),
-        wood(0.65, 0.27),
-        wood(1.0, 0.19),
+        (0.0, 0.0, 1.0, Metal),
+        (0.08, 0.0, 1.02, Metal),
+        (0.2, 0.12, 1.0, Metal),
+        (0.32, 0.42, 1.0, Metal),
+        (0.45, 0.8, 1.0, Metal),
+        (0.58, 1.0, 1.0, Metal),
+        (0.66, 1.0, 1.0, Groove),
+        (0.685, 1.0, 0.93, Groove),
+        (0.71, 1.0, 1.0, Metal),
+        (0.8, 1.0, 1.0, Groove),
+        (0.825, 1.0, 0.93, Groove),
+        (0.85, 1.0, 1.0, Metal),
     ]
-    .map(|(z, radius, material)| Section {
+};
+/// The handle: place along it and radius by the diameter of its thickest part.
+const WOOD: [(f64, f64); 13] = [
+    (0.0, JOINT),
+    (0.04, 0.43),
+    (0.09, 0.48),
+    (0.14, 0.5),
+    (0.22, 0.475),
+    (0.32, 0.42),
+    (0.48, 0.335),
+    (0.65, 0.27),
+    (0.83, 0.22),
+    (1.0, 0.19),
+    (1.015, 0.165),
+    (1.024, 0.11),
+    (1.028, 0.0),
+];
+/// Those sections whose shadow is cast.
+const SHADED: [usize; SHADED_SECTIONS] = [0, 5, 15, 19, 21];
+/// Discs of ferrule and handle.
+pub const SHADED_SECTIONS: usize = 5;
+
+/// Ferrule and handle of a brush with this file at `brush` (brush frame to surface frame), from the
+/// head upward.
+#[must_use]
+pub fn sections(brush: &Rigid, file: &BrushFile) -> Vec<Section> {
+    let width = handle_width_m(file);
+    let wide = file.radius_m(0.0);
+    // Sheet metal around a thin head has a thickness of its own.
+    let thick = file.half_thickness_m(0.0).max(0.15 * wide);
+    let (wide, thick) = (wide.max(0.15 * thick) * 1.04, thick * 1.06);
+    let section = |z: f64, [a, b]: [f64; 2], material: Material| Section {
         at: brush.point(DVec3::new(0.0, 0.0, z)),
-        radius,
+        half: [brush.vector(DVec3::X) * a, brush.vector(DVec3::Y) * b],
         material,
-    })
+    };
+    let metal = METAL.map(|(place, round, size, material)| {
+        let half = [wide, thick].map(|own| size * (own + (JOINT * width - own) * round));
+        section(place * FERRULE * width, half, material)
+    });
+    let wood = WOOD.map(|(place, radius)| {
+        let z = FERRULE * width + place * HANDLE_M;
+        section(z, [radius * width; 2], Material::Wood)
+    });
+    metal.into_iter().chain(wood).collect()
 }
 
 /// Width by thickness from which a head casts its shadow in three parts.
 const WIDE: f64 = 1.8;
-/// Discs of a head at most.
-pub const HEAD_DISCS: usize = 12;
+/// Discs of a narrow head.
+pub const HEAD_DISCS: usize = 5;
+/// Discs of a wide head.
+pub const HEAD_DISCS_WIDE: usize = 12;
+/// Stations of a narrow head's discs, from the point.
+const OF_ALL: [usize; HEAD_DISCS] = [STATIONS - 1, 6, 4, 2, 0];
+/// How much wider than a part its discs are, so that no light falls between two.
+const JOINED: f64 = 1.25;
 /// Stations of such a part.
 const OF_A_PART: [usize; 4] = [0, 3, 6, STATIONS - 1];
 
@@ -119,8 +169,7 @@ pub fn head_discs(pose: &HeadPose, roots: &[[f32; 2]], wide: bool) -> Vec<(DVec3
     };
     let strips = roots.len().max(1);
     if !wide {
-        let stations: Vec<usize> = (0..pose.x.len() / strips).rev().collect();
-        return part_discs(pose, strips, &part(-2.0, 2.0), &stations);
+        return part_discs(pose, strips, &part(-2.0, 2.0), &OF_ALL);
     }
     let third = 1.0 / 3.0;
     let (down, mut up) = (OF_A_PART, OF_A_PART);
@@ -129,6 +178,7 @@ pub fn head_discs(pose: &HeadPose, roots: &[[f32; 2]], wide: bool) -> Vec<(DVec3
     parts
         .into_iter()
         .flat_map(|(from, to, stations)| part_discs(pose, strips, &part(from, to), &stations))
+        .map(|(at, radius)| (at, JOINED * radius))
         .collect()
 }
 
@@ -168,11 +218,60 @@ fn part_discs(
         .collect()
 }
 
-/// The shadow of discs under a lamp in the direction `toward`.
+/// A light that casts a shadow.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Caster {
+    /// Unit vector toward it.
+    pub toward: DVec3,
+    /// How dark its shadows are by those of the lamp.
+    pub strength: f64,
+    /// How large it is seen, as a slope.
+    pub size: f64,
+}
+
+/// The lamp and those around it: where the shadow of one falls outside of the view or on what does not
+/// show it, another's is seen (Baxter 2004, § 8.4.5).
 #[must_use]
-pub fn shadow(discs: &[(DVec3, f64)], toward: [f32; 3]) -> Vec<Shade> {
-    let [x, y, z] = toward.map(f64::from);
-    let run = DVec2::new(x, y) / z;
+pub fn casters(toward: DVec3) -> [Caster; 3] {
+    let lamp = Caster {
+        toward: DVec3::new(toward.x, toward.y, toward.z.max(LOWEST_Z)).normalize_or(DVec3::Z),
+        strength: 1.0,
+        size: LAMP_SIZE,
+    };
+    let run = (1.0 - OTHER_Z * OTHER_Z).sqrt();
+    let beside = |turn: f64| {
+        let (sin, cos) = sin_cos(turn);
+        let ahead = toward.truncate().normalize_or(DVec2::new(-1.0, 0.0));
+        Caster {
+            toward: (DVec2::new(cos, sin).rotate(ahead) * run).extend(OTHER_Z),
+            strength: OTHER,
+            size: OTHER_SIZE,
+        }
+    };
+    [lamp, beside(AROUND), beside(-AROUND)]
+}
+
+/// The discs of ferrule and handle whose shadow is cast along `run`, the way that it goes a metre of
+/// height.
+pub fn shaded_sections(sections: &[Section], run: DVec2) -> impl Iterator<Item = (DVec3, f64)> {
+    let fallen = move |at: DVec3| at.truncate() - run * at.z;
+    let ends = [sections.first(), sections.last()].map(|end| end.map_or(DVec3::ZERO, |s| s.at));
+    let across = (fallen(ends[1]) - fallen(ends[0]))
+        .perp()
+        .normalize_or(DVec2::X);
+    SHADED
+        .iter()
+        .filter_map(|i| sections.get(*i))
+        .map(move |section| {
+            let [x, y] = section.half.map(|half| fallen(half).dot(across));
+            (section.at, (x * x + y * y).sqrt())
+        })
+}
+
+/// The shadow of discs under a light.
+#[must_use]
+pub fn shadow(discs: &[(DVec3, f64)], caster: &Caster) -> Vec<Shade> {
+    let run = caster.run();
     discs
         .iter()
         .map(|(at, radius)| {
@@ -181,11 +280,19 @@ pub fn shadow(discs: &[(DVec3, f64)], toward: [f32; 3]) -> Vec<Shade> {
             Shade {
                 at: at.truncate() - run * height,
                 radius: *radius,
-                softness: LAMP_SIZE * height,
-                darkness: SHADOW * FAR_M / (FAR_M + height) + touch,
+                softness: caster.size * height + LOOSE * radius,
+                darkness: caster.strength * (SHADOW * FAR_M / (FAR_M + height) + touch),
             }
         })
         .collect()
+}
+
+impl Caster {
+    /// How far its light goes along the surface a metre of height.
+    #[must_use]
+    pub fn run(&self) -> DVec2 {
+        self.toward.truncate() / self.toward.z.max(LOWEST_Z)
+    }
 }
 
 #[cfg(test)]
@@ -194,7 +301,7 @@ mod tests {
 
     use super::*;
 
-    const TOWARD: [f32; 3] = [-0.5, 0.5, std::f32::consts::FRAC_1_SQRT_2];
+    const TOWARD: DVec3 = DVec3::new(-0.5, 0.5, std::f64::consts::FRAC_1_SQRT_2);
 
     fn tilted() -> Rigid {
         Rigid {
@@ -204,9 +311,9 @@ mod tests {
     }
 
     #[test]
-    fn the_handle_goes_straight_up_the_brush_and_tapers() {
-        let brush = tilted();
-        let sections = sections(&brush, 0.01, 0.0041);
+    fn the_handle_goes_straight_up_the_brush_and_tapers_to_a_point() {
+        let (brush, file) = (tilted(), BrushFile::library("flat").expect("flat"));
+        let sections = sections(&brush, &file);
         let axis = brush.vector(DVec3::Z);
         let mut last = -1.0;
         for section in &sections {
@@ -216,15 +323,35 @@ mod tests {
             last = off.dot(axis);
         }
         let end = sections.last().expect("some");
-        assert!(end.radius < 0.5 * sections[0].radius && end.material == Material::Wood);
+        assert!(end.half[0].length() < 1e-9 && end.material == Material::Wood);
         assert_eq!(sections[0].material, Material::Metal);
+        assert!(SHADED.iter().all(|i| *i < sections.len()));
+    }
+
+    #[test]
+    fn a_flat_brush_has_a_flat_ferrule_that_gets_round_at_the_handle() {
+        let shape = |kind: &str| {
+            let file = BrushFile::library(kind).expect(kind);
+            sections(&Rigid::IDENTITY, &file)
+                .iter()
+                .map(|s| s.half[0].length() / s.half[1].length().max(1e-9))
+                .collect::<Vec<_>>()
+        };
+        let (flat, round) = (shape("flat"), shape("round"));
+        assert!(flat[0] > 3.0, "{}", flat[0]);
+        assert!((flat[5] - 1.0).abs() < 1e-9, "{flat:?}");
+        assert!(
+            round.iter().take(24).all(|s| (s - 1.0).abs() < 0.05),
+            "a fault would pass"
+        );
     }
 
     #[test]
     fn a_shadow_falls_away_from_the_lamp_wider_softer_and_fainter_with_height() {
         let disc = |z: f64| (DVec3::new(0.0, 0.0, z), 1e-3);
-        let falls = |toward: [f32; 3]| {
-            let shades = shadow(&[disc(0.0), disc(0.01), disc(0.02)], toward);
+        let falls = |toward: DVec3| {
+            let lamp = casters(toward)[0];
+            let shades = shadow(&[disc(0.0), disc(0.01), disc(0.02)], &lamp);
             let away = |i: usize| {
                 shades[i].at.x > shades[i - 1].at.x && shades[i].at.y < shades[i - 1].at.y
             };
@@ -233,29 +360,50 @@ mod tests {
             (1..3).all(|i| away(i) && softer(i) && fainter(i))
         };
         assert!(falls(TOWARD));
-        assert!(!falls([0.5, 0.5, TOWARD[2]]), "a fault would pass");
-        let touching = shadow(&[disc(0.0)], TOWARD)[0];
-        assert_eq!((touching.at, touching.softness), (DVec2::ZERO, 0.0));
-        let at = |toward: [f32; 3]| shadow(&[disc(0.01)], toward)[0].at;
-        let mirrored = at([0.5, 0.5, TOWARD[2]]);
-        assert!((mirrored - at(TOWARD) * DVec2::new(-1.0, 1.0)).length() < 1e-12);
+        assert!(!falls(DVec3::new(0.5, 0.5, TOWARD.z)), "a fault would pass");
+        let touching = shadow(&[disc(0.0)], &casters(TOWARD)[0])[0];
+        assert_eq!(
+            (touching.at, touching.softness),
+            (DVec2::ZERO, LOOSE * 1e-3)
+        );
+    }
+
+    #[test]
+    fn the_other_lights_stand_around_the_desk_and_cast_fainter_softer_shadows() {
+        let [lamp, one, two] = casters(TOWARD);
+        let at = |caster: &Caster| shadow(&[(DVec3::new(0.0, 0.0, 0.01), 1e-3)], caster)[0];
+        let (own, first, second) = (at(&lamp), at(&one), at(&two));
+        for other in [first, second] {
+            assert!(other.darkness < 0.5 * own.darkness && other.softness > own.softness);
+            assert!(
+                other.at.dot(own.at) < 0.0,
+                "{other:?}: to the other side of the brush"
+            );
+        }
+        let mirrored = own.at.normalize();
+        let off = first.at - 2.0 * first.at.dot(mirrored) * mirrored;
+        assert!((second.at + off).length() < 1e-9, "on either side");
+        // Straight below a lamp at the zenith there are still two more.
+        let above = casters(DVec3::Z);
+        assert!(at(&above[0]).at.length() < 1e-12 && at(&above[1]).at.length() > 5e-3);
     }
 
     #[test]
     fn discs_are_as_wide_as_the_head() {
         let (strips, radius) = (400, 3e-3f32);
-        let ring = |i: usize| radius * ((i as f32 + 0.5) / strips as f32).sqrt();
-        let turn = |i: usize| f64::from(i as u32) * 2.399_963;
-        let place = |f: fn(f64) -> f64| (0..strips).map(move |i| ring(i) * f(turn(i)) as f32);
+        let ring = |i: usize| radius * (((i % strips) as f32 + 0.5) / strips as f32).sqrt();
+        let turn = |i: usize| f64::from((i % strips) as u32) * 2.399_963;
+        let all = strips * STATIONS;
+        let place = |f: fn(f64) -> f64| (0..all).map(move |i| ring(i) * f(turn(i)) as f32);
         let pose = HeadPose {
             x: place(maulstick_num::cos).map(|x| x + 0.1).collect(),
             y: place(maulstick_num::sin).collect(),
-            z: vec![0.02; strips],
+            z: vec![0.02; all],
             ..HeadPose::default()
         };
-        let [(middle, found)] = head_discs(&pose, &vec![[0.0; 2]; strips], false)[..] else {
-            panic!("one station")
-        };
+        let discs = head_discs(&pose, &vec![[0.0; 2]; strips], false);
+        assert_eq!(discs.len(), HEAD_DISCS);
+        let (middle, found) = discs[2];
         assert!(
             (middle - DVec3::new(0.1, 0.0, 0.02)).length() < 1e-4,
             "{middle}"
@@ -282,7 +430,8 @@ mod tests {
         };
         let widest = |wide: bool| {
             let discs = head_discs(&pose, &roots, wide);
-            assert!(discs.len() <= HEAD_DISCS);
+            let expected = if wide { HEAD_DISCS_WIDE } else { HEAD_DISCS };
+            assert_eq!(discs.len(), expected);
             discs.iter().map(|(_, radius)| *radius).fold(0.0, f64::max)
         };
         assert!(

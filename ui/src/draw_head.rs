@@ -1,138 +1,256 @@
-//! Draws the bristle strips of a head: thin ribbons, the lower ones first.
+//! Draws the bristles of a head: thin ribbons, the lower ones first, each lit as hair is and coloured
+//! by the paint on it.
 
-use eframe::egui::{Color32, Mesh, Pos2, Vec2, vec2};
+use eframe::egui::{Mesh, Pos2, Vec2, vec2};
+use glam::Vec3;
 use maulstick_brush::HeadPose;
 use maulstick_brush::file::sections::Hair;
 
-/// Bristles in the light and in the depth of the tuft, sRGB.
+use crate::coat::Coat;
+use crate::sight::{Sight, smoothstep};
+
+/// Bristles in the light, and how dark those in the depth of the tuft are, sRGB.
 #[must_use]
 pub const fn tones(hair: Hair) -> [[f32; 3]; 2] {
-    match hair {
-        Hair::Hog => [[238.0, 214.0, 170.0], [112.0, 82.0, 52.0]],
-        Hair::Sable => [[186.0, 112.0, 66.0], [62.0, 30.0, 18.0]],
-        Hair::Badger => [[226.0, 222.0, 214.0], [72.0, 66.0, 62.0]],
-        Hair::Steel => [[226.0, 230.0, 235.0], [136.0, 141.0, 148.0]],
-    }
+    let dark = match hair {
+        Hair::Hog => [112.0, 82.0, 52.0],
+        Hair::Sable => [62.0, 30.0, 18.0],
+        Hair::Badger => [72.0, 66.0, 62.0],
+        Hair::Steel => [136.0, 141.0, 148.0],
+    };
+    [hair.srgb(), dark]
 }
 
 /// Bristles farther below the middle of the tuft than this, by its radius, are under others.
 const UNDER: f32 = -0.5;
 /// Half the width of the soft edge of a ribbon, points.
 const SOFT: f32 = 0.5;
+/// From this half width on, points, a ribbon shows several hairs.
+const HAIRS: f32 = 2.5;
+/// Ribbons a point of the head's width: where more bristles stand there, some are drawn for all.
+const DENSITY: f32 = 3.0;
+/// Fewest ribbons of a head.
+const FEWEST: usize = 48;
+/// A head shorter than this, points, bends at every second station.
+const SHORT: f32 = 90.0;
+/// Opacity of the very point of a ribbon, and how much of it is left to a dry brush's splitting.
+const POINT: f32 = 0.55;
+/// The share of a full film from which paint hides the play of light in the hair.
+const HIDES: f32 = 0.3;
 
-/// How a head is seen.
-pub struct HeadView<'a> {
-    /// From the surface's frame to the window.
-    pub to_window: &'a dyn Fn([f32; 3]) -> Pos2,
-    /// Points a metre.
-    pub scale: f32,
-    /// Width of a strip, m.
-    pub bristle_m: f32,
+/// What the bristles of a head look like.
+#[derive(Clone, Copy, Debug)]
+pub struct Bristles<'a> {
+    /// Width of a strip at its root, m, and the share of it that is lost up to the point.
+    pub width_m: f32,
+    /// See `width_m`.
+    pub taper: f32,
     /// What they are made of.
     pub hair: Hair,
-    /// Bristles in the light and in the depth of the tuft, as the display takes it, 0 to 255.
-    pub tones: [[f32; 3]; 2],
-    /// Unit vector toward the lamp, surface frame.
-    pub toward: [f32; 3],
+    /// Linear light of bristles in the light and in the depth of the tuft, as the display takes it.
+    pub tones: [Vec3; 2],
+    /// The paint on them, if it is known.
+    pub coat: Option<&'a Coat>,
 }
 
-/// The ribbons of all strips of a pose, as one mesh.
+/// The ribbons of a pose of so many strips, as one mesh.
 #[must_use]
-pub fn ribbons(pose: &HeadPose, strips: usize, view: &HeadView<'_>) -> Mesh {
+pub fn ribbons(pose: &HeadPose, strips: usize, bristles: &Bristles<'_>, sight: &Sight<'_>) -> Mesh {
     let mut mesh = Mesh::default();
     if strips == 0 || pose.x.len() < 2 * strips {
         return mesh;
     }
-    let stations = pose.x.len() / strips;
-    let at = |station: usize, strip: usize| {
-        let i = station * strips + strip;
-        [pose.x[i], pose.y[i], pose.z[i]]
-    };
-    let middles: Vec<Middle> = (0..stations)
-        .map(|station| Middle::of((0..strips).map(|strip| at(station, strip))))
-        .collect();
-    let height = |strip: usize| (0..stations).map(|s| at(s, strip)[2]).sum::<f32>();
-    let mut order: Vec<usize> = (0..strips).collect();
-    order.sort_by(|a, b| height(*a).total_cmp(&height(*b)));
-    let half = 0.5 * view.bristle_m * view.scale;
-    let cover = (2.0 * half).clamp(0.3, 1.0);
-    let columns: &[(f32, f32)] = if half > 2.0 * SOFT {
-        &[
-            (-half - SOFT, 0.0),
-            (SOFT - half, cover),
-            (half - SOFT, cover),
-            (half + SOFT, 0.0),
-        ]
-    } else {
-        &[(-half - SOFT, 0.0), (0.0, cover), (half + SOFT, 0.0)]
-    };
-    let width = columns.len() as u32;
-    // Of a tuft that stands free the underside is not seen.
-    let below = |s: usize, strip: usize| middles[s].height(at(s, strip)) < UNDER;
-    order.retain(|strip| (1..stations).any(|station| !below(station, *strip)));
-    for strip in order {
-        let points: Vec<Pos2> = (0..stations)
-            .map(|station| (view.to_window)(at(station, strip)))
-            .collect();
+    let tuft = Tuft::of(pose, strips, sight);
+    let some = tuft.some(sight);
+    let kept = tuft.kept(some, sight);
+    // Fewer ribbons are wider ones.
+    let wider = (strips as f32 / some as f32).sqrt();
+    let half = 0.5 * bristles.width_m * sight.scale * wider;
+    let columns = columns(half);
+    let mut segments = Vec::with_capacity(kept.len() * tuft.middles.len());
+    for strip in kept {
         let first = mesh.vertices.len() as u32;
-        for station in 0..stations {
-            let normal = across(&points, station);
-            let along = station as f32 / (stations - 1) as f32;
-            let light = middles[station].light(at(station, strip), view.toward);
-            let own = match view.hair {
-                Hair::Steel => 0.0,
-                Hair::Hog | Hair::Sable | Hair::Badger => unruly(strip),
-            };
-            let colour = shade(view.tones, light, along, own);
-            for (reach, alpha) in columns {
-                let place = points[station] + normal * *reach;
-                mesh.colored_vertex(place, with_alpha(colour, *alpha));
+        let row = columns.len() as u32;
+        let points: Vec<Pos2> = tuft.line(strip).map(|p| (sight.to_window)(p)).collect();
+        for (i, point) in points.iter().enumerate() {
+            let along = tuft.along(i);
+            let colour = tuft.colour(strip, i, bristles, sight);
+            let across = across(&points, i);
+            let narrow = 1.0 - bristles.taper * along;
+            let fade = if i + 1 == points.len() { POINT } else { 1.0 };
+            for (column, (reach, soft, cover)) in columns.iter().enumerate() {
+                let place = *point + across * (reach * narrow + soft);
+                let shade = hair_shade(strip, column, columns.len());
+                mesh.colored_vertex(place, sight.vertex(colour * shade, cover * fade));
             }
         }
-        for station in 0..stations as u32 - 1 {
-            for column in 0..width - 1 {
-                let a = first + width * station + column;
-                mesh.add_triangle(a, a + 1, a + width);
-                mesh.add_triangle(a + 1, a + width + 1, a + width);
-            }
+        for i in 1..points.len() {
+            let height = tuft.height(strip, i - 1) + tuft.height(strip, i);
+            segments.push((height, first + row * (i as u32 - 1)));
+        }
+    }
+    segments.sort_unstable_by(|a, b| a.0.total_cmp(&b.0));
+    let row = columns.len() as u32;
+    for (_, first) in segments {
+        for a in first..first + row - 1 {
+            mesh.add_triangle(a, a + 1, a + row);
+            mesh.add_triangle(a + 1, a + row + 1, a + row);
         }
     }
     mesh
 }
 
+/// Across a ribbon of this half width: how far from its middle, how much farther for its soft edge,
+/// points, and the cover there.
+fn columns(half: f32) -> Vec<(f32, f32, f32)> {
+    let cover = (2.0 * half).clamp(0.35, 1.0);
+    if half <= 2.0 * SOFT {
+        return vec![(-half, -SOFT, 0.0), (0.0, 0.0, cover), (half, SOFT, 0.0)];
+    }
+    let inner: &[f32] = if half > HAIRS { &[-0.4, 0.0, 0.4] } else { &[] };
+    let mut columns = vec![(-half, -SOFT, 0.0), (-half, SOFT, cover)];
+    columns.extend(inner.iter().map(|share| (share * half, 0.0, cover)));
+    columns.extend([(half, -SOFT, cover), (half, SOFT, 0.0)]);
+    columns
+}
+
+/// Of a wide ribbon the hairs differ.
+fn hair_shade(strip: usize, column: usize, columns: usize) -> f32 {
+    match columns {
+        7.. => 1.0 + 0.34 * unruly(7 * strip + 3 * column),
+        _ => 1.0,
+    }
+}
+
+/// The stations of a pose that are drawn.
+struct Tuft<'a> {
+    pose: &'a HeadPose,
+    strips: usize,
+    stations: Vec<usize>,
+    middles: Vec<Middle>,
+}
+
+impl<'a> Tuft<'a> {
+    fn of(pose: &'a HeadPose, strips: usize, sight: &Sight<'_>) -> Self {
+        let all = pose.x.len() / strips;
+        let ends = [0, all - 1].map(|station| Middle::of(pose, strips, station, sight));
+        let length = (ends[1].at - ends[0].at).length() * sight.scale;
+        let step = if length < SHORT && all % 2 == 1 { 2 } else { 1 };
+        let stations: Vec<usize> = (0..all).step_by(step).collect();
+        let middles = stations
+            .iter()
+            .map(|station| Middle::of(pose, strips, *station, sight))
+            .collect();
+        Self {
+            pose,
+            strips,
+            stations,
+            middles,
+        }
+    }
+
+    fn at(&self, strip: usize, i: usize) -> Vec3 {
+        point(self.pose, self.stations[i] * self.strips + strip)
+    }
+
+    fn line(&self, strip: usize) -> impl Iterator<Item = Vec3> {
+        (0..self.stations.len()).map(move |i| self.at(strip, i))
+    }
+
+    /// The place of a station along a strip, 0 at the ferrule to 1.
+    fn along(&self, i: usize) -> f32 {
+        i as f32 / (self.stations.len() - 1) as f32
+    }
+
+    fn height(&self, strip: usize, i: usize) -> f32 {
+        self.middles[i].up.dot(self.at(strip, i))
+    }
+
+    /// How many strips stand for all at this size.
+    fn some(&self, sight: &Sight<'_>) -> usize {
+        let widest = self.middles.iter().map(|m| m.radius).fold(0.0, f32::max);
+        let enough = (2.0 * widest * sight.scale * DENSITY) as usize;
+        enough.max(FEWEST).min(self.strips)
+    }
+
+    /// The strips that are drawn: of an even sequence every so-many-th is an even sequence, and of a
+    /// tuft that stands free the underside is not seen.
+    fn kept(&self, some: usize, sight: &Sight<'_>) -> Vec<usize> {
+        let below = |i: usize, strip: usize| {
+            let off = self.at(strip, i) - self.middles[i].at;
+            off.dot(sight.up) < UNDER * self.middles[i].radius
+        };
+        (0..some)
+            .map(|k| k * self.strips / some)
+            .filter(|strip| (1..self.middles.len()).any(|i| !below(i, *strip)))
+            .collect()
+    }
+
+    /// The light that comes from a strip at a station.
+    fn colour(&self, strip: usize, i: usize, bristles: &Bristles<'_>, sight: &Sight<'_>) -> Vec3 {
+        let (at, middle, along) = (self.at(strip, i), &self.middles[i], self.along(i));
+        let last = self.stations.len() - 1;
+        let way = self.at(strip, (i + 1).min(last)) - self.at(strip, i.saturating_sub(1));
+        let way = way.normalize_or(-sight.up);
+        let out = (at - middle.at) / middle.radius;
+        // The tuft is round: a strip faces away from its middle, and the viewer sees the upper side.
+        let upper = out + 0.55 * sight.up;
+        let n = (upper - upper.dot(way) * way).normalize_or(sight.up);
+        let depth = 0.55 + 0.45 * smoothstep(-0.7, 0.6, out.dot(sight.up));
+        let root = 0.68 + 0.32 * smoothstep(0.0, 0.22, along);
+        let own = match bristles.hair {
+            Hair::Steel => 0.0,
+            Hair::Hog | Hair::Sable | Hair::Badger => 0.24 * unruly(strip),
+        };
+        let lit = (0.5 + 0.5 * n.dot(sight.toward)) * depth * root;
+        let tone = |own: f32| {
+            let t = (lit * (0.85 + 0.15 * along) + own).clamp(0.0, 1.0);
+            t * (0.3 + 0.7 * t)
+        };
+        let [bright, dark] = bristles.tones;
+        let hair = dark + (bright - dark) * tone(own);
+        let (paint, film) = bristles
+            .coat
+            .and_then(|coat| coat.at(strip, along))
+            .unwrap_or((bright, 0.0));
+        let cover = smoothstep(0.0, HIDES, film);
+        // A thin film tints the hair, a thick one has the tuft's relief and no hair of its own.
+        let tinted = hair * paint / bright.max(Vec3::splat(0.01));
+        let coated = paint * (0.34 + 0.74 * tone(0.35 * own));
+        // Hair shines across its own way (Kajiya and Kay 1989); wet paint more, and sharper.
+        let half = sight.half();
+        let square = (1.0 - way.dot(half) * way.dot(half)).max(0.0);
+        let facing = n.dot(half).max(0.0);
+        let dry = 0.22 * square.powi(12) * facing.powi(8) * root;
+        let wet = 0.55 * square.powi(24) * facing.powi(28);
+        let shine = (bright * dry * (1.0 - cover)) + Vec3::splat(wet * cover * film.min(1.0));
+        tinted + (coated - tinted) * cover + shine
+    }
+}
+
+fn point(pose: &HeadPose, i: usize) -> Vec3 {
+    Vec3::new(pose.x[i], pose.y[i], pose.z[i])
+}
+
 /// The tuft at a station: its middle and its radius.
 struct Middle {
-    at: [f32; 3],
+    at: Vec3,
     radius: f32,
+    up: Vec3,
 }
 
 impl Middle {
-    fn of(points: impl Iterator<Item = [f32; 3]> + Clone) -> Self {
-        let count = points.clone().count().max(1) as f32;
-        let sum = points
-            .clone()
-            .fold([0.0; 3], |sum, p| [0, 1, 2].map(|i| sum[i] + p[i]));
-        let at = sum.map(|v: f32| v / count);
-        let far = |p: [f32; 3]| {
-            [0, 1, 2]
-                .map(|i| (p[i] - at[i]) * (p[i] - at[i]))
-                .iter()
-                .sum::<f32>()
-        };
-        let radius = points.map(far).fold(1e-12, f32::max).sqrt();
-        Self { at, radius }
-    }
-
-    /// How high a point is above the middle, by the radius.
-    fn height(&self, p: [f32; 3]) -> f32 {
-        (p[2] - self.at[2]) / self.radius
-    }
-
-    /// How much light a bristle at `p` gets: the tuft is round, and dark within.
-    fn light(&self, p: [f32; 3], toward: [f32; 3]) -> f32 {
-        let out = [0, 1, 2].map(|i| (p[i] - self.at[i]) / self.radius);
-        let facing: f32 = (0..3).map(|i| out[i] * toward[i]).sum();
-        (0.5 + 0.5 * facing).clamp(0.0, 1.0)
+    fn of(pose: &HeadPose, strips: usize, station: usize, sight: &Sight<'_>) -> Self {
+        let points = || (0..strips).map(|strip| point(pose, station * strips + strip));
+        let at = points().sum::<Vec3>() / strips.max(1) as f32;
+        let far = points()
+            .map(|p| p.distance_squared(at))
+            .fold(1e-12, f32::max);
+        Self {
+            at,
+            radius: far.sqrt(),
+            up: sight.up,
+        }
     }
 }
 
@@ -152,22 +270,12 @@ fn unruly(strip: usize) -> f32 {
     (strip as f32 * 0.618_034).fract() - 0.5
 }
 
-/// The colour in `light` 0 to 1 at a place along a bristle, whose tip is flagged and lighter.
-fn shade([bright, dark]: [[f32; 3]; 2], light: f32, along: f32, own: f32) -> [f32; 3] {
-    let t = (light * (0.85 + 0.15 * along) + 0.22 * own).clamp(0.0, 1.0);
-    std::array::from_fn(|i| dark[i] + (bright[i] - dark[i]) * t)
-}
-
-fn with_alpha(colour: [f32; 3], alpha: f32) -> Color32 {
-    let [r, g, b] = colour.map(|channel| channel as u8);
-    Color32::from_rgba_unmultiplied(r, g, b, (255.0 * alpha) as u8)
-}
-
 #[cfg(test)]
 mod tests {
     use eframe::egui::pos2;
 
     use super::*;
+    use crate::coat::tests::coat_of;
 
     /// Two strips that lie beside each other along x, 1 mm apart, the second one higher.
     fn pose() -> HeadPose {
@@ -179,47 +287,117 @@ mod tests {
         }
     }
 
-    fn drawn(pose: &HeadPose, toward: [f32; 3]) -> Mesh {
-        let to_window = |[x, y, _]: [f32; 3]| pos2(1000.0 * x, -1000.0 * y);
-        let view = HeadView {
+    fn drawn(pose: &HeadPose, toward: [f32; 3], coat: Option<&Coat>) -> Mesh {
+        let to_window = |p: Vec3| pos2(10_000.0 * p.x, -10_000.0 * p.y);
+        let sight = Sight {
             to_window: &to_window,
-            scale: 1000.0,
-            bristle_m: 4e-3,
-            hair: Hair::Hog,
-            tones: tones(Hair::Hog),
-            toward,
+            scale: 10_000.0,
+            up: Vec3::Z,
+            toward: Vec3::from_array(toward),
+            light: 1.0,
         };
-        ribbons(pose, 2, &view)
+        let bristles = Bristles {
+            width_m: 4e-4,
+            taper: 0.0,
+            hair: Hair::Hog,
+            tones: [Vec3::new(0.8, 0.7, 0.4), Vec3::new(0.2, 0.1, 0.05)],
+            coat,
+        };
+        ribbons(pose, 2, &bristles, &sight)
     }
+
+    const ABOVE: [f32; 3] = [0.0, 0.0, 1.0];
 
     #[test]
     fn ribbons_follow_the_strips_the_lower_first_with_soft_edges() {
-        let mesh = drawn(&pose(), [0.0, 0.0, 1.0]);
+        let mesh = drawn(&pose(), ABOVE, None);
         assert_eq!((mesh.vertices.len(), mesh.indices.len()), (24, 72));
         assert!(mesh.is_valid());
         let middle = |from: usize| {
             let row = &mesh.vertices[from..from + 4];
             row.iter().map(|v| v.pos.y).sum::<f32>() / 4.0
         };
-        assert!(middle(0).abs() < 1e-3 && (middle(12) + 1.0).abs() < 1e-3);
+        assert!(middle(0).abs() < 1e-3 && (middle(12) + 10.0).abs() < 1e-3);
         for row in mesh.vertices.chunks(4) {
             assert!(row[0].color.a() == 0 && row[3].color.a() == 0 && row[1].color.a() > 50);
         }
-        assert_eq!(
-            drawn(&HeadPose::default(), [0.0, 0.0, 1.0]),
-            Mesh::default()
-        );
+        let first = |mesh: &Mesh| mesh.indices[0] < 12;
+        assert!(first(&mesh), "the lower strip is under the other");
+        let mut turned = pose();
+        turned.z = turned.z.iter().map(|z| 2e-4 - z).collect();
+        assert!(!first(&drawn(&turned, ABOVE, None)), "a fault would pass");
+        let nothing = drawn(&HeadPose::default(), ABOVE, None);
+        assert_eq!(nothing, Mesh::default());
     }
 
     #[test]
     fn the_side_toward_the_lamp_is_lighter() {
         let lightness = |toward: [f32; 3], strip: usize| {
-            let mesh = drawn(&pose(), toward);
-            u32::from(mesh.vertices[12 * strip + 1].color.r())
+            let mesh = drawn(&pose(), toward, None);
+            u32::from(mesh.vertices[12 * strip + 5].color.r())
         };
         let difference =
             |toward: [f32; 3]| i64::from(lightness(toward, 1)) - i64::from(lightness(toward, 0));
         let (far, near) = (difference([0.0, -0.7, 0.7]), difference([0.0, 0.7, 0.7]));
         assert!(near > far + 40, "{near} {far}");
+    }
+
+    #[test]
+    fn a_strip_has_the_colour_of_its_paint_and_a_bare_one_that_of_its_hair() {
+        let blue = [0.02, 0.05, 0.5, 1.0];
+        let coat = coat_of(
+            2,
+            2,
+            &[[0.8, 0.7, 0.4, 0.0], [0.8, 0.7, 0.4, 0.0], blue, blue],
+        );
+        let mesh = drawn(&pose(), ABOVE, Some(&coat));
+        let seen = |strip: usize| mesh.vertices[12 * strip + 5].color;
+        assert!(seen(0).r() > seen(0).b() + 20, "{:?}", seen(0));
+        assert!(seen(1).b() > seen(1).r() + 60, "{:?}", seen(1));
+        let bare = drawn(&pose(), ABOVE, None);
+        assert_eq!(bare.vertices[5].color, seen(0), "no film is no paint");
+        assert_ne!(bare.vertices[17].color, seen(1), "a fault would pass");
+        // A coat of another brush's strips says nothing.
+        let other = coat_of(1, 2, &[blue, blue]);
+        let strange = drawn(&pose(), ABOVE, Some(&other));
+        assert_eq!(strange.vertices[17].color, bare.vertices[17].color);
+    }
+
+    #[test]
+    fn a_small_head_takes_fewer_ribbons_of_the_same_width_together() {
+        let strips = 400;
+        let spread = |i: usize| 0.01 * ((i % strips) as f32 / strips as f32 - 0.5);
+        let pose = HeadPose {
+            x: (0..3 * strips).map(spread).collect(),
+            y: (0..3 * strips)
+                .map(|i| (i / strips) as f32 * 0.01)
+                .collect(),
+            z: vec![0.01; 3 * strips],
+            ..HeadPose::default()
+        };
+        let width = |scale: f32| {
+            let to_window = |p: Vec3| pos2(scale * p.x, -scale * p.y);
+            let sight = Sight {
+                to_window: &to_window,
+                scale,
+                up: Vec3::Z,
+                toward: Vec3::Z,
+                light: 1.0,
+            };
+            let bristles = Bristles {
+                width_m: 2e-4,
+                taper: 0.0,
+                hair: Hair::Sable,
+                tones: [Vec3::ONE, Vec3::ZERO],
+                coat: None,
+            };
+            let mesh = ribbons(&pose, strips, &bristles, &sight);
+            let xs = || mesh.vertices.iter().map(|v| v.pos.x);
+            let across = xs().fold(f32::MIN, f32::max) - xs().fold(f32::MAX, f32::min);
+            (mesh.vertices.len(), across / scale)
+        };
+        let ((small, narrow), (large, wide)) = (width(2000.0), width(40_000.0));
+        assert!(small < large / 4, "{small} {large}");
+        assert!((narrow / wide - 1.0).abs() < 0.15, "{narrow} {wide}");
     }
 }

@@ -5,6 +5,7 @@
 //! from the sample, by the same functions as in the brush node, and only the bend from the state.
 
 use std::collections::BTreeMap;
+use std::sync::Arc;
 
 use glam::DVec3;
 use maulstick_brush::desk::{Desk, Plane, aim, ferrule};
@@ -12,11 +13,13 @@ use maulstick_brush::{BrushFile, Head};
 use maulstick_bus::typed::Receiver;
 use maulstick_bus::{Bus, BusError, Class, Queue, Wake};
 use maulstick_num::geometry::Rigid;
-use maulstick_types::brush::{BrushDef, BrushState};
+use maulstick_types::brush::{BrushDef, BrushLook, BrushState};
 use maulstick_types::name_hash;
 use maulstick_types::paint::PaintConsumed;
 use maulstick_types::stylus::StylusSample;
 use maulstick_types::topics::Topics;
+
+use crate::coat::Coat;
 
 /// A device that is silent for this long holds no brush, ns.
 pub const SILENCE_NS: u64 = 1_000_000_000;
@@ -40,6 +43,8 @@ struct Known {
     touches: Option<u32>,
     /// How full it is, 0 to 1.
     wetness: f32,
+    /// The paint on it, if that is known.
+    coat: Option<Arc<Coat>>,
 }
 
 /// A brush in the hand.
@@ -57,6 +62,8 @@ pub struct Held<'a> {
     pub angles: Vec<[f32; 2]>,
     /// How full it is, 0 to 1: wet bristles clump.
     pub wetness: f32,
+    /// The paint on it, if that is known.
+    pub coat: Option<Arc<Coat>>,
 }
 
 /// Follows all brushes of a rig.
@@ -66,6 +73,8 @@ pub struct Follower {
     states: Receiver<BrushState>,
     defs: Receiver<BrushDef>,
     credit: Receiver<PaintConsumed>,
+    looks: Receiver<BrushLook>,
+    coats: BTreeMap<String, Option<Arc<Coat>>>,
     depth_shares: BTreeMap<String, f64>,
     /// The source that is only heard when it moves.
     quiet: u32,
@@ -86,15 +95,18 @@ impl Follower {
         depth_shares: BTreeMap<String, f64>,
         quiet: u32,
     ) -> Result<Self, BusError> {
-        let (samples, states, defs) = (
+        let (samples, states, defs, looks) = (
             topics.sample("*"),
             topics.brush_state("*"),
             topics.brush_def("*"),
+            topics.brush_look("*"),
         );
         Ok(Self {
             samples: Receiver::new(bus, &samples, Class::RealTime, Queue::Ring(256), wake)?,
             states: Receiver::new(bus, &states, Class::RealTime, Queue::Ring(64), wake)?,
             defs: Receiver::new(bus, &defs, Class::Cached, Queue::Ring(16), wake)?,
+            looks: Receiver::new(bus, &looks, Class::Cached, Queue::Ring(16), wake)?,
+            coats: BTreeMap::new(),
             credit: Receiver::new(
                 bus,
                 &topics.paint_consumed(),
@@ -122,11 +134,21 @@ impl Follower {
                         angles: Vec::new(),
                         touches: None,
                         wetness: 0.0,
+                        coat: None,
                     };
                     self.known.insert(def.message.brush, known);
                 }
                 Err(error) => tracing::warn!("{}: {error}", def.key),
             }
+        }
+        while let Some(look) = self.looks.try_recv() {
+            let name = self.topics.middle(&look.key).unwrap_or_default();
+            // Its file may be on its way still.
+            self.coats
+                .insert(name.to_owned(), Coat::of(&look.message).map(Arc::new));
+        }
+        for (name, known) in &mut self.known {
+            known.coat = self.coats.get(name).cloned().flatten();
         }
         while let Some(credit) = self.credit.try_recv() {
             for (name, known) in &mut self.known {
@@ -175,6 +197,17 @@ impl Follower {
         })
     }
 
+    /// Where the stylus of a brush points on the desk, m, and whether it touches nothing; none while none
+    /// is in range.
+    #[must_use]
+    pub fn aim(&self, name: &str) -> Option<(DVec3, bool)> {
+        let known = self.known.get(name)?;
+        let sample = &self.newest.get(&known.device?)?.sample;
+        let length = known.file.length_m();
+        let touches = known.touches.is_some() && !sample.in_air();
+        sample.in_range.then(|| (aim(sample, length), !touches))
+    }
+
     /// The head of a brush.
     #[must_use]
     pub fn head(&self, name: &str) -> Option<&Head> {
@@ -204,6 +237,7 @@ impl Known {
             brush,
             angles: self.angles.clone(),
             wetness: self.wetness,
+            coat: self.coat.clone(),
         })
     }
 }
@@ -234,6 +268,7 @@ mod tests {
     use maulstick_types::stylus::{DEFAULT_TILT_RAD, StylusPose};
 
     use super::*;
+    use crate::coat::tests::look_of;
 
     const PEN: Origin = Origin {
         source: 1,
@@ -380,5 +415,32 @@ mod tests {
             rig.sample(&StylusSample::away());
             assert!(rig.turn().is_none());
         }
+    }
+
+    #[test]
+    fn a_brush_has_the_paint_that_was_told_newest() {
+        let mut rig = Rig::new(0);
+        let key = Topics::new("t").brush_look("main");
+        let mut looks = Sender::new(&rig.bus, &key, Class::Cached, BRUSH).expect("a sender");
+        rig.sample(&pen(0.0, 0.4));
+        rig.solve(0, &pen(0.0, 0.4));
+        let mut told = |rig: &mut Rig, look: &BrushLook| {
+            rig.sample(&pen(0.0, 0.4));
+            looks.send(0, 0, look).expect("sent");
+            rig.turn();
+            let held = rig.follower.held(&rig.desk).next();
+            held.expect("a brush").coat.map(|coat| coat.at(0, 0.5))
+        };
+        let [blue, red] = [[0.0, 0.0, 1.0, 1.0], [1.0, 0.0, 0.0, 0.5]];
+        let first = told(&mut rig, &look_of(1, 1, &[blue]));
+        let second = told(&mut rig, &look_of(1, 1, &[red]));
+        assert_eq!(first, Some(Some((glam::Vec3::Z, 1.0))));
+        assert_eq!(
+            second,
+            Some(Some((glam::Vec3::X, 0.5))),
+            "a fault would pass"
+        );
+        // What does not fit shows a bare brush.
+        assert_eq!(told(&mut rig, &look_of(2, 1, &[red])), None);
     }
 }

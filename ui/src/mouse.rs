@@ -13,6 +13,8 @@ use maulstick_types::{Flags, Origin};
 
 /// Another stylus in range silences the mouse for this long, ns.
 const SILENCE_NS: u64 = 1_000_000_000;
+/// A frame takes no longer, ns; a longer time is a pause.
+const FRAME_NS: u64 = 90_000_000;
 /// Pressure of a pressed button.
 const PRESSED: f64 = 0.5;
 
@@ -29,7 +31,8 @@ pub struct Pointer {
 pub struct Mouse {
     samples: CreditSender<StylusSample>,
     others: Receiver<StylusSample>,
-    _info: Sender<StylusInfo>,
+    info: Sender<StylusInfo>,
+    told: StylusInfo,
     me: Origin,
     silent_until_ns: u64,
     sent_ns: u64,
@@ -68,12 +71,33 @@ impl Mouse {
         Ok(Self {
             samples: CreditSender::new(bus, topics, &topics.sample(name), me, &wake)?,
             others: Receiver::new(bus, &others, Class::RealTime, Queue::Ring(256), &wake)?,
-            _info: info,
+            info,
+            told,
             me,
             silent_until_ns: 0,
             sent_ns: 0,
             was_in_range: false,
         })
+    }
+
+    /// Takes another brush into the hand, or keeps the one that is there.
+    ///
+    /// # Errors
+    /// [`BusError::Topic`].
+    pub fn take(&mut self, now_ns: u64, brush: &str) -> Result<(), BusError> {
+        if self.told.brush == brush {
+            return Ok(());
+        }
+        // The one that was held is put down first.
+        self.send(now_ns, &[])?;
+        brush.clone_into(&mut self.told.brush);
+        self.info.send(now_ns, now_ns, &self.told)
+    }
+
+    /// Whether another stylus paints, so that the mouse is in the other hand.
+    #[must_use]
+    pub fn is_free(&self, now_ns: u64) -> bool {
+        now_ns < self.silent_until_ns
     }
 
     /// Sends what the pointer did since the last call: its places in order, evenly spread over that
@@ -108,8 +132,9 @@ impl Mouse {
             return Ok(());
         }
         self.was_in_range = true;
-        // After a pause the pointer has not crept here: its last move took one frame at most.
-        let since_ns = self.sent_ns.max(now_ns.saturating_sub(16_000_000));
+        // After a pause the pointer has not crept here. A frame may be long where the processor draws: what
+        // was moved in it took all of it, or the brush would leap and rest by turns.
+        let since_ns = self.sent_ns.max(now_ns.saturating_sub(FRAME_NS));
         for (number, place) in places.iter().enumerate() {
             let share = (number + 1) as f64 / places.len() as f64;
             let event_ns = since_ns + ((now_ns - since_ns) as f64 * share) as u64;
@@ -191,5 +216,85 @@ mod tests {
             assert_eq!(turn(&mut mouse), None);
         }
         assert_eq!(turn(&mut mouse), Some(true));
+    }
+
+    #[test]
+    fn another_brush_is_taken_after_the_first_was_put_down() {
+        let net = MemoryNet::new(1, SECOND, Faults::default());
+        let (bus, topics, wake) = (net.bus(), Topics::new("t"), Wake::new());
+        let me = Origin {
+            source: 1,
+            epoch: 1,
+        };
+        let mut mouse = Mouse::new(&bus, &topics, "mouse", "main", me).expect("a mouse");
+        let class = Class::Cached;
+        let mut infos = Receiver::<StylusInfo>::new(
+            &bus,
+            &topics.stylus_info("mouse"),
+            class,
+            Queue::Ring(8),
+            &wake,
+        )
+        .expect("a receiver");
+        let mut samples = Receiver::<StylusSample>::new(
+            &bus,
+            &topics.sample("mouse"),
+            Class::RealTime,
+            Queue::Ring(64),
+            &wake,
+        )
+        .expect("a receiver");
+        let place = Pointer {
+            at: [0.0; 3],
+            pressed: true,
+        };
+        mouse.send(SECOND, &[place]).expect("sent");
+        for brush in ["main", "second", "second"] {
+            mouse.take(SECOND + 1, brush).expect("told");
+        }
+        net.advance(SECOND / 10);
+        let mut told: Vec<String> = std::iter::from_fn(|| infos.try_recv())
+            .map(|info| info.message.brush)
+            .collect();
+        // Who joins late is told once more.
+        told.dedup();
+        assert_eq!(told, ["main", "second"]);
+        let ranges: Vec<bool> = std::iter::from_fn(|| samples.try_recv())
+            .map(|sample| sample.message.in_range)
+            .collect();
+        assert_eq!(ranges, [true, false]);
+    }
+
+    #[test]
+    fn what_is_moved_in_a_long_frame_is_spread_over_it() {
+        let net = MemoryNet::new(1, SECOND, Faults::default());
+        let (bus, topics, wake) = (net.bus(), Topics::new("t"), Wake::new());
+        let me = Origin {
+            source: 1,
+            epoch: 1,
+        };
+        let mut mouse = Mouse::new(&bus, &topics, "mouse", "main", me).expect("a mouse");
+        let (topic, class) = (topics.sample("mouse"), Class::RealTime);
+        let mut heard = Receiver::<StylusSample>::new(&bus, &topic, class, Queue::Ring(64), &wake)
+            .expect("a receiver");
+        let place = Pointer {
+            at: [0.0; 3],
+            pressed: true,
+        };
+        for frame in 1..=3 {
+            let places = [place; 8];
+            mouse
+                .send(SECOND + frame * 80_000_000, &places)
+                .expect("sent");
+        }
+        net.advance(SECOND / 10);
+        let times: Vec<u64> = std::iter::from_fn(|| heard.try_recv())
+            .map(|sample| sample.header.event_ns)
+            .collect();
+        let steps = times.windows(2).skip(7).map(|pair| pair[1] - pair[0]);
+        assert_eq!(times.len(), 24);
+        for step in steps {
+            assert_eq!(step, 10_000_000);
+        }
     }
 }

@@ -2,17 +2,20 @@
 //! device.
 
 use eframe::egui::{Mesh, Pos2, pos2};
-use glam::{DQuat, DVec3};
+use glam::{DQuat, DVec3, Vec3};
 use maulstick_brush::{BrushFile, Head, HeadPose, Hold};
 use maulstick_num::geometry::{Rigid, rotation};
+use maulstick_optics::colour::srgb_decode;
 
-use crate::brush_shape::{Material, handle_width_m, sections};
-use crate::draw_head::{HeadView, ribbons, tones};
+use crate::brush_shape::sections;
+use crate::draw_handle::{Finish, handle};
+use crate::draw_head::{Bristles, ribbons, tones};
+use crate::sight::Sight;
 
 /// Samples of a pixel, each way.
 const FINE: usize = 3;
 /// Toward the lamp: from the upper left, as over the desk.
-const TOWARD: [f32; 3] = [-0.5, 0.5, std::f32::consts::FRAC_1_SQRT_2];
+const TOWARD: Vec3 = Vec3::new(-0.5, 0.5, std::f32::consts::FRAC_1_SQRT_2);
 
 /// A picture with eight bits of red, green, blue and cover a pixel, from the top row; colours are not
 /// multiplied by the cover.
@@ -32,10 +35,10 @@ pub struct Portrait {
 pub fn portrait(file: &BrushFile, width: usize, height: usize, scale: f64) -> Portrait {
     let tuft = file.tuft();
     let head = Head::of(file);
-    // The brush lies: its axis along y, its point at the bottom, high above the surface.
+    // The brush lies: its axis along y, its point at the bottom, so near that its handle does not fade.
     let brush = Rigid {
         rotation: lying(),
-        translation: DVec3::new(0.0, 0.0, 1.0),
+        translation: DVec3::new(0.0, 0.0, 0.03),
     };
     let mut angles = Vec::new();
     for seat in &tuft.seats {
@@ -53,71 +56,38 @@ pub fn portrait(file: &BrushFile, width: usize, height: usize, scale: f64) -> Po
     let (across, down) = (width * FINE, height * FINE);
     // The point of the head is a little above the bottom.
     let bottom = down as f64 - 0.06 * down as f64;
-    let to_window = |[x, y, _]: [f32; 3]| -> Pos2 {
-        let y = f64::from(y) + file.length_m();
+    let to_window = |p: Vec3| -> Pos2 {
+        let y = f64::from(p.y) + file.length_m();
         pos2(
-            (0.5 * across as f64 + f64::from(x) * scale) as f32,
+            (0.5 * across as f64 + f64::from(p.x) * scale) as f32,
             (bottom - y * scale) as f32,
         )
     };
     let mut canvas = Canvas::new(across, down);
-    let thick = file.half_thickness_m(0.0).max(0.2 * file.radius_m(0.0));
-    let root = file.radius_m(0.0).max(thick);
-    draw_handle(&mut canvas, file, &brush, root, &to_window);
-    let view = HeadView {
+    let sight = Sight {
         to_window: &to_window,
         scale: scale as f32,
-        bristle_m: file.strips.width_mm as f32 * 1e-3,
-        hair: file.head.hair,
-        tones: tones(file.head.hair),
+        up: Vec3::Z,
         toward: TOWARD,
+        light: 1.0,
     };
-    canvas.draw(&ribbons(&pose, head.strips(), &view));
+    canvas.draw(&handle(&sections(&brush, file), &Finish::default(), &sight));
+    let linear =
+        |srgb: [f32; 3]| Vec3::from_array(srgb.map(|v| srgb_decode(f64::from(v) / 255.0) as f32));
+    let bristles = Bristles {
+        width_m: file.strips.width_mm as f32 * 1e-3,
+        taper: file.strips.taper as f32,
+        hair: file.head.hair,
+        tones: tones(file.head.hair).map(linear),
+        coat: None,
+    };
+    canvas.draw(&ribbons(&pose, head.strips(), &bristles, &sight));
     canvas.reduce()
 }
 
 /// Turns the brush frame so that its axis lies along y and its broad side looks up.
 fn lying() -> DQuat {
     rotation(DVec3::X, -std::f64::consts::FRAC_PI_2)
-}
-
-/// Ferrule and handle: bands shaded as if they were round.
-fn draw_handle(
-    canvas: &mut Canvas,
-    file: &BrushFile,
-    brush: &Rigid,
-    root: f64,
-    to_window: &dyn Fn([f32; 3]) -> Pos2,
-) {
-    let parts = sections(brush, handle_width_m(file), root);
-    for pair in parts.windows(2).rev() {
-        let rim = |i: usize, side: f64| {
-            let at = pair[i].at + DVec3::X * (side * pair[i].radius);
-            to_window([at.x as f32, at.y as f32, at.z as f32])
-        };
-        const BANDS: usize = 24;
-        for band in 0..BANDS {
-            let side = |i: usize| 2.0 * (band + i) as f64 / BANDS as f64 - 1.0;
-            let (from, to) = (side(0), side(1));
-            let middle = 0.5 * (from + to);
-            let colour = shade(pair[0].material, middle as f32);
-            canvas.quad([rim(0, from), rim(0, to), rim(1, to), rim(1, from)], colour);
-        }
-    }
-}
-
-/// The colour of a round part at a place across it, −1 to 1.
-fn shade(material: Material, across: f32) -> [f32; 4] {
-    let normal = [across, (1.0 - across * across).max(0.0).sqrt()];
-    let lit = (0.35 + 0.65 * (normal[0] * TOWARD[0] + normal[1] * TOWARD[2])).clamp(0.0, 1.0);
-    let glint = ((lit - 0.8).max(0.0) * 5.0).powi(2);
-    let ([r, g, b], shine) = match material {
-        Material::Metal => ([205.0, 205.0, 208.0], 60.0),
-        Material::Groove => ([120.0, 120.0, 124.0], 20.0),
-        Material::Wood => ([122.0, 34.0, 30.0], 70.0),
-    };
-    let channel = |own: f32| (own * (0.25 + 0.75 * lit) + shine * glint).min(255.0);
-    [channel(r), channel(g), channel(b), 255.0]
 }
 
 /// A picture that is drawn on: red, green, blue and cover of 0 to 255.
@@ -143,11 +113,6 @@ impl Canvas {
             let colours = corners.map(|v| v.color.to_srgba_unmultiplied().map(f32::from));
             self.triangle(corners.map(|v| v.pos), colours);
         }
-    }
-
-    fn quad(&mut self, [a, b, c, d]: [Pos2; 4], colour: [f32; 4]) {
-        self.triangle([a, b, c], [colour; 3]);
-        self.triangle([a, c, d], [colour; 3]);
     }
 
     fn triangle(&mut self, [a, b, c]: [Pos2; 3], colours: [[f32; 4]; 3]) {

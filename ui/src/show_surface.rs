@@ -4,14 +4,19 @@ use bytemuck::{Pod, Zeroable};
 use eframe::egui::{Pos2, Vec2};
 use eframe::egui_wgpu::wgpu;
 use half::f16;
+use maulstick_brush::palette_place::corner_radii;
 use maulstick_optics::colour::srgb_decode;
 use maulstick_optics::icc::Profile;
-use maulstick_types::scene::Surface;
+use maulstick_types::scene::{CANVAS, Surface};
 use wgpu::util::DeviceExt as _;
 
 use crate::gpu::{CUBE, Filterable, Gpu, Pass, UNIFORM, texture_binding};
 use crate::light_surface::CellRect;
 use crate::view::{DESK_COLOUR, View, corners};
+
+/// How far the shadow of the palette's board reaches, points, and how dark it is.
+const SHADE: f32 = 14.0;
+const SHADED: f32 = 0.45;
 
 /// Where a surface is in the view, as the shader takes it: pixels, from the view's upper left.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
@@ -21,53 +26,76 @@ pub struct Place {
     right: [f32; 2],
     up: [f32; 2],
     view: [f32; 2],
-    share: [f32; 2],
     spread: [f32; 2],
+    shade: [f32; 2],
+    radii: [f32; 4],
+    detail: Region,
+    base: Region,
 }
 
-/// The cells that a texture has for a surface.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Detail {
-    /// Texels across and up.
-    pub cells: [u32; 2],
-    /// Level of detail: 2 to this power cells of the surface a texel, each way.
-    pub level: u32,
+/// What a sheet shows of a surface, in cells of its level.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
+#[repr(C)]
+pub struct Region {
+    /// The surface's sides.
+    pub extent: [f32; 2],
+    /// The same in whole cells, as many as show all of the surface.
+    pub texels: [f32; 2],
+    /// Texels of the sheet, a torus.
+    pub size: [f32; 2],
+    /// The least cells that may be shown.
+    pub low: [f32; 2],
+    /// The greatest, the end of the last of them.
+    pub high: [f32; 2],
+    /// Nothing.
+    pub pad: [f32; 2],
 }
 
 impl Place {
-    /// The place of a surface.
+    /// The place of a surface whose detail and base show these regions; a base of no extent shows
+    /// nothing.
     #[must_use]
-    pub fn of(surface: &Surface, view: &View, pixels_per_point: f32, detail: Detail) -> Self {
+    pub fn of(
+        surface: &Surface,
+        view: &View,
+        pixels_per_point: f32,
+        [detail, base]: [Region; 2],
+    ) -> Self {
         let at = corners(surface).map(|corner| view.to_window(corner));
         let pixels = |v: Vec2| (v * pixels_per_point).into();
         let (right, up) = (at[1] - at[0], at[2] - at[0]);
         let sides = [right, up].map(|side| side.length() * pixels_per_point);
-        let whole = detail.cells.map(|cells| (cells << detail.level) as f32);
-        let share = [0, 1].map(|i| (surface.cells[i] as f32 / whole[i].max(1.0)).min(1.0));
-        let texels = [0, 1].map(|i| share[i] * detail.cells[i] as f32);
         // Below one texel a pixel the sampler's own interpolation is all there is to do.
-        let minified = (0..2).any(|i| texels[i] > 1.01 * sides[i]);
+        let minified = (0..2).any(|i| detail.extent[i] > 1.01 * sides[i]);
+        let shade = match surface.id {
+            CANVAS => [0.0; 2],
+            _ => [SHADE * pixels_per_point, SHADED],
+        };
+        let pixels_per_m = view.scale * f64::from(pixels_per_point) * surface.zoom;
         let spread = sides.map(|side| if minified { 0.25 / side.max(1.0) } else { 0.0 });
         Self {
             corner: pixels(at[0] - view.area.min),
             right: pixels(right),
             up: pixels(up),
             view: pixels(view.area.size()),
-            share,
             spread,
+            shade,
+            radii: corner_radii(surface).map(|radius_m| (radius_m * pixels_per_m) as f32),
+            detail,
+            base,
         }
     }
 
-    /// The pixels of the view that cells of a texture of `detail` touch, with those that their
-    /// filtered edges reach.
+    /// The pixels of the view that cells of a sheet touch, with those that their filtered edges reach;
+    /// `extent` is the surface's at the sheet's level.
     #[must_use]
-    pub fn covered(&self, area: &CellRect, detail: Detail) -> PixelRect {
+    pub fn covered(&self, area: &CellRect, extent: [f32; 2]) -> PixelRect {
         const REACH: f32 = 3.0;
         let mut rect = PixelRect::NOTHING;
         for corner in 0..4u32 {
             let [across, up] = [0, 1].map(|i| {
                 let end = area.from[i] + ((corner >> i) & 1) * area.size[i];
-                end as f32 / (detail.cells[i] as f32 * self.share[i])
+                end as f32 / extent[i].max(1e-6)
             });
             let pixel = [0, 1].map(|i| self.corner[i] + across * self.right[i] + up * self.up[i]);
             let around = PixelRect {
@@ -168,6 +196,7 @@ pub struct ShowSurface {
     fill: wgpu::RenderPipeline,
     show: wgpu::RenderPipeline,
     sampler: wgpu::Sampler,
+    torus: wgpu::Sampler,
     cube: wgpu::TextureView,
 }
 
@@ -176,7 +205,8 @@ impl ShowSurface {
     #[must_use]
     pub fn new(gpu: &Gpu, profile: &Profile) -> Self {
         let sampler = wgpu::BindingType::Sampler(wgpu::SamplerBindingType::Filtering);
-        let bindings = [UNIFORM, texture_binding(Filterable::Yes), sampler, CUBE];
+        let texture = texture_binding(Filterable::Yes);
+        let bindings = [UNIFORM, texture, sampler, CUBE, texture, sampler];
         let layout = gpu.layout("show_surface", &bindings);
         let shader = gpu.shader("show_surface", include_str!("shaders/show_surface.wgsl"));
         let encoded = f64::from(DESK_COLOUR.r()) / 255.0;
@@ -200,34 +230,41 @@ impl ShowSurface {
             })
         };
         let over = wgpu::BlendState::PREMULTIPLIED_ALPHA_BLENDING;
-        let sampler = gpu.device.create_sampler(&wgpu::SamplerDescriptor {
-            label: Some("show_surface"),
-            mag_filter: wgpu::FilterMode::Linear,
-            min_filter: wgpu::FilterMode::Linear,
-            ..Default::default()
-        });
+        let sampler = |mode| {
+            gpu.device.create_sampler(&wgpu::SamplerDescriptor {
+                label: Some("show_surface"),
+                address_mode_u: mode,
+                address_mode_v: mode,
+                mag_filter: wgpu::FilterMode::Linear,
+                min_filter: wgpu::FilterMode::Linear,
+                ..Default::default()
+            })
+        };
         Self {
             fill: pipeline("cover", "fill", None),
             show: pipeline("lay", "show", Some(over)),
             layout,
-            sampler,
+            sampler: sampler(wgpu::AddressMode::ClampToEdge),
+            torus: sampler(wgpu::AddressMode::Repeat),
             cube: cube_texture(gpu, &cube.unwrap_or_else(|| vec![[0.0; 3]])),
         }
     }
 
-    /// Binds a [`Place`] and the lit surface.
+    /// Binds a [`Place`] and the lit sheets: detail and base.
     #[must_use]
     pub fn bind(
         &self,
         gpu: &Gpu,
         place: &wgpu::Buffer,
-        lit: &wgpu::TextureView,
+        [detail, base]: [&wgpu::TextureView; 2],
     ) -> wgpu::BindGroup {
         let resources = [
             place.as_entire_binding(),
-            wgpu::BindingResource::TextureView(lit),
+            wgpu::BindingResource::TextureView(detail),
             wgpu::BindingResource::Sampler(&self.sampler),
             wgpu::BindingResource::TextureView(&self.cube),
+            wgpu::BindingResource::TextureView(base),
+            wgpu::BindingResource::Sampler(&self.torus),
         ];
         gpu.bind(&self.layout, &resources)
     }

@@ -3,19 +3,16 @@
 use eframe::egui_wgpu::wgpu;
 use maulstick_optics::gamut::Gamut;
 use maulstick_optics::light::Lamp;
-use maulstick_optics::light::shadow::Shadows;
 use maulstick_paint::picture::Export;
-use maulstick_types::paint::TILE;
 use maulstick_types::scene::Surface;
 
-use crate::frames::{Shown, ShownTile};
+use crate::frames::Shown;
 use crate::gpu::Gpu;
-use crate::light_surface::{COLOUR, CellRect, HEIGHT, LIT, LampUniform, LightSurface, joined};
-use crate::show_surface::{Detail, PixelRect, Place, ShowSurface};
+use crate::light_surface::LightSurface;
+use crate::pulling::Part;
+use crate::sheet::Sheet;
+use crate::show_surface::{PixelRect, Place, Region, ShowSurface};
 use crate::view::View;
-
-/// From this many changed areas on, the whole surface is lit in one go.
-const MANY: usize = 64;
 
 /// The passes that a surface goes through.
 #[derive(Debug)]
@@ -37,192 +34,83 @@ impl Passes {
     }
 }
 
-/// The textures of a surface at one level of detail. Row 0 is the lowest.
-#[derive(Debug)]
-struct Sheet {
-    detail: Detail,
-    epoch: u32,
-    colour: wgpu::Texture,
-    height: wgpu::Texture,
-    lit: wgpu::TextureView,
-    lamp: wgpu::Buffer,
-    under: Option<LampUniform>,
-    lighting: wgpu::BindGroup,
-    place: wgpu::Buffer,
-    placed: Option<Place>,
-    showing: wgpu::BindGroup,
-    /// Areas that are not lit yet, and those that are lit but not shown yet.
-    stale: Vec<CellRect>,
-    fresh: Vec<CellRect>,
-}
-
-impl Sheet {
-    fn new(gpu: &Gpu, passes: &Passes, detail: Detail, epoch: u32) -> Self {
-        let texture = |name: &str, format: wgpu::TextureFormat, usage: wgpu::TextureUsages| {
-            gpu.device.create_texture(&wgpu::TextureDescriptor {
-                label: Some(name),
-                size: wgpu::Extent3d {
-                    width: detail.cells[0],
-                    height: detail.cells[1],
-                    depth_or_array_layers: 1,
-                },
-                mip_level_count: 1,
-                sample_count: 1,
-                dimension: wgpu::TextureDimension::D2,
-                format,
-                usage: usage | wgpu::TextureUsages::TEXTURE_BINDING,
-                view_formats: &[],
-            })
-        };
-        let view = |texture: &wgpu::Texture| texture.create_view(&Default::default());
-        let colour = texture("colour", COLOUR, wgpu::TextureUsages::COPY_DST);
-        let height = texture("height", HEIGHT, wgpu::TextureUsages::COPY_DST);
-        let usage = wgpu::TextureUsages::RENDER_ATTACHMENT | wgpu::TextureUsages::COPY_SRC;
-        let lit = view(&texture("lit", LIT, usage));
-        let lamp = gpu.uniform::<LampUniform>("lamp");
-        let place = gpu.uniform::<Place>("place");
-        Self {
-            lighting: passes
-                .light
-                .bind(gpu, &lamp, &view(&colour), &view(&height)),
-            showing: passes.show.bind(gpu, &place, &lit),
-            detail,
-            epoch,
-            colour,
-            height,
-            lit,
-            lamp,
-            under: None,
-            place,
-            placed: None,
-            stale: Vec::new(),
-            fresh: Vec::new(),
-        }
-    }
-
-    fn put(&mut self, gpu: &Gpu, tile: &ShownTile) {
-        let cells = self.detail.cells;
-        let corner = [tile.x, tile.y].map(|at| at.saturating_mul(TILE as u32));
-        if corner[0] >= cells[0] || corner[1] >= cells[1] {
-            return;
-        }
-        let size = [0, 1].map(|i| (cells[i] - corner[i]).min(TILE as u32));
-        let area = CellRect { from: corner, size };
-        for (texture, texels) in [(&self.colour, &tile.colour), (&self.height, &tile.height)] {
-            let texel = texels.len() / (TILE * TILE);
-            gpu.queue.write_texture(
-                wgpu::TexelCopyTextureInfo {
-                    texture,
-                    mip_level: 0,
-                    origin: wgpu::Origin3d {
-                        x: corner[0],
-                        y: corner[1],
-                        z: 0,
-                    },
-                    aspect: wgpu::TextureAspect::All,
-                },
-                texels,
-                wgpu::TexelCopyBufferLayout {
-                    offset: 0,
-                    bytes_per_row: Some((TILE * texel) as u32),
-                    rows_per_image: None,
-                },
-                wgpu::Extent3d {
-                    width: size[0],
-                    height: size[1],
-                    depth_or_array_layers: 1,
-                },
-            );
-        }
-        self.stale.push(area);
-    }
-
-    /// Lights what is stale; everything where the lamp is another.
-    fn light(&mut self, gpu: &Gpu, passes: &Passes, lamp: &Lamp, cell_m: f64) {
-        let texel_m = cell_m * f64::from(1u32 << self.detail.level);
-        let shadows = Shadows::new(lamp, texel_m as f32);
-        let lamp = LampUniform::new(lamp, &shadows, texel_m as f32);
-        let moved = self.under != Some(lamp);
-        if moved {
-            gpu.queue
-                .write_buffer(&self.lamp, 0, bytemuck::bytes_of(&lamp));
-            self.under = Some(lamp);
-        }
-        if moved || self.stale.len() > MANY {
-            self.stale = vec![CellRect {
-                from: [0; 2],
-                size: self.detail.cells,
-            }];
-        }
-        if self.stale.is_empty() {
-            return;
-        }
-        let reach = shadows.reach();
-        for area in &mut self.stale {
-            *area = area.with_border(reach, self.detail.cells);
-        }
-        self.stale = joined(std::mem::take(&mut self.stale));
-        let mut encoder = gpu.device.create_command_encoder(&Default::default());
-        passes
-            .light
-            .run(&mut encoder, &self.lit, &self.lighting, &self.stale);
-        gpu.queue.submit([encoder.finish()]);
-        self.fresh.append(&mut self.stale);
-    }
-
-    /// Lays it at a place in the view: the pixels that are other than before.
-    fn lay(&mut self, gpu: &Gpu, place: Place) -> PixelRect {
-        let fresh = std::mem::take(&mut self.fresh);
-        if self.placed != Some(place) {
-            gpu.queue
-                .write_buffer(&self.place, 0, bytemuck::bytes_of(&place));
-            self.placed = Some(place);
-            return PixelRect::EVERYTHING;
-        }
-        fresh.iter().fold(PixelRect::NOTHING, |all, area| {
-            all.with(&place.covered(area, self.detail))
-        })
-    }
-}
-
-/// A surface as it is shown, and the one that will take its place once it has come whole.
+/// A sheet as it is shown, and the one that will take its place once it has come whole.
 #[derive(Debug, Default)]
-pub struct SurfaceView {
+struct Slot {
     shown: Option<Sheet>,
     coming: Option<Sheet>,
 }
 
-impl SurfaceView {
-    /// Takes in tiles. Those of another size, level or start of the paint node begin a new picture,
-    /// which is shown when it is whole.
-    pub fn update(&mut self, gpu: &Gpu, passes: &Passes, shown: &Shown) {
-        let most = gpu.device.limits().max_texture_dimension_2d;
-        if shown.cells.iter().any(|cells| !(1..=most).contains(cells)) || shown.level > 16 {
-            return;
-        }
-        let detail = Detail {
-            cells: shown.cells,
-            level: shown.level,
-        };
-        let fits = |sheet: &Sheet| (sheet.detail, sheet.epoch) == (detail, shown.epoch);
-        if self.coming.as_ref().is_none_or(|sheet| !fits(sheet)) {
+impl Slot {
+    fn update(&mut self, gpu: &Gpu, pass: &LightSurface, shown: &Shown) {
+        let is_new = |sheet: &Option<Sheet>| sheet.as_ref().is_none_or(|sheet| !sheet.is_of(shown));
+        if is_new(&self.coming) {
             self.coming = None;
-            if self.shown.as_ref().is_none_or(|sheet| !fits(sheet)) {
-                self.coming = Some(Sheet::new(gpu, passes, detail, shown.epoch));
+            if is_new(&self.shown) {
+                self.coming = Sheet::of(gpu, pass, shown);
+                if let (Some(old), Some(_)) = (&mut self.shown, &self.coming) {
+                    old.freeze();
+                }
             }
         }
-        if let Some(sheet) = self.coming.as_mut().or(self.shown.as_mut()) {
-            shown.tiles.iter().for_each(|tile| sheet.put(gpu, tile));
-        }
-        if self.coming.is_some() && !shown.more {
+        let old = self.shown.as_mut().filter(|sheet| sheet.is_of(shown));
+        let Some(sheet) = self.coming.as_mut().or(old) else {
+            return;
+        };
+        sheet.take(gpu, shown);
+        let is_whole = !sheet.state().held.is_empty();
+        if is_whole && self.coming.is_some() {
             self.shown = self.coming.take();
         }
     }
 
+    fn bytes(&self) -> u64 {
+        let sheets = self.shown.iter().chain(&self.coming);
+        sheets.map(Sheet::bytes).sum()
+    }
+}
+
+/// How a surface was laid before.
+#[derive(Debug)]
+struct Placed {
+    /// Numbers of the sheets.
+    of: [u64; 2],
+    place: Place,
+    uniform: wgpu::Buffer,
+    bound: wgpu::BindGroup,
+}
+
+/// A surface as it is shown: its detail, and its base where that does not reach.
+#[derive(Debug, Default)]
+pub struct SurfaceView {
+    detail: Slot,
+    base: Slot,
+    placed: Option<Placed>,
+}
+
+impl SurfaceView {
+    /// Takes in tiles. Those of another sheet begin a new picture, which is shown when it is whole.
+    pub fn update(&mut self, gpu: &Gpu, passes: &Passes, shown: &Shown) {
+        let slot = match shown.part {
+            Part::Detail => &mut self.detail,
+            Part::Base => &mut self.base,
+        };
+        slot.update(gpu, &passes.light, shown);
+    }
+
+    /// Bytes of all textures.
+    #[must_use]
+    pub fn bytes(&self) -> u64 {
+        self.detail.bytes() + self.base.bytes()
+    }
+
     /// Lights what has changed, under a lamp in the surface's frame.
     pub fn light(&mut self, gpu: &Gpu, passes: &Passes, lamp: &Lamp, cell_m: f64) {
-        if let Some(sheet) = &mut self.shown {
-            sheet.light(gpu, passes, lamp, cell_m);
+        for sheet in [&mut self.detail.shown, &mut self.base.shown]
+            .into_iter()
+            .flatten()
+        {
+            sheet.light(gpu, &passes.light, lamp, cell_m);
         }
     }
 
@@ -231,15 +119,59 @@ impl SurfaceView {
     pub fn lay(
         &mut self,
         gpu: &Gpu,
+        passes: &Passes,
         surface: &Surface,
         view: &View,
         pixels_per_point: f32,
     ) -> Option<Laid> {
-        let sheet = self.shown.as_mut()?;
-        let place = Place::of(surface, view, pixels_per_point, sheet.detail);
+        let (fine, coarse) = (self.detail.shown.as_mut(), self.base.shown.as_mut());
+        let region = |sheet: &Option<&mut Sheet>| {
+            let region = sheet.as_ref().map(|sheet| sheet.region(surface.cells));
+            region.unwrap_or_default()
+        };
+        let number = |sheet: &Option<&mut Sheet>| sheet.as_ref().map_or(0, |s| s.state().number);
+        let of = [number(&fine), number(&coarse)];
+        // A base without a detail is one.
+        let regions = match (&fine, &coarse) {
+            (None, _) => [region(&coarse), Region::default()],
+            _ => [region(&fine), region(&coarse)],
+        };
+        let mut sheets: Vec<&mut Sheet> = fine.into_iter().chain(coarse).collect();
+        let place = Place::of(surface, view, pixels_per_point, regions);
+        let mut fresh = PixelRect::NOTHING;
+        for sheet in &mut sheets {
+            let extent = sheet.region(surface.cells).extent;
+            for area in sheet.fresh() {
+                fresh = fresh.with(&place.covered(&area, extent));
+            }
+        }
+        let lit = [sheets.first()?, sheets.last()?].map(|sheet| &sheet.lit);
+        if let Some(placed) = self.placed.as_ref().filter(|placed| placed.of == of) {
+            let mut changed = fresh;
+            if placed.place != place {
+                changed = PixelRect::EVERYTHING;
+                gpu.queue
+                    .write_buffer(&placed.uniform, 0, bytemuck::bytes_of(&place));
+            }
+            let bound = placed.bound.clone();
+            if let Some(placed) = &mut self.placed {
+                placed.place = place;
+            }
+            return Some(Laid { bound, changed });
+        }
+        let uniform = gpu.uniform::<Place>("place");
+        gpu.queue
+            .write_buffer(&uniform, 0, bytemuck::bytes_of(&place));
+        let bound = passes.show.bind(gpu, &uniform, lit);
+        self.placed = Some(Placed {
+            of,
+            place,
+            uniform,
+            bound: bound.clone(),
+        });
         Some(Laid {
-            changed: sheet.lay(gpu, place),
-            bound: sheet.showing.clone(),
+            bound,
+            changed: PixelRect::EVERYTHING,
         })
     }
 }
@@ -254,19 +186,28 @@ pub struct Laid {
 }
 
 #[cfg(test)]
+mod moving;
+
+#[cfg(test)]
 pub(crate) mod tests {
     use eframe::egui::{Rect, pos2, vec2};
+    use glam::{DVec2, DVec3};
     use maulstick_optics::colour::RgbSpace;
     use maulstick_optics::gamut::GamutMapping;
     use maulstick_optics::icc::Profile;
+    use maulstick_optics::light::shadow::Shadows;
     use maulstick_optics::light::{HeightField, LampSetup, Spot, lit};
     use maulstick_paint::PaintingSetup;
     use maulstick_paint::display::DisplayTile;
     use maulstick_paint::tile::TILE_CELLS;
+    use maulstick_types::paint::TILE;
 
     use super::*;
-    use crate::frames::texels;
+    use crate::frames::{ShownTile, texels};
     use crate::gpu::testing::{draw, gpu, read, target};
+    use crate::pulling::SheetState;
+    use crate::view::corners;
+    use crate::visible::TileRect;
 
     pub(crate) const CELLS: [u32; 2] = [150, 100];
 
@@ -313,21 +254,34 @@ pub(crate) mod tests {
     }
 
     pub(crate) fn shown(tiles: Vec<ShownTile>, level: u32, more: bool) -> Shown {
+        let room = [3 - level, 2 - level];
+        let held = if more {
+            TileRect::NONE
+        } else {
+            TileRect::up_to(room)
+        };
         Shown {
+            sheet: SheetState {
+                number: u64::from(level) + 1,
+                level,
+                room,
+                held,
+                wet: false,
+            },
             cells: CELLS.map(|cells| cells >> level),
-            level,
-            epoch: 1,
-            more,
             tiles,
+            ..Shown::default()
         }
     }
 
     /// A view of `size` points, `scale` of them a cell.
     pub(crate) fn look(surface: &Surface, size: [f32; 2], scale: f32) -> View {
+        let [low, _, _, high] = corners(surface).map(DVec3::truncate);
         View {
             area: Rect::from_min_size(pos2(0.0, 0.0), vec2(size[0], size[1])),
+            middle: 0.5 * (low + high),
             scale: f64::from(scale) / surface.cell_m,
-            ..View::fit(Rect::EVERYTHING, std::slice::from_ref(surface)).expect("a view")
+            room: DVec2::ONE,
         }
     }
 
@@ -344,7 +298,9 @@ pub(crate) mod tests {
         let surface = surface();
         let look = look(&surface, size, scale);
         let target = target(gpu, size.map(|side| side as u32));
-        let laid = view.lay(gpu, &surface, &look, 1.0).expect("a picture");
+        let laid = view
+            .lay(gpu, passes, &surface, &look, 1.0)
+            .expect("a picture");
         let bound = std::iter::once(&laid.bound);
         draw(gpu, &target, wgpu::Color::RED, |pass| {
             passes.show.draw(pass, bound)
@@ -475,7 +431,7 @@ pub(crate) mod tests {
         let gpu = gpu();
         let passes = Passes::new(&gpu, &Export::default());
         let mut view = SurfaceView::default();
-        let level = |view: &SurfaceView| view.shown.as_ref().map(|sheet| sheet.detail.level);
+        let level = |view: &SurfaceView| view.detail.shown.as_ref().map(|s| s.state().level);
         view.update(&gpu, &passes, &shown(tiles(), 0, true));
         assert_eq!(level(&view), None);
         view.update(&gpu, &passes, &shown(tiles(), 0, false));

@@ -2,14 +2,17 @@
 
 use eframe::egui::{Color32, Pos2, Rect, Vec2, vec2};
 use glam::{DVec2, DVec3};
+use maulstick_brush::lie::Lie;
+use maulstick_brush::palette_place::{GAP_M, Side, corner_radii, is_on, size_m};
 use maulstick_num::geometry::Rigid;
-use maulstick_types::Pose;
-use maulstick_types::scene::{CANVAS, Surface};
+use maulstick_types::scene::Surface;
 
 /// What lies around the surfaces.
 pub const DESK_COLOUR: Color32 = Color32::from_gray(60);
-/// Kept free around the surfaces, points.
-const MARGIN: f32 = 16.0;
+/// Kept free above and below the surfaces, and at the side without a palette, points.
+const MARGIN: f32 = 12.0;
+/// So much of the palette is always seen: its wells and the cleaner, m.
+const SLIVER_M: f64 = 0.052;
 
 /// An orthographic view of the desk.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -20,72 +23,110 @@ pub struct View {
     pub middle: DVec2,
     /// Points a metre.
     pub scale: f64,
+    /// Width and height that a canvas may fill about the desk's origin, m.
+    pub room: DVec2,
 }
 
 /// The corners of a surface on the desk, m: lower left, lower right, upper left, upper right.
 #[must_use]
 pub fn corners(surface: &Surface) -> [DVec3; 4] {
     let pose = Rigid::from(&surface.pose);
-    let [width, height] = size_m(surface);
+    let [width, height] = (size_m(surface) * surface.zoom).to_array();
     [[0.0, 0.0], [width, 0.0], [0.0, height], [width, height]]
         .map(|[x, y]| pose.point(DVec3::new(x, y, 0.0)))
 }
 
-/// Width and height of a surface on the desk, m.
-fn size_m(surface: &Surface) -> [f64; 2] {
-    surface
-        .cells
-        .map(|cells| f64::from(cells) * surface.cell_m * surface.zoom)
-}
-
-/// The surfaces before the free hand moves them: the canvas unzoomed, its middle in the desk's origin;
-/// others as they are.
-#[must_use]
-pub fn at_rest(surfaces: &[Surface]) -> Vec<Surface> {
-    let rest = |surface: &Surface| {
-        let mut surface = surface.clone();
-        if surface.id == CANVAS {
-            surface.zoom = 1.0;
-            let [width, height] = size_m(&surface);
-            surface.pose = Pose {
-                position_m: [-0.5 * width, -0.5 * height, 0.0],
-                ..Pose::IDENTITY
-            };
-        }
-        surface
-    };
-    surfaces.iter().map(rest).collect()
-}
-
-/// Whether these are surfaces of the same sizes, wherever they lie.
-#[must_use]
-pub fn are_alike(some: &[Surface], others: &[Surface]) -> bool {
-    let size = |surface: &Surface| (surface.id, surface.cells, surface.cell_m);
-    some.iter().map(size).eq(others.iter().map(size))
-}
-
 impl View {
-    /// The largest view of all `surfaces` in `area`, with a margin; none while there are none.
+    /// The view in `area` of a canvas that lies at rest: it fills the view, the palette beside it looks
+    /// in as far as there is room, but with its wells, and `rack` points on the other side are left free.
+    /// None where a surface has no size.
     #[must_use]
-    pub fn fit(area: Rect, surfaces: &[Surface]) -> Option<Self> {
-        let points: Vec<DVec2> = surfaces
-            .iter()
-            .flat_map(corners)
-            .map(DVec3::truncate)
-            .filter(|point| point.is_finite())
-            .collect();
-        let first = *points.first()?;
-        let low = points.iter().fold(first, |low, point| low.min(*point));
-        let high = points.iter().fold(first, |high, point| high.max(*point));
-        let size = (high - low).max(DVec2::splat(1e-3));
-        let room = area.shrink(MARGIN).size().max(Vec2::splat(1.0));
-        let scale = (f64::from(room.x) / size.x).min(f64::from(room.y) / size.y);
-        let middle = 0.5 * (low + high);
+    pub fn of(
+        area: Rect,
+        canvas: &Surface,
+        palette: Option<&Surface>,
+        side: Side,
+        rack: f32,
+    ) -> Option<Self> {
+        let size = size_m(canvas);
+        let board = palette.map_or(DVec2::ZERO, |palette| size_m(palette) * palette.zoom);
+        if !(size.min_element() > 0.0 && size.is_finite() && board.is_finite()) {
+            return None;
+        }
+        let gap = if palette.is_some() { GAP_M } else { 0.0 };
+        let sliver = board.x.min(SLIVER_M);
+        let room = [area.width() - rack - MARGIN, area.height() - 2.0 * MARGIN];
+        let room = room.map(|points| f64::from(points.max(1.0)));
+        let high = size.y.max(board.y);
+        let scale = (room[0] / (size.x + gap + sliver)).min(room[1] / high);
+        // What is left of the width shows more of the palette, then lies on both sides alike.
+        let left = room[0] / scale - (size.x + gap + sliver);
+        let more = left
+            .min(board.x - sliver + f64::from(MARGIN) / scale)
+            .max(0.0);
+        let aside = sliver + more + gap + 0.5 * (left - more).max(0.0);
+        // From the middle of the area to that of the canvas, m.
+        let half = 0.5 * f64::from(area.width()) / scale;
+        let off = aside + 0.5 * size.x - half;
+        let middle = match side {
+            Side::Left => DVec2::new(-off, 0.0),
+            Side::Right => DVec2::new(off, 0.0),
+        };
         Some(Self {
             area,
             middle,
             scale,
+            room: DVec2::new(size.x + left - more, room[1] / scale),
         })
+    }
+
+    /// The largest view of a single surface in the middle of `area`.
+    #[cfg(test)]
+    pub(crate) fn fit(area: Rect, surfaces: &[Surface]) -> Option<Self> {
+        let [low, _, _, high] = corners(surfaces.first()?).map(DVec3::truncate);
+        let room = area.shrink(16.0).size().max(Vec2::splat(1.0));
+        let size = (high - low).abs();
+        let scale = (f64::from(room.x) / size.x).min(f64::from(room.y) / size.y);
+        Some(Self {
+            area,
+            middle: 0.5 * (low + high),
+            scale,
+            room: size,
+        })
+    }
+
+    /// The canvas as large as the view has room for it, upright and flat.
+    #[must_use]
+    pub fn fitted(&self, canvas: &Surface) -> Lie {
+        let size = size_m(canvas);
+        let zoom = (self.room / size).min_element();
+        Lie {
+            pose: Rigid {
+                translation: (-0.5 * zoom * size).extend(0.0),
+                ..Rigid::IDENTITY
+            },
+            zoom,
+        }
+    }
+
+    /// The canvas with a cell a pixel, about the middle of the desk.
+    #[must_use]
+    pub fn hundred(&self, canvas: &Surface, pixels_per_point: f32) -> Lie {
+        let pixel_m = 1.0 / (self.scale * f64::from(pixels_per_point));
+        let lie = Lie::from(canvas);
+        lie.zoomed(DVec3::ZERO, pixel_m / canvas.cell_m / lie.zoom)
+    }
+
+    /// A way of the window as one along the desk, m.
+    #[must_use]
+    pub fn along(&self, way: Vec2) -> DVec3 {
+        DVec3::new(f64::from(way.x), -f64::from(way.y), 0.0) / self.scale
+    }
+
+    /// The point of the plane z = 0 under a point of the window, m.
+    #[must_use]
+    pub fn on_desk(&self, at: Pos2) -> DVec3 {
+        self.middle.extend(0.0) + self.along(at - self.area.center())
     }
 
     /// Pixels of the view, as the window rounds them.
@@ -103,13 +144,17 @@ impl View {
         self.area.center() + vec2(off.x as f32, -off.y as f32)
     }
 
+    /// Whether a surface lies under a point of the window.
+    #[must_use]
+    pub fn is_over(&self, at: Pos2, surface: &Surface) -> bool {
+        hit(self.on_desk(at).truncate(), surface).is_some_and(|(_, inside)| inside)
+    }
+
     /// The point of the desk under a point of the window, m: on the surface that lies there, the
     /// palette before the canvas, and beside all on the plane of the canvas, which goes on.
     #[must_use]
     pub fn to_desk(&self, at: Pos2, surfaces: &[Surface]) -> DVec3 {
-        let off = at - self.area.center();
-        let off = DVec2::new(f64::from(off.x), -f64::from(off.y)) / self.scale;
-        let below = self.middle + off;
+        let below = self.on_desk(at).truncate();
         let mut uppermost: Vec<&Surface> = surfaces.iter().collect();
         uppermost.sort_by_key(|surface| std::cmp::Reverse(surface.id));
         let hits: Vec<(DVec3, bool)> = uppermost
@@ -131,8 +176,8 @@ fn hit(below: DVec2, surface: &Surface) -> Option<(DVec3, bool)> {
         return None;
     }
     let local = from - along * (from.z / along.z);
-    let [width, height] = size_m(surface);
-    let inside = (0.0..width).contains(&local.x) && (0.0..height).contains(&local.y);
+    let own = local.truncate() / surface.zoom;
+    let inside = is_on(size_m(surface), corner_radii(surface), own);
     Some((to_desk.point(local), inside))
 }
 
@@ -151,55 +196,86 @@ pub fn level(cells: u32, pixels: f32) -> u32 {
 mod tests {
     use super::*;
     use eframe::egui::pos2;
+    use maulstick_brush::lie::laid;
+    use maulstick_brush::palette_place::beside;
     use maulstick_num::geometry::rotation;
     use maulstick_paint::PaintingSetup;
+    use maulstick_types::Pose;
 
     fn surfaces() -> Vec<Surface> {
         PaintingSetup::default().scene().surfaces
     }
 
+    fn area() -> Rect {
+        Rect::from_min_size(pos2(10.0, 20.0), vec2(1280.0, 720.0))
+    }
+
     fn view(surfaces: &[Surface]) -> View {
-        let area = Rect::from_min_size(pos2(10.0, 20.0), vec2(1100.0, 1000.0));
-        View::fit(area, surfaces).expect("surfaces")
+        View::of(area(), &surfaces[0], surfaces.get(1), Side::Left, 72.0).expect("surfaces")
+    }
+
+    fn bounds(view: &View, surface: &Surface) -> Rect {
+        Rect::from_points(&corners(surface).map(|corner| view.to_window(corner)))
     }
 
     #[test]
-    fn both_surfaces_fill_the_window_up_to_the_margin() {
+    fn the_canvas_fills_the_view_and_the_palette_looks_in() {
         let surfaces = surfaces();
-        let view = view(&surfaces);
-        let places = surfaces.iter().flat_map(corners).map(|p| view.to_window(p));
-        let bounds = Rect::from_points(&places.collect::<Vec<_>>());
-        assert!(
-            (bounds.left() - view.area.left() - MARGIN).abs() < 1e-3,
-            "{bounds:?}"
-        );
-        assert!((bounds.right() - view.area.right() + MARGIN).abs() < 1e-3);
-        assert!((bounds.center() - view.area.center()).length() < 1e-3);
-        let corner = |surface: &Surface, i: usize| view.to_window(corners(surface)[i]);
-        assert!(
-            corner(&surfaces[1], 1).x < corner(&surfaces[0], 0).x,
-            "the palette is at the left"
-        );
-        assert!(
-            corner(&surfaces[0], 2).y < corner(&surfaces[0], 0).y,
-            "up is up"
-        );
+        let (canvas, palette) = (&surfaces[0], &surfaces[1]);
+        let own = view(&surfaces);
+        let shown = bounds(&own, canvas);
+        let free = shown.height() - own.area.height() + 2.0 * MARGIN;
+        assert!(free.abs() < 1e-2, "{shown:?}");
+        assert!(shown.right() < own.area.right() - 72.0, "beside the rack");
+        let board = bounds(&own, palette);
+        assert!(board.right() < shown.left() && board.left() > own.area.left());
+        // Where there is less room the wells are still there.
+        let narrow = Rect::from_min_size(pos2(0.0, 0.0), vec2(900.0, 900.0));
+        let tight = View::of(narrow, canvas, Some(palette), Side::Left, 72.0).expect("a view");
+        let board = bounds(&tight, palette);
+        let seen = f64::from(board.right() - narrow.left()) / tight.scale;
+        let is_cut = board.left() < narrow.left();
+        assert!((seen - SLIVER_M).abs() < 1e-4 && is_cut, "{seen}");
+        assert!(bounds(&tight, canvas).right() < 900.0 - 72.0);
     }
 
     #[test]
-    fn a_canvas_that_is_moved_moves_in_the_window() {
-        let first = surfaces();
-        assert_eq!(at_rest(&first), first, "nobody has moved it yet");
-        let mut moved = first.clone();
-        moved[0].pose.position_m[0] += 0.05;
-        moved[0].zoom = 2.0;
-        assert!(are_alike(&first, &moved) && at_rest(&moved) == first);
-        let view = view(&at_rest(&moved));
-        let corner = |surface: &Surface| view.to_window(corners(surface)[0]).x;
-        let right = f64::from(corner(&moved[0]) - corner(&first[0]));
-        assert!((right - 0.05 * view.scale).abs() < 0.01, "{right} points");
-        moved[0].cells[0] += 1;
-        assert!(!are_alike(&first, &moved));
+    fn for_the_left_hand_it_is_the_other_way_round() {
+        let mut surfaces = surfaces();
+        let shown = |surfaces: &[Surface], side| {
+            let view = View::of(area(), &surfaces[0], Some(&surfaces[1]), side, 72.0);
+            let view = view.expect("a view");
+            [bounds(&view, &surfaces[0]), bounds(&view, &surfaces[1])]
+        };
+        let right = shown(&surfaces, Side::Left);
+        surfaces[1].pose = beside(&surfaces[0], &surfaces[1], Side::Right);
+        let left = shown(&surfaces, Side::Right);
+        let middle = area().center().x;
+        for (a, b) in right.iter().zip(&left) {
+            let off = a.left() - middle + b.right() - middle;
+            assert!(off.abs() < 1e-2, "{a:?} {b:?}");
+        }
+    }
+
+    #[test]
+    fn fitted_it_fills_its_room_and_at_a_hundred_a_cell_is_a_pixel() {
+        let mut surfaces = surfaces();
+        surfaces[0].cells = [400, 200];
+        let view = view(&surfaces);
+        let fitted = laid(&surfaces[0], &view.fitted(&surfaces[0]));
+        let shown = bounds(&view, &fitted);
+        let room = view.room * view.scale;
+        assert!(
+            (f64::from(shown.width()) - room.x).abs() < 1e-2,
+            "{shown:?} {room}"
+        );
+        assert!(shown.right() < view.area.right() - 72.0 && shown.left() > view.area.left());
+        let hundred = laid(&surfaces[0], &view.hundred(&fitted, 2.0));
+        let shown = bounds(&view, &hundred);
+        assert!(
+            (shown.width() - 200.0).abs() < 1e-2,
+            "400 cells at two pixels a point"
+        );
     }
 
     #[test]
@@ -222,7 +298,6 @@ mod tests {
         assert!(palette.z > 0.02 && (round(palette) - palette).length() < 1e-6);
         let beside = DVec3::new(0.2, 0.1, 0.0);
         assert!((round(beside) - beside).length() < 1e-6);
-        assert_eq!(View::fit(view.area, &[]), None);
     }
 
     #[test]

@@ -8,7 +8,7 @@
 //! | [`demo`], [`sheet`] | performances made from a seed |
 //! | [`player`] | a device that plays a take |
 //! | [`brush`] | the brush that a section of `rig.toml` asks for |
-//! | [`commander`] | commands to the paint node, repeated until answered |
+//! | [`missing`] | what is said of a device that is not there |
 //! | [`mover`] | the free hand moves the canvas |
 //! | [`fitting`] | a device's frame on the desk |
 //! | [`corners`] | the corners of the canvas, as a hand shows them |
@@ -18,11 +18,11 @@
 pub mod actions;
 pub mod brush;
 pub mod collections;
-pub mod commander;
 pub mod corners;
 pub mod demo;
 pub mod fitting;
 pub mod kit;
+pub mod missing;
 pub mod mover;
 pub mod player;
 pub mod sheet;

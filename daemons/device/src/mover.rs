@@ -11,17 +11,17 @@ use std::thread::JoinHandle;
 use std::time::{Duration, Instant};
 
 use glam::DVec3;
+use maulstick_brush::lie::Lie;
 use maulstick_bus::typed::Receiver;
 use maulstick_bus::{Bus, Class, Queue, Wake};
 use maulstick_num::exp;
-use maulstick_num::geometry::{Rigid, canonical, rotation};
 use maulstick_rig::Fault;
 use maulstick_types::command::Command;
 use maulstick_types::control::ControlSample;
 use maulstick_types::scene::{CANVAS, Scene};
 use maulstick_types::topics::Topics;
 
-use crate::commander::Commander;
+use maulstick_rig::commander::Commander;
 
 /// Pushed to the stop the canvas goes this fast, m/s.
 const PAN_M_S: f64 = 0.2;
@@ -29,10 +29,6 @@ const PAN_M_S: f64 = 0.2;
 const ZOOM_S: f64 = 1.0;
 /// Turned to the stop it turns this fast, rad/s.
 const TURN_S: f64 = 1.5;
-/// Zooms that a painter can use.
-const ZOOMS: [f64; 2] = [0.1, 20.0];
-/// How far the canvas goes from the middle of the desk, m, before its zoom.
-const FARTHEST_M: f64 = 1.0;
 /// Time between two commands while the hand pushes.
 const PERIOD: Duration = Duration::from_millis(33);
 /// A push counts for so long at most, however late it is followed.
@@ -42,45 +38,15 @@ const PATIENCE: Duration = Duration::from_secs(2);
 /// A command is asked again after this; so long at most a daemon's end waits for it.
 const ASK: Duration = Duration::from_millis(300);
 
-/// Where a surface lies.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Lie {
-    /// Surface frame to desk frame.
-    pub pose: Rigid,
-    /// Desk lengths per surface length.
-    pub zoom: f64,
-}
-
-impl Lie {
-    /// Where it lies after a push of `dt` s.
-    #[must_use]
-    pub fn pushed(&self, control: &ControlSample, dt: f64) -> Self {
-        // Slow where the push is light: the third power leaves the stops where they are.
-        let eased = |value: f64| value * value * value;
-        let [x, y, z] = control.push.map(eased);
-        let turn = rotation(DVec3::Z, eased(control.turn[2]) * TURN_S * dt);
-        // A zoom that was told otherwise, beyond ours, goes no farther; it does not leap to the bound.
-        let [least, most] = [ZOOMS[0].min(self.zoom), ZOOMS[1].max(self.zoom)];
-        let zoom = (self.zoom * exp(z * ZOOM_S * dt)).clamp(least, most);
-        let moved = turn * (self.pose.translation * (zoom / self.zoom));
-        let bound = FARTHEST_M * zoom.max(1.0);
-        let translation = moved + DVec3::new(x, y, 0.0) * (PAN_M_S * dt);
-        Self {
-            pose: Rigid {
-                rotation: canonical(turn * self.pose.rotation),
-                translation: translation.clamp(DVec3::splat(-bound), DVec3::splat(bound)),
-            },
-            zoom,
-        }
-    }
-
-    fn command(&self) -> Command {
-        Command::Place {
-            surface: CANVAS,
-            pose: self.pose.to_pose(),
-            zoom: self.zoom,
-        }
-    }
+/// Where a surface lies after a push of `dt` s.
+#[must_use]
+pub fn pushed(lie: &Lie, control: &ControlSample, dt: f64) -> Lie {
+    // Slow where the push is light: the third power leaves the stops where they are.
+    let eased = |value: f64| value * value * value;
+    let [x, y, z] = control.push.map(eased);
+    lie.zoomed(DVec3::ZERO, exp(z * ZOOM_S * dt))
+        .turned(DVec3::ZERO, DVec3::Z, eased(control.turn[2]) * TURN_S * dt)
+        .moved(DVec3::new(x, y, 0.0) * (PAN_M_S * dt))
 }
 
 /// Whether a hand pushes or turns what moves the canvas.
@@ -178,9 +144,9 @@ fn follow(
             let Some(from) = lie.filter(|_| pushes(&control)) else {
                 break;
             };
-            let to = from.pushed(&control, moved.elapsed().min(LONGEST).as_secs_f64());
+            let to = pushed(&from, &control, moved.elapsed().min(LONGEST).as_secs_f64());
             moved = Instant::now();
-            match send(to.command()) {
+            match send(to.command(CANVAS)) {
                 Ok(()) => lie = Some(to),
                 Err(fault) => tracing::warn!("the canvas is not moved: {}", fault.what),
             }
@@ -190,14 +156,14 @@ fn follow(
 
 fn canvas(scene: &Scene) -> Option<Lie> {
     let surface = scene.surfaces.iter().find(|surface| surface.id == CANVAS)?;
-    Some(Lie {
-        pose: Rigid::from(&surface.pose),
-        zoom: surface.zoom,
-    })
+    Some(Lie::from(surface))
 }
 
 #[cfg(test)]
 mod tests {
+    use maulstick_brush::lie::{FARTHEST_M, ZOOMS};
+    use maulstick_num::geometry::Rigid;
+
     use super::*;
 
     fn lie() -> Lie {
@@ -220,12 +186,12 @@ mod tests {
         let mut control = ControlSample::at_rest();
         (control.push[2], control.turn[2]) = (0.7, -0.5);
         let mut now = lie();
-        (0..200).for_each(|_| now = now.pushed(&control, 0.033));
+        (0..200).for_each(|_| now = pushed(&now, &control, 0.033));
         assert!(now.zoom > 3.0, "{now:?}");
         assert!((middle(&now) - middle(&lie())).length() < 1e-12, "{now:?}");
         let quarter = now.pose.vector(DVec3::X);
         assert!(quarter.y < -0.1 && quarter.z == 0.0, "{quarter}");
-        assert_eq!(now.command().check(), Ok(()));
+        assert_eq!(now.command(CANVAS).check(), Ok(()));
     }
 
     #[test]
@@ -233,7 +199,7 @@ mod tests {
         let pan = |by: f64| {
             let mut control = ControlSample::at_rest();
             control.push[0] = by;
-            lie().pushed(&control, 0.5).pose.translation.x - lie().pose.translation.x
+            pushed(&lie(), &control, 0.5).pose.translation.x - lie().pose.translation.x
         };
         assert!((pan(1.0) - 0.1).abs() < 1e-12);
         assert!((pan(-0.5) + 0.0125).abs() < 1e-12);
@@ -246,7 +212,7 @@ mod tests {
         for sign in [1.0, -1.0] {
             control.push = [sign; 3];
             let mut now = lie();
-            (0..2000).for_each(|_| now = now.pushed(&control, 0.033));
+            (0..2000).for_each(|_| now = pushed(&now, &control, 0.033));
             assert!((ZOOMS[0]..=ZOOMS[1]).contains(&now.zoom));
             assert!(now.pose.translation.abs().max_element() <= FARTHEST_M * ZOOMS[1]);
         }
@@ -260,12 +226,12 @@ mod tests {
             zoom: 0.05,
             ..lie()
         };
-        assert_eq!(far.pushed(&control, 0.033).zoom, 0.05);
+        assert_eq!(pushed(&far, &control, 0.033).zoom, 0.05);
         control.push[2] = 1.0;
-        let nearer = far.pushed(&control, 0.033).zoom;
+        let nearer = pushed(&far, &control, 0.033).zoom;
         assert!(nearer > 0.05 && nearer < 0.06, "{nearer}");
         control.push[2] = -1.0;
-        assert_eq!(far.pushed(&control, 0.033).zoom, 0.05);
+        assert_eq!(pushed(&far, &control, 0.033).zoom, 0.05);
     }
 
     /// A paint node that takes longer than [`PERIOD`] for a command must not keep the canvas running

@@ -15,8 +15,8 @@ use maulstick_types::command::{After, Command};
 use maulstick_types::stylus::{StylusInfo, StylusSample, TakeEnd, TakeStatus, axes};
 use maulstick_types::{Flags, Mixture, Origin, name_hash};
 
-use crate::commander::Commander;
 use crate::take::Take;
+use maulstick_rig::commander::Commander;
 
 /// How fast a take is played.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -7,6 +7,7 @@ use maulstick_bus::typed::{Reader, Receiver, Sender};
 use maulstick_bus::{Class, CreditSender, Queue, Server};
 use maulstick_device::actions::{Action, Actions, Actor};
 use maulstick_device::fitting::Fitting;
+use maulstick_device::missing::miss;
 use maulstick_haptics::contact::Contact;
 use maulstick_haptics::{Address, Kept, Limits, Switch};
 use maulstick_num::geometry::Rigid;
@@ -28,9 +29,6 @@ const STATUS_PERIOD_NS: u64 = 100_000_000;
 const ATTEMPT_PERIOD_NS: u64 = 1_000_000_000;
 /// Out of range a sample goes out only this often, ns.
 const IDLE_PERIOD_NS: u64 = 50_000_000;
-
-/// A status has no room for more, bytes.
-const LONGEST_TROUBLE: usize = 2048;
 
 /// Runs a device in the rig of `member`.
 ///
@@ -194,7 +192,7 @@ impl Daemon {
         let opened = match open(&self.config, &self.settings) {
             Ok(opened) => opened,
             Err(fault) => {
-                self.miss(&fault);
+                miss(&self.settings.device.name, &fault, &mut self.told);
                 return Ok(());
             }
         };
@@ -264,21 +262,6 @@ impl Daemon {
         before
     }
 
-    /// Says, once, why there is no device.
-    fn miss(&mut self, fault: &Fault) {
-        let place = fault.place.as_ref().map(|place| format!(" ({place})"));
-        let mut trouble = format!("{}{}", fault.what, place.unwrap_or_default());
-        if let Some(help) = &fault.help {
-            trouble = format!("{trouble}; {help}");
-        }
-        trouble.truncate(trouble.floor_char_boundary(LONGEST_TROUBLE));
-        if trouble != self.told.trouble {
-            let name = &self.settings.device.name;
-            tracing::warn!("{name}: {trouble} (tried again each second)");
-            self.told.trouble = trouble;
-        }
-    }
-
     /// The servo has ended: lifts the brush, and looks for the device again if it is that which is
     /// lost.
     fn lose(&mut self, now_ns: u64) -> Result<(), Fault> {
@@ -306,7 +289,8 @@ impl Daemon {
         }
         self.told.force_n = 0.0;
         self.attempt_ns = now_ns + ATTEMPT_PERIOD_NS;
-        self.miss(&Fault::failure(trouble.to_string()).help(trouble.help));
+        let fault = Fault::failure(trouble.to_string()).help(trouble.help);
+        miss(&self.settings.device.name, &fault, &mut self.told);
         Ok(())
     }
 

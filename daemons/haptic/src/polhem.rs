@@ -56,6 +56,7 @@ pub fn open(device: &DeviceSection) -> Result<Opened, Fault> {
         None => find::only(&find::ports()?)?.to_owned(),
     };
     let mut port = Port::open(&path)?;
+    // Opening may take its time: it is not the servo that waits.
     let length = wake(&mut port, &mut || {
         std::thread::sleep(Duration::from_millis(1))
     })

@@ -7,6 +7,7 @@ use std::time::Duration;
 use glam::DQuat;
 use maulstick_bus::typed::Sender;
 use maulstick_bus::{Bus, Class, Subscription, Wake};
+use maulstick_device::missing::miss;
 use maulstick_num::geometry::canonical;
 use maulstick_rig::config::{BRUSH_NODE, CanvasSection, DeviceSection};
 use maulstick_rig::{Fault, Member};
@@ -271,7 +272,7 @@ impl Daemon {
                     self.dropped_before = self.dropped();
                     self.feed = None;
                     self.attempt_ns = Some(now_ns + ATTEMPT_PERIOD_NS);
-                    self.miss(&fault);
+                    miss(&self.settings.device.name, &fault, &mut self.told);
                 }
             }
         }
@@ -313,7 +314,7 @@ impl Daemon {
         let opened = match open::open(&mut *self.ports, self.kind, &self.address) {
             Ok(opened) => opened,
             Err(fault) => {
-                self.miss(&fault);
+                miss(&self.settings.device.name, &fault, &mut self.told);
                 return Ok(());
             }
         };
@@ -324,13 +325,13 @@ impl Daemon {
                 self.begin(means, &identity, &descriptor, now_ns)?;
             }
             (Err(fault), None) => {
-                self.miss(&fault);
+                miss(&self.settings.device.name, &fault, &mut self.told);
                 return Ok(());
             }
             // What cannot be read can be recorded, for who will teach us to read it.
             (Err(fault), Some(recorder)) => {
                 recorder.device(&identity, &descriptor);
-                self.miss(&fault);
+                miss(&self.settings.device.name, &fault, &mut self.told);
             }
         }
         self.feed = Some(Feed::Live(Live::start(
@@ -369,25 +370,7 @@ impl Daemon {
         }
         Ok(())
     }
-
-    /// Says, once, why there is no device.
-    fn miss(&mut self, fault: &Fault) {
-        let place = fault.place.as_ref().map(|place| format!(" ({place})"));
-        let mut trouble = format!("{}{}", fault.what, place.unwrap_or_default());
-        if let Some(help) = &fault.help {
-            trouble = format!("{trouble}; {help}");
-        }
-        trouble.truncate(trouble.floor_char_boundary(LONGEST_TROUBLE));
-        if trouble != self.told.trouble {
-            let name = &self.settings.device.name;
-            tracing::warn!("{name}: {trouble} (tried again each second)");
-            self.told.trouble = trouble;
-        }
-    }
 }
-
-/// A status has no room for more, bytes.
-const LONGEST_TROUBLE: usize = 2048;
 
 impl std::fmt::Debug for Daemon {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {

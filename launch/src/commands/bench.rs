@@ -10,8 +10,8 @@ use maulstick_rig::config::MODELS;
 /// Options of `maulstick bench`.
 #[derive(Args, Clone, Debug)]
 pub struct BenchOptions {
-    /// What to measure: brush, bus, document, haptics, latency, optics, paint, render; everything if
-    /// absent
+    /// What to measure: brush, bus, document, frames, haptics, latency, optics, paint, render, view,
+    /// window; everything if absent
     area: Option<String>,
     /// The paint model that `paint` measures
     #[arg(long, value_name = "NAME", value_parser = MODELS)]

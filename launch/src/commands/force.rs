@@ -12,7 +12,7 @@ use maulstick_num::cos;
 use maulstick_num::geometry::rotation;
 use maulstick_rig::Fault;
 use maulstick_rig::config::BrushSection;
-use maulstick_types::haptics::{ContactModel, ForceLaw, Grain};
+use maulstick_types::haptics::{ContactModel, ForceLaw};
 use serde_json::json;
 
 use crate::commands::force_order::{Order, give};
@@ -325,25 +325,7 @@ fn row(depth_m: f64, angle_rad: f64, felt: &maulstick_haptics::Felt) -> Row {
 
 /// A model over the plane z = 0.
 fn contact(file: &BrushFile, law: ForceLaw) -> Result<Contact, Fault> {
-    let model = ContactModel {
-        device: 0,
-        device_epoch: 0,
-        brush: "main".into(),
-        plane_point_m: [0.0; 3],
-        plane_normal: [0.0, 0.0, 1.0],
-        friction_static: 0.0,
-        friction_kinetic: 0.0,
-        viscous_n_s_m: 0.0,
-        grain: Grain {
-            amplitude: 0.0,
-            wavelength_m: 1e-3,
-            seed: 0,
-        },
-        law,
-        head_length_m: file.length_m(),
-        time_to_live_ns: u64::MAX,
-        recovery_ns: 0,
-    };
+    let model = ContactModel::bare(law, file.length_m());
     Contact::new(&model).map_err(Fault::failure)
 }
 

@@ -1,5 +1,6 @@
 //! The subcommands, one file each.
 
+pub mod begin;
 pub mod bench;
 pub mod brush;
 pub mod calibrate;
@@ -7,6 +8,7 @@ pub mod control;
 pub mod demo;
 pub mod devices;
 pub mod endpoint;
+pub mod export;
 pub mod fit;
 pub mod force;
 pub mod force_order;
@@ -16,9 +18,11 @@ pub mod light;
 pub mod matching;
 pub mod mix;
 pub mod mode;
+pub mod open;
 pub mod painting;
 pub mod paints;
 pub mod render;
+pub mod save_as;
 pub mod schema;
 pub mod session;
 pub mod surface;

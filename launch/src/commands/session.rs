@@ -7,7 +7,7 @@ use std::time::{Duration, Instant};
 use clap::Args;
 use maulstick_bus::typed::{Received, Receiver, ask, random_epoch};
 use maulstick_bus::{Bus, BusError, Class, Dial, Queue, RigClock, RigFolder, Wake, ZenohBus};
-use maulstick_device::commander::Commander;
+use maulstick_rig::commander::Commander;
 use maulstick_rig::member::CONFIG_FILE;
 use maulstick_rig::{Fault, RigConfig};
 use maulstick_types::command::Command;
@@ -24,6 +24,8 @@ pub struct Target {
 
 /// The node that does what concerns the painting.
 pub const PAINT: &str = "paint";
+/// Who does what concerns the rig as a whole: the launcher.
+pub const RIG: &str = "rig";
 /// How long a node has to answer.
 const PATIENCE: Duration = Duration::from_secs(10);
 
@@ -80,8 +82,22 @@ impl Session {
     /// # Errors
     /// A [`Fault`] in the node's own words.
     pub fn send(&self, node: &str, command: Command) -> Result<String, Fault> {
+        self.send_within(node, command, PATIENCE)
+    }
+
+    /// The same of a command that may take as long as `limit`.
+    ///
+    /// # Errors
+    /// A [`Fault`] in the node's own words.
+    pub fn send_within(
+        &self,
+        node: &str,
+        command: Command,
+        limit: Duration,
+    ) -> Result<String, Fault> {
         let bus = Arc::clone(&self.bus) as Arc<dyn Bus>;
-        Commander::of(bus, &self.topics, node).send(command, None, PATIENCE, &|| false)
+        let is_gone = || RigFolder::join_at(&self.folder).is_err();
+        Commander::of(bus, &self.topics, node).send(command, None, limit, &is_gone)
     }
 
     /// Asks a node a question of its own.

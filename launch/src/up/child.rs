@@ -61,6 +61,8 @@ pub struct Node {
     pub restarts: u32,
     /// Since when its token is missed.
     pub missed: Option<Instant>,
+    /// Since when it is asked to end, to be started afresh.
+    pub leaving_since: Option<Instant>,
     process: Option<(Child, Option<ChildStdin>)>,
 }
 
@@ -98,6 +100,7 @@ impl Node {
             state: State::Restarting,
             restarts: 0,
             missed: None,
+            leaving_since: None,
             process: None,
         }
     }
@@ -127,6 +130,7 @@ impl Node {
         self.process = Some((child, stdin));
         self.state = State::Starting;
         self.missed = None;
+        self.leaving_since = None;
         Ok(())
     }
 
@@ -154,6 +158,17 @@ impl Node {
             State::Failed
         };
         again
+    }
+
+    /// Asks the process to end, to be started afresh; false where there is none.
+    pub fn renew(&mut self) -> bool {
+        let runs = self.pid().is_some();
+        if runs {
+            self.terminate();
+            self.leaving_since = Some(Instant::now());
+            self.state = State::Restarting;
+        }
+        runs
     }
 
     /// Asks the process to end.

@@ -7,9 +7,9 @@ use std::time::Duration;
 
 use maulstick_bus::typed::Receiver;
 use maulstick_bus::{Bus, BusError, Class, Queue, Wake};
-use maulstick_device::commander::Commander;
 use maulstick_device::player::Rate;
 use maulstick_rig::Fault;
+use maulstick_rig::commander::Commander;
 use maulstick_rig::config::RigConfig;
 use maulstick_types::command::Command;
 use maulstick_types::stylus::{TakeEnd, TakeStatus};

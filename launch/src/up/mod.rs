@@ -18,13 +18,14 @@ use clap::Args;
 use maulstick_bus::RigFolder;
 use maulstick_device::Take;
 use maulstick_device::player::Rate;
+use maulstick_document::scene;
 use maulstick_optics::PaintLibrary;
 use maulstick_rig::config::{DEFAULT, RigConfig, is_path};
 use maulstick_rig::{Fault, member};
 use maulstick_types::Mixture;
 
 use crate::destination::{VIEW, export};
-use crate::document::{Presence, presence};
+use crate::document::{Presence, measure, presence, wrong};
 use crate::kit::use_kit;
 use crate::outputs::{UsedFile, check_outputs, named_by};
 use crate::performance::{PaintingOptions, library_from, painting_setup, refused};
@@ -137,6 +138,11 @@ pub fn run(options: &UpOptions) -> Result<i32, Fault> {
         Some(path) => Some(presence(path, &options.painting)?),
         None => None,
     };
+    if let Some(path) = &config.paint.document
+        && let Some(scene) = scene(path).map_err(|error| wrong(path, &error))?
+    {
+        measure(&mut config.canvas, &scene);
+    }
     let library = library_from(config.paint.paints.as_deref())?;
     let loads = options.painting.kit.mixtures(&embedded, &library)?;
     painting_setup(&config, &library)?

@@ -1,16 +1,19 @@
 //! All processes of the rig: their tokens, their restarts, the table, the end.
 
+mod loads;
+mod orders;
+mod starts;
+mod switch;
+
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 use indicatif::ProgressBar;
 use maulstick_bus::{Bus, Dial, RigClock, RigFolder, Subscription, Wake, ZenohBus};
-use maulstick_device::commander::Commander;
 use maulstick_rig::fault::EXIT_FAILURE;
 use maulstick_rig::member::{CONFIG_FILE, HUB};
 use maulstick_rig::{Fault, RigConfig, Stop};
 use maulstick_types::Mixture;
-use maulstick_types::command::Command;
 use maulstick_types::topics::Topics;
 
 use crate::EXIT_INTERRUPTED;
@@ -18,17 +21,13 @@ use crate::commands::progress_bar;
 use crate::up::child::{Ended, Failures, Node, State};
 use crate::up::conductor::{Conductor, Performance};
 use crate::up::plan::{NodeSpec, Role};
+use orders::Orders;
+use switch::Switch;
 
-/// A node shows its token within this time, or it counts as failed.
-const START_TIME: Duration = Duration::from_secs(30);
-/// The same for the paint node of a document: a fill of a vast canvas may have to be done again.
-const START_TIME_DOCUMENT: Duration = Duration::from_secs(600);
-/// All nodes end within this time when asked.
+/// All nodes end within this time when asked; paint that is on its way to a file has that of the switch.
 const GRACE: Duration = Duration::from_millis(1200);
 /// How often children are looked at.
 const TICK: Duration = Duration::from_millis(20);
-/// How long the paint node may take to load a brush.
-const LOAD_TIME: Duration = Duration::from_secs(10);
 /// Pause before a node is started again.
 const RESTART_PAUSE: Duration = Duration::from_millis(200);
 
@@ -52,6 +51,9 @@ pub struct Supervisor {
     shown: bool,
     /// Paint starts with clean brushes: the painter's are to be loaded.
     unloaded: bool,
+    orders: Orders,
+    /// Another painting on its way.
+    switch: Option<Switch>,
 }
 
 /// A node whose token is gone for so long is taken for frozen.
@@ -77,6 +79,7 @@ impl Supervisor {
         performance: Option<Performance>,
         first_load: Option<Mixture>,
     ) -> Result<Self, Fault> {
+        maulstick_bus::clear_shared_memory();
         let clock = RigClock::start();
         let dial = Dial {
             name: HUB.into(),
@@ -92,6 +95,7 @@ impl Supervisor {
         let path = folder.path().join(CONFIG_FILE);
         std::fs::write(&path, config.to_toml()?).map_err(|error| Fault::writing(&path, &error))?;
         folder.announce(HUB, clock)?;
+        let orders = Orders::new(&*bus, &topics, &wake)?;
         let conductor = match performance {
             Some(performance) => Some(Conductor::new(&*bus, &topics, performance, &wake)?),
             None => None,
@@ -114,6 +118,8 @@ impl Supervisor {
             bar: None,
             shown: false,
             unloaded: true,
+            orders,
+            switch: None,
         };
         for place in 0..supervisor.nodes.len() {
             supervisor.start_node(place)?;
@@ -171,6 +177,8 @@ impl Supervisor {
         self.watch_starts()?;
         self.show_when_ready();
         self.load_when_ready();
+        self.take_orders();
+        self.go_on_switching()?;
         self.conduct()
     }
 
@@ -206,6 +214,11 @@ impl Supervisor {
                 continue;
             };
             let role = self.nodes[place].spec.role;
+            if self.nodes[place].leaving_since.is_some() || self.is_opening(role) {
+                self.has_left(place, ended)?;
+                continue;
+            }
+            self.give_saving_up(role);
             match ended {
                 Ended::Well if self.may_end(role) => {
                     self.nodes[place].state = State::Ended;
@@ -269,6 +282,7 @@ impl Supervisor {
             return;
         }
         conductor.begin_again();
+        self.give_saving_up(Role::Paint);
         let again = |role: Role| matches!(role, Role::Paint | Role::Brush | Role::Player);
         for node in self.nodes.iter_mut().filter(|node| again(node.spec.role)) {
             if node.pid().is_some() {
@@ -303,8 +317,16 @@ impl Supervisor {
     }
 
     /// Kills nodes whose token is gone while their process is not: they are frozen, and started again
-    /// as those that crash.
+    /// as those that crash. Who is asked to leave has as long; paint, which still writes, has longer.
     fn end_frozen(&mut self) {
+        for node in &mut self.nodes {
+            let long = node
+                .leaving_since
+                .is_some_and(|since| since.elapsed() > FROZEN);
+            if long && node.spec.role != Role::Paint {
+                node.strike();
+            }
+        }
         let running = self
             .nodes
             .iter_mut()
@@ -317,39 +339,6 @@ impl Supervisor {
                 node.strike();
             }
         }
-    }
-
-    /// A node that shows no token in time is killed, and with that has failed.
-    fn watch_starts(&mut self) -> Result<(), Fault> {
-        let now = Instant::now();
-        for node in self
-            .nodes
-            .iter_mut()
-            .filter(|node| node.state == State::Starting)
-        {
-            let since = self
-                .started
-                .iter()
-                .find(|(name, _)| *name == node.spec.name);
-            let limit = match (node.spec.role, &self.config.paint.document) {
-                (Role::Paint, Some(_)) => START_TIME_DOCUMENT,
-                _ => START_TIME,
-            };
-            if since.is_some_and(|(_, since)| now - *since > limit) {
-                tracing::warn!("node '{}' does not get ready", node.spec.name);
-                node.terminate();
-                node.kill();
-                if !node.fail(&mut self.failures) {
-                    return Err(Fault::failure(format!(
-                        "node '{}' does not get ready",
-                        node.spec.name
-                    ))
-                    .help("its own messages above say why"));
-                }
-                self.due.push((node.spec.name.clone(), now));
-            }
-        }
-        Ok(())
     }
 
     /// Whether no node is still to come; a device that failed for good holds nothing up.
@@ -401,42 +390,6 @@ impl Supervisor {
         }
     }
 
-    /// Loads the brushes as soon as paint and all brushes are there, at the start and whenever paint
-    /// was started again. A take that is played brings its own loads.
-    fn load_when_ready(&mut self) {
-        if self.unloaded && self.ready() {
-            self.unloaded = false;
-            if self.conductor.is_none() {
-                self.load_brushes();
-            }
-        }
-    }
-
-    /// Gives the painter loaded brushes. The commands go their own way: nothing waits for them.
-    fn load_brushes(&self) {
-        let (bus, topics) = (Arc::clone(&self.bus), self.topics.clone());
-        let brushes: Vec<String> = self.config.brush.iter().map(|b| b.name.clone()).collect();
-        let Some(mixture) = self.first_load.clone() else {
-            return;
-        };
-        let stop = self.stop.clone();
-        let load = move || {
-            let mut commander = Commander::new(bus, &topics);
-            for brush in brushes {
-                let command = Command::Load {
-                    brush,
-                    mixture: mixture.clone(),
-                };
-                if let Err(fault) = commander.send(command, None, LOAD_TIME, &|| stop.requested()) {
-                    tracing::warn!("{}", fault.what);
-                }
-            }
-        };
-        if let Err(error) = std::thread::Builder::new().name("load".into()).spawn(load) {
-            tracing::warn!("the brushes cannot be loaded: {error}");
-        }
-    }
-
     /// Starts the player when all others are ready; has the picture written at the take's end.
     fn conduct(&mut self) -> Result<Option<i32>, Fault> {
         let ready = self.ready();
@@ -467,18 +420,29 @@ impl Supervisor {
         Ok(Some(0))
     }
 
-    /// Asks all nodes to end, and ends those that do not.
-    /// Ends all nodes; false where paint says that it could not keep the painting.
+    /// Asks all nodes to end, and ends those that do not; false where paint says that it could not keep
+    /// the painting.
     fn stop_all(&mut self) -> bool {
         self.nodes.iter_mut().for_each(Node::terminate);
-        let give_up = Instant::now() + GRACE;
+        let asked = Instant::now();
+        let for_paint = self.closing_time();
+        if for_paint > GRACE {
+            tracing::info!("the rig ends when the painting is in its file");
+        }
         let mut is_kept = true;
-        while Instant::now() < give_up {
+        loop {
             for node in &mut self.nodes {
                 let failed = matches!(node.ended(), Some(Ended::Refused(_) | Ended::Badly));
                 is_kept &= !(failed && node.spec.role == Role::Paint);
             }
-            if self.nodes.iter().all(|node| node.pid().is_none()) {
+            let waits = |node: &Node| {
+                let grace = match node.spec.role {
+                    Role::Paint => for_paint,
+                    _ => GRACE,
+                };
+                node.pid().is_some() && asked.elapsed() < grace
+            };
+            if !self.nodes.iter().any(waits) {
                 break;
             }
             self.wake.wait(Duration::from_millis(5));

@@ -5,6 +5,7 @@ use std::fmt;
 use std::time::Duration;
 
 use crate::inbox::{Counts, Inbox, Queue, Wake};
+use crate::payload::Payload;
 
 /// Why the bus refuses.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
@@ -117,13 +118,43 @@ impl fmt::Debug for Subscription {
     }
 }
 
+/// Sends an answer.
+type Answerer = Box<dyn FnOnce(Answering<'_>) -> Result<(), BusError> + Send>;
+
 /// A query that waits for its answer. Dropping it answers nothing.
 pub struct Request {
     /// The topic that was asked.
     pub key: String,
     /// What was asked: header and body.
     pub bytes: Vec<u8>,
-    pub(crate) answer: Box<dyn FnOnce(Vec<u8>) -> Result<(), BusError> + Send>,
+    pub(crate) answer: Answerer,
+}
+
+/// What is answered.
+pub(crate) enum Answering<'a> {
+    /// These bytes.
+    Bytes(Vec<u8>),
+    /// So many bytes that are written into shared memory where there is some.
+    Written {
+        /// Bytes.
+        length: usize,
+        /// Writes all of them.
+        write: &'a mut dyn FnMut(&mut [u8]),
+    },
+}
+
+impl Answering<'_> {
+    /// The bytes, in memory of one's own.
+    pub(crate) fn into_bytes(self) -> Vec<u8> {
+        match self {
+            Self::Bytes(bytes) => bytes,
+            Self::Written { length, write } => {
+                let mut bytes = vec![0; length];
+                write(&mut bytes);
+                bytes
+            }
+        }
+    }
 }
 
 impl Request {
@@ -132,7 +163,21 @@ impl Request {
     /// # Errors
     /// [`BusError::Topic`] where the asker is gone.
     pub fn answer(self, bytes: Vec<u8>) -> Result<(), BusError> {
-        (self.answer)(bytes)
+        (self.answer)(Answering::Bytes(bytes))
+    }
+
+    /// Answers with `length` bytes that `write` writes: into memory that the asker reads them in,
+    /// where both processes can share some and the pool has room, else as
+    /// [`answer`](Self::answer) does.
+    ///
+    /// # Errors
+    /// [`BusError::Topic`] where the asker is gone.
+    pub fn answer_shared(
+        self,
+        length: usize,
+        write: &mut dyn FnMut(&mut [u8]),
+    ) -> Result<(), BusError> {
+        (self.answer)(Answering::Written { length, write })
     }
 }
 
@@ -168,7 +213,7 @@ impl fmt::Debug for Server {
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Answer {
     /// An answer.
-    Bytes(Vec<u8>),
+    Bytes(Payload),
     /// No answer will come.
     Ended,
 }
@@ -192,7 +237,7 @@ impl Pending {
     ///
     /// # Errors
     /// [`BusError::NoAnswer`] where none comes in time.
-    pub fn wait(&self, wake: &Wake) -> Result<Vec<u8>, BusError> {
+    pub fn wait(&self, wake: &Wake) -> Result<Payload, BusError> {
         let give_up = std::time::Instant::now() + self.limit + Duration::from_millis(200);
         loop {
             match self.inbox.try_recv() {

@@ -11,7 +11,8 @@ use rand_pcg::Pcg32;
 use rand_pcg::rand_core::Rng as _;
 
 use crate::bus::{
-    Answer, Arrival, Bus, BusError, Class, Pending, Publish, Request, Server, Subscription, Token,
+    Answer, Answering, Arrival, Bus, BusError, Class, Pending, Publish, Request, Server,
+    Subscription, Token,
 };
 use crate::inbox::{Inbox, Queue, Wake};
 
@@ -167,7 +168,8 @@ impl Net {
                     if matches(expression, &key) {
                         let net = Arc::downgrade(this);
                         let answers = answers.clone();
-                        let answer = Box::new(move |bytes: Vec<u8>| {
+                        let answer = Box::new(move |answer: Answering<'_>| {
+                            let bytes = answer.into_bytes();
                             if let Some(net) = Weak::upgrade(&net) {
                                 lock(&net).send(Parcel::Answer { bytes, answers });
                             }
@@ -181,7 +183,7 @@ impl Net {
                     }
                 }
             }
-            Parcel::Answer { bytes, answers } => answers.push(Answer::Bytes(bytes)),
+            Parcel::Answer { bytes, answers } => answers.push(Answer::Bytes(bytes.into())),
             Parcel::End { answers } => answers.push(Answer::Ended),
         }
     }

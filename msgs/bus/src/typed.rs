@@ -81,6 +81,16 @@ impl<M> std::fmt::Debug for Sender<M> {
 pub struct Reader {
     refused: u64,
     told: BTreeSet<String>,
+    news: Vec<Refusal>,
+}
+
+/// What was not understood.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Refusal {
+    /// Its topic.
+    pub topic: String,
+    /// Why.
+    pub error: DecodeError,
 }
 
 impl Reader {
@@ -101,7 +111,16 @@ impl Reader {
         let kind = std::mem::discriminant(error);
         if self.told.insert(format!("{topic} {kind:?}")) {
             tracing::warn!("{topic}: {error}");
+            self.news.push(Refusal {
+                topic: topic.to_owned(),
+                error: error.clone(),
+            });
         }
+    }
+
+    /// What was told since the last call: each topic and reason comes once.
+    pub fn refusals(&mut self) -> Vec<Refusal> {
+        std::mem::take(&mut self.news)
     }
 
     /// Messages refused so far.
@@ -163,6 +182,11 @@ impl<M: Message> Receiver<M> {
     #[must_use]
     pub fn refused(&self) -> u64 {
         self.reader.refused()
+    }
+
+    /// What was refused since the last call: each topic and reason comes once.
+    pub fn refusals(&mut self) -> Vec<Refusal> {
+        self.reader.refusals()
     }
 }
 

@@ -1,8 +1,10 @@
 //! The bus between processes.
 
+use std::sync::Arc;
 use std::time::Duration;
 
 use zenoh::Wait as _;
+use zenoh::bytes::ZBytes;
 use zenoh::handlers::CallbackDrop;
 use zenoh::qos::{CongestionControl, Priority};
 use zenoh::query::ConsolidationMode;
@@ -13,10 +15,13 @@ use zenoh_ext::{
 };
 
 use crate::bus::{
-    Answer, Arrival, Bus, BusError, Class, Pending, Publish, Request, Server, Subscription, Token,
+    Answer, Answering, Arrival, Bus, BusError, Class, Pending, Publish, Request, Server,
+    Subscription, Token,
 };
 use crate::clock::RigClock;
 use crate::inbox::{Inbox, Queue, Wake};
+use crate::payload::Payload;
+use crate::pool::Pool;
 
 /// How a process joins the rig's sockets.
 #[derive(Clone, Debug)]
@@ -40,6 +45,7 @@ const LEASE_MS: u32 = 3000;
 pub struct ZenohBus {
     session: zenoh::Session,
     clock: RigClock,
+    pool: Option<Arc<Pool>>,
 }
 
 fn topic_error(topic: &str, error: impl std::fmt::Display) -> BusError {
@@ -65,6 +71,32 @@ impl ZenohBus {
     /// # Errors
     /// [`BusError::Open`] where a locator cannot be used, or zenoh listens elsewhere than asked.
     pub fn open(dial: &Dial, clock: RigClock) -> Result<Self, BusError> {
+        Self::open_as(dial, clock, Memory::Own)
+    }
+
+    /// Opens a session whose large answers lie in memory that it shares with the asker, where the
+    /// machine and the asker's session allow it.
+    ///
+    /// # Errors
+    /// As [`ZenohBus::open`].
+    pub fn open_sharing(dial: &Dial, clock: RigClock) -> Result<Self, BusError> {
+        Self::open_as(dial, clock, Memory::Shared).or_else(|error| {
+            let own = Self::open(dial, clock)?;
+            tracing::info!(
+                "pictures go through the socket, which takes longer: no memory is shared: {error}"
+            );
+            Ok(own)
+        })
+    }
+
+    /// With a pool of so many bytes, for benchmarks; without one if it shares no memory.
+    #[must_use]
+    pub fn lending(mut self, bytes: usize) -> Self {
+        self.pool = self.pool.map(|_| Arc::new(Pool::of(bytes)));
+        self
+    }
+
+    fn open_as(dial: &Dial, clock: RigClock, memory: Memory) -> Result<Self, BusError> {
         let at = dial
             .listen
             .iter()
@@ -76,7 +108,7 @@ impl ZenohBus {
             at: at.clone(),
             reason: error,
         };
-        let config = config(dial).map_err(|error| open_error(error.to_string()))?;
+        let config = config(dial, memory).map_err(|error| open_error(error.to_string()))?;
         let session = zenoh::open(config)
             .wait()
             .map_err(|error| open_error(error.to_string()))?;
@@ -89,7 +121,12 @@ impl ZenohBus {
                 return Err(open_error(format!("zenoh listens at {locators:?} instead")));
             }
         }
-        Ok(Self { session, clock })
+        let pool = (memory == Memory::Shared).then(Arc::default);
+        Ok(Self {
+            session,
+            clock,
+            pool,
+        })
     }
 
     /// The session itself, for benchmarks that put a bare zenoh beside this bus.
@@ -106,7 +143,14 @@ impl ZenohBus {
     }
 }
 
-fn config(dial: &Dial) -> zenoh::Result<zenoh::Config> {
+/// Where a session's large answers lie.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Memory {
+    Own,
+    Shared,
+}
+
+fn config(dial: &Dial, memory: Memory) -> zenoh::Result<zenoh::Config> {
     let json = |value: &serde_json::Value| value.to_string();
     let mut config = zenoh::Config::default();
     let settings = [
@@ -155,7 +199,15 @@ fn config(dial: &Dial) -> zenoh::Result<zenoh::Config> {
             serde_json::json!(MAX_MESSAGE_BYTES),
         ),
         ("transport/unicast/lowlatency", serde_json::json!(false)),
-        ("transport/shared_memory/enabled", serde_json::json!(false)),
+        (
+            "transport/shared_memory/enabled",
+            serde_json::json!(memory == Memory::Shared),
+        ),
+        // Only what is written there on purpose is shared.
+        (
+            "transport/shared_memory/transport_optimization/enabled",
+            serde_json::json!(false),
+        ),
     ];
     for (key, value) in settings {
         config
@@ -173,6 +225,25 @@ struct ZenohPublisher {
 impl Publish for ZenohPublisher {
     fn put(&self, bytes: Vec<u8>) -> Result<(), BusError> {
         (self.send)(bytes).map_err(|error| topic_error(&self.topic, error))
+    }
+}
+
+/// Shorter answers go through the socket as fast or faster, bytes.
+const SHARED_FROM: usize = 768 << 10;
+
+/// An answer, written into shared memory where it is worth it and there is room.
+fn payload(answer: Answering<'_>, pool: Option<&Pool>) -> ZBytes {
+    match (answer, pool) {
+        (Answering::Written { length, write }, Some(pool)) if length >= SHARED_FROM => {
+            match pool.room(length) {
+                Some(mut room) => {
+                    write(&mut room);
+                    room.into()
+                }
+                None => Answering::Written { length, write }.into_bytes().into(),
+            }
+        }
+        (answer, _) => answer.into_bytes().into(),
     }
 }
 
@@ -245,7 +316,7 @@ impl Bus for ZenohBus {
 
     fn serve(&self, key: &str, capacity: usize, wake: &Wake) -> Result<Server, BusError> {
         let inbox = Inbox::new(Queue::Bounded(capacity), wake);
-        let to = inbox.clone();
+        let (to, pool) = (inbox.clone(), self.pool.clone());
         let queryable = self
             .session
             .declare_queryable(key.to_owned())
@@ -256,9 +327,10 @@ impl Bus for ZenohBus {
                     .unwrap_or_default();
                 let key = query.key_expr().as_str().to_owned();
                 let topic = key.clone();
-                let answer = Box::new(move |bytes: Vec<u8>| {
+                let pool = pool.clone();
+                let answer = Box::new(move |answer: Answering<'_>| {
                     query
-                        .reply(query.key_expr().clone(), bytes)
+                        .reply(query.key_expr().clone(), payload(answer, pool.as_deref()))
                         .wait()
                         .map_err(|error| topic_error(&topic, error))
                 });
@@ -285,7 +357,7 @@ impl Bus for ZenohBus {
         let callback = CallbackDrop {
             callback: move |reply: zenoh::query::Reply| {
                 if let Ok(sample) = reply.result() {
-                    answers.push(Answer::Bytes(sample.payload().to_bytes().into_owned()));
+                    answers.push(Answer::Bytes(Payload::of(sample.payload())));
                 }
             },
             drop: move || end.push(Answer::Ended),

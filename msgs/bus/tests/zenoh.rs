@@ -6,7 +6,9 @@ use zenoh::Wait as _;
 use zenoh::qos::Priority;
 
 use maulstick_bus::bus::Answer;
-use maulstick_bus::{Bus, BusError, Class, Dial, Queue, RigClock, RigFolder, Wake, ZenohBus};
+use maulstick_bus::{
+    Bus, BusError, Class, Dial, Payload, Queue, RigClock, RigFolder, Server, Wake, ZenohBus,
+};
 
 const PATIENCE: Duration = Duration::from_secs(30);
 
@@ -182,7 +184,7 @@ trait IntoBytes {
 impl IntoBytes for Answer {
     fn into_bytes(self) -> Option<Vec<u8>> {
         match self {
-            Answer::Bytes(bytes) => Some(bytes),
+            Answer::Bytes(bytes) => Some(bytes.to_vec()),
             Answer::Ended => None,
         }
     }
@@ -218,4 +220,79 @@ fn a_socket_that_is_taken_is_an_error() {
         ZenohBus::open(&dial, rig.clock),
         Err(BusError::Open { .. })
     ));
+}
+
+/// A node that shares memory.
+fn sharing(rig: &Rig, name: &str) -> ZenohBus {
+    let dial = Dial {
+        name: name.into(),
+        listen: Some(rig.folder.locator(name)),
+        connect: vec![rig.folder.locator("hub")],
+    };
+    ZenohBus::open_sharing(&dial, rig.clock).expect(name)
+}
+
+/// Asks for `length` bytes of a value, until somebody answers.
+fn asked(from: &ZenohBus, server: &Server, wake: &Wake, length: usize, value: u8) -> Payload {
+    let (class, limit) = (Class::Data, Duration::from_secs(5));
+    let mut pending = None;
+    let answer = until(wake, || {
+        let question = pending.get_or_insert_with(|| {
+            from.ask("t/large", class, vec![1], limit, wake)
+                .expect("asked")
+        });
+        if let Some(request) = server.try_recv() {
+            request
+                .answer_shared(length, &mut |into| into.fill(value))
+                .expect("answered");
+        }
+        match question.try_recv()? {
+            Answer::Bytes(answer) => Some(answer),
+            Answer::Ended => {
+                pending = None;
+                None
+            }
+        }
+    });
+    assert_eq!(answer.len(), length);
+    assert!(answer.iter().all(|byte| *byte == value));
+    answer
+}
+
+#[test]
+fn large_answers_lie_in_shared_memory_where_both_can_have_it() {
+    const LARGE: usize = 3 << 20;
+    let rig = rig();
+    let (one, two, apart) = (
+        sharing(&rig, "one"),
+        sharing(&rig, "two"),
+        rig.node("apart"),
+    );
+    let wake = Wake::new();
+    let server = one.serve("t/large", 16, &wake).expect("served");
+    assert!(asked(&two, &server, &wake, LARGE, 1).is_shared());
+    assert!(
+        !asked(&two, &server, &wake, 1000, 2).is_shared(),
+        "too small"
+    );
+    assert!(
+        !asked(&apart, &server, &wake, LARGE, 3).is_shared(),
+        "it shares nothing"
+    );
+    // What is read keeps its place; when there is none left, answers come through the socket.
+    let kept: Vec<Payload> = (0..9)
+        .map(|value| asked(&two, &server, &wake, LARGE, value))
+        .collect();
+    let shared = kept.iter().filter(|answer| answer.is_shared()).count();
+    assert!((1..9).contains(&shared), "{shared} of 9");
+    // A reader that never lets go, as one that was killed, does not have the pool for ever.
+    until(&wake, || {
+        let answer = asked(&two, &server, &wake, LARGE, 77);
+        answer.is_shared().then_some(())
+    });
+    for (value, answer) in (0..).zip(&kept) {
+        assert!(answer.iter().all(|byte| *byte == value), "overwritten");
+    }
+    drop(kept);
+    assert!(asked(&two, &server, &wake, LARGE, 4).is_shared());
 }

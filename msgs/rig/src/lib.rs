@@ -2,12 +2,14 @@
 //!
 //! | module | holds |
 //! | --- | --- |
+//! | [`commander`] | commands to a node, repeated until answered |
 //! | [`config`] | the settings of a rig |
 //! | [`fault`] | an error as the user sees it: what, where, what to do |
 //! | [`files`] | files that are whole under their name |
 //! | [`member`] | joining a rig, living in it, leaving it |
 //! | [`stop`] | when to stop: a signal, or the launcher's end |
 
+pub mod commander;
 pub mod config;
 pub mod fault;
 pub mod files;

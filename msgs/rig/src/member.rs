@@ -17,6 +17,8 @@ use crate::stop::Stop;
 
 /// Socket of the launcher, to which every other process connects first.
 pub const HUB: &str = "hub";
+/// The nodes that pictures go between, through memory that they share.
+const SHARING: [&str; 2] = ["paint", "ui"];
 /// The settings in the rig's folder, as the nodes read them.
 pub const CONFIG_FILE: &str = "rig.toml";
 
@@ -67,8 +69,12 @@ impl Member {
             connect: vec![info.endpoint.clone()],
         };
         let clock = RigClock::with_offset(info.clock_offset_ns);
-        let session = ZenohBus::open(&dial, clock)?;
-        let session = Arc::new(session);
+        let open = if SHARING.contains(&args.node.as_str()) {
+            ZenohBus::open_sharing
+        } else {
+            ZenohBus::open
+        };
+        let session = Arc::new(open(&dial, clock)?);
         let wake = Wake::new();
         let system = |error: std::io::Error| Fault::failure(error.to_string());
         let stop = Stop::on_signals(&wake).map_err(system)?;
@@ -138,7 +144,7 @@ impl std::fmt::Debug for Member {
 /// Sends log lines of `level` and above to the standard error; of the libraries only what a painter
 /// can do something about.
 pub fn log_to_stderr(level: &str) {
-    let quiet = "zenoh=error,zenoh_transport=off,zenoh_link=off,wgpu=error,wgpu_core=error,\
+    let quiet = "zenoh=error,zenoh_transport=off,zenoh_shm=off,zenoh_link=off,wgpu=error,wgpu_core=error,\
                  wgpu_hal=error,winit=error,egui_winit=error,egui_wgpu=error,eframe=error,naga=error";
     tracing_subscriber::fmt()
         .with_env_filter(tracing_subscriber::EnvFilter::new(format!(

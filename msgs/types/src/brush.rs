@@ -135,6 +135,21 @@ message! {
     }
 }
 
+message! {
+    /// How the paint on a brush looks, at most fifteen times a second and only where it has changed;
+    /// cached for late joiners.
+    pub struct BrushLook [version 1, at most 263168 bytes] {
+        /// Strips of the head: as many as its file has.
+        pub strips: u32,
+        /// Samples along a strip, each the mean of its part, from the ferrule.
+        pub along: u32,
+        /// Strip after strip four half floats a sample, little endian: linear red, green, blue (sRGB
+        /// primaries, unclamped) of the film over the hair under the painting's light, unexposed;
+        /// then the film's thickness by that of a full one.
+        pub samples: serde_bytes::ByteBuf,
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -3,7 +3,7 @@
 use crate::codec::Message;
 use crate::header::DecodeError;
 use crate::schema::Schema;
-use crate::{brush, command, control, haptics, paint, scene, stylus};
+use crate::{brush, command, control, haptics, paint, scene, stylus, window};
 
 /// One message of the rig.
 #[derive(Debug)]
@@ -53,12 +53,16 @@ pub static CATALOGUE: &[CatalogueEntry] = &[
     entry!(brush::BrushDef, "brush/<brush>/def"),
     entry!(brush::BrushState, "brush/<brush>/state"),
     entry!(brush::BrushConsumed, "brush/<brush>/consumed"),
+    entry!(brush::BrushLook, "brush/<brush>/look"),
     entry!(paint::PaintConsumed, "paint/consumed"),
     entry!(scene::Scene, "scene"),
     entry!(paint::JournalEntry, "paint/journal"),
     entry!(paint::FrameRequest, "paint/frame (query)"),
     entry!(paint::FrameReply, "paint/frame (reply)"),
     entry!(paint::PaintStatus, "paint/status"),
+    entry!(paint::ThumbnailRequest, "paint/thumbnail (query)"),
+    entry!(paint::ThumbnailReply, "paint/thumbnail (reply)"),
+    entry!(window::Presented, "ui/presented"),
     entry!(command::CommandRequest, "command/<node> (query)"),
     entry!(command::CommandReply, "command/<node> (reply)"),
     entry!(command::GapRequest, "gap/<stream> (query)"),

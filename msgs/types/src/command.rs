@@ -4,7 +4,7 @@ use crate::define::{message, wire_enum, wire_struct};
 use crate::mixture::Mixture;
 use crate::pose::Pose;
 use crate::region::Region;
-use crate::scene::{BrushHandling, Light, Tuning};
+use crate::scene::{BrushHandling, CANVAS, Light, Tuning, Well};
 
 mod check;
 
@@ -26,6 +26,14 @@ pub const BRUSH_FILE_MAX: usize = 1_000_000;
 pub const SPECTRUM_MAX: usize = 1 << 18;
 /// How long a drying may take, in sixtieths of a second: up to a year.
 pub const DRYING_TICKS: std::ops::RangeInclusive<u32> = 1..=60 * 60 * 60 * 24 * 365;
+/// Sides of a cell, m.
+pub const CELLS_M: std::ops::RangeInclusive<f64> = 1e-5..=1e-2;
+/// Cells of a canvas either way: half of one is rounded up.
+pub const CELLS: std::ops::RangeInclusive<f64> = 0.5..=65_536.0;
+/// Cells of a new canvas in all, at most: twice what can be shown in comfort on a large machine.
+pub const CELLS_IN_ALL: f64 = 1_073_741_824.0;
+/// A surface has at most this many wells.
+pub const WELLS_MAX: usize = 64;
 /// Factors on the stiffness of a brush.
 pub const STIFFNESS: std::ops::RangeInclusive<f64> = 0.05..=20.0;
 
@@ -38,6 +46,68 @@ wire_struct! {
         pub epoch: u32,
         /// The state.
         pub sequence: u64,
+    }
+}
+
+wire_struct! {
+    /// What a new painting is painted on.
+    pub struct NewCanvas {
+        /// Width, m.
+        pub width_m: f64,
+        /// Height, m.
+        pub height_m: f64,
+        /// Side of a cell, m.
+        pub cell_m: f64,
+        /// Name of the ground, or the whole path of a CSV file of nm,reflectance or of a picture.
+        pub ground: String,
+        /// Name of the tooth.
+        pub tooth: String,
+        /// Seed of the tooth.
+        pub tooth_seed: u64,
+        /// Thickness of paint that stays however hard it is brushed, m.
+        pub stain_m: f64,
+    }
+}
+
+wire_struct! {
+    /// A painting for other programs.
+    pub struct ExportOrder {
+        /// The whole path of the file.
+        pub path: String,
+        /// `png`, `exr`, `ora`, `height` or `stl`; as the path ends if empty.
+        pub format: String,
+        /// The surface.
+        pub surface: u32,
+        /// Bits a channel of a PNG: 8 or 16.
+        pub bits: u32,
+        /// Thickness of a solid under its lowest place, m.
+        pub base_m: f64,
+        /// Factor on the heights of a solid.
+        pub exaggeration: f64,
+        /// Cells from one point of a solid to the next; 0 so that it has 4 million triangles at most.
+        pub step: u32,
+        /// Profile of a PNG: `srgb`, `display-p3`; that of the rig if empty.
+        pub profile: String,
+        /// How colours of a PNG come into its gamut: `soft`, `clamp`; as in the rig if empty.
+        pub gamut: String,
+    }
+}
+
+impl ExportOrder {
+    /// The canvas, in the format that the path says, with what is usual for all else.
+    #[must_use]
+    pub fn to(path: &str) -> Self {
+        Self {
+            path: path.to_owned(),
+            format: String::new(),
+            surface: CANVAS,
+            bits: 8,
+            base_m: 2e-3,
+            exaggeration: 1.0,
+            step: 0,
+            profile: String::new(),
+            gamut: String::new(),
+        }
     }
 }
 
@@ -267,12 +337,57 @@ wire_enum! {
             /// Whether it lasts.
             last: bool,
         },
+        /// Goes on in another painting; it is the launcher that does it, as `rig`.
+        Open {
+            /// The whole path of a painting that there is.
+            path: String,
+            /// Whether what was painted in memory alone may go.
+            forget: bool,
+        },
+        /// Begins another painting and goes on in it; it is the launcher that does it, as `rig`.
+        New {
+            /// The whole path of its file, which is not there yet; in memory alone if absent.
+            path: Option<String>,
+            /// What it is painted on.
+            canvas: NewCanvas,
+            /// Whether what was painted in memory alone may go.
+            forget: bool,
+        },
+        /// Puts the painting with its history into another file and goes on in that one. To the launcher,
+        /// as `rig`, so that it starts with it again; to the paint node it is the same till then.
+        SaveAs {
+            /// The whole path of the file.
+            path: String,
+            /// Whether a painting that is there already may go.
+            replace: bool,
+        },
+        /// Writes the painting for other programs, beside what else is done.
+        Export {
+            /// How.
+            order: ExportOrder,
+        },
+        /// Ends the export that goes on: its file is not written.
+        StopExport,
+        /// Gives a dry layer another name.
+        NameLayer {
+            /// Number of the layer.
+            layer: u32,
+            /// Its name from now on; not blank.
+            name: String,
+        },
+        /// Gives a surface other wells. What brushes have stirred in those that go stays there, wet.
+        Wells {
+            /// The surface.
+            surface: u32,
+            /// Its wells from now on.
+            wells: Vec<Well>,
+        },
     }
 }
 
 message! {
     /// A command with its sender and number; sending it again with the same number is safe.
-    pub struct CommandRequest [version 5, at most 1048576 bytes] {
+    pub struct CommandRequest [version 6, at most 1048576 bytes] {
         /// A number that the client drew at random.
         pub client: u64,
         /// Counts the client's commands.

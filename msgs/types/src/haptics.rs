@@ -94,6 +94,33 @@ message! {
     }
 }
 
+impl ContactModel {
+    /// A dry, smooth canvas at the desk's z = 0 that pushes back by `law` on a head of
+    /// `head_length_m`, and lives for ever.
+    #[must_use]
+    pub fn bare(law: ForceLaw, head_length_m: f64) -> Self {
+        Self {
+            device: 0,
+            device_epoch: 0,
+            brush: "main".to_owned(),
+            plane_point_m: [0.0; 3],
+            plane_normal: [0.0, 0.0, 1.0],
+            friction_static: 0.0,
+            friction_kinetic: 0.0,
+            viscous_n_s_m: 0.0,
+            grain: Grain {
+                amplitude: 0.0,
+                wavelength_m: 1e-3,
+                seed: 1,
+            },
+            law,
+            head_length_m,
+            time_to_live_ns: u64::MAX,
+            recovery_ns: 0,
+        }
+    }
+}
+
 wire_enum! {
     /// What a painter wants of a device's force.
     pub enum ForceOrder {

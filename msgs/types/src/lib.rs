@@ -10,10 +10,11 @@
 //! | [`schema`] | field tables and their hash |
 //! | [`topics`] | the key expressions of a rig |
 //! | [`advice`] | what to do about something that is wrong |
-//! | [`stylus`], [`control`], [`haptics`], [`brush`], [`scene`], [`paint`], [`command`] | the messages |
+//! | [`stylus`], [`control`], [`haptics`], [`brush`], [`scene`], [`paint`], [`command`], [`window`] | the messages |
 
 mod codec;
 mod define;
+mod frame_view;
 
 pub mod advice;
 pub mod brush;
@@ -30,10 +31,12 @@ pub mod scene;
 pub mod schema;
 pub mod stylus;
 pub mod topics;
+pub mod window;
 
 pub use advice::nearest;
 pub use catalogue::{CATALOGUE, CatalogueEntry};
-pub use codec::{Message, decode, encode};
+pub use codec::{Message, decode, encode, encode_into, encoded_bytes};
+pub use frame_view::{FrameTileView, FrameView};
 pub use header::{DecodeError, Flags, HEADER_BYTES, Header, Origin};
 pub use mixture::{Mixture, MixtureError};
 pub use pose::Pose;

@@ -74,7 +74,7 @@ wire_enum! {
 
 message! {
     /// An entry of the journal, in order; it has room for the largest command with its index.
-    pub struct JournalEntry [version 5, at most 1049600 bytes] {
+    pub struct JournalEntry [version 6, at most 1049600 bytes] {
         /// From 0, without gaps.
         pub index: u64,
         /// What was accepted.
@@ -85,12 +85,12 @@ message! {
 impl JournalEntry {
     /// Hashes of the schemas of older versions, whose bytes mean the same today: since then commands were
     /// appended, nothing else.
-    pub const OLDER: [u32; 1] = [0x41c3_0f50];
+    pub const OLDER: [u32; 2] = [0x41c3_0f50, 0x5048_54fc];
 }
 
 message! {
     /// Asks for the tiles of a surface that changed.
-    pub struct FrameRequest [version 2, at most 256 bytes] {
+    pub struct FrameRequest [version 3, at most 256 bytes] {
         /// The surface.
         pub surface: u32,
         /// Tiles of a version above this; 0 asks for all.
@@ -105,6 +105,8 @@ message! {
         pub wait_ms: u32,
         /// The look that `since` belongs to.
         pub look: u64,
+        /// Whether a large reply may lie in memory that both processes share.
+        pub shared: bool,
     }
 }
 
@@ -159,9 +161,33 @@ message! {
     }
 }
 
+wire_struct! {
+    /// A drying that goes on.
+    pub struct DryingStatus {
+        /// Share of its time that went by, 0 to 1.
+        pub share: f32,
+        /// Sixtieths of a second until its end.
+        pub ticks_left: u32,
+        /// Name of its layer; empty where it is to be called by its number.
+        pub layer: String,
+    }
+}
+
+wire_struct! {
+    /// An export that goes on.
+    pub struct ExportStatus {
+        /// Its file.
+        pub path: String,
+        /// Share of it that is written, 0 to 1.
+        pub share: f32,
+        /// For how long it has gone on, ns.
+        pub since_ns: u64,
+    }
+}
+
 message! {
     /// How the paint node fares, ten times a second.
-    pub struct PaintStatus [version 3, at most 4096 bytes] {
+    pub struct PaintStatus [version 4, at most 32768 bytes] {
         /// Entries of the journal so far.
         pub journal: u64,
         /// Steps of the paint model so far.
@@ -192,5 +218,45 @@ message! {
         pub kept_bytes: u64,
         /// Why the document does not take anything in at present; empty where it does.
         pub fault: String,
+        /// The painting's file; empty where it is in memory alone.
+        pub path: String,
+        /// Whether all that was accepted is in the file.
+        pub all_committed: bool,
+        /// When something was last committed, rig clock, ns; 0 if not yet.
+        pub committed_ns: u64,
+        /// Whether nothing was ever painted or kept.
+        pub blank: bool,
+        /// Whether a take is being played.
+        pub take: bool,
+        /// What dries on the canvas.
+        pub drying: Option<DryingStatus>,
+        /// The export that goes on.
+        pub export: Option<ExportStatus>,
+        /// What computes the paint: `cpu`, or `gpu` and the adapter's name.
+        pub backend: String,
+    }
+}
+
+message! {
+    /// Asks for a small picture of the canvas under its light; the answer comes when it is drawn.
+    pub struct ThumbnailRequest [version 1, at most 256 bytes] {
+        /// Name of a version; the painting as it is if empty.
+        pub version: String,
+        /// Most pixels of its longer side, 1 to 512.
+        pub side: u32,
+    }
+}
+
+message! {
+    /// A small picture.
+    pub struct ThumbnailReply [version 1, at most 1048576 bytes] {
+        /// Pixels across; 0 where there is no such version.
+        pub width: u32,
+        /// Pixels down.
+        pub height: u32,
+        /// sRGB, three bytes a pixel from the top row.
+        pub rgb: ByteBuf,
+        /// The newest tile version that it shows, of the painting as it is.
+        pub version: u64,
     }
 }

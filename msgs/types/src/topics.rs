@@ -58,6 +58,8 @@ topics! {
     brush_state(brush) = "brush/{brush}/state";
     /// Credit to devices: [`BrushConsumed`](crate::brush::BrushConsumed).
     brush_consumed(brush) = "brush/{brush}/consumed";
+    /// The paint on a brush: [`BrushLook`](crate::brush::BrushLook), cached.
+    brush_look(brush) = "brush/{brush}/look";
     /// Credit to brushes: [`PaintConsumed`](crate::paint::PaintConsumed).
     paint_consumed() = "paint/consumed";
     /// The desk: [`Scene`](crate::scene::Scene), cached.
@@ -66,8 +68,12 @@ topics! {
     journal() = "paint/journal";
     /// Frames, a query: [`FrameRequest`](crate::paint::FrameRequest).
     frame() = "paint/frame";
+    /// Small pictures of versions, a query: [`ThumbnailRequest`](crate::paint::ThumbnailRequest).
+    thumbnail() = "paint/thumbnail";
     /// How the paint node fares: [`PaintStatus`](crate::paint::PaintStatus).
     paint_status() = "paint/status";
+    /// Frames that the window has completed: [`Presented`](crate::window::Presented).
+    presented() = "ui/presented";
     /// Commands, a query: [`CommandRequest`](crate::command::CommandRequest).
     command(node) = "command/{node}";
     /// Lost messages, a query: [`GapRequest`](crate::command::GapRequest) on the stream's own key.

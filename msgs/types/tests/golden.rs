@@ -2,21 +2,23 @@
 
 mod parts;
 
-use maulstick_types::brush::{BrushConsumed, BrushDef, BrushState, Contact, Solve};
+use maulstick_types::brush::{BrushConsumed, BrushDef, BrushLook, BrushState, Contact, Solve};
 use maulstick_types::command::{After, Command, CommandReply, CommandRequest, GapRequest, Outcome};
 use maulstick_types::haptics::{
     ContactModel, FluidForce, ForceLaw, ForceOrder, ForceRequest, Grain, HermiteKnot,
 };
 use maulstick_types::paint::{
     BrushCredit, Entry, FrameHolds, FrameReply, FrameRequest, FrameTile, JournalEntry,
-    PaintConsumed, PaintStatus,
+    PaintConsumed, ThumbnailRequest,
 };
 use maulstick_types::scene::{
     Layer, Light, NamedVersion, PaintSlot, Scene, Surface, Tuning, Well, WellKind,
 };
 use maulstick_types::stylus::{StylusInfo, StylusPose, StylusSample, TakeEnd, TakeStatus};
 use maulstick_types::{CATALOGUE, Flags, Message, Mixture, Origin, decode, encode};
-use parts::{control, force_reply, handling, pose, region, status};
+use parts::{
+    control, files, force_reply, handling, paint_status, pose, presented, region, status, thumbnail,
+};
 
 fn after() -> After {
     After {
@@ -188,6 +190,11 @@ fn all() -> String {
             brush_epoch: 4,
             state: 5,
         }),
+        line(&BrushLook {
+            strips: 1,
+            along: 1,
+            samples: vec![0, 60, 0, 56, 0, 52, 0, 60].into(),
+        }),
         line(&PaintConsumed {
             brushes: vec![BrushCredit {
                 brush: 1,
@@ -278,6 +285,7 @@ fn all() -> String {
             level: 1,
             wait_ms: 100,
             look: 3,
+            shared: true,
         }),
         line(&FrameReply {
             surface: 0,
@@ -299,23 +307,12 @@ fn all() -> String {
             }],
             look: 4,
         }),
-        line(&PaintStatus {
-            journal: 1,
-            steps: 2,
-            footprint_cells: 3,
-            lag_ns: 4,
-            memory_bytes: 5,
-            lost: 6,
-            refused: 7,
-            baking: 8,
-            baked: 9,
-            committed: 10,
-            undo: 11,
-            redo: 12,
-            merged: 13,
-            kept_bytes: 14,
-            fault: "full".into(),
+        line(&paint_status()),
+        line(&ThumbnailRequest {
+            version: "first".into(),
+            side: 96,
         }),
+        line(&thumbnail()),
         line(&command(Command::Load {
             brush: "main".into(),
             mixture: mixture.clone(),
@@ -445,6 +442,15 @@ fn all() -> String {
             surface: 1,
             last: true,
         })),
+        files().map(|asked| line(&command(asked))).concat(),
+        line(&command(Command::NameLayer {
+            layer: 2,
+            name: "sky".into(),
+        })),
+        line(&command(Command::Wells {
+            surface: 1,
+            wells: vec![well(WellKind::Cleaner)],
+        })),
         line(&reply(Outcome::Done {
             journal: 1,
             detail: "done".into(),
@@ -459,6 +465,7 @@ fn all() -> String {
             from: 2,
             to: 3,
         }),
+        line(&presented()),
     ]
     .concat()
 }

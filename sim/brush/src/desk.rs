@@ -1,11 +1,12 @@
 //! Surfaces on the desk, and where a stylus holds the ferrule.
 
-use glam::DVec3;
+use glam::{DVec2, DVec3};
 use maulstick_num::geometry::{Rigid, rotation, shortest_arc};
 use maulstick_num::sin_cos;
 use maulstick_types::scene::{CANVAS, Scene, Surface};
 use maulstick_types::stylus::{StylusPose, StylusSample};
 
+use crate::palette_place::{corner_radii, is_on};
 use crate::solver::Wall;
 
 /// A pen without pressure holds the point of the head this far above the surface, m.
@@ -27,6 +28,8 @@ pub struct Plane {
     pub size_m: [f64; 2],
     /// Side of a cell in the surface's own lengths, m.
     pub cell_m: f64,
+    /// Radii of its corners in its own lengths, m, as [`corner_radii`] has them.
+    pub radii_m: [f64; 4],
 }
 
 impl Plane {
@@ -37,6 +40,7 @@ impl Plane {
             zoom: surface.zoom,
             size_m: surface.cells.map(|cells| f64::from(cells) * surface.cell_m),
             cell_m: surface.cell_m,
+            radii_m: corner_radii(surface),
         }
     }
 
@@ -59,7 +63,7 @@ impl Plane {
     /// Whether a point lies over the surface.
     fn holds(&self, in_desk: DVec3) -> bool {
         let p = self.to_desk.inverse().point(in_desk) / self.zoom;
-        (0.0..self.size_m[0]).contains(&p.x) && (0.0..self.size_m[1]).contains(&p.y)
+        is_on(DVec2::from_array(self.size_m), self.radii_m, p.truncate())
     }
 }
 
@@ -273,6 +277,7 @@ mod tests {
             zoom: 1.0,
             size_m: [0.1, 0.2],
             cell_m: 2.5e-4,
+            radii_m: [0.0; 4],
         }
     }
 

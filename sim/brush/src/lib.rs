@@ -20,6 +20,7 @@
 //! | [`way`] | the handle's way between samples |
 //! | [`held`] | the spines of a brush in the hand, among walls and each other |
 //! | [`feel`] | what the hand feels of it |
+//! | [`lie`], [`palette_place`] | how a surface lies on the desk, and where the palette does |
 //! | [`model`] | the brush that follows a stylus |
 //! | [`trial`] | one spine by itself, from a file and a list of poses |
 
@@ -31,7 +32,9 @@ pub mod file;
 pub mod gltf;
 pub mod head;
 pub mod held;
+pub mod lie;
 pub mod model;
+pub mod palette_place;
 pub mod qp;
 pub mod skin;
 pub mod solver;

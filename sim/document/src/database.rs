@@ -4,6 +4,7 @@ use std::path::{Path, PathBuf};
 
 use maulstick_paint::load::BrushLoad;
 use maulstick_paint::tile::Planes;
+use maulstick_types::scene::Scene;
 use rusqlite::config::DbConfig;
 use rusqlite::{Connection, OpenFlags, OptionalExtension as _, params};
 
@@ -43,18 +44,42 @@ pub(crate) fn beside(path: &Path, suffix: &str) -> PathBuf {
     name.into()
 }
 
+/// Where a file really is: what a link leads to, and SQLite keeps its journal beside.
+pub(crate) fn resolved(path: &Path) -> PathBuf {
+    std::fs::canonicalize(path).unwrap_or_else(|_| path.to_owned())
+}
+
+/// Sees that a closed painting is in its file alone, as it has to be before that gets another name.
+///
+/// # Errors
+/// [`DocumentError::Unfolded`] where there was no room to fold its journal in.
+pub(crate) fn folded(path: &Path) -> Result<(), DocumentError> {
+    match length(&beside(&resolved(path), "-wal")) {
+        Some(1..) => Err(DocumentError::Unfolded(path.to_owned())),
+        _ => Ok(()),
+    }
+}
+
 /// Whether a painting is there that can go on; false where one is to be begun.
 ///
 /// # Errors
 /// Any [`DocumentError`], and nothing is changed.
 pub fn glance(path: &Path) -> Result<bool, DocumentError> {
+    Ok(scene(path)?.is_some())
+}
+
+/// The desk of a painting, where one is there that can go on.
+///
+/// # Errors
+/// As [`glance`].
+pub fn scene(path: &Path) -> Result<Option<Scene>, DocumentError> {
     if is_new(path)? {
-        return Ok(false);
+        return Ok(None);
     }
     let (database, _) = Database::open(path, Access::Paint, None)?;
-    let begun = crate::opening::has_state(&database)?;
+    let scene = crate::opening::scene(&database);
     database.leave()?;
-    Ok(begun)
+    scene
 }
 
 fn length(path: &Path) -> Option<u64> {
@@ -62,7 +87,7 @@ fn length(path: &Path) -> Option<u64> {
 }
 
 /// Whether a painting is to be begun there.
-fn is_new(path: &Path) -> Result<bool, DocumentError> {
+pub(crate) fn is_new(path: &Path) -> Result<bool, DocumentError> {
     let Some(length_found) = length(path) else {
         return match path.parent() {
             Some(folder) if !folder.as_os_str().is_empty() && !folder.is_dir() => {

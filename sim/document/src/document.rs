@@ -11,6 +11,7 @@ use maulstick_paint::sequencer::Record;
 
 use crate::database::{Access, Database};
 use crate::error::DocumentError;
+use crate::moving::{Left, Move, Moving};
 use crate::opening::{Opened, opened};
 use crate::queues::{Life, Pages, Shared, Shelf};
 use crate::thread::Thread;
@@ -72,17 +73,112 @@ impl Document {
         }
         let kept_versions = found.as_ref().map_or(0, |found| found.kept().versions);
         let writes = settings.access == Access::Paint;
+        let database = (database, &*settings.path);
         let thread = Thread::new(Arc::clone(&shared), database, writes, kept_versions);
+        let document = Self::run(thread, &settings.path, shared, pager)?;
+        Ok((document, found))
+    }
+
+    fn run(
+        thread: Thread,
+        path: &Path,
+        shared: Arc<Shared>,
+        pager: Arc<Pager>,
+    ) -> Result<Self, DocumentError> {
         let thread = std::thread::Builder::new()
             .name("document".into())
             .spawn(move || thread.run())?;
-        let document = Self {
-            path: settings.path.clone(),
+        Ok(Self {
+            path: path.to_owned(),
             shared,
             pager,
             thread: Some(thread),
-        };
-        Ok((document, found))
+        })
+    }
+
+    /// A document for a painting that was in memory alone, in a file that is not there yet. Its first
+    /// moment, which has to hold the whole painting, is written whole or not at all; once it is,
+    /// [`take_over`](Self::take_over) lets pages leave memory.
+    ///
+    /// # Errors
+    /// [`DocumentError::Taken`] where a file is there, or why it cannot be made.
+    pub fn begin(settings: &DocumentSettings, pager: &Arc<Pager>) -> Result<Self, DocumentError> {
+        crate::moving::make_room(&settings.path, false)?;
+        let vfs = settings.vfs.as_deref();
+        let (database, _) = Database::open(&settings.path, Access::Paint, vfs)?;
+        let shared: Arc<Shared> = Arc::default();
+        let thread = Thread::new(Arc::clone(&shared), (database, &settings.path), true, 0);
+        Self::run(thread.at_first(), &settings.path, shared, Arc::clone(pager))
+    }
+
+    /// Takes a first moment back that could not be written; false where it is being tried just now.
+    #[must_use]
+    pub fn take_back(&self) -> bool {
+        let mut queues = self.shared.lock();
+        queues.records.clear();
+        queues.moment.take().is_some()
+    }
+
+    /// Has pages that are in the file leave memory: at most `memory` bytes stay.
+    pub fn take_over(&self, memory: usize) {
+        self.pager
+            .back(Arc::new(Pages(Arc::clone(&self.shared))), memory);
+    }
+
+    /// Has the painting go on in another file, with all that was handed over until then; painting goes
+    /// on meanwhile. [`arrived`](Self::arrived) tells when it is there.
+    pub fn move_to(&self, to: &Path, left: Left, replace: bool) -> Moving {
+        let (answer, outcome) = mpsc::channel();
+        let mut queues = self.shared.lock();
+        if queues.life != Life::Ended {
+            queues.moves.push(Move {
+                to: to.to_owned(),
+                left,
+                replace,
+                answer,
+            });
+        }
+        drop(queues);
+        self.shared.bell.notify_all();
+        Moving {
+            to: to.to_owned(),
+            outcome,
+        }
+    }
+
+    /// What became of a move; none while it goes on. Where it failed, the painting is where it was.
+    pub fn arrived(&mut self, moving: &Moving) -> Option<Result<(), DocumentError>> {
+        match moving.outcome.try_recv() {
+            Ok(outcome) => Some(self.come_to(moving, outcome)),
+            Err(mpsc::TryRecvError::Empty) => None,
+            Err(mpsc::TryRecvError::Disconnected) => Some(Err(self.unwritten())),
+        }
+    }
+
+    /// Waits for the end of a move.
+    ///
+    /// # Errors
+    /// Why the painting is where it was.
+    pub fn wait_for(&mut self, moving: &Moving) -> Result<(), DocumentError> {
+        match moving.outcome.recv() {
+            Ok(outcome) => self.come_to(moving, outcome),
+            Err(mpsc::RecvError) => Err(self.unwritten()),
+        }
+    }
+
+    fn come_to(
+        &mut self,
+        moving: &Moving,
+        outcome: Result<(), DocumentError>,
+    ) -> Result<(), DocumentError> {
+        if outcome.is_ok() {
+            self.path.clone_from(&moving.to);
+        }
+        outcome
+    }
+
+    fn unwritten(&self) -> DocumentError {
+        DocumentError::Unwritten(self.shared.lock().fault.clone())
     }
 
     /// The file.
@@ -116,6 +212,14 @@ impl Document {
     pub fn is_ready(&self) -> bool {
         let queues = self.shared.lock();
         queues.moment.is_none() && !queues.writing
+    }
+
+    /// Whether nothing that was handed over waits to be written.
+    #[must_use]
+    pub fn has_all(&self) -> bool {
+        let queues = self.shared.lock();
+        let idle = queues.moment.is_none() && queues.records.is_empty();
+        idle && !queues.writing && queues.fault.is_empty()
     }
 
     /// Hands a moment over. It has to hold all records that were handed over before, and the one

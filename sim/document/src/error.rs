@@ -1,5 +1,7 @@
 //! What can go wrong with a document.
 
+use std::path::PathBuf;
+
 use rusqlite::ffi;
 
 /// Why a document cannot be opened, read or written.
@@ -31,6 +33,9 @@ pub enum DocumentError {
     /// No room on the disk.
     #[error("the disk is full")]
     Full,
+    /// No room on the disk of a painting that is to be closed, for what is in its journal.
+    #[error("the disk of {} has no room to close the painting there", .0.display())]
+    Unfolded(PathBuf),
     /// Bytes that do not hold together.
     #[error("the painting is damaged: {0}")]
     Damaged(String),
@@ -63,7 +68,7 @@ impl DocumentError {
                 "close it there; if that program hangs, end it: what it had written is safe"
             }
             Self::ReadOnly(_) => "check the permissions of the file and its folder, or copy it",
-            Self::Full => "free some space: nothing that was written is lost",
+            Self::Full | Self::Unfolded(_) => "free some space: nothing that was written is lost",
             Self::Unwritten(_) => "nothing that was written before is lost",
             Self::Damaged(_) => {
                 "`maulstick painting recover FILE -o NEW.maul` takes out what is whole"
@@ -106,6 +111,7 @@ impl From<std::io::Error> for DocumentError {
         match error.kind() {
             std::io::ErrorKind::StorageFull => Self::Full,
             std::io::ErrorKind::NotFound => Self::Missing,
+            std::io::ErrorKind::AlreadyExists => Self::Taken,
             std::io::ErrorKind::PermissionDenied | std::io::ErrorKind::ReadOnlyFilesystem => {
                 Self::ReadOnly(error.to_string())
             }

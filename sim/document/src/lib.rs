@@ -9,6 +9,7 @@
 //! | [`document`], `thread`, `queues` | an open painting, the thread that owns its file, and where both meet |
 //! | [`database`] | the file: locks, pages read one by one |
 //! | [`writing`], [`opening`] | a moment of a painting, written as one transaction and read back |
+//! | [`moving`] | its file under another name |
 //! | [`journal`] | what was accepted, as bytes |
 //! | [`contents`], [`pack`] | what a file holds; making it small |
 //! | [`planes`], [`loads`] | paint as bytes |
@@ -22,6 +23,7 @@ pub mod document;
 pub mod error;
 pub mod journal;
 pub mod loads;
+pub mod moving;
 pub mod opening;
 pub mod pack;
 pub mod planes;
@@ -35,9 +37,10 @@ mod thread;
 pub mod writing;
 
 pub use contents::Contents;
-pub use database::{Access, glance};
+pub use database::{Access, glance, scene};
 pub use document::{Document, DocumentSettings};
 pub use error::DocumentError;
+pub use moving::{Left, Moving, make_room, unfinished};
 pub use opening::Opened;
 pub use queues::Shelf;
 pub use recover::{Salvage, part_of, recover};

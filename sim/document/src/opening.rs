@@ -14,6 +14,7 @@ use maulstick_paint::painting::{Named, PaintRefusal, Restored};
 use maulstick_paint::sequencer::Record;
 use maulstick_paint::tile::{Planes, Tile, Version};
 use maulstick_paint::{Painting, Sequencer};
+use maulstick_types::scene::Scene;
 use rusqlite::{OptionalExtension as _, params};
 
 use crate::database::Database;
@@ -97,6 +98,15 @@ pub(crate) fn has_state(database: &Database) -> Result<bool, DocumentError> {
         )
         .optional()?;
     Ok(found.is_some())
+}
+
+/// The desk of the painting, if a moment of it was ever written.
+pub(crate) fn scene(database: &Database) -> Result<Option<Scene>, DocumentError> {
+    if !has_state(database)? {
+        return Ok(None);
+    }
+    let kept: KeptPainting = state(database, "painting")?;
+    Ok(Some(kept.scene))
 }
 
 /// Reads a part of the state, from its second copy where the first is not whole.

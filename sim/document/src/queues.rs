@@ -10,6 +10,7 @@ use maulstick_paint::page::Backing;
 use maulstick_paint::sequencer::Record;
 use maulstick_paint::tile::Planes;
 
+use crate::moving::Move;
 use crate::writing::{Moment, ShownTile};
 
 /// Tiles as they are shown that wait to be written, at most.
@@ -44,6 +45,8 @@ pub(crate) struct Queues {
     pub(crate) writing: bool,
     /// Who waits until all that was handed over is written, or could not be.
     pub(crate) flushes: Vec<mpsc::Sender<()>>,
+    /// Where the painting is to go on, once all that was handed over is written.
+    pub(crate) moves: Vec<Move>,
     pub(crate) life: Life,
     /// A page could not be read: what was painted since may rest on its absence.
     pub(crate) broken: bool,
@@ -94,6 +97,7 @@ impl Drop for End {
         }
         queues.fetches.clear();
         queues.flushes.clear();
+        queues.moves.clear();
     }
 }
 

@@ -1,20 +1,24 @@
 //! The thread that owns a painting's file: it writes what was handed over and reads pages that left
 //! memory. Who waits for a page comes first.
 
+use std::path::{Path, PathBuf};
 use std::sync::atomic::Ordering::SeqCst;
 use std::sync::{Arc, PoisonError};
 use std::time::{Duration, Instant};
 
 use maulstick_paint::sequencer::Record;
 
-use crate::database::Database;
+use crate::database::{Access, Database, is_new};
 use crate::error::DocumentError;
 use crate::journal;
+use crate::moving::{self, Move};
 use crate::queues::{End, Fetch, Life, Shared};
 use crate::writing::{Moment, ShownTile, Writer};
 
 /// Accepted things are in the file after this long.
 const COMMIT: Duration = Duration::from_millis(100);
+/// The first moment of a painting that was in memory alone is one transaction, if it does not take longer.
+const FIRST: Duration = Duration::from_secs(3600);
 /// What could not be written is tried again after this long.
 const AGAIN: Duration = Duration::from_secs(1);
 /// Tiles as they are shown that are written in one transaction, at most.
@@ -26,7 +30,13 @@ const ROW: usize = 1024;
 pub(crate) struct Thread {
     shared: Arc<Shared>,
     database: Database,
+    /// The painting's file.
+    path: PathBuf,
     writes: bool,
+    /// Nothing of the painting is in the file yet: its first moment goes there whole, or not at all.
+    first: bool,
+    /// What had been accepted when a move was asked for is in the file.
+    committed_for_move: bool,
     /// Number of the newest tile version of the moment that the file has.
     kept_versions: u64,
     last_commit: Instant,
@@ -55,6 +65,7 @@ enum Work {
     Keep(Box<Moment>),
     Show(Vec<ShownTile>),
     Commit(Vec<Record>),
+    Move(Move),
     Close,
 }
 
@@ -63,19 +74,65 @@ impl Thread {
     /// reads.
     pub(crate) fn new(
         shared: Arc<Shared>,
-        database: Database,
+        (database, path): (Database, &Path),
         writes: bool,
         kept_versions: u64,
     ) -> Self {
         Self {
             shared,
             database,
+            path: path.to_owned(),
             writes,
+            first: false,
+            committed_for_move: false,
             kept_versions,
             last_commit: Instant::now(),
             moment: Tries::default(),
             journal: Tries::default(),
         }
+    }
+
+    /// For a painting of which nothing is in the file yet.
+    pub(crate) fn at_first(self) -> Self {
+        Self {
+            first: true,
+            ..self
+        }
+    }
+
+    /// Goes on in another file.
+    ///
+    /// # Errors
+    /// Where the painting can go on in neither file.
+    fn moved(mut self, order: Move) -> Result<Self, DocumentError> {
+        self.committed_for_move = false;
+        let open = |path: &Path| match is_new(path)? {
+            // One that is begun in its place would be blank.
+            true => Err(DocumentError::Missing),
+            false => Database::open(path, Access::Paint, None).map(|(database, _)| database),
+        };
+        let moved = self.database.close().and_then(|()| {
+            moving::put(&self.path, &order)?;
+            open(&order.to).inspect_err(|_| moving::take_back(&self.path, &order))
+        });
+        let (opened, outcome) = match moved {
+            Ok(database) => (Ok((database, order.to.clone())), Ok(())),
+            Err(error) => (
+                open(&self.path).map(|database| (database, self.path.clone())),
+                Err(error),
+            ),
+        };
+        match opened {
+            Ok((database, path)) => (self.database, self.path) = (database, path),
+            Err(error) => {
+                let mut queues = self.shared.lock();
+                queues.broken = true;
+                (queues.fault, queues.help) = (error.to_string(), error.help());
+                return Err(error);
+            }
+        }
+        order.answer.send(outcome).ok();
+        Ok(self)
     }
 
     /// Serves until the document is closed.
@@ -90,6 +147,7 @@ impl Thread {
                 Work::Keep(moment) => self.keep(*moment),
                 Work::Show(tiles) => self.show(&tiles),
                 Work::Commit(records) => self.commit(records),
+                Work::Move(order) => self = self.moved(order)?,
                 Work::Close => break,
             }
         }
@@ -123,7 +181,7 @@ impl Thread {
             }
             let may_write = self.writes && !queues.broken;
             let closing = queues.life == Life::Closing;
-            let hurry = closing || !queues.flushes.is_empty();
+            let hurry = closing || !queues.flushes.is_empty() || !queues.moves.is_empty();
             let due = hurry || self.last_commit.elapsed() >= COMMIT;
             let commits = may_write && due && self.journal.may(hurry) && !queues.records.is_empty();
             // A moment holds what was accepted, but may find no room where that still has some.
@@ -137,7 +195,15 @@ impl Thread {
                 queues.writing = true;
                 return Work::Keep(Box::new(moment));
             }
+            // While somebody paints there is always more to commit: once is enough.
+            if may_write
+                && (queues.records.is_empty() || self.committed_for_move)
+                && let Some(order) = queues.moves.pop()
+            {
+                return Work::Move(order);
+            }
             if commits {
+                self.committed_for_move = !queues.moves.is_empty();
                 return Work::Commit(std::mem::take(&mut queues.records));
             }
             if may_write && self.moment.failed.is_none() {
@@ -149,6 +215,8 @@ impl Thread {
                     return Work::Show(tiles);
                 }
             }
+            // Who only reads goes nowhere else.
+            queues.moves.clear();
             for waits in queues.flushes.drain(..) {
                 // Who waited may have given up.
                 waits.send(()).ok();
@@ -202,7 +270,8 @@ impl Thread {
     fn keep(&mut self, moment: Moment) {
         let shared = Arc::clone(&self.shared);
         let written = loop {
-            let until = Instant::now() + COMMIT;
+            let longest = if self.first { FIRST } else { COMMIT };
+            let until = Instant::now() + longest;
             let written = self.transaction(|database| {
                 let mut breathe = |database: &Database| serve(&shared, database);
                 Writer::new(database, &mut breathe).moment(&moment, until)
@@ -223,6 +292,7 @@ impl Thread {
         match written {
             Ok(stored) => {
                 stored.note();
+                self.first = false;
                 self.kept_versions = moment.painting.kept.versions;
                 let serial = moment.sequencer.serial;
                 queues.records.retain(|record| record.serial >= serial);
@@ -285,7 +355,13 @@ impl Thread {
         let closing = queues.life == Life::Closing;
         // Who waits would wait for ever.
         queues.flushes.clear();
+        let moves = std::mem::take(&mut queues.moves);
         drop(queues);
+        self.committed_for_move = false;
+        for order in moves {
+            let unwritten = DocumentError::Unwritten(error.to_string());
+            order.answer.send(Err(unwritten)).ok();
+        }
         *self.tries(part) = Tries {
             failed: Some(Instant::now()),
             given_up: closing,

@@ -18,6 +18,9 @@ pub enum ImportError {
         "a picture of {0}×{1} pixels is too large: import one of at most {MOST_SIDE} pixels either way"
     )]
     TooLarge(u32, u32),
+    /// It takes more memory than it may.
+    #[error("a picture of {0}×{1} pixels takes too much memory; make it smaller")]
+    Memory(u32, u32),
     /// The canvas has more cells than a picture is fitted to.
     #[error("a canvas of {0}×{1} cells is too large for a picture: it may have 67 million cells")]
     Canvas(usize, usize),

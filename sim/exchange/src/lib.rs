@@ -13,7 +13,7 @@
 //! | [`write_height_map`] | height: grey PNG of 16 bits; [`HeightRange`] says what black and white are |
 //! | [`write_stl`] | height as a solid to print: STL; [`stl_step`] proposes how fine |
 //!
-//! Errors are [`ExchangeError`]; [`Progress`] hears how far an export is.
+//! [`Order`] is any of these; [`small_picture`] is for the eye alone. Errors are [`ExchangeError`]; [`Progress`] hears how far an export is.
 //!
 //! An import makes of a picture an underpainting, a ground or a tooth:
 //!
@@ -37,11 +37,13 @@ pub mod import_error;
 mod lit_png;
 mod open_exr;
 mod open_raster;
+mod order;
 pub mod read_image;
 mod recipes;
 mod search;
 mod stl;
 mod surface;
+mod thumbnail;
 pub mod underpaint;
 
 pub use error::ExchangeError;
@@ -50,7 +52,9 @@ pub use import_error::ImportError;
 pub use lit_png::write_lit_png;
 pub use open_exr::write_open_exr;
 pub use open_raster::write_open_raster;
+pub use order::{Format, Order};
 pub use read_image::Image;
 pub use stl::{STL_TRIANGLES, StlSetup, StlSize, stl_step, write_stl};
 pub use surface::Progress;
+pub use thumbnail::small_picture;
 pub use underpaint::{Likeness, Support, Underpainting};

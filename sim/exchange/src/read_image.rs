@@ -44,6 +44,15 @@ impl Image {
         Self::decode(BufReader::new(File::open(path).map_err(ImportError::File)?))
     }
 
+    /// The same for which a decoder takes at most so many bytes.
+    ///
+    /// # Errors
+    /// As [`open`](Self::open), and where it would take more.
+    pub fn open_within(path: &Path, bytes: u64) -> Result<Self, ImportError> {
+        let file = BufReader::new(File::open(path).map_err(ImportError::File)?);
+        Self::decode_within(file, bytes)
+    }
+
     /// Reads the bytes of a file.
     ///
     /// # Errors
@@ -53,15 +62,22 @@ impl Image {
     }
 
     fn decode(source: impl BufRead + Seek) -> Result<Self, ImportError> {
+        Self::decode_within(source, MOST_BYTES)
+    }
+
+    fn decode_within(source: impl BufRead + Seek, bytes: u64) -> Result<Self, ImportError> {
         let reader = ImageReader::new(source).with_guessed_format();
         let mut reader = reader.map_err(ImportError::File)?;
         let mut limits = Limits::no_limits();
-        limits.max_alloc = Some(MOST_BYTES);
+        limits.max_alloc = Some(bytes);
         reader.limits(limits);
         let mut decoder = reader.into_decoder().map_err(wrong)?;
         let (width, height) = decoder.dimensions();
         if width.max(height) > MOST_SIDE {
             return Err(ImportError::TooLarge(width, height));
+        }
+        if decoder.total_bytes() > bytes {
+            return Err(ImportError::Memory(width, height));
         }
         if width.min(height) == 0 {
             return Err(ImportError::NotAPicture("it has no pixels".to_owned()));

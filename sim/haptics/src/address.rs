@@ -32,8 +32,8 @@ mod tests {
     fn device_epoch_and_brush_must_match() {
         let address = Address {
             device: Origin {
-                source: 1,
-                epoch: 1,
+                source: 0,
+                epoch: 0,
             },
             brush: "main".into(),
         };

@@ -178,30 +178,18 @@ impl Contact {
 pub(crate) mod tests {
     use maulstick_num::geometry::rotation;
     use maulstick_types::Pose;
-    use maulstick_types::haptics::{ForceLaw, Grain};
+    use maulstick_types::haptics::ForceLaw;
     use proptest::prelude::*;
 
     use super::*;
 
     pub(crate) fn model(law: ForceLaw) -> ContactModel {
         ContactModel {
-            device: 1,
-            device_epoch: 1,
-            brush: "main".into(),
-            plane_point_m: [0.0; 3],
-            plane_normal: [0.0, 0.0, 1.0],
             friction_static: 0.3,
             friction_kinetic: 0.2,
-            viscous_n_s_m: 0.0,
-            grain: Grain {
-                amplitude: 0.0,
-                wavelength_m: 1e-3,
-                seed: 1,
-            },
-            law,
-            head_length_m: 0.025,
             time_to_live_ns: 50_000_000,
             recovery_ns: 10_000_000,
+            ..ContactModel::bare(law, 0.025)
         }
     }
 

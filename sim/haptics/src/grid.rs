@@ -10,7 +10,7 @@
 use glam::{DQuat, DVec3};
 use maulstick_num::geometry::rotation;
 use maulstick_num::{cos, sin};
-use maulstick_types::haptics::{ContactModel, ForceLaw, Grain};
+use maulstick_types::haptics::{ContactModel, ForceLaw};
 
 use crate::contact::{Contact, Held};
 use crate::plant::{Hand, Plant};
@@ -122,26 +122,17 @@ impl Wall {
     }
 
     fn contact(&self, time_to_live_s: f64) -> Result<Contact, &'static str> {
+        let law = ForceLaw::Rigid {
+            stiffness_n_m: self.stiffness,
+        };
         Contact::new(&ContactModel {
-            device: 1,
-            device_epoch: 1,
-            brush: "main".into(),
             plane_point_m: self.point.to_array(),
             plane_normal: self.normal.to_array(),
             friction_static: 0.3,
             friction_kinetic: 0.2,
-            viscous_n_s_m: 0.0,
-            grain: Grain {
-                amplitude: 0.0,
-                wavelength_m: 1e-3,
-                seed: 1,
-            },
-            law: ForceLaw::Rigid {
-                stiffness_n_m: self.stiffness,
-            },
-            head_length_m: HEAD_M,
             time_to_live_ns: (time_to_live_s * 1e9) as u64,
             recovery_ns: (RECOVERY_S * 1e9) as u64,
+            ..ContactModel::bare(law, HEAD_M)
         })
     }
 }

@@ -13,11 +13,6 @@ use maulstick_types::haptics::{ContactModel, ForceLaw, Grain, HermiteKnot};
 
 fn contact(law: ForceLaw) -> Contact {
     Contact::new(&ContactModel {
-        device: 1,
-        device_epoch: 1,
-        brush: "main".into(),
-        plane_point_m: [0.0; 3],
-        plane_normal: [0.0, 0.0, 1.0],
         friction_static: 0.3,
         friction_kinetic: 0.2,
         viscous_n_s_m: 0.1,
@@ -26,10 +21,9 @@ fn contact(law: ForceLaw) -> Contact {
             wavelength_m: 1e-3,
             seed: 1,
         },
-        law,
-        head_length_m: 0.025,
         time_to_live_ns: 20_000_000,
         recovery_ns: 15_000_000,
+        ..ContactModel::bare(law, 0.025)
     })
     .expect("a model")
 }

@@ -64,7 +64,7 @@ pub struct BrushNode {
     states: CreditSender<BrushState>,
     credit: Receiver<PaintConsumed>,
     scene: Receiver<Scene>,
-    scene_version: u64,
+    scene_of: (u32, u64),
     infos: Receiver<StylusInfo>,
     consumed: Sender<BrushConsumed>,
     /// Devices, by name, that drive a force.
@@ -130,7 +130,7 @@ impl BrushNode {
                 wake,
             )?,
             scene: Receiver::new(b, &topics.scene(), Class::Cached, Queue::Ring(16), wake)?,
-            scene_version: 0,
+            scene_of: (0, 0),
             infos: Receiver::new(
                 b,
                 &topics.stylus_info("*"),
@@ -199,8 +199,10 @@ impl BrushNode {
     /// Scene, credit, and what the devices are.
     fn take_in(&mut self, now_ns: u64) {
         while let Some(scene) = self.scene.try_recv() {
-            if scene.message.version >= self.scene_version {
-                self.scene_version = scene.message.version;
+            // Another painting counts its scenes anew.
+            let (epoch, version) = (scene.header.epoch, scene.message.version);
+            if epoch != self.scene_of.0 || version >= self.scene_of.1 {
+                self.scene_of = (epoch, version);
                 self.model.set_scene(&scene.message);
                 self.grain = grain(&scene.message);
                 self.model.tune(scene.message.tuning(&self.settings.name));

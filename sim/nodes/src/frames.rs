@@ -3,6 +3,7 @@
 //! The stepper hands over versions of tiles, which are shared and never copied; colour is computed
 //! here, only for tiles that someone looks at.
 
+mod brush_looks;
 mod films;
 mod pyramid;
 
@@ -15,17 +16,20 @@ use maulstick_bus::{Bus, BusError, Request, Server, Wake};
 use maulstick_document::Shelf;
 use maulstick_optics::backend::FilmBackend;
 use maulstick_paint::bare::Bare;
+use maulstick_paint::coat::Carried;
 use maulstick_paint::dry::DryStack;
 use maulstick_paint::look::Look;
 use maulstick_paint::tile::{Tile, TileId};
 use maulstick_types::paint::{FrameHolds, FrameReply, FrameRequest, FrameTile};
-use maulstick_types::{Flags, Origin, encode};
+use maulstick_types::topics::Topics;
+use maulstick_types::{DecodeError, Flags, Origin, encode, encode_into, encoded_bytes};
 
+use brush_looks::BrushLooks;
 use films::SteadyFilms;
 use pyramid::{BARE_VERSIONS, Pyramid, coarsest, grid};
 
 /// A reply holds at most this much; the rest comes with the next one, bytes.
-const REPLY_BYTES: usize = 16 << 20;
+const REPLY_BYTES: usize = 12 << 20;
 /// Longest wait for a change, ms.
 const LONGEST_WAIT_MS: u32 = 400;
 /// Tiles of a reply that are computed together, and tiles of full detail of those at most.
@@ -81,6 +85,10 @@ pub struct Fed {
     pub wanted: bool,
     /// Tiles with dry layers that are to be baked for this look, and those that are.
     pub baking: Progress,
+    /// What brushes carry, by their names.
+    pub carried: BTreeMap<String, Carried>,
+    /// When a view last asked, rig clock, ns.
+    pub watched_ns: u64,
 }
 
 /// How far a long work is.
@@ -133,6 +141,7 @@ pub struct FrameServer {
     stepper: Wake,
     me: Origin,
     pyramid: Pyramid,
+    looks: Option<BrushLooks>,
     waiting: Vec<Waiting>,
 }
 
@@ -157,6 +166,7 @@ impl FrameServer {
             stepper: stepper.clone(),
             me,
             pyramid: Pyramid::default(),
+            looks: None,
             waiting: Vec::new(),
         })
     }
@@ -175,6 +185,13 @@ impl FrameServer {
         self
     }
 
+    /// Tells on the topics of a rig how the paint on its brushes looks, as far as it is handed over.
+    #[must_use]
+    pub fn telling_brushes(mut self, topics: &Topics) -> Self {
+        self.looks = Some(BrushLooks::new(topics));
+        self
+    }
+
     /// Answers who can be answered and returns how long to wait at most.
     pub fn turn(&mut self) -> Duration {
         let now_ns = self.bus.now_ns();
@@ -183,6 +200,7 @@ impl FrameServer {
                 .reader
                 .read::<FrameRequest>(&request.key, &request.bytes);
             if let Some((_, asked)) = read {
+                self.feed.lock().watched_ns = now_ns;
                 let wait_ms = asked.wait_ms.min(LONGEST_WAIT_MS);
                 let deadline_ns = now_ns + u64::from(wait_ms) * 1_000_000;
                 self.waiting.push(Waiting {
@@ -193,6 +211,11 @@ impl FrameServer {
             }
         }
         let fed = self.feed.lock().clone();
+        if let Some(looks) = &mut self.looks
+            && let Err(error) = looks.tell(&*self.bus, self.me, &fed)
+        {
+            tracing::error!("the paint on a brush cannot be told: {error}");
+        }
         for waiting in std::mem::take(&mut self.waiting) {
             let reply = self.reply(&fed, &waiting.asked);
             let asked = (waiting.asked.epoch, waiting.asked.look);
@@ -201,13 +224,8 @@ impl FrameServer {
                 self.waiting.push(waiting);
                 continue;
             }
-            match encode(&self.me, Flags::NONE, 0, now_ns, self.bus.now_ns(), &reply) {
-                Ok(bytes) => {
-                    if let Err(error) = waiting.request.answer(bytes) {
-                        tracing::debug!("a view is gone: {error}");
-                    }
-                }
-                Err(error) => tracing::error!("a frame cannot be sent: {error}"),
+            if let Err(error) = self.answer(waiting, now_ns, &reply) {
+                tracing::error!("a frame cannot be sent: {error}");
             }
         }
         if !self.waiting.is_empty() {
@@ -218,6 +236,27 @@ impl FrameServer {
             return Duration::ZERO;
         }
         Duration::from_millis(if self.waiting.is_empty() { 100 } else { 20 })
+    }
+
+    /// Sends a reply, in shared memory where the view asks for it.
+    fn answer(&self, waiting: Waiting, now_ns: u64, reply: &FrameReply) -> Result<(), DecodeError> {
+        let (me, sent_ns) = (&self.me, self.bus.now_ns());
+        let sent = if waiting.asked.shared {
+            let mut encoded = Ok(());
+            let length = encoded_bytes(reply)?;
+            let sent = waiting.request.answer_shared(length, &mut |into| {
+                encoded = encode_into(me, Flags::NONE, 0, now_ns, sent_ns, reply, into);
+            });
+            encoded?;
+            sent
+        } else {
+            let bytes = encode(me, Flags::NONE, 0, now_ns, sent_ns, reply)?;
+            waiting.request.answer(bytes)
+        };
+        if let Err(error) = sent {
+            tracing::debug!("a view is gone: {error}");
+        }
+        Ok(())
     }
 
     /// Bakes dry layers that nobody has looked at yet, for a short while; true where there are more.

@@ -38,6 +38,19 @@ impl Keeper {
         &self.document
     }
 
+    /// The document, to be asked what became of its move.
+    pub(crate) fn document_mut(&mut self) -> &mut Document {
+        &mut self.document
+    }
+
+    /// Lets go of a document into which nothing could be written: the painting is in memory alone.
+    pub(crate) fn abandon(self, sequencer: &mut Sequencer) {
+        sequencer.stop_recording();
+        if let Err(error) = self.document.close() {
+            tracing::debug!("the document is given up: {error}");
+        }
+    }
+
     fn hand_over(&mut self, sequencer: &mut Sequencer) {
         let moment = Moment::of(sequencer, self.since);
         (self.since, self.serial) = (moment.painting.kept.versions, moment.sequencer.serial);

@@ -11,19 +11,25 @@
 //! | [`paint_node`] | brush states and commands in, journal and credit out |
 //! | [`frames`] | pictures of what changed, for whoever asks |
 //! | [`keeper`] | the painting in its document |
+//! | [`exporter`] | the painting for other programs, beside the painting |
+//! | [`thumbnails`] | small pictures of it and of its versions |
+//! | [`answers`] | what was answered to whom |
 //! | [`offline`] | the same brush and paint in one process, without a bus |
 //! | [`ticker`] | ticks of a clock |
 //! | [`worker`] | a thread that a node cannot do without |
 
+pub mod answers;
 pub mod arbiter;
 pub mod backlog;
 pub mod brush_node;
+pub mod exporter;
 pub mod feel;
 pub mod frames;
 pub mod keeper;
 pub mod offline;
 pub mod outbox;
 pub mod paint_node;
+pub mod thumbnails;
 pub mod ticker;
 pub mod worker;
 

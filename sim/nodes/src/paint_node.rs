@@ -1,7 +1,12 @@
 //! The paint node: brush states and commands in; journal, credit, scene and frames out.
 
+mod commands;
 mod feeding;
+mod saving;
+mod status;
 mod time;
+
+pub use commands::write_snapshot;
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
@@ -11,24 +16,25 @@ use std::time::Duration;
 use maulstick_brush::BrushFile;
 use maulstick_bus::typed::{Reader, Received, Receiver, Sender};
 use maulstick_bus::{
-    Arrival, Bus, BusError, Class, CreditReceiver, Queue, Request, Server, Subscription, Wake,
+    Arrival, Bus, BusError, Class, CreditReceiver, Queue, Server, Subscription, Wake,
 };
 use maulstick_document::{Document, DocumentError};
-use maulstick_paint::picture::{Export, picture_for};
-use maulstick_paint::sequencer::Replied;
-use maulstick_paint::{Effect, Painting, Sequencer};
-use maulstick_rig::files::write_whole;
+use maulstick_paint::picture::Export;
+use maulstick_paint::{Painting, Sequencer};
 use maulstick_types::brush::{BrushDef, BrushState};
-use maulstick_types::command::{CommandReply, CommandRequest, Outcome};
 use maulstick_types::paint::{BrushCredit, JournalEntry, PaintConsumed, PaintStatus};
-use maulstick_types::scene::{CANVAS, Scene};
+use maulstick_types::scene::Scene;
 use maulstick_types::topics::{Topics, check_name};
-use maulstick_types::{Flags, Origin, encode, name_hash};
+use maulstick_types::{Origin, name_hash};
 
 use crate::Keeper;
+use crate::answers::Answers;
+use crate::exporter::Exporter;
 use crate::frames::Feed;
+use crate::thumbnails::Thumbnails;
 use crate::ticker::Ticker;
 use feeding::FEED_PERIOD_NS;
+use saving::Saving;
 
 /// Time between two statuses, ns.
 const STATUS_PERIOD_NS: u64 = 100_000_000;
@@ -44,6 +50,12 @@ pub struct PaintNode {
     states: CreditReceiver<BrushState>,
     defs: Receiver<BrushDef>,
     commands: Server,
+    answers: Answers,
+    exporter: Exporter,
+    saving: Option<Saving>,
+    /// Its document has not got the name yet that the painter gave it.
+    unnamed: bool,
+    thumbnails: Thumbnails,
     tokens: Subscription,
     reader: Reader,
     journal: Sender<JournalEntry>,
@@ -56,6 +68,7 @@ pub struct PaintNode {
     fed_look: u64,
     sent_scene: u64,
     fed_ns: u64,
+    fed_brushes_ns: u64,
     status_ns: u64,
     told: BTreeMap<Origin, u64>,
     tell_again: bool,
@@ -66,6 +79,10 @@ pub struct PaintNode {
     strangers: BTreeSet<String>,
     export: Export,
     keeper: Option<Keeper>,
+    /// Most bytes of pages in memory, where the painting has a document.
+    memory: usize,
+    /// What was committed when the newest commit was seen, and when that was, ns.
+    committed: (u64, u64),
     ticker: Ticker,
 }
 
@@ -114,6 +131,11 @@ impl PaintNode {
                 wake,
             )?,
             commands: b.serve(&topics.command("paint"), 256, wake)?,
+            answers: Answers::default(),
+            exporter: Exporter::default(),
+            saving: None,
+            unnamed: false,
+            thumbnails: Thumbnails::new(b, &topics.thumbnail(), wake, me)?,
             tokens: b.watch(&topics.node("*"), wake)?,
             reader: Reader::default(),
             journal: Sender::new(b, &topics.journal(), Class::Data, me)?,
@@ -126,6 +148,7 @@ impl PaintNode {
             fed_look,
             sent_scene,
             fed_ns: 0,
+            fed_brushes_ns: 0,
             status_ns: 0,
             told: BTreeMap::new(),
             tell_again: false,
@@ -135,6 +158,8 @@ impl PaintNode {
             strangers: BTreeSet::new(),
             export: Export::default(),
             keeper: None,
+            memory: 1 << 30,
+            committed: (0, 0),
             ticker: Ticker::default(),
             topics: topics.clone(),
             me,
@@ -159,21 +184,36 @@ impl PaintNode {
         self
     }
 
+    /// Keeps at most so many bytes of pages in memory once the painting gets a document.
+    #[must_use]
+    pub fn with_memory(mut self, bytes: usize) -> Self {
+        self.memory = bytes;
+        self
+    }
+
+    /// The painting's file, if it has one.
+    #[must_use]
+    pub fn document_path(&self) -> Option<&Path> {
+        self.keeper.as_ref().map(|keeper| keeper.document().path())
+    }
+
     /// Why the painting cannot go on: a page of its document could not be read.
     #[must_use]
     pub fn fault(&self) -> Option<&str> {
         self.sequencer.painting().pager().fault()
     }
 
-    /// Writes what is to be kept and closes the document.
+    /// Writes what is to be kept and closes the document, under its own name where it is on its way there.
     ///
     /// # Errors
-    /// Why something could not be written.
+    /// Why something could not be written, or not under that name.
     pub fn close(mut self) -> Result<(), DocumentError> {
-        match self.keeper.take() {
+        let arrived = self.arrive();
+        let closed = match self.keeper.take() {
             Some(keeper) => keeper.close(&mut self.sequencer),
             None => Ok(()),
-        }
+        };
+        arrived.and(closed)
     }
 
     /// Where the frames take their pictures from.
@@ -227,8 +267,11 @@ impl PaintNode {
         if let Some(keeper) = &mut self.keeper {
             keeper.turn(&mut self.sequencer, now_ns);
         }
+        self.go_on_beside(now_ns);
+        self.thumbnails.turn(&*bus, self.sequencer.painting_mut());
         self.publish_scene(now_ns)?;
         self.hand_over(now_ns);
+        self.hand_over_brushes(now_ns);
         self.publish_status(now_ns)?;
         Ok(if left == 0 {
             Duration::ZERO
@@ -259,42 +302,6 @@ impl PaintNode {
             self.sequencer.player_there(device);
         } else {
             self.sequencer.player_gone(device);
-        }
-    }
-
-    fn serve_commands(&mut self, now_ns: u64) {
-        while let Some(request) = self.commands.try_recv() {
-            let read = self
-                .reader
-                .read::<CommandRequest>(&request.key, &request.bytes);
-            let Some((_, asked)) = read else { continue };
-            let number = asked.number;
-            let replied = self.sequencer.command(asked);
-            let outcome = self.complete(replied);
-            self.answer(request, now_ns, CommandReply { number, outcome });
-        }
-    }
-
-    /// Answers a command. Nothing that a client sends may end the node: what cannot be told in
-    /// full is told in short.
-    fn answer(&self, request: Request, now_ns: u64, reply: CommandReply) {
-        let write = |reply: &CommandReply| {
-            encode(&self.me, Flags::NONE, 0, now_ns, self.bus.now_ns(), reply)
-        };
-        let bytes = write(&reply).or_else(|error| {
-            tracing::warn!("{}: {error}", request.key);
-            write(&CommandReply {
-                number: reply.number,
-                outcome: Outcome::Refused {
-                    what: "the answer to this command is too long".to_owned(),
-                    help: "send shorter names".to_owned(),
-                },
-            })
-        });
-        match bytes.map(|bytes| request.answer(bytes)) {
-            Ok(Ok(())) => {}
-            Ok(Err(error)) => tracing::debug!("a client is gone: {error}"),
-            Err(error) => tracing::error!("a command cannot be answered: {error}"),
         }
     }
 
@@ -340,26 +347,6 @@ impl PaintNode {
         Ok(true)
     }
 
-    /// Does what a command still asks for.
-    fn complete(&mut self, replied: Replied) -> Outcome {
-        let Some(Effect::Snapshot { path, ledger }) = &replied.effect else {
-            return replied.outcome;
-        };
-        let painting = self.sequencer.painting_mut();
-        let ledger = ledger.as_deref().map(Path::new);
-        let written = write_snapshot(painting, Path::new(path), ledger, &self.export);
-        let outcome = match written {
-            Ok(()) => replied.outcome,
-            Err((path, error)) => Outcome::Refused {
-                what: format!("cannot write {path}: {error}"),
-                help: "check that the folder exists and can be written to".to_owned(),
-            },
-        };
-        self.sequencer
-            .remember(replied.client, replied.number, outcome.clone());
-        outcome
-    }
-
     /// Tells the brushes what is consumed.
     fn tell(&mut self, now_ns: u64) -> Result<(), BusError> {
         let holds = self.sequencer.consumed_all();
@@ -402,81 +389,6 @@ impl PaintNode {
         }
         Ok(())
     }
-
-    /// Says once of each brush that it moves without a brush file.
-    fn tell_unknown(&mut self, now_ns: u64) {
-        for next in self.states.heads() {
-            let brush = self.topics.middle(&next.key).unwrap_or_default();
-            let waits = now_ns.saturating_sub(next.arrived_ns) > STATUS_PERIOD_NS;
-            if waits
-                && !self.sequencer.painting().knows_brush(brush)
-                && self.unknown.insert(brush.to_owned())
-            {
-                tracing::warn!("{}: its brush file has not come, its states wait", next.key);
-            }
-        }
-    }
-
-    fn publish_status(&mut self, now_ns: u64) -> Result<(), BusError> {
-        if now_ns < self.status_ns + STATUS_PERIOD_NS {
-            return Ok(());
-        }
-        self.status_ns = now_ns;
-        let (steps, footprint_cells) = self.sequencer.painting().work();
-        let counts = self.states.counts();
-        self.tell_unknown(now_ns);
-        let oldest_ns = self.states.heads().map(|next| next.header.event_ns).min();
-        let lag_ns = oldest_ns.map_or(0, |oldest_ns| now_ns.saturating_sub(oldest_ns));
-        let baking = self.feed.lock().baking;
-        let painting = self.sequencer.painting();
-        let document = self.keeper.as_ref().map(Keeper::document);
-        let (undo, redo) = painting.history_depth();
-        let status = PaintStatus {
-            journal: self.sequencer.journal_next(),
-            steps,
-            footprint_cells,
-            lag_ns,
-            memory_bytes: painting.bytes() as u64,
-            committed: document.map_or(0, Document::committed),
-            undo: undo as u32,
-            redo: redo as u32,
-            merged: painting.history().merged(),
-            kept_bytes: painting.pager().counts().held(),
-            fault: document
-                .and_then(Document::fault)
-                .map_or(String::new(), |(what, help)| format!("{what}: {help}")),
-            lost: counts.lost,
-            baking: baking.all,
-            baked: baking.done,
-            refused: self.refused
-                + counts.refused
-                + self.reader.refused()
-                + self.sequencer.ignored(),
-        };
-        self.status.send(now_ns, now_ns, &status)
-    }
-}
-
-/// Writes the canvas and, if asked, the ledger; on failure says which file.
-///
-/// # Errors
-/// The path and what the system says.
-pub fn write_snapshot(
-    painting: &mut Painting,
-    path: &Path,
-    ledger: Option<&Path>,
-    export: &Export,
-) -> Result<(), (String, std::io::Error)> {
-    let name = |path: &Path| path.display().to_string();
-    if let Some(ledger) = ledger {
-        let report = painting.report();
-        write_whole(ledger, |file| {
-            Ok(serde_json::to_writer_pretty(file, &report)?)
-        })
-        .map_err(|error| (name(ledger), error))?;
-    }
-    let picture = picture_for(painting, CANVAS, export);
-    write_whole(path, |file| picture.encode_png(file)).map_err(|error| (name(path), error))
 }
 
 impl std::fmt::Debug for PaintNode {
@@ -487,5 +399,7 @@ impl std::fmt::Debug for PaintNode {
     }
 }
 
+#[cfg(test)]
+mod beside_tests;
 #[cfg(test)]
 mod tests;

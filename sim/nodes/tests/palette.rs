@@ -4,8 +4,11 @@ use maulstick_brush::BrushFile;
 use maulstick_nodes::Offline;
 use maulstick_optics::PaintLibrary;
 use maulstick_paint::ledger::LedgerReport;
+use maulstick_paint::setup::wells_of;
 use maulstick_paint::{Painting, PaintingSetup};
-use maulstick_types::scene::{PALETTE, Scene, Surface, WellKind};
+use maulstick_types::Mixture;
+use maulstick_types::command::Command;
+use maulstick_types::scene::{PALETTE, Scene, Surface, Well, WellKind};
 use maulstick_types::stylus::{DEFAULT_TILT_RAD, StylusPose, StylusSample};
 
 /// A brush over a canvas and its palette.
@@ -163,4 +166,64 @@ fn the_mixing_area_takes_and_gives_paint() {
     let report = hand.report();
     assert!(one > 0.0);
     assert!(report.paints_m3["Hansa Yellow Opaque"]["palette"] > 0.0);
+}
+
+impl Hand {
+    /// Lays other wells on the palette, as a client of the paint node would.
+    fn lay(&mut self, wells: Vec<Well>) -> Result<(), maulstick_paint::PaintRefusal> {
+        let surface = PALETTE;
+        self.offline.command(Command::Wells { surface, wells })
+    }
+}
+
+#[test]
+fn other_wells_give_other_paint_and_what_was_stirred_stays() {
+    let mut hand = Hand::new();
+    let blue = hand.well(Some("Ultramarine Blue"));
+    hand.drag_through(blue);
+    let before = hand.report().paints_m3["Ultramarine Blue"]["palette"];
+    let steps = hand.offline.painting_mut().history_depth();
+    let palette = hand.palette();
+    let teal: Mixture = "phthalo green blue shade=0.5,Titanium White=0.5"
+        .parse()
+        .expect("a mixture");
+    let wells = wells_of(&[teal], palette.cells, palette.cell_m);
+    hand.lay(wells).expect("wells");
+    let palette = hand.palette();
+    assert_eq!(palette.wells.len(), 2, "one paint and the cleaner");
+    let WellKind::Paint { mixture } = &palette.wells[0].kind else {
+        panic!("a paint")
+    };
+    assert_eq!(mixture.parts[0].paint, "Phthalo Green Blue Shade");
+    assert_eq!(
+        hand.offline.painting_mut().history_depth(),
+        steps,
+        "wells are no step"
+    );
+    let after = hand.report().paints_m3["Ultramarine Blue"]["palette"];
+    assert!(before > 0.0 && after == before, "{before} {after}");
+    let cleaner = hand.well(None);
+    hand.drag_through(cleaner);
+    let teal = hand.well(Some("Phthalo Green Blue Shade"));
+    hand.drag_through(teal);
+    let report = hand.report();
+    assert!(report.paints_m3["Phthalo Green Blue Shade"]["brush"] > 1e-10);
+    let blue = report.paints_m3["Ultramarine Blue"]["brush"];
+    assert!(blue < 1e-12, "the old well gives nothing: {blue}");
+}
+
+#[test]
+fn wells_beside_the_palette_or_of_unknown_paint_are_refused() {
+    let mut hand = Hand::new();
+    let before = hand.palette();
+    let (cells, cell_m) = (before.cells, before.cell_m);
+    let unknown = wells_of(&[Mixture::pure("Colbat Blue")], cells, cell_m);
+    let error = hand.lay(unknown).expect_err("unknown");
+    assert!(error.what.contains("'Cobalt Blue'"), "{}", error.what);
+    let mut beside = wells_of(&[Mixture::pure("Cobalt Blue")], cells, cell_m);
+    beside[0].center_m[0] = -1e-3;
+    let error = hand.lay(beside).expect_err("beside");
+    assert!(error.what.contains("well 1"), "{}", error.what);
+    assert!(error.help.contains("128×256 mm"), "{}", error.help);
+    assert_eq!(hand.palette(), before, "a refused command changes nothing");
 }

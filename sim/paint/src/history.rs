@@ -407,6 +407,11 @@ impl History {
         (there, gone)
     }
 
+    /// Counts all steps as changed.
+    pub fn touch_all(&mut self) {
+        self.touched.extend(self.steps.keys());
+    }
+
     /// Forgets all steps.
     pub fn forget(&mut self) {
         self.open.clear();

@@ -21,10 +21,12 @@
 //! | [`painting`], [`sequencer`] | the painting and its journal |
 //! | [`light`], [`look`] | the light of the scene, and colour under it |
 //! | [`bare`], [`display`], [`lamp`] | what is shown: bare, unlit, lit |
+//! | [`coat`] | the paint on a brush as it is shown |
 //! | [`bands`], [`picture`] | a surface row of tiles by row of tiles, and pictures of it |
 
 pub mod bands;
 pub mod bare;
+pub mod coat;
 pub mod display;
 pub mod dry;
 pub mod embedded;

@@ -119,6 +119,14 @@ impl Pager {
         Arc::new(pager)
     }
 
+    /// Has pages of a painting that was in memory alone leave it from now on, those that come: at most
+    /// `bound` bytes of what is stored stay. A painting gets a document once.
+    pub fn back(&self, backing: Arc<dyn Backing>, bound: usize) {
+        if self.backing.set(backing).is_ok() {
+            self.bound.store(bound, Relaxed);
+        }
+    }
+
     /// Pages that belong to no painting.
     fn loose() -> &'static Arc<Self> {
         static LOOSE: OnceLock<Arc<Pager>> = OnceLock::new();

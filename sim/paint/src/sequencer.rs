@@ -16,6 +16,7 @@ use maulstick_types::{Flags, Header, Mixture, Origin};
 
 use crate::kept::{KeptAnswer, KeptTake};
 use crate::painting::{PaintRefusal, Painting};
+use ways::elsewhere;
 
 /// Clients whose last reply is kept, so that a repeated command is done once. A client repeats
 /// within seconds; of more clients than these the one that was answered longest ago is forgotten.
@@ -349,10 +350,6 @@ impl Sequencer {
                 .painting
                 .load_beside(brush, left, right)
                 .map(|()| String::new()),
-            Command::Define { brush, .. } => Err(PaintRefusal::new(
-                "a brush file is no matter of the painting".to_owned(),
-                &format!("send it to the node '{brush}'"),
-            )),
             Command::Tune { tuning } => self.painting.tune(tuning).map(|()| String::new()),
             Command::Clean { brush } => self.painting.clean(brush).map(|()| String::new()),
             Command::Take {
@@ -371,14 +368,6 @@ impl Sequencer {
                 });
                 Ok(path.clone())
             }
-            Command::Place {
-                surface,
-                pose,
-                zoom,
-            } => self
-                .painting
-                .place(*surface, pose, *zoom)
-                .map(|()| String::new()),
             Command::Relight { light, expose } => self.painting.relight(light).map(|()| {
                 if *expose {
                     self.painting.expose();
@@ -418,15 +407,21 @@ impl Sequencer {
             | Command::StopDrying { .. }
             | Command::Wet { .. }
             | Command::Opacity { .. }
-            | Command::LayerOpacity { .. }) => self.layers(command),
-            command @ (Command::Handle { .. }
+            | Command::LayerOpacity { .. }
+            | Command::NameLayer { .. }) => self.layers(command),
+            command @ (Command::Place { .. }
+            | Command::Handle { .. }
             | Command::FillWith { .. }
             | Command::Size { .. }
-            | Command::Piles { .. }) => self.ways(command),
-            Command::GroundSpectrum { surface, spectrum } => self
-                .painting
-                .set_ground_spectrum(*surface, spectrum)
-                .map(|()| String::new()),
+            | Command::Piles { .. }
+            | Command::Wells { .. }
+            | Command::GroundSpectrum { .. }) => self.ways(command),
+            command @ (Command::Define { .. }
+            | Command::Open { .. }
+            | Command::New { .. }
+            | Command::SaveAs { .. }
+            | Command::Export { .. }
+            | Command::StopExport) => Err(elsewhere(command)),
         };
         let (client, number) = (request.client, request.number);
         let outcome = match done {

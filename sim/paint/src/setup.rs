@@ -1,5 +1,6 @@
 //! The scene of a new painting.
 
+use maulstick_brush::palette_place::{Side, beside};
 use maulstick_optics::{PaintLibrary, Spectrum};
 use maulstick_types::advice::choice;
 use maulstick_types::scene::{CANVAS, Light, PALETTE, Scene, Surface, Well, WellKind};
@@ -32,12 +33,8 @@ pub const PALETTE_PAINTS: [&str; 10] = [
 
 /// Cells of the palette, across and up.
 const PALETTE_CELLS: [u32; 2] = [512, 1024];
-/// Radius of its wells, cells, and their distance from its left edge.
+/// Radius of its wells, cells.
 const WELL_CELLS: f64 = 36.0;
-/// The palette is a board so thick that lies on the desk, m: a brush may be wiped on its edge.
-const BOARD_M: f64 = 4e-3;
-/// Gap between palette and canvas on the desk, m.
-const GAP_M: f64 = 0.01;
 
 /// What a new painting is made with.
 #[derive(Clone, Debug, PartialEq)]
@@ -108,7 +105,6 @@ impl PaintingSetup {
     #[must_use]
     pub fn scene(&self) -> Scene {
         let size = self.cells.map(|cells| f64::from(cells) * self.cell_m);
-        let palette = PALETTE_CELLS.map(|cells| f64::from(cells) * self.cell_m);
         let at = |x: f64, y: f64| Pose {
             position_m: [x, y, 0.0],
             ..Pose::IDENTITY
@@ -127,13 +123,12 @@ impl PaintingSetup {
             piles_last: false,
         };
         let canvas = surface(CANVAS, at(-0.5 * size[0], -0.5 * size[1]), self.cells);
-        let left = -0.5 * size[0] - GAP_M - palette[0];
-        let mut board = surface(PALETTE, at(left, -0.5 * palette[1]), PALETTE_CELLS);
-        board.pose.position_m[2] = BOARD_M;
+        let mut board = surface(PALETTE, Pose::IDENTITY, PALETTE_CELLS);
+        board.pose = beside(&canvas, &board, Side::Left);
         board.ground = "grey".to_owned();
         board.tooth = "panel".to_owned();
         board.piles_last = self.piles_last;
-        board.wells = self.wells();
+        board.wells = wells_of(&self.wells, PALETTE_CELLS, self.cell_m);
         Scene {
             version: 1,
             surfaces: vec![canvas, board],
@@ -148,38 +143,33 @@ impl PaintingSetup {
             handlings: Vec::new(),
         }
     }
+}
 
-    /// Wells along the left edge, the cleaner in the lower right corner.
-    fn wells(&self) -> Vec<Well> {
-        let radius_m = WELL_CELLS * self.cell_m;
-        let count = self.wells.len().max(1) as f64;
-        let place = |i: usize| {
-            let y = f64::from(PALETTE_CELLS[1]) * (1.0 - (i as f64 + 0.5) / count);
-            [1.5 * radius_m, y * self.cell_m]
-        };
-        let mut wells: Vec<Well> = self
-            .wells
-            .iter()
-            .enumerate()
-            .map(|(i, mixture)| Well {
-                center_m: place(i),
-                radius_m,
-                kind: WellKind::Paint {
-                    mixture: mixture.clone(),
-                },
-            })
-            .collect();
-        let corner = [
-            f64::from(PALETTE_CELLS[0]) * self.cell_m - 1.5 * radius_m,
-            1.5 * radius_m,
-        ];
-        wells.push(Well {
-            center_m: corner,
-            radius_m,
-            kind: WellKind::Cleaner,
-        });
-        wells
-    }
+/// Wells of a palette of so many cells, across and up, that hold these mixtures from the top: along its
+/// right edge, toward the canvas, smaller where they are many, and the cleaner beside the lowest, so that
+/// they are within reach while the rest of the palette is not.
+#[must_use]
+pub fn wells_of(mixtures: &[Mixture], cells: [u32; 2], cell_m: f64) -> Vec<Well> {
+    let [width, height] = cells.map(f64::from);
+    let count = mixtures.len().max(1) as f64;
+    let large = WELL_CELLS.min(0.3 * width.min(height));
+    let [cleaner_m, radius_m] = [large, large.min(0.45 * height / count)].map(|r| r * cell_m);
+    let paints = mixtures.iter().enumerate().map(|(i, mixture)| Well {
+        center_m: [
+            width * cell_m - 1.5 * radius_m,
+            height * (1.0 - (i as f64 + 0.5) / count) * cell_m,
+        ],
+        radius_m,
+        kind: WellKind::Paint {
+            mixture: mixture.clone(),
+        },
+    });
+    let cleaner = Well {
+        center_m: [width * cell_m - 4.0 * cleaner_m, 1.5 * cleaner_m],
+        radius_m: cleaner_m,
+        kind: WellKind::Cleaner,
+    };
+    paints.chain([cleaner]).collect()
 }
 
 /// Checks that there is a ground called `name`.
@@ -276,6 +266,26 @@ mod tests {
                 assert!(
                     well.center_m[i] > well.radius_m && well.center_m[i] < size - well.radius_m
                 );
+            }
+        }
+    }
+
+    #[test]
+    fn many_wells_are_smaller_and_do_not_touch() {
+        for (count, cells) in [(1, PALETTE_CELLS), (12, PALETTE_CELLS), (40, [200, 900])] {
+            let mixtures = vec![Mixture::pure("Bone Black"); count];
+            let wells = wells_of(&mixtures, cells, 2.5e-4);
+            assert_eq!(wells.len(), count + 1);
+            for pair in wells[..count].windows(2) {
+                let apart = pair[0].center_m[1] - pair[1].center_m[1];
+                assert!(apart > 2.0 * pair[0].radius_m, "{count} wells overlap");
+            }
+            for well in &wells {
+                let inside = |i: usize| {
+                    let size = f64::from(cells[i]) * 2.5e-4;
+                    well.center_m[i] >= well.radius_m && well.center_m[i] <= size - well.radius_m
+                };
+                assert!(inside(0) && inside(1), "{count} wells: {well:?}");
             }
         }
     }

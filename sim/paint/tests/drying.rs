@@ -452,6 +452,23 @@ fn the_newest_layer_becomes_wet_in_a_region_and_an_opacity_is_not_lost() {
     let unknown = sequencer.ask(opacity("sky", 1.0)).expect_err("no layer");
     assert!(unknown.what.contains("'sky'") && unknown.help.contains("2 (high)"));
 
+    let names = |sequencer: &Sequencer| -> Vec<String> {
+        let layers = &sequencer.painting().scene().layers;
+        layers.iter().map(|layer| layer.name.clone()).collect()
+    };
+    let name = |layer: u32| Command::NameLayer {
+        layer,
+        name: " sky ".to_owned(),
+    };
+    sequencer.ask(name(1)).expect("a layer");
+    assert_eq!(names(&sequencer), ["sky", "high"]);
+    sequencer
+        .ask(Command::Undo { brush: None })
+        .expect("a step");
+    assert_eq!(names(&sequencer), ["low", "high"]);
+    let unknown = sequencer.ask(name(3)).expect_err("no layer");
+    assert!(unknown.what.contains('3') && unknown.help.contains("2 (high)"));
+
     let region: Region = "6,6,10x10".parse().expect("a region");
     assert_eq!(sequencer.ask(wet(1, Some(region))).as_deref(), Ok("high"));
     let layers = |sequencer: &Sequencer| -> BTreeSet<u32> {

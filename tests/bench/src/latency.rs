@@ -1,13 +1,15 @@
 //! From a stylus sample to the first frame that holds it, for a puller without a window that asks
-//! again at once; a take is played at rate 1.
+//! again at once, and in a window; a take is played at rate 1.
 
 use std::collections::BTreeMap;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Stdio};
 use std::time::{Duration, Instant};
 
 use maulstick_bus::typed::{Receiver, ask};
-use maulstick_bus::{Bus as _, BusError, Class, Dial, Queue, RigClock, RigFolder, Wake, ZenohBus};
+use maulstick_bus::{
+    Bus as _, BusError, Class, Dial, Queue, RigClock, RigFolder, RigInfo, Wake, ZenohBus,
+};
 use maulstick_rig::Fault;
 use maulstick_types::Origin;
 use maulstick_types::brush::BrushState;
@@ -16,18 +18,32 @@ use maulstick_types::topics::Topics;
 
 use crate::render::performance;
 use crate::report::{Report, quantile, sorted};
+use crate::window_latency;
 
-/// A rig that ends with this value.
-struct Rig(Child);
+/// A process that ends with this value.
+pub(crate) struct Running(Child);
 
-impl Drop for Rig {
+impl Running {
+    /// Starts `command` without its words.
+    pub(crate) fn start(command: &mut Command) -> Result<Self, Fault> {
+        let quiet = command.stdout(Stdio::null()).stderr(Stdio::null());
+        quiet.spawn().map(Self).map_err(fault)
+    }
+
+    /// Whether it has ended by itself.
+    pub(crate) fn has_ended(&mut self) -> Result<bool, Fault> {
+        Ok(self.0.try_wait().map_err(fault)?.is_some())
+    }
+}
+
+impl Drop for Running {
     fn drop(&mut self) {
         self.0.kill().ok();
         self.0.wait().ok();
     }
 }
 
-fn fault(error: impl std::fmt::Display) -> Fault {
+pub(crate) fn fault(error: impl std::fmt::Display) -> Fault {
     Fault::failure(error.to_string())
 }
 
@@ -38,45 +54,51 @@ pub(crate) fn maulstick() -> Result<PathBuf, Fault> {
         .with_file_name("maulstick"))
 }
 
+/// The rig of a folder, once it is there.
+pub(crate) fn joined(path: &Path, give_up: Instant) -> Result<(RigFolder, RigInfo), Fault> {
+    loop {
+        match RigFolder::join_at(path) {
+            Ok(joined) => return Ok(joined),
+            Err(error) if Instant::now() > give_up => return Err(error.into()),
+            Err(_) => std::thread::sleep(Duration::from_millis(5)),
+        }
+    }
+}
+
+/// A rig called `latency` in the folder `place` that plays a take at rate 1.
+pub(crate) fn playing(place: &Path, take: &Path) -> Result<Command, Fault> {
+    let mut command = Command::new(maulstick()?);
+    command
+        .args(["up", "--name", "latency", "--rate", "1"])
+        .args(["--load", "Bone Black", "--play"])
+        .arg(take)
+        .current_dir(place)
+        .env("XDG_RUNTIME_DIR", place);
+    Ok(command)
+}
+
+/// A bus of that rig, once it is there, for a program called `name`.
+pub(crate) fn joined_as(place: &Path, name: &str) -> Result<ZenohBus, Fault> {
+    let path = place.join("maulstick/latency");
+    let (folder, info) = joined(&path, Instant::now() + Duration::from_secs(30))?;
+    let dial = Dial {
+        name: name.into(),
+        listen: Some(folder.locator(name)),
+        connect: vec![info.endpoint.clone()],
+    };
+    let clock = RigClock::with_offset(info.clock_offset_ns);
+    Ok(ZenohBus::open(&dial, clock)?)
+}
+
 /// Measures and reports.
 pub(crate) fn run(report: &mut Report) -> Result<(), Fault> {
     let place = tempfile::tempdir().map_err(fault)?;
     let (take, seconds) = performance(place.path())?;
-    let child = Command::new(maulstick()?)
-        .args([
-            "up",
-            "--headless",
-            "--name",
-            "latency",
-            "--rate",
-            "1",
-            "--load",
-            "Bone Black",
-        ])
-        .args(["--snapshot", "end.png", "--play"])
-        .arg(&take)
-        .current_dir(place.path())
-        .env("XDG_RUNTIME_DIR", place.path())
-        .stdout(Stdio::null())
-        .stderr(Stdio::null())
-        .spawn()
-        .map_err(fault)?;
-    let mut rig = Rig(child);
-    let path = place.path().join("maulstick/latency");
-    let give_up = Instant::now() + Duration::from_secs(30);
-    let (folder, info) = loop {
-        match RigFolder::join_at(&path) {
-            Ok(joined) => break joined,
-            Err(error) if Instant::now() > give_up => return Err(error.into()),
-            Err(_) => std::thread::sleep(Duration::from_millis(5)),
-        }
-    };
-    let dial = Dial {
-        name: "puller".into(),
-        listen: Some(folder.locator("puller")),
-        connect: vec![info.endpoint.clone()],
-    };
-    let bus = ZenohBus::open(&dial, RigClock::with_offset(info.clock_offset_ns))?;
+    window_latency::run(report, place.path(), &take, seconds)?;
+    let mut command = playing(place.path(), &take)?;
+    command.args(["--headless", "--snapshot", "end.png"]);
+    let mut rig = Running::start(&mut command)?;
+    let bus = joined_as(place.path(), "puller")?;
     let latencies = pull(&bus, &Topics::new("latency"), seconds, &mut rig)?;
     bus.close();
     let all = sorted(latencies.milliseconds);
@@ -98,7 +120,12 @@ struct Latencies {
     lost: usize,
 }
 
-fn pull(bus: &ZenohBus, topics: &Topics, seconds: f64, rig: &mut Rig) -> Result<Latencies, Fault> {
+fn pull(
+    bus: &ZenohBus,
+    topics: &Topics,
+    seconds: f64,
+    rig: &mut Running,
+) -> Result<Latencies, Fault> {
     let wake = Wake::new();
     let me = Origin {
         source: 1,
@@ -115,7 +142,7 @@ fn pull(bus: &ZenohBus, topics: &Topics, seconds: f64, rig: &mut Rig) -> Result<
     };
     let (mut since, mut epoch, mut look) = (0, 0, 0);
     let give_up = Instant::now() + Duration::from_secs_f64(seconds + 30.0);
-    while Instant::now() < give_up && rig.0.try_wait().map_err(fault)?.is_none() {
+    while Instant::now() < give_up && !rig.has_ended()? {
         let request = FrameRequest {
             surface: 0,
             since,
@@ -124,6 +151,7 @@ fn pull(bus: &ZenohBus, topics: &Topics, seconds: f64, rig: &mut Rig) -> Result<
             level: 0,
             wait_ms: 100,
             look,
+            shared: true,
         };
         let limit = Duration::from_millis(500);
         let reply =

@@ -5,6 +5,7 @@
 //! | [`brush`] | `brush`: the solver of the spines beside slsqp, a head, its strips |
 //! | [`bus`] | `bus`: a sample from a device to the brush node, beside a bare zenoh put |
 //! | [`document`] | `document`: vast canvases, long histories, opening and packing a painting's file |
+//! | [`frames`] | `frames`: a reply to a view through shared memory, beside the socket |
 //! | [`haptics`] | `haptics`: how late the servo wakes beside cyclictest, what a tick takes, how stable it is |
 //! | [`header`] | headers of a brush's states |
 //! | [`latency`] | `latency`: from a stylus sample to the first frame that holds it |
@@ -14,11 +15,15 @@
 //! | [`render`] | `render`: the 30 s recording, offline |
 //! | [`report`] | rows and their table |
 //! | [`thread_cpu`] | time of the processor |
+//! | [`view`] | `view`: frames of the whole desk without a window |
+//! | [`window`] | `window`: memory of the window |
+//! | [`window_latency`] | `latency`: the same in a window |
 
 mod advection;
 mod brush;
 mod bus;
 mod document;
+mod frames;
 mod haptics;
 mod header;
 mod latency;
@@ -27,6 +32,9 @@ mod paint;
 mod render;
 mod report;
 mod thread_cpu;
+mod view;
+mod window;
+mod window_latency;
 
 use clap::Parser;
 use maulstick_rig::Fault;
@@ -38,8 +46,8 @@ use crate::report::Report;
 #[derive(Parser)]
 #[command(name = "maulstick-bench", version)]
 struct Options {
-    /// What to measure: brush, bus, document, haptics, latency, optics, paint, render; everything if
-    /// absent
+    /// What to measure: brush, bus, document, frames, haptics, latency, optics, paint, render, view,
+    /// window; everything if absent
     area: Option<String>,
     /// The paint model that is measured
     #[arg(long, default_value = "impasto", value_parser = MODELS)]
@@ -58,10 +66,11 @@ struct Options {
 /// An area's name and what measures it.
 type Area = (&'static str, fn(&mut Report, &Options) -> Result<(), Fault>);
 
-const AREAS: [Area; 8] = [
+const AREAS: [Area; 11] = [
     ("brush", |report, _| brush::run(report)),
     ("bus", |report, _| bus::run(report)),
     ("document", |report, _| document::run(report)),
+    ("frames", |report, _| frames::run(report)),
     ("haptics", |report, _| haptics::run(report)),
     ("latency", |report, _| latency::run(report)),
     ("optics", |report, _| optics::run(report)),
@@ -69,6 +78,8 @@ const AREAS: [Area; 8] = [
         paint::run(report, &options.backend)
     }),
     ("render", |report, _| render::run(report)),
+    ("view", |report, _| view::run(report)),
+    ("window", |report, _| window::run(report)),
 ];
 
 fn main() {

@@ -52,6 +52,7 @@ fn run() {
         deadline += PERIOD;
         let now = Instant::now();
         match deadline.checked_duration_since(now) {
+            // The vendor's clock: each tick has its own deadline.
             Some(left) => std::thread::sleep(left),
             None => deadline = now,
         }

@@ -2,7 +2,7 @@
 // display.
 //
 // The formulas are those of maulstick_optics::light, its shadows, and maulstick_optics::gamut, term by
-// term; a test compares them. A pixel of the target is a cell, row 0 the lowest.
+// term; a test compares them. A pixel of the target is a cell, lower rows first.
 
 const TAPS: u32 = 16u;
 
@@ -40,6 +40,12 @@ struct Gamut {
     from_lab: Rows,
 }
 
+// The cells of the surface that the textures hold: cell c at c modulo their size.
+struct Window {
+    low: vec2<i32>,
+    last: vec2<i32>,
+}
+
 // Share of the light that comes from all around.
 override ambient: f32;
 // Share of the light that the surface reflects by itself.
@@ -63,6 +69,7 @@ override soft: bool;
 // m.
 @group(0) @binding(2) var heights: texture_2d<f32>;
 @group(0) @binding(3) var<uniform> gamut: Gamut;
+@group(0) @binding(4) var<uniform> window: Window;
 
 @vertex
 fn cover(@builtin(vertex_index) corner: u32) -> @builtin(position) vec4<f32> {
@@ -72,28 +79,48 @@ fn cover(@builtin(vertex_index) corner: u32) -> @builtin(position) vec4<f32> {
     return vec4<f32>(x, y, 0.0, 1.0);
 }
 
+// A place among the cells: which cell, and its texel.
+struct Spot {
+    cell: vec2<i32>,
+    texel: vec2<i32>,
+    size: vec2<i32>,
+}
+
+fn spot_of(texel: vec2<i32>) -> Spot {
+    let size = vec2<i32>(textureDimensions(heights));
+    // A window is no larger than the textures.
+    let off = (texel - window.low) % size;
+    return Spot(window.low + select(off, off + size, off < vec2<i32>(0)), texel, size);
+}
+
+// Height of a cell of the window, less than the size of the textures away.
+fn height(spot: Spot, cell: vec2<i32>) -> f32 {
+    let texel = spot.texel + (cell - spot.cell);
+    let up = select(texel, texel + spot.size, texel < vec2<i32>(0));
+    return textureLoad(heights, select(up, up - spot.size, up >= spot.size), 0).r;
+}
+
 // dh/dx and dh/dy: central differences, one-sided at the border.
-fn slope(cell: vec2<i32>, last: vec2<i32>) -> vec2<f32> {
-    let low = max(cell - 1, vec2<i32>(0));
-    let high = min(cell + 1, last);
+fn slope(spot: Spot) -> vec2<f32> {
+    let cell = spot.cell;
+    let low = max(cell - 1, window.low);
+    let high = min(cell + 1, window.last);
     let rise = vec2<f32>(
-        textureLoad(heights, vec2<i32>(high.x, cell.y), 0).r
-            - textureLoad(heights, vec2<i32>(low.x, cell.y), 0).r,
-        textureLoad(heights, vec2<i32>(cell.x, high.y), 0).r
-            - textureLoad(heights, vec2<i32>(cell.x, low.y), 0).r,
+        height(spot, vec2<i32>(high.x, cell.y)) - height(spot, vec2<i32>(low.x, cell.y)),
+        height(spot, vec2<i32>(cell.x, high.y)) - height(spot, vec2<i32>(cell.x, low.y)),
     );
     return rise / (vec2<f32>(max(high - low, vec2<i32>(1))) * lamp.cell_m);
 }
 
 // Share of the lamp that the relief does not hide.
-fn seen(cell: vec2<i32>, last: vec2<i32>) -> f32 {
-    let own = textureLoad(heights, cell, 0).r;
+fn seen(spot: Spot) -> f32 {
+    let own = height(spot, spot.cell);
     var horizon = -1.0;
     for (var k = 0u; k < TAPS; k += 1u) {
         let at = lamp.cells[k];
         let run = lamp.runs[k];
-        let low = textureLoad(heights, clamp(cell + at.xy, vec2<i32>(0), last), 0).r;
-        let high = textureLoad(heights, clamp(cell + at.zw, vec2<i32>(0), last), 0).r;
+        let low = height(spot, clamp(spot.cell + at.xy, window.low, window.last));
+        let high = height(spot, clamp(spot.cell + at.zw, window.low, window.last));
         let rise = (low - own + (high - low) * run.x) * lamp.rise;
         let above = rise * lamp.along.x - run.z;
         let ahead = rise * lamp.along.y + run.y;
@@ -210,9 +237,8 @@ fn mapped(working: vec3<f32>) -> vec3<f32> {
 
 @fragment
 fn light(@builtin(position) at: vec4<f32>) -> @location(0) vec4<f32> {
-    let cell = vec2<i32>(at.xy);
-    let last = vec2<i32>(textureDimensions(heights)) - 1;
-    let texel = textureLoad(colours, cell, 0);
-    let colour = lit(texel.rgb, texel.a, slope(cell, last), seen(cell, last));
+    let spot = spot_of(vec2<i32>(at.xy));
+    let texel = textureLoad(colours, spot.texel, 0);
+    let colour = lit(texel.rgb, texel.a, slope(spot), seen(spot));
     return vec4<f32>(mapped(colour), 1.0);
 }

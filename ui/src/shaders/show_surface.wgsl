@@ -1,5 +1,6 @@
-// Shows the desk, and a lit surface where it lies on it: linear light of the display's gamut is
-// filtered first, then encoded as the display takes it.
+// Shows the desk, and a lit surface where it lies on it, from its detail and, where that does not reach,
+// from its base: linear light of the display's gamut is filtered first, then encoded as the display
+// takes it.
 
 struct Place {
     // Pixels of the view: the surface's lower left corner, and its sides from there.
@@ -7,10 +8,29 @@ struct Place {
     right: vec2<f32>,
     up: vec2<f32>,
     view: vec2<f32>,
-    // Share of the texture that the surface takes: a coarse level's last cells reach beyond it.
-    share: vec2<f32>,
     // Half the distance of the samples of a pixel, in shares of the surface; 0 for one sample.
     spread: vec2<f32>,
+    // How far the shadow of a board that lies over others reaches, pixels; 0 for a canvas. Its strength.
+    shade: vec2<f32>,
+    // Radii of the corners, pixels: lower left, lower right, upper left, upper right.
+    radii: vec4<f32>,
+    detail: Region,
+    // Its extent is 0 where there is none.
+    base: Region,
+}
+
+// What a sheet shows of the surface.
+struct Region {
+    // Cells of the surface at the sheet's level: a coarse level's last cells reach beyond it.
+    extent: vec2<f32>,
+    // The same in whole cells.
+    texels: vec2<f32>,
+    // Texels of the sheet, which goes on from its other side.
+    size: vec2<f32>,
+    // The cells that may be shown.
+    low: vec2<f32>,
+    high: vec2<f32>,
+    pad: vec2<f32>,
 }
 
 // Whether the target takes encoded values; one that encodes by itself takes linear light.
@@ -21,9 +41,11 @@ override foreign: bool = false;
 override grey: f32 = 0.0;
 
 @group(0) @binding(0) var<uniform> place: Place;
-@group(0) @binding(1) var surface: texture_2d<f32>;
+@group(0) @binding(1) var detail_sheet: texture_2d<f32>;
 @group(0) @binding(2) var smooth_sampler: sampler;
 @group(0) @binding(3) var cube: texture_3d<f32>;
+@group(0) @binding(4) var base_sheet: texture_2d<f32>;
+@group(0) @binding(5) var torus_sampler: sampler;
 
 struct Corner {
     @builtin(position) position: vec4<f32>,
@@ -37,17 +59,27 @@ fn pixels() -> vec2<f32> {
 
 @vertex
 fn lay(@builtin(vertex_index) corner: u32) -> Corner {
-    // A pixel wider than the surface, for its soft edge.
+    // A pixel wider than the surface, for its soft edge; farther by its shadow.
     let unit = vec2<f32>(f32(corner & 1u), f32(corner >> 1u));
-    let at = unit + (2.0 * unit - 1.0) / max(pixels(), vec2<f32>(1.0));
+    let margin = 1.0 + 1.5 * place.shade.x;
+    let at = unit + (2.0 * unit - 1.0) * margin / max(pixels(), vec2<f32>(1.0));
     let pixel = place.corner + at.x * place.right + at.y * place.up;
     let clip = pixel / place.view * vec2<f32>(2.0, -2.0) + vec2<f32>(-1.0, 1.0);
     return Corner(vec4<f32>(clip, 0.0, 1.0), at);
 }
 
 fn sampled(at: vec2<f32>) -> vec3<f32> {
-    let inside = clamp(at, vec2<f32>(0.0), vec2<f32>(1.0)) * place.share;
-    return textureSampleLevel(surface, smooth_sampler, inside, 0.0).rgb;
+    let inside = clamp(at, vec2<f32>(0.0), vec2<f32>(1.0));
+    let fine = place.detail;
+    var cell = inside * fine.extent;
+    let shown = all(cell >= fine.low) && all(cell <= fine.high);
+    if shown || place.base.extent.x == 0.0 {
+        cell = clamp(clamp(cell, fine.low, fine.high), vec2<f32>(0.5), fine.texels - 0.5);
+        return textureSampleLevel(detail_sheet, torus_sampler, cell / fine.size, 0.0).rgb;
+    }
+    let coarse = place.base;
+    cell = clamp(inside * coarse.extent, vec2<f32>(0.5), coarse.texels - 0.5);
+    return textureSampleLevel(base_sheet, torus_sampler, cell / coarse.size, 0.0).rgb;
 }
 
 @vertex
@@ -90,6 +122,17 @@ fn sent(light: vec3<f32>) -> vec3<f32> {
     return linear(own);
 }
 
+// Distance from the edge of the board, pixels; negative within.
+fn beyond(at: vec2<f32>) -> f32 {
+    let half = 0.5 * pixels();
+    let p = at * pixels() - half;
+    let lower = select(place.radii.x, place.radii.y, p.x > 0.0);
+    let upper = select(place.radii.z, place.radii.w, p.x > 0.0);
+    let radius = select(lower, upper, p.y > 0.0);
+    let q = abs(p) - half + radius;
+    return min(max(q.x, q.y), 0.0) + length(max(q, vec2<f32>(0.0))) - radius;
+}
+
 @fragment
 fn show(in: Corner) -> @location(0) vec4<f32> {
     var light = sampled(in.at);
@@ -99,6 +142,16 @@ fn show(in: Corner) -> @location(0) vec4<f32> {
             + sampled(in.at + vec2<f32>(s.x, -s.y)) + sampled(in.at + vec2<f32>(-s.x, s.y)));
     }
     let inner = clamp(min(in.at, 1.0 - in.at) * pixels() + 0.5, vec2<f32>(0.0), vec2<f32>(1.0));
-    let cover = inner.x * inner.y;
-    return vec4<f32>(sent(light) * cover, cover);
+    if place.shade.x == 0.0 {
+        let cover = inner.x * inner.y;
+        return vec4<f32>(sent(light) * cover, cover);
+    }
+    // A board: rounded, with a rim, and a shadow to the lower right.
+    let edge = beyond(in.at);
+    let cover = clamp(0.5 - edge, 0.0, 1.0);
+    let rim = mix(0.72, 1.0, smoothstep(0.0, 2.5, -edge));
+    let aside = vec2<f32>(0.3, -0.3) * place.shade.x / max(pixels(), vec2<f32>(1.0));
+    let away = smoothstep(-0.5 * place.shade.x, place.shade.x, beyond(in.at - aside));
+    let shadow = place.shade.y * (1.0 - away);
+    return vec4<f32>(sent(light * rim) * cover, cover + (1.0 - cover) * shadow);
 }

@@ -5,19 +5,18 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{Receiver as Edges, RecvTimeoutError};
 use std::time::{Duration, Instant};
 
-use glam::DVec3;
+use maulstick_brush::palette_place::{Side, beside, is_same, over};
 use maulstick_bus::typed::Receiver;
 use maulstick_bus::{Bus, Class, Queue, Wake};
-use maulstick_num::geometry::Rigid;
 use maulstick_rig::Fault;
 use maulstick_rig::fault::EXIT_USAGE;
 use maulstick_types::Pose;
 use maulstick_types::command::Command;
-use maulstick_types::scene::{BrushHandling, BrushMode, CANVAS, PALETTE, Scene, Surface};
+use maulstick_types::scene::{BrushHandling, BrushMode, CANVAS, PALETTE, Scene};
 use maulstick_types::topics::Topics;
 
 use super::{Action, Deed, Edge};
-use crate::commander::Commander;
+use maulstick_rig::commander::Commander;
 
 /// How long a command may take.
 const PATIENCE: Duration = Duration::from_secs(2);
@@ -27,12 +26,6 @@ const ASK: Duration = Duration::from_millis(300);
 const AGAIN: Duration = Duration::from_secs(1);
 /// How long the scene may take to show what was done.
 const SHOWN: Duration = Duration::from_secs(1);
-/// Height of the palette above the canvas, m: its board is 4 mm thick, and paint lies under it.
-const OVER_M: f64 = 0.01;
-/// Gap between the palette at rest and the canvas, m.
-const BESIDE_M: f64 = 0.01;
-/// Height of the palette at rest, m.
-const REST_M: f64 = 4e-3;
 
 /// What uses the brush in another way for as long as it lasts.
 #[derive(Clone, Copy, Debug, Default)]
@@ -234,7 +227,7 @@ impl Worker {
         let (Some(canvas), Some(palette)) = (surface(CANVAS), surface(PALETTE)) else {
             return;
         };
-        let (over, beside) = (over(canvas, palette), beside(canvas, palette));
+        let (over, beside) = (over(canvas, palette), beside(canvas, palette, Side::Left));
         let (zoom, now) = (palette.zoom, palette.pose.clone());
         // The canvas may have moved since; what was slid over it goes back all the same.
         let (to, rest) = match &self.rest {
@@ -307,38 +300,4 @@ fn handling(scene: &Scene, brush: &str) -> BrushHandling {
         .find(|handling| handling.brush == brush)
         .cloned()
         .unwrap_or_else(|| BrushHandling::normal(brush))
-}
-
-/// Width and height of a surface on the desk, m.
-fn size_m(surface: &Surface) -> DVec3 {
-    let [across, up] = surface.cells.map(f64::from);
-    DVec3::new(across, up, 0.0) * (surface.cell_m * surface.zoom)
-}
-
-/// A place of the canvas, from its middle, for the middle of the palette.
-fn at(canvas: &Surface, palette: &Surface, from_middle: DVec3) -> Pose {
-    let corner = 0.5 * size_m(canvas) + from_middle - 0.5 * size_m(palette);
-    let canvas = Rigid::from(&canvas.pose);
-    Rigid {
-        translation: canvas.point(corner),
-        ..canvas
-    }
-    .to_pose()
-}
-
-/// The palette over the middle of the canvas.
-fn over(canvas: &Surface, palette: &Surface) -> Pose {
-    at(canvas, palette, DVec3::Z * OVER_M)
-}
-
-/// The palette to the left of the canvas, where a painting begins with it.
-fn beside(canvas: &Surface, palette: &Surface) -> Pose {
-    let aside = 0.5 * (size_m(canvas).x + size_m(palette).x) + BESIDE_M;
-    at(canvas, palette, DVec3::new(-aside, 0.0, REST_M))
-}
-
-/// Whether two poses differ by rounding alone.
-fn is_same(a: &Pose, b: &Pose) -> bool {
-    let near = |a: &[f64], b: &[f64]| a.iter().zip(b).all(|(a, b)| (a - b).abs() < 1e-9);
-    near(&a.position_m, &b.position_m) && near(&a.orientation, &b.orientation)
 }

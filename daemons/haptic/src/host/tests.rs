@@ -7,7 +7,7 @@ use maulstick_device::fitting::{Fitting, Similarity};
 use maulstick_haptics::Switch;
 use maulstick_haptics::contact::{Contact, Held};
 use maulstick_num::geometry::{Rigid, canonical, rotation};
-use maulstick_types::haptics::{ContactModel, ForceLaw, Grain};
+use maulstick_types::haptics::{ContactModel, ForceLaw};
 
 use super::*;
 use crate::driver::{Abilities, Driver, Reading, Wrench};
@@ -248,25 +248,13 @@ fn a_fault_outlasts_the_device_until_it_is_armed_anew() {
 /// A rigid wall of 100 N/m at the desk's z = 0, for a head of 25 mm.
 fn wall() -> Contact {
     Contact::new(&ContactModel {
-        device: 1,
-        device_epoch: 1,
-        brush: "main".into(),
-        plane_point_m: [0.0; 3],
-        plane_normal: [0.0, 0.0, 1.0],
-        friction_static: 0.0,
-        friction_kinetic: 0.0,
         viscous_n_s_m: 2.0,
-        grain: Grain {
-            amplitude: 0.0,
-            wavelength_m: 1e-3,
-            seed: 1,
-        },
-        law: ForceLaw::Rigid {
-            stiffness_n_m: 100.0,
-        },
-        head_length_m: 0.025,
-        time_to_live_ns: u64::MAX,
-        recovery_ns: 0,
+        ..ContactModel::bare(
+            ForceLaw::Rigid {
+                stiffness_n_m: 100.0,
+            },
+            0.025,
+        )
     })
     .expect("a model")
 }

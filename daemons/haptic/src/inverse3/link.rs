@@ -259,6 +259,7 @@ impl Courier {
             if seen.elapsed() >= SILENCE {
                 return Some(why);
             }
+            // The service answers at once, and each answer costs it a core: a few a millisecond are enough.
             std::thread::sleep(TRIP.saturating_sub(begun.elapsed()));
         }
         None

@@ -56,7 +56,7 @@ fn what_is_missing_at_the_start_is_told_with_what_to_do() {
         (
             "config",
             "basis",
-            json!({ "permutation": "XXX" }),
+            json!({ "permutation": "XYX" }),
             "axes that cannot be read",
         ),
     ] {

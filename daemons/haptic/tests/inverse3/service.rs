@@ -1,6 +1,6 @@
 //! A service that speaks as Haply's Inverse service does, or misbehaves as it is told to.
 
-use std::net::{TcpListener, TcpStream};
+use std::net::{SocketAddr, TcpListener, TcpStream};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex, MutexGuard};
 use std::thread::JoinHandle;
@@ -49,6 +49,7 @@ impl Heard {
 pub(crate) struct Service {
     pub(crate) url: String,
     heard: Arc<Mutex<Heard>>,
+    address: SocketAddr,
     stop: Arc<AtomicBool>,
     thread: Option<JoinHandle<()>>,
 }
@@ -57,22 +58,22 @@ impl Service {
     /// A service that sends `first` to whoever connects, and then acts on the n-th message as `act` says.
     pub(crate) fn start(first: Act, mut act: impl FnMut(usize) -> Act + Send + 'static) -> Self {
         let listener = TcpListener::bind("127.0.0.1:0").expect("a port");
-        listener.set_nonblocking(true).expect("no waiting");
-        let url = format!("ws://{}", listener.local_addr().expect("an address"));
+        let address = listener.local_addr().expect("an address");
+        let url = format!("ws://{address}");
         let heard = Arc::new(Mutex::new(Heard::default()));
         let stop = Arc::new(AtomicBool::new(false));
         let (hearing, stopped) = (Arc::clone(&heard), Arc::clone(&stop));
         let thread = std::thread::spawn(move || {
-            while !stopped.load(Ordering::Relaxed) {
-                let Ok((stream, _)) = listener.accept() else {
-                    std::thread::sleep(Duration::from_millis(1));
-                    continue;
-                };
+            while let Ok((stream, _)) = listener.accept() {
+                if stopped.load(Ordering::Relaxed) {
+                    return;
+                }
                 serve(stream, &first, &mut act, &hearing, &stopped);
             }
         });
         Self {
             url,
+            address,
             heard,
             stop,
             thread: Some(thread),
@@ -87,6 +88,8 @@ impl Service {
 impl Drop for Service {
     fn drop(&mut self) {
         self.stop.store(true, Ordering::Relaxed);
+        // It waits for whoever connects.
+        TcpStream::connect(self.address).ok();
         if let Some(thread) = self.thread.take() {
             thread.join().ok();
         }

@@ -16,8 +16,8 @@ fn pressed() -> Script {
     }
 }
 
-#[test]
-fn a_servo_that_ends_takes_its_force_back_first() {
+/// The calls of a servo that presses and is ended.
+fn ended() -> Vec<Call> {
     let control = play(&pressed());
     let mut host = serve();
     wall(&mut host);
@@ -25,6 +25,12 @@ fn a_servo_that_ends_takes_its_force_back_first() {
     drop(host);
     let log = calls(&control);
     assert_eq!(disorder(&log), None);
+    log
+}
+
+#[test]
+fn a_servo_that_ends_takes_its_force_back_first() {
+    let log = ended();
     let at = |what: Call| place(&log, |call| *call == what);
     let (clamped, powered) = (at(Call::Enable(0x4001)), at(Call::Enable(0x4000)));
     assert!(clamped < powered && powered < at(Call::Rate(1000)));
@@ -37,13 +43,7 @@ fn a_servo_that_ends_takes_its_force_back_first() {
 
 #[test]
 fn the_log_shows_every_disorder() {
-    let control = play(&pressed());
-    let mut host = serve();
-    wall(&mut host);
-    tick(&mut host, |ticked| ticked.force.z > 0.39);
-    drop(host);
-    let log = calls(&control);
-    assert_eq!(disorder(&log), None);
+    let log = ended();
     let last = log.iter().rposition(|call| matches!(call, Call::End(_)));
     let stop = place(&log, |call| *call == Call::Stop);
     let with = |at: usize, call: Call| {

@@ -11,31 +11,16 @@ use maulstick_haptics::Limits;
 use maulstick_haptics::contact::Contact;
 use maulstick_rig::RigConfig;
 use maulstick_rig::config::DeviceSection;
-use maulstick_types::haptics::{ContactModel, ForceLaw, Grain};
+use maulstick_types::haptics::{ContactModel, ForceLaw};
 
 /// A rigid wall of 100 N/m at z = 0, for a head of 25 mm.
 fn wall() -> Contact {
-    Contact::new(&ContactModel {
-        device: 1,
-        device_epoch: 1,
-        brush: "main".into(),
-        plane_point_m: [0.0; 3],
-        plane_normal: [0.0, 0.0, 1.0],
-        friction_static: 0.0,
-        friction_kinetic: 0.0,
-        viscous_n_s_m: 0.0,
-        grain: Grain {
-            amplitude: 0.0,
-            wavelength_m: 1e-3,
-            seed: 1,
-        },
-        law: ForceLaw::Rigid {
+    Contact::new(&ContactModel::bare(
+        ForceLaw::Rigid {
             stiffness_n_m: 100.0,
         },
-        head_length_m: 0.025,
-        time_to_live_ns: u64::MAX,
-        recovery_ns: 0,
-    })
+        0.025,
+    ))
     .expect("a model")
 }
 

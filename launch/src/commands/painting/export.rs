@@ -2,13 +2,10 @@
 
 use std::path::PathBuf;
 
-use clap::{Args, ValueEnum};
+use clap::Args;
+use clap::builder::PossibleValuesParser;
 use indicatif::ProgressBar;
-use maulstick_exchange::{
-    ExchangeError, StlSetup, stl_step, write_height_map, write_lit_png, write_open_exr,
-    write_open_raster, write_stl,
-};
-use maulstick_paint::Painting;
+use maulstick_exchange::{ExchangeError, Format, Order};
 use maulstick_paint::picture::Depth;
 use maulstick_rig::config::ViewSection;
 use maulstick_rig::{Fault, files};
@@ -20,19 +17,9 @@ use crate::document::{read, wrong};
 use crate::outputs::{UsedFile, check_outputs};
 use crate::performance::refused;
 
-/// Formats of an export.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-enum Format {
-    /// The painting under its light
-    Png,
-    /// Unlit linear colour, height, and each paint's thickness, wet and dry: OpenEXR
-    Exr,
-    /// A layer for each dry layer: OpenRaster
-    Ora,
-    /// Heights as a grey PNG of 16 bits
-    Height,
-    /// A solid for relief printing
-    Stl,
+/// The formats by name, for the command line.
+pub(in crate::commands) fn formats() -> PossibleValuesParser {
+    PossibleValuesParser::new(Format::ALL.map(|(name, _)| name))
 }
 
 /// Options of `maulstick painting export`.
@@ -44,8 +31,8 @@ pub struct ExportOptions {
     #[arg(short, long, value_name = "OUT")]
     output: PathBuf,
     /// The format, where the name does not say it; `height` is a PNG too
-    #[arg(long)]
-    format: Option<Format>,
+    #[arg(long, value_parser = formats())]
+    format: Option<String>,
     /// The palette in the place of the canvas
     #[arg(long)]
     palette: bool,
@@ -72,9 +59,11 @@ pub struct ExportOptions {
 
 impl ExportOptions {
     fn format(&self) -> Result<Format, Fault> {
-        let ending = self.output.extension().and_then(|ending| ending.to_str());
-        let named = ending.and_then(|ending| Format::from_str(ending, true).ok());
-        self.format.or(named).ok_or_else(|| {
+        let format = match &self.format {
+            Some(name) => Format::named(name),
+            None => Format::of(&self.output),
+        };
+        format.ok_or_else(|| {
             Fault::usage("the name does not say which format to write")
                 .at(self.output.display().to_string())
                 .help("end it in .png, .exr, .ora or .stl, or give --format")
@@ -114,47 +103,21 @@ pub(super) fn run(options: &ExportOptions) -> Result<i32, Fault> {
     let surface = if options.palette { PALETTE } else { CANVAS };
     let bar = super::bar("exporting");
     let mut tell = super::tell(&bar);
-    match format {
-        Format::Png => write(options, &bar, |file| {
-            write_lit_png(painting, surface, (&look, depth), file, &mut tell)
-        }),
-        Format::Exr => write(options, &bar, |file| {
-            write_open_exr(painting, surface, file, &mut tell)
-        }),
-        Format::Ora => write(options, &bar, |file| {
-            write_open_raster(painting, surface, file, &mut tell)
-        }),
-        Format::Height => {
-            let range = write(options, &bar, |file| {
-                write_height_map(painting, surface, file, &mut tell)
-            })?;
-            let [least, greatest] = [range.least_m, range.greatest_m].map(|m| f64::from(m) * 1e6);
-            say!("black is {least:.1} µm, white is {greatest:.1} µm");
-            Ok(())
-        }
-        Format::Stl => {
-            let setup = solid(options, painting, surface);
-            let size = write(options, &bar, |file| {
-                write_stl(painting, surface, &setup, file, &mut tell)
-            })?;
-            let [x, y, z] = size.size_mm;
-            say!("{} triangles, {x:.1} × {y:.1} × {z:.2} mm", size.triangles);
-            Ok(())
-        }
-    }?;
-    say!("{}", out.display());
-    Ok(0)
-}
-
-fn solid(options: &ExportOptions, painting: &Painting, surface: u32) -> StlSetup {
-    let cells = painting
-        .store(surface)
-        .map_or([1, 1], |store| store.cells());
-    StlSetup {
+    let order = Order {
+        format,
+        surface,
+        depth,
+        export: look,
         base_mm: options.base_mm,
         exaggeration: options.exaggeration,
-        step: options.step.unwrap_or_else(|| stl_step(cells)),
+        step: options.step,
+    };
+    let said = write(options, &bar, |file| order.write(painting, file, &mut tell))?;
+    if !said.is_empty() {
+        say!("{said}");
     }
+    say!("{}", out.display());
+    Ok(0)
 }
 
 /// Writes the file, whole or not at all.

@@ -8,6 +8,8 @@ mod pack;
 mod recover;
 mod versions;
 
+pub(super) use export::formats;
+
 use clap::Subcommand;
 use indicatif::{ProgressBar, ProgressStyle};
 use maulstick_rig::Fault;

@@ -57,7 +57,7 @@ fn nothing_arrives_before_its_time_and_late_joiners_get_cached_values() {
         .answer(vec![2])
         .expect("answered");
     net.advance(1000);
-    assert_eq!(pending.try_recv(), Some(Answer::Bytes(vec![2])));
+    assert_eq!(pending.try_recv(), Some(Answer::Bytes(vec![2].into())));
     net.advance(1_000_000);
     assert_eq!(pending.try_recv(), Some(Answer::Ended));
 }

@@ -1,7 +1,7 @@
 //! What a command may say.
 
 use super::*;
-use crate::scene::{FLOWS, STAINS_M};
+use crate::scene::{FLOWS, STAINS_M, WellKind};
 use crate::stylus::FARTHEST_M;
 use crate::topics::check_name;
 
@@ -85,6 +85,14 @@ impl Command {
             Self::LayerOpacity { layer, opacity } => {
                 layer_name(layer).and_then(|()| opaque(*opacity))
             }
+            Self::NameLayer { name, .. } => layer_name(name).and_then(|()| {
+                match name.trim().is_empty() || name.contains(char::is_control) {
+                    true => Err(
+                        "a layer cannot be called this; give it letters, and no line breaks".into(),
+                    ),
+                    false => Ok(()),
+                }
+            }),
             Self::GroundSpectrum { spectrum, .. } => match spectrum.len() > SPECTRUM_MAX {
                 true => Err(format!(
                     "a spectrum of {} bytes; give one of at most {SPECTRUM_MAX}",
@@ -132,14 +140,113 @@ impl Command {
                 )),
             },
             Self::Piles { .. } => Ok(()),
+            Self::Wells { wells, .. } => match wells.len() > WELLS_MAX {
+                true => Err(format!(
+                    "a palette of {} wells; give one of at most {WELLS_MAX}",
+                    wells.len()
+                )),
+                false => wells.iter().try_for_each(well),
+            },
             Self::Keep { name } | Self::Return { name } | Self::Forget { name } => {
                 version_name(name)
             }
             Self::Branch { from, name } => [from, name]
                 .into_iter()
                 .try_for_each(|name| version_name(name)),
-            Self::Mark | Self::StopDrying { .. } => Ok(()),
+            Self::Open { path, .. } | Self::SaveAs { path, .. } => whole_path(path),
+            Self::New { path, canvas, .. } => path
+                .as_deref()
+                .map_or(Ok(()), whole_path)
+                .and_then(|()| canvas.check()),
+            Self::Export { order } => order.check(),
+            Self::Mark | Self::StopDrying { .. } | Self::StopExport => Ok(()),
         }
+    }
+}
+
+impl NewCanvas {
+    /// Checks that it can be made: whether there are such a ground and tooth is seen later.
+    ///
+    /// # Errors
+    /// As [`Command::check`].
+    pub fn check(&self) -> Result<(), String> {
+        for name in [&self.ground, &self.tooth] {
+            if name.is_empty() || name.len() > PATH_MAX {
+                return Err(format!(
+                    "a ground or tooth with a name of {} bytes; give one of 1 to {PATH_MAX}",
+                    name.len()
+                ));
+            }
+        }
+        if !CELLS_M.contains(&self.cell_m) {
+            return Err(format!(
+                "cells of {} mm; choose .01 to 10 mm",
+                self.cell_m * 1e3
+            ));
+        }
+        let [width, height] = [self.width_m, self.height_m].map(|side| side / self.cell_m);
+        if !(CELLS.contains(&width) && CELLS.contains(&height)) {
+            let [most, least] = [65_536.0, 1.0].map(|cells| cells * self.cell_m * 100.0);
+            return Err(format!(
+                "a canvas of {}×{} cm; with cells of {} mm choose {least:.3} to {most:.0} cm either way",
+                self.width_m * 100.0,
+                self.height_m * 100.0,
+                self.cell_m * 1e3
+            ));
+        }
+        match width * height <= CELLS_IN_ALL {
+            true => Ok(()),
+            false => Err(format!(
+                "a canvas of {:.0} million cells; choose a smaller one or larger cells: {:.0} million are the most",
+                width * height * 1e-6,
+                CELLS_IN_ALL * 1e-6
+            )),
+        }?;
+        match STAINS_M.contains(&self.stain_m) {
+            true => Ok(()),
+            false => Err(format!(
+                "a stain of {} µm; choose 0 to 1000 µm",
+                micrometres(self.stain_m)
+            )),
+        }
+    }
+}
+
+impl ExportOrder {
+    /// Checks path, format and numbers: whether it can be written is seen later.
+    ///
+    /// # Errors
+    /// As [`Command::check`].
+    pub fn check(&self) -> Result<(), String> {
+        whole_path(&self.path)?;
+        let names = [&self.format, &self.profile, &self.gamut];
+        if names.iter().any(|name| name.len() > PAINT_NAME_MAX) {
+            return Err("a format, profile or gamut of that length; choose a known one".to_owned());
+        }
+        match [8, 16].contains(&self.bits) {
+            true => Ok(()),
+            false => Err(format!(
+                "a PNG of {} bits a channel; choose 8 or 16",
+                self.bits
+            )),
+        }
+    }
+}
+
+fn whole_path(path: &str) -> Result<(), String> {
+    if path.len() > PATH_MAX {
+        return Err(format!(
+            "a path of {} bytes; give one of at most {PATH_MAX}",
+            path.len()
+        ));
+    }
+    match path.starts_with('/') && !path.contains('\0') {
+        true => Ok(()),
+        false => Err(
+            "a path that does not begin at the root; give the whole one, for each program has a folder \
+             of its own"
+                .to_owned(),
+        ),
     }
 }
 
@@ -155,6 +262,20 @@ fn film(thickness_m: f64) -> Result<(), String> {
             "a film of {} µm; choose 1 to 5000 µm",
             micrometres(thickness_m)
         )),
+    }
+}
+
+fn well(well: &Well) -> Result<(), String> {
+    let round = well.radius_m > 0.0 && well.radius_m <= FARTHEST_M;
+    if !round || !well.center_m.iter().all(|m| m.abs() <= FARTHEST_M) {
+        return Err(format!(
+            "a well with a radius of {} mm; choose one above 0, within the surface",
+            well.radius_m * 1e3
+        ));
+    }
+    match &well.kind {
+        WellKind::Paint { mixture } => short(mixture),
+        WellKind::Cleaner => Ok(()),
     }
 }
 

@@ -1,9 +1,12 @@
 //! Parts of the messages whose bytes are golden.
 
+use maulstick_types::command::{Command, ExportOrder, NewCanvas};
 use maulstick_types::control::ControlSample;
 use maulstick_types::haptics::ForceReply;
+use maulstick_types::paint::{DryingStatus, ExportStatus, FrameHolds, PaintStatus, ThumbnailReply};
 use maulstick_types::scene::{BrushHandling, BrushMode};
 use maulstick_types::stylus::StylusStatus;
+use maulstick_types::window::Presented;
 use maulstick_types::{Pose, Region};
 
 pub(crate) fn handling() -> BrushHandling {
@@ -62,5 +65,101 @@ pub(crate) fn control() -> ControlSample {
         push: [0.5, -0.25, 0.0],
         turn: [0.0, 1.0, -1.0],
         switches: 3,
+    }
+}
+
+pub(crate) fn paint_status() -> PaintStatus {
+    PaintStatus {
+        journal: 1,
+        steps: 2,
+        footprint_cells: 3,
+        lag_ns: 4,
+        memory_bytes: 5,
+        lost: 6,
+        refused: 7,
+        baking: 8,
+        baked: 9,
+        committed: 10,
+        undo: 11,
+        redo: 12,
+        merged: 13,
+        kept_bytes: 14,
+        fault: "full".into(),
+        path: "/a.maul".into(),
+        all_committed: true,
+        committed_ns: 15,
+        blank: false,
+        take: true,
+        drying: Some(DryingStatus {
+            share: 0.25,
+            ticks_left: 16,
+            layer: "sky".into(),
+        }),
+        export: Some(ExportStatus {
+            path: "/a.png".into(),
+            share: 0.5,
+            since_ns: 17,
+        }),
+        backend: "cpu".into(),
+    }
+}
+
+pub(crate) fn thumbnail() -> ThumbnailReply {
+    ThumbnailReply {
+        width: 2,
+        height: 1,
+        rgb: vec![1, 2, 3, 4, 5, 6].into(),
+        version: 9,
+    }
+}
+
+/// The commands about files.
+pub(crate) fn files() -> [Command; 5] {
+    let canvas = NewCanvas {
+        width_m: 0.3,
+        height_m: 0.2,
+        cell_m: 2.5e-4,
+        ground: "gesso".into(),
+        tooth: "linen".into(),
+        tooth_seed: 1,
+        stain_m: 3e-6,
+    };
+    let order = ExportOrder {
+        format: "stl".into(),
+        step: 4,
+        profile: "srgb".into(),
+        gamut: "clamp".into(),
+        ..ExportOrder::to("/a.stl")
+    };
+    [
+        Command::Open {
+            path: "/a.maul".into(),
+            forget: true,
+        },
+        Command::New {
+            path: Some("/b.maul".into()),
+            canvas,
+            forget: false,
+        },
+        Command::SaveAs {
+            path: "/c.maul".into(),
+            replace: true,
+        },
+        Command::Export { order },
+        Command::StopExport,
+    ]
+}
+
+pub(crate) fn presented() -> Presented {
+    Presented {
+        frame: 1,
+        begun_ns: 2,
+        draw_ns: 3,
+        journal: 4,
+        holds: vec![FrameHolds {
+            brush: 5,
+            epoch: 6,
+            next: 7,
+        }],
     }
 }

@@ -28,6 +28,19 @@ pub enum Hair {
     Steel,
 }
 
+impl Hair {
+    /// Its colour in the light, sRGB of 0 to 255.
+    #[must_use]
+    pub const fn srgb(self) -> [f32; 3] {
+        match self {
+            Self::Hog => [238.0, 214.0, 170.0],
+            Self::Sable => [186.0, 112.0, 66.0],
+            Self::Badger => [226.0, 222.0, 214.0],
+            Self::Steel => [226.0, 230.0, 235.0],
+        }
+    }
+}
+
 /// The head's shape.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]

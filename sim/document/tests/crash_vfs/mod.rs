@@ -64,6 +64,17 @@ pub(crate) struct Log(Arc<Mutex<Recorded>>);
 struct Recorded {
     start: Image,
     ops: Vec<Op>,
+    refused: Refused,
+}
+
+/// What is refused of a database's main file.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Refused {
+    Nothing,
+    /// Writes, as where the disk is full.
+    Writes,
+    /// To be opened.
+    Opening,
 }
 
 /// The files of a database; none for one that is not there.
@@ -83,6 +94,7 @@ pub(crate) fn watch(main: &Path) -> Log {
     let log = Log(Arc::new(Mutex::new(Recorded {
         start: Image::read_from(main),
         ops: Vec::new(),
+        refused: Refused::Nothing,
     })));
     shim::watch(main, &log);
     log
@@ -99,6 +111,15 @@ impl Log {
     /// The point after the latest operation: how many there have been.
     pub(crate) fn point(&self) -> usize {
         self.recorded().ops.len()
+    }
+
+    /// Refuses this from now on.
+    pub(crate) fn refuse(&self, refused: Refused) {
+        self.recorded().refused = refused;
+    }
+
+    fn refuses(&self, file: FileKind, refused: Refused) -> bool {
+        file == FileKind::Main && self.recorded().refused == refused
     }
 
     /// The operations so far.

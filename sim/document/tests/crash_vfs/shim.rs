@@ -13,7 +13,7 @@ use std::sync::{Mutex, OnceLock, PoisonError};
 
 use rusqlite::ffi;
 
-use super::{Deed, FileKind, Log};
+use super::{Deed, FileKind, Log, Refused};
 
 /// The VFS's name.
 pub(super) const NAME: &CStr = c"crash";
@@ -188,6 +188,9 @@ unsafe extern "C" fn open(
         };
         let inner = inner(file);
         (*file).pMethods = std::ptr::null();
+        if watched.log.refuses(watched.file, Refused::Opening) {
+            return ffi::SQLITE_CANTOPEN;
+        }
         (*inner).pMethods = std::ptr::null();
         let code = base_open(base, name, inner, flags, out_flags);
         if !(*inner).pMethods.is_null() {
@@ -275,6 +278,11 @@ unsafe extern "C" fn write(
     bytes: c_int,
     offset: ffi::sqlite3_int64,
 ) -> c_int {
+    // SAFETY: `watched` is a box that lives until `close`.
+    let watched = unsafe { (*file.cast::<CrashFile>()).watched.as_ref() };
+    if watched.is_some_and(|watched| watched.log.refuses(watched.file, Refused::Writes)) {
+        return ffi::SQLITE_FULL;
+    }
     let code = base!(file, xWrite, buffer, bytes, offset);
     // SAFETY: SQLite gives `bytes` bytes at `buffer`.
     unsafe {

@@ -247,9 +247,15 @@ impl Painter {
                 layers: self.dice.below(3) as u32,
                 region: self.region(),
             },
-            54 => Command::LayerOpacity {
-                layer: "part".to_owned(),
-                opacity: [0.5, 1.0][self.dice.below(2) as usize],
+            54 => match self.dice.below(2) {
+                0 => Command::LayerOpacity {
+                    layer: "part".to_owned(),
+                    opacity: 0.5,
+                },
+                _ => Command::NameLayer {
+                    layer: 1,
+                    name: "renamed".to_owned(),
+                },
             },
             _ => Command::GroundSpectrum {
                 surface: CANVAS,

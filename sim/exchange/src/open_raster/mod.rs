@@ -6,7 +6,6 @@
 //! it was before the next was laid: colours of glazes are in the glazes, not in how layers are mixed.
 
 mod images;
-mod thumbnail;
 
 use std::fmt::Write as _;
 use std::io::{Seek, Write};
@@ -18,9 +17,9 @@ use zip::write::SimpleFileOptions;
 use zip::{CompressionMethod, DateTime, System, ZipWriter};
 
 use self::images::{Image, Shows, draw, images};
-use self::thumbnail::Thumbnail;
 use crate::ExchangeError;
 use crate::surface::{Progress, Steps, check_whole};
+use crate::thumbnail::{SIDE, Thumbnail};
 
 /// Pixels of the pictures that are drawn at once: packed they wait in memory, while drawn alone each
 /// would bake all layers under it again.
@@ -59,7 +58,7 @@ pub fn write_open_raster(
         "stack.xml",
         stack(size, banded.cell_m(), &images).as_bytes(),
     )?;
-    let mut thumbnail = Thumbnail::new(size);
+    let mut thumbnail = Thumbnail::new(size, SIDE);
     for group in groups {
         let packed = pack(&drawing, group, &mut thumbnail, &mut steps)?;
         for (image, packed) in group.iter().zip(packed) {

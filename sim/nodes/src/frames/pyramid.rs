@@ -279,7 +279,11 @@ impl Pyramid {
 
     fn keep(&mut self, place: (u32, u32, TileId), version: u64, tile: Arc<DisplayTile>) {
         if self.kept.len() >= KEPT_TILES {
-            self.kept.clear();
+            // What is coarse is made of many: it is kept as long as there is room.
+            self.kept.retain(|(_, level, _), _| *level > 0);
+            if self.kept.len() >= KEPT_TILES {
+                self.kept.clear();
+            }
         }
         self.kept.insert(place, (version, tile));
     }

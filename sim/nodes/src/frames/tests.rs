@@ -83,6 +83,7 @@ fn request(since: u64, epoch: u32, level: u32) -> FrameRequest {
         level,
         wait_ms: 300,
         look: 0,
+        shared: true,
     }
 }
 
@@ -114,6 +115,31 @@ fn a_new_view_gets_all_tiles_and_then_only_what_changed() {
         news.tiles.iter().map(|t| (t.x, t.y)).collect::<Vec<_>>(),
         vec![(3, 0)]
     );
+}
+
+#[test]
+fn a_view_gets_the_tiles_that_it_asks_for_however_old_they_are() {
+    let mut rig = rig();
+    paint(&rig, TileId { x: 1, y: 1 }, 7);
+    paint(&rig, TileId { x: 3, y: 1 }, 8);
+    let of = |tiles: [u32; 4], since: u64| FrameRequest {
+        tiles,
+        ..request(since, 5, 0)
+    };
+    let places = |reply: &FrameReply| -> BTreeSet<(u32, u32)> {
+        reply.tiles.iter().map(|tile| (tile.x, tile.y)).collect()
+    };
+    let part = ask(&mut rig, &of([0, 1, 2, 3], 0)).expect("at once");
+    assert_eq!(places(&part), [(0, 1), (1, 1), (0, 2), (1, 2)].into());
+    paint(&rig, TileId { x: 2, y: 0 }, 9);
+    let rest = of([0, 1, 2, 3], part.version);
+    assert_eq!(ask(&mut rig, &rest), None, "that is beside it");
+    // What comes into the view is asked for from the beginning.
+    let strip = ask(&mut rig, &of([2, 1, 4, 3], 0)).expect("at once");
+    assert_eq!(places(&strip), [(2, 1), (3, 1), (2, 2), (3, 2)].into());
+    paint(&rig, TileId { x: 0, y: 1 }, 10);
+    let news = ask(&mut rig, &of([0, 1, 4, 3], part.version)).expect("news");
+    assert_eq!(places(&news), [(0, 1)].into());
 }
 
 #[test]
@@ -311,4 +337,43 @@ fn a_picture_is_the_ground_of_each_tile_bare_and_painted() {
     assert!(differ(&shown(2).rgb, &bare(TileId { x: 1, y: 0 })) > 1e-2);
     let even = films.shade(&look.studio, Under::Even(ground.mean()));
     assert!(differ(&shown(2).rgb, &even) > 1e-2, "a fault would pass");
+}
+
+#[test]
+fn a_look_of_a_brush_is_told_once_for_each_load_and_light() {
+    use maulstick_brush::file::sections::Hair;
+    use maulstick_bus::Queue;
+    use maulstick_bus::typed::Receiver;
+    use maulstick_paint::load::BrushLoad;
+    use maulstick_types::brush::BrushLook;
+
+    let mut rig = rig();
+    let topics = Topics::new("t");
+    rig.server = rig.server.telling_brushes(&topics);
+    let bus = rig.net.bus();
+    let key = topics.brush_look("main");
+    let mut looks: Receiver<BrushLook> =
+        Receiver::new(&bus, &key, Class::Cached, Queue::Ring(16), &Wake::new()).expect("one");
+    let mut told = |rig: &mut Rig| {
+        rig.server.turn();
+        rig.net.advance(1_000_000);
+        std::iter::from_fn(|| looks.try_recv()).count()
+    };
+    assert_eq!(told(&mut rig), 0, "no brush is known");
+    let carried = Carried {
+        load: Arc::new(BrushLoad::clean(24)),
+        hair: Hair::Sable,
+        film_m: 1e-9,
+        film_full: 1e4,
+    };
+    rig.feed.lock().carried.insert("main".into(), carried);
+    assert_eq!(told(&mut rig), 1);
+    assert_eq!(told(&mut rig), 0, "nothing is new");
+    if let Some(carried) = rig.feed.lock().carried.get_mut("main") {
+        Arc::make_mut(&mut carried.load).add_film(0, 3, 5);
+    }
+    assert_eq!(told(&mut rig), 1, "another load");
+    let look = Look::new(Studio::daylight());
+    rig.feed.lock().look = Some(Arc::new(look));
+    assert_eq!(told(&mut rig), 1, "another light");
 }

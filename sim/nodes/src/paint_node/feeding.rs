@@ -12,7 +12,42 @@ use crate::frames::{Fed, FedSurface, Progress};
 /// Least time between two hand-overs to the frames, ns.
 pub(super) const FEED_PERIOD_NS: u64 = 8_000_000;
 
+/// Least time between two hand-overs of what brushes carry, and how long after a view asked they are
+/// handed over, ns.
+const CARRIED_PERIOD_NS: u64 = 66_000_000;
+const WATCHED_NS: u64 = 2_000_000_000;
+
 impl PaintNode {
+    /// Hands over what brushes carry, while somebody looks: as far as steps are settled, for the model
+    /// waits for no view.
+    pub(super) fn hand_over_brushes(&mut self, now_ns: u64) {
+        if now_ns < self.fed_brushes_ns + CARRIED_PERIOD_NS {
+            return;
+        }
+        self.fed_brushes_ns = now_ns;
+        let painting = self.sequencer.painting();
+        let mut fed = self.feed.lock();
+        if now_ns > fed.watched_ns.saturating_add(WATCHED_NS) {
+            return;
+        }
+        let mut news = false;
+        for (brush, carried) in painting.carried() {
+            if !fed.carried.get(brush).is_some_and(|fed| fed.is(&carried)) {
+                fed.carried.insert(brush.to_owned(), carried);
+                news = true;
+            }
+        }
+        // A paint may be new with them; another light comes with the surfaces.
+        let known = fed.look.as_ref().map(|look| look.generation());
+        if news && known == Some(painting.look().generation()) {
+            fed.look = Some(Arc::clone(painting.look()));
+        }
+        drop(fed);
+        if news {
+            self.feed.ring();
+        }
+    }
+
     /// Surfaces and optics, before anything is painted.
     pub(super) fn feed_first(&self) {
         let painting = self.sequencer.painting();

@@ -8,9 +8,10 @@ use maulstick_bus::{Faults, MemoryNet};
 use maulstick_optics::{PaintLibrary, Under};
 use maulstick_paint::PaintingSetup;
 use maulstick_paint::display::WetFilms;
-use maulstick_types::command::Command;
+use maulstick_types::command::{Command, CommandReply, CommandRequest, Outcome};
+use maulstick_types::scene::CANVAS;
 use maulstick_types::stylus::{DEFAULT_TILT_RAD, StylusPose, StylusSample};
-use maulstick_types::{Header, Mixture, decode};
+use maulstick_types::{Flags, Header, Mixture, decode};
 
 use super::*;
 

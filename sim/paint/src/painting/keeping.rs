@@ -132,6 +132,12 @@ impl Painting {
         }
     }
 
+    /// The next checkpoint holds the whole history and all versions: its document knows none of them.
+    pub fn tell_all_again(&mut self) {
+        self.history.touch_all();
+        self.named_touched.extend(self.named.keys().cloned());
+    }
+
     fn kept_brushes(
         &self,
         loads: &BTreeMap<String, Page<BrushLoad>>,

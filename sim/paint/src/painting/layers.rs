@@ -243,6 +243,22 @@ impl Painting {
         Ok(())
     }
 
+    /// Gives a dry layer another name.
+    ///
+    /// # Errors
+    /// [`PaintRefusal`] for an unknown layer.
+    pub fn name_layer(&mut self, layer: u32, name: &str) -> Result<(), PaintRefusal> {
+        let layers = &self.scene.layers;
+        let Some(place) = layers.iter().position(|other| other.number == layer) else {
+            return Err(self.no_layer(&layer.to_string()));
+        };
+        self.begin_step("name", None);
+        name.trim().clone_into(&mut self.scene.layers[place].name);
+        self.scene.version += 1;
+        self.end_own_step();
+        Ok(())
+    }
+
     /// Tells the look and all who follow the scene.
     pub(super) fn layers_changed(&mut self) {
         let mut look = (*self.look).clone();

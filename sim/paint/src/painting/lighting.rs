@@ -45,7 +45,7 @@ impl Painting {
         Ok(())
     }
 
-    /// Notes in the look what it is made of: light, layers, grounds, paints.
+    /// Notes in the look what it is made of: light, layers, grounds, wells, paints.
     pub(super) fn note_look(&mut self) {
         let makes = super::undo::makes(&self.scene);
         let light = Light {
@@ -60,7 +60,9 @@ impl Painting {
         let layers = self.scene.layers.iter();
         let veiled = layers.filter(|layer| layer.opacity != 1.0);
         let veiled: Vec<(u32, f32)> = veiled.map(|layer| (layer.number, layer.opacity)).collect();
-        let made_of = format!("2 {light:?} {veiled:?} {makes:?} {}", self.library.hash());
+        let wells: Vec<_> = self.scene.surfaces.iter().map(|own| &own.wells).collect();
+        let hash = self.library.hash();
+        let made_of = format!("3 {light:?} {veiled:?} {makes:?} {wells:?} {hash}");
         Arc::make_mut(&mut self.look).note(&made_of);
     }
 

@@ -8,6 +8,7 @@ use maulstick_types::scene::{Scene, Tuning};
 use super::backend::Deferral;
 use super::lighting::paint_slot;
 use super::{PaintRefusal, Painting};
+use crate::coat::Carried;
 use crate::load::{Half, by_slot};
 use crate::model::BrushTraits;
 use crate::quantum::SLOTS;
@@ -171,5 +172,20 @@ impl Painting {
         track.stroke = None;
         track.path = None;
         Ok(())
+    }
+
+    /// What each brush carries, by its name: as far as the steps are settled.
+    pub fn carried(&self) -> impl Iterator<Item = (&str, Carried)> {
+        let cell_m = self.sheets[0].cell_m;
+        self.brushes.iter().map(move |(name, track)| {
+            let traits = BrushTraits::of(&track.file, cell_m, 1.0);
+            let carried = Carried {
+                load: Arc::clone(&track.load),
+                hair: track.file.head.hair,
+                film_m: f64::from(traits.film_cells_per_quantum) * cell_m,
+                film_full: traits.film_full,
+            };
+            (name.as_str(), carried)
+        })
     }
 }

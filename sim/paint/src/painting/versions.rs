@@ -38,7 +38,7 @@ impl Painting {
         self.line.as_deref()
     }
 
-    fn version(&self, name: &str) -> Result<&Named, PaintRefusal> {
+    pub(super) fn version(&self, name: &str) -> Result<&Named, PaintRefusal> {
         self.named.get(name).ok_or_else(|| {
             let names: Vec<&str> = self.named.keys().map(String::as_str).collect();
             let help = match names.is_empty() {

@@ -9,7 +9,7 @@ use maulstick_brush::HeadPose;
 use maulstick_types::Mixture;
 use maulstick_types::scene::{Well, WellKind};
 
-use super::Painting;
+use super::{PaintRefusal, Painting, bare};
 use crate::ledger::Ledger;
 use crate::model::BrushTraits;
 use crate::quantum::{QUANTUM_M, SLOTS};
@@ -17,6 +17,8 @@ use crate::window::Window;
 
 /// How thick paint lies in a well, m.
 pub const WELL_M: f64 = 2e-3;
+/// Wells may reach beyond the edge of their surface by what rounding makes of it, m.
+const EDGE_M: f64 = 1e-6;
 /// A strip is down within this of the surface, cells.
 const DIPS: f32 = 1.0;
 
@@ -61,6 +63,47 @@ fn is_in((pose, traits): (&HeadPose, &BrushTraits), well: &Well, cell_m: f64) ->
 }
 
 impl Painting {
+    /// Gives a surface other wells. What brushes have stirred in those that go stays there, wet.
+    ///
+    /// # Errors
+    /// [`PaintRefusal`] for an unknown surface or paint, or a well that does not lie on the surface.
+    pub fn set_wells(&mut self, surface: u32, wells: &[Well]) -> Result<(), PaintRefusal> {
+        let mut changed = self.surface(surface)?.clone();
+        let size = changed.cells.map(|cells| f64::from(cells) * changed.cell_m);
+        changed.wells = wells.to_vec();
+        for (place, well) in changed.wells.iter_mut().enumerate() {
+            let lies = |i: usize| {
+                let [low, high] = [-well.radius_m, well.radius_m].map(|r| well.center_m[i] + r);
+                low >= -EDGE_M && high <= size[i] + EDGE_M
+            };
+            if well.radius_m <= 0.0 || !(lies(0) && lies(1)) {
+                let [width, height] = size.map(|m| m * 1e3);
+                return Err(PaintRefusal::new(
+                    format!("well {} does not lie on the surface", place + 1),
+                    &format!("it is {width:.0}×{height:.0} mm: give a middle and a radius within"),
+                ));
+            }
+            if let WellKind::Paint { mixture } = &mut well.kind {
+                *mixture = self.library.check(mixture).map_err(PaintRefusal::paint)?;
+            }
+        }
+        self.close_windows();
+        let Some(sheet) = self.sheets.iter_mut().find(|sheet| sheet.id == surface) else {
+            return Ok(());
+        };
+        let relief = Some(Arc::clone(&sheet.bare.relief));
+        let makers = (&self.library, &self.embedded);
+        sheet.bare = Arc::new(bare(&changed, &self.look.studio, makers, relief)?);
+        let mut surfaces = self.scene.surfaces.iter_mut();
+        if let Some(own) = surfaces.find(|own| own.id == surface) {
+            own.wells = changed.wells;
+        }
+        self.scene.version += 1;
+        Arc::make_mut(&mut self.look).renew();
+        self.note_look();
+        Ok(())
+    }
+
     /// Sees to the wells that lie in the cells `from`..`to` of a sheet before a brush steps there.
     pub(super) fn tend_wells(
         &mut self,

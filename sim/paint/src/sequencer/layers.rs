@@ -51,6 +51,7 @@ impl Sequencer {
             Command::LayerOpacity { layer, opacity } => {
                 quietly(painting.set_opacity_of(layer, *opacity))
             }
+            Command::NameLayer { layer, name } => quietly(painting.name_layer(*layer, name)),
             _ => Ok(String::new()),
         }
     }

@@ -67,6 +67,11 @@ impl Sequencer {
         self.records.get_or_insert_default();
     }
 
+    /// Keeps nothing of what is accepted from now on.
+    pub fn stop_recording(&mut self) {
+        self.records = None;
+    }
+
     /// How many things were accepted.
     #[must_use]
     pub fn serial(&self) -> u64 {
@@ -128,6 +133,13 @@ impl Sequencer {
         self.painting.lift_brushes();
         let players = self.announced.values().map(|take| take.device);
         self.gone.extend(players);
+    }
+
+    /// Whether a take is being played: its brush is held by it.
+    #[must_use]
+    pub fn is_taking(&self) -> bool {
+        let mut takes = self.announced.values();
+        takes.any(|take| !take.ended && !self.gone.contains(&take.device))
     }
 
     /// Introduces a brush, or gives a known one another file.

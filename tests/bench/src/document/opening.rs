@@ -57,6 +57,7 @@ fn once(path: &std::path::Path) -> Result<[f64; 2], Fault> {
         level: LEVEL,
         wait_ms: 0,
         look: 0,
+        shared: false,
     };
     let mut more = true;
     while more {

@@ -5,7 +5,7 @@ use std::process::{Child, Command, Stdio};
 use std::time::{Duration, Instant};
 
 use maulstick_bus::typed::Receiver;
-use maulstick_bus::{Class, Dial, Queue, RigClock, RigFolder, Wake, ZenohBus};
+use maulstick_bus::{Class, Dial, Queue, RigClock, Wake, ZenohBus};
 use maulstick_device::{Take, TakeSample};
 use maulstick_rig::Fault;
 use maulstick_types::brush::BrushState;
@@ -13,7 +13,7 @@ use maulstick_types::stylus::{DEFAULT_TILT_RAD, StylusPose, StylusSample, axes};
 use maulstick_types::topics::Topics;
 
 use super::fault;
-use crate::latency::maulstick;
+use crate::latency::{joined, maulstick};
 
 /// Samples a second of its take.
 const RATE_HZ: u64 = 250;
@@ -58,13 +58,7 @@ impl Load {
         let mut load = Self(child);
         let path = place.join("maulstick").join(NAME);
         let give_up = Instant::now() + PATIENCE;
-        let (_, info) = loop {
-            match RigFolder::join_at(&path) {
-                Ok(joined) => break joined,
-                Err(error) if Instant::now() > give_up => return Err(error.into()),
-                Err(_) => std::thread::sleep(Duration::from_millis(5)),
-            }
-        };
+        let (_, info) = joined(&path, give_up)?;
         let dial = Dial {
             name: "bench".into(),
             listen: None,

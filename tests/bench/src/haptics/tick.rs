@@ -82,6 +82,7 @@ pub(super) fn run(report: &mut Report) -> Result<(), Fault> {
     while ticks < all {
         delivery.number += 1;
         host.models.write(delivery);
+        // Models come as often as a brush node sends them.
         std::thread::sleep(MODEL_PERIOD);
         while let Ok(ticked) = host.ticks.pop() {
             (ticks, heard) = (ticks + 1, Instant::now());
@@ -132,12 +133,10 @@ fn sliding() -> Take {
 
 /// What the brush node would send for this brush on a canvas.
 fn model(brush: &BrushFile) -> ContactModel {
+    let law = ForceLaw::Hermite {
+        knots: tuples(brush),
+    };
     ContactModel {
-        device: 1,
-        device_epoch: 1,
-        brush: "main".into(),
-        plane_point_m: [0.0; 3],
-        plane_normal: [0.0, 0.0, 1.0],
         friction_static: 0.3,
         friction_kinetic: 0.2,
         viscous_n_s_m: 0.5,
@@ -146,11 +145,8 @@ fn model(brush: &BrushFile) -> ContactModel {
             wavelength_m: 1e-3,
             seed: 1,
         },
-        law: ForceLaw::Hermite {
-            knots: tuples(brush),
-        },
-        head_length_m: brush.length_m(),
         time_to_live_ns: 100_000_000,
         recovery_ns: 10_000_000,
+        ..ContactModel::bare(law, brush.length_m())
     }
 }

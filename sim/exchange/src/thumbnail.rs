@@ -1,12 +1,35 @@
 //! A picture made small.
 
-use maulstick_optics::colour::{SrgbTable, srgb_decode};
+use std::convert::Infallible;
 
-/// Pixels of the longer side at most.
-const SIDE: usize = 256;
+use maulstick_optics::colour::{SrgbTable, srgb_decode};
+use maulstick_paint::Painting;
+use maulstick_paint::bands::in_order;
+use maulstick_paint::picture::{Depth, Drawing, Export, Picture};
+
+/// Pixels of the longer side of a thumbnail in a file, at most.
+pub(crate) const SIDE: usize = 256;
+
+/// A surface with its colours alone, in sRGB, with at most `side` pixels either way; none if there is no
+/// such surface.
+pub fn small_picture(painting: &mut Painting, surface: u32, side: usize) -> Option<Picture> {
+    let export = Export::default();
+    let drawing = Drawing::flat(painting, surface, &export)?;
+    let mut small = Thumbnail::new(drawing.banded().cells(), side.max(1));
+    let Ok(()) = in_order(
+        drawing.banded().bands(),
+        |band| drawing.band(band, Depth::Eight),
+        |_, rows| -> Result<(), Infallible> {
+            small.add(&rows);
+            Ok(())
+        },
+    );
+    let [width, height] = small.size();
+    Some(Picture::srgb(width, height, small.bytes()))
+}
 
 /// Means of linear light over the pixels of a picture that comes row after row.
-pub(super) struct Thumbnail {
+pub(crate) struct Thumbnail {
     from: [usize; 2],
     size: [usize; 2],
     /// Linear light of a byte.
@@ -17,11 +40,11 @@ pub(super) struct Thumbnail {
 }
 
 impl Thumbnail {
-    /// Of a picture of so many pixels across and down.
-    pub(super) fn new(from: [usize; 2]) -> Self {
+    /// Of a picture of so many pixels across and down, with at most `most` either way.
+    pub(crate) fn new(from: [usize; 2], most: usize) -> Self {
         let longest = from[0].max(from[1]);
-        let size = from.map(|side| match longest > SIDE {
-            true => ((side * SIDE + longest / 2) / longest).max(1),
+        let size = from.map(|side| match longest > most {
+            true => ((side * most + longest / 2) / longest).max(1),
             false => side,
         });
         Self {
@@ -36,12 +59,12 @@ impl Thumbnail {
     }
 
     /// Pixels across and down.
-    pub(super) fn size(&self) -> [usize; 2] {
+    pub(crate) fn size(&self) -> [usize; 2] {
         self.size
     }
 
     /// Takes the next rows, of sRGB bytes.
-    pub(super) fn add(&mut self, rows: &[u8]) {
+    pub(crate) fn add(&mut self, rows: &[u8]) {
         let [width, height] = self.from;
         for row in rows.chunks_exact(width * 3) {
             let y = self.rows * self.size[1] / height;
@@ -58,7 +81,7 @@ impl Thumbnail {
     }
 
     /// Its sRGB bytes, three a pixel.
-    pub(super) fn bytes(&self) -> Vec<u8> {
+    pub(crate) fn bytes(&self) -> Vec<u8> {
         let table = SrgbTable::default();
         let colour = |[r, g, b, pixels]: &[f64; 4]| [r, g, b].map(|sum| sum / pixels);
         let colours = self.sums.iter().flat_map(colour);
@@ -72,17 +95,17 @@ mod tests {
 
     #[test]
     fn light_is_averaged_and_nothing_grows() {
-        let mut small = Thumbnail::new([3, 2]);
+        let mut small = Thumbnail::new([3, 2], SIDE);
         let bytes: Vec<u8> = (0..18).map(|i| i * 14).collect();
         small.add(&bytes[..9]);
         small.add(&bytes[9..]);
         assert_eq!((small.size(), small.bytes()), ([3, 2], bytes));
-        let mut board = Thumbnail::new([1024, 60]);
+        let mut board = Thumbnail::new([1024, 60], SIDE);
         let row = |y: usize| (0..1024).flat_map(move |x| [[0, 255][(x + y) % 2]; 3]);
         board.add(&(0..60).flat_map(row).collect::<Vec<u8>>());
         // A chessboard of black and white gives half the light: 188, not 128.
         assert_eq!(board.size(), [256, 15]);
         assert!(board.bytes().iter().all(|byte| *byte == 188));
-        assert_eq!(Thumbnail::new([1, 5000]).size(), [1, 256]);
+        assert_eq!(Thumbnail::new([1, 5000], SIDE).size(), [1, 256]);
     }
 }

@@ -1,0 +1,82 @@
+//! `maulstick new`: a new painting in a running rig.
+
+use std::path::{Path, PathBuf};
+
+use clap::Args;
+use maulstick_rig::Fault;
+use maulstick_rig::config::{CanvasSection, is_path};
+use maulstick_types::command::{Command, NewCanvas};
+
+use super::open::{LONGEST, whole};
+use crate::commands::say;
+use crate::commands::session::{RIG, Session, Target};
+
+/// Options of `maulstick new`.
+#[derive(Args, Clone, Debug)]
+pub struct NewOptions {
+    /// Its file, which is not there yet; without one it is in memory alone
+    file: Option<PathBuf>,
+    /// Size of the canvas in cm, for example 40x30; that of rig.toml if absent
+    #[arg(long, value_name = "WxH", value_parser = parse_cm)]
+    cm: Option<[f64; 2]>,
+    /// Cells a mm
+    #[arg(
+        long,
+        value_name = "N",
+        default_value_t = 4.0,
+        allow_negative_numbers = true
+    )]
+    cells_per_mm: f64,
+    /// The ground: gesso, grey, black, a CSV file of nm,reflectance, or a picture
+    #[arg(long, value_name = "NAME|FILE", default_value = "gesso")]
+    ground: String,
+    /// The tooth: linen, cotton, panel, paper
+    #[arg(long, default_value = "linen")]
+    tooth: String,
+    /// Another piece of the same cloth
+    #[arg(long, default_value_t = 1)]
+    seed: u64,
+    /// What was painted in memory alone may go
+    #[arg(long)]
+    forget: bool,
+    #[command(flatten)]
+    target: Target,
+}
+
+/// Reads `WxH`.
+fn parse_cm(text: &str) -> Result<[f64; 2], String> {
+    let wrong = || format!("'{text}' is not a size in cm such as 40x30");
+    let (width, height) = text.split_once(['x', 'X', '×']).ok_or_else(wrong)?;
+    let parse = |side: &str| side.trim().parse::<f64>().map_err(|_| wrong());
+    Ok([parse(width)?, parse(height)?])
+}
+
+/// Begins a painting and goes on in it.
+///
+/// # Errors
+/// A [`Fault`] for a size that is none, where a file of its name is there, or where no rig runs.
+pub fn run(options: &NewOptions) -> Result<i32, Fault> {
+    let usual = CanvasSection::default();
+    let usual_cm = [usual.width_mm, usual.height_mm].map(|mm| mm * 0.1);
+    let [width, height] = options.cm.unwrap_or(usual_cm);
+    let command = Command::New {
+        path: options.file.as_deref().map(whole).transpose()?,
+        canvas: NewCanvas {
+            width_m: width * 1e-2,
+            height_m: height * 1e-2,
+            cell_m: 1e-3 / options.cells_per_mm,
+            ground: match is_path(&options.ground) {
+                true => whole(Path::new(&options.ground))?,
+                false => options.ground.clone(),
+            },
+            tooth: options.tooth.clone(),
+            tooth_seed: options.seed,
+            stain_m: usual.stain_um * 1e-6,
+        },
+        forget: options.forget,
+    };
+    command.check().map_err(Fault::told)?;
+    let done = Session::open(&options.target)?.send_within(RIG, command, LONGEST)?;
+    say!("{done}");
+    Ok(0)
+}

@@ -1,0 +1,88 @@
+//! `maulstick export`: the painting of a running rig for other programs, while it is painted on.
+
+use std::path::PathBuf;
+
+use clap::Args;
+use maulstick_rig::Fault;
+use maulstick_types::command::{Command, ExportOrder};
+use maulstick_types::scene::{CANVAS, PALETTE};
+
+use super::open::{LONGEST, whole};
+use super::painting::formats;
+use crate::commands::say;
+use crate::commands::session::{PAINT, Session, Target};
+use crate::outputs::{UsedFile, check_apart, named_by};
+
+/// Options of `maulstick export`.
+#[derive(Args, Clone, Debug)]
+pub struct ExportOptions {
+    /// What to write: .png, .exr, .ora or .stl
+    #[arg(required_unless_present = "stop")]
+    file: Option<PathBuf>,
+    /// Ends the export that goes on: its file is not written
+    #[arg(long, conflicts_with = "file")]
+    stop: bool,
+    /// The format, where the name does not say it; `height` is a PNG too
+    #[arg(long, value_parser = formats())]
+    format: Option<String>,
+    /// The palette in the place of the canvas
+    #[arg(long)]
+    palette: bool,
+    /// Bits a channel of a PNG: 8, 16
+    #[arg(long, default_value_t = 8)]
+    bits: u32,
+    /// Profile of a PNG: srgb, display-p3; that of the rig if absent
+    #[arg(long, value_name = "PROFILE")]
+    profile: Option<String>,
+    /// How colours of a PNG come into its gamut: soft, clamp; as in the rig if absent
+    #[arg(long, value_name = "MAPPING")]
+    gamut: Option<String>,
+    /// Thickness of a solid under its lowest place, mm
+    #[arg(long, default_value_t = 2.0, allow_negative_numbers = true)]
+    base_mm: f64,
+    /// Factor on the heights of a solid
+    #[arg(long, default_value_t = 1.0, allow_negative_numbers = true)]
+    exaggeration: f64,
+    /// Cells from one point of a solid to the next; so that it has 4 million triangles at most if
+    /// absent
+    #[arg(long, value_name = "CELLS")]
+    step: Option<u32>,
+    #[command(flatten)]
+    target: Target,
+}
+
+/// Has the painting written as it is now.
+///
+/// # Errors
+/// A [`Fault`] where it cannot be written, where another export goes on, or where no rig runs.
+pub fn run(options: &ExportOptions) -> Result<i32, Fault> {
+    let session = Session::open(&options.target)?;
+    let Some(file) = &options.file else {
+        session.send(PAINT, Command::StopExport)?;
+        return Ok(0);
+    };
+    let config = session.config()?;
+    let document = config.paint.document.iter();
+    let inputs: Vec<_> = named_by(&config)
+        .into_iter()
+        .chain(document.flat_map(|path| UsedFile::painting(path)))
+        .collect();
+    check_apart(&[UsedFile::new("the export", file)], &inputs)?;
+    let command = Command::Export {
+        order: ExportOrder {
+            format: options.format.clone().unwrap_or_default(),
+            surface: if options.palette { PALETTE } else { CANVAS },
+            bits: options.bits,
+            base_m: options.base_mm * 1e-3,
+            exaggeration: options.exaggeration,
+            step: options.step.unwrap_or(0),
+            profile: options.profile.clone().unwrap_or_default(),
+            gamut: options.gamut.clone().unwrap_or_default(),
+            ..ExportOrder::to(&whole(file)?)
+        },
+    };
+    command.check().map_err(Fault::told)?;
+    let done = session.send_within(PAINT, command, LONGEST)?;
+    say!("{done}");
+    Ok(0)
+}

@@ -1,0 +1,69 @@
+//! `maulstick open`: another painting in a running rig.
+
+use std::path::{Path, PathBuf};
+use std::time::Duration;
+
+use clap::Args;
+use maulstick_rig::Fault;
+use maulstick_types::command::Command;
+
+use crate::commands::say;
+use crate::commands::session::{RIG, Session, Target};
+
+/// How long a painting may take to be there: what was accepted last may have to be done again.
+pub(super) const LONGEST: Duration = Duration::from_secs(3600);
+
+/// Options of `maulstick open`.
+#[derive(Args, Clone, Debug)]
+pub struct OpenOptions {
+    /// The painting
+    file: PathBuf,
+    /// What was painted in memory alone may go
+    #[arg(long)]
+    forget: bool,
+    #[command(flatten)]
+    target: Target,
+}
+
+/// A path that holds wherever it is read.
+///
+/// # Errors
+/// A [`Fault`] where it is none, or where it is not UTF-8, as messages are.
+pub(super) fn whole(path: &Path) -> Result<String, Fault> {
+    let whole = std::path::absolute(path).map_err(|error| Fault::reading(path, &error))?;
+    whole.into_os_string().into_string().map_err(|name| {
+        Fault::usage("this path is not UTF-8")
+            .at(name.display().to_string())
+            .help("give the file, or the folder that it is in, another name")
+    })
+}
+
+/// Goes on in another painting.
+///
+/// # Errors
+/// A [`Fault`] where it cannot be opened, or where no rig runs.
+pub fn run(options: &OpenOptions) -> Result<i32, Fault> {
+    let command = Command::Open {
+        path: whole(&options.file)?,
+        forget: options.forget,
+    };
+    command.check().map_err(Fault::told)?;
+    let done = Session::open(&options.target)?.send_within(RIG, command, LONGEST)?;
+    say!("{done}");
+    Ok(0)
+}
+
+#[cfg(test)]
+mod tests {
+    use std::os::unix::ffi::OsStrExt as _;
+
+    use super::*;
+
+    #[test]
+    fn a_path_is_told_as_it_is_or_refused() {
+        assert_eq!(whole(Path::new("/a/é.maul")).expect("UTF-8"), "/a/é.maul");
+        let odd = Path::new(std::ffi::OsStr::from_bytes(b"/a/\xff.maul"));
+        let fault = whole(odd).expect_err("it would be another name");
+        assert!(fault.what.contains("UTF-8"), "{}", fault.what);
+    }
+}

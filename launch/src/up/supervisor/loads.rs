@@ -1,0 +1,50 @@
+//! What the brushes carry when a painting begins.
+
+use std::sync::Arc;
+use std::time::Duration;
+
+use maulstick_rig::commander::Commander;
+use maulstick_types::command::Command;
+
+use super::Supervisor;
+
+/// How long the paint node may take to load a brush.
+const LOAD_TIME: Duration = Duration::from_secs(10);
+
+impl Supervisor {
+    /// Loads the brushes as soon as paint and all brushes are there, at the start and whenever paint
+    /// was started again. A take that is played brings its own loads.
+    pub(super) fn load_when_ready(&mut self) {
+        if self.unloaded && self.ready() {
+            self.unloaded = false;
+            if self.conductor.is_none() {
+                self.load_brushes();
+            }
+        }
+    }
+
+    /// Gives the painter loaded brushes. The commands go their own way: nothing waits for them.
+    fn load_brushes(&self) {
+        let (bus, topics) = (Arc::clone(&self.bus), self.topics.clone());
+        let brushes: Vec<String> = self.config.brush.iter().map(|b| b.name.clone()).collect();
+        let Some(mixture) = self.first_load.clone() else {
+            return;
+        };
+        let stop = self.stop.clone();
+        let load = move || {
+            let mut commander = Commander::new(bus, &topics);
+            for brush in brushes {
+                let command = Command::Load {
+                    brush,
+                    mixture: mixture.clone(),
+                };
+                if let Err(fault) = commander.send(command, None, LOAD_TIME, &|| stop.requested()) {
+                    tracing::warn!("{}", fault.what);
+                }
+            }
+        };
+        if let Err(error) = std::thread::Builder::new().name("load".into()).spawn(load) {
+            tracing::warn!("the brushes cannot be loaded: {error}");
+        }
+    }
+}

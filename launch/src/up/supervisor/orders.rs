@@ -1,0 +1,241 @@
+//! What is asked of the rig as a whole: another painting, another file.
+
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+use maulstick_bus::typed::{Reader, Receiver, random_epoch};
+use maulstick_bus::{Bus, BusError, Class, Queue, Request, Server, Wake};
+use maulstick_nodes::answers::Answers;
+use maulstick_rig::Fault;
+use maulstick_types::advice::parted;
+use maulstick_types::command::{Command, CommandReply, CommandRequest, Outcome};
+use maulstick_types::paint::PaintStatus;
+use maulstick_types::topics::Topics;
+use maulstick_types::{Flags, Origin, encode, name_hash};
+
+use super::Supervisor;
+use super::switch::{Ask, Switch};
+use crate::commands::session::RIG;
+
+/// What is asked of the rig, and what was answered.
+pub(super) struct Orders {
+    server: Server,
+    reader: Reader,
+    me: Origin,
+    pub(super) answers: Answers,
+    statuses: Receiver<PaintStatus>,
+    status: Option<PaintStatus>,
+    /// Statuses heard so far.
+    heard: u64,
+    leaving: Leaving,
+}
+
+/// A painting is left by what the paint node says of it after so many statuses: the first may have been
+/// on its way when it was asked.
+const STATUSES: u64 = 2;
+
+/// Who wants to leave the painting, and how many statuses had been heard when they asked first.
+#[derive(Debug, Default)]
+struct Leaving(BTreeMap<(u64, u64), u64>);
+
+impl Leaving {
+    /// Whether enough of `heard` statuses came since an asker was there first.
+    fn has_heard(&mut self, asker: (u64, u64), heard: u64) -> bool {
+        heard >= *self.0.entry(asker).or_insert(heard) + STATUSES
+    }
+}
+
+impl Orders {
+    /// Answers for the rig.
+    ///
+    /// # Errors
+    /// [`BusError::Topic`].
+    pub(super) fn new(bus: &dyn Bus, topics: &Topics, wake: &Wake) -> Result<Self, BusError> {
+        let topic = topics.paint_status();
+        Ok(Self {
+            server: bus.serve(&topics.command(RIG), 64, wake)?,
+            reader: Reader::default(),
+            me: Origin {
+                source: name_hash(RIG),
+                epoch: random_epoch(),
+            },
+            answers: Answers::default(),
+            statuses: Receiver::new(bus, &topic, Class::Background, Queue::Ring(4), wake)?,
+            status: None,
+            heard: 0,
+            leaving: Leaving::default(),
+        })
+    }
+
+    fn answer(&self, bus: &dyn Bus, request: Request, reply: &CommandReply) {
+        let now_ns = bus.now_ns();
+        match encode(&self.me, Flags::NONE, 0, now_ns, now_ns, reply) {
+            Ok(bytes) => {
+                if let Err(error) = request.answer(bytes) {
+                    tracing::debug!("a client is gone: {error}");
+                }
+            }
+            Err(error) => tracing::error!("a command cannot be answered: {error}"),
+        }
+    }
+
+    /// Whether the paint node has told how it fares since this was asked first, where that matters.
+    fn has_heard(&mut self, asked: &CommandRequest) -> bool {
+        if !matches!(asked.command, Command::Open { .. } | Command::New { .. }) {
+            return true;
+        }
+        let asker = (asked.client, asked.number);
+        self.leaving.has_heard(asker, self.heard)
+    }
+
+    /// The paint node is another one: what the one before said holds no more.
+    pub(super) fn forget_status(&mut self) {
+        while self.statuses.try_recv().is_some() {}
+        self.status = None;
+    }
+}
+
+/// A fault as a client is told of it.
+pub(super) fn refusal(fault: Fault) -> Outcome {
+    let what = match &fault.place {
+        Some(place) => format!("{place}: {}", fault.what),
+        None => fault.what,
+    };
+    Outcome::Refused {
+        what,
+        help: fault.help.unwrap_or_default(),
+    }
+}
+
+/// Whether two names lead to the same file.
+pub(super) fn is_same(one: &Path, other: &Path) -> bool {
+    let real = |path: &Path| std::fs::canonicalize(path).ok();
+    one == other || real(one).is_some_and(|path| real(other) == Some(path))
+}
+
+impl Supervisor {
+    /// Answers what is asked of the rig.
+    pub(super) fn take_orders(&mut self) {
+        let bus = Arc::clone(&self.bus);
+        while let Some(status) = self.orders.statuses.try_recv() {
+            self.orders.status = Some(status.message);
+            self.orders.heard += 1;
+        }
+        while let Some(request) = self.orders.server.try_recv() {
+            let orders = &mut self.orders;
+            let read = orders
+                .reader
+                .read::<CommandRequest>(&request.key, &request.bytes);
+            let Some((_, asked)) = read else { continue };
+            let outcome = match orders.answers.find(&asked) {
+                Some(outcome) => outcome,
+                // It is asked again, and done when its turn comes.
+                None if self.switch.is_some() || !orders.has_heard(&asked) => Outcome::Waiting,
+                None => {
+                    orders.leaving.0.clear();
+                    let outcome = self.order(&asked).unwrap_or_else(refusal);
+                    let answers = &mut self.orders.answers;
+                    answers.keep(asked.client, asked.number, outcome.clone());
+                    outcome
+                }
+            };
+            let reply = CommandReply {
+                number: asked.number,
+                outcome,
+            };
+            self.orders.answer(&*bus, request, &reply);
+        }
+    }
+
+    /// Begins to do what is asked.
+    fn order(&mut self, asked: &CommandRequest) -> Result<Outcome, Fault> {
+        asked.command.check().map_err(|line| {
+            let (what, help) = parted(&line);
+            Fault::usage(what).help(help.unwrap_or("correct the command"))
+        })?;
+        if asked.after.is_some() {
+            return Err(Fault::usage("the rig has no journal in which to wait")
+                .help("ask without a place in it"));
+        }
+        let here = self.config.paint.document.clone();
+        let ask = match &asked.command {
+            Command::Open { path, forget } => {
+                let path = PathBuf::from(path);
+                if here.is_some_and(|here| is_same(&here, &path)) {
+                    return Ok(done(format!("{} is open already", path.display())));
+                }
+                self.may_leave(*forget)?;
+                Ask::Open(path, *forget)
+            }
+            Command::New {
+                path,
+                canvas,
+                forget,
+            } => {
+                self.may_leave(*forget)?;
+                Ask::New(path.as_ref().map(PathBuf::from), canvas.clone(), *forget)
+            }
+            Command::SaveAs { path, replace } => {
+                if !self.paint_runs() {
+                    return Ok(starts_again());
+                }
+                Ask::SaveAs(PathBuf::from(path), *replace)
+            }
+            _ => {
+                return Err(Fault::usage("this is no matter of the rig as a whole")
+                    .help("send it to the paint node, or to that of the brush"));
+            }
+        };
+        self.switch = Some(Switch::begin(self, (asked.client, asked.number), ask)?);
+        Ok(Outcome::Waiting)
+    }
+
+    /// Sees that the painting may be left.
+    pub(super) fn may_leave(&self, forget: bool) -> Result<(), Fault> {
+        let status = self.orders.status.as_ref();
+        if self.conductor.is_some() || status.is_some_and(|status| status.take) {
+            return Err(Fault::usage("a take is being played into this painting")
+                .help("wait for its end, or end its player, and ask again"));
+        }
+        if let Some(export) = status.and_then(|status| status.export.as_ref()) {
+            return Err(Fault::usage(format!("{} is being exported", export.path))
+                .help("wait for its end, or stop it: `maulstick export --stop`"));
+        }
+        let in_memory = self.config.paint.document.is_none();
+        let is_blank = status.is_some_and(|status| status.blank);
+        match in_memory && !is_blank && !forget {
+            true => Err(
+                Fault::usage("what was painted is in memory alone, and would be gone").help(
+                    "keep it first: `maulstick save-as FILE.maul`; or say that it may go: `--forget`",
+                ),
+            ),
+            false => Ok(()),
+        }
+    }
+}
+
+/// Nothing can be asked of a painting that is not there.
+pub(super) fn starts_again() -> Outcome {
+    Outcome::Refused {
+        what: "the paint node is being started just now".to_owned(),
+        help: "wait until the painting is there, and ask again".to_owned(),
+    }
+}
+
+pub(super) fn done(detail: String) -> Outcome {
+    Outcome::Done { journal: 0, detail }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn two_who_want_to_leave_do_not_hold_each_other_up() {
+        let mut leaving = Leaving::default();
+        assert!(!leaving.has_heard((1, 1), 5) && !leaving.has_heard((2, 1), 6));
+        assert!(!leaving.has_heard((1, 1), 6) && !leaving.has_heard((2, 1), 7));
+        assert!(leaving.has_heard((1, 1), 7) && leaving.has_heard((2, 1), 8));
+    }
+}

@@ -1,0 +1,76 @@
+//! The bytes of an answer: one's own, or in memory that two processes share.
+
+use std::fmt;
+use std::ops::Deref;
+
+use zenoh::shm::ZShm;
+
+/// Bytes to be read. What is shared stays where it is until this is dropped, and its sender does not
+/// change it.
+#[derive(Clone)]
+pub enum Payload {
+    /// Copied.
+    Own(Vec<u8>),
+    /// Where its sender wrote it.
+    Shared(Lent),
+}
+
+/// A piece of another process's pool.
+#[derive(Clone)]
+pub struct Lent(ZShm);
+
+impl Payload {
+    /// What has come: in place where its sender shares it.
+    pub(crate) fn of(bytes: &zenoh::bytes::ZBytes) -> Self {
+        match bytes.as_shm() {
+            Some(shared) => Self::Shared(Lent(shared.to_owned())),
+            None => Self::Own(bytes.to_bytes().into_owned()),
+        }
+    }
+
+    /// Whether it lies in shared memory.
+    #[must_use]
+    pub fn is_shared(&self) -> bool {
+        matches!(self, Self::Shared(_))
+    }
+}
+
+impl Deref for Payload {
+    type Target = [u8];
+
+    fn deref(&self) -> &[u8] {
+        match self {
+            Self::Own(bytes) => bytes,
+            Self::Shared(Lent(bytes)) => bytes,
+        }
+    }
+}
+
+impl From<Vec<u8>> for Payload {
+    fn from(bytes: Vec<u8>) -> Self {
+        Self::Own(bytes)
+    }
+}
+
+impl PartialEq for Payload {
+    fn eq(&self, other: &Self) -> bool {
+        **self == **other
+    }
+}
+
+impl Eq for Payload {}
+
+impl fmt::Debug for Payload {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("Payload")
+            .field("bytes", &self.len())
+            .field("shared", &self.is_shared())
+            .finish()
+    }
+}
+
+impl fmt::Debug for Lent {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_tuple("Lent").field(&self.0.len()).finish()
+    }
+}

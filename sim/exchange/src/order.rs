@@ -1,0 +1,134 @@
+//! An export of any format, as a command line or a window asks for it.
+
+use std::io::{Seek, Write};
+use std::path::Path;
+
+use maulstick_paint::Painting;
+use maulstick_paint::picture::{Depth, Export};
+
+use crate::surface::Progress;
+use crate::{
+    ExchangeError, StlSetup, stl_step, write_height_map, write_lit_png, write_open_exr,
+    write_open_raster, write_stl,
+};
+
+/// Formats of an export.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Format {
+    /// The painting under its light: PNG.
+    Png,
+    /// Unlit linear colour, height, and each paint's thickness, wet and dry: OpenEXR.
+    Exr,
+    /// A layer for each dry layer: OpenRaster.
+    Ora,
+    /// Heights as a grey PNG of 16 bits.
+    Height,
+    /// A solid for relief printing.
+    Stl,
+}
+
+impl Format {
+    /// All, with their names: that of a file that ends in one, but for heights.
+    pub const ALL: [(&'static str, Self); 5] = [
+        ("png", Self::Png),
+        ("exr", Self::Exr),
+        ("ora", Self::Ora),
+        ("height", Self::Height),
+        ("stl", Self::Stl),
+    ];
+
+    /// The format of that name.
+    #[must_use]
+    pub fn named(name: &str) -> Option<Self> {
+        let same = |(known, _): &&(&str, Self)| known.eq_ignore_ascii_case(name);
+        Self::ALL.iter().find(same).map(|(_, format)| *format)
+    }
+
+    /// The format that a file's name says.
+    #[must_use]
+    pub fn of(path: &Path) -> Option<Self> {
+        let ending = path.extension()?.to_str()?;
+        Self::named(ending).filter(|format| *format != Self::Height)
+    }
+}
+
+/// What is written of a painting.
+#[derive(Clone, Debug)]
+pub struct Order {
+    /// The format.
+    pub format: Format,
+    /// The surface.
+    pub surface: u32,
+    /// Bits of a PNG.
+    pub depth: Depth,
+    /// How a PNG leaves the working space.
+    pub export: Export,
+    /// Thickness of a solid under its lowest place, mm.
+    pub base_mm: f64,
+    /// Factor on the heights of a solid.
+    pub exaggeration: f64,
+    /// Cells from one point of a solid to the next; as [`stl_step`] proposes if absent.
+    pub step: Option<u32>,
+}
+
+impl Order {
+    /// Writes a painting; returns what is to be known of the file, in words that may be none.
+    ///
+    /// # Errors
+    /// [`ExchangeError`].
+    pub fn write(
+        &self,
+        painting: &mut Painting,
+        to: &mut (impl Write + Seek),
+        progress: Progress<'_>,
+    ) -> Result<String, ExchangeError> {
+        let surface = self.surface;
+        match self.format {
+            Format::Png => {
+                let look = (&self.export, self.depth);
+                write_lit_png(painting, surface, look, to, progress)?;
+            }
+            Format::Exr => write_open_exr(painting, surface, to, progress)?,
+            Format::Ora => write_open_raster(painting, surface, to, progress)?,
+            Format::Height => {
+                let range = write_height_map(painting, surface, to, progress)?;
+                let [least, greatest] =
+                    [range.least_m, range.greatest_m].map(|m| f64::from(m) * 1e6);
+                return Ok(format!("black is {least:.1} µm, white is {greatest:.1} µm"));
+            }
+            Format::Stl => {
+                let cells = painting
+                    .store(surface)
+                    .map_or([1, 1], |store| store.cells());
+                let setup = StlSetup {
+                    base_mm: self.base_mm,
+                    exaggeration: self.exaggeration,
+                    step: self.step.unwrap_or_else(|| stl_step(cells)),
+                };
+                let size = write_stl(painting, surface, &setup, to, progress)?;
+                let [x, y, z] = size.size_mm;
+                return Ok(format!(
+                    "{} triangles, {x:.1} × {y:.1} × {z:.2} mm",
+                    size.triangles
+                ));
+            }
+        }
+        Ok(String::new())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn names_of_files_say_their_format() {
+        let of = |name: &str| Format::of(Path::new(name));
+        assert_eq!(of("a.PNG"), Some(Format::Png));
+        assert_eq!(of("/x.y/a.stl"), Some(Format::Stl));
+        for name in ["a", "a.height", "a.jpg", ".png"] {
+            assert_eq!(of(name), None, "{name}");
+        }
+        assert_eq!(Format::named("Height"), Some(Format::Height));
+    }
+}

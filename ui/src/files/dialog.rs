@@ -1,0 +1,160 @@
+//! The frame that all dialogs share: a title, what is asked, what is wrong, two buttons. Enter goes, Escape
+//! leaves.
+
+use eframe::egui::{
+    Align, Color32, Context, Frame, Id, Key, Layout, Margin, Modal, RichText, Ui, Visuals,
+};
+
+/// Width of a dialog, points.
+pub(crate) const WIDTH: f32 = 420.0;
+
+/// What a dialog shows below what it asks.
+#[derive(Debug, Default)]
+pub(crate) struct Foot {
+    /// What its button does.
+    pub go: &'static str,
+    /// What is wrong, and what to do about it.
+    pub wrong: Option<String>,
+    /// Whether Enter was pressed where it means to go.
+    pub entered: bool,
+    /// What is waited for: it cannot go twice.
+    pub busy: Option<&'static str>,
+}
+
+/// What the painter decided.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Answer {
+    /// Nothing yet.
+    Stay,
+    /// To leave.
+    Leave,
+    /// To go.
+    Go,
+}
+
+/// The control that has the keyboard when a dialog opens.
+#[must_use]
+pub(crate) fn first() -> Id {
+    Id::unique("first of the dialog")
+}
+
+/// The colour of what is wrong.
+#[must_use]
+pub(crate) fn wrong(visuals: &Visuals) -> Color32 {
+    match visuals.dark_mode {
+        true => Color32::from_rgb(240, 150, 90),
+        false => Color32::from_rgb(166, 62, 0),
+    }
+}
+
+/// Shows a dialog.
+pub(crate) fn show(
+    context: &Context,
+    title: &str,
+    content: impl FnOnce(&mut Ui) -> Foot,
+) -> Answer {
+    let frame = Frame::window(&context.global_style()).inner_margin(Margin::same(16));
+    let modal = Modal::new(Id::unique("dialog"))
+        .frame(frame)
+        .show(context, |ui| {
+            ui.set_width(WIDTH);
+            ui.heading(RichText::new(title).strong());
+            ui.add_space(8.0);
+            let foot = content(ui);
+            ui.add_space(8.0);
+            below(ui, &foot)
+        });
+    let answer = match modal.inner {
+        Answer::Stay if modal.should_close() => Answer::Leave,
+        answer => answer,
+    };
+    // A dialog without the keyboard could not be left by it.
+    if context.memory(|memory| memory.focused().is_none()) {
+        context.memory_mut(|memory| memory.request_focus(first()));
+    }
+    answer
+}
+
+fn below(ui: &mut Ui, foot: &Foot) -> Answer {
+    if let Some(wrong_words) = &foot.wrong {
+        let colour = wrong(ui.visuals());
+        ui.label(RichText::new(wrong_words).color(colour));
+        ui.add_space(4.0);
+    }
+    let mut answer = match foot.entered && foot.busy.is_none() {
+        true => Answer::Go,
+        false => Answer::Stay,
+    };
+    ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
+        let go = RichText::new(foot.go).strong();
+        let go = ui.add_enabled(
+            foot.busy.is_none(),
+            eframe::egui::Button::new(go).min_size([96.0, 28.0].into()),
+        );
+        if go.clicked() {
+            answer = Answer::Go;
+        }
+        let cancel = eframe::egui::Button::new("Cancel").min_size([80.0, 28.0].into());
+        if ui.add(cancel).clicked() {
+            answer = Answer::Leave;
+        }
+        if let Some(busy) = foot.busy {
+            ui.spinner();
+            ui.label(busy);
+        }
+    });
+    answer
+}
+
+/// A line of text with its label; the first of a dialog has the keyboard when it opens. Whether Enter was
+/// pressed in it.
+pub(crate) fn line(
+    ui: &mut Ui,
+    label: &str,
+    text: &mut String,
+    is_first: bool,
+    width: f32,
+) -> bool {
+    let name = ui.label(label);
+    let mut edit = eframe::egui::TextEdit::singleline(text).desired_width(width);
+    if is_first {
+        edit = edit.id(first());
+    }
+    let response = ui.add(edit).labelled_by(name.id);
+    response.lost_focus() && ui.input(|input| input.key_pressed(Key::Enter))
+}
+
+/// The number of a field, with a point or a comma.
+///
+/// # Errors
+/// What is wrong and what to do, in words.
+pub(crate) fn number(what: &str, text: &str) -> Result<f64, String> {
+    let plain = text.trim().replace(',', ".");
+    let number: Option<f64> = plain.parse().ok();
+    number.filter(|number| number.is_finite()).ok_or_else(|| {
+        format!(
+            "{what}: “{}” is no number. Write one such as 20 or 0.5.",
+            text.trim()
+        )
+    })
+}
+
+/// What is wrong and what to do, as the node says it, as a painter reads it.
+#[must_use]
+pub(crate) fn in_words(what: &str, help: &str) -> String {
+    let sentence = |text: &str| {
+        let mut letters = text.trim().chars();
+        let Some(first) = letters.next() else {
+            return String::new();
+        };
+        let end = if text.trim_end().ends_with(['.', '!', '?']) {
+            ""
+        } else {
+            "."
+        };
+        format!("{}{}{end}", first.to_uppercase(), letters.as_str())
+    };
+    format!("{} {}", sentence(what), sentence(help))
+        .trim()
+        .to_owned()
+}

@@ -1,0 +1,111 @@
+//! What of the brush's own file a painter may change: how much it carries, how its bristles are.
+
+use eframe::egui::{Slider, SliderClamping, Ui};
+use maulstick_brush::BrushFile;
+
+use crate::brush_choice::{is_of_library, of_library};
+use crate::row;
+use crate::work::Work;
+
+/// A number of a brush file.
+struct Number {
+    name: &'static str,
+    hover: &'static str,
+    unit: &'static str,
+    range: std::ops::RangeInclusive<f64>,
+    of: fn(&mut BrushFile) -> &mut f64,
+}
+
+const NUMBERS: [Number; 6] = [
+    Number {
+        name: "Film",
+        hover: "Thickness of paint on the bristles of a freshly loaded brush.",
+        unit: " µm",
+        range: 0.0..=2000.0,
+        of: |file| &mut file.load.film_um,
+    },
+    Number {
+        name: "Inside",
+        hover: "Paint within the head, as thick as if it were spread over the bristles: with more of it a \
+                stroke is longer.",
+        unit: " µm",
+        range: 0.0..=2000.0,
+        of: |file| &mut file.load.inside_um,
+    },
+    Number {
+        name: "Uneven",
+        hover: "By which share bristles differ in how much they carry: uneven ones leave streaks.",
+        unit: "",
+        range: 0.0..=1.0,
+        of: |file| &mut file.strips.unevenness,
+    },
+    Number {
+        name: "Unruly",
+        hover: "How far the most unruly bristle keeps off the surface while the brush is hardly pressed.",
+        unit: " mm",
+        range: 0.0..=3.0,
+        of: |file| &mut file.strips.lift_mm,
+    },
+    Number {
+        name: "Spread",
+        hover: "Width of the fully pressed point, by that of the head.",
+        unit: "",
+        range: 0.0..=2.0,
+        of: |file| &mut file.strips.open,
+    },
+    Number {
+        name: "Friction",
+        hover: "Friction of the bristles on the canvas.",
+        unit: "",
+        range: 0.0..=1.0,
+        of: |file| &mut file.contact.friction,
+    },
+];
+
+/// Shows the numbers of a brush, changed ones go to `changed`; whether one is being dragged.
+pub(super) fn show(
+    ui: &mut Ui,
+    work: &mut Work<'_>,
+    file: &BrushFile,
+    changed: &mut Option<BrushFile>,
+) -> bool {
+    let mut wanted = file.clone();
+    let mut is_held = false;
+    for number in &NUMBERS {
+        let value = (number.of)(&mut wanted);
+        let mut shown = *value;
+        let slider = Slider::new(&mut shown, number.range.clone())
+            .max_decimals(2)
+            .clamping(SliderClamping::Edits)
+            .suffix(number.unit);
+        let slider = row::named(ui, number.name, number.hover, slider);
+        is_held |= slider.dragged();
+        // A slider rounds what it shows.
+        if row::is_moved(*value, shown) {
+            *value = shown;
+        }
+    }
+    // What sticks holds at least as well as what slides.
+    if let Some(sticking) = &mut wanted.contact.friction_static {
+        *sticking = sticking.max(wanted.contact.friction);
+    }
+    if wanted != *file {
+        match wanted.check() {
+            Ok(()) => *changed = Some(wanted),
+            Err(error) => {
+                let help = "choose a number within these bounds";
+                work.toasts.fault(error.to_string(), help);
+            }
+        }
+    }
+    if !is_of_library(file)
+        && let Some(made) = of_library(&file.kind)
+    {
+        let button = ui.button("As it was made");
+        let hover = "Gives the brush back the numbers of the library, at its width.";
+        if button.on_hover_text(hover).clicked() {
+            *changed = made.scaled_to(file.head.width_mm).ok();
+        }
+    }
+    is_held
+}

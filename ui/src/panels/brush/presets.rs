@@ -1,0 +1,176 @@
+//! Presets: brushes that are ready with their paint.
+
+use eframe::egui::{Button, Key, TextEdit, Ui, vec2};
+
+use super::entry;
+use crate::presets::{Preset, check_name};
+use crate::row;
+use crate::work::Work;
+
+/// The rows.
+#[derive(Debug, Default)]
+pub(super) struct PresetRows {
+    /// The name of a new one.
+    name: String,
+    wrong: Option<String>,
+    /// The one that is being renamed, and its new name.
+    renamed: Option<(usize, String)>,
+    /// The one that was deleted last, and where it stood.
+    deleted: Option<(usize, Preset)>,
+}
+
+/// What is asked of a preset.
+enum Deed {
+    Apply,
+    Rename,
+    Delete,
+}
+
+impl PresetRows {
+    pub(super) fn show(&mut self, ui: &mut Ui, work: &mut Work<'_>) {
+        ui.strong("Presets");
+        let mut asked = None;
+        for place in 0..work.habits.presets.len() {
+            if self.renamed.as_ref().is_some_and(|(own, _)| *own == place) {
+                self.rename(ui, work, place);
+                continue;
+            }
+            let preset = &work.habits.presets[place];
+            let name = preset.name.clone();
+            let words = preset.words();
+            let mut take = false;
+            let mut deed = None;
+            entry(
+                ui,
+                |ui| {
+                    let button = Button::new(&name).truncate().min_size(vec2(150.0, 0.0));
+                    take = ui
+                        .scope(|ui| {
+                            ui.set_max_width(150.0);
+                            ui.add(button).on_hover_text(words).clicked()
+                        })
+                        .inner;
+                },
+                |ui| {
+                    if ui
+                        .small_button("Delete")
+                        .on_hover_text(format!("Delete {name}"))
+                        .clicked()
+                    {
+                        deed = Some(Deed::Delete);
+                    }
+                    if ui
+                        .small_button("Rename")
+                        .on_hover_text(format!("Rename {name}"))
+                        .clicked()
+                    {
+                        deed = Some(Deed::Rename);
+                    }
+                },
+            );
+            if take {
+                deed = Some(Deed::Apply);
+            }
+            asked = deed.map(|deed| (place, deed)).or(asked);
+        }
+        match asked {
+            Some((place, Deed::Apply)) => {
+                let preset = work.habits.presets[place].clone();
+                if let Err(fault) = preset.apply(work) {
+                    work.toasts.of(&fault);
+                }
+            }
+            Some((place, Deed::Rename)) => {
+                self.renamed = Some((place, work.habits.presets[place].name.clone()));
+                self.wrong = None;
+            }
+            Some((place, Deed::Delete)) => {
+                self.deleted = Some((place, work.habits.presets.remove(place)));
+                self.renamed = None;
+            }
+            None => {}
+        }
+        self.take_back(ui, work);
+        self.save(ui, work);
+    }
+
+    fn take_back(&mut self, ui: &mut Ui, work: &mut Work<'_>) {
+        let Some((place, preset)) = &self.deleted else {
+            return;
+        };
+        let mut back = false;
+        let words = format!("{} is deleted.", preset.name);
+        entry(
+            ui,
+            |ui| drop(ui.label(words)),
+            |ui| back = ui.small_button("Bring back").clicked(),
+        );
+        if back {
+            let place = (*place).min(work.habits.presets.len());
+            work.habits.presets.insert(place, preset.clone());
+            self.deleted = None;
+        }
+    }
+
+    fn rename(&mut self, ui: &mut Ui, work: &mut Work<'_>, place: usize) {
+        let Some((_, name)) = &mut self.renamed else {
+            return;
+        };
+        let shown = row::named(
+            ui,
+            "New name",
+            "",
+            TextEdit::singleline(name).desired_width(190.0),
+        );
+        if !shown.has_focus() && !shown.lost_focus() {
+            shown.request_focus();
+        }
+        if !shown.lost_focus() {
+            return;
+        }
+        let name = name.trim().to_owned();
+        let is_kept = ui.input(|input| input.key_pressed(Key::Escape));
+        let others = work.habits.presets.iter().enumerate();
+        let others = others.filter(|(other, _)| *other != place);
+        match check_name(&name, others.map(|(_, preset)| preset.name.as_str())) {
+            _ if is_kept => {}
+            Ok(()) => work.habits.presets[place].name = name,
+            Err(what) => work.toasts.fault(what, String::new()),
+        }
+        self.renamed = None;
+    }
+
+    fn save(&mut self, ui: &mut Ui, work: &mut Work<'_>) {
+        let edit = TextEdit::singleline(&mut self.name)
+            .hint_text("Sky wash")
+            .desired_width(190.0);
+        let hover = "What the brush in the hand, its settings and its paint are to be called.";
+        let shown = row::named(ui, "Name", hover, edit);
+        if shown.changed() {
+            self.wrong = None;
+        }
+        let enter = shown.lost_focus() && ui.input(|input| input.key_pressed(Key::Enter));
+        let button = ui.button("Save this brush");
+        let hover = "Keeps the brush, how it is used, and the paint above.";
+        if button.on_hover_text(hover).clicked() || enter {
+            let name = self.name.trim().to_owned();
+            let others = work
+                .habits
+                .presets
+                .iter()
+                .map(|preset| preset.name.as_str());
+            match check_name(&name, others) {
+                Ok(()) => {
+                    if let Some(preset) = Preset::of(&name, work) {
+                        work.habits.presets.push(preset);
+                        self.name.clear();
+                    }
+                }
+                Err(what) => self.wrong = Some(what),
+            }
+        }
+        if let Some(what) = &self.wrong {
+            row::wrong(ui, what);
+        }
+    }
+}

@@ -1,0 +1,76 @@
+//! An even film of wet paint over the whole canvas.
+
+use eframe::egui::Ui;
+use maulstick_types::Mixture;
+use maulstick_types::command::Command;
+use maulstick_types::scene::CANVAS;
+
+use crate::rows::{Number, Sliders, ask, below, choice};
+use crate::work::Work;
+
+/// The paint that the brush carries.
+const CARRIED: &str = "What the brush carries";
+
+const THICKNESS: Number<'_> = Number {
+    word: "Thickness",
+    hover: "How thick the film is, µm: a thin toning has 20, a couch of paint 100",
+    range: 1.0..=500.0,
+    unit: " µm",
+    decimals: 0,
+    factors: true,
+};
+
+/// What is asked for with the next film.
+#[derive(Clone, Debug)]
+pub(super) struct FilmForm {
+    sliders: Sliders,
+    paint: String,
+    thickness_um: f64,
+}
+
+impl Default for FilmForm {
+    fn default() -> Self {
+        Self {
+            sliders: Sliders::default(),
+            paint: CARRIED.to_owned(),
+            thickness_um: 50.0,
+        }
+    }
+}
+
+impl FilmForm {
+    /// Shows it.
+    pub(super) fn show(&mut self, ui: &mut Ui, work: &mut Work<'_>) {
+        let library = std::sync::Arc::clone(&work.studio.library);
+        let paints = library.paints().iter().map(|paint| paint.name.as_str());
+        let names = std::iter::once(CARRIED).chain(paints);
+        if let Some(paint) = choice(ui, "Paint", &self.paint, names) {
+            self.paint = paint;
+        }
+        let change = self.sliders.row(ui, &THICKNESS, self.thickness_um);
+        self.thickness_um = change.moved.unwrap_or(self.thickness_um);
+        below(ui, |ui| {
+            let button = ui.button("Lay it");
+            let button = button.on_hover_text("Over the whole canvas; it can be undone");
+            if button.clicked() {
+                ask(work, self.command(work.studio.brush_name()));
+            }
+        });
+    }
+
+    fn command(&self, brush: &str) -> Command {
+        let thickness_m = self.thickness_um * 1e-6;
+        match self.paint.as_str() {
+            CARRIED => Command::FillWith {
+                surface: CANVAS,
+                brush: brush.to_owned(),
+                thickness_m,
+            },
+            paint => Command::Fill {
+                surface: CANVAS,
+                mixture: Mixture::pure(paint),
+                thickness_m,
+            },
+        }
+    }
+}

@@ -1,0 +1,188 @@
+use eframe::egui::accesskit::Role;
+use egui_kittest::Harness;
+use egui_kittest::kittest::Queryable as _;
+use maulstick_types::Mixture;
+
+use super::*;
+use crate::testing::{Bench, harness, picture, studio};
+
+fn panel() -> Harness<'static, Bench<CanvasPanel>> {
+    harness(studio())
+}
+
+fn choose(harness: &mut Harness<'static, Bench<CanvasPanel>>, combo: &str, entry: &str) {
+    harness.get_by_role_and_label(Role::ComboBox, combo).click();
+    harness.run();
+    harness.get_by_label(entry).click();
+    harness.run();
+}
+
+fn set(harness: &mut Harness<'static, Bench<CanvasPanel>>, role: Role, label: &str, value: f64) {
+    harness
+        .get_by_role_and_label(role, label)
+        .set_value_accesskit(value);
+    harness.run();
+}
+
+#[test]
+fn tooth_ground_and_sizing_are_asked_for() {
+    let mut harness = panel();
+    let seed = harness.state().studio.canvas().expect("one").tooth_seed;
+    choose(&mut harness, "Tooth", "paper");
+    set(&mut harness, Role::SpinButton, "Piece", 7.0);
+    choose(&mut harness, "Ground", "grey");
+    set(&mut harness, Role::Slider, "Stain", 12.0);
+    let tooth = |tooth: &str, seed: u64| Command::Tooth {
+        surface: CANVAS,
+        tooth: tooth.to_owned(),
+        seed,
+    };
+    let expected = [
+        tooth("paper", seed),
+        tooth("linen", 7),
+        Command::Ground {
+            surface: CANVAS,
+            ground: "grey".to_owned(),
+        },
+        Command::Size {
+            surface: CANVAS,
+            stain_m: 12.0 * 1e-6,
+        },
+    ];
+    assert_eq!(harness.state_mut().asked(), expected);
+    set(&mut harness, Role::Slider, "Stain", 5e4);
+    assert!(harness.state_mut().asked().is_empty());
+    let told = harness.state().toasts.told();
+    assert!(
+        told[0].what.contains("stain") && told[0].help.contains("1000 µm"),
+        "{told:?}"
+    );
+}
+
+#[test]
+fn a_measured_ground_is_read_or_told_with_its_line() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = folder.path().join("toned.csv");
+    std::fs::write(&path, "400,0.4\n700,1.6\n").expect("written");
+    let mut harness = panel();
+    let field = |harness: &mut Harness<'static, Bench<CanvasPanel>>, text: &str| {
+        let label = "From a file";
+        harness
+            .get_by_role_and_label(Role::TextInput, label)
+            .focus();
+        harness.run();
+        if !text.is_empty() {
+            let field = harness.get_by_role_and_label(Role::TextInput, label);
+            field.type_text(text);
+            harness.run();
+        }
+        harness.key_press(Key::Enter);
+        harness.run();
+    };
+    field(&mut harness, &path.display().to_string());
+    assert!(harness.state_mut().asked().is_empty());
+    harness.get_by_label_contains("toned.csv:2");
+    let good = "400,0.4\n700,0.6\n";
+    std::fs::write(&path, good).expect("written");
+    field(&mut harness, "");
+    let expected = Command::GroundSpectrum {
+        surface: CANVAS,
+        spectrum: good.to_owned(),
+    };
+    assert_eq!(harness.state_mut().asked(), [expected]);
+}
+
+#[test]
+fn the_canvas_is_tilted_turned_and_zoomed_each_beside_the_others() {
+    let mut harness = panel();
+    set(&mut harness, Role::Slider, "Tilt", 30.0);
+    set(&mut harness, Role::Slider, "Turn", -15.0);
+    set(&mut harness, Role::Slider, "Zoom", 200.0);
+    let canvas = harness.state().studio.canvas().expect("one").clone();
+    let (pose, zoom) = Posture {
+        tilt_deg: 30.0,
+        turn_deg: -15.0,
+        percent: 200.0,
+    }
+    .laid(&canvas);
+    let asked = harness.state_mut().asked();
+    assert_eq!(asked.len(), 3);
+    let last = Command::Place {
+        surface: CANVAS,
+        pose,
+        zoom,
+    };
+    assert_eq!(asked[2], last);
+    assert_ne!(asked[1], last, "a fault would pass");
+}
+
+#[test]
+fn buttons_do_what_keys_do() {
+    let mut harness = panel();
+    for label in ["Fit", "Cells as pixels", "New…"] {
+        harness.get_by_label(label).click();
+        harness.run();
+    }
+    let acts = harness.state_mut().orders.take_acts();
+    assert_eq!(acts, [Act::Fit, Act::Hundred, Act::New]);
+}
+
+#[test]
+fn the_hand_and_the_lasting_paint_are_switched() {
+    let mut harness = panel();
+    harness.get_by_label("Left-handed").click();
+    harness.run();
+    assert!(harness.state().habits.left_handed);
+    harness.get_by_label("Paint on the palette lasts").click();
+    harness.run();
+    let expected = Command::Piles {
+        surface: PALETTE,
+        last: true,
+    };
+    assert_eq!(harness.state_mut().asked(), [expected]);
+}
+
+#[test]
+fn a_film_is_of_a_paint_or_of_what_the_brush_carries() {
+    let mut harness = panel();
+    harness.get_by_label("Lay a film").click();
+    harness.run();
+    harness.get_by_label("Lay it").click();
+    harness.run();
+    choose(&mut harness, "Paint", "Titanium White");
+    set(&mut harness, Role::Slider, "Thickness", 20.0);
+    harness.get_by_label("Lay it").click();
+    harness.run();
+    let surface = CANVAS;
+    let expected = [
+        Command::FillWith {
+            surface,
+            brush: "main".to_owned(),
+            thickness_m: 50.0 * 1e-6,
+        },
+        Command::Fill {
+            surface,
+            mixture: Mixture::pure("Titanium White"),
+            thickness_m: 20.0 * 1e-6,
+        },
+    ];
+    assert_eq!(harness.state_mut().asked(), expected);
+    set(&mut harness, Role::Slider, "Thickness", 9000.0);
+    harness.get_by_label("Lay it").click();
+    harness.run();
+    let told = harness.state().toasts.told();
+    assert!(told[0].help.contains("5000 µm"), "{told:?}");
+}
+
+#[test]
+fn the_panel_looks_as_it_did() {
+    let open = |harness: &mut Harness<'static, Bench<CanvasPanel>>| {
+        harness.get_by_label("Lay a film").click();
+        harness.run();
+        harness.remove_cursor();
+    };
+    picture::<CanvasPanel>("canvas", &studio(), open, |studio| {
+        let scene = studio.scene.as_mut().expect("a scene");
+        scene.surfaces[0].zoom = 4.0;
+    });
+}

@@ -1,0 +1,190 @@
+use eframe::egui::accesskit::Role;
+use egui_kittest::Harness;
+use egui_kittest::kittest::{NodeT as _, Queryable as _};
+use maulstick_num::sin;
+use maulstick_types::haptics::ForceOrder;
+use maulstick_types::stylus::{StylusInfo, StylusPose, StylusSample, StylusStatus, axes};
+
+use super::*;
+use crate::orders::Order;
+use crate::studio::Studio;
+use crate::testing::{Bench, harness, picture, studio};
+
+fn info(device: &str, driver: &str, priority: i32, senses: u32, drives: u32) -> StylusInfo {
+    StylusInfo {
+        device: device.into(),
+        driver: driver.into(),
+        brush: "main".into(),
+        priority,
+        senses,
+        drives,
+        rate_hz: if drives == 0 { 60.0 } else { 1000.0 },
+        max_force_n: 3.3,
+        max_stiffness_n_m: 1000.0,
+        workspace_m: [0.0; 6],
+    }
+}
+
+/// A mouse, a pen that is not there and an arm that pushes.
+fn devices() -> Studio {
+    let mut studio = studio();
+    studio.now_ns = 10_000_000_000;
+    let pen = axes::POSITION | axes::PRESSURE | axes::TILT | axes::PROXIMITY;
+    let arm = axes::POSITION | axes::ORIENTATION | axes::SWITCHES | axes::VELOCITY;
+    for info in [
+        info("mouse", "pointer", -100, axes::POSITION | axes::SWITCHES, 0),
+        info("tablet", "pen", 5, pen, 0),
+        info("phantom", "openhaptics", 10, arm, axes::FORCE),
+    ] {
+        let device = studio.devices.entry(info.device.clone()).or_default();
+        device.info = Some(info);
+    }
+    let tablet = studio.devices.get_mut("tablet").expect("a tablet");
+    tablet.status = Some(StylusStatus {
+        trouble: "no pen (/dev/hidraw0); plug it in".into(),
+        ..StylusStatus::fresh(0)
+    });
+    let phantom = studio.devices.get_mut("phantom").expect("a phantom");
+    phantom.status = Some(StylusStatus {
+        samples: 123_456,
+        lateness: vec![100_000, 20_000, 900, 30, 4, 0, 0, 0, 0, 0, 0, 0],
+        execution: vec![120_000, 900, 34, 0, 0, 0, 0, 0, 0, 0, 0, 0],
+        strength: 0.6,
+        asked_n_m: 700.0,
+        stiffness_n_m: 400.0,
+        cap_n: 3.0,
+        motor_temperature: 0.2,
+        ..StylusStatus::fresh(12)
+    });
+    for ms in 5000..10_000u64 {
+        let phase = ms as f64 * 2e-3;
+        let push = (1.6 * sin(phase).max(0.0) + 0.1 * sin(40.0 * phase)).max(0.0);
+        let sample = StylusSample {
+            pose: StylusPose::Ferrule {
+                pose: maulstick_types::Pose::IDENTITY,
+            },
+            force_n: [0.4 * push, 0.3 * push, push],
+            in_range: true,
+            ..StylusSample::away()
+        };
+        phantom.felt.hear(ms * 1_000_000, &sample);
+    }
+    studio
+}
+
+fn status<'a>(harness: &'a mut Harness<'_, Bench<DevicePanel>>) -> &'a mut StylusStatus {
+    let devices = &mut harness.state_mut().studio.devices;
+    let phantom = devices.get_mut("phantom").expect("a phantom");
+    phantom.status.as_mut().expect("a status")
+}
+
+fn asked(harness: &mut Harness<'_, Bench<DevicePanel>>) -> Vec<Order> {
+    harness.state_mut().orders.take()
+}
+
+fn order(order: ForceOrder) -> Order {
+    Order::Force {
+        device: "phantom".into(),
+        order,
+    }
+}
+
+#[test]
+fn who_paints_and_what_is_wrong_stand_in_words() {
+    let mut harness = harness::<DevicePanel>(devices());
+    harness.get_by_label("phantom paints");
+    harness.get_by_label("no pen (/dev/hidraw0)");
+    harness.get_by_label("Plug it in");
+    harness.get_by_label("Senses position, pressure, tilt, nearness");
+    harness.get_by_label("400 of 700 N/m");
+    harness.get_by_label_contains("Force on the hand: ");
+    harness.state_mut().studio.now_ns += 60_000_000_000;
+    harness.run();
+    harness.get_by_label("No stylus is near the desk.");
+    harness.get_by_label("silent");
+}
+
+#[test]
+fn force_goes_off_and_on() {
+    let mut harness = harness::<DevicePanel>(devices());
+    harness.get_by_label("Force off").click();
+    harness.run();
+    assert_eq!(asked(&mut harness), [order(ForceOrder::Off)]);
+    status(&mut harness).is_on = false;
+    harness.run();
+    assert!(harness.query_by_label("Force off").is_none());
+    harness.get_by_label("Force on").click();
+    harness.run();
+    assert_eq!(asked(&mut harness), [order(ForceOrder::On)]);
+}
+
+#[test]
+fn a_key_switches_off_the_force_of_those_that_give_one() {
+    let mut harness = harness::<DevicePanel>(devices());
+    let bench = harness.state_mut();
+    force_off(&mut Work {
+        studio: &mut bench.studio,
+        orders: &mut bench.orders,
+        habits: &mut bench.habits,
+        toasts: &mut bench.toasts,
+    });
+    assert_eq!(asked(&mut harness), [order(ForceOrder::Off)]);
+}
+
+#[test]
+fn a_latched_fault_is_told_with_what_arms_it_again() {
+    let mut harness = harness::<DevicePanel>(devices());
+    assert!(harness.query_by_label("Re-arm").is_none(), "all is well");
+    status(&mut harness).faults = vec!["the hand shakes".into()];
+    harness.run();
+    harness.get_by_label("the hand shakes");
+    harness.get_by_label("Re-arm").click();
+    harness.run();
+    assert_eq!(asked(&mut harness), [order(ForceOrder::Rearm)]);
+}
+
+#[test]
+fn a_new_strength_is_asked_for_and_shown_until_the_device_has_it() {
+    let mut harness = harness::<DevicePanel>(devices());
+    let value = |harness: &Harness<'_, Bench<DevicePanel>>| {
+        let slider = harness.get_by_role_and_label(Role::Slider, "Strength");
+        slider.accesskit_node().numeric_value()
+    };
+    assert_eq!(value(&harness), Some(60.0));
+    let slider = harness.get_by_role_and_label(Role::Slider, "Strength");
+    slider.focus();
+    harness.run();
+    harness.key_press(eframe::egui::Key::ArrowRight);
+    harness.run();
+    let orders = asked(&mut harness);
+    let [
+        Order::Force {
+            order: ForceOrder::Strength { share },
+            ..
+        },
+    ] = orders[..]
+    else {
+        panic!("{orders:?}");
+    };
+    assert!(share > 0.6 && share < 0.7, "{share}");
+    assert_eq!(value(&harness), Some((100.0 * share).round()));
+    // The device has something else in the end.
+    status(&mut harness).strength = 0.3;
+    harness.state_mut().studio.now_ns += PATIENCE_NS;
+    harness.run();
+    assert_eq!(value(&harness), Some(30.0));
+}
+
+#[test]
+fn it_looks_like_its_picture() {
+    let open = |harness: &mut Harness<'static, Bench<DevicePanel>>| {
+        harness.get_by_label("Loop health").click();
+        harness.run_steps(20);
+    };
+    let mut studio = devices();
+    studio.devices.retain(|name, _| name == "phantom");
+    picture::<DevicePanel>("device", &studio, open, |studio| {
+        let phantom = studio.devices.get_mut("phantom").expect("a phantom");
+        phantom.felt = crate::felt::Felt::default();
+    });
+}

@@ -1,0 +1,155 @@
+use eframe::egui::accesskit::Role;
+use egui_kittest::Harness;
+use egui_kittest::kittest::Queryable as _;
+
+use super::*;
+use crate::studio::{PaintNode, Studio};
+use crate::testing::{Bench, harness, picture, steps, studio};
+
+fn landscape([red, green, blue]: [u8; 3]) -> Picture {
+    let pixel = |i: usize| match i / 40 < 18 {
+        true => [150, 190, 230],
+        false => [red, green, blue],
+    };
+    let rgb: Vec<u8> = (0..40 * 30).flat_map(pixel).collect();
+    Picture::new([40, 30], rgb).expect("three bytes a pixel")
+}
+
+fn versioned() -> Studio {
+    let mut studio = studio();
+    let scene = studio.scene.as_mut().expect("a scene");
+    for (name, parent, here) in [
+        ("Cold evening", "Sketch", false),
+        ("Sketch", "", false),
+        ("Warm", "Sketch", true),
+    ] {
+        scene.versions.push(NamedVersion {
+            name: name.to_owned(),
+            parent: parent.to_owned(),
+            here,
+        });
+    }
+    studio.paint = Some(PaintNode {
+        status: steps(12, 0),
+        heard_ns: 1,
+    });
+    for (name, colour) in [("Sketch", [90, 120, 60]), ("Warm", [200, 120, 60])] {
+        assert!(studio.thumbnails.of(name, 0).is_none());
+        studio.thumbnails.came(name, Some(landscape(colour)), 0);
+    }
+    studio
+}
+
+fn panel() -> Harness<'static, Bench<HistoryPanel>> {
+    harness(versioned())
+}
+
+fn click(harness: &mut Harness<'static, Bench<HistoryPanel>>, label: &str) {
+    harness.get_by_role_and_label(Role::Button, label).click();
+    harness.run();
+}
+
+fn write(harness: &mut Harness<'static, Bench<HistoryPanel>>, field: &str, text: &str) {
+    harness
+        .get_by_role_and_label(Role::TextInput, field)
+        .focus();
+    harness.run();
+    harness
+        .get_by_role_and_label(Role::TextInput, field)
+        .type_text(text);
+    harness.run();
+}
+
+#[test]
+fn steps_go_back_and_forth_where_there_are_some() {
+    let mut harness = panel();
+    click(&mut harness, "Undo (12)");
+    click(&mut harness, "Redo (0)");
+    let undo = Command::Undo { brush: None };
+    assert_eq!(
+        harness.state_mut().asked(),
+        [undo],
+        "there is nothing to redo"
+    );
+    let paint = harness.state_mut().studio.paint.as_mut().expect("a node");
+    paint.status = steps(11, 1);
+    harness.run();
+    click(&mut harness, "Redo (1)");
+    let redo = Command::Redo { brush: None };
+    assert_eq!(harness.state_mut().asked(), [redo]);
+}
+
+#[test]
+fn versions_are_kept_returned_to_and_branched_from() {
+    let mut harness = panel();
+    click(&mut harness, "Keep");
+    assert!(harness.state_mut().asked().is_empty(), "it has no name yet");
+    write(&mut harness, "Name of a version", " Trees ");
+    click(&mut harness, "Keep");
+    click(&mut harness, "Return to Sketch");
+    click(&mut harness, "Branch from Warm");
+    write(&mut harness, "Name of the new version", "Hot");
+    harness.key_press(Key::Enter);
+    harness.run();
+    let name = |name: &str| name.to_owned();
+    let expected = [
+        Command::Keep {
+            name: name("Trees"),
+        },
+        Command::Return {
+            name: name("Sketch"),
+        },
+        Command::Branch {
+            from: name("Warm"),
+            name: name("Hot"),
+        },
+    ];
+    assert_eq!(harness.state_mut().asked(), expected);
+    assert!(harness.query_by_label("Name of the new version").is_none());
+}
+
+#[test]
+fn a_version_is_forgotten_after_a_question() {
+    let mut harness = panel();
+    click(&mut harness, "Forget Warm?");
+    click(&mut harness, "Keep Warm");
+    assert!(harness.state_mut().asked().is_empty());
+    click(&mut harness, "Forget Warm?");
+    click(&mut harness, "Forget Warm");
+    let name = "Warm".to_owned();
+    assert_eq!(harness.state_mut().asked(), [Command::Forget { name }]);
+}
+
+#[test]
+fn a_name_that_no_version_can_have_is_told() {
+    let mut harness = panel();
+    write(&mut harness, "Name of a version", &"x".repeat(200));
+    click(&mut harness, "Keep");
+    assert!(harness.state_mut().asked().is_empty());
+    let told = harness.state().toasts.told();
+    assert!(told[0].help.contains("128 bytes"), "{told:?}");
+}
+
+#[test]
+fn pictures_of_forgotten_versions_go() {
+    let mut harness = panel();
+    assert_eq!(harness.state().panel.textures.len(), 2);
+    let scene = harness.state_mut().studio.scene.as_mut().expect("a scene");
+    scene.versions.retain(|version| version.name != "Warm");
+    harness.run();
+    assert_eq!(harness.state().panel.textures.len(), 1);
+}
+
+#[test]
+fn the_panel_looks_as_it_did() {
+    let ask = |harness: &mut Harness<'static, Bench<HistoryPanel>>| {
+        click(harness, "Forget Cold evening?");
+        click(harness, "Branch from Warm");
+        harness.remove_cursor();
+    };
+    picture::<HistoryPanel>("history", &versioned(), ask, |studio| {
+        let scene = studio.scene.as_mut().expect("a scene");
+        scene.versions[2].here = false;
+        scene.versions[0].here = true;
+    });
+}

@@ -1,0 +1,208 @@
+//! How to dry what is wet: how much of it, where, at once or in time.
+
+use eframe::egui::{DragValue, ProgressBar, TextEdit, Ui};
+use maulstick_paint::painting::TICKS_A_SECOND;
+use maulstick_types::Region;
+use maulstick_types::command::{Command, DRYING_TICKS};
+use maulstick_types::paint::PaintStatus;
+use maulstick_types::scene::CANVAS;
+
+use super::part;
+use crate::rows::{Number, Sliders, ask, choice, row};
+use crate::work::Work;
+
+/// Where it dries.
+const PLACES: [&str; 2] = ["All of it", "A part"];
+
+const SHARE: Number<'_> = Number {
+    word: "Share",
+    hover: "How much of the wet film dries, from below: 100 % leaves nothing wet",
+    range: 1.0..=100.0,
+    unit: " %",
+    decimals: 0,
+    factors: false,
+};
+
+/// A drying that goes on.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Drying {
+    /// Share of its time that went by, 0 to 1.
+    pub share: f32,
+    /// How long it still goes on, s.
+    pub left_s: f64,
+    /// Name of its layer; empty where it is called by its number.
+    pub layer: String,
+}
+
+/// What dries on the canvas as the paint node says.
+fn drying(status: &PaintStatus) -> Option<Drying> {
+    let drying = status.drying.as_ref()?;
+    Some(Drying {
+        share: drying.share,
+        left_s: f64::from(drying.ticks_left) / 60.0,
+        layer: drying.layer.clone(),
+    })
+}
+
+/// What is asked for with the next drying.
+#[derive(Clone, Debug)]
+pub(super) struct DryingForm {
+    sliders: Sliders,
+    percent: f64,
+    name: String,
+    /// The part; none for all of it.
+    part: Option<Region>,
+    /// How long a drying in time takes, s.
+    time_s: f64,
+}
+
+impl Default for DryingForm {
+    fn default() -> Self {
+        Self {
+            sliders: Sliders::default(),
+            percent: 100.0,
+            name: String::new(),
+            part: None,
+            time_s: 120.0,
+        }
+    }
+}
+
+impl DryingForm {
+    /// Shows it; `layers` have dried so far.
+    pub(super) fn show(&mut self, ui: &mut Ui, work: &mut Work<'_>, layers: usize) {
+        let change = self.sliders.row(ui, &SHARE, self.percent);
+        self.percent = change.moved.unwrap_or(self.percent);
+        row(ui, "Name", |ui| {
+            let name = TextEdit::singleline(&mut self.name).hint_text("of the new layer");
+            ui.add(name.desired_width(f32::INFINITY))
+        });
+        let Some(canvas) = work.studio.canvas() else {
+            return;
+        };
+        let size_m = canvas.cells.map(|cells| f64::from(cells) * canvas.cell_m);
+        let place = PLACES[usize::from(self.part.is_some())];
+        if let Some(chosen) = choice(ui, "Where", place, PLACES) {
+            self.part = (chosen == PLACES[1]).then(|| part::middle(size_m));
+        }
+        if let Some(region) = &mut self.part {
+            part::show(ui, region, size_m);
+        }
+        ui.horizontal(|ui| {
+            let dry = ui
+                .button("Dry")
+                .on_hover_text("Wet paint becomes a dry layer at once");
+            if dry.clicked() {
+                ask(work, self.dry());
+                self.name.clear();
+            }
+            let wet = ui.add_enabled(layers > 0, eframe::egui::Button::new("Wet again"));
+            let wet = wet.on_hover_text("The newest dry layer becomes wet paint again");
+            if wet.clicked() {
+                let command = Command::Wet {
+                    surface: CANVAS,
+                    layers: 1,
+                    region: self.part.clone(),
+                };
+                ask(work, command);
+            }
+        });
+        self.in_time(ui, work);
+    }
+
+    fn dry(&self) -> Command {
+        let (surface, name) = (CANVAS, self.name.trim().to_owned());
+        let share = (self.percent * 1e-2) as f32;
+        match self.part.clone() {
+            Some(region) => Command::DryRegion {
+                surface,
+                share,
+                name,
+                region,
+            },
+            None => Command::Dry {
+                surface,
+                share,
+                name,
+            },
+        }
+    }
+
+    /// Drying while time goes by.
+    fn in_time(&mut self, ui: &mut Ui, work: &mut Work<'_>) {
+        row(ui, "In time", |ui| {
+            let most = f64::from(*DRYING_TICKS.end()) / f64::from(TICKS_A_SECOND);
+            let time = DragValue::new(&mut self.time_s)
+                .range(1.0..=most)
+                .speed(1.0)
+                .custom_formatter(|seconds, _| clock(seconds))
+                .custom_parser(seconds);
+            let time = ui.add(time);
+            let start = ui
+                .button("Start")
+                .on_hover_text("All that is wet there dries evenly; one may paint meanwhile");
+            if start.clicked() {
+                let command = Command::DryOver {
+                    surface: CANVAS,
+                    ticks: (self.time_s * f64::from(TICKS_A_SECOND)).round() as u32,
+                    name: self.name.trim().to_owned(),
+                    region: self.part.clone(),
+                };
+                ask(work, command);
+                self.name.clear();
+            }
+            let stop = ui
+                .button("Stop")
+                .on_hover_text("What is wet still stays wet");
+            if stop.clicked() {
+                ask(work, Command::StopDrying { surface: CANVAS });
+            }
+            time.on_hover_text("Minutes and seconds")
+        });
+        let status = work.studio.paint.as_ref().map(|paint| &paint.status);
+        if let Some(goes_on) = status.and_then(drying) {
+            let name = match goes_on.layer.as_str() {
+                "" => "Dries",
+                name => name,
+            };
+            let text = format!("{name}: {} left", clock(goes_on.left_s));
+            ui.add(ProgressBar::new(goes_on.share).text(text));
+        }
+    }
+}
+
+/// Seconds as minutes and seconds.
+fn clock(seconds: f64) -> String {
+    let whole = seconds.round().max(0.0) as u64;
+    format!("{}:{:02}", whole / 60, whole % 60)
+}
+
+/// Reads minutes and seconds, or seconds.
+fn seconds(text: &str) -> Option<f64> {
+    let text = text.trim();
+    match text.split_once(':') {
+        Some((minutes, seconds)) => {
+            let part = |text: &str| text.trim().parse::<f64>().ok().filter(|v| *v >= 0.0);
+            Some(60.0 * part(minutes)? + part(seconds)?)
+        }
+        None => text.parse().ok(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn times_are_written_as_they_are_read() {
+        for (text, time_s) in [("2:00", 120.0), ("0:07", 7.0), ("75:30", 4530.0)] {
+            assert_eq!(
+                (clock(time_s).as_str(), seconds(text)),
+                (text, Some(time_s))
+            );
+        }
+        assert_eq!(seconds("90"), Some(90.0));
+        assert_eq!(seconds("a:10"), None);
+        assert_eq!(seconds("-1:10"), None);
+    }
+}

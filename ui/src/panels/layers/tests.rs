@@ -1,0 +1,202 @@
+use eframe::egui::{Key, accesskit::Role, vec2};
+use egui_kittest::Harness;
+use egui_kittest::kittest::{NodeT as _, Queryable as _};
+use maulstick_types::Region;
+use maulstick_types::scene::CANVAS;
+
+use super::*;
+use crate::studio::Studio;
+use crate::testing::{Bench, harness, picture, studio};
+
+fn layered() -> Studio {
+    let mut studio = studio();
+    let scene = studio.scene.as_mut().expect("a scene");
+    for (number, name, opacity) in [
+        (1, "Underpainting", 1.0),
+        (2, "Sky", 0.6),
+        (3, "Trees", 0.0),
+    ] {
+        scene.layers.push(Layer {
+            number,
+            name: name.to_owned(),
+            opacity,
+        });
+    }
+    studio
+}
+
+fn panel() -> Harness<'static, Bench<LayersPanel>> {
+    harness(layered())
+}
+
+fn opacity(layer: u32, opacity: f32) -> Command {
+    Command::Opacity { layer, opacity }
+}
+
+#[test]
+fn the_eye_hides_a_layer_and_shows_it_as_it_was() {
+    let mut harness = panel();
+    harness.get_by_label("Show Sky").click();
+    harness.run();
+    assert_eq!(harness.state_mut().asked(), [opacity(2, 0.0)]);
+    let scene = harness.state_mut().studio.scene.as_mut().expect("a scene");
+    scene.layers[1].opacity = 0.0;
+    harness.run();
+    harness.get_by_label("Show Sky").click();
+    harness.run();
+    harness.get_by_label("Show Trees").click();
+    harness.run();
+    let asked = harness.state_mut().asked();
+    assert_eq!(asked, [opacity(2, 0.6), opacity(3, 1.0)]);
+}
+
+#[test]
+fn an_opacity_is_sent_when_it_is_let_go_and_shown_while_it_is_dragged() {
+    let mut harness = panel();
+    let slider = harness.get_by_role_and_label(Role::Slider, "Opacity of Sky");
+    let place = slider.rect();
+    let at = |share: f32| place.left_center() + vec2(share * WAY, 0.0);
+    harness.drag_at(at(0.6));
+    harness.hover_at(at(0.4));
+    harness.hover_at(at(0.25));
+    harness.run();
+    assert!(harness.state_mut().asked().is_empty(), "still in the hand");
+    let shown = harness.get_by_role_and_label(Role::Slider, "Opacity of Sky");
+    let value = shown.accesskit_node().numeric_value().expect("a number");
+    assert!((10.0..40.0).contains(&value), "{value}");
+    harness.drop_at(at(0.25));
+    harness.run();
+    let asked = harness.state_mut().asked();
+    assert_eq!(asked, [opacity(2, (value * 1e-2) as f32)]);
+}
+
+#[test]
+fn a_click_on_a_name_gives_another_one() {
+    let mut harness = panel();
+    harness.get_by_label("Sky").click();
+    harness.run();
+    let field = harness.get_by_label("Name of the layer");
+    assert!(field.is_focused());
+    field.type_text(" at dusk");
+    harness.run();
+    harness.key_press(Key::Enter);
+    harness.run();
+    let named = Command::NameLayer {
+        layer: 2,
+        name: "Sky at dusk".to_owned(),
+    };
+    assert_eq!(harness.state_mut().asked(), [named]);
+    harness.get_by_label("Trees").click();
+    harness.run();
+    harness.key_press(Key::Escape);
+    harness.run();
+    assert!(harness.state_mut().asked().is_empty(), "left as it was");
+    assert!(harness.query_by_label("Name of the layer").is_none());
+}
+
+#[test]
+fn paint_dries_at_once_in_time_or_becomes_wet_again() {
+    let mut harness = panel();
+    let share = harness.get_by_role_and_label(Role::Slider, "Share");
+    share.set_value_accesskit(40.0);
+    harness.run();
+    harness
+        .get_by_role_and_label(Role::TextInput, "Name")
+        .focus();
+    harness.run();
+    harness
+        .get_by_role_and_label(Role::TextInput, "Name")
+        .type_text("Fog");
+    harness.run();
+    harness.get_by_label("Dry").click();
+    harness.run();
+    harness.get_by_label("Start").click();
+    harness.run();
+    harness.get_by_label("Stop").click();
+    harness.run();
+    harness.get_by_label("Wet again").click();
+    harness.run();
+    let surface = CANVAS;
+    let expected = [
+        Command::Dry {
+            surface,
+            share: 0.4,
+            name: "Fog".to_owned(),
+        },
+        Command::DryOver {
+            surface,
+            ticks: 120 * 60,
+            name: String::new(),
+            region: None,
+        },
+        Command::StopDrying { surface },
+        Command::Wet {
+            surface,
+            layers: 1,
+            region: None,
+        },
+    ];
+    assert_eq!(harness.state_mut().asked(), expected);
+}
+
+#[test]
+fn a_part_is_drawn_and_one_that_is_none_is_told() {
+    let mut harness = panel();
+    harness
+        .get_by_role_and_label(Role::ComboBox, "Where")
+        .click();
+    harness.run();
+    harness.get_by_label("A part").click();
+    harness.run();
+    let map = harness.get_by_label("Map of the canvas").rect();
+    let at = |x: f32, y: f32| map.left_bottom() + vec2(x * map.width(), -y * map.height());
+    harness.drag_at(at(0.25, 0.25));
+    harness.hover_at(at(0.5, 0.5));
+    harness.hover_at(at(0.75, 0.5));
+    harness.drop_at(at(0.75, 0.5));
+    harness.run();
+    harness.get_by_label("Dry").click();
+    harness.run();
+    let asked = harness.state_mut().asked();
+    let [Command::DryRegion { region, .. }] = &asked[..] else {
+        panic!("{asked:?}");
+    };
+    let canvas = harness.state().studio.canvas().expect("a canvas");
+    let size = canvas.cells.map(|cells| f64::from(cells) * canvas.cell_m);
+    let expected = Region {
+        corner_m: size.map(|side| 0.25 * side),
+        size_m: [0.5 * size[0], 0.25 * size[1]],
+    };
+    let near = |one: [f64; 2], other: [f64; 2]| (0..2).all(|i| (one[i] - other[i]).abs() < 2e-4);
+    assert!(near(region.corner_m, expected.corner_m), "{region}");
+    assert!(near(region.size_m, expected.size_m), "{region}");
+    harness
+        .get_by_role_and_label(Role::SpinButton, "Width")
+        .set_value_accesskit(-3.0);
+    harness.run();
+    harness.get_by_label("Dry").click();
+    harness.run();
+    assert!(harness.state_mut().asked().is_empty());
+    let told = harness.state().toasts.told();
+    assert!(
+        told[0].what.contains("region") && told[0].help.contains("give"),
+        "{told:?}"
+    );
+}
+
+#[test]
+fn the_panel_looks_as_it_did() {
+    let part = |harness: &mut Harness<'static, Bench<LayersPanel>>| {
+        harness
+            .get_by_role_and_label(Role::ComboBox, "Where")
+            .click();
+        harness.run();
+        harness.get_by_label("A part").click();
+        harness.run();
+        harness.remove_cursor();
+    };
+    picture::<LayersPanel>("layers", &layered(), part, |studio| {
+        let scene = studio.scene.as_mut().expect("a scene");
+        scene.layers[1].opacity = 0.1;
+    });
+}

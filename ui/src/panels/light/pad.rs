@@ -1,0 +1,148 @@
+//! The pad on which the lamp is dragged: the sky over the canvas, seen from above.
+
+use eframe::egui::accesskit::Role;
+use eframe::egui::{
+    Color32, EventFilter, Key, Pos2, Rect, Sense, Stroke, TextureId, Ui, WidgetInfo, pos2, vec2,
+};
+use maulstick_num::{acos, atan2};
+use maulstick_optics::light::LOWEST;
+
+/// Side of the pad, points.
+const SIDE: f32 = 132.0;
+/// The way of the lamp for one press of an arrow, of the pad's radius.
+const STEP: f64 = 0.05;
+
+/// Shows the pad with the picture of a ball on it; where the lamp was dragged to.
+pub(super) fn show(ui: &mut Ui, ball: TextureId, direction: [f64; 3]) -> Option<[f64; 3]> {
+    let (place, response) = ui.allocate_exact_size(vec2(SIDE, SIDE), Sense::click_and_drag());
+    response.widget_info(|| WidgetInfo::labeled(Role::Slider, true, "Lamp"));
+    let mut moved = None;
+    if let Some(at) = response.interact_pointer_pos()
+        && (response.dragged() || response.clicked())
+    {
+        response.request_focus();
+        moved = Some(from_pad(place, at));
+    }
+    if response.has_focus() {
+        let filter = EventFilter {
+            horizontal_arrows: true,
+            vertical_arrows: true,
+            ..EventFilter::default()
+        };
+        ui.memory_mut(|memory| memory.set_focus_lock_filter(response.id, filter));
+        let [x, y] = on_disc(direction);
+        let presses = |key: Key| ui.input(|input| input.num_presses(key)) as f64;
+        let right = presses(Key::ArrowRight) - presses(Key::ArrowLeft);
+        let up = presses(Key::ArrowUp) - presses(Key::ArrowDown);
+        if right != 0.0 || up != 0.0 {
+            moved = Some(of_disc([x + STEP * right, y + STEP * up]));
+        }
+    }
+    let painter = ui.painter();
+    let whole = Rect::from_min_max(pos2(0.0, 0.0), pos2(1.0, 1.0));
+    painter.image(ball, place.shrink(2.0), whole, Color32::WHITE);
+    let rim = match response.has_focus() {
+        true => Stroke::new(2.0, ui.visuals().selection.stroke.color),
+        false => ui.visuals().widgets.noninteractive.bg_stroke,
+    };
+    painter.circle_stroke(place.center(), 0.5 * SIDE - 2.0, rim);
+    let lamp = to_pad(place, moved.unwrap_or(direction));
+    let gold = Color32::from_rgb(255, 214, 110);
+    painter.circle(
+        lamp,
+        6.0,
+        gold,
+        Stroke::new(1.5, Color32::from_black_alpha(200)),
+    );
+    response.on_hover_text("Drag the lamp over the canvas, or move it by the arrow keys");
+    moved
+}
+
+/// The direction of a place on the disc of radius 1, whose rim is the horizon; no lower than a lamp goes.
+fn of_disc([x, y]: [f64; 2]) -> [f64; 3] {
+    let across = (x * x + y * y).sqrt();
+    let most = (1.0 - LOWEST * LOWEST).sqrt();
+    let shrink = if across > most { most / across } else { 1.0 };
+    let tidy = |v: f64| (v * 1e3).round() * 1e-3;
+    let [x, y] = [tidy(x * shrink), tidy(y * shrink)];
+    let up = (1.0 - x * x - y * y).max(LOWEST * LOWEST).sqrt();
+    [x, y, up]
+}
+
+/// The place on the disc of a direction.
+fn on_disc([x, y, z]: [f64; 3]) -> [f64; 2] {
+    let length = (x * x + y * y + z * z).sqrt();
+    match length > 0.0 {
+        true => [x / length, y / length],
+        false => [0.0; 2],
+    }
+}
+
+fn from_pad(place: Rect, at: Pos2) -> [f64; 3] {
+    let off = (at - place.center()) / (0.5 * SIDE);
+    of_disc([f64::from(off.x), -f64::from(off.y)])
+}
+
+fn to_pad(place: Rect, direction: [f64; 3]) -> Pos2 {
+    let [x, y] = on_disc(direction);
+    place.center() + 0.5 * SIDE * vec2(x as f32, -y as f32)
+}
+
+/// Where the light comes from, in words.
+#[must_use]
+pub(super) fn words(direction: [f64; 3]) -> String {
+    let [x, y] = on_disc(direction);
+    let across = (x * x + y * y).sqrt();
+    let height = acos(across.clamp(0.0, 1.0)).to_degrees().round();
+    if across < 0.1 {
+        return "From straight above".to_owned();
+    }
+    let sides = [
+        "the right",
+        "the upper right",
+        "above",
+        "the upper left",
+        "the left",
+        "the lower left",
+        "below",
+        "the lower right",
+    ];
+    let eighth = (atan2(y, x) / std::f64::consts::FRAC_PI_4).round();
+    let side = sides[eighth.rem_euclid(8.0) as usize % 8];
+    format!("From {side}, {height}° high")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn pad_and_direction_are_the_same_place() {
+        let place = Rect::from_min_size(pos2(20.0, 30.0), vec2(SIDE, SIDE));
+        for at in [pos2(86.0, 96.0), pos2(50.0, 60.0), pos2(120.0, 80.0)] {
+            let direction = from_pad(place, at);
+            let length: f64 = direction.iter().map(|v| v * v).sum();
+            assert!((length - 1.0).abs() < 1e-9);
+            assert!((to_pad(place, direction) - at).length() < 0.1, "{at:?}");
+        }
+        let low = from_pad(place, pos2(500.0, 96.0));
+        assert!(low[2] >= LOWEST && low[0] > 0.9, "{low:?}");
+        assert!(
+            to_pad(place, [0.5, 0.5, 0.5]).y < place.center().y,
+            "up is up: a fault would pass"
+        );
+    }
+
+    #[test]
+    fn words_say_where_the_light_comes_from() {
+        for (direction, text) in [
+            ([-0.5, 0.5, 0.7], "From the upper left, 45° high"),
+            ([0.01, 0.0, 1.0], "From straight above"),
+            ([0.0, -1.0, 0.5], "From below, 27° high"),
+            ([-1.0, -0.01, 1.0], "From the left, 45° high"),
+            ([1.0, -0.05, 1.0], "From the right, 45° high"),
+        ] {
+            assert_eq!(words(direction), text);
+        }
+    }
+}
