@@ -9,23 +9,10 @@ use std::time::Instant;
 use maulstick_bus::Class;
 use maulstick_types::paint::PaintStatus;
 use nix::sys::signal::Signal;
-use serde_json::Value;
 use support::{
-    Launcher, PATIENCE, Place, account, assert_same, fault, has, hear, join, listen, signal,
+    Launcher, PATIENCE, Place, account, assert_same, fault, has, hear, info, join, listen, signal,
     wait_for,
 };
-
-fn info(place: &Place, file: &str) -> Value {
-    let output = place.done(&["painting", "info", "--check", "--json", file]);
-    serde_json::from_slice(&output.stdout).expect("JSON")
-}
-
-/// Ends a rig as its painter does.
-fn close(place: &Place, mut launcher: Launcher) {
-    launcher.signal(Signal::SIGINT);
-    launcher.wait(PATIENCE);
-    place.wait_empty(PATIENCE);
-}
 
 #[test]
 fn a_rendered_document_is_the_picture_and_goes_on() {
@@ -104,7 +91,7 @@ fn what_was_done_is_there_after_a_kill_and_can_be_undone() {
     place.done(&["painting", "versions", "--return", "first"]);
     assert_eq!(books(&ACCOUNTS), before, "back at the version");
     bus.close();
-    close(&place, launcher);
+    launcher.close(&place);
     let there = info(&place, "x.maul");
     assert_eq!(there["versions"][0], "first");
     assert_eq!(there["pending"], 0);
@@ -157,7 +144,7 @@ fn a_drying_goes_on_after_a_crash_and_layers_become_wet_again() {
     std::fs::write(place.path("size.csv"), "400,0.2\n700,0.6\n").expect("written");
     place.done(&["ground", "size.csv"]);
     bus.close();
-    close(&place, launcher);
+    launcher.close(&place);
     let there = info(&place, "x.maul");
     assert_eq!(there["ledger"]["quanta_missing"], 0);
     assert_eq!(there["layers"][1]["name"], "slow");
@@ -355,7 +342,7 @@ fn a_painting_is_open_once() {
             &["open in another program", &pid.to_string(), "x.maul"],
         );
     }
-    close(&place, launcher);
+    launcher.close(&place);
     place.done(&["painting", "info", "x.maul"]);
 }
 
@@ -409,5 +396,5 @@ fn a_frozen_paint_node_is_replaced() {
     });
     assert!(anew.is_some(), "{}", launcher.said());
     assert_eq!(account(&place, "canvas"), before);
-    close(&place, launcher);
+    launcher.close(&place);
 }

@@ -9,23 +9,10 @@ use maulstick_bus::Class;
 use maulstick_types::paint::PaintStatus;
 use maulstick_types::scene::Scene;
 use nix::sys::signal::Signal;
-use serde_json::Value;
 use support::{
-    Launcher, PATIENCE, Place, account, assert_same, fault, has, hear, join, listen, signal,
+    Launcher, PATIENCE, Place, account, assert_same, fault, has, hear, info, join, listen, signal,
     wait_for,
 };
-
-fn info(place: &Place, file: &str) -> Value {
-    let output = place.done(&["painting", "info", "--check", "--json", file]);
-    serde_json::from_slice(&output.stdout).expect("JSON")
-}
-
-/// Ends a rig as its painter does.
-fn close(place: &Place, mut launcher: Launcher) {
-    launcher.signal(Signal::SIGINT);
-    launcher.wait(PATIENCE);
-    place.wait_empty(PATIENCE);
-}
 
 /// Cells of the canvas.
 fn cells(place: &Place) -> [u32; 2] {
@@ -129,7 +116,7 @@ fn a_rig_goes_from_painting_to_painting_and_nothing_is_lost() {
         "{}",
         launcher.said()
     );
-    close(&place, launcher);
+    launcher.close(&place);
     for file in ["a.maul", "b.maul"] {
         assert_eq!(info(&place, file)["ledger"]["quanta_missing"], 0);
     }
@@ -175,7 +162,7 @@ fn what_is_in_memory_alone_is_not_forgotten_unasked_and_becomes_a_file() {
     place.done(&["fill", "Pyrrole Red", "--um", "40"]);
     place.done(&["new", "--cm", "5x5", "--forget"]);
     assert_eq!(cells(&place), [200, 200]);
-    close(&place, launcher);
+    launcher.close(&place);
     let there = info(&place, "a.maul");
     assert_eq!(
         (&there["redo"], &there["versions"][0]),
@@ -264,7 +251,7 @@ fn exports_of_a_running_rig_are_those_of_its_file() {
         &fault(&place, &["export", "--stop"], 2),
         &["nothing is being exported"],
     );
-    close(&place, launcher);
+    launcher.close(&place);
     for (name, more) in formats {
         let other = format!("file-{name}");
         place.done(&[&["painting", "export", "a.maul", "-o", &other], more].concat());
@@ -276,7 +263,7 @@ fn exports_of_a_running_rig_are_those_of_its_file() {
 fn a_paint_node_that_is_killed_as_it_opens_gives_the_painting_before_back() {
     let place = Place::new();
     let launcher = Launcher::up(&place, &["b.maul", "--size", "128x128"]);
-    close(&place, launcher);
+    launcher.close(&place);
     let launcher = Launcher::up(&place, &["a.maul", "--size", "256x256"]);
     place.done(&["fill", "Yellow Ochre", "--um", "40"]);
     let held = account(&place, "canvas");
@@ -308,7 +295,7 @@ fn a_paint_node_that_is_killed_as_it_opens_gives_the_painting_before_back() {
     assert!(!launcher.said().contains("failed"), "{}", launcher.said());
     place.done(&["open", "b.maul"]);
     assert_eq!(cells(&place), [128, 128]);
-    close(&place, launcher);
+    launcher.close(&place);
     assert_eq!(info(&place, "a.maul")["ledger"]["quanta_missing"], 0);
 }
 
@@ -317,7 +304,7 @@ fn a_paint_node_that_ends_as_it_saves_has_no_blank_painting_saved() {
     let place = Place::new();
     let launcher = Launcher::up(&place, &["a.maul", "--size", "128x128"]);
     place.done(&["fill", "Yellow Ochre", "--um", "40"]);
-    close(&place, launcher);
+    launcher.close(&place);
     let kept = place.bytes("a.maul");
     let mut launcher = Launcher::up(&place, &["--size", "256x256"]);
     place.done(&["fill", "Bone Black", "--um", "40"]);
@@ -338,6 +325,6 @@ fn a_paint_node_that_ends_as_it_saves_has_no_blank_painting_saved() {
     assert_eq!(account(&place, "canvas"), 0.0, "another one is begun");
     assert_same(&place.bytes("a.maul"), &kept, "the painting that is there");
     place.done(&["save-as", "b.maul"]);
-    close(&place, launcher);
+    launcher.close(&place);
     assert_same(&place.bytes("a.maul"), &kept, "the painting that is there");
 }

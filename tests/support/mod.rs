@@ -199,6 +199,13 @@ impl Launcher {
         launcher
     }
 
+    /// Ends a rig as its painter does.
+    pub fn close(mut self, place: &Place) {
+        self.signal(Signal::SIGINT);
+        self.wait(PATIENCE);
+        place.wait_empty(PATIENCE);
+    }
+
     pub fn pid(&self) -> u32 {
         self.child.id()
     }
@@ -282,6 +289,12 @@ pub fn hear<M: Message>(heard: &mut Receiver<M>, mut wanted: impl FnMut(&M) -> b
 /// Forgets what was heard until now.
 pub fn drain<M: Message>(heard: &mut Receiver<M>) {
     while heard.try_recv().is_some() {}
+}
+
+/// What `painting info --check` says of a painting in a file.
+pub fn info(place: &Place, file: &str) -> serde_json::Value {
+    let output = place.done(&["painting", "info", "--check", "--json", file]);
+    serde_json::from_slice(&output.stdout).expect("JSON")
 }
 
 /// Cubic metres of paint on the canvas.

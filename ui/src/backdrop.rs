@@ -64,21 +64,9 @@ impl Backdrop {
             .iter()
             .fold(PixelRect::NOTHING, |all, laid| all.with(&laid.changed));
         if !self.drawn.as_ref().is_some_and(same) {
-            let texture = gpu.device.create_texture(&wgpu::TextureDescriptor {
-                label: Some("backdrop"),
-                size: wgpu::Extent3d {
-                    width: size[0].max(1),
-                    height: size[1].max(1),
-                    depth_or_array_layers: 1,
-                },
-                mip_level_count: 1,
-                sample_count: 1,
-                dimension: wgpu::TextureDimension::D2,
-                format: gpu.target,
-                usage: wgpu::TextureUsages::RENDER_ATTACHMENT
-                    | wgpu::TextureUsages::TEXTURE_BINDING,
-                view_formats: &[],
-            });
+            let usage =
+                wgpu::TextureUsages::RENDER_ATTACHMENT | wgpu::TextureUsages::TEXTURE_BINDING;
+            let texture = gpu.texture("backdrop", size.map(|n| n.max(1)), gpu.target, usage);
             let view = texture.create_view(&wgpu::TextureViewDescriptor::default());
             let resource = wgpu::BindingResource::TextureView(&view);
             self.drawn = Some(Drawn {

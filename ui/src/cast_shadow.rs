@@ -237,16 +237,9 @@ impl CastShadow {
 
 /// A texel of the bare desk.
 fn bare_desk(gpu: &Gpu) -> wgpu::TextureView {
-    let texture = gpu.device.create_texture(&wgpu::TextureDescriptor {
-        label: Some("bare desk"),
-        size: wgpu::Extent3d::default(),
-        mip_level_count: 1,
-        sample_count: 1,
-        dimension: wgpu::TextureDimension::D2,
-        format: wgpu::TextureFormat::Rgba8Unorm,
-        usage: wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_DST,
-        view_formats: &[],
-    });
+    let usage = wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_DST;
+    let format = wgpu::TextureFormat::Rgba8Unorm;
+    let texture = gpu.texture("bare desk", [1, 1], format, usage);
     gpu.queue.write_texture(
         texture.as_image_copy(),
         &DESK_COLOUR.to_array(),

@@ -36,6 +36,31 @@ impl Gpu {
             })
     }
 
+    /// A texture of `size` pixels, without finer or coarser copies.
+    #[must_use]
+    pub fn texture(
+        &self,
+        name: &str,
+        size: [u32; 2],
+        format: wgpu::TextureFormat,
+        usage: wgpu::TextureUsages,
+    ) -> wgpu::Texture {
+        self.device.create_texture(&wgpu::TextureDescriptor {
+            label: Some(name),
+            size: wgpu::Extent3d {
+                width: size[0],
+                height: size[1],
+                depth_or_array_layers: 1,
+            },
+            mip_level_count: 1,
+            sample_count: 1,
+            dimension: wgpu::TextureDimension::D2,
+            format,
+            usage,
+            view_formats: &[],
+        })
+    }
+
     /// The layout of a bind group whose bindings are numbered in order.
     #[must_use]
     pub fn layout(&self, name: &str, bindings: &[wgpu::BindingType]) -> wgpu::BindGroupLayout {
@@ -208,20 +233,8 @@ pub(crate) mod testing {
 
     /// A target of `size` pixels to draw into and read.
     pub(crate) fn target(gpu: &Gpu, size: [u32; 2]) -> wgpu::Texture {
-        gpu.device.create_texture(&wgpu::TextureDescriptor {
-            label: Some("target"),
-            size: wgpu::Extent3d {
-                width: size[0],
-                height: size[1],
-                depth_or_array_layers: 1,
-            },
-            mip_level_count: 1,
-            sample_count: 1,
-            dimension: wgpu::TextureDimension::D2,
-            format: gpu.target,
-            usage: wgpu::TextureUsages::RENDER_ATTACHMENT | wgpu::TextureUsages::COPY_SRC,
-            view_formats: &[],
-        })
+        let usage = wgpu::TextureUsages::RENDER_ATTACHMENT | wgpu::TextureUsages::COPY_SRC;
+        gpu.texture("target", size, gpu.target, usage)
     }
 
     /// Clears a target to `colour` and draws into it.

@@ -96,7 +96,6 @@ impl Hand {
                     ..
                 } if self.drag.is_some_and(|drag| drag.button == *button) => self.drag = None,
                 Event::PointerMoved(at) => self.drag_to(input.time, *at, around, orders),
-                Event::PointerGone => self.drag = None,
                 Event::MouseWheel { unit, delta, .. } if !around.over_panel => {
                     let lines = f64::from(delta.y)
                         * match unit {
@@ -109,6 +108,9 @@ impl Hand {
                 _ => {}
             }
         }
+        // A pointer that leaves the window still holds; one that was let go elsewhere does not.
+        let held = |drag: &Drag| input.pointer.button_down(drag.button);
+        self.drag = self.drag.filter(held);
     }
 
     /// Forgets where it has sent the surfaces: something else moves them.
@@ -346,6 +348,17 @@ mod tests {
             drag(PointerButton::Middle, Modifiers::NONE, on_palette, to),
         );
         assert!(moves.iter().all(|(surface, _)| *surface == PALETTE));
+    }
+
+    #[test]
+    fn a_drag_goes_on_beyond_the_window_until_the_button_is_let_go() {
+        let (from, to) = (pos2(520.0, 300.0), pos2(570.0, 280.0));
+        let mut events = drag(PointerButton::Middle, Modifiers::NONE, from, to);
+        let whole = placed(false, events.clone());
+        events.insert(3, Event::PointerGone);
+        assert_eq!(placed(false, events.clone()), whole);
+        events.swap(3, 5);
+        assert_eq!(placed(false, events).len(), 1, "a fault would pass");
     }
 
     #[test]

@@ -173,93 +173,90 @@ mod tests {
     use super::*;
 
     const SECOND: u64 = 1_000_000_000;
+    /// The brush touches.
+    const PRESSED: Pointer = Pointer {
+        at: [0.0; 3],
+        pressed: true,
+    };
+
+    /// A mouse, and who hears it.
+    struct Desk {
+        net: MemoryNet,
+        topics: Topics,
+        mouse: Mouse,
+        samples: Receiver<StylusSample>,
+        infos: Receiver<StylusInfo>,
+    }
+
+    impl Desk {
+        fn new() -> Self {
+            let net = MemoryNet::new(1, SECOND, Faults::default());
+            let (bus, topics, wake) = (net.bus(), Topics::new("t"), Wake::new());
+            let me = Origin {
+                source: 1,
+                epoch: 1,
+            };
+            let mouse = Mouse::new(&bus, &topics, "mouse", "main", me).expect("a mouse");
+            let (topic, ring) = (topics.sample("mouse"), Queue::Ring(64));
+            let samples = Receiver::new(&bus, &topic, Class::RealTime, ring, &wake);
+            let (topic, ring) = (topics.stylus_info("mouse"), Queue::Ring(8));
+            let infos = Receiver::new(&bus, &topic, Class::Cached, ring, &wake);
+            Self {
+                mouse,
+                samples: samples.expect("a receiver"),
+                infos: infos.expect("a receiver"),
+                net,
+                topics,
+            }
+        }
+
+        /// The mouse tells where it is; whether it was heard to be in range.
+        fn turn(&mut self) -> Option<bool> {
+            let now_ns = self.net.bus().now_ns();
+            self.mouse.send(now_ns, &[PRESSED]).expect("sent");
+            self.net.advance(SECOND / 10);
+            self.samples.newest().map(|sample| sample.message.in_range)
+        }
+    }
 
     #[test]
     fn another_stylus_silences_the_mouse_for_a_second() {
-        let net = MemoryNet::new(1, SECOND, Faults::default());
-        let (bus, topics, wake) = (net.bus(), Topics::new("t"), Wake::new());
-        let me = Origin {
-            source: 1,
-            epoch: 1,
-        };
-        let mut mouse = Mouse::new(&bus, &topics, "mouse", "main", me).expect("a mouse");
-        let (topic, class) = (topics.sample("mouse"), Class::RealTime);
-        let mut heard = Receiver::<StylusSample>::new(&bus, &topic, class, Queue::Ring(64), &wake)
-            .expect("a receiver");
+        let mut desk = Desk::new();
         let pen = Origin {
             source: 2,
             epoch: 1,
         };
-        let mut pen = Sender::new(&bus, &topics.sample("pen"), class, pen).expect("a pen");
-        let place = Pointer {
-            at: [0.0; 3],
-            pressed: true,
-        };
-        let mut turn = |mouse: &mut Mouse| {
-            mouse.send(bus.now_ns(), &[place]).expect("sent");
-            net.advance(SECOND / 10);
-            heard.newest().map(|sample| sample.message.in_range)
-        };
-        assert_eq!(turn(&mut mouse), Some(true));
+        let topic = desk.topics.sample("pen");
+        let mut pen = Sender::new(&desk.net.bus(), &topic, Class::RealTime, pen).expect("a pen");
+        assert_eq!(desk.turn(), Some(true));
         let near = StylusSample {
             in_range: true,
             ..StylusSample::away()
         };
         pen.send(0, 0, &near).expect("sent");
-        turn(&mut mouse);
-        assert_eq!(
-            turn(&mut mouse),
-            Some(false),
-            "it says that it is out of range"
-        );
+        desk.turn();
+        assert_eq!(desk.turn(), Some(false), "it says that it is out of range");
         for _ in 0..9 {
-            assert_eq!(turn(&mut mouse), None);
+            assert_eq!(desk.turn(), None);
         }
-        assert_eq!(turn(&mut mouse), Some(true));
+        assert_eq!(desk.turn(), Some(true));
     }
 
     #[test]
     fn another_brush_is_taken_after_the_first_was_put_down() {
-        let net = MemoryNet::new(1, SECOND, Faults::default());
-        let (bus, topics, wake) = (net.bus(), Topics::new("t"), Wake::new());
-        let me = Origin {
-            source: 1,
-            epoch: 1,
-        };
-        let mut mouse = Mouse::new(&bus, &topics, "mouse", "main", me).expect("a mouse");
-        let class = Class::Cached;
-        let mut infos = Receiver::<StylusInfo>::new(
-            &bus,
-            &topics.stylus_info("mouse"),
-            class,
-            Queue::Ring(8),
-            &wake,
-        )
-        .expect("a receiver");
-        let mut samples = Receiver::<StylusSample>::new(
-            &bus,
-            &topics.sample("mouse"),
-            Class::RealTime,
-            Queue::Ring(64),
-            &wake,
-        )
-        .expect("a receiver");
-        let place = Pointer {
-            at: [0.0; 3],
-            pressed: true,
-        };
-        mouse.send(SECOND, &[place]).expect("sent");
+        let mut desk = Desk::new();
+        desk.mouse.send(SECOND, &[PRESSED]).expect("sent");
         for brush in ["main", "second", "second"] {
-            mouse.take(SECOND + 1, brush).expect("told");
+            desk.mouse.take(SECOND + 1, brush).expect("told");
         }
-        net.advance(SECOND / 10);
-        let mut told: Vec<String> = std::iter::from_fn(|| infos.try_recv())
+        desk.net.advance(SECOND / 10);
+        let mut told: Vec<String> = std::iter::from_fn(|| desk.infos.try_recv())
             .map(|info| info.message.brush)
             .collect();
         // Who joins late is told once more.
         told.dedup();
         assert_eq!(told, ["main", "second"]);
-        let ranges: Vec<bool> = std::iter::from_fn(|| samples.try_recv())
+        let ranges: Vec<bool> = std::iter::from_fn(|| desk.samples.try_recv())
             .map(|sample| sample.message.in_range)
             .collect();
         assert_eq!(ranges, [true, false]);
@@ -267,28 +264,13 @@ mod tests {
 
     #[test]
     fn what_is_moved_in_a_long_frame_is_spread_over_it() {
-        let net = MemoryNet::new(1, SECOND, Faults::default());
-        let (bus, topics, wake) = (net.bus(), Topics::new("t"), Wake::new());
-        let me = Origin {
-            source: 1,
-            epoch: 1,
-        };
-        let mut mouse = Mouse::new(&bus, &topics, "mouse", "main", me).expect("a mouse");
-        let (topic, class) = (topics.sample("mouse"), Class::RealTime);
-        let mut heard = Receiver::<StylusSample>::new(&bus, &topic, class, Queue::Ring(64), &wake)
-            .expect("a receiver");
-        let place = Pointer {
-            at: [0.0; 3],
-            pressed: true,
-        };
+        let mut desk = Desk::new();
         for frame in 1..=3 {
-            let places = [place; 8];
-            mouse
-                .send(SECOND + frame * 80_000_000, &places)
-                .expect("sent");
+            let sent = desk.mouse.send(SECOND + frame * 80_000_000, &[PRESSED; 8]);
+            sent.expect("sent");
         }
-        net.advance(SECOND / 10);
-        let times: Vec<u64> = std::iter::from_fn(|| heard.try_recv())
+        desk.net.advance(SECOND / 10);
+        let times: Vec<u64> = std::iter::from_fn(|| desk.samples.try_recv())
             .map(|sample| sample.header.event_ns)
             .collect();
         let steps = times.windows(2).skip(7).map(|pair| pair[1] - pair[0]);

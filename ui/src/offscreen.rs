@@ -45,21 +45,8 @@ impl Offscreen {
             queue,
             target: format,
         };
-        let [width, height] = size;
-        let target = gpu.device.create_texture(&wgpu::TextureDescriptor {
-            label: Some("offscreen"),
-            size: wgpu::Extent3d {
-                width,
-                height,
-                depth_or_array_layers: 1,
-            },
-            mip_level_count: 1,
-            sample_count: 1,
-            dimension: wgpu::TextureDimension::D2,
-            format,
-            usage: wgpu::TextureUsages::RENDER_ATTACHMENT | wgpu::TextureUsages::COPY_SRC,
-            view_formats: &[],
-        });
+        let usage = wgpu::TextureUsages::RENDER_ATTACHMENT | wgpu::TextureUsages::COPY_SRC;
+        let target = gpu.texture("offscreen", size, format, usage);
         Ok(Self {
             adapter: adapter.get_info().name,
             renderer: Renderer::new(&gpu.device, format, RendererOptions::default()),

@@ -70,20 +70,8 @@ impl Sheet {
             return None;
         }
         let texture = |name: &str, format: wgpu::TextureFormat, usage: wgpu::TextureUsages| {
-            gpu.device.create_texture(&wgpu::TextureDescriptor {
-                label: Some(name),
-                size: wgpu::Extent3d {
-                    width: size[0],
-                    height: size[1],
-                    depth_or_array_layers: 1,
-                },
-                mip_level_count: 1,
-                sample_count: 1,
-                dimension: wgpu::TextureDimension::D2,
-                format,
-                usage: usage | wgpu::TextureUsages::TEXTURE_BINDING,
-                view_formats: &[],
-            })
+            let usage = usage | wgpu::TextureUsages::TEXTURE_BINDING;
+            gpu.texture(name, size, format, usage)
         };
         let colour = texture("colour", COLOUR, wgpu::TextureUsages::COPY_DST);
         let height = texture("height", HEIGHT, wgpu::TextureUsages::COPY_DST);

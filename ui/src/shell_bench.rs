@@ -106,6 +106,7 @@ pub(crate) fn window(folder: Option<&Path>) -> Harness<'static, Bench> {
 pub(crate) fn ctrl(harness: &mut Harness<'_, Bench>, key: Key, more: Modifiers) {
     harness.key_press_modifiers(Modifiers::COMMAND.plus(more), key);
     harness.run_steps(4);
+    listed(harness);
 }
 
 /// Presses a key.
@@ -122,6 +123,14 @@ pub(crate) fn write(harness: &mut Harness<'_, Bench>, label: &str, text: &str) {
     harness.run_steps(1);
     harness.get_by_label(label).type_text(text);
     harness.run_steps(2);
+    listed(harness);
+}
+
+/// Draws until a dialog lists what lies in its folder: nothing moves under a click then.
+fn listed(harness: &mut Harness<'_, Bench>) {
+    until(harness, |harness| {
+        harness.query_by_label("Looking …").is_none()
+    });
 }
 
 /// Draws until something is so that a thread brings about.

@@ -2,14 +2,12 @@
 //! again at once, and in a window; a take is played at rate 1.
 
 use std::collections::BTreeMap;
-use std::path::{Path, PathBuf};
-use std::process::{Child, Command, Stdio};
+use std::path::Path;
+use std::process::Command;
 use std::time::{Duration, Instant};
 
 use maulstick_bus::typed::{Receiver, ask};
-use maulstick_bus::{
-    Bus as _, BusError, Class, Dial, Queue, RigClock, RigFolder, RigInfo, Wake, ZenohBus,
-};
+use maulstick_bus::{Bus as _, BusError, Class, Dial, Queue, RigClock, Wake, ZenohBus};
 use maulstick_rig::Fault;
 use maulstick_types::Origin;
 use maulstick_types::brush::BrushState;
@@ -18,52 +16,8 @@ use maulstick_types::topics::Topics;
 
 use crate::render::performance;
 use crate::report::{Report, quantile, sorted};
+use crate::running::{Running, fault, joined, maulstick};
 use crate::window_latency;
-
-/// A process that ends with this value.
-pub(crate) struct Running(Child);
-
-impl Running {
-    /// Starts `command` without its words.
-    pub(crate) fn start(command: &mut Command) -> Result<Self, Fault> {
-        let quiet = command.stdout(Stdio::null()).stderr(Stdio::null());
-        quiet.spawn().map(Self).map_err(fault)
-    }
-
-    /// Whether it has ended by itself.
-    pub(crate) fn has_ended(&mut self) -> Result<bool, Fault> {
-        Ok(self.0.try_wait().map_err(fault)?.is_some())
-    }
-}
-
-impl Drop for Running {
-    fn drop(&mut self) {
-        self.0.kill().ok();
-        self.0.wait().ok();
-    }
-}
-
-pub(crate) fn fault(error: impl std::fmt::Display) -> Fault {
-    Fault::failure(error.to_string())
-}
-
-/// The command beside this program.
-pub(crate) fn maulstick() -> Result<PathBuf, Fault> {
-    Ok(std::env::current_exe()
-        .map_err(fault)?
-        .with_file_name("maulstick"))
-}
-
-/// The rig of a folder, once it is there.
-pub(crate) fn joined(path: &Path, give_up: Instant) -> Result<(RigFolder, RigInfo), Fault> {
-    loop {
-        match RigFolder::join_at(path) {
-            Ok(joined) => return Ok(joined),
-            Err(error) if Instant::now() > give_up => return Err(error.into()),
-            Err(_) => std::thread::sleep(Duration::from_millis(5)),
-        }
-    }
-}
 
 /// A rig called `latency` in the folder `place` that plays a take at rate 1.
 pub(crate) fn playing(place: &Path, take: &Path) -> Result<Command, Fault> {

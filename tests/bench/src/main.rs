@@ -31,6 +31,7 @@ mod optics;
 mod paint;
 mod render;
 mod report;
+mod running;
 mod thread_cpu;
 mod view;
 mod window;

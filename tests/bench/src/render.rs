@@ -9,8 +9,8 @@ use maulstick_device::demo;
 use maulstick_device::table::{TableLayout, import};
 use maulstick_rig::Fault;
 
-use crate::latency::maulstick;
 use crate::report::{Report, quantile, sorted};
+use crate::running::maulstick;
 
 /// Runs of which the median is reported.
 const RUNS: usize = 5;

@@ -1,9 +1,8 @@
 //! Memory of the window with a painted canvas of 4096² cells, above that of a window with hardly any
 //! canvas, as fine as it may be shown.
 
-use std::io::{BufRead as _, BufReader};
 use std::path::Path;
-use std::process::{Child, Command, Stdio};
+use std::process::{Command, Stdio};
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
@@ -15,46 +14,19 @@ use maulstick_types::command::Command as Act;
 use maulstick_types::scene::{CANVAS, Scene, Surface};
 use maulstick_types::topics::Topics;
 
-use crate::latency::{joined, maulstick};
 use crate::report::Report;
+use crate::running::{Running, display, fault, joined, maulstick};
 
 /// Sides of the two canvases, mm: of 64 and of 4096 cells.
 const SIDES_MM: [u32; 2] = [16, 1024];
+/// Pixels of the screen.
+const SCREEN: [u32; 2] = [1280, 1024];
 /// Zooms that are shown one after the other: the whole canvas, then ever finer levels of it.
 const ZOOMS: [f64; 4] = [1.0, 2.0, 4.0, 8.0];
 /// Memory that changes by less than this for so long is settled.
 const STEADY_BYTES: u64 = 1 << 20;
 const STEADY: Duration = Duration::from_secs(3);
 const PATIENCE: Duration = Duration::from_secs(120);
-
-fn fault(error: impl std::fmt::Display) -> Fault {
-    Fault::failure(error.to_string())
-}
-
-/// A process that ends with this value.
-struct Running(Child);
-
-impl Drop for Running {
-    fn drop(&mut self) {
-        self.0.kill().ok();
-        self.0.wait().ok();
-    }
-}
-
-/// A display without a screen, and its name.
-fn display() -> Result<(Running, String), Fault> {
-    let mut server = Command::new("Xvfb")
-        .args(["-displayfd", "1", "-screen", "0", "1280x1024x24"])
-        .args(["-nolisten", "tcp"])
-        .stdout(Stdio::piped())
-        .stderr(Stdio::null())
-        .spawn()
-        .map_err(|error| fault(format!("Xvfb cannot be started: {error}")))?;
-    let out = server.stdout.take().ok_or_else(|| fault("no output"))?;
-    let mut number = String::new();
-    BufReader::new(out).read_line(&mut number).map_err(fault)?;
-    Ok((Running(server), format!(":{}", number.trim())))
-}
 
 /// The window's process of the rig in a folder.
 fn window_of(folder: &Path) -> Option<u32> {
@@ -79,12 +51,18 @@ fn resident(pid: u32) -> Result<u64, Fault> {
     Ok(kib.ok_or_else(|| fault("no VmRSS"))? * 1024)
 }
 
-/// Resident memory once it has settled.
+/// Memory is looked at so often.
+const LOOK: Duration = Duration::from_millis(100);
+
+/// Resident memory once it has settled: the system tells of no change, so it is looked at.
 fn settled(pid: u32) -> Result<u64, Fault> {
     let give_up = Instant::now() + PATIENCE;
     let (mut last, mut since) = (resident(pid)?, Instant::now());
-    while since.elapsed() < STEADY && Instant::now() < give_up {
-        std::thread::sleep(Duration::from_millis(100));
+    while since.elapsed() < STEADY {
+        if Instant::now() > give_up {
+            return Err(fault("the window's memory does not settle"));
+        }
+        std::thread::sleep(LOOK);
         let now = resident(pid)?;
         if now.abs_diff(last) > STEADY_BYTES {
             (last, since) = (now, Instant::now());
@@ -100,18 +78,16 @@ fn measured(side_mm: u32, zooms: &[f64], display: &str) -> Result<Vec<u64>, Faul
     let settings = format!("[canvas]\nwidth_mm = {side_mm}\nheight_mm = {side_mm}\n");
     std::fs::write(&rig, settings).map_err(fault)?;
     let log = std::fs::File::create(place.path().join("log")).map_err(fault)?;
-    let up = Command::new(maulstick()?)
-        .args(["up", "--name", "window", "--rig"])
+    let mut up = Command::new(maulstick()?);
+    up.args(["up", "--name", "window", "--rig"])
         .arg(&rig)
         .current_dir(place.path())
         .env("XDG_RUNTIME_DIR", place.path())
         .env("DISPLAY", display)
         .env_remove("WAYLAND_DISPLAY")
         .stdout(Stdio::null())
-        .stderr(log)
-        .spawn()
-        .map_err(fault)?;
-    let _up = Running(up);
+        .stderr(log);
+    let _up = Running::begin(&mut up)?;
     let give_up = Instant::now() + Duration::from_secs(30);
     let (folder, info) = joined(&place.path().join("maulstick/window"), give_up)?;
     let dial = Dial {
@@ -174,7 +150,7 @@ fn measured(side_mm: u32, zooms: &[f64], display: &str) -> Result<Vec<u64>, Faul
 
 /// Measures and reports.
 pub(crate) fn run(report: &mut Report) -> Result<(), Fault> {
-    let (_server, name) = display()?;
+    let (_server, name) = display(SCREEN)?;
     let [small, large] = SIDES_MM;
     let empty = measured(small, &ZOOMS[..1], &name)?[0];
     let all = measured(large, &ZOOMS, &name)?;

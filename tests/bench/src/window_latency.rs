@@ -3,9 +3,7 @@
 //! The window says of each frame which states of a brush are in it (`ui/presented`).
 
 use std::collections::BTreeMap;
-use std::io::{BufRead as _, BufReader};
 use std::path::Path;
-use std::process::{Child, Command, Stdio};
 use std::time::{Duration, Instant};
 
 use maulstick_bus::typed::Receiver;
@@ -16,8 +14,9 @@ use maulstick_types::stylus::TakeStatus;
 use maulstick_types::topics::Topics;
 use maulstick_types::window::Presented;
 
-use crate::latency::{Running, fault, joined_as, playing};
+use crate::latency::{joined_as, playing};
 use crate::report::{Report, quantile, sorted};
+use crate::running::{Running, display, fault};
 
 /// Width and height of the window, pixels.
 const SIZE: [u32; 2] = [1280, 720];
@@ -26,42 +25,6 @@ const GRACE: Duration = Duration::from_secs(2);
 /// A pause between two depositing samples that is longer is no painting, ns.
 const PAUSE_NS: u64 = 500_000_000;
 
-/// A display without a screen that ends with this value.
-struct Display(Child);
-
-impl Drop for Display {
-    fn drop(&mut self) {
-        self.0.kill().ok();
-        self.0.wait().ok();
-    }
-}
-
-/// The display that is there, or one without a screen; and its name.
-fn display() -> Result<(Option<Display>, String), Fault> {
-    if let Ok(name) = std::env::var("DISPLAY") {
-        return Ok((None, name));
-    }
-    let missing = |error: std::io::Error| {
-        Fault::failure(format!("there is no display, and no Xvfb: {error}"))
-            .help("set DISPLAY, or install xvfb")
-    };
-    let screen = format!("{}x{}x24", SIZE[0], SIZE[1]);
-    let mut server = Command::new("Xvfb")
-        .args(["-displayfd", "1", "-nolisten", "tcp", "-screen", "0"])
-        .arg(screen)
-        .stdout(Stdio::piped())
-        .stderr(Stdio::null())
-        .spawn()
-        .map_err(missing)?;
-    let mut number = String::new();
-    if let Some(words) = server.stdout.take() {
-        BufReader::new(words)
-            .read_line(&mut number)
-            .map_err(fault)?;
-    }
-    Ok((Some(Display(server)), format!(":{}", number.trim())))
-}
-
 /// Measures and reports, with a take of so many seconds.
 pub(crate) fn run(
     report: &mut Report,
@@ -69,7 +32,7 @@ pub(crate) fn run(
     take: &Path,
     seconds: f64,
 ) -> Result<(), Fault> {
-    let (_server, name) = display()?;
+    let (_server, name) = display(SIZE)?;
     let habits = place.join("config/maulstick");
     std::fs::create_dir_all(&habits).map_err(fault)?;
     let [width, height] = SIZE;

@@ -138,9 +138,10 @@ impl App {
         let wide_m = f64::from(view.area.width()) / view.scale;
         let at = aim.map(|(at, _)| (at.truncate() - view.middle) / wide_m);
         let at = gone(context, view).or(at);
+        let free = !painting && !self.hand.holds();
         if self
             .wave
-            .follow(now_s, at, wide_m, !painting, side(&self.habits))
+            .follow(now_s, at, wide_m, free, side(&self.habits))
         {
             self.slide();
         }

@@ -1,4 +1,3 @@
-use std::time::Instant;
 
 use eframe::egui::{Color32, Rect, pos2, vec2};
 use eframe::egui_wgpu::wgpu::util::DeviceExt as _;
@@ -377,51 +376,4 @@ fn a_sheet_of_all_brushes() {
     let pixels = studio.draw(&hands, &greys, &greys);
     pixels.keep("brush-3d.png");
     assert!(pixels != studio.draw(&[], &greys, &greys));
-}
-
-#[test]
-#[ignore = "measures"]
-fn time_of_a_brush() {
-    let mut studio = Studio::new([1280, 720], 2687.5);
-    let desk = Desk::of(&studio.scene);
-    let lamp = lamp_over(&studio.scene, CANVAS);
-    let pixels = studio.desk(&over(230));
-    let mut brushes = Brushes::new(studio.picture.gpu(), &Export::default());
-    let mut time = |name: &str, shapes: &mut dyn FnMut(&Gpu) -> Vec<Shape>| {
-        let mut times: Vec<[f64; 2]> = (0..60)
-            .map(|_| {
-                let from = Instant::now();
-                let shapes = shapes(studio.picture.gpu());
-                let made = from.elapsed().as_secs_f64();
-                studio.picture.draw(shapes).expect("drawn");
-                [made, from.elapsed().as_secs_f64()].map(|s| 1e3 * s)
-            })
-            .collect();
-        times.sort_by(|a, b| a[1].total_cmp(&b[1]));
-        let [made, all] = times[times.len() / 2];
-        println!("{name}: shapes {made:.2} ms, frame {all:.2} ms");
-    };
-    time("nothing", &mut |_| Vec::new());
-    let brushes_held = [
-        ("round", 0.0),
-        ("flat", 0.0),
-        ("flat", 0.05),
-        ("badger", 0.0),
-    ];
-    for (kind, lift) in brushes_held {
-        let hand = InHand::new(kind, [0.0, 0.02], 0.4, &studio.scene).lifted(lift);
-        let below = Below {
-            view: &studio.view,
-            pixels_per_point: 1.0,
-            desk: &desk,
-            pixels: Some(&pixels),
-        };
-        let mut shapes = |gpu: &Gpu| brushes.shapes(gpu, &hand.held(), &hand.head, &lamp, &below);
-        time(&format!("{kind} at {lift} m: shadows"), &mut |gpu| {
-            let mut shapes = shapes(gpu);
-            shapes.truncate(shapes.len() - 2);
-            shapes
-        });
-        time(&format!("{kind} at {lift} m"), &mut shapes);
-    }
 }

@@ -75,6 +75,25 @@ pub(crate) fn show(
     answer
 }
 
+/// What is asked for, where the painter goes: what is wrong with it is kept to be shown, and the dialog stays.
+pub(crate) fn decided<T>(
+    answer: Answer,
+    asked: Option<Result<T, String>>,
+    wrong: &mut Option<String>,
+) -> (Answer, Option<T>) {
+    match asked {
+        None => (answer, None),
+        Some(Ok(asked)) => {
+            *wrong = None;
+            (answer, Some(asked))
+        }
+        Some(Err(words)) => {
+            *wrong = Some(words);
+            (Answer::Stay, None)
+        }
+    }
+}
+
 fn below(ui: &mut Ui, foot: &Foot) -> Answer {
     if let Some(wrong_words) = &foot.wrong {
         let colour = wrong(ui.visuals());

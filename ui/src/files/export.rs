@@ -166,20 +166,11 @@ impl ExportPicture {
                 busy: busy.then_some("Beginning …"),
             }
         });
-        if answer != Answer::Go {
-            return (answer, None);
-        }
-        let path = taken.unwrap_or_else(|| self.browser.path());
-        match self.command(&path) {
-            Ok(command) => {
-                self.wrong = None;
-                (answer, Some(command))
-            }
-            Err(words) => {
-                self.wrong = Some(words);
-                (Answer::Stay, None)
-            }
-        }
+        let asked = (answer == Answer::Go).then(|| {
+            let path = taken.unwrap_or_else(|| self.browser.path());
+            self.command(&path)
+        });
+        dialog::decided(answer, asked, &mut self.wrong)
     }
 
     fn options(&mut self, ui: &mut Ui) -> bool {

@@ -171,19 +171,8 @@ impl NewPainting {
                 busy: busy.then_some("Laying out the canvas …"),
             }
         });
-        if answer != Answer::Go {
-            return (answer, None);
-        }
-        match self.command() {
-            Ok(command) => {
-                self.wrong = None;
-                (answer, Some(command))
-            }
-            Err(words) => {
-                self.wrong = Some(words);
-                (Answer::Stay, None)
-            }
-        }
+        let asked = (answer == Answer::Go).then(|| self.command());
+        dialog::decided(answer, asked, &mut self.wrong)
     }
 
     fn fields(&mut self, ui: &mut Ui) -> bool {

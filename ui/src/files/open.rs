@@ -91,20 +91,11 @@ impl OpenPainting {
                 busy: busy.then_some("Opening …"),
             }
         });
-        if answer != Answer::Go {
-            return (answer, None);
-        }
-        let path = taken.unwrap_or_else(|| self.browser.path());
-        match self.command(&path) {
-            Ok(command) => {
-                self.wrong = None;
-                (answer, Some(command))
-            }
-            Err(words) => {
-                self.wrong = Some(words);
-                (Answer::Stay, None)
-            }
-        }
+        let asked = (answer == Answer::Go).then(|| {
+            let path = taken.unwrap_or_else(|| self.browser.path());
+            self.command(&path)
+        });
+        dialog::decided(answer, asked, &mut self.wrong)
     }
 }
 

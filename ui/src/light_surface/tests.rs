@@ -55,22 +55,7 @@ impl Rough {
     fn on_device(&self, lamp: &Lamp, gamut: &Gamut, from: [u32; 2]) -> Vec<[f32; 3]> {
         let gpu = gpu();
         let pass = LightSurface::new(&gpu, gamut);
-        let texture = |format, usage| {
-            gpu.device.create_texture(&wgpu::TextureDescriptor {
-                label: None,
-                size: wgpu::Extent3d {
-                    width: SIDE as u32,
-                    height: SIDE as u32,
-                    depth_or_array_layers: 1,
-                },
-                mip_level_count: 1,
-                sample_count: 1,
-                dimension: wgpu::TextureDimension::D2,
-                format,
-                usage,
-                view_formats: &[],
-            })
-        };
+        let texture = |format, usage| gpu.texture("lit", [SIDE as u32; 2], format, usage);
         let input = wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_DST;
         let output = wgpu::TextureUsages::RENDER_ATTACHMENT | wgpu::TextureUsages::COPY_SRC;
         let view = |texture: &wgpu::Texture| texture.create_view(&Default::default());

@@ -288,18 +288,9 @@ fn dial(ui: &mut Ui, force_n: [f64; 3], most_n: f64) {
     }
 }
 
-fn graph(ui: &mut Ui, name: &str, line: Vec<[f64; 2]>, most_n: f64) {
-    let (colour, faint) = (
-        ui.visuals().hyperlink_color,
-        ui.visuals().warn_fg_color.gamma_multiply(0.7),
-    );
-    Plot::new(("force", name))
-        .height(GRAPH)
-        .width(ui.available_width())
-        .include_x(-KEPT_S)
-        .include_x(0.0)
-        .include_y(0.0)
-        .include_y(1.05 * most_n)
+/// A plot as wide as there is room, which no pointer moves.
+fn still<'a>(ui: &Ui, plot: Plot<'a>) -> Plot<'a> {
+    plot.width(ui.available_width())
         .show_x(false)
         .show_y(false)
         .allow_drag(false)
@@ -307,6 +298,19 @@ fn graph(ui: &mut Ui, name: &str, line: Vec<[f64; 2]>, most_n: f64) {
         .allow_scroll(false)
         .allow_boxed_zoom(false)
         .allow_double_click_reset(false)
+}
+
+fn graph(ui: &mut Ui, name: &str, line: Vec<[f64; 2]>, most_n: f64) {
+    let (colour, faint) = (
+        ui.visuals().hyperlink_color,
+        ui.visuals().warn_fg_color.gamma_multiply(0.7),
+    );
+    still(ui, Plot::new(("force", name)))
+        .height(GRAPH)
+        .include_x(-KEPT_S)
+        .include_x(0.0)
+        .include_y(0.0)
+        .include_y(1.05 * most_n)
         .set_margin_fraction(vec2(0.0, 0.0))
         .show_axes([false, true])
         .show(ui, |plot| {

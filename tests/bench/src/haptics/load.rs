@@ -13,7 +13,7 @@ use maulstick_types::stylus::{DEFAULT_TILT_RAD, StylusPose, StylusSample, axes};
 use maulstick_types::topics::Topics;
 
 use super::fault;
-use crate::latency::{joined, maulstick};
+use crate::running::{joined, maulstick};
 
 /// Samples a second of its take.
 const RATE_HZ: u64 = 250;

@@ -4,6 +4,8 @@ use eframe::egui::{CollapsingHeader, Ui, vec2};
 use egui_plot::{Bar, BarChart, Plot};
 use maulstick_types::stylus::StylusStatus;
 
+use super::still;
+
 /// Upper end of the first bin, µs; each further one is twice as far.
 const FIRST_US: f64 = 50.0;
 /// Height of a histogram, points.
@@ -96,18 +98,10 @@ fn histogram(ui: &mut Ui, name: &'static str, counts: &[u64]) {
     let chart = BarChart::new(name, bars.collect())
         .color(colour)
         .element_formatter(Box::new(|bar, _| bar.name.clone()));
-    Plot::new(name)
+    still(ui, Plot::new(name))
         .height(HEIGHT)
-        .width(ui.available_width())
         .show_axes([false, false])
         .show_grid([false, false])
-        .show_x(false)
-        .show_y(false)
-        .allow_drag(false)
-        .allow_zoom(false)
-        .allow_scroll(false)
-        .allow_boxed_zoom(false)
-        .allow_double_click_reset(false)
         .include_x(-0.5)
         .include_x(counts.len() as f64 - 0.5)
         .include_y(0.0)
