@@ -173,7 +173,8 @@ fn a_painter_mixes_paints_dries_takes_back_moves_the_canvas_and_exports() {
     let stroke = line([-80.0, 20.0], [0.0, 20.0]);
     painter.display.press(1, &stroke[..40]);
     painter.display.click_held(4, stroke[39]);
-    let zoomed = painter.scene("a zoom", |scene| surface(scene, CANVAS).zoom > 1.05);
+    // Without a wheel's axis a notch is told twice: as its button is pressed, and as it is let go.
+    let zoomed = painter.scene("a zoom", |scene| surface(scene, CANVAS).zoom > 1.2);
     painter.display.release(1, &stroke[40..]);
     assert_eq!(surface(&first, CANVAS).zoom, 1.0);
 

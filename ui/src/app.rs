@@ -24,6 +24,7 @@ use crate::glide::Glide;
 use crate::habits::Habits;
 use crate::hand::Hand;
 use crate::hearing::Hearing;
+use crate::landing::Landing;
 use crate::lifting::LiftingKey;
 use crate::lost::LostDevice;
 use crate::mouse::Mouse;
@@ -50,6 +51,9 @@ const FETCH: Duration = Duration::from_secs(1);
 /// A pressed pointer that stands still is told this often: a longer silence would lift the brush.
 const STILL: Duration = Duration::from_millis(30);
 
+/// An order that waits for its stroke is looked at again after this, whatever comes.
+const LANDING_LOOK: Duration = Duration::from_millis(50);
+
 /// The painter's view.
 pub struct App {
     bus: Arc<dyn Bus>,
@@ -75,6 +79,7 @@ pub struct App {
     side: Option<(Side, u64)>,
     shell: Shell,
     orders: Orders,
+    landing: Landing,
     courier: Courier,
     fetcher: ThumbnailFetcher,
     toasts: Toasts,
@@ -144,6 +149,7 @@ impl App {
             pressed: false,
             shell: Shell::default(),
             orders: Orders::default(),
+            landing: Landing::new(&**bus, topics, &member.wake)?,
             toasts,
             kept: (habits.clone(), place),
             habits,
@@ -213,6 +219,21 @@ impl App {
         }
     }
 
+    /// Sends what is asked for, as soon as the strokes before it have landed.
+    fn send(&mut self, context: &Context) {
+        let now_ns = self.bus.now_ns();
+        for order in self.orders.take() {
+            self.landing
+                .give(now_ns, order, self.follower.newest(now_ns));
+        }
+        while let Some(order) = self.landing.due(now_ns) {
+            self.courier.send(order);
+        }
+        if self.landing.holds() {
+            context.request_repaint_after(LANDING_LOOK);
+        }
+    }
+
     /// Remembers how large the window is, once nobody drags at it.
     fn remember_size(&mut self, context: &Context) {
         let size = context.input(|input| {
@@ -270,6 +291,7 @@ impl eframe::App for App {
         }
         // After the mouse has told where it is: its brush is drawn there.
         self.take_in(now_ns);
+        self.landing.take_in();
         self.follow(context, now_ns);
         if self.pressed {
             context.request_repaint_after(STILL);
@@ -337,9 +359,7 @@ impl eframe::App for App {
         }
         self.change_hands();
         self.remember_size(ui.ctx());
-        for order in self.orders.take() {
-            self.courier.send(order);
-        }
+        self.send(ui.ctx());
         self.keep();
     }
 

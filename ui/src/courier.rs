@@ -177,27 +177,6 @@ fn patience(command: &Command) -> Duration {
     }
 }
 
-/// What an order sets, where the newest of its kind alone counts.
-fn sets(order: &Order) -> Option<(&'static str, String)> {
-    let command = match order {
-        Order::Command { command, .. } => command,
-        Order::Force {
-            device,
-            order: ForceOrder::Strength { .. },
-        } => return Some(("strength", device.clone())),
-        Order::Force { .. } => return None,
-    };
-    Some(match command {
-        Command::Place { surface, .. } => ("place", surface.to_string()),
-        Command::Tune { tuning } => ("tuning", tuning.brush.clone()),
-        Command::Handle { handling } => ("handling", handling.brush.clone()),
-        Command::Define { brush, .. } => ("brush", brush.clone()),
-        Command::Wells { surface, .. } => ("wells", surface.to_string()),
-        Command::Relight { .. } => ("light", String::new()),
-        _ => return None,
-    })
-}
-
 /// Whether of two orders, one right after the other, the first need not be carried out.
 fn replaces(newer: &Order, older: &Order) -> bool {
     // An exposure that was to be chosen anew is chosen by the light that it was asked with.
@@ -208,8 +187,8 @@ fn replaces(newer: &Order, older: &Order) -> bool {
             ..
         }
     );
-    let set = sets(newer);
-    set.is_some() && set == sets(older) && !chooses
+    let set = newer.sets();
+    set.is_some() && set == older.sets() && !chooses
 }
 
 /// Puts an order at the end; the last of those that wait gives way if this one makes it needless.

@@ -29,6 +29,19 @@ pub const SILENCE_NS: u64 = 1_000_000_000;
 struct Heard {
     sample: StylusSample,
     arrived_ns: u64,
+    epoch: u32,
+    seq: u64,
+}
+
+/// A sample of a device.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct SampleNumber {
+    /// The source of its samples.
+    pub device: u32,
+    /// Its epoch.
+    pub epoch: u32,
+    /// Its number.
+    pub seq: u64,
 }
 
 /// A brush that made itself known.
@@ -164,6 +177,8 @@ impl Follower {
                 let heard = Heard {
                     sample: sample.message,
                     arrived_ns: sample.arrived_ns,
+                    epoch: sample.header.epoch,
+                    seq: sample.header.seq,
                 };
                 self.newest.insert(sample.header.source, heard);
             }
@@ -206,6 +221,17 @@ impl Follower {
         let length = known.file.length_m();
         let touches = known.touches.is_some() && !sample.in_air();
         sample.in_range.then(|| (aim(sample, length), !touches))
+    }
+
+    /// The newest sample of each device that was heard within the last second.
+    pub fn newest(&self, now_ns: u64) -> impl Iterator<Item = SampleNumber> {
+        let is_new = move |heard: &Heard| now_ns < heard.arrived_ns.saturating_add(SILENCE_NS);
+        let newest = self.newest.iter().filter(move |(_, heard)| is_new(heard));
+        newest.map(|(device, heard)| SampleNumber {
+            device: *device,
+            epoch: heard.epoch,
+            seq: heard.seq,
+        })
     }
 
     /// The head of a brush.

@@ -66,6 +66,7 @@ pub mod hand;
 pub mod hearing;
 pub mod held;
 pub mod keys;
+pub mod landing;
 pub mod lifting;
 pub mod light_surface;
 pub mod loading;

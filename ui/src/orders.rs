@@ -28,6 +28,30 @@ pub enum Order {
     },
 }
 
+impl Order {
+    /// What it sets, where the newest of its kind alone counts.
+    #[must_use]
+    pub fn sets(&self) -> Option<(&'static str, String)> {
+        let command = match self {
+            Self::Command { command, .. } => command,
+            Self::Force {
+                device,
+                order: ForceOrder::Strength { .. },
+            } => return Some(("strength", device.clone())),
+            Self::Force { .. } => return None,
+        };
+        Some(match command {
+            Command::Place { surface, .. } => ("place", surface.to_string()),
+            Command::Tune { tuning } => ("tuning", tuning.brush.clone()),
+            Command::Handle { handling } => ("handling", handling.brush.clone()),
+            Command::Define { brush, .. } => ("brush", brush.clone()),
+            Command::Wells { surface, .. } => ("wells", surface.to_string()),
+            Command::Relight { .. } => ("light", String::new()),
+            _ => return None,
+        })
+    }
+}
+
 /// Orders that wait to be sent.
 #[derive(Debug, Default)]
 pub struct Orders {

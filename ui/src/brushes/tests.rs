@@ -1,4 +1,3 @@
-
 use eframe::egui::{Color32, Rect, pos2, vec2};
 use eframe::egui_wgpu::wgpu::util::DeviceExt as _;
 use glam::DVec2;

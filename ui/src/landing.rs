@@ -1,0 +1,343 @@
+//! What is asked after a stroke waits until the stroke has landed: a key is pressed sooner than the newest
+//! samples of a stylus have become paint, and what it undoes or dries is the whole stroke.
+
+use std::collections::{BTreeMap, VecDeque};
+
+use maulstick_bus::typed::Receiver;
+use maulstick_bus::{Bus, BusError, Class, Queue, Wake};
+use maulstick_types::brush::BrushConsumed;
+use maulstick_types::command::Command;
+use maulstick_types::name_hash;
+use maulstick_types::paint::{BrushCredit, PaintConsumed};
+use maulstick_types::topics::Topics;
+
+use crate::follow::SampleNumber;
+use crate::orders::Order;
+
+/// Nobody waits longer, ns: a brush may have ended in its stroke.
+const LONGEST_NS: u64 = 1_000_000_000;
+
+/// How far a sample has come on its way to the painting.
+#[derive(Clone, Copy, Debug)]
+enum Stage {
+    /// It is to become a state of a brush.
+    Sample(SampleNumber),
+    /// It is in this state, which is to be painted: source, epoch and number.
+    State(u32, u32, u64),
+}
+
+/// An order, and what it waits for.
+#[derive(Debug)]
+struct Waiting {
+    order: Order,
+    samples: Vec<Stage>,
+    until_ns: u64,
+}
+
+/// Orders that wait for a stroke.
+pub struct Landing {
+    topics: Topics,
+    consumed: Receiver<BrushConsumed>,
+    painted: Receiver<PaintConsumed>,
+    /// What each brush has consumed of each device: by the sources of both.
+    brushes: BTreeMap<(u32, u32), BrushConsumed>,
+    /// What the painting has consumed of each brush.
+    credits: BTreeMap<u32, BrushCredit>,
+    waiting: VecDeque<Waiting>,
+}
+
+impl Landing {
+    /// Listens to how far brushes and painting are.
+    ///
+    /// # Errors
+    /// [`BusError::Topic`].
+    pub fn new(bus: &dyn Bus, topics: &Topics, wake: &Wake) -> Result<Self, BusError> {
+        let (from_brush, from_paint) = (topics.brush_consumed("*"), topics.paint_consumed());
+        Ok(Self {
+            topics: topics.clone(),
+            consumed: Receiver::new(bus, &from_brush, Class::Control, Queue::Ring(64), wake)?,
+            painted: Receiver::new(bus, &from_paint, Class::Control, Queue::Ring(16), wake)?,
+            brushes: BTreeMap::new(),
+            credits: BTreeMap::new(),
+            waiting: VecDeque::new(),
+        })
+    }
+
+    /// Takes in what has come.
+    pub fn take_in(&mut self) {
+        while let Some(consumed) = self.consumed.try_recv() {
+            let brush = self.topics.middle(&consumed.key).unwrap_or_default();
+            let key = (name_hash(brush), consumed.message.device);
+            self.brushes.insert(key, consumed.message);
+        }
+        while let Some(painted) = self.painted.try_recv() {
+            let brushes = painted.message.brushes.into_iter();
+            self.credits
+                .extend(brushes.map(|credit| (credit.brush, credit)));
+        }
+    }
+
+    /// Takes an order that was given when these samples were the newest.
+    pub fn give(
+        &mut self,
+        now_ns: u64,
+        order: Order,
+        newest: impl IntoIterator<Item = SampleNumber>,
+    ) {
+        let follows = follows(&order) || self.waiting.iter().any(|before| before.shares(&order));
+        let newest = newest.into_iter().filter(|sample| {
+            let mut followed = self.brushes.keys();
+            follows && followed.any(|(_, device)| *device == sample.device)
+        });
+        let samples = newest.map(Stage::Sample).collect();
+        self.waiting.push_back(Waiting {
+            order,
+            samples,
+            until_ns: now_ns.saturating_add(LONGEST_NS),
+        });
+    }
+
+    /// The next order that need not wait; call it until there is none.
+    pub fn due(&mut self, now_ns: u64) -> Option<Order> {
+        for waiting in &mut self.waiting {
+            waiting
+                .samples
+                .retain_mut(|stage| !landed(stage, &self.brushes, &self.credits));
+        }
+        let place = (0..self.waiting.len()).find(|place| {
+            let waiting = &self.waiting[*place];
+            let ready = waiting.samples.is_empty() || now_ns >= waiting.until_ns;
+            let mut before = self.waiting.iter().take(*place);
+            ready && !before.any(|before| before.shares(&waiting.order))
+        })?;
+        self.waiting.remove(place).map(|waiting| waiting.order)
+    }
+
+    /// Whether an order waits.
+    #[must_use]
+    pub fn holds(&self) -> bool {
+        !self.waiting.is_empty()
+    }
+}
+
+impl Waiting {
+    /// Whether another order is for the same process: none overtakes.
+    fn shares(&self, other: &Order) -> bool {
+        match (&self.order, other) {
+            (Order::Command { node: one, .. }, Order::Command { node: other, .. }) => one == other,
+            _ => false,
+        }
+    }
+}
+
+/// Whether an order means what has been painted.
+fn follows(order: &Order) -> bool {
+    match order {
+        Order::Command {
+            command: Command::StopExport,
+            ..
+        }
+        | Order::Force { .. } => false,
+        Order::Command { .. } => order.sets().is_none(),
+    }
+}
+
+/// Follows a sample; whether it is painted.
+fn landed(
+    stage: &mut Stage,
+    brushes: &BTreeMap<(u32, u32), BrushConsumed>,
+    credits: &BTreeMap<u32, BrushCredit>,
+) -> bool {
+    if let Stage::Sample(sample) = *stage {
+        let holds = |consumed: &BrushConsumed| {
+            (consumed.device, consumed.device_epoch) == (sample.device, sample.epoch)
+                && consumed.next > sample.seq
+        };
+        let state = brushes.iter().find(|(_, consumed)| holds(consumed));
+        let Some(((brush, _), consumed)) = state else {
+            return false;
+        };
+        *stage = Stage::State(*brush, consumed.brush_epoch, consumed.state);
+    }
+    let Stage::State(brush, epoch, state) = *stage else {
+        return false;
+    };
+    let credit = credits.get(&brush);
+    credit.is_some_and(|credit| credit.epoch == epoch && credit.next > state)
+}
+
+impl std::fmt::Debug for Landing {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("Landing")
+            .field("waiting", &self.waiting)
+            .finish_non_exhaustive()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use maulstick_bus::typed::Sender;
+    use maulstick_bus::{Faults, MemoryNet};
+    use maulstick_types::{Origin, Pose};
+
+    use super::*;
+    use crate::orders::PAINT;
+
+    const MILLISECOND: u64 = 1_000_000;
+    const MOUSE: u32 = 77;
+    const BRUSH: &str = "main";
+
+    /// A brush, a painting, and orders between them.
+    struct Desk {
+        net: MemoryNet,
+        landing: Landing,
+        brush: Sender<BrushConsumed>,
+        paint: Sender<PaintConsumed>,
+    }
+
+    impl Desk {
+        fn new() -> Self {
+            let net = MemoryNet::new(1, MILLISECOND, Faults::default());
+            let (bus, topics) = (net.bus(), Topics::new("t"));
+            let me = |name: &str| Origin {
+                source: name_hash(name),
+                epoch: 1,
+            };
+            let landing = Landing::new(&bus, &topics, &Wake::new()).expect("listens");
+            let topic = topics.brush_consumed(BRUSH);
+            let brush = Sender::new(&bus, &topic, Class::Control, me(BRUSH)).expect("sends");
+            let topic = topics.paint_consumed();
+            let paint = Sender::new(&bus, &topic, Class::Control, me(PAINT)).expect("sends");
+            let mut desk = Self {
+                landing,
+                brush,
+                paint,
+                net,
+            };
+            desk.consumed(1, 1);
+            desk
+        }
+
+        fn pass(&mut self) {
+            self.net.advance(10 * MILLISECOND);
+            self.landing.take_in();
+        }
+
+        /// The brush has consumed the mouse's samples below `next`, the newest of them in `state`.
+        fn consumed(&mut self, next: u64, state: u64) {
+            let consumed = BrushConsumed {
+                device: MOUSE,
+                device_epoch: 3,
+                next,
+                brush_epoch: 5,
+                state,
+            };
+            self.brush.send(0, 0, &consumed).expect("sent");
+            self.pass();
+        }
+
+        /// The states below `next` are painted.
+        fn painted(&mut self, next: u64) {
+            let credit = BrushCredit {
+                brush: name_hash(BRUSH),
+                epoch: 5,
+                next,
+                wetness: 0.0,
+                film_m: 0.0,
+                viscosity_m2_s: 0.0,
+                contact_m: 0.0,
+            };
+            let painted = PaintConsumed {
+                brushes: vec![credit],
+            };
+            self.paint.send(0, 0, &painted).expect("sent");
+            self.pass();
+        }
+
+        fn give(&mut self, command: Command, seq: u64) {
+            let order = Order::Command {
+                node: PAINT.into(),
+                command,
+            };
+            let sample = SampleNumber {
+                device: MOUSE,
+                epoch: 3,
+                seq,
+            };
+            let now_ns = self.net.bus().now_ns();
+            self.landing.give(now_ns, order, [sample]);
+        }
+
+        fn due(&mut self) -> Option<Command> {
+            let now_ns = self.net.bus().now_ns();
+            self.landing.due(now_ns).map(|order| match order {
+                Order::Command { command, .. } => command,
+                other @ Order::Force { .. } => panic!("{other:?}"),
+            })
+        }
+    }
+
+    const UNDO: Command = Command::Undo { brush: None };
+
+    fn place() -> Command {
+        Command::Place {
+            surface: 0,
+            pose: Pose::IDENTITY,
+            zoom: 1.0,
+        }
+    }
+
+    #[test]
+    fn an_undo_waits_until_the_stroke_before_it_is_painted() {
+        let mut desk = Desk::new();
+        desk.painted(2);
+        desk.give(UNDO, 9);
+        assert_eq!(desk.due(), None, "the brush has not consumed it");
+        desk.consumed(9, 20);
+        desk.painted(30);
+        assert_eq!(desk.due(), None, "nor the last of its samples");
+        desk.consumed(10, 40);
+        assert_eq!(desk.due(), None, "it is not painted");
+        // What is painted later does not hold it up.
+        desk.consumed(30, 90);
+        desk.painted(40);
+        assert_eq!(desk.due(), None);
+        desk.painted(41);
+        assert_eq!(desk.due(), Some(UNDO));
+        assert!(!desk.landing.holds());
+    }
+
+    #[test]
+    fn a_canvas_moves_at_once_but_overtakes_nothing() {
+        let mut desk = Desk::new();
+        desk.give(place(), 9);
+        assert_eq!(desk.due(), Some(place()));
+        desk.give(UNDO, 9);
+        desk.give(place(), 9);
+        assert_eq!(desk.due(), None);
+        desk.consumed(10, 4);
+        desk.painted(5);
+        assert_eq!((desk.due(), desk.due()), (Some(UNDO), Some(place())));
+    }
+
+    #[test]
+    fn nobody_waits_for_a_brush_that_ended_nor_for_a_stylus_that_moves_none() {
+        let mut desk = Desk::new();
+        desk.give(UNDO, 9);
+        desk.net.advance(990 * MILLISECOND);
+        assert_eq!(desk.due(), None);
+        desk.net.advance(20 * MILLISECOND);
+        assert_eq!(desk.due(), Some(UNDO));
+        let stranger = SampleNumber {
+            device: MOUSE + 1,
+            epoch: 3,
+            seq: 9,
+        };
+        let order = Order::Command {
+            node: PAINT.into(),
+            command: UNDO,
+        };
+        desk.landing.give(0, order.clone(), [stranger]);
+        assert_eq!(desk.landing.due(0), Some(order));
+    }
+}
