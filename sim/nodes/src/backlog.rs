@@ -151,6 +151,12 @@ impl Backlog {
     pub fn is_empty(&self) -> bool {
         self.kept.is_empty()
     }
+
+    /// Whether a sample of a device waits.
+    #[must_use]
+    pub fn holds(&self, device: Origin) -> bool {
+        self.kept.iter().any(|waiting| waiting.origin == device)
+    }
 }
 
 #[cfg(test)]

@@ -2,6 +2,7 @@
 
 mod commands;
 mod felt;
+mod progress;
 mod settings;
 
 use std::collections::{BTreeMap, BTreeSet};
@@ -29,6 +30,7 @@ use crate::backlog::{Backlog, Place, Waiting};
 use crate::feel::{NO_GRAIN, drag, grain};
 use crate::outbox::Outbox;
 
+use progress::Progress;
 pub use settings::BrushSettings;
 
 /// Live, states older than this are not added to: the brush merges, ns.
@@ -75,9 +77,7 @@ pub struct BrushNode {
     arbiter: Arbiter,
     backlog: Backlog,
     outbox: Outbox,
-    /// What is consumed of each device, by name, and what of it was told.
-    progress: BTreeMap<String, BrushConsumed>,
-    told: BTreeMap<String, u64>,
+    progress: Progress,
     /// The take that has this brush to itself.
     take: Option<Take>,
     /// Devices that are gone: their takes have ended.
@@ -146,8 +146,7 @@ impl BrushNode {
             arbiter: Arbiter::default(),
             backlog: Backlog::new(settings.file.length_m()),
             outbox: Outbox::default(),
-            progress: BTreeMap::new(),
-            told: BTreeMap::new(),
+            progress: Progress::default(),
             take: None,
             gone: BTreeSet::new(),
             painter: Painter::There,
@@ -183,31 +182,45 @@ impl BrushNode {
         self.take_in(now_ns);
         self.serve_commands(now_ns)?;
         self.samples.poll(&*bus)?;
-        while let Some(received) = self.next_sample() {
+        self.follow_scene(now_ns)?;
+        while let Some(received) = self.next_sample(None) {
             self.sample(received, now_ns)?;
         }
         self.flush(now_ns)?;
         self.states.serve(now_ns)?;
         for topic in self.samples.unheard() {
             let device = self.topics.middle(&topic).unwrap_or_default();
-            self.told.remove(device);
+            self.progress.forget_told(device);
         }
-        self.tell(now_ns)?;
+        let backlog = &self.backlog;
+        let waits = |device: Origin| backlog.holds(device);
+        self.progress.tell(now_ns, &mut self.consumed, waits)?;
         Ok(Duration::from_millis(20))
     }
 
-    /// Scene, credit, and what the devices are.
-    fn take_in(&mut self, now_ns: u64) {
+    /// Follows the desk. What a hand did before belongs on the desk as it was: a canvas that is moved under
+    /// a stroke does not take along what waits to be solved.
+    fn follow_scene(&mut self, now_ns: u64) -> Result<(), BusError> {
         while let Some(scene) = self.scene.try_recv() {
             // Another painting counts its scenes anew.
             let (epoch, version) = (scene.header.epoch, scene.message.version);
-            if epoch != self.scene_of.0 || version >= self.scene_of.1 {
-                self.scene_of = (epoch, version);
-                self.model.set_scene(&scene.message);
-                self.grain = grain(&scene.message);
-                self.model.tune(scene.message.tuning(&self.settings.name));
+            if epoch == self.scene_of.0 && version < self.scene_of.1 {
+                continue;
             }
+            while let Some(received) = self.next_sample(Some(scene.header.event_ns)) {
+                self.sample(received, now_ns)?;
+            }
+            self.solve();
+            self.scene_of = (epoch, version);
+            self.model.set_scene(&scene.message);
+            self.grain = grain(&scene.message);
+            self.model.tune(scene.message.tuning(&self.settings.name));
         }
+        Ok(())
+    }
+
+    /// Credit, and what the devices are.
+    fn take_in(&mut self, now_ns: u64) {
         while let Some(token) = self.tokens.try_recv() {
             let node = self.topics.node_of(&token.key).unwrap_or_default();
             if node == PAINT {
@@ -219,7 +232,7 @@ impl BrushNode {
                 self.gone.remove(node);
             } else {
                 self.gone.insert(node.to_owned());
-                if self.progress.contains_key(node) {
+                if self.progress.follows(node) {
                     self.touching = false;
                 }
             }
@@ -249,8 +262,8 @@ impl BrushNode {
 
     /// The next sample that may be consumed: a replayed one waits for credit, and all wait for a
     /// scene. None waits for another device's. A take that is played anew does not wait for what
-    /// the one before is owed.
-    fn next_sample(&mut self) -> Option<Received<StylusSample>> {
+    /// the one before is owed. Where a time is given, only what a live hand did before it.
+    fn next_sample(&mut self, before_ns: Option<u64>) -> Option<Received<StylusSample>> {
         let (topics, settings, moves) = (&self.topics, &self.settings, &self.moves);
         let mine = |next: &Received<StylusSample>| {
             let device = topics.middle(&next.key).unwrap_or_default();
@@ -268,6 +281,9 @@ impl BrushNode {
         let has_credit = self.outbox.is_empty() && self.states.has_credit();
         self.samples.pop_where(|next| {
             let replayed = next.header.flags.has(Flags::REPLAY);
+            if before_ns.is_some_and(|before| replayed || next.header.event_ns >= before) {
+                return false;
+            }
             !mine(next) || (has_scene && (has_credit || !replayed))
         })
     }
@@ -283,7 +299,8 @@ impl BrushNode {
         let Some(priority) = self.settings.priority(&device, &self.moves) else {
             return Ok(());
         };
-        self.note(&device, origin, seq);
+        let (brush, next) = (self.states.origin(), self.states.next_seq());
+        self.progress.note(&device, origin, seq, brush.epoch, next);
         if let Some(fault) = received.message.fault()
             && self.faulty.insert(device.clone())
         {
@@ -403,12 +420,18 @@ impl BrushNode {
         self.send(now_ns)?;
         let late = self.states.oldest_age_ns(now_ns) > OLDEST_NS;
         let busy = !self.outbox.is_empty() || !self.states.has_credit();
-        if self.backlog.is_empty() || late || busy {
+        if late || busy {
             return Ok(());
         }
+        self.solve();
+        self.send(now_ns)
+    }
+
+    /// Solves what waits, as one state.
+    fn solve(&mut self) {
         let waiting = self.backlog.take();
         let Some(last) = waiting.last().cloned() else {
-            return Ok(());
+            return;
         };
         let solves: Vec<Solve> = waiting
             .iter()
@@ -423,7 +446,6 @@ impl BrushNode {
         if !state.solves.is_empty() {
             self.post(Flags::NONE, Flags::NONE, Flags::NONE, state);
         }
-        self.send(now_ns)
     }
 
     /// Puts a state into the outbox, and knows by which number it will go.
@@ -432,17 +454,16 @@ impl BrushNode {
             self.touching = !newest.contacts.is_empty();
         }
         let touches = state.solves.iter().any(|solve| solve.stroke != 0);
-        let device = (state.device, state.device_epoch);
+        let origin = Origin {
+            source: state.device,
+            epoch: state.device_epoch,
+        };
         self.outbox.push(flags, first, last, state);
         let number = self.states.next_seq() + self.outbox.len() as u64 - 1;
         if touches {
             self.newest_contact = Some(number);
         }
-        for progress in self.progress.values_mut() {
-            if (progress.device, progress.device_epoch) == device {
-                progress.state = number;
-            }
-        }
+        self.progress.posted(origin, number);
     }
 
     /// Sends what waits in the outbox while there is credit.
@@ -454,37 +475,6 @@ impl BrushNode {
             let event_ns = state.solves.last().map_or(now_ns, |last| last.event_ns);
             self.states
                 .send(flags, Stamp { now_ns, event_ns }, &state)?;
-        }
-        Ok(())
-    }
-
-    /// A sample is consumed.
-    fn note(&mut self, device: &str, origin: Origin, seq: u64) {
-        let fresh = BrushConsumed {
-            device: origin.source,
-            device_epoch: origin.epoch,
-            next: 0,
-            brush_epoch: self.states.origin().epoch,
-            state: self.states.next_seq(),
-        };
-        let progress = self
-            .progress
-            .entry(device.to_owned())
-            .or_insert_with(|| fresh.clone());
-        if (progress.device, progress.device_epoch) != (origin.source, origin.epoch) {
-            *progress = fresh;
-            self.told.remove(device);
-        }
-        progress.next = seq.wrapping_add(1);
-    }
-
-    /// Tells devices what is consumed.
-    fn tell(&mut self, now_ns: u64) -> Result<(), BusError> {
-        for (device, progress) in &self.progress {
-            if self.told.get(device) != Some(&progress.next) {
-                self.told.insert(device.clone(), progress.next);
-                self.consumed.send(now_ns, now_ns, progress)?;
-            }
         }
         Ok(())
     }

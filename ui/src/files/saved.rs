@@ -4,7 +4,9 @@
 use std::path::Path;
 
 use eframe::egui::containers::menu::MenuButton;
-use eframe::egui::{Align2, Area, Button, Context, Frame, Id, Margin, Order, RichText};
+use eframe::egui::{
+    Align2, Area, Button, Context, Frame, Id, Margin, Order, RichText, TextWrapMode,
+};
 
 use crate::files::place;
 use crate::keys::{Act, BINDINGS};
@@ -60,6 +62,7 @@ pub(crate) fn show(context: &Context, work: &Work<'_>) -> Option<Act> {
         .anchor(corner, [inward * (crate::rack::WIDTH + 8.0), -4.0])
         .accessible_name("Painting")
         .show(context, |ui| {
+            ui.style_mut().wrap_mode = Some(TextWrapMode::Extend);
             let back = ui.visuals().window_fill.gamma_multiply(0.8);
             let frame = Frame::NONE.fill(back).corner_radius(4.0);
             frame.inner_margin(Margin::symmetric(4, 0)).show(ui, |ui| {

@@ -1,0 +1,83 @@
+//! A canvas that is moved while a stroke waits to be solved: the stroke lies where the hand made it.
+
+mod support;
+
+use maulstick_bus::typed::Receiver;
+use maulstick_bus::{Class, Faults, MemoryNet, Queue, Wake};
+use maulstick_types::brush::BrushState;
+use maulstick_types::command::Command;
+use maulstick_types::scene::CANVAS;
+use support::{Device, Live, START_NS, painting, pen};
+
+/// Time of a turn, ns.
+const MILLISECOND: u64 = 1_000_000;
+/// The stroke's half length, and how far the canvas is moved, m.
+const REACH_M: f64 = 0.02;
+const MOVED_M: f64 = 0.03;
+
+/// A stroke along x; paint has no turn, so that the brush may soon send no more.
+fn stroke(live: &mut Live, mouse: &mut Device) {
+    for step in 0..200 {
+        mouse.send(&pen(REACH_M * (f64::from(step) / 100.0 - 1.0), 0.0, 0.4));
+        live.net.advance(MILLISECOND);
+        live.brush.turn().expect("turned");
+    }
+}
+
+/// Lifts the brush; both nodes take their turns until all is painted.
+fn lifted(live: &mut Live, mouse: &mut Device) {
+    mouse.send(&pen(REACH_M, 0.0, 0.0));
+    for _ in 0..200 {
+        live.net.advance(5 * MILLISECOND);
+        live.paint.turn().expect("turned");
+        live.brush.turn().expect("turned");
+    }
+}
+
+/// Where the strokes lie on the canvas: least and greatest x and y, m.
+fn lies(states: &mut Receiver<BrushState>) -> [[f64; 2]; 2] {
+    let mut lies = [[f64::MAX, f64::MIN]; 2];
+    while let Some(state) = states.try_recv() {
+        let strokes = state.message.solves.into_iter();
+        for solve in strokes.filter(|solve| solve.stroke != 0) {
+            for (range, at) in lies.iter_mut().zip(solve.pose.position_m) {
+                *range = [range[0].min(at), range[1].max(at)];
+            }
+        }
+    }
+    lies
+}
+
+#[test]
+fn what_was_painted_before_a_canvas_is_moved_stays_where_it_was_painted() {
+    let mut live = Live::new(MemoryNet::new(1, START_NS, Faults::default()));
+    let bus = live.net.bus();
+    let (topic, ring) = (live.topics.brush_state("main"), Queue::Ring(4096));
+    let states = Receiver::new(&bus, &topic, Class::RealTime, ring, &Wake::new());
+    let mut states: Receiver<BrushState> = states.expect("listens");
+    let mut mouse = live.device("mouse", 5);
+    live.net.advance(MILLISECOND);
+    live.brush.turn().expect("turned");
+    stroke(&mut live, &mut mouse);
+    let scene = painting().scene().clone();
+    let mut pose = scene.surfaces[0].pose.clone();
+    pose.position_m[1] += MOVED_M;
+    live.command(
+        1,
+        Command::Place {
+            surface: CANVAS,
+            pose,
+            zoom: 1.0,
+        },
+    );
+    lifted(&mut live, &mut mouse);
+    let [[left, right], [low, high]] = lies(&mut states);
+    assert!(right - left > 1.9 * REACH_M, "{left} {right}");
+    assert!(high - low < 0.05 * MOVED_M, "{low} {high}");
+    // What is painted afterwards lies elsewhere on the canvas: on a canvas that stood still nothing above
+    // would have been tried.
+    stroke(&mut live, &mut mouse);
+    lifted(&mut live, &mut mouse);
+    let [_, [after, _]] = lies(&mut states);
+    assert!((low - after - MOVED_M).abs() < 0.05 * MOVED_M, "{after}");
+}
