@@ -36,8 +36,10 @@ wire_struct! {
         pub surface: u32,
         /// See [`solve_flags`].
         pub flags: u32,
-        /// Brush frame to surface frame; lengths are divided by the surface's zoom.
+        /// Brush frame to surface frame; lengths are divided by the zoom.
         pub pose: Pose,
+        /// Zoom of the surface as it was then: it may have changed until this is painted.
+        pub zoom: f64,
         /// θ and φ of each joint, rad, spine after spine.
         pub angles_rad: Vec<[f32; 2]>,
         /// What touches.
@@ -47,7 +49,7 @@ wire_struct! {
 
 message! {
     /// The brush at a stylus sample, with all sub-solves since the sample before.
-    pub struct BrushState [version 1, at most 61440 bytes] {
+    pub struct BrushState [version 2, at most 61440 bytes] {
         /// The device followed: the source of its samples.
         pub device: u32,
         /// Its epoch.
@@ -58,6 +60,9 @@ message! {
         pub solves: Vec<Solve>,
     }
 }
+
+/// Zooms that a surface may have.
+pub const ZOOMS: std::ops::RangeInclusive<f64> = 0.01..=100.0;
 
 /// No pose of a state is farther from its surface's origin than this, m.
 pub const FARTHEST_M: f64 = 100.0;
@@ -77,8 +82,8 @@ impl Solve {
     /// Bytes that it takes in a message.
     #[must_use]
     pub fn wire_bytes(&self) -> usize {
-        // Two times 8 for time and stroke, 4 for surface and flags, the pose, the two lengths.
-        let fixed = 2 * 8 + 2 * 4 + 7 * 8 + 2 * 8;
+        // Two times 8 for time and stroke, 4 for surface and flags, the pose, the zoom, the two lengths.
+        let fixed = 2 * 8 + 2 * 4 + 7 * 8 + 8 + 2 * 8;
         fixed + 8 * self.angles_rad.len() + 8 * self.contacts.len()
     }
 
@@ -86,6 +91,8 @@ impl Solve {
         let near = |metres: &f64| metres.abs() <= FARTHEST_M;
         if !self.pose.is_valid() {
             Some("a pose is not finite or its quaternion is not a unit one")
+        } else if !ZOOMS.contains(&self.zoom) {
+            Some("a zoom is not of .01 to 100")
         } else if !self.pose.position_m.iter().all(near) {
             Some("a pose is more than 100 m away from its surface")
         } else if !self
@@ -169,6 +176,7 @@ mod tests {
                 position_m: [x, 0.0, 0.0],
                 ..Pose::IDENTITY
             },
+            zoom: 1.0,
             angles_rad: vec![[0.0, angle]],
             contacts: vec![contact],
         };

@@ -175,6 +175,7 @@ fn all() -> String {
                 surface: 0,
                 flags: 1,
                 pose: pose(),
+                zoom: 1.0,
                 angles_rad: vec![[0.5, -0.5]],
                 contacts: vec![Contact {
                     spine: 0,

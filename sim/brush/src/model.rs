@@ -96,8 +96,17 @@ impl BrushModel {
     }
 
     /// Puts the brush over another scene; before the first, samples give no state.
+    ///
+    /// Where its surface is zoomed, the brush begins anew at its next sample: it bends otherwise on a
+    /// canvas that is larger under it.
     pub fn set_scene(&mut self, scene: &Scene) {
-        self.desk = Some(Desk::of(scene));
+        let desk = Desk::of(scene);
+        let zoom = |desk: &Desk, id: u32| desk.plane(id).map(|plane| plane.zoom);
+        let before = self.desk.as_ref();
+        self.held = self.held.take().filter(|held| {
+            before.is_none_or(|it| zoom(it, held.surface) == zoom(&desk, held.surface))
+        });
+        self.desk = Some(desk);
     }
 
     /// Makes the head stiffer than its file says by this factor, or softer; it keeps its shape.
@@ -341,6 +350,7 @@ impl BrushModel {
                 solve_flags::NOT_CONVERGED
             },
             pose: in_surface.to_pose(),
+            zoom: plane.zoom,
             angles_rad: held.head.angles(),
             contacts,
         }

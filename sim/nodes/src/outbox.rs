@@ -87,6 +87,7 @@ mod tests {
             surface: 0,
             flags: 0,
             pose: Pose::IDENTITY,
+            zoom: 1.0,
             angles_rad: vec![[0.0; 2]; joints],
             contacts: vec![contact; contacts],
         }

@@ -7,7 +7,7 @@ use maulstick_bus::{Class, Faults, MemoryNet, Queue, Wake};
 use maulstick_types::brush::BrushState;
 use maulstick_types::command::Command;
 use maulstick_types::scene::CANVAS;
-use support::{Device, Live, START_NS, painting, pen};
+use support::{Device, Live, START_NS, loads, painting, pen};
 
 /// Time of a turn, ns.
 const MILLISECOND: u64 = 1_000_000;
@@ -80,4 +80,66 @@ fn what_was_painted_before_a_canvas_is_moved_stays_where_it_was_painted() {
     lifted(&mut live, &mut mouse);
     let [_, [after, _]] = lies(&mut states);
     assert!((low - after - MOVED_M).abs() < 0.05 * MOVED_M, "{after}");
+}
+
+/// Cells that a stroke covers on a canvas that is zoomed at a time of the stroke.
+fn covered(zoom: Option<Zoomed>) -> u64 {
+    let mut live = Live::new(MemoryNet::new(1, START_NS, Faults::default()));
+    let mut mouse = live.device("mouse", 5);
+    let load = Command::Load {
+        brush: "main".into(),
+        mixture: loads()[0].clone(),
+    };
+    live.command(1, load);
+    live.net.advance(MILLISECOND);
+    live.brush.turn().expect("turned");
+    let larger = Command::Place {
+        surface: CANVAS,
+        pose: painting().scene().surfaces[0].pose.clone(),
+        zoom: 1.3,
+    };
+    if zoom == Some(Zoomed::Before) {
+        live.command(2, larger.clone());
+        live.net.advance(MILLISECOND);
+        live.brush.turn().expect("turned");
+    }
+    stroke(&mut live, &mut mouse);
+    if zoom == Some(Zoomed::Before) {
+        // Its states are painted as on the other canvas, which is not zoomed any more.
+        let pose = painting().scene().surfaces[0].pose.clone();
+        live.command(
+            3,
+            Command::Place {
+                surface: CANVAS,
+                pose,
+                zoom: 1.0,
+            },
+        );
+    } else if zoom == Some(Zoomed::Meanwhile) {
+        live.command(2, larger);
+    }
+    lifted(&mut live, &mut mouse);
+    live.paint.painting_mut().report().covered_cells
+}
+
+/// When a canvas is zoomed.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Zoomed {
+    /// Before the stroke, and not when it is painted.
+    Before,
+    /// While the stroke waits to be painted.
+    Meanwhile,
+}
+
+#[test]
+fn a_stroke_is_painted_as_large_as_the_canvas_was_when_it_was_made() {
+    let whole = covered(None);
+    assert!(whole > 500, "{whole}");
+    let meanwhile = covered(Some(Zoomed::Meanwhile));
+    assert!(
+        whole.abs_diff(meanwhile) * 50 < whole,
+        "{whole} {meanwhile}"
+    );
+    let smaller = covered(Some(Zoomed::Before));
+    assert!(smaller * 10 < whole * 9, "{whole} {smaller}");
 }

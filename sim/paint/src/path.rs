@@ -100,6 +100,7 @@ mod tests {
                 position_m: [x, 0.1, 0.01],
                 ..Pose::IDENTITY
             },
+            zoom: 1.0,
             angles_rad: vec![[0.0, 0.4]; 21],
             contacts: Vec::new(),
         };

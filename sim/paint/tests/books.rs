@@ -70,6 +70,7 @@ fn solve(file: &BrushFile, stroke: u64, flags: u32, place: &Place) -> Solve {
             position_m: [x, y, place.height * file.length_m()],
             orientation: [0.0, 0.0, sine, cosine],
         },
+        zoom: 1.0,
         angles_rad: (0..file.spines.all_joints()).map(joint).collect(),
         contacts: Vec::new(),
     }

@@ -82,6 +82,7 @@ fn stroke(sequencer: &mut Sequencer, seq: u64, stroke: u64, y_mm: f64, lifts: bo
             position_m: [x_mm * 1e-3, y_mm * 1e-3, 0.6 * file.length_m()],
             ..Pose::IDENTITY
         },
+        zoom: 1.0,
         angles_rad: vec![[0.2, 0.3]; file.spines.all_joints()],
         contacts: Vec::new(),
     };

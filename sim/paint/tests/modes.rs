@@ -84,6 +84,7 @@ impl Easel {
                 ],
                 orientation: [0.0, 0.0, 0.0, 1.0],
             },
+            zoom: 1.0,
             angles_rad: vec![[0.2, 0.1]; file.spines.all_joints()],
             contacts: Vec::new(),
         });

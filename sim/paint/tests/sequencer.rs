@@ -43,6 +43,7 @@ fn misfit() -> BrushState {
         surface: 0,
         flags: 0,
         pose: Pose::IDENTITY,
+        zoom: 1.0,
         angles_rad: Vec::new(),
         contacts: Vec::new(),
     };

@@ -94,6 +94,7 @@ impl Round {
                         position_m: [at[0], at[1], 0.45 * file.length_m()],
                         orientation: [0.0, 0.0, 0.0, 1.0],
                     },
+                    zoom: 1.0,
                     angles_rad: vec![[0.3, 0.3]; file.spines.all_joints()],
                     contacts: Vec::new(),
                 }],

@@ -159,6 +159,7 @@ impl Painter {
                     position_m: [at[0], at[1], dice.between(0.3, 0.9) * file.length_m()],
                     orientation: [0.0, 0.0, sine, cosine],
                 },
+                zoom: 1.0,
                 angles_rad: (0..joints).map(|_| bend).collect(),
                 contacts: Vec::new(),
             }

@@ -48,6 +48,7 @@ pub(crate) fn stroke(painting: &mut Painting, number: u64, load: &str, [x_mm, y_
             position_m: [(x_mm + dx_mm) * 1e-3, y_mm * 1e-3, 0.6 * file.length_m()],
             ..Pose::IDENTITY
         },
+        zoom: 1.0,
         angles_rad: vec![[0.2, 0.3]; file.spines.all_joints()],
         contacts: Vec::new(),
     };

@@ -77,6 +77,7 @@ pub(crate) fn stroke(number: u64, shift: f64, states: usize) -> Vec<BrushState> 
                     ],
                     orientation: [0.0, 0.0, sine, cosine],
                 },
+                zoom: 1.0,
                 angles_rad: (0..joints).map(|_| [0.1, 0.25]).collect(),
                 contacts: Vec::new(),
             }],

@@ -30,6 +30,7 @@ use std::sync::Arc;
 
 use maulstick_brush::{BrushFile, Head};
 use maulstick_optics::{PaintError, PaintLibrary, Studio};
+use maulstick_types::brush::ZOOMS;
 use maulstick_types::scene::{Scene, Surface, WellKind};
 use maulstick_types::{Mixture, name_hash};
 
@@ -343,7 +344,7 @@ impl Painting {
         pose: &maulstick_types::Pose,
         zoom: f64,
     ) -> Result<(), PaintRefusal> {
-        if !pose.is_valid() || !(0.01..=100.0).contains(&zoom) {
+        if !pose.is_valid() || !ZOOMS.contains(&zoom) {
             return Err(PaintRefusal::new(
                 "the pose or the zoom is out of range".into(),
                 "send a finite pose, a unit quaternion and a zoom of .01 to 100",

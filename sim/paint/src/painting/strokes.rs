@@ -74,7 +74,10 @@ impl Painting {
             track.path = None;
             self.begin_stroke(name)?;
         }
-        let scale = self.scale(sheet);
+        let scale = Scale {
+            cell_m: self.sheets[sheet].cell_m,
+            zoom: solve.zoom,
+        };
         let restarted = solve.flags & solve_flags::RESTARTED != 0;
         let track = self.brush(name)?;
         let traits = BrushTraits::of(&track.file, scale.cell_m, scale.zoom);
@@ -90,23 +93,11 @@ impl Painting {
             return Ok(());
         };
         let head = Arc::clone(&track.head);
-        path.advance(&head, waypoint, |sweep| self.step(name, sheet, sweep));
+        path.advance(&head, waypoint, |sweep| {
+            self.step(name, sheet, scale, sweep);
+        });
         self.brush(name)?.path = Some((sheet, path));
         Ok(())
-    }
-
-    /// How a brush's lengths are seen on a sheet.
-    fn scale(&self, sheet: usize) -> Scale {
-        let sheet = &self.sheets[sheet];
-        let surface = self
-            .scene
-            .surfaces
-            .iter()
-            .find(|surface| surface.id == sheet.id);
-        Scale {
-            cell_m: sheet.cell_m,
-            zoom: surface.map_or(1.0, |surface| surface.zoom),
-        }
     }
 
     pub(super) fn begin_stroke(&mut self, name: &str) -> Result<(), PaintRefusal> {
@@ -124,9 +115,8 @@ impl Painting {
     }
 
     /// One step of the paint model.
-    pub(super) fn step(&mut self, name: &str, sheet: usize, sweep: Sweep<'_>) {
+    pub(super) fn step(&mut self, name: &str, sheet: usize, scale: Scale, sweep: Sweep<'_>) {
         self.steps += 1;
-        let scale = self.scale(sheet);
         let Some(track) = self.brushes.get(name) else {
             return;
         };

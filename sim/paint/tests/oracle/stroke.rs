@@ -143,6 +143,7 @@ fn arc(bench: &Bench) -> Vec<HeadPose> {
                 surface: 0,
                 flags: 0,
                 pose: turned.to_pose(),
+                zoom: 1.0,
                 angles_rad: vec![[0.1, 0.25]; joints],
                 contacts: Vec::new(),
             },

@@ -160,6 +160,7 @@ impl Easel {
                 position_m: [x, y, 0.55 * self.file.length_m()],
                 orientation: [0.0, 0.0, 0.0, 1.0],
             },
+            zoom: 1.0,
             angles_rad: vec![[0.25, 0.3]; joints],
             contacts: Vec::new(),
         };
