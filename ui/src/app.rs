@@ -226,8 +226,8 @@ impl App {
             self.landing
                 .give(now_ns, order, self.follower.newest(now_ns));
         }
-        while let Some(order) = self.landing.due(now_ns) {
-            self.courier.send(order);
+        while let Some(due) = self.landing.due(now_ns) {
+            self.courier.send(due);
         }
         if self.landing.holds() {
             context.request_repaint_after(LANDING_LOOK);
@@ -292,6 +292,7 @@ impl eframe::App for App {
         // After the mouse has told where it is: its brush is drawn there.
         self.take_in(now_ns);
         self.landing.take_in();
+        self.send(context);
         self.follow(context, now_ns);
         if self.pressed {
             context.request_repaint_after(STILL);

@@ -15,6 +15,7 @@ use maulstick_types::haptics::{ForceOrder, ForceReply, ForceRequest};
 use maulstick_types::topics::Topics;
 use maulstick_types::{Origin, name_hash};
 
+use crate::landing::Due;
 use crate::orders::Order;
 
 /// How long a node may take for a command.
@@ -51,7 +52,7 @@ struct Line {
 
 #[derive(Debug, Default)]
 struct Queue {
-    waiting: VecDeque<Order>,
+    waiting: VecDeque<Due>,
     /// Since when one is on its way.
     since: Option<Instant>,
     /// Whether the painter waits for it no longer.
@@ -83,9 +84,9 @@ impl Courier {
 
     /// Sends an order after those that went to the same process. One that still waits gives way to a newer
     /// one that sets the same, as the place of a surface.
-    pub fn send(&mut self, order: Order) {
+    pub fn send(&mut self, due: Due) {
         let (bus, topics, wake, told) = (&self.bus, &self.topics, &self.wake, &self.told);
-        let (line, _) = self.lines.entry(address(&order)).or_insert_with(|| {
+        let (line, _) = self.lines.entry(address(&due.order)).or_insert_with(|| {
             let line = Arc::new(Line::default());
             let mut carrier = Carrier {
                 bus: Arc::clone(bus),
@@ -103,7 +104,7 @@ impl Courier {
             (line, thread)
         });
         let mut queue = line.orders.lock().unwrap_or_else(PoisonError::into_inner);
-        push(&mut queue.waiting, order);
+        push(&mut queue.waiting, due);
         line.news.notify_one();
     }
 
@@ -140,8 +141,8 @@ impl Courier {
         for (line, _) in late.iter().filter_map(|name| self.lines.get(name)) {
             let mut queue = line.orders.lock().unwrap_or_else(PoisonError::into_inner);
             queue.given_up = queue.since.is_some();
-            told.extend(queue.waiting.drain(..).map(|order| Told {
-                order,
+            told.extend(queue.waiting.drain(..).map(|due| Told {
+                order: due.order,
                 result: Err(Fault::failure("it was not sent")),
             }));
         }
@@ -192,11 +193,12 @@ fn replaces(newer: &Order, older: &Order) -> bool {
 }
 
 /// Puts an order at the end; the last of those that wait gives way if this one makes it needless.
-fn push(waiting: &mut VecDeque<Order>, order: Order) {
-    if waiting.back().is_some_and(|last| replaces(&order, last)) {
+fn push(waiting: &mut VecDeque<Due>, due: Due) {
+    let last = waiting.back();
+    if last.is_some_and(|last| replaces(&due.order, &last.order)) {
         waiting.pop_back();
     }
-    waiting.push_back(order);
+    waiting.push_back(due);
 }
 
 /// Serves one line.
@@ -211,9 +213,12 @@ struct Carrier {
 
 impl Carrier {
     fn run(&mut self) {
-        while let Some(order) = self.next() {
-            let result = self.deliver(&order);
-            let told = Told { order, result };
+        while let Some(due) = self.next() {
+            let result = self.deliver(&due);
+            let told = Told {
+                order: due.order,
+                result,
+            };
             self.told
                 .lock()
                 .unwrap_or_else(PoisonError::into_inner)
@@ -222,16 +227,16 @@ impl Carrier {
         }
     }
 
-    fn next(&self) -> Option<Order> {
+    fn next(&self) -> Option<Due> {
         let mut queue = self.queue();
         (queue.since, queue.given_up) = (None, false);
         loop {
             if queue.ended {
                 return None;
             }
-            if let Some(order) = queue.waiting.pop_front() {
+            if let Some(due) = queue.waiting.pop_front() {
                 queue.since = Some(Instant::now());
-                return Some(order);
+                return Some(due);
             }
             queue = self
                 .line
@@ -248,8 +253,8 @@ impl Carrier {
             .unwrap_or_else(PoisonError::into_inner)
     }
 
-    fn deliver(&mut self, order: &Order) -> Result<String, Fault> {
-        match order {
+    fn deliver(&mut self, due: &Due) -> Result<String, Fault> {
+        match &due.order {
             Order::Command { node, command } => {
                 let line = Arc::clone(&self.line);
                 let ended = move || {
@@ -260,7 +265,12 @@ impl Carrier {
                 let commander = self.commander.get_or_insert_with(|| {
                     Commander::of(Arc::clone(bus), topics, node).asking(ASK)
                 });
-                commander.send(command.clone(), None, patience(command), &ended)
+                commander.send(
+                    command.clone(),
+                    due.after.clone(),
+                    patience(command),
+                    &ended,
+                )
             }
             Order::Force { device, order } => {
                 let me = Origin {
@@ -319,6 +329,10 @@ mod tests {
         }
     }
 
+    fn orders(waiting: &VecDeque<Due>) -> Vec<Order> {
+        waiting.iter().map(|due| due.order.clone()).collect()
+    }
+
     fn place(surface: u32, zoom: f64) -> Order {
         order(Command::Place {
             surface,
@@ -359,7 +373,7 @@ mod tests {
             tune("a", 3.0),
             tune("b", 4.0),
         ] {
-            push(&mut waiting, order);
+            push(&mut waiting, order.into());
         }
         let expected = [
             tune("a", 2.0),
@@ -367,7 +381,7 @@ mod tests {
             tune("a", 3.0),
             tune("b", 4.0),
         ];
-        assert_eq!(waiting, expected);
+        assert_eq!(orders(&waiting), expected);
     }
 
     #[test]
@@ -382,10 +396,10 @@ mod tests {
             place(1, 3.0),
             undo(),
         ] {
-            push(&mut waiting, order);
+            push(&mut waiting, order.into());
         }
         let expected = [place(0, 2.0), place(1, 1.0), undo(), place(1, 3.0), undo()];
-        assert_eq!(waiting, expected);
+        assert_eq!(orders(&waiting), expected);
     }
 
     #[test]
@@ -404,9 +418,9 @@ mod tests {
             relight(3.0, false),
             relight(4.0, false),
         ] {
-            push(&mut waiting, order);
+            push(&mut waiting, order.into());
         }
-        assert_eq!(waiting, [relight(2.0, true), relight(4.0, false)]);
+        assert_eq!(orders(&waiting), [relight(2.0, true), relight(4.0, false)]);
     }
 
     #[test]
@@ -423,9 +437,9 @@ mod tests {
             force(ForceOrder::Off),
             strength(0.3),
         ] {
-            push(&mut waiting, order);
+            push(&mut waiting, order.into());
         }
         let expected = [strength(0.2), force(ForceOrder::Off), strength(0.3)];
-        assert_eq!(waiting, expected);
+        assert_eq!(orders(&waiting), expected);
     }
 }

@@ -201,9 +201,18 @@ impl Files {
             return false;
         };
         let is_waited_for = self.waiting.as_ref() == Some(&told.order);
+        if switches(command) {
+            work.studio.switching = false;
+        }
         match &told.result {
             Ok(detail) => {
-                let sentence = in_words(detail, "");
+                // Some say nothing but the path, which is told already.
+                let is_told = done.contains(&place::shown(Path::new(detail)));
+                let sentence = if is_told {
+                    String::new()
+                } else {
+                    in_words(detail, "")
+                };
                 work.toasts
                     .note(format!("{done} {sentence}").trim().to_owned());
                 if is_waited_for {
@@ -296,11 +305,20 @@ fn ask(command: Command, work: &mut Work<'_>) -> Order {
         Command::Export { .. } | Command::StopExport => PAINT,
         _ => RIG,
     };
+    work.studio.switching |= switches(&command);
     work.orders.node(node, command.clone());
     Order::Command {
         node: node.to_owned(),
         command,
     }
+}
+
+/// Whether a command puts another painting on the easel, for which nodes are started anew.
+fn switches(command: &Command) -> bool {
+    matches!(
+        command,
+        Command::Open { .. } | Command::New { .. } | Command::SaveAs { .. }
+    )
 }
 
 /// What a command about files did, in words; none of another command.

@@ -32,7 +32,7 @@ impl FirstRun {
         }
         let now = context.input(|input| input.time);
         let status = studio.paint.as_ref().map(|node| &node.status);
-        let is_bare = status.is_none_or(|status| status.footprint_cells == 0 && status.undo == 0);
+        let is_bare = status.is_none_or(|status| status.blank);
         if !is_bare {
             habits.has_painted = true;
             self.blank = None;
@@ -120,12 +120,13 @@ mod tests {
     #[test]
     fn the_line_goes_with_the_first_paint_and_is_over_the_next_painting_for_a_moment() {
         let mut harness = day(false);
-        assert!(says(&mut harness, |status| status.journal = 7));
+        assert!(says(&mut harness, |status| (status.journal, status.undo) =
+            (7, 1)));
         assert!(
             !harness.state().habits.has_painted,
             "nothing is painted yet"
         );
-        assert!(!says(&mut harness, |status| status.footprint_cells = 1));
+        assert!(!says(&mut harness, |status| status.blank = false));
         assert!(harness.state().habits.has_painted);
         let another = PaintStatus {
             path: "/another.maul".into(),
@@ -140,6 +141,6 @@ mod tests {
     fn who_has_painted_before_is_told_nothing() {
         let mut harness = day(true);
         assert!(!says(&mut harness, |status| status.path = "/new.maul".into()));
-        assert!(!says(&mut harness, |status| status.footprint_cells = 1));
+        assert!(!says(&mut harness, |status| status.blank = false));
     }
 }

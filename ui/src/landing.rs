@@ -6,13 +6,13 @@ use std::collections::{BTreeMap, VecDeque};
 use maulstick_bus::typed::Receiver;
 use maulstick_bus::{Bus, BusError, Class, Queue, Wake};
 use maulstick_types::brush::BrushConsumed;
-use maulstick_types::command::Command;
+use maulstick_types::command::{After, Command};
 use maulstick_types::name_hash;
 use maulstick_types::paint::{BrushCredit, PaintConsumed};
 use maulstick_types::topics::Topics;
 
 use crate::follow::SampleNumber;
-use crate::orders::Order;
+use crate::orders::{Order, PAINT};
 
 /// Nobody waits longer, ns: a brush may have ended in its stroke.
 const LONGEST_NS: u64 = 1_000_000_000;
@@ -32,6 +32,15 @@ struct Waiting {
     order: Order,
     samples: Vec<Stage>,
     until_ns: u64,
+}
+
+/// An order that is sent.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Due {
+    /// The order.
+    pub order: Order,
+    /// The state of a brush behind which the painting carries it out; at once if absent.
+    pub after: Option<After>,
 }
 
 /// Orders that wait for a stroke.
@@ -55,7 +64,7 @@ impl Landing {
         let (from_brush, from_paint) = (topics.brush_consumed("*"), topics.paint_consumed());
         Ok(Self {
             topics: topics.clone(),
-            consumed: Receiver::new(bus, &from_brush, Class::Control, Queue::Ring(64), wake)?,
+            consumed: Receiver::new(bus, &from_brush, Class::Control, Queue::Ring(1024), wake)?,
             painted: Receiver::new(bus, &from_paint, Class::Control, Queue::Ring(16), wake)?,
             brushes: BTreeMap::new(),
             credits: BTreeMap::new(),
@@ -84,7 +93,7 @@ impl Landing {
         order: Order,
         newest: impl IntoIterator<Item = SampleNumber>,
     ) {
-        let follows = follows(&order) || self.waiting.iter().any(|before| before.shares(&order));
+        let follows = follows(&order);
         let newest = newest.into_iter().filter(|sample| {
             let mut followed = self.brushes.keys();
             follows && followed.any(|(_, device)| *device == sample.device)
@@ -98,7 +107,7 @@ impl Landing {
     }
 
     /// The next order that need not wait; call it until there is none.
-    pub fn due(&mut self, now_ns: u64) -> Option<Order> {
+    pub fn due(&mut self, now_ns: u64) -> Option<Due> {
         for waiting in &mut self.waiting {
             waiting
                 .samples
@@ -106,11 +115,24 @@ impl Landing {
         }
         let place = (0..self.waiting.len()).find(|place| {
             let waiting = &self.waiting[*place];
-            let ready = waiting.samples.is_empty() || now_ns >= waiting.until_ns;
             let mut before = self.waiting.iter().take(*place);
+            let ready = waiting.is_ready() || now_ns >= waiting.until_ns;
             ready && !before.any(|before| before.shares(&waiting.order))
         })?;
-        self.waiting.remove(place).map(|waiting| waiting.order)
+        let waiting = self.waiting.remove(place)?;
+        if !waiting.is_ready() {
+            // Who has not followed these devices for so long is not waited for again.
+            for stage in &waiting.samples {
+                if let Stage::Sample(sample) = stage {
+                    self.brushes
+                        .retain(|(_, device), _| *device != sample.device);
+                }
+            }
+        }
+        Some(Due {
+            after: waiting.after(),
+            order: waiting.order,
+        })
     }
 
     /// Whether an order waits.
@@ -120,7 +142,31 @@ impl Landing {
     }
 }
 
+impl From<Order> for Due {
+    fn from(order: Order) -> Self {
+        Self { order, after: None }
+    }
+}
+
 impl Waiting {
+    /// Whether it may be sent: the painting knows what the one state is that it still waits for.
+    fn is_ready(&self) -> bool {
+        self.samples.is_empty() || self.after().is_some()
+    }
+
+    /// The state behind which it takes its place.
+    fn after(&self) -> Option<After> {
+        let for_paint = matches!(&self.order, Order::Command { node, .. } if node == PAINT);
+        match self.samples[..] {
+            [Stage::State(brush, epoch, sequence)] if for_paint => Some(After {
+                brush,
+                epoch,
+                sequence,
+            }),
+            _ => None,
+        }
+    }
+
     /// Whether another order is for the same process: none overtakes.
     fn shares(&self, other: &Order) -> bool {
         match (&self.order, other) {
@@ -181,9 +227,9 @@ mod tests {
     use maulstick_types::{Origin, Pose};
 
     use super::*;
-    use crate::orders::PAINT;
 
     const MILLISECOND: u64 = 1_000_000;
+    const START_NS: u64 = MILLISECOND;
     const MOUSE: u32 = 77;
     const BRUSH: &str = "main";
 
@@ -197,7 +243,7 @@ mod tests {
 
     impl Desk {
         fn new() -> Self {
-            let net = MemoryNet::new(1, MILLISECOND, Faults::default());
+            let net = MemoryNet::new(1, START_NS, Faults::default());
             let (bus, topics) = (net.bus(), Topics::new("t"));
             let me = |name: &str| Origin {
                 source: name_hash(name),
@@ -268,12 +314,18 @@ mod tests {
             self.landing.give(now_ns, order, [sample]);
         }
 
-        fn due(&mut self) -> Option<Command> {
+        /// The next command, and the state that it goes behind.
+        fn due(&mut self) -> Option<(Command, Option<u64>)> {
             let now_ns = self.net.bus().now_ns();
-            self.landing.due(now_ns).map(|order| match order {
-                Order::Command { command, .. } => command,
+            let due = self.landing.due(now_ns)?;
+            let after = due.after.map(|after| {
+                assert_eq!((after.brush, after.epoch), (name_hash(BRUSH), 5));
+                after.sequence
+            });
+            match due.order {
+                Order::Command { command, .. } => Some((command, after)),
                 other @ Order::Force { .. } => panic!("{other:?}"),
-            })
+            }
         }
     }
 
@@ -288,7 +340,7 @@ mod tests {
     }
 
     #[test]
-    fn an_undo_waits_until_the_stroke_before_it_is_painted() {
+    fn an_undo_goes_right_behind_the_stroke_before_it() {
         let mut desk = Desk::new();
         desk.painted(2);
         desk.give(UNDO, 9);
@@ -297,27 +349,47 @@ mod tests {
         desk.painted(30);
         assert_eq!(desk.due(), None, "nor the last of its samples");
         desk.consumed(10, 40);
-        assert_eq!(desk.due(), None, "it is not painted");
+        assert_eq!(desk.due(), Some((UNDO, Some(40))));
+        assert!(!desk.landing.holds());
+        desk.give(UNDO, 9);
+        desk.painted(41);
+        assert_eq!(desk.due(), Some((UNDO, None)), "it is painted");
+    }
+
+    #[test]
+    fn another_node_is_asked_when_the_stroke_is_painted() {
+        let mut desk = Desk::new();
+        let order = Order::Command {
+            node: "rig".into(),
+            command: UNDO,
+        };
+        let sample = SampleNumber {
+            device: MOUSE,
+            epoch: 3,
+            seq: 9,
+        };
+        desk.landing.give(START_NS, order.clone(), [sample]);
+        desk.consumed(10, 40);
         // What is painted later does not hold it up.
+        assert_eq!(desk.landing.due(START_NS), None);
         desk.consumed(30, 90);
         desk.painted(40);
-        assert_eq!(desk.due(), None);
+        assert_eq!(desk.landing.due(START_NS), None);
         desk.painted(41);
-        assert_eq!(desk.due(), Some(UNDO));
-        assert!(!desk.landing.holds());
+        assert_eq!(desk.landing.due(START_NS), Some(order.into()));
     }
 
     #[test]
     fn a_canvas_moves_at_once_but_overtakes_nothing() {
         let mut desk = Desk::new();
         desk.give(place(), 9);
-        assert_eq!(desk.due(), Some(place()));
+        assert_eq!(desk.due(), Some((place(), None)));
         desk.give(UNDO, 9);
-        desk.give(place(), 9);
+        desk.give(place(), 20);
         assert_eq!(desk.due(), None);
         desk.consumed(10, 4);
-        desk.painted(5);
-        assert_eq!((desk.due(), desk.due()), (Some(UNDO), Some(place())));
+        let due = [desk.due(), desk.due()];
+        assert_eq!(due, [Some((UNDO, Some(4))), Some((place(), None))]);
     }
 
     #[test]
@@ -327,7 +399,9 @@ mod tests {
         desk.net.advance(990 * MILLISECOND);
         assert_eq!(desk.due(), None);
         desk.net.advance(20 * MILLISECOND);
-        assert_eq!(desk.due(), Some(UNDO));
+        assert_eq!(desk.due(), Some((UNDO, None)));
+        desk.give(UNDO, 10);
+        assert_eq!(desk.due(), Some((UNDO, None)), "once is enough");
         let stranger = SampleNumber {
             device: MOUSE + 1,
             epoch: 3,
@@ -337,7 +411,7 @@ mod tests {
             node: PAINT.into(),
             command: UNDO,
         };
-        desk.landing.give(0, order.clone(), [stranger]);
-        assert_eq!(desk.landing.due(0), Some(order));
+        desk.landing.give(START_NS, order.clone(), [stranger]);
+        assert_eq!(desk.landing.due(START_NS), Some(order.into()));
     }
 }

@@ -15,6 +15,10 @@ use maulstick_types::{Flags, Origin};
 const SILENCE_NS: u64 = 1_000_000_000;
 /// A frame takes no longer, ns; a longer time is a pause.
 const FRAME_NS: u64 = 90_000_000;
+/// A frame of a stroke that goes on may take as long as this, ns.
+const LONG_FRAME_NS: u64 = 1_000_000_000;
+/// In a stroke no two samples are farther apart, ns: after a longer gap the brush would begin anew.
+const GAP_NS: u64 = 40_000_000;
 /// Pressure of a pressed button.
 const PRESSED: f64 = 0.5;
 
@@ -37,6 +41,8 @@ pub struct Mouse {
     silent_until_ns: u64,
     sent_ns: u64,
     was_in_range: bool,
+    /// Where the brush was pressed when the mouse was last told of; none in the air.
+    pressed: Option<[f64; 3]>,
 }
 
 impl Mouse {
@@ -77,6 +83,7 @@ impl Mouse {
             silent_until_ns: 0,
             sent_ns: 0,
             was_in_range: false,
+            pressed: None,
         })
     }
 
@@ -119,6 +126,7 @@ impl Mouse {
             places
         };
         if places.is_empty() {
+            self.pressed = None;
             if self.was_in_range {
                 self.was_in_range = false;
                 let stamp = Stamp {
@@ -134,7 +142,14 @@ impl Mouse {
         self.was_in_range = true;
         // After a pause the pointer has not crept here. A frame may be long where the processor draws: what
         // was moved in it took all of it, or the brush would leap and rest by turns.
-        let since_ns = self.sent_ns.max(now_ns.saturating_sub(FRAME_NS));
+        let goes_on = self.pressed.is_some() && places[0].pressed;
+        let longest_ns = if goes_on { LONG_FRAME_NS } else { FRAME_NS };
+        let since_ns = self.sent_ns.max(now_ns.saturating_sub(longest_ns));
+        let places = self.finer(places, now_ns - since_ns);
+        self.pressed = places
+            .last()
+            .filter(|last| last.pressed)
+            .map(|last| last.at);
         for (number, place) in places.iter().enumerate() {
             let share = (number + 1) as f64 / places.len() as f64;
             let event_ns = since_ns + ((now_ns - since_ns) as f64 * share) as u64;
@@ -155,6 +170,28 @@ impl Mouse {
         }
         self.sent_ns = now_ns;
         Ok(())
+    }
+}
+
+impl Mouse {
+    /// Places that took so long, with as many more on the strokes between them as leave no gap.
+    fn finer(&self, places: &[Pointer], took_ns: u64) -> Vec<Pointer> {
+        let each_ns = took_ns / places.len().max(1) as u64;
+        let parts = each_ns.div_ceil(GAP_NS).max(1);
+        let mut before = self.pressed;
+        let mut all = Vec::new();
+        for place in places {
+            if let (Some(from), true) = (before, place.pressed) {
+                all.extend((1..parts).map(|part| {
+                    let share = part as f64 / parts as f64;
+                    let at = std::array::from_fn(|i| from[i] + share * (place.at[i] - from[i]));
+                    Pointer { at, pressed: true }
+                }));
+            }
+            all.push(*place);
+            before = place.pressed.then_some(place.at);
+        }
+        all
     }
 }
 
@@ -260,6 +297,44 @@ mod tests {
             .map(|sample| sample.message.in_range)
             .collect();
         assert_eq!(ranges, [true, false]);
+    }
+
+    #[test]
+    fn a_stroke_goes_on_over_a_frame_however_long_it_is() {
+        let mut desk = Desk::new();
+        let at = |x: f64| Pointer {
+            at: [x, 0.0, 0.0],
+            pressed: true,
+        };
+        desk.mouse.send(SECOND, &[at(0.0)]).expect("sent");
+        let slow = SECOND + 300_000_000;
+        desk.mouse.send(slow, &[at(0.01), at(0.06)]).expect("sent");
+        desk.net.advance(SECOND / 10);
+        let mut heard = Vec::new();
+        while let Some(sample) = desk.samples.try_recv() {
+            let StylusPose::Contact {
+                point_m, pressure, ..
+            } = sample.message.pose
+            else {
+                panic!("no contact");
+            };
+            assert!(pressure > 0.0);
+            heard.push((sample.header.event_ns, point_m[0]));
+        }
+        assert_eq!(heard[heard.len() - 1], (slow, 0.06));
+        for pair in heard.windows(2) {
+            let [(from_ns, from), (to_ns, to)] = [pair[0], pair[1]];
+            assert!(to_ns - from_ns <= GAP_NS && to > from, "{heard:?}");
+        }
+        // In the air it leaps.
+        let lifted = Pointer {
+            pressed: false,
+            ..at(0.0)
+        };
+        desk.mouse.send(slow + 1, &[lifted]).expect("sent");
+        desk.mouse.send(slow + SECOND, &[lifted]).expect("sent");
+        desk.net.advance(SECOND / 10);
+        assert_eq!(std::iter::from_fn(|| desk.samples.try_recv()).count(), 2);
     }
 
     #[test]

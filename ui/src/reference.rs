@@ -398,7 +398,7 @@ fn proposal(ui: &mut Ui, found: &Match, work: &mut Work<'_>) {
     ui.horizontal(|ui| {
         let near = format!("off by ΔE {:.1}", found.delta_e);
         swatch(ui, found.rgb, &near);
-        ui.label(RichText::new(format!("{:.1}", found.delta_e)).small())
+        ui.label(RichText::new(format!("ΔE {:.1}", found.delta_e)).small())
             .on_hover_text("How far it is from the colour, ΔE₀₀: 1 is hardly seen");
         let load = ui.button("Load").on_hover_text("Load the brush with it");
         load.widget_info(|| WidgetInfo::labeled(Role::Button, true, format!("Load {words}")));
@@ -407,15 +407,22 @@ fn proposal(ui: &mut Ui, found: &Match, work: &mut Work<'_>) {
             let mixture = found.mixture.clone();
             work.orders.paint(Command::Load { brush, mixture });
         }
+        let put = ui.button("+").on_hover_text("Put it on the palette");
+        put.widget_info(|| {
+            WidgetInfo::labeled(Role::Button, true, format!("To the palette: {words}"))
+        });
+        if put.clicked() {
+            let mut wells = work.wells();
+            wells.push(found.mixture.clone());
+            work.lay_wells(&wells);
+        }
         let copy = ui.button("Copy").on_hover_text("Copy it as text");
         copy.widget_info(|| WidgetInfo::labeled(Role::Button, true, format!("Copy {words}")));
         if copy.clicked() {
             ui.ctx().copy_text(found.mixture.to_string());
         }
-        let small = RichText::new(&words).small();
-        ui.add(egui::Label::new(small).truncate())
-            .on_hover_text(&words);
     });
+    ui.add(egui::Label::new(RichText::new(&words).small()).wrap());
 }
 
 /// A mixture in a painter's words.

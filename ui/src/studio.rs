@@ -73,6 +73,8 @@ pub struct Studio {
     pub devices: BTreeMap<String, Device>,
     /// How often the paint node has been seen to start: what was remembered of its painting is over.
     pub starts: u64,
+    /// Whether another painting is put on the easel, for which nodes are started anew.
+    pub switching: bool,
     /// The nodes that are alive, by name.
     pub nodes: Vec<String>,
     /// The paints of the rig.
@@ -105,6 +107,7 @@ impl Studio {
             in_hand: 0,
             devices: BTreeMap::new(),
             starts: 0,
+            switching: false,
             nodes: Vec::new(),
             library,
             show_wet: false,

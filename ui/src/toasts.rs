@@ -56,6 +56,11 @@ impl Toasts {
         self.fault(fault.what.clone(), fault.help.clone().unwrap_or_default());
     }
 
+    /// What was told is over.
+    pub fn over(&mut self, what: &str) {
+        self.told.retain(|toast| toast.what != what);
+    }
+
     /// What is told, the oldest first.
     pub fn told(&self) -> &[Toast] {
         &self.told

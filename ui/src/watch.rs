@@ -17,6 +17,11 @@ const PAINT: &str = "paint";
 const BRUSH: &str = "brush-";
 /// The device that ends with its take.
 const PLAYER: &str = "player";
+/// That a node has left.
+fn stopped(who: &str) -> String {
+    format!("{who} stopped; it is being started again.")
+}
+
 /// What the decision begins with that the processor takes over what the graphics card computed.
 const FALL: &str = "backend cpu: ";
 
@@ -35,6 +40,8 @@ pub struct Watch {
     /// Nodes that were there, and those of them that are gone.
     known: BTreeSet<String>,
     gone: BTreeSet<String>,
+    /// Those that left for another painting.
+    expected: BTreeSet<String>,
     /// What each device said was wrong.
     troubles: BTreeMap<String, String>,
     /// Nodes of another version.
@@ -60,16 +67,21 @@ impl Watch {
     fn nodes(&mut self, studio: &Studio, toasts: &mut Toasts) {
         let present: BTreeSet<String> = studio.nodes.iter().cloned().collect();
         for node in self.known.difference(&present) {
-            if self.gone.insert(node.clone())
-                && let Some((who, help)) = who(node, studio)
-            {
-                toasts.fault(format!("{who} stopped; it is being started again."), help);
+            if !self.gone.insert(node.clone()) {
+                continue;
+            }
+            if studio.switching {
+                self.expected.insert(node.clone());
+            } else if let Some((who, help)) = who(node, studio) {
+                toasts.fault(stopped(&who), help);
             }
         }
         for node in &present {
             if self.gone.remove(node)
+                && !self.expected.remove(node)
                 && let Some((who, _)) = who(node, studio)
             {
+                toasts.over(&stopped(&who));
                 toasts.note(format!("{who} is back."));
             }
         }
@@ -264,6 +276,20 @@ mod tests {
         let mut rig = Rig::new();
         rig.studio.nodes.retain(|other| other != "player");
         assert_eq!(rig.look(), [], "its take is over");
+    }
+
+    #[test]
+    fn nodes_that_another_painting_starts_anew_are_not_told() {
+        let mut rig = Rig::new();
+        rig.studio.switching = true;
+        rig.studio.nodes.retain(|node| node != "arm");
+        assert_eq!(rig.look(), []);
+        // The answer may come before the last of them is back.
+        rig.studio.switching = false;
+        rig.studio.nodes.push("arm".to_owned());
+        assert_eq!(rig.look(), []);
+        rig.studio.nodes.retain(|node| node != "arm");
+        assert_eq!(rig.look().len(), 1, "it is told where nothing is switched");
     }
 
     #[test]

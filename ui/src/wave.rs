@@ -3,6 +3,9 @@
 use glam::DVec2;
 use maulstick_brush::palette_place::Side;
 
+/// A brush is off the view here, as a share of its width from the middle: where the window fills a screen
+/// the pointer comes to its edge and no farther.
+const OFF: f64 = 0.498;
 /// A brush that waves goes at least this fast, m/s.
 const FAST_M_S: f64 = 0.15;
 
@@ -42,8 +45,8 @@ impl Wave {
         };
         let way = (off - from.x) * wide_m;
         let fast = way > FAST_M_S * (now_s - since).max(1e-3);
-        let waves = off > 0.5 && in_air && fast && !self.gone;
-        self.gone |= off > 0.5;
+        let waves = off > OFF && in_air && fast && !self.gone;
+        self.gone |= off > OFF;
         waves
     }
 }

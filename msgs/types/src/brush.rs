@@ -87,7 +87,9 @@ impl Solve {
         fixed + 8 * self.angles_rad.len() + 8 * self.contacts.len()
     }
 
-    fn fault(&self) -> Option<&'static str> {
+    /// What is wrong with its numbers, if anything.
+    #[must_use]
+    pub fn fault(&self) -> Option<&'static str> {
         let near = |metres: &f64| metres.abs() <= FARTHEST_M;
         if !self.pose.is_valid() {
             Some("a pose is not finite or its quaternion is not a unit one")

@@ -24,6 +24,7 @@ pub mod control;
 pub mod haptics;
 pub mod header;
 pub mod mixture;
+pub mod older;
 pub mod paint;
 pub mod pose;
 pub mod region;

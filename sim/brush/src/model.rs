@@ -50,6 +50,8 @@ pub struct BrushModel {
 #[derive(Clone, Debug)]
 struct Held {
     surface: u32,
+    /// Its zoom: on a canvas that is larger the brush bends otherwise.
+    zoom: f64,
     head: HeldHead,
     newest: Sampled,
     /// The normal force of all contacts there, N.
@@ -96,17 +98,8 @@ impl BrushModel {
     }
 
     /// Puts the brush over another scene; before the first, samples give no state.
-    ///
-    /// Where its surface is zoomed, the brush begins anew at its next sample: it bends otherwise on a
-    /// canvas that is larger under it.
     pub fn set_scene(&mut self, scene: &Scene) {
-        let desk = Desk::of(scene);
-        let zoom = |desk: &Desk, id: u32| desk.plane(id).map(|plane| plane.zoom);
-        let before = self.desk.as_ref();
-        self.held = self.held.take().filter(|held| {
-            before.is_none_or(|it| zoom(it, held.surface) == zoom(&desk, held.surface))
-        });
-        self.desk = Some(desk);
+        self.desk = Some(Desk::of(scene));
     }
 
     /// Makes the head stiffer than its file says by this factor, or softer; it keeps its shape.
@@ -187,7 +180,7 @@ impl BrushModel {
     ///
     /// A touching brush is solved each time it has moved by about a cell, counted on across samples,
     /// so that its path does not depend on how often it is sampled; between two of these a sample gives
-    /// a glimpse. A pen lands and lifts at its sample. Another device, time that does not advance
+    /// a glimpse. A pen lands and lifts at its sample. Another device, time that does not advance, a zoom
     /// and a gap of over .1 s restart the solver at the new pose: the solve says so, and nothing is
     /// painted from the one before to it.
     pub fn follow(&mut self, origin: Origin, event_ns: u64, sample: &StylusSample) -> Vec<Solve> {
@@ -212,10 +205,10 @@ impl BrushModel {
         let usable = self.held.take().filter(|held| {
             event_ns > held.newest.event_ns
                 && event_ns - held.newest.event_ns <= RESTART_NS
-                && held.surface == plane.id
+                && (held.surface, held.zoom) == (plane.id, plane.zoom)
         });
         let Some(mut held) = usable else {
-            let mut held = self.fresh(plane.id, here);
+            let mut held = self.fresh(&plane, here);
             let mut solve = self.solve(&mut held, here, &plane);
             solve.flags |= solve_flags::RESTARTED;
             held.force_n = held.head.force_n();
@@ -383,9 +376,10 @@ impl BrushModel {
         self.strokes
     }
 
-    fn fresh(&self, surface: u32, here: Sampled) -> Held {
+    fn fresh(&self, plane: &Plane, here: Sampled) -> Held {
         Held {
-            surface,
+            surface: plane.id,
+            zoom: plane.zoom,
             head: HeldHead::at_rest(&self.tuft, &here.pose),
             newest: here,
             force_n: 0.0,

@@ -2,8 +2,9 @@
 
 use std::io::Read as _;
 
-use maulstick_paint::sequencer::{Accepted, Record};
+use maulstick_paint::sequencer::{Accepted, NO_ZOOM, Record};
 use maulstick_types::brush::{BrushDef, BrushState};
+use maulstick_types::older::BrushStateV1;
 use maulstick_types::paint::JournalEntry;
 use maulstick_types::{Flags, HEADER_BYTES, Header, Message, Origin, decode, encode, name_hash};
 
@@ -131,6 +132,11 @@ fn accepted(message: &[u8]) -> Result<Accepted, DocumentError> {
         let (header, state) = decode::<BrushState>(message).map_err(damaged)?;
         return Ok(Accepted::State { header, state });
     }
+    if header.schema == BrushStateV1::SCHEMA {
+        let state = BrushStateV1::decode_body(&message[HEADER_BYTES..]).map_err(damaged)?;
+        let state = state.at_zoom(NO_ZOOM);
+        return Ok(Accepted::State { header, state });
+    }
     if header.schema == BrushDef::schema().hash {
         let (_, def) = decode::<BrushDef>(message).map_err(damaged)?;
         return Ok(Accepted::Brush {
@@ -183,5 +189,28 @@ mod tests {
             assert_eq!(older, std::slice::from_ref(&record));
         }
         assert!(read(5, &of_schema(0x1234_5678)).is_err());
+    }
+
+    /// A state of the first version as `msgs/types/tests/golden.txt` had it, and one of today without its zoom.
+    #[test]
+    fn a_state_that_says_no_zoom_is_read_and_says_so() {
+        let old = concat!(
+            "4c4d0100974bf75d040302010807060503000000880000000b000000000000000c000000000000000d0000000000",
+            "00000100000002000000030000000000000001000000000000000400000000000000050000000000000000000000",
+            "010000009a9999999999b93f9a9999999999c9bf333333333333d33f0000000000000000333333333333e33f0000",
+            "0000000000009a9999999999e93f01000000000000000000003f000000bf0100000000000000000003000000803e",
+        );
+        let byte = |at: usize| u8::from_str_radix(&old[2 * at..2 * at + 2], 16).expect("hex");
+        let message: Vec<u8> = (0..old.len() / 2).map(byte).collect();
+        let Accepted::State { header, state } = accepted(&message).expect("read") else {
+            panic!("no state");
+        };
+        assert_eq!(
+            (header.seq, state.device_seq, state.solves.len()),
+            (11, 3, 1)
+        );
+        let solve = &state.solves[0];
+        assert_eq!((solve.zoom, solve.contacts.len()), (NO_ZOOM, 1));
+        assert!(accepted(&message[..message.len() - 1]).is_err());
     }
 }

@@ -433,6 +433,10 @@ impl BrushNode {
         let Some(last) = waiting.last().cloned() else {
             return;
         };
+        let devices: BTreeSet<(u32, u32)> = waiting
+            .iter()
+            .map(|w| (w.origin.source, w.origin.epoch))
+            .collect();
         let solves: Vec<Solve> = waiting
             .iter()
             .flat_map(|w| self.model.follow(w.origin, w.event_ns, &w.sample))
@@ -444,12 +448,15 @@ impl BrushNode {
             solves,
         };
         if !state.solves.is_empty() {
-            self.post(Flags::NONE, Flags::NONE, Flags::NONE, state);
+            let number = self.post(Flags::NONE, Flags::NONE, Flags::NONE, state);
+            for (source, epoch) in devices {
+                self.progress.posted(Origin { source, epoch }, number);
+            }
         }
     }
 
-    /// Puts a state into the outbox, and knows by which number it will go.
-    fn post(&mut self, flags: Flags, first: Flags, last: Flags, state: BrushState) {
+    /// Puts a state into the outbox; the number by which its last part will go.
+    fn post(&mut self, flags: Flags, first: Flags, last: Flags, state: BrushState) -> u64 {
         if let Some(newest) = state.solves.last() {
             self.touching = !newest.contacts.is_empty();
         }
@@ -464,6 +471,7 @@ impl BrushNode {
             self.newest_contact = Some(number);
         }
         self.progress.posted(origin, number);
+        number
     }
 
     /// Sends what waits in the outbox while there is credit.

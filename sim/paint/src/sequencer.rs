@@ -4,7 +4,7 @@ mod layers;
 mod records;
 mod ways;
 
-pub use records::{Accepted, Record};
+pub use records::{Accepted, NO_ZOOM, Record};
 
 use std::collections::{BTreeMap, BTreeSet};
 

@@ -1,6 +1,7 @@
 //! The frame that all dialogs share: a title, what is asked, what is wrong, two buttons. Enter goes, Escape
 //! leaves.
 
+use eframe::egui::text_edit::TextEditState;
 use eframe::egui::{
     Align, Color32, Context, Frame, Id, Key, Layout, Margin, Modal, RichText, Ui, Visuals,
 };
@@ -71,6 +72,8 @@ pub(crate) fn show(
     // A dialog without the keyboard could not be left by it.
     if context.memory(|memory| memory.focused().is_none()) {
         context.memory_mut(|memory| memory.request_focus(first()));
+        // What is typed goes behind what is there, wherever the cursor was in another dialog.
+        TextEditState::default().store(context, first());
     }
     answer
 }

@@ -4,6 +4,7 @@ use eframe::egui::{Key, Modifiers, MouseWheelUnit, OutputCommand};
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable as _;
 use maulstick_types::Mixture;
+use maulstick_types::scene::{Well, WellKind};
 
 use super::*;
 use crate::orders::{Orders, PAINT};
@@ -58,7 +59,7 @@ fn mixed(harness: &mut Harness<'static, Bench>) {
 }
 
 #[test]
-fn a_click_on_a_colour_proposes_mixtures_that_are_loaded_and_copied() {
+fn a_click_on_a_colour_proposes_mixtures_that_are_loaded_put_on_the_palette_and_copied() {
     let folder = tempfile::tempdir().expect("a folder");
     let mut harness = pinned(folder.path());
     harness.get_by_label(PICTURE).click();
@@ -90,6 +91,18 @@ fn a_click_on_a_colour_proposes_mixtures_that_are_loaded_and_copied() {
     });
     let copied: Mixture = copied.expect("copied").parse().expect("a mixture");
     assert_eq!(copied, *mixture);
+    let put = harness
+        .query_all_by_label_contains("To the palette: ")
+        .next();
+    put.expect("a mixture").click();
+    harness.run_steps(3);
+    let asked_next = harness.state_mut().asked();
+    let [(_, Command::Wells { wells, .. })] = &asked_next[..] else {
+        panic!("{asked_next:?}");
+    };
+    let lies =
+        |well: &Well| matches!(&well.kind, WellKind::Paint { mixture: lies } if lies == mixture);
+    assert_eq!(wells.iter().filter(|well| lies(well)).count(), 1);
     harness.get_by_label("Done").click();
     harness.run_steps(3);
     assert_eq!(harness.query_all_by_label_contains("Load ").count(), 0);

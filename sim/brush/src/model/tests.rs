@@ -39,6 +39,33 @@ fn pen(x: f64, y: f64, pressure: f64) -> StylusSample {
 }
 
 #[test]
+fn a_zoom_in_a_stroke_begins_the_brush_anew_on_its_surface_and_a_move_does_not() {
+    let mut model = brush();
+    let mut at_ms = 0_u32;
+    let mut press = |model: &mut BrushModel| {
+        at_ms += 8;
+        let x = 1e-4 * f64::from(at_ms);
+        let solves = model.follow(
+            DEVICE,
+            1_000 * MS + u64::from(at_ms) * MS,
+            &pen(x, 0.0, 0.4),
+        );
+        let restarted = solves[0].flags & solve_flags::RESTARTED != 0;
+        (restarted, solves[0].surface, solves[0].zoom)
+    };
+    press(&mut model);
+    assert_eq!(press(&mut model), (false, CANVAS, 1.0));
+    let mut moved = scene();
+    moved.surfaces[0].pose.position_m[1] -= 1e-3;
+    model.set_scene(&moved);
+    assert_eq!(press(&mut model), (false, CANVAS, 1.0));
+    moved.surfaces[0].zoom = 1.5;
+    model.set_scene(&moved);
+    assert_eq!(press(&mut model), (true, CANVAS, 1.5));
+    assert_eq!(press(&mut model), (false, CANVAS, 1.5));
+}
+
+#[test]
 fn strokes_are_numbered_by_the_gap_rule() {
     let mut model = brush();
     let mut stroke = |ms: u64, pressure: f64| {

@@ -45,7 +45,7 @@ impl Painting {
     ) -> Result<(), PaintRefusal> {
         let track = self.brush(name)?;
         let fits = solve.stroke == 0 || track.head.fits(solve.angles_rad.len());
-        if !fits || !solve.pose.is_valid() {
+        if !fits || solve.fault().is_some() {
             return Err(PaintRefusal::new(
                 format!("a state of brush '{name}' does not fit its brush file"),
                 "restart the brush node: it runs with another file",

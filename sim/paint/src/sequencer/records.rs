@@ -17,6 +17,9 @@ const OWN: u64 = 0;
 /// joined to what they do next.
 const GOES_ON: &str = "the painting goes on";
 
+/// The zoom of a solve of which only the scene says at what zoom it was painted: an older program kept it.
+pub const NO_ZOOM: f64 = 0.0;
+
 /// Something that was accepted.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Accepted {
@@ -161,7 +164,10 @@ impl Sequencer {
         let next = record.next();
         self.next = record.index;
         match record.what {
-            Accepted::State { header, state } => self.replay_state(&header, &state),
+            Accepted::State { header, mut state } => {
+                self.know_zooms(&mut state);
+                self.replay_state(&header, &state);
+            }
             Accepted::Entry(Entry::Command {
                 client,
                 number,
@@ -201,6 +207,14 @@ impl Sequencer {
     pub(super) fn tell_fall(&mut self) {
         if let Some(why) = self.painting.take_fall() {
             self.decide(&format!("backend {}: {why}", self.painting.backend()));
+        }
+    }
+
+    fn know_zooms(&self, state: &mut BrushState) {
+        let surfaces = &self.painting.scene().surfaces;
+        for solve in state.solves.iter_mut().filter(|it| it.zoom == NO_ZOOM) {
+            let surface = surfaces.iter().find(|it| it.id == solve.surface);
+            solve.zoom = surface.map_or(1.0, |surface| surface.zoom);
         }
     }
 
