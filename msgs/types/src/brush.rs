@@ -214,5 +214,14 @@ mod tests {
         assert!(state(f64::NAN, 0.1, 0.1).fault().is_some());
         assert!(state(1.0, f32::NAN, 0.1).fault().is_some());
         assert!(state(1.0, 0.1, f32::INFINITY).fault().is_some());
+        let zoomed = |zoom: f64| {
+            let mut state = state(1.0, 0.1, 0.1);
+            state.solves[0].zoom = zoom;
+            state.fault()
+        };
+        assert_eq!((zoomed(0.01), zoomed(100.0)), (None, None));
+        for zoom in [0.0, 0.009, 101.0, f64::NAN, f64::INFINITY] {
+            assert!(zoomed(zoom).is_some(), "{zoom}");
+        }
     }
 }

@@ -82,6 +82,26 @@ fn what_was_painted_before_a_canvas_is_moved_stays_where_it_was_painted() {
     assert!((low - after - MOVED_M).abs() < 0.05 * MOVED_M, "{after}");
 }
 
+#[test]
+fn a_device_is_told_of_its_samples_once_they_are_solved() {
+    let mut live = Live::new(MemoryNet::new(1, START_NS, Faults::default()));
+    let mut mouse = live.device("mouse", 5);
+    live.net.advance(MILLISECOND);
+    live.brush.turn().expect("turned");
+    stroke(&mut live, &mut mouse);
+    let told = mouse.consumed();
+    assert!((1..200).contains(&told), "{told}: the last of them wait");
+    stroke(&mut live, &mut mouse);
+    assert_eq!(mouse.consumed(), 0, "nothing new was told");
+    // No further sample comes.
+    for _ in 0..200 {
+        live.net.advance(5 * MILLISECOND);
+        live.paint.turn().expect("turned");
+        live.brush.turn().expect("turned");
+    }
+    assert_eq!(mouse.consumed(), 400);
+}
+
 /// Cells that a stroke covers on a canvas that is zoomed at a time of the stroke.
 fn covered(zoom: Option<Zoomed>) -> u64 {
     let mut live = Live::new(MemoryNet::new(1, START_NS, Faults::default()));
