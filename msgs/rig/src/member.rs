@@ -144,7 +144,7 @@ impl std::fmt::Debug for Member {
 /// Sends log lines of `level` and above to the standard error; of the libraries only what a painter
 /// can do something about.
 pub fn log_to_stderr(level: &str) {
-    let quiet = "zenoh=error,zenoh::net::routing=off,zenoh_transport=off,zenoh_shm=off,zenoh_link=off,\
+    let quiet = "zenoh=error,zenoh::api::session=off,zenoh_transport=off,zenoh_shm=off,zenoh_link=off,\
                  wgpu=error,wgpu_core=error,wgpu_hal=error,winit=error,egui_winit=error,egui_wgpu=error,eframe=error,naga=error";
     tracing_subscriber::fmt()
         .with_env_filter(tracing_subscriber::EnvFilter::new(format!(
