@@ -224,6 +224,7 @@ impl Stage {
 
 /// Draws the window anew when something has come, but not too often: whatever comes, nothing is begun
 /// for `rest` after a frame was, nor before the device has drawn it, or frames would wait for each other.
+/// The pause is the pace of the window, no wait for something: what comes meanwhile is in the next frame.
 fn repaint(wake: &Wake, context: &Context, stop: &Stop, completion: &Completion, rest: Duration) {
     while !stop.requested() {
         if wake.wait(Duration::from_millis(200)) {

@@ -47,13 +47,16 @@ pub(crate) fn maulstick() -> Result<PathBuf, Fault> {
         .with_file_name("maulstick"))
 }
 
+/// A rig that starts is looked for this often: nothing tells that its folder is there.
+const LOOK: Duration = Duration::from_millis(5);
+
 /// The rig of a folder, once it is there.
 pub(crate) fn joined(path: &Path, give_up: Instant) -> Result<(RigFolder, RigInfo), Fault> {
     loop {
         match RigFolder::join_at(path) {
             Ok(joined) => return Ok(joined),
             Err(error) if Instant::now() > give_up => return Err(error.into()),
-            Err(_) => std::thread::sleep(Duration::from_millis(5)),
+            Err(_) => std::thread::sleep(LOOK),
         }
     }
 }
