@@ -16,6 +16,7 @@ use maulstick_optics::surface::SurfaceCorrection;
 
 use crate::determined;
 use crate::error::MeasureError;
+use crate::influence;
 use crate::links::check_links;
 use crate::measurements::{Ground, Layer, Measurements};
 use crate::notes::paint_called;
@@ -122,7 +123,8 @@ pub fn fit(text: &str, options: &FitOptions) -> Result<Fit, MeasureError> {
     let paints = paints(&measured, &spectrum, &found);
     warnings.extend(determined::warnings(&measured, &spectrum, &found));
     let residuals = residuals(&measured, &paints, &surface);
-    warnings.extend(crate::residuals::warnings(&residuals));
+    let suspects = influence::suspects(&spectrum, &found);
+    warnings.extend(crate::residuals::warnings(&residuals, &suspects));
     Ok(Fit {
         white: measured.paints[white].clone(),
         white_s_per_m: mean_unit(&spectrum, &found)

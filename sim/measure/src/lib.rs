@@ -14,6 +14,7 @@
 //! | [`normal`], [`programme`] | normal equations; quadratic programmes |
 //! | [`wavelength`] | K and S of all paints at one wavelength |
 //! | [`determined`] | how well readings determine them |
+//! | [`influence`] | which sample does not go with the others |
 //! | [`residuals`] | how well they reproduce the samples |
 //! | [`fit`](mod@fit) | the whole |
 //! | [`paint_file`](mod@paint_file) | the result as a file |
@@ -22,6 +23,7 @@ pub mod determined;
 pub mod error;
 pub mod fit;
 pub mod headings;
+pub mod influence;
 pub mod instrument;
 pub mod layer;
 pub mod links;

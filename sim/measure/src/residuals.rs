@@ -5,13 +5,9 @@ use maulstick_optics::spectrum::{SAMPLES, Spectrum, resample};
 use maulstick_optics::{Illuminant, Observer, Paint, km};
 
 use crate::fit::internal_ground;
+use crate::influence::Suspect;
 use crate::measurements::{Ground, Layer, Measurements, Sample};
 use crate::surface::Surface;
-
-/// A residual above this may be a mistake in the table ...
-const SUSPECT: f64 = 2.0;
-/// ... if it is so many times the median.
-const OUTLIER: f64 = 4.0;
 
 /// What a fit leaves of a sample.
 #[derive(Clone, Debug, PartialEq)]
@@ -77,23 +73,16 @@ fn predicted(
     }))
 }
 
-/// Samples that stand out from the others, the worst first.
+/// A sentence for each suspect row, with what to do.
 #[must_use]
-pub fn warnings(residuals: &[Residual]) -> Vec<String> {
-    let mut sorted: Vec<f64> = residuals.iter().map(|one| one.delta_e).collect();
-    sorted.sort_by(f64::total_cmp);
-    let median = sorted.get(sorted.len() / 2).copied().unwrap_or(0.0);
-    let suspect = |one: &&Residual| one.delta_e > SUSPECT.max(OUTLIER * median);
-    let mut suspects: Vec<&Residual> = residuals.iter().filter(suspect).collect();
-    suspects.sort_by(|a, b| b.delta_e.total_cmp(&a.delta_e));
-    suspects
-        .into_iter()
-        .map(|one| {
-            format!(
-                "line {}: '{}' is off by ΔE₀₀ {:.1}, the median being {median:.1}: check its shares \
-                 and its reading",
-                one.line, one.name, one.delta_e
-            )
-        })
-        .collect()
+pub fn warnings(residuals: &[Residual], suspects: &[Suspect]) -> Vec<String> {
+    let suspects = suspects.iter().map(|suspect| {
+        let one = &residuals[suspect.sample];
+        format!(
+            "line {}: '{}' is off by ΔE₀₀ {:.1}, and without it the others fit {:.1} times as well: check \
+             its shares and its reading",
+            one.line, one.name, one.delta_e, suspect.gain
+        )
+    });
+    suspects.collect()
 }

@@ -81,7 +81,9 @@ impl Unknowns {
         (sum(&self.k), sum(&self.s))
     }
 
-    fn moved(&self, by: &[f64]) -> Self {
+    /// K, S and unit times e to these powers, in this order.
+    #[must_use]
+    pub fn moved(&self, by: &[f64]) -> Self {
         let n = self.k.len();
         let moved = |values: &[f64], by: &[f64]| {
             let pairs = values.iter().zip(by);
