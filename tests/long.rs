@@ -25,7 +25,9 @@ fn recording(place: &Place) -> bool {
         eprintln!("skipped: {} is not there", table.display());
         return false;
     }
-    let take = import(&table, TableLayout::default(), "table").expect("a take");
+    let take = import(&table, TableLayout::default(), "table")
+        .expect("a take")
+        .take;
     take.write(&place.path("take.mcap")).expect("written");
     true
 }

@@ -3,12 +3,11 @@
 use std::path::PathBuf;
 
 use clap::Args;
-use maulstick_device::table::{TableLayout, import};
+use maulstick_device::table::{TableLayout, TimeUnit, import};
 use maulstick_rig::Fault;
 
 use crate::commands::write_take;
 use crate::outputs::{UsedFile, check_outputs};
-use crate::performance::parse_size;
 
 /// Options of `maulstick import`.
 #[derive(Args, Clone, Debug)]
@@ -22,8 +21,11 @@ pub struct ImportOptions {
     #[arg(long, value_name = "MM", default_value_t = 0.25)]
     unit_mm: f64,
     /// The tablet's area in table units; its middle becomes the desk's origin
-    #[arg(long, value_name = "WxH", value_parser = parse_size, default_value = "1024x1024")]
-    size: [u32; 2],
+    #[arg(long, value_name = "WxH", value_parser = parse_area, default_value = "1024x1024")]
+    size: [f64; 2],
+    /// Unit of t: s, ms, us or ns [default: guessed from the time between samples]
+    #[arg(long, value_name = "UNIT")]
+    time_unit: Option<TimeUnit>,
 }
 
 /// Imports the table.
@@ -38,12 +40,27 @@ pub fn run(options: &ImportOptions) -> Result<i32, Fault> {
         &[UsedFile::new("the take", &options.output)],
         &[UsedFile::new("the table", &options.table)],
     )?;
-    let size = options.size.map(f64::from);
     let layout = TableLayout {
         unit_mm: options.unit_mm,
-        size,
+        size: options.size,
+        time_unit: options.time_unit,
     };
-    let take = import(&options.table, layout, "table")?;
-    write_take(&take, &options.output)?;
+    let imported = import(&options.table, layout, "table")?;
+    write_take(&imported.take, &options.output)?;
+    for note in &imported.notes {
+        eprintln!("note: {note}");
+    }
     Ok(0)
+}
+
+/// Reads `WxH`, each above 0.
+fn parse_area(text: &str) -> Result<[f64; 2], String> {
+    let side = |side: &str| {
+        let side = side.trim().parse::<f64>().ok();
+        side.filter(|side| *side > 0.0 && side.is_finite())
+    };
+    let sides = text.split_once(['x', 'X', '×']);
+    sides
+        .and_then(|(width, height)| Some([side(width)?, side(height)?]))
+        .ok_or_else(|| format!("'{text}' is not a size such as 44704x27940"))
 }

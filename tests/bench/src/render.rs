@@ -28,7 +28,7 @@ pub(crate) fn performance(place: &Path) -> Result<(PathBuf, f64), Fault> {
     let table =
         Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../shared/data/painting30sec.dat");
     let take = if table.exists() {
-        import(&table, TableLayout::default(), "table")?
+        import(&table, TableLayout::default(), "table")?.take
     } else {
         eprintln!("the 30 s recording is not there: the demo takes its place");
         demo::performance(demo::Subject::Flower, 1)
