@@ -10,6 +10,7 @@ use maulstick_rig::fault::EXIT_FAILURE;
 use maulstick_rig::files::write_whole;
 use maulstick_types::Mixture;
 
+use crate::ground::is_picture;
 use crate::performance::brush_file;
 
 /// The canvas, palette, brush, paints and light of a rig, with the files that they name.
@@ -48,8 +49,11 @@ pub fn kit_of(config: &RigConfig, brush: &BrushSection, loads: &[Mixture]) -> Re
     }
     if is_path(&config.canvas.ground) {
         let file = Path::new(&config.canvas.ground);
-        let extension = file.extension().unwrap_or_default().to_string_lossy();
-        settings.canvas.ground = kit.add(read(file)?, &extension);
+        let extension = match is_picture(file) {
+            true => file.extension().unwrap_or_default().to_ascii_lowercase(),
+            false => "csv".into(),
+        };
+        settings.canvas.ground = kit.add(read(file)?, &extension.to_string_lossy());
     }
     let text = toml::to_string(&settings).map_err(|error| unwritten(error.to_string()))?;
     kit.settings = kit.add(text.into_bytes(), "toml");

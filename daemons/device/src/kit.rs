@@ -8,10 +8,10 @@ use std::borrow::Cow;
 use std::collections::BTreeMap;
 use std::io::{Seek, Write};
 
-use mcap::McapError;
-use mcap::read::{LinearReader, Options};
 use mcap::records::{Metadata, Record, op};
 use sha2::{Digest as _, Sha256};
+
+use crate::records::Found;
 
 /// Name of the metadata record.
 const RECORD: &str = "maulstick.kit";
@@ -19,14 +19,16 @@ const RECORD: &str = "maulstick.kit";
 const SETTINGS: &str = "settings";
 /// What the keys of the loads begin with; four digits follow, so that they are in order.
 const LOAD: &str = "load.";
-/// Most bytes of one embedded file.
-const FILE_MAX: usize = 16 << 20;
-/// Opcode and length of a record, bytes.
-const RECORD_HEAD: usize = 9;
-/// The first opcode that MCAP leaves to applications.
-const PRIVATE_RECORD: u8 = 0x80;
 /// Kinds of files, by the extension of their names.
-const KINDS: [(&str, &str); 2] = [("toml", "application/toml"), ("csv", "text/csv")];
+const KINDS: [(&str, &str); 7] = [
+    ("toml", "application/toml"),
+    ("csv", "text/csv"),
+    ("png", "image/png"),
+    ("jpg", "image/jpeg"),
+    ("jpeg", "image/jpeg"),
+    ("tif", "image/tiff"),
+    ("tiff", "image/tiff"),
+];
 
 /// What a take is painted with.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
@@ -40,73 +42,54 @@ pub struct Kit {
 }
 
 impl Kit {
-    /// Takes a file in; `extension` is `toml` or `csv`. Its name is returned.
+    /// Takes a file in; its name, which is returned, ends in one of [`KINDS`].
     pub fn add(&mut self, bytes: Vec<u8>, extension: &str) -> String {
         let name = name_of(&bytes, extension);
         self.files.insert(name.clone(), bytes);
         name
     }
 
-    /// Reads that of a take; none where it has none.
+    /// Reads that of a take from its records; absent where it has none.
     ///
     /// # Errors
     /// What is wrong with it, in words.
-    pub(crate) fn read(take: &[u8]) -> Result<Option<Self>, String> {
-        let ignore = Options::IgnoreEndMagic.into();
-        let Ok(records) = LinearReader::new_with_options(take, ignore) else {
-            return Ok(None);
-        };
+    pub(crate) fn read(records: &[Found<'_>]) -> Result<Option<Self>, String> {
         let mut kit = Self::default();
-        let mut told = None;
-        for record in records {
-            let record = match record {
-                Ok(record) => record,
-                Err(McapError::BadAttachmentCrc { .. }) => continue,
-                // The samples say themselves where a file is damaged behind its kit.
-                Err(_) => break,
-            };
-            match record {
-                Record::Attachment { header, data, .. } => {
-                    let hashed = KINDS
-                        .iter()
-                        .any(|(kind, _)| header.name == name_of(&data, kind));
-                    if hashed && data.len() <= FILE_MAX {
+        let mut stated = None;
+        for found in records {
+            if ![op::ATTACHMENT, op::METADATA].contains(&found.opcode) {
+                continue;
+            }
+            let parsed = found
+                .whole
+                .then(|| mcap::parse_record(found.opcode, found.body));
+            match parsed {
+                Some(Ok(Record::Attachment { header, data, .. })) => {
+                    let kind = header.name.split_once('.').map_or("", |(_, kind)| kind);
+                    let known = KINDS.iter().any(|(known, _)| *known == kind);
+                    if known && header.name == name_of(&data, kind) {
                         kit.files.insert(header.name, data.into_owned());
                     }
                 }
-                Record::Metadata(metadata) if metadata.name == RECORD => told = Some(metadata),
-                _ => {}
+                Some(Ok(Record::Metadata(metadata))) if metadata.name == RECORD => {
+                    stated = Some(metadata);
+                }
+                Some(Ok(_)) => {}
+                Some(Err(_)) | None => return Err("a file that it embeds is damaged".to_owned()),
             }
         }
-        let Some(told) = told else {
+        let Some(stated) = stated else {
             return Ok(None);
         };
-        let settings = told.metadata.get(SETTINGS);
+        let settings = stated.metadata.get(SETTINGS);
         let settings = settings.filter(|name| kit.files.contains_key(*name));
         kit.settings = settings
             .ok_or("the settings that it embeds are missing, or not what they were")?
             .clone();
-        let loads = told.metadata.iter();
+        let loads = stated.metadata.iter();
         let loads = loads.filter(|(key, _)| key.starts_with(LOAD));
         kit.loads = loads.map(|(_, load)| load.clone()).collect();
         Ok(Some(kit))
-    }
-
-    /// Makes what a take embeds, whole or not, records that readers of samples pass over.
-    pub(crate) fn hide(take: &mut [u8]) {
-        let mut at = mcap::MAGIC.len();
-        while let Some(head) = take.get_mut(at..at + RECORD_HEAD) {
-            if [op::ATTACHMENT, op::METADATA].contains(&head[0]) {
-                head[0] = PRIVATE_RECORD;
-            }
-            let mut length = [0; 8];
-            length.copy_from_slice(&head[1..]);
-            let length = usize::try_from(u64::from_le_bytes(length)).unwrap_or(usize::MAX);
-            at = at.saturating_add(RECORD_HEAD).saturating_add(length);
-            if at > take.len() {
-                break;
-            }
-        }
     }
 
     pub(crate) fn write<W: Write + Seek>(
@@ -114,9 +97,7 @@ impl Kit {
         writer: &mut mcap::Writer<W>,
     ) -> mcap::McapResult<()> {
         for (name, bytes) in &self.files {
-            let kind = KINDS
-                .iter()
-                .find(|(extension, _)| name.ends_with(extension));
+            let kind = KINDS.iter().find(|(kind, _)| name.ends_with(kind));
             writer.attach(&mcap::Attachment {
                 log_time: 0,
                 create_time: 0,

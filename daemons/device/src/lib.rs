@@ -3,6 +3,7 @@
 //! | module | holds |
 //! | --- | --- |
 //! | [`take`] | recorded samples as MCAP files |
+//! | [`salvage`](mod@salvage) | what a take holds, whole or damaged |
 //! | [`kit`] | what a take is painted with, embedded in it |
 //! | [`table`] | tables of strokes, imported as takes |
 //! | [`demo`], [`sheet`] | performances made from a seed |
@@ -25,6 +26,8 @@ pub mod kit;
 pub mod missing;
 pub mod mover;
 pub mod player;
+mod records;
+pub mod salvage;
 pub mod sheet;
 pub mod table;
 pub mod take;

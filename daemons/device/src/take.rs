@@ -2,22 +2,25 @@
 //! messages are those of the bus, header and all. `log_time` is the time since the take's start.
 
 use std::fs::File;
-use std::io::{BufWriter, Cursor};
+use std::io::BufWriter;
 use std::path::Path;
 
 use maulstick_rig::Fault;
 use maulstick_rig::files::write_whole;
 use maulstick_types::stylus::StylusSample;
-use maulstick_types::{Flags, Message as _, Origin, decode, encode, name_hash};
+use maulstick_types::{Flags, Message as _, Origin, encode, name_hash};
 use mcap::records::MessageHeader;
-use mcap::sans_io::LinearReaderOptions;
 
 use crate::kit::Kit;
+use crate::salvage::salvage;
 
 /// Encoding of the messages: the bus's own header and body.
 pub const MESSAGE_ENCODING: &str = "x-maulstick";
 /// Encoding of the schemas: a field table as JSON.
 pub const SCHEMA_ENCODING: &str = "x-maulstick-fields+json";
+
+/// Samples that are compressed together, bytes: so many may be lost where a byte is damaged.
+const CHUNK_BYTES: u64 = 64 << 10;
 
 /// A sample and when it was taken.
 #[derive(Clone, Debug, PartialEq)]
@@ -39,15 +42,6 @@ pub struct Take {
     pub kit: Option<Kit>,
 }
 
-/// What a damaged take still holds.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Salvage {
-    /// The whole samples before the damage.
-    pub take: Take,
-    /// What is wrong, if anything.
-    pub damage: Option<String>,
-}
-
 impl Take {
     /// Length from the first sample to the last, ns.
     #[must_use]
@@ -63,7 +57,7 @@ impl Take {
     /// # Errors
     /// A [`Fault`] where the file cannot be read, is damaged, or holds no samples of one stylus.
     pub fn read(path: &Path) -> Result<Self, Fault> {
-        let salvage = Self::salvage(path)?;
+        let salvage = salvage(path)?;
         match salvage.damage {
             None => Ok(salvage.take),
             Some(damage) => {
@@ -71,96 +65,10 @@ impl Take {
                 Err(Fault::usage(format!("the take is damaged: {damage}"))
                     .at(name.to_string())
                     .help(format!(
-                        "{count} samples before the damage are whole: \
-                         `maulstick take recover {name} -o whole.mcap` keeps them"
+                        "{count} samples can be read: `maulstick take recover {name} -o whole.mcap` keeps them, \
+                         and `maulstick take embed` embeds again what they are painted with"
                     )))
             }
-        }
-    }
-
-    /// Reads as much of a take as is whole.
-    ///
-    /// # Errors
-    /// A [`Fault`] where the file cannot be read, is no MCAP file, or holds nothing whole.
-    pub fn salvage(path: &Path) -> Result<Salvage, Fault> {
-        let place = path.display().to_string();
-        let fault = |what: String, help: &str| Fault::usage(what).at(place.clone()).help(help);
-        let mut bytes = std::fs::read(path).map_err(|error| Fault::reading(path, &error))?;
-        let (kit, mut damage) = match Kit::read(&bytes) {
-            Ok(kit) => (kit, None),
-            Err(damage) => (None, Some(damage)),
-        };
-        Kit::hide(&mut bytes);
-        let options = LinearReaderOptions::default();
-        let reader = mcap::io::MessageReader::new_with_options(Cursor::new(&bytes), options);
-        let mut devices: Vec<Take> = Vec::new();
-        let mut last_ns = 0;
-        for (number, message) in reader.enumerate() {
-            let message = match message {
-                Ok(message) => message,
-                Err(mcap::McapError::BadMagic) if number == 0 => {
-                    return Err(fault(
-                        "this is no MCAP file".into(),
-                        "`maulstick import` makes takes from tables of strokes",
-                    ));
-                }
-                Err(error) => {
-                    damage = Some(error.to_string());
-                    break;
-                }
-            };
-            let Some(device) = device_of(&message.channel.topic) else {
-                continue;
-            };
-            let sample = match decode::<StylusSample>(&message.data) {
-                Ok((_, sample)) => sample,
-                Err(error) => {
-                    damage = Some(format!("message {number}: {error}"));
-                    break;
-                }
-            };
-            if message.log_time < last_ns {
-                damage = Some(format!("message {number}: time runs backward"));
-                break;
-            }
-            last_ns = message.log_time;
-            if let Some(what) = sample.fault() {
-                damage = Some(format!("message {number}: {what}"));
-                break;
-            }
-            let sample = TakeSample {
-                time_ns: message.log_time,
-                sample,
-            };
-            match devices.iter_mut().find(|take| take.device == device) {
-                Some(take) => take.samples.push(sample),
-                None => devices.push(Take {
-                    device: device.to_owned(),
-                    samples: vec![sample],
-                    kit: kit.clone(),
-                }),
-            }
-        }
-        let mut devices = devices.into_iter();
-        match (devices.next(), devices.next()) {
-            (Some(take), None) => Ok(Salvage { take, damage }),
-            (None, _) => Err(match damage {
-                Some(damage) => fault(
-                    format!("the take is damaged from its start: {damage}"),
-                    "nothing of it can be recovered",
-                ),
-                None => fault(
-                    "the file holds no stylus samples".into(),
-                    "a take has a topic stylus/<device>/sample",
-                ),
-            }),
-            (Some(one), Some(two)) => Err(fault(
-                format!(
-                    "the take holds samples of '{}' and '{}'",
-                    one.device, two.device
-                ),
-                "play takes of one stylus",
-            )),
         }
     }
 
@@ -181,6 +89,7 @@ impl Take {
             .library(concat!("maulstick ", env!("CARGO_PKG_VERSION")))
             .compression(Some(mcap::Compression::Zstd))
             .compression_threads(0)
+            .chunk_size(Some(CHUNK_BYTES))
             .create(file)?;
         if let Some(kit) = &self.kit {
             kit.write(&mut writer)?;
@@ -212,15 +121,6 @@ impl Take {
         }
         writer.finish()?;
         Ok(())
-    }
-}
-
-/// `pen` of `stylus/pen/sample`, with or without a rig's prefix.
-fn device_of(topic: &str) -> Option<&str> {
-    let mut parts = topic.rsplit('/');
-    match (parts.next(), parts.next(), parts.next()) {
-        (Some("sample"), Some(device), Some("stylus")) => Some(device),
-        _ => None,
     }
 }
 
@@ -281,7 +181,7 @@ mod tests {
             fault.contains("embeds") && fault.contains("5000"),
             "{fault}"
         );
-        let whole = Take::salvage(&path).expect("its samples");
+        let whole = salvage(&path).expect("its samples");
         assert_eq!(whole.take, take());
     }
 

@@ -3,6 +3,7 @@
 use std::path::PathBuf;
 
 use clap::{Args, Subcommand};
+use maulstick_device::salvage::salvage;
 use maulstick_device::{Kit, Take};
 use maulstick_rig::{Fault, RigConfig};
 use maulstick_types::stylus::StylusPose;
@@ -27,7 +28,7 @@ pub enum TakeCommand {
     /// Puts what a take is painted with into it: canvas, palette, brush, paints, light, loads. Then it
     /// gives the same painting anywhere
     Embed(EmbedOptions),
-    /// Writes the whole samples of a damaged take to another file
+    /// Write the samples of a damaged take that can be read to another file
     Recover {
         /// The damaged take, which stays as it is
         take: PathBuf,
@@ -135,7 +136,7 @@ pub fn run(command: &TakeCommand) -> Result<i32, Fault> {
                 &[UsedFile::new("the recovered take", output)],
                 &[UsedFile::new("the damaged take", take)],
             )?;
-            let salvage = Take::salvage(take)?;
+            let salvage = salvage(take)?;
             salvage.take.write(output)?;
             let damage = salvage
                 .damage

@@ -1,0 +1,221 @@
+//! Records of an MCAP file, read within its bounds.
+//!
+//! No length that a file states is believed before it is compared with the bytes at hand, so reading a
+//! damaged file allocates no more than a small multiple of it. Behind a damaged record the search goes on,
+//! byte by byte, for the next that can be one: its kind is known, its length fits its kind and the file,
+//! and it ends where another begins.
+
+use std::borrow::Cow;
+use std::io::Read;
+
+use mcap::MAGIC;
+use mcap::records::op;
+
+/// Opcode and length of a record, bytes.
+pub(crate) const HEAD: usize = 9;
+/// The first opcode that MCAP leaves to applications.
+const FIRST_PRIVATE: u8 = 0x80;
+/// Window of a zstd frame that is decompressed, as a power of 2 in bytes; zstd's own levels up to 19 need it.
+const WINDOW_LOG: u32 = 23;
+/// Most bytes that a byte of a chunk may become. Samples at rest become 30.
+const MOST_EXPANSION: usize = 256;
+/// What a chunk of any size may become, bytes.
+const LEAST_ROOM: usize = 1 << 20;
+
+/// A record of a file or chunk, or damaged bytes that begin where one was expected.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Found<'a> {
+    /// Where it begins, bytes.
+    pub(crate) at: usize,
+    /// Its kind; see [`mcap::records::op`].
+    pub(crate) opcode: u8,
+    /// Its content. Of a damaged one all up to the next record.
+    pub(crate) body: &'a [u8],
+    /// Whether it has a length that its kind may have, and ends where another record begins.
+    pub(crate) whole: bool,
+}
+
+/// Records one after the other.
+pub(crate) struct Records<'a> {
+    bytes: &'a [u8],
+    at: usize,
+}
+
+/// The records of `bytes` from `at` on, up to the closing magic or the end.
+pub(crate) fn records(bytes: &[u8], at: usize) -> Records<'_> {
+    Records { bytes, at }
+}
+
+impl<'a> Iterator for Records<'a> {
+    type Item = Found<'a>;
+
+    fn next(&mut self) -> Option<Found<'a>> {
+        let Self { bytes, at } = *self;
+        let opcode = *bytes.get(at)?;
+        if bytes[at..].starts_with(MAGIC) {
+            return None;
+        }
+        let end = end_of(bytes, at).filter(|end| begins(bytes, *end));
+        let whole = end.is_some();
+        let end = end.unwrap_or_else(|| {
+            let next = |next: &usize| end_of(bytes, *next).is_some_and(|end| begins(bytes, end));
+            (at + 1..bytes.len()).find(next).unwrap_or(bytes.len())
+        });
+        self.at = end;
+        Some(Found {
+            at,
+            opcode,
+            body: bytes.get(at + HEAD..end).unwrap_or_default(),
+            whole,
+        })
+    }
+}
+
+/// Whether a record, the closing magic or the end is at `at`.
+fn begins(bytes: &[u8], at: usize) -> bool {
+    at == bytes.len() || bytes[at..].starts_with(MAGIC) || end_of(bytes, at).is_some()
+}
+
+/// Where the record at `at` ends, if it can be one.
+fn end_of(bytes: &[u8], at: usize) -> Option<usize> {
+    let opcode = *bytes.get(at)?;
+    let length = usize::try_from(u64_at(bytes, at + 1)?).ok()?;
+    let end = at.checked_add(HEAD)?.checked_add(length)?;
+    let body = bytes.get(at + HEAD..end)?;
+    // The contents of private records are not known, so they are recognised by what follows them.
+    let fits = if opcode >= FIRST_PRIVATE {
+        end == bytes.len()
+            || bytes.get(end).is_some_and(|next| *next < FIRST_PRIVATE) && begins(bytes, end)
+    } else {
+        fits(opcode, body)
+    };
+    fits.then_some(end)
+}
+
+/// Whether the content of a record has a length that its kind may have.
+fn fits(opcode: u8, body: &[u8]) -> bool {
+    let length = body.len();
+    match opcode {
+        op::HEADER => after_texts(body, 0, 2) == Some(length),
+        op::FOOTER => length == 20,
+        op::SCHEMA => after_texts(body, 2, 3) == Some(length),
+        op::CHANNEL => map_fits(body, after_texts(body, 4, 2)),
+        op::MESSAGE => length >= 22,
+        op::CHUNK => chunk_data(body).is_some_and(|(_, stated, data)| stated == data.len() as u64),
+        op::MESSAGE_INDEX => after_texts(body, 2, 1) == Some(length),
+        op::CHUNK_INDEX => length >= 64,
+        op::ATTACHMENT => attachment_fits(body),
+        op::ATTACHMENT_INDEX => after_texts(body, 40, 2) == Some(length),
+        op::STATISTICS => after_texts(body, 42, 1) == Some(length),
+        op::METADATA => map_fits(body, after_texts(body, 0, 1)),
+        op::METADATA_INDEX => after_texts(body, 16, 1) == Some(length),
+        op::SUMMARY_OFFSET => length == 17,
+        op::DATA_END => length == 4,
+        _ => false,
+    }
+}
+
+/// Whether an attachment's data and checksum end with it. [`mcap::parse_record`] panics on some that do not.
+fn attachment_fits(body: &[u8]) -> bool {
+    let stated = || {
+        let at = after_texts(body, 16, 2)?;
+        let data = usize::try_from(u64_at(body, at)?).ok()?;
+        at.checked_add(8 + 4)?.checked_add(data)
+    };
+    stated() == Some(body.len())
+}
+
+/// Where `count` texts that begin at `at` end: each a u32 length and its bytes. Arrays look the same.
+fn after_texts(body: &[u8], at: usize, count: usize) -> Option<usize> {
+    (0..count).try_fold(at, |at, _| {
+        let length = u32::from_le_bytes(*body.get(at..)?.first_chunk()?);
+        let end = at
+            .checked_add(4)?
+            .checked_add(usize::try_from(length).ok()?)?;
+        (end <= body.len()).then_some(end)
+    })
+}
+
+/// Whether a map that begins at `at` ends with the record, and its texts with it: [`mcap::parse_record`]
+/// allocates what they state.
+fn map_fits(body: &[u8], at: Option<usize>) -> bool {
+    let Some(at) = at.filter(|at| after_texts(body, *at, 1) == Some(body.len())) else {
+        return false;
+    };
+    let mut text = at + 4;
+    while text < body.len() {
+        let Some(next) = after_texts(body, text, 2) else {
+            return false;
+        };
+        text = next;
+    }
+    true
+}
+
+fn u64_at(bytes: &[u8], at: usize) -> Option<u64> {
+    Some(u64::from_le_bytes(*bytes.get(at..)?.first_chunk()?))
+}
+
+/// Compression of a chunk, the length that it states, and the data that it has.
+fn chunk_data(body: &[u8]) -> Option<(&str, u64, &[u8])> {
+    let end = after_texts(body, 28, 1)?;
+    let compression = std::str::from_utf8(&body[32..end]).ok()?;
+    Some((compression, u64_at(body, end)?, body.get(end + 8..)?))
+}
+
+/// Records of a chunk, decompressed.
+pub(crate) struct Unpacked<'a> {
+    /// As far as they can be had.
+    pub(crate) bytes: Cow<'a, [u8]>,
+    /// Why they are not all there, or not what they were.
+    pub(crate) damage: Option<String>,
+}
+
+/// Decompresses the body of a chunk record, as far as that goes.
+pub(crate) fn unpack(body: &[u8]) -> Unpacked<'_> {
+    let nothing = |damage: String| Unpacked {
+        bytes: Cow::Borrowed(&[]),
+        damage: Some(damage),
+    };
+    let Some((compression, stated, data)) = chunk_data(body) else {
+        return nothing("the head of a chunk is cut off".into());
+    };
+    let data = match usize::try_from(stated) {
+        Ok(length) if compression.is_empty() => data.get(..length).unwrap_or(data),
+        _ => data,
+    };
+    let (bytes, mut damage) = match compression {
+        "" => (Cow::Borrowed(data), None),
+        "zstd" => {
+            let decoder = zstd::stream::read::Decoder::with_buffer(data).and_then(|mut decoder| {
+                decoder.window_log_max(WINDOW_LOG)?;
+                Ok(decoder.single_frame())
+            });
+            read_all(decoder, data.len())
+        }
+        "lz4" => read_all(lz4::Decoder::new(data), data.len()),
+        other => return nothing(format!("chunks compressed by '{other}' cannot be read")),
+    };
+    let crc = u32::from_le_bytes(std::array::from_fn(|i| body[24 + i]));
+    if damage.is_none() && crc != 0 && crc32fast::hash(&bytes) != crc {
+        damage = Some("the checksum of a chunk is not that of its records".into());
+    }
+    Unpacked { bytes, damage }
+}
+
+/// Reads what a decoder gives before it fails.
+fn read_all(
+    decoder: std::io::Result<impl Read>,
+    packed: usize,
+) -> (Cow<'static, [u8]>, Option<String>) {
+    let most = packed.saturating_mul(MOST_EXPANSION).max(LEAST_ROOM);
+    let mut bytes = Vec::new();
+    let read = decoder.and_then(|decoder| decoder.take(most as u64 + 1).read_to_end(&mut bytes));
+    let damage = match read {
+        Err(error) => Some(format!("a chunk cannot be decompressed: {error}")),
+        Ok(length) if length > most => Some(format!("a chunk becomes more than {most} bytes")),
+        Ok(_) => None,
+    };
+    bytes.truncate(most);
+    (Cow::Owned(bytes), damage)
+}

@@ -1,0 +1,244 @@
+//! What a take holds, whole or damaged.
+//!
+//! Damage is told, and passed over: reading goes on with the next record that is whole. Checksums cover
+//! the chunks and all before the summary, so a take without damage is the one that was written. In a chunk
+//! whose checksum is wrong a sample counts whose message is in order by itself.
+
+use std::collections::BTreeMap;
+use std::path::Path;
+
+use maulstick_rig::Fault;
+use maulstick_types::decode;
+use maulstick_types::stylus::StylusSample;
+use mcap::MAGIC;
+use mcap::records::{MessageHeader, Record, op};
+
+use crate::kit::Kit;
+use crate::records::{Found, HEAD, records, unpack};
+use crate::take::{Take, TakeSample};
+
+/// Name of a device whose channel record is lost.
+const UNNAMED: &str = "recovered";
+
+/// What a take still holds.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Salvage {
+    /// The samples that can be read.
+    pub take: Take,
+    /// What is wrong, if anything.
+    pub damage: Option<String>,
+}
+
+/// Reads as much of a take as can be read.
+///
+/// # Errors
+/// A [`Fault`] where the file cannot be read, is no MCAP file, or holds no sample.
+pub fn salvage(path: &Path) -> Result<Salvage, Fault> {
+    let bytes = std::fs::read(path).map_err(|error| Fault::reading(path, &error))?;
+    from_bytes(&bytes).map_err(|refusal| {
+        let (what, help) = match refusal {
+            Refusal::Foreign => (
+                "this is no MCAP file".into(),
+                "`maulstick import` makes takes from tables of strokes",
+            ),
+            Refusal::Damaged(damage) => (
+                format!("the take is damaged and no sample of it is left: {damage}"),
+                "nothing of it can be recovered",
+            ),
+            Refusal::Empty => (
+                "the file holds no stylus samples".into(),
+                "a take has a topic stylus/<device>/sample",
+            ),
+            Refusal::Several(one, two) => (
+                format!("the take holds samples of '{one}' and '{two}'"),
+                "play takes of one stylus",
+            ),
+        };
+        Fault::usage(what).at(path.display().to_string()).help(help)
+    })
+}
+
+/// Why nothing can be had of a file.
+#[derive(Debug, PartialEq)]
+pub(crate) enum Refusal {
+    Foreign,
+    Damaged(String),
+    Empty,
+    Several(String, String),
+}
+
+/// As [`salvage`], from the bytes of the file.
+pub(crate) fn from_bytes(bytes: &[u8]) -> Result<Salvage, Refusal> {
+    let begun = bytes.starts_with(MAGIC);
+    let found: Vec<Found<'_>> = records(bytes, if begun { MAGIC.len() } else { 0 }).collect();
+    if !begun && !found.iter().any(|record| record.whole) {
+        return Err(Refusal::Foreign);
+    }
+    let mut reading = Reading::default();
+    if !begun {
+        reading.damaged(0, "the file does not begin as an MCAP file does");
+    }
+    let kit = Kit::read(&found).unwrap_or_else(|damage| {
+        reading.damaged(0, &damage);
+        None
+    });
+    // The summary repeats the channels, and a damaged first chunk may have lost them.
+    for record in found.iter().filter(|record| record.opcode == op::CHANNEL) {
+        reading.channel(record, false);
+    }
+    for record in &found {
+        reading.record(record, bytes);
+    }
+    let ended = found.last().is_some_and(|last| {
+        let end = last.at + HEAD + last.body.len();
+        last.whole && last.opcode == op::FOOTER && bytes[end..].starts_with(MAGIC)
+    });
+    if !ended {
+        reading.damaged(bytes.len(), "the file ends before its closing record");
+    }
+    reading.finish(kit)
+}
+
+/// What has been read so far.
+#[derive(Default)]
+struct Reading {
+    /// Topics by the numbers of their channels.
+    topics: BTreeMap<u16, String>,
+    devices: Vec<Take>,
+    last_ns: u64,
+    /// The first damage, and how many more places there are.
+    damage: Option<(String, usize)>,
+}
+
+impl Reading {
+    fn damaged(&mut self, at: usize, what: &str) {
+        match &mut self.damage {
+            Some((_, more)) => *more += 1,
+            none => *none = Some((format!("{what} (byte {at})"), 0)),
+        }
+    }
+
+    fn channel(&mut self, record: &Found<'_>, certain: bool) {
+        if record.whole
+            && let Ok(Record::Channel(channel)) = mcap::parse_record(op::CHANNEL, record.body)
+            && (certain || !self.topics.contains_key(&channel.id))
+        {
+            self.topics.insert(channel.id, channel.topic);
+        }
+    }
+
+    /// Takes in a record of the file.
+    fn record(&mut self, record: &Found<'_>, bytes: &[u8]) {
+        if !record.whole {
+            self.damaged(record.at, "a record is damaged");
+        }
+        match record.opcode {
+            op::CHUNK => {
+                let unpacked = unpack(record.body);
+                let certain = unpacked.damage.is_none();
+                if let Some(damage) = unpacked.damage {
+                    self.damaged(record.at, &damage);
+                }
+                for inner in records(&unpacked.bytes, 0) {
+                    if !inner.whole && certain {
+                        self.damaged(record.at, "a record of a chunk is damaged");
+                    }
+                    self.content(&inner, record.at, certain);
+                }
+            }
+            op::DATA_END => {
+                let saved = record
+                    .body
+                    .first_chunk()
+                    .copied()
+                    .map_or(0, u32::from_le_bytes);
+                if saved != 0 && saved != crc32fast::hash(&bytes[..record.at]) {
+                    self.damaged(
+                        record.at,
+                        "the checksum of the data is not that of the file",
+                    );
+                }
+            }
+            _ => self.content(record, record.at, true),
+        }
+    }
+
+    /// Takes in a channel or a message; `certain` if a checksum says that it is what was written.
+    fn content(&mut self, record: &Found<'_>, at: usize, certain: bool) {
+        match record.opcode {
+            op::CHANNEL => self.channel(record, certain),
+            op::MESSAGE if record.whole => {
+                if let Ok(Record::Message { header, data }) =
+                    mcap::parse_record(op::MESSAGE, record.body)
+                {
+                    self.message(&header, &data, at, certain);
+                }
+            }
+            _ => {}
+        }
+    }
+
+    fn message(&mut self, header: &MessageHeader, data: &[u8], at: usize, certain: bool) {
+        let topic = self.topics.get(&header.channel_id);
+        let number = header.sequence;
+        let device = match topic.map(|topic| device_of(topic)) {
+            Some(None) => return,
+            Some(Some(device)) => device,
+            None if self.topics.is_empty() => UNNAMED,
+            None => return self.damaged(at, &format!("message {number} is of no channel")),
+        };
+        let (bus, sample) = match decode::<StylusSample>(data) {
+            Ok(decoded) => decoded,
+            Err(error) => return self.damaged(at, &format!("message {number}: {error}")),
+        };
+        let wrong = if header.log_time < self.last_ns {
+            Some("time runs backward")
+        } else if !certain && header.log_time != bus.event_ns {
+            Some("it has two times")
+        } else {
+            sample.fault()
+        };
+        if let Some(what) = wrong {
+            return self.damaged(at, &format!("message {number}: {what}"));
+        }
+        self.last_ns = header.log_time;
+        let sample = TakeSample {
+            time_ns: header.log_time,
+            sample,
+        };
+        match self.devices.iter_mut().find(|take| take.device == device) {
+            Some(take) => take.samples.push(sample),
+            None => self.devices.push(Take {
+                device: device.to_owned(),
+                samples: vec![sample],
+                kit: None,
+            }),
+        }
+    }
+
+    fn finish(self, kit: Option<Kit>) -> Result<Salvage, Refusal> {
+        let damage = self.damage.map(|(first, more)| match more {
+            0 => first,
+            1 => format!("{first}, and in another place"),
+            more => format!("{first}, and in {more} other places"),
+        });
+        let mut devices = self.devices.into_iter();
+        match (devices.next(), devices.next()) {
+            (Some(take), None) => Ok(Salvage {
+                take: Take { kit, ..take },
+                damage,
+            }),
+            (None, _) => Err(damage.map_or(Refusal::Empty, Refusal::Damaged)),
+            (Some(one), Some(two)) => Err(Refusal::Several(one.device, two.device)),
+        }
+    }
+}
+
+/// `pen` of `stylus/pen/sample`, with or without a rig's prefix.
+fn device_of(topic: &str) -> Option<&str> {
+    let mut parts = topic.rsplit('/');
+    match (parts.next(), parts.next(), parts.next()) {
+        (Some("sample"), Some(device), Some("stylus")) => Some(device),
+        _ => None,
+    }
+}
