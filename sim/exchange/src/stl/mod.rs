@@ -1,7 +1,7 @@
 //! A painting's relief as a solid to print, in binary STL (3D Systems 1988, *StereoLithography
 //! Interface Specification*).
 //!
-//! The top is the surface's height over a base, with vertices at corners of cells; walls go down to
+//! The top is the surface's height over a base, with vertices in the middles of cells; walls go down to
 //! z = 0, and the bottom is a fan around its middle. Each edge has two triangles that run along it in
 //! opposite directions, all normals point out, and lengths are mm, as printers take them.
 
@@ -30,8 +30,7 @@ pub struct StlSetup {
     pub base_mm: f64,
     /// Factor on heights, 0 to 1000.
     pub exaggeration: f64,
-    /// Cells from vertex to vertex, 1 or more; the height of one is the mean over the cells within
-    /// half a step.
+    /// Cells from vertex to vertex, 1 or more; the height of one is the highest of its cells.
     pub step: u32,
 }
 
@@ -133,7 +132,7 @@ struct Solid<W: Write> {
 
 impl<W: Write> Solid<W> {
     fn place(&self, axis: usize, vertex: usize) -> f32 {
-        (self.grid.at(axis, vertex) as f64 * self.cell_mm) as f32
+        (self.grid.at(axis, vertex) * self.cell_mm) as f32
     }
 
     /// Writes what lies between a row of vertices of these z and the one above it, and the wall below

@@ -73,37 +73,86 @@ fn normals_fit(facets: &[Facet]) -> bool {
     })
 }
 
-/// mm³, by prisms under the triangles between means of cells.
+/// Middles of blocks of `step` cells with their cells, and both edges with those of the block beside them.
+fn vertices(cells: usize, step: usize) -> Vec<(f64, std::ops::Range<usize>)> {
+    let starts = (0..cells).step_by(step);
+    let blocks: Vec<_> = starts
+        .map(|start| start..(start + step).min(cells))
+        .collect();
+    let middle = |block: &std::ops::Range<usize>| (block.start + block.end) as f64 / 2.0;
+    let mut all: Vec<_> = blocks
+        .iter()
+        .map(|block| (middle(block), block.clone()))
+        .collect();
+    all.insert(0, (0.0, blocks[0].clone()));
+    all.push((cells as f64, blocks[blocks.len() - 1].clone()));
+    all
+}
+
+/// mm³, by prisms under the triangles between the highest cells of blocks.
 fn expected(heights: &[f32], setup: &StlSetup) -> f64 {
     let [width, height] = CELLS.map(|cells| cells as usize);
-    let (step, half) = (setup.step as usize, (setup.step as usize).div_ceil(2));
-    let at = |vertex: usize, cells: usize| (vertex * step).min(cells);
-    let around = |at: usize, cells: usize| at.saturating_sub(half)..(at + half).min(cells);
-    let mean = |i: usize, j: usize| {
-        let (xs, ys) = (around(at(i, width), width), around(at(j, height), height));
-        let cells = ys.flat_map(|y| xs.clone().map(move |x| (height - 1 - y) * width + x));
-        let cells: Vec<f64> = cells.map(|cell| f64::from(heights[cell])).collect();
-        cells.iter().sum::<f64>() / cells.len() as f64
+    let step = setup.step as usize;
+    let (xs, ys) = (vertices(width, step), vertices(height, step));
+    let highest = |i: usize, j: usize| {
+        let (across, up) = (xs[i].1.clone(), ys[j].1.clone());
+        let cells = up.flat_map(|y| across.clone().map(move |x| (height - 1 - y) * width + x));
+        cells
+            .map(|cell| f64::from(heights[cell]))
+            .fold(f64::MIN, f64::max)
     };
-    let (across, up) = (width.div_ceil(step), height.div_ceil(step));
-    let vertices = (0..=up).flat_map(|j| (0..=across).map(move |i| mean(i, j)));
-    let means: Vec<f64> = vertices.collect();
-    let least = means.iter().copied().fold(f64::INFINITY, f64::min);
-    let z = |i: usize, j: usize| {
-        setup.base_mm + (means[j * (across + 1) + i] - least) * setup.exaggeration * 1e3
-    };
+    let tops: Vec<Vec<f64>> = (0..ys.len())
+        .map(|j| (0..xs.len()).map(|i| highest(i, j)).collect())
+        .collect();
+    let least = tops.iter().flatten().copied().fold(f64::MAX, f64::min);
+    let z = |i: usize, j: usize| setup.base_mm + (tops[j][i] - least) * setup.exaggeration * 1e3;
     let mut sum = 0.0;
-    for j in 0..up {
-        for i in 0..across {
-            let size = |axis: usize, v: usize| {
-                at(v + 1, [width, height][axis]) - at(v, [width, height][axis])
-            };
-            let area = (size(0, i) * size(1, j)) as f64 * (CELL_M * 1e3) * (CELL_M * 1e3);
-            let corners = 2.0 * (z(i, j) + z(i + 1, j + 1)) + z(i + 1, j) + z(i, j + 1);
+    for j in 1..ys.len() {
+        for i in 1..xs.len() {
+            let area = (xs[i].0 - xs[i - 1].0) * (ys[j].0 - ys[j - 1].0) * (CELL_M * 1e3).powi(2);
+            let corners = 2.0 * (z(i - 1, j - 1) + z(i, j)) + z(i, j - 1) + z(i - 1, j);
             sum += area * corners / 6.0;
         }
     }
     sum
+}
+
+#[test]
+fn no_peak_is_lost_however_coarse_the_solid_is() {
+    let mut painting = painted();
+    let heights = heights(&mut painting);
+    let ends = |values: &mut dyn Iterator<Item = f32>| {
+        values.fold([f32::MAX, f32::MIN], |[least, most], z| {
+            [least.min(z), most.max(z)]
+        })
+    };
+    let [lowest, peak] = ends(&mut heights.iter().copied()).map(f64::from);
+    for step in [1, 2, 5, 64] {
+        let setup = StlSetup {
+            step,
+            exaggeration: 1.0,
+            ..STL
+        };
+        let (_, facets) = solid(&mut painting, &setup);
+        let tops = facets
+            .iter()
+            .flat_map(|facet| &facet[1..])
+            .map(|point| point[2]);
+        let [least, most] = ends(&mut tops.filter(|z| *z > 0.0)).map(f64::from);
+        let printed = 1e3 * (most - least);
+        println!(
+            "step {step}: {printed:.1} of {:.1} µm",
+            1e6 * (peak - lowest)
+        );
+        // Coarser solids rise from the highest of the lowest block.
+        let from = if step == 1 {
+            lowest
+        } else {
+            peak - printed * 1e-6
+        };
+        assert!((printed - 1e6 * (peak - from)).abs() < 0.5, "step {step}");
+        assert!(from >= lowest - 1e-9, "step {step}");
+    }
 }
 
 #[test]
@@ -153,7 +202,7 @@ fn a_relief_is_a_solid_of_the_right_volume() {
 #[test]
 fn a_cell_is_a_block() {
     let (size, facets) = solid(&mut speck(), &STL);
-    assert_eq!((size.triangles, facets.len()), (14, 14));
+    assert_eq!((size.triangles, facets.len()), (32, 32));
     assert!(is_watertight(&facets) && normals_fit(&facets));
     assert!((volume(&facets) - 0.25 * 0.25 * 2.0).abs() < 1e-7);
 }
@@ -161,7 +210,7 @@ fn a_cell_is_a_block() {
 #[test]
 fn a_proposed_step_gives_as_many_triangles_as_programs_bear() {
     let triangles = |cells: [u32; 2], step: u32| {
-        let [across, up] = cells.map(|cells| u64::from(cells.div_ceil(step)));
+        let [across, up] = cells.map(|cells| u64::from(cells.div_ceil(step)) + 1);
         2 * across * up + 6 * (across + up)
     };
     for (cells, step) in [
