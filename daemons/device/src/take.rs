@@ -16,7 +16,7 @@ use crate::salvage::salvage;
 
 /// Encoding of the messages: the bus's own header and body.
 pub const MESSAGE_ENCODING: &str = "x-maulstick";
-/// Encoding of the schemas: a field table as JSON.
+/// Encoding of the schemas: header and field table as JSON, with how they are encoded.
 pub const SCHEMA_ENCODING: &str = "x-maulstick-fields+json";
 
 /// Samples that are compressed together, bytes: so many may be lost where a byte is damaged.
@@ -94,7 +94,7 @@ impl Take {
         if let Some(kit) = &self.kit {
             kit.write(&mut writer)?;
         }
-        let fields = serde_json::to_vec(StylusSample::schema()).unwrap_or_default();
+        let fields = serde_json::to_vec(&StylusSample::schema().whole()).unwrap_or_default();
         let schema = writer.add_schema("StylusSample/1", SCHEMA_ENCODING, &fields)?;
         let topic = format!("stylus/{}/sample", self.device);
         let no_metadata = std::collections::BTreeMap::new();

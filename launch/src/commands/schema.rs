@@ -3,7 +3,7 @@
 use clap::Args;
 use maulstick_rig::Fault;
 use maulstick_types::CATALOGUE;
-use maulstick_types::schema::{Field, Shape};
+use maulstick_types::schema::{ENCODING, Field, Shape, header_fields};
 use serde_json::json;
 
 use crate::commands::{print_json, print_text, say};
@@ -54,10 +54,8 @@ pub fn run(options: &SchemaOptions) -> Result<i32, Fault> {
             })
             .collect();
         print_json(&json!({
-            "header": "magic u16 0x4D4C, version u16, schema u32, source u32, epoch u32, flags u32, \
-                       length u32, seq u64, event_ns u64, sent_ns u64",
-            "encoding": "little endian, fixed width; Vec and String: u64 length; enum: u32 tag; \
-                         Option and bool: u8",
+            "header": header_fields(),
+            "encoding": ENCODING,
             "messages": messages,
         }))?;
         return Ok(0);

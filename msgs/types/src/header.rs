@@ -5,6 +5,20 @@ pub const MAGIC: u16 = 0x4D4C;
 /// Length of the header in bytes.
 pub const HEADER_BYTES: usize = 48;
 
+/// What the 48 bytes hold, in this order, little endian: names and types as in field tables.
+pub const HEADER_FIELDS: [(&str, &str); 10] = [
+    ("magic", "u16"),
+    ("version", "u16"),
+    ("schema", "u32"),
+    ("source", "u32"),
+    ("epoch", "u32"),
+    ("flags", "u32"),
+    ("length", "u32"),
+    ("seq", "u64"),
+    ("event_ns", "u64"),
+    ("sent_ns", "u64"),
+];
+
 /// Bits of [`Header::flags`].
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Flags(pub u32);

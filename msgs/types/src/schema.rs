@@ -5,6 +5,8 @@ use std::collections::BTreeMap;
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 
+use crate::header::HEADER_FIELDS;
+
 /// A type that can travel: it knows its name and describes itself to a [`TypeTable`].
 pub trait Wire: Serialize + DeserializeOwned {
     /// The name used in field tables, for example `[f64; 3]` or `Pose`.
@@ -87,7 +89,33 @@ pub struct Schema {
     pub types: TypeTable,
 }
 
+/// How bodies are encoded, for who reads them without this program.
+pub const ENCODING: &str = "little endian, fixed width, no padding; Vec and String: u64 length; enum: u32 tag, \
+                            the place of its variant; Option and bool: u8";
+
+/// All that it takes to decode a message: its header, its field table, and how both are encoded.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+pub struct WholeSchema<'a> {
+    /// The field table.
+    #[serde(flatten)]
+    pub schema: &'a Schema,
+    /// Fields before those of the message.
+    pub header: Vec<Field>,
+    /// [`ENCODING`].
+    pub encoding: &'static str,
+}
+
 impl Schema {
+    /// The schema with what is the same for all messages.
+    #[must_use]
+    pub fn whole(&self) -> WholeSchema<'_> {
+        WholeSchema {
+            schema: self,
+            header: header_fields(),
+            encoding: ENCODING,
+        }
+    }
+
     /// The schema of `T`.
     #[must_use]
     pub fn of<T: Wire>() -> Self {
@@ -103,6 +131,16 @@ impl Schema {
     pub fn canonical(&self) -> String {
         canonical(&self.name, &self.types)
     }
+}
+
+/// The header's [`HEADER_FIELDS`].
+#[must_use]
+pub fn header_fields() -> Vec<Field> {
+    let fields = HEADER_FIELDS.iter().map(|(name, ty)| Field {
+        name: (*name).to_owned(),
+        ty: (*ty).to_owned(),
+    });
+    fields.collect()
 }
 
 fn canonical(name: &str, table: &TypeTable) -> String {
