@@ -200,9 +200,13 @@ pub fn run(options: &RenderOptions) -> Result<i32, Fault> {
         begun: Instant::now(),
         bar: progress_bar(script.length_ns()).with_message("painting"),
         painted_ns: 0,
+        done: 0,
     };
+    easel.bar.inc_length(script.steps.len() as u64);
     let painted = script.steps.into_iter().try_for_each(|(place, act)| {
         let done = easel.act(act).map_err(|fault| fault.at(place));
+        easel.done += 1;
+        easel.show(easel.painted_ns);
         done.map_err(|fault| match options.script {
             Some(_) => in_steps(fault),
             None => fault,
@@ -239,9 +243,16 @@ struct Easel<'a> {
     bar: ProgressBar,
     /// Time of the takes and waits so far, ns.
     painted_ns: u64,
+    /// Steps done.
+    done: u64,
 }
 
 impl Easel<'_> {
+    /// Shows how far it is: each millisecond of takes and waits counts, and each step.
+    fn show(&self, painted_ns: u64) {
+        self.bar.set_position(painted_ns / 1_000_000 + self.done);
+    }
+
     fn act(&mut self, act: Act) -> Result<(), Fault> {
         let brush = self.offline.brush().to_owned();
         let done = match act {
@@ -364,14 +375,13 @@ impl Easel<'_> {
             offline,
             keeper,
             begun,
-            bar,
             painted_ns,
+            ..
         } = self;
         offline.wait(ticks, |sequencer| {
             turn(keeper, *begun, sequencer);
         });
         *painted_ns += time_ns(ticks);
-        bar.set_position(*painted_ns / 1_000_000);
     }
 
     fn follow(&mut self, take: &Take, loads: Vec<Mixture>) -> Result<(), Fault> {
@@ -389,10 +399,12 @@ impl Easel<'_> {
             begun,
             bar,
             painted_ns,
+            done,
         } = self;
         let followed = offline.follow(&samples, |sequencer, number| {
             if number % 16 == 0 {
-                bar.set_position((*painted_ns + since_ns(&take.samples[number])) / 1_000_000);
+                let painted_ns = *painted_ns + since_ns(&take.samples[number]);
+                bar.set_position(painted_ns / 1_000_000 + *done);
             }
             turn(keeper, *begun, sequencer);
         });

@@ -17,7 +17,8 @@ const SHORT: usize = 40;
 /// Where a script is from.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Source<'a> {
-    pub(super) text: &'a str,
+    /// Where its lines end, bytes.
+    pub(super) line_ends: &'a [usize],
     /// Its file, as the user named it.
     pub(super) name: &'a str,
     /// From where its paths count.
@@ -27,9 +28,8 @@ pub(super) struct Source<'a> {
 impl<'a> Source<'a> {
     /// File and line of a byte.
     pub(super) fn place(&self, byte: usize) -> String {
-        let before = &self.text.as_bytes()[..byte.min(self.text.len())];
-        let line = 1 + before.iter().filter(|byte| **byte == b'\n').count();
-        format!("{}:{line}", self.name)
+        let before = self.line_ends.partition_point(|end| *end < byte);
+        format!("{}:{}", self.name, before + 1)
     }
 
     /// A script that TOML's reader does not understand.

@@ -124,8 +124,9 @@ impl Script {
             }
         })?;
         let text = text.trim_start_matches('\u{feff}');
+        let line_ends: Vec<usize> = text.match_indices('\n').map(|(at, _)| at).collect();
         let source = Source {
-            text,
+            line_ends: &line_ends,
             name: &path.display().to_string(),
             folder: path.parent().unwrap_or(Path::new("")),
         };

@@ -332,3 +332,10 @@ fn what_is_no_script_is_told_what_one_is() {
         says(read_text(text), &["step = ["]);
     }
 }
+
+#[test]
+fn a_hundred_thousand_steps_have_their_lines() {
+    let steps = "{ clean = true },\n".repeat(100_000);
+    let script = read(&steps).expect("a script");
+    assert!(script.steps[99_999].0.ends_with("day.toml:100002"));
+}

@@ -7,6 +7,9 @@ use maulstick_optics::paints::check_paint_name;
 /// Columns that are neither a paint nor a wavelength.
 pub const RESERVED: [&str; 4] = ["sample", "kind", "thickness_um", "over"];
 
+/// Most columns of a table: an instrument's readings at each fifth of a nanometre, and some paints.
+pub const MOST_COLUMNS: usize = 2500;
+
 /// Where everything stands; columns are counted from 0.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Headings {
@@ -23,8 +26,14 @@ impl Headings {
     ///
     /// # Errors
     /// For a column without a heading or with one that stands twice, for wavelengths that do not
-    /// rise, for a paint whose name a paint file cannot hold, and where paints or wavelengths lack.
+    /// rise, for more than [`MOST_COLUMNS`], for a paint whose name a paint file cannot hold, and where paints or wavelengths lack.
     pub fn of(table: &Table) -> Result<Self, MeasureError> {
+        let columns = table.headings.len();
+        if columns > MOST_COLUMNS {
+            let what = format!("{columns} columns; a table has at most {MOST_COLUMNS}");
+            let help = "average the readings to a wavelength each nm or more, 380 to 780 nm";
+            return Err(MeasureError::new(what, help).line(table.heading_line));
+        }
         let mut found = Self::default();
         for (column, heading) in table.headings.iter().enumerate() {
             let fault =

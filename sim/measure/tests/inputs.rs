@@ -303,3 +303,20 @@ fn readings_of_half_the_spectrum_are_refused() {
     let error = fit(text, &FitOptions::default()).expect_err("too little");
     assert!(error.what.contains("400 to 500 nm"), "{}", error.what);
 }
+
+#[test]
+fn a_table_of_too_many_columns_is_refused_before_it_is_read() {
+    let heads: String = (0..100_000)
+        .map(|i| format!(",{:.3}", 380.0 + 0.004 * f64::from(i)))
+        .collect();
+    let table = format!(
+        "sample,Titanium White{heads}\nwhite,1{}\n",
+        ",0.9".repeat(100_000)
+    );
+    let error = fit(&table, &FitOptions::default()).expect_err("too many");
+    assert!(
+        error.what.contains("100002") && error.what.contains("2500"),
+        "{error:?}"
+    );
+    assert!(error.help.contains("average"), "{error:?}");
+}

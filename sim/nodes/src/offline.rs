@@ -192,7 +192,12 @@ impl Offline {
                 sent_ns: event_ns,
             };
             *next += 1;
-            (0..ticker.look(event_ns, u64::MAX)).for_each(|_| sequencer.tick());
+            // However long a gap is, time passes only for what dries.
+            let ticks = ticker.look(event_ns, u64::MAX);
+            let _ = (0..ticks).try_for_each(|_| {
+                sequencer.tick();
+                sequencer.painting().is_drying().then_some(())
+            });
             // Offline no command waits for a state.
             let (_, painted) = sequencer.state(brush, &header, &state);
             sequencer.drain_journal();

@@ -269,3 +269,18 @@ fn what_has_waited_long_is_sent_in_messages_that_fit() {
     assert_eq!(live.paint.consumed(brush), live.brush.sent());
     assert_eq!(mouse.consumed(), 600);
 }
+
+#[test]
+fn a_gap_of_thirty_years_in_a_take_takes_no_time() {
+    let paint = |gap_ns: u64| {
+        let mut offline = Offline::new(painting(), "main", file(), 0.5, loads()).expect("set up");
+        for (i, (time_ns, sample)) in take().into_iter().enumerate() {
+            let late = if i > 30 { gap_ns } else { 0 };
+            offline
+                .sample(START_NS + time_ns + late, &sample)
+                .expect("painted");
+        }
+        picture(offline.painting_mut(), 0).rgb
+    };
+    assert!(paint(1_000_000_000 * 1_000_000_000) == paint(200_000_000));
+}
