@@ -104,6 +104,25 @@ fn a_take_that_embeds_what_it_is_painted_with_gives_the_same_painting() {
         &["embeds", "Pyrrole Red"],
     );
 
+    // A picture as ground goes with the take.
+    std::fs::rename(place.path("options.png"), place.path("Ground.PNG")).expect("renamed");
+    let ground = ["--ground", "Ground.PNG", "--load", "Pyrrole Red"];
+    let wanted = paint("bare.mcap", "on-picture.png", &ground);
+    place.done(
+        &[
+            &["take", "embed", "bare.mcap", "-o", "pictured.mcap"],
+            &ground[..],
+        ]
+        .concat(),
+    );
+    std::fs::remove_file(place.path("Ground.PNG")).expect("removed");
+    let got = paint("pictured.mcap", "embedded.png", &[]);
+    support::assert_same(
+        &wanted,
+        &got,
+        "on a picture, and on the one that the take embeds",
+    );
+
     // Its brush is damaged: the samples can be had, and nothing else is painted in its place.
     let mut bytes = place.bytes("whole.mcap");
     let at = bytes.windows(6).position(|found| found == b"[head]");

@@ -52,7 +52,8 @@ pub struct FilmOptions {
     /// A film of this thickness, µm, thinner included, instead of an opaque layer
     #[arg(long, value_name = "UM", value_parser = thickness, allow_negative_numbers = true)]
     film_um: Option<f64>,
-    /// What lies under the film: white, black, or a reflectance from 0 to 1
+    /// What lies under the film: white, black, or what an instrument reads of it bare, gloss included, from
+    /// 0 to 1, as in the column `over` of `maulstick fit`
     #[arg(long, value_name = "R", requires = "film_um", default_value = "white", value_parser = ground, allow_negative_numbers = true)]
     over: f64,
     /// Share of the film's volume that is transparent medium; an opaque layer keeps its colour
@@ -82,7 +83,7 @@ fn ground(text: &str) -> Result<f64, String> {
     match text {
         "white" => Ok(1.0),
         "black" => Ok(0.0),
-        _ => number(text, 0.0..=1.0, "reflectance").map_err(|what| what + ", nor white or black"),
+        _ => number(text, 0.0..=1.0, "reading").map_err(|what| what + ", nor white or black"),
     }
 }
 
@@ -94,7 +95,7 @@ impl FilmOptions {
                 Some(um) => Layer::Film {
                     thickness_m: um * 1e-6,
                     thinner: self.thinner,
-                    ground: self.over,
+                    ground: SurfaceCorrection::default().internal(self.over).max(0.0),
                 },
             },
             surface: self.saunderson.then(SurfaceCorrection::default),
