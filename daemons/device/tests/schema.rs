@@ -29,18 +29,18 @@ impl Bytes<'_> {
             "u32" => json!(u32::from_le_bytes(self.take())),
             "u64" => json!(u64::from_le_bytes(self.take())),
             "f64" => json!(f64::from_le_bytes(self.take())),
-            named => match &types[named] {
-                Value::Object(shape) if shape.contains_key("struct") => {
-                    self.fields(&shape["struct"], types)
+            named => {
+                let shape = types[named]
+                    .as_object()
+                    .expect("the schema says what it is");
+                if let Some(fields) = shape.get("struct") {
+                    return self.fields(fields, types);
                 }
-                Value::Object(shape) => {
-                    let tag = u32::from_le_bytes(self.take()) as usize;
-                    let variant = &shape["enum"][tag];
-                    let name = variant["name"].as_str().expect("a name");
-                    json!({ name: self.fields(&variant["fields"], types) })
-                }
-                _ => panic!("the schema does not say what {named} is"),
-            },
+                let tag = u32::from_le_bytes(self.take()) as usize;
+                let variant = &shape["enum"][tag];
+                let name = variant["name"].as_str().expect("a name");
+                json!({ name: self.fields(&variant["fields"], types) })
+            }
         }
     }
 
