@@ -2,7 +2,7 @@
 
 use clap::{Parser, Subcommand};
 use maulstick_rig::Fault;
-use maulstick_rig::files::clear_on_signals;
+use maulstick_rig::files::{allow_overwriting, clear_on_signals};
 
 use crate::commands::{
     begin, bench, brush, calibrate, control, demo, devices, endpoint, export, fit, force, import,
@@ -17,6 +17,9 @@ use crate::up;
 struct Cli {
     #[command(subcommand)]
     command: Command,
+    /// Write over a file of another kind; over a painting never
+    #[arg(long, global = true)]
+    overwrite: bool,
 }
 
 #[derive(Subcommand, Debug)]
@@ -103,7 +106,10 @@ enum Command {
 /// # Errors
 /// A [`Fault`] as the user sees it.
 pub fn run() -> Result<i32, Fault> {
-    let command = Cli::parse().command;
+    let Cli { command, overwrite } = Cli::parse();
+    if overwrite {
+        allow_overwriting();
+    }
     // A rig has processes to end first, a device to be let go.
     if !matches!(command, Command::Up(_) | Command::Calibrate(_)) {
         clear_on_signals(crate::EXIT_INTERRUPTED)

@@ -7,7 +7,7 @@ use maulstick_paint::{Painting, Sequencer};
 use maulstick_rig::Fault;
 use maulstick_rig::config::{CanvasSection, RigConfig};
 use maulstick_rig::fault::EXIT_FAILURE;
-use maulstick_rig::files::check_writable;
+use maulstick_rig::files::{Kind, check_writable};
 use maulstick_types::scene::{CANVAS, Scene};
 
 use crate::performance::{PaintingOptions, library_from, painting_setup, refused};
@@ -101,7 +101,7 @@ pub enum Presence {
 pub fn presence(path: &Path, options: &PaintingOptions) -> Result<Presence, Fault> {
     match glance(path).map_err(|error| wrong(path, &error))? {
         false => {
-            check_writable(path).map_err(|error| Fault::writing(path, &error))?;
+            check_writable(path, Kind::Own).map_err(|error| Fault::writing(path, &error))?;
             Ok(Presence::New)
         }
         true => match options.kit.for_a_new_one() {

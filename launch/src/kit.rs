@@ -7,7 +7,7 @@ use maulstick_optics::paints::MEASURED;
 use maulstick_rig::Fault;
 use maulstick_rig::config::{BrushSection, RigConfig, is_path};
 use maulstick_rig::fault::EXIT_FAILURE;
-use maulstick_rig::files::write_whole;
+use maulstick_rig::files::{Kind, write_whole};
 use maulstick_types::Mixture;
 
 use crate::ground::is_picture;
@@ -77,8 +77,10 @@ pub fn use_kit(
     std::fs::create_dir_all(folder).map_err(|error| Fault::writing(folder, &error))?;
     for (name, bytes) in &kit.files {
         let file = folder.join(name);
-        write_whole(&file, |file| std::io::Write::write_all(file, bytes))
-            .map_err(|error| Fault::writing(&file, &error))?;
+        write_whole(&file, Kind::Own, |file| {
+            std::io::Write::write_all(file, bytes)
+        })
+        .map_err(|error| Fault::writing(&file, &error))?;
     }
     let place = format!("{}, what it embeds", path.display());
     let settings = RigConfig::read(&folder.join(&kit.settings)).map_err(|fault| match fault {

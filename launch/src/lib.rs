@@ -19,6 +19,7 @@
 //! | [`duration`], [`ground`], [`tooth`] | times, grounds and teeth as a painter names them |
 //! | [`kit`] | what a take is painted with: put into it, and taken from it |
 //! | [`lamp`] | what is changed of the light |
+//! | [`memory`] | memory that a command takes at once |
 //! | [`outputs`] | files that are written, none in the place of one that is read |
 //! | [`script`] | a day at the easel, a step after the other |
 //! | [`performance`] | what `render` and `up --play` share: take, brush, loads, canvas |
@@ -34,6 +35,7 @@ pub mod duration;
 pub mod ground;
 pub mod kit;
 pub mod lamp;
+pub mod memory;
 pub mod nodes;
 pub mod outputs;
 pub mod page;

@@ -25,6 +25,7 @@ use maulstick_paint::{PaintRefusal, Painting, Sequencer};
 use maulstick_rig::config::{
     DeviceSection, FOREIGN_PRIORITY, MOUSE_PRIORITY, PLAYER_PRIORITY, RigConfig,
 };
+use maulstick_rig::files::Kind;
 use maulstick_rig::member::log_to_stderr;
 use maulstick_rig::{Fault, Member, MemberArgs};
 use maulstick_types::Mixture;
@@ -380,7 +381,7 @@ pub fn hid() -> Result<i32, Fault> {
         .into_iter()
         .chain(UsedFile::given("the recording that is played", played))
         .collect();
-    let output = UsedFile::given("the recording", settings.record.as_ref());
+    let output = UsedFile::written("the recording", settings.record.as_ref(), Kind::Recording);
     let outputs: Vec<_> = output.into_iter().collect();
     check_outputs(&outputs, &inputs)?;
     maulstick_hid::daemon::run(&mut member, &settings)?;

@@ -5,10 +5,9 @@ use std::path::{Path, PathBuf};
 use maulstick_optics::Illuminant;
 use maulstick_rig::Fault;
 use maulstick_rig::config::{RigConfig, is_path};
-use maulstick_rig::files::check_writable;
+use maulstick_rig::files::{FileId, Kind, check_writable, gives_way};
 
-/// What the database of a painting has beside it.
-const BESIDE: [&str; 3] = ["-wal", "-shm", "-journal"];
+use crate::commands::open::whole;
 
 /// A file that a command reads or writes.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -17,6 +16,8 @@ pub struct UsedFile {
     pub what: String,
     /// As the user named it.
     pub path: PathBuf,
+    /// What may stand there already, where it is written.
+    pub kind: Kind,
 }
 
 impl UsedFile {
@@ -25,7 +26,19 @@ impl UsedFile {
         Self {
             what: what.into(),
             path: path.into(),
+            kind: Kind::Own,
         }
+    }
+
+    /// As a file of this kind, which is written.
+    #[must_use]
+    pub fn of(self, kind: Kind) -> Self {
+        Self { kind, ..self }
+    }
+
+    /// A file of a kind that is written, where it is given.
+    pub fn written<P: Into<PathBuf>>(what: &str, path: Option<P>, kind: Kind) -> Option<Self> {
+        Self::given(what, path).map(|file| file.of(kind))
     }
 
     /// The same where the file is given; nothing where it is not.
@@ -46,14 +59,9 @@ impl UsedFile {
         (!known).then(|| Self::new("the spectrum of the light", name))
     }
 
-    /// A painting's file, and those that may lie beside it.
-    pub fn painting(path: &Path) -> impl Iterator<Item = Self> {
-        let beside = BESIDE.map(|ending| {
-            let mut name = path.as_os_str().to_owned();
-            name.push(ending);
-            Self::new("what belongs to the painting", name)
-        });
-        std::iter::once(Self::new("the painting", path)).chain(beside)
+    /// A painting's file; what SQLite keeps beside it is no name for any other.
+    pub fn painting(path: &Path) -> Self {
+        Self::new("the painting", path)
     }
 }
 
@@ -84,9 +92,53 @@ pub fn named_by(config: &RigConfig) -> Vec<UsedFile> {
 /// A [`Fault`] where an output is an input or another output, or where it cannot be written.
 pub fn check_outputs(outputs: &[UsedFile], inputs: &[UsedFile]) -> Result<(), Fault> {
     check_apart(outputs, inputs)?;
-    outputs.iter().try_for_each(|UsedFile { path, .. }| {
-        check_writable(path).map_err(|error| Fault::writing(path, &error))
+    outputs.iter().try_for_each(|UsedFile { path, kind, .. }| {
+        check_writable(path, *kind).map_err(|error| Fault::writing(path, &error))
     })
+}
+
+/// A file that a node writes for a command. Nodes write over no file of another kind, so one that takes such
+/// a file's place is written beside it, and put there by the command that was given `--overwrite`.
+#[derive(Clone, Debug)]
+pub struct Relayed {
+    to: PathBuf,
+    written: PathBuf,
+}
+
+impl Relayed {
+    /// A file of a kind that [`check_outputs`] has found writable.
+    ///
+    /// # Errors
+    /// A [`Fault`] where the path cannot be told as text, or the current folder is gone.
+    pub fn new(path: &Path, kind: Kind) -> Result<Self, Fault> {
+        let to = PathBuf::from(whole(path)?);
+        let written = match gives_way(&to, kind) {
+            true => to.clone(),
+            false => {
+                let name = to.file_name().unwrap_or_default().to_string_lossy();
+                to.with_file_name(format!("{}.new.{name}", std::process::id()))
+            }
+        };
+        Ok(Self { to, written })
+    }
+
+    /// The name that the node is given.
+    #[must_use]
+    pub fn asked(&self) -> String {
+        self.written.display().to_string()
+    }
+
+    /// Gives the file its name once the node has written it, and that name in what the node said.
+    ///
+    /// # Errors
+    /// A [`Fault`] where it cannot be renamed; it stays beside that name.
+    pub fn arrive(&self, said: &str) -> Result<String, Fault> {
+        if self.written != self.to {
+            std::fs::rename(&self.written, &self.to)
+                .map_err(|error| Fault::writing(&self.to, &error))?;
+        }
+        Ok(said.replace(&self.asked(), &self.to.display().to_string()))
+    }
 }
 
 /// Sees that no output is an input or another output, wherever links lead.
@@ -95,10 +147,7 @@ pub fn check_outputs(outputs: &[UsedFile], inputs: &[UsedFile]) -> Result<(), Fa
 /// A [`Fault`] where one is.
 pub fn check_apart(outputs: &[UsedFile], inputs: &[UsedFile]) -> Result<(), Fault> {
     for (number, output) in outputs.iter().enumerate() {
-        let Some(real) = real(&output.path) else {
-            continue;
-        };
-        let is_same = |other: &&UsedFile| self::real(&other.path).as_ref() == Some(&real);
+        let is_same = |other: &&UsedFile| is_same(&output.path, &other.path);
         let what = &output.what;
         let what = match (
             inputs.iter().find(is_same),
@@ -115,15 +164,17 @@ pub fn check_apart(outputs: &[UsedFile], inputs: &[UsedFile]) -> Result<(), Faul
     Ok(())
 }
 
-/// Where a name leads, whether the file is there or not; nowhere for devices and pipes, of which nothing
-/// is lost.
-fn real(path: &Path) -> Option<PathBuf> {
-    if let Ok(found) = std::fs::metadata(path) {
-        return match found.is_file() {
-            true => std::fs::canonicalize(path).ok(),
-            false => None,
-        };
+/// Whether two names lead to one file, be it there or not.
+fn is_same(one: &Path, other: &Path) -> bool {
+    match [one, other].map(FileId::of) {
+        [Ok(one), Ok(other)] => one == other,
+        [Err(_), Err(_)] => real(one).is_some_and(|real| self::real(other) == Some(real)),
+        _ => false,
     }
+}
+
+/// The whole name of a file that is not there.
+fn real(path: &Path) -> Option<PathBuf> {
     let folder = match path.parent() {
         Some(folder) if folder != Path::new("") => folder,
         _ => Path::new("."),
@@ -156,10 +207,13 @@ mod tests {
         let twice = wrong(&[file("new"), file("in/../new")], &[]);
         assert!(twice.contains("would be one file"), "{twice}");
         check(&[file("new"), file("newer")], &[file("one")]).expect("files of their own");
+        std::fs::hard_link(path("one"), path("second")).expect("a second name");
+        assert!(wrong(&[file("second")], &[file("one")]).contains("take the place of the one"));
         let null = UsedFile::new("the picture", "/dev/null");
-        check(&[null.clone(), null.clone()], &[null]).expect("nothing is lost");
-        let painting: Vec<_> = UsedFile::painting(&path("a.maul")).collect();
-        assert!(wrong(&[file("a.maul-wal")], &painting).contains("belongs to the painting"));
+        assert!(wrong(&[null], &[]).contains("name a file"));
+        assert!(wrong(&[file("a.maul-wal")], &[]).contains("may belong to a painting"));
+        let picture = file("one").of(Kind::Png);
+        assert!(wrong(&[picture], &[]).contains("`--overwrite` writes over it"));
         assert!(!path("new").exists());
     }
 

@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 use serde::{Deserialize, Serialize};
 
 use maulstick_rig::Fault;
-use maulstick_rig::files::write_whole;
+use maulstick_rig::files::{Kind, write_whole};
 
 use crate::loading::Loading;
 use crate::paint_sets::PaintSet;
@@ -109,7 +109,7 @@ impl Habits {
         if let Some(folder) = path.parent() {
             std::fs::create_dir_all(folder).map_err(failed)?;
         }
-        write_whole(path, |file| file.write_all(text.as_bytes())).map_err(failed)
+        write_whole(path, Kind::Own, |file| file.write_all(text.as_bytes())).map_err(failed)
     }
 
     /// Remembers that a painting was open.

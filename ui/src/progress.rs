@@ -71,7 +71,7 @@ impl Progress {
             .as_ref()
             .map_or("", |it| it.status.fault.as_str());
         let unsaved =
-            (!fault.is_empty()).then(|| format!("The painting is not being saved: {fault}"));
+            (!fault.is_empty()).then(|| format!("A fault of the painting's file: {fault}"));
         let jobs = self.jobs(work.studio, waits);
         if jobs.is_empty() && unsaved.is_none() {
             return false;
@@ -342,7 +342,7 @@ mod tests {
             let paint = desk.studio.paint.as_mut().expect("paint");
             what.clone_into(&mut paint.status.fault);
         };
-        let words = "The painting is not being saved: no room: free some space";
+        let words = "A fault of the painting's file: no room: free some space";
         fault(harness.state_mut(), "no room: free some space");
         for _ in 0..3 {
             harness.state_mut().studio.now_ns += 100_000_000_000;

@@ -6,7 +6,7 @@ use std::io::BufWriter;
 use std::path::Path;
 
 use maulstick_rig::Fault;
-use maulstick_rig::files::write_whole;
+use maulstick_rig::files::{Kind, write_whole};
 use maulstick_types::stylus::StylusSample;
 use maulstick_types::{Flags, Message as _, Origin, encode, name_hash};
 use mcap::records::MessageHeader;
@@ -77,7 +77,7 @@ impl Take {
     /// # Errors
     /// A [`Fault`] where the file cannot be written.
     pub fn write(&self, path: &Path) -> Result<(), Fault> {
-        write_whole(path, |file| {
+        write_whole(path, Kind::Take, |file| {
             self.write_to(file).map_err(std::io::Error::other)
         })
         .map_err(|error| Fault::writing(path, &error))

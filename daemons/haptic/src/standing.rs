@@ -5,7 +5,7 @@ use std::io::Write as _;
 use std::path::{Path, PathBuf};
 
 use maulstick_haptics::{Fault, Switch};
-use maulstick_rig::files::write_whole;
+use maulstick_rig::files::{Kind, write_whole};
 
 /// What holds.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -106,7 +106,7 @@ impl Standing {
             .find(|(_, fault)| Some(*fault) == orders.fault);
         let fault = fault.map_or("none", |(word, _)| word);
         let (run, strength) = (self.run, orders.strength);
-        write_whole(&self.path, |file| {
+        write_whole(&self.path, Kind::Own, |file| {
             writeln!(file, "{run} {switch} {strength} {fault}")
         })
     }

@@ -6,7 +6,7 @@ use std::sync::mpsc::{SyncSender, TrySendError, sync_channel};
 use std::thread::JoinHandle;
 
 use maulstick_rig::Fault;
-use maulstick_rig::files::{check_writable, write_whole};
+use maulstick_rig::files::{Kind, check_writable, write_whole};
 
 use crate::recording::{Event, Recorded};
 use crate::source::Identity;
@@ -31,11 +31,11 @@ impl Recorder {
     /// # Errors
     /// A [`Fault`] where the file cannot be written.
     pub fn begin(path: &Path) -> Result<Self, Fault> {
-        check_writable(path).map_err(|error| Fault::writing(path, &error))?;
+        check_writable(path, Kind::Recording).map_err(|error| Fault::writing(path, &error))?;
         let (lines, written) = sync_channel::<String>(WAITING);
         let to = path.to_owned();
         let write = move || {
-            write_whole(&to, |file| {
+            write_whole(&to, Kind::Recording, |file| {
                 let mut lines = written.iter();
                 lines.try_for_each(|line| file.write_all(line.as_bytes()))
             })

@@ -12,7 +12,7 @@ use maulstick_device::read_brush;
 use maulstick_rig::Fault;
 use maulstick_rig::config::BrushSection;
 use maulstick_rig::config::toml_fault;
-use maulstick_rig::files::{check_writable, write_whole};
+use maulstick_rig::files::{Kind, check_writable, write_whole};
 use maulstick_types::command::Command;
 use serde_json::json;
 
@@ -155,14 +155,14 @@ fn list(options: &ListOptions) -> Result<i32, Fault> {
 fn import(options: &ImportOptions) -> Result<i32, Fault> {
     let path = &options.output;
     check_outputs(
-        &[UsedFile::new("the brush file", path)],
+        &[UsedFile::new("the brush file", path).of(Kind::Brush)],
         &[UsedFile::new("the model", &options.model)],
     )?;
     let text = read_brush(&options.model)
         .map_err(of_a_brush)?
         .to_toml()
         .map_err(|error| Fault::failure(error.to_string()))?;
-    write_whole(path, |file| file.write_all(text.as_bytes()))
+    write_whole(path, Kind::Brush, |file| file.write_all(text.as_bytes()))
         .map_err(|error| Fault::writing(path, &error))?;
     say!("{}: {} bytes", path.display(), text.len());
     Ok(0)
@@ -189,7 +189,7 @@ fn take_up(options: &TakeOptions) -> Result<i32, Fault> {
 
 fn draw_sheet(options: &SheetOptions) -> Result<i32, Fault> {
     let path = &options.output;
-    check_writable(path).map_err(|error| Fault::writing(path, &error))?;
+    check_writable(path, Kind::Png).map_err(|error| Fault::writing(path, &error))?;
     let bar = ProgressBar::new(0).with_message("painting");
     let picture = sheet(&library()?, |done, of| {
         bar.set_length(of as u64);

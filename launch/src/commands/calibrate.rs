@@ -15,7 +15,7 @@ use maulstick_haptic::showing::watch;
 use maulstick_hid::hidraw::Hidraw;
 use maulstick_hid::tablet::Tablet;
 use maulstick_rig::config::DeviceSection;
-use maulstick_rig::files::{check_writable, write_whole};
+use maulstick_rig::files::{Kind, check_writable, write_whole};
 use maulstick_rig::{Fault, RigConfig, Stop};
 use toml_edit::{Array, DocumentMut, Item, TableLike, Value};
 
@@ -61,7 +61,7 @@ pub fn run(options: &CalibrateOptions) -> Result<i32, Fault> {
         let what = format!("the rig '{}' runs and has the device", config.rig.name);
         return Err(Fault::usage(what).help("end it first: Ctrl-C where `maulstick up` runs"));
     }
-    check_writable(path).map_err(|error| Fault::writing(path, &error))?;
+    check_writable(path, Kind::Own).map_err(|error| Fault::writing(path, &error))?;
     let stop = Stop::on_signals(&Wake::new())
         .map_err(|error| Fault::failure(format!("cannot watch for signals: {error}")))?;
     let mut showing = Showing::of(&device);
@@ -222,7 +222,7 @@ fn write(path: &Path, device: &str, corners: &[DVec3; 3]) -> Result<(), Fault> {
             .help("see what was changed in the file")
     })?;
     RigConfig::parse(&text, &place)?;
-    write_whole(path, |file| file.write_all(text.as_bytes()))
+    write_whole(path, Kind::Own, |file| file.write_all(text.as_bytes()))
         .map_err(|error| Fault::writing(path, &error))
 }
 

@@ -6,13 +6,14 @@ use clap::Args;
 use maulstick_optics::PaintError;
 use maulstick_paint::PaintRefusal;
 use maulstick_rig::Fault;
+use maulstick_rig::files::Kind;
 use maulstick_types::Mixture;
 use maulstick_types::command::Command;
 use maulstick_types::scene::Tuning;
 
 use crate::commands::say;
 use crate::commands::session::{PAINT, Session, Target};
-use crate::outputs::{UsedFile, check_apart};
+use crate::outputs::{Relayed, UsedFile, check_outputs};
 use crate::performance::refused;
 
 /// Options of `maulstick load`.
@@ -169,20 +170,22 @@ pub fn redo(options: &HistoryOptions) -> Result<i32, Fault> {
 /// # Errors
 /// A [`Fault`] where it cannot be written, or where no rig runs.
 pub fn snapshot(options: &SnapshotOptions) -> Result<i32, Fault> {
-    let whole = |path: &PathBuf| {
-        std::path::absolute(path)
-            .map(|path| path.display().to_string())
-            .map_err(|error| Fault::writing(path, &error))
-    };
-    let picture = UsedFile::new("the picture", &options.output);
-    let ledger = UsedFile::given("the ledger", options.ledger.as_ref());
+    let picture = UsedFile::new("the picture", &options.output).of(Kind::Png);
+    let ledger = UsedFile::written("the ledger", options.ledger.as_ref(), Kind::Ledger);
     let outputs: Vec<_> = std::iter::once(picture).chain(ledger).collect();
-    check_apart(&outputs, &[])?;
-    let path = whole(&options.output)?;
-    let ledger = options.ledger.as_ref().map(whole).transpose()?;
-    say!(
-        "{}",
-        send(&options.target, PAINT, Command::Snapshot { path, ledger })?
-    );
+    check_outputs(&outputs, &[])?;
+    let picture = Relayed::new(&options.output, Kind::Png)?;
+    let ledger = options.ledger.as_ref();
+    let ledger = ledger.map(|path| Relayed::new(path, Kind::Ledger));
+    let ledger = ledger.transpose()?;
+    let command = Command::Snapshot {
+        path: picture.asked(),
+        ledger: ledger.as_ref().map(Relayed::asked),
+    };
+    let said = send(&options.target, PAINT, command)?;
+    if let Some(ledger) = ledger {
+        ledger.arrive("")?;
+    }
+    say!("{}", picture.arrive(&said)?);
     Ok(0)
 }

@@ -6,6 +6,7 @@ use clap::Args;
 use indicatif::ProgressBar;
 use maulstick_device::demo::{Subject, performance};
 use maulstick_rig::Fault;
+use maulstick_rig::files::Kind;
 
 use crate::commands::{say, write_picture, write_take};
 use crate::outputs::{UsedFile, check_outputs};
@@ -60,8 +61,8 @@ impl DemoOptions {
 /// A [`Fault`] where either cannot be written.
 pub fn run(options: &DemoOptions) -> Result<i32, Fault> {
     options.check_idle()?;
-    let take = UsedFile::given("the take", options.output.as_ref());
-    let sheet = UsedFile::given("the sheet", options.sheet.as_ref());
+    let take = UsedFile::written("the take", options.output.as_ref(), Kind::Take);
+    let sheet = UsedFile::written("the sheet", options.sheet.as_ref(), Kind::Png);
     let outputs: Vec<_> = take.into_iter().chain(sheet).collect();
     check_outputs(&outputs, &[])?;
     if let Some(output) = &options.output {

@@ -3,15 +3,18 @@
 use std::path::PathBuf;
 
 use clap::Args;
+use maulstick_exchange::Format;
+use maulstick_nodes::exporter::kind_of;
 use maulstick_rig::Fault;
+use maulstick_rig::files::Kind;
 use maulstick_types::command::{Command, ExportOrder};
 use maulstick_types::scene::{CANVAS, PALETTE};
 
-use super::open::{LONGEST, whole};
+use super::open::LONGEST;
 use super::painting::formats;
 use crate::commands::say;
 use crate::commands::session::{PAINT, Session, Target};
-use crate::outputs::{UsedFile, check_apart, named_by};
+use crate::outputs::{Relayed, UsedFile, check_outputs, named_by};
 
 /// Options of `maulstick export`.
 #[derive(Args, Clone, Debug)]
@@ -65,9 +68,16 @@ pub fn run(options: &ExportOptions) -> Result<i32, Fault> {
     let document = config.paint.document.iter();
     let inputs: Vec<_> = named_by(&config)
         .into_iter()
-        .chain(document.flat_map(|path| UsedFile::painting(path)))
+        .chain(document.map(|path| UsedFile::painting(path)))
         .collect();
-    check_apart(&[UsedFile::new("the export", file)], &inputs)?;
+    // What is exported as nothing the node refuses.
+    let format = match &options.format {
+        Some(name) => Format::named(name),
+        None => Format::of(file),
+    };
+    let kind = format.map_or(Kind::Png, kind_of);
+    check_outputs(&[UsedFile::new("the export", file).of(kind)], &inputs)?;
+    let file = Relayed::new(file, kind)?;
     let command = Command::Export {
         order: ExportOrder {
             format: options.format.clone().unwrap_or_default(),
@@ -78,11 +88,11 @@ pub fn run(options: &ExportOptions) -> Result<i32, Fault> {
             step: options.step.unwrap_or(0),
             profile: options.profile.clone().unwrap_or_default(),
             gamut: options.gamut.clone().unwrap_or_default(),
-            ..ExportOrder::to(&whole(file)?)
+            ..ExportOrder::to(&file.asked())
         },
     };
     command.check().map_err(Fault::told)?;
     let done = session.send_within(PAINT, command, LONGEST)?;
-    say!("{done}");
+    say!("{}", file.arrive(&done)?);
     Ok(0)
 }

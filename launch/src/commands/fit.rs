@@ -8,7 +8,7 @@ use clap::Args;
 use maulstick_measure::{Fit, FitOptions, MeasureError, paint_file, parse_surface};
 use maulstick_optics::surface::SurfaceCorrection;
 use maulstick_rig::Fault;
-use maulstick_rig::files::write_whole;
+use maulstick_rig::files::{Kind, write_whole};
 use serde_json::json;
 
 use crate::commands::{print_json, print_text};
@@ -56,7 +56,7 @@ pub fn run(options: &FitCommand) -> Result<i32, Fault> {
     let output = &options.output;
     let writing = |error: std::io::Error| Fault::writing(output, &error);
     check_outputs(
-        &[UsedFile::new("the paints", output)],
+        &[UsedFile::new("the paints", output).of(Kind::Paints)],
         &[UsedFile::new("the measurements", path)],
     )?;
     let surface = if options.no_surface {
@@ -70,7 +70,10 @@ pub fn run(options: &FitCommand) -> Result<i32, Fault> {
         specular_excluded: options.specular_excluded.then_some(true),
     };
     let fit = maulstick_measure::fit(&text, &chosen).map_err(|error| refused(path, &error))?;
-    write_whole(output, |file| file.write_all(paint_file(&fit).as_bytes())).map_err(writing)?;
+    write_whole(output, Kind::Paints, |file| {
+        file.write_all(paint_file(&fit).as_bytes())
+    })
+    .map_err(writing)?;
     for warning in &fit.warnings {
         eprintln!("warning: {warning}");
     }

@@ -12,6 +12,7 @@ use maulstick_num::cos;
 use maulstick_num::geometry::rotation;
 use maulstick_rig::Fault;
 use maulstick_rig::config::BrushSection;
+use maulstick_rig::files::Kind;
 use maulstick_types::haptics::{ContactModel, ForceLaw};
 use serde_json::json;
 
@@ -171,7 +172,7 @@ pub fn run(options: &ForceOptions) -> Result<i32, Fault> {
         return Err(Fault::usage(what)
             .help("it is the hard wall's: --model rigid; --max-stiffness-n-m bounds any model"));
     }
-    let plot_file = UsedFile::given("the plot", options.plot.as_ref());
+    let plot_file = UsedFile::written("the plot", options.plot.as_ref(), Kind::Png);
     let brush = UsedFile::named("the brush", &options.brush);
     check_outputs(plot_file.as_slice(), brush.as_slice())?;
     let file = brush_file(&BrushSection {

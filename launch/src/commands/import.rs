@@ -5,6 +5,7 @@ use std::path::PathBuf;
 use clap::Args;
 use maulstick_device::table::{TableLayout, TimeUnit, import};
 use maulstick_rig::Fault;
+use maulstick_rig::files::Kind;
 
 use crate::commands::write_take;
 use crate::outputs::{UsedFile, check_outputs};
@@ -37,7 +38,7 @@ pub fn run(options: &ImportOptions) -> Result<i32, Fault> {
         return Err(Fault::usage(format!("--unit-mm {}", options.unit_mm)).help("choose above 0"));
     }
     check_outputs(
-        &[UsedFile::new("the take", &options.output)],
+        &[UsedFile::new("the take", &options.output).of(Kind::Take)],
         &[UsedFile::new("the table", &options.table)],
     )?;
     let layout = TableLayout {

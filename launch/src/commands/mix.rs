@@ -8,6 +8,7 @@ use maulstick_optics::surface::SurfaceCorrection;
 use maulstick_optics::{Blend, Coat, Layer, PaintLibrary, Seen, Spectrum};
 use maulstick_paint::picture::Picture;
 use maulstick_rig::Fault;
+use maulstick_rig::files::Kind;
 use serde_json::json;
 
 use crate::chart::{every_pair, four_ways};
@@ -109,7 +110,7 @@ impl FilmOptions {
 /// A [`Fault`] for a bad mixture, paint file or light, or a picture that cannot be written.
 pub fn run(options: &MixOptions) -> Result<i32, Fault> {
     let library = library_from(options.paints.as_deref())?;
-    let output = UsedFile::given("the picture", options.output.as_ref());
+    let output = UsedFile::written("the picture", options.output.as_ref(), Kind::Png);
     let inputs: Vec<_> = UsedFile::given("the paints", options.paints.as_ref())
         .into_iter()
         .chain(UsedFile::light(&options.viewing.illuminant))

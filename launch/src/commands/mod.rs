@@ -35,7 +35,7 @@ use indicatif::{ProgressBar, ProgressStyle};
 use maulstick_device::Take;
 use maulstick_paint::picture::Picture;
 use maulstick_rig::Fault;
-use maulstick_rig::files::write_whole;
+use maulstick_rig::files::{Kind, write_whole};
 use serde_json::Value;
 
 /// Writes a picture as a PNG, whole or not at all.
@@ -43,7 +43,8 @@ use serde_json::Value;
 /// # Errors
 /// A [`Fault`] where it cannot be written.
 pub fn write_picture(picture: &Picture, path: &Path) -> Result<(), Fault> {
-    write_whole(path, |file| picture.encode_png(file)).map_err(|error| Fault::writing(path, &error))
+    write_whole(path, Kind::Png, |file| picture.encode_png(file))
+        .map_err(|error| Fault::writing(path, &error))
 }
 
 /// Prints a line as `println!` does, through [`print_text`]: for functions that return a [`Fault`].

@@ -29,7 +29,7 @@ pub struct OpenOptions {
 ///
 /// # Errors
 /// A [`Fault`] where it is none, or where it is not UTF-8, as messages are.
-pub(super) fn whole(path: &Path) -> Result<String, Fault> {
+pub(crate) fn whole(path: &Path) -> Result<String, Fault> {
     let whole = std::path::absolute(path).map_err(|error| Fault::reading(path, &error))?;
     whole.into_os_string().into_string().map_err(|name| {
         Fault::usage("this path is not UTF-8")

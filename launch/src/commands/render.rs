@@ -7,12 +7,13 @@ use std::time::Instant;
 use clap::Args;
 use indicatif::ProgressBar;
 use maulstick_device::{Take, TakeSample};
-use maulstick_nodes::paint_node::write_snapshot;
+use maulstick_nodes::snapshots::write_snapshot;
 use maulstick_nodes::{Keeper, Offline};
 use maulstick_paint::embedded::IMAGE;
 use maulstick_paint::light::changes_colour;
 use maulstick_paint::store::TileStore;
 use maulstick_paint::{Painting, Sequencer};
+use maulstick_rig::files::Kind;
 use maulstick_rig::{Fault, RigConfig};
 use maulstick_types::Mixture;
 use maulstick_types::command::Command;
@@ -71,14 +72,18 @@ impl RenderOptions {
             .chain(UsedFile::given("the take", self.take.as_ref()))
             .chain(UsedFile::given("the script", self.script.as_ref()))
             .chain(UsedFile::given("the settings", self.rig.as_ref()))
-            .chain(document.flat_map(|path| UsedFile::painting(path)))
+            .chain(document.map(|path| UsedFile::painting(path)))
             .collect()
     }
 
     /// The files that are written, but for the painting.
     fn outputs(&self) -> Vec<UsedFile> {
-        std::iter::once(UsedFile::new("the picture", &self.output))
-            .chain(UsedFile::given("the ledger", self.painting.ledger.as_ref()))
+        std::iter::once(UsedFile::new("the picture", &self.output).of(Kind::Png))
+            .chain(UsedFile::written(
+                "the ledger",
+                self.painting.ledger.as_ref(),
+                Kind::Ledger,
+            ))
             .collect()
     }
 
@@ -168,12 +173,7 @@ pub fn run(options: &RenderOptions) -> Result<i32, Fault> {
         (None, None) => Script::default(),
     };
     let mut written = outputs;
-    written.extend(
-        options
-            .document
-            .iter()
-            .flat_map(|path| UsedFile::painting(path)),
-    );
+    written.extend(options.document.iter().map(|path| UsedFile::painting(path)));
     check_apart(&written, &script.files)?;
     let (mut keeper, mut sequencer) = match &options.document {
         Some(path) => {
@@ -227,7 +227,7 @@ pub fn run(options: &RenderOptions) -> Result<i32, Fault> {
     }
     let ledger = options.painting.ledger.as_deref();
     write_snapshot(offline.painting_mut(), &options.output, ledger, &export)
-        .map_err(|(path, error)| Fault::writing(path.as_ref(), &error))?;
+        .map_err(|(path, error)| Fault::writing(&path, &error))?;
     close(&mut offline)?;
     if unloaded {
         eprintln!("the brush carried no paint: `--load \"Ultramarine Blue\"` gives it some");

@@ -5,6 +5,7 @@ use std::path::PathBuf;
 use clap::{Args, Subcommand};
 use maulstick_device::salvage::salvage;
 use maulstick_device::{Kit, Take};
+use maulstick_rig::files::Kind;
 use maulstick_rig::{Fault, RigConfig};
 use maulstick_types::stylus::StylusPose;
 use serde_json::json;
@@ -66,7 +67,10 @@ fn embed(options: &EmbedOptions) -> Result<i32, Fault> {
     let mut inputs = named_by(&config);
     inputs.push(UsedFile::new("the take that stays as it is", &options.take));
     inputs.extend(UsedFile::given("the settings", options.rig.as_ref()));
-    check_outputs(&[UsedFile::new("the take", &options.output)], &inputs)?;
+    check_outputs(
+        &[UsedFile::new("the take", &options.output).of(Kind::Take)],
+        &inputs,
+    )?;
     let library = library_from(config.paint.paints.as_deref())?;
     let loads = options.kit.mixtures(&embedded, &library)?;
     painting_setup(&config, &library)?
@@ -133,7 +137,7 @@ pub fn run(command: &TakeCommand) -> Result<i32, Fault> {
         }
         TakeCommand::Recover { take, output } => {
             check_outputs(
-                &[UsedFile::new("the recovered take", output)],
+                &[UsedFile::new("the recovered take", output).of(Kind::Take)],
                 &[UsedFile::new("the damaged take", take)],
             )?;
             let salvage = salvage(take)?;

@@ -16,6 +16,7 @@ use maulstick_types::stylus::{TakeEnd, TakeStatus};
 use maulstick_types::topics::Topics;
 
 use crate::nodes::PLAYER;
+use crate::outputs::Relayed;
 use crate::up::plan::{NodeSpec, Role, node};
 
 /// What is played, and what becomes of it.
@@ -30,9 +31,9 @@ pub struct Performance {
     /// What each stroke loads, in turn.
     pub loads: Vec<String>,
     /// The picture to write at its end.
-    pub snapshot: Option<PathBuf>,
+    pub snapshot: Option<Relayed>,
     /// The ledger to write at its end.
-    pub ledger: Option<PathBuf>,
+    pub ledger: Option<Relayed>,
     /// Length of the take, ns.
     pub length_ns: u64,
 }
@@ -149,15 +150,23 @@ impl Conductor {
         };
         if let Some(writing) = &self.writing {
             return match writing.outcome.try_recv() {
-                Ok(outcome) => outcome.map(|()| true),
+                Ok(outcome) => {
+                    outcome?;
+                    let Performance {
+                        snapshot, ledger, ..
+                    } = &self.performance;
+                    for written in snapshot.iter().chain(ledger) {
+                        written.arrive("")?;
+                    }
+                    Ok(true)
+                }
                 Err(_) => Ok(false),
             };
         }
-        let path = |path: &PathBuf| path.display().to_string();
         let command = match &self.performance.snapshot {
             Some(picture) => Command::Snapshot {
-                path: path(picture),
-                ledger: self.performance.ledger.as_ref().map(path),
+                path: picture.asked(),
+                ledger: self.performance.ledger.as_ref().map(Relayed::asked),
             },
             None => Command::Mark,
         };

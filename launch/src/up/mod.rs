@@ -21,13 +21,14 @@ use maulstick_device::player::Rate;
 use maulstick_document::scene;
 use maulstick_optics::PaintLibrary;
 use maulstick_rig::config::{DEFAULT, RigConfig, is_path};
+use maulstick_rig::files::Kind;
 use maulstick_rig::{Fault, member};
 use maulstick_types::Mixture;
 
 use crate::destination::{VIEW, export};
 use crate::document::{Presence, measure, presence, wrong};
 use crate::kit::use_kit;
-use crate::outputs::{UsedFile, check_outputs, named_by};
+use crate::outputs::{Relayed, UsedFile, check_outputs, named_by};
 use crate::performance::{PaintingOptions, library_from, painting_setup, refused};
 use crate::up::conductor::Performance;
 use crate::up::plan::{Hands, Window};
@@ -85,16 +86,20 @@ pub struct UpOptions {
 impl UpOptions {
     /// What is written at the end of the take is none of the files that the rig uses.
     fn check_files(&self, take: &Path, config: &RigConfig) -> Result<(), Fault> {
-        let outputs: Vec<_> = UsedFile::given("the picture", self.snapshot.as_ref())
+        let outputs: Vec<_> = UsedFile::written("the picture", self.snapshot.as_ref(), Kind::Png)
             .into_iter()
-            .chain(UsedFile::given("the ledger", self.painting.ledger.as_ref()))
+            .chain(UsedFile::written(
+                "the ledger",
+                self.painting.ledger.as_ref(),
+                Kind::Ledger,
+            ))
             .collect();
         let document = config.paint.document.iter();
         let inputs: Vec<_> = named_by(config)
             .into_iter()
             .chain([UsedFile::new("the take", take)])
             .chain(UsedFile::given("the settings", self.rig.as_ref()))
-            .chain(document.flat_map(|path| UsedFile::painting(path)))
+            .chain(document.map(|path| UsedFile::painting(path)))
             .collect();
         check_outputs(&outputs, &inputs)
     }
@@ -152,18 +157,16 @@ pub fn run(options: &UpOptions) -> Result<i32, Fault> {
         None => None,
         Some((path, take)) => {
             options.check_files(path, &config)?;
+            let relayed = |path: Option<&PathBuf>, kind: Kind| {
+                path.map(|path| Relayed::new(path, kind)).transpose()
+            };
             Some(Performance {
                 take: absolute(path)?,
                 rate: options.rate,
                 brush: section.name,
                 loads: loads.iter().map(ToString::to_string).collect(),
-                snapshot: options.snapshot.as_deref().map(absolute).transpose()?,
-                ledger: options
-                    .painting
-                    .ledger
-                    .as_deref()
-                    .map(absolute)
-                    .transpose()?,
+                snapshot: relayed(options.snapshot.as_ref(), Kind::Png)?,
+                ledger: relayed(options.painting.ledger.as_ref(), Kind::Ledger)?,
                 length_ns: take.length_ns(),
             })
         }

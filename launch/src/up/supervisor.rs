@@ -1,7 +1,9 @@
 //! All processes of the rig: their tokens, their restarts, the table, the end.
 
+mod folder;
 mod loads;
 mod orders;
+mod silence;
 mod starts;
 mod switch;
 
@@ -21,7 +23,9 @@ use crate::commands::progress_bar;
 use crate::up::child::{Ended, Failures, Node, State};
 use crate::up::conductor::{Conductor, Performance};
 use crate::up::plan::{NodeSpec, Role};
+use folder::FolderWatch;
 use orders::Orders;
+use silence::Silence;
 use switch::Switch;
 
 /// All nodes end within this time when asked; paint that is on its way to a file has that of the switch.
@@ -54,6 +58,9 @@ pub struct Supervisor {
     orders: Orders,
     /// Another painting on its way.
     switch: Option<Switch>,
+    /// The paint node says nothing.
+    silence: Option<Silence>,
+    folder_watch: FolderWatch,
 }
 
 /// A node whose token is gone for so long is taken for frozen.
@@ -120,6 +127,8 @@ impl Supervisor {
             unloaded: true,
             orders,
             switch: None,
+            silence: None,
+            folder_watch: FolderWatch::default(),
         };
         for place in 0..supervisor.nodes.len() {
             supervisor.start_node(place)?;
@@ -173,6 +182,8 @@ impl Supervisor {
             return Ok(Some(code));
         }
         self.end_frozen();
+        self.end_hanging();
+        self.watch_folder();
         self.restart_due()?;
         self.watch_starts()?;
         self.show_when_ready();

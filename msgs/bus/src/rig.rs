@@ -36,7 +36,7 @@ pub struct RigInfo {
 pub struct RigFolder {
     path: PathBuf,
     rig: String,
-    _lock: Option<Flock<File>>,
+    lock: Option<Flock<File>>,
 }
 
 fn folder_error(reason: String, help: &str) -> BusError {
@@ -65,13 +65,20 @@ fn make_private(path: &Path) -> Result<(), BusError> {
                 "check its permissions",
             )
         })?;
-    let meta = fs::metadata(path).map_err(|error| {
+    check_private(path)
+}
+
+/// Sees that a path is a folder that nobody else may use or has made. A link is none: in a folder that all
+/// share, such as /tmp, it may be another user's.
+fn check_private(path: &Path) -> Result<(), BusError> {
+    let meta = fs::symlink_metadata(path).map_err(|error| {
         folder_error(
             format!("cannot read {}: {error}", path.display()),
             "check its permissions",
         )
     })?;
-    if meta.uid() != nix::unistd::getuid().as_raw() || meta.permissions().mode() & 0o077 != 0 {
+    let is_own = meta.uid() == nix::unistd::getuid().as_raw();
+    if !meta.is_dir() || !is_own || meta.permissions().mode() & 0o077 != 0 {
         return Err(folder_error(
             format!("{} is not a folder of yours alone", path.display()),
             "remove it, or set XDG_RUNTIME_DIR to a folder of mode 0700",
@@ -162,7 +169,7 @@ impl RigFolder {
         Ok(Self {
             path,
             rig: rig.to_owned(),
-            _lock: Some(lock),
+            lock: Some(lock),
         })
     }
 
@@ -171,14 +178,28 @@ impl RigFolder {
     /// # Errors
     /// [`BusError::Folder`] where no such rig runs.
     pub fn join(rig: &str) -> Result<(Self, RigInfo), BusError> {
-        Self::join_at(&base().join(rig))
+        Self::join_in(&base(), rig)
+    }
+
+    /// As [`RigFolder::join`], below `base`.
+    ///
+    /// # Errors
+    /// As [`RigFolder::join`], and where `base` is not the user's alone.
+    pub fn join_in(base: &Path, rig: &str) -> Result<(Self, RigInfo), BusError> {
+        if base.symlink_metadata().is_ok() {
+            check_private(base)?;
+        }
+        Self::join_at(&base.join(rig))
     }
 
     /// The running rig of the folder `path`.
     ///
     /// # Errors
-    /// [`BusError::Folder`] where no rig runs there.
+    /// [`BusError::Folder`] where no rig runs there, or the folder is not the user's alone.
     pub fn join_at(path: &Path) -> Result<(Self, RigInfo), BusError> {
+        if path.symlink_metadata().is_ok() {
+            check_private(path)?;
+        }
         let running = File::open(path.join("lock"))
             .is_ok_and(|file| Flock::lock(file, FlockArg::LockSharedNonblock).is_err());
         let info = RigInfo::read(path).filter(|_| running).ok_or_else(|| {
@@ -192,10 +213,19 @@ impl RigFolder {
             Self {
                 path: path.to_owned(),
                 rig: info.rig.clone(),
-                _lock: None,
+                lock: None,
             },
             info,
         ))
+    }
+
+    /// Whether the lock that this program holds is still where others look for it.
+    #[must_use]
+    pub fn is_whole(&self) -> bool {
+        let own = self.lock.as_ref().and_then(|lock| lock.metadata().ok());
+        let found = fs::metadata(self.path.join("lock")).ok();
+        let number = |meta: &fs::Metadata| (meta.dev(), meta.ino());
+        own.is_none() || own.as_ref().map(number) == found.as_ref().map(number)
     }
 
     /// Path of the folder.
@@ -288,6 +318,40 @@ mod tests {
             .expect_err("refused")
             .to_string();
         assert!(error.contains("yours alone"), "{error}");
+    }
+
+    #[test]
+    fn a_link_is_no_folder_of_ones_own() {
+        let base = tempfile::tempdir().expect("a folder");
+        let [real, link] = ["real", "link"].map(|name| base.path().join(name));
+        let held = RigFolder::create_in(&real, "studio").expect("its own");
+        held.announce("hub", RigClock::start()).expect("announced");
+        std::os::unix::fs::symlink(&real, &link).expect("a link");
+        for refused in [
+            RigFolder::create_in(&link, "other").err(),
+            RigFolder::join_in(&link, "studio").err(),
+        ] {
+            let text = refused.expect("refused").to_string();
+            assert!(text.contains("yours alone"), "{text}");
+        }
+        std::os::unix::fs::symlink(real.join("studio"), real.join("linked")).expect("a link");
+        assert!(RigFolder::join_in(&real, "linked").is_err());
+        assert!(
+            RigFolder::join_in(&real, "studio").is_ok(),
+            "a fault would pass"
+        );
+    }
+
+    #[test]
+    fn a_folder_that_was_removed_is_noticed() {
+        let base = tempfile::tempdir().expect("a folder");
+        let base = base.path().join("rigs");
+        let folder = RigFolder::create_in(&base, "studio").expect("its own");
+        assert!(folder.is_whole());
+        fs::remove_dir_all(folder.path()).expect("removed");
+        assert!(!folder.is_whole());
+        let again = RigFolder::create_in(&base, "studio").expect("another");
+        assert!(again.is_whole() && !folder.is_whole());
     }
 
     #[test]

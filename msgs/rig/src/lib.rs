@@ -5,19 +5,19 @@
 //! | [`commander`] | commands to a node, repeated until answered |
 //! | [`config`] | the settings of a rig |
 //! | [`fault`] | an error as the user sees it: what, where, what to do |
-//! | [`files`] | files that are whole under their name |
+//! | [`files`] | files: whole under their name, of one's own kind, open here |
 //! | [`member`] | joining a rig, living in it, leaving it |
 //! | [`stop`] | when to stop: a signal, or the launcher's end |
 
 pub mod commander;
 pub mod config;
 pub mod fault;
-pub mod files;
 pub mod member;
 pub mod size;
 pub mod stop;
 
 pub use config::RigConfig;
 pub use fault::Fault;
+pub use maulstick_files as files;
 pub use member::{Member, MemberArgs};
 pub use stop::Stop;

@@ -2,6 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
+use maulstick_files::{FileId, OpenDatabase, is_companion, read_head};
 use maulstick_paint::load::BrushLoad;
 use maulstick_paint::tile::Planes;
 use maulstick_types::scene::Scene;
@@ -35,6 +36,10 @@ pub struct Database {
     pub(crate) connection: Connection,
     /// zstd's level of what is written.
     pub(crate) level: i32,
+    /// Keeps the rest of the process from opening the file, which would drop its locks.
+    _registered: Option<OpenDatabase>,
+    /// It was not closed the last time: its journal may hold what is to be recovered.
+    unclosed: bool,
 }
 
 /// The journal that SQLite keeps beside a file.
@@ -89,6 +94,9 @@ fn length(path: &Path) -> Option<u64> {
 /// Whether a painting is to be begun there.
 pub(crate) fn is_new(path: &Path) -> Result<bool, DocumentError> {
     let Some(length_found) = length(path) else {
+        if is_companion(path) {
+            return Err(DocumentError::Companion);
+        }
         return match path.parent() {
             Some(folder) if !folder.as_os_str().is_empty() && !folder.is_dir() => {
                 Err(DocumentError::Other("its folder does not exist".to_owned()))
@@ -110,17 +118,16 @@ pub(crate) fn is_new(path: &Path) -> Result<bool, DocumentError> {
         return Ok(false);
     }
     let mut head = [0; 100];
-    use std::io::Read as _;
-    let read = std::fs::File::open(path)?.read_exact(&mut head);
-    match read {
-        Ok(()) if head.starts_with(MAGIC) && head[WRITE_VERSION] == ROLLBACK => {
+    let whole = read_head(path, &mut head)? == head.len();
+    match whole {
+        true if head.starts_with(MAGIC) && head[WRITE_VERSION] == ROLLBACK => {
             match schema::is_foreign(path)? {
                 true => Err(DocumentError::NoPainting),
                 false => Ok(false),
             }
         }
-        Ok(()) if head.starts_with(MAGIC) => Ok(false),
-        Ok(()) if length_found > 4096 && damaged_head(&head) => Err(DocumentError::Damaged(
+        true if head.starts_with(MAGIC) => Ok(false),
+        true if length_found > 4096 && damaged_head(&head) => Err(DocumentError::Damaged(
             "its first bytes are wrong".to_owned(),
         )),
         _ => Err(DocumentError::NoPainting),
@@ -162,6 +169,7 @@ impl Database {
         let flags = OpenFlags::SQLITE_OPEN_READ_WRITE
             | OpenFlags::SQLITE_OPEN_NO_MUTEX
             | OpenFlags::SQLITE_OPEN_CREATE;
+        let unclosed = length(&beside(&resolved(path), "-wal")).is_some_and(|length| length > 0);
         let connection = match vfs {
             Some(vfs) => Connection::open_with_flags_and_vfs(path, flags, vfs),
             None => Connection::open_with_flags(path, flags),
@@ -169,6 +177,8 @@ impl Database {
         let mut database = Self {
             connection: connection?,
             level: planes::LEVEL,
+            _registered: FileId::of(path).ok().map(OpenDatabase::new),
+            unclosed,
         };
         match database.take(path) {
             Err(DocumentError::ReadOnly(_)) if access == Access::Read => {
@@ -253,22 +263,19 @@ impl Database {
         Ok(Self {
             connection: Connection::open_with_flags(uri, flags)?,
             level: planes::LEVEL,
+            _registered: FileId::of(path).ok().map(OpenDatabase::new),
+            unclosed: false,
         })
     }
 
-    /// Closes it with its journal as it is.
+    /// Closes it with the journal that was there when it was opened, as it is; one of its own it folds in.
     ///
     /// # Errors
     /// What SQLite says.
     pub fn leave(self) -> Result<(), DocumentError> {
-        let journal = self
-            .connection
-            .path()
-            .map(|path| beside(Path::new(path), "-wal"));
-        match journal.and_then(|journal| length(&journal)) {
-            Some(1..) => self.connection.close().map_err(|(_, error)| error.into()),
-            // An empty one would lie about.
-            _ => self.close(),
+        match self.unclosed {
+            true => self.connection.close().map_err(|(_, error)| error.into()),
+            false => self.close(),
         }
     }
 
@@ -290,6 +297,34 @@ impl Database {
             self.connection.set_db_config(folded, false)?;
         }
         self.connection.close().map_err(|(_, error)| error.into())
+    }
+
+    /// Closes it and touches no file: its names may be those of others.
+    pub(crate) fn abandon(self) {
+        // The connection leaves the journal as it is, see `take`.
+        if let Err((_, error)) = self.connection.close() {
+            tracing::debug!("the file that is gone is closed: {error}");
+        }
+    }
+
+    /// Folds the journal in and stays open, as far as there is room.
+    pub(crate) fn fold(&self) {
+        let query = "PRAGMA wal_checkpoint(TRUNCATE)";
+        if let Err(error) = self.connection.query_row(query, params![], |_| Ok(())) {
+            tracing::debug!("the journal is not folded in: {error}");
+        }
+    }
+
+    /// Writes all that it holds, with its journal, to a new file.
+    ///
+    /// # Errors
+    /// What SQLite says.
+    pub(crate) fn copy_to(&self, to: &Path) -> Result<(), DocumentError> {
+        let to = to
+            .to_str()
+            .ok_or_else(|| DocumentError::Other(format!("{} is not UTF-8", to.display())))?;
+        self.connection.execute("VACUUM INTO ?1", params![to])?;
+        Ok(())
     }
 
     /// The planes of a page.

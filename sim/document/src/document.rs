@@ -241,11 +241,20 @@ impl Document {
         Duration::from_nanos(self.shared.page_in_ns.load(SeqCst))
     }
 
-    /// Why nothing is written at present, and what to do about it; none where all is well.
+    /// Why nothing is written at present, or what became of the file, and what to do about it; none where
+    /// all is well.
     #[must_use]
     pub fn fault(&self) -> Option<(String, &'static str)> {
         let queues = self.shared.lock();
-        (!queues.fault.is_empty()).then(|| (queues.fault.clone(), queues.help))
+        let fault = (!queues.fault.is_empty()).then(|| (queues.fault.clone(), queues.help));
+        fault.or_else(|| queues.notice.clone())
+    }
+
+    /// Takes in that the painting went on in another file because its own was gone.
+    pub fn follow(&mut self) {
+        if let Some(path) = self.shared.lock().went_to.take() {
+            self.path = path;
+        }
     }
 
     /// Waits until all that was handed over is written, or could not be.

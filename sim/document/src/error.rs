@@ -27,6 +27,12 @@ pub enum DocumentError {
         /// Which, if the system says so.
         holder: Option<i32>,
     },
+    /// This program itself has it open, maybe by another name.
+    #[error("it is the painting that is open here")]
+    OpenHere,
+    /// The name is one that SQLite keeps the journal of another painting under.
+    #[error("a name that ends so may belong to another painting")]
+    Companion,
     /// The file or its folder cannot be written to.
     #[error("the painting cannot be written to: {0}")]
     ReadOnly(String),
@@ -42,6 +48,9 @@ pub enum DocumentError {
     /// What was painted last could not be written.
     #[error("what was painted last is not in the file: {0}")]
     Unwritten(String),
+    /// The file of an open painting is gone, and no other could be made.
+    #[error("{0}")]
+    Vanished(String),
     /// What is left of a damaged painting makes none any more.
     #[error("the painting cannot be recovered: it has lost {0}")]
     Lost(String),
@@ -74,7 +83,9 @@ impl DocumentError {
                 "`maulstick painting recover FILE -o NEW.maul` takes out what is whole"
             }
             Self::Lost(_) => "take the newest copy of it that is whole",
+            Self::OpenHere | Self::Companion => "give another name",
             Self::Taken => "give another name: nothing is written over",
+            Self::Vanished(_) => "save it under another name now: until then it is in memory alone",
             Self::Other(_) => "check the path and the disk",
         }
     }
@@ -112,6 +123,7 @@ impl From<std::io::Error> for DocumentError {
             std::io::ErrorKind::StorageFull => Self::Full,
             std::io::ErrorKind::NotFound => Self::Missing,
             std::io::ErrorKind::AlreadyExists => Self::Taken,
+            std::io::ErrorKind::ResourceBusy => Self::OpenHere,
             std::io::ErrorKind::PermissionDenied | std::io::ErrorKind::ReadOnlyFilesystem => {
                 Self::ReadOnly(error.to_string())
             }

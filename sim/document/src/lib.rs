@@ -9,7 +9,7 @@
 //! | [`document`], `thread`, `queues` | an open painting, the thread that owns its file, and where both meet |
 //! | [`database`] | the file: locks, pages read one by one |
 //! | [`writing`], [`opening`] | a moment of a painting, written as one transaction and read back |
-//! | [`moving`] | its file under another name |
+//! | [`moving`], `watch` | its file under another name, or gone |
 //! | [`journal`] | what was accepted, as bytes |
 //! | [`contents`], [`pack`] | what a file holds; making it small |
 //! | [`planes`], [`loads`] | paint as bytes |
@@ -34,6 +34,7 @@ pub mod scan;
 pub mod schema;
 pub mod sum;
 mod thread;
+mod watch;
 pub mod writing;
 
 pub use contents::Contents;

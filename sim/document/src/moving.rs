@@ -94,6 +94,48 @@ pub(crate) fn put(from: &Path, order: &Move) -> Result<(), DocumentError> {
     sync_folder(to)
 }
 
+/// Writes a painting whose own file is gone to a new one, whole or not at all.
+///
+/// # Errors
+/// As [`make_room`], and what SQLite or the file system says.
+pub(crate) fn rescue(database: &Database, to: &Path, replace: bool) -> Result<(), DocumentError> {
+    make_room(to, replace)?;
+    let to = &resolved(to);
+    let replace = to.symlink_metadata().is_ok();
+    let part = unfinished(to);
+    // One of a rescue that was cut short.
+    std::fs::remove_file(&part).ok();
+    let copied = database.copy_to(&part).and_then(|()| {
+        File::open(&part)?.sync_all()?;
+        Ok(name(&part, to, replace)?)
+    });
+    copied.inspect_err(|_| {
+        std::fs::remove_file(&part).ok();
+    })?;
+    sync_folder(to)
+}
+
+/// A name beside a painting that is nobody's: `sea.maul` goes on in `sea-kept.maul`, or `sea-kept-2.maul`.
+pub(crate) fn name_beside(path: &Path) -> PathBuf {
+    let stem = path.file_stem().unwrap_or_default().to_string_lossy();
+    let ending = path.extension().unwrap_or_default().to_string_lossy();
+    let named = |number: u32| {
+        let number = match number {
+            1 => String::new(),
+            number => format!("-{number}"),
+        };
+        path.with_file_name(format!("{stem}-kept{number}.{ending}"))
+    };
+    let is_free = |path: &PathBuf| {
+        let names = ["", "-wal", "-journal"].map(|suffix| beside(path, suffix));
+        names.iter().all(|name| name.symlink_metadata().is_err())
+    };
+    (1..u32::MAX)
+        .map(named)
+        .find(is_free)
+        .unwrap_or_else(|| named(1))
+}
+
 /// Takes back what [`put`] did to the file that a painting left.
 pub(crate) fn take_back(from: &Path, order: &Move) {
     if order.left == Left::Goes {

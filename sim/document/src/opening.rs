@@ -6,7 +6,7 @@ use std::sync::Arc;
 use maulstick_optics::PaintLibrary;
 use maulstick_paint::dry::{DryLayer, DryStack};
 use maulstick_paint::embedded::Embedded;
-use maulstick_paint::history::{Change, Deed, Held, Rest, Step};
+use maulstick_paint::history::{Change, Deed, Held, Place, Rest, Step};
 use maulstick_paint::kept::{KeptPainting, KeptSequencer};
 use maulstick_paint::load::BrushLoad;
 use maulstick_paint::page::{Page, Pager};
@@ -14,6 +14,7 @@ use maulstick_paint::painting::{Named, PaintRefusal, Restored};
 use maulstick_paint::sequencer::Record;
 use maulstick_paint::tile::{Planes, Tile, Version};
 use maulstick_paint::{Painting, Sequencer};
+use maulstick_types::paint::TILE;
 use maulstick_types::scene::Scene;
 use rusqlite::{OptionalExtension as _, params};
 
@@ -63,6 +64,42 @@ impl Opened {
     #[must_use]
     pub fn kept(&self) -> &KeptPainting {
         &self.restored.kept
+    }
+
+    /// Sees that as many tiles, steps and versions are there as were written.
+    ///
+    /// # Errors
+    /// [`DocumentError::Damaged`] with what is missing.
+    pub fn check(&self) -> Result<(), DocumentError> {
+        let Restored {
+            kept,
+            tiles,
+            steps,
+            named,
+            ..
+        } = &self.restored;
+        let Some(rows) = kept.rows else {
+            return Ok(());
+        };
+        let there = |place: &Place| {
+            let mut surfaces = kept.scene.surfaces.iter();
+            // Rows of a canvas before it got another size stay.
+            surfaces.any(|surface| {
+                let grid = surface.cells.map(|cells| cells.div_ceil(TILE as u32));
+                surface.id == place.0 && place.1.x < grid[0] && place.1.y < grid[1]
+            })
+        };
+        let tiles = tiles.iter().filter(|(place, _)| there(place)).count();
+        for (what, found, kept) in [
+            ("tiles", tiles, rows.tiles),
+            ("steps of its history", steps.len(), rows.steps),
+            ("versions", named.len(), rows.versions),
+        ] {
+            if found as u64 != kept {
+                return Err(damaged(format!("{found} of its {kept} {what} are there")));
+            }
+        }
+        Ok(())
     }
 
     /// The painting where it was: as it was kept, and then what was accepted since done again.

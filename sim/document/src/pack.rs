@@ -1,8 +1,8 @@
 //! A painting's file made as small as it gets.
 
 use std::path::Path;
+use std::sync::atomic::{AtomicUsize, Ordering::Relaxed};
 
-use maulstick_paint::tile::Planes;
 use rusqlite::params;
 
 use crate::database::{Access, Database, page_sum};
@@ -49,10 +49,8 @@ pub fn pack(
     let all = pages.len() as u64 + 1;
     for (batch, ids) in pages.chunks(BATCH).enumerate() {
         database.connection.execute_batch("BEGIN IMMEDIATE")?;
-        for (place, id) in ids.iter().enumerate() {
-            compress(&database, *id)?;
-            tell((batch * BATCH + place) as u64, all);
-        }
+        compress(&database, ids)?;
+        tell((batch * BATCH + ids.len()) as u64, all);
         database.connection.execute_batch("COMMIT")?;
     }
     // Its copy of the painting may take more room than there is memory.
@@ -91,27 +89,70 @@ pub(crate) fn settle(path: &Path, history: History) -> Result<(), DocumentError>
     document.close()
 }
 
-fn compress(database: &Database, id: i64) -> Result<(), DocumentError> {
-    let (base, depth, data): (i64, i64, Vec<u8>) = database
-        .connection
-        .prepare_cached("SELECT base, depth, data FROM page WHERE id = ?1")?
-        .query_row(params![id], |row| {
-            Ok((row.get(0)?, row.get(1)?, row.get(2)?))
-        })?;
-    let content: Planes = database.planes(id as u64)?;
-    let under = match base {
-        0 => None,
-        base => Some(database.planes(base as u64)?),
-    };
-    let packed = planes::encode(&content, under.as_ref(), planes::PACKED_LEVEL)?;
-    if packed.len() >= data.len() {
-        return Ok(());
+/// A page as its row has it.
+struct Row {
+    id: u64,
+    /// Base, depth and slots.
+    ints: [i64; 3],
+    data: Vec<u8>,
+    sum: i64,
+}
+
+impl Row {
+    fn read(database: &Database, id: i64) -> Result<Self, DocumentError> {
+        let query = "SELECT base, depth, slots, data, sum FROM page WHERE id = ?1";
+        let mut statement = database.connection.prepare_cached(query)?;
+        Ok(statement.query_row(params![id], |row| {
+            Ok(Self {
+                id: id as u64,
+                ints: [row.get(0)?, row.get(1)?, row.get(2)?],
+                data: row.get(3)?,
+                sum: row.get(4)?,
+            })
+        })?)
     }
-    let slots = i64::from(planes::mask(&content));
-    let sum = page_sum(id as u64, [base, depth, slots], &packed);
-    database
-        .connection
-        .prepare_cached("UPDATE page SET data = ?2, sum = ?3 WHERE id = ?1")?
-        .execute(params![id, packed, sum])?;
+
+    /// Its data and sum where they get smaller. What is compressed is the same at every level, so no page
+    /// that it is a difference to is read.
+    fn smaller(&self) -> Result<Option<(Vec<u8>, i64)>, DocumentError> {
+        let damaged = |what: &str| DocumentError::Damaged(format!("page {} {what}", self.id));
+        if page_sum(self.id, self.ints, &self.data) != self.sum {
+            return Err(damaged("does not match its checksum"));
+        }
+        let packed = planes::repack(self.ints[2] as u32, &self.data, planes::PACKED_LEVEL);
+        let packed = packed.map_err(|what| damaged(&what))?;
+        let sum = page_sum(self.id, self.ints, &packed);
+        Ok((packed.len() < self.data.len()).then_some((packed, sum)))
+    }
+}
+
+/// Compresses pages anew, on all cores.
+fn compress(database: &Database, ids: &[i64]) -> Result<(), DocumentError> {
+    let rows = ids.iter().map(|id| Row::read(database, *id));
+    let rows = rows.collect::<Result<Vec<Row>, _>>()?;
+    let next = AtomicUsize::new(0);
+    let work = || -> Result<Vec<_>, DocumentError> {
+        let mut smaller = Vec::new();
+        while let Some(row) = rows.get(next.fetch_add(1, Relaxed)) {
+            smaller.extend(row.smaller()?.map(|packed| (row.id, packed)));
+        }
+        Ok(smaller)
+    };
+    let cores = std::thread::available_parallelism().map_or(1, usize::from);
+    let smaller: Result<Vec<_>, DocumentError> = std::thread::scope(|scope| {
+        let others: Vec<_> = (1..cores).map(|_| scope.spawn(work)).collect();
+        let mut smaller = work()?;
+        for other in others {
+            let panicked = |_| DocumentError::Other("internal error: packing panicked".to_owned());
+            smaller.extend(other.join().map_err(panicked)??);
+        }
+        Ok(smaller)
+    });
+    for (id, (data, sum)) in smaller? {
+        database
+            .connection
+            .prepare_cached("UPDATE page SET data = ?2, sum = ?3 WHERE id = ?1")?
+            .execute(params![id as i64, data, sum])?;
+    }
     Ok(())
 }

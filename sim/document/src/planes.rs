@@ -71,6 +71,19 @@ pub fn encode(planes: &Planes, base: Option<&Planes>, level: i32) -> std::io::Re
     zstd::bulk::compress(&shuffled, level)
 }
 
+/// The same planes, of the slots of `mask`, at another level of zstd.
+///
+/// # Errors
+/// What is wrong with the bytes, in words.
+pub fn repack(mask: u32, bytes: &[u8], level: i32) -> Result<Vec<u8>, String> {
+    let length = (mask & ((1 << SLOTS) - 1)).count_ones() as usize * TILE_CELLS * 4;
+    let shuffled = zstd::bulk::decompress(bytes, length).map_err(|error| error.to_string())?;
+    if shuffled.len() != length {
+        return Err(format!("{} bytes instead of {length}", shuffled.len()));
+    }
+    zstd::bulk::compress(&shuffled, level).map_err(|error| error.to_string())
+}
+
 /// Reads planes of the slots of `mask`.
 ///
 /// # Errors
@@ -143,6 +156,8 @@ mod tests {
                 let other = decode(mask(&now[..last].to_vec()), &bytes, base);
                 prop_assert!(other.is_err(), "a wrong mask is seen");
             }
+            let packed = repack(mask(&now), &bytes, PACKED_LEVEL).expect("whole");
+            prop_assert_eq!(decode(mask(&now), &packed, base), Ok(now.clone()));
         }
 
         #[test]

@@ -2,6 +2,7 @@
 //! and who waits for a page.
 
 use std::collections::BTreeMap;
+use std::path::PathBuf;
 use std::sync::atomic::AtomicU64;
 use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError, mpsc};
 
@@ -52,6 +53,10 @@ pub(crate) struct Queues {
     pub(crate) broken: bool,
     pub(crate) fault: String,
     pub(crate) help: &'static str,
+    /// What the painter has to know of the file, though all is written, and what to do.
+    pub(crate) notice: Option<(String, &'static str)>,
+    /// Where the painting went on when its file was gone.
+    pub(crate) went_to: Option<PathBuf>,
 }
 
 /// Where the painter's threads and the document's meet.

@@ -228,6 +228,8 @@ fn write(
     rest::versions(&gathered, &mut kept, shelves, &mut salvage, database)?;
     rest::journal(&gathered, &mut sequencer, base, &mut salvage, database)?;
     kept.next_page = kept.next_page.max(stock.next);
+    // What is lost is not missed again.
+    kept.rows = None;
     for (key, state) in [
         ("painting", serde_json::to_string(&kept)?),
         ("sequencer", serde_json::to_string(&sequencer)?),

@@ -1,6 +1,8 @@
 //! The thread that owns a painting's file: it writes what was handed over and reads pages that left
 //! memory. Who waits for a page comes first.
 
+mod file;
+
 use std::path::{Path, PathBuf};
 use std::sync::atomic::Ordering::SeqCst;
 use std::sync::{Arc, PoisonError};
@@ -13,6 +15,7 @@ use crate::error::DocumentError;
 use crate::journal;
 use crate::moving::{self, Move};
 use crate::queues::{End, Fetch, Life, Shared};
+use crate::watch::{Found, Watch};
 use crate::writing::{Moment, ShownTile, Writer};
 
 /// Accepted things are in the file after this long.
@@ -37,11 +40,13 @@ pub(crate) struct Thread {
     first: bool,
     /// What had been accepted when a move was asked for is in the file.
     committed_for_move: bool,
+    watch: Watch,
     /// Number of the newest tile version of the moment that the file has.
     kept_versions: u64,
     last_commit: Instant,
     moment: Tries,
     journal: Tries,
+    file: Tries,
 }
 
 /// How writing goes.
@@ -66,6 +71,8 @@ enum Work {
     Show(Vec<ShownTile>),
     Commit(Vec<Record>),
     Move(Move),
+    /// Nothing but to see that the file is there.
+    Look,
     Close,
 }
 
@@ -85,10 +92,12 @@ impl Thread {
             writes,
             first: false,
             committed_for_move: false,
+            watch: Watch::new(path),
             kept_versions,
             last_commit: Instant::now(),
             moment: Tries::default(),
             journal: Tries::default(),
+            file: Tries::default(),
         }
     }
 
@@ -111,6 +120,12 @@ impl Thread {
             true => Err(DocumentError::Missing),
             false => Database::open(path, Access::Paint, None).map(|(database, _)| database),
         };
+        if let Found::Gone(_) = self.watch.look() {
+            let rescued = moving::rescue(&self.database, &order.to, order.replace)
+                .and_then(|()| self.go_to(&order.to));
+            order.answer.send(rescued).ok();
+            return Ok(self);
+        }
         let moved = self.database.close().and_then(|()| {
             moving::put(&self.path, &order)?;
             open(&order.to).inspect_err(|_| moving::take_back(&self.path, &order))
@@ -123,7 +138,13 @@ impl Thread {
             ),
         };
         match opened {
-            Ok((database, path)) => (self.database, self.path) = (database, path),
+            Ok((database, path)) => {
+                self.watch = Watch::new(&path);
+                (self.database, self.path) = (database, path);
+                if outcome.is_ok() {
+                    self.settled();
+                }
+            }
             Err(error) => {
                 let mut queues = self.shared.lock();
                 queues.broken = true;
@@ -142,7 +163,13 @@ impl Thread {
     pub(crate) fn run(mut self) -> Result<(), DocumentError> {
         let _end = End(Arc::clone(&self.shared));
         loop {
-            match self.next() {
+            let work = self.next();
+            if self.writes && !matches!(work, Work::Fetch) {
+                let hurry = matches!(work, Work::Close);
+                self.see_to_the_file(hurry);
+            }
+            match work {
+                Work::Look => {}
                 Work::Fetch => serve(&self.shared, &self.database),
                 Work::Keep(moment) => self.keep(*moment),
                 Work::Show(tiles) => self.show(&tiles),
@@ -156,6 +183,10 @@ impl Thread {
             let left = queues.moment.is_some() || !queues.records.is_empty();
             (queues.fault.clone(), left, queues.broken)
         };
+        if self.file.failed.is_some() {
+            self.database.abandon();
+            return Err(DocumentError::Unwritten(fault));
+        }
         if broken || !self.writes {
             // Who only reads changes nothing, and a damaged one's journal may hold what is to be
             // recovered.
@@ -233,7 +264,11 @@ impl Thread {
                 .shared
                 .bell
                 .wait_timeout(queues, wait.max(Duration::from_millis(1)));
-            (queues, _) = waited.unwrap_or_else(PoisonError::into_inner);
+            let timed_out;
+            (queues, timed_out) = waited.unwrap_or_else(PoisonError::into_inner);
+            if self.writes && timed_out.timed_out() {
+                return Work::Look;
+            }
         }
     }
 
@@ -337,7 +372,8 @@ impl Thread {
 
     fn well(&mut self, part: Part) {
         let failed = self.tries(part).failed.take().is_some();
-        if failed && self.moment.failed.is_none() && self.journal.failed.is_none() {
+        let all = [&self.moment, &self.journal, &self.file];
+        if failed && all.iter().all(|part| part.failed.is_none()) {
             tracing::info!("the painting is written again");
             let mut queues = self.shared.lock();
             if !queues.broken {
@@ -372,6 +408,7 @@ impl Thread {
         match part {
             Part::Moment => &mut self.moment,
             Part::Journal => &mut self.journal,
+            Part::File => &mut self.file,
         }
     }
 }
@@ -381,6 +418,7 @@ impl Thread {
 enum Part {
     Moment,
     Journal,
+    File,
 }
 
 /// Time of the processor that this thread has had.

@@ -64,6 +64,78 @@ fn another_programs_database_stays_as_it_is() {
     assert_eq!(names.count(), 1, "nothing lies beside it");
 }
 
+/// Changes the rows of a closed painting.
+fn harmed(path: &Path, statement: &str) {
+    let open = Connection::open(path).expect("opened");
+    assert!(open.execute(statement, params![]).expect("changed") > 0);
+    open.close().expect("closed");
+}
+
+#[test]
+fn a_painting_that_turns_out_to_be_damaged_leaves_no_journal() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = folder.path().join("a.maul");
+    painted(&path);
+    harmed(&path, "UPDATE page SET sum = sum + 1");
+    let settings = DocumentSettings::new(&path, Access::Paint);
+    let (document, opened) = Document::open(&settings).expect("its rows are there");
+    let opened = opened.expect("a painting");
+    let since = opened.kept().versions;
+    let mut kept = opened.sequencer().expect("nothing was read");
+    kept.painting_mut().keep("before").expect("kept");
+    document.keep(moment(&mut kept, since));
+    document.flush();
+    assert!(
+        path.with_extension("maul-wal").exists(),
+        "a fault would pass"
+    );
+    print(&mut kept);
+    assert!(document.pager().fault().is_some(), "it is damaged");
+    document.close().ok();
+    let names = std::fs::read_dir(folder.path()).expect("a folder");
+    assert_eq!(names.count(), 1, "nothing lies beside it");
+}
+
+#[test]
+fn rows_that_were_deleted_are_missed() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let checked = |statement: &str| {
+        let path = folder.path().join("a.maul");
+        std::fs::remove_file(&path).ok();
+        painted(&path);
+        if !statement.is_empty() {
+            harmed(&path, statement);
+        }
+        let settings = DocumentSettings::new(&path, Access::Read);
+        let (document, opened) = Document::open(&settings).expect("it can be opened");
+        let checked = opened.expect("a painting").check();
+        document.close().expect("closed");
+        checked.map_err(|error| error.to_string())
+    };
+    assert_eq!(checked(""), Ok(()));
+    for (statement, what) in [
+        (
+            "DELETE FROM tile WHERE place = (SELECT max(place) FROM tile)",
+            "tiles",
+        ),
+        ("DELETE FROM tile", "tiles"),
+        (
+            "DELETE FROM step WHERE id = (SELECT max(id) FROM step)",
+            "steps",
+        ),
+        (
+            "DELETE FROM step WHERE id = (SELECT min(id) FROM step)",
+            "steps",
+        ),
+    ] {
+        let error = checked(statement).expect_err(statement);
+        assert!(
+            error.contains("are there") && error.contains(what),
+            "{error}"
+        );
+    }
+}
+
 #[test]
 fn looking_at_a_painting_that_was_not_closed_leaves_its_journal() {
     let folder = tempfile::tempdir().expect("a folder");

@@ -1,7 +1,7 @@
 //! An export beside the painting: on a thread of its own, of the painting as it was when it was asked for.
 
 use std::fs::File;
-use std::io::{BufWriter, Error, Seek, SeekFrom, Write};
+use std::io::{BufWriter, Error, ErrorKind, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicU32, Ordering::SeqCst};
@@ -15,7 +15,7 @@ use maulstick_optics::icc::Profile;
 use maulstick_paint::Painting;
 use maulstick_paint::painting::PaintRefusal;
 use maulstick_paint::picture::{Depth, Export};
-use maulstick_rig::files::{check_writable, write_whole};
+use maulstick_rig::files::{Kind, write_whole};
 use maulstick_types::command::{ExportOrder, Outcome};
 use maulstick_types::paint::ExportStatus;
 
@@ -42,8 +42,7 @@ impl Exporter {
     /// working space where the order says nothing.
     ///
     /// # Errors
-    /// [`PaintRefusal`] for an unknown format, profile or gamut, for a file that cannot be written, and
-    /// while another export goes on.
+    /// [`PaintRefusal`] for an unknown format, profile or gamut, and while another export goes on.
     pub fn begin(
         &mut self,
         asker: Asker,
@@ -60,7 +59,6 @@ impl Exporter {
         }
         let order = order(asked, usual)?;
         let path = PathBuf::from(&asked.path);
-        check_writable(&path).map_err(|error| unwritable(&path, &error))?;
         let (share, stop) = <(Arc<AtomicU32>, Arc<AtomicBool>)>::default();
         let (to_node, outcome) = channel();
         let (shown, stopped) = (Arc::clone(&share), Arc::clone(&stop));
@@ -139,11 +137,25 @@ impl Drop for Running {
     }
 }
 
-fn unwritable(path: &Path, error: &Error) -> PaintRefusal {
-    PaintRefusal::new(
-        format!("cannot write {}: {error}", path.display()),
-        "check that the folder exists and can be written to",
-    )
+/// The kind of file that a format is.
+#[must_use]
+pub fn kind_of(format: Format) -> Kind {
+    match format {
+        Format::Png | Format::Height => Kind::Png,
+        Format::Exr => Kind::Exr,
+        Format::Ora => Kind::Ora,
+        Format::Stl => Kind::Stl,
+    }
+}
+
+pub(crate) fn unwritable(path: &Path, error: &Error) -> PaintRefusal {
+    let help = match error.kind() {
+        ErrorKind::AlreadyExists | ErrorKind::InvalidInput | ErrorKind::ResourceBusy => {
+            "give another name"
+        }
+        _ => "check that the folder exists and can be written to",
+    };
+    PaintRefusal::new(format!("cannot write {}: {error}", path.display()), help)
 }
 
 /// What is asked for, with all that the order leaves open.
@@ -163,13 +175,6 @@ fn order(asked: &ExportOrder, usual: &Export) -> Result<Order, PaintRefusal> {
             "end the name in .png, .exr, .ora or .stl, or say which format: png, exr, ora, height, stl",
         )
     })?;
-    const DATABASE: [&str; 3] = ["-wal", "-shm", "-journal"];
-    if DATABASE.iter().any(|ending| asked.path.ends_with(ending)) {
-        return Err(PaintRefusal::new(
-            format!("{} may belong to a painting", asked.path),
-            "give the export another name",
-        ));
-    }
     let profile = match asked.profile.as_str() {
         "" => Arc::clone(&usual.profile),
         "srgb" => Arc::new(Profile::of(RgbSpace::Srgb)),
@@ -254,7 +259,7 @@ fn write(
         share.store(shown.to_bits(), SeqCst);
     };
     let mut made = Ok(String::new());
-    let written = write_whole(path, |file| {
+    let written = write_whole(path, kind_of(order.format), |file| {
         made = order.write(painting, &mut Stoppable { file, stop }, &mut tell);
         match &made {
             Ok(_) if !stop.load(SeqCst) => Ok(()),

@@ -60,6 +60,7 @@ impl Keeper {
     /// Hands over what was accepted since, and each second a moment. The journal of the sequencer was
     /// taken before.
     pub fn turn(&mut self, sequencer: &mut Sequencer, now_ns: u64) {
+        self.document.follow();
         self.document.record(sequencer.take_records());
         let due = now_ns >= self.kept_ns + PERIOD_NS || now_ns < self.kept_ns;
         if due && sequencer.serial() != self.serial && self.document.is_ready() {

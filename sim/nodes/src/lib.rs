@@ -12,6 +12,7 @@
 //! | [`frames`] | pictures of what changed, for whoever asks |
 //! | [`keeper`] | the painting in its document |
 //! | [`exporter`] | the painting for other programs, beside the painting |
+//! | [`snapshots`] | its picture as a file, beside the painting |
 //! | [`thumbnails`] | small pictures of it and of its versions |
 //! | [`answers`] | what was answered to whom |
 //! | [`offline`] | the same brush and paint in one process, without a bus |
@@ -29,6 +30,7 @@ pub mod keeper;
 pub mod offline;
 pub mod outbox;
 pub mod paint_node;
+pub mod snapshots;
 pub mod thumbnails;
 pub mod ticker;
 pub mod worker;

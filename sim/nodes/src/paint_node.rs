@@ -6,8 +6,6 @@ mod saving;
 mod status;
 mod time;
 
-pub use commands::write_snapshot;
-
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 use std::sync::Arc;
@@ -31,6 +29,7 @@ use crate::Keeper;
 use crate::answers::Answers;
 use crate::exporter::Exporter;
 use crate::frames::Feed;
+use crate::snapshots::Snapshots;
 use crate::thumbnails::Thumbnails;
 use crate::ticker::Ticker;
 use feeding::FEED_PERIOD_NS;
@@ -52,6 +51,7 @@ pub struct PaintNode {
     commands: Server,
     answers: Answers,
     exporter: Exporter,
+    snapshots: Snapshots,
     saving: Option<Saving>,
     /// Its document has not got the name yet that the painter gave it.
     unnamed: bool,
@@ -133,6 +133,7 @@ impl PaintNode {
             commands: b.serve(&topics.command("paint"), 256, wake)?,
             answers: Answers::default(),
             exporter: Exporter::default(),
+            snapshots: Snapshots::default(),
             saving: None,
             unnamed: false,
             thumbnails: Thumbnails::new(b, &topics.thumbnail(), wake, me)?,
@@ -208,6 +209,8 @@ impl PaintNode {
     /// # Errors
     /// Why something could not be written, or not under that name.
     pub fn close(mut self) -> Result<(), DocumentError> {
+        // Snapshots may show pages that only the document has.
+        drop(std::mem::take(&mut self.snapshots));
         let arrived = self.arrive();
         let closed = match self.keeper.take() {
             Some(keeper) => keeper.close(&mut self.sequencer),
@@ -401,5 +404,7 @@ impl std::fmt::Debug for PaintNode {
 
 #[cfg(test)]
 mod beside_tests;
+#[cfg(test)]
+mod files_tests;
 #[cfg(test)]
 mod tests;

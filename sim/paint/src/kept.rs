@@ -76,6 +76,20 @@ pub struct KeptPainting {
     /// How far time went, and what dries.
     #[serde(default)]
     pub clock: Clock,
+    /// How many rows the document has of it; none in paintings of before they were counted.
+    #[serde(default)]
+    pub rows: Option<KeptRows>,
+}
+
+/// How many rows a document has of what the painter made.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub struct KeptRows {
+    /// Tiles that were ever painted on.
+    pub tiles: u64,
+    /// Steps of the history, those that are not finished among them.
+    pub steps: u64,
+    /// Named versions.
+    pub versions: u64,
 }
 
 fn quota() -> u64 {

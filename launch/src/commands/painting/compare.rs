@@ -8,6 +8,7 @@ use maulstick_paint::Sequencer;
 use maulstick_paint::painting::NOW;
 use maulstick_paint::picture::{Picture, picture};
 use maulstick_rig::Fault;
+use maulstick_rig::files::Kind;
 use maulstick_types::command::Command;
 use maulstick_types::scene::CANVAS;
 use serde_json::json;
@@ -17,6 +18,8 @@ use crate::document::{read, wrong};
 use crate::outputs::{UsedFile, check_outputs};
 use crate::performance::refused;
 
+/// Bytes of a cell in two pictures, and in the one that has both and their difference.
+const PIXEL_BYTES: u64 = 5 * 3;
 /// A difference that is shown as white, ΔE₀₀.
 const WHITE: f64 = 20.0;
 
@@ -30,10 +33,15 @@ pub(super) fn compare(
     output: &Path,
     as_json: bool,
 ) -> Result<i32, Fault> {
-    let painting: Vec<_> = UsedFile::painting(path).collect();
-    check_outputs(&[UsedFile::new("the picture", output)], &painting)?;
+    check_outputs(
+        &[UsedFile::new("the picture", output).of(Kind::Png)],
+        &[UsedFile::painting(path)],
+    )?;
     let (document, opened) = read(path)?;
     let mut sequencer = opened.sequencer().map_err(refused)?;
+    let cells = sequencer.painting().scene().surfaces[0].cells;
+    let cells = u64::from(cells[0]) * u64::from(cells[1]);
+    crate::memory::check("the comparison", cells * PIXEL_BYTES)?;
     sequencer.ask(Command::Mark).map_err(refused)?;
     let pictures = [seen(&mut sequencer, one)?, seen(&mut sequencer, other)?];
     if let Some(what) = document.pager().fault() {

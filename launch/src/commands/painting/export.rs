@@ -6,6 +6,7 @@ use clap::Args;
 use clap::builder::PossibleValuesParser;
 use indicatif::ProgressBar;
 use maulstick_exchange::{ExchangeError, Format, Order};
+use maulstick_nodes::exporter::kind_of;
 use maulstick_paint::picture::Depth;
 use maulstick_rig::config::ViewSection;
 use maulstick_rig::{Fault, files};
@@ -93,10 +94,13 @@ pub(super) fn run(options: &ExportOptions) -> Result<i32, Fault> {
     };
     let look = export(&view, "--profile, --gamut")?;
     let out = &options.output;
-    let inputs: Vec<_> = UsedFile::painting(&options.file)
+    let inputs: Vec<_> = std::iter::once(UsedFile::painting(&options.file))
         .chain(UsedFile::given("the profile", view.file()))
         .collect();
-    check_outputs(&[UsedFile::new("the export", out)], &inputs)?;
+    check_outputs(
+        &[UsedFile::new("the export", out).of(kind_of(format))],
+        &inputs,
+    )?;
     let (_document, opened) = read(&options.file)?;
     let mut sequencer = opened.sequencer().map_err(refused)?;
     let painting = sequencer.painting_mut();
@@ -112,7 +116,9 @@ pub(super) fn run(options: &ExportOptions) -> Result<i32, Fault> {
         exaggeration: options.exaggeration,
         step: options.step,
     };
-    let said = write(options, &bar, |file| order.write(painting, file, &mut tell))?;
+    let said = write(options, format, &bar, |file| {
+        order.write(painting, file, &mut tell)
+    })?;
     if !said.is_empty() {
         say!("{said}");
     }
@@ -123,11 +129,12 @@ pub(super) fn run(options: &ExportOptions) -> Result<i32, Fault> {
 /// Writes the file, whole or not at all.
 fn write<T>(
     options: &ExportOptions,
+    format: Format,
     bar: &ProgressBar,
     fill: impl FnOnce(&mut std::io::BufWriter<std::fs::File>) -> Result<T, ExchangeError>,
 ) -> Result<T, Fault> {
     let (mut made, mut failed) = (None, None);
-    let written = files::write_whole(&options.output, |file| {
+    let written = files::write_whole(&options.output, kind_of(format), |file| {
         match fill(file) {
             Ok(done) => made = Some(done),
             Err(ExchangeError::Write(error)) => return Err(error),

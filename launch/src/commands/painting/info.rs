@@ -39,6 +39,9 @@ pub(super) fn run(options: &InfoOptions) -> Result<i32, Fault> {
         checked.map_err(|error| wrong(path, &error))?;
     }
     let (document, opened) = read(path)?;
+    if options.check {
+        opened.check().map_err(|error| wrong(path, &error))?;
+    }
     let pending = opened.pending();
     let mut sequencer = opened.sequencer().map_err(refused)?;
     let journal = sequencer.journal_next();

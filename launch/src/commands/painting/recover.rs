@@ -6,7 +6,7 @@ use clap::Args;
 use maulstick_document::{DocumentError, Salvage, part_of, recover};
 use maulstick_paint::history::Place;
 use maulstick_rig::Fault;
-use maulstick_rig::files::{Unfinished, check_writable};
+use maulstick_rig::files::{Kind, Unfinished, check_writable};
 use maulstick_types::scene::{CANVAS, PALETTE};
 use serde_json::json;
 
@@ -39,7 +39,7 @@ pub(super) fn run(options: &RecoverOptions) -> Result<i32, Fault> {
         return Err(wrong(output, &DocumentError::Taken));
     }
     std::fs::File::open(path).map_err(|error| Fault::reading(path, &error))?;
-    check_writable(output).map_err(|error| Fault::writing(output, &error))?;
+    check_writable(output, Kind::Own).map_err(|error| Fault::writing(output, &error))?;
     let part = part_of(output);
     let beside = |suffix: &str| PathBuf::from(format!("{}{suffix}", part.display()));
     let _unfinished = Unfinished::new(["", "-wal", "-journal"].map(beside).into());

@@ -115,12 +115,30 @@ pub(super) fn is_same(one: &Path, other: &Path) -> bool {
 }
 
 impl Supervisor {
+    /// A painting whose file was gone goes on in another one: there it is found again after a crash. One
+    /// status alone may be of the node before.
+    fn follow_painting(&mut self, path: &str) {
+        let before = self.orders.status.as_ref();
+        let is_said = before.is_some_and(|before| before.path == path) && !path.is_empty();
+        let document = self.config.paint.document.as_deref();
+        if !is_said || self.switch.is_some() || document.is_none_or(|own| own == Path::new(path)) {
+            return;
+        }
+        tracing::info!("painting in {path}");
+        self.config.paint.document = Some(path.into());
+        if let Err(fault) = self.write_config() {
+            tracing::warn!("{}: {}", fault.place.unwrap_or_default(), fault.what);
+        }
+    }
+
     /// Answers what is asked of the rig.
     pub(super) fn take_orders(&mut self) {
         let bus = Arc::clone(&self.bus);
         while let Some(status) = self.orders.statuses.try_recv() {
+            self.follow_painting(&status.message.path);
             self.orders.status = Some(status.message);
             self.orders.heard += 1;
+            self.has_spoken();
         }
         while let Some(request) = self.orders.server.try_recv() {
             let orders = &mut self.orders;

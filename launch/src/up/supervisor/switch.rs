@@ -11,7 +11,7 @@ use maulstick_document::DocumentError;
 use maulstick_rig::Fault;
 use maulstick_rig::commander::Commander;
 use maulstick_rig::config::{RigConfig, is_path};
-use maulstick_rig::files::{check_writable, write_whole};
+use maulstick_rig::files::{Kind, check_writable, write_whole};
 use maulstick_rig::member::CONFIG_FILE;
 use maulstick_types::Mixture;
 use maulstick_types::command::{Command, NewCanvas, Outcome};
@@ -198,7 +198,7 @@ fn begun(
         if path.exists() {
             return Err(wrong(path, &DocumentError::Taken));
         }
-        check_writable(path).map_err(|error| Fault::writing(path, &error))?;
+        check_writable(path, Kind::Own).map_err(|error| Fault::writing(path, &error))?;
     }
     config.paint.document = path;
     let library = library_from(config.paint.paints.as_deref())?;
@@ -437,10 +437,10 @@ impl Supervisor {
     }
 
     /// Writes the settings where the nodes read them.
-    fn write_config(&self) -> Result<(), Fault> {
+    pub(super) fn write_config(&self) -> Result<(), Fault> {
         let [path, _] = self.settings();
         let text = self.config.to_toml()?;
-        write_whole(&path, |file| {
+        write_whole(&path, Kind::Own, |file| {
             use std::io::Write as _;
             file.write_all(text.as_bytes())
         })

@@ -31,16 +31,16 @@ fn painting() -> Painting {
 }
 
 /// A node with a client.
-struct Rig {
+pub(super) struct Rig {
     net: MemoryNet,
-    client: MemoryBus,
-    topics: Topics,
-    node: PaintNode,
+    pub(super) client: MemoryBus,
+    pub(super) topics: Topics,
+    pub(super) node: PaintNode,
     number: u64,
 }
 
 impl Rig {
-    fn new() -> Self {
+    pub(super) fn new() -> Self {
         let net = MemoryNet::new(1, 1_000_000_000, Faults::default());
         let bus: Arc<dyn Bus> = Arc::new(net.bus());
         let topics = Topics::new("t");
@@ -54,7 +54,7 @@ impl Rig {
         }
     }
 
-    fn turn(&mut self) {
+    pub(super) fn turn(&mut self) {
         self.net.advance(1_000_000);
         self.node.turn().expect("a turn");
         self.net.advance(1_000);
@@ -68,7 +68,7 @@ impl Rig {
             .expect("asked")
     }
 
-    fn ask<Q: Message, A: Message>(&mut self, topic: &str, question: &Q) -> A {
+    pub(super) fn ask<Q: Message, A: Message>(&mut self, topic: &str, question: &Q) -> A {
         let pending = self.begin(topic, question);
         let give_up = Instant::now() + Duration::from_secs(120);
         loop {
@@ -98,14 +98,14 @@ impl Rig {
         }
     }
 
-    fn done(&mut self, command: Command) -> String {
+    pub(super) fn done(&mut self, command: Command) -> String {
         match self.command(command) {
             Outcome::Done { detail, .. } => detail,
             other => panic!("{other:?}"),
         }
     }
 
-    fn refused(&mut self, command: Command, words: &[&str]) {
+    pub(super) fn refused(&mut self, command: Command, words: &[&str]) {
         let Outcome::Refused { what, help } = self.command(command) else {
             panic!("done, though it should not be");
         };
@@ -113,7 +113,7 @@ impl Rig {
         assert!(words.iter().all(|word| said.contains(word)), "{said}");
     }
 
-    fn fill(&mut self, paint: &str) {
+    pub(super) fn fill(&mut self, paint: &str) {
         self.done(Command::Fill {
             surface: CANVAS,
             mixture: Mixture::pure(paint),
@@ -128,7 +128,7 @@ impl Rig {
     }
 }
 
-fn save_as(path: &Path, replace: bool) -> Command {
+pub(super) fn save_as(path: &Path, replace: bool) -> Command {
     Command::SaveAs {
         path: path.display().to_string(),
         replace,
@@ -136,7 +136,7 @@ fn save_as(path: &Path, replace: bool) -> Command {
 }
 
 /// The painting of a file, and how many steps it can undo.
-fn kept(path: &Path) -> (Painting, usize) {
+pub(super) fn kept(path: &Path) -> (Painting, usize) {
     let settings = DocumentSettings::new(path, Access::Read);
     let (_document, opened) = Document::open(&settings).expect("whole");
     let mut painting = opened

@@ -3,18 +3,15 @@
 use std::path::Path;
 
 use maulstick_bus::Request;
+use maulstick_paint::Effect;
 use maulstick_paint::painting::PaintRefusal;
-use maulstick_paint::picture::{Export, picture_for};
 use maulstick_paint::sequencer::Replied;
-use maulstick_paint::{Effect, Painting};
-use maulstick_rig::files::write_whole;
 use maulstick_types::advice::parted;
 use maulstick_types::command::{Command, CommandReply, CommandRequest, Outcome};
-use maulstick_types::scene::CANVAS;
 use maulstick_types::{Flags, encode};
 
 use super::PaintNode;
-use super::saving::is_same;
+use crate::snapshots::Snapshot;
 
 impl PaintNode {
     pub(super) fn serve_commands(&mut self, now_ns: u64) {
@@ -26,6 +23,7 @@ impl PaintNode {
             let number = asked.number;
             let outcome = match self.beside(&asked, now_ns) {
                 Some(outcome) => outcome,
+                None if self.snapshots.has((asked.client, number)) => Outcome::Waiting,
                 None => {
                     let replied = self.sequencer.command(asked);
                     self.complete(replied)
@@ -97,14 +95,6 @@ impl PaintNode {
         let asker = (asked.client, asked.number);
         match &asked.command {
             Command::Export { order } => {
-                // To look into the painting's own file would drop this process's lock of it.
-                let path = Path::new(&order.path);
-                if self.document_path().is_some_and(|own| is_same(own, path)) {
-                    return Err(PaintRefusal::new(
-                        format!("{} is the painting itself", order.path),
-                        "give the export another name",
-                    ));
-                }
                 let still = self.sequencer.painting_mut().still();
                 self.exporter
                     .begin(asker, order, still, &self.export, now_ns)?;
@@ -126,6 +116,9 @@ impl PaintNode {
         if let Some(((client, number), outcome)) = self.exporter.ended() {
             self.answers.keep(client, number, outcome);
         }
+        if let Some(((client, number), outcome)) = self.snapshots.turn() {
+            self.sequencer.remember(client, number, outcome);
+        }
         self.go_on_saving(now_ns);
     }
 
@@ -135,39 +128,22 @@ impl PaintNode {
             return replied.outcome;
         };
         let painting = self.sequencer.painting_mut();
-        let ledger = ledger.as_deref().map(Path::new);
-        let written = write_snapshot(painting, Path::new(path), ledger, &self.export);
-        let outcome = match written {
-            Ok(()) => replied.outcome,
-            Err((path, error)) => Outcome::Refused {
-                what: format!("cannot write {path}: {error}"),
-                help: "check that the folder exists and can be written to".to_owned(),
-            },
-        };
-        self.sequencer
-            .remember(replied.client, replied.number, outcome.clone());
-        outcome
+        let ledger = ledger.as_ref();
+        let added = self.snapshots.add(Snapshot {
+            asker: (replied.client, replied.number),
+            path: path.into(),
+            ledger: ledger.map(|path| (path.into(), painting.report())),
+            still: painting.still(),
+            export: self.export.clone(),
+        });
+        match added {
+            Ok(()) => Outcome::Waiting,
+            Err(PaintRefusal { what, help }) => {
+                let outcome = Outcome::Refused { what, help };
+                self.sequencer
+                    .remember(replied.client, replied.number, outcome.clone());
+                outcome
+            }
+        }
     }
-}
-
-/// Writes the canvas and, if asked, the ledger; on failure says which file.
-///
-/// # Errors
-/// The path and what the system says.
-pub fn write_snapshot(
-    painting: &mut Painting,
-    path: &Path,
-    ledger: Option<&Path>,
-    export: &Export,
-) -> Result<(), (String, std::io::Error)> {
-    let name = |path: &Path| path.display().to_string();
-    if let Some(ledger) = ledger {
-        let report = painting.report();
-        write_whole(ledger, |file| {
-            Ok(serde_json::to_writer_pretty(file, &report)?)
-        })
-        .map_err(|error| (name(ledger), error))?;
-    }
-    let picture = picture_for(painting, CANVAS, export);
-    write_whole(path, |file| picture.encode_png(file)).map_err(|error| (name(path), error))
 }

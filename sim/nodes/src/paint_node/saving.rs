@@ -43,7 +43,7 @@ fn refused(path: &Path, error: &DocumentError) -> PaintRefusal {
 }
 
 /// Whether two names lead to the same file.
-pub(super) fn is_same(one: &Path, other: &Path) -> bool {
+fn is_same(one: &Path, other: &Path) -> bool {
     let real = |path: &Path| std::fs::canonicalize(path).ok();
     one == other || real(one).is_some_and(|path| real(other) == Some(path))
 }

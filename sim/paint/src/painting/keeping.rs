@@ -16,7 +16,7 @@ use crate::embedded::Embedded;
 use crate::head::Waypoint;
 use crate::history::{History, Place, Rest, Step};
 use crate::impasto::Impasto;
-use crate::kept::{KeptBrush, KeptOpen, KeptPainting};
+use crate::kept::{KeptBrush, KeptOpen, KeptPainting, KeptRows};
 use crate::light::studio_settings;
 use crate::load::BrushLoad;
 use crate::look::Look;
@@ -89,8 +89,13 @@ impl Painting {
                 None => gone_named.push(name),
             }
         }
-        let mut tiles = Vec::new();
+        let (mut tiles, mut all_tiles) = (Vec::new(), 0);
         for sheet in &self.sheets {
+            all_tiles += sheet
+                .store
+                .iter()
+                .filter(|(_, version)| version.number > 0)
+                .count();
             let changed = sheet
                 .store
                 .iter()
@@ -119,6 +124,11 @@ impl Painting {
             span_ns: self.span_ns,
             quota: self.quota,
             clock: self.clock.clone(),
+            rows: Some(KeptRows {
+                tiles: all_tiles as u64,
+                steps: (self.history.steps().count() + self.history.open().count()) as u64,
+                versions: self.named.len() as u64,
+            }),
         };
         Checkpoint {
             kept,

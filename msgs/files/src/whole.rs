@@ -3,10 +3,13 @@
 use std::fs::File;
 use std::io::{BufWriter, Error, Write as _};
 use std::path::{Path, PathBuf};
+use std::sync::atomic::{AtomicU64, Ordering::Relaxed};
 use std::sync::{Mutex, PoisonError};
 
 use signal_hook::consts::{SIGINT, SIGTERM};
 use signal_hook::iterator::Signals;
+
+use crate::kind::{Kind, destination};
 
 /// Files that are being written and have not their name yet.
 static UNFINISHED: Mutex<Vec<PathBuf>> = Mutex::new(Vec::new());
@@ -58,50 +61,24 @@ pub fn clear_on_signals(code: i32) -> Result<(), Error> {
 /// The name under which a file is written before it takes its own.
 fn beside(path: &Path) -> PathBuf {
     let mut name = path.file_name().unwrap_or_default().to_os_string();
-    name.push(format!(".{}.tmp", std::process::id()));
+    // Two threads may write to one name; the last one has it.
+    static NUMBER: AtomicU64 = AtomicU64::new(0);
+    let number = NUMBER.fetch_add(1, Relaxed);
+    name.push(format!(".{}-{number}.tmp", std::process::id()));
     path.with_file_name(name)
 }
 
-/// Where a file is really written: what a link leads to, not the link.
-fn target(path: &Path) -> PathBuf {
-    std::fs::canonicalize(path).unwrap_or_else(|_| path.to_owned())
-}
-
-/// Whether something that is no file stands there, a device or a pipe: it is written into, and stays.
-fn is_special(path: &Path) -> bool {
-    std::fs::metadata(path).is_ok_and(|found| !found.is_file() && !found.is_dir())
-}
-
-/// Refuses to write over a painting, or another program's database: what it holds would be gone.
-fn spare_databases(path: &Path) -> Result<(), Error> {
-    const DATABASE: &[u8; 16] = b"SQLite format 3\0";
-    let mut head = [0; 16];
-    use std::io::Read as _;
-    let read = File::open(path).and_then(|mut file| file.read_exact(&mut head));
-    match read {
-        Ok(()) if &head == DATABASE => Err(Error::new(
-            std::io::ErrorKind::AlreadyExists,
-            "it is a painting, and nothing is written over one",
-        )),
-        _ => Ok(()),
-    }
-}
-
-/// Writes a file through `fill`: whole under its name, or not at all.
+/// Writes a file of a kind through `fill`: whole under its name, or not at all.
 ///
 /// # Errors
-/// What the file system says; no half-written file is left.
+/// What stands there and may not be written over, or what the file system says; no half-written file is
+/// left.
 pub fn write_whole(
     path: &Path,
+    kind: Kind,
     fill: impl FnOnce(&mut BufWriter<File>) -> Result<(), Error>,
 ) -> Result<(), Error> {
-    if is_special(path) {
-        let mut pipe = BufWriter::new(File::options().write(true).open(path)?);
-        fill(&mut pipe)?;
-        return pipe.flush();
-    }
-    let path = &target(path);
-    spare_databases(path)?;
+    let path = &destination(path, kind)?;
     let beside = beside(path);
     let _unfinished = Unfinished::new(vec![beside.clone()]);
     let write = || {
@@ -116,19 +93,13 @@ pub fn write_whole(
     })
 }
 
-/// Sees, before the work that fills it, whether a file can be written.
+/// Sees, before the work that fills it, whether a file of a kind can be written.
 ///
 /// # Errors
-/// What the file system says.
-pub fn check_writable(path: &Path) -> Result<(), Error> {
-    if path.is_dir() {
-        return Err(Error::from(std::io::ErrorKind::IsADirectory));
-    }
-    if is_special(path) {
-        return File::options().write(true).open(path).map(drop);
-    }
-    spare_databases(path)?;
-    let beside = beside(&target(path));
+/// As [`write_whole`].
+pub fn check_writable(path: &Path, kind: Kind) -> Result<(), Error> {
+    let path = &destination(path, kind)?;
+    let beside = beside(path);
     File::create(&beside)?;
     std::fs::remove_file(&beside)
 }
@@ -141,14 +112,14 @@ mod tests {
     fn a_file_is_whole_or_not_there() {
         let folder = tempfile::tempdir().expect("a folder");
         let path = folder.path().join("a.txt");
-        write_whole(&path, |file| file.write_all(b"old")).expect("written");
-        let failed = write_whole(&path, |file| {
+        write_whole(&path, Kind::Own, |file| file.write_all(b"old")).expect("written");
+        let failed = write_whole(&path, Kind::Own, |file| {
             file.write_all(b"half of the ne")?;
             Err(Error::other("the disk is full"))
         });
         assert!(failed.is_err());
         assert_eq!(std::fs::read(&path).expect("there"), b"old");
-        write_whole(&path, |file| file.write_all(b"new")).expect("written");
+        write_whole(&path, Kind::Own, |file| file.write_all(b"new")).expect("written");
         assert_eq!(std::fs::read(&path).expect("there"), b"new");
         assert_eq!(
             std::fs::read_dir(folder.path()).expect("a folder").count(),
@@ -157,7 +128,7 @@ mod tests {
     }
 
     #[test]
-    fn links_and_devices_stay_what_they_are() {
+    fn links_stay_what_they_are() {
         let folder = tempfile::tempdir().expect("a folder");
         let (real, link) = (
             folder.path().join("real.txt"),
@@ -165,18 +136,47 @@ mod tests {
         );
         std::fs::write(&real, "old").expect("written");
         std::os::unix::fs::symlink(&real, &link).expect("a link");
-        write_whole(&link, |file| file.write_all(b"new")).expect("written");
+        write_whole(&link, Kind::Own, |file| file.write_all(b"new")).expect("written");
         assert!(
             std::fs::symlink_metadata(&link)
                 .expect("there")
                 .is_symlink()
         );
         assert_eq!(std::fs::read(&real).expect("there"), b"new");
-        let null = folder.path().join("null");
-        std::os::unix::fs::symlink("/dev/null", &null).expect("a link");
-        check_writable(&null).expect("a device");
-        write_whole(&null, |file| file.write_all(b"gone")).expect("written");
-        assert!(is_special(Path::new("/dev/null")));
+    }
+
+    #[test]
+    fn what_is_no_file_is_refused_and_not_opened() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let at = |name: &str| folder.path().join(name);
+        nix::unistd::mkfifo(&at("pipe"), nix::sys::stat::Mode::S_IRWXU).expect("a pipe");
+        std::os::unix::net::UnixListener::bind(at("socket")).expect("a socket");
+        std::os::unix::fs::symlink("/dev/null", at("null")).expect("a link");
+        std::fs::create_dir(at("folder")).expect("made");
+        // Nobody reads the pipe: whoever opened it to write would wait for ever.
+        for name in ["pipe", "socket", "null", "folder"] {
+            assert!(check_writable(&at(name), Kind::Own).is_err(), "{name}");
+            let written = write_whole(&at(name), Kind::Own, |file| file.write_all(b"gone"));
+            let text = written.expect_err(name).to_string();
+            assert!(text.contains("directory") || text.contains("name a file"));
+        }
+        assert_eq!(
+            std::fs::read_dir(folder.path()).expect("a folder").count(),
+            4
+        );
+    }
+
+    #[test]
+    fn a_link_to_the_journal_of_a_painting_is_refused() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let [journal, link] = ["a.maul-wal", "a.png"].map(|name| folder.path().join(name));
+        std::fs::write(&journal, "frames").expect("written");
+        std::os::unix::fs::symlink(&journal, &link).expect("a link");
+        for path in [&journal, &link] {
+            assert!(check_writable(path, Kind::Own).is_err());
+            assert!(write_whole(path, Kind::Own, |file| file.write_all(b"gone")).is_err());
+        }
+        assert_eq!(std::fs::read(&journal).expect("there"), b"frames");
     }
 
     #[test]
@@ -184,8 +184,8 @@ mod tests {
         let folder = tempfile::tempdir().expect("a folder");
         let path = folder.path().join("a.maul");
         std::fs::write(&path, b"SQLite format 3\0and a painting").expect("written");
-        assert!(check_writable(&path).is_err());
-        let written = write_whole(&path, |file| file.write_all(b"a picture"));
+        assert!(check_writable(&path, Kind::Own).is_err());
+        let written = write_whole(&path, Kind::Own, |file| file.write_all(b"a picture"));
         assert!(
             written
                 .expect_err("refused")
@@ -202,9 +202,9 @@ mod tests {
     #[test]
     fn what_cannot_be_written_is_known_before() {
         let folder = tempfile::tempdir().expect("a folder");
-        assert!(check_writable(&folder.path().join("a.txt")).is_ok());
-        assert!(check_writable(&folder.path().join("none/a.txt")).is_err());
-        assert!(check_writable(folder.path()).is_err());
+        assert!(check_writable(&folder.path().join("a.txt"), Kind::Own).is_ok());
+        assert!(check_writable(&folder.path().join("none/a.txt"), Kind::Own).is_err());
+        assert!(check_writable(folder.path(), Kind::Own).is_err());
         assert_eq!(
             std::fs::read_dir(folder.path()).expect("a folder").count(),
             0

@@ -1,0 +1,214 @@
+//! Kinds of files by their first bytes: a command writes over files of its own kind, and over no others.
+
+use std::io::{Error, ErrorKind};
+use std::path::{Path, PathBuf};
+use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
+
+use crate::open::read_head;
+
+/// A kind of file that commands write.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Kind {
+    /// Picture or height map, PNG.
+    Png,
+    /// OpenEXR.
+    Exr,
+    /// OpenRaster.
+    Ora,
+    /// Binary STL.
+    Stl,
+    /// Ledger of the paint, JSON.
+    Ledger,
+    /// Take, MCAP.
+    Take,
+    /// Paint file of a fit, CSV.
+    Paints,
+    /// Brush file, TOML.
+    Brush,
+    /// Recording of a HID device, text.
+    Recording,
+    /// File that belongs to the program whatever it holds: settings, and what lies in folders of its own.
+    Own,
+}
+
+/// As many first bytes as tell any kind.
+const HEAD: usize = 64;
+/// The first bytes of every SQLite file.
+const DATABASE: &[u8] = b"SQLite format 3\0";
+/// What SQLite adds to the name of a database for the files beside it.
+const COMPANIONS: [&str; 3] = ["-wal", "-shm", "-journal"];
+/// Whether the user asked to write over files of other kinds.
+static OVERWRITE: AtomicBool = AtomicBool::new(false);
+
+/// Lets this process write over files of other kinds, as `--overwrite` asks; over a painting never.
+pub fn allow_overwriting() {
+    OVERWRITE.store(true, Relaxed);
+}
+
+/// Whether a name is one that SQLite keeps the journal of a database under.
+#[must_use]
+pub fn is_companion(path: &Path) -> bool {
+    let name = path.file_name().unwrap_or_default().as_encoded_bytes();
+    COMPANIONS
+        .iter()
+        .any(|ending| name.ends_with(ending.as_bytes()))
+}
+
+impl Kind {
+    /// Its name, with an article.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Png => "a PNG picture",
+            Self::Exr => "an OpenEXR picture",
+            Self::Ora => "an OpenRaster picture",
+            Self::Stl => "an STL solid",
+            Self::Ledger => "a ledger",
+            Self::Take => "a take",
+            Self::Paints => "a fitted paint file",
+            Self::Brush => "a brush file",
+            Self::Recording => "a recording of a device",
+            Self::Own => "a file of Maulstick",
+        }
+    }
+
+    /// Whether a file of `length` bytes that begins with `head` is of this kind.
+    fn has(self, head: &[u8], length: u64) -> bool {
+        match self {
+            Self::Png => head.starts_with(b"\x89PNG\r\n\x1a\n"),
+            Self::Exr => head.starts_with(&[0x76, 0x2f, 0x31, 0x01]),
+            Self::Ora => head.starts_with(b"PK\x03\x04") && has(head, b"mimetypeimage/openraster"),
+            // 80 bytes of header, a count, and 50 bytes a triangle.
+            Self::Stl => length >= 84 && (length - 84).is_multiple_of(50) && !is_text(head),
+            Self::Ledger => head.starts_with(b"{") && has(head, b"\"accounts_m3\""),
+            Self::Take => head.starts_with(b"\x89MCAP0\r\n"),
+            Self::Paints => head.starts_with(b"# Kubelka-Munk absorption K and scattering S"),
+            Self::Brush => head.starts_with(b"kind = "),
+            Self::Recording => [b"D:", b"R:", b"E:", b"N:"]
+                .iter()
+                .any(|mark| head.starts_with(*mark)),
+            Self::Own => true,
+        }
+    }
+}
+
+fn has(head: &[u8], words: &[u8]) -> bool {
+    head.windows(words.len()).any(|part| part == words)
+}
+
+fn is_text(head: &[u8]) -> bool {
+    head.iter()
+        .all(|byte| (b' '..0x7f).contains(byte) || b"\t\r\n".contains(byte))
+}
+
+/// Where a file of a kind is really written, which is what a link leads to. There is nothing, an empty file,
+/// or one of the same kind.
+///
+/// # Errors
+/// What stands there or what the name means, with what to do.
+pub(crate) fn destination(path: &Path, kind: Kind) -> Result<PathBuf, Error> {
+    let to = std::fs::canonicalize(path).unwrap_or_else(|_| path.to_owned());
+    if is_companion(path) || is_companion(&to) {
+        return Err(Error::new(
+            ErrorKind::InvalidInput,
+            "a name that ends so may belong to a painting: give another",
+        ));
+    }
+    let Ok(found) = std::fs::metadata(&to) else {
+        return Ok(to);
+    };
+    if found.is_dir() {
+        return Err(ErrorKind::IsADirectory.into());
+    }
+    if !found.is_file() {
+        return Err(Error::new(
+            ErrorKind::InvalidInput,
+            "a pipe, socket or device stands there: name a file",
+        ));
+    }
+    let mut head = [0; HEAD];
+    // What may not be read is not written over either.
+    let read = read_head(&to, &mut head)?;
+    let head = &head[..read];
+    if head.starts_with(DATABASE) {
+        return Err(Error::new(
+            ErrorKind::AlreadyExists,
+            "it is a painting, and nothing is written over one",
+        ));
+    }
+    if gives_way(&to, kind) || OVERWRITE.load(Relaxed) {
+        return Ok(to);
+    }
+    Err(Error::new(
+        ErrorKind::AlreadyExists,
+        format!(
+            "the file that is there is not {}: `--overwrite` writes over it",
+            kind.name()
+        ),
+    ))
+}
+
+/// Whether what is at a path, if anything is, gives way to a file of a kind without being asked for.
+#[must_use]
+pub fn gives_way(path: &Path, kind: Kind) -> bool {
+    let mut head = [0; HEAD];
+    match (std::fs::metadata(path), read_head(path, &mut head)) {
+        (Ok(found), Ok(read)) => read == 0 || kind.has(&head[..read], found.len()),
+        (found, _) => found.is_err(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_file_gives_way_to_its_own_kind_alone() {
+        let kinds: [(Kind, &[u8]); 9] = [
+            (Kind::Png, b"\x89PNG\r\n\x1a\n\0\0\0\rIHDR"),
+            (Kind::Exr, &[0x76, 0x2f, 0x31, 0x01, 2, 0, 0, 0]),
+            (
+                Kind::Ora,
+                b"PK\x03\x04\x0a\0\0\0\0\0\0\0\0\0\0\0\0\0\x10\0\0\0\x10\0\0\0\x08\0\0\0mimetypeimage/openraster",
+            ),
+            (Kind::Stl, &[0; 84 + 100]),
+            (Kind::Ledger, b"{\n  \"accounts_m3\": {"),
+            (Kind::Take, b"\x89MCAP0\r\n"),
+            (
+                Kind::Paints,
+                b"# Kubelka-Munk absorption K and scattering S of paints, in",
+            ),
+            (Kind::Brush, b"kind = \"round\"\n"),
+            (Kind::Recording, b"D: 0\nR: 3 05 0d 09\n"),
+        ];
+        let folder = tempfile::tempdir().expect("a folder");
+        let path = folder.path().join("file");
+        for (there, bytes) in kinds {
+            std::fs::write(&path, bytes).expect("written");
+            for (kind, _) in kinds {
+                let may = destination(&path, kind);
+                assert_eq!(may.is_ok(), kind == there, "{there:?} {kind:?}: {may:?}");
+            }
+        }
+        // 84 + 50 characters of prose are no solid.
+        std::fs::write(&path, "a".repeat(134)).expect("written");
+        for (kind, _) in kinds {
+            let error = destination(&path, kind).expect_err("a text of somebody's");
+            assert!(error.to_string().contains("--overwrite"), "{error}");
+        }
+        destination(&path, Kind::Own).expect("its own");
+        std::fs::write(&path, "").expect("written");
+        destination(&path, Kind::Png).expect("nothing is lost");
+        destination(&folder.path().join("none"), Kind::Png).expect("nothing is there");
+    }
+
+    #[test]
+    fn what_belongs_to_a_database_is_no_name_for_a_file() {
+        for ending in COMPANIONS {
+            let error = destination(Path::new(&format!("a.maul{ending}")), Kind::Own);
+            let text = error.expect_err("refused").to_string();
+            assert!(text.contains("painting"), "{text}");
+        }
+        assert!(!is_companion(Path::new("a-wal/b.png")));
+    }
+}

@@ -1,0 +1,237 @@
+//! The file of an open painting is removed, replaced or named twice while it is painted on.
+
+mod easel;
+mod studio;
+
+use std::os::unix::fs::MetadataExt as _;
+use std::path::{Path, PathBuf};
+
+use easel::Easel;
+use maulstick_document::{Access, Document, DocumentError, DocumentSettings, Left, make_room};
+use studio::{Painter, print};
+
+fn settings(path: &Path) -> DocumentSettings {
+    DocumentSettings::new(path, Access::Paint)
+}
+
+fn paint(easel: &mut Easel, painter: &mut Painter) {
+    for _ in 0..10 {
+        let act = painter.next();
+        easel.act(painter, &act);
+        easel.moment();
+    }
+}
+
+/// Waits until the document says something, and returns it.
+fn told(document: &Document) -> String {
+    loop {
+        if let Some((what, help)) = document.fault() {
+            return format!("{what}; {help}");
+        }
+        std::thread::yield_now();
+    }
+}
+
+fn journal(path: &Path) -> PathBuf {
+    path.with_extension("maul-wal")
+}
+
+/// What somebody finds who opens a painting whose program was killed just now.
+fn after_a_kill(path: &Path) -> Vec<String> {
+    let folder = tempfile::tempdir().expect("a folder");
+    let copy = folder.path().join("killed.maul");
+    std::fs::copy(path, &copy).expect("copied");
+    if journal(path).exists() {
+        std::fs::copy(journal(path), journal(&copy)).expect("copied");
+    }
+    let mut easel = Easel::open(&settings(&copy)).expect("whole");
+    print(&mut easel.sequencer)
+}
+
+/// Paints, has `harm` done to the file, paints on, and sees what is found where the painting went.
+fn painted_on_after(harm: impl Fn(&Path)) {
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = folder.path().join("sea.maul");
+    let mut easel = Easel::begin(&settings(&path));
+    let mut painter = Painter::new(7);
+    paint(&mut easel, &mut painter);
+    easel.flush();
+    harm(&path);
+    // Nothing is painted meanwhile: it is seen all the same.
+    let said = told(&easel.document);
+    easel.document.follow();
+    let kept = folder.path().join("sea-kept.maul");
+    assert!(
+        said.contains("removed or replaced") && said.contains("sea-kept.maul"),
+        "{said}"
+    );
+    assert_eq!(easel.document.path(), kept);
+    paint(&mut easel, &mut painter);
+    easel.document.flush();
+    let seen = print(&mut easel.sequencer);
+    assert_eq!(after_a_kill(&kept), seen);
+    assert!(easel.document.has_all());
+    // It is told for as long as the painter has given it no name.
+    assert!(easel.document.fault().is_some());
+    let named = folder.path().join("named.maul");
+    let moving = easel.document.move_to(&named, Left::Stays, false);
+    easel.document.wait_for(&moving).expect("moved");
+    assert_eq!(easel.document.fault(), None);
+    easel.close();
+    assert_eq!(after_a_kill(&named), seen);
+}
+
+#[test]
+fn a_removed_journal_loses_nothing() {
+    painted_on_after(|path| std::fs::remove_file(journal(path)).expect("removed"));
+}
+
+#[test]
+fn a_replaced_journal_loses_nothing() {
+    painted_on_after(|path| {
+        let other = path.with_extension("png");
+        std::fs::write(&other, "a picture").expect("written");
+        std::fs::rename(&other, journal(path)).expect("renamed");
+    });
+}
+
+#[test]
+fn a_removed_file_loses_nothing() {
+    painted_on_after(|path| std::fs::remove_file(path).expect("removed"));
+}
+
+#[test]
+fn a_replaced_file_loses_nothing_and_stays_as_it_is() {
+    painted_on_after(|path| {
+        let other = path.with_extension("txt");
+        std::fs::write(&other, "a shopping list").expect("written");
+        std::fs::rename(&other, path).expect("renamed");
+    });
+}
+
+#[test]
+fn a_renamed_file_is_whole_by_its_new_name() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let [path, other] = ["a.maul", "b.maul"].map(|name| folder.path().join(name));
+    let mut easel = Easel::begin(&settings(&path));
+    paint(&mut easel, &mut Painter::new(3));
+    easel.flush();
+    let seen = print(&mut easel.sequencer);
+    std::fs::rename(&path, &other).expect("renamed");
+    told(&easel.document);
+    assert!(
+        !journal(&path).exists(),
+        "nobody could begin a painting beside it"
+    );
+    assert_eq!(after_a_kill(&other), seen);
+}
+
+#[test]
+fn a_painting_whose_folder_is_gone_is_told_of_and_can_be_saved() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let inner = folder.path().join("inner");
+    std::fs::create_dir(&inner).expect("made");
+    let mut easel = Easel::begin(&settings(&inner.join("a.maul")));
+    let mut painter = Painter::new(9);
+    paint(&mut easel, &mut painter);
+    easel.flush();
+    std::fs::remove_dir_all(&inner).expect("removed");
+    let said = told(&easel.document);
+    assert!(
+        said.contains("cannot be made") && said.contains("another name"),
+        "{said}"
+    );
+    paint(&mut easel, &mut painter);
+    assert!(!easel.document.has_all());
+    let to = folder.path().join("b.maul");
+    let moving = easel.document.move_to(&to, Left::Stays, false);
+    easel.document.wait_for(&moving).expect("moved");
+    paint(&mut easel, &mut painter);
+    easel.flush();
+    let seen = print(&mut easel.sequencer);
+    easel.close();
+    assert_eq!(after_a_kill(&to), seen);
+}
+
+#[test]
+fn a_painting_that_nobody_saved_elsewhere_says_so_at_its_end() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let inner = folder.path().join("inner");
+    std::fs::create_dir(&inner).expect("made");
+    let easel = Easel::begin(&settings(&inner.join("a.maul")));
+    easel.flush();
+    std::fs::remove_dir_all(&inner).expect("removed");
+    let closed = easel.document.close();
+    assert!(
+        matches!(closed, Err(DocumentError::Unwritten(_))),
+        "{closed:?}"
+    );
+}
+
+#[test]
+fn a_second_name_is_told_of_for_as_long_as_it_is_there() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let [path, link] = ["a.maul", "b.maul"].map(|name| folder.path().join(name));
+    let easel = Easel::begin(&settings(&path));
+    easel.flush();
+    std::fs::hard_link(&path, &link).expect("a second name");
+    let said = told(&easel.document);
+    assert!(
+        said.contains("second name") && said.contains("remove"),
+        "{said}"
+    );
+    assert!(easel.document.has_all(), "all is written");
+    std::fs::remove_file(&link).expect("removed");
+    while easel.document.fault().is_some() {
+        std::thread::yield_now();
+    }
+}
+
+/// Whether this process holds locks of a file, as the kernel lists them.
+fn is_locked(path: &Path) -> bool {
+    let inode = format!(":{}", std::fs::metadata(path).expect("there").ino());
+    let locks = std::fs::read_to_string("/proc/locks").expect("Linux");
+    let me = std::process::id().to_string();
+    locks.lines().any(|line| {
+        let words: Vec<&str> = line.split_whitespace().collect();
+        words.contains(&"POSIX")
+            && words.contains(&&*me)
+            && words.iter().any(|w| w.ends_with(&inode))
+    })
+}
+
+#[test]
+fn a_look_at_a_painting_by_another_name_leaves_its_locks() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let [path, link] = ["a.maul", "b.maul"].map(|name| folder.path().join(name));
+    let easel = Easel::begin(&settings(&path));
+    easel.flush();
+    std::fs::hard_link(&path, &link).expect("a second name");
+    for name in [&path, &link] {
+        let room = make_room(name, true);
+        assert!(matches!(room, Err(DocumentError::OpenHere)), "{room:?}");
+        let opened = Document::open(&settings(name)).err();
+        assert!(
+            matches!(opened, Some(DocumentError::OpenHere)),
+            "{opened:?}"
+        );
+        assert!(is_locked(&path));
+    }
+    drop(easel);
+    assert!(!is_locked(&path), "a fault would pass");
+    std::fs::remove_file(&link).expect("removed");
+    assert!(Document::open(&settings(&path)).is_ok());
+}
+
+#[test]
+fn no_painting_begins_where_the_journal_of_another_is() {
+    let folder = tempfile::tempdir().expect("a folder");
+    for ending in ["wal", "shm", "journal"] {
+        let path = folder.path().join(format!("a.maul-{ending}"));
+        let refused =
+            |error: Option<DocumentError>| matches!(error, Some(DocumentError::Companion));
+        assert!(refused(Document::open(&settings(&path)).err()));
+        assert!(refused(make_room(&path, true).err()));
+        assert!(!path.exists());
+    }
+}
