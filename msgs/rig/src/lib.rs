@@ -6,6 +6,7 @@
 //! | [`config`] | the settings of a rig |
 //! | [`fault`] | an error as the user sees it: what, where, what to do |
 //! | [`files`] | files that are whole under their name |
+//! | [`log`] | log lines |
 //! | [`member`] | joining a rig, living in it, leaving it |
 //! | [`stop`] | when to stop: a signal, or the launcher's end |
 
@@ -13,6 +14,7 @@ pub mod commander;
 pub mod config;
 pub mod fault;
 pub mod files;
+pub mod log;
 pub mod member;
 pub mod size;
 pub mod stop;
