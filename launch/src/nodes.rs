@@ -26,7 +26,7 @@ use maulstick_rig::config::{
     DeviceSection, FOREIGN_PRIORITY, MOUSE_PRIORITY, PLAYER_PRIORITY, RigConfig,
 };
 use maulstick_rig::files::Kind;
-use maulstick_rig::member::log_to_stderr;
+use maulstick_rig::log::log_to_stderr;
 use maulstick_rig::{Fault, Member, MemberArgs};
 use maulstick_types::Mixture;
 use nix::sys::prctl::set_pdeathsig;

@@ -35,7 +35,8 @@ impl Hearing {
     pub fn new(bus: &dyn Bus, topics: &Topics, wake: &Wake) -> Result<Self, BusError> {
         let quiet = Class::Background;
         Ok(Self {
-            scenes: Receiver::new(bus, &topics.scene(), Class::Cached, Queue::Latest, wake)?,
+            scenes: Receiver::new(bus, &topics.scene(), Class::Cached, Queue::Latest, wake)?
+                .checking(Scene::fault),
             paint: Receiver::new(bus, &topics.paint_status(), quiet, Queue::Latest, wake)?,
             defs: Receiver::new(
                 bus,

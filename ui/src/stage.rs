@@ -137,8 +137,8 @@ impl Stage {
     pub fn take_in(&mut self, studio: &mut Studio) {
         for pulled in &self.surfaces {
             if let Some(error) = pulled.inbox.fault() {
-                let topic = self.topic.clone();
-                let refusal = Refusal { topic, error };
+                let (topic, reason) = (self.topic.clone(), error.into());
+                let refusal = Refusal { topic, reason };
                 studio.news.push(News::Refused(refusal));
             }
         }

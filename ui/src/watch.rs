@@ -3,7 +3,7 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use maulstick_bus::typed::Refusal;
+use maulstick_bus::typed::{Reason, Refusal};
 use maulstick_types::DecodeError;
 use maulstick_types::advice::parted;
 use maulstick_types::topics::Topics;
@@ -141,10 +141,14 @@ impl Watch {
         if !self.strange.insert(who.clone()) {
             return;
         }
-        match &refusal.error {
-            DecodeError::UnknownSchema { .. } => toasts.fault(
+        match &refusal.reason {
+            Reason::Unread(DecodeError::UnknownSchema { .. }) => toasts.fault(
                 format!("{who} is of another version of Maulstick than this window."),
                 "End the rig, and start it again with all of its programs of one version.",
+            ),
+            Reason::Rival | Reason::Leap => toasts.fault(
+                format!("{who} is there twice: the one that started last is followed."),
+                "End the other program, or give it another name.",
             ),
             error => toasts.fault(
                 format!("{who} sends what is not understood: {error}"),
@@ -318,14 +322,15 @@ mod tests {
         let mut rig = Rig::new();
         let topics = Topics::new("t");
         let refused = |topic: String| {
+            let error = DecodeError::UnknownSchema {
+                name: "PaintStatus",
+                wanted: 1,
+                got: 2,
+                version: 9,
+            };
             News::Refused(Refusal {
                 topic,
-                error: DecodeError::UnknownSchema {
-                    name: "PaintStatus",
-                    wanted: 1,
-                    got: 2,
-                    version: 9,
-                },
+                reason: error.into(),
             })
         };
         rig.studio.news = vec![refused(topics.paint_status()), refused(topics.scene())];

@@ -70,8 +70,8 @@ impl Mover {
     pub fn start(bus: &Arc<dyn Bus>, topics: &Topics) -> Result<Self, Fault> {
         let wake = Wake::new();
         let topic = topics.scene();
-        let mut scenes: Receiver<Scene> =
-            Receiver::new(&**bus, &topic, Class::Cached, Queue::Latest, &wake)?;
+        let mut scenes = Receiver::new(&**bus, &topic, Class::Cached, Queue::Latest, &wake)?
+            .checking(Scene::fault);
         let mut commander = Commander::new(Arc::clone(bus), topics).asking(ASK);
         let (controls, heard) = sync_channel(64);
         let stop = Arc::new(AtomicBool::new(false));

@@ -124,7 +124,7 @@ impl Daemon {
                 brush: device.brush.clone(),
             },
             samples,
-            models: Receiver::new(bus, &topic, Class::RealTime, Queue::Latest, &member.wake)?,
+            models: Receiver::new(bus, &topic, Class::RealTime, Queue::Ring(64), &member.wake)?,
             orders: bus.serve(&topics.force(&device.name), 16, &member.wake)?,
             reader: Reader::default(),
             wish: Wish {

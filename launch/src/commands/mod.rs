@@ -47,13 +47,21 @@ pub fn write_picture(picture: &Picture, path: &Path) -> Result<(), Fault> {
         .map_err(|error| Fault::writing(path, &error))
 }
 
-/// Prints a line as `println!` does, through [`print_text`]: for functions that return a [`Fault`].
+/// Prints a line as `println!` does, through [`print_line`]: for functions that return a [`Fault`].
 macro_rules! say {
     ($($text:tt)*) => {
-        $crate::commands::print_text(&(format!($($text)*) + "\n"))?
+        $crate::commands::print_line(&format!($($text)*))?
     };
 }
 pub(crate) use say;
+
+/// Prints one line, whatever the names in it hold.
+///
+/// # Errors
+/// As [`print_text`].
+pub fn print_line(line: &str) -> Result<(), Fault> {
+    print_text(&format!("{}\n", maulstick_types::plain(line)))
+}
 
 /// Prints text; a reader that has seen enough, as `head` has, is no error.
 ///

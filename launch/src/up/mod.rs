@@ -20,9 +20,10 @@ use maulstick_device::Take;
 use maulstick_device::player::Rate;
 use maulstick_document::scene;
 use maulstick_optics::PaintLibrary;
+use maulstick_rig::Fault;
 use maulstick_rig::config::{DEFAULT, RigConfig, is_path};
 use maulstick_rig::files::Kind;
-use maulstick_rig::{Fault, member};
+use maulstick_rig::log::log_to_stderr;
 use maulstick_types::Mixture;
 
 use crate::destination::{VIEW, export};
@@ -118,7 +119,7 @@ pub fn run(options: &UpOptions) -> Result<i32, Fault> {
         return Err(Fault::usage("--ledger needs --play TAKE")
             .help("`maulstick snapshot --ledger FILE` asks a running rig"));
     }
-    member::log_to_stderr("info");
+    log_to_stderr("info");
     let mut config = match &options.rig {
         Some(path) => RigConfig::read(path)?,
         None => RigConfig::default(),

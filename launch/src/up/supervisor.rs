@@ -165,6 +165,8 @@ impl Supervisor {
             bar.finish_and_clear();
         }
         let is_kept = self.stop_all();
+        // Of a node that was killed nobody else would.
+        maulstick_bus::clear_shared_memory();
         self.folder.withdraw();
         self.session.close();
         match end {

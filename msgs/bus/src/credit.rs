@@ -1,24 +1,29 @@
 //! Streams that lose nothing over a transport that may drop.
 //!
-//! A [`CreditSender`] numbers its messages, keeps the newest 1,024 and answers queries for those
-//! that went lost; it counts how many the consumer has not yet consumed. A [`CreditReceiver`]
+//! A [`CreditSender`] numbers its messages, keeps those of the newest five seconds and answers queries for
+//! those that went lost; it counts how many the consumer has not yet consumed. A [`CreditReceiver`]
 //! hands messages on in order, asks again for what is missing, and tells what it gives up. What a
 //! sender does without credit is its own affair: a player waits, a live brush merges.
 
 mod receiver;
 mod sender;
+mod stream;
 
 pub use receiver::{CreditReceiver, ReceiverCounts};
 pub use sender::{CreditSender, Stamp};
 
 /// At most this many messages are on their way unconsumed.
 pub const WINDOW: u64 = 64;
-/// How many sent messages are kept for those who missed them.
-pub const RING: usize = 1024;
+/// How many sent messages are kept for those who missed them: five seconds of a device of 1 kHz and some.
+pub const RING: usize = 5120;
+/// The messages kept take no more than this, bytes, as far as they are not needed for the window.
+pub const RING_BYTES: usize = 8 << 20;
 /// A gap is asked for again, and an unconsumed message sent again, after this time, ns.
 pub const RETRY_NS: u64 = 50_000_000;
 /// Live, a gap is given up after this many askings.
 pub const PATIENCE: u32 = 20;
 
+#[cfg(test)]
+mod rival_tests;
 #[cfg(test)]
 mod tests;

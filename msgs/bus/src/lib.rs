@@ -11,9 +11,11 @@
 //! | [`inbox`] | bounded queues and the wake-up that they share |
 //! | [`typed`] | messages instead of bytes |
 //! | [`credit`] | streams that lose nothing: credit, a ring, re-asking for gaps |
+//! | [`rivals`] | which of two senders is followed |
 //! | [`clock`] | the rig's clock |
 //! | [`rig`] | the rig's folder and what a foreign program needs to find it |
 
+mod announce;
 pub mod bus;
 pub mod clock;
 pub mod credit;
@@ -21,10 +23,13 @@ pub mod inbox;
 mod memory;
 mod payload;
 mod pool;
+mod recent;
 pub mod rig;
+pub mod rivals;
 pub mod typed;
 mod zenoh_bus;
 
+pub use announce::Announcer;
 pub use bus::{Arrival, Bus, BusError, Class, Pending, Publish, Request, Server, Subscription};
 pub use clock::RigClock;
 pub use credit::{CreditReceiver, CreditSender};
@@ -32,5 +37,6 @@ pub use inbox::{Counts, Inbox, Queue, Wake};
 pub use memory::{Faults, MemoryBus, MemoryNet};
 pub use payload::{Lent, Payload};
 pub use pool::clear_shared_memory;
+pub use recent::Recent;
 pub use rig::{RigFolder, RigInfo};
 pub use zenoh_bus::{Dial, ZenohBus};

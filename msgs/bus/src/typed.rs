@@ -1,6 +1,6 @@
 //! Messages instead of bytes.
 
-use std::collections::BTreeSet;
+use std::collections::BTreeMap;
 use std::marker::PhantomData;
 use std::time::Duration;
 
@@ -8,6 +8,7 @@ use maulstick_types::{DecodeError, Flags, Header, Message, Origin, decode, encod
 
 use crate::bus::{Bus, BusError, Class, Publish, Subscription};
 use crate::inbox::{Queue, Wake};
+use crate::rivals::{Once, Rivals, Verdict};
 
 /// Draws an epoch: a number that differs at each start of a process.
 #[must_use]
@@ -76,21 +77,44 @@ impl<M> std::fmt::Debug for Sender<M> {
     }
 }
 
-/// Decodes what arrives; says once for each sender what it does not understand, counts and drops.
+/// Decodes what arrives; says once for each topic and reason what is dropped, and counts it.
 #[derive(Debug, Default)]
 pub struct Reader {
     refused: u64,
-    told: BTreeSet<String>,
+    told: Once,
     news: Vec<Refusal>,
 }
 
-/// What was not understood.
+/// A message that was dropped.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Refusal {
     /// Its topic.
     pub topic: String,
     /// Why.
-    pub error: DecodeError,
+    pub reason: Reason,
+}
+
+/// Why a message was dropped.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum Reason {
+    /// It does not decode.
+    #[error(transparent)]
+    Unread(#[from] DecodeError),
+    /// Its numbers are out of range.
+    #[error("{0}")]
+    Fault(&'static str),
+    /// Two programs send as one.
+    #[error(
+        "a second program sends here under the same name; the one that started last is followed: \
+         end the other, or give it another name"
+    )]
+    Rival,
+    /// Two programs send as one, or one counts wrongly.
+    #[error(
+        "the numbers of messages leap; the stream before is followed until it is silent: \
+         end a second program that sends here"
+    )]
+    Leap,
 }
 
 impl Reader {
@@ -99,21 +123,24 @@ impl Reader {
         match decode::<M>(bytes) {
             Ok(message) => Some(message),
             Err(error) => {
-                self.refuse(topic, &error);
+                self.refuse(topic, error.into());
                 None
             }
         }
     }
 
     /// Counts a refusal and tells it, once for each topic and reason.
-    pub fn refuse(&mut self, topic: &str, error: &DecodeError) {
+    pub fn refuse(&mut self, topic: &str, reason: Reason) {
         self.refused += 1;
-        let kind = std::mem::discriminant(error);
-        if self.told.insert(format!("{topic} {kind:?}")) {
-            tracing::warn!("{topic}: {error}");
+        let kind = match &reason {
+            Reason::Unread(error) => format!("{:?}", std::mem::discriminant(error)),
+            reason => format!("{:?}", std::mem::discriminant(reason)),
+        };
+        if self.told.say(&format!("{topic} {kind}")) {
+            tracing::warn!("{topic}: {reason}");
             self.news.push(Refusal {
                 topic: topic.to_owned(),
-                error: error.clone(),
+                reason,
             });
         }
     }
@@ -130,11 +157,18 @@ impl Reader {
     }
 }
 
-/// Receives one kind of message.
+/// So many streams are remembered; of more the one that was silent for longest is forgotten.
+const STREAMS: usize = 64;
+
+/// Receives one kind of message; of two senders of a real-time stream the one that started last.
 pub struct Receiver<M> {
     subscription: Subscription,
     reader: Reader,
-    message: PhantomData<fn() -> M>,
+    class: Class,
+    /// By topic and source.
+    streams: BTreeMap<(String, u32), Rivals>,
+    /// What is wrong with a message that decodes, if anything.
+    fault: fn(&M) -> Option<&'static str>,
 }
 
 impl<M: Message> Receiver<M> {
@@ -153,15 +187,51 @@ impl<M: Message> Receiver<M> {
         Ok(Self {
             subscription,
             reader: Reader::default(),
-            message: PhantomData,
+            class,
+            streams: BTreeMap::new(),
+            fault: |_| None,
         })
     }
 
-    /// The next message that waits and is understood.
+    /// Drops messages that `fault` says something against.
+    #[must_use]
+    pub fn checking(mut self, fault: fn(&M) -> Option<&'static str>) -> Self {
+        self.fault = fault;
+        self
+    }
+
+    /// Whether the sender of a message is followed.
+    fn follows(&mut self, header: &Header, key: &str, arrived_ns: u64) -> bool {
+        let stream = (key.to_owned(), header.source);
+        if !self.streams.contains_key(&stream) && self.streams.len() == STREAMS {
+            let oldest = self
+                .streams
+                .iter()
+                .min_by_key(|(_, rivals)| rivals.heard_ns());
+            let oldest = oldest.map(|(stream, _)| stream.clone());
+            oldest.map(|stream| self.streams.remove(&stream));
+        }
+        let begun = || Rivals::new(header, arrived_ns);
+        let rivals = self.streams.entry(stream).or_insert_with(begun);
+        let verdict = rivals.judge(header, arrived_ns, true, None);
+        if verdict == Verdict::SetAside && rivals.is_rival(header, arrived_ns) {
+            self.reader.refuse(key, Reason::Rival);
+        }
+        verdict != Verdict::SetAside
+    }
+
+    /// The next message that waits, is understood and is of the sender that is followed.
     pub fn try_recv(&mut self) -> Option<Received<M>> {
         while let Some(arrival) = self.subscription.try_recv() {
             if let Some((header, message)) = self.reader.read(&arrival.key, &arrival.bytes) {
                 let (key, arrived_ns) = (arrival.key, arrival.arrived_ns);
+                if let Some(fault) = (self.fault)(&message) {
+                    self.reader.refuse(&key, Reason::Fault(fault));
+                    continue;
+                }
+                if self.class == Class::RealTime && !self.follows(&header, &key, arrived_ns) {
+                    continue;
+                }
                 return Some(Received {
                     key,
                     arrived_ns,

@@ -1,5 +1,6 @@
 //! The bus between processes.
 
+use std::collections::BTreeSet;
 use std::sync::Arc;
 use std::time::Duration;
 
@@ -188,6 +189,11 @@ fn config(dial: &Dial, memory: Memory) -> zenoh::Result<zenoh::Config> {
             "scouting/gossip/autoconnect_strategy",
             serde_json::json!({ "peer": { "to_router": "always", "to_peer": "greater-zid" } }),
         ),
+        // By gossip a process hears of what others listen at, over TCP too.
+        (
+            "transport/link/protocols",
+            serde_json::json!(protocols(dial)),
+        ),
         ("timestamping/enabled", serde_json::json!(true)),
         ("transport/link/tx/lease", serde_json::json!(LEASE_MS)),
         (
@@ -215,6 +221,14 @@ fn config(dial: &Dial, memory: Memory) -> zenoh::Result<zenoh::Config> {
             .map_err(|error| format!("{key}: {error}"))?;
     }
     Ok(config)
+}
+
+/// The protocols of the locators that are asked for: those of a rig are unix sockets.
+fn protocols(dial: &Dial) -> BTreeSet<&str> {
+    let locators = dial.listen.iter().chain(&dial.connect);
+    locators
+        .filter_map(|locator| locator.split('/').next())
+        .collect()
 }
 
 struct ZenohPublisher {

@@ -296,3 +296,68 @@ fn large_answers_lie_in_shared_memory_where_both_can_have_it() {
     drop(kept);
     assert!(asked(&two, &server, &wake, LARGE, 4).is_shared());
 }
+
+/// A foreign peer that listens at `listen`, dials nobody but the hub, and is told of to all by gossip.
+fn foreign(rig: &Rig, id: &str, listen: &str) -> zenoh::Session {
+    let mut config = zenoh::Config::default();
+    let hub = rig.folder.locator("hub");
+    for (key, value) in [
+        ("mode", "\"peer\"".to_owned()),
+        // Of two peers that of the greater id dials.
+        ("id", format!("\"{id}\"")),
+        ("listen/endpoints", format!("[\"{listen}\"]")),
+        ("connect/endpoints", format!("[\"{hub}\"]")),
+        ("scouting/multicast/enabled", "false".to_owned()),
+        ("scouting/gossip/autoconnect", "[]".to_owned()),
+    ] {
+        config.insert_json5(key, &value).expect(key);
+    }
+    zenoh::open(config).wait().expect("a foreign peer")
+}
+
+#[test]
+fn only_unix_sockets_are_dialled_whatever_gossip_tells() {
+    let rig = rig();
+    let one = rig.node("one");
+    let by_tcp = foreign(&rig, "1", "tcp/127.0.0.1:0");
+    let by_socket = foreign(&rig, "2", &rig.folder.locator("foreign"));
+    let wake = Wake::new();
+    // Gossip tells of the one that came first no later than of the other.
+    until(&wake, || {
+        let mut peers = one.raw_session().info().peers_zid().wait();
+        peers.find(|zid| *zid == by_socket.zid())
+    });
+    for bus in [&one, &rig.hub] {
+        for link in bus.raw_session().info().links().wait() {
+            let locator = link.dst().to_string();
+            assert!(locator.starts_with("unixsock-stream/"), "{locator}");
+        }
+    }
+    let mut peers = one.raw_session().info().peers_zid().wait();
+    assert_eq!(peers.find(|zid| *zid == by_tcp.zid()), None);
+}
+
+#[test]
+fn a_locator_that_is_asked_for_is_dialled_over_tcp_too() {
+    let rig = rig();
+    let mut dial = Dial {
+        name: "remote".into(),
+        listen: Some("tcp/127.0.0.1:47811".into()),
+        connect: vec![rig.folder.locator("hub")],
+    };
+    let remote = ZenohBus::open(&dial, rig.clock).expect("a node that listens at TCP");
+    dial = Dial {
+        name: "client".into(),
+        listen: None,
+        connect: dial.listen.into_iter().collect(),
+    };
+    let client = ZenohBus::open(&dial, rig.clock).expect("a client over TCP");
+    let wake = Wake::new();
+    let heard = remote.subscribe("t/a", Class::RealTime, Queue::Ring(8), &wake);
+    let heard = heard.expect("subscribed");
+    let publisher = client.publisher("t/a", Class::RealTime).expect("declared");
+    until(&wake, || {
+        publisher.put(vec![1]).expect("sent");
+        heard.try_recv()
+    });
+}

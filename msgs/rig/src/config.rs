@@ -427,6 +427,18 @@ mod tests {
         assert!(text.contains("'mian'") && text.contains("'main'"), "{text}");
         assert!(error("force = \"linear\"", "force = \"linaer\"").contains("'linear'"));
         assert!(error("model = \"impasto\"", "model = \"impatso\"").contains("'impasto'"));
+        let text = error("[node.paint]", "[node.piant]");
+        assert!(
+            text.contains("no node called 'piant'") && text.contains("did you mean 'paint'"),
+            "{text}"
+        );
+        assert!(text.contains("rig.toml:78"), "{text}");
+        let text = error("[node.paint]", "[node.brush-mian]");
+        assert!(text.contains("did you mean 'brush-main'"), "{text}");
+        for node in ["brush", "brush-main", "ui", "player", "phantom"] {
+            let text = DEFAULT.replace("[node.paint]", &format!("[node.{node}]"));
+            assert!(RigConfig::parse(&text, "rig.toml").is_ok(), "{node}");
+        }
         let text = error("profile = \"srgb\"", "profile = \"sgrb\"");
         assert!(text.contains("'srgb'") && text.contains("ICC"), "{text}");
         assert!(text.contains("rig.toml:74"), "{text}");

@@ -3,6 +3,7 @@
 use std::fmt;
 
 use maulstick_bus::BusError;
+use maulstick_types::plain;
 
 /// Exit code for bad usage and bad input files.
 pub const EXIT_USAGE: i32 = 2;
@@ -114,12 +115,12 @@ impl Fault {
 
 impl fmt::Display for Fault {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "error: {}", self.what)?;
+        write!(f, "error: {}", plain(&self.what))?;
         if let Some(place) = &self.place {
-            write!(f, "\n  --> {place}")?;
+            write!(f, "\n  --> {}", plain(place))?;
         }
         if let Some(help) = &self.help {
-            write!(f, "\n help: {help}")?;
+            write!(f, "\n help: {}", plain(help))?;
         }
         Ok(())
     }
@@ -148,5 +149,21 @@ impl From<BusError> for Fault {
                 .help("all nodes of a rig must be of the same build"),
             BusError::Folder { reason, help } => Self::failure(reason).help(help),
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_is_quoted_forges_no_line() {
+        let fault = Fault::usage("there is no paint called 'x\nerror: all is lost'")
+            .at("a\u{1b}[2J.toml:3")
+            .help("take\r'y'");
+        assert_eq!(
+            fault.to_string(),
+            "error: there is no paint called 'x\\nerror: all is lost'\n  --> a\\u{1b}[2J.toml:3\n help: take\\r'y'"
+        );
     }
 }

@@ -6,12 +6,14 @@
 //! | [`config`] | the settings of a rig |
 //! | [`fault`] | an error as the user sees it: what, where, what to do |
 //! | [`files`] | files: whole under their name, of one's own kind, open here |
+//! | [`log`] | log lines |
 //! | [`member`] | joining a rig, living in it, leaving it |
 //! | [`stop`] | when to stop: a signal, or the launcher's end |
 
 pub mod commander;
 pub mod config;
 pub mod fault;
+pub mod log;
 pub mod member;
 pub mod size;
 pub mod stop;

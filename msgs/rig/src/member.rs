@@ -1,6 +1,5 @@
 //! Joining a rig, living in it, leaving it.
 
-use std::io::IsTerminal as _;
 use std::path::PathBuf;
 use std::sync::Arc;
 use std::time::Duration;
@@ -139,21 +138,4 @@ impl std::fmt::Debug for Member {
             .field("node", &self.node)
             .finish_non_exhaustive()
     }
-}
-
-/// Sends log lines of `level` and above to the standard error; of the libraries only what a painter
-/// can do something about.
-pub fn log_to_stderr(level: &str) {
-    let quiet = "zenoh=error,zenoh::api::session=off,zenoh_transport=off,zenoh_shm=off,zenoh_link=off,\
-                 wgpu=error,wgpu_core=error,wgpu_hal=error,winit=error,egui_winit=error,egui_wgpu=error,eframe=error,naga=error";
-    tracing_subscriber::fmt()
-        .with_env_filter(tracing_subscriber::EnvFilter::new(format!(
-            "{quiet},{level}"
-        )))
-        .with_writer(std::io::stderr)
-        .with_ansi(std::io::stderr().is_terminal())
-        .without_time()
-        .with_target(false)
-        .try_init()
-        .ok();
 }

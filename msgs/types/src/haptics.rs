@@ -87,16 +87,21 @@ message! {
         pub law: ForceLaw,
         /// Length of the brush head, m.
         pub head_length_m: f64,
-        /// After this time since its arrival the model decays, ns.
+        /// After this time since its arrival the model decays, ns, at most a second.
         pub time_to_live_ns: u64,
-        /// A change of model is spread over this time, ns.
+        /// A change of model is spread over this time, ns, at most a second.
         pub recovery_ns: u64,
     }
 }
 
 impl ContactModel {
+    /// A model that would live for longer is refused, ns: of a brush that has died nothing is felt after that.
+    pub const TIME_TO_LIVE_MOST_NS: u64 = 1_000_000_000;
+    /// A model whose change would be spread over a longer time is refused, ns.
+    pub const RECOVERY_MOST_NS: u64 = 1_000_000_000;
+
     /// A dry, smooth canvas at the desk's z = 0 that pushes back by `law` on a head of
-    /// `head_length_m`, and lives for ever.
+    /// `head_length_m`, and lives for as long as a model may.
     #[must_use]
     pub fn bare(law: ForceLaw, head_length_m: f64) -> Self {
         Self {
@@ -115,7 +120,7 @@ impl ContactModel {
             },
             law,
             head_length_m,
-            time_to_live_ns: u64::MAX,
+            time_to_live_ns: Self::TIME_TO_LIVE_MOST_NS,
             recovery_ns: 0,
         }
     }

@@ -15,6 +15,7 @@
 mod codec;
 mod define;
 mod frame_view;
+mod plain;
 
 pub mod advice;
 pub mod brush;
@@ -40,6 +41,7 @@ pub use codec::{Message, decode, encode, encode_into, encoded_bytes};
 pub use frame_view::{FrameTileView, FrameView};
 pub use header::{DecodeError, Flags, HEADER_BYTES, Header, Origin};
 pub use mixture::{Mixture, MixtureError};
+pub use plain::plain;
 pub use pose::Pose;
 pub use region::Region;
 

@@ -1,5 +1,7 @@
 //! What lies on the desk: surfaces, paints, light. The paint node owns it.
 
+mod fault;
+
 use crate::define::{message, wire_enum, wire_struct};
 use crate::mixture::Mixture;
 use crate::pose::Pose;

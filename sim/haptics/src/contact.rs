@@ -60,7 +60,8 @@ impl Contact {
     ///
     /// # Errors
     /// What is wrong with it: a number that is not finite, a normal that is not a unit vector, a
-    /// negative stiffness, a force that falls with depth, more than five knots, a grain out of range.
+    /// negative stiffness, a force that falls with depth, more than five knots, a grain out of range, a
+    /// time to live or a recovery of more than a second.
     pub fn new(model: &ContactModel) -> Result<Self, &'static str> {
         let point = DVec3::from_array(model.plane_point_m);
         let normal = DVec3::from_array(model.plane_normal);
@@ -78,6 +79,11 @@ impl Contact {
         }
         if scalars.iter().any(|scalar| *scalar < 0.0) || model.head_length_m < 1e-4 {
             return Err("friction, drag or head length is out of range");
+        }
+        if model.time_to_live_ns > ContactModel::TIME_TO_LIVE_MOST_NS
+            || model.recovery_ns > ContactModel::RECOVERY_MOST_NS
+        {
+            return Err("the time to live or the recovery is longer than a second");
         }
         Ok(Self {
             point,
@@ -259,6 +265,18 @@ pub(crate) mod tests {
             stiffness_n_m: [[0.0; 3]; 3],
         }));
         assert!(refused(|m| m.grain.wavelength_m = 0.0));
+        for endless in [1_000_000_001, u64::MAX] {
+            let with = |change: fn(&mut ContactModel, u64)| {
+                let mut model = model(linear());
+                change(&mut model, endless);
+                Contact::new(&model).err()
+            };
+            let told = Some("the time to live or the recovery is longer than a second");
+            assert_eq!(with(|m, ns| m.time_to_live_ns = ns), told);
+            assert_eq!(with(|m, ns| m.recovery_ns = ns), told);
+        }
+        assert!(!refused(|m| m.time_to_live_ns = 1_000_000_000));
+        assert!(!refused(|m| m.recovery_ns = 1_000_000_000));
     }
 
     #[test]

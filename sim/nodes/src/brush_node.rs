@@ -5,7 +5,7 @@ mod felt;
 mod progress;
 mod settings;
 
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeSet;
 use std::sync::Arc;
 use std::time::Duration;
 
@@ -13,9 +13,11 @@ use glam::DVec3;
 use maulstick_brush::BrushModel;
 use maulstick_brush::desk::aim;
 use maulstick_bus::credit::Stamp;
+use maulstick_bus::rivals::Once;
 use maulstick_bus::typed::{Reader, Received, Receiver, Sender};
 use maulstick_bus::{
-    Bus, BusError, Class, CreditReceiver, CreditSender, Queue, Server, Subscription, Wake,
+    Announcer, Bus, BusError, Class, CreditReceiver, CreditSender, Queue, Recent, Server,
+    Subscription, Wake,
 };
 use maulstick_types::brush::{BrushConsumed, BrushDef, BrushState, Solve};
 use maulstick_types::haptics::{ContactModel, Grain};
@@ -56,6 +58,15 @@ enum Painter {
     Gone,
 }
 
+/// What a device says that it is.
+#[derive(Clone, Debug)]
+struct Told {
+    /// The brush that it moves; any if empty.
+    brush: String,
+    /// Whether it drives a force.
+    drives_force: bool,
+}
+
 /// The brush node.
 pub struct BrushNode {
     bus: Arc<dyn Bus>,
@@ -66,14 +77,13 @@ pub struct BrushNode {
     states: CreditSender<BrushState>,
     credit: Receiver<PaintConsumed>,
     scene: Receiver<Scene>,
-    scene_of: (u32, u64),
+    /// When the scene that is followed was sent, ns.
+    scene_ns: u64,
     infos: Receiver<StylusInfo>,
     consumed: Sender<BrushConsumed>,
-    /// Devices, by name, that drive a force.
-    drives_force: BTreeSet<String>,
-    /// Devices, by name, and the brush that each says it moves.
-    moves: BTreeMap<String, String>,
-    models: BTreeMap<String, (Sender<ContactModel>, u64)>,
+    /// What each device says that it is.
+    devices: Recent<Told>,
+    models: Recent<(Sender<ContactModel>, u64)>,
     arbiter: Arbiter,
     backlog: Backlog,
     outbox: Outbox,
@@ -81,7 +91,7 @@ pub struct BrushNode {
     /// The take that has this brush to itself.
     take: Option<Take>,
     /// Devices that are gone: their takes have ended.
-    gone: BTreeSet<String>,
+    gone: Recent<()>,
     /// Whether the paint node is there, as far as it is known.
     painter: Painter,
     tokens: Subscription,
@@ -93,8 +103,8 @@ pub struct BrushNode {
     /// Number of the newest state that touches.
     newest_contact: Option<u64>,
     /// Devices of whose faulty samples it was said.
-    faulty: BTreeSet<String>,
-    def: Sender<BrushDef>,
+    faulty: Once,
+    def: Announcer<BrushDef>,
     commands: Server,
     answers: commands::Answers,
     reader: Reader,
@@ -117,7 +127,7 @@ impl BrushNode {
         };
         let b = &*bus;
         let name = settings.name.as_str();
-        let mut def = Sender::new(b, &topics.brush_def(name), Class::Cached, me)?;
+        let mut def = Announcer::new(b, &topics.brush_def(name), me, wake)?;
         commands::define(&mut def, b.now_ns(), name, &settings.file)?;
         Ok(Self {
             samples: CreditReceiver::new(b, topics, &topics.sample("*"), me, wake)?,
@@ -129,8 +139,9 @@ impl BrushNode {
                 Queue::Ring(64),
                 wake,
             )?,
-            scene: Receiver::new(b, &topics.scene(), Class::Cached, Queue::Ring(16), wake)?,
-            scene_of: (0, 0),
+            scene: Receiver::new(b, &topics.scene(), Class::Cached, Queue::Ring(16), wake)?
+                .checking(Scene::fault),
+            scene_ns: 0,
             infos: Receiver::new(
                 b,
                 &topics.stylus_info("*"),
@@ -140,22 +151,21 @@ impl BrushNode {
             )?,
             consumed: Sender::new(b, &topics.brush_consumed(name), Class::Control, me)?,
             model: BrushModel::new(settings.file.clone(), settings.depth_share),
-            drives_force: BTreeSet::new(),
-            moves: BTreeMap::new(),
-            models: BTreeMap::new(),
+            devices: Recent::default(),
+            models: Recent::default(),
             arbiter: Arbiter::default(),
             backlog: Backlog::new(settings.file.length_m()),
             outbox: Outbox::default(),
             progress: Progress::default(),
             take: None,
-            gone: BTreeSet::new(),
+            gone: Recent::default(),
             painter: Painter::There,
             tokens: b.watch(&topics.node("*"), wake)?,
             touching: false,
             drag_n_s_m: 0.0,
             grain: NO_GRAIN,
             newest_contact: None,
-            faulty: BTreeSet::new(),
+            faulty: Once::default(),
             def,
             commands: b.serve(&topics.command(name), 16, wake)?,
             answers: commands::Answers::default(),
@@ -181,6 +191,7 @@ impl BrushNode {
         let now_ns = bus.now_ns();
         self.take_in(now_ns);
         self.serve_commands(now_ns)?;
+        self.def.turn(now_ns)?;
         self.samples.poll(&*bus)?;
         self.follow_scene(now_ns)?;
         while let Some(received) = self.next_sample(None) {
@@ -202,16 +213,16 @@ impl BrushNode {
     /// a stroke does not take along what waits to be solved.
     fn follow_scene(&mut self, now_ns: u64) -> Result<(), BusError> {
         while let Some(scene) = self.scene.try_recv() {
-            // Another painting counts its scenes anew.
-            let (epoch, version) = (scene.header.epoch, scene.message.version);
-            if epoch == self.scene_of.0 && version < self.scene_of.1 {
+            // Only a late scene is passed over: another painting counts its own anew.
+            let sent_ns = scene.header.sent_ns.min(scene.arrived_ns);
+            if sent_ns < self.scene_ns {
                 continue;
             }
             while let Some(received) = self.next_sample(Some(scene.header.event_ns)) {
                 self.sample(received, now_ns)?;
             }
             self.solve();
-            self.scene_of = (epoch, version);
+            self.scene_ns = sent_ns;
             self.model.set_scene(&scene.message);
             self.grain = grain(&scene.message);
             self.model.tune(scene.message.tuning(&self.settings.name));
@@ -231,7 +242,7 @@ impl BrushNode {
             } else if token.present {
                 self.gone.remove(node);
             } else {
-                self.gone.insert(node.to_owned());
+                self.gone.set(node, ());
                 if self.progress.follows(node) {
                     self.touching = false;
                 }
@@ -251,12 +262,11 @@ impl BrushNode {
         }
         while let Some(info) = self.infos.try_recv() {
             let device = self.topics.middle(&info.key).unwrap_or_default();
-            if info.message.drives & axes::FORCE != 0 {
-                self.drives_force.insert(device.to_owned());
-            } else {
-                self.drives_force.remove(device);
-            }
-            self.moves.insert(device.to_owned(), info.message.brush);
+            let told = Told {
+                brush: info.message.brush,
+                drives_force: info.message.drives & axes::FORCE != 0,
+            };
+            self.devices.set(device, told);
         }
     }
 
@@ -264,10 +274,12 @@ impl BrushNode {
     /// scene. None waits for another device's. A take that is played anew does not wait for what
     /// the one before is owed. Where a time is given, only what a live hand did before it.
     fn next_sample(&mut self, before_ns: Option<u64>) -> Option<Received<StylusSample>> {
-        let (topics, settings, moves) = (&self.topics, &self.settings, &self.moves);
+        let (topics, settings, devices) = (&self.topics, &self.settings, &self.devices);
         let mine = |next: &Received<StylusSample>| {
             let device = topics.middle(&next.key).unwrap_or_default();
-            settings.priority(device, moves).is_some()
+            settings
+                .priority(device, moved_by(devices, device))
+                .is_some()
         };
         let anew = Flags::REPLAY.with(Flags::FIRST);
         if self
@@ -296,13 +308,14 @@ impl BrushNode {
             .middle(&received.key)
             .unwrap_or_default()
             .to_owned();
-        let Some(priority) = self.settings.priority(&device, &self.moves) else {
+        let moves = moved_by(&self.devices, &device);
+        let Some(priority) = self.settings.priority(&device, moves) else {
             return Ok(());
         };
         let (brush, next) = (self.states.origin(), self.states.next_seq());
         self.progress.note(&device, origin, seq, brush.epoch, next);
         if let Some(fault) = received.message.fault()
-            && self.faulty.insert(device.clone())
+            && self.faulty.say(&device)
         {
             tracing::warn!("{}: sample {seq} is dropped: {fault}", received.key);
         }
@@ -364,7 +377,7 @@ impl BrushNode {
 
     /// Whether a take has this brush to itself.
     fn is_held(&self) -> bool {
-        let there = |take: &Take| !self.gone.contains(&take.device);
+        let there = |take: &Take| !self.gone.has(&take.device);
         self.take.as_ref().is_some_and(there)
     }
 
@@ -486,6 +499,11 @@ impl BrushNode {
         }
         Ok(())
     }
+}
+
+/// The brush that a device says it moves.
+fn moved_by<'a>(devices: &'a Recent<Told>, device: &str) -> &'a str {
+    devices.get(device).map_or("", |told| told.brush.as_str())
 }
 
 impl std::fmt::Debug for BrushNode {

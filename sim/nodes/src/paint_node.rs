@@ -12,9 +12,10 @@ use std::sync::Arc;
 use std::time::Duration;
 
 use maulstick_brush::BrushFile;
+use maulstick_bus::rivals::Once;
 use maulstick_bus::typed::{Reader, Received, Receiver, Sender};
 use maulstick_bus::{
-    Arrival, Bus, BusError, Class, CreditReceiver, Queue, Server, Subscription, Wake,
+    Announcer, Arrival, Bus, BusError, Class, CreditReceiver, Queue, Server, Subscription, Wake,
 };
 use maulstick_document::{Document, DocumentError};
 use maulstick_paint::picture::Export;
@@ -60,7 +61,7 @@ pub struct PaintNode {
     reader: Reader,
     journal: Sender<JournalEntry>,
     consumed: Sender<PaintConsumed>,
-    scene: Sender<Scene>,
+    scene: Announcer<Scene>,
     status: Sender<PaintStatus>,
     feed: Feed,
     fed_version: u64,
@@ -74,9 +75,9 @@ pub struct PaintNode {
     tell_again: bool,
     refused: u64,
     /// Brushes without a file, and topics with misfits or a stranger on them, of which it was said.
-    unknown: BTreeSet<String>,
-    misfits: BTreeSet<String>,
-    strangers: BTreeSet<String>,
+    unknown: Once,
+    misfits: Once,
+    strangers: Once,
     export: Export,
     keeper: Option<Keeper>,
     /// Most bytes of pages in memory, where the painting has a document.
@@ -116,9 +117,8 @@ impl PaintNode {
     ) -> Result<Self, BusError> {
         let painting = sequencer.painting();
         let b = &*bus;
-        let mut scene = Sender::new(b, &topics.scene(), Class::Cached, me)?;
-        let now = b.now_ns();
-        scene.send(now, now, painting.scene())?;
+        let mut scene = Announcer::new(b, &topics.scene(), me, wake)?;
+        scene.send(b.now_ns(), painting.scene())?;
         let sent_scene = painting.scene().version;
         let fed_look = painting.look().generation();
         let node = Self {
@@ -154,9 +154,9 @@ impl PaintNode {
             told: BTreeMap::new(),
             tell_again: false,
             refused: 0,
-            unknown: BTreeSet::new(),
-            misfits: BTreeSet::new(),
-            strangers: BTreeSet::new(),
+            unknown: Once::default(),
+            misfits: Once::default(),
+            strangers: Once::default(),
             export: Export::default(),
             keeper: None,
             memory: 1 << 30,
@@ -327,7 +327,7 @@ impl PaintNode {
         // Credit and places in the journal are by the hash of the brush's name.
         if received.header.source != name_hash(&brush) {
             self.refused += 1;
-            if self.strangers.insert(received.key.clone()) {
+            if self.strangers.say(&received.key) {
                 tracing::warn!("{}: a stranger's states are dropped", received.key);
             }
             return Ok(true);
@@ -340,7 +340,7 @@ impl PaintNode {
         }
         if let Err(error) = painted {
             self.refused += 1;
-            if self.misfits.insert(received.key.clone()) {
+            if self.misfits.say(&received.key) {
                 tracing::warn!("{}: {error}: {}", received.key, error.help);
             }
         }
@@ -385,12 +385,12 @@ impl PaintNode {
         if scene.version != self.sent_scene {
             self.sent_scene = scene.version;
             // Nothing that a painter does may end the node: a scene that does not fit is not told.
-            match self.scene.send(now_ns, now_ns, scene) {
+            match self.scene.send(now_ns, scene) {
                 Err(error @ BusError::Message { .. }) => tracing::error!("{error}"),
                 sent => sent?,
             }
         }
-        Ok(())
+        self.scene.turn(now_ns)
     }
 }
 

@@ -92,7 +92,8 @@ impl Worker {
     ) -> Result<Self, Fault> {
         let wake = Wake::new();
         let topic = topics.scene();
-        let scenes = Receiver::new(&*bus, &topic, Class::Cached, Queue::Latest, &wake)?;
+        let scenes = Receiver::new(&*bus, &topic, Class::Cached, Queue::Latest, &wake)?
+            .checking(Scene::fault);
         Ok(Self {
             commander: Commander::new(bus, topics).asking(ASK),
             scenes,

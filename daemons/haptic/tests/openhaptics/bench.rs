@@ -69,14 +69,14 @@ pub(crate) fn serve() -> Host {
 
 /// Sends a rigid wall of 100 N/m at the desk's z = 0, for a head of 25 mm.
 pub(crate) fn wall(host: &mut Host) {
-    let contact = Contact::new(&ContactModel::bare(
-        ForceLaw::Rigid {
-            stiffness_n_m: 100.0,
-        },
-        0.025,
-    ));
+    let law = ForceLaw::Rigid {
+        stiffness_n_m: 100.0,
+    };
+    let mut contact = Contact::new(&ContactModel::bare(law, 0.025)).expect("a model");
+    // Nobody sends it again.
+    contact.time_to_live_s = f64::INFINITY;
     host.models.write(Delivery {
-        contact: Some(contact.expect("a model")),
+        contact: Some(contact),
         sender: None,
         number: 1,
     });

@@ -15,13 +15,13 @@ use maulstick_types::haptics::{ContactModel, ForceLaw};
 
 /// A rigid wall of 100 N/m at z = 0, for a head of 25 mm.
 fn wall() -> Contact {
-    Contact::new(&ContactModel::bare(
-        ForceLaw::Rigid {
-            stiffness_n_m: 100.0,
-        },
-        0.025,
-    ))
-    .expect("a model")
+    let law = ForceLaw::Rigid {
+        stiffness_n_m: 100.0,
+    };
+    let mut wall = Contact::new(&ContactModel::bare(law, 0.025)).expect("a model");
+    // Nobody sends it again.
+    wall.time_to_live_s = f64::INFINITY;
+    wall
 }
 
 /// Opens the device, holds it at the wall, and waits until `is_felt`; then ends the servo.

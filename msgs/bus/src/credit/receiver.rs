@@ -3,18 +3,19 @@
 //! A live gap is given up after a while, for a painter does not wait; a replayed one never, for a
 //! painting with a hole is another painting.
 
-use std::collections::{BTreeMap, VecDeque};
+use std::collections::BTreeMap;
 use std::time::Duration;
 
 use maulstick_types::command::GapRequest;
 use maulstick_types::topics::Topics;
-use maulstick_types::{Flags, Header, Message, Origin, encode};
+use maulstick_types::{Flags, Message, Origin, encode};
 
 use super::sender::split_messages;
-use super::{PATIENCE, RETRY_NS, RING, WINDOW};
-use crate::bus::{Answer, Bus, BusError, Class, Pending, Subscription};
+use super::stream::{Gap, Stream, Taken};
+use super::{PATIENCE, RETRY_NS, RING};
+use crate::bus::{Answer, Bus, BusError, Class, Subscription};
 use crate::inbox::{Queue, Wake};
-use crate::typed::{Reader, Received};
+use crate::typed::{Reader, Reason, Received};
 
 /// What a receiver has seen.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -25,7 +26,7 @@ pub struct ReceiverCounts {
     pub recovered: u64,
     /// Messages that were given up.
     pub lost: u64,
-    /// Messages that did not decode.
+    /// Messages that did not decode, or were of a sender that is not followed.
     pub refused: u64,
 }
 
@@ -48,27 +49,6 @@ pub struct CreditReceiver<M> {
 /// so two devices may have the same one, and a stray sender does not take a topic over.
 type StreamKey = (String, u32);
 
-/// One sender since its start.
-struct Stream<M> {
-    epoch: u32,
-    /// When the first message seen of this epoch was sent, rig clock, ns.
-    began_ns: u64,
-    /// Earlier epochs, whose late messages mean nothing, oldest first.
-    superseded: VecDeque<u32>,
-    /// Number of the next message to hand on; none while the beginning of a replay is sought.
-    next: Option<u64>,
-    held: BTreeMap<u64, Received<M>>,
-    /// In order, each with its place among those of all senders.
-    ready: VecDeque<(u64, Received<M>)>,
-    /// The newest questions for the gap; an answer to any of them will do.
-    asked: VecDeque<Pending>,
-    asked_ns: u64,
-    /// Questions for the gap that begins at `next`.
-    askings: u32,
-    /// Whether the newest message in order is played from a take.
-    replay: bool,
-}
-
 /// How a message came.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Way {
@@ -78,19 +58,12 @@ enum Way {
     AskedFor,
 }
 
-/// Messages from the first up to, but not with, the second number are missing.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-struct Gap {
-    from: u64,
-    seen: u64,
-}
-
 /// So many questions for one gap are open at a time.
 const OPEN_QUESTIONS: usize = 8;
-/// So many epochs of a sender are remembered.
-const EPOCHS: usize = 16;
-/// A stream keeps at most this many messages that nobody takes; its sender's ring has the rest.
-const KEPT: usize = 2 * RING;
+/// So many senders are remembered; of more the one that was silent for longest is forgotten.
+const SENDERS: usize = 64;
+/// A sender that is silent for this long is forgotten, ns.
+const FORGOTTEN_NS: u64 = 600_000_000_000;
 
 impl<M: Message> CreditReceiver<M> {
     /// Subscribes; `me` names the receiver in its queries.
@@ -126,6 +99,9 @@ impl<M: Message> CreditReceiver<M> {
         while let Some(arrival) = self.subscription.try_recv() {
             self.take_in(&arrival.key, arrival.arrived_ns, &arrival.bytes, Way::Sent);
         }
+        self.streams.retain(|_, stream| {
+            !stream.is_idle() || now_ns < stream.rivals.heard_ns().saturating_add(FORGOTTEN_NS)
+        });
         let keys: Vec<StreamKey> = self.streams.keys().cloned().collect();
         for key in keys {
             self.chase(bus, &key, now_ns)?;
@@ -173,41 +149,59 @@ impl<M: Message> CreditReceiver<M> {
         self.counts
     }
 
+    /// How many senders are remembered.
+    #[cfg(test)]
+    pub(super) fn senders(&self) -> usize {
+        self.streams.len()
+    }
+
     fn take_in(&mut self, topic: &str, arrived_ns: u64, bytes: &[u8], way: Way) {
         let Some((header, message)) = self.reader.read::<M>(topic, bytes) else {
             return;
         };
-        let stream = self
-            .streams
-            .entry((topic.to_owned(), header.source))
-            .or_insert_with(|| Stream::begin(&header));
-        if !stream.belongs(&header) {
-            return;
+        let key = (topic.to_owned(), header.source);
+        if !self.streams.contains_key(&key) {
+            self.make_room();
         }
-        if stream.next.is_none() && header.flags.has(Flags::FIRST) {
-            stream.next = Some(header.seq);
-            stream.held = stream.held.split_off(&header.seq);
-        }
-        if stream.next.is_some_and(|next| header.seq < next) {
-            if way == Way::Sent && stream.next == Some(header.seq.wrapping_add(1)) {
-                self.again.push(topic.to_owned());
-            }
-            return;
-        }
-        if stream.held.len() + stream.ready.len() >= KEPT && stream.next != Some(header.seq) {
-            return;
-        }
-        let seq = header.seq;
         let received = Received {
             key: topic.to_owned(),
             arrived_ns,
             header,
             message,
         };
-        if stream.held.insert(seq, received).is_none() && way == Way::AskedFor {
-            self.counts.recovered += 1;
+        let begun = || Stream::begin(&header, arrived_ns);
+        let stream = self.streams.entry(key).or_insert_with(begun);
+        if way == Way::AskedFor {
+            if stream.fill(received, &mut self.ordered) == Taken::New {
+                self.counts.recovered += 1;
+            }
+            return;
         }
-        stream.release(&mut self.ordered);
+        let (epoch, lost) = (stream.epoch, stream.lost);
+        match stream.take(received, &mut self.ordered) {
+            Taken::Again => self.again.push(topic.to_owned()),
+            Taken::SetAside if stream.rivals.is_rival(&header, arrived_ns) => {
+                let reason = match epoch == header.epoch {
+                    true => Reason::Leap,
+                    false => Reason::Rival,
+                };
+                self.reader.refuse(topic, reason);
+            }
+            Taken::New | Taken::Known | Taken::SetAside => {}
+        }
+        self.counts.lost += stream.lost - lost;
+    }
+
+    /// Forgets the sender that was silent for longest where there are too many.
+    fn make_room(&mut self) {
+        if self.streams.len() < SENDERS {
+            return;
+        }
+        let heard_ns = |(_, stream): &(&StreamKey, &Stream<M>)| stream.rivals.heard_ns();
+        let oldest = self.streams.iter().min_by_key(heard_ns);
+        if let Some(key) = oldest.map(|(key, _)| key.clone()) {
+            self.streams.remove(&key);
+        }
     }
 
     /// Follows up on a stream's gap.
@@ -291,88 +285,6 @@ impl<M: Message> CreditReceiver<M> {
         stream.asked_ns = now_ns;
         stream.askings += 1;
         Ok(())
-    }
-}
-
-impl<M> Stream<M> {
-    fn begin(header: &Header) -> Self {
-        let replay = header.flags.has(Flags::REPLAY);
-        let first = header.flags.has(Flags::FIRST);
-        Self {
-            epoch: header.epoch,
-            began_ns: header.sent_ns,
-            superseded: VecDeque::new(),
-            next: (first || !replay).then_some(header.seq),
-            held: BTreeMap::new(),
-            ready: VecDeque::new(),
-            asked: VecDeque::new(),
-            asked_ns: 0,
-            askings: 0,
-            replay,
-        }
-    }
-
-    /// Whether a message is of this stream, or of one that begins with it: then the sender has
-    /// started anew, and what is left of its stream before means nothing now. A late message of a
-    /// stream before is of neither.
-    fn belongs(&mut self, header: &Header) -> bool {
-        if header.epoch == self.epoch {
-            return true;
-        }
-        let earlier = !header.flags.has(Flags::FIRST) && header.sent_ns < self.began_ns;
-        if earlier || self.superseded.contains(&header.epoch) {
-            return false;
-        }
-        let mut superseded = std::mem::take(&mut self.superseded);
-        if superseded.len() == EPOCHS {
-            superseded.pop_front();
-        }
-        superseded.push_back(self.epoch);
-        *self = Self::begin(header);
-        self.superseded = superseded;
-        true
-    }
-
-    /// Moves what is in order to `ready`.
-    fn release(&mut self, ordered: &mut u64) {
-        while let Some(next) = self.next {
-            let Some(received) = self.held.remove(&next) else {
-                return;
-            };
-            self.replay = received.header.flags.has(Flags::REPLAY);
-            self.askings = 0;
-            self.ready.push_back((*ordered, received));
-            *ordered += 1;
-            self.next = Some(next.wrapping_add(1));
-        }
-    }
-
-    /// Whether a take is played on either side of the gap: live and played messages of a brush are
-    /// one stream.
-    fn is_replayed(&self) -> bool {
-        let behind = self.held.first_key_value();
-        self.replay || behind.is_some_and(|(_, held)| held.header.flags.has(Flags::REPLAY))
-    }
-
-    /// What is missing before the first message held.
-    fn gap(&mut self, ordered: &mut u64) -> Option<Gap> {
-        let (&seen, _) = self.held.first_key_value()?;
-        let from = self.next.unwrap_or(seen.saturating_sub(WINDOW));
-        if from == seen {
-            self.next = Some(seen);
-            self.release(ordered);
-            return None;
-        }
-        Some(Gap { from, seen })
-    }
-
-    /// Goes on behind a gap; returns how many messages are lost in it.
-    fn give_up(&mut self, gap: Gap, ordered: &mut u64) -> u64 {
-        self.next = Some(gap.seen);
-        self.askings = 0;
-        self.asked.clear();
-        self.release(ordered);
-        gap.seen - gap.from
     }
 }
 

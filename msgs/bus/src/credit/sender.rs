@@ -7,10 +7,13 @@ use maulstick_types::command::GapRequest;
 use maulstick_types::topics::Topics;
 use maulstick_types::{Flags, Header, Message, Origin, encode};
 
-use super::{RETRY_NS, RING, WINDOW};
+use super::{RETRY_NS, RING, RING_BYTES, WINDOW};
 use crate::bus::{Bus, BusError, Class, Publish, Server};
 use crate::inbox::Wake;
 use crate::typed::Reader;
+
+/// An answer to a question for a gap has at most so many bytes, or one message.
+const ANSWER_BYTES: usize = 1 << 20;
 
 /// When a message is sent and when what it tells was so, rig clock, ns.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -32,6 +35,8 @@ pub struct CreditSender<M> {
     consumed: u64,
     progress_ns: u64,
     ring: VecDeque<Kept>,
+    /// Bytes of the messages in the ring.
+    ring_bytes: usize,
     message: PhantomData<fn(M)>,
 }
 
@@ -63,7 +68,8 @@ impl<M: Message> CreditSender<M> {
             next: 0,
             consumed: 0,
             progress_ns: bus.now_ns(),
-            ring: VecDeque::with_capacity(RING),
+            ring: VecDeque::new(),
+            ring_bytes: 0,
             message: PhantomData,
         })
     }
@@ -90,17 +96,25 @@ impl<M: Message> CreditSender<M> {
         if self.outstanding() == 0 {
             self.progress_ns = now_ns;
         }
-        if self.ring.len() == RING {
-            self.ring.pop_front();
-        }
+        self.ring_bytes += bytes.len();
         self.ring.push_back(Kept {
             seq,
             event_ns,
             bytes: bytes.clone(),
         });
+        self.make_room();
         self.next += 1;
         self.publish.put(bytes)?;
         Ok(seq)
+    }
+
+    /// Drops the oldest messages that there is no room for.
+    fn make_room(&mut self) {
+        let window = WINDOW as usize;
+        while self.ring.len() > RING || (self.ring_bytes > RING_BYTES && self.ring.len() > window) {
+            let dropped = self.ring.pop_front();
+            self.ring_bytes -= dropped.map_or(0, |kept| kept.bytes.len());
+        }
     }
 
     /// Begins a new stream: another epoch, numbers from 0, nothing outstanding.
@@ -109,6 +123,7 @@ impl<M: Message> CreditSender<M> {
         self.next = 0;
         self.consumed = 0;
         self.ring.clear();
+        self.ring_bytes = 0;
     }
 
     /// The consumer has consumed all messages below `next` of epoch `epoch`.
@@ -172,12 +187,15 @@ impl<M: Message> CreditSender<M> {
             if gap.epoch != self.origin.epoch {
                 continue;
             }
-            let bytes: Vec<u8> = self
-                .ring
-                .iter()
-                .filter(|kept| (gap.from..=gap.to).contains(&kept.seq))
-                .flat_map(|kept| kept.bytes.iter().copied())
-                .collect();
+            let mut bytes = Vec::new();
+            let missing = |kept: &&Kept| (gap.from..=gap.to).contains(&kept.seq);
+            for kept in self.ring.iter().filter(missing) {
+                // What has no room in this answer is asked for again.
+                if !bytes.is_empty() && bytes.len() + kept.bytes.len() > ANSWER_BYTES {
+                    break;
+                }
+                bytes.extend_from_slice(&kept.bytes);
+            }
             request.answer(bytes)?;
         }
         if self.outstanding() > 0 && now_ns.saturating_sub(self.progress_ns) > RETRY_NS {

@@ -9,6 +9,8 @@ use super::{
 };
 use crate::fault::Fault;
 
+/// Nodes of every rig, and what all brush nodes are called.
+const NODES: [&str; 4] = ["paint", "brush", "ui", "player"];
 /// A quaternion written by hand counts as a unit one within this.
 const UNIT_TOLERANCE: f64 = 1e-3;
 
@@ -66,6 +68,8 @@ impl RigConfig {
         self.light.light().check().map_err(|what| {
             Fault::told(what).at(format!("{name}:{}", line_of(text, "[light]", "")))
         })?;
+        self.check_nodes()
+            .map_err(|(what, help, node)| fault(what, "[node.", &node).help(help))?;
         choose("paint model", &self.paint.model, &MODELS)
             .and_then(|()| choose("backend", &self.paint.backend, &BACKENDS))
             .map_err(|(what, help)| fault(what, "[paint]", "").help(help))?;
@@ -80,6 +84,27 @@ impl RigConfig {
             };
             fault(what, key, value).help(help)
         })
+    }
+
+    /// Settings are those of a node of this rig, or of all whose names begin with one word.
+    fn check_nodes(&self) -> Result<(), (String, String, String)> {
+        let brushes = self.brush.iter();
+        let brushes = brushes.map(|brush| format!("{BRUSH_NODE}{}", brush.name));
+        let devices = self.device.iter().map(|device| device.name.clone());
+        let own = NODES.map(str::to_owned).into_iter();
+        let names: Vec<String> = own.chain(brushes).chain(devices).collect();
+        let is_first = |node: &str| {
+            names
+                .iter()
+                .any(|name| name.split('-').next() == Some(node))
+        };
+        for node in self.node.keys() {
+            if !names.contains(node) && !is_first(node) {
+                let (what, help) = unknown("node", node, names.iter().map(String::as_str));
+                return Err((what, help, node.clone()));
+            }
+        }
+        Ok(())
     }
 
     /// What a device may be: its motors follow these numbers.

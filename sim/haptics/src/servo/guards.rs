@@ -19,9 +19,10 @@ fn held(depth: f64) -> Held {
 
 fn rigid(stiffness_n_m: f64) -> Contact {
     let mut model = model(ForceLaw::Rigid { stiffness_n_m });
-    model.time_to_live_ns = u64::MAX;
     model.recovery_ns = 0;
-    Contact::new(&model).expect("a model")
+    let mut contact = Contact::new(&model).expect("a model");
+    contact.time_to_live_s = f64::INFINITY;
+    contact
 }
 
 /// A hand that comes up from the wall, so that force may begin.

@@ -123,9 +123,9 @@ fn a_jump_ends_in_its_time_though_every_model_differs_a_little() {
 fn models_that_say_the_same_add_no_lag() {
     let mut often = engaged(0.0125);
     let mut once = often;
-    let mut endless = model(linear());
-    endless.time_to_live_ns = u64::MAX;
-    once.receive(Contact::new(&endless).expect("a model"), Sender::Same);
+    let mut endless = contact(linear());
+    endless.time_to_live_s = f64::INFINITY;
+    once.receive(endless, Sender::Same);
     for tick in 0..200 {
         often.receive(contact(linear()), Sender::Same);
         let held = held(0.0125 + 0.005 * (f64::from(tick) / 40.0).fract());

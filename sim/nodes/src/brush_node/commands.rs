@@ -3,8 +3,7 @@
 use std::collections::BTreeMap;
 
 use maulstick_brush::BrushFile;
-use maulstick_bus::BusError;
-use maulstick_bus::typed::Sender;
+use maulstick_bus::{Announcer, BusError};
 use maulstick_types::brush::BrushDef;
 use maulstick_types::command::{BRUSH_FILE_MAX, Command, CommandReply, CommandRequest, Outcome};
 use maulstick_types::{Flags, encode, name_hash};
@@ -41,7 +40,7 @@ impl Answers {
 
 /// Tells all what a brush is made of.
 pub(super) fn define(
-    def: &mut Sender<BrushDef>,
+    def: &mut Announcer<BrushDef>,
     now_ns: u64,
     name: &str,
     file: &BrushFile,
@@ -56,7 +55,7 @@ pub(super) fn define(
         toml,
         hash,
     };
-    def.send(now_ns, now_ns, &message)
+    def.send(now_ns, &message)
 }
 
 impl BrushNode {

@@ -18,17 +18,21 @@ impl BrushNode {
         origin: Origin,
         now_ns: u64,
     ) -> Result<(), BusError> {
-        if !self.drives_force.contains(device) || self.painter == Painter::Gone {
+        let drives_force = self
+            .devices
+            .get(device)
+            .is_some_and(|told| told.drives_force);
+        if !drives_force || self.painter == Painter::Gone {
             return Ok(());
         }
         let Some(plane) = self.model.plane().copied() else {
             return Ok(());
         };
-        if !self.models.contains_key(device) {
+        if !self.models.has(device) {
             let topic = self.topics.contact_model(device);
             let me = self.states.origin();
             let sender = Sender::new(&*self.bus, &topic, Class::RealTime, me)?;
-            self.models.insert(device.to_owned(), (sender, 0));
+            self.models.set(device, (sender, 0));
         }
         let Some((sender, sent_ns)) = self.models.get_mut(device) else {
             return Ok(());

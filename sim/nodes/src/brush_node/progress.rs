@@ -1,18 +1,22 @@
 //! How far a brush has consumed its devices, and what they were told of it.
 
-use std::collections::BTreeMap;
-
-use maulstick_bus::BusError;
 use maulstick_bus::typed::Sender;
+use maulstick_bus::{BusError, Recent};
 use maulstick_types::Origin;
 use maulstick_types::brush::BrushConsumed;
 
 /// What is consumed of each device, by name.
 #[derive(Debug, Default)]
 pub(super) struct Progress {
-    devices: BTreeMap<String, BrushConsumed>,
-    /// What each was told last.
-    told: BTreeMap<String, u64>,
+    devices: Recent<Consumed>,
+}
+
+/// What is consumed of a device.
+#[derive(Debug)]
+struct Consumed {
+    newest: BrushConsumed,
+    /// What it was told last.
+    told: Option<u64>,
 }
 
 impl Progress {
@@ -32,34 +36,37 @@ impl Progress {
             brush_epoch,
             state: next_state,
         };
-        let devices = &mut self.devices;
-        let progress = devices
-            .entry(device.to_owned())
-            .or_insert_with(|| fresh.clone());
-        if (progress.device, progress.device_epoch) != (origin.source, origin.epoch) {
-            *progress = fresh;
-            self.told.remove(device);
+        let known = self.devices.get(device).map(|known| &known.newest);
+        if known
+            .is_none_or(|known| (known.device, known.device_epoch) != (origin.source, origin.epoch))
+        {
+            let (newest, told) = (fresh, None);
+            self.devices.set(device, Consumed { newest, told });
         }
-        progress.next = seq.wrapping_add(1);
+        if let Some(known) = self.devices.get_mut(device) {
+            known.newest.next = seq.wrapping_add(1);
+        }
     }
 
     /// The newest state of a device will have this number.
     pub(super) fn posted(&mut self, device: Origin, number: u64) {
-        for progress in self.devices.values_mut() {
-            if (progress.device, progress.device_epoch) == (device.source, device.epoch) {
-                progress.state = number;
+        for Consumed { newest, .. } in self.devices.values_mut() {
+            if (newest.device, newest.device_epoch) == (device.source, device.epoch) {
+                newest.state = number;
             }
         }
     }
 
     /// Whether it has followed a device.
     pub(super) fn follows(&self, device: &str) -> bool {
-        self.devices.contains_key(device)
+        self.devices.has(device)
     }
 
     /// A device may not have heard what it was told.
     pub(super) fn forget_told(&mut self, device: &str) {
-        self.told.remove(device);
+        if let Some(known) = self.devices.get_mut(device) {
+            known.told = None;
+        }
     }
 
     /// Tells devices what is consumed; those whose samples wait to be solved are told then.
@@ -69,14 +76,14 @@ impl Progress {
         to: &mut Sender<BrushConsumed>,
         waits: impl Fn(Origin) -> bool,
     ) -> Result<(), BusError> {
-        for (device, progress) in &self.devices {
+        for Consumed { newest, told } in self.devices.values_mut() {
             let origin = Origin {
-                source: progress.device,
-                epoch: progress.device_epoch,
+                source: newest.device,
+                epoch: newest.device_epoch,
             };
-            if self.told.get(device) != Some(&progress.next) && !waits(origin) {
-                self.told.insert(device.clone(), progress.next);
-                to.send(now_ns, now_ns, progress)?;
+            if *told != Some(newest.next) && !waits(origin) {
+                *told = Some(newest.next);
+                to.send(now_ns, now_ns, newest)?;
             }
         }
         Ok(())

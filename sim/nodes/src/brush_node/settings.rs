@@ -29,11 +29,9 @@ pub struct BrushSettings {
 
 impl BrushSettings {
     /// Priority of a device, if it moves this brush: rig.toml and the device itself (`moves`: the
-    /// brush that each device says it moves) may say that it moves another one.
-    pub(super) fn priority(&self, device: &str, moves: &BTreeMap<String, String>) -> Option<i32> {
-        let elsewhere = moves
-            .get(device)
-            .is_some_and(|brush| !brush.is_empty() && *brush != self.name);
+    /// brush that it says it moves, or nothing) may say that it moves another one.
+    pub(super) fn priority(&self, device: &str, moves: &str) -> Option<i32> {
+        let elsewhere = !moves.is_empty() && moves != self.name;
         if elsewhere || self.others.iter().any(|other| other == device) {
             return None;
         }

@@ -14,10 +14,7 @@ impl PaintNode {
         for next in self.states.heads() {
             let brush = self.topics.middle(&next.key).unwrap_or_default();
             let waits = now_ns.saturating_sub(next.arrived_ns) > STATUS_PERIOD_NS;
-            if waits
-                && !self.sequencer.painting().knows_brush(brush)
-                && self.unknown.insert(brush.to_owned())
-            {
+            if waits && !self.sequencer.painting().knows_brush(brush) && self.unknown.say(brush) {
                 tracing::warn!("{}: its brush file has not come, its states wait", next.key);
             }
         }

@@ -1,0 +1,200 @@
+//! One sender's messages on their way into order.
+
+use std::collections::{BTreeMap, VecDeque};
+
+use maulstick_types::{Flags, Header};
+
+use super::{RING, WINDOW};
+use crate::bus::Pending;
+use crate::rivals::{Rivals, Verdict};
+use crate::typed::Received;
+
+/// A stream keeps at most this many messages that nobody takes; its sender's ring has the rest.
+const KEPT: usize = 2 * RING;
+
+/// Messages from the first up to, but not with, the second number are missing.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct Gap {
+    pub from: u64,
+    pub seen: u64,
+}
+
+/// What became of a message.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Taken {
+    /// It is new.
+    New,
+    /// It is the newest in order, once more.
+    Again,
+    /// It was there already, or there is no room for it.
+    Known,
+    /// It is of another sender.
+    SetAside,
+}
+
+/// One sender since its start.
+pub(super) struct Stream<M> {
+    pub rivals: Rivals,
+    pub epoch: u32,
+    /// Number of the next message to hand on; none while the beginning of a replay is sought.
+    next: Option<u64>,
+    /// When the newest message in order was sent, by its header, ns.
+    sent_ns: u64,
+    held: BTreeMap<u64, Received<M>>,
+    /// In order, each with its place among those of all senders.
+    pub ready: VecDeque<(u64, Received<M>)>,
+    /// The newest questions for the gap; an answer to any of them will do.
+    pub asked: VecDeque<Pending>,
+    pub asked_ns: u64,
+    /// Questions for the gap that begins at `next`.
+    pub askings: u32,
+    /// Whether the newest message in order is played from a take.
+    replay: bool,
+    /// Messages given up as another sender was followed.
+    pub lost: u64,
+}
+
+impl<M> Stream<M> {
+    pub(super) fn begin(header: &Header, arrived_ns: u64) -> Self {
+        Self::follow(header, Rivals::new(header, arrived_ns))
+    }
+
+    fn follow(header: &Header, rivals: Rivals) -> Self {
+        let replay = header.flags.has(Flags::REPLAY);
+        let first = header.flags.has(Flags::FIRST);
+        Self {
+            rivals,
+            epoch: header.epoch,
+            next: (first || !replay).then_some(header.seq),
+            sent_ns: header.sent_ns,
+            held: BTreeMap::new(),
+            ready: VecDeque::new(),
+            asked: VecDeque::new(),
+            asked_ns: 0,
+            askings: 0,
+            replay,
+            lost: 0,
+        }
+    }
+
+    /// Takes in a message as it was sent.
+    pub(super) fn take(&mut self, received: Received<M>, ordered: &mut u64) -> Taken {
+        let (header, arrived_ns) = (received.header, received.arrived_ns);
+        let fits = self.fits(&header);
+        let handed_on = self.ready.front().map(|(_, head)| head.header.seq);
+        let verdict = self
+            .rivals
+            .judge(&header, arrived_ns, fits, handed_on.or(self.next));
+        match verdict {
+            Verdict::Followed => {}
+            Verdict::SetAside => return Taken::SetAside,
+            Verdict::TakesOver(before) => self.hand_over(&header, before),
+        }
+        if self.next == Some(header.seq.wrapping_add(1)) {
+            return Taken::Again;
+        }
+        self.put(received, ordered)
+    }
+
+    /// Takes in a message that was asked for.
+    pub(super) fn fill(&mut self, received: Received<M>, ordered: &mut u64) -> Taken {
+        if received.header.epoch != self.epoch || !self.fits(&received.header) {
+            return Taken::SetAside;
+        }
+        self.put(received, ordered)
+    }
+
+    fn put(&mut self, received: Received<M>, ordered: &mut u64) -> Taken {
+        let (seq, flags) = (received.header.seq, received.header.flags);
+        if self.next.is_none() && flags.has(Flags::FIRST) {
+            self.next = Some(seq);
+            self.held = self.held.split_off(&seq);
+        }
+        let known = self.next.is_some_and(|next| seq < next);
+        let full = self.held.len() + self.ready.len() >= KEPT && self.next != Some(seq);
+        if known || full {
+            return Taken::Known;
+        }
+        let taken = match self.held.insert(seq, received) {
+            None => Taken::New,
+            Some(_) => Taken::Known,
+        };
+        self.release(ordered);
+        taken
+    }
+
+    /// Whether a message may be of the sender that is followed: its number is no leap, and one that was numbered
+    /// before the newest in order was sent before it.
+    fn fits(&self, header: &Header) -> bool {
+        match self.next {
+            None => true,
+            Some(next) if header.seq >= next => header.seq - next <= RING as u64,
+            Some(_) => header.sent_ns <= self.sent_ns,
+        }
+    }
+
+    /// Follows another sender. What is left of the one before means nothing now; a take that was followed
+    /// before goes on where it was.
+    fn hand_over(&mut self, header: &Header, before: Option<u64>) {
+        let from = match header.epoch == self.epoch {
+            true => before.or(self.next),
+            false => before,
+        };
+        let lost = self.lost;
+        *self = Self::follow(header, self.rivals.clone());
+        self.lost = lost;
+        if self.replay {
+            self.next = before.or(self.next);
+        } else if let Some(from) = from {
+            self.lost += header.seq.saturating_sub(from);
+        }
+    }
+
+    /// Moves what is in order to `ready`.
+    fn release(&mut self, ordered: &mut u64) {
+        while let Some(next) = self.next {
+            let Some(received) = self.held.remove(&next) else {
+                return;
+            };
+            self.replay = received.header.flags.has(Flags::REPLAY);
+            self.sent_ns = received.header.sent_ns;
+            self.askings = 0;
+            self.ready.push_back((*ordered, received));
+            *ordered += 1;
+            self.next = Some(next.wrapping_add(1));
+        }
+    }
+
+    /// Whether a take is played on either side of the gap: live and played messages of a brush are
+    /// one stream.
+    pub(super) fn is_replayed(&self) -> bool {
+        let behind = self.held.first_key_value();
+        self.replay || behind.is_some_and(|(_, held)| held.header.flags.has(Flags::REPLAY))
+    }
+
+    /// What is missing before the first message held.
+    pub(super) fn gap(&mut self, ordered: &mut u64) -> Option<Gap> {
+        let (&seen, _) = self.held.first_key_value()?;
+        let from = self.next.unwrap_or(seen.saturating_sub(WINDOW));
+        if from == seen {
+            self.next = Some(seen);
+            self.release(ordered);
+            return None;
+        }
+        Some(Gap { from, seen })
+    }
+
+    /// Goes on behind a gap; returns how many messages are lost in it.
+    pub(super) fn give_up(&mut self, gap: Gap, ordered: &mut u64) -> u64 {
+        self.next = Some(gap.seen);
+        self.askings = 0;
+        self.asked.clear();
+        self.release(ordered);
+        gap.seen - gap.from
+    }
+
+    /// Whether nothing is lost where it is forgotten: nothing waits in it, and it is no take that pauses.
+    pub(super) fn is_idle(&self) -> bool {
+        self.ready.is_empty() && self.held.is_empty() && !self.replay
+    }
+}

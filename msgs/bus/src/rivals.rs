@@ -1,0 +1,170 @@
+//! Which of several senders on one stream is followed.
+//!
+//! A stream is one sender's, but nothing keeps a second one away: another copy of a program, a stray message,
+//! a program that counts wrongly. Of senders that differ in their epoch the one that started last is followed;
+//! any other is set aside, and followed again once the newer one is silent. Within one epoch, where numbers
+//! leap, the stream that is followed stays until it is silent.
+
+use std::collections::BTreeSet;
+
+use maulstick_types::{Flags, Header};
+
+/// A sender that says nothing for this long is silent, and one that is heard for this long without a pause is
+/// no stray message, ns.
+pub const SILENCE_NS: u64 = 500_000_000;
+/// So many senders that are set aside are remembered for each stream.
+const REMEMBERED: usize = 8;
+
+/// One sender.
+#[derive(Clone, Copy, Debug)]
+struct Sender {
+    epoch: u32,
+    /// When the first of its messages was sent, rig clock, ns.
+    began_ns: u64,
+    /// When its newest message was sent, ns.
+    sent_ns: u64,
+    /// Since when it is heard without a pause, ns.
+    since_ns: u64,
+    /// When it was last heard, ns.
+    heard_ns: u64,
+    /// Number of its next message, if it was followed.
+    next: Option<u64>,
+}
+
+/// What becomes of a message.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Verdict {
+    /// Its sender is followed.
+    Followed,
+    /// Its sender is followed from now on: the number that it had come to, if it was followed before.
+    TakesOver(Option<u64>),
+    /// Its sender is not followed.
+    SetAside,
+}
+
+/// The senders of one stream.
+#[derive(Clone, Debug)]
+pub struct Rivals {
+    followed: Sender,
+    others: Vec<Sender>,
+}
+
+/// When a message was sent, ns: no later than it arrived.
+fn sent_ns(header: &Header, arrived_ns: u64) -> u64 {
+    header.sent_ns.min(arrived_ns)
+}
+
+impl Sender {
+    fn of(header: &Header, arrived_ns: u64) -> Self {
+        let sent_ns = sent_ns(header, arrived_ns);
+        Self {
+            epoch: header.epoch,
+            began_ns: sent_ns,
+            sent_ns,
+            since_ns: arrived_ns,
+            heard_ns: arrived_ns,
+            next: None,
+        }
+    }
+
+    fn hear(&mut self, header: &Header, arrived_ns: u64) {
+        if self.is_silent(arrived_ns) {
+            self.since_ns = arrived_ns;
+        }
+        self.heard_ns = self.heard_ns.max(arrived_ns);
+        self.sent_ns = self.sent_ns.max(sent_ns(header, arrived_ns));
+    }
+
+    fn is_silent(&self, now_ns: u64) -> bool {
+        now_ns >= self.heard_ns.saturating_add(SILENCE_NS)
+    }
+
+    /// Whether it was heard for long enough to be no stray message.
+    fn lasts(&self) -> bool {
+        self.heard_ns >= self.since_ns.saturating_add(SILENCE_NS)
+    }
+}
+
+impl Rivals {
+    /// Follows the sender of the first message.
+    #[must_use]
+    pub fn new(first: &Header, arrived_ns: u64) -> Self {
+        Self {
+            followed: Sender::of(first, arrived_ns),
+            others: Vec::new(),
+        }
+    }
+
+    /// When the sender that is followed was last heard, ns.
+    #[must_use]
+    pub fn heard_ns(&self) -> u64 {
+        self.followed.heard_ns
+    }
+
+    /// Judges a message. `fits` says whether its number goes with the stream that is followed, `next` is the
+    /// number that this one has come to.
+    pub fn judge(
+        &mut self,
+        header: &Header,
+        arrived_ns: u64,
+        fits: bool,
+        next: Option<u64>,
+    ) -> Verdict {
+        let same = header.epoch == self.followed.epoch;
+        if same && fits {
+            self.followed.hear(header, arrived_ns);
+            return Verdict::Followed;
+        }
+        let place = self.place(header, arrived_ns);
+        let (followed, other) = (&self.followed, &self.others[place]);
+        let silent = followed.is_silent(arrived_ns);
+        let takes_over = if !same && other.began_ns > followed.began_ns {
+            silent || other.lasts() || header.flags.has(Flags::FIRST)
+        } else {
+            // What was sent before the newest message of the stream that is followed is merely late.
+            silent && (sent_ns(header, arrived_ns) >= followed.sent_ns || other.lasts())
+        };
+        if !takes_over {
+            return Verdict::SetAside;
+        }
+        let before = other.next;
+        std::mem::swap(&mut self.followed, &mut self.others[place]);
+        self.others[place].next = next;
+        Verdict::TakesOver(before)
+    }
+
+    /// Where among the others the sender of a message is; the one that was silent for longest makes room.
+    fn place(&mut self, header: &Header, arrived_ns: u64) -> usize {
+        let known = |other: &Sender| other.epoch == header.epoch;
+        if let Some(place) = self.others.iter().position(known) {
+            self.others[place].hear(header, arrived_ns);
+            return place;
+        }
+        if self.others.len() == REMEMBERED {
+            let oldest = (0..REMEMBERED).min_by_key(|place| self.others[*place].heard_ns);
+            self.others.swap_remove(oldest.unwrap_or_default());
+        }
+        self.others.push(Sender::of(header, arrived_ns));
+        self.others.len() - 1
+    }
+
+    /// Whether a message shows that there are two senders: a late one of a sender that has ended does not.
+    #[must_use]
+    pub fn is_rival(&self, header: &Header, arrived_ns: u64) -> bool {
+        sent_ns(header, arrived_ns) >= self.followed.began_ns
+    }
+}
+
+/// What was said once is not said again; of more than 256 things none is said.
+#[derive(Clone, Debug, Default)]
+pub struct Once(BTreeSet<String>);
+
+impl Once {
+    /// Whether this is to be said: it was not said yet.
+    pub fn say(&mut self, what: &str) -> bool {
+        self.0.len() < 256 && self.0.insert(what.to_owned())
+    }
+}
+
+#[cfg(test)]
+mod tests;
