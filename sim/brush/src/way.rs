@@ -124,6 +124,12 @@ pub struct Piece<'a> {
 }
 
 impl Piece<'_> {
+    /// Its length, m.
+    #[must_use]
+    pub fn length_m(&self) -> f64 {
+        self.way.length_m() * (self.to - self.from)
+    }
+
     /// Its end.
     #[must_use]
     pub fn end(&self) -> Sampled {
