@@ -12,7 +12,7 @@ use maulstick_num::exp;
 /// Way along which the share 1 − 1/e of what is left is taken back, m.
 const BACK_M: f64 = 1e-3;
 /// The handle is led along a way by at most so many times its length.
-const FASTEST: f64 = 2.0;
+const FASTEST: f64 = 4.0;
 
 /// How far the handle of a pen is held beside its point, m.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]

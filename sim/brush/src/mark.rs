@@ -13,11 +13,11 @@ use crate::solver::Settings;
 use crate::tuft::Tuft;
 
 /// Strips by which the mark is measured.
-const STRIPS: usize = 160;
+const STRIPS: usize = 200;
 /// Places between two stations that are looked at.
-const BETWEEN: usize = 4;
+const BETWEEN: usize = 8;
 /// Cells in which touched places count once, by the width of the head.
-const CELLS: f64 = 48.0;
+const CELLS: f64 = 20.0;
 
 /// Measures the mark of a head.
 #[derive(Clone, Debug)]

@@ -27,6 +27,9 @@ pub const RESTART_NS: u64 = 100_000_000;
 const SOLVE_CELLS: f64 = 0.7;
 /// Solves between two samples at most: a hand is seldom that fast.
 const MOST_SOLVES: f64 = 64.0;
+/// Times that a pen is set down in thought, to find where its mark lies: an upright head may bend to
+/// another side where its handle is held beside the point.
+const LANDINGS: usize = 2;
 /// Times that a piece of the way is halved at most.
 const SPLITS: u32 = 2;
 
@@ -235,6 +238,10 @@ impl BrushModel {
             event_ns,
         };
         let is_pen = matches!(sample.pose, StylusPose::Contact { .. });
+        if is_pen && sample.in_range {
+            // While it hovers there is time.
+            self.solve_table();
+        }
         let usable = self.held.take().filter(|held| {
             event_ns > held.newest.event_ns
                 && event_ns - held.newest.event_ns <= RESTART_NS
@@ -265,12 +272,14 @@ impl BrushModel {
     fn land(&mut self, held: &mut Held, here: Sampled, in_air: bool, plane: &Plane) -> Solve {
         held.lead = Lead::default();
         if held.is_pen && !in_air {
-            let mut tried = held.clone();
-            let brush = self.placed(&tried, &here);
-            self.bend(&mut tried, &brush, plane);
-            let middle = self.mark.middle(&brush, &tried.head.angles());
-            if let Some(middle) = middle {
-                held.bent = middle - point_of(&here.pose);
+            for _ in 0..LANDINGS {
+                let mut tried = held.clone();
+                let brush = self.placed(&tried, &here);
+                self.bend(&mut tried, &brush, plane);
+                let Some(middle) = self.mark.middle(&brush, &tried.head.angles()) else {
+                    break;
+                };
+                held.bent = middle - point_of(&here.pose) - held.lead.shift;
                 held.lead = Lead::landed(held.bent, self.tabled(held, &here));
             }
         }
@@ -310,6 +319,7 @@ impl BrushModel {
                 to: s,
                 start_ns,
                 end_ns: here.event_ns,
+                length_m: part * cell_m,
             };
             self.walk(held, &piece, plane, SPLITS, &mut solves);
             (cells, at) = (cells + part, s);
@@ -346,7 +356,7 @@ impl BrushModel {
             return;
         }
         *held = tried;
-        self.lead(held, &end, piece.length_m());
+        self.lead(held, &end, piece.length_m);
         solves.push(solve);
     }
 
@@ -364,14 +374,19 @@ impl BrushModel {
         }
     }
 
-    /// How far the mark lies beside the point of a pen that is set down as it is held now.
-    fn tabled(&mut self, held: &Held, at: &Sampled) -> DVec2 {
-        let length = self.file.length_m();
-        let (tuft, settings, layout) = (&self.tuft, &self.settings, self.file.spines.layout);
-        let mark = &mut self.mark;
-        let solve = || Beside::of(mark, layout, tuft, settings, length);
-        let table = self.beside.get_or_insert_with(solve);
-        table.at(&at.pose, held.bent, length)
+    /// How far the mark lies beside the point of a pen that is set down as it is held now, m.
+    fn tabled(&self, held: &Held, at: &Sampled) -> DVec2 {
+        let of = |table: &Beside| table.at(&at.pose, held.bent, self.file.length_m());
+        self.beside.as_ref().map_or(DVec2::ZERO, of)
+    }
+
+    /// Solves where marks lie, unless that is known.
+    fn solve_table(&mut self) {
+        if self.beside.is_none() {
+            let (layout, length) = (self.file.spines.layout, self.file.length_m());
+            let (mark, tuft, settings) = (&mut self.mark, &self.tuft, &self.settings);
+            self.beside = Some(Beside::of(mark, layout, tuft, settings, length));
+        }
     }
 
     /// The surface that a sample is over; a touching brush stays on the one that it touches.

@@ -121,15 +121,12 @@ pub struct Piece<'a> {
     pub start_ns: u64,
     /// And when it ends.
     pub end_ns: u64,
+    /// How far the brush goes from the solve before to its end, m: where no sample lay between, as
+    /// long as the piece.
+    pub length_m: f64,
 }
 
 impl Piece<'_> {
-    /// Its length, m.
-    #[must_use]
-    pub fn length_m(&self) -> f64 {
-        self.way.length_m() * (self.to - self.from)
-    }
-
     /// Its end.
     #[must_use]
     pub fn end(&self) -> Sampled {
@@ -147,10 +144,12 @@ impl Piece<'_> {
         [
             Self {
                 to: middle,
+                length_m: 0.5 * self.length_m,
                 ..*self
             },
             Self {
                 from: middle,
+                length_m: 0.5 * self.length_m,
                 ..*self
             },
         ]

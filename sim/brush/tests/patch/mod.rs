@@ -96,10 +96,16 @@ impl Bench {
 }
 
 /// How wide a patch is along a unit vector, m.
+#[allow(dead_code, reason = "one test of several measures it")]
 pub(crate) fn width(patch: &[DVec2], along: DVec2) -> f64 {
     let places = patch.iter().map(|p| p.dot(along));
     let range = places.fold((f64::MAX, f64::MIN), |(least, most), p| {
         (least.min(p), most.max(p))
     });
     (range.1 - range.0 + CELL_M).max(0.0)
+}
+
+/// The middle of a patch.
+pub(crate) fn middle(patch: &[DVec2]) -> DVec2 {
+    patch.iter().sum::<DVec2>() / patch.len().max(1) as f64
 }
