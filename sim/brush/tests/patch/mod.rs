@@ -7,8 +7,6 @@ use maulstick_types::Origin;
 use maulstick_types::brush::Solve;
 use maulstick_types::stylus::{StylusPose, StylusSample};
 
-/// A film of paint reaches so far, m.
-const FILM_M: f64 = 2.5e-4;
 /// Side of the cells that count as touched, m.
 const CELL_M: f64 = 2.5e-4;
 /// Places between two stations of a strip that are looked at.
@@ -75,11 +73,12 @@ impl Bench {
         self.head.pose(&hold, &mut self.pose);
         let (strips, pose, count) = (&self.file.strips, &self.pose, self.head.strips());
         let press = f64::from(pose.press);
-        let pressed = 0.5e-3 * strips.thickness_mm + 1e-3 * strips.sink_mm * press;
+        let film = 1e-6 * self.file.load.film_um;
+        let pressed = film + 0.5e-3 * strips.thickness_mm + 1e-3 * strips.sink_mm * press;
         let mut cells = std::collections::BTreeSet::new();
         for i in count..pose.x.len() {
             let unruly = f64::from(self.head.lift()[i % count]);
-            let reach = FILM_M + pressed - 1e-3 * strips.lift_mm * (1.0 - press) * unruly;
+            let reach = pressed - 1e-3 * strips.lift_mm * (1.0 - press) * unruly;
             let at = |i: usize| [pose.x[i], pose.y[i], pose.z[i]].map(f64::from);
             let (a, b) = (at(i - count), at(i));
             for step in 0..=BETWEEN {
