@@ -4,7 +4,7 @@
 //! A state follows its sample by the time of a solve; the hand sees the difference, so the pose comes
 //! from the sample, by the same functions as in the brush node, and only the bend from the state.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, VecDeque};
 use std::sync::Arc;
 
 use glam::DVec3;
@@ -13,7 +13,7 @@ use maulstick_brush::{BrushFile, Head};
 use maulstick_bus::typed::Receiver;
 use maulstick_bus::{Bus, BusError, Class, Queue, Wake};
 use maulstick_num::geometry::Rigid;
-use maulstick_types::brush::{BrushDef, BrushLook, BrushState};
+use maulstick_types::brush::{BrushDef, BrushLook, BrushState, Solve};
 use maulstick_types::name_hash;
 use maulstick_types::paint::PaintConsumed;
 use maulstick_types::stylus::StylusSample;
@@ -32,6 +32,9 @@ struct Heard {
     epoch: u32,
     seq: u64,
 }
+
+/// States that come later than so many samples say nothing of how a pen is led.
+const RECENT: usize = 256;
 
 /// A sample of a device.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -52,6 +55,8 @@ struct Known {
     /// The device that it follows.
     device: Option<u32>,
     angles: Vec<[f32; 2]>,
+    /// Where the newest state held it, and the sample that it followed.
+    led: Option<(Solve, StylusSample)>,
     /// The surface that it touches.
     touches: Option<u32>,
     /// How full it is, 0 to 1.
@@ -92,6 +97,8 @@ pub struct Follower {
     /// The source that is only heard when it moves.
     quiet: u32,
     newest: BTreeMap<u32, Heard>,
+    /// The newest samples of all devices by source and time, the newest first.
+    recent: VecDeque<((u32, u64), StylusSample)>,
     known: BTreeMap<String, Known>,
 }
 
@@ -131,6 +138,7 @@ impl Follower {
             depth_shares,
             quiet,
             newest: BTreeMap::new(),
+            recent: VecDeque::new(),
             known: BTreeMap::new(),
         })
     }
@@ -145,6 +153,7 @@ impl Follower {
                         file,
                         device: None,
                         angles: Vec::new(),
+                        led: None,
                         touches: None,
                         wetness: 0.0,
                         coat: None,
@@ -180,6 +189,9 @@ impl Follower {
                     epoch: sample.header.epoch,
                     seq: sample.header.seq,
                 };
+                let of = (sample.header.source, sample.header.event_ns);
+                self.recent.truncate(RECENT - 1);
+                self.recent.push_front((of, heard.sample.clone()));
                 self.newest.insert(sample.header.source, heard);
             }
         }
@@ -196,6 +208,9 @@ impl Follower {
                 known.device = Some(state.message.device);
                 known.touches = (!solve.contacts.is_empty()).then_some(solve.surface);
                 known.angles.clone_from(&solve.angles_rad);
+                let of = (state.message.device, solve.event_ns);
+                let sample = self.recent.iter().find(|recent| recent.0 == of);
+                known.led = sample.map(|(_, sample)| (solve.clone(), sample.clone()));
             }
         }
     }
@@ -253,8 +268,21 @@ impl Known {
         // A stroke stays on its surface.
         let touched = self.touches.and_then(|surface| desk.plane(surface));
         let plane = *touched.or_else(|| desk.under(aim(sample, length)))?;
-        let on_desk = ferrule(sample, length, depth_share, &plane.wall());
-        let brush = plane.to_desk.inverse().after(&on_desk);
+        let place = |sample: &StylusSample| {
+            let on_desk = ferrule(sample, length, depth_share, &plane.wall());
+            plane.to_desk.inverse().after(&on_desk)
+        };
+        let mut brush = place(sample);
+        // A pen's brush is held beside its point, as far as in its newest state.
+        if let Some((solve, then)) = &self.led
+            && solve.surface == plane.id
+            && !then.in_air()
+            && !sample.in_air()
+        {
+            let led = DVec3::from_array(solve.pose.position_m) * solve.zoom;
+            let shift = led - place(then).translation;
+            brush.translation += DVec3::new(shift.x, shift.y, 0.0);
+        }
         let far = brush.translation.abs().max_element();
         (far < 100.0).then(|| Held {
             name,
@@ -316,6 +344,8 @@ mod tests {
         model: BrushModel,
         follower: Follower,
         desk: Desk,
+        /// When the pen was sampled last.
+        sampled_ns: u64,
     }
 
     impl Rig {
@@ -345,6 +375,7 @@ mod tests {
                     .expect("a follower"),
                 _def: def,
                 desk: Desk::of(&scene),
+                sampled_ns: 0,
                 model,
                 net,
                 bus,
@@ -353,12 +384,13 @@ mod tests {
 
         fn sample(&mut self, sample: &StylusSample) {
             let now = self.bus.now_ns();
+            self.sampled_ns = now;
             self.pen.send(now, now, sample).expect("sent");
         }
 
         fn solve(&mut self, seq: u64, sample: &StylusSample) -> BrushState {
-            let now = self.bus.now_ns();
-            let state = self.model.state(PEN, seq, now, sample).expect("a state");
+            let (now, at) = (self.bus.now_ns(), self.sampled_ns);
+            let state = self.model.state(PEN, seq, at, sample).expect("a state");
             self.states.send(now, now, &state).expect("sent");
             state
         }
@@ -403,7 +435,7 @@ mod tests {
             (shown.translation - Rigid::from(&solve.pose).translation).length()
         };
         assert!(
-            off(solved) < 1e-12 && surface == solved.surface,
+            off(solved) < 2.5e-3 && surface == solved.surface,
             "{}",
             off(solved)
         );

@@ -355,4 +355,13 @@ impl Scene {
             .find(|tuning| tuning.brush == brush)
             .map_or(1.0, Tuning::factor)
     }
+
+    /// How soaked the brush called `brush` is, 0 to 1.
+    #[must_use]
+    pub fn wetness(&self, brush: &str) -> f64 {
+        let mut tunings = self.tunings.iter();
+        tunings
+            .find(|tuning| tuning.brush == brush)
+            .map_or(0.0, |tuning| tuning.wetness)
+    }
 }

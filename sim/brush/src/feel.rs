@@ -14,8 +14,6 @@ use crate::tuft::{Seat, Tuft};
 const LEAST_DEPTH: f64 = 0.04;
 /// A head that is laid flat counts as this share of its length along the normal.
 const LEAST_ALONG: f64 = 0.2;
-/// The ferrule is held off the surface by at least this share of the head's length.
-const LEAST_HEIGHT: f64 = 0.05;
 /// A bent head feels at most this many times as stiff, or as soft, as at rest.
 const MOST: f64 = 4.0;
 
@@ -136,8 +134,7 @@ pub fn press(file: &BrushFile, theta: f64, depths_m: &[f64]) -> Vec<Press> {
             rotation: lean,
             translation: DVec3::Z * (along - depth),
         };
-        let low = LEAST_HEIGHT * length - tuft.lowest_root(&brush);
-        brush.translation.z += low.max(0.0);
+        tuft.raise(&mut brush, length);
         brush
     };
     let mut room = HeadSolver::default();

@@ -1,19 +1,24 @@
 //! The spines of a brush in the hand: bent one after the other, among walls and each other.
 
-use glam::DVec3;
+use glam::{DQuat, DVec3};
 use maulstick_num::geometry::Rigid;
 use maulstick_types::brush::Contact;
 
+use crate::core_spine;
 use crate::desk::Obstacle;
+use crate::energy::bond::Bond;
 use crate::energy::friction::Anisotropy;
 use crate::file::BrushFile;
 use crate::solver::{Neighbour, Settings, Solver, Stop};
 use crate::spine::SpineShape;
-use crate::tuft::Tuft;
+use crate::tuft::{Seat, Tuft};
 
 /// Times that all spines are solved where the head is put down anew: each sees the others as they
 /// were, and nothing was before.
 const SETTLING: usize = 3;
+
+/// The handle has moved where it is farther than this from where it was, m.
+const MOVED_M: f64 = 1e-6;
 
 /// A spine and what it touches.
 #[derive(Clone, Debug)]
@@ -28,6 +33,7 @@ struct HeldSpine {
 #[derive(Clone, Debug)]
 pub struct HeldHead {
     spines: Vec<HeldSpine>,
+    core: HeldSpine,
     fresh: bool,
 }
 
@@ -37,23 +43,31 @@ pub struct HeadSolver {
     solver: Solver,
     ends: Vec<Vec<DVec3>>,
     neighbours: Vec<Neighbour>,
+    /// Frames of the core's segments.
+    frames: Vec<DQuat>,
+    bonds: Vec<Bond>,
+}
+
+impl HeldSpine {
+    fn at_rest(seat: &Seat, brush: &Rigid) -> Self {
+        let shape = seat.at_rest(brush);
+        let joints = seat.spine.joints();
+        Self {
+            stops: Stop::on_surface(joints),
+            ends: (0..joints).map(|i| shape.joint(&seat.spine, i)).collect(),
+            shape,
+        }
+    }
 }
 
 impl HeldHead {
     /// A head at rest at `brush`.
     #[must_use]
     pub fn at_rest(tuft: &Tuft, brush: &Rigid) -> Self {
-        let spines = tuft.seats.iter().map(|seat| {
-            let shape = seat.at_rest(brush);
-            let joints = seat.spine.joints();
-            HeldSpine {
-                stops: Stop::on_surface(joints),
-                ends: (0..joints).map(|i| shape.joint(&seat.spine, i)).collect(),
-                shape,
-            }
-        });
+        let at_rest = |seat: &Seat| HeldSpine::at_rest(seat, brush);
         Self {
-            spines: spines.collect(),
+            spines: tuft.seats.iter().map(at_rest).collect(),
+            core: at_rest(&tuft.core.seat),
             fresh: true,
         }
     }
@@ -129,8 +143,10 @@ impl HeldHead {
         obstacles: &[Obstacle],
         settings: &Settings,
     ) -> bool {
-        let mut converged = true;
         room.ends.resize_with(self.spines.len(), Vec::new);
+        let anew = std::mem::take(&mut self.fresh) || !self.touches();
+        let mut converged = self.bend_core(room, tuft, brush, obstacles, settings);
+        core_spine::frames(&self.core.shape, &mut room.frames);
         for (spine, seat) in self.spines.iter_mut().zip(&tuft.seats) {
             let held = seat.held(brush);
             spine.shape.carry(held.translation, held.rotation);
@@ -139,19 +155,21 @@ impl HeldHead {
         for ((spine, seat), ends) in self.spines.iter().zip(&tuft.seats).zip(&mut room.ends) {
             spine.shape.joints(&seat.spine, ends);
         }
-        let sweeps = match std::mem::take(&mut self.fresh) && tuft.crowd_n_m > 0.0 {
+        let sweeps = match anew && tuft.crowd_n_m > 0.0 {
             true => SETTLING,
             false => 1,
         };
         for _ in 0..sweeps {
             for (number, (spine, seat)) in self.spines.iter_mut().zip(&tuft.seats).enumerate() {
                 tuft.neighbours(number, &room.ends, &mut room.neighbours);
+                let (core, frames) = (&tuft.core, &room.frames);
+                core.bonds(number, frames, &seat.spine, tuft.bond, &mut room.bonds);
                 face(&mut spine.stops, &spine.ends, obstacles);
-                let solution = room.solver.solve(
+                let solution = room.solver.solve_bound(
                     &seat.spine,
                     &mut spine.shape,
                     &mut spine.stops,
-                    &room.neighbours,
+                    (&room.neighbours, &room.bonds),
                     settings,
                 );
                 converged &= solution.converged;
@@ -160,6 +178,36 @@ impl HeldHead {
             }
         }
         converged
+    }
+
+    /// Bends the core of a head that has moved to `brush`. An upright one gives way to where the handle
+    /// comes from.
+    fn bend_core(
+        &mut self,
+        room: &mut HeadSolver,
+        tuft: &Tuft,
+        brush: &Rigid,
+        obstacles: &[Obstacle],
+        settings: &Settings,
+    ) -> bool {
+        let (core, seat) = (&mut self.core, &tuft.core.seat);
+        let held = seat.held(brush);
+        let way = (held.translation - core.shape.root).truncate();
+        let yields = match way.length() > MOVED_M {
+            true => -way.normalize(),
+            false => settings.yields,
+        };
+        core.shape.carry(held.translation, held.rotation);
+        core.shape.joints(&seat.spine, &mut core.ends);
+        face(&mut core.stops, &core.ends, obstacles);
+        let settings = Settings {
+            yields,
+            ..*settings
+        };
+        let (shape, stops) = (&mut core.shape, &mut core.stops);
+        let solution = room.solver.solve(&seat.spine, shape, stops, &[], &settings);
+        core.shape.joints(&seat.spine, &mut core.ends);
+        solution.converged
     }
 }
 

@@ -9,7 +9,8 @@
 //! | [`gltf`] | a brush modelled in Blender |
 //! | [`spine`] | a chain of segments: directions, joint angles, joints |
 //! | [`tuft`] | where the spines stand in the ferrule |
-//! | [`energy`] | spring, friction, damping, crowd: value, gradient, Hessian |
+//! | [`core_spine`] | the bend that the spines of a head share |
+//! | [`energy`] | spring, friction, damping, crowd, bond: value, gradient, Hessian |
 //! | [`qp`] | the quadratic program of one Newton step |
 //! | [`blocks`] | symmetric matrices with a block for each pair of segments |
 //! | [`solver`] | the constrained minimum; a whole solve reads from top to bottom |
@@ -19,12 +20,14 @@
 //! | [`desk`] | surfaces, and where a stylus holds the ferrule |
 //! | [`way`] | the handle's way between samples |
 //! | [`held`] | the spines of a brush in the hand, among walls and each other |
+//! | [`mark`], [`lead`] | where it touches, and how a pen is led so that it does so under its point |
 //! | [`feel`] | what the hand feels of it |
 //! | [`lie`], [`palette_place`] | how a surface lies on the desk, and where the palette does |
 //! | [`model`] | the brush that follows a stylus |
 //! | [`trial`] | one spine by itself, from a file and a list of poses |
 
 pub mod blocks;
+pub mod core_spine;
 pub mod desk;
 pub mod energy;
 pub mod feel;
@@ -32,7 +35,9 @@ pub mod file;
 pub mod gltf;
 pub mod head;
 pub mod held;
+pub mod lead;
 pub mod lie;
+pub mod mark;
 pub mod model;
 pub mod palette_place;
 pub mod qp;

@@ -1,16 +1,19 @@
 //! The brush that follows a stylus: samples in, solved states out.
 
+use glam::DVec2;
 use maulstick_num::geometry::Rigid;
 use maulstick_types::Origin;
 use maulstick_types::brush::{BrushState, Solve, solve_flags};
 use maulstick_types::haptics::HermiteKnot;
 use maulstick_types::scene::{CANVAS, Scene};
-use maulstick_types::stylus::StylusSample;
+use maulstick_types::stylus::{StylusPose, StylusSample};
 
 use crate::desk::{Desk, Obstacle, Plane, aim, ferrule};
 use crate::feel::{AT_ONCE_M, Feel, Press, tuned, tuples};
 use crate::file::BrushFile;
 use crate::held::{HeadSolver, HeldHead, settings_of};
+use crate::lead::Lead;
+use crate::mark::{Beside, Mark, point_of};
 use crate::solver::Settings;
 use crate::tuft::Tuft;
 use crate::way::{Piece, Sampled, Way};
@@ -19,13 +22,14 @@ use crate::way::{Piece, Sampled, Way};
 pub const STROKE_GAP_NS: u64 = 150_000_000;
 /// A longer time between samples restarts the solver, ns.
 pub const RESTART_NS: u64 = 100_000_000;
-/// The handle is held off the surface by at least this share of the head's length.
-const LEAST_HEIGHT: f64 = 0.05;
 /// A touching brush is solved each time its handle has moved so far, cells: a little less than one,
 /// so that the strips, which may overtake it, seldom move more than one.
 const SOLVE_CELLS: f64 = 0.7;
 /// Solves between two samples at most: a hand is seldom that fast.
 const MOST_SOLVES: f64 = 64.0;
+/// Times that a pen is set down in thought, to find where its mark lies: an upright head may bend to
+/// another side where its handle is held beside the point.
+const LANDINGS: usize = 2;
 /// Times that a piece of the way is halved at most.
 const SPLITS: u32 = 2;
 
@@ -37,6 +41,9 @@ pub struct BrushModel {
     tuft: Tuft,
     settings: Settings,
     solver: HeadSolver,
+    mark: Mark,
+    /// Solved when a pen first holds the brush.
+    beside: Option<Beside>,
     desk: Option<Desk>,
     follows: Option<Origin>,
     held: Option<Held>,
@@ -44,6 +51,8 @@ pub struct BrushModel {
     last_contact_ns: u64,
     /// Factor on the stiffness of the file.
     tuned: f64,
+    /// How soaked it is, 0 to 1.
+    wetness: f64,
 }
 
 /// The brush after a sample. Lengths are the desk's, axes those of the surface.
@@ -53,7 +62,14 @@ struct Held {
     /// Its zoom: on a canvas that is larger the brush bends otherwise.
     zoom: f64,
     head: HeldHead,
+    /// Where the device holds it.
     newest: Sampled,
+    /// Whether a pen holds it, which is led so that the mark lies under its point.
+    is_pen: bool,
+    /// How far it is held beside that.
+    lead: Lead,
+    /// Where the head is bent to along the surface.
+    bent: DVec2,
     /// The normal force of all contacts there, N.
     force_n: f64,
     /// The sample before the newest one, if the brush touched there and has since.
@@ -68,18 +84,22 @@ impl BrushModel {
     pub fn new(file: BrushFile, depth_share: f64) -> Self {
         let tuft = file.tuft();
         let settings = settings_of(&file, &tuft);
+        let mark = Mark::of(&file);
         Self {
             file,
             depth_share,
             tuft,
             settings,
             solver: HeadSolver::default(),
+            mark,
+            beside: None,
             desk: None,
             follows: None,
             held: None,
             strokes: 0,
             last_contact_ns: 0,
             tuned: 1.0,
+            wetness: 0.0,
         }
     }
 
@@ -88,7 +108,9 @@ impl BrushModel {
         self.tuft = file.tuft();
         self.tuft.stiffen(self.tuned);
         self.settings = settings_of(&file, &self.tuft);
+        (self.mark, self.beside) = (Mark::of(&file), None);
         (self.file, self.held) = (file, None);
+        self.soak(self.wetness);
     }
 
     /// The brush file.
@@ -109,7 +131,15 @@ impl BrushModel {
             self.tuft = self.file.tuft();
             self.tuft.stiffen(factor);
             self.settings.crowd_n_m = self.tuft.crowd_n_m;
+            self.soak(self.wetness);
         }
+    }
+
+    /// Soaks the head: 0 as in its file, 1 wet through, when its hairs stick together most.
+    pub fn soak(&mut self, wetness: f64) {
+        let [made, soaked] = self.file.spines.bond;
+        self.wetness = wetness.clamp(0.0, 1.0);
+        self.tuft.bond = made + (soaked - made) * self.wetness;
     }
 
     /// What the hand feels of the head as it is bent now.
@@ -117,7 +147,12 @@ impl BrushModel {
     pub fn feel(&self) -> Feel {
         let length = self.file.length_m();
         match &self.held {
-            Some(held) => Feel::bent(&self.tuft, length, &held.newest.pose, held.force_n),
+            Some(held) => Feel::bent(
+                &self.tuft,
+                length,
+                &self.placed(held, &held.newest),
+                held.force_n,
+            ),
             None => Feel::at_rest(&self.tuft, length),
         }
     }
@@ -135,12 +170,13 @@ impl BrushModel {
         let held = self.held.as_ref().filter(|held| held.force_n > 0.0)?;
         let desk = self.desk.as_ref()?;
         let plane = desk.plane(held.surface)?;
-        let (here, force_n, mut further) = (held.newest.pose, held.force_n, held.head.clone());
+        let (force_n, mut further) = (held.force_n, held.head.clone());
+        let here = self.placed(held, &held.newest);
         let mut deeper = here;
         deeper.translation.z -= AT_ONCE_M;
         let obstacles = desk.obstacles(plane, deeper.translation, self.file.length_m());
         let pose = plane.to_desk.after(&here);
-        self.raise(&mut deeper);
+        self.tuft.raise(&mut deeper, self.file.length_m());
         let (tuft, settings) = (&self.tuft, &self.settings);
         further.solve(&mut self.solver, tuft, &deeper, &obstacles, settings);
         Some(Press {
@@ -197,21 +233,24 @@ impl BrushModel {
         if !sample.in_range {
             brush.translation.z = brush.translation.z.max(2.0 * length);
         }
-        self.raise(&mut brush);
         let here = Sampled {
             pose: brush,
             event_ns,
         };
+        let is_pen = matches!(sample.pose, StylusPose::Contact { .. });
+        if is_pen && sample.in_range {
+            // While it hovers there is time.
+            self.solve_table();
+        }
         let usable = self.held.take().filter(|held| {
             event_ns > held.newest.event_ns
                 && event_ns - held.newest.event_ns <= RESTART_NS
-                && (held.surface, held.zoom) == (plane.id, plane.zoom)
+                && (held.surface, held.zoom, held.is_pen) == (plane.id, plane.zoom, is_pen)
         });
         let Some(mut held) = usable else {
-            let mut held = self.fresh(&plane, here);
-            let mut solve = self.solve(&mut held, here, &plane);
+            let mut held = self.fresh(&plane, here, is_pen);
+            let mut solve = self.land(&mut held, here, sample.in_air(), &plane);
             solve.flags |= solve_flags::RESTARTED;
-            held.force_n = held.head.force_n();
             self.held = Some(held);
             return vec![solve];
         };
@@ -221,19 +260,40 @@ impl BrushModel {
             solves
         } else {
             (held.before, held.left_over) = (None, 0.0);
-            let solve = self.solve(&mut held, here, &plane);
-            held.force_n = held.head.force_n();
-            vec![solve]
+            vec![self.land(&mut held, here, sample.in_air(), &plane)]
         };
         held.newest = here;
         self.held = Some(held);
         solves
     }
 
-    /// Holds the ferrule so high that no spine begins below the surface.
-    fn raise(&self, brush: &mut Rigid) {
-        let least = LEAST_HEIGHT * self.file.length_m();
-        brush.translation.z += (least - self.tuft.lowest_root(brush)).max(0.0);
+    /// Solves a brush that touched nothing at a sample. A pen is held so that its mark lies where it
+    /// points.
+    fn land(&mut self, held: &mut Held, here: Sampled, in_air: bool, plane: &Plane) -> Solve {
+        held.lead = Lead::default();
+        if held.is_pen && !in_air {
+            for _ in 0..LANDINGS {
+                let mut tried = held.clone();
+                let brush = self.placed(&tried, &here);
+                self.bend(&mut tried, &brush, plane);
+                let Some(middle) = self.mark.middle(&brush, &tried.head.angles()) else {
+                    break;
+                };
+                held.bent = middle - point_of(&here.pose) - held.lead.shift;
+                held.lead = Lead::landed(held.bent, self.tabled(held, &here));
+            }
+        }
+        let solve = self.solve(held, here, plane);
+        held.force_n = held.head.force_n();
+        solve
+    }
+
+    /// Where a brush is held at a sample.
+    fn placed(&self, held: &Held, at: &Sampled) -> Rigid {
+        let mut brush = at.pose;
+        brush.translation += held.lead.shift.extend(0.0);
+        self.tuft.raise(&mut brush, self.file.length_m());
+        brush
     }
 
     /// Solves a touching brush at each cell of its way to a sample, and gives a glimpse of it there.
@@ -259,6 +319,7 @@ impl BrushModel {
                 to: s,
                 start_ns,
                 end_ns: here.event_ns,
+                length_m: part * cell_m,
             };
             self.walk(held, &piece, plane, SPLITS, &mut solves);
             (cells, at) = (cells + part, s);
@@ -284,8 +345,7 @@ impl BrushModel {
     ) {
         let mut tried = held.clone();
         let strokes = (self.strokes, self.last_contact_ns);
-        let mut end = piece.end();
-        self.raise(&mut end.pose);
+        let end = piece.end();
         let solve = self.solve(&mut tried, end, plane);
         let moved = tried.head.moved_in_contact(&held.head);
         if splits > 0 && moved > plane.cell_m * plane.zoom {
@@ -296,7 +356,37 @@ impl BrushModel {
             return;
         }
         *held = tried;
+        self.lead(held, &end, piece.length_m);
         solves.push(solve);
+    }
+
+    /// Leads a pen after a way, so that the mark comes to lie where it points.
+    fn lead(&mut self, held: &mut Held, end: &Sampled, way_m: f64) {
+        if !held.is_pen {
+            return;
+        }
+        let brush = self.placed(held, end);
+        if let Some(middle) = self.mark.middle(&brush, &held.head.angles()) {
+            let beside = middle - point_of(&end.pose);
+            held.bent = beside - held.lead.shift;
+            let tabled = self.tabled(held, end);
+            held.lead.go(beside, tabled, way_m, self.file.length_m());
+        }
+    }
+
+    /// How far the mark lies beside the point of a pen that is set down as it is held now, m.
+    fn tabled(&self, held: &Held, at: &Sampled) -> DVec2 {
+        let of = |table: &Beside| table.at(&at.pose, held.bent, self.file.length_m());
+        self.beside.as_ref().map_or(DVec2::ZERO, of)
+    }
+
+    /// Solves where marks lie, unless that is known.
+    fn solve_table(&mut self) {
+        if self.beside.is_none() {
+            let (layout, length) = (self.file.spines.layout, self.file.length_m());
+            let (mark, tuft, settings) = (&mut self.mark, &self.tuft, &self.settings);
+            self.beside = Some(Beside::of(mark, layout, tuft, settings, length));
+        }
     }
 
     /// The surface that a sample is over; a touching brush stays on the one that it touches.
@@ -310,19 +400,8 @@ impl BrushModel {
 
     /// Bends all spines of a brush that has moved.
     fn solve(&mut self, held: &mut Held, at: Sampled, plane: &Plane) -> Solve {
-        let brush = &at.pose;
-        let length = self.file.length_m();
-        let obstacles = match &self.desk {
-            Some(desk) => desk.obstacles(plane, brush.translation, length),
-            None => vec![Obstacle::ground()],
-        };
-        let converged = held.head.solve(
-            &mut self.solver,
-            &self.tuft,
-            brush,
-            &obstacles,
-            &self.settings,
-        );
+        let brush = self.placed(held, &at);
+        let converged = self.bend(held, &brush, plane);
         let contacts = held.head.contacts();
         let stroke = if contacts.is_empty() {
             0
@@ -331,7 +410,7 @@ impl BrushModel {
         };
         let in_surface = Rigid {
             translation: brush.translation / plane.zoom,
-            ..*brush
+            ..brush
         };
         Solve {
             event_ns: at.event_ns,
@@ -347,6 +426,18 @@ impl BrushModel {
             angles_rad: held.head.angles(),
             contacts,
         }
+    }
+
+    /// Bends all spines of a brush that is held at `brush`; whether all of them converged.
+    fn bend(&mut self, held: &mut Held, brush: &Rigid, plane: &Plane) -> bool {
+        let length = self.file.length_m();
+        let obstacles = match &self.desk {
+            Some(desk) => desk.obstacles(plane, brush.translation, length),
+            None => vec![Obstacle::ground()],
+        };
+        let (room, settings) = (&mut self.solver, &self.settings);
+        held.head
+            .solve(room, &self.tuft, brush, &obstacles, settings)
     }
 
     /// As [`follow`](Self::follow), as a whole message.
@@ -376,12 +467,17 @@ impl BrushModel {
         self.strokes
     }
 
-    fn fresh(&self, plane: &Plane, here: Sampled) -> Held {
+    fn fresh(&self, plane: &Plane, here: Sampled, is_pen: bool) -> Held {
+        let mut brush = here.pose;
+        self.tuft.raise(&mut brush, self.file.length_m());
         Held {
             surface: plane.id,
             zoom: plane.zoom,
-            head: HeldHead::at_rest(&self.tuft, &here.pose),
+            head: HeldHead::at_rest(&self.tuft, &brush),
             newest: here,
+            is_pen,
+            lead: Lead::default(),
+            bent: DVec2::ZERO,
             force_n: 0.0,
             before: None,
             left_over: 0.0,

@@ -4,10 +4,14 @@ use glam::{DQuat, DVec2, DVec3};
 use maulstick_num::geometry::{Rigid, shortest_arc};
 use maulstick_num::sin_cos;
 
+use crate::core_spine::Core;
 use crate::file::BrushFile;
 use crate::file::sections::{Chain, Layout};
 use crate::solver::Neighbour;
 use crate::spine::{Spine, SpineShape};
+
+/// The ferrule is held off the surface by at least this share of the head's length.
+const LEAST_HEIGHT: f64 = 0.05;
 
 /// A spine and where it begins.
 #[derive(Clone, Debug, PartialEq)]
@@ -21,6 +25,27 @@ pub struct Seat {
 }
 
 impl Seat {
+    /// A spine that rests as drawn: from a root on by segments, brush frame, m.
+    #[must_use]
+    pub fn drawn(root: DVec3, segments: &[DVec3], spine: Spine) -> Self {
+        let lean = shortest_arc(DVec3::NEG_Z, segments[0].normalize());
+        let directions: Vec<DVec3> = segments
+            .iter()
+            .map(|segment| lean.conjugate() * segment.normalize())
+            .collect();
+        let straight = directions
+            .iter()
+            .all(|d| (*d - DVec3::NEG_Z).length() < 1e-9);
+        Self {
+            root,
+            lean,
+            spine: match straight {
+                true => spine,
+                false => spine.resting(&directions),
+            },
+        }
+    }
+
     /// The seat of a brush that is held at `brush`: root and orientation of the spine's own frame.
     #[must_use]
     pub fn held(&self, brush: &Rigid) -> Rigid {
@@ -49,6 +74,10 @@ pub struct Tuft {
     pub rooms: Vec<Vec<Room>>,
     /// Stiffness of that room, N/m.
     pub crowd_n_m: f64,
+    /// What the spines are bound to.
+    pub core: Core,
+    /// Stiffness of their bonds by that of their joints.
+    pub bond: f64,
 }
 
 /// Room that a joint of one spine keeps from the same joint of another.
@@ -101,6 +130,8 @@ impl Tuft {
         Self {
             rooms,
             crowd_n_m: spines.volume * mean,
+            core: Core::of(&seats),
+            bond: spines.bond[0],
             seats,
         }
     }
@@ -120,10 +151,16 @@ impl Tuft {
         roots.fold(brush.translation.z, f64::min)
     }
 
+    /// Holds the ferrule of a head of `length_m` so high that no spine begins below the surface z = 0.
+    pub fn raise(&self, brush: &mut Rigid, length_m: f64) {
+        let lacking = LEAST_HEIGHT * length_m - self.lowest_root(brush);
+        brush.translation.z += lacking.max(0.0);
+    }
+
     /// Multiplies all stiffness by a factor.
     pub fn stiffen(&mut self, factor: f64) {
         self.crowd_n_m *= factor;
-        for seat in &mut self.seats {
+        for seat in self.seats.iter_mut().chain([&mut self.core.seat]) {
             let spine = &mut seat.spine;
             let torques = spine.stiffness.iter_mut().chain(&mut spine.damping);
             torques.for_each(|torque| *torque *= factor);
@@ -195,28 +232,13 @@ fn chain_seat(chain: &Chain) -> Seat {
         .iter()
         .map(|segment| DVec3::from_array(*segment) * 1e-3)
         .collect();
-    let lean = shortest_arc(DVec3::NEG_Z, segments[0].normalize());
     let spine = Spine {
         lengths_m: segments.iter().map(|segment| segment.length()).collect(),
         stiffness: chain.stiffness_n_mm.iter().map(|k| k * 1e-3).collect(),
         damping: chain.damping_n_mm.iter().map(|d| d * 1e-3).collect(),
         rest: Vec::new(),
     };
-    let directions: Vec<DVec3> = segments
-        .iter()
-        .map(|segment| lean.conjugate() * segment.normalize())
-        .collect();
-    let straight = directions
-        .iter()
-        .all(|d| (*d - DVec3::NEG_Z).length() < 1e-9);
-    Seat {
-        root: DVec3::from_array(chain.root_mm) * 1e-3,
-        lean,
-        spine: match straight {
-            true => spine,
-            false => spine.resting(&directions),
-        },
-    }
+    Seat::drawn(DVec3::from_array(chain.root_mm) * 1e-3, &segments, spine)
 }
 
 fn rooms(seats: &[Seat]) -> Vec<Vec<Room>> {

@@ -121,6 +121,9 @@ pub struct Piece<'a> {
     pub start_ns: u64,
     /// And when it ends.
     pub end_ns: u64,
+    /// How far the brush goes from the solve before to its end, m: where no sample lay between, as
+    /// long as the piece.
+    pub length_m: f64,
 }
 
 impl Piece<'_> {
@@ -141,10 +144,12 @@ impl Piece<'_> {
         [
             Self {
                 to: middle,
+                length_m: 0.5 * self.length_m,
                 ..*self
             },
             Self {
                 from: middle,
+                length_m: 0.5 * self.length_m,
                 ..*self
             },
         ]

@@ -110,6 +110,44 @@ fn friction_opposes_the_slip_within_its_cone() {
     assert!((share - mu).abs() < 1e-3, "steady sliding: {share}");
 }
 
+/// The point of a spine is dragged this way and that, in short steps and in long ones: friction is that
+/// of the normal force of its own pose, and a point that goes on touching always has it.
+#[test]
+fn friction_has_the_normal_force_of_its_own_pose() {
+    let mu = 0.25;
+    for length in [0.002, 0.02, 0.1, 0.3] {
+        let mut bench = Bench::new(5, 0.8, 0.5, settings(mu));
+        let (mut slid, mut off, mut faulty) = (0, 0, 0);
+        let mut touched = false;
+        for step in 1..=400 {
+            let turn = 2.4 * f64::from(step / 7);
+            let (before, way) = (bench.tip(), length * LENGTH);
+            let height = 0.8 + 0.1 * sin(0.9 * f64::from(step));
+            bench.shape.root += DVec3::new(cos(turn), sin(turn), 0.0) * way;
+            bench.shape.root.z = height * LENGTH;
+            bench.to(bench.shape.root.x);
+            let stops = &bench.stops;
+            let only = stops[4].touches() && !stops[..4].iter().any(Stop::touches);
+            if !only {
+                touched = false;
+                continue;
+            }
+            let share = bench.share();
+            let slip = (bench.tip() - before).length();
+            if touched && slip > 20.0 * bench.settings.epsilon_m {
+                slid += 1;
+                let differs = |mu: f64| i32::from((share / mu - 1.0).abs() > 0.01);
+                off += differs(mu);
+                faulty += differs(1.02 * mu);
+            }
+            touched = true;
+        }
+        println!("steps of {length} L: {off} of {slid} off");
+        assert!(slid > 200 && off == 0, "{length}: {off} of {slid}");
+        assert_eq!(faulty, slid, "a fault would pass");
+    }
+}
+
 #[test]
 fn a_contact_holds_to_the_static_bound_and_slides_with_the_kinetic_one() {
     let (kinetic, sticking) = (0.2, 0.4);

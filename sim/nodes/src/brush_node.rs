@@ -226,6 +226,7 @@ impl BrushNode {
             self.model.set_scene(&scene.message);
             self.grain = grain(&scene.message);
             self.model.tune(scene.message.tuning(&self.settings.name));
+            self.model.soak(scene.message.wetness(&self.settings.name));
         }
         Ok(())
     }

@@ -133,6 +133,7 @@ impl Offline {
         let scene = self.sequencer.painting_mut().scene();
         self.model.set_scene(scene);
         self.model.tune(scene.tuning(&self.brush));
+        self.model.soak(scene.wetness(&self.brush));
         Ok(())
     }
 

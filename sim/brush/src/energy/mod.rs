@@ -6,9 +6,11 @@
 //! | [`friction`] | with a wall, anisotropic |
 //! | [`damping`] | within a joint |
 //! | [`crowd`] | of joints pushed into each other's room |
+//! | [`bond`] | of segments held to the core of the head |
 
 use glam::{DMat3, DVec3};
 
+pub mod bond;
 pub mod crowd;
 pub mod damping;
 pub mod friction;

@@ -187,6 +187,9 @@ fn head(file: &BrushFile) -> Result<(), BrushError> {
 fn spines(file: &BrushFile) -> Result<(), BrushError> {
     let spines = &file.spines;
     within("spines.volume", spines.volume, 0.0..=1000.0)?;
+    for bond in spines.bond {
+        within("spines.bond", bond, 0.0..=1000.0)?;
+    }
     if spines.layout == Layout::Chains {
         let count = spines.chains.len();
         must(

@@ -129,6 +129,10 @@ pub struct Spines {
     /// against a force across it.
     #[serde(default)]
     pub volume: f64,
+    /// Stiffness with which spines are held to the bend of the whole head, by that of their joints: as
+    /// the brush is made, and soaked.
+    #[serde(default = "bond")]
+    pub bond: [f64; 2],
     /// The spines of the layout `chains`.
     #[serde(default, rename = "chain", skip_serializing_if = "Vec::is_empty")]
     pub chains: Vec<Chain>,
@@ -136,6 +140,10 @@ pub struct Spines {
 
 fn half() -> f64 {
     0.5
+}
+
+fn bond() -> [f64; 2] {
+    [0.1, 1.0]
 }
 
 impl Spines {

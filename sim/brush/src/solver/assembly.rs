@@ -34,6 +34,11 @@ impl Solver {
         if self.damped {
             energy.damping = self.look_at_dampers(spine, shape);
         }
+        let slopes = self.point.slopes.iter_mut();
+        for ((slope, bond), d) in slopes.zip(problem.bonds).zip(&shape.directions) {
+            energy.bond += bond.value(*d);
+            *slope += bond.slope();
+        }
         self.look_outside(problem, stops, &mut energy);
         let point = &mut self.point;
         point.gaps.clear();
@@ -264,6 +269,7 @@ mod tests {
 
     use super::super::{Neighbour, Settings, Wall};
     use super::*;
+    use crate::energy::bond::Bond;
     use crate::energy::friction::Anisotropy;
 
     /// A bent, damped spine that is dragged over the surface beside another one.
@@ -310,9 +316,14 @@ mod tests {
     #[test]
     fn the_hessian_is_the_derivative_of_the_lagrangians_gradient() {
         let (spine, shape, stops, neighbours, settings) = scene();
+        let bonds = [0.2, 0.4, 0.5, 0.9].map(|a| Bond {
+            toward: DVec3::new(0.0, maulstick_num::sin(a), -maulstick_num::cos(a)),
+            stiffness: 0.7,
+        });
         let problem = Problem {
             spine: &spine,
             neighbours: &neighbours,
+            bonds: &bonds,
             settings: &settings,
         };
         let mut solver = Solver::default();
@@ -323,6 +334,7 @@ mod tests {
         solver.multipliers = vec![0.0, 0.3, 0.0, 0.5, 0.2];
         let energy = solver.look(problem, &shape, &stops);
         assert!(energy.friction > 0.0 && energy.damping > 0.0 && energy.crowd > 0.0);
+        assert!(energy.bond > 0.0);
         solver.residual(&spine, &shape, &stops);
         solver.assemble(&spine, &shape);
         let (tangents, hessian) = (solver.model.tangents.clone(), solver.model.hessian.clone());

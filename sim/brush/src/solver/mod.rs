@@ -10,6 +10,7 @@ use glam::{DMat2, DMat3, DVec2, DVec3};
 
 pub use self::stop::{Stop, Wall};
 use crate::blocks::BlockFactor;
+use crate::energy::bond::Bond;
 use crate::energy::damping::Damping;
 use crate::energy::friction::Anisotropy;
 use crate::energy::spring::OfCosine;
@@ -27,10 +28,21 @@ pub struct Neighbour {
     pub at_rest_m: f64,
 }
 
+/// Times that a solve is done again at most for friction to follow the normal forces.
+const ROUNDS: usize = 16;
+/// A normal force below this share of the stiffest joint's by the length counts as none.
+const LEAST_FORCE: f64 = 1e-5;
+
+/// To the lower right, where the far end of a pen is.
+const YIELDS: DVec2 = DVec2::new(
+    std::f64::consts::FRAC_1_SQRT_2,
+    -std::f64::consts::FRAC_1_SQRT_2,
+);
+
 /// What the solver is asked for.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Settings {
-    /// Coefficient of friction while sliding; the normal force is that of the solve before.
+    /// Coefficient of friction while sliding.
     pub friction: f64,
     /// Coefficient of friction while sticking; at least that while sliding.
     pub friction_static: f64,
@@ -40,6 +52,8 @@ pub struct Settings {
     pub epsilon_m: f64,
     /// Stiffness against neighbours that come nearer than at rest, N/m.
     pub crowd_n_m: f64,
+    /// Where along the surface an upright spine gives way to, a unit vector.
+    pub yields: DVec2,
     /// Newton steps at most.
     pub max_iterations: usize,
     /// Converged where ‖∇L‖∞ is below this share of the stiffest spring and the penetration below
@@ -57,6 +71,7 @@ impl Settings {
             anisotropy: Anisotropy::default(),
             epsilon_m: 8e-5 * length_m,
             crowd_n_m: 0.0,
+            yields: YIELDS,
             max_iterations: 60,
             tolerance: 1e-9,
         }
@@ -81,13 +96,15 @@ pub struct Energy {
     pub damping: f64,
     /// Of neighbours pushed aside.
     pub crowd: f64,
+    /// Of the bonds with the core of the head.
+    pub bond: f64,
 }
 
 impl Energy {
     /// All of it.
     #[must_use]
     pub fn total(self) -> f64 {
-        self.spring + self.friction + self.damping + self.crowd
+        self.spring + self.friction + self.damping + self.crowd + self.bond
     }
 }
 
@@ -227,6 +244,8 @@ struct Search {
 struct Problem<'a> {
     spine: &'a Spine,
     neighbours: &'a [Neighbour],
+    /// One a segment, or none.
+    bonds: &'a [Bond],
     settings: &'a Settings,
 }
 
@@ -234,8 +253,9 @@ impl Solver {
     /// Bends `shape` to the least energy outside the walls of all `stops`, starting from how it is
     /// bent, and writes the normal forces into them.
     ///
-    /// The normal force in the friction is that of the solve before. A contact that lifts has no
-    /// friction after all, and one that breaks loose has that of sliding: the solve is done again.
+    /// Friction has the normal force of the solve before, and the solve is done again with the one that
+    /// it found until the two agree: a contact that lifts has no friction after all, and one that breaks
+    /// loose has that of sliding. One that is new has none in this pose: it has not slipped yet.
     /// Where a leap of the handle leaves the head so twisted that no minimum is found from there, it
     /// is sought from the relaxed head, without friction; where that fails too, the head keeps its
     /// shape.
@@ -247,9 +267,23 @@ impl Solver {
         neighbours: &[Neighbour],
         settings: &Settings,
     ) -> Solution {
+        self.solve_bound(spine, shape, stops, (neighbours, &[]), settings)
+    }
+
+    /// As [`solve`](Self::solve), with what binds the segments to the core of the head: one a segment,
+    /// or none.
+    pub fn solve_bound(
+        &mut self,
+        spine: &Spine,
+        shape: &mut SpineShape,
+        stops: &mut [Stop],
+        (neighbours, bonds): (&[Neighbour], &[Bond]),
+        settings: &Settings,
+    ) -> Solution {
         let problem = Problem {
             spine,
             neighbours,
+            bonds,
             settings,
         };
         self.before.clear();
@@ -309,9 +343,12 @@ impl Solver {
         self.multipliers.clear();
         self.multipliers
             .extend(stops.iter().map(|stop| stop.force_n));
-        break_symmetry(spine, shape);
+        break_symmetry(spine, shape, settings.yields);
         let mut solution = self.minimise(problem, shape, stops);
-        while solution.usable(spine) && self.let_go(stops, settings) {
+        for _ in 0..ROUNDS {
+            if !solution.usable(spine) || !self.follow_forces(problem, stops) {
+                break;
+            }
             solution = self.minimise(problem, shape, stops).after(&solution);
         }
         if !solution.usable(spine) {
@@ -319,7 +356,7 @@ impl Solver {
             stops.iter_mut().for_each(Stop::clear);
             self.multipliers.fill(0.0);
             self.damped = false;
-            break_symmetry(spine, shape);
+            break_symmetry(spine, shape, settings.yields);
             solution = self.minimise(problem, shape, stops).after(&solution);
         }
         solution
@@ -345,6 +382,7 @@ impl Solver {
         let problem = Problem {
             spine,
             neighbours,
+            bonds: &[],
             settings,
         };
         let energy = self.look(problem, shape, stops);
@@ -415,11 +453,14 @@ impl Solver {
             && off <= tolerance * spine.length_m();
     }
 
-    /// Frees contacts that have lifted or broken loose; whether there were any.
-    fn let_go(&self, stops: &mut [Stop], settings: &Settings) -> bool {
+    /// Gives friction the normal forces at hand; whether it differs from what it was.
+    fn follow_forces(&self, problem: Problem<'_>, stops: &mut [Stop]) -> bool {
+        let (spine, settings) = (problem.spine, problem.settings);
+        let least_n = LEAST_FORCE * spine.stiffest() / spine.length_m();
         let mut any = false;
         for (i, stop) in stops.iter_mut().enumerate() {
-            any |= stop.let_go(self.multipliers[i], self.point.ends[stop.joint], settings);
+            let at = self.point.ends[stop.joint];
+            any |= stop.follow(self.multipliers[i], at, least_n, settings);
         }
         any
     }
@@ -435,8 +476,8 @@ fn is_within_reach(spine: &Spine, shape: &SpineShape, stops: &[Stop]) -> bool {
 }
 
 /// A straight spine pressed along its own axis has no way to bend that is better than another, and
-/// no gradient: turn it a little toward the lower right of the surface.
-fn break_symmetry(spine: &Spine, shape: &mut SpineShape) {
+/// no gradient: turn it a little.
+fn break_symmetry(spine: &Spine, shape: &mut SpineShape, yields: DVec2) {
     let upright = spine.rest.is_empty()
         && shape
             .directions
@@ -444,7 +485,7 @@ fn break_symmetry(spine: &Spine, shape: &mut SpineShape) {
             .all(|d| d.truncate().length_squared() < 1e-10);
     if upright && shape.root.z > 0.0 {
         for (i, d) in shape.directions.iter_mut().enumerate() {
-            *d = (*d + DVec3::new(1.0, -1.0, 0.0) * (1e-3 * (i + 1) as f64)).normalize();
+            *d = (*d + yields.extend(0.0) * (1.4e-3 * (i + 1) as f64)).normalize();
         }
     }
 }

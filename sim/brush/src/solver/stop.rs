@@ -12,6 +12,9 @@ const LOOSE: f64 = 10.0;
 /// A sliding contact sticks where it slipped by less than this many times the rounding.
 const STUCK: f64 = 3.0;
 
+/// Friction is reckoned anew where the normal force differs from its own by more than this share.
+const LAG: f64 = 2e-3;
+
 /// A half-space that joints stay in: n·x ≥ offset.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Wall {
@@ -124,19 +127,27 @@ impl Stop {
         ))
     }
 
-    /// Frees the contact of a joint at `p` that has lifted or broken loose; whether it has.
-    pub(super) fn let_go(&mut self, force_n: f64, p: DVec3, settings: &Settings) -> bool {
+    /// Gives the friction of a joint at `p` the normal force that a solve has found, and frees it where
+    /// it has broken loose; whether that changes anything. Forces below `least_n` count as none.
+    ///
+    /// A contact that has lifted keeps its anchor until the pose is settled: without friction it may
+    /// touch again.
+    pub(super) fn follow(
+        &mut self,
+        force_n: f64,
+        p: DVec3,
+        least_n: f64,
+        settings: &Settings,
+    ) -> bool {
         let Some(anchor) = self.anchor else {
             return false;
         };
-        if force_n <= 0.0 {
-            self.clear();
-            return true;
-        }
         let loose = self.wall.along(p - anchor).length() > LOOSE * settings.epsilon_m;
-        let breaks = self.sticks && loose;
+        let breaks = self.sticks && loose && settings.friction_static > settings.friction;
         self.sticks &= !loose;
-        breaks && settings.friction_static > settings.friction
+        let lags = (force_n - self.force_n).abs() > LAG * force_n.max(least_n);
+        self.force_n = force_n;
+        breaks || lags
     }
 
     /// Notes what came of a solve that put the joint to `p`.

@@ -1,0 +1,44 @@
+//! How a pen is led, so that the mark lies under its point.
+//!
+//! A pen or a mouse gives a point of the surface, and the painter looks there; but a head that is
+//! pressed down bends, and touches beside where the handle's axis meets the surface. So the handle is
+//! held beside the point, as a hand holds it that looks at the mark: at the first touch by as much as
+//! the mark lies beside it, then as [`Beside`](crate::mark::Beside) says for how it is held, and what
+//! is left, for example of the drag, is taken back along the way.
+
+use glam::DVec2;
+use maulstick_num::exp;
+
+/// Way along which the share 1 − 1/e of what is left is taken back, m.
+const BACK_M: f64 = 1e-3;
+/// The handle is led along a way by at most so many times its length.
+const FASTEST: f64 = 4.0;
+
+/// How far the handle of a pen is held beside its point, m.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Lead {
+    /// In all.
+    pub shift: DVec2,
+    /// Of it, what the table does not say.
+    rest: DVec2,
+}
+
+impl Lead {
+    /// Of a pen that is set down, whose mark lies `beside` its point, where the table says `tabled`.
+    #[must_use]
+    pub fn landed(beside: DVec2, tabled: DVec2) -> Self {
+        Self {
+            shift: -beside,
+            rest: tabled - beside,
+        }
+    }
+
+    /// Goes on along a way at the end of which the mark lies `beside` the point although the handle is
+    /// led; `tabled` as in [`landed`](Self::landed).
+    pub fn go(&mut self, beside: DVec2, tabled: DVec2, way_m: f64, length_m: f64) {
+        self.rest += beside * (exp(-way_m / BACK_M) - 1.0);
+        self.rest = self.rest.clamp_length_max(0.5 * length_m);
+        let lacking = self.rest - tabled - self.shift;
+        self.shift += lacking.clamp_length_max(FASTEST * way_m);
+    }
+}
