@@ -13,8 +13,8 @@ use maulstick_types::paint::TILE;
 
 /// zstd's level while the painter paints: a tile in a fraction of a millisecond.
 pub const LEVEL: i32 = 1;
-/// zstd's level of a packed painting.
-pub const PACKED_LEVEL: i32 = 17;
+/// zstd's level of a packed painting: of strokes 17 leaves 1.2 % less, at a seventieth of the speed.
+pub const PACKED_LEVEL: i32 = 9;
 
 fn zigzag(difference: i32) -> u32 {
     ((difference << 1) ^ (difference >> 31)) as u32

@@ -89,7 +89,7 @@ fn a_painting_that_turns_out_to_be_damaged_leaves_no_journal() {
         path.with_extension("maul-wal").exists(),
         "a fault would pass"
     );
-    print(&mut kept);
+    kept.painting_mut().report();
     assert!(document.pager().fault().is_some(), "it is damaged");
     document.close().ok();
     let names = std::fs::read_dir(folder.path()).expect("a folder");
