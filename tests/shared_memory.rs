@@ -77,3 +77,28 @@ fn a_window_shares_memory_with_the_paint_node_and_a_killed_rig_leaves_none_behin
     let _again = Launcher::up(&place, &[]);
     assert_eq!(there(&left), Vec::<String>::new());
 }
+
+#[test]
+fn a_rig_that_is_stopped_frees_the_memory_of_a_paint_node_that_was_killed() {
+    let (place, display) = (Place::new(), Display::start());
+    let mut command = place.maulstick(&["up"]);
+    command.env("DISPLAY", &display.name);
+    command.env_remove("WAYLAND_DISPLAY");
+    let mut launcher = Launcher::start(command);
+    launcher.wait_says("is up");
+    let paint = wait_for(PATIENCE, || place.pid("maulstick-paint")).expect("a paint node");
+    let pool = pool(&place, &launcher, paint);
+    let mut left = segments(paint);
+    let ui = place.pid("maulstick-ui").expect("a window");
+    left.extend(segments(ui));
+    assert!(left.contains_key(&pool));
+    // Neither can tidy anything up, and the rig is stopped before another does.
+    signal(ui, Signal::SIGKILL);
+    signal(paint, Signal::SIGKILL);
+    launcher.close(&place);
+    let there: Vec<&String> = left
+        .keys()
+        .filter(|name| Path::new(name).exists())
+        .collect();
+    assert!(there.is_empty(), "{there:?}");
+}

@@ -23,7 +23,7 @@ use maulstick_types::brush::{BrushConsumed, BrushDef, BrushState, Solve};
 use maulstick_types::haptics::{ContactModel, Grain};
 use maulstick_types::paint::PaintConsumed;
 use maulstick_types::scene::Scene;
-use maulstick_types::stylus::{StylusInfo, StylusPose, StylusSample, axes};
+use maulstick_types::stylus::{StylusInfo, StylusPose, StylusSample};
 use maulstick_types::topics::Topics;
 use maulstick_types::{Flags, Origin, name_hash};
 
@@ -34,6 +34,7 @@ use crate::outbox::Outbox;
 
 use progress::Progress;
 pub use settings::BrushSettings;
+use settings::{Told, moved_by};
 
 /// Live, states older than this are not added to: the brush merges, ns.
 const OLDEST_NS: u64 = 50_000_000;
@@ -56,15 +57,6 @@ enum Painter {
     There,
     /// It has gone.
     Gone,
-}
-
-/// What a device says that it is.
-#[derive(Clone, Debug)]
-struct Told {
-    /// The brush that it moves; any if empty.
-    brush: String,
-    /// Whether it drives a force.
-    drives_force: bool,
 }
 
 /// The brush node.
@@ -263,11 +255,7 @@ impl BrushNode {
         }
         while let Some(info) = self.infos.try_recv() {
             let device = self.topics.middle(&info.key).unwrap_or_default();
-            let told = Told {
-                brush: info.message.brush,
-                drives_force: info.message.drives & axes::FORCE != 0,
-            };
-            self.devices.set(device, told);
+            self.devices.set(device, Told::of(info.message));
         }
     }
 
@@ -500,11 +488,6 @@ impl BrushNode {
         }
         Ok(())
     }
-}
-
-/// The brush that a device says it moves.
-fn moved_by<'a>(devices: &'a Recent<Told>, device: &str) -> &'a str {
-    devices.get(device).map_or("", |told| told.brush.as_str())
 }
 
 impl std::fmt::Debug for BrushNode {

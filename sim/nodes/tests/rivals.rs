@@ -13,6 +13,9 @@ use maulstick_types::stylus::StylusSample;
 use maulstick_types::{Flags, Message, Origin, encode, name_hash};
 use support::{Device, Live, START_NS, loads, pen};
 
+/// What is wrong with a scene, and how it comes to be so.
+type Change = (&'static str, fn(&mut Scene));
+
 /// Two seconds, in turns of 2 ms.
 const TWO_SECONDS: u32 = 1000;
 
@@ -135,7 +138,7 @@ fn a_scene_that_is_none_is_dropped_and_a_foreign_one_is_contradicted() {
     let mut rig = Rig::new();
     let topic = rig.live.topics.scene();
     let scene = rig.live.paint.painting_mut().scene().clone();
-    let changes: [(&str, fn(&mut Scene)); 5] = [
+    let changes: [Change; 5] = [
         ("NaN", |scene| {
             scene.surfaces[0].pose.position_m[2] = f64::NAN
         }),

@@ -1,8 +1,10 @@
-//! What a brush node is told at its start.
+//! What a brush node is told at its start, and by its devices.
 
 use std::collections::BTreeMap;
 
 use maulstick_brush::BrushFile;
+use maulstick_bus::Recent;
+use maulstick_types::stylus::{StylusInfo, axes};
 
 use crate::feel::ForceKind;
 
@@ -37,4 +39,27 @@ impl BrushSettings {
         }
         self.devices.get(device).copied().or(self.foreign_priority)
     }
+}
+
+/// What a device says that it is.
+#[derive(Clone, Debug)]
+pub(super) struct Told {
+    /// The brush that it moves; any if empty.
+    brush: String,
+    /// Whether it drives a force.
+    pub(super) drives_force: bool,
+}
+
+impl Told {
+    pub(super) fn of(info: StylusInfo) -> Self {
+        Self {
+            brush: info.brush,
+            drives_force: info.drives & axes::FORCE != 0,
+        }
+    }
+}
+
+/// The brush that a device says it moves.
+pub(super) fn moved_by<'a>(devices: &'a Recent<Told>, device: &str) -> &'a str {
+    devices.get(device).map_or("", |told| told.brush.as_str())
 }
