@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use maulstick_optics::Illuminant;
 use maulstick_rig::Fault;
 use maulstick_rig::config::{RigConfig, is_path};
-use maulstick_rig::files::{FileId, Kind, check_writable, gives_way};
+use maulstick_rig::files::{FileId, Kind, check_writable, gives_way, is_companion};
 
 use crate::commands::open::whole;
 
@@ -92,6 +92,12 @@ pub fn named_by(config: &RigConfig) -> Vec<UsedFile> {
 /// A [`Fault`] where an output is an input or another output, or where it cannot be written.
 pub fn check_outputs(outputs: &[UsedFile], inputs: &[UsedFile]) -> Result<(), Fault> {
     check_apart(outputs, inputs)?;
+    let companion = outputs.iter().find(|output| is_companion(&output.path));
+    if let Some(UsedFile { what, path, .. }) = companion {
+        return Err(Fault::usage("a name that ends so may belong to a painting")
+            .at(path.display().to_string())
+            .help(format!("give {what} another name")));
+    }
     outputs.iter().try_for_each(|UsedFile { path, kind, .. }| {
         check_writable(path, *kind).map_err(|error| Fault::writing(path, &error))
     })

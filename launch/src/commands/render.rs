@@ -149,8 +149,8 @@ pub fn run(options: &RenderOptions) -> Result<i32, Fault> {
         }
     }
     let export = export(&config.view, "--profile, --gamut")?;
-    let outputs = options.outputs();
-    check_outputs(&outputs, &options.inputs(&config))?;
+    let (outputs, inputs) = (options.outputs(), options.inputs(&config));
+    check_apart(&outputs, &inputs)?;
     let begun = match &options.document {
         Some(path) if presence(path, &options.painting)? == Presence::There => {
             Some(go_on(&config, path)?)
@@ -172,9 +172,10 @@ pub fn run(options: &RenderOptions) -> Result<i32, Fault> {
         },
         (None, None) => Script::default(),
     };
-    let mut written = outputs;
+    let mut written = outputs.clone();
     written.extend(options.document.iter().map(|path| UsedFile::painting(path)));
     check_apart(&written, &script.files)?;
+    check_outputs(&outputs, &inputs)?;
     let (mut keeper, mut sequencer) = match &options.document {
         Some(path) => {
             let (document, mut sequencer, since) = match begun {

@@ -7,6 +7,7 @@ use std::sync::mpsc;
 
 use crate::database::{Access, Database, beside, folded, is_new, resolved};
 use crate::error::DocumentError;
+use maulstick_files::FileId;
 
 /// What becomes of the file that a painting leaves.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -68,6 +69,10 @@ pub fn unfinished(path: &Path) -> PathBuf {
 /// file system says; then both are as they were.
 pub(crate) fn put(from: &Path, order: &Move) -> Result<(), DocumentError> {
     folded(from)?;
+    // Under another of its names it would take its own place.
+    if FileId::of(&order.to).is_ok_and(|there| FileId::of(from).is_ok_and(|own| own == there)) {
+        return Err(DocumentError::OpenHere);
+    }
     make_room(&order.to, order.replace)?;
     let to = &resolved(&order.to);
     // What was found there may go, but nothing that comes meanwhile.

@@ -106,8 +106,10 @@ impl Rig {
     }
 
     pub(super) fn refused(&mut self, command: Command, words: &[&str]) {
-        let Outcome::Refused { what, help } = self.command(command) else {
-            panic!("done, though it should not be");
+        let asked = format!("{command:?}");
+        let outcome = self.command(command);
+        let Outcome::Refused { what, help } = outcome else {
+            panic!("{asked} is not refused: {outcome:?}");
         };
         let said = format!("{what}; {help}");
         assert!(words.iter().all(|word| said.contains(word)), "{said}");
