@@ -99,7 +99,8 @@ fn every_format_is_written_and_what_is_none_is_refused_with_the_list() {
 fn an_export_that_is_stopped_leaves_what_was_there() {
     let folder = tempfile::tempdir().expect("a folder");
     let path = folder.path().join("a.png");
-    std::fs::write(&path, "before").expect("written");
+    const BEFORE: &[u8] = b"\x89PNG\r\n\x1a\nbefore";
+    std::fs::write(&path, BEFORE).expect("written");
     let order = ExportOrder::to(&path.display().to_string());
     let mut exporter = Exporter::default();
     let usual = Export::default();
@@ -117,7 +118,7 @@ fn an_export_that_is_stopped_leaves_what_was_there() {
         unreachable!("it was stopped: {outcome:?}");
     };
     assert!(what.contains("was stopped"), "{what}");
-    assert_eq!(std::fs::read(&path).expect("there"), b"before");
+    assert_eq!(std::fs::read(&path).expect("there"), BEFORE);
     assert_eq!(exporter.status(9), None);
     let files = std::fs::read_dir(folder.path()).expect("a folder");
     assert_eq!(files.count(), 1, "nothing half-written stays");
