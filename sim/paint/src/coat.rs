@@ -162,8 +162,20 @@ mod tests {
             }
         }
         let load = Arc::make_mut(&mut bench.carried.load);
-        load.fill(&bench.head, &bench.traits, &[(0, 1.0)], None, Half::Left);
-        load.fill(&bench.head, &bench.traits, &[(1, 1.0)], None, Half::Right);
+        load.fill(
+            &bench.head,
+            &bench.traits,
+            &[(0, 1.0)],
+            None,
+            (Half::Left, 0),
+        );
+        load.fill(
+            &bench.head,
+            &bench.traits,
+            &[(1, 1.0)],
+            None,
+            (Half::Right, 0),
+        );
         let loaded = bench.carried.look(&bench.studio, &under);
         let side = |right: bool| {
             let roots = bench.head.roots().iter().enumerate();
@@ -173,14 +185,20 @@ mod tests {
         };
         let (left, right) = (side(false), side(true));
         assert!(!left.is_empty() && !right.is_empty());
+        // A load is uneven, but no bristle goes without.
         assert!(
-            left.iter().all(|[r, _, b, film]| b > r && *film > 0.2),
+            left.iter().all(|[r, _, b, film]| b > r && *film > 0.07),
             "{left:?}"
         );
         assert!(
-            right.iter().all(|[r, _, b, film]| r > b && *film > 0.2),
+            right.iter().all(|[r, _, b, film]| r > b && *film > 0.07),
             "{right:?}"
         );
+        for side in [&left, &right] {
+            let films = side.iter().map(|[_, _, _, film]| film);
+            let mean = films.sum::<f32>() / side.len() as f32;
+            assert!((0.6..1.5).contains(&mean), "{mean}");
+        }
         assert!(
             !right.iter().any(|[r, _, b, _]| b > r),
             "a fault would pass"
@@ -191,6 +209,8 @@ mod tests {
     fn a_thin_film_is_between_hair_and_paint() {
         let mut bench = bench();
         let under = hair(bench.carried.hair, &bench.studio);
+        let full = bench.traits.film_full;
+        let thin = 8e-6 / (full * bench.carried.film_m);
         let mut red = |count: u32| {
             let mut load = BrushLoad::clean(bench.head.strips());
             (0..load.texels()).for_each(|texel| load.add_film(0, texel, count));
@@ -198,13 +218,12 @@ mod tests {
             bench.carried.load = Arc::new(load);
             sample(&bench.carried.look(&bench.studio, &under), 0)
         };
-        let full = bench.traits.film_full;
-        let [bare, thin, thick] = [0.0, 0.02, 1.0].map(|share| red((share * full) as u32));
+        let [bare, film, thick] = [0.0, thin, 1.0].map(|share| red((share * full) as u32));
         assert!(
-            bare[0] > thin[0] + 0.02 && thin[0] > thick[0] + 0.02,
-            "{bare:?} {thin:?}"
+            bare[0] > film[0] + 0.02 && film[0] > thick[0] + 0.02,
+            "{bare:?} {film:?} {thick:?}"
         );
-        assert!((thick[3] - 1.0).abs() < 0.01 && (thin[3] - 0.02).abs() < 0.001);
+        assert!((thick[3] - 1.0).abs() < 0.01 && (f64::from(film[3]) - thin).abs() < 0.001);
     }
 
     #[test]

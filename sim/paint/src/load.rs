@@ -6,6 +6,7 @@ use maulstick_types::Mixture;
 use crate::model::BrushTraits;
 use crate::page::{Backing, Content};
 use crate::quantum::{Counts, SLOTS};
+use crate::streaks::streaks;
 
 /// Texels along a strip.
 pub const ALONG: usize = 16;
@@ -52,6 +53,8 @@ impl Half {
     }
 }
 
+/// The seed of a load is the upper half of its count of steps.
+const SEED_SHIFT: u32 = 32;
 /// By this share the film of thinner alone is thinner than one of paint.
 const RUNS_OFF: f64 = 0.7;
 
@@ -106,6 +109,12 @@ impl BrushLoad {
             load.held[slot] = Some(Box::new(Held { film, inside }));
         }
         Some(load)
+    }
+
+    /// Seed of the load: what it was filled with by chance.
+    #[must_use]
+    pub fn seed(&self) -> u64 {
+        self.steps >> SEED_SHIFT
     }
 
     /// Steps with contact that it has made.
@@ -194,15 +203,17 @@ impl BrushLoad {
     }
 
     /// Fills a half of a clean brush from tubes: full films, and inside as much as the brush takes,
-    /// divided by the mixture's shares. Paint with thinner in it clings in a thinner film.
+    /// divided by the mixture's shares, as chance has it for this seed. Paint with thinner in it clings in a thinner film.
     pub fn fill(
         &mut self,
         head: &Head,
         traits: &BrushTraits,
         mixture: &[(usize, f64)],
         thinner: Option<usize>,
-        half: Half,
+        (half, seed): (Half, u64),
     ) {
+        let taken = streaks(head, seed);
+
         let thin = thinner.map_or(0.0, |thinner| {
             let shares = mixture.iter().filter(|(slot, _)| *slot == thinner);
             shares.map(|(_, share)| share).sum()
@@ -213,12 +224,13 @@ impl BrushLoad {
             let texels = held.film.iter_mut().zip(&mut held.inside);
             for (texel, (film, inside)) in texels.enumerate() {
                 let strip = texel / ALONG;
-                let taken = half.share(f64::from(head.roots()[strip][0]));
-                let part = share * taken * f64::from(head.capacity()[strip]);
+                let half = half.share(f64::from(head.roots()[strip][0]));
+                let part = share * half * f64::from(taken[strip]);
                 *film += (film_full * part) as u32;
                 *inside += (traits.inside_full * part) as u32;
             }
         }
+        self.steps = seed << SEED_SHIFT;
         self.count_films();
     }
 

@@ -1,11 +1,15 @@
 //! What a paint model does.
 
 use maulstick_brush::BrushFile;
+use maulstick_brush::file::sections::Hair;
 use maulstick_brush::head::{Head, HeadPose, STATIONS};
 use maulstick_num::exp;
 
 use crate::load::{ALONG, BrushLoad};
-use crate::quantum::{CELL_MAX, Counts, QUANTA_PER_UNIT, QUANTUM_M, REFERENCE_CELL_M, SLOTS};
+use crate::quantum::{
+    CELL_MAX, Counts, QUANTA_PER_UNIT, QUANTUM_M, REFERENCE_CELL_M, SLOTS, UNIT_M,
+};
+use crate::transfer::LN_KEPT;
 use crate::window::Window;
 
 /// The motion of a head in one step, in cells of the surface.
@@ -26,7 +30,7 @@ pub struct BrushTraits {
     pub taper: f32,
     /// How far the skin draws back where the strips show, cells.
     pub recede: f32,
-    /// From the middle of a strip down to its lower side, cells.
+    /// Half the thickness of a strip, cells: by twice as much its edges are higher than its middle.
     pub half_thickness: f32,
     /// How far the most unruly strip keeps off the surface while the head is hardly pressed, cells.
     pub lift: f32,
@@ -42,12 +46,20 @@ pub struct BrushTraits {
     pub film_cells_per_quantum: f32,
     /// Height of wet paint by its count, cells.
     pub cells_per_quantum: f32,
+    /// Thickness of paint by its height in cells, units.
+    pub units_per_cell: f32,
     /// Side of a cell by that of the reference cell.
     pub cell_per_reference: f32,
+    /// Share of its motion that paint follows.
+    pub follows: f32,
+    /// ln of the share that stays where it is along a reference cell, of what would even out.
+    pub ln_kept: f32,
     /// Share of what a film lacks that comes from inside in [`FLOW_STEPS`](Self::FLOW_STEPS).
     pub refill: f64,
     /// Share of the difference between texels that evens out in as many.
     pub creep: f64,
+    /// Share of the difference between films beside each other that evens out in as many.
+    pub seep: f64,
 }
 
 impl BrushTraits {
@@ -59,11 +71,14 @@ impl BrushTraits {
     const REFILL: f64 = 0.03;
     /// Share of the difference between texels that evens out along a reference cell.
     const CREEP: f64 = 0.02;
+    /// Share of the difference between films beside each other that evens out along a reference cell.
+    const SEEP: f64 = 0.15;
 
     /// The traits of a brush on a surface with cells of `cell_m` at `zoom`.
     #[must_use]
     pub fn of(file: &BrushFile, cell_m: f64, zoom: f64) -> Self {
         let seen = 1e-3 / (cell_m * zoom);
+        let rigid = file.head.hair == Hair::Steel;
         let along_m = file.length_m() / ALONG as f64;
         let texel_cells = file.strips.width_mm * 1e-3 * along_m / (cell_m * cell_m);
         let quanta = |um: f64| um * 1e-6 / QUANTUM_M * texel_cells;
@@ -85,14 +100,34 @@ impl BrushTraits {
             film_units_per_quantum: (1.0 / (QUANTA_PER_UNIT * texel_cells)) as f32,
             film_cells_per_quantum: (QUANTUM_M / (texel_cells * cell_m * zoom)) as f32,
             cells_per_quantum: (QUANTUM_M / cell_m) as f32,
+            units_per_cell: (cell_m / UNIT_M) as f32,
             cell_per_reference: steps as f32,
+            follows: if rigid { BLADE_FOLLOWS } else { FOLLOWS },
+            ln_kept: if rigid { LN_BLADE_KEPT } else { LN_KEPT },
             refill: share(Self::REFILL),
             creep: share(Self::CREEP),
+            seep: share(Self::SEEP),
         }
     }
 }
 
+/// Share of the motion of bristles that paint follows: it sticks to them as to the canvas (Baxter 2004,
+/// § 6.4.2). What lies before a blade goes with it.
+pub const FOLLOWS: f32 = 0.5;
+/// As [`FOLLOWS`].
+pub const BLADE_FOLLOWS: f32 = 1.0;
+/// ln(1 − .6): a blade takes up or lays down what is above or lacks under its edge within a few cells.
+const LN_BLADE_KEPT: f32 = -0.916_290_7;
+/// Share of the lift that is left where the head is fully pressed: bristles never lie in one plane.
+const UNEVEN: f32 = 0.3;
+
 impl BrushTraits {
+    /// How far the most unruly strip keeps off what it lies on under a press of 0 to 1, cells.
+    #[must_use]
+    pub fn loose(&self, press: f32) -> f32 {
+        self.lift * (1.0 - (1.0 - UNEVEN) * press)
+    }
+
     /// Half the width of a strip in the segment that ends at a station, cells.
     #[must_use]
     pub fn half_width_before(&self, station: usize) -> f32 {

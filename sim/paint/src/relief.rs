@@ -59,6 +59,16 @@ impl Relief {
         (1.0 / self.cell_m) as f32
     }
 
+    /// From the highest bare peak to the deepest valley, m.
+    #[must_use]
+    pub fn depth_m(&self) -> f64 {
+        match &self.shape {
+            Shape::Tooth(tooth) => tooth.relief_m()[0],
+            Shape::Picture(tooth) => tooth.depth_m(),
+            Shape::Flat => 0.0,
+        }
+    }
+
     /// Heights of a tile's cells, m; 0 is the level of the highest bare peaks.
     #[must_use]
     pub fn tile(&self, id: TileId) -> Arc<[f32]> {

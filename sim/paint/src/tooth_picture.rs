@@ -97,6 +97,12 @@ impl PictureTooth {
         })
     }
 
+    /// From the highest to the deepest, m.
+    #[must_use]
+    pub fn depth_m(&self) -> f64 {
+        self.depth_m
+    }
+
     /// Heights of a tile's cells, m, row after row from the bottom.
     #[must_use]
     pub fn tile(&self, id: TileId) -> Box<[f32]> {

@@ -7,6 +7,7 @@ use maulstick_types::paint::TILE;
 use crate::dry::DryStack;
 use crate::quantum::{QUANTUM_M, SLOTS};
 use crate::relief::Relief;
+use crate::ride::ride;
 use crate::store::{TileRect, TileStore};
 use crate::tile::{Tile, TileId, Version};
 
@@ -63,6 +64,8 @@ pub struct Window {
     limit: [usize; 2],
     wet: [Option<Vec<f32>>; SLOTS],
     base: Vec<f32>,
+    ride: Vec<f32>,
+    ride_below: f32,
     /// What has dried on each tile.
     dry: Vec<Option<Arc<DryStack>>>,
     top: f32,
@@ -86,6 +89,8 @@ impl Window {
             limit: [0, 1].map(|i| rect.cells()[i].min(surface[i] - rect.from[i] as usize * TILE)),
             wet: [const { None }; SLOTS],
             base: vec![0.0; width * height],
+            ride: Vec::new(),
+            ride_below: relief.depth_m() as f32 * relief.cells_per_m(),
             dry: rect
                 .tiles()
                 .map(|id| store.version(id).tile.as_ref()?.dry().cloned())
@@ -104,6 +109,7 @@ impl Window {
             }
         }
         window.lay_dry(relief.cells_per_m() * QUANTUM_M as f32);
+        window.ride = ride(&window.base, width, f64::from(relief.cells_per_m()));
         for id in rect.tiles() {
             let Some(tile) = &store.version(id).tile else {
                 continue;
@@ -145,6 +151,19 @@ impl Window {
     #[must_use]
     pub fn base(&self) -> &[f32] {
         &self.base
+    }
+
+    /// Height at which a pressed bristle lies on what catches paint ([`ride`]), cells.
+    #[must_use]
+    pub fn ride(&self) -> &[f32] {
+        &self.ride
+    }
+
+    /// How far the ride is below 0 at most anywhere on the surface, cells: what a step looks at must not
+    /// depend on what else its window holds.
+    #[must_use]
+    pub fn ride_below(&self) -> f32 {
+        self.ride_below
     }
 
     /// The highest that brushes have met paint in the window, wet on dry, quanta.

@@ -9,6 +9,7 @@
 //! | [`haptics`] | `haptics`: how late the servo wakes beside cyclictest, what a tick takes, how stable it is |
 //! | [`header`] | headers of a brush's states |
 //! | [`latency`] | `latency`: from a stylus sample to the first frame that holds it |
+//! | [`looks`] | `looks`: films, relief and streaks of strokes |
 //! | [`optics`] | `optics`: colours of few wavelengths beside all; films on both backends beside a copy |
 //! | [`advection`] | `paint`: the advection by itself, beside a copy |
 //! | [`paint`] | `paint`: steps of the paint model by themselves, beside a copy |
@@ -27,6 +28,7 @@ mod frames;
 mod haptics;
 mod header;
 mod latency;
+mod looks;
 mod optics;
 mod paint;
 mod render;
@@ -47,7 +49,7 @@ use crate::report::Report;
 #[derive(Parser)]
 #[command(name = "maulstick-bench", version)]
 struct Options {
-    /// What to measure: brush, bus, document, frames, haptics, latency, optics, paint, render, view,
+    /// What to measure: brush, bus, document, frames, haptics, latency, looks, optics, paint, render, view,
     /// window; everything if absent
     area: Option<String>,
     /// The paint model that is measured
@@ -67,13 +69,14 @@ struct Options {
 /// An area's name and what measures it.
 type Area = (&'static str, fn(&mut Report, &Options) -> Result<(), Fault>);
 
-const AREAS: [Area; 11] = [
+const AREAS: [Area; 12] = [
     ("brush", |report, _| brush::run(report)),
     ("bus", |report, _| bus::run(report)),
     ("document", |report, _| document::run(report)),
     ("frames", |report, _| frames::run(report)),
     ("haptics", |report, _| haptics::run(report)),
     ("latency", |report, _| latency::run(report)),
+    ("looks", |report, _| looks::run(report)),
     ("optics", |report, _| optics::run(report)),
     ("paint", |report, options| {
         paint::run(report, &options.backend)

@@ -7,6 +7,7 @@
 //! the head. A root outside the hull has the weights of the nearest point of it. As the head is
 //! pressed down the strips open, and wet ones come together in clumps.
 
+mod beside;
 pub mod curve;
 mod lay;
 pub mod place;
@@ -50,6 +51,8 @@ pub struct Head {
     roots: Vec<[f32; 2]>,
     /// Strips in the order of their roots around the ferrule.
     around: Vec<u32>,
+    /// Strips in two orders in which neighbours stand beside each other.
+    beside: [Vec<u32>; 2],
     /// Seeded, 0 to 1: how far a strip keeps off the surface while the head is hardly pressed.
     lift: Vec<f32>,
     /// Seeded, about 1: how much paint a strip takes by the mean of all.
@@ -139,6 +142,10 @@ impl Head {
                 .map(|root| [root.x as f32, root.y as f32])
                 .collect(),
             around: order_around(&roots),
+            beside: beside::orders(
+                &roots,
+                DVec2::new(file.radius_m(0.0), file.half_thickness_m(0.0)),
+            ),
             lift,
             capacity,
             rest,
@@ -235,6 +242,13 @@ impl Head {
         let turn = place - place.floor();
         let number = (turn * self.strips as f32) as usize;
         self.around[number.min(self.strips - 1)] as usize
+    }
+
+    /// The strips in two orders, in each of which neighbours stand beside each other: in columns across the
+    /// thickness, and in rows along the width.
+    #[must_use]
+    pub fn beside(&self) -> &[Vec<u32>; 2] {
+        &self.beside
     }
 
     /// How far each strip keeps off the surface while the head is hardly pressed, 0 to 1.

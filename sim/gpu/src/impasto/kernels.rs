@@ -1,5 +1,8 @@
 //! The stages as compute pipelines, each with those buffers of impasto.wgsl that it uses.
 
+use maulstick_paint::impasto::velocity::{EASE, SLIP, SQUISH, STABLE};
+use maulstick_paint::transfer::{MAX_TRANSFER, SWAP, SWAP_FILM};
+
 use crate::device::Device;
 
 use super::record::RECORD_BYTES;
@@ -68,7 +71,7 @@ macro_rules! source {
 use Binding as B;
 
 /// The stages of a step, in order.
-pub(crate) static KERNELS: [Kernel; 12] = [
+pub(crate) static KERNELS: [Kernel; 16] = [
     Kernel {
         name: "weigh_films",
         source: source!("weigh_films"),
@@ -100,7 +103,12 @@ pub(crate) static KERNELS: [Kernel; 12] = [
     Kernel {
         name: "find_contacts",
         source: source!("find_contacts"),
-        constants: &[],
+        constants: &[
+            ("SQUISH", SQUISH as f64),
+            ("STABLE", STABLE as f64),
+            ("SLIP", SLIP as f64),
+            ("EASE", EASE as f64),
+        ],
         bindings: &[
             B::Poses,
             B::Head,
@@ -125,7 +133,21 @@ pub(crate) static KERNELS: [Kernel; 12] = [
         source: source!("find_velocity"),
         constants: &[],
         bindings: &[B::Contacts, B::Faces],
-        groups: Groups::Planned(0),
+        groups: Groups::Planned(4),
+    },
+    Kernel {
+        name: "level_paint",
+        source: source!("level_paint"),
+        constants: &[],
+        bindings: &[B::Planes, B::Base, B::Faces, B::Totals, B::Stats, B::Wants],
+        groups: Groups::Planned(4),
+    },
+    Kernel {
+        name: "limit_velocity",
+        source: source!("limit_velocity"),
+        constants: &[],
+        bindings: &[B::Faces, B::Wants],
+        groups: Groups::Planned(4),
     },
     Kernel {
         name: "push_paint",
@@ -144,7 +166,11 @@ pub(crate) static KERNELS: [Kernel; 12] = [
     Kernel {
         name: "ask_paint",
         source: source!("ask_paint"),
-        constants: &[],
+        constants: &[
+            ("MAX_TRANSFER", MAX_TRANSFER as f64),
+            ("SWAP", SWAP as f64),
+            ("SWAP_FILM", SWAP_FILM as f64),
+        ],
         bindings: &[B::Load, B::Asks, B::Contacts, B::Totals, B::Wants],
         groups: Groups::Planned(0),
     },
@@ -170,7 +196,19 @@ pub(crate) static KERNELS: [Kernel; 12] = [
         bindings: &[B::Head, B::Load, B::Asks],
         groups: Groups::Planned(1),
     },
+    seep(&[("second", 0.0)]),
+    seep(&[("second", 1.0)]),
 ];
+
+const fn seep(constants: &'static [(&'static str, f64)]) -> Kernel {
+    Kernel {
+        name: "seep_paint",
+        source: source!("seep_paint"),
+        constants,
+        bindings: &[B::Head, B::Load],
+        groups: Groups::Planned(5),
+    }
+}
 
 const fn copy(constants: &'static [(&'static str, f64)]) -> Kernel {
     Kernel {

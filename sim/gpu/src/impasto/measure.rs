@@ -61,6 +61,7 @@ impl Measured {
         };
         let totals: Vec<f32> = (0..cells).map(total).collect();
         let faces = vec![[0.3f32, -0.3]; cells];
+        let stats = stats_of_square(self.side as u32);
         let record = StepRecord::of_square(self.side as u32, self.paints as u32);
         let gpu = &self.gpu;
         for (binding, bytes) in [
@@ -71,7 +72,7 @@ impl Measured {
                 cast_slice(&[&totals[..], &totals].concat()),
             ),
             (Binding::Faces, cast_slice(&faces)),
-            (Binding::Stats, &[0; 64]),
+            (Binding::Stats, cast_slice(&stats)),
         ] {
             self.buffers[binding as usize].filled(gpu, &[bytes])?;
         }
@@ -148,6 +149,13 @@ impl Measured {
             Ok(begun.elapsed())
         })
     }
+}
+
+/// Statistics of a step that touches all of a square of `side` cells, as impasto.wgsl lays them out.
+fn stats_of_square(side: u32) -> [u32; 24] {
+    let mut stats = [0; 24];
+    stats[4 + 11..4 + 15].copy_from_slice(&[65536, 65536, side, side]);
+    stats
 }
 
 impl std::fmt::Debug for Measured {

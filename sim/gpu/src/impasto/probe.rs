@@ -86,8 +86,9 @@ impl Prober {
                 texel: words[0],
                 cover: value(1),
                 moved: [value(2), value(3)],
-                depth: value(4),
+                depth: value(4).max(0.0),
                 fraction: value(5),
+                gap: (-value(4)).max(0.0),
             }
         });
         Ok(Some(Probe {

@@ -5,14 +5,18 @@ use maulstick_brush::head::STATIONS;
 use maulstick_paint::head::border;
 use maulstick_paint::impasto::advection::STAIN;
 use maulstick_paint::impasto::band::rank;
+use maulstick_paint::impasto::levelling::{Body, TENSION_N_PER_M, WEIGHT_N_PER_M3};
+use maulstick_paint::impasto::velocity::HAND_M_PER_S;
 use maulstick_paint::model::{Step, Transfer};
-use maulstick_paint::quantum::CELL_MAX;
+use maulstick_paint::quantum::{CELL_MAX, QUANTUM_M};
 
 use super::residence::Residence;
 
 /// Scores reach this far below and above what reaches lowest and stands highest, cells: ranks, and what
 /// covers a cell only in part.
 const MARGIN: [f32; 2] = [0.1, 0.65];
+/// STABLE of levelling.rs.
+const STABLE: f64 = 1.0 / 40.0;
 /// No plane.
 const NONE: u32 = u32::MAX;
 
@@ -55,8 +59,16 @@ pub(crate) struct StepRecord {
     reach: f32,
     border: i32,
     lasting: u32,
+    sink: f32,
+    ride_below: f32,
+    round: f32,
+    units_per_cell: f32,
+    follows: f32,
+    ln_kept: f32,
+    seep: f32,
+    levelling: [f32; 4],
     /// Up to the least distance of two records.
-    rest: [u32; 15],
+    rest: [u32; 4],
 }
 
 /// Bytes from one record to the next.
@@ -89,8 +101,7 @@ impl StepRecord {
             Transfer::Paint | Transfer::Sampler | Transfer::Vacuum => (0, 0.0),
         };
         let strips = head.strips();
-        let pressed = traits.half_thickness + traits.sink * after.press;
-        let loose = traits.lift * (1.0 - after.press);
+        let loose = traits.loose(after.press);
         let record = Self {
             half_widths: std::array::from_fn(|i| traits.half_width_before(i + 1)),
             from,
@@ -105,10 +116,10 @@ impl StepRecord {
             vertices: on.vertices as u32,
             poses: poses.len() as u32,
             number: number as u32,
-            low: -pressed - MARGIN[0],
-            span: pressed + MARGIN[0] + MARGIN[1],
+            low: -MARGIN[0],
+            span: MARGIN[0] + MARGIN[1],
             bits: on.segment_bits(),
-            skin_bottom: traits.recede * after.splay - pressed,
+            skin_bottom: traits.recede * after.splay,
             cells_per_quantum: traits.cells_per_quantum,
             film_cells_per_quantum: traits.film_cells_per_quantum,
             film_units_per_quantum: traits.film_units_per_quantum,
@@ -124,10 +135,18 @@ impl StepRecord {
             push: u32::from(step.handling.push),
             inside: touched.map(|edge| [0, 1].map(|i| edge[i] - from[i])),
             cell_max: CELL_MAX as f32,
-            reach: traits.half_thickness + traits.sink,
+            reach: traits.sink + step.window.ride_below(),
             border: border(traits.half_width) as i32,
             lasting: u32::from(step.lasting),
-            rest: [0; 15],
+            sink: traits.sink * after.press,
+            ride_below: step.window.ride_below(),
+            round: 2.0 * traits.half_thickness,
+            units_per_cell: traits.units_per_cell,
+            follows: traits.follows,
+            ln_kept: traits.ln_kept,
+            seep: traits.seep as f32,
+            levelling: levelling(QUANTUM_M / f64::from(traits.cells_per_quantum)),
+            rest: [0; 4],
         };
         debug_assert_eq!(after.x.len(), strips * STATIONS);
         let motion = |after: &[f32], before: &[f32], poses: &mut Vec<f32>| {
@@ -143,7 +162,10 @@ impl StepRecord {
         }
         motion(&after.x, &before.x, poses);
         motion(&after.y, &before.y, poses);
-        poses.extend(head.lift().iter().map(|lift| loose * lift - pressed));
+        let lift = head.lift();
+        // Another load has other bristles stand out.
+        let turned = step.load.seed() as usize;
+        poses.extend((0..strips).map(|strip| loose * lift[(strip + turned) % strips]));
         poses.extend((0..strips).map(|strip| rank(head, after, strip)));
         if on.vertices > 0 {
             for plane in [&after.skin.x, &after.skin.y, &after.skin.z] {
@@ -179,4 +201,16 @@ impl StepRecord {
     pub(crate) fn rows(&self) -> std::ops::Range<usize> {
         self.from[1] as usize..(self.from[1] + self.size[1]) as usize
     }
+}
+
+/// `tension`, `weight`, `mobility` and `most_mobile` of impasto.wgsl, on cells of `cell_m`.
+fn levelling(cell_m: f64) -> [f32; 4] {
+    let Body {
+        yield_pa,
+        viscosity_pa_s,
+    } = Body::TUBE;
+    let tension = TENSION_N_PER_M / (cell_m * yield_pa);
+    let weight = WEIGHT_N_PER_M3 * cell_m / yield_pa;
+    let mobility = cell_m / HAND_M_PER_S * yield_pa / viscosity_pa_s;
+    [tension, weight, mobility, STABLE / tension].map(|number| number as f32)
 }

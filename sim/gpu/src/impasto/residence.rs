@@ -129,6 +129,7 @@ impl Residence {
             .map(|place| head.strip_around((place as f32 + 0.5) / self.strips as f32) as u32);
         words.extend(around);
         words.extend(head.capacity().iter().map(|share| share.to_bits()));
+        words.extend(head.beside().iter().flatten());
         words
     }
 

@@ -19,8 +19,8 @@ use crate::device::{Device, GpuError};
 pub(crate) const BATCH: usize = 64;
 /// Words of the statistics of all steps: cells touched, wet paint and thinner on them, the highest paint.
 const TALLY: u64 = 4;
-/// Words of the statistics: those and sixteen a step.
-const STATS: u64 = TALLY + 16 * BATCH as u64;
+/// Words of the statistics: those and STEP_STATS a step.
+const STATS: u64 = TALLY + 20 * BATCH as u64;
 /// Invocations of a workgroup that goes over a grid, and over strips or segments.
 const GROUP: [u64; 2] = [256, 64];
 
@@ -86,7 +86,8 @@ impl Workspace {
         gpu.guarded(|| {
             let nothing = vec![0.0; on.cells];
             self.fill(Binding::Planes, &on.planes(window, &nothing))?;
-            self.fill(Binding::Base, &[cast_slice(window.base())])?;
+            let heights = [window.base(), window.ride()].map(cast_slice);
+            self.fill(Binding::Base, &heights)?;
             self.fill(Binding::Load, &[cast_slice(&on.load(load))])?;
             self.fill(Binding::Head, &[cast_slice(&on.head(head))])?;
             self.fill(Binding::Asks, &[&vec![0; 4 * on.asks_words()]])?;
@@ -95,7 +96,7 @@ impl Workspace {
             self.fill(Binding::Stats, &[cast_slice(&stats)])?;
             self.room(Binding::Other, (on.cells * on.slots.len()) as u64);
             self.room(Binding::Segments, 16 * on.segments() as u64);
-            self.room(Binding::Groups, 16);
+            self.room(Binding::Groups, 24);
             Ok(())
         })
     }
@@ -110,7 +111,7 @@ impl Workspace {
                 (Binding::Keys, 2),
                 (Binding::Contacts, 8),
                 (Binding::Faces, 2),
-                (Binding::Totals, 4),
+                (Binding::Totals, 5),
                 (Binding::Wants, 2),
             ] {
                 self.room(binding, words * cells);

@@ -21,6 +21,7 @@ fn apart(one: &[Contact], two: &[Contact]) -> (usize, usize) {
             && near(a.cover, b.cover)
             && near(a.depth, b.depth)
             && near(a.fraction, b.fraction)
+            && near(a.gap, b.gap)
             && near(a.moved[0], b.moved[0])
             && near(a.moved[1], b.moved[1])
     };
@@ -64,6 +65,7 @@ fn crumpled(seed: u64) -> Scene {
 fn the_same_cells_are_touched() {
     let mut prober = Prober::new(device()).expect("taken");
     let strips = (0..12).map(Scene::new);
+    let mut touched = 0;
     for (seed, mut scene) in strips.chain((0..4).map(crumpled)).enumerate() {
         let mut footprint = Footprint::default();
         footprint.find(&mut scene.step());
@@ -71,7 +73,7 @@ fn the_same_cells_are_touched() {
         let probe = probe.expect("done").expect("on the surface");
         let (off, all) = apart(&footprint.contacts, &probe.contacts);
         println!("scene {seed}: {off} of {all} contacts differ");
-        assert!(all > 100, "{all}");
+        touched += all;
         // Where two segments are equally deep, rounding decides; and places in faces that are seen edge on
         // are rough.
         let few = if scene.head.skin().is_some() { 20 } else { 400 };
@@ -83,4 +85,5 @@ fn the_same_cells_are_touched() {
         let (off, _) = apart(&footprint.contacts, &faulty);
         assert!(off * few > all, "a fault passes");
     }
+    assert!(touched > 1600, "{touched}");
 }

@@ -10,9 +10,12 @@ mod scene;
 
 mod easel;
 mod footprint;
+mod levelling;
 mod modes;
+mod probed;
 mod stroke;
 mod transport;
+mod within_head;
 
 use maulstick_gpu::{Choice, Device};
 

@@ -31,7 +31,7 @@ struct Point {
 #[derive(Clone, Copy, Debug)]
 struct Ribbon {
     strip: usize,
-    /// Its lower side above the middle line, cells.
+    /// How far it keeps off what it lies on, cells.
     bottom: f32,
     /// Among strips of the same depth it counts as higher by this much, cells.
     rank: f32,
@@ -51,11 +51,13 @@ impl Point {
 }
 
 wide! {
-    pub(super) fn draw_strips<L>(band: &mut Band, step: &Step<'_>, top: f32, loose: f32, pressed: f32) {
+    pub(super) fn draw_strips<L>(band: &mut Band, step: &Step<'_>, top: f32, loose: f32) {
+        let (lift, turned) = (step.head.lift(), step.load.seed() as usize);
         for strip in 0..step.head.strips() {
             let ribbon = Ribbon {
                 strip,
-                bottom: loose * step.head.lift()[strip] - pressed,
+                // Another load has other bristles stand out.
+                bottom: loose * lift[(strip + turned) % lift.len()],
                 rank: rank(step.head, step.sweep.to, strip),
                 past: 0.0,
             };
@@ -113,14 +115,21 @@ impl Band {
             let (p, q) = below(&point(station - 1), &point(station), height);
             ribbon.past = if station == STATIONS - 1 { 0.5 } else { 0.0 };
             let half_width = step.traits.half_width_before(station);
-            self.draw::<L>(&ribbon, half_width, &p, &q);
+            self.draw::<L>(step, &ribbon, half_width, &p, &q);
         }
     }
 
     /// Draws a ribbon from `a` to `b`: of each column of cells, or each row where it goes rather up
     /// than across, those whose middle it covers, and with a soft edge half a cell to either side.
     #[inline(always)]
-    fn draw<L: Lanes>(&mut self, ribbon: &Ribbon, half_width: f32, a: &Point, b: &Point) {
+    fn draw<L: Lanes>(
+        &mut self,
+        step: &Step<'_>,
+        ribbon: &Ribbon,
+        half_width: f32,
+        a: &Point,
+        b: &Point,
+    ) {
         let start = [a.at[0] - self.offset[0], a.at[1] - self.offset[1]];
         let d = [b.at[0] - a.at[0], b.at[1] - a.at[1]];
         let major = usize::from(d[1].abs() > d[0].abs());
@@ -145,6 +154,7 @@ impl Band {
             along: [a.along, b.along - a.along],
             z: [a.at[2], b.at[2] - a.at[2]],
             bottom: ribbon.bottom,
+            round: 2.0 * step.traits.half_thickness,
             rank: ribbon.rank,
             moved: [a.moved, [0, 1].map(|i| b.moved[i] - a.moved[i])],
             line: Line {
@@ -160,7 +170,7 @@ impl Band {
     }
 
     /// Which of the covered cells are touched.
-    pub(super) fn touch(&mut self, step: &Step<'_>, lying: &[f32]) {
+    pub(super) fn touch(&mut self, step: &Step<'_>, lying: &[f32], sink: f32) {
         let window = &*step.window;
         let to_cells = step.traits.cells_per_quantum;
         let film_cells = step.traits.film_cells_per_quantum;
@@ -171,6 +181,7 @@ impl Band {
             let row = (self.grid.from[1] + y) * window.width() + self.grid.from[0];
             let lying = &lying[y * width..(y + 1) * width];
             let base = &window.base()[row..row + width];
+            let ride = &window.ride()[row..row + width];
             let (mut first, mut last) = (usize::MAX, 0);
             for x in 0..width {
                 let Some(over) = self.drawing.over(x, y) else {
@@ -178,7 +189,7 @@ impl Band {
                 };
                 let texel = over.texel();
                 let wet = lying[x] * to_cells;
-                let reach = base[x] + wet - over.bottom();
+                let reach = base[x] + wet - over.bottom(ride[x], sink);
                 if reach + films[texel as usize] as f32 * film_cells <= 0.0 {
                     continue;
                 }
@@ -193,6 +204,7 @@ impl Band {
                     moved: over.moved(),
                     depth,
                     fraction: if wet > 0.0 { depth / wet } else { 0.0 },
+                    gap: (-reach).max(0.0),
                 });
             }
             if first <= last {

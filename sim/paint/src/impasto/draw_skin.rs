@@ -36,20 +36,20 @@ impl Band {
                     at: [
                         after.x[i] - self.offset[0],
                         after.y[i] - self.offset[1],
-                        after.z[i] + bottom,
+                        after.z[i],
                     ],
                     moved: [after.x[i] - before.x[i], after.y[i] - before.y[i]],
                     place: [around + turns, along],
                 }
             });
             let [a, b, c, d] = corners;
-            self.draw_triangle(step, [a, b, c]);
-            self.draw_triangle(step, [a, c, d]);
+            self.draw_triangle(step, [a, b, c], bottom);
+            self.draw_triangle(step, [a, c, d], bottom);
         }
     }
 
     /// Draws a triangle where it is the lowest.
-    fn draw_triangle(&mut self, step: &Step<'_>, corners: [Corner; 3]) {
+    fn draw_triangle(&mut self, step: &Step<'_>, corners: [Corner; 3], bottom: f32) {
         let [a, b, c] = corners;
         let side = |p: &Corner, q: &Corner, x: f32, y: f32| {
             (q.at[0] - p.at[0]) * (y - p.at[1]) - (q.at[1] - p.at[1]) * (x - p.at[0])
@@ -86,6 +86,7 @@ impl Band {
                 let piece = Piece {
                     texel: (strip * ALONG + (along as usize).min(ALONG - 1)) as u32,
                     z: [z, 0.0],
+                    bottom,
                     moved: [
                         [0, 1].map(|i| mix(corners.map(|corner| corner.moved[i]))),
                         [0.0; 2],

@@ -31,8 +31,10 @@ pub(super) struct Piece {
     pub(super) along: [f32; 2],
     /// Height of the middle line, cells.
     pub(super) z: [f32; 2],
-    /// The lower side above the middle line, cells.
+    /// How far it keeps off what it lies on, cells.
     pub(super) bottom: f32,
+    /// By how much its edges are higher than its middle, cells: a bristle is round below.
+    pub(super) round: f32,
     /// By how much it counts as higher, cells.
     pub(super) rank: f32,
     /// How far it went since the step before, cells.
@@ -67,9 +69,11 @@ impl Line {
         (t, self.start[1 - self.major] + off * self.slope - 0.5)
     }
 
-    /// The place along the piece of a cell.
-    fn place(&self, cell: [f32; 2]) -> f32 {
-        self.at(cell[self.major]).0
+    /// The places along and across the piece of a cell.
+    fn place(&self, cell: [f32; 2]) -> [f32; 2] {
+        let (t, middle) = self.at(cell[self.major]);
+        let off = (cell[1 - self.major] - middle).abs() * self.cosine;
+        [t, (off / (self.reach - 0.5)).min(1.0)]
     }
 }
 
@@ -85,14 +89,21 @@ impl Piece {
 pub(super) struct Over<'a> {
     piece: &'a Piece,
     t: f32,
+    /// Place across, 0 in the middle to 1 at an edge.
+    across: f32,
     /// Share of the cell that is covered, 0 to 1.
     pub(super) cover: f32,
 }
 
 impl Over<'_> {
-    /// Height of the lower side, cells.
-    pub(super) fn bottom(&self) -> f32 {
-        self.piece.lower_side(self.t)
+    /// Height of the lower side where the bristle, at rest on `ride`, may sink in by `sink`, cells.
+    ///
+    /// What is pressed down has its solved height at 0: it follows the ride into the valleys of the tooth,
+    /// and is lifted by what stands higher.
+    pub(super) fn bottom(&self, ride: f32, sink: f32) -> f32 {
+        let z = self.piece.z[0] + self.t * self.piece.z[1];
+        let rests = (z + ride.min(0.0)).max(ride);
+        rests - sink + self.piece.bottom + self.piece.round * self.across * self.across
     }
 
     /// The texel.
@@ -150,9 +161,14 @@ impl Drawing {
         let at = (y - self.rows.start) * self.stride + x;
         let number = self.number[at];
         let piece = (number >= 0.0).then(|| &self.pieces[number as usize])?;
-        let t = piece.line.place([x as f32, y as f32]);
+        let [t, across] = piece.line.place([x as f32, y as f32]);
         let cover = 1.0 - self.open[at];
-        Some(Over { piece, t, cover })
+        Some(Over {
+            piece,
+            t,
+            across,
+            cover,
+        })
     }
 
     /// Draws a piece of a ribbon over those columns of its major axis.
@@ -263,8 +279,9 @@ impl Drawing {
     pub(super) fn draw_cell(&mut self, x: usize, y: usize, piece: Piece) {
         let at = (y - self.rows.start) * self.stride + x;
         self.open[at] = 0.0;
-        if piece.z[0] < self.score[at] {
-            self.score[at] = piece.z[0];
+        let lowest = piece.lower_side(0.0);
+        if lowest < self.score[at] {
+            self.score[at] = lowest;
             self.number[at] = self.pieces.len() as f32;
             self.pieces.push(piece);
         }

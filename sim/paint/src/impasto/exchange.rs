@@ -70,6 +70,7 @@ struct Meetings {
     on_brush: Vec<f32>,
     lying: Vec<f32>,
     fraction: Vec<f32>,
+    gap: Vec<f32>,
 }
 
 impl Meetings {
@@ -86,6 +87,7 @@ impl Meetings {
             &mut self.cover,
             &mut self.on_brush,
             &mut self.fraction,
+            &mut self.gap,
         ] {
             plane.clear();
         }
@@ -95,6 +97,8 @@ impl Meetings {
         self.on_brush.extend(contacts.iter().map(on_brush));
         self.fraction
             .extend(contacts.iter().map(|contact| contact.fraction));
+        let gap = |contact: &Contact| contact.gap * traits.units_per_cell;
+        self.gap.extend(contacts.iter().map(gap));
     }
 }
 
@@ -117,6 +121,10 @@ pub struct Meeting {
     pub lying: f32,
     /// Share of it that the brush reaches.
     pub fraction: f32,
+    /// How far the brush is above it, units.
+    pub gap: f32,
+    /// ln of what stays along a reference cell.
+    pub ln_kept: f32,
 }
 
 /// What a contact wants: quanta from the brush, and to it.
@@ -125,11 +133,12 @@ pub struct Meeting {
 pub fn wanted(meeting: &Meeting, handling: &Handling) -> [f32; 2] {
     let quanta = meeting.cover * QUANTA_PER_UNIT as f32;
     let on_canvas = meeting.lying * (1.0 / QUANTA_PER_UNIT as f32) * meeting.fraction;
+    let reached = on_canvas - meeting.gap;
     let (net, swap) = match handling.transfer {
         Transfer::Marker { flow } => (flow * meeting.travel, 0.0),
         _ => {
-            let share = share(meeting.travel);
-            let net = transfer(meeting.on_brush, on_canvas, meeting.travel, share);
+            let share = share(meeting.travel, meeting.ln_kept);
+            let net = transfer(meeting.on_brush, reached, meeting.travel, share);
             (net, swap(meeting.on_brush, on_canvas, share))
         }
     };
@@ -154,7 +163,7 @@ fn positive(a: f32) -> f32 {
 
 wide! {
     /// What all contacts want: quanta from the brush, and to it.
-    fn want(meetings: &Meetings, handling: &Handling, wants: &mut [Vec<f32>; 2]) {
+    fn want(meetings: &Meetings, ln_kept: f32, handling: &Handling, wants: &mut [Vec<f32>; 2]) {
         let count = meetings.travel.len();
         let [given, taken] = wants;
         for plane in [&mut *given, &mut *taken] {
@@ -164,7 +173,7 @@ wide! {
         let (given, taken) = (&mut given[..count], &mut taken[..count]);
         let (travel, cover) = (&meetings.travel[..count], &meetings.cover[..count]);
         let (on_brush, lying) = (&meetings.on_brush[..count], &meetings.lying[..count]);
-        let fraction = &meetings.fraction[..count];
+        let (fraction, gap) = (&meetings.fraction[..count], &meetings.gap[..count]);
         for i in 0..count {
             let meeting = Meeting {
                 travel: travel[i],
@@ -172,6 +181,8 @@ wide! {
                 on_brush: on_brush[i],
                 lying: lying[i],
                 fraction: fraction[i],
+                gap: gap[i],
+                ln_kept,
             };
             [given[i], taken[i]] = wanted(&meeting, handling);
         }
@@ -342,7 +353,12 @@ impl Half {
             .extend(contacts.iter().map(|contact| contact.cell));
         step.window.totals(&self.cells, &mut self.meetings.lying);
         self.meetings.of(contacts, step.load.films(), &step.traits);
-        want(&self.meetings, &step.handling, &mut self.wants);
+        want(
+            &self.meetings,
+            step.traits.ln_kept,
+            &step.handling,
+            &mut self.wants,
+        );
     }
 
     /// Adds up what is wanted of each texel, and offered to it.

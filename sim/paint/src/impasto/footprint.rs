@@ -28,6 +28,8 @@ pub struct Contact {
     pub depth: f32,
     /// `depth` by the thickness of the wet paint, 0 to 1.
     pub fraction: f32,
+    /// How far it stays above the top of the wet paint, bridged by its film, cells.
+    pub gap: f32,
 }
 
 /// The footprint of one step.
@@ -52,16 +54,18 @@ impl Footprint {
     pub fn find(&mut self, step: &mut Step<'_>) {
         self.contacts.clear();
         let traits = step.traits;
-        let pressed = traits.half_thickness + traits.sink * step.sweep.to.press;
+        let sink = traits.sink * step.sweep.to.press;
         self.grid = step.window.area(step.bounds.0, step.bounds.1);
         if self.grid.is_empty() {
             return;
         }
         // Of the cells around the brush alone: what else the window holds must not matter.
         let top = self.weigh(self.grid, step);
-        let loose = traits.lift * (1.0 - step.sweep.to.press);
+        let loose = traits.loose(step.sweep.to.press);
+        // What is pressed down lies lower than it was solved by as much as the ride does.
+        let low = top + sink + step.window.ride_below();
         let film = step.load.thickest() as f32 * traits.film_cells_per_quantum;
-        let recede = traits.recede * step.sweep.to.splay - pressed;
+        let recede = traits.recede * step.sweep.to.splay;
         // Strips are drawn in the coordinates of the surface.
         let origin = step.window.origin();
         let offset = [0, 1].map(|i| (origin[i] + self.grid.from[i] as i64) as f32);
@@ -69,9 +73,9 @@ impl Footprint {
         let step = &*step;
         let find = |band: &mut Band, rows| {
             band.begin(grid, offset, rows);
-            band.draw_skin(step, top + film, recede);
-            draw_strips(band, step, top, loose, pressed);
-            band.touch(step, lying);
+            band.draw_skin(step, low + film, recede);
+            draw_strips(band, step, low, loose);
+            band.touch(step, lying, sink);
         };
         let middle = match grid.cells() >= SHARED {
             true => self.balance.cut(height),

@@ -19,7 +19,9 @@ mod drawing;
 pub mod exchange;
 pub mod flow;
 pub mod footprint;
+pub mod levelling;
 pub mod modes;
+pub mod seep;
 pub mod step;
 pub mod velocity;
 

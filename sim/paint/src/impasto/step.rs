@@ -4,7 +4,9 @@ use super::advection::{Advection, Axis};
 use super::exchange::Exchange;
 use super::flow::flow;
 use super::footprint::Footprint;
+use super::levelling::Levelling;
 use super::modes::{sample, vacuum};
+use super::seep::seep;
 use super::velocity::Faces;
 use crate::model::{PaintModel, Step, StepReport, Transfer};
 use crate::quantum::add;
@@ -16,6 +18,7 @@ pub struct Impasto {
     faces: Faces,
     advection: Advection,
     exchange: Exchange,
+    levelling: Levelling,
 }
 
 impl PaintModel for Impasto {
@@ -44,6 +47,7 @@ impl PaintModel for Impasto {
             _ => {
                 if step.handling.push {
                     self.faces.find(footprint, step);
+                    self.faces.level(footprint, step, &mut self.levelling);
                     let first = if step.load.steps().is_multiple_of(2) {
                         Axis::X
                     } else {
@@ -59,6 +63,7 @@ impl PaintModel for Impasto {
                 }
                 report.from_nowhere = self.exchange.run(footprint, step);
                 flow(step);
+                seep(step);
             }
         }
         footprint.note_left(step);

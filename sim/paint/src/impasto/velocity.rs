@@ -12,15 +12,19 @@ use maulstick_num::wide;
 
 use super::SHARED;
 use super::footprint::{Contact, Footprint};
+use super::levelling::{Body, Levelling, Round};
 use crate::model::Step;
+use crate::quantum::QUANTUM_M;
+use crate::window::Area;
 
-/// Share of the brush's motion that paint follows.
-pub const FOLLOWS: f32 = 0.5;
+/// Speed of a hand, m/s: paint levels under the brush as long as it is there at this speed, whatever the
+/// hand's own, so that a stroke does not depend on it.
+pub const HAND_M_PER_S: f64 = 0.1;
 /// c of the squish: cells of flow in a step of one cell, per cell of penetration by cell.
 pub const SQUISH: f32 = 3.0;
 /// The squish diffuses paint by c·h in a step, h its height in cells; explicit steps are stable up to
 /// about this, so c is smaller in thicker paint.
-pub const STABLE: f32 = 0.3;
+pub const STABLE: f32 = 0.04;
 /// Share of its grip that paint of thinner alone has lost.
 pub const SLIP: f32 = 0.5;
 /// By how much more of the penetration thinner alone flows.
@@ -33,11 +37,11 @@ pub fn squish(wet: f32, thinner: f32) -> f32 {
     (SQUISH * (1.0 + EASE * thinner)).min(STABLE / wet.max(1e-6))
 }
 
-/// Share of the brush's motion that paint with a share of thinner follows.
+/// Share of the brush's motion that paint with a share of thinner follows, where `follows` is that of paint.
 #[must_use]
 #[inline]
-pub fn follows(thinner: f32) -> f32 {
-    FOLLOWS * (1.0 - SLIP * thinner)
+pub fn follows(follows: f32, thinner: f32) -> f32 {
+    follows * (1.0 - SLIP * thinner)
 }
 
 /// What the contacts do to the paint, and how much of a cell goes through its faces in one step, on
@@ -72,7 +76,7 @@ wide! {
     /// Velocities through the faces across one axis; no cell loses more than it holds.
     fn through_faces(along: &Along<'_>, faces: &mut Vec<f32>, leaves: &mut Vec<f32>) {
         along.through(faces);
-        along.limit(faces, leaves);
+        limit(faces, leaves, along.next, along.width);
     }
 }
 
@@ -92,7 +96,8 @@ impl Faces {
                 true => contact.depth / contact.fraction,
                 false => 0.0,
             };
-            let follows = follows(thinner) * contact.cover;
+            // What lies in gaps below the bristles stays there.
+            let follows = follows(step.traits.follows, thinner) * contact.cover * contact.fraction;
             self.push[0][place] = follows * contact.moved[0];
             self.push[1][place] = follows * contact.moved[1];
             self.depth[place] = contact.depth * contact.cover;
@@ -110,6 +115,50 @@ impl Faces {
         let x = || through_faces(&across, &mut self.right, leaves_x);
         let y = || through_faces(&up, &mut self.above, leaves_y);
         both_if(width * height >= SHARED, x, y);
+    }
+}
+
+impl Faces {
+    /// Faces of an area through which nothing goes.
+    #[must_use]
+    pub fn still(area: &Area) -> Self {
+        let still = || vec![0.0; area.cells()];
+        Self {
+            right: still(),
+            above: still(),
+            ..Self::default()
+        }
+    }
+
+    /// Lets nothing go through them.
+    pub fn stop(&mut self) {
+        self.right.fill(0.0);
+        self.above.fill(0.0);
+    }
+
+    /// Adds what levels under the brush while it goes the mean way of its contacts.
+    pub fn level(&mut self, footprint: &Footprint, step: &Step<'_>, levelling: &mut Levelling) {
+        let ways = footprint.contacts.iter().map(|contact| {
+            let [u, v] = contact.moved;
+            (u * u + v * v).sqrt()
+        });
+        let cells = ways.sum::<f32>() / footprint.contacts.len().max(1) as f32;
+        let to_cells = step.traits.cells_per_quantum;
+        // Its way by reference cells is longer where it is stirred; its cells are not.
+        let cell_m = QUANTUM_M / f64::from(to_cells);
+        let seconds = f64::from(cells) * cell_m / HAND_M_PER_S;
+        let round = Round::new(Body::TUBE, cell_m, seconds, to_cells, step.stain);
+        let around = &footprint.around;
+        let faces = [&mut self.right[..], &mut self.above[..]];
+        levelling.add(&*step.window, around, &round, step.thinner, faces);
+        self.limit(around.size[0]);
+    }
+
+    /// Slows what leaves a cell to what it holds, along either axis.
+    pub fn limit(&mut self, width: usize) {
+        let [leaves_x, leaves_y] = &mut self.leaves;
+        limit(&mut self.right, leaves_x, 1, width);
+        limit(&mut self.above, leaves_y, width, width);
     }
 }
 
@@ -138,30 +187,29 @@ impl Along<'_> {
             *face = if moved { v } else { 0.0 };
         }
     }
+}
 
-    /// Slows what leaves a cell through both faces of an axis to what it holds.
-    #[inline(always)]
-    fn limit(&self, faces: &mut [f32], leaves: &mut Vec<f32>) {
-        let next = self.next;
-        // The last column has its neighbour in the row above: there is no face between them.
-        if next == 1 {
-            for row in faces.chunks_exact_mut(self.width.max(1)) {
-                if let Some(last) = row.last_mut() {
-                    *last = 0.0;
-                }
+/// Slows what leaves a cell through both faces of an axis to what it holds.
+#[inline(always)]
+fn limit(faces: &mut [f32], leaves: &mut Vec<f32>, next: usize, width: usize) {
+    // The last column has its neighbour in the row above: there is no face between them.
+    if next == 1 {
+        for row in faces.chunks_exact_mut(width.max(1)) {
+            if let Some(last) = row.last_mut() {
+                *last = 0.0;
             }
         }
-        leaves.clear();
-        leaves.extend(faces.iter().map(|face| face.max(0.0)));
-        let before = leaves.iter_mut().skip(next).zip(&*faces);
-        before.for_each(|(leaves, face)| *leaves -= face.min(0.0));
-        leaves
-            .iter_mut()
-            .for_each(|leaves| *leaves = leaves.max(1.0));
-        let donors = leaves.iter().zip(&leaves[next.min(leaves.len())..]);
-        for (face, (cell, beside)) in faces.iter_mut().zip(donors) {
-            *face /= if *face > 0.0 { *cell } else { *beside };
-        }
+    }
+    leaves.clear();
+    leaves.extend(faces.iter().map(|face| face.max(0.0)));
+    let before = leaves.iter_mut().skip(next).zip(&*faces);
+    before.for_each(|(leaves, face)| *leaves -= face.min(0.0));
+    leaves
+        .iter_mut()
+        .for_each(|leaves| *leaves = leaves.max(1.0));
+    let donors = leaves.iter().zip(&leaves[next.min(leaves.len())..]);
+    for (face, (cell, beside)) in faces.iter_mut().zip(donors) {
+        *face /= if *face > 0.0 { *cell } else { *beside };
     }
 }
 

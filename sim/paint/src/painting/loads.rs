@@ -13,6 +13,9 @@ use crate::load::{Half, by_slot};
 use crate::model::BrushTraits;
 use crate::quantum::SLOTS;
 
+/// Seeds of loads are the newest bits of the number of steps.
+const SEEDS: u64 = 0x7fff_ffff;
+
 impl Painting {
     /// The slots of several mixtures; where one is refused no paint gets a slot.
     fn all_slots(&mut self, mixtures: &[Mixture]) -> Result<Vec<Vec<(usize, f64)>>, PaintRefusal> {
@@ -114,6 +117,7 @@ impl Painting {
         parts: &[(&[(usize, f64)], Half)],
     ) -> Result<(), PaintRefusal> {
         let (cell_m, thinner) = (self.sheets[0].cell_m, self.thinner());
+        let seed = self.steps & SEEDS;
         self.settle();
         let track = self.brush(brush)?;
         track.deferral = Deferral::default();
@@ -121,7 +125,7 @@ impl Painting {
         let left = load.take_all();
         let traits = BrushTraits::of(&track.file, cell_m, 1.0);
         for (slots, half) in parts {
-            load.fill(&track.head, &traits, slots, thinner, *half);
+            load.fill(&track.head, &traits, slots, thinner, (*half, seed));
         }
         let given = load.counts();
         self.ledger.to_cleaner(&left);

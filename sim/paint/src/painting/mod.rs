@@ -10,6 +10,7 @@ mod lighting;
 mod loads;
 mod makes;
 mod modes;
+mod relaxing;
 mod still;
 mod strokes;
 mod underpainting;

@@ -13,6 +13,7 @@ use crate::load::Half;
 use crate::model::{BrushTraits, Step, Sweep};
 use crate::path::PathStepper;
 use crate::quantum::QUANTUM_M;
+use crate::ride;
 use crate::store::TileRect;
 use crate::window::Window;
 
@@ -65,13 +66,13 @@ impl Painting {
         }
         let track = self.brush(name)?;
         if solve.stroke == 0 {
-            track.path = None;
+            self.lift(name)?;
             self.fall.stroke_ends();
             return Ok(());
         }
         if track.stroke != Some((epoch, solve.stroke)) {
-            track.stroke = Some((epoch, solve.stroke));
-            track.path = None;
+            self.lift(name)?;
+            self.brush(name)?.stroke = Some((epoch, solve.stroke));
             self.begin_stroke(name)?;
         }
         let scale = Scale {
@@ -97,6 +98,14 @@ impl Painting {
             self.step(name, sheet, scale, sweep);
         });
         self.brush(name)?.path = Some((sheet, path));
+        Ok(())
+    }
+
+    /// Ends a brush's contact: what it left relaxes.
+    fn lift(&mut self, name: &str) -> Result<(), PaintRefusal> {
+        if let Some((sheet, _)) = self.brush(name)?.path.take() {
+            self.relax(name, sheet);
+        }
         Ok(())
     }
 
@@ -128,7 +137,8 @@ impl Painting {
         } else {
             let wet = self.sheets[sheet].top * (QUANTUM_M / scale.cell_m) as f32;
             let film = track.load.thickest() as f32 * traits.film_cells_per_quantum;
-            wet + film + traits.half_thickness + traits.sink
+            let tooth = (self.sheets[sheet].bare.relief.depth_m() / scale.cell_m) as f32;
+            wet + film + traits.sink + tooth
         };
         let Some((from, to)) = low_bounds(&track.head, sweep.to, traits.half_width, height) else {
             return;
@@ -140,7 +150,9 @@ impl Painting {
         // Paint is pushed a cell farther than the brush comes.
         let (outer_from, outer_to) = (from.map(|cell| cell - 1), to.map(|cell| cell + 1));
         self.claim(name, sheet, outer_from, outer_to);
-        if !self.reach(name, sheet, outer_from, outer_to) {
+        let ride = ride::reach(scale.cell_m) as i64;
+        let (ride_from, ride_to) = (from.map(|cell| cell - ride), to.map(|cell| cell + ride));
+        if !self.reach(name, sheet, ride_from, ride_to) {
             return;
         }
         if !deferred || self.unsettled.as_deref() != Some(name) {

@@ -1,11 +1,12 @@
-//! Stage 1: every cell asks every segment of every strip whether it covers the cell.
+//! Stage 1: every cell asks every segment of every strip whether it covers the cell, and how the bristle,
+//! round below, lies there on the relief.
 
 use maulstick_brush::head::STATIONS;
 use maulstick_paint::head::low_bounds;
 use maulstick_paint::impasto::footprint::{Contact, Footprint};
-use maulstick_paint::load::ALONG;
+use maulstick_paint::load::{ALONG, Half};
 
-use crate::scene::{CELLS, Scene};
+use crate::scene::{CELL_M, CELLS, Scene};
 
 /// The constants of the stage.
 const EDGE_PENALTY: f64 = 0.6;
@@ -18,7 +19,13 @@ const ROUNDING: f64 = 16.0 * 128.0 / 33_554_432.0;
 #[derive(Clone, Copy, Debug)]
 struct Candidate {
     score: f64,
-    bottom: f64,
+    /// Height of its middle line, cells.
+    z: f64,
+    /// How far it keeps off what it lies on, cells.
+    keeps: f64,
+    /// Place across it, 0 in the middle to 1 at an edge, and by how much that may be off.
+    across: f64,
+    across_off: f64,
     cover: f64,
     strip: usize,
     along: f64,
@@ -32,7 +39,8 @@ struct Candidate {
 /// What a cell may be: contacts, or none.
 #[derive(Clone, Debug, Default)]
 struct Cell {
-    contacts: Vec<(Contact, f64)>,
+    /// What may touch it, and by how much its places and its height may be off.
+    contacts: Vec<(Contact, [f64; 2])>,
     /// By how much the cover may be off.
     cover_off: f64,
     none: bool,
@@ -108,7 +116,9 @@ fn cover(s: &Segment, middle: [f64; 2], reach: f64, height: f64) -> Option<Candi
     };
     let line = s.a[minor] + (middle[major] - s.a[major]) * slope;
     let cosine = 1.0 / (1.0 + slope * slope).sqrt();
-    let cover = reach - (middle[minor] - line).abs() * cosine;
+    let aside = (middle[minor] - line).abs() * cosine;
+    let cover = reach - aside;
+    let half_width = reach - 0.5;
     let mut z = s.a[2] + t * d[2];
     // A tip above the height is cut off, and the rest goes on past the cut.
     let beyond_cut = s.is_last && s.b[2] > height && way <= visible + past + off;
@@ -126,7 +136,10 @@ fn cover(s: &Segment, middle: [f64; 2], reach: f64, height: f64) -> Option<Candi
     let cover = cover.clamp(0.0, 1.0);
     Some(Candidate {
         score: z + (1.0 - cover) * EDGE_PENALTY,
-        bottom: z,
+        z,
+        keeps: 0.0,
+        across: (aside / half_width).min(1.0),
+        across_off: off / half_width,
         cover,
         strip: 0,
         along: t,
@@ -136,21 +149,30 @@ fn cover(s: &Segment, middle: [f64; 2], reach: f64, height: f64) -> Option<Candi
     })
 }
 
+/// How far the pressed head sinks into what it lies on, cells.
+fn sink(scene: &Scene) -> f64 {
+    f64::from(scene.traits.sink) * f64::from(scene.to.press)
+}
+
 /// All that covers a cell of the surface.
 fn candidates(scene: &Scene, at: [usize; 2], most: f64) -> Vec<Candidate> {
     let traits = &scene.traits;
-    let press = f64::from(scene.to.press);
-    let pressed = f64::from(traits.half_thickness) + f64::from(traits.sink) * press;
+    let loose = f64::from(traits.loose(scene.to.press));
+    // What is pressed down lies as deep as it sinks in below the deepest ride.
+    let low = most + sink(scene) + f64::from(scene.window.ride_below());
     let wide = f64::from(traits.half_width);
     let bend = scene.to.bend.map(f64::from);
     let middle = at.map(|cell| cell as f64 + 0.5);
     let mut found = Vec::new();
     for strip in 0..scene.head.strips() {
-        let unruly = f64::from(scene.head.lift()[strip]);
-        let bottom = f64::from(traits.lift) * (1.0 - press) * unruly - pressed;
+        let lift = scene.head.lift();
+        let unruly = f64::from(lift[strip]);
+        // Each load turns them to others.
+        let seed = scene.load.seed() as usize;
+        let keeps = loose * f64::from(lift[(strip + seed) % lift.len()]);
         let film =
             f64::from(scene.load.thickest_of(strip)) * f64::from(traits.film_cells_per_quantum);
-        let height = most + film - bottom;
+        let height = low + film - keeps;
         let root = scene.head.roots()[strip].map(f64::from);
         let inner = (root[0] * bend[0] + root[1] * bend[1])
             / (bend[0] * bend[0] + bend[1] * bend[1]).sqrt().max(BENT);
@@ -160,8 +182,8 @@ fn candidates(scene: &Scene, at: [usize; 2], most: f64) -> Vec<Candidate> {
             let along = (station as f64 - 0.5) / (STATIONS - 1) as f64;
             let reach = wide * (1.0 - f64::from(traits.taper) * along) + 0.5;
             found.extend(cover(&s, middle, reach, height).map(|c| Candidate {
-                score: c.score + bottom + rank,
-                bottom: c.bottom + bottom,
+                score: c.score + keeps + rank,
+                keeps,
                 strip,
                 along: (station as f64 - 1.0 + c.along) * (ALONG / (STATIONS - 1)) as f64,
                 ..c
@@ -171,8 +193,8 @@ fn candidates(scene: &Scene, at: [usize; 2], most: f64) -> Vec<Candidate> {
     found
 }
 
-/// What the deepest candidates make of a cell.
-fn cell(scene: &Scene, at: [usize; 2], candidates: &[Candidate]) -> Cell {
+/// What the deepest candidates make of a cell, where bristles lie on `ride`.
+fn cell(scene: &Scene, ride: &[f32], at: [usize; 2], candidates: &[Candidate]) -> Cell {
     let mut cell = Cell::default();
     let sure = candidates.iter().filter(|c| c.sure);
     let best = sure.map(|c| c.score + c.off).fold(f64::MAX, f64::min);
@@ -195,9 +217,16 @@ fn cell(scene: &Scene, at: [usize; 2], candidates: &[Candidate]) -> Cell {
             let texel = c.strip * ALONG + along;
             let film =
                 f64::from(scene.load.film(texel)) * f64::from(scene.traits.film_cells_per_quantum);
-            let reach = f64::from(scene.window.base()[place]) + wet - c.bottom;
-            cell.none |= reach + film <= c.off;
-            if reach + film < -c.off {
+            // Solved on a plane at 0: it follows the ride down, and stands on it where that is higher.
+            let ride = f64::from(ride[place]);
+            let rests = (c.z + ride.min(0.0)).max(ride);
+            // A strip's edges are higher by its thickness, as those of a parabola.
+            let round = 2.0 * f64::from(scene.traits.half_thickness);
+            let bottom = rests - sink(scene) + c.keeps + round * c.across * c.across;
+            let off = c.off + round * c.across_off * (2.0 * c.across + c.across_off);
+            let reach = f64::from(scene.window.base()[place]) + wet - bottom;
+            cell.none |= reach + film <= off;
+            if reach + film < -off {
                 continue;
             }
             let depth = reach.clamp(0.0, wet);
@@ -208,30 +237,32 @@ fn cell(scene: &Scene, at: [usize; 2], candidates: &[Candidate]) -> Cell {
                 moved: c.moved.map(|v| v as f32),
                 depth: depth as f32,
                 fraction: if wet > 0.0 { (depth / wet) as f32 } else { 0.0 },
-                ..Contact::default()
+                gap: (-reach).max(0.0) as f32,
+                local: 0,
             };
-            cell.contacts.push((contact, c.off));
+            cell.contacts.push((contact, [c.off, off]));
         }
     }
     cell
 }
 
-/// Tolerances of cover, motion, depth and fraction, where places are off by `off`.
-fn tolerances((off, cover_off): (f64, f64), want: &Contact) -> [f64; 5] {
+/// Tolerances of cover, motion, depth, fraction and gap, where places and heights are off by so much.
+fn tolerances(([place, height], cover_off): ([f64; 2], f64), want: &Contact) -> [f64; 6] {
     let wet = f64::from(want.depth) / f64::from(want.fraction).max(1e-9);
     let fraction = if want.fraction > 0.0 {
-        off / wet.max(off)
+        height / wet.max(height)
     } else {
         1.0
     };
-    [cover_off, off, off, off, fraction.max(1e-6)]
+    let fraction = fraction.max(1e-6);
+    [cover_off, place, place, height, fraction, height]
 }
 
-fn values(c: &Contact) -> [f64; 5] {
-    [c.cover, c.moved[0], c.moved[1], c.depth, c.fraction].map(f64::from)
+fn values(c: &Contact) -> [f64; 6] {
+    [c.cover, c.moved[0], c.moved[1], c.depth, c.fraction, c.gap].map(f64::from)
 }
 
-fn is(got: &Contact, (want, off): &(Contact, f64), cover_off: f64) -> bool {
+fn is(got: &Contact, (want, off): &(Contact, [f64; 2]), cover_off: f64) -> bool {
     let pairs = values(got).into_iter().zip(values(want));
     got.texel == want.texel
         && pairs
@@ -239,8 +270,8 @@ fn is(got: &Contact, (want, off): &(Contact, f64), cover_off: f64) -> bool {
             .all(|((a, b), tolerance)| (a - b).abs() <= tolerance)
 }
 
-/// What every cell of the surface may be, row after row.
-fn oracle(scene: &Scene) -> Vec<Cell> {
+/// What every cell of the surface may be, row after row, where bristles lie on `ride`.
+fn oracle(scene: &Scene, ride: &[f32]) -> Vec<Cell> {
     let [right, top] = CELLS.map(|cells| cells as usize);
     let (low, high) = scene.bounds;
     let inside = |x: usize, y: usize| {
@@ -248,20 +279,18 @@ fn oracle(scene: &Scene) -> Vec<Cell> {
         (0..2).all(|i| (low[i]..high[i]).contains(&at[i]))
     };
     let cells = (0..top).flat_map(|y| (0..right).map(move |x| [x, y]));
-    let total = |[x, y]: [usize; 2]| {
+    let top = |[x, y]: [usize; 2]| {
         let place = y * scene.window.width() + x;
-        scene
-            .window
-            .planes()
-            .map(|(_, p)| f64::from(p[place]))
-            .sum::<f64>()
+        let planes = scene.window.planes();
+        let wet: f64 = planes.map(|(_, p)| f64::from(p[place])).sum();
+        f64::from(scene.window.base()[place]) + wet * f64::from(scene.traits.cells_per_quantum)
     };
     let grid = cells.clone().filter(|[x, y]| inside(*x, *y));
-    let most = grid.map(total).fold(0.0, f64::max) * f64::from(scene.traits.cells_per_quantum);
+    let most = grid.map(top).fold(0.0, f64::max);
     cells
         .map(|[x, y]| {
             if inside(x, y) {
-                cell(scene, [x, y], &candidates(scene, [x, y], most))
+                cell(scene, ride, [x, y], &candidates(scene, [x, y], most))
             } else {
                 Cell {
                     none: true,
@@ -313,7 +342,7 @@ fn the_deepest_strip_touches_where_it_reaches() {
     for seed in 0..24 {
         let mut scene = Scene::new(seed);
         let contacts = found(&mut scene).contacts;
-        let oracle = oracle(&scene);
+        let oracle = oracle(&scene, scene.window.ride());
         compare(&scene, &contacts, &oracle).unwrap_or_else(|error| panic!("scene {seed}: {error}"));
         touched += contacts.len();
         let doubts = |cell: &&Cell| cell.contacts.len() + usize::from(cell.none) > 1;
@@ -330,7 +359,7 @@ fn the_deepest_strip_touches_where_it_reaches() {
 fn faults_in_a_footprint_are_found() {
     let mut scene = Scene::new(2);
     let contacts = found(&mut scene).contacts;
-    let oracle = oracle(&scene);
+    let oracle = oracle(&scene, scene.window.ride());
     let across = CELLS[0] as usize;
     let of = |c: &Contact| {
         let (x, y) = (
@@ -348,12 +377,13 @@ fn faults_in_a_footprint_are_found() {
     let (want, off) = of(&contacts[at]).contacts[0];
     let tolerances = tolerances((off, of(&contacts[at]).cover_off), &want)
         .map(|tolerance| 10.0 * tolerance as f32);
-    let faults: [fn(&mut Contact, [f32; 5]); 6] = [
+    let faults: [fn(&mut Contact, [f32; 6]); 7] = [
         |c, by| c.cover += by[0],
         |c, by| c.moved[0] += by[1],
         |c, by| c.moved[1] -= by[2],
         |c, by| c.depth += by[3],
         |c, by| c.fraction -= by[4],
+        |c, by| c.gap += by[5],
         |c, _| c.texel += 1,
     ];
     assert_eq!(compare(&scene, &contacts, &oracle), Ok(()));
@@ -386,6 +416,32 @@ fn faults_in_a_footprint_are_found() {
     );
 }
 
+/// What a footprint would be on other bristles or another ride is told apart: flat strips, strips that
+/// follow the tooth into each gap, strips on a plane, those of another load.
+#[test]
+fn other_bristles_and_rides_are_told_apart() {
+    let mut scene = Scene::new(2);
+    let contacts = found(&mut scene).contacts;
+    let ride = scene.window.ride().to_vec();
+    let fine =
+        |scene: &Scene, ride: &[f32]| compare(scene, &contacts, &oracle(scene, ride)).is_ok();
+    assert!(fine(&scene, &ride));
+    assert!(!fine(&scene, scene.window.base()), "without a ride");
+    assert!(!fine(&scene, &vec![0.0; ride.len()]), "on a plane");
+    let thick = std::mem::take(&mut scene.traits.half_thickness);
+    assert!(!fine(&scene, &ride), "flat strips");
+    scene.traits.half_thickness = thick;
+    let sink = std::mem::take(&mut scene.traits.sink);
+    assert!(!fine(&scene, &ride), "strips that do not sink in");
+    scene.traits.sink = sink;
+    let (head, traits) = (&scene.head, &scene.traits);
+    scene.load.fill(head, traits, &[], None, (Half::Both, 3));
+    assert!(
+        !fine(&scene, &ride),
+        "bristles that stand out with another load"
+    );
+}
+
 /// The bounds that a painting cuts its search to hold all cells that the head touches, and those
 /// beside them that paint may be pushed to.
 #[test]
@@ -399,7 +455,8 @@ fn the_bounds_hold_all_that_is_touched() {
         scene.bounds = ([-200; 2], [300; 2]);
         let contacts = found(&mut scene).contacts;
         let film = scene.load.thickest() as f32 * scene.traits.film_cells_per_quantum;
-        let height = film + scene.traits.half_thickness + scene.traits.sink;
+        // Linen is 80 µm deep.
+        let height = film + scene.traits.sink + (80e-6 / CELL_M) as f32;
         let bounds = low_bounds(&scene.head, &scene.to, scene.traits.half_width, height);
         for c in &contacts {
             let width = scene.window.width();

@@ -4,7 +4,7 @@
 use maulstick_brush::head::STATIONS;
 use maulstick_brush::{BrushFile, Head, HeadPose};
 use maulstick_paint::impasto::advection::STAIN;
-use maulstick_paint::load::{ALONG, BrushLoad};
+use maulstick_paint::load::{ALONG, BrushLoad, Half};
 use maulstick_paint::model::{BrushTraits, Handling, Step, Sweep};
 use maulstick_paint::quantum::{Counts, SLOTS};
 use maulstick_paint::relief::Relief;
@@ -80,7 +80,7 @@ impl Scene {
         // Up to four cells of paint on a part of the surface.
         spill(&mut window, &mut random, 4.0 / traits.cells_per_quantum);
         let (from, to) = poses(&mut random, head.strips());
-        let load = load(&mut random, &head, &traits);
+        let load = load(&mut random, &head, &traits, seed);
         let bounds = ([-3, 5], [96, 120]);
         Self {
             window,
@@ -177,9 +177,10 @@ fn poses(random: &mut Random, strips: usize) -> (HeadPose, HeadPose) {
     (from, to)
 }
 
-/// Films from none to twice full, and paint inside.
-fn load(random: &mut Random, head: &Head, traits: &BrushTraits) -> BrushLoad {
+/// Films from none to twice full, and paint inside, in a load with that seed.
+fn load(random: &mut Random, head: &Head, traits: &BrushTraits, seed: u64) -> BrushLoad {
     let mut load = BrushLoad::clean(head.strips());
+    load.fill(head, traits, &[], None, (Half::Both, seed));
     for texel in 0..head.strips() * ALONG {
         for slot in [0, 2, 5] {
             let share = [0.0, 0.05, 0.3, 0.66][random.below(4)];

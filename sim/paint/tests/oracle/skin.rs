@@ -1,5 +1,7 @@
 //! The skin in stage 1: every cell asks every triangle whether its middle lies in it.
 
+use std::collections::BTreeMap;
+
 use maulstick_brush::head::STATIONS;
 use maulstick_brush::{BrushFile, Head, HeadPose};
 use maulstick_paint::impasto::footprint::{Contact, Footprint};
@@ -36,6 +38,8 @@ fn scene(seed: u64) -> Scene {
     }
     let traits = BrushTraits::of(&file, CELL_M, 1.0);
     scene.traits.recede = traits.recede;
+    // Hardly open, so that it does not draw back beyond the paint.
+    scene.to.splay *= 0.3;
     let skin = scene.head.skin().expect("a skin");
     let places = skin.places().to_vec();
     let turn = random.range(0.0, 6.0);
@@ -54,8 +58,8 @@ fn scene(seed: u64) -> Scene {
                 .push((height + 2.0 * sine + rough).max(0.0) as f32);
         }
     };
-    lay(&mut scene.to, [0.0; 2], 1.5);
-    lay(&mut scene.from, [-0.4, 0.3], 1.5);
+    lay(&mut scene.to, [0.0; 2], 1.0);
+    lay(&mut scene.from, [-0.4, 0.3], 1.0);
     scene
 }
 
@@ -63,10 +67,6 @@ fn scene(seed: u64) -> Scene {
 fn lying(scene: &Scene, at: [usize; 2]) -> Vec<Lies> {
     let skin = scene.head.skin().expect("a skin");
     let pose = &scene.to.skin;
-    let traits = &scene.traits;
-    let bottom = f64::from(traits.recede) * f64::from(scene.to.splay)
-        - f64::from(traits.half_thickness)
-        - f64::from(traits.sink) * f64::from(scene.to.press);
     let middle = at.map(|cell| cell as f64 + 0.5);
     let mut found = Vec::new();
     for face in skin.faces() {
@@ -96,7 +96,7 @@ fn lying(scene: &Scene, at: [usize; 2]) -> Vec<Lies> {
                 mix(number.map(|i| f64::from(to[i]) - f64::from(from[i])))
             };
             found.push(Lies {
-                z: mix(number.map(|i| f64::from(pose.z[i]))) + bottom,
+                z: mix(number.map(|i| f64::from(pose.z[i]))),
                 moved: [
                     moved(&pose.x, &scene.from.skin.x),
                     moved(&pose.y, &scene.from.skin.y),
@@ -124,17 +124,23 @@ fn fits(scene: &Scene, at: [usize; 2], got: Option<&Contact>) -> bool {
         let texel = strip * ALONG + (along as usize).min(ALONG - 1);
         f64::from(scene.load.film(texel)) * f64::from(scene.traits.film_cells_per_quantum)
     };
+    let ride = f64::from(scene.window.ride()[place]);
+    // It draws back where the strips show, and sinks in as these do.
+    let keeps = f64::from(scene.traits.recede) * f64::from(scene.to.splay)
+        - f64::from(scene.traits.sink) * f64::from(scene.to.press);
     let mut none = lowest == f64::MAX;
     for lies in found.iter().filter(|lies| lies.z - lies.off <= lowest) {
         for turn in [lies.around - 1e-4, lies.around, lies.around + 1e-4] {
             let strip = scene.head.strip_around(turn as f32);
-            let reach = ground + wet - lies.z;
+            let rests = (lies.z + ride.min(0.0)).max(ride);
+            let reach = ground + wet - rests - keeps;
             let film = film_of(strip, lies.along);
             if reach + film > -lies.off {
                 let depth = reach.clamp(0.0, wet);
                 let is = got.is_some_and(|got| {
                     got.texel as usize / ALONG == strip
                         && (f64::from(got.depth) - depth).abs() <= lies.off
+                        && (f64::from(got.gap) - (-reach).max(0.0)).abs() <= lies.off
                         && (0..2)
                             .all(|i| (f64::from(got.moved[i]) - lies.moved[i]).abs() <= lies.off)
                         && got.cover == 1.0
@@ -152,10 +158,11 @@ fn fits(scene: &Scene, at: [usize; 2], got: Option<&Contact>) -> bool {
 fn compare(scene: &Scene, contacts: &[Contact]) -> Result<usize, String> {
     let width = scene.window.width();
     let mut checked = 0;
+    let found: BTreeMap<u32, &Contact> = contacts.iter().map(|c| (c.cell, c)).collect();
     for y in 0..CELLS[1] as usize {
         for x in 0..CELLS[0] as usize {
             let cell = (y * width + x) as u32;
-            let got = contacts.iter().find(|c| c.cell == cell);
+            let got = found.get(&cell).copied();
             if !fits(scene, [x, y], got) {
                 return Err(format!(
                     "cell {x}, {y}: {got:?}, {:?}",
@@ -189,8 +196,9 @@ fn the_lowest_face_touches_and_faults_are_found() {
                     .all(|lies| lies.sure && lies.off < 0.1)
         };
         let at = contacts.iter().position(sure).expect("a clear contact");
-        let faults: [fn(&mut Contact); 4] = [
+        let faults: [fn(&mut Contact); 5] = [
             |c| c.depth += 0.7,
+            |c| c.gap += 0.7,
             |c| c.moved[0] += 0.7,
             |c| c.cover = 0.9,
             |c| c.texel += ALONG as u32,

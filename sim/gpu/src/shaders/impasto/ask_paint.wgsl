@@ -1,19 +1,15 @@
 // What each cell wants of its texel and offers it (Baxter 2004, Algorithm 3, by path length), summed by
 // texel.
 
-// ln(1 − XFER_FRACTION), MAX_XFER_QUANTITY and EQUAL_PAINT_CUTOFF of transfer.rs in maulstick-paint.
-const LN_KEPT = -0.105360516;
-const MAX_TRANSFER = 0.001;
-const EQUAL_PAINT_CUTOFF = 1.0 / 30.0;
-// SWAP and SWAP_FILM of transfer.rs.
-const SWAP = 0.8;
-const SWAP_FILM = 0.004;
+// Constants of transfer.rs in maulstick-paint.
+override MAX_TRANSFER: f32;
+override SWAP: f32;
+override SWAP_FILM: f32;
 
 fn transfer(on_brush: f32, on_canvas: f32, share: f32, travel: f32) -> f32 {
     let difference = on_brush - on_canvas;
-    let nearly_equal = min(abs(difference) / EQUAL_PAINT_CUTOFF, 1.0);
     let donor = select(on_canvas, on_brush, difference > 0.0);
-    let amount = min(donor * share * nearly_equal, MAX_TRANSFER * travel);
+    let amount = min(share * min(abs(difference), donor), MAX_TRANSFER * travel);
     return select(-amount, amount, difference > 0.0);
 }
 
@@ -31,11 +27,12 @@ fn ask_paint(@builtin(global_invocation_id) id: vec3<u32>) {
     let travel = length(contact.moved) * step.cell_per_reference;
     let on_brush = f32(load[1u + contact.texel]) * step.film_units_per_quantum;
     let on_canvas = lying / QUANTA_PER_UNIT * contact.fraction;
+    let gap = max(-contact.reach, 0.0) * step.units_per_cell;
     var net = step.flow * travel;
     var swap = 0.0;
     if step.transfer != MARKER {
-        let share = 1.0 - decay(LN_KEPT * travel);
-        net = transfer(on_brush, on_canvas, share, travel);
+        let share = 1.0 - decay(step.ln_kept * travel);
+        net = transfer(on_brush, on_canvas - gap, share, travel);
         swap = SWAP * share * min(min(on_brush, on_canvas), SWAP_FILM);
     }
     let quanta = contact.cover * QUANTA_PER_UNIT;

@@ -4,8 +4,8 @@
 // A ribbon that covers a cell only in part counts as higher by this much.
 const EDGE_PENALTY = 0.6;
 
-// How the paint stands: the highest, cells; the thickest film, cells; and by how much a key grows with a
-// score.
+// How low the head may touch paint: the highest, and what the head lies lower than it was solved, cells; the
+// thickest film, cells; and by how much a key grows with a score.
 struct Scale {
     top: f32,
     film: f32,
@@ -13,7 +13,7 @@ struct Scale {
 }
 
 fn scale() -> Scale {
-    let top = bitcast<f32>(atomicLoad(&stats[stat(TOP)]));
+    let top = bitcast<f32>(atomicLoad(&stats[stat(TOP)])) + step.sink + step.ride_below;
     let film = f32(atomicLoad(&stats[stat(FILM)])) * step.film_cells_per_quantum;
     return Scale(top, film, most() / (top + film + step.span));
 }
@@ -89,7 +89,7 @@ fn draw_triangle(number: u32, scale: Scale) {
             if u < 0.0 || v < 0.0 || w < 0.0 {
                 continue;
             }
-            let score = dot(vec3(u, v, w), triangle.z);
+            let score = dot(vec3(u, v, w), triangle.z) + step.skin_bottom;
             let cell = y * step.width + x;
             leave_open(cell, 0.0);
             keep(cell, score, scale.per_cell, number);

@@ -21,10 +21,7 @@ fn note_left(i: u32, total: f32) {
         return;
     }
     let height = total + totals[2u * cells() + i] / step.cells_per_quantum;
-    let bits = bitcast<u32>(max(height, 0.0));
-    if bits > atomicLoad(&stats[TOP_EVER]) {
-        atomicMax(&stats[TOP_EVER], bits);
-    }
+    raise(TOP_EVER, bitcast<u32>(max(height, 0.0)));
 }
 
 @compute @workgroup_size(256)

@@ -2,16 +2,16 @@
 // of what lies there.
 
 // Constants of velocity.rs.
-const SQUISH = 3.0;
-const STABLE = 0.3;
-const FOLLOWS = 0.5;
-const SLIP = 0.5;
-const EASE = 4.0;
+override SQUISH: f32;
+override STABLE: f32;
+override SLIP: f32;
+override EASE: f32;
 
-// What reaches a cell.
+// What reaches a cell: its height as it was solved, and how far it keeps off what it lies on.
 struct Fragment {
     texel: u32,
-    bottom: f32,
+    z: f32,
+    off: f32,
     moved: vec2<f32>,
 }
 
@@ -31,7 +31,7 @@ fn of_triangle(number: u32, x: u32, y: u32) -> Fragment {
     let strip = strip_around(dot(shares, triangle.around));
     let along = min(u32(dot(shares, triangle.along) * f32(ALONG)), ALONG - 1u);
     let moved = vec2(dot(shares, triangle.moved_x), dot(shares, triangle.moved_y));
-    return Fragment(strip * ALONG + along, dot(shares, triangle.z), moved);
+    return Fragment(strip * ALONG + along, dot(shares, triangle.z), step.skin_bottom, moved);
 }
 
 fn of_ribbon(number: u32, x: u32, y: u32) -> Fragment {
@@ -41,9 +41,30 @@ fn of_ribbon(number: u32, x: u32, y: u32) -> Fragment {
     let place = place_on(ribbon, line, at[line.major]);
     let strip = (number - 2u * step.faces) / (STATIONS - 1u);
     let along = min(u32(ribbon.along.x + place.t * ribbon.along.y), ALONG - 1u);
-    let bottom = ribbon.z.x + place.t * ribbon.z.y + ribbon.bottom;
+    let z = ribbon.z.x + place.t * ribbon.z.y;
+    // A bristle is round below.
+    let aside = abs(at[1u - line.major] - place.middle) * line.cosine;
+    let across = min(aside / (ribbon.reach - 0.5), 1.0);
+    let off = ribbon.bottom + step.round * across * across;
     let moved = ribbon.moved + place.t * ribbon.moves;
-    return Fragment(strip * ALONG + along, bottom, moved);
+    return Fragment(strip * ALONG + along, z, off, moved);
+}
+
+// What is pressed down follows the ride into the valleys of the tooth, and is lifted by what stands higher.
+fn lower_side(fragment: Fragment, ride: f32) -> f32 {
+    let rests = max(fragment.z + min(ride, 0.0), ride);
+    return rests - step.sink + fragment.off;
+}
+
+// Notes where a contact is, and how far it went.
+fn note_contact(at: vec2<u32>, way: f32) {
+    for (var axis = 0u; axis < 2u; axis++) {
+        raise(stat(LEAST_TOUCHED) + axis, u32(BIAS) - at[axis]);
+        raise(stat(MOST_TOUCHED) + axis, at[axis] + 1u);
+    }
+    let went = u32(min(way, 4000.0) * PER_CELL + 0.5);
+    atomicAdd(&stats[stat(WAY)], went & ((1u << LOW_BITS) - 1u));
+    atomicAdd(&stats[stat(WAY) + 1u], went >> LOW_BITS);
 }
 
 @compute @workgroup_size(256)
@@ -69,7 +90,8 @@ fn find_contacts(@builtin(global_invocation_id) id: vec3<u32>) {
     let cover = 1.0 - decay(-f32(atomicLoad(&keys[cells() + i])) / PER_LOG);
     let wet = totals[i] * step.cells_per_quantum;
     let film = f32(load[1u + fragment.texel]) * step.film_cells_per_quantum;
-    let reach = totals[2u * cells() + i] + wet - fragment.bottom;
+    let ride = totals[4u * cells() + i];
+    let reach = totals[2u * cells() + i] + wet - lower_side(fragment, ride);
     if reach + film <= 0.0 {
         return;
     }
@@ -81,10 +103,12 @@ fn find_contacts(@builtin(global_invocation_id) id: vec3<u32>) {
     let thinner = totals[3u * cells() + i];
     let resists = select(0.0, wet, fraction > 0.0);
     let squish = min(SQUISH * (1.0 + EASE * thinner), STABLE / max(resists, 1e-6));
-    let follows = FOLLOWS * (1.0 - SLIP * thinner);
+    // What lies in gaps below the bristles stays there.
+    let follows = step.follows * (1.0 - SLIP * thinner) * cover * fraction;
     contacts[i] = Contact(
-        fragment.texel, cover, fragment.moved, depth, fraction, squish, follows,
+        fragment.texel, cover, fragment.moved, min(reach, wet), fraction, squish, follows,
     );
+    note_contact(vec2(x, y), length(fragment.moved));
     atomicAdd(&stats[stat(TOUCHED)], 1u);
     atomicAdd(&stats[stat(WET)], u32(totals[i] / 256.0 + 0.5));
     atomicAdd(&stats[stat(THINNER)], u32(totals[i] * thinner / 256.0 + 0.5));

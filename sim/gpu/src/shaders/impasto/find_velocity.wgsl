@@ -20,8 +20,8 @@ fn side_of(at: vec2<i32>, axis: u32) -> Side {
     }
     return Side(
         true,
-        contact.follows * contact.cover * contact.moved[axis],
-        contact.depth * contact.cover,
+        contact.follows * contact.moved[axis],
+        max(contact.reach, 0.0) * contact.cover,
         contact.squish,
     );
 }

@@ -27,12 +27,12 @@ struct Step {
     // Its number in the batch.
     number: u32,
     // The least score that a segment can have, and how far above the highest paint on surface and
-    // brush one can be.
+    // brush one can be, but for what the head lies lower than it was solved.
     low: f32,
     span: f32,
     // Bits of a key that number the segment.
     bits: u32,
-    // The skin's lower side above its middle.
+    // How far the skin keeps off what it lies on.
     skin_bottom: f32,
     cells_per_quantum: f32,
     film_cells_per_quantum: f32,
@@ -61,12 +61,31 @@ struct Step {
     in_y1: u32,
     // The most that a cell holds.
     cell_max: f32,
-    // From the middle of a strip down to its lower side where it is pressed most.
+    // How far the head may lie lower than it was solved where it is pressed most.
     reach: f32,
     // How far a strip reaches beyond its middle line.
     border: i32,
     // Whether no cell loses paint to the brush, whatever that takes up.
     lasting: u32,
+    // How far the head sinks into what it lies on, and how deep the ride is at most.
+    sink: f32,
+    ride_below: f32,
+    // By how much the edges of a strip are higher than its middle.
+    round: f32,
+    // Thickness of paint by its height, units by cell.
+    units_per_cell: f32,
+    // Share of the brush's motion that paint follows.
+    follows: f32,
+    // ln of what stays along a reference cell of what would even out.
+    ln_kept: f32,
+    // Share of the difference between films beside each other that evens out in FLOW_STEPS.
+    seep: f32,
+    // Levelling (`Round` of levelling.rs): gradient by difference of curvature and of height, in yields
+    // of paint one cell thick; mobility of such paint by the way of the brush, and the most of one.
+    tension: f32,
+    weight: f32,
+    mobility: f32,
+    most_mobile: f32,
 }
 
 // A cell in contact.
@@ -75,10 +94,11 @@ struct Contact {
     texel: u32,
     cover: f32,
     moved: vec2<f32>,
-    // How deep the brush is in the wet paint, and by the paint's thickness.
-    depth: f32,
+    // How deep the brush is in the wet paint, negative by the gap above it; and the depth by the paint's
+    // thickness.
+    reach: f32,
     fraction: f32,
-    // c of the squish, and the share of the brush's motion that paint follows.
+    // c of the squish, and the share of the brush's motion that the cell's paint follows.
     squish: f32,
     follows: f32,
 }
@@ -88,24 +108,27 @@ const NONE = 0xffffffffu;
 const PER_LOG = 262144.0;
 const STATIONS = 9u;
 const ALONG = 16u;
+// Paint moves within the head once in so many steps.
+const FLOW_STEPS = 4u;
 const QUANTA_PER_UNIT = 16777216.0;
 const PAINT = 0u;
 const SPONGE = 1u;
 const MARKER = 2u;
 
 @group(0) @binding(0) var<uniform> step: Step;
-// Poses: x, y, z, and motion in x and y of all stations; by strip its lower side and its rank; x, y, z
-// and motion of the skin's points.
+// Poses: x, y, z, and motion in x and y of all stations; by strip how far it keeps off what it lies on, and
+// its rank; x, y, z and motion of the skin's points.
 @group(0) @binding(1) var<storage, read> poses: array<f32>;
 // Faces of the skin, four points each; places of its points around and along; the strips in their
-// order around the head; the strips' capacities.
+// order around the head; the strips' capacities; the strips in two orders in which neighbours stand beside
+// each other.
 @group(0) @binding(2) var<storage, read> head: array<u32>;
 // Segments as they are drawn, four vectors each.
 @group(0) @binding(3) var<storage, read_write> segments: array<vec4<f32>>;
 // Counts on the window's cells, a plane a paint; and room for as much.
 @group(0) @binding(4) var<storage, read_write> planes: array<f32>;
 @group(0) @binding(5) var<storage, read_write> other: array<f32>;
-// Height of what catches paint.
+// Height of what catches paint; height at which a pressed bristle lies on it.
 @group(0) @binding(6) var<storage, read> base: array<f32>;
 // Steps with contact; then by texel the counts of all paints in the film, each paint's in the film,
 // each paint's inside.
@@ -120,15 +143,15 @@ const MARKER = 2u;
 // Velocities through the right and the upper face of each cell of the grid.
 @group(0) @binding(11) var<storage, read_write> faces: array<vec2<f32>>;
 // By cell of the grid: all paint, all paint between the passes of the advection, height of what
-// catches paint, share of thinner.
+// catches paint, share of thinner, height of the ride.
 @group(0) @binding(12) var<storage, read_write> totals: array<f32>;
 // Cells touched so far; wet paint and thinner that lay on them before their steps, as bits of f32, in 256
-// quanta; the highest that paint ever stood, as bits of f32, quanta. Then sixteen words of each step of
+// quanta; the highest that paint ever stood, as bits of f32, quanta. Then STEP_STATS words of each step of
 // the batch, see below.
 @group(0) @binding(13) var<storage, read_write> stats: array<atomic<u32>>;
 // Workgroups of the stages that follow the footprint.
 @group(0) @binding(14) var<storage, read_write> groups: array<vec4<u32>>;
-// Quanta to the canvas and to the brush by cell of the grid.
+// Quanta to the canvas and to the brush by cell of the grid; before, velocities as in `faces`.
 @group(0) @binding(15) var<storage, read_write> wants: array<vec2<f32>>;
 
 // The highest paint, cells; the thickest film and the fullest cell, quanta (as bits, none is negative).
@@ -148,21 +171,49 @@ const LEAST = 7u;
 const MOST = 9u;
 const BIAS = 65536;
 const AWAY = 60000.0;
+// The least and the most column and row of the contacts, away from a bias and from 1.
+const LEAST_TOUCHED = 11u;
+const MOST_TOUCHED = 13u;
+// The sum of the ways of the contacts, in cells by PER_CELL: the low bits, and the others.
+const WAY = 15u;
+const PER_CELL = 1048576.0;
+const LOW_BITS = 12u;
+const STEP_STATS = 20u;
 
 // Of all steps: the highest that paint ever stood.
 const TOP_EVER = 3u;
 
 fn stat(which: u32) -> u32 {
-    return 4u + 16u * step.number + which;
+    return 4u + STEP_STATS * step.number + which;
 }
 
-// The columns and rows that may be touched: from, up to but not with.
-struct Inside {
+// Raises a statistic to at least this. Most are lower, and a look costs less than a write.
+fn raise(which: u32, value: u32) {
+    if value > atomicLoad(&stats[which]) {
+        atomicMax(&stats[which], value);
+    }
+}
+
+// Columns and rows of the grid: from, up to but not with.
+struct Part {
     low: vec2<u32>,
     high: vec2<u32>,
 }
 
-fn inside() -> Inside {
+// The contacts and one cell more to each side, as far as the surface goes: where paint may move.
+fn around() -> Part {
+    let least = vec2(
+        atomicLoad(&stats[stat(LEAST_TOUCHED)]), atomicLoad(&stats[stat(LEAST_TOUCHED) + 1u]),
+    );
+    let most = vec2(
+        atomicLoad(&stats[stat(MOST_TOUCHED)]), atomicLoad(&stats[stat(MOST_TOUCHED) + 1u]),
+    );
+    let low = max(BIAS - 1 - vec2<i32>(least), vec2(0));
+    return Part(vec2<u32>(low), min(most + 1u, vec2(step.width, step.height)));
+}
+
+// The columns and rows that may be touched.
+fn inside() -> Part {
     let from_low = vec2<i32>(vec2(step.in_x0, step.in_y0));
     let to_high = vec2<i32>(vec2(step.in_x1, step.in_y1));
     var low = to_high;
@@ -175,7 +226,7 @@ fn inside() -> Inside {
             high[axis] = clamp(i32(most) - BIAS + step.border + 1, low[axis], to_high[axis]);
         }
     }
-    return Inside(vec2<u32>(low), vec2<u32>(high));
+    return Part(vec2<u32>(low), vec2<u32>(high));
 }
 
 fn cells() -> u32 {

@@ -19,7 +19,7 @@ fn plan_step() {
     let top = bitcast<f32>(atomicLoad(&stats[stat(TOP)]));
     atomicMax(&stats[TOP_EVER], bitcast<u32>(top / step.cells_per_quantum));
     if touched == 0u {
-        for (var i = 0u; i < 4u; i++) {
+        for (var i = 0u; i < 6u; i++) {
             groups[i] = vec4(0u);
         }
         return;
@@ -30,6 +30,9 @@ fn plan_step() {
     tally(2u, THINNER);
     groups[0] = vec4(covering(cells(), 256u), 1u, 1u, 0u);
     groups[1] = vec4(covering(step.strips, 64u), 1u, 1u, 0u);
+    groups[4] = select(vec4(0u), groups[0], step.push != 0u);
+    let seeps = (steps + 1u) % FLOW_STEPS == 0u;
+    groups[5] = select(vec4(0u), vec4(covering(texels() / 2u, 64u), 1u, 1u, 0u), seeps);
     for (var second = 0u; second < 2u; second++) {
         var size = vec4(0u);
         if step.push != 0u {

@@ -29,8 +29,8 @@ fn loose(at: u32) -> f32 {
     return max(total(at) - step.stain, 0.0);
 }
 
-// The grid's cells about a face, along the axis: the one behind it at 1. Beside the grid is nothing
-// that moves, and beside the surface it is as at its edge.
+// The cells about a face, along the axis: the one behind it at 1. Beside those around the contacts is
+// nothing that moves, and it is as at their edge.
 struct Row {
     at: array<u32, 4>,
     cell: array<u32, 4>,
@@ -62,9 +62,13 @@ fn push_paint(
     let here = vec2<i32>(group.xy * tile + local.xy) - ahead;
     let inside = all(here >= vec2(0)) && all(here < size);
     let first = select(local.x, local.y, up) == 0u;
+    let own = clamp(here, vec2(0), size - 1);
+    let around = around();
+    let low = min(own, vec2<i32>(around.low));
+    let high = max(own, vec2<i32>(around.high) - 1);
     var row: Row;
     for (var k = 0; k < 4; k++) {
-        let place = vec2<u32>(clamp(here + (k - 1) * ahead, vec2(0), size - 1));
+        let place = vec2<u32>(clamp(here + (k - 1) * ahead, low, high));
         row.at[k] = place.y * step.width + place.x;
         row.cell[k] = cell_of(place.x, place.y);
     }

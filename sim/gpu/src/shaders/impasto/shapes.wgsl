@@ -6,7 +6,7 @@ struct Ribbon {
     start: vec2<f32>,
     way: vec2<f32>,
     z: vec2<f32>,
-    // Its lower side above the middle line, and by how much it counts as higher than others as deep.
+    // How far it keeps off what it lies on, and by how much it counts as higher than others as deep.
     bottom: f32,
     rank: f32,
     // Place along the strip in texels.
@@ -74,7 +74,7 @@ struct Triangle {
     a: vec2<f32>,
     b: vec2<f32>,
     c: vec2<f32>,
-    // Of each corner: height of the lower side, motion, place around and along the head.
+    // Of each corner: height, motion, place around and along the head.
     z: vec3<f32>,
     moved_x: vec3<f32>,
     moved_y: vec3<f32>,
@@ -102,7 +102,7 @@ fn triangle_of(number: u32) -> Triangle {
             poses[point] - step.offset_x,
             poses[point + step.vertices] - step.offset_y,
         );
-        triangle.z[i] = poses[point + 2u * step.vertices] + step.skin_bottom;
+        triangle.z[i] = poses[point + 2u * step.vertices];
         triangle.moved_x[i] = poses[point + 3u * step.vertices];
         triangle.moved_y[i] = poses[point + 4u * step.vertices];
         // A face over the seam goes on beyond 1.

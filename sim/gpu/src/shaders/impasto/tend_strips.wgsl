@@ -1,7 +1,6 @@
 // The films of strips that touch have what came and went. Every few steps paint moves within all
 // strips: from inside to a film that lacks some, from one that has too much inward, and along.
 
-const FLOW_STEPS = 4u;
 // By this share the film of thinner alone is thinner than one of paint.
 const RUNS_OFF = 0.7;
 

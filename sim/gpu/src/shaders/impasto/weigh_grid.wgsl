@@ -1,13 +1,5 @@
 // What lies on each cell of the grid, and how high it stands where it may be touched.
 
-// Raises a height to at least 0 and this. Most are lower, and a look costs less than a write.
-fn raise(which: u32, height: f32) {
-    let bits = bitcast<u32>(max(height, 0.0));
-    if bits > atomicLoad(&stats[which]) {
-        atomicMax(&stats[which], bits);
-    }
-}
-
 @compute @workgroup_size(256)
 fn weigh_grid(@builtin(global_invocation_id) id: vec3<u32>) {
     let i = id.x;
@@ -27,11 +19,13 @@ fn weigh_grid(@builtin(global_invocation_id) id: vec3<u32>) {
     totals[i] = total;
     totals[2u * cells() + i] = base[cell];
     totals[3u * cells() + i] = thinner;
+    totals[4u * cells() + i] = base[step.plane + cell];
     atomicStore(&keys[i], NONE);
     atomicStore(&keys[cells() + i], 0u);
-    raise(stat(FULLEST), total);
+    raise(stat(FULLEST), bitcast<u32>(total));
     let touched = inside();
     if all(at >= touched.low) && all(at < touched.high) {
-        raise(stat(TOP), base[cell] + total * step.cells_per_quantum);
+        let height = base[cell] + total * step.cells_per_quantum;
+        raise(stat(TOP), bitcast<u32>(max(height, 0.0)));
     }
 }

@@ -1,0 +1,50 @@
+// Paint between bristles: where a film has become thinner than the one beside it, so much of the fuller one
+// seeps over that they even out (seep.rs in maulstick-paint). An invocation evens out two texels.
+
+// The first pass goes between strips that stand beside each other, the second one along each strip.
+override second: u32 = 0u;
+
+fn even_out(a: u32, b: u32) {
+    let films = vec2(load[1u + a], load[1u + b]);
+    if films.x == films.y {
+        return;
+    }
+    let full = select(b, a, films.x > films.y);
+    let thin = select(a, b, films.x > films.y);
+    let most = max(films.x, films.y);
+    let share = 0.5 * step.seep * f32(most - min(films.x, films.y)) / f32(most);
+    var sum = 0u;
+    for (var paint = 0u; paint < step.planes; paint++) {
+        let film = film_of(paint);
+        let goes = u32(f32(load[film + full]) * share);
+        load[film + full] -= goes;
+        load[film + thin] += goes;
+        sum += goes;
+    }
+    load[1u + full] -= sum;
+    load[1u + thin] += sum;
+}
+
+@compute @workgroup_size(64)
+fn seep_paint(@builtin(global_invocation_id) id: vec3<u32>) {
+    let turn = load[0] / FLOW_STEPS;
+    let first = turn / 2u % 2u;
+    if second == 0u {
+        let place = first + 2u * (id.x / ALONG);
+        if place + 1u < step.strips {
+            let order = 4u * step.faces + 2u * step.vertices + (2u + turn % 2u) * step.strips;
+            let along = id.x % ALONG;
+            even_out(
+                head[order + place] * ALONG + along,
+                head[order + place + 1u] * ALONG + along,
+            );
+        }
+        return;
+    }
+    let pairs = ALONG / 2u;
+    let strip = id.x / pairs;
+    let along = first + 2u * (id.x % pairs);
+    if strip < step.strips && along + 1u < ALONG {
+        even_out(strip * ALONG + along, strip * ALONG + along + 1u);
+    }
+}

@@ -1,0 +1,265 @@
+//! Levelling: wet paint flows under its own surface tension and weight until its yield stress holds it.
+//!
+//! The film is a thin layer of a Bingham fluid (Balmforth, Craster, Rust and Sassi 2006, "Viscoplastic
+//! flow over an inclined surface"): under a pressure gradient G it flows by
+//!
+//! q = −Y²(3h − Y)/6η · ∇p,  Y = max(0, h − τ_y/|G|),  p = ρg·s − γ∇²s,
+//!
+//! s the height of its surface. Without a yield stress that is Orchard's levelling (1962), by h³/3η, in
+//! which a ripple of wave number k decays at γh³k⁴/3η; with one a ripple of amplitude τ_y/(γhk³) is left
+//! (Smith, Orchard and Rhind-Tutt 1961). Edges are pinned: paint flows onto bare ground only
+//! down a steep slope.
+
+use maulstick_num::{exp_f32, wide};
+
+use crate::window::{Area, Window};
+
+/// Surface tension of linseed oil, N/m.
+pub const TENSION_N_PER_M: f64 = 0.03;
+/// Weight of oil paint, N/m³: 1,800 kg/m³ (lead-free tube colours lie at 1,200 to 2,200).
+pub const WEIGHT_N_PER_M3: f64 = 1800.0 * 9.81;
+/// The most of the difference of curvature between two cells that flows in one round, of a cell's height: an
+/// explicit scheme of fourth order is stable up to 1/32 in two dimensions.
+const STABLE: f64 = 1.0 / 40.0;
+
+/// Slope at which an edge of wet paint advances onto bare ground.
+const ADVANCES: f32 = 1.0;
+
+/// How paint resists flowing.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Body {
+    /// Yield stress, Pa.
+    pub yield_pa: f64,
+    /// Viscosity beyond it, Pa·s.
+    pub viscosity_pa_s: f64,
+}
+
+impl Body {
+    /// Paint from the tube: it stands in ridges (titanium white in linseed oil yields at 50 to 400 Pa).
+    pub const TUBE: Self = Self {
+        yield_pa: 80.0,
+        viscosity_pa_s: 20.0,
+    };
+}
+
+/// Yield stress and fluidity of paint of which `thinner` is a share of 0 to 1, by those of paint from the
+/// tube: half of it takes the yield stress away.
+#[must_use]
+#[inline(always)]
+pub fn thinned(thinner: f32) -> [f32; 2] {
+    let left = if thinner < 0.5 {
+        1.0 - 2.0 * thinner
+    } else {
+        0.0
+    };
+    [left * left * left, 1.0 / exp_f32(-THINS * thinner)]
+}
+
+/// ln of how much thinner alone is more fluid than paint.
+const THINS: f32 = 7.0;
+
+/// What the flow of one round is scaled by: everything in cells of `cell_m`, for `seconds`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Round {
+    /// Gradient by difference of curvature between two cells, in yields of paint one cell thick.
+    tension: f32,
+    /// The same by difference of height.
+    weight: f32,
+    /// Mobility of paint one cell thick, by `tension`.
+    mobility: f32,
+    /// The most of a mobility.
+    most: f32,
+    /// Height of a quantum, cells.
+    to_cells: f32,
+    /// Quanta below which a cell counts as bare.
+    bare: f32,
+}
+
+impl Round {
+    /// A round of so many seconds of a body on cells of `cell_m`; cells with at most `bare` quanta are dry.
+    #[must_use]
+    pub fn new(body: Body, cell_m: f64, seconds: f64, to_cells: f32, bare: f32) -> Self {
+        // A yield stress of nothing: so small that it holds nothing.
+        let yields = body.yield_pa.max(1e-9);
+        let mobility = seconds * yields / body.viscosity_pa_s.max(1e-9);
+        Self {
+            tension: (TENSION_N_PER_M / (cell_m * yields)) as f32,
+            weight: (WEIGHT_N_PER_M3 * cell_m / yields) as f32,
+            mobility: mobility as f32,
+            most: (STABLE * cell_m * yields / TENSION_N_PER_M) as f32,
+            to_cells,
+            bare,
+        }
+    }
+}
+
+/// Room for the flow of an area.
+#[derive(Clone, Debug, Default)]
+pub struct Levelling {
+    /// Cells of a row, with two more on either side.
+    width: usize,
+    /// Height of the wet paint, cells.
+    wet: Vec<f32>,
+    /// Height of its surface, cells.
+    surface: Vec<f32>,
+    /// Its Laplacian.
+    curve: Vec<f32>,
+    /// Yield stress and fluidity by those of paint from the tube.
+    body: [Vec<f32>; 2],
+}
+
+/// Cells beside the area that are looked at.
+const HALO: usize = 2;
+
+impl Levelling {
+    /// Adds what flows in a round to the velocities through the right and upper faces of an area's cells: the
+    /// share of a donor's paint that goes through. Nothing leaves the area; beyond the window it is as at its
+    /// edge. Returns the most.
+    pub fn add(
+        &mut self,
+        window: &Window,
+        area: &Area,
+        round: &Round,
+        thinner: Option<usize>,
+        [right, above]: [&mut [f32]; 2],
+    ) -> f32 {
+        if area.is_empty() {
+            return 0.0;
+        }
+        self.look(window, area, round.to_cells);
+        self.soften(window, area, round.to_cells, thinner);
+        let bare = round.bare * round.to_cells;
+        let mut most = 0.0;
+        flow(self, area, round, bare, 1, right, &mut most);
+        flow(self, area, round, bare, self.width, above, &mut most);
+        most
+    }
+
+    /// Wet heights and surfaces of the area and its halo, and the curvature.
+    fn look(&mut self, window: &Window, area: &Area, to_cells: f32) {
+        let limit = window.limit();
+        self.width = area.size[0] + 2 * HALO;
+        let height = area.size[1] + 2 * HALO;
+        for plane in [&mut self.wet, &mut self.surface, &mut self.curve] {
+            plane.clear();
+            plane.resize(self.width * height, 0.0);
+        }
+        // Columns of the window that the halo covers, as far as the window goes.
+        let first = area.from[0].saturating_sub(HALO);
+        let last = (area.from[0] + area.size[0] + HALO).min(limit[0]);
+        let inset = first + HALO - area.from[0];
+        for row in 0..height {
+            let y = (area.from[1] + row).saturating_sub(HALO).min(limit[1] - 1);
+            let from = y * window.width();
+            let start = row * self.width;
+            let wet = &mut self.wet[start..start + self.width];
+            for (_, plane) in window.planes() {
+                let counts = &plane[from + first..from + last];
+                let into = wet[inset..].iter_mut().zip(counts);
+                into.for_each(|(wet, count)| *wet += count);
+            }
+            wet.iter_mut().for_each(|wet| *wet *= to_cells);
+            let surface = &mut self.surface[start..start + self.width];
+            let base = &window.base()[from + first..from + last];
+            surface[inset..inset + base.len()].copy_from_slice(base);
+            let end = inset + base.len();
+            let ends = [
+                (wet[inset], surface[inset]),
+                (wet[end - 1], surface[end - 1]),
+            ];
+            for k in 0..inset {
+                (wet[k], surface[k]) = ends[0];
+            }
+            for k in end..wet.len() {
+                (wet[k], surface[k]) = ends[1];
+            }
+            surface.iter_mut().zip(wet).for_each(|(s, wet)| *s += *wet);
+        }
+        bend(&self.surface, self.width, &mut self.curve);
+    }
+
+    /// How thinner changes the paint's body.
+    fn soften(&mut self, window: &Window, area: &Area, to_cells: f32, thinner: Option<usize>) {
+        for plane in &mut self.body {
+            plane.clear();
+            plane.resize(self.wet.len(), 1.0);
+        }
+        let Some(thin) = thinner.and_then(|slot| window.plane(slot)) else {
+            return;
+        };
+        for (row, cells) in area.rows(window.width()).enumerate() {
+            let start = (row + HALO) * self.width + HALO;
+            for (x, count) in thin[cells].iter().enumerate() {
+                if *count > 0.0 {
+                    let at = start + x;
+                    [self.body[0][at], self.body[1][at]] = thinned(count * to_cells / self.wet[at]);
+                }
+            }
+        }
+    }
+}
+
+wide! {
+    /// The five-point Laplacian, but at the border.
+    fn bend(surface: &[f32], width: usize, curve: &mut [f32]) {
+        let rows = surface.len() / width;
+        for row in 1..rows - 1 {
+            let at = row * width;
+            let (low, own, high) = (
+                &surface[at - width..at],
+                &surface[at..at + width],
+                &surface[at + width..at + 2 * width],
+            );
+            let out = &mut curve[at..at + width];
+            for x in 1..width - 1 {
+                out[x] = low[x] + high[x] + own[x - 1] + own[x + 1] - 4.0 * own[x];
+            }
+        }
+    }
+}
+
+wide! {
+    /// What flows through the faces toward the cells `next` places on; the most of it.
+    fn flow(
+        levelling: &Levelling,
+        area: &Area,
+        round: &Round,
+        bare: f32,
+        next: usize,
+        faces: &mut [f32],
+        most: &mut f32,
+    ) {
+        let columns = area.size[0];
+        // Nothing goes through the border of the area: it would be lost there.
+        let across = usize::from(next == 1);
+        let [inner, rows] = [columns - across, area.size[1] + across - 1];
+        for (row, faces) in faces.chunks_exact_mut(columns).take(rows).enumerate() {
+            let start = (row + HALO) * levelling.width + HALO;
+            let [wet, wet_next] = [start, start + next].map(|at| &levelling.wet[at..at + columns]);
+            let [s, s_next] = [start, start + next].map(|at| &levelling.surface[at..at + columns]);
+            let [own, beside] = [start, start + next];
+            let [tau, tau_next] = [own, beside].map(|at| &levelling.body[0][at..at + columns]);
+            let [fluid, fluid_next] = [own, beside].map(|at| &levelling.body[1][at..at + columns]);
+            let [k, k_next] = [start, start + next].map(|at| &levelling.curve[at..at + columns]);
+            for x in 0..inner {
+                // Pressure falls where curvature grows.
+                let gradient = round.tension * (k_next[x] - k[x]) + round.weight * (s[x] - s_next[x]);
+                let height = 0.5 * (wet[x] + wet_next[x]);
+                let yields = 0.5 * (tau[x] + tau_next[x]);
+                let sheared = (height - yields / gradient.abs().max(1e-12)).max(0.0);
+                let mobility = round.mobility * 0.5 * (fluid[x] + fluid_next[x]);
+                let mobility = mobility * sheared * sheared * (3.0 * height - sheared) / 6.0;
+                let mobility = if mobility < round.most { mobility } else { round.most };
+                let goes = mobility * gradient;
+                let donor = if goes > 0.0 { wet[x] } else { wet_next[x] };
+                let drop = s[x] - s_next[x];
+                let onto = if goes > 0.0 { wet_next[x] } else { wet[x] };
+                let pinned = (donor <= bare) | (onto <= bare) & (drop.abs() < ADVANCES);
+                let share = if pinned { 0.0 } else { goes / donor.max(1e-9) };
+                let share = share.clamp(-0.25, 0.25);
+                *most = most.max(share.abs());
+                faces[x] += share;
+            }
+        }
+    }
+}

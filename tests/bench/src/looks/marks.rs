@@ -1,0 +1,310 @@
+//! The measurements: each paints a few strokes and reads films and heights.
+
+use maulstick_rig::Fault;
+
+use super::easel::{Easel, Map, Stroke, brush, correlation, slope};
+
+/// Name, value, unit.
+pub(crate) type Number = (&'static str, f64, &'static str);
+/// A measurement with cells of so many mm.
+pub(crate) type Measure = fn(f64) -> Result<Vec<Number>, Fault>;
+
+/// All of them.
+pub(crate) const ALL: [Measure; 8] = [
+    long_stroke,
+    six_loads,
+    dry_brush,
+    scumble,
+    knife,
+    separate_loads,
+    through_wet,
+    three_strokes,
+];
+
+const PAINT: &str = "Ultramarine Blue=0.6,Titanium White=0.4";
+
+/// One long stroke of a fully loaded 14 mm flat: films, roughness, how far it fills the tooth.
+fn long_stroke(cell_mm: f64) -> Result<Vec<Number>, Fault> {
+    let mut easel = Easel::new([190.0, 30.0], cell_mm, "linen", brush("flat", 14.0)?)?;
+    easel.load(PAINT)?;
+    easel.stroke(&Stroke::along(15.0, 15.0, 175.0, 0.5))?;
+    let (film, ground) = (easel.film(None), easel.ground());
+    let at = |mm: f64| {
+        film.cut([15.0 + mm - 1.0, 11.0], [15.0 + mm + 1.0, 19.0])
+            .mean()
+    };
+    let thick = ([28.0, 12.0], [48.0, 18.0]);
+    let surface = film.plus(&ground).cut(thick.0, thick.1);
+    let fill = slope(
+        &ground.cut(thick.0, thick.1).cells,
+        &film.cut(thick.0, thick.1).cells,
+    );
+    Ok(vec![
+        ("film_um.2mm", at(2.0), "um"),
+        ("film_um.10mm", at(10.0), "um"),
+        ("film_um.30mm", at(30.0), "um"),
+        ("film_um.60mm", at(60.0), "um"),
+        ("film_um.150mm", at(150.0), "um"),
+        ("tooth_fill", fill, ""),
+        ("rough_um.along", rough(&surface, 0), "um"),
+        ("rough_um.across", rough(&surface, 1), "um"),
+        ("towers_um", towers(&surface), "um"),
+    ])
+}
+
+/// Roughness below 1 mm of wavelength along an axis, rms µm: heights less their running mean.
+fn rough(map: &Map, axis: usize) -> f64 {
+    let half = ((0.5 / map.cell_mm).round() as usize).max(1);
+    let (step, lines) = match axis {
+        0 => (1, map.size[1]),
+        _ => (map.size[0], map.size[0]),
+    };
+    let length = map.size[axis];
+    let (mut sum, mut count) = (0.0, 0.0);
+    for line in 0..lines {
+        let start = if axis == 0 { line * map.size[0] } else { line };
+        let at = |k: usize| f64::from(map.cells[start + k * step]);
+        for k in half..length - half {
+            let mean = (k - half..=k + half).map(at).sum::<f64>() / (2 * half + 1) as f64;
+            sum += (at(k) - mean) * (at(k) - mean);
+            count += 1.0;
+        }
+    }
+    f64::sqrt(sum / f64::max(count, 1.0))
+}
+
+/// The 99.9th percentile of |height − median of its 3×3|, µm.
+fn towers(map: &Map) -> f64 {
+    let [width, height] = map.size;
+    let mut off = Vec::new();
+    for y in 1..height - 1 {
+        for x in 1..width - 1 {
+            let mut around: Vec<f32> = (0..9)
+                .map(|k| map.cells[(y + k / 3 - 1) * width + x + k % 3 - 1])
+                .collect();
+            let own = around[4];
+            around.sort_by(f32::total_cmp);
+            off.push((own - around[4]).abs());
+        }
+    }
+    off.sort_by(f32::total_cmp);
+    f64::from(off[(off.len() as f64 * 0.999) as usize])
+}
+
+/// Six full loads on one petal.
+fn six_loads(cell_mm: f64) -> Result<Vec<Number>, Fault> {
+    let mut easel = Easel::new([50.0, 30.0], cell_mm, "linen", brush("flat", 14.0)?)?;
+    for _ in 0..6 {
+        easel.load(PAINT)?;
+        easel.stroke(&Stroke::along(15.0, 14.0, 34.0, 0.4))?;
+    }
+    let (film, ground) = (easel.film(None), easel.ground());
+    let middle = ([17.0, 11.0], [30.0, 19.0]);
+    let surface = film.plus(&ground).cut(middle.0, middle.1);
+    Ok(vec![
+        ("six_loads_um", film.cut(middle.0, middle.1).mean(), "um"),
+        ("six_loads_towers_um", towers(&surface), "um"),
+    ])
+}
+
+/// How much of a load three strokes of 120 mm use.
+fn three_strokes(cell_mm: f64) -> Result<Vec<Number>, Fault> {
+    let mut easel = Easel::new([160.0, 70.0], cell_mm, "linen", brush("flat", 14.0)?)?;
+    easel.load(PAINT)?;
+    let held = |easel: &mut Easel| {
+        let painting = easel.offline.painting_mut();
+        painting.commit();
+        painting
+            .carried()
+            .map(|(_, carried)| carried.load.total() as f64)
+            .sum::<f64>()
+    };
+    let before = held(&mut easel);
+    for row in 0..3 {
+        easel.stroke(&Stroke::along(
+            15.0 + 20.0 * f64::from(row),
+            20.0,
+            140.0,
+            0.5,
+        ))?;
+    }
+    let after = held(&mut easel);
+    Ok(vec![("load_used_share", 1.0 - after / before, "")])
+}
+
+/// Cells covered by more than a film, by height of the ground: of all, of the lowest and of the
+/// highest tenth; and how much more lies on the highest.
+fn by_height(film: &Map, ground: &Map) -> [f64; 4] {
+    const COVERED_UM: f32 = 1.5;
+    let mut order: Vec<usize> = (0..film.cells.len()).collect();
+    order.sort_by(|a, b| ground.cells[*a].total_cmp(&ground.cells[*b]));
+    let tenth = order.len() / 10;
+    let covered = |part: &[usize]| {
+        let count = part.iter().filter(|i| film.cells[**i] > COVERED_UM).count();
+        count as f64 / part.len() as f64
+    };
+    let mean = |part: &[usize]| {
+        part.iter().map(|i| f64::from(film.cells[*i])).sum::<f64>() / part.len() as f64
+    };
+    let (low, high) = (&order[..tenth], &order[order.len() - tenth..]);
+    [
+        covered(&order),
+        covered(low),
+        covered(high),
+        mean(high) / mean(low).max(1e-3),
+    ]
+}
+
+/// Wipes a brush nearly empty on bare lanes of 250 mm from a height on.
+fn wipe(easel: &mut Easel, above: f64) -> Result<(), Fault> {
+    for lane in 0..6 {
+        let y = above + 15.0 * f64::from(lane);
+        for pressure in [0.6, 0.6] {
+            easel.stroke(&Stroke::along(y, 15.0, 265.0, pressure))?;
+        }
+    }
+    Ok(())
+}
+
+/// A nearly empty brush, lightly.
+fn dry_brush(cell_mm: f64) -> Result<Vec<Number>, Fault> {
+    let mut easel = Easel::new([280.0, 130.0], cell_mm, "linen", brush("flat", 14.0)?)?;
+    easel.load(PAINT)?;
+    wipe(&mut easel, 35.0)?;
+    easel.stroke(&Stroke::along(12.0, 15.0, 100.0, 0.05))?;
+    let part = ([30.0, 8.0], [80.0, 16.0]);
+    let (film, ground) = (
+        easel.film(None).cut(part.0, part.1),
+        easel.ground().cut(part.0, part.1),
+    );
+    let [all, low, high, ratio] = by_height(&film, &ground);
+    Ok(vec![
+        ("dry_brush.film", film.mean(), "um"),
+        ("dry_brush.covered", all, ""),
+        ("dry_brush.covered_low", low, ""),
+        ("dry_brush.covered_high", high, ""),
+        ("dry_brush.high_by_low", ratio, ""),
+    ])
+}
+
+/// White lightly over dried ridges.
+fn scumble(cell_mm: f64) -> Result<Vec<Number>, Fault> {
+    let mut easel = Easel::new([280.0, 160.0], cell_mm, "linen", brush("round", 6.0)?)?;
+    for row in 0..12 {
+        easel.load("Burnt Umber")?;
+        let y = 18.0 + 2.5 * f64::from(row);
+        for _ in 0..2 {
+            easel.stroke(&Stroke::along(y, 20.0, 80.0, 0.15))?;
+        }
+    }
+    easel.dry()?;
+    easel.take_up("white", brush("flat", 14.0)?)?;
+    easel.load("Titanium White")?;
+    wipe(&mut easel, 70.0)?;
+    for x in [35.0, 48.0, 61.0] {
+        easel.stroke(&Stroke {
+            from: [x, 10.0],
+            to: [x, 54.0],
+            pressure: 0.05,
+            lean_deg: 25.0,
+        })?;
+    }
+    let part = ([30.0, 20.0], [66.0, 44.0]);
+    let (film, ground) = (
+        easel.film(None).cut(part.0, part.1),
+        easel.ground().cut(part.0, part.1),
+    );
+    let [all, low, high, ratio] = by_height(&film, &ground);
+    let mut heights = ground.cells.clone();
+    heights.sort_by(f32::total_cmp);
+    let relief = heights[heights.len() * 95 / 100] - heights[heights.len() * 5 / 100];
+    Ok(vec![
+        ("scumble.relief", f64::from(relief), "um"),
+        ("scumble.covered", all, ""),
+        ("scumble.covered_low", low, ""),
+        ("scumble.covered_high", high, ""),
+        ("scumble.high_by_low", ratio, ""),
+    ])
+}
+
+/// A clean knife through a level film.
+fn knife(cell_mm: f64) -> Result<Vec<Number>, Fault> {
+    let mut easel = Easel::new([90.0, 50.0], cell_mm, "linen", brush("knife", 16.0)?)?;
+    easel.command(maulstick_types::command::Command::Fill {
+        surface: 0,
+        mixture: PAINT
+            .parse()
+            .map_err(|error| Fault::failure(format!("{error}")))?,
+        thickness_m: 500e-6,
+    })?;
+    easel.stroke(&Stroke::along(25.0, 15.0, 75.0, 0.5))?;
+    let part = ([30.0, 22.0], [60.0, 28.0]);
+    let (film, ground) = (easel.film(None), easel.ground());
+    let surface = film.plus(&ground).cut(part.0, part.1);
+    let beads = [17.5, 32.5].map(|y| film.cut([30.0, y - 4.0], [60.0, y + 4.0]));
+    let highest = |map: &Map| map.profile(1).into_iter().fold(0.0, f64::max);
+    Ok(vec![
+        ("knife_left_um", film.cut(part.0, part.1).mean(), "um"),
+        ("knife_rough_um", rough(&surface, 0), "um"),
+        (
+            "knife_bead_um",
+            highest(&beads[0]).min(highest(&beads[1])),
+            "um",
+        ),
+    ])
+}
+
+/// Streak profiles of separate loads.
+fn separate_loads(cell_mm: f64) -> Result<Vec<Number>, Fault> {
+    let mut easel = Easel::new([70.0, 100.0], cell_mm, "linen", brush("flat", 14.0)?)?;
+    let mut profiles = Vec::new();
+    for row in 0..4 {
+        easel.load(PAINT)?;
+        let y = 15.0 + 23.0 * f64::from(row);
+        easel.stroke(&Stroke::along(y, 15.0, 55.0, 0.5))?;
+        profiles.push(
+            easel
+                .film(None)
+                .cut([28.0, y - 5.0], [45.0, y + 5.0])
+                .profile(1),
+        );
+    }
+    let mut most: f64 = 0.0;
+    for i in 0..4 {
+        for j in 0..i {
+            most = most.max(correlation(&profiles[i], &profiles[j]));
+        }
+    }
+    Ok(vec![("streaks.correlation", most, "")])
+}
+
+/// White through wet blue.
+fn through_wet(cell_mm: f64) -> Result<Vec<Number>, Fault> {
+    let mut easel = Easel::new([80.0, 50.0], cell_mm, "linen", brush("flat", 14.0)?)?;
+    for y in [15.0, 25.0, 35.0] {
+        easel.load("Ultramarine Blue")?;
+        easel.stroke(&Stroke::along(y, 15.0, 65.0, 0.5))?;
+    }
+    easel.take_up("white", brush("flat", 10.0)?)?;
+    easel.load("Titanium White")?;
+    easel.stroke(&Stroke::along(25.0, 15.0, 65.0, 0.5))?;
+    let part = ([38.0, 21.0], [50.0, 29.0]);
+    let blue = easel.film(Some(0)).cut(part.0, part.1);
+    let white = easel.film(Some(1)).cut(part.0, part.1);
+    let shares: Vec<f64> = (blue.profile(1).iter().zip(white.profile(1)))
+        .map(|(blue, white)| blue / (blue + white))
+        .collect();
+    // Streaks of .25 to 1.5 mm: shares less their running mean over 1.5 mm.
+    let half = ((0.75 / cell_mm).round() as usize).max(1);
+    let (mut sum, mut count) = (0.0, 0.0);
+    for k in half..shares.len() - half {
+        let mean = shares[k - half..=k + half].iter().sum::<f64>() / (2 * half + 1) as f64;
+        sum += (shares[k] - mean) * (shares[k] - mean);
+        count += 1.0;
+    }
+    let m = shares.iter().sum::<f64>() / shares.len() as f64;
+    Ok(vec![
+        ("through_wet.blue", m, ""),
+        ("through_wet.streaks", sum / count / (m * (1.0 - m)), ""),
+    ])
+}
