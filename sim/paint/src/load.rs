@@ -111,10 +111,15 @@ impl BrushLoad {
         Some(load)
     }
 
-    /// Seed of the load: what it was filled with by chance.
+    /// Seed of how its bristles lie: another one after each load and at each stroke.
     #[must_use]
     pub fn seed(&self) -> u64 {
         self.steps >> SEED_SHIFT
+    }
+
+    /// Has the bristles lie as chance has it for another seed.
+    pub fn disorder(&mut self, seed: u64) {
+        self.steps = seed << SEED_SHIFT | self.steps & ((1 << SEED_SHIFT) - 1);
     }
 
     /// Steps with contact that it has made.

@@ -9,7 +9,7 @@ use crate::load::{ALONG, BrushLoad};
 use crate::quantum::{
     CELL_MAX, Counts, QUANTA_PER_UNIT, QUANTUM_M, REFERENCE_CELL_M, SLOTS, UNIT_M,
 };
-use crate::transfer::LN_KEPT;
+use crate::transfer::Exchanging;
 use crate::window::Window;
 
 /// The motion of a head in one step, in cells of the surface.
@@ -38,6 +38,8 @@ pub struct BrushTraits {
     pub sink: f32,
     /// Quanta of a texel's full film.
     pub film_full: f64,
+    /// The most quanta of a texel's film.
+    pub film_most: f64,
     /// Quanta inside a texel of a fully loaded brush.
     pub inside_full: f64,
     /// Thickness of a texel's film by its count, units.
@@ -50,10 +52,12 @@ pub struct BrushTraits {
     pub units_per_cell: f32,
     /// Side of a cell by that of the reference cell.
     pub cell_per_reference: f32,
+    /// Whether it floats on its paint in one plane, as a blade does.
+    pub floats: bool,
     /// Share of its motion that paint follows.
     pub follows: f32,
-    /// ln of the share that stays where it is along a reference cell, of what would even out.
-    pub ln_kept: f32,
+    /// By what paint goes over.
+    pub exchanging: Exchanging,
     /// Share of what a film lacks that comes from inside in [`FLOW_STEPS`](Self::FLOW_STEPS).
     pub refill: f64,
     /// Share of the difference between texels that evens out in as many.
@@ -63,8 +67,6 @@ pub struct BrushTraits {
 }
 
 impl BrushTraits {
-    /// A film takes up at most this many times its full thickness.
-    pub const FILM_OVER: f64 = 2.0;
     /// Paint flows within the head once in so many steps.
     pub const FLOW_STEPS: u64 = 4;
     /// Share of what a film lacks that comes from inside along a reference cell.
@@ -96,14 +98,20 @@ impl BrushTraits {
             lift: (file.strips.lift_mm * seen) as f32,
             sink: (file.strips.sink_mm * seen) as f32,
             film_full: quanta(file.load.film_um),
+            film_most: quanta(file.load.film_um) * if rigid { BLADE_OVER } else { FILM_OVER },
             inside_full: quanta(file.load.inside_um),
             film_units_per_quantum: (1.0 / (QUANTA_PER_UNIT * texel_cells)) as f32,
             film_cells_per_quantum: (QUANTUM_M / (texel_cells * cell_m * zoom)) as f32,
             cells_per_quantum: (QUANTUM_M / cell_m) as f32,
             units_per_cell: (cell_m / UNIT_M) as f32,
             cell_per_reference: steps as f32,
+            floats: rigid,
             follows: if rigid { BLADE_FOLLOWS } else { FOLLOWS },
-            ln_kept: if rigid { LN_BLADE_KEPT } else { LN_KEPT },
+            exchanging: if rigid {
+                Exchanging::BLADE
+            } else {
+                Exchanging::BRISTLES
+            },
             refill: share(Self::REFILL),
             creep: share(Self::CREEP),
             seep: share(Self::SEEP),
@@ -111,21 +119,25 @@ impl BrushTraits {
     }
 }
 
+/// A film takes up at most this many times its full thickness.
+pub const FILM_OVER: f64 = 2.0;
+/// As [`FILM_OVER`]: what a blade scrapes off gathers on it.
+pub const BLADE_OVER: f64 = 3.0;
 /// Share of the motion of bristles that paint follows: it sticks to them as to the canvas (Baxter 2004,
 /// § 6.4.2). What lies before a blade goes with it.
 pub const FOLLOWS: f32 = 0.5;
 /// As [`FOLLOWS`].
 pub const BLADE_FOLLOWS: f32 = 1.0;
-/// ln(1 − .6): a blade takes up or lays down what is above or lacks under its edge within a few cells.
-const LN_BLADE_KEPT: f32 = -0.916_290_7;
 /// Share of the lift that is left where the head is fully pressed: bristles never lie in one plane.
 const UNEVEN: f32 = 0.3;
 
 impl BrushTraits {
-    /// How far the most unruly strip keeps off what it lies on under a press of 0 to 1, cells.
+    /// How far the most unruly strip keeps off what it lies on under a press of 0 to 1, cells. A blade floats
+    /// on its paint, the less the harder it is pressed.
     #[must_use]
     pub fn loose(&self, press: f32) -> f32 {
-        self.lift * (1.0 - (1.0 - UNEVEN) * press)
+        let off = 1.0 - press;
+        self.lift * if self.floats { off * off * off * off } else { UNEVEN + (1.0 - UNEVEN) * off }
     }
 
     /// Half the width of a strip in the segment that ends at a station, cells.

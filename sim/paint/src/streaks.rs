@@ -5,6 +5,7 @@
 //! steps, which the journal has.
 
 use maulstick_brush::Head;
+use maulstick_brush::head::disorder::{noise, unit};
 
 /// Share of a bristle's own unevenness that is left beside the chance of a load.
 const OWN: f32 = 0.35;
@@ -27,28 +28,6 @@ pub fn streaks(head: &Head, seed: u64) -> Vec<f32> {
         (own * (1.0 + chance)).max(LEAST)
     });
     taken.collect()
-}
-
-/// Smooth noise on a lattice of side 1, 0 to 1.
-fn noise(seed: u64, [x, y]: [f32; 2]) -> f32 {
-    let (i, j) = (x.floor(), y.floor());
-    let ease = |t: f32| t * t * (3.0 - 2.0 * t);
-    let (u, v) = (ease(x - i), ease(y - j));
-    let corner = |di: i64, dj: i64| unit(seed, [i as i64 + di, j as i64 + dj]);
-    let row = |dj: i64| corner(0, dj) + (corner(1, dj) - corner(0, dj)) * u;
-    row(0) + (row(1) - row(0)) * v
-}
-
-/// A number in 0 to 1 of a place (finaliser of Murmur 3, Appleby).
-fn unit(seed: u64, place: [i64; 2]) -> f32 {
-    let mut h = seed.wrapping_mul(0x9e37_79b9_7f4a_7c15) ^ 0x2545_f491_4f6c_dd1d;
-    for v in place {
-        h = (h ^ v as u64).wrapping_mul(0xff51_afd7_ed55_8ccd);
-        h ^= h >> 33;
-        h = h.wrapping_mul(0xc4ce_b9fe_1a85_ec53);
-        h ^= h >> 33;
-    }
-    (h >> 40) as f32 / 16_777_216.0
 }
 
 #[cfg(test)]

@@ -13,30 +13,72 @@ pub const LN_KEPT: f32 = -0.105_360_516;
 /// from filling the tooth.
 pub const MAX_TRANSFER: f32 = 0.004;
 
-/// Share of the paint that goes over along a travel in reference cells, where `ln_kept` of one stays.
-#[must_use]
-#[inline(always)]
-pub fn share(travel: f32, ln_kept: f32) -> f32 {
-    1.0 - exp_f32(ln_kept * travel)
+/// By what paint goes over between a head and what it touches.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Exchanging {
+    /// ln of the share that stays where it is along a reference cell.
+    pub ln_kept: f32,
+    /// 1 where the two sides even out; 0 where all that is reached is taken up and gaps alone are filled.
+    pub evens: f32,
+    /// The most that goes over along a reference cell, units.
+    pub most: f32,
 }
 
-/// Paint that leaves the brush for the canvas (positive) or the canvas for the brush (negative),
-/// units, where the brush carries `on_brush` and reaches `on_canvas` units, after `travel`, along
-/// which `share` goes over. `on_canvas` is negative by a gap that the brush's film bridges.
-///
-/// The text's EQUAL_PAINT_CUTOFF is a constant of 833 µm, which makes films of oil (80 to 420 µm) go over
-/// by their square. Here it is the donor's amount: the difference evens out, whatever the scale.
-#[must_use]
-#[inline(always)]
-pub fn transfer(on_brush: f32, on_canvas: f32, travel: f32, share: f32) -> f32 {
-    let difference = on_brush - on_canvas;
-    let donor = if difference > 0.0 {
-        on_brush
-    } else {
-        on_canvas
+impl Exchanging {
+    /// Bristles, which paint wets: what they carry and what they reach even out.
+    pub const BRISTLES: Self = Self {
+        ln_kept: LN_KEPT,
+        evens: 1.0,
+        most: MAX_TRANSFER,
     };
-    let amount = (share * difference.abs().min(donor)).min(MAX_TRANSFER * travel);
-    if difference > 0.0 { amount } else { -amount }
+    /// A blade: it scrapes off what stands above its edge, and fills what lies below; ln(1 − .6).
+    pub const BLADE: Self = Self {
+        ln_kept: -0.916_290_7,
+        evens: 0.0,
+        most: 1.0,
+    };
+
+    /// Share of the paint that goes over along a travel in reference cells.
+    #[must_use]
+    #[inline(always)]
+    pub fn share(&self, travel: f32) -> f32 {
+        1.0 - exp_f32(self.ln_kept * travel)
+    }
+
+    /// Paint that leaves the brush for the canvas (positive) or the canvas for the brush (negative),
+    /// units, where the brush carries `on_brush`, reaches `on_canvas` units and stands `gap` units above what
+    /// lies there, after `travel`, along which `share` goes over.
+    ///
+    /// The text's EQUAL_PAINT_CUTOFF is a constant of 833 µm, which makes films of oil (80 to 420 µm) go over
+    /// by their square. Here it is the donor's amount: the difference evens out, whatever the scale. A gap
+    /// fills first and faster, for the film is pressed into it.
+    #[must_use]
+    #[inline(always)]
+    pub fn transfer(
+        &self,
+        [on_brush, on_canvas, gap]: [f32; 3],
+        travel: f32,
+        share: f32,
+    ) -> f32 {
+        let fill = filled(share) * gap.min(on_brush);
+        let difference = self.evens * on_brush - on_canvas;
+        let donor = if difference > 0.0 {
+            on_brush - fill
+        } else {
+            on_canvas
+        };
+        let amount = (share * difference.abs()).min(self.most * travel).min(donor);
+        fill + if difference > 0.0 { amount } else { -amount }
+    }
+}
+
+/// Share of a gap that fills where `share` of a difference evens out: 1 − (1 − share)¹⁶.
+#[inline(always)]
+fn filled(share: f32) -> f32 {
+    let kept = (1.0 - share) * (1.0 - share);
+    let kept = kept * kept;
+    let kept = kept * kept;
+    1.0 - kept * kept
 }
 
 /// Share of the thinner film that changes places along a reference cell, by that which goes over.
@@ -71,7 +113,9 @@ mod tests {
     proptest! {
         #[test]
         fn over_one_cell_it_is_the_printed_algorithm(a_c in 0.0..0.2f64, a_b in 0.0..0.2f64) {
-            let got = f64::from(transfer(a_b as f32, a_c as f32, 1.0, share(1.0, LN_KEPT)));
+            let share = Exchanging::BRISTLES.share(1.0);
+            let got = Exchanging::BRISTLES.transfer([a_b as f32, a_c as f32, 0.0], 1.0, share);
+            let got = f64::from(got);
             let want = printed(a_c, a_b);
             prop_assert!((got - want).abs() < 1e-8, "{got} {want}");
         }
@@ -80,9 +124,10 @@ mod tests {
         fn nothing_moves_without_travel_and_more_with_more(
             a_b in 0.0..0.1f32, a_c in 0.0..0.1f32, s in 0.0..1.0f32,
         ) {
-            let over = |s: f32| transfer(a_b, a_c, s, share(s, LN_KEPT)).abs();
+            let rule = Exchanging::BRISTLES;
+            let over = |s: f32| rule.transfer([a_b, a_c, 0.0], s, rule.share(s)).abs();
             prop_assert_eq!(over(0.0), 0.0);
-            prop_assert_eq!(swap(a_b, a_c, share(0.0, LN_KEPT)), 0.0);
+            prop_assert_eq!(swap(a_b, a_c, rule.share(0.0)), 0.0);
             let (less, more) = (over(s), over(1.0));
             prop_assert!(less <= more + 1e-9);
             prop_assert!(less <= a_b.max(a_c));
@@ -91,7 +136,8 @@ mod tests {
 
     #[test]
     fn a_wrong_share_would_be_found() {
-        let faulty = f64::from(transfer(0.009, 0.0, 1.0, share(1.0, LN_KEPT))) * 1.001;
+        let rule = Exchanging::BRISTLES;
+        let faulty = f64::from(rule.transfer([0.009, 0.0, 0.0], 1.0, rule.share(1.0))) * 1.001;
         assert!((faulty - printed(0.0, 0.009)).abs() > 1e-8);
     }
 }

@@ -9,6 +9,7 @@
 
 mod beside;
 pub mod curve;
+pub mod disorder;
 mod lay;
 pub mod place;
 pub mod weights;
@@ -22,6 +23,7 @@ use self::lay::{add_weighted, turn_offsets};
 use self::place::Random;
 use self::weights::{nearest_in_hull, weights_of};
 use crate::file::BrushFile;
+use crate::file::sections::Hair;
 use crate::skin::{Skin, SkinPose};
 use crate::spine::SpineShape;
 use crate::tuft::Seat;
@@ -61,6 +63,10 @@ pub struct Head {
     rest: Curve,
     skin: Option<Skin>,
     length_m: f64,
+    /// Whether it is a blade, whose strips never lie otherwise.
+    rigid: bool,
+    /// Half the width and thickness at the ferrule, m.
+    half_m: [f32; 2],
 }
 
 /// Strips in space: planes of coordinates, `station · strips + strip`, station 0 at the ferrule.
@@ -126,7 +132,10 @@ impl Head {
             .collect();
         let (_, rest) = middle(&curves, DVec3::NEG_Z);
         let unruly = |range: f64, random: &mut Random| range * (2.0 * random.unit() - 1.0);
-        let lift = (0..count).map(|_| random.unit() as f32).collect();
+        let rigid = file.head.hair == Hair::Steel;
+        // A blade keeps off as a whole.
+        let lift = |own: f64| if rigid { 1.0 } else { own as f32 };
+        let lift = (0..count).map(|_| lift(random.unit())).collect();
         let capacity = (0..count)
             .map(|_| (1.0 + unruly(file.strips.unevenness, &mut random)) as f32)
             .collect();
@@ -151,6 +160,8 @@ impl Head {
             rest,
             skin: Skin::of(file, &tuft),
             length_m: file.length_m(),
+            rigid,
+            half_m: [file.radius_m(0.0), file.half_thickness_m(0.0)].map(|half| half as f32),
             weights,
             seats: tuft.seats,
         };

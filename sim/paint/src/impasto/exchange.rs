@@ -13,7 +13,7 @@ use super::footprint::{Contact, Footprint};
 use crate::load::BrushLoad;
 use crate::model::{BrushTraits, Handling, Step, Transfer};
 use crate::quantum::{CELL_MAX, QUANTA_PER_UNIT, SLOTS};
-use crate::transfer::{share, swap, transfer};
+use crate::transfer::{Exchanging, swap};
 
 /// Room for a step. Of the brush's many texels few touch at a time: these are numbered afresh in each
 /// step, so that the others cost nothing.
@@ -123,22 +123,20 @@ pub struct Meeting {
     pub fraction: f32,
     /// How far the brush is above it, units.
     pub gap: f32,
-    /// ln of what stays along a reference cell.
-    pub ln_kept: f32,
 }
 
 /// What a contact wants: quanta from the brush, and to it.
 #[must_use]
 #[inline(always)]
-pub fn wanted(meeting: &Meeting, handling: &Handling) -> [f32; 2] {
+pub fn wanted(meeting: &Meeting, rule: &Exchanging, handling: &Handling) -> [f32; 2] {
     let quanta = meeting.cover * QUANTA_PER_UNIT as f32;
     let on_canvas = meeting.lying * (1.0 / QUANTA_PER_UNIT as f32) * meeting.fraction;
-    let reached = on_canvas - meeting.gap;
     let (net, swap) = match handling.transfer {
         Transfer::Marker { flow } => (flow * meeting.travel, 0.0),
         _ => {
-            let share = share(meeting.travel, meeting.ln_kept);
-            let net = transfer(meeting.on_brush, reached, meeting.travel, share);
+            let share = rule.share(meeting.travel);
+            let amounts = [meeting.on_brush, on_canvas, meeting.gap];
+            let net = rule.transfer(amounts, meeting.travel, share);
             (net, swap(meeting.on_brush, on_canvas, share))
         }
     };
@@ -163,7 +161,12 @@ fn positive(a: f32) -> f32 {
 
 wide! {
     /// What all contacts want: quanta from the brush, and to it.
-    fn want(meetings: &Meetings, ln_kept: f32, handling: &Handling, wants: &mut [Vec<f32>; 2]) {
+    fn want(
+        meetings: &Meetings,
+        rule: &Exchanging,
+        handling: &Handling,
+        wants: &mut [Vec<f32>; 2],
+    ) {
         let count = meetings.travel.len();
         let [given, taken] = wants;
         for plane in [&mut *given, &mut *taken] {
@@ -182,9 +185,8 @@ wide! {
                 lying: lying[i],
                 fraction: fraction[i],
                 gap: gap[i],
-                ln_kept,
             };
-            [given[i], taken[i]] = wanted(&meeting, handling);
+            [given[i], taken[i]] = wanted(&meeting, rule, handling);
         }
     }
 }
@@ -355,7 +357,7 @@ impl Half {
         self.meetings.of(contacts, step.load.films(), &step.traits);
         want(
             &self.meetings,
-            step.traits.ln_kept,
+            &step.traits.exchanging,
             &step.handling,
             &mut self.wants,
         );
@@ -402,7 +404,7 @@ impl Half {
 impl Granted {
     /// Scales what is wanted of each texel, and offered to it, to what it has and has room for.
     fn grant(&mut self, texels: &[u32], load: &BrushLoad, traits: &BrushTraits, sponge: bool) {
-        let most = (traits.film_full * BrushTraits::FILM_OVER) as f32;
+        let most = traits.film_most as f32;
         self.taken.clear();
         self.film.clear();
         for (texel, [drawn, offered]) in texels.iter().zip(&mut self.asked) {

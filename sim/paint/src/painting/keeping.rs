@@ -318,7 +318,9 @@ fn restored_track(
             "`maulstick painting recover` takes out what is whole",
         )
     })?;
-    let head = Arc::new(Head::of(&file));
+    let tidy = Arc::new(Head::of(&file));
+    let seed = load.as_ref().map_or(0, |load| load.get().seed());
+    let head = Arc::new(tidy.disordered(seed));
     let path = brush.path.and_then(|(surface, scale, at)| {
         let sheet = sheets.iter().position(|sheet| sheet.id == surface)?;
         Some((sheet, PathStepper::begin(&head, Waypoint::from(at), scale)))
@@ -335,6 +337,7 @@ fn restored_track(
     Ok(BrushTrack {
         under: UnderBrush::default(),
         file,
+        tidy,
         head,
         load,
         kept,

@@ -14,7 +14,7 @@ use crate::model::BrushTraits;
 use crate::quantum::SLOTS;
 
 /// Seeds of loads are the newest bits of the number of steps.
-const SEEDS: u64 = 0x7fff_ffff;
+pub(super) const SEEDS: u64 = 0x7fff_ffff;
 
 impl Painting {
     /// The slots of several mixtures; where one is refused no paint gets a slot.
@@ -125,7 +125,7 @@ impl Painting {
         let left = load.take_all();
         let traits = BrushTraits::of(&track.file, cell_m, 1.0);
         for (slots, half) in parts {
-            load.fill(&track.head, &traits, slots, thinner, (*half, seed));
+            load.fill(&track.tidy, &traits, slots, thinner, (*half, seed));
         }
         let given = load.counts();
         self.ledger.to_cleaner(&left);

@@ -104,6 +104,9 @@ struct Sheet {
 /// A brush as the painting knows it.
 struct BrushTrack {
     file: BrushFile,
+    /// The head as its file has it.
+    tidy: Arc<Head>,
+    /// The same with its bristles as they lie since the stroke began.
     head: Arc<Head>,
     load: Arc<BrushLoad>,
     /// The load that was last kept, and its page.
@@ -277,13 +280,15 @@ impl Painting {
                 if head.strips() != track.head.strips() {
                     track.load = BrushLoad::spread(head.strips(), &track.load.counts()).into();
                 }
-                (track.file, track.head, track.path) = (file, head, None);
+                (track.file, track.path) = (file, None);
+                (track.tidy, track.head) = (Arc::clone(&head), head);
             }
             None => {
                 let track = BrushTrack {
                     load: BrushLoad::clean(head.strips()).into(),
                     kept: None,
                     file,
+                    tidy: Arc::clone(&head),
                     head,
                     stroke: None,
                     path: None,

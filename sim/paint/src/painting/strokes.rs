@@ -5,6 +5,7 @@ use std::sync::Arc;
 use maulstick_types::brush::{BrushState, Solve, solve_flags};
 
 use super::backend::Deferral;
+use super::loads::SEEDS;
 use super::modes::{Prepared, handling_of};
 use super::{PaintRefusal, Painting};
 use crate::head::{Scale, Waypoint, low_bounds};
@@ -112,8 +113,12 @@ impl Painting {
     pub(super) fn begin_stroke(&mut self, name: &str) -> Result<(), PaintRefusal> {
         self.begin_step("stroke", Some(name));
         self.fall.stroke_ends();
+        self.settle();
+        let seed = self.steps & SEEDS;
         let track = self.brush(name)?;
         track.deferral = Deferral::default();
+        Arc::make_mut(&mut track.load).disorder(seed);
+        track.head = Arc::new(track.tidy.disordered(seed));
         if track.loads.is_empty() {
             return Ok(());
         }

@@ -269,6 +269,11 @@ fn separate_loads(cell_mm: f64) -> Result<Vec<Number>, Fault> {
                 .profile(1),
         );
     }
+    if std::env::var("DUMP").is_ok() {
+        for p in &profiles {
+            println!("{:?}", p.iter().map(|v| v.round()).collect::<Vec<_>>());
+        }
+    }
     let mut most: f64 = 0.0;
     for i in 0..4 {
         for j in 0..i {
