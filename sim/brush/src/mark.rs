@@ -19,6 +19,12 @@ const BETWEEN: usize = 8;
 /// Cells in which touched places count once, by the width of the head.
 const CELLS: f64 = 20.0;
 
+/// Film of a brush that has painted a little: a full one reaches farther only at first, µm.
+const FILM_UM: f64 = 420.0;
+
+/// How much deeper than into the tooth a fully pressed head comes to lie among its own bristles, mm.
+const GIVES_MM: f64 = 0.09;
+
 /// Measures the mark of a head.
 #[derive(Clone, Debug)]
 pub struct Mark {
@@ -45,9 +51,9 @@ impl Mark {
             head: Head::of(&few),
             pose: HeadPose::default(),
             cell_m: 1e-3 * file.head.width_mm / CELLS,
-            reach_m: 1e-6 * file.load.film_um + 0.5e-3 * strips.thickness_mm,
+            reach_m: 1e-6 * file.load.film_um.min(FILM_UM) + 0.5e-3 * strips.thickness_mm,
             lift_m: 1e-3 * strips.lift_mm,
-            sink_m: 1e-3 * strips.sink_mm,
+            sink_m: 1e-3 * (strips.sink_mm + GIVES_MM),
             touched: Vec::new(),
             cells: Vec::new(),
         }

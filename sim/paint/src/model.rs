@@ -137,7 +137,12 @@ impl BrushTraits {
     #[must_use]
     pub fn loose(&self, press: f32) -> f32 {
         let off = 1.0 - press;
-        self.lift * if self.floats { off * off * off * off } else { UNEVEN + (1.0 - UNEVEN) * off }
+        self.lift
+            * if self.floats {
+                off * off * off * off
+            } else {
+                UNEVEN + (1.0 - UNEVEN) * off
+            }
     }
 
     /// Half the width of a strip in the segment that ends at a station, cells.

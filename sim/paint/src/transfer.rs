@@ -51,23 +51,21 @@ impl Exchanging {
     ///
     /// The text's EQUAL_PAINT_CUTOFF is a constant of 833 µm, which makes films of oil (80 to 420 µm) go over
     /// by their square. Here it is the donor's amount: the difference evens out, whatever the scale. A gap
-    /// fills first and faster, for the film is pressed into it.
+    /// fills faster, for the film is pressed into it, with what is free beyond it.
     #[must_use]
     #[inline(always)]
-    pub fn transfer(
-        &self,
-        [on_brush, on_canvas, gap]: [f32; 3],
-        travel: f32,
-        share: f32,
-    ) -> f32 {
-        let fill = filled(share) * gap.min(on_brush);
-        let difference = self.evens * on_brush - on_canvas;
+    pub fn transfer(&self, [on_brush, on_canvas, gap]: [f32; 3], travel: f32, share: f32) -> f32 {
+        let free = (on_brush - gap).max(0.0);
+        let fill = filled(share) * gap.min(free);
+        let difference = self.evens * free - on_canvas;
         let donor = if difference > 0.0 {
             on_brush - fill
         } else {
             on_canvas
         };
-        let amount = (share * difference.abs()).min(self.most * travel).min(donor);
+        let amount = (share * difference.abs())
+            .min(self.most * travel)
+            .min(donor);
         fill + if difference > 0.0 { amount } else { -amount }
     }
 }

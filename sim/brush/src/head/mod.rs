@@ -65,8 +65,8 @@ pub struct Head {
     length_m: f64,
     /// Whether it is a blade, whose strips never lie otherwise.
     rigid: bool,
-    /// Half the width and thickness at the ferrule, m.
-    half_m: [f32; 2],
+    /// Half the width and thickness at each station, m.
+    half_m: [[f32; 2]; STATIONS],
 }
 
 /// Strips in space: planes of coordinates, `station · strips + strip`, station 0 at the ferrule.
@@ -161,7 +161,10 @@ impl Head {
             skin: Skin::of(file, &tuft),
             length_m: file.length_m(),
             rigid,
-            half_m: [file.radius_m(0.0), file.half_thickness_m(0.0)].map(|half| half as f32),
+            half_m: std::array::from_fn(|station| {
+                let at = place_along(station);
+                [file.radius_m(at), file.half_thickness_m(at)].map(|half| half as f32)
+            }),
             weights,
             seats: tuft.seats,
         };

@@ -73,8 +73,9 @@ impl Bench {
         self.head.pose(&hold, &mut self.pose);
         let (strips, pose, count) = (&self.file.strips, &self.pose, self.head.strips());
         let press = f64::from(pose.press);
-        let film = 1e-6 * self.file.load.film_um;
-        let pressed = film + 0.5e-3 * strips.thickness_mm + 1e-3 * strips.sink_mm * press;
+        // A brush that has painted a little.
+        let film = 1e-6 * self.file.load.film_um.min(420.0);
+        let pressed = film + 0.5e-3 * strips.thickness_mm + 1e-3 * (strips.sink_mm + 0.09) * press;
         let mut cells = std::collections::BTreeSet::new();
         for i in count..pose.x.len() {
             let unruly = f64::from(self.head.lift()[i % count]);

@@ -1,7 +1,8 @@
 //! The stages as compute pipelines, each with those buffers of impasto.wgsl that it uses.
 
+use maulstick_paint::impasto::levelling::{ADVANCES, THINS};
 use maulstick_paint::impasto::velocity::{EASE, SLIP, SQUISH, STABLE};
-use maulstick_paint::transfer::{MAX_TRANSFER, SWAP, SWAP_FILM};
+use maulstick_paint::transfer::{SWAP, SWAP_FILM};
 
 use crate::device::Device;
 
@@ -138,7 +139,7 @@ pub(crate) static KERNELS: [Kernel; 16] = [
     Kernel {
         name: "level_paint",
         source: source!("level_paint"),
-        constants: &[],
+        constants: &[("ADVANCES", ADVANCES as f64), ("THINS", THINS as f64)],
         bindings: &[B::Planes, B::Base, B::Faces, B::Totals, B::Stats, B::Wants],
         groups: Groups::Planned(4),
     },
@@ -166,11 +167,7 @@ pub(crate) static KERNELS: [Kernel; 16] = [
     Kernel {
         name: "ask_paint",
         source: source!("ask_paint"),
-        constants: &[
-            ("MAX_TRANSFER", MAX_TRANSFER as f64),
-            ("SWAP", SWAP as f64),
-            ("SWAP_FILM", SWAP_FILM as f64),
-        ],
+        constants: &[("SWAP", SWAP as f64), ("SWAP_FILM", SWAP_FILM as f64)],
         bindings: &[B::Load, B::Asks, B::Contacts, B::Totals, B::Wants],
         groups: Groups::Planned(0),
     },

@@ -5,7 +5,7 @@ use maulstick_brush::head::STATIONS;
 use maulstick_paint::head::border;
 use maulstick_paint::impasto::advection::STAIN;
 use maulstick_paint::impasto::band::rank;
-use maulstick_paint::impasto::levelling::{Body, TENSION_N_PER_M, WEIGHT_N_PER_M3};
+use maulstick_paint::impasto::levelling::{Body, STABLE, TENSION_N_PER_M, WEIGHT_N_PER_M3};
 use maulstick_paint::impasto::velocity::HAND_M_PER_S;
 use maulstick_paint::model::{Step, Transfer};
 use maulstick_paint::quantum::{CELL_MAX, QUANTUM_M};
@@ -15,8 +15,6 @@ use super::residence::Residence;
 /// Scores reach this far below and above what reaches lowest and stands highest, cells: ranks, and what
 /// covers a cell only in part.
 const MARGIN: [f32; 2] = [0.1, 0.65];
-/// STABLE of levelling.rs.
-const STABLE: f64 = 1.0 / 40.0;
 /// No plane.
 const NONE: u32 = u32::MAX;
 
@@ -65,10 +63,13 @@ pub(crate) struct StepRecord {
     units_per_cell: f32,
     follows: f32,
     ln_kept: f32,
+    evens: f32,
+    most_over: f32,
+    film_most: f32,
     seep: f32,
     levelling: [f32; 4],
     /// Up to the least distance of two records.
-    rest: [u32; 4],
+    rest: [u32; 1],
 }
 
 /// Bytes from one record to the next.
@@ -143,10 +144,13 @@ impl StepRecord {
             round: 2.0 * traits.half_thickness,
             units_per_cell: traits.units_per_cell,
             follows: traits.follows,
-            ln_kept: traits.ln_kept,
+            ln_kept: traits.exchanging.ln_kept,
+            evens: traits.exchanging.evens,
+            most_over: traits.exchanging.most,
+            film_most: traits.film_most as f32,
             seep: traits.seep as f32,
             levelling: levelling(QUANTUM_M / f64::from(traits.cells_per_quantum)),
-            rest: [0; 4],
+            rest: [0; 1],
         };
         debug_assert_eq!(after.x.len(), strips * STATIONS);
         let motion = |after: &[f32], before: &[f32], poses: &mut Vec<f32>| {

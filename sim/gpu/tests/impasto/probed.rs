@@ -37,7 +37,7 @@ pub(crate) fn scene(seed: u64, steps: u64) -> Scene {
         }
     }
     if seed % 2 == 1 {
-        scene.traits.film_full *= 0.05;
+        scene.traits.film_most *= 0.05;
     }
     scene.load = stepped(&scene.load, steps);
     scene

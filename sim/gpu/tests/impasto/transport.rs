@@ -5,9 +5,8 @@ use std::collections::BTreeMap;
 use maulstick_gpu::impasto::probe::{Probe, Prober};
 use maulstick_paint::impasto::advection::STAIN;
 use maulstick_paint::impasto::velocity::{EASE, SQUISH, STABLE};
-use maulstick_paint::model::BrushTraits;
 use maulstick_paint::quantum::{CELL_MAX, QUANTA_PER_UNIT, SLOTS};
-use maulstick_paint::transfer::{MAX_TRANSFER, SWAP, SWAP_FILM};
+use maulstick_paint::transfer::{Exchanging, SWAP, SWAP_FILM};
 
 use crate::device;
 use crate::probed::{Grid, SLOW, ahead, run, scene};
@@ -192,22 +191,34 @@ fn paint_goes_where_it_is_pushed_and_none_is_lost() {
     assert!(turned > 100.0 * QUANTA, "the other order passes: {turned}");
 }
 
-/// Baxter 2004, Algorithm 3, by path length along which so much of one is `kept`, where a film bridges a gap
-/// of so many units, and what changes places: units to the canvas, back, and both ways.
-fn wanted(a_b: f64, a_c: f64, gap: f64, travel: f64, kept: f64) -> [f64; 3] {
-    let share = 1.0 - maulstick_num::powf(kept, travel);
-    let difference = a_b - (a_c - gap);
-    let donor = if difference > 0.0 { a_b } else { a_c };
-    let net = (share * difference.abs().min(donor)).min(f64::from(MAX_TRANSFER) * travel);
-    let swap = f64::from(SWAP) * share * a_b.min(a_c).min(f64::from(SWAP_FILM));
+/// Baxter 2004, Algorithm 3, by path length along which so much of one is `kept`, where a film bridges a gap,
+/// and what changes places: units to the canvas, back, and both ways. What a film has beyond its gap fills it
+/// sixteen times as fast; of a blade that is all, and it takes up what it reaches.
+fn wanted([a_b, a_c, gap]: [f64; 3], travel: f64, (kept, blade): (f64, bool)) -> [f64; 3] {
+    let goes = |times: f64| 1.0 - maulstick_num::powf(kept, times * travel);
+    let free = (a_b - gap).max(0.0);
+    let fill = goes(16.0) * gap.min(free);
+    let (carried, most) = if blade {
+        (0.0, 1.0)
+    } else {
+        (free, 1e-4 / 0.025)
+    };
+    let difference = carried - a_c;
+    let donor = if difference > 0.0 { a_b - fill } else { a_c };
+    let net = (goes(1.0) * difference.abs()).min(most * travel).min(donor);
+    let swap = f64::from(SWAP) * goes(1.0) * a_b.min(a_c).min(f64::from(SWAP_FILM));
     match difference > 0.0 {
-        true => [net, 0.0, swap],
-        false => [0.0, net, swap],
+        true => [fill + net, 0.0, swap],
+        false => [(fill - net).max(0.0), (net - fill).max(0.0), swap],
     }
 }
 
 /// What lies on cells and films after the exchange, with how far it may be off.
-fn exchanged(probe: &Probe, scene: &Scene, kept: f64) -> BTreeMap<(bool, usize, usize), [f64; 2]> {
+fn exchanged(
+    probe: &Probe,
+    scene: &Scene,
+    rule: (f64, bool),
+) -> BTreeMap<(bool, usize, usize), [f64; 2]> {
     let (window, load, traits) = (&scene.window, &scene.load, &scene.traits);
     let mut asked = BTreeMap::<u32, [f64; 2]>::new();
     let mut wants = Vec::new();
@@ -220,7 +231,7 @@ fn exchanged(probe: &Probe, scene: &Scene, kept: f64) -> BTreeMap<(bool, usize, 
         let a_c = lying / QUANTA_PER_UNIT * f64::from(c.fraction);
         // A unit is 25 mm.
         let gap = f64::from(c.gap) * CELL_M / 0.025;
-        let [out, back, swap] = wanted(a_b, a_c, gap, travel, kept)
+        let [out, back, swap] = wanted([a_b, a_c, gap], travel, rule)
             .map(|units| units * f64::from(c.cover) * QUANTA_PER_UNIT);
         let room = QUANTA_PER_UNIT - lying;
         let swap = swap.min(room);
@@ -236,7 +247,7 @@ fn exchanged(probe: &Probe, scene: &Scene, kept: f64) -> BTreeMap<(bool, usize, 
         let film = f64::from(load.film(texel));
         let [drawn, offered] = asked[&c.texel];
         let out = (film / drawn.max(1.0)).min(1.0);
-        let room = traits.film_full * BrushTraits::FILM_OVER - film + drawn * out;
+        let room = traits.film_most - film + drawn * out;
         let taken = (room / offered.max(1.0)).clamp(0.0, 1.0);
         for slot in 0..SLOTS {
             let of_film = load
@@ -264,16 +275,19 @@ fn paint_goes_both_ways() {
     let mut prober = Prober::new(device()).expect("taken");
     for seed in 0..8 {
         // Of bristles, and of a blade.
-        let kept = if seed < 6 { 0.9 } else { 0.4 };
+        let rule = if seed < 6 { (0.9, false) } else { (0.4, true) };
         let scene = || {
             let mut scene = scene(seed, 0);
-            scene.traits.ln_kept = maulstick_num::ln(kept) as f32;
+            scene.traits.exchanging = match rule {
+                (_, false) => Exchanging::BRISTLES,
+                (_, true) => Exchanging::BLADE,
+            };
             scene
         };
         let mut pushed = scene();
         let counts = pushed.counts();
         let probe = run(&mut prober, &mut pushed, "push_paint");
-        let expected = exchanged(&probe, &pushed, kept);
+        let expected = exchanged(&probe, &pushed, rule);
         let mut scene = scene();
         let last = run(&mut prober, &mut scene, "tend_strips");
         assert_eq!(last.contacts, probe.contacts);

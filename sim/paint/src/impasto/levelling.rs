@@ -20,10 +20,10 @@ pub const TENSION_N_PER_M: f64 = 0.03;
 pub const WEIGHT_N_PER_M3: f64 = 1800.0 * 9.81;
 /// The most of the difference of curvature between two cells that flows in one round, of a cell's height: an
 /// explicit scheme of fourth order is stable up to 1/32 in two dimensions.
-const STABLE: f64 = 1.0 / 40.0;
+pub const STABLE: f64 = 1.0 / 40.0;
 
-/// Slope at which an edge of wet paint advances onto bare ground.
-const ADVANCES: f32 = 1.0;
+/// Slope at which an edge of wet paint advances onto bare ground; without a yield stress it wets all.
+pub const ADVANCES: f32 = 1.0;
 
 /// How paint resists flowing.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -56,7 +56,7 @@ pub fn thinned(thinner: f32) -> [f32; 2] {
 }
 
 /// ln of how much thinner alone is more fluid than paint.
-const THINS: f32 = 7.0;
+pub const THINS: f32 = 7.0;
 
 /// What the flow of one round is scaled by: everything in cells of `cell_m`, for `seconds`.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -254,7 +254,7 @@ wide! {
                 let donor = if goes > 0.0 { wet[x] } else { wet_next[x] };
                 let drop = s[x] - s_next[x];
                 let onto = if goes > 0.0 { wet_next[x] } else { wet[x] };
-                let pinned = (donor <= bare) | (onto <= bare) & (drop.abs() < ADVANCES);
+                let pinned = (donor <= bare) | (onto <= bare) & (drop.abs() < ADVANCES * yields);
                 let share = if pinned { 0.0 } else { goes / donor.max(1e-9) };
                 let share = share.clamp(-0.25, 0.25);
                 *most = most.max(share.abs());

@@ -8,21 +8,35 @@ use maulstick_paint::impasto::footprint::{Contact, Footprint};
 use maulstick_paint::load::BrushLoad;
 use maulstick_paint::model::{BrushTraits, Handling, Transfer};
 use maulstick_paint::quantum::{QUANTA_PER_UNIT, SLOTS};
-use maulstick_paint::transfer::{MAX_TRANSFER, SWAP, SWAP_FILM};
+use maulstick_paint::transfer::{SWAP, SWAP_FILM};
 use maulstick_paint::window::Window;
 
 use crate::scene::{CELL_M, Scene, lying};
 
-/// Baxter 2004, Algorithm 3, by path length (item 19 of the reading guide), where a share `kept` stays along
-/// a reference cell: units to the canvas. What counts as nearly equal goes by what the donor has, not by
-/// the text's 833 µm, so films of oil even out by their difference.
-fn algorithm_3(a_b: f64, a_c: f64, travel: f64, kept: f64) -> f64 {
-    let difference = a_b - a_c;
-    let donor = if difference > 0.0 { a_b } else { a_c };
-    let cutoff = (difference.abs() / donor.max(1e-30)).clamp(0.0, 1.0);
-    let share = 1.0 - maulstick_num::powf(kept, travel);
-    let amount = (donor * share * cutoff).clamp(0.0, f64::from(MAX_TRANSFER) * travel);
-    if difference > 0.0 { amount } else { -amount }
+/// By what a head gives and takes: the share that stays along a reference cell, and whether it is a blade.
+#[derive(Clone, Copy)]
+struct Rule {
+    kept: f64,
+    blade: bool,
+}
+
+/// Baxter 2004, Algorithm 3, by path length (item 19 of the reading guide): units to the canvas. What counts as
+/// nearly equal goes by what the donor has, not by the text's 833 µm, so films of oil even out by their
+/// difference, at most 100 µm of them along a reference cell. What a film has beyond the gap under it fills
+/// the gap, sixteen times as fast. A blade takes up all that it reaches, and evens nothing out.
+fn algorithm_3([a_b, a_c, gap]: [f64; 3], travel: f64, rule: Rule) -> f64 {
+    let stays = |times: f64| maulstick_num::powf(rule.kept, times * travel);
+    let free = (a_b - gap).max(0.0);
+    let fill = (1.0 - stays(16.0)) * gap.min(free);
+    let (carried, most) = if rule.blade {
+        (0.0, 1.0)
+    } else {
+        (free, 1e-4 / 0.025)
+    };
+    let difference = carried - a_c;
+    let donor = if difference > 0.0 { a_b - fill } else { a_c };
+    let amount = ((1.0 - stays(1.0)) * difference.abs()).clamp(0.0, (most * travel).min(donor));
+    fill + if difference > 0.0 { amount } else { -amount }
 }
 
 /// What should lie on cells and films, and by how many quanta each may be off.
@@ -54,7 +68,7 @@ fn wants(
     load: &BrushLoad,
     traits: &BrushTraits,
     handling: &Handling,
-    kept: f64,
+    rule: Rule,
 ) -> [f64; 2] {
     let cell = c.cell as usize;
     let lying: f64 = (0..SLOTS).map(|slot| on(window, slot, cell)).sum();
@@ -62,10 +76,10 @@ fn wants(
     let travel = (u * u + v * v).sqrt() * f64::from(traits.cell_per_reference);
     let a_b = film(load, c.texel as usize) * f64::from(traits.film_units_per_quantum);
     let a_c = lying / QUANTA_PER_UNIT * f64::from(c.fraction);
-    let share = 1.0 - maulstick_num::powf(kept, travel);
+    let share = 1.0 - maulstick_num::powf(rule.kept, travel);
     // A unit is 25 mm.
     let gap = f64::from(c.gap) * CELL_M / 0.025;
-    let mut net = algorithm_3(a_b, a_c - gap, travel, kept);
+    let mut net = algorithm_3([a_b, a_c, gap], travel, rule);
     let mut both = f64::from(SWAP) * share * a_b.min(a_c).min(f64::from(SWAP_FILM));
     if let Transfer::Marker { flow } = handling.transfer {
         (net, both) = (f64::from(flow) * travel, 0.0);
@@ -79,12 +93,12 @@ fn wants(
     ]
 }
 
-fn oracle(contacts: &[Contact], scene: &Scene, kept: f64) -> Expected {
+fn oracle(contacts: &[Contact], scene: &Scene, rule: Rule) -> Expected {
     let (window, load, traits) = (&scene.window, &scene.load, &scene.traits);
     let sponge = scene.handling.transfer == Transfer::Sponge;
     let wants: Vec<[f64; 2]> = contacts
         .iter()
-        .map(|c| wants(c, window, load, traits, &scene.handling, kept))
+        .map(|c| wants(c, window, load, traits, &scene.handling, rule))
         .collect();
     // Demand and offer of each texel, and from how many cells they come.
     let mut demand = BTreeMap::<u32, [f64; 3]>::new();
@@ -100,7 +114,7 @@ fn oracle(contacts: &[Contact], scene: &Scene, kept: f64) -> Expected {
         let [drawn, offered, sharers] = demand[&c.texel];
         let there = film(load, texel);
         let mut granted = if drawn > there { there / drawn } else { 1.0 };
-        let full = traits.film_full * BrushTraits::FILM_OVER;
+        let full = traits.film_most;
         let room = (full - there + drawn * granted).max(0.0);
         let mut taken_in = if offered > room { room / offered } else { 1.0 };
         if sponge {
@@ -186,15 +200,16 @@ fn paint_goes_both_ways_as_algorithm_3_says() {
         }
         if seed % 2 == 1 {
             crowd(&mut footprint.contacts);
-            scene.traits.film_full *= 0.05;
+            scene.traits.film_most *= 0.05;
         }
         let kind = ["round", "knife"][seed / 8 % 2];
         let file = BrushFile::library(kind).expect(kind);
-        scene.traits.ln_kept = BrushTraits::of(&file, CELL_M, 1.0).ln_kept;
+        scene.traits.exchanging = BrushTraits::of(&file, CELL_M, 1.0).exchanging;
         let before = scene.counts();
-        let kept = maulstick_num::exp(f64::from(scene.traits.ln_kept));
-        let expected = oracle(&footprint.contacts, &scene, kept);
-        let other = oracle(&footprint.contacts, &scene, 0.99 * kept);
+        let (kept, blade) = [(0.9, false), (0.4, true)][seed / 8 % 2];
+        let expected = oracle(&footprint.contacts, &scene, Rule { kept, blade });
+        let kept = 0.99 * kept;
+        let other = oracle(&footprint.contacts, &scene, Rule { kept, blade });
         let from_nowhere = Exchange::default().run(&footprint, &mut scene.step());
         let after = scene.counts();
         for slot in 0..SLOTS {

@@ -84,6 +84,7 @@ impl Film<'_> {
         // Half of it takes the yield stress away; alone it is e⁷ times as fluid.
         let left = |at| (1.0 - 2.0 * self.thin(at)).max(0.0).powi(3);
         let yields = self.body.yield_pa.max(1e-9) * mean(&left);
+        let advances = ADVANCES * mean(&left);
         let fluid = mean(&|at| maulstick_num::exp(7.0 * self.thin(at)));
         let viscosity = self.body.viscosity_pa_s.max(1e-9) / fluid;
         let goes = |gradient: f64| {
@@ -96,7 +97,7 @@ impl Film<'_> {
             let (donor, onto) = if volume > 0.0 { (at, next) } else { (next, at) };
             let held = self.quanta(donor);
             let bare = self.quanta(onto) <= self.bare;
-            let steep = (s - s_next).abs() / CELL_M >= ADVANCES;
+            let steep = (s - s_next).abs() / CELL_M >= advances;
             if held <= self.bare || bare && !steep {
                 return 0.0;
             }
@@ -104,7 +105,7 @@ impl Film<'_> {
         };
         let mut shares = [goes(gradient - off), goes(gradient), goes(gradient + off)];
         // A slope that is steep within rounding may count as either.
-        if ((s - s_next).abs() / CELL_M - ADVANCES).abs() < 1e-5 {
+        if ((s - s_next).abs() / CELL_M - advances).abs() < 1e-5 {
             shares[1] = 0.0;
         }
         shares.sort_by(f64::total_cmp);

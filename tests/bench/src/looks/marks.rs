@@ -53,7 +53,7 @@ fn long_stroke(cell_mm: f64) -> Result<Vec<Number>, Fault> {
 }
 
 /// Roughness below 1 mm of wavelength along an axis, rms µm: heights less their running mean.
-fn rough(map: &Map, axis: usize) -> f64 {
+pub(crate) fn rough(map: &Map, axis: usize) -> f64 {
     let half = ((0.5 / map.cell_mm).round() as usize).max(1);
     let (step, lines) = match axis {
         0 => (1, map.size[1]),
@@ -268,11 +268,6 @@ fn separate_loads(cell_mm: f64) -> Result<Vec<Number>, Fault> {
                 .cut([28.0, y - 5.0], [45.0, y + 5.0])
                 .profile(1),
         );
-    }
-    if std::env::var("DUMP").is_ok() {
-        for p in &profiles {
-            println!("{:?}", p.iter().map(|v| v.round()).collect::<Vec<_>>());
-        }
     }
     let mut most: f64 = 0.0;
     for i in 0..4 {

@@ -2,15 +2,24 @@
 // texel.
 
 // Constants of transfer.rs in maulstick-paint.
-override MAX_TRANSFER: f32;
 override SWAP: f32;
 override SWAP_FILM: f32;
 
-fn transfer(on_brush: f32, on_canvas: f32, share: f32, travel: f32) -> f32 {
-    let difference = on_brush - on_canvas;
-    let donor = select(on_canvas, on_brush, difference > 0.0);
-    let amount = min(share * min(abs(difference), donor), MAX_TRANSFER * travel);
-    return select(-amount, amount, difference > 0.0);
+// Share of a gap that fills where `share` of a difference evens out: 1 − (1 − share)¹⁶.
+fn filled(share: f32) -> f32 {
+    var kept = (1.0 - share) * (1.0 - share);
+    kept *= kept;
+    kept *= kept;
+    return 1.0 - kept * kept;
+}
+
+fn transfer(on_brush: f32, on_canvas: f32, gap: f32, share: f32, travel: f32) -> f32 {
+    let free = max(on_brush - gap, 0.0);
+    let fill = filled(share) * min(gap, free);
+    let difference = step.evens * free - on_canvas;
+    let donor = select(on_canvas, on_brush - fill, difference > 0.0);
+    let amount = min(min(share * abs(difference), step.most_over * travel), donor);
+    return fill + select(-amount, amount, difference > 0.0);
 }
 
 @compute @workgroup_size(256)
@@ -32,7 +41,7 @@ fn ask_paint(@builtin(global_invocation_id) id: vec3<u32>) {
     var swap = 0.0;
     if step.transfer != MARKER {
         let share = 1.0 - decay(step.ln_kept * travel);
-        net = transfer(on_brush, on_canvas - gap, share, travel);
+        net = transfer(on_brush, on_canvas, gap, share, travel);
         swap = SWAP * share * min(min(on_brush, on_canvas), SWAP_FILM);
     }
     let quanta = contact.cover * QUANTA_PER_UNIT;

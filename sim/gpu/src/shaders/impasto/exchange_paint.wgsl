@@ -1,8 +1,6 @@
 // Paint goes over: what its texel grants each cell of each paint, truncated, is taken from one side and
 // given to the other.
 
-// A texel held this many times its full film at most.
-const FILM_OVER = 2.0;
 // Where next to all of a donor is asked for, shares are short by more than rounding adds, so that no sum
 // of them exceeds what is there; elsewhere rounding takes no quantum of a whole one.
 const NEXT_TO_ALL = 0.9999;
@@ -43,7 +41,7 @@ fn exchange_paint(@builtin(global_invocation_id) id: vec3<u32>) {
         granted.x = select(0.0, 1.0, film > 0.0);
     } else {
         granted.x = min(1.0, film / max(drawn, 1.0));
-        let room = FILM_OVER * step.film_full - film + drawn * granted.x;
+        let room = step.film_most - film + drawn * granted.x;
         granted.y = clamp(room / max(offered, 1.0), 0.0, 1.0);
     }
     let goes = wants[i] * granted;

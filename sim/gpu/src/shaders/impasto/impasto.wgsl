@@ -76,8 +76,13 @@ struct Step {
     units_per_cell: f32,
     // Share of the brush's motion that paint follows.
     follows: f32,
-    // ln of what stays along a reference cell of what would even out.
+    // By what paint goes over (`Exchanging` of transfer.rs): ln of what stays along a reference cell, whether
+    // the two sides even out, and the most.
     ln_kept: f32,
+    evens: f32,
+    most_over: f32,
+    // The most quanta of a texel's film.
+    film_most: f32,
     // Share of the difference between films beside each other that evens out in FLOW_STEPS.
     seep: f32,
     // Levelling (`Round` of levelling.rs): gradient by difference of curvature and of height, in yields

@@ -3,8 +3,8 @@
 // a donor's paint that goes through each face is added to the velocities.
 
 // ADVANCES and THINS of levelling.rs.
-const ADVANCES = 1.0;
-const THINS = 7.0;
+override ADVANCES: f32;
+override THINS: f32;
 // The most of a donor's paint that levels through a face.
 const MOST_OF_DONOR = 0.25;
 
@@ -63,7 +63,7 @@ fn flow(own: Side, next: Side, mobility: f32) -> f32 {
     let donor = select(next.film.wet, own.film.wet, goes > 0.0);
     let onto = select(own.film.wet, next.film.wet, goes > 0.0);
     let bare = step.stain * step.cells_per_quantum;
-    if donor <= bare || (onto <= bare && abs(drop) < ADVANCES) {
+    if donor <= bare || (onto <= bare && abs(drop) < ADVANCES * yields) {
         return 0.0;
     }
     return clamp(goes / max(donor, 1e-9), -MOST_OF_DONOR, MOST_OF_DONOR);
