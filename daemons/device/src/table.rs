@@ -294,7 +294,7 @@ fn unpainted(rows: &[Row], samples: &[TakeSample], layout: TableLayout) -> Vec<S
     let torn: Vec<usize> = pairs.iter().filter(torn).copied().collect();
     if let Some(first) = torn.first() {
         notes.push(format!(
-            "line {}: the sample before is more than {} s older, as in {} places: nothing is painted between",
+            "line {}: the sample before is more than {:.1} s older, as in {} places: nothing is painted between",
             rows[*first].line,
             BRIDGED_NS as f64 * 1e-9,
             torn.len()

@@ -38,7 +38,7 @@ const SIDE_MM: f64 = 52.5;
 /// Size of a portrait beside that of the brush.
 const PORTRAIT_SCALE: f64 = 0.75;
 /// Pixels of a sheet at most.
-const MOST_PIXELS: usize = 120_000_000;
+const MOST_PIXELS: usize = 100_000_000;
 /// A brush's name in its own painting.
 const BRUSH: &str = "main";
 /// The share of its head's length by which full pressure presses a brush in.

