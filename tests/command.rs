@@ -3,7 +3,7 @@
 mod inputs;
 mod support;
 
-use support::{Place, fault, has};
+use support::{COARSE, Place, fault, has};
 
 #[test]
 fn a_demo_becomes_a_picture_the_same_every_time() {
@@ -25,6 +25,7 @@ fn a_demo_becomes_a_picture_the_same_every_time() {
             "ledger.json",
         ];
         args.extend(loads);
+        args.extend(COARSE);
         place.done(&args);
     }
     support::assert_same(
@@ -42,14 +43,8 @@ fn a_demo_becomes_a_picture_the_same_every_time() {
     assert!(sum.abs() < 1e-18, "{sum}");
     assert!(ledger["paints_m3"]["Ultramarine Blue"]["canvas"].as_f64() > Some(0.0));
     // Another load is another picture.
-    place.done(&[
-        "render",
-        "demo.mcap",
-        "-o",
-        "three.png",
-        "--load",
-        "Bone Black",
-    ]);
+    let other = ["--load", "Bone Black", COARSE[0], COARSE[1]];
+    place.done(&[&["render", "demo.mcap", "-o", "three.png"][..], &other].concat());
     assert!(place.bytes("one.png") != place.bytes("three.png"));
 }
 
@@ -64,6 +59,8 @@ fn a_take_that_embeds_what_it_is_painted_with_gives_the_same_painting() {
         "own.toml",
         "--size",
         "640x600",
+        "--cell-mm",
+        "0.25",
         "--illuminant",
         "A",
         "--load",
@@ -138,12 +135,71 @@ fn a_take_that_embeds_what_it_is_painted_with_gives_the_same_painting() {
 fn the_canvas_has_the_size_that_is_asked_for() {
     let place = Place::new();
     place.short_demo("demo.mcap", 1.0);
-    place.done(&["render", "demo.mcap", "-o", "p.png", "--size", "640x333"]);
-    let picture = std::fs::File::open(place.path("p.png")).expect("there");
-    let reader = png::Decoder::new(std::io::BufReader::new(picture))
-        .read_info()
-        .expect("a PNG");
-    assert_eq!((reader.info().width, reader.info().height), (640, 333));
+    let pixels = |options: &[&str]| {
+        place.done(&[&["render", "demo.mcap", "-o", "p.png"], options].concat());
+        let picture = std::fs::File::open(place.path("p.png")).expect("there");
+        let reader = png::Decoder::new(std::io::BufReader::new(picture))
+            .read_info()
+            .expect("a PNG");
+        (reader.info().width, reader.info().height)
+    };
+    assert_eq!(pixels(&["--size", "640x333"]), (640, 333));
+    // 256 mm, on cells of a picture and others; those of the settings where they are given.
+    assert_eq!(pixels(&[]), (2048, 2048));
+    assert_eq!(pixels(&["--cell-mm", "0.5"]), (512, 512));
+    let config = place.done(&["up", "--print-config"]).stdout;
+    let config = String::from_utf8(config).expect("UTF-8");
+    let narrow = config.replace("width_mm = 256", "width_mm = 128");
+    std::fs::write(place.path("rig.toml"), narrow).expect("written");
+    assert_eq!(pixels(&["--rig", "rig.toml"]), (512, 1024));
+    let both = ["--rig", "rig.toml", "--cell-mm", "1"];
+    assert_eq!(pixels(&both), (128, 256));
+}
+
+#[test]
+fn cells_that_cannot_be_are_refused_and_a_painting_keeps_its_own() {
+    let place = Place::new();
+    place.short_demo("d.mcap", 0.5);
+    let commands: [&[&str]; 5] = [
+        &["render", "d.mcap", "-o", "p.png"],
+        &["up", "--headless"],
+        &["take", "embed", "d.mcap", "-o", "p.png"],
+        &["demo", "--sheet", "p.png"],
+        &["brush", "sheet", "-o", "p.png"],
+    ];
+    for command in commands {
+        for cell in ["0", "nan", "10", "-0.1", "fine"] {
+            let said = fault(&place, &[command, &["--cell-mm", cell]].concat(), 2);
+            has(&said, &["--cell-mm", cell, "0.125"]);
+            assert!(!place.path("p.png").exists(), "{command:?} {cell}");
+        }
+    }
+    for command in &commands[..3] {
+        let vast = ["--cell-mm", "0.02", "--size", "65536x65536"];
+        let said = fault(&place, &[command, &vast[..]].concat(), 2);
+        has(
+            &said,
+            &["65536×65536 cells of 0.02 mm", "--cell-mm", "larger cells"],
+        );
+    }
+    for command in &commands[3..] {
+        let said = fault(&place, &[command, &["--cell-mm", "0.02"][..]].concat(), 2);
+        has(&said, &["pixels", "--cell-mm", "larger cells"]);
+    }
+    let idle = ["demo", "-o", "d2.mcap", "--cell-mm", "0.5"];
+    has(
+        &fault(&place, &idle, 2),
+        &["--cell-mm does nothing", "--sheet"],
+    );
+    let render = ["render", "d.mcap", "-o", "p.png", "--document", "x.maul"];
+    place.done(&[&render[..], &["--cell-mm", "0.5"]].concat());
+    place.done(&render);
+    assert_eq!(
+        support::info(&place, "x.maul")["cells"],
+        serde_json::json!([512, 512])
+    );
+    let other = fault(&place, &[&render[..], &["--cell-mm", "0.25"]].concat(), 2);
+    has(&other, &["--cell-mm is for a new painting", "x.maul"]);
 }
 
 #[test]

@@ -10,8 +10,8 @@ use maulstick_bus::Class;
 use maulstick_types::paint::PaintStatus;
 use nix::sys::signal::Signal;
 use support::{
-    Launcher, PATIENCE, Place, account, assert_same, fault, has, hear, info, join, listen, signal,
-    wait_for,
+    COARSE, Launcher, PATIENCE, Place, account, assert_same, fault, has, hear, info, join, listen,
+    signal, wait_for,
 };
 
 #[test]
@@ -19,7 +19,13 @@ fn a_rendered_document_is_the_picture_and_goes_on() {
     let place = Place::new();
     place.short_demo("take.mcap", 4.0);
     let render = |load: &str, more: &[&str]| {
-        place.done(&[&["render", "take.mcap", "--load", load], more].concat());
+        let render = ["render", "take.mcap", "--load", load];
+        let coarse: &[&str] = match more.contains(&"64M") {
+            // It has cells of its own.
+            true => &[],
+            false => &COARSE,
+        };
+        place.done(&[&render[..], coarse, more].concat());
     };
     let blue = "Ultramarine Blue";
     render(blue, &["-o", "memory.png"]);
@@ -169,7 +175,9 @@ fn kill_at_random(rounds: u32) {
                 "Cobalt Blue",
                 "--size",
                 "512x512",
-            ][..if round == 0 { 9 } else { 7 }],
+                COARSE[0],
+                COARSE[1],
+            ][..if round == 0 { 11 } else { 7 }],
         );
         let (bus, topics) = join(&place);
         let mut status = listen::<PaintStatus>(&bus, &topics.paint_status(), Class::Background);
@@ -216,7 +224,7 @@ fn nothing_committed_is_lost_when_fifty_rigs_are_killed() {
 fn a_take_into_a_painting_begins_again_after_a_crash() {
     let place = Place::new();
     place.short_demo("take.mcap", 4.0);
-    let load = ["--load", "Cobalt Blue"];
+    let load = ["--load", "Cobalt Blue", COARSE[0], COARSE[1]];
     place.done(&[&["render", "take.mcap", "-o", "whole.png"], &load[..]].concat());
     let play = [
         "up",

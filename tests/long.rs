@@ -5,7 +5,7 @@ mod support;
 use std::path::Path;
 
 use maulstick_device::table::{TableLayout, import};
-use support::{Launcher, Place, assert_same};
+use support::{COARSE, Launcher, Place, assert_same};
 
 const LOADS: [&str; 8] = [
     "--load",
@@ -41,6 +41,7 @@ fn the_recording_ten_times_at_every_rate_is_the_rendered_picture() {
     }
     let mut render = vec!["render", "take.mcap", "-o", "offline.png"];
     render.extend(LOADS);
+    render.extend(COARSE);
     place.done(&render);
     for (rate, runs) in [("max", 10), ("4", 10), ("1", 10), ("0.5", 10)] {
         for run in 0..runs {
@@ -54,6 +55,7 @@ fn the_recording_ten_times_at_every_rate_is_the_rendered_picture() {
             ];
             args.extend(["--ledger", "live.json", "--rate", rate]);
             args.extend(LOADS);
+            args.extend(COARSE);
             let mut launcher = Launcher::start(place.maulstick(&args));
             let status = launcher.wait(support::PATIENCE);
             assert_eq!(

@@ -12,7 +12,8 @@ use maulstick_types::stylus::{StylusSample, TakeStatus};
 use nix::sys::signal::Signal;
 use support::display::{Display, over};
 use support::{
-    Launcher, PATIENCE, Place, account, assert_same, drain, hear, listen, pressed, signal, wait_for,
+    COARSE, Launcher, PATIENCE, Place, account, assert_same, drain, hear, listen, pressed, signal,
+    wait_for,
 };
 
 const LOADS: [&str; 4] = [
@@ -26,6 +27,7 @@ const LOADS: [&str; 4] = [
 fn render(place: &Place, take: &str) {
     let mut args = vec!["render", take, "-o", "offline.png"];
     args.extend(LOADS);
+    args.extend(COARSE);
     place.done(&args);
 }
 
@@ -41,6 +43,7 @@ fn playing(place: &Place, take: &str, extra: &[&str]) -> Command {
         "live.json",
     ];
     args.extend(LOADS);
+    args.extend(COARSE);
     args.extend(extra);
     place.maulstick(&args)
 }

@@ -15,7 +15,7 @@ fn script(place: &Place, name: &str, steps: &str) {
 fn a_script_of_a_take_is_the_take_and_more_steps_are_more() {
     let place = Place::new();
     place.short_demo("flower.mcap", 4.0);
-    let size = ["--size", "640x600"];
+    let size = ["--size", "640x600", "--cell-mm", "0.25"];
     let take = ["render", "flower.mcap", "-o", "take.png", "--load", LOAD];
     place.done(&[&take[..], &size].concat());
     let paint = |steps: &str, picture: &str| {
@@ -203,7 +203,7 @@ fn a_tooth_may_be_a_picture_and_goes_with_the_painting() {
     let stripes: Vec<u8> = (0..64).map(|i| 255 * (i % 2) as u8).collect();
     writer.write_image_data(&stripes).expect("pixels");
     writer.finish().expect("whole");
-    let size = ["--size", "128x64"];
+    let size = ["--size", "128x64", "--cell-mm", "0.25"];
     let film = "{ fill = \"Ultramarine Blue\", um = 20 },";
     let paint = |tooth: &str, more: &[&str]| {
         script(&place, "day.toml", &format!("{tooth}\n{film}"));
@@ -298,7 +298,7 @@ fn paint_dries_in_parts_and_over_time_and_becomes_wet_again() {
         place.done(&[&render[..], more].concat());
         ["canvas", "dry"].map(|name| account(&place, "l.json", name))
     };
-    let size = ["--size", "320x240"];
+    let size = ["--size", "320x240", "--cell-mm", "0.25"];
     let [all, none] = paint("", &size);
     assert_eq!(none, 0.0);
     // A canvas of 80×60 mm.
@@ -379,7 +379,7 @@ fn a_ground_may_have_any_reflectance_and_goes_with_the_painting() {
     )
     .expect("written");
     script(&place, "none.toml", "{ light = { intensity = 1.0 } },");
-    let size = ["--size", "128x64"];
+    let size = ["--size", "128x64", "--cell-mm", "0.25"];
     let render = |more: &[&str]| {
         let render = ["render", "--script", "none.toml", "-o", "day.png"];
         place.done(&[&render[..], more].concat());

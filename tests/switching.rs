@@ -10,8 +10,8 @@ use maulstick_types::paint::PaintStatus;
 use maulstick_types::scene::Scene;
 use nix::sys::signal::Signal;
 use support::{
-    Launcher, PATIENCE, Place, account, assert_same, fault, has, hear, info, join, listen, signal,
-    wait_for,
+    COARSE, Launcher, PATIENCE, Place, account, assert_same, fault, has, hear, info, join, listen,
+    signal, wait_for,
 };
 
 /// Cells of the canvas.
@@ -174,7 +174,7 @@ fn what_is_in_memory_alone_is_not_forgotten_unasked_and_becomes_a_file() {
 fn a_take_that_is_played_meanwhile_paints_the_same_in_the_other_file() {
     let place = Place::new();
     place.short_demo("take.mcap", 8.0);
-    let load = ["--load", "Cobalt Blue"];
+    let load = ["--load", "Cobalt Blue", COARSE[0], COARSE[1]];
     place.done(&[&["render", "take.mcap", "-o", "whole.png"], &load[..]].concat());
     let play = [
         "up",

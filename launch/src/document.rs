@@ -108,7 +108,7 @@ pub fn presence(path: &Path, options: &PaintingOptions) -> Result<Presence, Faul
             Some(option) => Err(Fault::usage(format!("{option} is for a new painting"))
                 .at(path.display().to_string())
                 .help(
-                    "this one has its size, paints, ground and light; `maulstick light` and `ground` change these",
+                    "this one has its size, cells, paints, ground and light; `maulstick light` and `ground` change these",
                 )),
             None => Ok(Presence::There),
         },

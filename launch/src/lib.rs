@@ -15,6 +15,7 @@
 //! | [`sheet`] | the sheet of brushes and their marks |
 //! | [`attached`] | devices that are attached, as the system tells of them |
 //! | [`backend`] | what computes the steps of the paint |
+//! | [`cells`] | the side of the cells that pictures are painted with |
 //! | [`document`] | paintings in files |
 //! | [`duration`], [`ground`], [`tooth`] | times, grounds and teeth as a painter names them |
 //! | [`kit`] | what a take is painted with: put into it, and taken from it |
@@ -26,6 +27,7 @@
 
 pub mod attached;
 pub mod backend;
+pub mod cells;
 pub mod chart;
 pub mod cli;
 pub mod commands;

@@ -11,6 +11,7 @@ use maulstick_rig::config::{BACKENDS, BrushSection, LightSection, RigConfig};
 use maulstick_types::Mixture;
 use maulstick_types::scene::Light;
 
+use crate::cells::{check_canvas, parse_cell_mm};
 use crate::ground::GroundFile;
 use crate::viewing::illuminant;
 
@@ -20,6 +21,10 @@ pub struct KitOptions {
     /// Size of the canvas in cells, for example 1024x1024
     #[arg(long, value_name = "WxH", value_parser = parse_size)]
     pub size: Option<[u32; 2]>,
+    /// Side of a cell, mm, .02 to 2; that of the take or of rig.toml if absent, and 0.125 where a take
+    /// or a script is painted without either
+    #[arg(long, value_name = "MM", value_parser = parse_cell_mm, allow_negative_numbers = true)]
+    pub cell_mm: Option<f64>,
     /// The brush: one of rig.toml, one of the library, or a brush file
     #[arg(long, value_name = "NAME")]
     pub brush: Option<String>,
@@ -101,14 +106,20 @@ pub fn parse_size(text: &str) -> Result<[u32; 2], String> {
 }
 
 impl KitOptions {
-    /// Puts size, brush, paints and light into the rig's settings, and returns the brush's section.
+    /// Puts size, cells, brush, paints and light into the rig's settings, and returns the brush's section.
     ///
     /// # Errors
-    /// A [`Fault`] for an unknown brush, with the nearest name.
+    /// A [`Fault`] for an unknown brush, with the nearest name, and for too many cells.
     pub fn apply(&self, config: &mut RigConfig) -> Result<BrushSection, Fault> {
+        if let Some(cell_mm) = self.cell_mm {
+            config.canvas.cell_mm = cell_mm;
+        }
         if let Some(size) = self.size {
             config.canvas.width_mm = f64::from(size[0]) * config.canvas.cell_mm;
             config.canvas.height_mm = f64::from(size[1]) * config.canvas.cell_mm;
+        }
+        if self.size.is_some() || self.cell_mm.is_some() {
+            check_canvas(&config.canvas)?;
         }
         if let Some(paints) = &self.paints {
             config.paint.paints = Some(paints.clone());
@@ -147,6 +158,7 @@ impl KitOptions {
     pub fn for_a_new_one(&self) -> Option<&'static str> {
         let given = [
             (self.size.is_some(), "--size"),
+            (self.cell_mm.is_some(), "--cell-mm"),
             (self.paints.is_some(), "--paints"),
             (self.illuminant.is_some(), "--illuminant"),
             (self.ground.is_some(), "--ground"),

@@ -28,6 +28,9 @@ use nix::unistd::Pid;
 /// Nothing in a test takes longer than this, unless it hangs.
 pub const PATIENCE: Duration = Duration::from_secs(120);
 
+/// Options of a picture that is painted in a fraction of the time.
+pub const COARSE: [&str; 2] = ["--cell-mm", "0.25"];
+
 /// The command under test.
 pub const MAULSTICK: &str = env!("CARGO_BIN_EXE_maulstick");
 

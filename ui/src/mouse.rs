@@ -3,6 +3,7 @@
 //! A tablet reaches the rig twice, by its daemon and as the pointer: the mouse counts only while no
 //! other stylus has been in range for a second.
 
+use maulstick_brush::model::BRIDGED_NS;
 use maulstick_bus::credit::Stamp;
 use maulstick_bus::typed::{Receiver, Sender};
 use maulstick_bus::{Bus, BusError, Class, CreditSender, Queue, Wake};
@@ -17,8 +18,6 @@ const SILENCE_NS: u64 = 1_000_000_000;
 const FRAME_NS: u64 = 90_000_000;
 /// A frame of a stroke that goes on may take as long as this, ns.
 const LONG_FRAME_NS: u64 = 1_000_000_000;
-/// In a stroke no two samples are farther apart, ns: after a longer gap the brush would begin anew.
-const GAP_NS: u64 = 40_000_000;
 /// Pressure of a pressed button.
 const PRESSED: f64 = 0.5;
 
@@ -174,10 +173,11 @@ impl Mouse {
 }
 
 impl Mouse {
-    /// Places that took so long, with as many more on the strokes between them as leave no gap.
+    /// Places that took so long, with as many more between those of a pressed button as leave no pause
+    /// that the brush would not cross: it is known that the button was not let go.
     fn finer(&self, places: &[Pointer], took_ns: u64) -> Vec<Pointer> {
         let each_ns = took_ns / places.len().max(1) as u64;
-        let parts = each_ns.div_ceil(GAP_NS).max(1);
+        let parts = each_ns.div_ceil(BRIDGED_NS).max(1);
         let mut before = self.pressed;
         let mut all = Vec::new();
         for place in places {
@@ -307,7 +307,7 @@ mod tests {
             pressed: true,
         };
         desk.mouse.send(SECOND, &[at(0.0)]).expect("sent");
-        let slow = SECOND + 300_000_000;
+        let slow = SECOND + 960_000_000;
         desk.mouse.send(slow, &[at(0.01), at(0.06)]).expect("sent");
         desk.net.advance(SECOND / 10);
         let mut heard = Vec::new();
@@ -321,10 +321,10 @@ mod tests {
             assert!(pressure > 0.0);
             heard.push((sample.header.event_ns, point_m[0]));
         }
-        assert_eq!(heard[heard.len() - 1], (slow, 0.06));
+        assert_eq!((heard.len(), heard[heard.len() - 1]), (5, (slow, 0.06)));
         for pair in heard.windows(2) {
             let [(from_ns, from), (to_ns, to)] = [pair[0], pair[1]];
-            assert!(to_ns - from_ns <= GAP_NS && to > from, "{heard:?}");
+            assert!(to_ns - from_ns <= BRIDGED_NS && to > from, "{heard:?}");
         }
         // In the air it leaps.
         let lifted = Pointer {

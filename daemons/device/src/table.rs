@@ -6,7 +6,7 @@
 
 use std::path::Path;
 
-use maulstick_brush::model::RESTART_NS;
+use maulstick_brush::model::BRIDGED_NS;
 use maulstick_rig::Fault;
 use maulstick_types::stylus::{DEFAULT_TILT_RAD, FARTHEST_M, StylusPose, StylusSample, axes};
 
@@ -290,13 +290,13 @@ fn unpainted(rows: &[Row], samples: &[TakeSample], layout: TableLayout) -> Vec<S
     if pairs.is_empty() {
         notes.push("no two samples in a row have pressure, so the take paints nothing".into());
     }
-    let torn = |i: &&usize| samples[**i].time_ns - samples[**i - 1].time_ns > RESTART_NS;
+    let torn = |i: &&usize| samples[**i].time_ns - samples[**i - 1].time_ns > BRIDGED_NS;
     let torn: Vec<usize> = pairs.iter().filter(torn).copied().collect();
     if let Some(first) = torn.first() {
         notes.push(format!(
-            "line {}: the sample before is more than {} s older, as in {} places: nothing is painted between",
+            "line {}: the sample before is more than {:.1} s older, as in {} places: nothing is painted between",
             rows[*first].line,
-            RESTART_NS as f64 * 1e-9,
+            BRIDGED_NS as f64 * 1e-9,
             torn.len()
         ));
     }

@@ -16,6 +16,7 @@ use maulstick_rig::files::{Kind, check_writable, write_whole};
 use maulstick_types::command::Command;
 use serde_json::json;
 
+use crate::cells::SheetCells;
 use crate::commands::mode::{self, ModeOptions};
 use crate::commands::say;
 use crate::commands::session::{Session, Target};
@@ -66,6 +67,8 @@ pub struct SheetOptions {
     /// The picture, a PNG
     #[arg(short, long, value_name = "PNG")]
     output: PathBuf,
+    #[command(flatten)]
+    cells: SheetCells,
 }
 
 /// Options of `maulstick brush solve`.
@@ -191,7 +194,7 @@ fn draw_sheet(options: &SheetOptions) -> Result<i32, Fault> {
     let path = &options.output;
     check_writable(path, Kind::Png).map_err(|error| Fault::writing(path, &error))?;
     let bar = ProgressBar::new(0).with_message("painting");
-    let picture = sheet(&library()?, |done, of| {
+    let picture = sheet(&library()?, options.cells.side_mm(), |done, of| {
         bar.set_length(of as u64);
         bar.set_position(done as u64);
     })?;

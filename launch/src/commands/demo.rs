@@ -8,6 +8,7 @@ use maulstick_device::demo::{Subject, performance};
 use maulstick_rig::Fault;
 use maulstick_rig::files::Kind;
 
+use crate::cells::SheetCells;
 use crate::commands::{say, write_picture, write_take};
 use crate::outputs::{UsedFile, check_outputs};
 use crate::performance::library;
@@ -26,6 +27,8 @@ pub struct DemoOptions {
     /// drying, blending, glazing, impasto, scumbling
     #[arg(long, value_name = "PNG")]
     sheet: Option<PathBuf>,
+    #[command(flatten)]
+    cells: SheetCells,
     /// The same seed gives the same performance; 1 if absent
     #[arg(long)]
     seed: Option<u64>,
@@ -51,6 +54,10 @@ impl DemoOptions {
                 return Err(Fault::usage(what).help(help));
             }
         }
+        if self.cells.cell_mm.is_some() && self.sheet.is_none() {
+            return Err(Fault::usage("--cell-mm does nothing without --sheet PNG")
+                .help("a take has no cells; `maulstick render --cell-mm` has"));
+        }
         Ok(())
     }
 }
@@ -74,7 +81,7 @@ pub fn run(options: &DemoOptions) -> Result<i32, Fault> {
     }
     if let Some(path) = &options.sheet {
         let bar = ProgressBar::new(1);
-        let picture = effects(&library()?, |done, of| {
+        let picture = effects(&library()?, options.cells.side_mm(), |done, of| {
             bar.set_length(of as u64);
             bar.set_position(done as u64);
         })?;

@@ -20,6 +20,7 @@ use maulstick_types::command::Command;
 use maulstick_types::scene::{BrushHandling, CANVAS};
 
 use crate::backend::choose_backend;
+use crate::cells::picture_settings;
 use crate::commands::progress_bar;
 use crate::destination::export;
 use crate::document::{Presence, go_on, presence, wrong};
@@ -127,7 +128,7 @@ fn read_take(path: &Path) -> Result<Take, Fault> {
 pub fn run(options: &RenderOptions) -> Result<i32, Fault> {
     let mut config = match &options.rig {
         Some(path) => RigConfig::read(path)?,
-        None => RigConfig::default(),
+        None => picture_settings(),
     };
     options.check_idle()?;
     let take = match &options.take {

@@ -10,6 +10,7 @@ use maulstick_rig::{Fault, RigConfig};
 use maulstick_types::stylus::StylusPose;
 use serde_json::json;
 
+use crate::cells::picture_settings;
 use crate::commands::{print_json, say, write_take};
 use crate::kit::{kit_of, use_kit};
 use crate::outputs::{UsedFile, check_outputs, named_by};
@@ -58,7 +59,7 @@ pub struct EmbedOptions {
 fn embed(options: &EmbedOptions) -> Result<i32, Fault> {
     let mut config = match &options.rig {
         Some(path) => RigConfig::read(path)?,
-        None => RigConfig::default(),
+        None => picture_settings(),
     };
     let take = Take::read(&options.take)?;
     let folder = tempfile::tempdir().map_err(|error| Fault::failure(error.to_string()))?;

@@ -8,14 +8,13 @@ use maulstick_types::scene::CANVAS;
 
 use super::gesture::{Gesture, Moment, swell};
 use super::marks::stroke;
-use super::{BRUSH, CELL_MM, DEPTH_SHARE, GAP, Panel, library_brush, mixture_of};
-use crate::page::Page;
+use super::{BRUSH, DEPTH_SHARE, GAP_MM, Panel, Sheet, library_brush, mixture_of};
 use crate::performance::refused;
 
 /// Size of a panel, mm.
 const PANEL_MM: [f64; 2] = [86.0, 48.0];
-/// Room for the words over a panel, pixels.
-const WORDS: usize = 52;
+/// Room for the words over a panel, mm.
+const WORDS_MM: f64 = 13.0;
 
 const YELLOW: &str = "Hansa Yellow Opaque";
 const BLUE: &str = "Ultramarine Blue=0.6,Titanium White=0.4";
@@ -26,7 +25,8 @@ const WHITE: &str = "Titanium White";
 struct Effect {
     name: &'static str,
     words: &'static str,
-    paint: fn(PaintLibrary) -> Result<Panel, Fault>,
+    /// Paints it on cells of a side, mm.
+    paint: fn(PaintLibrary, f64) -> Result<Panel, Fault>,
 }
 
 const EFFECTS: [Effect; 8] = [
@@ -72,34 +72,45 @@ const EFFECTS: [Effect; 8] = [
     },
 ];
 
-/// The sheet; `told` hears of each panel.
+/// The sheet, on cells of this side; `told` hears of each panel.
 ///
 /// # Errors
-/// A [`Fault`] where a brush or a paint is refused.
+/// A [`Fault`] where a brush or a paint is refused, or where it would have too many pixels.
 pub fn effects(
     library: &PaintLibrary,
+    cell_mm: f64,
     mut told: impl FnMut(usize, usize),
 ) -> Result<Picture, Fault> {
-    let [across, up] = PANEL_MM.map(|mm| (mm / CELL_MM) as usize);
+    let [across, up] = PANEL_MM;
     let columns = 2;
     let rows = EFFECTS.len().div_ceil(columns);
-    let width = GAP + columns * (across + GAP);
-    let height = GAP + rows * (WORDS + up + GAP);
-    let mut page = Page::new(width, height)?;
+    let width = GAP_MM + columns as f64 * (across + GAP_MM);
+    let height = GAP_MM + rows as f64 * (WORDS_MM + up + GAP_MM);
+    let mut sheet = Sheet::new([width, height], cell_mm)?;
     for (place, effect) in EFFECTS.iter().enumerate() {
-        let x = GAP + place % columns * (across + GAP);
-        let y = GAP + place / columns * (WORDS + up + GAP);
-        page.write(effect.name, [x, y + 20], 22.0);
-        page.write(effect.words, [x, y + 40], 15.0);
-        page.paste(&(effect.paint)(library.clone())?.picture(), [x, y + WORDS]);
+        let x = GAP_MM + (place % columns) as f64 * (across + GAP_MM);
+        let y = GAP_MM + (place / columns) as f64 * (WORDS_MM + up + GAP_MM);
+        sheet.write(effect.name, [x, y + 5.0], 5.5);
+        sheet.write(effect.words, [x, y + 10.0], 3.75);
+        let panel = (effect.paint)(library.clone(), cell_mm)?;
+        sheet.paste(&panel.picture(), [x, y + WORDS_MM]);
         told(place + 1, EFFECTS.len());
     }
-    Ok(page.done())
+    Ok(sheet.page.done())
 }
 
 impl Panel {
-    fn of(kind: &str, width_mm: f64, library: PaintLibrary) -> Result<Self, Fault> {
-        Self::new(PANEL_MM, "gesso", sized(kind, width_mm)?, library)
+    fn of(
+        kind: &str,
+        width_mm: f64,
+        (library, cell_mm): (PaintLibrary, f64),
+    ) -> Result<Self, Fault> {
+        Self::new(
+            (PANEL_MM, cell_mm),
+            "gesso",
+            sized(kind, width_mm)?,
+            library,
+        )
     }
 
     fn take_up(&mut self, name: &str, kind: &str, width_mm: f64) -> Result<(), Fault> {
@@ -139,8 +150,8 @@ fn wave(points: Vec<[f64; 2]>, pressure: f64, seconds: f64) -> Gesture {
     })
 }
 
-fn transfer(library: PaintLibrary) -> Result<Panel, Fault> {
-    let mut panel = Panel::of("flat", 8.0, library)?;
+fn transfer(library: PaintLibrary, cell_mm: f64) -> Result<Panel, Fault> {
+    let mut panel = Panel::of("flat", 8.0, (library, cell_mm))?;
     for (row, mixture) in ["Ultramarine Blue", YELLOW, RED].into_iter().enumerate() {
         let y = 40.0 - 15.0 * row as f64;
         for from in [6.0, 80.0, 6.0] {
@@ -160,8 +171,8 @@ fn transfer(library: PaintLibrary) -> Result<Panel, Fault> {
     Ok(panel)
 }
 
-fn loading(library: PaintLibrary) -> Result<Panel, Fault> {
-    let mut panel = Panel::of("flat", 10.0, library)?;
+fn loading(library: PaintLibrary, cell_mm: f64) -> Result<Panel, Fault> {
+    let mut panel = Panel::of("flat", 10.0, (library, cell_mm))?;
     let pairs = [
         ["Quinacridone Magenta=0.6,Pyrrole Red=0.4", WHITE],
         [BLUE, YELLOW],
@@ -184,8 +195,8 @@ fn loading(library: PaintLibrary) -> Result<Panel, Fault> {
     Ok(panel)
 }
 
-fn drying(library: PaintLibrary) -> Result<Panel, Fault> {
-    let mut panel = Panel::of("flat", 8.0, library)?;
+fn drying(library: PaintLibrary, cell_mm: f64) -> Result<Panel, Fault> {
+    let mut panel = Panel::of("flat", 8.0, (library, cell_mm))?;
     // What was painted first dries most often: .75⁴ = .32 of it stays wet.
     for stripe in 0..5 {
         if stripe > 0 {
@@ -208,8 +219,8 @@ fn drying(library: PaintLibrary) -> Result<Panel, Fault> {
     Ok(panel)
 }
 
-fn blending(library: PaintLibrary) -> Result<Panel, Fault> {
-    let mut panel = Panel::of("flat", 13.0, library)?;
+fn blending(library: PaintLibrary, cell_mm: f64) -> Result<Panel, Fault> {
+    let mut panel = Panel::of("flat", 13.0, (library, cell_mm))?;
     for (mixture, rows) in [
         ("Ultramarine Blue=0.7,Titanium White=0.3", [18.0, 8.0]),
         (YELLOW, [40.0, 30.0]),
@@ -235,8 +246,8 @@ fn blending(library: PaintLibrary) -> Result<Panel, Fault> {
     Ok(panel)
 }
 
-fn glazing(library: PaintLibrary) -> Result<Panel, Fault> {
-    let mut panel = Panel::of("filbert", 11.0, library)?;
+fn glazing(library: PaintLibrary, cell_mm: f64) -> Result<Panel, Fault> {
+    let mut panel = Panel::of("filbert", 11.0, (library, cell_mm))?;
     let greys = [
         "Bone Black=0.7,Titanium White=0.3",
         "Bone Black=0.2,Titanium White=0.8",
@@ -263,8 +274,8 @@ fn glazing(library: PaintLibrary) -> Result<Panel, Fault> {
     Ok(panel)
 }
 
-fn impasto(library: PaintLibrary) -> Result<Panel, Fault> {
-    let mut panel = Panel::of("bright", 8.0, library)?;
+fn impasto(library: PaintLibrary, cell_mm: f64) -> Result<Panel, Fault> {
+    let mut panel = Panel::of("bright", 8.0, (library, cell_mm))?;
     // Petals around two hearts, each of six loads.
     for (middle, colour) in [
         ([24.0, 24.0], "Hansa Yellow Opaque=0.3,Titanium White=0.7"),
@@ -290,8 +301,8 @@ fn impasto(library: PaintLibrary) -> Result<Panel, Fault> {
     Ok(panel)
 }
 
-fn scumbling(library: PaintLibrary) -> Result<Panel, Fault> {
-    let mut panel = Panel::of("bright", 10.0, library)?;
+fn scumbling(library: PaintLibrary, cell_mm: f64) -> Result<Panel, Fault> {
+    let mut panel = Panel::of("bright", 10.0, (library, cell_mm))?;
     for i in 0..14 {
         let (column, row) = (i % 7, i / 7);
         let x = 10.0 + 11.0 * f64::from(column);
@@ -317,8 +328,8 @@ fn scumbling(library: PaintLibrary) -> Result<Panel, Fault> {
     Ok(panel)
 }
 
-fn thinning(library: PaintLibrary) -> Result<Panel, Fault> {
-    let mut panel = Panel::of("round", 8.0, library)?;
+fn thinning(library: PaintLibrary, cell_mm: f64) -> Result<Panel, Fault> {
+    let mut panel = Panel::of("round", 8.0, (library, cell_mm))?;
     let mixtures = [
         "Ultramarine Blue",
         "Ultramarine Blue=0.6,Thinner=0.4",

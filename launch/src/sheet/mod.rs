@@ -31,14 +31,14 @@ use self::gesture::Hand;
 use crate::page::Page;
 use crate::performance::refused;
 
-/// Cell of the marks, mm: a pixel of the sheet.
-const CELL_MM: f64 = 0.25;
-/// Margin and gaps, pixels.
-const GAP: usize = 12;
-/// Width of a brush's portrait and words, pixels.
-const SIDE: usize = 210;
-/// Pixels a metre of a portrait.
-const PORTRAIT_SCALE: f64 = 3000.0;
+/// Margin and gaps, mm.
+const GAP_MM: f64 = 3.0;
+/// Width of a brush's portrait and words, mm.
+const SIDE_MM: f64 = 52.5;
+/// Size of a portrait beside that of the brush.
+const PORTRAIT_SCALE: f64 = 0.75;
+/// Pixels of a sheet at most.
+const MOST_PIXELS: usize = 100_000_000;
 /// A brush's name in its own painting.
 const BRUSH: &str = "main";
 /// The share of its head's length by which full pressure presses a brush in.
@@ -48,6 +48,57 @@ const ONE_STROKE_MM: f64 = 13.5;
 /// The two colours of a double-loaded brush.
 const DOUBLE: [&str; 2] = ["Quinacridone Magenta=0.6,Pyrrole Red=0.4", "Titanium White"];
 
+/// A page that is laid out in mm, of pixels that are the cells of its panels.
+struct Sheet {
+    page: Page,
+    cell_mm: f64,
+}
+
+impl Sheet {
+    fn new(size_mm: [f64; 2], cell_mm: f64) -> Result<Self, Fault> {
+        let [width, height] = size_mm.map(|mm| pixels(mm, cell_mm));
+        if width.saturating_mul(height) > MOST_PIXELS {
+            let what = format!("a sheet of {width}×{height} pixels with cells of {cell_mm} mm");
+            return Err(Fault::usage(what).at("--cell-mm").help(format!(
+                "choose larger cells: {} million pixels are the most",
+                MOST_PIXELS / 1_000_000
+            )));
+        }
+        let page = Page::new(width, height)?;
+        Ok(Self { page, cell_mm })
+    }
+
+    fn pixels(&self, mm: f64) -> usize {
+        pixels(mm, self.cell_mm)
+    }
+
+    /// Writes a line with its left end and base line here, its height in mm.
+    fn write(&mut self, words: &str, at_mm: [f64; 2], height_mm: f64) {
+        let at = at_mm.map(|mm| self.pixels(mm));
+        self.page
+            .write(words, at, (height_mm / self.cell_mm) as f32);
+    }
+
+    /// Puts a picture with its upper left corner here.
+    fn paste(&mut self, picture: &Picture, at_mm: [f64; 2]) {
+        let at = at_mm.map(|mm| self.pixels(mm));
+        self.page.paste(picture, at);
+    }
+
+    /// A title and lines of words beside a panel whose upper edge is here.
+    fn caption(&mut self, title: &str, lines: &[&str], y_mm: f64) {
+        self.write(title, [GAP_MM, y_mm + 6.5], 6.0);
+        for (i, line) in lines.iter().enumerate() {
+            self.write(line, [GAP_MM, y_mm + 12.5 + 5.0 * i as f64], 4.0);
+        }
+    }
+}
+
+/// Pixels of a length on a sheet.
+fn pixels(mm: f64, cell_mm: f64) -> usize {
+    (mm / cell_mm).round() as usize
+}
+
 /// A panel being painted.
 struct Panel {
     offline: Offline,
@@ -56,15 +107,15 @@ struct Panel {
 
 impl Panel {
     fn new(
-        size_mm: [f64; 2],
+        (size_mm, cell_mm): ([f64; 2], f64),
         ground: &str,
         file: BrushFile,
         library: PaintLibrary,
     ) -> Result<Self, Fault> {
         let setup = PaintingSetup {
             ground: ground.to_owned(),
-            cells: size_mm.map(|mm| (mm / CELL_MM) as u32),
-            cell_m: 1e-3 * CELL_MM,
+            cells: size_mm.map(|mm| pixels(mm, cell_mm) as u32),
+            cell_m: 1e-3 * cell_mm,
             ..PaintingSetup::default()
         };
         let painting = Painting::new(&setup, library).map_err(refused)?;
@@ -102,12 +153,16 @@ fn mixture_of(text: &str) -> Result<Mixture, Fault> {
     text.parse().map_err(error)
 }
 
-/// The marks of one brush.
+/// The marks of one brush, on cells of this side.
 ///
 /// # Errors
 /// A [`Fault`] where a brush or a paint is refused.
-pub fn brush_panel(file: &BrushFile, library: PaintLibrary) -> Result<Picture, Fault> {
-    let mut panel = Panel::new(marks::PANEL_MM, "gesso", file.clone(), library)?;
+pub fn brush_panel(
+    file: &BrushFile,
+    library: PaintLibrary,
+    cell_mm: f64,
+) -> Result<Picture, Fault> {
+    let mut panel = Panel::new((marks::PANEL_MM, cell_mm), "gesso", file.clone(), library)?;
     for mark in marks::marks(file) {
         if let Some(mixture) = mark.load {
             panel.load(BRUSH, mixture)?;
@@ -117,12 +172,21 @@ pub fn brush_panel(file: &BrushFile, library: PaintLibrary) -> Result<Picture, F
     Ok(panel.picture())
 }
 
-/// The six marks of a double-loaded brush.
+/// The six marks of a double-loaded brush, on cells of this side.
 ///
 /// # Errors
 /// As [`brush_panel`].
-pub fn one_stroke_panel(file: &BrushFile, library: PaintLibrary) -> Result<Picture, Fault> {
-    let mut panel = Panel::new(one_stroke::PANEL_MM, "grey", file.clone(), library)?;
+pub fn one_stroke_panel(
+    file: &BrushFile,
+    library: PaintLibrary,
+    cell_mm: f64,
+) -> Result<Picture, Fault> {
+    let mut panel = Panel::new(
+        (one_stroke::PANEL_MM, cell_mm),
+        "grey",
+        file.clone(),
+        library,
+    )?;
     for gesture in one_stroke::marks(file.head.width_mm) {
         let command = Command::LoadBeside {
             brush: BRUSH.to_owned(),
@@ -135,13 +199,17 @@ pub fn one_stroke_panel(file: &BrushFile, library: PaintLibrary) -> Result<Pictu
     Ok(panel.picture())
 }
 
-/// Two wet colours, softened on the right by a blender.
+/// Two wet colours, softened on the right by a blender, on cells of this side.
 ///
 /// # Errors
 /// As [`brush_panel`].
-pub fn softening_panel(blender: &BrushFile, library: PaintLibrary) -> Result<Picture, Fault> {
+pub fn softening_panel(
+    blender: &BrushFile,
+    library: PaintLibrary,
+    cell_mm: f64,
+) -> Result<Picture, Fault> {
     let flat = library_brush("flat")?;
-    let mut panel = Panel::new(softening::PANEL_MM, "gesso", flat, library)?;
+    let mut panel = Panel::new((softening::PANEL_MM, cell_mm), "gesso", flat, library)?;
     for (mixture, gesture) in softening::bands() {
         panel.load(BRUSH, mixture)?;
         panel.paint(&gesture)?;
@@ -160,25 +228,27 @@ fn library_brush(kind: &str) -> Result<BrushFile, Fault> {
     BrushFile::library(kind).map_err(|error| Fault::failure(error.to_string()))
 }
 
-/// The whole sheet; `told` hears of each panel.
+/// The whole sheet, on cells of this side; `told` hears of each panel.
 ///
 /// # Errors
-/// As [`brush_panel`].
-pub fn sheet(library: &PaintLibrary, mut told: impl FnMut(usize, usize)) -> Result<Picture, Fault> {
-    let pixels = |mm: f64| (mm / CELL_MM) as usize;
-    let across = pixels(marks::PANEL_MM[0]);
-    let (row, wide_row) = (pixels(marks::PANEL_MM[1]), pixels(one_stroke::PANEL_MM[1]));
-    let soft_row = pixels(softening::PANEL_MM[1]);
+/// As [`brush_panel`], and where it would have too many pixels.
+pub fn sheet(
+    library: &PaintLibrary,
+    cell_mm: f64,
+    mut told: impl FnMut(usize, usize),
+) -> Result<Picture, Fault> {
     let double = ["flat", "filbert"];
     let blenders = ["badger", "chisel"];
     let panels = LIBRARY.len() + double.len() + blenders.len();
-    let width = SIDE + across + 2 * GAP;
-    let height = GAP
-        + LIBRARY.len() * (row + GAP)
-        + double.len() * (wide_row + GAP)
-        + blenders.len() * (soft_row + GAP);
-    let mut page = Page::new(width, height)?;
-    let mut y = GAP;
+    let [across, row] = marks::PANEL_MM;
+    let (wide_row, soft_row) = (one_stroke::PANEL_MM[1], softening::PANEL_MM[1]);
+    let height = GAP_MM
+        + LIBRARY.len() as f64 * (row + GAP_MM)
+        + double.len() as f64 * (wide_row + GAP_MM)
+        + blenders.len() as f64 * (soft_row + GAP_MM);
+    let mut sheet = Sheet::new([SIDE_MM + across + 2.0 * GAP_MM, height], cell_mm)?;
+    let beside = SIDE_MM + GAP_MM;
+    let mut y = GAP_MM;
     let mut done = 0;
     let mut tell = || {
         done += 1;
@@ -186,12 +256,16 @@ pub fn sheet(library: &PaintLibrary, mut told: impl FnMut(usize, usize)) -> Resu
     };
     for (kind, _) in LIBRARY {
         let file = library_brush(kind)?;
-        let head = maulstick_ui::portrait::portrait(&file, SIDE - 80, row, PORTRAIT_SCALE);
-        page.portray(&head, [75, y]);
-        page.write(kind, [GAP, y + 26], 24.0);
-        page.write(&format!("{} mm", file.head.width_mm), [GAP, y + 48], 16.0);
-        page.paste(&brush_panel(&file, library.clone())?, [SIDE + GAP, y]);
-        y += row + GAP;
+        let size = [SIDE_MM - 20.0, row].map(|mm| sheet.pixels(mm));
+        let scale = 1e3 * PORTRAIT_SCALE / cell_mm;
+        let head = maulstick_ui::portrait::portrait(&file, size[0], size[1], scale);
+        let at = [18.75, y].map(|mm| sheet.pixels(mm));
+        sheet.page.portray(&head, at);
+        sheet.write(kind, [GAP_MM, y + 6.5], 6.0);
+        let width = format!("{} mm", file.head.width_mm);
+        sheet.write(&width, [GAP_MM, y + 12.0], 4.0);
+        sheet.paste(&brush_panel(&file, library.clone(), cell_mm)?, [beside, y]);
+        y += row + GAP_MM;
         tell();
     }
     for kind in double {
@@ -199,38 +273,28 @@ pub fn sheet(library: &PaintLibrary, mut told: impl FnMut(usize, usize)) -> Resu
             .scaled_to(ONE_STROKE_MM)
             .map_err(|error| Fault::failure(error.to_string()))?;
         let words = [
-            "one stroke",
-            &format!("double-loaded {kind}"),
+            &*format!("double-loaded {kind}"),
             "petal, leaf, shell,",
             "comma, chisel line,",
             "C-stroke",
         ];
-        caption(&mut page, &words, y);
-        page.paste(&one_stroke_panel(&file, library.clone())?, [SIDE + GAP, y]);
-        y += wide_row + GAP;
+        sheet.caption("one stroke", &words, y);
+        let panel = one_stroke_panel(&file, library.clone(), cell_mm)?;
+        sheet.paste(&panel, [beside, y]);
+        y += wide_row + GAP_MM;
         tell();
     }
     for kind in blenders {
         let file = library_brush(kind)?;
         let words = [
-            "softening",
-            &format!("two wet colours, {kind}"),
+            &*format!("two wet colours, {kind}"),
             "drawn over the right half",
         ];
-        caption(&mut page, &words, y);
-        page.paste(&softening_panel(&file, library.clone())?, [SIDE + GAP, y]);
-        y += soft_row + GAP;
+        sheet.caption("softening", &words, y);
+        let panel = softening_panel(&file, library.clone(), cell_mm)?;
+        sheet.paste(&panel, [beside, y]);
+        y += soft_row + GAP_MM;
         tell();
     }
-    Ok(page.done())
-}
-
-fn caption(page: &mut Page, words: &[&str], y: usize) {
-    let Some((title, lines)) = words.split_first() else {
-        return;
-    };
-    page.write(title, [GAP, y + 26], 24.0);
-    for (i, line) in lines.iter().enumerate() {
-        page.write(line, [GAP, y + 50 + 20 * i], 16.0);
-    }
+    Ok(sheet.page.done())
 }

@@ -7,6 +7,8 @@ use super::marks::stroke;
 use super::*;
 
 const SIZE_MM: [f64; 2] = [90.0, 50.0];
+/// Side of a cell, and of a pixel, mm.
+const CELL_MM: f64 = 0.25;
 
 fn paints() -> PaintLibrary {
     PaintLibrary::measured().expect("whole")
@@ -15,7 +17,7 @@ fn paints() -> PaintLibrary {
 /// One stroke of a brush from left to right, its broad side across, with this pressure.
 fn one(kind: &str, pressure: impl Fn(f64) -> f64 + 'static) -> Picture {
     let file = library_brush(kind).expect(kind);
-    let mut panel = Panel::new(SIZE_MM, "gesso", file, paints()).expect("a panel");
+    let mut panel = Panel::new((SIZE_MM, CELL_MM), "gesso", file, paints()).expect("a panel");
     panel.load(BRUSH, "Ultramarine Blue").expect("loaded");
     let way = vec![[12.0, 25.0], [76.0, 25.0]];
     panel
@@ -111,7 +113,7 @@ fn a_fude_goes_from_hairline_to_broad_in_one_stroke() {
 #[test]
 fn a_badger_softens_the_edge_between_two_wet_colours() {
     let file = library_brush("badger").expect("badger");
-    let picture = softening_panel(&file, paints()).expect("a panel");
+    let picture = softening_panel(&file, paints(), CELL_MM).expect("a panel");
     // The steepest change of blueness down the columns of a side, over half a millimetre.
     let steepest = |columns: std::ops::Range<usize>| {
         let mean = |y: usize| {
@@ -134,7 +136,7 @@ fn a_badger_softens_the_edge_between_two_wet_colours() {
 #[test]
 fn a_double_loaded_brush_paints_two_colours_side_by_side() {
     let file = library_brush("flat").expect("flat");
-    let mut panel = Panel::new(SIZE_MM, "grey", file, paints()).expect("a panel");
+    let mut panel = Panel::new((SIZE_MM, CELL_MM), "grey", file, paints()).expect("a panel");
     let load = Command::LoadBeside {
         brush: BRUSH.to_owned(),
         left: mixture_of("Pyrrole Red").expect("a mixture"),

@@ -26,6 +26,7 @@ use maulstick_rig::files::Kind;
 use maulstick_rig::log::log_to_stderr;
 use maulstick_types::Mixture;
 
+use crate::cells::picture_settings;
 use crate::destination::{VIEW, export};
 use crate::document::{Presence, measure, presence, wrong};
 use crate::kit::use_kit;
@@ -122,6 +123,7 @@ pub fn run(options: &UpOptions) -> Result<i32, Fault> {
     log_to_stderr("info");
     let mut config = match &options.rig {
         Some(path) => RigConfig::read(path)?,
+        None if options.play.is_some() => picture_settings(),
         None => RigConfig::default(),
     };
     if let Some(name) = &options.name {

@@ -72,6 +72,18 @@ impl HeldHead {
         }
     }
 
+    /// Slides a head along the surface to `brush`, bent and touching as it is: nothing is dragged.
+    pub fn slide(&mut self, tuft: &Tuft, brush: &Rigid) {
+        let to = tuft.core.seat.held(brush).translation;
+        let by = (to - self.core.shape.root).with_z(0.0);
+        for spine in self.spines.iter_mut().chain([&mut self.core]) {
+            spine.shape.root += by;
+            spine.ends.iter_mut().for_each(|end| *end += by);
+            let anchors = spine.stops.iter_mut().flat_map(|stop| &mut stop.anchor);
+            anchors.for_each(|anchor| *anchor += by);
+        }
+    }
+
     /// Whether a joint touches the surface.
     #[must_use]
     pub fn touches(&self) -> bool {

@@ -4,12 +4,10 @@ use glam::DVec2;
 use maulstick_num::geometry::Rigid;
 use maulstick_types::Origin;
 use maulstick_types::brush::{BrushState, Solve, solve_flags};
-use maulstick_types::haptics::HermiteKnot;
 use maulstick_types::scene::{CANVAS, Scene};
 use maulstick_types::stylus::{StylusPose, StylusSample};
 
 use crate::desk::{Desk, Obstacle, Plane, aim, ferrule};
-use crate::feel::{AT_ONCE_M, Feel, Press, tuned, tuples};
 use crate::file::BrushFile;
 use crate::held::{HeadSolver, HeldHead, settings_of};
 use crate::lead::Lead;
@@ -20,13 +18,16 @@ use crate::way::{Piece, Sampled, Way};
 
 /// Contacts less than this apart are one stroke, ns.
 pub const STROKE_GAP_NS: u64 = 150_000_000;
-/// A longer time between samples restarts the solver, ns.
-pub const RESTART_NS: u64 = 100_000_000;
+/// Longest pause between two samples in contact that the brush crosses along its path, ns; after a
+/// longer one it begins another stroke.
+pub const BRIDGED_NS: u64 = 300_000_000;
 /// A touching brush is solved each time its handle has moved so far, cells: a little less than one,
 /// so that the strips, which may overtake it, seldom move more than one.
 const SOLVE_CELLS: f64 = 0.7;
 /// Solves between two samples at most: a hand is seldom that fast.
 const MOST_SOLVES: f64 = 64.0;
+/// The time for which that many are enough, ns: a pause that is bridged may have more.
+const MOST_SOLVES_NS: f64 = 1e8;
 /// Times that a pen is set down in thought, to find where its mark lies: an upright head may bend to
 /// another side where its handle is held beside the point.
 const LANDINGS: usize = 2;
@@ -142,50 +143,6 @@ impl BrushModel {
         self.tuft.bond = made + (soaked - made) * self.wetness;
     }
 
-    /// What the hand feels of the head as it is bent now.
-    #[must_use]
-    pub fn feel(&self) -> Feel {
-        let length = self.file.length_m();
-        match &self.held {
-            Some(held) => Feel::bent(
-                &self.tuft,
-                length,
-                &self.placed(held, &held.newest),
-                held.force_n,
-            ),
-            None => Feel::at_rest(&self.tuft, length),
-        }
-    }
-
-    /// The tuples of the Hermite curve of the head as it is tuned.
-    #[must_use]
-    pub fn tuples(&self) -> Vec<HermiteKnot> {
-        tuned(&tuples(&self.file), self.tuned)
-    }
-
-    /// The head as it is pressed now, in the desk frame, and how its force goes with depth: one more
-    /// solve, half a millimetre deeper. None in the air.
-    #[must_use]
-    pub fn press(&mut self) -> Option<Press> {
-        let held = self.held.as_ref().filter(|held| held.force_n > 0.0)?;
-        let desk = self.desk.as_ref()?;
-        let plane = desk.plane(held.surface)?;
-        let (force_n, mut further) = (held.force_n, held.head.clone());
-        let here = self.placed(held, &held.newest);
-        let mut deeper = here;
-        deeper.translation.z -= AT_ONCE_M;
-        let obstacles = desk.obstacles(plane, deeper.translation, self.file.length_m());
-        let pose = plane.to_desk.after(&here);
-        self.tuft.raise(&mut deeper, self.file.length_m());
-        let (tuft, settings) = (&self.tuft, &self.settings);
-        further.solve(&mut self.solver, tuft, &deeper, &obstacles, settings);
-        Some(Press {
-            pose,
-            force_n,
-            stiffness_n_m: ((further.force_n() - force_n) / AT_ONCE_M).max(0.0),
-        })
-    }
-
     /// Whether there is a scene.
     #[must_use]
     pub fn has_scene(&self) -> bool {
@@ -205,20 +162,15 @@ impl BrushModel {
         self.desk.as_ref()
     }
 
-    /// The normal force of all contacts now, N.
-    #[must_use]
-    pub fn force_n(&self) -> f64 {
-        self.held.as_ref().map_or(0.0, |held| held.force_n)
-    }
-
     /// Follows one sample of the device `origin`: none while there is no scene, else the solves on
     /// the way to it, the last at the sample itself.
     ///
     /// A touching brush is solved each time it has moved by about a cell, counted on across samples,
     /// so that its path does not depend on how often it is sampled; between two of these a sample gives
-    /// a glimpse. A pen lands and lifts at its sample. Another device, time that does not advance, a zoom
-    /// and a gap of over .1 s restart the solver at the new pose: the solve says so, and nothing is
-    /// painted from the one before to it.
+    /// a glimpse. A pen lands and lifts at its sample. A pause of up to [`BRIDGED_NS`] in contact is
+    /// crossed like any way between two samples. A longer one, another device, time that does not
+    /// advance and a zoom restart the solver at the new pose: the solve says so, and nothing is painted
+    /// from the one before to it. After a pause alone the head stays bent as it was.
     pub fn follow(&mut self, origin: Origin, event_ns: u64, sample: &StylusSample) -> Vec<Solve> {
         if self.follows != Some(origin) {
             self.follows = Some(origin);
@@ -242,29 +194,49 @@ impl BrushModel {
             // While it hovers there is time.
             self.solve_table();
         }
-        let usable = self.held.take().filter(|held| {
+        let before = self.held.take().filter(|held| {
             event_ns > held.newest.event_ns
-                && event_ns - held.newest.event_ns <= RESTART_NS
                 && (held.surface, held.zoom, held.is_pen) == (plane.id, plane.zoom, is_pen)
         });
-        let Some(mut held) = usable else {
-            let mut held = self.fresh(&plane, here, is_pen);
-            let mut solve = self.land(&mut held, here, sample.in_air(), &plane);
-            solve.flags |= solve_flags::RESTARTED;
-            self.held = Some(held);
-            return vec![solve];
-        };
-        let solves = if held.head.touches() && !sample.in_air() {
-            let solves = self.go(&mut held, here, &plane);
-            held.before = Some(held.newest);
-            solves
-        } else {
-            (held.before, held.left_over) = (None, 0.0);
-            vec![self.land(&mut held, here, sample.in_air(), &plane)]
+        let stays = |held: &Held| held.head.touches() && !sample.in_air();
+        let paused = |held: &Held| event_ns - held.newest.event_ns > BRIDGED_NS;
+        let (mut held, solves) = match before {
+            Some(mut held) if stays(&held) && !paused(&held) => {
+                let solves = self.go(&mut held, here, &plane);
+                held.before = Some(held.newest);
+                (held, solves)
+            }
+            Some(mut held) if stays(&held) => {
+                let solve = self.resume(&mut held, here, &plane);
+                (held, vec![solve])
+            }
+            Some(mut held) if !paused(&held) => {
+                (held.before, held.left_over) = (None, 0.0);
+                let solve = self.land(&mut held, here, sample.in_air(), &plane);
+                (held, vec![solve])
+            }
+            _ => {
+                let mut held = self.fresh(&plane, here, is_pen);
+                let mut solve = self.land(&mut held, here, sample.in_air(), &plane);
+                solve.flags |= solve_flags::RESTARTED;
+                (held, vec![solve])
+            }
         };
         held.newest = here;
         self.held = Some(held);
         solves
+    }
+
+    /// Begins another stroke with a head that is bent as it was before a pause in contact: one that
+    /// landed anew would be dragged round to there, and leave a notch.
+    fn resume(&mut self, held: &mut Held, here: Sampled, plane: &Plane) -> Solve {
+        (held.before, held.left_over) = (None, 0.0);
+        let brush = self.placed(held, &here);
+        held.head.slide(&self.tuft, &brush);
+        let mut solve = self.solve(held, here, plane);
+        held.force_n = held.head.force_n();
+        solve.flags |= solve_flags::RESTARTED;
+        solve
     }
 
     /// Solves a brush that touched nothing at a sample. A pen is held so that its mark lies where it
@@ -307,7 +279,8 @@ impl BrushModel {
         );
         let cell_m = plane.cell_m * plane.zoom;
         let motion = way.length_m() / cell_m;
-        let part = (motion / MOST_SOLVES).max(SOLVE_CELLS);
+        let pause = (here.event_ns - start_ns) as f64 / MOST_SOLVES_NS;
+        let part = (motion / (MOST_SOLVES * pause.max(1.0))).max(SOLVE_CELLS);
         let whole = held.left_over + motion;
         let mut solves = Vec::new();
         let (mut cells, mut at) = (part, 0.0);
@@ -326,6 +299,7 @@ impl BrushModel {
         }
         held.left_over = whole - (cells - part);
         let mut seen = held.clone();
+        self.stay(&seen, here.event_ns);
         let mut glimpse = self.solve(&mut seen, here, plane);
         held.force_n = seen.head.force_n();
         glimpse.flags |= solve_flags::GLIMPSE;
@@ -346,6 +320,7 @@ impl BrushModel {
         let mut tried = held.clone();
         let strokes = (self.strokes, self.last_contact_ns);
         let end = piece.end();
+        self.stay(&tried, end.event_ns);
         let solve = self.solve(&mut tried, end, plane);
         let moved = tried.head.moved_in_contact(&held.head);
         if splits > 0 && moved > plane.cell_m * plane.zoom {
@@ -457,6 +432,13 @@ impl BrushModel {
         })
     }
 
+    /// Contact lasts from one solve of a way to the next, however long the pause between its samples.
+    fn stay(&mut self, held: &Held, until_ns: u64) {
+        if held.head.touches() {
+            self.last_contact_ns = until_ns;
+        }
+    }
+
     /// The stroke of a contact at `event_ns`.
     fn stroke(&mut self, event_ns: u64) -> u64 {
         let apart = event_ns.abs_diff(self.last_contact_ns) >= STROKE_GAP_NS;
@@ -485,5 +467,6 @@ impl BrushModel {
     }
 }
 
+mod force;
 #[cfg(test)]
 mod tests;

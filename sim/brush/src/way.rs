@@ -4,11 +4,14 @@
 //! A hand moves smoothly; straight chords between samples would depend on how often it is sampled,
 //! the parabola does so only in third order.
 
-use glam::{DQuat, DVec3};
+use glam::{DQuat, DVec3, DVec4};
 use maulstick_num::geometry::{Rigid, canonical};
 
 /// Chords by which the length of the way is measured.
 const CHORDS: usize = 8;
+/// A pause that is longer than the interval before it by more than this factor: there the pace of that
+/// interval is no measure of the whole way.
+const PAUSE: f64 = 4.0;
 
 /// A sampled pose and its time.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -31,8 +34,10 @@ pub struct Way {
 }
 
 impl Way {
-    /// The way from `from` to `to` of a hand that came from `before`; straight without it. Its length
-    /// is that of the farther of the ferrule and the point of a head of `head_m`.
+    /// The way from `from` to `to` of a hand that came from `before`; straight without it. Across a
+    /// pause it bends by at most what lets it go nowhere backward: a hand that was fast before may have
+    /// stopped in it. Its length is that of the farther of the ferrule and the point of a head of
+    /// `head_m`.
     #[must_use]
     pub fn new(before: Option<&Sampled>, from: &Sampled, to: &Sampled, head_m: f64) -> Self {
         let near = |of: DQuat, q: DQuat| if of.dot(q) < 0.0 { -q } else { q };
@@ -54,7 +59,14 @@ impl Way {
                     - (from.pose.translation - before.pose.translation) * first;
                 let turn = (end.rotation - from.pose.rotation) * second
                     - (from.pose.rotation - start) * first;
-                (place, turn)
+                let gone = end.translation - from.pose.translation;
+                match h2 > PAUSE * h1 {
+                    true => (
+                        limited(place, gone),
+                        limited_turn(turn, end.rotation - from.pose.rotation),
+                    ),
+                    false => (place, turn),
+                }
             },
         );
         let mut way = Self {
@@ -106,6 +118,18 @@ impl Way {
         };
         ((chord - 1) as f64 + part.clamp(0.0, 1.0)) / CHORDS as f64
     }
+}
+
+/// The bend of a way with which neither its part along the surface nor its height turns back.
+fn limited(bend: DVec3, way: DVec3) -> DVec3 {
+    let along = bend.truncate().clamp_length_max(way.truncate().length());
+    along.extend(bend.z.clamp(-way.z.abs(), way.z.abs()))
+}
+
+/// As [`limited`], of a turn.
+fn limited_turn(bend: DQuat, turn: DQuat) -> DQuat {
+    let [bend, turn] = [bend, turn].map(DVec4::from);
+    DQuat::from_vec4(bend.clamp_length_max(turn.length()))
 }
 
 /// A piece of the way between two samples.
@@ -193,6 +217,38 @@ mod tests {
         );
         let (coarse, fine) = (error(0.1, None), error(0.05, None));
         assert!(coarse / fine < 5.0, "straight chords are of second order");
+    }
+
+    #[test]
+    fn across_a_pause_it_goes_nowhere_backward() {
+        let at = |x: f64, z: f64, ms: u64| Sampled {
+            pose: Rigid {
+                rotation: rotation(DVec3::Z, x),
+                translation: DVec3::new(x, 0.0, z),
+            },
+            event_ns: ms * 1_000_000,
+        };
+        // At the pace before it would go 125 mm, and 25 mm deep; it goes 3 mm, and 1 mm.
+        let before = at(-0.002, 0.0004, 996);
+        let (from, to) = (at(0.0, 0.0, 1000), at(0.003, -0.001, 1250));
+        let monotone = |to: &Sampled| {
+            let way = Way::new(Some(&before), &from, to, 0.1);
+            let places: Vec<Rigid> = (0..=20).map(|i| way.at(f64::from(i) / 20.0)).collect();
+            places.windows(2).all(|pair| {
+                let [a, b] = [pair[0], pair[1]];
+                let turned = b.rotation.z - a.rotation.z;
+                b.translation.x >= a.translation.x - 1e-12
+                    && b.translation.z <= a.translation.z + 1e-12
+                    && turned >= -1e-12
+            })
+        };
+        assert!(monotone(&to));
+        // Within evenly spaced samples a turn back is one.
+        let soon = Sampled {
+            event_ns: 1_004_000_000,
+            ..at(-0.003, -0.001, 0)
+        };
+        assert!(!monotone(&soon));
     }
 
     #[test]

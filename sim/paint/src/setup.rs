@@ -31,10 +31,10 @@ pub const PALETTE_PAINTS: [&str; 10] = [
     "Bone Black",
 ];
 
-/// Cells of the palette, across and up.
-const PALETTE_CELLS: [u32; 2] = [512, 1024];
-/// Radius of its wells, cells.
-const WELL_CELLS: f64 = 36.0;
+/// Size of the palette, across and up, m.
+const PALETTE_M: [f64; 2] = [0.128, 0.256];
+/// Radius of its wells, m.
+const WELL_RADIUS_M: f64 = 9e-3;
 
 /// What a new painting is made with.
 #[derive(Clone, Debug, PartialEq)]
@@ -123,12 +123,13 @@ impl PaintingSetup {
             piles_last: false,
         };
         let canvas = surface(CANVAS, at(-0.5 * size[0], -0.5 * size[1]), self.cells);
-        let mut board = surface(PALETTE, Pose::IDENTITY, PALETTE_CELLS);
+        let cells = palette_cells(self.cell_m);
+        let mut board = surface(PALETTE, Pose::IDENTITY, cells);
         board.pose = beside(&canvas, &board, Side::Left);
         board.ground = "grey".to_owned();
         board.tooth = "panel".to_owned();
         board.piles_last = self.piles_last;
-        board.wells = wells_of(&self.wells, PALETTE_CELLS, self.cell_m);
+        board.wells = wells_of(&self.wells, cells, self.cell_m);
         Scene {
             version: 1,
             surfaces: vec![canvas, board],
@@ -145,6 +146,11 @@ impl PaintingSetup {
     }
 }
 
+/// Cells of a new palette, across and up.
+fn palette_cells(cell_m: f64) -> [u32; 2] {
+    PALETTE_M.map(|side| (side / cell_m).round().max(1.0) as u32)
+}
+
 /// Wells of a palette of so many cells, across and up, that hold these mixtures from the top: along its
 /// right edge, toward the canvas, smaller where they are many, and the cleaner beside the lowest, so that
 /// they are within reach while the rest of the palette is not.
@@ -152,7 +158,7 @@ impl PaintingSetup {
 pub fn wells_of(mixtures: &[Mixture], cells: [u32; 2], cell_m: f64) -> Vec<Well> {
     let [width, height] = cells.map(f64::from);
     let count = mixtures.len().max(1) as f64;
-    let large = WELL_CELLS.min(0.3 * width.min(height));
+    let large = (WELL_RADIUS_M / cell_m).min(0.3 * width.min(height));
     let [cleaner_m, radius_m] = [large, large.min(0.45 * height / count)].map(|r| r * cell_m);
     let paints = mixtures.iter().enumerate().map(|(i, mixture)| Well {
         center_m: [
@@ -271,8 +277,40 @@ mod tests {
     }
 
     #[test]
+    fn palette_and_wells_keep_their_size_whatever_the_cells() {
+        let board = |cell_m: f64| {
+            let setup = PaintingSetup {
+                cells: [0.256, 0.256].map(|side| (side / cell_m) as u32),
+                cell_m,
+                ..PaintingSetup::default()
+            };
+            setup.scene().surfaces[1].clone()
+        };
+        let lengths = |board: &Surface| {
+            let size = board.cells.map(|cells| f64::from(cells) * board.cell_m);
+            let wells = board
+                .wells
+                .iter()
+                .flat_map(|well| [well.center_m[0], well.center_m[1], well.radius_m]);
+            let place = board.pose.position_m;
+            wells.chain(size).chain(place).collect::<Vec<f64>>()
+        };
+        let reference = board(2.5e-4);
+        assert_eq!(reference.cells, [512, 1024]);
+        for cell_m in [1.25e-4, 6.25e-5, 1e-3] {
+            let other = lengths(&board(cell_m));
+            for (a, b) in lengths(&reference).iter().zip(&other) {
+                assert!((a - b).abs() < 1e-9, "{cell_m} m: {a} {b}");
+            }
+        }
+        // Where cells are coarse it is as near as these allow, and never empty.
+        assert_eq!(board(1e-2).cells, [13, 26]);
+    }
+
+    #[test]
     fn many_wells_are_smaller_and_do_not_touch() {
-        for (count, cells) in [(1, PALETTE_CELLS), (12, PALETTE_CELLS), (40, [200, 900])] {
+        let whole = palette_cells(2.5e-4);
+        for (count, cells) in [(1, whole), (12, whole), (40, [200, 900])] {
             let mixtures = vec![Mixture::pure("Bone Black"); count];
             let wells = wells_of(&mixtures, cells, 2.5e-4);
             assert_eq!(wells.len(), count + 1);

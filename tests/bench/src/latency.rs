@@ -24,7 +24,7 @@ pub(crate) fn playing(place: &Path, take: &Path) -> Result<Command, Fault> {
     let mut command = Command::new(maulstick()?);
     command
         .args(["up", "--name", "latency", "--rate", "1"])
-        .args(["--load", "Bone Black", "--play"])
+        .args(["--cell-mm", "0.25", "--load", "Bone Black", "--play"])
         .arg(take)
         .current_dir(place)
         .env("XDG_RUNTIME_DIR", place);

@@ -50,10 +50,14 @@ pub(crate) fn run(report: &mut Report) -> Result<(), Fault> {
     for _ in 0..RUNS {
         let start = Instant::now();
         let mut command = Command::new(maulstick()?);
-        command
-            .arg("render")
-            .arg(&take)
-            .args(["-o", "p.png", "--ledger", "l.json"]);
+        command.arg("render").arg(&take).args([
+            "-o",
+            "p.png",
+            "--ledger",
+            "l.json",
+            "--cell-mm",
+            "0.25",
+        ]);
         command.args(LOADS.iter().flat_map(|load| ["--load", load]));
         let status = command.current_dir(place.path()).status().map_err(fault)?;
         if !status.success() {

@@ -137,7 +137,7 @@ fn what_paints_nothing_is_said() {
     let gap = format!("{}1 420 512 0.5\n1.008 421 512 0.5\n", stroke(0.008));
     let notes = imported(&gap).expect("a take").notes;
     assert!(
-        notes[0].contains("line 21") && notes[0].contains("0.1 s"),
+        notes[0].contains("line 21") && notes[0].contains("0.3 s"),
         "{notes:?}"
     );
     let notes = imported("0 1 1 0\n0.1 2 2 0\n").expect("a take").notes;

@@ -96,10 +96,65 @@ fn time_that_stands_still_or_jumps_restarts_the_solver() {
         solve.flags & solve_flags::RESTARTED != 0
     };
     assert!(restarted(1000));
-    assert!(!restarted(1010) && !restarted(1110));
-    assert!(restarted(1110), "no time has passed");
-    assert!(restarted(1100), "time runs backward");
-    assert!(restarted(1201), "over .1 s has passed");
+    assert!(!restarted(1010) && !restarted(1310));
+    assert!(restarted(1310), "no time has passed");
+    assert!(restarted(1300), "time runs backward");
+    assert!(restarted(1601), "over .3 s has passed");
+}
+
+/// Solves of a pen that goes 12 mm in .2 s, and 12 mm more in a pause of `pause_ms`.
+fn paused(pause_ms: u64) -> Vec<Solve> {
+    let mut model = brush();
+    for i in 0..=50u32 {
+        let x = 2.4e-4 * f64::from(i);
+        model.follow(DEVICE, (1000 + 4 * u64::from(i)) * MS, &pen(x, 0.0, 0.4));
+    }
+    model.follow(DEVICE, (1200 + pause_ms) * MS, &pen(0.024, 0.0, 0.4))
+}
+
+#[test]
+fn a_pause_in_contact_is_crossed_cell_by_cell_in_one_stroke() {
+    for pause_ms in [40, 110, 250, 300] {
+        let solves = paused(pause_ms);
+        // 12 mm are 48 cells.
+        assert!(solves.len() > 48, "{pause_ms} ms: {} solves", solves.len());
+        for pair in solves.windows(2) {
+            let [from, to] = [0, 1].map(|i| pair[i].pose.position_m[0]);
+            assert!(to > from - 1e-5 && to - from < 4e-4, "{from} {to}");
+        }
+        for solve in &solves {
+            assert_eq!(solve.stroke, 1, "{pause_ms} ms");
+            assert_eq!(solve.flags & solve_flags::RESTARTED, 0);
+        }
+    }
+    let mut still = brush();
+    for ms in [1000, 1004, 1280] {
+        let solves = still.follow(DEVICE, ms * MS, &pen(0.0, 0.0, 0.4));
+        assert_eq!(solves[0].stroke, 1, "a hand that rests goes on");
+    }
+}
+
+#[test]
+fn after_a_long_pause_another_stroke_begins_with_the_head_bent_as_it_was() {
+    let bent = |pause_ms: u64| {
+        let solve = paused(pause_ms).pop().expect("a solve");
+        let angles: Vec<f64> = solve.angles_rad.iter().map(|a| f64::from(a[0])).collect();
+        (solve, angles)
+    };
+    let (_, whole) = bent(40);
+    let (solve, resumed) = bent(500);
+    assert_eq!((solve.stroke, solve.contacts.is_empty()), (2, false));
+    assert!(solve.flags & solve_flags::RESTARTED != 0);
+    let mut landed = brush();
+    let anew = landed.follow(DEVICE, 1000 * MS, &pen(0.024, 0.0, 0.4));
+    let anew: Vec<f64> = anew[0].angles_rad.iter().map(|a| f64::from(a[0])).collect();
+    let apart = |other: &[f64]| {
+        let pairs = whole.iter().zip(other);
+        pairs.map(|(a, b)| (a - b).abs()).fold(0.0, f64::max)
+    };
+    let (resumed, anew) = (apart(&resumed), apart(&anew));
+    println!("bend beside that of the drawn head: {resumed:.3} rad resumed, {anew:.3} landed");
+    assert!(resumed < 0.005 && anew > 0.03, "{resumed} {anew}");
 }
 
 #[test]

@@ -1,0 +1,58 @@
+//! The force of the head on the hand, and how it goes with depth.
+
+use maulstick_types::haptics::HermiteKnot;
+
+use super::BrushModel;
+use crate::feel::{AT_ONCE_M, Feel, Press, tuned, tuples};
+
+impl BrushModel {
+    /// What the hand feels of the head as it is bent now.
+    #[must_use]
+    pub fn feel(&self) -> Feel {
+        let length = self.file.length_m();
+        match &self.held {
+            Some(held) => Feel::bent(
+                &self.tuft,
+                length,
+                &self.placed(held, &held.newest),
+                held.force_n,
+            ),
+            None => Feel::at_rest(&self.tuft, length),
+        }
+    }
+
+    /// The tuples of the Hermite curve of the head as it is tuned.
+    #[must_use]
+    pub fn tuples(&self) -> Vec<HermiteKnot> {
+        tuned(&tuples(&self.file), self.tuned)
+    }
+
+    /// The head as it is pressed now, in the desk frame, and how its force goes with depth: one more
+    /// solve, half a millimetre deeper. None in the air.
+    #[must_use]
+    pub fn press(&mut self) -> Option<Press> {
+        let held = self.held.as_ref().filter(|held| held.force_n > 0.0)?;
+        let desk = self.desk.as_ref()?;
+        let plane = desk.plane(held.surface)?;
+        let (force_n, mut further) = (held.force_n, held.head.clone());
+        let here = self.placed(held, &held.newest);
+        let mut deeper = here;
+        deeper.translation.z -= AT_ONCE_M;
+        let obstacles = desk.obstacles(plane, deeper.translation, self.file.length_m());
+        let pose = plane.to_desk.after(&here);
+        self.tuft.raise(&mut deeper, self.file.length_m());
+        let (tuft, settings) = (&self.tuft, &self.settings);
+        further.solve(&mut self.solver, tuft, &deeper, &obstacles, settings);
+        Some(Press {
+            pose,
+            force_n,
+            stiffness_n_m: ((further.force_n() - force_n) / AT_ONCE_M).max(0.0),
+        })
+    }
+
+    /// The normal force of all contacts now, N.
+    #[must_use]
+    pub fn force_n(&self) -> f64 {
+        self.held.as_ref().map_or(0.0, |held| held.force_n)
+    }
+}
