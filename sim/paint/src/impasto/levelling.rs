@@ -35,9 +35,9 @@ pub struct Body {
 }
 
 impl Body {
-    /// Paint from the tube: it stands in ridges (titanium white in linseed oil yields at 50 to 400 Pa).
+    /// Paint from the tube, worked by the brush: it stands in ridges (oil colours yield at tens to hundreds of Pa).
     pub const TUBE: Self = Self {
-        yield_pa: 80.0,
+        yield_pa: 45.0,
         viscosity_pa_s: 20.0,
     };
 }

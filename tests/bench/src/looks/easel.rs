@@ -211,6 +211,16 @@ impl Map {
         }
     }
 
+    /// The same number on each of so many columns and rows of cells.
+    #[cfg(test)]
+    pub(crate) fn level(size: [usize; 2], cell_mm: f64, value: f32) -> Self {
+        Self {
+            size,
+            cell_mm,
+            cells: vec![value; size[0] * size[1]],
+        }
+    }
+
     fn add(&mut self, tile: [u32; 2], plane: &[f32], scale: f32) {
         let [left, bottom] = tile.map(|place| place as usize * TILE);
         for (row, cells) in plane.chunks_exact(TILE).enumerate() {

@@ -6,8 +6,37 @@ use super::easel::{Easel, Map, Stroke, brush, correlation, slope};
 
 /// Name, value, unit.
 pub(crate) type Number = (&'static str, f64, &'static str);
-/// A measurement with cells of so many mm.
-pub(crate) type Measure = fn(f64) -> Result<Vec<Number>, Fault>;
+/// A measurement.
+pub(crate) type Measure = fn(Trial) -> Result<Vec<Number>, Fault>;
+
+/// How a measurement is made.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Trial {
+    /// Side of a cell, mm.
+    pub(crate) cell_mm: f64,
+    /// Who paints.
+    pub(crate) painter: Painter,
+}
+
+/// Who paints for a measurement.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Painter {
+    /// One who does as the measurement says.
+    Able,
+    /// One with too little paint, too heavy a hand or the wrong tool: the seeded fault of each number.
+    #[cfg_attr(not(test), expect(dead_code, reason = "the tests have it paint"))]
+    Faulty,
+}
+
+impl Trial {
+    /// One of two values, for each painter.
+    fn pick<T>(self, able: T, faulty: T) -> T {
+        match self.painter {
+            Painter::Able => able,
+            Painter::Faulty => faulty,
+        }
+    }
+}
 
 /// All of them.
 pub(crate) const ALL: [Measure; 8] = [
@@ -24,8 +53,10 @@ pub(crate) const ALL: [Measure; 8] = [
 const PAINT: &str = "Ultramarine Blue=0.6,Titanium White=0.4";
 
 /// One long stroke of a fully loaded 14 mm flat: films, roughness, how far it fills the tooth.
-fn long_stroke(cell_mm: f64) -> Result<Vec<Number>, Fault> {
-    let mut easel = Easel::new([190.0, 30.0], cell_mm, "linen", brush("flat", 14.0)?)?;
+pub(crate) fn long_stroke(trial: Trial) -> Result<Vec<Number>, Fault> {
+    let mut flat = brush("flat", 14.0)?;
+    flat.load.film_um *= trial.pick(1.0, 0.1);
+    let mut easel = Easel::new([190.0, 30.0], trial.cell_mm, "linen", flat)?;
     easel.load(PAINT)?;
     easel.stroke(&Stroke::along(15.0, 15.0, 175.0, 0.5))?;
     let (film, ground) = (easel.film(None), easel.ground());
@@ -48,6 +79,7 @@ fn long_stroke(cell_mm: f64) -> Result<Vec<Number>, Fault> {
         ("tooth_fill", fill, ""),
         ("rough_um.along", rough(&surface, 0), "um"),
         ("rough_um.across", rough(&surface, 1), "um"),
+        ("ridges", rough(&surface, 1) / rough(&surface, 0), ""),
         ("towers_um", towers(&surface), "um"),
     ])
 }
@@ -74,7 +106,7 @@ pub(crate) fn rough(map: &Map, axis: usize) -> f64 {
 }
 
 /// The 99.9th percentile of |height − median of its 3×3|, µm.
-fn towers(map: &Map) -> f64 {
+pub(crate) fn towers(map: &Map) -> f64 {
     let [width, height] = map.size;
     let mut off = Vec::new();
     for y in 1..height - 1 {
@@ -92,10 +124,12 @@ fn towers(map: &Map) -> f64 {
 }
 
 /// Six full loads on one petal.
-fn six_loads(cell_mm: f64) -> Result<Vec<Number>, Fault> {
-    let mut easel = Easel::new([50.0, 30.0], cell_mm, "linen", brush("flat", 14.0)?)?;
-    for _ in 0..6 {
-        easel.load(PAINT)?;
+pub(crate) fn six_loads(trial: Trial) -> Result<Vec<Number>, Fault> {
+    let mut easel = Easel::new([50.0, 30.0], trial.cell_mm, "linen", brush("flat", 14.0)?)?;
+    for load in 0..6 {
+        if load < trial.pick(6, 1) {
+            easel.load(PAINT)?;
+        }
         easel.stroke(&Stroke::along(15.0, 14.0, 34.0, 0.4))?;
     }
     let (film, ground) = (easel.film(None), easel.ground());
@@ -108,8 +142,8 @@ fn six_loads(cell_mm: f64) -> Result<Vec<Number>, Fault> {
 }
 
 /// How much of a load three strokes of 120 mm use.
-fn three_strokes(cell_mm: f64) -> Result<Vec<Number>, Fault> {
-    let mut easel = Easel::new([160.0, 70.0], cell_mm, "linen", brush("flat", 14.0)?)?;
+pub(crate) fn three_strokes(trial: Trial) -> Result<Vec<Number>, Fault> {
+    let mut easel = Easel::new([160.0, 70.0], trial.cell_mm, "linen", brush("flat", 14.0)?)?;
     easel.load(PAINT)?;
     let held = |easel: &mut Easel| {
         let painting = easel.offline.painting_mut();
@@ -124,7 +158,7 @@ fn three_strokes(cell_mm: f64) -> Result<Vec<Number>, Fault> {
         easel.stroke(&Stroke::along(
             15.0 + 20.0 * f64::from(row),
             20.0,
-            140.0,
+            trial.pick(140.0, 30.0),
             0.5,
         ))?;
     }
@@ -155,11 +189,14 @@ fn by_height(film: &Map, ground: &Map) -> [f64; 4] {
     ]
 }
 
+/// Lanes on which a brush is wiped.
+const LANES: u32 = 2;
+
 /// Wipes a brush nearly empty on bare lanes of 250 mm from a height on.
 fn wipe(easel: &mut Easel, above: f64) -> Result<(), Fault> {
-    for lane in 0..6 {
+    for lane in 0..LANES {
         let y = above + 15.0 * f64::from(lane);
-        for pressure in [0.6, 0.6] {
+        for pressure in [0.6, 0.08] {
             easel.stroke(&Stroke::along(y, 15.0, 265.0, pressure))?;
         }
     }
@@ -167,11 +204,13 @@ fn wipe(easel: &mut Easel, above: f64) -> Result<(), Fault> {
 }
 
 /// A nearly empty brush, lightly.
-fn dry_brush(cell_mm: f64) -> Result<Vec<Number>, Fault> {
-    let mut easel = Easel::new([280.0, 130.0], cell_mm, "linen", brush("flat", 14.0)?)?;
+pub(crate) fn dry_brush(trial: Trial) -> Result<Vec<Number>, Fault> {
+    let mut easel = Easel::new([280.0, 50.0], trial.cell_mm, "linen", brush("flat", 14.0)?)?;
     easel.load(PAINT)?;
-    wipe(&mut easel, 35.0)?;
-    easel.stroke(&Stroke::along(12.0, 15.0, 100.0, 0.05))?;
+    if trial.painter == Painter::Able {
+        wipe(&mut easel, 35.0)?;
+    }
+    easel.stroke(&Stroke::along(12.0, 15.0, 100.0, trial.pick(0.01, 0.8)))?;
     let part = ([30.0, 8.0], [80.0, 16.0]);
     let (film, ground) = (
         easel.film(None).cut(part.0, part.1),
@@ -188,8 +227,8 @@ fn dry_brush(cell_mm: f64) -> Result<Vec<Number>, Fault> {
 }
 
 /// White lightly over dried ridges.
-fn scumble(cell_mm: f64) -> Result<Vec<Number>, Fault> {
-    let mut easel = Easel::new([280.0, 160.0], cell_mm, "linen", brush("round", 6.0)?)?;
+pub(crate) fn scumble(trial: Trial) -> Result<Vec<Number>, Fault> {
+    let mut easel = Easel::new([280.0, 85.0], trial.cell_mm, "linen", brush("round", 6.0)?)?;
     for row in 0..12 {
         easel.load("Burnt Umber")?;
         let y = 18.0 + 2.5 * f64::from(row);
@@ -200,12 +239,14 @@ fn scumble(cell_mm: f64) -> Result<Vec<Number>, Fault> {
     easel.dry()?;
     easel.take_up("white", brush("flat", 14.0)?)?;
     easel.load("Titanium White")?;
-    wipe(&mut easel, 70.0)?;
+    if trial.painter == Painter::Able {
+        wipe(&mut easel, 70.0)?;
+    }
     for x in [35.0, 48.0, 61.0] {
         easel.stroke(&Stroke {
             from: [x, 10.0],
             to: [x, 54.0],
-            pressure: 0.05,
+            pressure: trial.pick(0.01, 0.8),
             lean_deg: 25.0,
         })?;
     }
@@ -228,8 +269,13 @@ fn scumble(cell_mm: f64) -> Result<Vec<Number>, Fault> {
 }
 
 /// A clean knife through a level film.
-fn knife(cell_mm: f64) -> Result<Vec<Number>, Fault> {
-    let mut easel = Easel::new([90.0, 50.0], cell_mm, "linen", brush("knife", 16.0)?)?;
+pub(crate) fn knife(trial: Trial) -> Result<Vec<Number>, Fault> {
+    let mut easel = Easel::new(
+        [90.0, 50.0],
+        trial.cell_mm,
+        "linen",
+        brush(trial.pick("knife", "flat"), 16.0)?,
+    )?;
     easel.command(maulstick_types::command::Command::Fill {
         surface: 0,
         mixture: PAINT
@@ -255,10 +301,14 @@ fn knife(cell_mm: f64) -> Result<Vec<Number>, Fault> {
 }
 
 /// Streak profiles of separate loads.
-fn separate_loads(cell_mm: f64) -> Result<Vec<Number>, Fault> {
-    let mut easel = Easel::new([70.0, 100.0], cell_mm, "linen", brush("flat", 14.0)?)?;
+pub(crate) fn separate_loads(trial: Trial) -> Result<Vec<Number>, Fault> {
+    let mut easel = Easel::new([70.0, 100.0], trial.cell_mm, "linen", brush("flat", 14.0)?)?;
     let mut profiles = Vec::new();
     for row in 0..4 {
+        if trial.painter == Painter::Faulty {
+            // Each stroke is the first one on a canvas of its own.
+            easel = Easel::new([70.0, 100.0], trial.cell_mm, "linen", brush("flat", 14.0)?)?;
+        }
         easel.load(PAINT)?;
         let y = 15.0 + 23.0 * f64::from(row);
         easel.stroke(&Stroke::along(y, 15.0, 55.0, 0.5))?;
@@ -279,14 +329,14 @@ fn separate_loads(cell_mm: f64) -> Result<Vec<Number>, Fault> {
 }
 
 /// White through wet blue.
-fn through_wet(cell_mm: f64) -> Result<Vec<Number>, Fault> {
-    let mut easel = Easel::new([80.0, 50.0], cell_mm, "linen", brush("flat", 14.0)?)?;
+pub(crate) fn through_wet(trial: Trial) -> Result<Vec<Number>, Fault> {
+    let mut easel = Easel::new([80.0, 50.0], trial.cell_mm, "linen", brush("flat", 14.0)?)?;
     for y in [15.0, 25.0, 35.0] {
-        easel.load("Ultramarine Blue")?;
+        easel.load(trial.pick("Ultramarine Blue", PAINT))?;
         easel.stroke(&Stroke::along(y, 15.0, 65.0, 0.5))?;
     }
     easel.take_up("white", brush("flat", 10.0)?)?;
-    easel.load("Titanium White")?;
+    easel.load(trial.pick("Titanium White", PAINT))?;
     easel.stroke(&Stroke::along(25.0, 15.0, 65.0, 0.5))?;
     let part = ([38.0, 21.0], [50.0, 29.0]);
     let blue = easel.film(Some(0)).cut(part.0, part.1);
@@ -295,7 +345,7 @@ fn through_wet(cell_mm: f64) -> Result<Vec<Number>, Fault> {
         .map(|(blue, white)| blue / (blue + white))
         .collect();
     // Streaks of .25 to 1.5 mm: shares less their running mean over 1.5 mm.
-    let half = ((0.75 / cell_mm).round() as usize).max(1);
+    let half = ((0.75 / trial.cell_mm).round() as usize).max(1);
     let (mut sum, mut count) = (0.0, 0.0);
     for k in half..shares.len() - half {
         let mean = shares[k - half..=k + half].iter().sum::<f64>() / (2 * half + 1) as f64;

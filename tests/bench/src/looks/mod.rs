@@ -7,22 +7,25 @@
 
 mod easel;
 mod marks;
+#[cfg(test)]
+mod tests;
 
 use maulstick_rig::Fault;
 
 use crate::report::Report;
+use marks::{Painter, Trial};
 
 /// Side of a cell, mm.
 const CELL_MM: f64 = 0.125;
 
 /// Measures and reports.
 pub(crate) fn run(report: &mut Report) -> Result<(), Fault> {
-    let cell_mm = std::env::var("LOOKS_CELL")
-        .ok()
-        .and_then(|v| v.parse().ok())
-        .unwrap_or(CELL_MM);
+    let trial = Trial {
+        cell_mm: CELL_MM,
+        painter: Painter::Able,
+    };
     for measure in marks::ALL {
-        for (name, value, unit) in measure(cell_mm)? {
+        for (name, value, unit) in measure(trial)? {
             report.row(name, value, unit);
         }
     }

@@ -1,0 +1,130 @@
+//! Oil's numbers, each with a painter who misses it.
+
+use std::ops::RangeInclusive;
+
+use super::marks::{self, Measure, Painter, Trial};
+
+const ANY: f64 = f64::INFINITY;
+
+/// What an able painter reaches, and a faulty one misses.
+fn holds(measure: Measure, wants: &[(&str, RangeInclusive<f64>)]) {
+    let numbers = |painter| {
+        let cell_mm = 0.125;
+        measure(Trial { cell_mm, painter }).expect("painted")
+    };
+    let (able, faulty) = (numbers(Painter::Able), numbers(Painter::Faulty));
+    for (name, want) in wants {
+        let of = |numbers: &[marks::Number]| {
+            let found = numbers.iter().find(|(own, ..)| own == name);
+            found.expect("measured").1
+        };
+        let (able, faulty) = (of(&able), of(&faulty));
+        println!("{name}: {able:.4}, of the fault {faulty:.4}, wanted {want:?}");
+        assert!(want.contains(&able), "{name}: {able}");
+        assert!(
+            !want.contains(&faulty),
+            "{name}: a fault of {faulty} passes"
+        );
+    }
+}
+
+#[test]
+fn a_stroke_lays_films_of_oil_that_fill_the_tooth() {
+    holds(
+        marks::long_stroke,
+        &[
+            ("film_um.10mm", 150.0..=400.0),
+            ("film_um.150mm", 60.0..=ANY),
+            ("tooth_fill", -1.0..=-0.6),
+            ("ridges", 3.0..=ANY),
+        ],
+    );
+}
+
+#[test]
+fn six_loads_pile_up_without_towers() {
+    holds(marks::six_loads, &[("six_loads_um", 800.0..=ANY)]);
+}
+
+#[test]
+fn three_strokes_use_a_quarter_of_a_load() {
+    holds(marks::three_strokes, &[("load_used_share", 0.25..=1.0)]);
+}
+
+#[test]
+fn a_dry_brush_catches_on_the_tooth() {
+    holds(
+        marks::dry_brush,
+        &[
+            ("dry_brush.covered", 0.05..=0.5),
+            ("dry_brush.high_by_low", 4.0..=ANY),
+        ],
+    );
+}
+
+#[test]
+fn a_scumble_catches_on_ridges() {
+    holds(
+        marks::scumble,
+        &[
+            ("scumble.covered_low", 0.0..=0.2),
+            ("scumble.high_by_low", 4.0..=ANY),
+        ],
+    );
+}
+
+#[test]
+fn a_knife_leaves_a_thin_smooth_film_and_a_bead() {
+    holds(marks::knife, &[("knife_left_um", 0.0..=80.0)]);
+}
+
+#[test]
+fn loads_of_their_own_have_streaks_of_their_own() {
+    holds(
+        marks::separate_loads,
+        &[("streaks.correlation", -1.0..=0.8)],
+    );
+}
+
+#[test]
+fn white_through_wet_blue_keeps_its_streaks() {
+    holds(marks::through_wet, &[("through_wet.streaks", 0.03..=1.0)]);
+}
+
+/// What a knife leaves is smooth; ripples of half a millimetre would be found.
+#[test]
+fn a_knife_leaves_no_ripples() {
+    let able = Trial {
+        cell_mm: 0.125,
+        painter: Painter::Able,
+    };
+    let film = marks::knife(able).expect("painted");
+    let rough = film.iter().find(|(name, ..)| *name == "knife_rough_um");
+    let rough = rough.expect("measured").1;
+    assert!(rough <= 15.0, "{rough}");
+    let mut map = super::easel::Map::level([100, 100], 0.125, 50.0);
+    assert!(marks::rough(&map, 0) < 1.0);
+    for (cell, height) in map.cells.iter_mut().enumerate() {
+        *height += if cell % 4 < 2 { 20.0 } else { -20.0 };
+    }
+    assert!(marks::rough(&map, 0) > 15.0);
+}
+
+/// Wet paint has no towers of a cell; one would be found.
+#[test]
+fn towers_are_found() {
+    let able = Trial {
+        cell_mm: 0.125,
+        painter: Painter::Able,
+    };
+    let stroke = marks::long_stroke(able).expect("painted");
+    let towers = stroke.iter().find(|(name, ..)| *name == "towers_um");
+    let towers = towers.expect("measured").1;
+    assert!(towers <= 60.0, "{towers}");
+    let mut map = super::easel::Map::level([100, 100], 0.125, 300.0);
+    assert!(marks::towers(&map) < 1.0);
+    for k in 0..20 {
+        map.cells[517 + 411 * k] += 500.0;
+    }
+    assert!(marks::towers(&map) > 60.0);
+}
