@@ -4,8 +4,9 @@
 use bytemuck::{Pod, Zeroable};
 use eframe::egui_wgpu::wgpu;
 use maulstick_optics::gamut::{FOR_COLOUR, Gamut, GamutMapping, HALVINGS, KNEE};
-use maulstick_optics::light::shadow::{LEAST, Shadows, TAPS};
-use maulstick_optics::light::{AMBIENT, Lamp, SHARPNESS, SURFACE};
+use maulstick_optics::light::gloss::ROUGHNESS;
+use maulstick_optics::light::shadow::{LEAST, TAPS};
+use maulstick_optics::light::{AMBIENT, DIMMING, Lamp, SURFACE, Surroundings, sky};
 
 use crate::gpu::{Filterable, Gpu, Pass, UNIFORM, texture_binding};
 
@@ -16,48 +17,63 @@ pub const HEIGHT: wgpu::TextureFormat = wgpu::TextureFormat::R32Float;
 /// Lit linear colour within the gamut.
 pub const LIT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba16Float;
 
-/// The lamp and its shadows as the shader takes them.
+/// The lamp, its shadows and the sky as the shader takes them.
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
 #[repr(C)]
 pub struct LampUniform {
     toward: [f32; 3],
     intensity: f32,
-    half: [f32; 3],
+    upper: [f32; 3],
     relief: f32,
-    peak: [f32; 2],
-    flat: [f32; 2],
+    mirror: [f32; 2],
+    peak: f32,
+    graze: f32,
     cell_m: f32,
     /// Of the shadows: cells that a metre is high, and 1/w; c and l_z.
     rise: f32,
     sharpness: f32,
-    _pad: f32,
+    softness: f32,
     along: [f32; 2],
-    _pad2: [f32; 2],
+    _pad: [f32; 2],
     colour: [f32; 3],
+    _pad2: f32,
+    albedo: [f32; 3],
     _pad3: f32,
     cells: [[i32; 4]; TAPS],
     /// Weight, s·c, s·l_z.
     runs: [[f32; 4]; TAPS],
+    ways: [[f32; 4]; sky::DIRECTIONS],
+    /// Column, row, steepness.
+    sky: [[f32; 4]; sky::TAPS],
 }
 
 impl LampUniform {
-    /// A lamp and its shadows over cells of side `cell_m`.
+    /// A lamp and what hides it over cells of side `cell_m`.
     #[must_use]
-    pub fn new(lamp: &Lamp, shadows: &Shadows, cell_m: f32) -> Self {
+    pub fn new(lamp: &Lamp, surroundings: &Surroundings, cell_m: f32) -> Self {
+        let Surroundings { shadows, sky, .. } = surroundings;
+        let place = |i: usize| {
+            let tap = sky.taps[i / sky::RINGS][i % sky::RINGS];
+            let [x, y] = tap.cell.map(|v| v as f32);
+            [x, y, tap.steepness, 0.0]
+        };
         Self {
             toward: lamp.toward,
             intensity: lamp.intensity,
-            half: lamp.half,
+            upper: lamp.upper,
             relief: lamp.relief,
+            mirror: lamp.mirror,
             peak: lamp.peak,
-            flat: lamp.flat,
+            graze: lamp.graze,
             cell_m,
             rise: shadows.rise,
             sharpness: shadows.sharpness,
-            _pad: 0.0,
+            softness: lamp.softness,
             along: shadows.toward,
-            _pad2: [0.0; 2],
+            _pad: [0.0; 2],
             colour: lamp.colour,
+            _pad2: 0.0,
+            albedo: lamp.albedo,
             _pad3: 0.0,
             cells: shadows.taps.map(|tap| {
                 let [[x, y], [x2, y2]] = tap.cells;
@@ -66,6 +82,8 @@ impl LampUniform {
             runs: shadows
                 .taps
                 .map(|tap| [tap.weight, tap.run[0], tap.run[1], 0.0]),
+            ways: sky.toward.map(|[x, y]| [x, y, 0.0, 0.0]),
+            sky: std::array::from_fn(place),
         }
     }
 }
@@ -127,8 +145,8 @@ pub struct CellRect {
 }
 
 impl CellRect {
-    /// This rectangle and the cells around it that its slopes and shadows change, within those of
-    /// `held`: shadows reach `shade` cells to the lower and to the higher sides.
+    /// This rectangle and the cells around it that its slopes, shadows and occlusion change, within
+    /// those of `held`: they reach `shade` cells to the lower and to the higher sides.
     #[must_use]
     pub fn with_border(&self, shade: [[u32; 2]; 2], held: &Self) -> Self {
         let [low, high] = shade.map(|side| side.map(|reach| reach.max(1)));
@@ -215,8 +233,9 @@ impl LightSurface {
             constants: &[
                 ("ambient", f64::from(AMBIENT)),
                 ("surface", f64::from(SURFACE)),
-                ("sharp", f64::from(SHARPNESS[0])),
-                ("broad", f64::from(SHARPNESS[1])),
+                ("dimming", f64::from(DIMMING)),
+                ("smoothest", f64::from(ROUGHNESS[0])),
+                ("roughest", f64::from(ROUGHNESS[1])),
                 ("least", f64::from(LEAST)),
                 ("knee", f64::from(KNEE)),
                 ("for_colour", f64::from(FOR_COLOUR)),

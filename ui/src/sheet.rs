@@ -4,8 +4,8 @@
 //! move without anything being copied. Row 0 is the lowest.
 
 use eframe::egui_wgpu::wgpu;
-use maulstick_optics::light::Lamp;
-use maulstick_optics::light::shadow::{Shadows, TAPS};
+use maulstick_optics::light::shadow::REACH;
+use maulstick_optics::light::{Lamp, Surroundings};
 use maulstick_types::paint::TILE;
 
 use crate::frames::{Shown, ShownTile};
@@ -20,7 +20,7 @@ use crate::visible::TileRect;
 /// From this many changed areas on, the whole sheet is lit in one go.
 const MANY: usize = 64;
 /// Cells at an edge beyond which there are no heights yet: their slopes and shadows are not whole.
-const RIM: u32 = TAPS as u32 + 1;
+const RIM: u32 = REACH + 1;
 /// Bytes of a texel: of unlit colour and height, and of lit colour.
 const UNLIT_BYTES: u64 = 8 + 4;
 const LIT_BYTES: u64 = 8;
@@ -191,8 +191,8 @@ impl Sheet {
             return;
         };
         let texel_m = cell_m * f64::from(1u32 << self.state.level.min(16));
-        let shadows = Shadows::new(lamp, texel_m as f32);
-        let lamp = LampUniform::new(lamp, &shadows, texel_m as f32);
+        let surroundings = Surroundings::new(lamp, texel_m as f32);
+        let lamp = LampUniform::new(lamp, &surroundings, texel_m as f32);
         let window = WindowUniform::new(&held);
         if unlit.within != Some(window) {
             gpu.queue
@@ -211,7 +211,7 @@ impl Sheet {
         if self.stale.is_empty() {
             return;
         }
-        let reach = shadows.reach();
+        let reach = surroundings.reach();
         let areas = self
             .stale
             .drain(..)

@@ -195,8 +195,7 @@ pub(crate) mod tests {
     use maulstick_optics::colour::RgbSpace;
     use maulstick_optics::gamut::GamutMapping;
     use maulstick_optics::icc::Profile;
-    use maulstick_optics::light::shadow::Shadows;
-    use maulstick_optics::light::{HeightField, LampSetup, Spot, lit};
+    use maulstick_optics::light::{Facet, HeightField, LampSetup, Spot, Surroundings, lit};
     use maulstick_paint::PaintingSetup;
     use maulstick_paint::display::DisplayTile;
     use maulstick_paint::tile::TILE_CELLS;
@@ -331,17 +330,16 @@ pub(crate) mod tests {
             cells: [width, rows],
             cell_m: 2.5e-4,
         };
-        let shadows = Shadows::new(lamp, 2.5e-4);
+        let surroundings = Surroundings::new(lamp, 2.5e-4);
         let gamut = Gamut::new(export.gamut, export.profile.from_working());
         let pixel = |i: usize| {
             let (x, y) = (i % width, rows - 1 - i / width);
-            let mut seen = [1.0];
-            shadows.row(&field, [x, y], &mut seen);
+            let mut facet = [Facet::LEVEL];
+            surroundings.row(&field, [x, y], &mut facet);
             let spot = Spot {
                 unlit: colour(x, y),
                 gloss: 1.0,
-                slope: field.slope(x, y),
-                seen: seen[0],
+                facet: facet[0],
             };
             let mut bytes = [0; 3];
             let profile = &export.profile;

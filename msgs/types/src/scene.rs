@@ -250,7 +250,7 @@ impl Default for Light {
             spectrum: Vec::new(),
             exposure: 1.0,
             relief: 1.0,
-            softness: 0.1,
+            softness: 0.3,
             observer: 1931,
             rule: "fitted".to_owned(),
             samples: 16,

@@ -24,7 +24,7 @@ use crate::tile::{Tile, TileId};
 
 /// Threads that draw: the stepper and its worker have the other cores.
 const THREADS: usize = 2;
-/// Rows beyond a band that its shadows and slopes reach.
+/// Rows beyond a band that its shadows, its occlusion and its slopes reach.
 const BEYOND: usize = REACH as usize;
 /// Bands that a [`Shelf`] keeps either side of the one that was asked for: more than the threads are
 /// apart.

@@ -2,7 +2,10 @@
 
 use half::f16;
 use half::slice::HalfFloatSliceExt as _;
+use maulstick_optics::light::HeightField;
+use maulstick_optics::light::gloss::{merged_gloss, roughness};
 use maulstick_optics::{FilmPlanes, Studio, Under};
+use maulstick_types::paint::TILE;
 
 use crate::bare::Bare;
 use crate::dry::DryStack;
@@ -183,34 +186,52 @@ impl DisplayTile {
         }
     }
 
-    /// The tile of the next level from its four children: lower left, lower right, upper left,
-    /// upper right; absent ones lie beyond the edge and count as `outside`.
+    /// The tile of the next level from its four children, of cells of side `cell_m`: lower left, lower
+    /// right, upper left, upper right; absent ones lie beyond the edge and count as `outside`. Slopes that
+    /// its cells do not show any more dull its gloss (Toksvig 2005).
     #[must_use]
-    pub fn coarser(children: [Option<&Self>; 4], outside: &Self) -> Self {
+    pub fn coarser(children: [Option<&Self>; 4], outside: &Self, cell_m: f32) -> Self {
         let children = children.map(|child| child.unwrap_or(outside));
-        let halve = |plane: &dyn Fn(&Self) -> &Vec<f32>| {
-            const SIDE: usize = maulstick_types::paint::TILE;
-            let mut out = Vec::with_capacity(TILE_CELLS);
-            for y in 0..SIDE {
-                for x in 0..SIDE {
-                    let child = children[2 * (2 * y / SIDE) + 2 * x / SIDE];
-                    let plane = plane(child);
-                    let at = (2 * y % SIDE) * SIDE + 2 * x % SIDE;
-                    let sum = plane[at] + plane[at + 1] + plane[at + SIDE] + plane[at + SIDE + 1];
-                    out.push(0.25 * sum);
-                }
-            }
-            out
+        let fours = |plane: &dyn Fn(&Self) -> &Vec<f32>| {
+            let four = |cell: usize| {
+                let (x, y) = (2 * (cell % TILE), 2 * (cell / TILE));
+                let plane = plane(children[2 * (y / TILE) + x / TILE]);
+                let at = (y % TILE) * TILE + x % TILE;
+                [at, at + 1, at + TILE, at + TILE + 1].map(|at| plane[at])
+            };
+            (0..TILE_CELLS).map(four).collect::<Vec<[f32; 4]>>()
         };
+        let mean = |four: &[f32; 4]| 0.25 * (four[0] + four[1] + four[2] + four[3]);
+        let halve = |plane: &dyn Fn(&Self) -> &Vec<f32>| -> Vec<f32> {
+            fours(plane).iter().map(mean).collect()
+        };
+        let heights = fours(&|t| &t.height);
+        let height: Vec<f32> = heights.iter().map(mean).collect();
+        let field = HeightField {
+            heights: &height,
+            cells: [TILE; 2],
+            cell_m: 2.0 * cell_m,
+        };
+        let glosses = fours(&|t| &t.gloss);
+        let merged = glosses.iter().zip(&heights).enumerate().map(|(cell, own)| {
+            let (gloss, [a, b, c, d]) = own;
+            let slopes = [b - a, d - c, c - a, d - b].map(|rise| rise / cell_m);
+            let shown = field.slope(cell % TILE, cell / TILE);
+            let squares = |slopes: &[f32]| slopes.iter().map(|s| s * s).sum::<f32>();
+            let hidden = (0.25 * squares(&slopes) - 0.5 * squares(&shown)).max(0.0);
+            let rough = gloss.map(|gloss| roughness(gloss) * roughness(gloss));
+            merged_gloss(mean(&rough), hidden)
+        });
+        let gloss = merged.collect();
         Self {
             rgb: [
                 halve(&|t| &t.rgb[0]),
                 halve(&|t| &t.rgb[1]),
                 halve(&|t| &t.rgb[2]),
             ],
-            gloss: halve(&|t| &t.gloss),
+            gloss,
             wetness: halve(&|t| &t.wetness),
-            height: halve(&|t| &t.height),
+            height,
         }
     }
 
@@ -319,11 +340,36 @@ mod tests {
     fn a_coarser_tile_is_the_mean_of_its_cells() {
         let (studio, ground, painted) = tile();
         let bare = shown(None, &studio, &ground);
-        let coarse = DisplayTile::coarser([Some(&painted), None, None, None], &bare);
+        let coarse = DisplayTile::coarser([Some(&painted), None, None, None], &bare, 2.5e-4);
         assert!((coarse.height[0] - 0.5 * painted.height[0]).abs() < 1e-9);
         assert_eq!(
             coarse.height[40], 0.0,
             "the right half lies beyond the edge"
         );
+    }
+
+    #[test]
+    fn bristle_marks_that_a_coarser_tile_does_not_show_dull_its_gloss() {
+        let (_, _, painted) = tile();
+        let marked = |height: &dyn Fn(usize) -> f32| {
+            let mut tile = painted.clone();
+            tile.gloss = vec![0.75; TILE_CELLS];
+            tile.height = (0..TILE_CELLS).map(|i| height(i % TILE) * 1e-4).collect();
+            DisplayTile::coarser([Some(&tile); 4], &tile, 2.5e-4)
+        };
+        let level = marked(&|_| 1.0).gloss[100];
+        assert!((level - 0.75).abs() < 1e-3, "{level}");
+        let [ramp, marks] = [marked(&|x| x as f32), marked(&|x| (x % 2) as f32)];
+        assert!(
+            ramp.gloss[100] > 0.749,
+            "{} shows its slope",
+            ramp.gloss[100]
+        );
+        // Flanks of slope .4 along x: a variance of .08 an axis.
+        let square = roughness(0.75) * roughness(0.75) + 0.16;
+        let got = roughness(marks.gloss[100]);
+        println!("roughness {got:.3}, expected {:.3}", square.sqrt());
+        assert!((got - square.sqrt()).abs() < 1e-3);
+        assert!(got > 2.0 * roughness(level), "a mean of gloss would pass");
     }
 }

@@ -36,6 +36,7 @@ pub mod history;
 pub mod impasto;
 pub mod kept;
 pub mod lamp;
+mod lattice_noise;
 pub mod ledger;
 pub mod light;
 pub mod load;
@@ -57,6 +58,7 @@ pub mod tile;
 pub mod tooth;
 pub mod tooth_picture;
 pub mod transfer;
+mod weave;
 pub mod window;
 
 pub use model::PaintModel;

@@ -1,19 +1,20 @@
 //! The tooth of a surface: what its bare ground is like under the fingertip.
 //!
 //! Heights are at most 0, the level of the highest peaks, on which a brush rests. Woven grounds are
-//! a plain weave: warp and weft as arched threads that go over and under each other, each of a
-//! strength of its own, with slubs. Primed panels and papers are noise of several octaves. All of it
+//! a primed plain weave (`weave.rs`); primed panels and papers are noise of several octaves. All of it
 //! is a function of place and seed.
 
 use maulstick_types::paint::TILE;
 
+use crate::lattice_noise::LatticeNoise;
 use crate::tile::{TILE_CELLS, TileId};
+use crate::weave::Weave;
 
 /// How a ground is made.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Make {
-    /// Threads by this distance, m.
-    Woven { pitch_m: f64 },
+    /// Threads by this distance, m, and the share of their length that is slubs.
+    Woven { pitch_m: f64, slubs: f64 },
     /// Noise whose largest bumps are this wide, m.
     Grained { size_m: f64 },
 }
@@ -31,12 +32,18 @@ const KINDS: [Kind; 4] = [
     Kind {
         name: "linen",
         depth_m: 80e-6,
-        make: Make::Woven { pitch_m: 0.9e-3 },
+        make: Make::Woven {
+            pitch_m: 0.9e-3,
+            slubs: 0.3,
+        },
     },
     Kind {
         name: "cotton",
         depth_m: 55e-6,
-        make: Make::Woven { pitch_m: 0.65e-3 },
+        make: Make::Woven {
+            pitch_m: 0.65e-3,
+            slubs: 0.12,
+        },
     },
     Kind {
         name: "panel",
@@ -75,7 +82,7 @@ impl Tooth {
     #[must_use]
     pub fn relief_m(&self) -> [f64; 2] {
         let wide = match self.kind.make {
-            Make::Woven { pitch_m } => pitch_m,
+            Make::Woven { pitch_m, .. } => pitch_m,
             Make::Grained { size_m } => size_m,
         };
         [self.kind.depth_m, wide]
@@ -101,64 +108,27 @@ impl Tooth {
     #[must_use]
     pub fn height_m(&self, at: [f64; 2]) -> f64 {
         let share = match self.kind.make {
-            Make::Woven { pitch_m } => self.weave(at.map(|m| m / pitch_m)),
+            Make::Woven { pitch_m, slubs } => {
+                let noise = self.noise();
+                Weave { noise, slubs }.height(at.map(|m| m / pitch_m))
+            }
             Make::Grained { size_m } => self.grain(at.map(|m| m / size_m)),
         };
         self.kind.depth_m * (share.clamp(0.0, 1.0) - 1.0)
-    }
-
-    /// Height of a plain weave with threads 1 apart, 0 to 1.
-    fn weave(&self, [x, y]: [f64; 2]) -> f64 {
-        // Threads wander a little.
-        let u = x + 0.25 * (self.noise(1, [0.35 * x, 0.09 * y]) - 0.5);
-        let v = y + 0.25 * (self.noise(2, [0.09 * x, 0.35 * y]) - 0.5);
-        let (i, j) = (u.floor(), v.floor());
-        let arch = |t: f64| 1.0 - (2.0 * t - 1.0) * (2.0 * t - 1.0);
-        let (warp, weft) = (arch(u - i), arch(v - j));
-        let over = if (i + j).rem_euclid(2.0) < 0.5 {
-            1.0
-        } else {
-            -1.0
-        };
-        let strength = |axis: u64, thread: f64, along: f64| {
-            let own = self.hash(axis, [thread as i64, 0]);
-            0.72 + 0.2 * own + 0.16 * (self.noise(axis + 8, [0.15 * along, 7.3 * thread]) - 0.5)
-        };
-        let warp = strength(3, i, v) * warp * (0.55 + 0.45 * over * weft);
-        let weft = strength(4, j, u) * weft * (0.55 - 0.45 * over * warp.min(1.0));
-        0.97 * warp.max(weft) + 0.06 * (self.noise(5, [3.0 * x, 3.0 * y]) - 0.5) + 0.03
     }
 
     /// Noise of four octaves, 0 to 1.
     fn grain(&self, at: [f64; 2]) -> f64 {
         let (mut sum, mut weight, mut scale) = (0.0, 0.5, 1.0);
         for octave in 0..4 {
-            sum += weight * self.noise(20 + octave, at.map(|v| v * scale));
+            sum += weight * self.noise().at(20 + octave, at.map(|v| v * scale));
             (weight, scale) = (0.5 * weight, 2.1 * scale);
         }
         sum / 0.9375
     }
 
-    /// Smooth noise on a lattice of side 1, 0 to 1.
-    fn noise(&self, channel: u64, [x, y]: [f64; 2]) -> f64 {
-        let (i, j) = (x.floor(), y.floor());
-        let ease = |t: f64| t * t * (3.0 - 2.0 * t);
-        let (u, v) = (ease(x - i), ease(y - j));
-        let corner = |di: i64, dj: i64| self.hash(channel, [i as i64 + di, j as i64 + dj]);
-        let row = |dj: i64| corner(0, dj) + (corner(1, dj) - corner(0, dj)) * u;
-        row(0) + (row(1) - row(0)) * v
-    }
-
-    /// A number in 0 to 1 for each lattice point (finaliser of Murmur 3, Appleby).
-    fn hash(&self, channel: u64, [i, j]: [i64; 2]) -> f64 {
-        let mut h = self.seed ^ channel.wrapping_mul(0x9e37_79b9_7f4a_7c15);
-        for v in [i as u64, j as u64] {
-            h = (h ^ v).wrapping_mul(0xff51_afd7_ed55_8ccd);
-            h ^= h >> 33;
-            h = h.wrapping_mul(0xc4ce_b9fe_1a85_ec53);
-            h ^= h >> 33;
-        }
-        (h >> 11) as f64 / 9_007_199_254_740_992.0
+    fn noise(&self) -> LatticeNoise {
+        LatticeNoise { seed: self.seed }
     }
 }
 

@@ -1,7 +1,7 @@
 //! What light and drying make of a painting.
 
 use maulstick_brush::BrushFile;
-use maulstick_optics::light::{Lamp, LampSetup, Spot, lit};
+use maulstick_optics::light::{Facet, Lamp, LampSetup, Spot, lit};
 use maulstick_optics::{PaintLibrary, Under};
 use maulstick_paint::display::WetFilms;
 use maulstick_paint::lamp::lamp_over;
@@ -242,8 +242,7 @@ fn a_flat_surface_shows_its_colour_and_the_colour_of_its_light() {
         let spot = Spot {
             unlit: [r[0], g[0], b[0]],
             gloss: 0.7,
-            slope: [0.0; 2],
-            seen: 1.0,
+            facet: Facet::LEVEL,
         };
         let strength = painting.scene().light.exposure;
         let shown = lit(&spot, &lamp_over(painting.scene(), CANVAS));

@@ -1,6 +1,6 @@
 use half::f16;
 use maulstick_optics::colour::RgbSpace;
-use maulstick_optics::light::{HeightField, LampSetup, Spot, lit};
+use maulstick_optics::light::{Facet, HeightField, LampSetup, Spot, lit};
 use rand_pcg::Pcg32;
 use rand_pcg::rand_core::Rng as _;
 
@@ -31,20 +31,24 @@ impl Rough {
     }
 
     fn expected(&self, lamp: &Lamp, gamut: &Gamut) -> Vec<[f32; 3]> {
+        self.faulty(lamp, gamut, |facet| facet)
+    }
+
+    /// As the export would light it if it saw the relief otherwise.
+    fn faulty(&self, lamp: &Lamp, gamut: &Gamut, fault: impl Fn(Facet) -> Facet) -> Vec<[f32; 3]> {
         let field = HeightField {
             heights: &self.heights,
             cells: [SIDE, SIDE],
             cell_m: CELL_M,
         };
-        let shadows = Shadows::new(lamp, CELL_M);
+        let surroundings = Surroundings::new(lamp, CELL_M);
         let pixel = |(i, [r, g, b, gloss]): (usize, &[f32; 4])| {
-            let mut seen = [1.0];
-            shadows.row(&field, [i % SIDE, i / SIDE], &mut seen);
+            let mut facet = [Facet::LEVEL];
+            surroundings.row(&field, [i % SIDE, i / SIDE], &mut facet);
             let spot = Spot {
                 unlit: [*r, *g, *b],
                 gloss: *gloss,
-                slope: field.slope(i % SIDE, i / SIDE),
-                seen: seen[0],
+                facet: fault(facet[0]),
             };
             gamut.map(lit(&spot, lamp))
         };
@@ -74,7 +78,7 @@ impl Rough {
                 .write_texture(texture.as_image_copy(), &bytes, layout, texture.size());
         }
         let uniform = gpu.uniform::<LampUniform>("lamp");
-        let lamp = LampUniform::new(lamp, &Shadows::new(lamp, CELL_M), CELL_M);
+        let lamp = LampUniform::new(lamp, &Surroundings::new(lamp, CELL_M), CELL_M);
         gpu.queue
             .write_buffer(&uniform, 0, bytemuck::bytes_of(&lamp));
         let window = gpu.uniform::<WindowUniform>("window");
@@ -164,12 +168,20 @@ fn the_shader_lights_as_the_export_does() {
             GamutMapping::Soft => clamp,
             GamutMapping::Clamp => srgb,
         };
-        let faults = [
+        let mut faults = vec![
             rough.expected(&lamp(moved, exposure, softness), gamut),
             rough.expected(&softer(0.2), gamut),
             rough.expected(&own, &mapped),
+            rough.faulty(&own, gamut, |facet| Facet { open: 1.0, ..facet }),
         ];
-        let faults = faults.map(|fault| farthest(&shown, &fault));
+        // Straight above, nothing mirrors the lamp more than a level surface.
+        if own.mirror != [0.0; 2] {
+            faults.push(rough.faulty(&own, gamut, |facet| Facet {
+                spread: [0.0; 3],
+                ..facet
+            }));
+        }
+        let faults: Vec<f32> = faults.iter().map(|fault| farthest(&shown, fault)).collect();
         assert!(
             faults.iter().all(|fault| *fault > TOLERANCE),
             "a fault would pass: {faults:?}"
@@ -195,8 +207,10 @@ fn a_changed_tile_is_lit_with_the_cells_around_it() {
     let in_held = rect([128, 64], [64, 64]).with_border(none, &held);
     assert_eq!(in_held, rect([128, 64], [64, 65]));
     // The lamp to the upper left: shadows fall to the right and below.
-    let shadows = Shadows::new(&lamp([-1.0, 0.5, 0.5], 1.0, 0.1), CELL_M);
-    assert_eq!(shadows.reach(), [[0, 8], [16, 0]]);
+    let lamp = lamp([-1.0, 0.5, 0.5], 1.0, 0.1);
+    let reach = |cell_m| Surroundings::new(&lamp, cell_m).reach();
+    assert_eq!(reach(CELL_M), [[8, 8], [16, 8]]);
+    assert_eq!(reach(0.5 * CELL_M), [[16, 16], [24, 16]]);
 }
 
 #[test]

@@ -5,25 +5,35 @@
 // term; a test compares them. A pixel of the target is a cell, lower rows first.
 
 const TAPS: u32 = 16u;
+const DIRECTIONS: u32 = 8u;
+const RINGS: u32 = 5u;
 
 struct Lamp {
     toward: vec3<f32>,
     intensity: f32,
-    half: vec3<f32>,
+    // From its middle to its upper edge.
+    upper: vec3<f32>,
     relief: f32,
-    // Of the sharp and of the broad highlight.
-    peak: vec2<f32>,
-    flat: vec2<f32>,
+    // Slope that mirrors it to the viewer.
+    mirror: vec2<f32>,
+    peak: f32,
+    // Square of the tangent of its angle from straight above.
+    graze: f32,
     cell_m: f32,
     rise: f32,
     sharpness: f32,
+    softness: f32,
     // The lamp in the plane of its direction: across the surface and out of it.
     along: vec2<f32>,
-    // The light's own colour.
+    // The light's own colour, and what makes an albedo of an unlit one.
     colour: vec3<f32>,
+    albedo: vec3<f32>,
     // The two cells of each place on the way to the lamp; share of the second, and the run to it.
     cells: array<vec4<i32>, TAPS>,
     runs: array<vec4<f32>, TAPS>,
+    // Unit vectors of the directions of the sky; columns, rows and steepness of the places in each.
+    ways: array<vec4<f32>, DIRECTIONS>,
+    sky: array<vec4<f32>, 40>,
 }
 
 struct Rows {
@@ -48,12 +58,14 @@ struct Window {
 
 // Share of the light that comes from all around.
 override ambient: f32;
-// Share of the light that the surface reflects by itself.
+// Share of the light that the surface reflects by itself, and how much dimmer the room is below.
 override surface: f32;
-// Exponents of the highlights, as powers of two, and halvings of the search for the gamut's edge. No
-// uniforms: a loop to one makes some drivers compile the shader anew for every draw.
-override sharp: u32;
-override broad: u32;
+override dimming: f32;
+// Roughness of the glossiest film, and of the most matte ground.
+override smoothest: f32;
+override roughest: f32;
+// Halvings of the search for the gamut's edge. No uniform: a loop to one makes some drivers compile the
+// shader anew for every draw.
 override halvings: u32;
 // Least denominator of a horizon.
 override least: f32;
@@ -130,24 +142,88 @@ fn seen(spot: Spot) -> f32 {
     return u * u * (3.0 - 2.0 * u);
 }
 
-fn sharpened(x: f32, squarings: u32) -> f32 {
-    var power = max(x, 0.0);
-    for (var i = 0u; i < squarings; i += 1u) {
-        power *= power;
-    }
-    return power;
+// Covariance of the slopes within a cell: xx, xy, yy.
+fn spread(spot: Spot) -> vec3<f32> {
+    let low = max(spot.cell - 1, window.low);
+    let high = min(spot.cell + 1, window.last);
+    let cell = spot.cell;
+    let middle = 2.0 * height(spot, cell);
+    let xx = height(spot, vec2<i32>(low.x, cell.y)) + height(spot, vec2<i32>(high.x, cell.y)) - middle;
+    let yy = height(spot, vec2<i32>(cell.x, low.y)) + height(spot, vec2<i32>(cell.x, high.y)) - middle;
+    let xy = 0.25 * (height(spot, high) + height(spot, low)
+        - height(spot, vec2<i32>(low.x, high.y)) - height(spot, vec2<i32>(high.x, low.y)));
+    let scale = 0.5 / (lamp.cell_m * lamp.cell_m);
+    return vec3<f32>(xx * xx + xy * xy, (xx + yy) * xy, yy * yy + xy * xy) * scale;
 }
 
-fn lit(unlit: vec3<f32>, gloss: f32, flat_rise: vec2<f32>, visible: f32) -> vec3<f32> {
-    let rise = flat_rise * lamp.relief;
+// What comes to a facet from one direction over a horizon.
+fn above(tangent: f32, facing: f32, up: f32) -> f32 {
+    let square = 1.0 / (1.0 + tangent * tangent);
+    let cosine = sqrt(square);
+    let sine = tangent * cosine;
+    let polynomial = 1.5707288 + sine * (-0.2121144 + sine * (0.074261 - 0.0187293 * sine));
+    let from_zenith = sqrt(max(1.0 - sine, 0.0)) * polynomial;
+    return 0.5 * (facing * (from_zenith - sine * cosine) + up * square);
+}
+
+// Share of the light from all around that comes to a facet of normal `n`.
+fn open_sky(spot: Spot, n: vec3<f32>) -> f32 {
+    let own = height(spot, spot.cell);
+    var sum = 0.0;
+    for (var way = 0u; way < DIRECTIONS; way += 1u) {
+        var highest = 0.0;
+        for (var ring = 0u; ring < RINGS; ring += 1u) {
+            let tap = lamp.sky[way * RINGS + ring];
+            let at = clamp(spot.cell + vec2<i32>(tap.xy), window.low, window.last);
+            highest = max(highest, (height(spot, at) - own) * tap.z);
+        }
+        sum += above(highest, dot(n.xy, lamp.ways[way].xy), n.z);
+    }
+    return clamp(sum * (2.0 / f32(DIRECTIONS)), 0.0, 1.0);
+}
+
+// What it receives with the light that surroundings of these albedos throw back.
+fn bounced(open: f32, albedo: vec3<f32>) -> vec3<f32> {
+    let a = 2.0404 * albedo - 0.3324;
+    let b = -4.7951 * albedo + 0.6417;
+    let c = 2.7552 * albedo + 0.6903;
+    return min(max(((open * a + b) * open + c) * open, vec3<f32>(open)), vec3<f32>(1.0));
+}
+
+// GGX's density of slopes, times pi.
+fn density(own: f32, covariance: vec3<f32>, off: vec2<f32>) -> f32 {
+    let xx = own + 2.0 * covariance.x;
+    let xy = 2.0 * covariance.y;
+    let yy = own + 2.0 * covariance.z;
+    let determinant = xx * yy - xy * xy;
+    let far = off.x * off.x * yy - 2.0 * off.x * off.y * xy + off.y * off.y * xx;
+    let tail = 1.0 + far / determinant;
+    return 1.0 / (sqrt(determinant) * tail * tail);
+}
+
+fn lit(spot: Spot, unlit: vec3<f32>, gloss: f32) -> vec3<f32> {
+    let rise = slope(spot) * lamp.relief;
     let n = vec3<f32>(-rise, 1.0) / sqrt(dot(rise, rise) + 1.0);
-    let incidence = visible * max(dot(n, lamp.toward), 0.0) / lamp.toward.z;
-    let diffuse = ambient + (1.0 - ambient) * incidence;
-    let facing = dot(n, lamp.half);
-    let lobes = vec2<f32>(sharpened(facing, sharp), sharpened(facing, broad));
-    let shine = lamp.peak * max(lobes - lamp.flat, vec2<f32>(0.0));
-    let highlight = (gloss * gloss * shine.x + gloss * (1.0 - gloss) * shine.y) * incidence;
-    return (diffuse * unlit + lamp.colour * (surface + highlight)) * lamp.intensity;
+    let visible = seen(spot);
+    let open = open_sky(spot, n);
+    let facing = dot(n, lamp.toward) + (1.0 - visible) * dot(n, lamp.upper);
+    let incidence = visible * max(facing, 0.0) / lamp.toward.z;
+    let direct = (1.0 - ambient) * incidence + ambient * open;
+    let dull = 1.0 - gloss;
+    let rough = smoothest + (roughest - smoothest) * dull * dull;
+    let own = rough * rough + 0.125 * lamp.softness * lamp.softness;
+    let hidden = spread(spot) * (lamp.relief * lamp.relief);
+    let flat = density(own, vec3<f32>(0.0), lamp.mirror);
+    let more = max(density(own, hidden, lamp.mirror - rise) - flat, 0.0);
+    let unmasked = 2.0 / (1.0 + sqrt(1.0 + rough * rough * lamp.graze));
+    let pane = visible * lamp.peak * unmasked * more;
+    let grazing = 1.0 - n.z;
+    let twice = grazing * grazing;
+    let mirrored = surface + (1.0 - surface) * twice * twice * grazing;
+    let room = mirrored * open * open * (1.0 - dimming + dimming * (2.0 * n.z * n.z - 1.0));
+    let albedo = clamp(unlit * lamp.albedo, vec3<f32>(0.0), vec3<f32>(1.0));
+    let diffuse = direct + (bounced(open, albedo) - open);
+    return (diffuse * unlit + lamp.colour * (room + pane)) * lamp.intensity;
 }
 
 fn times(m: Rows, v: vec3<f32>) -> vec3<f32> {
@@ -239,6 +315,6 @@ fn mapped(working: vec3<f32>) -> vec3<f32> {
 fn light(@builtin(position) at: vec4<f32>) -> @location(0) vec4<f32> {
     let spot = spot_of(vec2<i32>(at.xy));
     let texel = textureLoad(colours, spot.texel, 0);
-    let colour = lit(texel.rgb, texel.a, slope(spot), seen(spot));
+    let colour = lit(spot, texel.rgb, texel.a);
     return vec4<f32>(mapped(colour), 1.0);
 }

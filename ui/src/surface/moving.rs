@@ -3,6 +3,7 @@
 use eframe::egui::{Rect, pos2, vec2};
 use glam::{DVec2, DVec3};
 use maulstick_num::geometry::rotation;
+use maulstick_optics::light::shadow::REACH;
 use maulstick_paint::display::DisplayTile;
 use maulstick_paint::tile::TILE_CELLS;
 use maulstick_types::FrameView;
@@ -233,7 +234,7 @@ fn what_has_not_come_yet_is_shown_coarse_without_a_hole_or_a_seam() {
     let fine = easel.whole(0, &after);
     let shown = easel.drawn(&mut puller.view, &after);
     let held = puller.plan.sheet(Part::Detail).held.cells(CELLS);
-    let edge = |i: usize| (held.from[i] + held.size[i] - 17) as f32;
+    let edge = |i: usize| (held.from[i] + held.size[i] - (REACH + 1)) as f32;
     let origin = [1160.0 - 120.0, 880.0 + 90.0];
     let (right, top) = (edge(0) - origin[0], origin[1] - edge(1));
     assert!(right < 200.0 && top > 10.0, "{right} {top}: both are seen");

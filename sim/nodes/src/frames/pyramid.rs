@@ -324,7 +324,10 @@ impl Pyramid {
                 let inside = child.x < across && child.y < up;
                 inside.then(|| self.tile(look, number, surface, level - 1, child))
             });
-            DisplayTile::coarser(children.each_ref().map(|child| child.as_deref()), &outside)
+            let children = children.each_ref().map(|child| child.as_deref());
+            let finer = (1u64 << (level - 1).min(31)) as f32;
+            let cell_m = finer / surface.bare.relief.cells_per_m();
+            DisplayTile::coarser(children, &outside, cell_m)
         });
         self.put_aside(look, (number, level, id), version, &tile);
         self.keep((number, level, id), version, Arc::clone(&tile));

@@ -2,45 +2,59 @@
 //!
 //! One definition for the export and the view, whose shader holds the same terms
 //! (`ui/src/shaders/light_surface.wgsl`). With the surface z = ρ·h(x, y), ρ the strength of the
-//! relief, its normal n = (−ρ·∂h/∂x, −ρ·∂h/∂y, 1)/|…|, the unit vector l toward the lamp, the viewer
-//! straight above at v = (0, 0, 1), and the half vector b = (l + v)/|l + v|:
+//! relief, its slope s = ρ·∇h and normal n = (−s, 1)/|…|, the unit vector l toward the middle of the
+//! lamp, the unit vector m at a right angle to it and higher, the viewer straight above at v = (0, 0, 1),
+//! and the half vector b = (l + v)/|l + v|:
 //!
 //! ```text
-//! incidence i = V·max(n·l, 0)/l_z
-//! diffuse   d = a + (1 − a)·i
-//! lobe      λ(m) = (m + 8)/8·max((n·b)^m − b_z^m, 0)
-//! highlight s = F(l·b)·(g²·λ(64) + g·(1 − g)·λ(8))·i
-//! lit         = E·(d·unlit + w·(k₁ + s))
+//! incidence i = V·max(n·l + (1 − V)·w·n·m, 0)/l_z
+//! diffuse   d = (1 − a)·i + a·v + (B(v, c) − v)
+//! room      r = F₀(n_z)·O·(1 − e + e·(2n_z² − 1)),   O = v²
+//! window    t = V·(1 − a)·F(l·b)·max(π·P(s)·G − π·P₀·G, 0)/(4·b_z⁴·l_z)
+//! lit         = E·(d·unlit + w·(r + t))
 //! ```
 //!
-//! d is Lambert's law with a share a of light from all around. V is the share of the lamp that the
-//! relief does not hide ([`shadow`]). λ is the lobe of Blinn (1977, *Models of light reflection for
-//! computer synthesized pictures*), normalised as in Akenine-Möller, Haines and Hoffman 2008
-//! (*Real-Time Rendering*, § 7.6); the gloss g moves the reflection from the broad lobe of a dull film
-//! into the sharp one of a wet film, and F is Fresnel's share of it ([`fresnel`]). The highlight has
-//! the colour w of the light, white to an adapted eye (Baxter 2004, § 7.8.2). The films' colour leaves
-//! the surface's own reflection k₁ out; here it is added, once. d and s are relative to a flat surface,
-//! which so looks as a spectrometer reads it, gloss included, times E, wherever the lamp stands, and does
-//! not change when its gloss dries away.
+//! The lamp is as broad as a window: V is the share of it that the relief does not hide ([`shadow`]); of
+//! one that is half hidden the upper half is left, whence the term with m. A share a of the light comes
+//! from all around; v is how much of that a place receives, and B what it receives with the light that
+//! its surroundings, of its own colour c, throw back ([`sky`]): hollows of white paint are bright, those
+//! of red paint glow, and no shadow is black. Its gloss shows what it mirrors: a dim room, the dimmer the
+//! farther down it looks, and the lamp through microfacets ([`gloss`]) whose slopes include those that a
+//! cell does not resolve. P₀ is what a level surface of the same roughness mirrors of the lamp. The
+//! highlights have the colour w of the light, white to an adapted eye (Baxter 2004, § 7.8.2).
+//!
+//! The films' colour leaves the surface's own reflection k₁ out; here it is added, once, as that of
+//! Fresnel at normal incidence (Schlick 1994). All terms are relative to a flat open surface, where
+//! i = v = B = 1 and r + t = k₁: it looks as a spectrometer reads it, gloss included, times E, wherever the
+//! lamp stands, and does not change when its gloss dries away.
 
+mod facet;
 mod fresnel;
+pub mod gloss;
 mod relief;
 pub mod shadow;
+pub mod sky;
 
+pub use facet::{Facet, Surroundings};
 pub use fresnel::fresnel;
+pub use gloss::gloss;
 pub use relief::HeightField;
 
 use crate::surface::SurfaceCorrection;
 
-/// Share a of the light that comes from all around.
-pub const AMBIENT: f32 = 0.25;
-/// Exponents m of the sharp and of the broad highlight, as powers of two: 2⁶ and 2³.
-pub const SHARPNESS: [u32; 2] = [6, 3];
+/// Share a of the light that comes from all around, where nothing is hidden.
+pub const AMBIENT: f32 = 0.3125;
+/// e, by how much the room is dimmer at the level of the canvas than above it.
+pub const DIMMING: f32 = 0.5;
 /// k₁, the share of the light that a surface reflects by itself.
 pub const SURFACE: f32 = SurfaceCorrection::STANDARD.k1 as f32;
 /// The lowest lamp, as the z of its direction: below it a flat surface would hardly be lit, and
 /// everything relative to it would have no bound.
 pub const LOWEST: f64 = 0.1;
+/// How much of the height of a low lamp its own radius may be, so that it never sets for a flat surface.
+const SET: f64 = 0.95;
+/// Least albedo of the light itself by which colours are divided.
+const DARKEST: f64 = 1e-3;
 /// The brightest that [`starting_exposure`] lets a ground be.
 pub const BARE: f64 = 0.98;
 
@@ -70,7 +84,7 @@ impl Default for LampSetup {
             intensity: 1.0,
             exposure: 1.0,
             relief: 1.0,
-            softness: 0.1,
+            softness: 0.3,
             colour: [1.0; 3],
         }
     }
@@ -81,24 +95,28 @@ impl Default for LampSetup {
 pub struct Lamp {
     /// Unit vector l toward it, in the frame of the surface.
     pub toward: [f32; 3],
-    /// Unit half vector b between it and the viewer.
-    pub half: [f32; 3],
+    /// w·m: from its middle to its upper edge.
+    pub upper: [f32; 3],
     /// E: its strength and the exposure.
     pub intensity: f32,
     /// ρ.
     pub relief: f32,
-    /// F·(m + 8)/8 of the sharp and the broad lobe.
-    pub peak: [f32; 2],
-    /// b_z^m of both: the lobes of a flat surface, which are left out.
-    pub flat: [f32; 2],
-    /// Tangent of half the angle under which it is seen.
+    /// h̃, the slope that mirrors its middle to the viewer.
+    pub mirror: [f32; 2],
+    /// (1 − a)·F/(4·b_z⁴·l_z).
+    pub peak: f32,
+    /// tan²θ_l.
+    pub graze: f32,
+    /// w, the tangent of half the angle under which it is seen.
     pub softness: f32,
-    /// w.
+    /// w, its colour.
     pub colour: [f32; 3],
+    /// What makes an albedo of an unlit colour.
+    pub albedo: [f32; 3],
 }
 
 impl Lamp {
-    /// A lamp; numbers of `setup` that are none are those of the default.
+    /// A lamp; numbers of `setup` that are not finite are those of the default.
     #[must_use]
     pub fn new(setup: &LampSetup) -> Self {
         let or = |value: f64, default: f64| match value.is_finite() {
@@ -108,19 +126,31 @@ impl Lamp {
         let default = LampSetup::default();
         let l = raised(setup.toward);
         let b = unit([l[0], l[1], l[2] + 1.0]);
-        let half = b.map(|v| v as f32);
         // A viewer straight above sees at b the angle under which the lamp's light falls on b.
         let share = fresnel(SurfaceCorrection::default().k1, b[2]);
         let intensity = or(setup.intensity, default.intensity);
+        let across = (l[0] * l[0] + l[1] * l[1]).sqrt();
+        let softness = or(setup.softness, default.softness).min(SET * l[2] / across.max(1e-6));
+        // Straight above, any way is as good.
+        let away = if across > 1e-6 {
+            [-l[0] / across, -l[1] / across]
+        } else {
+            [0.0; 2]
+        };
+        let upper = [away[0] * l[2], away[1] * l[2], across].map(|v| v * softness);
+        let square = b[2] * b[2];
+        let peak = (1.0 - f64::from(AMBIENT)) * share / (4.0 * square * square * l[2]);
         Self {
             toward: l.map(|v| v as f32),
-            half,
+            upper: upper.map(|v| v as f32),
             intensity: (intensity * or(setup.exposure, default.exposure)) as f32,
             relief: or(setup.relief, default.relief) as f32,
-            peak: SHARPNESS.map(|m| (share * (f64::from(1u32 << m) + 8.0) / 8.0) as f32),
-            flat: SHARPNESS.map(|m| sharpened(half[2], m)),
-            softness: or(setup.softness, default.softness) as f32,
+            mirror: [-b[0] / b[2], -b[1] / b[2]].map(|v| v as f32),
+            peak: peak as f32,
+            graze: ((1.0 - l[2] * l[2]) / (l[2] * l[2])) as f32,
+            softness: softness as f32,
             colour: setup.colour.map(|v| v as f32),
+            albedo: setup.colour.map(|v| (1.0 / v.max(DARKEST)) as f32),
         }
     }
 }
@@ -146,15 +176,6 @@ fn raised(toward: [f64; 3]) -> [f64; 3] {
     [l[0] * scale, l[1] * scale, LOWEST]
 }
 
-/// x to the power 2^`squarings`; 0 for x < 0.
-fn sharpened(x: f32, squarings: u32) -> f32 {
-    let mut power = x.max(0.0);
-    for _ in 0..squarings {
-        power *= power;
-    }
-    power
-}
-
 /// A point of a surface.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Spot {
@@ -162,36 +183,47 @@ pub struct Spot {
     pub unlit: [f32; 3],
     /// g, 0 to 1.
     pub gloss: f32,
-    /// ∂h/∂x and ∂h/∂y.
-    pub slope: [f32; 2],
-    /// V, 0 to 1: [`shadow::Shadows`] tells it.
-    pub seen: f32,
+    /// How it lies, and what it sees.
+    pub facet: Facet,
+}
+
+/// Unit normal of a surface of this slope.
+#[must_use]
+pub fn normal(slope: [f32; 2]) -> [f32; 3] {
+    let length = (slope[0] * slope[0] + slope[1] * slope[1] + 1.0).sqrt();
+    [-slope[0] / length, -slope[1] / length, 1.0 / length]
 }
 
 /// What `lamp` makes of a point.
 #[must_use]
 pub fn lit(spot: &Spot, lamp: &Lamp) -> [f32; 3] {
-    let slope = spot.slope.map(|rise| rise * lamp.relief);
-    let length = (slope[0] * slope[0] + slope[1] * slope[1] + 1.0).sqrt();
-    let n = [-slope[0] / length, -slope[1] / length, 1.0 / length];
+    let Facet {
+        slope,
+        spread,
+        seen,
+        open,
+    } = spot.facet;
+    let n = normal(slope);
     let along = |v: &[f32; 3]| n[0] * v[0] + n[1] * v[1] + n[2] * v[2];
-    let incidence = spot.seen * along(&lamp.toward).max(0.0) / lamp.toward[2];
-    let diffuse = AMBIENT + (1.0 - AMBIENT) * incidence;
-    let facing = along(&lamp.half);
-    let lobe = |i: usize| lamp.peak[i] * (sharpened(facing, SHARPNESS[i]) - lamp.flat[i]).max(0.0);
-    let gloss = spot.gloss;
-    let highlight = (gloss * gloss * lobe(0) + gloss * (1.0 - gloss) * lobe(1)) * incidence;
-    let shine = SURFACE + highlight;
-    [0, 1, 2].map(|i| (diffuse * spot.unlit[i] + lamp.colour[i] * shine) * lamp.intensity)
-}
-
-/// Gloss g of oil paint: `wetness` leads from .3, an eggshell of dry paint, to .75, stiff paint from
-/// the tube, whose pigment roughens the surface; the share of thinner in it leads either to 1, a level
-/// film. Both 0 to 1.
-#[must_use]
-pub fn gloss(thinner_share: f32, wetness: f32) -> f32 {
-    let own = 0.3 + (0.75 - 0.3) * wetness.clamp(0.0, 1.0);
-    own + (1.0 - own) * thinner_share.clamp(0.0, 1.0)
+    let facing = along(&lamp.toward) + (1.0 - seen) * along(&lamp.upper);
+    let incidence = seen * facing.max(0.0) / lamp.toward[2];
+    let direct = (1.0 - AMBIENT) * incidence + AMBIENT * open;
+    let off = [lamp.mirror[0] - slope[0], lamp.mirror[1] - slope[1]];
+    let rough = gloss::roughness(spot.gloss);
+    let square = rough * rough;
+    let own = square + 0.125 * lamp.softness * lamp.softness;
+    let level = gloss::density(own, [0.0; 3], lamp.mirror);
+    let more = (gloss::density(own, spread, off) - level).max(0.0);
+    let window = seen * lamp.peak * gloss::unmasked(square, lamp.graze) * more;
+    let grazing = 1.0 - n[2];
+    let twice = grazing * grazing;
+    let mirrored = SURFACE + (1.0 - SURFACE) * twice * twice * grazing;
+    let room = mirrored * open * open * (1.0 - DIMMING + DIMMING * (2.0 * n[2] * n[2] - 1.0));
+    [0, 1, 2].map(|i| {
+        let albedo = (spot.unlit[i] * lamp.albedo[i]).clamp(0.0, 1.0);
+        let diffuse = direct + (sky::bounced(open, albedo) - open);
+        (diffuse * spot.unlit[i] + lamp.colour[i] * (room + window)) * lamp.intensity
+    })
 }
 
 /// The exposure with which a painting begins: the largest, of at most 1, under which no channel of the

@@ -13,24 +13,24 @@
 //! So a shadow is sharp at the foot of what casts it and soft far from it. A lamp never reaches below the
 //! horizon of a flat surface, which sees all of it: V is exactly 1.
 //!
-//! The way to the lamp is followed over the lines of the grid that it crosses, cell upon cell to
-//! [`REACH`], and heights are interpolated between the two cells of each. A longer way in longer strides
-//! would miss ridges of one cell at every other distance, which shows as stripes. Over the last cells the
+//! The way to the lamp is followed over the lines of the grid that it crosses, to [`REACH_M`] or
+//! [`REACH`] cells, and heights are interpolated between the two cells of each. Where that is more lines
+//! than [`TAPS`], the last strides are of two lines and take the mean of both: to leave lines out would
+//! miss ridges of one cell at every other distance, which shows as stripes. Over the last of the way the
 //! lamp is taken to be higher by degrees, so that a shadow too long for the reach fades out.
 
 use super::{HeightField, Lamp};
 
 /// Places that are looked at on the way to the lamp.
 pub const TAPS: usize = 16;
-/// The farthest, in cells along the axis that the way is nearest to: 4 mm, or four times the height of
-/// the thickest impasto.
-pub const REACH: u32 = TAPS as u32;
-/// So many of the last ones fade.
-const FADING: usize = 6;
+/// The farthest, m: four times the height of the thickest impasto.
+pub const REACH_M: f64 = 4e-3;
+/// The farthest, in cells along the axis that the way is nearest to.
+pub const REACH: u32 = 24;
+/// Share of the way that fades.
+const FADING: f64 = 0.375;
 /// The sharpest lamp.
 const SHARPEST: f64 = 1e-3;
-/// How much of the height of a low lamp its own radius may be, so that it never sets for a flat surface.
-const SET: f64 = 0.95;
 /// Least denominator of tan α: what stands at a right angle to the lamp or lower hides nothing.
 pub const LEAST: f32 = 1e-6;
 
@@ -71,36 +71,40 @@ impl Shadows {
             [1.0, 0.0]
         };
         let major = x.abs().max(y.abs());
+        let lines = (REACH_M / f64::from(cell_m)).round();
+        let lines = lines.clamp(TAPS as f64, f64::from(REACH)) as usize;
+        let single = 2 * TAPS - lines;
         let tap = |k: usize| {
-            let far = (k + 1) as f64;
-            let faded = (k + 1).saturating_sub(TAPS - FADING) as f64 / FADING as f64;
-            let [dx, dy] = [x, y].map(|v| v / major * far);
+            // Lines that are crossed, and what is between: the mean of two lines, or of two cells of one.
+            let double = k >= single;
+            let first = if double { single + 2 * (k - single) } else { k } + 1;
+            let far = first as f64 + if double { 0.5 } else { 0.0 };
+            let faded = (far / lines as f64 - (1.0 - FADING)).max(0.0) / FADING;
             // What rounding adds to a whole number would reach for one cell more.
-            let between = |v: f64| {
-                let v = (v * 1e6).round() * 1e-6;
-                (v.floor(), v.ceil(), v - v.floor())
-            };
-            let (low, high, weight) = if x.abs() >= y.abs() {
-                let (low, high, weight) = between(dy);
-                ([dx.round(), low], [dx.round(), high], weight)
+            let exactly = |v: f64| (v * 1e6).round() * 1e-6;
+            let crossed = |line: usize| [x, y].map(|v| exactly(v / major * line as f64));
+            let [low, high, weight] = if double {
+                let [near, next] = [first, first + 1].map(|line| crossed(line).map(f64::round));
+                [near, next, [0.5; 2]]
             } else {
-                let (low, high, weight) = between(dx);
-                ([low, dy.round()], [high, dy.round()], weight)
+                let at = crossed(first);
+                let minor = usize::from(x.abs() >= y.abs());
+                let (mut low, mut high) = (at.map(f64::round), at.map(f64::round));
+                (low[minor], high[minor]) = (at[minor].floor(), at[minor].ceil());
+                [low, high, [at[minor] - at[minor].floor(); 2]]
             };
             let s = far / major;
             Tap {
                 cells: [low, high].map(|cell| cell.map(|v| v as i32)),
-                weight: weight as f32,
+                weight: weight[0] as f32,
                 run: [(s * across) as f32, (s * (z + faded)) as f32],
             }
         };
-        let widest = SET * z / across.max(1e-6);
-        let w = f64::from(lamp.softness).min(widest).max(SHARPEST);
         Self {
             taps: std::array::from_fn(tap),
             toward: [across as f32, z as f32],
             rise: lamp.relief / cell_m,
-            sharpness: (1.0 / w) as f32,
+            sharpness: (1.0 / f64::from(lamp.softness).max(SHARPEST)) as f32,
         }
     }
 
@@ -121,11 +125,8 @@ impl Shadows {
     /// V of the cells of row `y` from column `x` on, as many as `seen` takes. Beyond the border the
     /// relief goes on at the border's height.
     pub fn row(&self, field: &HeightField<'_>, [x, y]: [usize; 2], seen: &mut [f32]) {
-        let [width, height] = field.cells;
-        let row = |dy: i32| {
-            let at = (y as i64 + i64::from(dy)).clamp(0, height as i64 - 1) as usize;
-            &field.heights[at * width..][..width]
-        };
+        let width = field.cells[0];
+        let row = |dy: i32| field.row(y as i64 + i64::from(dy));
         let own = &row(0)[x..][..seen.len()];
         seen.fill(-1.0);
         for tap in &self.taps {

@@ -20,8 +20,10 @@ fn spot(unlit: [f32; 3], gloss: f32, slope: [f32; 2]) -> Spot {
     Spot {
         unlit,
         gloss,
-        slope,
-        seen: 1.0,
+        facet: Facet {
+            slope,
+            ..Facet::LEVEL
+        },
     }
 }
 
@@ -46,8 +48,9 @@ fn is_lit_from_the_left([left, right]: [f32; 2]) -> bool {
 fn a_ridge_is_brighter_on_the_lamps_side_and_darker_on_the_other() {
     assert!(is_lit_from_the_left(ridge(lit)), "{:?}", ridge(lit));
     let turned = |spot: &Spot, lamp: &Lamp| {
-        let slope = spot.slope.map(|rise| -rise);
-        lit(&Spot { slope, ..*spot }, lamp)
+        let mut turned = *spot;
+        turned.facet.slope = turned.facet.slope.map(|rise| -rise);
+        lit(&turned, lamp)
     };
     assert!(!is_lit_from_the_left(ridge(turned)), "a fault would pass");
 }
@@ -65,12 +68,18 @@ fn best(gloss: f32, lamp: &Lamp) -> (f32, f32) {
 #[test]
 fn gloss_shines_most_where_the_normal_halves_the_angle_to_the_lamp() {
     let lamp = upper_left();
-    let half = lamp.half[0] / -lamp.half[2];
     let (at, shine) = best(1.0, &lamp);
-    // The angle of incidence draws the maximum a little toward the lamp.
-    assert!((at - half).abs() < 0.03, "{at} for {half}");
+    assert!(
+        (at - lamp.mirror[0]).abs() < 0.01,
+        "{at} for {:?}",
+        lamp.mirror
+    );
     assert!(shine > 0.2 && shine < 1.0, "{shine}");
-    assert_eq!(lit(&spot([0.0; 3], 0.0, [at, -at]), &lamp), [SURFACE; 3]);
+    let half = -lamp.toward[0] / (1.0 + lamp.toward[2]);
+    assert!((lamp.mirror[0] - half).abs() < 1e-6 && lamp.mirror[0] == -lamp.mirror[1]);
+    // An absorbent ground has next to none.
+    let matte = lit(&spot([0.0; 3], 0.0, [at, -at]), &lamp)[0];
+    assert!(matte < 0.06, "{matte}");
 }
 
 #[test]
@@ -90,21 +99,86 @@ fn a_dull_film_shines_less_and_more_broadly() {
 }
 
 #[test]
+fn unresolved_bristle_marks_shine_broadly_too() {
+    let lamp = upper_left();
+    let shine = |spread: f32, slope: f32| {
+        let mut spot = spot([0.0; 3], 0.75, [slope, -slope]);
+        spot.facet.spread = [spread, 0.0, spread];
+        lit(&spot, &lamp)[0]
+    };
+    let at = lamp.mirror[0];
+    assert!(shine(0.05, at) < 0.5 * shine(0.0, at), "the glint is gone");
+    assert!(
+        shine(0.05, 0.1) > shine(0.0, 0.1),
+        "and has gone into a sheen"
+    );
+}
+
+#[test]
 fn a_lower_lamp_shines_more_on_what_faces_it() {
     // Fresnel: at the half vector of a lamp 6° high light falls at 42°; straight above, at 0°.
     let low = from([-1.0, 0.0, 0.1]);
     let above = from([0.0, 0.0, 1.0]);
     let k1 = SurfaceCorrection::default().k1;
-    assert!((f64::from(above.peak[0]) - 9.0 * k1).abs() < 1e-7);
-    assert!(low.peak[0] > 1.1 * above.peak[0], "{:?}", low.peak);
+    let direct = f64::from(1.0 - AMBIENT);
+    assert!((f64::from(above.peak) - direct * k1 / 4.0).abs() < 1e-8);
+    // b_z² = (1 + l_z)/2.
+    let bare = direct * k1 / (4.0 * 0.55 * 0.55 * 0.1);
+    assert!(f64::from(low.peak) > 1.1 * bare, "{:?}", low.peak);
 }
 
 #[test]
-fn paint_is_dull_when_it_is_dry_and_level_when_it_is_thin() {
-    assert_eq!([gloss(0.0, 1.0), gloss(0.0, 0.0)], [0.75, 0.3]);
-    assert_eq!([gloss(1.0, 1.0), gloss(1.0, 0.0)], [1.0, 1.0]);
-    assert!(gloss(0.5, 0.5) > gloss(0.2, 0.5) && gloss(0.2, 0.6) > gloss(0.2, 0.5));
-    assert_eq!(gloss(-1.0, 2.0), 0.75);
+fn a_hollow_is_lit_by_its_own_colour_and_no_shadow_is_black() {
+    let deep = |unlit: [f32; 3]| {
+        let mut spot = spot(unlit, 0.0, [0.0; 2]);
+        (spot.facet.seen, spot.facet.open) = (0.0, 0.4);
+        lit(&spot, &upper_left())
+    };
+    let [r, g, b] = deep([0.8, 0.2, 0.05]);
+    println!("red hollow {r} {g} {b}");
+    assert!(
+        r / g > 1.3 * 0.8 / 0.2 && g > b,
+        "more saturated than level paint"
+    );
+    let white = deep([0.9; 3])[0];
+    assert!(white > 0.4 * 0.9, "{white}");
+    // Under a light of another colour the albedo is the paint's.
+    let warm = Lamp::new(&LampSetup {
+        colour: [2.0, 1.0, 0.5],
+        ..Default::default()
+    });
+    let mut spot = spot([1.0, 0.5, 0.25], 0.0, [0.0; 2]);
+    spot.facet.open = 0.5;
+    let [r, g, b] = lit(&spot, &warm);
+    assert!((r - 2.0 * g).abs() < 1e-6 && (g - 2.0 * b).abs() < 1e-6);
+}
+
+#[test]
+fn of_a_broad_lamp_the_upper_half_lights_what_turns_away() {
+    // A facet whose plane goes through the middle of the lamp sees the half of its disc above: of the
+    // half angle w, seen at the mean height 4w/(3π), so that its irradiance is ½·.42·w/l_z.
+    let setup = LampSetup {
+        toward: [-1.0, 0.0, 1.0],
+        ..Default::default()
+    };
+    let broad = Lamp::new(&setup);
+    let mut spot = spot([1.0; 3], 0.0, [-1.0, 0.0]);
+    (spot.facet.seen, spot.facet.open) = (0.5, 1.0);
+    let got = (lit(&spot, &broad)[0]
+        - lit(
+            &Spot {
+                facet: Facet {
+                    seen: 0.0,
+                    ..spot.facet
+                },
+                ..spot
+            },
+            &broad,
+        )[0])
+        / (1.0 - AMBIENT);
+    let expected = 0.5 * 0.3 * 4.0 / (3.0 * std::f32::consts::PI) / 0.5f32.sqrt();
+    println!("{got:.3} expected {expected:.3}");
+    assert!((got - expected).abs() < 0.02, "{got} {expected}");
 }
 
 #[test]
@@ -157,10 +231,31 @@ fn exposure_and_relief_are_factors() {
         relief: 2.0,
         ..Default::default()
     });
-    let slope = [0.1, -0.2];
-    let twice = lit(&spot(GREY, 1.0, slope.map(|v| 2.0 * v)), &one);
-    let got = lit(&spot(GREY, 1.0, slope), &other);
-    assert_eq!(got, twice.map(|v| 2.0 * v));
+    let steep = |factor: f32| {
+        let heights: Vec<f32> = (0..9)
+            .map(|i: i32| factor * 2e-5 * (i * i) as f32)
+            .collect();
+        let field = HeightField {
+            heights: &heights,
+            cells: [9, 1],
+            cell_m: 2.5e-4,
+        };
+        let lamp = if factor == 1.0 { &other } else { &one };
+        let mut facets = [Facet::LEVEL; 3];
+        Surroundings::new(lamp, 2.5e-4).row(&field, [3, 0], &mut facets);
+        facets.map(|facet| {
+            lit(
+                &Spot {
+                    facet,
+                    ..spot(GREY, 1.0, [0.0; 2])
+                },
+                lamp,
+            )
+        })
+    };
+    for (got, twice) in steep(1.0).iter().flatten().zip(steep(2.0).iter().flatten()) {
+        assert!((got - 2.0 * twice).abs() < 1e-5, "{got} {twice}");
+    }
 }
 
 proptest! {
@@ -197,9 +292,16 @@ proptest! {
     fn what_sees_less_of_the_lamp_is_darker(
         slope in prop::array::uniform2(-1.0f32..1.0),
         seen in 0.0f32..0.9,
+        open in 0.0f32..=1.0,
     ) {
-        let whole = spot(GREY, 0.6, slope);
-        let [part, all] = [Spot { seen, ..whole }, whole].map(|spot| lit(&spot, &upper_left())[0]);
-        prop_assert!(part <= all && part >= AMBIENT * GREY[0] * 0.999);
+        // Where the plane of the facet itself hides a part of the lamp, that part is not seen.
+        let facing = normal(slope).iter().zip(&upper_left().toward).map(|(n, l)| n * l).sum::<f32>();
+        prop_assume!(facing > 0.3);
+        let mut spot = spot(GREY, 0.6, slope);
+        spot.facet.open = open;
+        let all = lit(&spot, &upper_left())[0];
+        spot.facet.seen = seen;
+        let part = lit(&spot, &upper_left())[0];
+        prop_assert!(part <= all && part >= AMBIENT * open * GREY[0] * 0.999, "{} {}", part, all);
     }
 }

@@ -62,7 +62,7 @@ impl Painting {
         let veiled: Vec<(u32, f32)> = veiled.map(|layer| (layer.number, layer.opacity)).collect();
         let wells: Vec<_> = self.scene.surfaces.iter().map(|own| &own.wells).collect();
         let hash = self.library.hash();
-        let made_of = format!("3 {light:?} {veiled:?} {makes:?} {wells:?} {hash}");
+        let made_of = format!("4 {light:?} {veiled:?} {makes:?} {wells:?} {hash}");
         Arc::make_mut(&mut self.look).note(&made_of);
     }
 

@@ -3,8 +3,7 @@
 use std::fmt;
 
 use maulstick_optics::gamut::Gamut;
-use maulstick_optics::light::shadow::Shadows;
-use maulstick_optics::light::{SURFACE, Spot, lit};
+use maulstick_optics::light::{Facet, SURFACE, Spot, Surroundings, lit};
 use maulstick_types::paint::TILE;
 
 use super::{Depth, Export};
@@ -22,7 +21,7 @@ pub(super) type Light = Box<dyn Fn(&Spot) -> [f32; 3] + Sync>;
 pub struct Drawing<'a> {
     banded: Banded<'a>,
     light: Light,
-    shadows: Option<Shadows>,
+    surroundings: Option<Surroundings>,
     gamut: Gamut,
     export: &'a Export,
 }
@@ -31,7 +30,7 @@ impl fmt::Debug for Drawing<'_> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.debug_struct("Drawing")
             .field("banded", &self.banded)
-            .field("shadows", &self.shadows)
+            .field("surroundings", &self.surroundings)
             .finish_non_exhaustive()
     }
 }
@@ -46,9 +45,9 @@ impl<'a> Drawing<'a> {
     pub fn lit(painting: &'a mut Painting, surface: u32, export: &'a Export) -> Option<Self> {
         let lamp = lamp_over(painting.scene(), surface);
         let banded = Banded::of(painting, surface)?;
-        let shadows = Shadows::new(&lamp, banded.cell_m() as f32);
+        let surroundings = Surroundings::new(&lamp, banded.cell_m() as f32);
         let light: Light = Box::new(move |spot| lit(spot, &lamp));
-        Some(Self::new(banded, light, Some(shadows), export))
+        Some(Self::new(banded, light, Some(surroundings), export))
     }
 
     /// A surface as if it were flat: its colours alone; none if there is no such surface.
@@ -62,13 +61,13 @@ impl<'a> Drawing<'a> {
     pub(super) fn new(
         banded: Banded<'a>,
         light: Light,
-        shadows: Option<Shadows>,
+        surroundings: Option<Surroundings>,
         export: &'a Export,
     ) -> Self {
         Self {
             banded,
             light,
-            shadows,
+            surroundings,
             gamut: Gamut::new(export.gamut, export.profile.from_working()),
             export,
         }
@@ -117,20 +116,19 @@ impl<'a> Drawing<'a> {
         let width = self.banded.cells()[0];
         let [across, rows] = self.banded.within(id);
         let left = id.x as usize * TILE;
-        let mut seen = [1.0f32; TILE];
+        let mut facets = [Facet::LEVEL; TILE];
         let mut colours = [[0.0f32; 3]; TILE];
         for y in 0..rows {
-            let field = heights.map(|heights| (heights.field(), heights.first + y));
-            if let (Some(shadows), Some((field, row))) = (&self.shadows, field) {
-                shadows.row(&field, [left, row], &mut seen[..across]);
+            if let (Some(surroundings), Some(heights)) = (&self.surroundings, heights) {
+                let place = [left, heights.first + y];
+                surroundings.row(&heights.field(), place, &mut facets[..across]);
             }
             for x in 0..across {
                 let cell = y * TILE + x;
                 let spot = Spot {
                     unlit: [0, 1, 2].map(|c| shown.rgb[c][cell]),
                     gloss: shown.gloss[cell],
-                    slope: field.map_or([0.0; 2], |(field, row)| field.slope(left + x, row)),
-                    seen: seen[x],
+                    facet: facets[x],
                 };
                 colours[x] = self.gamut.map((self.light)(&spot));
             }

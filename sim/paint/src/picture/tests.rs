@@ -1,8 +1,7 @@
 use std::sync::Arc;
 
 use maulstick_optics::colour::SrgbTable;
-use maulstick_optics::light::shadow::Shadows;
-use maulstick_optics::light::{HeightField, Lamp, LampSetup, Spot, lit};
+use maulstick_optics::light::{Facet, HeightField, Lamp, LampSetup, Spot, Surroundings, lit};
 use maulstick_optics::{PaintLibrary, Studio};
 use maulstick_types::paint::TILE;
 
@@ -55,7 +54,7 @@ fn bare(studio: &Studio) -> Bare {
 fn drawn(
     store: &TileStore,
     light: impl Fn(&Spot) -> [f32; 3] + Sync + 'static,
-    shadows: Option<Shadows>,
+    surroundings: Option<Surroundings>,
 ) -> Picture {
     let studio = studio();
     let bare = bare(&studio);
@@ -68,7 +67,7 @@ fn drawn(
     whole(Some(Drawing::new(
         banded,
         Box::new(light),
-        shadows,
+        surroundings,
         &export,
     )))
 }
@@ -92,14 +91,22 @@ fn upper_left() -> Lamp {
     })
 }
 
+fn around(lamp: &Lamp) -> Surroundings {
+    Surroundings::new(lamp, CELL_M as f32)
+}
+
 #[test]
 fn slopes_go_on_over_the_borders_of_tiles() {
     const BEND: f32 = 40.0;
     let bowl = store(|x, y| BEND * (x * x + y * y) as f32);
     // Slope as a colour: in a paraboloid it grows by the same amount with every cell.
     let scale = (CELL_M / QUANTUM_M) as f32 / (2.0 * BEND * 150.0);
-    let light = move |spot: &Spot| [spot.slope[0] * scale, spot.slope[1] * scale, 0.0];
-    let shown = drawn(&bowl, light, None);
+    let light = move |spot: &Spot| {
+        let [x, y] = spot.facet.slope.map(|slope| slope * scale);
+        [x, y, 0.0]
+    };
+    let surroundings = Some(around(&upper_left()));
+    let shown = drawn(&bowl, light, surroundings);
     let table = SrgbTable::default();
     let expected = |x: usize, y: usize| {
         let inside = |at: usize, size: u32| at > 0 && at + 1 < size as usize;
@@ -118,7 +125,7 @@ fn slopes_go_on_over_the_borders_of_tiles() {
     };
     assert!(off(&shown) <= 1, "{}", off(&shown));
     let torn = store(|x, y| BEND * (x * x + y * y) as f32 + f32::from(x as u16 / 64) * 2000.0);
-    let shown = drawn(&torn, light, None);
+    let shown = drawn(&torn, light, surroundings);
     assert!(off(&shown) > 1, "a seam would pass");
 }
 
@@ -126,8 +133,7 @@ fn slopes_go_on_over_the_borders_of_tiles() {
 fn a_flat_film_is_lit_to_its_unlit_colour_and_a_ridge_is_not() {
     let lamp = upper_left();
     let both = |store: &TileStore| {
-        let shadows = Some(Shadows::new(&lamp, CELL_M as f32));
-        let lit = drawn(store, move |spot| lit(spot, &lamp), shadows);
+        let lit = drawn(store, move |spot| lit(spot, &lamp), Some(around(&lamp)));
         (lit, drawn(store, |spot| flat(spot, [1.0; 3]), None))
     };
     let (flat, unlit) = both(&store(|_, _| 50_000.0));
@@ -147,7 +153,7 @@ fn a_flat_film_is_lit_to_its_unlit_colour_and_a_ridge_is_not() {
 }
 
 #[test]
-fn shadows_fall_over_the_borders_of_tiles() {
+fn shadows_and_occlusion_go_on_over_the_borders_of_tiles() {
     // A wall of one millimetre across the corner where four tiles meet.
     let wall = store(|x, y| {
         let across = (60..64).contains(&(x + 64 - y.min(64)));
@@ -159,18 +165,21 @@ fn shadows_fall_over_the_borders_of_tiles() {
         cells: CELLS.map(|cells| cells as usize),
         cell_m: CELL_M as f32,
     };
-    let shadows = Shadows::new(&lamp, CELL_M as f32);
-    let shown = drawn(&wall, |spot| [spot.seen; 3], Some(shadows));
+    let surroundings = around(&lamp);
+    let of = |facet: &Facet| [facet.seen, facet.open, 0.0];
+    let shown = drawn(&wall, move |spot| of(&spot.facet), Some(surroundings));
     let table = SrgbTable::default();
-    let mut dark = 0;
+    let (mut dark, mut hidden) = (0, 0);
     for (i, pixel) in shown.rgb.chunks_exact(3).enumerate() {
         let (x, y) = (i % shown.width, shown.height - 1 - i / shown.width);
-        let mut seen = [0.0];
-        shadows.row(&whole, [x, y], &mut seen);
-        assert_eq!(pixel[0], table.byte(seen[0]), "{x} {y}");
+        let mut facet = [Facet::LEVEL];
+        surroundings.row(&whole, [x, y], &mut facet);
+        let expected = of(&facet[0]).map(|share| table.byte(share));
+        assert_eq!(*pixel, expected, "{x} {y}");
         dark += u32::from(pixel[0] < 128);
+        hidden += u32::from(pixel[1] < 200);
     }
-    assert!(dark > 50, "{dark}");
+    assert!(dark > 50 && hidden > 50, "{dark} {hidden}");
 }
 
 #[test]

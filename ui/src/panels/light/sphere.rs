@@ -45,7 +45,10 @@ fn lit(lamp: &Lamp, normal: [f32; 3]) -> [f32; 3] {
     let soft = lamp.softness;
     let incidence = ((dot(&lamp.toward) + soft) / (1.0 + soft)).max(0.0);
     let diffuse = AMBIENT + (1.0 - AMBIENT) * incidence;
-    let gleam = GLOSS * dot(&lamp.half).max(0.0).powi(SHARPNESS);
+    let [x, y, z] = lamp.toward;
+    let length = (2.0 * (1.0 + z)).sqrt();
+    let half = [x / length, y / length, (1.0 + z) / length];
+    let gleam = GLOSS * dot(&half).max(0.0).powi(SHARPNESS);
     let value = lamp.intensity * (ALBEDO * diffuse + gleam);
     lamp.colour.map(|own| (value * own).clamp(0.0, 1.0))
 }
