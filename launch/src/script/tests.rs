@@ -242,8 +242,8 @@ fn a_stroke_that_cannot_be_painted_is_told_with_its_point() {
             &["'stroke' takes a list of lists of numbers", "{ stroke = [["],
         ),
         (
-            "{ stroke = [[1, 2, 0.3]], lean = 5 }",
-            &["'lean'", "'lean_deg'"],
+            "{ stroke = [[1, 2, 0.3]], lean_degs = 5 }",
+            &["'lean_degs'", "'lean_deg'"],
         ),
     ] {
         says(read(steps), words);
