@@ -17,12 +17,14 @@
 //! | [`backend`] | what computes the steps of the paint |
 //! | [`cells`] | the side of the cells that pictures are painted with |
 //! | [`document`] | paintings in files |
+//! | [`easel`] | a painting at which a script is followed |
 //! | [`duration`], [`ground`], [`tooth`] | times, grounds and teeth as a painter names them |
 //! | [`kit`] | what a take is painted with: put into it, and taken from it |
 //! | [`lamp`] | what is changed of the light |
 //! | [`memory`] | memory that a command takes at once |
 //! | [`outputs`] | files that are written, none in the place of one that is read |
 //! | [`script`] | a day at the easel, a step after the other |
+//! | [`paintings`] | the paintings that come along |
 //! | [`performance`] | what `render` and `up --play` share: take, brush, loads, canvas |
 
 pub mod attached;
@@ -34,6 +36,7 @@ pub mod commands;
 pub mod destination;
 pub mod document;
 pub mod duration;
+pub mod easel;
 pub mod ground;
 pub mod kit;
 pub mod lamp;
@@ -41,6 +44,7 @@ pub mod memory;
 pub mod nodes;
 pub mod outputs;
 pub mod page;
+pub mod paintings;
 pub mod performance;
 pub mod plot;
 pub mod script;

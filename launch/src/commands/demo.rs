@@ -1,24 +1,27 @@
-//! `maulstick demo`: a performance from a seed, and a sheet of what paint can do.
+//! `maulstick demo`: a performance from a seed, a sheet of what paint can do, and paintings.
 
 use std::path::PathBuf;
 
 use clap::Args;
 use indicatif::ProgressBar;
 use maulstick_device::demo::{Subject, performance};
+use maulstick_paint::picture::picture;
 use maulstick_rig::Fault;
 use maulstick_rig::files::Kind;
+use maulstick_types::scene::CANVAS;
 
 use crate::cells::SheetCells;
-use crate::commands::{say, write_picture, write_take};
+use crate::commands::{progress_bar, say, write_picture, write_take};
 use crate::outputs::{UsedFile, check_outputs};
+use crate::paintings::{paint, script};
 use crate::performance::library;
 use crate::sheet::effects::effects;
 
 /// Options of `maulstick demo`.
 #[derive(Args, Clone, Debug)]
 pub struct DemoOptions {
-    /// The take to write
-    #[arg(short, long, value_name = "TAKE", required_unless_present = "sheet")]
+    /// The take to write; with `--painting` the picture, a PNG [NAME.png]
+    #[arg(short, long, value_name = "FILE", required_unless_present_any = ["sheet", "painting"])]
     output: Option<PathBuf>,
     /// A sheet of marks instead of the flower
     #[arg(long)]
@@ -27,6 +30,9 @@ pub struct DemoOptions {
     /// drying, blending, glazing, impasto, scumbling
     #[arg(long, value_name = "PNG")]
     sheet: Option<PathBuf>,
+    /// Paints one of the paintings that come along: still-life, flower, landscape
+    #[arg(long, value_name = "NAME", conflicts_with_all = ["sheet", "marks", "seed"])]
+    painting: Option<String>,
     #[command(flatten)]
     cells: SheetCells,
     /// The same seed gives the same performance; 1 if absent
@@ -55,7 +61,7 @@ impl DemoOptions {
             }
         }
         if self.cells.cell_mm.is_some() && self.sheet.is_none() {
-            return Err(Fault::usage("--cell-mm does nothing without --sheet PNG")
+            return Err(Fault::usage("--cell-mm does nothing without --sheet PNG or --painting NAME")
                 .help("a take has no cells; `maulstick render --cell-mm` has"));
         }
         Ok(())
@@ -67,6 +73,9 @@ impl DemoOptions {
 /// # Errors
 /// A [`Fault`] where either cannot be written.
 pub fn run(options: &DemoOptions) -> Result<i32, Fault> {
+    if let Some(name) = &options.painting {
+        return run_painting(name, options);
+    }
     options.check_idle()?;
     let take = UsedFile::written("the take", options.output.as_ref(), Kind::Take);
     let sheet = UsedFile::written("the sheet", options.sheet.as_ref(), Kind::Png);
@@ -89,5 +98,19 @@ pub fn run(options: &DemoOptions) -> Result<i32, Fault> {
         write_picture(&picture, path)?;
         say!("{}", path.display());
     }
+    Ok(0)
+}
+
+/// Writes one of the paintings.
+fn run_painting(name: &str, options: &DemoOptions) -> Result<i32, Fault> {
+    let library = library()?;
+    script(name, &library)?;
+    let named = PathBuf::from(format!("{name}.png"));
+    let path = options.output.as_ref().unwrap_or(&named);
+    check_outputs(&[UsedFile::new("the picture", path).of(Kind::Png)], &[])?;
+    let bar = progress_bar(0).with_message("painting");
+    let mut offline = paint(name, options.cells.side_mm(), library, bar)?;
+    write_picture(&picture(offline.painting_mut(), CANVAS), path)?;
+    say!("{}", path.display());
     Ok(0)
 }

@@ -1,39 +1,25 @@
 //! `maulstick render`: a take, or a script, painted in one process.
 
 use std::path::{Path, PathBuf};
-use std::sync::Arc;
-use std::time::Instant;
 
 use clap::Args;
-use indicatif::ProgressBar;
-use maulstick_device::{Take, TakeSample};
+use maulstick_device::Take;
 use maulstick_nodes::snapshots::write_snapshot;
 use maulstick_nodes::{Keeper, Offline};
-use maulstick_paint::embedded::IMAGE;
-use maulstick_paint::light::changes_colour;
-use maulstick_paint::store::TileStore;
 use maulstick_paint::{Painting, Sequencer};
 use maulstick_rig::files::Kind;
 use maulstick_rig::{Fault, RigConfig};
-use maulstick_types::Mixture;
-use maulstick_types::command::Command;
-use maulstick_types::scene::{BrushHandling, CANVAS};
 
 use crate::backend::choose_backend;
 use crate::cells::picture_settings;
 use crate::commands::progress_bar;
 use crate::destination::export;
 use crate::document::{Presence, go_on, presence, wrong};
-use crate::duration::time_ns;
-use crate::ground::GroundFile;
+use crate::easel::Easel;
 use crate::kit::use_kit;
 use crate::outputs::{UsedFile, check_apart, check_outputs, named_by};
 use crate::performance::{PaintingOptions, brush_file, library_from, painting_setup, refused};
 use crate::script::{Act, Script, in_steps};
-use crate::tooth::ToothPicture;
-
-/// Time before a take, ns: strokes of two takes are never one.
-const PAUSE_NS: u64 = 1_000_000_000;
 
 /// Options of `maulstick render`.
 #[derive(Args, Clone, Debug)]
@@ -169,10 +155,19 @@ pub fn run(options: &RenderOptions) -> Result<i32, Fault> {
         (Some(path), _) => Script::read(path, &library)?,
         (None, Some((path, take))) => Script {
             steps: vec![(path.display().to_string(), Act::Take(take, loads.clone()))],
-            files: Vec::new(),
+            ..Script::default()
         },
         (None, None) => Script::default(),
     };
+    if let Some(size_mm) = script.canvas_mm {
+        if options.painting.kit.size.is_some() {
+            return Err(
+                Fault::usage("--size does nothing beside a script's 'canvas_mm'")
+                    .help("leave one of them out"),
+            );
+        }
+        [config.canvas.width_mm, config.canvas.height_mm] = size_mm;
+    }
     let mut written = outputs.clone();
     written.extend(options.document.iter().map(|path| UsedFile::painting(path)));
     check_apart(&written, &script.files)?;
@@ -196,25 +191,14 @@ pub fn run(options: &RenderOptions) -> Result<i32, Fault> {
     let file = brush_file(&section)?;
     let (name, share) = (&section.name, section.depth_share);
     let offline = Offline::going_on(sequencer, name, file, share, loads).map_err(refused)?;
-    let mut easel = Easel {
-        offline,
-        keeper: &mut keeper,
-        begun: Instant::now(),
-        bar: progress_bar(script.length_ns()).with_message("painting"),
-        painted_ns: 0,
-        done: 0,
-    };
-    easel.bar.inc_length(script.steps.len() as u64);
-    let painted = script.steps.into_iter().try_for_each(|(place, act)| {
-        let done = easel.act(act).map_err(|fault| fault.at(place));
-        easel.done += 1;
-        easel.show(easel.painted_ns);
-        done.map_err(|fault| match options.script {
+    let bar = progress_bar(script.length_ns()).with_message("painting");
+    let mut easel = Easel::new(offline, &mut keeper, bar);
+    let painted = easel
+        .follow_script(script)
+        .map_err(|fault| match options.script {
             Some(_) => in_steps(fault),
             None => fault,
-        })
-    });
-    easel.bar.finish_and_clear();
+        });
     let mut offline = easel.offline;
     let mut close = |offline: &mut Offline| match (keeper.take(), &options.document) {
         (Some(keeper), Some(path)) => keeper
@@ -235,194 +219,4 @@ pub fn run(options: &RenderOptions) -> Result<i32, Fault> {
         eprintln!("the brush carried no paint: `--load \"Ultramarine Blue\"` gives it some");
     }
     Ok(0)
-}
-
-/// A painting at which a script is followed.
-struct Easel<'a> {
-    offline: Offline,
-    keeper: &'a mut Option<Keeper>,
-    begun: Instant,
-    bar: ProgressBar,
-    /// Time of the takes and waits so far, ns.
-    painted_ns: u64,
-    /// Steps done.
-    done: u64,
-}
-
-impl Easel<'_> {
-    /// Shows how far it is: each millisecond of takes and waits counts, and each step.
-    fn show(&self, painted_ns: u64) {
-        self.bar.set_position(painted_ns / 1_000_000 + self.done);
-    }
-
-    fn act(&mut self, act: Act) -> Result<(), Fault> {
-        let brush = self.offline.brush().to_owned();
-        let done = match act {
-            Act::Brush(name, file, share) => self.offline.take_up(&name, *file, share),
-            Act::Load(mixture, None) => self.offline.command(Command::Load { brush, mixture }),
-            Act::Load(left, Some(right)) => {
-                let command = Command::LoadBeside { brush, left, right };
-                self.offline.command(command)
-            }
-            Act::Handle(mode, flow, most_m) => {
-                let handling = BrushHandling {
-                    brush,
-                    mode,
-                    flow,
-                    most_m,
-                };
-                self.offline.command(Command::Handle { handling })
-            }
-            Act::FillWith(thickness_m) => self.offline.command(Command::FillWith {
-                surface: CANVAS,
-                brush,
-                thickness_m,
-            }),
-            Act::Clean => self.offline.command(Command::Clean { brush }),
-            Act::Take(take, loads) => return self.follow(&take, loads),
-            Act::Ground(file) => return self.prime(file),
-            Act::Tooth(picture) => return self.weave(&picture),
-            Act::Wait(ticks) => {
-                self.wait(ticks);
-                Ok(())
-            }
-            Act::Light(change) => {
-                let before = self.offline.painting_mut().scene().light.clone();
-                let light = change.on(&before)?;
-                let expose = change.exposure.is_none() && changes_colour(&light, &before);
-                self.offline.command(Command::Relight { light, expose })
-            }
-            Act::Undo(times) => return self.take_back(times),
-            Act::Command(command) => self.offline.command(command),
-        };
-        done.map_err(refused)?;
-        self.keep();
-        Ok(())
-    }
-
-    fn prime(&mut self, file: GroundFile) -> Result<(), Fault> {
-        let surface = CANVAS;
-        let painting = self.offline.painting_mut();
-        let cells = painting.store(CANVAS).map_or([1, 1], TileStore::cells);
-        let command = match file.picture(cells)? {
-            Some(bytes) => {
-                let ground = format!("{IMAGE}{}", self.embed(bytes)?);
-                Command::Ground { surface, ground }
-            }
-            None => match file {
-                GroundFile::Spectrum(spectrum) => Command::GroundSpectrum { surface, spectrum },
-                GroundFile::Named(ground) | GroundFile::Picture(_, ground) => {
-                    Command::Ground { surface, ground }
-                }
-            },
-        };
-        self.offline.command(command).map_err(refused)?;
-        self.keep();
-        Ok(())
-    }
-
-    fn weave(&mut self, picture: &ToothPicture) -> Result<(), Fault> {
-        let canvas = &self.offline.painting_mut().scene().surfaces[0];
-        let (cells, cell_m) = (canvas.cells, canvas.cell_m);
-        let hash = self.embed(picture.png(cells, cell_m)?)?;
-        let command = Command::Tooth {
-            surface: CANVAS,
-            tooth: picture.name(hash, cells, cell_m),
-            seed: 1,
-        };
-        self.offline.command(command).map_err(refused)?;
-        self.keep();
-        Ok(())
-    }
-
-    /// Takes a picture into the painting, and returns its hash.
-    fn embed(&mut self, bytes: Arc<[u8]>) -> Result<String, Fault> {
-        let painting = self.offline.painting_mut();
-        let hash = painting.embed(bytes).map_err(refused)?;
-        if let Some(keeper) = self.keeper {
-            // The document has the picture before the journal names it.
-            keeper.settle(self.offline.sequencer_mut());
-        }
-        Ok(hash)
-    }
-
-    fn take_back(&mut self, times: u32) -> Result<(), Fault> {
-        let painting = self.offline.painting_mut();
-        painting.commit();
-        let (there, _) = painting.history_depth();
-        if there < times as usize {
-            let (what, help) = match there {
-                0 => (
-                    "there is nothing yet to take back".to_owned(),
-                    "a load, a stroke, a film, a drying, another ground or tooth can be taken back"
-                        .to_owned(),
-                ),
-                _ => (
-                    format!("{times} steps cannot be taken back: {there} can be"),
-                    format!("{{ undo = {there} }} takes all of them back"),
-                ),
-            };
-            return Err(Fault::usage(what).help(help));
-        }
-        for _ in 0..times {
-            let undo = Command::Undo { brush: None };
-            self.offline.command(undo).map_err(refused)?;
-        }
-        self.keep();
-        Ok(())
-    }
-
-    fn wait(&mut self, ticks: u32) {
-        let Self {
-            offline,
-            keeper,
-            begun,
-            painted_ns,
-            ..
-        } = self;
-        offline.wait(ticks, |sequencer| {
-            turn(keeper, *begun, sequencer);
-        });
-        *painted_ns += time_ns(ticks);
-    }
-
-    fn follow(&mut self, take: &Take, loads: Vec<Mixture>) -> Result<(), Fault> {
-        self.offline.begin_take(loads).map_err(refused)?;
-        // The start does not matter to the painting; a live one has the clock's time here.
-        let (start_ns, first_ns) = (PAUSE_NS + self.painted_ns, take.samples[0].time_ns);
-        let since_ns = |sample: &TakeSample| sample.time_ns - first_ns;
-        let samples = take.samples.iter();
-        let samples: Vec<_> = samples
-            .map(|sample| (start_ns + since_ns(sample), &sample.sample))
-            .collect();
-        let Self {
-            offline,
-            keeper,
-            begun,
-            bar,
-            painted_ns,
-            done,
-        } = self;
-        let followed = offline.follow(&samples, |sequencer, number| {
-            if number % 16 == 0 {
-                let painted_ns = *painted_ns + since_ns(&take.samples[number]);
-                bar.set_position(painted_ns / 1_000_000 + *done);
-            }
-            turn(keeper, *begun, sequencer);
-        });
-        followed.map_err(refused)?;
-        self.painted_ns += take.length_ns() + PAUSE_NS;
-        Ok(())
-    }
-
-    fn keep(&mut self) {
-        turn(self.keeper, self.begun, self.offline.sequencer_mut());
-    }
-}
-
-/// Hands what is new to the document, if there is one.
-fn turn(keeper: &mut Option<Keeper>, begun: Instant, sequencer: &mut Sequencer) {
-    if let Some(keeper) = keeper {
-        keeper.turn(sequencer, begun.elapsed().as_nanos() as u64);
-    }
 }

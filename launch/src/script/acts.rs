@@ -17,6 +17,7 @@ use maulstick_types::topics::check_name;
 use super::Act;
 use super::entries::file;
 use super::steps::Step;
+use super::stroke::{Stroke, Turn};
 use crate::commands::mode::handling;
 use crate::duration::ticks_in;
 use crate::ground::GroundFile;
@@ -27,6 +28,14 @@ use crate::tooth::ToothPicture;
 
 /// Thickness of a film for which nothing is said, µm.
 const FILM_UM: f64 = 50.0;
+/// Lean of a stroke's handle for which nothing is said, degrees.
+const LEAN_DEG: f64 = 25.0;
+/// Speed of a stroke for which nothing is said, mm/s.
+const SPEED_MM_S: f64 = 120.0;
+/// No point of a stroke is farther from the canvas's corner, mm.
+const FARTHEST_MM: f64 = 5000.0;
+/// No stroke takes longer, s.
+const LONGEST_S: f64 = 600.0;
 /// The keys of a light.
 const LIGHT: [&str; 10] = [
     "illuminant",
@@ -145,6 +154,83 @@ pub(super) fn take(step: &Step<'_>, library: &PaintLibrary) -> Result<Act, Fault
     let loads = loads.collect::<Result<_, _>>()?;
     let take = keys.named("take", Some(&name), Take::read(&path))?;
     Ok(Act::Take(take, loads))
+}
+
+/// Range of a key's number; what else is given is refused.
+fn within(
+    step: &Step<'_>,
+    key: &str,
+    range: std::ops::RangeInclusive<f64>,
+) -> Result<Option<f64>, Fault> {
+    let number = step.keys.number(key)?;
+    match number {
+        Some(number) if !range.contains(&number) => {
+            let fault = step.keys.fault(key, format!("a {key} of {number}"));
+            Err(fault.help(format!("choose {} to {}", range.start(), range.end())))
+        }
+        _ => Ok(number),
+    }
+}
+
+pub(super) fn stroke(step: &Step<'_>, _: &PaintLibrary) -> Result<Act, Fault> {
+    let keys = &step.keys;
+    let rows = step.due(keys.rows("stroke")?)?;
+    let wrong = |what: String, help: &str| Err(keys.fault("stroke", what).help(help));
+    if rows.is_empty() {
+        return wrong(
+            "a stroke of no points does nothing".to_owned(),
+            "a point is [x_mm, y_mm, pressure]; one alone is a dab",
+        );
+    }
+    let mut points = Vec::with_capacity(rows.len());
+    for (place, row) in rows.iter().enumerate() {
+        let number = place + 1;
+        let [x, y, pressure] = row[..] else {
+            return wrong(
+                format!("point {number} has {} numbers", row.len()),
+                "a point is [x_mm, y_mm, pressure], from the canvas's lower left corner",
+            );
+        };
+        if !(0.0..=1.0).contains(&pressure) {
+            return wrong(
+                format!("a pressure of {pressure} at point {number}"),
+                "choose 0 to 1",
+            );
+        }
+        if !(x.abs().max(y.abs()) <= FARTHEST_MM) {
+            return wrong(
+                format!("point {number} is at {x}, {y} mm"),
+                "choose places on the canvas or near it, at most 5000 mm away",
+            );
+        }
+        points.push([x, y, pressure]);
+    }
+    let turn = match (
+        within(step, "turn_deg", -360.0..=360.0)?,
+        within(step, "twist_deg", -360.0..=360.0)?,
+    ) {
+        (Some(_), Some(_)) => {
+            return Err(keys
+                .fault("turn_deg", "'turn_deg' and 'twist_deg' both turn the brush")
+                .help("turn_deg counts from the way, twist_deg from the canvas: leave one out"));
+        }
+        (_, Some(twist)) => Turn::Canvas(twist),
+        (turn, None) => Turn::Way(turn.unwrap_or(0.0)),
+    };
+    let stroke = Stroke {
+        points,
+        lean_deg: within(step, "lean_deg", 0.0..=80.0)?.unwrap_or(LEAN_DEG),
+        toward_deg: within(step, "toward_deg", -360.0..=360.0)?,
+        turn,
+        speed_mm_s: within(step, "speed_mm_s", 1.0..=2000.0)?.unwrap_or(SPEED_MM_S),
+    };
+    if stroke.seconds() > LONGEST_S {
+        return wrong(
+            format!("a stroke of {:.0} s", stroke.seconds()),
+            "make it two, or faster: a stroke takes up to 600 s",
+        );
+    }
+    Ok(Act::Stroke(stroke))
 }
 
 /// A drying at once, or over a time.

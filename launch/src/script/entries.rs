@@ -11,6 +11,9 @@ use toml::de::{DeArray, DeInteger, DeTable, DeValue};
 /// What a script looks like.
 const EXAMPLE: &str = "a script is `step = [ { load = \"Bone Black\" }, … ]`";
 
+/// The key of a new canvas's size.
+const CANVAS_MM: &str = "canvas_mm";
+
 /// Longer texts are cut where they are quoted.
 const SHORT: usize = 40;
 
@@ -40,18 +43,40 @@ impl<'a> Source<'a> {
             .help(EXAMPLE)
     }
 
-    /// What the only key of a script lists: tables, each with its first byte.
+    /// Size of a new canvas, mm, if a script says it.
+    pub(super) fn canvas_mm(&self, file: &'a DeTable<'a>) -> Result<Option<[f64; 2]>, Fault> {
+        let entries = Entries {
+            source: *self,
+            table: file,
+            example: "canvas_mm = [200, 160]",
+        };
+        let size = entries.numbers(CANVAS_MM)?.map(|numbers| {
+            let size = <[f64; 2]>::try_from(numbers).ok();
+            size.filter(|size| size.iter().all(|side| (1.0..=10_000.0).contains(side)))
+                .ok_or_else(|| {
+                    let what = format!("'{CANVAS_MM}' takes width and height, 1 to 10000 mm");
+                    entries.fault(CANVAS_MM, what).help(entries.for_example())
+                })
+        });
+        size.transpose()
+    }
+
+    /// What a script's key `step` lists: tables, each with its first byte.
     pub(super) fn listed(
         &self,
         file: &'a DeTable<'a>,
     ) -> Result<Vec<(usize, &'a DeTable<'a>)>, Fault> {
         let fault =
             |what: String, byte: usize| Fault::usage(what).at(self.place(byte)).help(EXAMPLE);
-        if let Some((key, _)) = file.iter().find(|(key, _)| key.get_ref() != "step") {
-            let what = format!("a script has no key '{}', only 'step'", key.get_ref());
+        let known = |key: &str| [CANVAS_MM, "step"].contains(&key);
+        if let Some((key, _)) = file.iter().find(|(key, _)| !known(key.get_ref())) {
+            let what = format!(
+                "a script has no key '{}', only 'step' and '{CANVAS_MM}'",
+                key.get_ref()
+            );
             return Err(fault(what, key.span().start));
         }
-        let Some((_, step)) = file.iter().next() else {
+        let Some((_, step)) = file.iter().find(|(key, _)| key.get_ref() == "step") else {
             return Err(Fault::usage("there are no steps")
                 .at(self.name)
                 .help(EXAMPLE));
@@ -207,6 +232,18 @@ impl<'a> Entries<'a> {
         })
     }
 
+    pub(super) fn numbers(&self, key: &str) -> Result<Option<Vec<f64>>, Fault> {
+        self.due(key, "a list of numbers", |value| numbers_of(value))
+    }
+
+    /// Lists of numbers.
+    pub(super) fn rows(&self, key: &str) -> Result<Option<Vec<Vec<f64>>>, Fault> {
+        self.due(key, "a list of lists of numbers", |value| {
+            let rows = list_of(value)?.iter();
+            rows.map(|row| numbers_of(row.get_ref())).collect()
+        })
+    }
+
     /// A vector.
     pub(super) fn three(&self, key: &str) -> Result<Option<[f64; 3]>, Fault> {
         let Some(list) = self.due(key, "three numbers", list_of)? else {
@@ -264,6 +301,15 @@ impl<'a> Entries<'a> {
 /// A name that is that of a file.
 pub(super) fn file(name: &str) -> Option<&str> {
     is_path(name).then_some(name)
+}
+
+fn numbers_of(value: &DeValue<'_>) -> Option<Vec<f64>> {
+    let DeValue::Array(list) = value else {
+        return None;
+    };
+    list.iter()
+        .map(|value| number_of(value.get_ref()))
+        .collect()
 }
 
 fn list_of<'a>(value: &'a DeValue<'a>) -> Option<&'a DeArray<'a>> {

@@ -9,7 +9,7 @@
 //! ]
 //! ```
 //!
-//! A step has one key that says what is done, and perhaps others that say how. Paths count from the
+//! `canvas_mm = [200, 160]` before the steps says how large a new canvas is. A step has one key that says what is done, and perhaps others that say how. Paths count from the
 //! script's folder. All of it is read before anything is painted.
 //!
 //! | module | holds |
@@ -17,10 +17,12 @@
 //! | `entries` | keys and what they hold, each with its line |
 //! | `steps` | which steps there are, and what keys each has |
 //! | `acts` | what each step does |
+//! | [`stroke`] | a stroke written as points |
 
 mod acts;
 mod entries;
 mod steps;
+pub mod stroke;
 #[cfg(test)]
 mod tests;
 
@@ -36,6 +38,7 @@ use maulstick_types::scene::BrushMode;
 use toml::de::DeTable;
 
 use self::entries::Source;
+use self::stroke::Stroke;
 use crate::duration::time_ns;
 use crate::ground::GroundFile;
 use crate::lamp::LightChange;
@@ -57,6 +60,8 @@ pub enum Act {
     FillWith(f64),
     /// Follows a take; its strokes load these mixtures in turn.
     Take(Take, Vec<Mixture>),
+    /// Paints a stroke with what the brush has.
+    Stroke(Stroke),
     /// Gives the canvas another ground.
     Ground(GroundFile),
     /// Gives the canvas the tooth of a picture.
@@ -76,6 +81,8 @@ pub enum Act {
 pub struct Script {
     /// Its steps, each with its place, file and line.
     pub steps: Vec<(String, Act)>,
+    /// Size of a new canvas, mm, if the script says it.
+    pub canvas_mm: Option<[f64; 2]>,
     /// The files that they name.
     pub files: Vec<UsedFile>,
 }
@@ -123,15 +130,32 @@ impl Script {
                 false => fault,
             }
         })?;
+        let folder = path.parent().unwrap_or(Path::new(""));
+        Self::parse(&text, &path.display().to_string(), folder, library)
+    }
+
+    /// Reads the text of a script of this name, whose paths count from `folder`.
+    ///
+    /// # Errors
+    /// As [`read`](Self::read).
+    pub fn parse(
+        text: &str,
+        name: &str,
+        folder: &Path,
+        library: &PaintLibrary,
+    ) -> Result<Self, Fault> {
         let text = text.trim_start_matches('\u{feff}');
         let line_ends: Vec<usize> = text.match_indices('\n').map(|(at, _)| at).collect();
         let source = Source {
             line_ends: &line_ends,
-            name: &path.display().to_string(),
-            folder: path.parent().unwrap_or(Path::new("")),
+            name,
+            folder,
         };
         let file = DeTable::parse(text).map_err(|error| source.no_toml(&error))?;
-        let mut script = Self::default();
+        let mut script = Self {
+            canvas_mm: source.canvas_mm(file.get_ref())?,
+            ..Self::default()
+        };
         for step in steps::listed(source, file.get_ref())? {
             let act = steps::act(&step, library)?;
             script.files.extend(acts::file_of(&step)?);
@@ -140,11 +164,12 @@ impl Script {
         Ok(script)
     }
 
-    /// Length of all takes and waits, ns.
+    /// Length of all takes, strokes and waits, ns.
     #[must_use]
     pub fn length_ns(&self) -> u64 {
         let lengths = self.steps.iter().map(|(_, act)| match act {
             Act::Take(take, _) => take.length_ns(),
+            Act::Stroke(stroke) => (1e9 * stroke.seconds()) as u64,
             Act::Wait(ticks) => time_ns(*ticks),
             _ => 0,
         });

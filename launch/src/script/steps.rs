@@ -10,8 +10,8 @@ use toml::de::DeTable;
 
 use super::Act;
 use super::acts::{
-    brush, command, dry, fill_with_brush, film_m, ground, light, load, mode, opacity, switched_on,
-    take, tooth, wet,
+    brush, command, dry, fill_with_brush, film_m, ground, light, load, mode, opacity, stroke,
+    switched_on, take, tooth, wet,
 };
 use super::entries::{Entries, Source};
 use crate::commands::mode::piles_command;
@@ -45,7 +45,7 @@ const fn kind(
 }
 
 /// All kinds of steps.
-pub(super) static KINDS: [Kind; 20] = [
+pub(super) static KINDS: [Kind; 21] = [
     kind(
         "brush",
         &["size_mm", "depth_share"],
@@ -87,6 +87,18 @@ pub(super) static KINDS: [Kind; 20] = [
         &["loads"],
         "{ take = \"sky.mcap\", loads = [\"Burnt Sienna\", \"Bone Black\"] }",
         take,
+    ),
+    kind(
+        "stroke",
+        &[
+            "lean_deg",
+            "toward_deg",
+            "turn_deg",
+            "twist_deg",
+            "speed_mm_s",
+        ],
+        "{ stroke = [[20, 30, 0.3], [60, 34, 0.5], [90, 30, 0.1]], lean_deg = 25 }",
+        stroke,
     ),
     kind(
         "dry",

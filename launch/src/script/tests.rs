@@ -203,6 +203,71 @@ fn what_is_out_of_range_says_what_to_choose() {
 }
 
 #[test]
+fn a_stroke_that_cannot_be_painted_is_told_with_its_point() {
+    for (steps, words) in [
+        (
+            "{ stroke = [] }",
+            &["day.toml:3", "no points", "help: a point is [x_mm"][..],
+        ),
+        (
+            "{ stroke = [[1, 2, 0.3], [4, 5]] }",
+            &["point 2 has 2 numbers", "[x_mm, y_mm, pressure]"],
+        ),
+        (
+            "{ stroke = [[1, 2, 0.3], [4, 5, 1.5]] }",
+            &["a pressure of 1.5 at point 2", "choose 0 to 1"],
+        ),
+        (
+            "{ stroke = [[1e9, 2, 0.3]] }",
+            &["point 1 is at", "on the canvas or near it"],
+        ),
+        (
+            "{ stroke = [[1, 2, 0.3]], lean_deg = 90 }",
+            &["a lean_deg of 90", "choose 0 to 80"],
+        ),
+        (
+            "{ stroke = [[1, 2, 0.3]],\n speed_mm_s = 0 }",
+            &["day.toml:4", "a speed_mm_s of 0", "choose 1 to 2000"],
+        ),
+        (
+            "{ stroke = [[1, 2, 0.3]], turn_deg = 5, twist_deg = 5 }",
+            &["both turn the brush", "leave one out"],
+        ),
+        (
+            "{ stroke = [[1, 2, 0.3], [4000, 2, 0.3]], speed_mm_s = 1 }",
+            &["a stroke of 3999 s", "up to 600 s"],
+        ),
+        (
+            "{ stroke = [1, 2] }",
+            &["'stroke' takes a list of lists of numbers", "{ stroke = [["],
+        ),
+        (
+            "{ stroke = [[1, 2, 0.3]], lean_degs = 5 }",
+            &["'lean_degs'", "'lean_deg'"],
+        ),
+    ] {
+        says(read(steps), words);
+    }
+}
+
+#[test]
+fn the_size_of_a_canvas_is_read_or_told() {
+    let step = "step = [ { clean = true } ]";
+    let script = read_text(&format!("canvas_mm = [200, 160.5]\n{step}")).expect("a script");
+    assert_eq!(script.canvas_mm, Some([200.0, 160.5]));
+    for (size, words) in [
+        (
+            "[200]",
+            &["day.toml:1", "width and height", "[200, 160]"][..],
+        ),
+        ("[0, 10]", &["width and height"]),
+        ("200", &["'canvas_mm' takes a list of numbers"]),
+    ] {
+        says(read_text(&format!("canvas_mm = {size}\n{step}")), words);
+    }
+}
+
+#[test]
 fn another_kind_of_value_is_told_with_key_and_line() {
     for (steps, words) in [
         (

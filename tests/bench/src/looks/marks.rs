@@ -1,5 +1,6 @@
 //! The measurements: each paints a few strokes and reads films and heights.
 
+use maulstick_brush::BrushFile;
 use maulstick_rig::Fault;
 
 use super::easel::{Easel, Map, Stroke, brush, correlation, slope};
@@ -24,7 +25,6 @@ pub(crate) enum Painter {
     /// One who does as the measurement says.
     Able,
     /// One with too little paint, too heavy a hand or the wrong tool: the seeded fault of each number.
-    #[cfg_attr(not(test), expect(dead_code, reason = "the tests have it paint"))]
     Faulty,
 }
 
@@ -192,24 +192,22 @@ fn by_height(film: &Map, ground: &Map) -> [f64; 4] {
 /// Lanes on which a brush is wiped.
 const LANES: u32 = 2;
 
-/// Wipes a brush nearly empty on bare lanes of 250 mm from a height on.
-fn wipe(easel: &mut Easel, above: f64) -> Result<(), Fault> {
-    for lane in 0..LANES {
-        let y = above + 15.0 * f64::from(lane);
-        for pressure in [0.6, 0.08] {
-            easel.stroke(&Stroke::along(y, 15.0, 265.0, pressure))?;
-        }
-    }
-    Ok(())
+/// Share of its load on a brush that is nearly empty.
+const NEARLY_EMPTY: f64 = 0.1;
+
+/// A brush that carries so much of its load: wiped on a rag.
+fn wiped(kind: &str, width_mm: f64, share: f64) -> Result<BrushFile, Fault> {
+    let mut file = brush(kind, width_mm)?;
+    file.load.film_um *= share;
+    file.load.inside_um *= share;
+    Ok(file)
 }
 
 /// A nearly empty brush, lightly.
 pub(crate) fn dry_brush(trial: Trial) -> Result<Vec<Number>, Fault> {
-    let mut easel = Easel::new([280.0, 50.0], trial.cell_mm, "linen", brush("flat", 14.0)?)?;
+    let flat = wiped("flat", 14.0, trial.pick(NEARLY_EMPTY, 1.0))?;
+    let mut easel = Easel::new([115.0, 24.0], trial.cell_mm, "linen", flat)?;
     easel.load(PAINT)?;
-    if trial.painter == Painter::Able {
-        wipe(&mut easel, 35.0)?;
-    }
     easel.stroke(&Stroke::along(12.0, 15.0, 100.0, trial.pick(0.01, 0.8)))?;
     let part = ([30.0, 8.0], [80.0, 16.0]);
     let (film, ground) = (
@@ -228,7 +226,7 @@ pub(crate) fn dry_brush(trial: Trial) -> Result<Vec<Number>, Fault> {
 
 /// White lightly over dried ridges.
 pub(crate) fn scumble(trial: Trial) -> Result<Vec<Number>, Fault> {
-    let mut easel = Easel::new([280.0, 85.0], trial.cell_mm, "linen", brush("round", 6.0)?)?;
+    let mut easel = Easel::new([100.0, 64.0], trial.cell_mm, "linen", brush("round", 6.0)?)?;
     for row in 0..12 {
         easel.load("Burnt Umber")?;
         let y = 18.0 + 2.5 * f64::from(row);
@@ -237,11 +235,8 @@ pub(crate) fn scumble(trial: Trial) -> Result<Vec<Number>, Fault> {
         }
     }
     easel.dry()?;
-    easel.take_up("white", brush("flat", 14.0)?)?;
+    easel.take_up("white", wiped("flat", 14.0, trial.pick(NEARLY_EMPTY, 1.0))?)?;
     easel.load("Titanium White")?;
-    if trial.painter == Painter::Able {
-        wipe(&mut easel, 70.0)?;
-    }
     for x in [35.0, 48.0, 61.0] {
         easel.stroke(&Stroke {
             from: [x, 10.0],

@@ -1,0 +1,73 @@
+//! The paintings that come along: each a script of strokes, painted at any size of cell.
+
+use std::path::Path;
+
+use indicatif::ProgressBar;
+use maulstick_brush::BrushFile;
+use maulstick_nodes::Offline;
+use maulstick_optics::PaintLibrary;
+use maulstick_paint::{Painting, PaintingSetup};
+use maulstick_rig::Fault;
+
+use crate::easel::Easel;
+use crate::performance::refused;
+use crate::script::Script;
+
+/// Names and scripts of the paintings.
+pub const PAINTINGS: [(&str, &str); 3] = [
+    ("still-life", include_str!("../paintings/still-life.toml")),
+    ("flower", include_str!("../paintings/flower.toml")),
+    ("landscape", include_str!("../paintings/landscape.toml")),
+];
+
+/// A brush's name until the script takes one up.
+const BRUSH: &str = "main";
+/// The share of its head's length by which full pressure presses that brush in.
+const DEPTH_SHARE: f64 = 0.5;
+
+/// The script of a painting.
+///
+/// # Errors
+/// A [`Fault`] for a name that none has.
+pub fn script(name: &str, library: &PaintLibrary) -> Result<Script, Fault> {
+    let Some((_, text)) = PAINTINGS.iter().find(|(known, _)| *known == name) else {
+        let names = PAINTINGS.map(|(known, _)| known);
+        return Err(Fault::usage(format!("there is no painting '{name}'"))
+            .help(maulstick_types::advice::choice(name, names)));
+    };
+    Script::parse(text, &format!("{name}.toml"), Path::new(""), library)
+}
+
+/// Paints one of the paintings in cells so wide; `bar` shows how far it is.
+///
+/// # Errors
+/// A [`Fault`] for a name that none has, or where the painting refuses a step.
+pub fn paint(
+    name: &str,
+    cell_mm: f64,
+    library: PaintLibrary,
+    bar: ProgressBar,
+) -> Result<Offline, Fault> {
+    let script = script(name, &library)?;
+    let size_mm = script
+        .canvas_mm
+        .ok_or_else(|| Fault::failure(format!("the painting '{name}' does not say its size")))?;
+    let setup = PaintingSetup {
+        cells: size_mm.map(|mm| (mm / cell_mm).round() as u32),
+        cell_m: 1e-3 * cell_mm,
+        // Strokes that go over the canvas's edge come to a clean board.
+        wells: Vec::new(),
+        ..PaintingSetup::default()
+    };
+    let painting = Painting::new(&setup, library).map_err(refused)?;
+    let file = BrushFile::library("flat").map_err(|error| Fault::failure(error.to_string()))?;
+    let offline = Offline::new(painting, BRUSH, file, DEPTH_SHARE, Vec::new()).map_err(refused)?;
+    let mut keeper = None;
+    bar.set_length(script.length_ns() / 1_000_000);
+    let mut easel = Easel::new(offline, &mut keeper, bar);
+    easel.follow_script(script)?;
+    Ok(easel.offline)
+}
+
+#[cfg(test)]
+mod tests;
