@@ -197,7 +197,8 @@ pub(super) fn stroke(step: &Step<'_>, _: &PaintLibrary) -> Result<Act, Fault> {
                 "choose 0 to 1",
             );
         }
-        if !(x.abs().max(y.abs()) <= FARTHEST_MM) {
+        let near = -FARTHEST_MM..=FARTHEST_MM;
+        if !(near.contains(&x) && near.contains(&y)) {
             return wrong(
                 format!("point {number} is at {x}, {y} mm"),
                 "choose places on the canvas or near it, at most 5000 mm away",
