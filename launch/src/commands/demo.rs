@@ -61,8 +61,10 @@ impl DemoOptions {
             }
         }
         if self.cells.cell_mm.is_some() && self.sheet.is_none() {
-            return Err(Fault::usage("--cell-mm does nothing without --sheet PNG or --painting NAME")
-                .help("a take has no cells; `maulstick render --cell-mm` has"));
+            return Err(Fault::usage(
+                "--cell-mm does nothing without --sheet PNG or --painting NAME",
+            )
+            .help("a take has no cells; `maulstick render --cell-mm` has"));
         }
         Ok(())
     }

@@ -193,7 +193,7 @@ fn by_height(film: &Map, ground: &Map) -> [f64; 4] {
 const LANES: u32 = 2;
 
 /// Share of its load on a brush that is nearly empty.
-const NEARLY_EMPTY: f64 = 0.1;
+const NEARLY_EMPTY: f64 = 0.15;
 
 /// A brush that carries so much of its load: wiped on a rag.
 fn wiped(kind: &str, width_mm: f64, share: f64) -> Result<BrushFile, Fault> {
