@@ -22,10 +22,12 @@ pub struct KeptBrush {
     pub stroke: Option<(u32, u64)>,
     /// Where it is on which surface, while it paints.
     pub path: Option<(u32, Scale, KeptWaypoint)>,
-    /// What its next strokes take in turn, and which is next.
+    /// What its strokes take in turn, and how many it made since its take began.
     pub loads: Vec<Mixture>,
     /// See `loads`.
-    pub next_load: usize,
+    pub strokes: usize,
+    /// Seed of how its bristles lie.
+    pub seed: u64,
 }
 
 /// A step that is not finished.

@@ -83,7 +83,9 @@ fn levels(grid: &Grid<'_>, scene: &Scene, oil: &Oil, at: [i64; 2], axis: usize) 
     let goes = conducts.min(most) * pull / CELL_M;
     let (donor, onto) = if goes > 0.0 { (at, next) } else { (next, at) };
     let bare = f64::from(STAIN) * quantum_m;
-    let steep = (surface(at) - surface(next)).abs() >= CELL_M;
+    // A yield stress pins an edge on bare ground.
+    let pinned = CELL_M * mean(&|at| (1.0 - 2.0 * thinner(at)).max(0.0).powi(3));
+    let steep = (surface(at) - surface(next)).abs() >= pinned;
     if wet(donor) <= bare || (wet(onto) <= bare && !steep) {
         return 0.0;
     }

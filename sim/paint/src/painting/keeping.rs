@@ -163,7 +163,8 @@ impl Painting {
                 stroke: track.stroke,
                 path,
                 loads: track.loads.clone(),
-                next_load: track.next_load,
+                strokes: track.strokes,
+                seed: track.seed,
             };
             (name.clone(), kept)
         });
@@ -319,8 +320,7 @@ fn restored_track(
         )
     })?;
     let tidy = Arc::new(Head::of(&file));
-    let seed = load.as_ref().map_or(0, |load| load.get().seed());
-    let head = Arc::new(tidy.disordered(seed));
+    let head = Arc::new(tidy.disordered(brush.seed));
     let path = brush.path.and_then(|(surface, scale, at)| {
         let sheet = sheets.iter().position(|sheet| sheet.id == surface)?;
         Some((sheet, PathStepper::begin(&head, Waypoint::from(at), scale)))
@@ -345,7 +345,8 @@ fn restored_track(
         path,
         window: None,
         loads: brush.loads,
-        next_load: brush.next_load,
+        strokes: brush.strokes,
+        seed: brush.seed,
         deferral: Deferral::default(),
     })
 }

@@ -13,7 +13,7 @@ use crate::load::{Half, by_slot};
 use crate::model::BrushTraits;
 use crate::quantum::SLOTS;
 
-/// Seeds of loads are the newest bits of the number of steps.
+/// Bits of a seed. That of a load is the number of steps.
 pub(super) const SEEDS: u64 = 0x7fff_ffff;
 
 impl Painting {
@@ -79,7 +79,7 @@ impl Painting {
         self.brush(brush)?;
         let slots = self.slots(mixture)?;
         self.begin_step(&format!("load {brush}"), Some(brush));
-        self.fill(brush, &[(&slots, Half::Both)])?;
+        self.fill(brush, &[(&slots, Half::Both)], self.steps & SEEDS)?;
         self.book(Some(brush));
         self.end_step(|step| step.brush.as_deref() == Some(brush));
         Ok(())
@@ -98,7 +98,8 @@ impl Painting {
         self.brush(brush)?;
         let slots = self.all_slots(&[left.clone(), right.clone()])?;
         self.begin_step(&format!("load {brush}"), Some(brush));
-        self.fill(brush, &[(&slots[0], Half::Left), (&slots[1], Half::Right)])?;
+        let parts = [(&slots[0][..], Half::Left), (&slots[1][..], Half::Right)];
+        self.fill(brush, &parts, self.steps & SEEDS)?;
         self.book(Some(brush));
         self.end_step(|step| step.brush.as_deref() == Some(brush));
         Ok(())
@@ -115,9 +116,9 @@ impl Painting {
         &mut self,
         brush: &str,
         parts: &[(&[(usize, f64)], Half)],
+        seed: u64,
     ) -> Result<(), PaintRefusal> {
         let (cell_m, thinner) = (self.sheets[0].cell_m, self.thinner());
-        let seed = self.steps & SEEDS;
         self.settle();
         let track = self.brush(brush)?;
         track.deferral = Deferral::default();
@@ -172,7 +173,8 @@ impl Painting {
         self.close_windows();
         let track = self.brush(brush)?;
         track.loads = loads.to_vec();
-        track.next_load = 0;
+        (track.strokes, track.seed) = (0, 0);
+        track.head = track.disordered();
         track.stroke = None;
         track.path = None;
         Ok(())

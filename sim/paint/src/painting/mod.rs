@@ -106,7 +106,7 @@ struct BrushTrack {
     file: BrushFile,
     /// The head as its file has it.
     tidy: Arc<Head>,
-    /// The same with its bristles as they lie since the stroke began.
+    /// The same with its bristles as they lie since the newest stroke began.
     head: Arc<Head>,
     load: Arc<BrushLoad>,
     /// The load that was last kept, and its page.
@@ -115,12 +115,23 @@ struct BrushTrack {
     stroke: Option<(u32, u64)>,
     path: Option<(usize, PathStepper)>,
     window: Option<(usize, Window)>,
+    /// What its strokes take in turn.
     loads: Vec<Mixture>,
-    next_load: usize,
+    /// Strokes since its take began.
+    strokes: usize,
+    /// Seed of how its bristles lie.
+    seed: u64,
     /// What lay under it at its newest step.
     under: UnderBrush,
     /// How far steps are deferred.
     deferral: Deferral,
+}
+
+impl BrushTrack {
+    /// The head with its bristles as they lie by its seed.
+    fn disordered(&self) -> Arc<Head> {
+        Arc::new(self.tidy.disordered(self.seed))
+    }
 }
 
 /// A painting.
@@ -281,7 +292,8 @@ impl Painting {
                     track.load = BrushLoad::spread(head.strips(), &track.load.counts()).into();
                 }
                 (track.file, track.path) = (file, None);
-                (track.tidy, track.head) = (Arc::clone(&head), head);
+                track.tidy = head;
+                track.head = track.disordered();
             }
             None => {
                 let track = BrushTrack {
@@ -294,7 +306,8 @@ impl Painting {
                     path: None,
                     window: None,
                     loads: Vec::new(),
-                    next_load: 0,
+                    strokes: 0,
+                    seed: 0,
                     under: UnderBrush::default(),
                     deferral: Deferral::default(),
                 };

@@ -3,6 +3,7 @@
 use std::sync::Arc;
 
 use maulstick_types::brush::{BrushState, Solve, solve_flags};
+use maulstick_types::name_hash;
 
 use super::backend::Deferral;
 use super::loads::SEEDS;
@@ -71,16 +72,21 @@ impl Painting {
             self.fall.stroke_ends();
             return Ok(());
         }
+        let restarted = solve.flags & solve_flags::RESTARTED != 0;
         if track.stroke != Some((epoch, solve.stroke)) {
+            // A brush that rested and never left keeps its bristles as they lie.
+            let rested = restarted && track.path.is_some();
             self.lift(name)?;
             self.brush(name)?.stroke = Some((epoch, solve.stroke));
+            if !rested {
+                self.disorder(name)?;
+            }
             self.begin_stroke(name)?;
         }
         let scale = Scale {
             cell_m: self.sheets[sheet].cell_m,
             zoom: solve.zoom,
         };
-        let restarted = solve.flags & solve_flags::RESTARTED != 0;
         let track = self.brush(name)?;
         let traits = BrushTraits::of(&track.file, scale.cell_m, scale.zoom);
         let waypoint = Waypoint::of(solve, scale, self.seen_fullness(name, &traits)?);
@@ -110,22 +116,34 @@ impl Painting {
         Ok(())
     }
 
+    /// Has the bristles of a brush lie otherwise: as chance has it for the strokes since its take began, so
+    /// that a take is the same however often it is played.
+    fn disorder(&mut self, name: &str) -> Result<(), PaintRefusal> {
+        self.settle();
+        let track = self.brush(name)?;
+        let stroke = (track.strokes as u64).wrapping_mul(0x9e37_79b1);
+        track.seed = match track.strokes {
+            0 => 0,
+            _ => (stroke ^ u64::from(name_hash(name))) & SEEDS,
+        };
+        track.head = track.disordered();
+        Arc::make_mut(&mut track.load).disorder(track.seed);
+        Ok(())
+    }
+
     pub(super) fn begin_stroke(&mut self, name: &str) -> Result<(), PaintRefusal> {
         self.begin_step("stroke", Some(name));
         self.fall.stroke_ends();
-        self.settle();
-        let seed = self.steps & SEEDS;
         let track = self.brush(name)?;
         track.deferral = Deferral::default();
-        Arc::make_mut(&mut track.load).disorder(seed);
-        track.head = Arc::new(track.tidy.disordered(seed));
+        let (number, seed) = (track.strokes, track.seed);
+        track.strokes += 1;
         if track.loads.is_empty() {
             return Ok(());
         }
-        let mixture = track.loads[track.next_load % track.loads.len()].clone();
-        track.next_load += 1;
+        let mixture = track.loads[number % track.loads.len()].clone();
         let slots = self.slots(&mixture)?;
-        self.fill(name, &[(&slots, Half::Both)])
+        self.fill(name, &[(&slots, Half::Both)], seed)
     }
 
     /// One step of the paint model.

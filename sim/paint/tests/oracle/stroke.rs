@@ -299,9 +299,11 @@ fn borders_of_tiles_do_not_show() {
 
 #[test]
 fn a_mirrored_stroke_is_the_mirrored_picture() {
-    let one = painted(light, Windows::Whole);
+    // Short, for where a film just bridges its gap rounding decides whether it touches.
+    let short = |way: &[HeadPose]| way[..12].to_vec();
+    let one = painted(short, Windows::Whole);
     let want = moved(&one, |x, y| Some((SIDE as usize - 1 - x, y)));
-    let got = painted(|way| mirrored(&light(way)), Windows::Whole);
+    let got = painted(|way| mirrored(&short(way)), Windows::Whole);
     let apart = difference(&want, &got);
     println!("mirrored: {apart:?}");
     assert!(agrees(apart), "{apart:?}");

@@ -189,9 +189,6 @@ fn by_height(film: &Map, ground: &Map) -> [f64; 4] {
     ]
 }
 
-/// Lanes on which a brush is wiped.
-const LANES: u32 = 2;
-
 /// Share of its load on a brush that is nearly empty.
 const NEARLY_EMPTY: f64 = 0.15;
 
