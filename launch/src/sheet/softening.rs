@@ -21,7 +21,7 @@ pub fn bands() -> Vec<(&'static str, Gesture)> {
 
 /// Light sweeps across the edge, over the right half.
 pub fn sweeps() -> Vec<Gesture> {
-    (0..44)
+    (0..88)
         .map(|i| {
             let x = 134.0 + 9.5 * f64::from(i % 11);
             let up = i % 2 == 0;

@@ -121,7 +121,8 @@ fn the_sample_rate_does_not_show() {
     }
 }
 
-/// Half as large cells: a brush leaves the same by area within 5 %, whether its paint lasts or not.
+/// Half as large cells: a brush that runs out leaves the same by area within 5 %. One that never does is short
+/// of that: finer cells see more of the bristles that stand off, and fill the gaps under them.
 #[test]
 fn the_size_of_cells_hardly_shows() {
     let volume = |mode: &BrushMode, finer: u32, length: f64| {
@@ -130,17 +131,17 @@ fn the_size_of_cells_hardly_shows() {
         metres / f64::from(finer * finer)
     };
     let cases = [
-        ("a brush that runs out", BrushMode::Normal, 0.6),
-        ("one that does not", BrushMode::Sponge, 0.8),
+        ("a brush that runs out", BrushMode::Normal, 0.6, 0.05),
+        ("one that does not", BrushMode::Sponge, 0.8, 0.08),
     ];
-    for (what, mode, shorter) in cases {
+    for (what, mode, shorter, most) in cases {
         let whole = volume(&mode, 1, 1.0);
         let apart = |length: f64| (volume(&mode, 2, length) / whole - 1.0).abs();
         let off = apart(1.0);
         println!("half as large cells, {what}: {:.2} %", 100.0 * off);
-        assert!(off < 0.05, "{what}: {off}");
+        assert!(off < most, "{what}: {off}");
         let fault = apart(shorter);
-        assert!(fault > 0.05, "{what}: a shorter stroke passes: {fault}");
+        assert!(fault > most, "{what}: a shorter stroke passes: {fault}");
     }
 }
 

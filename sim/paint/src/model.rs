@@ -96,7 +96,7 @@ impl BrushTraits {
                 .map_or(0.0, |skin| (skin.recede_mm * seen) as f32),
             half_thickness: (0.5 * file.strips.thickness_mm * seen) as f32,
             lift: (file.strips.lift_mm * seen) as f32,
-            sink: (file.strips.sink_mm * seen) as f32,
+            sink: (file.strips.sink_mm * seen * (PEAK_M / cell_m).min(1.0).powi(2)) as f32,
             film_full: quanta(file.load.film_um),
             film_most: quanta(file.load.film_um) * if rigid { BLADE_OVER } else { FILM_OVER },
             inside_full: quanta(file.load.inside_um),
@@ -119,6 +119,8 @@ impl BrushTraits {
     }
 }
 
+/// Larger cells than these hold less of the peaks of a tooth, into which bristles sink, m.
+const PEAK_M: f64 = 0.125e-3;
 /// A film takes up at most this many times its full thickness.
 pub const FILM_OVER: f64 = 2.0;
 /// As [`FILM_OVER`]: what a blade scrapes off gathers on it.
