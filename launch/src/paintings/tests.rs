@@ -128,7 +128,7 @@ fn the_still_life_has_thick_lights_and_thin_darks() {
     let [red, green, blue] = still.colour(lemon.clone());
     assert!(
         red > 170.0 && green > 130.0 && blue < 120.0,
-        "a yellow lemon"
+        "a yellow lemon: {red} {green} {blue}"
     );
     let [red, green, blue] = still.colour(apple);
     assert!(red > green + 60.0 && red > blue + 60.0, "a red apple");

@@ -14,8 +14,14 @@ pub fn bands() -> Vec<(&'static str, Gesture)> {
         })
     };
     vec![
-        ("Ultramarine Blue=0.6,Titanium White=0.4", band(29.0)),
-        ("Hansa Yellow Opaque=0.6,Titanium White=0.4", band(11.0)),
+        (
+            "Ultramarine Blue=0.36,Titanium White=0.24,Thinner=0.4",
+            band(29.0),
+        ),
+        (
+            "Hansa Yellow Opaque=0.36,Titanium White=0.24,Thinner=0.4",
+            band(11.0),
+        ),
     ]
 }
 

@@ -132,7 +132,7 @@ fn the_size_of_cells_hardly_shows() {
     };
     let cases = [
         ("a brush that runs out", BrushMode::Normal, 0.6, 0.05),
-        ("one that does not", BrushMode::Sponge, 0.8, 0.08),
+        ("one that does not", BrushMode::Sponge, 0.6, 0.08),
     ];
     for (what, mode, shorter, most) in cases {
         let whole = volume(&mode, 1, 1.0);

@@ -6,9 +6,9 @@ use super::{Head, STATIONS, place_along, smoothstep};
 /// Width of a tress of bristles that stray together, by half the head's width.
 const TRESS: f32 = 0.16;
 /// How far a tress strays, by half the head's width and thickness there.
-const STRAY: f32 = 0.08;
+const STRAY: f32 = 0.04;
 /// How much shorter the shortest bristle is, by the head's length.
-const RAGGED: f32 = 0.05;
+const RAGGED: f32 = 0.02;
 /// Numbers of the planes of noise: across the width, across the thickness, along.
 const PLANES: [u64; 3] = [11, 12, 13];
 
@@ -17,7 +17,7 @@ impl Head {
     #[must_use]
     pub fn disordered(&self, seed: u64) -> Self {
         let mut head = self.clone();
-        if seed == 0 || self.rigid {
+        if self.rigid || seed == 0 {
             return head;
         }
         // The bristles of a pointed brush cling to each other.

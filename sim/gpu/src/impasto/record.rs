@@ -14,7 +14,7 @@ use super::residence::Residence;
 
 /// Scores reach this far below and above what reaches lowest and stands highest, cells: ranks, and what
 /// covers a cell only in part.
-const MARGIN: [f32; 2] = [0.1, 1.25];
+const MARGIN: [f32; 2] = [0.1, 0.95];
 /// No plane.
 const NONE: u32 = u32::MAX;
 

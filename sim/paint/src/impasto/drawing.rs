@@ -13,7 +13,7 @@ use crate::load::ALONG;
 /// other each has the cells that it covers most, so more of them give paint where cells are coarse. A
 /// round brush that runs out leaves 4.0 % more on cells half as large, with .6 it was 5.5 %; one that never
 /// runs out leaves 7.5 % more.
-const EDGE_PENALTY: f32 = 1.2;
+const EDGE_PENALTY: f32 = 0.9;
 /// Nothing here.
 const NOTHING: f32 = -1.0;
 /// Cells drawn at a time; rows are padded so that such a run never ends in the next one.

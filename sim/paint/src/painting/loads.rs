@@ -13,9 +13,6 @@ use crate::load::{Half, by_slot};
 use crate::model::BrushTraits;
 use crate::quantum::SLOTS;
 
-/// Bits of a seed. That of a load is the number of steps.
-pub(super) const SEEDS: u64 = 0x7fff_ffff;
-
 impl Painting {
     /// The slots of several mixtures; where one is refused no paint gets a slot.
     fn all_slots(&mut self, mixtures: &[Mixture]) -> Result<Vec<Vec<(usize, f64)>>, PaintRefusal> {
@@ -79,7 +76,8 @@ impl Painting {
         self.brush(brush)?;
         let slots = self.slots(mixture)?;
         self.begin_step(&format!("load {brush}"), Some(brush));
-        self.fill(brush, &[(&slots, Half::Both)], self.steps & SEEDS)?;
+        let seed = self.brush(brush)?.next_seed(brush);
+        self.fill(brush, &[(&slots, Half::Both)], seed)?;
         self.book(Some(brush));
         self.end_step(|step| step.brush.as_deref() == Some(brush));
         Ok(())
@@ -99,7 +97,8 @@ impl Painting {
         let slots = self.all_slots(&[left.clone(), right.clone()])?;
         self.begin_step(&format!("load {brush}"), Some(brush));
         let parts = [(&slots[0][..], Half::Left), (&slots[1][..], Half::Right)];
-        self.fill(brush, &parts, self.steps & SEEDS)?;
+        let seed = self.brush(brush)?.next_seed(brush);
+        self.fill(brush, &parts, seed)?;
         self.book(Some(brush));
         self.end_step(|step| step.brush.as_deref() == Some(brush));
         Ok(())

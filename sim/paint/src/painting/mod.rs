@@ -101,6 +101,9 @@ struct Sheet {
     top: f32,
 }
 
+/// Bits of a seed.
+const SEEDS: u64 = 0x7fff_ffff;
+
 /// A brush as the painting knows it.
 struct BrushTrack {
     file: BrushFile,
@@ -128,6 +131,12 @@ struct BrushTrack {
 }
 
 impl BrushTrack {
+    /// Seed of how its bristles lie in its next stroke, and of a load before that.
+    fn next_seed(&self, name: &str) -> u64 {
+        let stroke = (self.strokes as u64 + 1).wrapping_mul(0x9e37_79b1);
+        (stroke ^ u64::from(name_hash(name))) & SEEDS
+    }
+
     /// The head with its bristles as they lie by its seed.
     fn disordered(&self) -> Arc<Head> {
         Arc::new(self.tidy.disordered(self.seed))

@@ -3,10 +3,8 @@
 use std::sync::Arc;
 
 use maulstick_types::brush::{BrushState, Solve, solve_flags};
-use maulstick_types::name_hash;
 
 use super::backend::Deferral;
-use super::loads::SEEDS;
 use super::modes::{Prepared, handling_of};
 use super::{PaintRefusal, Painting};
 use crate::head::{Scale, Waypoint, low_bounds};
@@ -121,11 +119,7 @@ impl Painting {
     fn disorder(&mut self, name: &str) -> Result<(), PaintRefusal> {
         self.settle();
         let track = self.brush(name)?;
-        let stroke = (track.strokes as u64).wrapping_mul(0x9e37_79b1);
-        track.seed = match track.strokes {
-            0 => 0,
-            _ => (stroke ^ u64::from(name_hash(name))) & SEEDS,
-        };
+        track.seed = track.next_seed(name);
         track.head = track.disordered();
         Arc::make_mut(&mut track.load).disorder(track.seed);
         Ok(())

@@ -9,7 +9,7 @@ use maulstick_paint::load::{ALONG, Half};
 use crate::scene::{CELL_M, CELLS, Scene};
 
 /// The constants of the stage.
-const EDGE_PENALTY: f64 = 0.6;
+const EDGE_PENALTY: f64 = 0.9;
 const RANKS: f64 = 0.02;
 const BENT: f64 = 0.2;
 /// Sixteen roundings of a place below 128 cells in f32.

@@ -255,6 +255,15 @@ impl Map {
         }
     }
 
+    /// Less the mean of each row.
+    pub(crate) fn less_rows(mut self) -> Self {
+        let means = self.profile(1);
+        for (row, mean) in self.cells.chunks_exact_mut(self.size[0]).zip(means) {
+            row.iter_mut().for_each(|value| *value -= mean as f32);
+        }
+        self
+    }
+
     pub(crate) fn mean(&self) -> f64 {
         self.cells.iter().map(|v| f64::from(*v)).sum::<f64>() / self.cells.len().max(1) as f64
     }

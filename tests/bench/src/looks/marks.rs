@@ -66,10 +66,11 @@ pub(crate) fn long_stroke(trial: Trial) -> Result<Vec<Number>, Fault> {
     };
     let thick = ([28.0, 12.0], [48.0, 18.0]);
     let surface = film.plus(&ground).cut(thick.0, thick.1);
-    let fill = slope(
-        &ground.cut(thick.0, thick.1).cells,
-        &film.cut(thick.0, thick.1).cells,
-    );
+    let [below, above] = [&ground, &film].map(|map| map.cut(thick.0, thick.1));
+    let fill = slope(&below.cells, &above.cells);
+    // Streaks lie along the stroke as threads of the weave do: here rows are compared by themselves.
+    let [below, above] = [below, above].map(Map::less_rows);
+    let in_rows = slope(&below.cells, &above.cells);
     Ok(vec![
         ("film_um.2mm", at(2.0), "um"),
         ("film_um.10mm", at(10.0), "um"),
@@ -77,6 +78,7 @@ pub(crate) fn long_stroke(trial: Trial) -> Result<Vec<Number>, Fault> {
         ("film_um.60mm", at(60.0), "um"),
         ("film_um.150mm", at(150.0), "um"),
         ("tooth_fill", fill, ""),
+        ("tooth_fill.in_rows", in_rows, ""),
         ("rough_um.along", rough(&surface, 0), "um"),
         ("rough_um.across", rough(&surface, 1), "um"),
         ("ridges", rough(&surface, 1) / rough(&surface, 0), ""),

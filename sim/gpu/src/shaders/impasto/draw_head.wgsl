@@ -2,7 +2,7 @@
 // cell the lowest is kept. An invocation draws one.
 
 // A ribbon that covers a cell only in part counts as higher by this much.
-const EDGE_PENALTY = 1.2;
+const EDGE_PENALTY = 0.9;
 
 // How low the head may touch paint: the highest, and what the head lies lower than it was solved, cells; the
 // thickest film, cells; and by how much a key grows with a score.
