@@ -76,7 +76,7 @@ impl Painting {
         self.brush(brush)?;
         let slots = self.slots(mixture)?;
         self.begin_step(&format!("load {brush}"), Some(brush));
-        let seed = self.brush(brush)?.next_seed(brush);
+        let seed = self.brush(brush)?.next_seed();
         self.fill(brush, &[(&slots, Half::Both)], seed)?;
         self.book(Some(brush));
         self.end_step(|step| step.brush.as_deref() == Some(brush));
@@ -97,7 +97,7 @@ impl Painting {
         let slots = self.all_slots(&[left.clone(), right.clone()])?;
         self.begin_step(&format!("load {brush}"), Some(brush));
         let parts = [(&slots[0][..], Half::Left), (&slots[1][..], Half::Right)];
-        let seed = self.brush(brush)?.next_seed(brush);
+        let seed = self.brush(brush)?.next_seed();
         self.fill(brush, &parts, seed)?;
         self.book(Some(brush));
         self.end_step(|step| step.brush.as_deref() == Some(brush));

@@ -132,9 +132,8 @@ struct BrushTrack {
 
 impl BrushTrack {
     /// Seed of how its bristles lie in its next stroke, and of a load before that.
-    fn next_seed(&self, name: &str) -> u64 {
-        let stroke = (self.strokes as u64 + 1).wrapping_mul(0x9e37_79b1);
-        (stroke ^ u64::from(name_hash(name))) & SEEDS
+    fn next_seed(&self) -> u64 {
+        (self.strokes as u64 + 1).wrapping_mul(0x9e37_79b1) & SEEDS
     }
 
     /// The head with its bristles as they lie by its seed.

@@ -119,7 +119,7 @@ impl Painting {
     fn disorder(&mut self, name: &str) -> Result<(), PaintRefusal> {
         self.settle();
         let track = self.brush(name)?;
-        track.seed = track.next_seed(name);
+        track.seed = track.next_seed();
         track.head = track.disordered();
         Arc::make_mut(&mut track.load).disorder(track.seed);
         Ok(())
