@@ -2,6 +2,7 @@
 
 use maulstick_brush::BrushFile;
 use maulstick_nodes::Offline;
+use maulstick_num::atan2;
 use maulstick_optics::PaintLibrary;
 use maulstick_paint::quantum::QUANTUM_M;
 use maulstick_paint::setup::PaintingSetup;
@@ -125,7 +126,7 @@ impl Easel {
         let samples = (length / SPEED * RATE_HZ).ceil().max(2.0) as usize;
         let unit = way.map(|v| v / length);
         // The broad side of a flat brush across the way.
-        let twist = (-unit[0]).atan2(unit[1]);
+        let twist = atan2(-unit[0], unit[1]);
         for i in 0..=samples + 1 {
             let t = (i as f64 / samples as f64).min(1.0);
             let ramp = (t * length / 4.0)
