@@ -109,7 +109,11 @@ impl Host {
     ) -> std::io::Result<Self> {
         let (to_publisher, ticks) = rtrb::RingBuffer::new(ring);
         let (models, from_rig) = triple_buffer::triple_buffer(&Delivery::default());
-        let (wishes, wished) = triple_buffer::triple_buffer(&Wish::default());
+        // Until the daemon says what it wishes the servo is armed as the one before was.
+        let (wishes, wished) = triple_buffer::triple_buffer(&Wish {
+            armings: before.armings,
+            ..Wish::default()
+        });
         let (tell, told) = std::sync::mpsc::channel();
         let (end, ended) = std::sync::mpsc::channel();
         let stop = Arc::new(AtomicBool::new(false));

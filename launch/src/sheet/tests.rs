@@ -129,7 +129,7 @@ fn a_badger_softens_the_edge_between_two_wet_colours() {
             .fold(0.0, f64::max)
     };
     let (laid, softened) = (steepest(250..420), steepest(600..800));
-    assert!(softened < laid, "{laid} {softened}");
+    assert!(softened < 0.75 * laid, "{laid} {softened}");
     assert!(laid > 20.0, "there was an edge: {laid}");
 }
 

@@ -107,10 +107,10 @@ impl BrushTraits {
             cell_per_reference: steps as f32,
             floats: rigid,
             follows: if rigid { BLADE_FOLLOWS } else { FOLLOWS },
-            exchanging: if rigid {
-                Exchanging::BLADE
-            } else {
-                Exchanging::BRISTLES
+            exchanging: match file.head.hair {
+                Hair::Steel => Exchanging::BLADE,
+                Hair::Badger => Exchanging::BLENDER,
+                Hair::Hog | Hair::Sable => Exchanging::BRISTLES,
             },
             refill: share(Self::REFILL),
             creep: share(Self::CREEP),

@@ -22,6 +22,8 @@ pub struct Exchanging {
     pub evens: f32,
     /// The most that goes over along a reference cell, units.
     pub most: f32,
+    /// Share of the thinner film that changes places along a reference cell, by that which goes over.
+    pub swap: f32,
 }
 
 impl Exchanging {
@@ -30,12 +32,19 @@ impl Exchanging {
         ln_kept: LN_KEPT,
         evens: 1.0,
         most: MAX_TRANSFER,
+        swap: 0.03,
+    };
+    /// Soft hair that flares: it hardly takes paint up, and mixes what it goes through.
+    pub const BLENDER: Self = Self {
+        swap: 1.0,
+        ..Self::BRISTLES
     };
     /// A blade: it scrapes off what stands above its edge, and fills what lies below; ln(1 − .6).
     pub const BLADE: Self = Self {
         ln_kept: -0.916_290_7,
         evens: 0.0,
         most: 1.0,
+        swap: 0.03,
     };
 
     /// Share of the paint that goes over along a travel in reference cells.
@@ -68,6 +77,14 @@ impl Exchanging {
             .min(donor);
         fill + if difference > 0.0 { amount } else { -amount }
     }
+
+    /// Paint that goes both ways at once where brush and canvas are wet, units: their films mix as the
+    /// bristles go through them, but no deeper than a film, however high the paint lies.
+    #[must_use]
+    #[inline(always)]
+    pub fn swapped(&self, on_brush: f32, on_canvas: f32, share: f32) -> f32 {
+        self.swap * share * on_brush.min(on_canvas).min(SWAP_FILM)
+    }
 }
 
 /// Share of a gap that fills where `share` of a difference evens out: 1 − (1 − share)¹⁶.
@@ -79,18 +96,8 @@ fn filled(share: f32) -> f32 {
     1.0 - kept * kept
 }
 
-/// Share of the thinner film that changes places along a reference cell, by that which goes over.
-pub const SWAP: f32 = 0.03;
 /// How deep the films reach that change places, units: 100 µm.
 pub const SWAP_FILM: f32 = 0.004;
-
-/// Paint that goes both ways at once where brush and canvas are wet, units: their films mix as the
-/// bristles go through them, but no deeper than a film, however high the paint lies.
-#[must_use]
-#[inline(always)]
-pub fn swap(on_brush: f32, on_canvas: f32, share: f32) -> f32 {
-    SWAP * share * on_brush.min(on_canvas).min(SWAP_FILM)
-}
 
 #[cfg(test)]
 mod tests {
@@ -125,7 +132,7 @@ mod tests {
             let rule = Exchanging::BRISTLES;
             let over = |s: f32| rule.transfer([a_b, a_c, 0.0], s, rule.share(s)).abs();
             prop_assert_eq!(over(0.0), 0.0);
-            prop_assert_eq!(swap(a_b, a_c, rule.share(0.0)), 0.0);
+            prop_assert_eq!(rule.swapped(a_b, a_c, rule.share(0.0)), 0.0);
             let (less, more) = (over(s), over(1.0));
             prop_assert!(less <= more + 1e-9);
             prop_assert!(less <= a_b.max(a_c));

@@ -422,3 +422,22 @@ fn what_has_dried_stays_and_catches_paint() {
     painting.undo(None).expect("the opacity");
     assert_eq!(painting.scene().layers[0].opacity, 1.0);
 }
+
+/// A texel of a brush of 60 mm holds more quanta than an `f32` counts.
+#[test]
+fn a_wide_brush_loses_no_quantum_of_its_broad_strips() {
+    let place = |bend| Place {
+        surface: CANVAS,
+        at_mm: [8.0, 8.0],
+        height: 0.25,
+        bend,
+        turn: 0.0,
+    };
+    let mut painting = painting(60.0);
+    painting.load("main", &mixture(MIXTURES[0])).expect("known");
+    let places = [place([-0.075_547_72, 0.0]), place([0.0, 0.311_891_85])];
+    paint(&mut painting, "main", 60.0, 1, &places);
+    let report = painting.report();
+    assert!(report.covered_cells > 0);
+    assert_eq!(report.quanta_missing, 0);
+}

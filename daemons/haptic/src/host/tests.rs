@@ -232,15 +232,19 @@ fn a_fault_outlasts_the_device_until_it_is_armed_anew() {
         armings,
         ..Wish::default()
     };
+    let in_fault = |host: &mut Host| {
+        let mut ticks = 0;
+        tick(host, |ticked| {
+            assert!(ticked.tick.fault.is_some());
+            ticks += 1;
+            ticks == 20
+        })
+        .is_some()
+    };
+    assert!(in_fault(&mut host), "nobody has wished anything yet");
     // What the daemon wishes of every servo that it starts.
     host.wishes.write(wish(3));
-    let mut ticks = 0;
-    let ticked = tick(&mut host, |ticked| {
-        assert!(ticked.tick.fault.is_some());
-        ticks += 1;
-        ticks == 20
-    });
-    assert!(ticked.is_some());
+    assert!(in_fault(&mut host));
     host.wishes.write(wish(4));
     assert!(tick(&mut host, |ticked| ticked.tick.fault.is_none()).is_some());
 }

@@ -2,7 +2,7 @@
 
 use maulstick_paint::impasto::levelling::{ADVANCES, THINS};
 use maulstick_paint::impasto::velocity::{EASE, SLIP, SQUISH, STABLE};
-use maulstick_paint::transfer::{SWAP, SWAP_FILM};
+use maulstick_paint::transfer::SWAP_FILM;
 
 use crate::device::Device;
 
@@ -167,7 +167,7 @@ pub(crate) static KERNELS: [Kernel; 16] = [
     Kernel {
         name: "ask_paint",
         source: source!("ask_paint"),
-        constants: &[("SWAP", SWAP as f64), ("SWAP_FILM", SWAP_FILM as f64)],
+        constants: &[("SWAP_FILM", SWAP_FILM as f64)],
         bindings: &[B::Load, B::Asks, B::Contacts, B::Totals, B::Wants],
         groups: Groups::Planned(0),
     },

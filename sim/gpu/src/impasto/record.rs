@@ -65,11 +65,10 @@ pub(crate) struct StepRecord {
     ln_kept: f32,
     evens: f32,
     most_over: f32,
+    swap: f32,
     film_most: f32,
     seep: f32,
     levelling: [f32; 4],
-    /// Up to the least distance of two records.
-    rest: [u32; 1],
 }
 
 /// Bytes from one record to the next.
@@ -147,10 +146,10 @@ impl StepRecord {
             ln_kept: traits.exchanging.ln_kept,
             evens: traits.exchanging.evens,
             most_over: traits.exchanging.most,
+            swap: traits.exchanging.swap,
             film_most: traits.film_most as f32,
             seep: traits.seep as f32,
             levelling: levelling(QUANTUM_M / f64::from(traits.cells_per_quantum)),
-            rest: [0; 1],
         };
         debug_assert_eq!(after.x.len(), strips * STATIONS);
         let motion = |after: &[f32], before: &[f32], poses: &mut Vec<f32>| {

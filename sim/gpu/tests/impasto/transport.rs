@@ -6,7 +6,7 @@ use maulstick_gpu::impasto::probe::{Probe, Prober};
 use maulstick_paint::impasto::advection::STAIN;
 use maulstick_paint::impasto::velocity::{EASE, SQUISH, STABLE};
 use maulstick_paint::quantum::{CELL_MAX, QUANTA_PER_UNIT, SLOTS};
-use maulstick_paint::transfer::{Exchanging, SWAP, SWAP_FILM};
+use maulstick_paint::transfer::{Exchanging, SWAP_FILM};
 
 use crate::device;
 use crate::probed::{Grid, SLOW, ahead, run, scene};
@@ -206,7 +206,7 @@ fn wanted([a_b, a_c, gap]: [f64; 3], travel: f64, (kept, blade): (f64, bool)) ->
     let difference = carried - a_c;
     let donor = if difference > 0.0 { a_b - fill } else { a_c };
     let net = (goes(1.0) * difference.abs()).min(most * travel).min(donor);
-    let swap = f64::from(SWAP) * goes(1.0) * a_b.min(a_c).min(f64::from(SWAP_FILM));
+    let swap = 0.03 * goes(1.0) * a_b.min(a_c).min(f64::from(SWAP_FILM));
     match difference > 0.0 {
         true => [fill + net, 0.0, swap],
         false => [(fill - net).max(0.0), (net - fill).max(0.0), swap],

@@ -13,7 +13,7 @@ use super::footprint::{Contact, Footprint};
 use crate::load::BrushLoad;
 use crate::model::{BrushTraits, Handling, Step, Transfer};
 use crate::quantum::{CELL_MAX, QUANTA_PER_UNIT, SLOTS};
-use crate::transfer::{Exchanging, swap};
+use crate::transfer::Exchanging;
 
 /// Room for a step. Of the brush's many texels few touch at a time: these are numbered afresh in each
 /// step, so that the others cost nothing.
@@ -58,8 +58,8 @@ struct Half {
     shares: Vec<f32>,
     /// Share of what is taken up that leaves each contact's cell.
     leaves: Vec<f32>,
-    /// By how much one paint changes on each of the texels.
-    change: Vec<f32>,
+    /// Quanta by which one paint changes on each of the texels: a wide one holds more than an `f32` counts.
+    change: Vec<i32>,
 }
 
 /// [`Meeting`]s, a plane each.
@@ -137,7 +137,7 @@ pub fn wanted(meeting: &Meeting, rule: &Exchanging, handling: &Handling) -> [f32
             let share = rule.share(meeting.travel);
             let amounts = [meeting.on_brush, on_canvas, meeting.gap];
             let net = rule.transfer(amounts, meeting.travel, share);
-            (net, swap(meeting.on_brush, on_canvas, share))
+            (net, rule.swapped(meeting.on_brush, on_canvas, share))
         }
     };
     let most = least(handling.most, CELL_MAX as f32);
@@ -202,7 +202,7 @@ wide! {
             let given = (given * gives[place]).floor();
             let taken = (*count * share).floor();
             *count += given - (leaves * taken).floor();
-            half.change[place] += taken - given;
+            half.change[place] += (taken - given) as i32;
         }
     }
 }
@@ -290,7 +290,7 @@ impl Exchange {
         let on_brush = self.held.iter().any(|count| *count > 0.0);
         for half in &mut self.halves {
             half.change.clear();
-            half.change.resize(self.texels.len(), 0.0);
+            half.change.resize(self.texels.len(), 0);
         }
         if !on_brush && !step.window.has(slot) {
             return 0;
@@ -324,7 +324,7 @@ impl Exchange {
         let changes = self.halves.iter().flat_map(|half| &half.change);
         let onto_brush: i64 = match sponge {
             true => 0,
-            false => changes.map(|change| *change as i64).sum(),
+            false => changes.map(|change| i64::from(*change)).sum(),
         };
         self.on_cells(step.window.plane_mut(slot)) - before + onto_brush
     }
@@ -339,7 +339,7 @@ impl Exchange {
         let [low, high] = &self.halves;
         let changes = low.change.iter().zip(&high.change);
         for (texel, (low, high)) in self.texels.iter().zip(changes) {
-            let change = (low + high) as i32;
+            let change = low + high;
             if change != 0 {
                 load.change_film(slot, *texel as usize, change);
             }

@@ -8,17 +8,46 @@ use maulstick_paint::impasto::footprint::{Contact, Footprint};
 use maulstick_paint::load::BrushLoad;
 use maulstick_paint::model::{BrushTraits, Handling, Transfer};
 use maulstick_paint::quantum::{QUANTA_PER_UNIT, SLOTS};
-use maulstick_paint::transfer::{SWAP, SWAP_FILM};
+use maulstick_paint::transfer::SWAP_FILM;
 use maulstick_paint::window::Window;
 
 use crate::scene::{CELL_M, Scene, lying};
 
-/// By what a head gives and takes: the share that stays along a reference cell, and whether it is a blade.
+/// By what a head gives and takes: the share that stays along a reference cell, whether it is a blade, and the
+/// share of films that changes places.
 #[derive(Clone, Copy)]
 struct Rule {
     kept: f64,
     blade: bool,
+    swap: f64,
 }
+
+const RULES: [(&str, Rule); 3] = [
+    (
+        "round",
+        Rule {
+            kept: 0.9,
+            blade: false,
+            swap: 0.03,
+        },
+    ),
+    (
+        "knife",
+        Rule {
+            kept: 0.4,
+            blade: true,
+            swap: 0.03,
+        },
+    ),
+    (
+        "badger",
+        Rule {
+            kept: 0.9,
+            blade: false,
+            swap: 1.0,
+        },
+    ),
+];
 
 /// Baxter 2004, Algorithm 3, by path length (item 19 of the reading guide): units to the canvas. What counts as
 /// nearly equal goes by what the donor has, not by the text's 833 µm, so films of oil even out by their
@@ -80,7 +109,7 @@ fn wants(
     // A unit is 25 mm.
     let gap = f64::from(c.gap) * CELL_M / 0.025;
     let mut net = algorithm_3([a_b, a_c, gap], travel, rule);
-    let mut both = f64::from(SWAP) * share * a_b.min(a_c).min(f64::from(SWAP_FILM));
+    let mut both = rule.swap * share * a_b.min(a_c).min(f64::from(SWAP_FILM));
     if let Transfer::Marker { flow } = handling.transfer {
         (net, both) = (f64::from(flow) * travel, 0.0);
     }
@@ -186,14 +215,14 @@ fn crowd(contacts: &mut [Contact]) {
 #[test]
 fn paint_goes_both_ways_as_algorithm_3_says() {
     let mut seen = Expected::default();
-    for seed in 0..32 {
+    for seed in 0..40 {
         let mut scene = Scene::new(seed as u64);
         let mut footprint = Footprint::default();
         footprint.find(&mut scene.step());
         scene.handling.transfer = match seed {
-            0..24 => Transfer::Paint,
             24..28 => Transfer::Sponge,
-            _ => Transfer::Marker { flow: 0.0004 },
+            28..32 => Transfer::Marker { flow: 0.0004 },
+            _ => Transfer::Paint,
         };
         if seed % 4 == 0 {
             scene.handling.most = 60_000.0;
@@ -202,14 +231,13 @@ fn paint_goes_both_ways_as_algorithm_3_says() {
             crowd(&mut footprint.contacts);
             scene.traits.film_most *= 0.05;
         }
-        let kind = ["round", "knife"][seed / 8 % 2];
+        let (kind, rule) = RULES[[0, 1, 0, 1, 2][seed / 8]];
         let file = BrushFile::library(kind).expect(kind);
         scene.traits.exchanging = BrushTraits::of(&file, CELL_M, 1.0).exchanging;
         let before = scene.counts();
-        let (kept, blade) = [(0.9, false), (0.4, true)][seed / 8 % 2];
-        let expected = oracle(&footprint.contacts, &scene, Rule { kept, blade });
-        let kept = 0.99 * kept;
-        let other = oracle(&footprint.contacts, &scene, Rule { kept, blade });
+        let expected = oracle(&footprint.contacts, &scene, rule);
+        let kept = 0.99 * rule.kept;
+        let other = oracle(&footprint.contacts, &scene, Rule { kept, ..rule });
         let from_nowhere = Exchange::default().run(&footprint, &mut scene.step());
         let after = scene.counts();
         for slot in 0..SLOTS {

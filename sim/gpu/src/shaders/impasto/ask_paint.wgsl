@@ -2,7 +2,6 @@
 // texel.
 
 // Constants of transfer.rs in maulstick-paint.
-override SWAP: f32;
 override SWAP_FILM: f32;
 
 // Share of a gap that fills where `share` of a difference evens out: 1 − (1 − share)¹⁶.
@@ -42,7 +41,7 @@ fn ask_paint(@builtin(global_invocation_id) id: vec3<u32>) {
     if step.transfer != MARKER {
         let share = 1.0 - decay(step.ln_kept * travel);
         net = transfer(on_brush, on_canvas, gap, share, travel);
-        swap = SWAP * share * min(min(on_brush, on_canvas), SWAP_FILM);
+        swap = step.swap * share * min(min(on_brush, on_canvas), SWAP_FILM);
     }
     let quanta = contact.cover * QUANTA_PER_UNIT;
     let room = max(step.most - lying, 0.0);

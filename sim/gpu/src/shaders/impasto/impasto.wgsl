@@ -81,6 +81,8 @@ struct Step {
     ln_kept: f32,
     evens: f32,
     most_over: f32,
+    // Share of films that changes places.
+    swap: f32,
     // The most quanta of a texel's film.
     film_most: f32,
     // Share of the difference between films beside each other that evens out in FLOW_STEPS.
