@@ -6,6 +6,8 @@
 //! | [`marks`] | the measurements |
 
 mod easel;
+#[cfg(test)]
+mod extremes;
 mod marks;
 #[cfg(test)]
 mod tests;
