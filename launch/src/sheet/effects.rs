@@ -42,7 +42,7 @@ const EFFECTS: [Effect; 8] = [
     },
     Effect {
         name: "controlled drying",
-        words: "wet by 32, 42, 56, 75 and 100 %, then white through them",
+        words: "wet by 32, 42, 56, 75 and 100 %, a clean brush down them",
         paint: drying,
     },
     Effect {
@@ -207,14 +207,9 @@ fn drying(library: PaintLibrary, cell_mm: f64) -> Result<Panel, Fault> {
         panel.paint(&line([5.0, y], [81.0, y], 0.45, 90.0))?;
         panel.paint(&line([81.0, y], [5.0, y], 0.4, 90.0))?;
     }
-    panel.take_up("white", "round", 5.0)?;
-    for x in [16.0, 34.0, 52.0, 70.0] {
-        panel.load("white", WHITE)?;
-        let way = (0..6).map(|i| {
-            let side = if i % 2 == 0 { -1.0 } else { 1.0 };
-            [x + 2.5 * side, 46.5 - 9.0 * f64::from(i)]
-        });
-        panel.paint(&wave(way.collect(), 0.45, 2.2))?;
+    for (i, x) in [15.0, 33.0, 51.0, 69.0].into_iter().enumerate() {
+        panel.take_up(&format!("clean-{i}"), "filbert", 8.0)?;
+        panel.paint(&line([x, 48.5], [x, 1.5], 1.0, 0.0))?;
     }
     Ok(panel)
 }

@@ -37,7 +37,7 @@ pub fn sweeps() -> Vec<Gesture> {
                     let way = if up { ease(t) } else { 1.0 - ease(t) };
                     Moment {
                         at: [x, 12.0 + 16.0 * way],
-                        pressure: 0.02 + 0.3 * swell(t, 0.25),
+                        pressure: 0.02 + 0.5 * swell(t, 0.25),
                         tilt_deg: [0.0, if up { 18.0 } else { -18.0 }],
                         twist_deg: 0.0,
                     }

@@ -36,7 +36,7 @@ impl Exchanging {
     };
     /// Soft hair that flares: it hardly takes paint up, and mixes what it goes through.
     pub const BLENDER: Self = Self {
-        swap: 1.0,
+        swap: 0.3,
         ..Self::BRISTLES
     };
     /// A blade: it scrapes off what stands above its edge, and fills what lies below; ln(1 − .6).

@@ -44,7 +44,7 @@ const RULES: [(&str, Rule); 3] = [
         Rule {
             kept: 0.9,
             blade: false,
-            swap: 1.0,
+            swap: 0.3,
         },
     ),
 ];
