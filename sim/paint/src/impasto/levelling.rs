@@ -109,7 +109,7 @@ pub struct Levelling {
 }
 
 /// Cells beside the area that are looked at.
-const HALO: usize = 2;
+pub const HALO: usize = 2;
 
 impl Levelling {
     /// Adds what flows in a round to the velocities through the right and upper faces of an area's cells: the

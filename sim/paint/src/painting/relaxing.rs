@@ -9,7 +9,7 @@ use maulstick_types::paint::TILE;
 use super::Painting;
 use super::modes::Prepared;
 use crate::impasto::advection::{Advection, Axis};
-use crate::impasto::levelling::{Body, Levelling, Round};
+use crate::impasto::levelling::{Body, HALO, Levelling, Round};
 use crate::impasto::velocity::Faces;
 use crate::quantum::QUANTUM_M;
 use crate::window::Area;
@@ -43,7 +43,10 @@ impl Painting {
         let cells = |tiles: [u32; 2]| tiles.map(|tile| i64::from(tile) * TILE as i64);
         let (from, to) = (cells(low), cells(high));
         self.settle();
-        if !self.reach(name, sheet, from, to) {
+        // With what levelling looks at beside it, whatever the window held before.
+        let halo = HALO as i64;
+        let (outer_from, outer_to) = (from.map(|cell| cell - halo), to.map(|cell| cell + halo));
+        if !self.reach(name, sheet, outer_from, outer_to) {
             return;
         }
         let (thinner, cell_m) = (self.thinner(), self.sheets[sheet].cell_m);
