@@ -13,7 +13,7 @@ pub enum Outline {
     Flat,
 }
 
-/// What bristles look like.
+/// What bristles are of: how they look, and how paint goes over from them.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Hair {
@@ -22,9 +22,9 @@ pub enum Hair {
     Hog,
     /// Sable and its like: red brown.
     Sable,
-    /// Badger: grey with light points.
+    /// Badger: grey with light points; it blends what it goes through.
     Badger,
-    /// The steel of a palette knife.
+    /// The steel of a palette knife, which scrapes.
     Steel,
 }
 
