@@ -62,19 +62,31 @@ pub struct BrushTraits {
     pub refill: f64,
     /// Share of the difference between texels that evens out in as many.
     pub creep: f64,
-    /// Share of the difference between films beside each other that evens out in as many.
-    pub seep: f64,
+    /// How films even out in as many.
+    pub seep: Seep,
+}
+
+/// How paint seeps between the films of texels beside each other.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Seep {
+    /// Share of their difference that evens out between strips, beyond what the yield stress holds.
+    pub beside: f64,
+    /// The same along a strip, where the motion shears it.
+    pub along: f64,
 }
 
 impl BrushTraits {
     /// Paint flows within the head once in so many steps.
     pub const FLOW_STEPS: u64 = 4;
     /// Share of what a film lacks that comes from inside along a reference cell.
-    const REFILL: f64 = 0.03;
+    const REFILL: f64 = 0.1;
     /// Share of the difference between texels that evens out along a reference cell.
     const CREEP: f64 = 0.02;
-    /// Share of the difference between films beside each other that evens out along a reference cell.
-    const SEEP: f64 = 0.15;
+    /// Share of the difference between films that evens out along a reference cell: beside each other, and along
+    /// a strip.
+    const SEEPS: [f64; 2] = [0.3, 0.25];
+    /// Difference between the films of two strips that stays, by a full film: so a bristle keeps its streak.
+    pub const HOLDS: f64 = 0.3;
 
     /// The traits of a brush on a surface with cells of `cell_m` at `zoom`.
     #[must_use]
@@ -114,7 +126,10 @@ impl BrushTraits {
             },
             refill: share(Self::REFILL),
             creep: share(Self::CREEP),
-            seep: share(Self::SEEP),
+            seep: Seep {
+                beside: share(Self::SEEPS[0]),
+                along: share(Self::SEEPS[1]),
+            },
         }
     }
 }
@@ -125,13 +140,13 @@ const PEAK_M: f64 = 0.125e-3;
 pub const FILM_OVER: f64 = 2.0;
 /// As [`FILM_OVER`]: what a blade scrapes off gathers on it.
 pub const BLADE_OVER: f64 = 3.0;
-/// Share of the motion of bristles that paint follows: it sticks to them as to the canvas (Baxter 2004,
-/// § 6.4.2). What lies before a blade goes with it.
-pub const FOLLOWS: f32 = 0.5;
+/// Share of the motion of bristles that paint follows: it sticks to them about as to the canvas (a half
+/// in Baxter 2004, § 6.4.2). What lies before a blade goes with it.
+pub const FOLLOWS: f32 = 0.4;
 /// As [`FOLLOWS`].
 pub const BLADE_FOLLOWS: f32 = 1.0;
 /// Share of the lift that is left where the head is fully pressed: bristles never lie in one plane.
-const UNEVEN: f32 = 0.3;
+const UNEVEN: f32 = 0.1;
 
 impl BrushTraits {
     /// How far the most unruly strip keeps off what it lies on under a press of 0 to 1, cells. A blade floats
@@ -143,7 +158,7 @@ impl BrushTraits {
             * if self.floats {
                 off * off * off * off
             } else {
-                UNEVEN + (1.0 - UNEVEN) * off
+                UNEVEN + (1.0 - UNEVEN) * off * off
             }
     }
 

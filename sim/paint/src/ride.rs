@@ -6,7 +6,7 @@
 //! peak to peak; between ridges of dry paint it hangs by d²/2ρ at a distance of d.
 
 /// Radius of curvature to which a bristle bends under the hand, m.
-pub const RADIUS_M: f64 = 14e-3;
+pub const RADIUS_M: f64 = 28e-3;
 /// The farthest that a ridge carries a bristle, m.
 pub const REACH_M: f64 = 3e-3;
 

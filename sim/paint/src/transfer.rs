@@ -55,17 +55,24 @@ impl Exchanging {
     }
 
     /// Paint that leaves the brush for the canvas (positive) or the canvas for the brush (negative),
-    /// units, where the brush carries `on_brush`, reaches `on_canvas` units and stands `gap` units above what
-    /// lies there, after `travel`, along which `share` goes over.
+    /// units, where the brush carries `on_brush`, reaches `on_canvas` units of what is `lying` there and stands
+    /// `gap` units above it, after `travel`, along which `share` goes over.
     ///
     /// The text's EQUAL_PAINT_CUTOFF is a constant of 833 µm, which makes films of oil (80 to 420 µm) go over
     /// by their square. Here it is the donor's amount: the difference evens out, whatever the scale. A gap
-    /// fills faster, for the film is pressed into it, with what is free beyond it.
+    /// fills faster, for the film is pressed into it, with what is free beyond it; but a film that bridges the
+    /// gap under a bristle splits in its middle as the bristle lifts off.
     #[must_use]
     #[inline(always)]
-    pub fn transfer(&self, [on_brush, on_canvas, gap]: [f32; 3], travel: f32, share: f32) -> f32 {
+    pub fn transfer(
+        &self,
+        [on_brush, on_canvas, lying, gap]: [f32; 4],
+        travel: f32,
+        share: f32,
+    ) -> f32 {
         let free = (on_brush - gap).max(0.0);
-        let fill = filled(share) * gap.min(free);
+        let splits = (on_brush - self.evens * 0.5 * (on_brush + lying)).max(0.0);
+        let fill = filled(share) * gap.min(free).min(splits);
         let difference = self.evens * free - on_canvas;
         let donor = if difference > 0.0 {
             on_brush - fill
@@ -119,7 +126,7 @@ mod tests {
         #[test]
         fn over_one_cell_it_is_the_printed_algorithm(a_c in 0.0..0.2f64, a_b in 0.0..0.2f64) {
             let share = Exchanging::BRISTLES.share(1.0);
-            let got = Exchanging::BRISTLES.transfer([a_b as f32, a_c as f32, 0.0], 1.0, share);
+            let got = Exchanging::BRISTLES.transfer([a_b as f32, a_c as f32, a_c as f32, 0.0], 1.0, share);
             let got = f64::from(got);
             let want = printed(a_c, a_b);
             prop_assert!((got - want).abs() < 1e-8, "{got} {want}");
@@ -130,7 +137,7 @@ mod tests {
             a_b in 0.0..0.1f32, a_c in 0.0..0.1f32, s in 0.0..1.0f32,
         ) {
             let rule = Exchanging::BRISTLES;
-            let over = |s: f32| rule.transfer([a_b, a_c, 0.0], s, rule.share(s)).abs();
+            let over = |s: f32| rule.transfer([a_b, a_c, a_c, 0.0], s, rule.share(s)).abs();
             prop_assert_eq!(over(0.0), 0.0);
             prop_assert_eq!(rule.swapped(a_b, a_c, rule.share(0.0)), 0.0);
             let (less, more) = (over(s), over(1.0));
@@ -142,7 +149,7 @@ mod tests {
     #[test]
     fn a_wrong_share_would_be_found() {
         let rule = Exchanging::BRISTLES;
-        let faulty = f64::from(rule.transfer([0.009, 0.0, 0.0], 1.0, rule.share(1.0))) * 1.001;
+        let faulty = f64::from(rule.transfer([0.009, 0.0, 0.0, 0.0], 1.0, rule.share(1.0))) * 1.001;
         assert!((faulty - printed(0.0, 0.009)).abs() > 1e-8);
     }
 }

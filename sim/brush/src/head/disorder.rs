@@ -8,7 +8,7 @@ const TRESS: f32 = 0.16;
 /// How far a tress strays, by half the head's width and thickness there.
 const STRAY: f32 = 0.04;
 /// How much shorter the shortest bristle is, by the head's length.
-const RAGGED: f32 = 0.02;
+const RAGGED: f32 = 0.01;
 /// Numbers of the planes of noise: across the width, across the thickness, along.
 const PLANES: [u64; 3] = [11, 12, 13];
 

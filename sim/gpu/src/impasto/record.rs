@@ -60,14 +60,13 @@ pub(crate) struct StepRecord {
     sink: f32,
     ride_below: f32,
     round: f32,
-    units_per_cell: f32,
     follows: f32,
     ln_kept: f32,
     evens: f32,
     most_over: f32,
     swap: f32,
     film_most: f32,
-    seep: f32,
+    seep: [f32; 2],
     levelling: [f32; 4],
 }
 
@@ -141,14 +140,13 @@ impl StepRecord {
             sink: traits.sink * after.press,
             ride_below: step.window.ride_below(),
             round: 2.0 * traits.half_thickness,
-            units_per_cell: traits.units_per_cell,
             follows: traits.follows,
             ln_kept: traits.exchanging.ln_kept,
             evens: traits.exchanging.evens,
             most_over: traits.exchanging.most,
             swap: traits.exchanging.swap,
             film_most: traits.film_most as f32,
-            seep: traits.seep as f32,
+            seep: [traits.seep.beside, traits.seep.along].map(|v| v as f32),
             levelling: levelling(QUANTUM_M / f64::from(traits.cells_per_quantum)),
         };
         debug_assert_eq!(after.x.len(), strips * STATIONS);

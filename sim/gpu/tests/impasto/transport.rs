@@ -193,11 +193,15 @@ fn paint_goes_where_it_is_pushed_and_none_is_lost() {
 
 /// Baxter 2004, Algorithm 3, by path length along which so much of one is `kept`, where a film bridges a gap,
 /// and what changes places: units to the canvas, back, and both ways. What a film has beyond its gap fills it
-/// sixteen times as fast; of a blade that is all, and it takes up what it reaches.
-fn wanted([a_b, a_c, gap]: [f64; 3], travel: f64, (kept, blade): (f64, bool)) -> [f64; 3] {
+/// sixteen times as fast, until both sides have as much; of a blade that is all, and it takes up what it reaches.
+fn wanted([a_b, a_c, lies, gap]: [f64; 4], travel: f64, (kept, blade): (f64, bool)) -> [f64; 3] {
     let goes = |times: f64| 1.0 - maulstick_num::powf(kept, times * travel);
     let free = (a_b - gap).max(0.0);
-    let fill = goes(16.0) * gap.min(free);
+    let bridged = match blade {
+        true => free,
+        false => ((a_b - lies) / 2.0).clamp(0.0, free),
+    };
+    let fill = goes(16.0) * gap.min(bridged);
     let (carried, most) = if blade {
         (0.0, 1.0)
     } else {
@@ -228,10 +232,11 @@ fn exchanged(
         let [u, v] = c.moved.map(f64::from);
         let travel = (u * u + v * v).sqrt() * f64::from(traits.cell_per_reference);
         let a_b = film * f64::from(traits.film_units_per_quantum);
-        let a_c = lying / QUANTA_PER_UNIT * f64::from(c.fraction);
+        let lies = lying / QUANTA_PER_UNIT;
+        let a_c = lies * f64::from(c.fraction);
         // A unit is 25 mm.
         let gap = f64::from(c.gap) * CELL_M / 0.025;
-        let [out, back, swap] = wanted([a_b, a_c, gap], travel, rule)
+        let [out, back, swap] = wanted([a_b, a_c, lies, gap], travel, rule)
             .map(|units| units * f64::from(c.cover) * QUANTA_PER_UNIT);
         let room = QUANTA_PER_UNIT - lying;
         let swap = swap.min(room);

@@ -130,12 +130,13 @@ pub struct Meeting {
 #[inline(always)]
 pub fn wanted(meeting: &Meeting, rule: &Exchanging, handling: &Handling) -> [f32; 2] {
     let quanta = meeting.cover * QUANTA_PER_UNIT as f32;
-    let on_canvas = meeting.lying * (1.0 / QUANTA_PER_UNIT as f32) * meeting.fraction;
+    let lying = meeting.lying * (1.0 / QUANTA_PER_UNIT as f32);
+    let on_canvas = lying * meeting.fraction;
     let (net, swap) = match handling.transfer {
         Transfer::Marker { flow } => (flow * meeting.travel, 0.0),
         _ => {
             let share = rule.share(meeting.travel);
-            let amounts = [meeting.on_brush, on_canvas, meeting.gap];
+            let amounts = [meeting.on_brush, on_canvas, lying, meeting.gap];
             let net = rule.transfer(amounts, meeting.travel, share);
             (net, rule.swapped(meeting.on_brush, on_canvas, share))
         }

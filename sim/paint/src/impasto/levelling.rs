@@ -35,9 +35,10 @@ pub struct Body {
 }
 
 impl Body {
-    /// Paint from the tube, worked by the brush: it stands in ridges (oil colours yield at tens to hundreds of Pa).
+    /// Paint from the tube that the brush has just worked: oil colours yield at tens to hundreds of Pa at rest, and
+    /// at a fraction of that as long as their structure is sheared apart.
     pub const TUBE: Self = Self {
-        yield_pa: 45.0,
+        yield_pa: 12.0,
         viscosity_pa_s: 20.0,
     };
 }

@@ -2,7 +2,8 @@
 //! from strip to strip and along each strip.
 //!
 //! Only what evens the films out goes over, with the mixture of the fuller one: so the whole head feeds
-//! the bristles that touch, and two colours beside each other stay two.
+//! the bristles that touch, and two colours beside each other stay two. Between strips the yield stress holds
+//! a difference, so that a bristle that took up more paints its streak to the end.
 
 use maulstick_num::wide;
 
@@ -16,13 +17,14 @@ pub fn seep(step: &mut Step<'_>) {
         return;
     }
     let turn = steps / BrushTraits::FLOW_STEPS;
-    let share = step.traits.seep;
+    let seep = step.traits.seep;
+    let holds = BrushTraits::HOLDS * step.traits.film_full;
     let (films, paints) = step.load.parts_mut();
     let mut paints: Vec<PaintOnBrush<'_>> = paints.collect();
     let order = &step.head.beside()[(turn % 2) as usize];
     let first = (turn / 2 % 2) as usize;
-    between_strips(films, &mut paints, &order[first..], share);
-    along_strips(films, &mut paints, first, share);
+    between_strips(films, &mut paints, &order[first..], seep.beside, holds);
+    along_strips(films, &mut paints, first, seep.along);
 }
 
 wide! {
@@ -31,14 +33,15 @@ wide! {
         paints: &mut [PaintOnBrush<'_>],
         order: &[u32],
         share: f64,
+        holds: f64,
     ) {
         for pair in order.as_chunks::<2>().0 {
             let [one, other] = pair.map(|strip| strip as usize * ALONG);
             let mut shares = [[0.0; ALONG]; 2];
             for k in 0..ALONG {
                 let fall = f64::from(films[one + k]) - f64::from(films[other + k]);
-                shares[0][k] = given(share, fall, films[one + k]);
-                shares[1][k] = given(share, -fall, films[other + k]);
+                shares[0][k] = given(share, fall - holds, films[one + k]);
+                shares[1][k] = given(share, -fall - holds, films[other + k]);
             }
             for paint in &mut *paints {
                 for k in 0..ALONG {

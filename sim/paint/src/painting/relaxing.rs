@@ -16,8 +16,8 @@ use crate::window::Area;
 
 /// How long a stroke levels once the brush is lifted, s.
 const SECONDS: f64 = 1.0;
-/// Rounds in which it does: ripples shorter than four cells are gone after them.
-const ROUNDS: u32 = 16;
+/// Rounds in which it does: ripples shorter than six cells are gone after them.
+const ROUNDS: u32 = 64;
 /// Where less than this share of a cell would flow, all rests.
 const RESTS: f32 = 2e-4;
 

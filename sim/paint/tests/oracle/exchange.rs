@@ -52,11 +52,17 @@ const RULES: [(&str, Rule); 3] = [
 /// Baxter 2004, Algorithm 3, by path length (item 19 of the reading guide): units to the canvas. What counts as
 /// nearly equal goes by what the donor has, not by the text's 833 µm, so films of oil even out by their
 /// difference, at most 100 µm of them along a reference cell. What a film has beyond the gap under it fills
-/// the gap, sixteen times as fast. A blade takes up all that it reaches, and evens nothing out.
-fn algorithm_3([a_b, a_c, gap]: [f64; 3], travel: f64, rule: Rule) -> f64 {
+/// the gap, sixteen times as fast, at most until both sides have as much. A blade takes up all that it reaches,
+/// and evens nothing out.
+fn algorithm_3([a_b, a_c, lies, gap]: [f64; 4], travel: f64, rule: Rule) -> f64 {
     let stays = |times: f64| maulstick_num::powf(rule.kept, times * travel);
     let free = (a_b - gap).max(0.0);
-    let fill = (1.0 - stays(16.0)) * gap.min(free);
+    let most = if rule.blade {
+        free
+    } else {
+        ((a_b - lies) / 2.0).clamp(0.0, free)
+    };
+    let fill = (1.0 - stays(16.0)) * gap.min(most);
     let (carried, most) = if rule.blade {
         (0.0, 1.0)
     } else {
@@ -104,11 +110,12 @@ fn wants(
     let [u, v] = c.moved.map(f64::from);
     let travel = (u * u + v * v).sqrt() * f64::from(traits.cell_per_reference);
     let a_b = film(load, c.texel as usize) * f64::from(traits.film_units_per_quantum);
-    let a_c = lying / QUANTA_PER_UNIT * f64::from(c.fraction);
+    let lies = lying / QUANTA_PER_UNIT;
+    let a_c = lies * f64::from(c.fraction);
     let share = 1.0 - maulstick_num::powf(rule.kept, travel);
     // A unit is 25 mm.
     let gap = f64::from(c.gap) * CELL_M / 0.025;
-    let mut net = algorithm_3([a_b, a_c, gap], travel, rule);
+    let mut net = algorithm_3([a_b, a_c, lies, gap], travel, rule);
     let mut both = rule.swap * share * a_b.min(a_c).min(f64::from(SWAP_FILM));
     if let Transfer::Marker { flow } = handling.transfer {
         (net, both) = (f64::from(flow) * travel, 0.0);

@@ -116,12 +116,12 @@ fn agrees(faces: &Faces, oracle: &[Vec<f64>; 2]) -> bool {
 fn followed(kind: &str) -> f64 {
     match kind {
         "knife" => 1.0,
-        _ => 0.5,
+        _ => 0.4,
     }
 }
 
 #[test]
-fn paint_goes_half_as_far_as_the_brush_and_out_of_its_way() {
+fn paint_follows_the_brush_and_goes_out_of_its_way() {
     let (mut clamped, mut squished, mut slowed, mut partly) = (0, 0, 0, 0);
     for seed in 0..24 {
         let mut scene = Scene::new(seed);

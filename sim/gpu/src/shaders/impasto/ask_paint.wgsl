@@ -12,9 +12,11 @@ fn filled(share: f32) -> f32 {
     return 1.0 - kept * kept;
 }
 
-fn transfer(on_brush: f32, on_canvas: f32, gap: f32, share: f32, travel: f32) -> f32 {
+fn transfer(on_brush: f32, on_canvas: f32, lies: f32, gap: f32, share: f32, travel: f32) -> f32 {
     let free = max(on_brush - gap, 0.0);
-    let fill = filled(share) * min(gap, free);
+    // A film that bridges the gap under a bristle splits in its middle.
+    let splits = max(on_brush - step.evens * 0.5 * (on_brush + lies), 0.0);
+    let fill = filled(share) * min(min(gap, free), splits);
     let difference = step.evens * free - on_canvas;
     let donor = select(on_canvas, on_brush - fill, difference > 0.0);
     let amount = min(min(share * abs(difference), step.most_over * travel), donor);
@@ -34,13 +36,14 @@ fn ask_paint(@builtin(global_invocation_id) id: vec3<u32>) {
     let lying = totals[i];
     let travel = length(contact.moved) * step.cell_per_reference;
     let on_brush = f32(load[1u + contact.texel]) * step.film_units_per_quantum;
-    let on_canvas = lying / QUANTA_PER_UNIT * contact.fraction;
-    let gap = max(-contact.reach, 0.0) * step.units_per_cell;
+    let lies = lying / QUANTA_PER_UNIT;
+    let on_canvas = lies * contact.fraction;
+    let gap = max(-contact.reach, 0.0) / (step.cells_per_quantum * QUANTA_PER_UNIT);
     var net = step.flow * travel;
     var swap = 0.0;
     if step.transfer != MARKER {
         let share = 1.0 - decay(step.ln_kept * travel);
-        net = transfer(on_brush, on_canvas, gap, share, travel);
+        net = transfer(on_brush, on_canvas, lies, gap, share, travel);
         swap = step.swap * share * min(min(on_brush, on_canvas), SWAP_FILM);
     }
     let quanta = contact.cover * QUANTA_PER_UNIT;

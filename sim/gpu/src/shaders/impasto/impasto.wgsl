@@ -72,8 +72,6 @@ struct Step {
     ride_below: f32,
     // By how much the edges of a strip are higher than its middle.
     round: f32,
-    // Thickness of paint by its height, units by cell.
-    units_per_cell: f32,
     // Share of the brush's motion that paint follows.
     follows: f32,
     // By what paint goes over (`Exchanging` of transfer.rs): ln of what stays along a reference cell, whether
@@ -85,8 +83,9 @@ struct Step {
     swap: f32,
     // The most quanta of a texel's film.
     film_most: f32,
-    // Share of the difference between films beside each other that evens out in FLOW_STEPS.
-    seep: f32,
+    // Share of the difference between films that evens out in FLOW_STEPS, between strips and along them.
+    seep_beside: f32,
+    seep_along: f32,
     // Levelling (`Round` of levelling.rs): gradient by difference of curvature and of height, in yields
     // of paint one cell thick; mobility of such paint by the way of the brush, and the most of one.
     tension: f32,

@@ -3,8 +3,10 @@
 
 // The first pass goes between strips that stand beside each other, the second one along each strip.
 override second: u32 = 0u;
+// Difference between the films of two strips that stays, by a full film.
+const HOLDS = 0.3;
 
-fn even_out(a: u32, b: u32) {
+fn even_out(a: u32, b: u32, part: f32, holds: f32) {
     let films = vec2(load[1u + a], load[1u + b]);
     if films.x == films.y {
         return;
@@ -12,7 +14,8 @@ fn even_out(a: u32, b: u32) {
     let full = select(b, a, films.x > films.y);
     let thin = select(a, b, films.x > films.y);
     let most = max(films.x, films.y);
-    let share = 0.5 * step.seep * f32(most - min(films.x, films.y)) / f32(most);
+    let falls = max(f32(most - min(films.x, films.y)) - holds, 0.0);
+    let share = 0.5 * part * falls / f32(most);
     var sum = 0u;
     for (var paint = 0u; paint < step.planes; paint++) {
         let film = film_of(paint);
@@ -37,6 +40,8 @@ fn seep_paint(@builtin(global_invocation_id) id: vec3<u32>) {
             even_out(
                 head[order + place] * ALONG + along,
                 head[order + place + 1u] * ALONG + along,
+                step.seep_beside,
+                HOLDS * step.film_full,
             );
         }
         return;
@@ -45,6 +50,6 @@ fn seep_paint(@builtin(global_invocation_id) id: vec3<u32>) {
     let strip = id.x / pairs;
     let along = first + 2u * (id.x % pairs);
     if strip < step.strips && along + 1u < ALONG {
-        even_out(strip * ALONG + along, strip * ALONG + along + 1u);
+        even_out(strip * ALONG + along, strip * ALONG + along + 1u, step.seep_along, 0.0);
     }
 }
