@@ -67,6 +67,8 @@ struct Rest {
     seconds: f64,
     rounds: usize,
     thinner: Option<usize>,
+    /// Share of a cell below which a block rests.
+    rests: f32,
     /// Quanta at which a cell counts as bare.
     bare: f32,
 }
@@ -78,6 +80,7 @@ impl Rest {
             seconds,
             rounds,
             thinner: None,
+            rests: 0.0,
             bare: 0.0,
         }
     }
@@ -100,7 +103,7 @@ impl Rest {
         for number in 0..self.rounds {
             faces.stop();
             let planes = [&mut faces.right[..], &mut faces.above[..]];
-            let most = levelling.add(window, &area, &round, self.thinner, planes);
+            let most = levelling.add(window, &area, &round, self.thinner, self.rests, planes);
             assert!((0.0..=0.25).contains(&most), "{most}");
             let all = faces.right.iter().chain(&faces.above);
             assert!(all.clone().all(|v| v.is_finite()));
@@ -175,6 +178,32 @@ fn a_ripple_is_arrested_at_the_yield_stress() {
         left(800.0) > 0.99 * ripple,
         "what yields at ten times as much stands"
     );
+}
+
+/// A wide sheet that stands on a level film beside a ripple: blocks at rest leave out what hardly flows, and wake
+/// when what flows beside them comes.
+#[test]
+fn what_rests_changes_nothing() {
+    let levelled = |rests: f32| {
+        let mut window = film(|x, _| match x {
+            30..40 => 600e-6,
+            80.. => 200e-6 + 30e-6 * f64::from(x as u32 / 3 % 2),
+            _ => 200e-6,
+        });
+        let rounds = Rest::new(OIL, 1.0, 64);
+        Rest { rests, ..rounds }.level(&mut window);
+        (0..SIZE)
+            .map(|x| height(&window, x, 64))
+            .collect::<Vec<_>>()
+    };
+    let all = levelled(0.0);
+    let off = |rests: f32| {
+        let pairs = levelled(rests).into_iter().zip(&all);
+        pairs.map(|(a, b)| (a - b).abs()).fold(0.0, f64::max)
+    };
+    let (fine, coarse) = (off(2e-4), off(0.2));
+    assert!(fine < 1e-6, "{fine}");
+    assert!(coarse > 1e-6, "a film that hardly levels passes: {coarse}");
 }
 
 /// A heap that stands alone: none is lost, also where it stands at an edge of the area that levels.

@@ -107,6 +107,37 @@ pub struct Levelling {
     curve: Vec<f32>,
     /// Yield stress and fluidity by those of paint from the tube.
     body: [Vec<f32>; 2],
+    blocks: Blocks,
+}
+
+/// Columns and rows of a block, which rests as a whole.
+const BLOCK: usize = 16;
+
+/// Blocks of an area, row after row.
+#[derive(Clone, Debug, Default)]
+struct Blocks {
+    /// The most that flowed in each in the last round; empty before the first.
+    flowed: Vec<f32>,
+    /// Which may flow.
+    active: Vec<bool>,
+}
+
+impl Blocks {
+    /// Begins a round: those may flow where at least `rests` did, and those beside them.
+    fn begin(&mut self, area: &Area, rests: f32) {
+        let [across, up] = area.size.map(|cells| cells.div_ceil(BLOCK));
+        self.active.clear();
+        if self.flowed.len() == across * up {
+            let around = |i: usize, most: usize| i.saturating_sub(1)..(i + 2).min(most);
+            let flows = |x: usize, y: usize| self.flowed[y * across + x] >= rests;
+            let may = |x, y| around(y, up).any(|j| around(x, across).any(|i| flows(i, j)));
+            let blocks = (0..up).flat_map(|y| (0..across).map(move |x| (x, y)));
+            self.active.extend(blocks.map(|(x, y)| may(x, y)));
+        }
+        self.active.resize(across * up, true);
+        self.flowed.clear();
+        self.flowed.resize(across * up, 0.0);
+    }
 }
 
 /// Cells beside the area that are looked at.
@@ -116,24 +147,30 @@ impl Levelling {
     /// Adds what flows in a round to the velocities through the right and upper faces of an area's cells: the
     /// share of a donor's paint that goes through. Nothing leaves the area; beyond the window it is as at its
     /// edge. Returns the most.
+    ///
+    /// Where less than `rests` flowed in the last round on the same area, and all around, nothing does in this one.
     pub fn add(
         &mut self,
         window: &Window,
         area: &Area,
         round: &Round,
         thinner: Option<usize>,
+        rests: f32,
         [right, above]: [&mut [f32]; 2],
     ) -> f32 {
         if area.is_empty() {
             return 0.0;
         }
+        let mut blocks = std::mem::take(&mut self.blocks);
+        blocks.begin(area, rests);
         self.look(window, area, round.to_cells);
         self.soften(window, area, round.to_cells, thinner);
         let bare = round.bare * round.to_cells;
-        let mut most = 0.0;
-        flow(self, area, round, bare, 1, right, &mut most);
-        flow(self, area, round, bare, self.width, above, &mut most);
-        most
+        flow(self, area, round, bare, 1, right, &mut blocks);
+        flow(self, area, round, bare, self.width, above, &mut blocks);
+        self.blocks = blocks;
+        let flowed = self.blocks.flowed.iter();
+        flowed.fold(0.0, |most, flowed| most.max(*flowed))
     }
 
     /// Wet heights and surfaces of the area and its halo, and the curvature.
@@ -219,8 +256,64 @@ wide! {
     }
 }
 
+/// Cells in a row.
+struct Run<'a> {
+    wet: &'a [f32],
+    surface: &'a [f32],
+    curve: &'a [f32],
+    yields: &'a [f32],
+    fluid: &'a [f32],
+}
+
+impl<'a> Run<'a> {
+    #[inline(always)]
+    fn of(levelling: &'a Levelling, from: usize, cells: usize) -> Self {
+        let run = |plane: &'a [f32]| &plane[from..from + cells];
+        let [yields, fluid] = &levelling.body;
+        Self {
+            wet: run(&levelling.wet),
+            surface: run(&levelling.surface),
+            curve: run(&levelling.curve),
+            yields: run(yields),
+            fluid: run(fluid),
+        }
+    }
+}
+
+#[inline(always)]
+fn larger(a: f32, b: f32) -> f32 {
+    if a > b { a } else { b }
+}
+
+#[inline(always)]
+fn smaller(a: f32, b: f32) -> f32 {
+    if a < b { a } else { b }
+}
+
+/// The share of a donor's paint that flows from a cell to the one beside it, `i` cells on.
+#[inline(always)]
+fn share(round: &Round, bare: f32, own: &Run<'_>, next: &Run<'_>, i: usize) -> f32 {
+    let (wet, wet_next) = (own.wet[i], next.wet[i]);
+    let drop = own.surface[i] - next.surface[i];
+    // Pressure falls where curvature grows.
+    let gradient = round.tension * (next.curve[i] - own.curve[i]) + round.weight * drop;
+    let height = 0.5 * (wet + wet_next);
+    let yields = 0.5 * (own.yields[i] + next.yields[i]);
+    let sheared = larger(height - yields / larger(gradient.abs(), 1e-12), 0.0);
+    let mobility = round.mobility * 0.5 * (own.fluid[i] + next.fluid[i]);
+    let mobility = mobility * sheared * sheared * (3.0 * height - sheared) / 6.0;
+    let goes = smaller(mobility, round.most) * gradient;
+    let donor = if goes > 0.0 { wet } else { wet_next };
+    let onto = if goes > 0.0 { wet_next } else { wet };
+    let pinned = (donor <= bare) | (onto <= bare) & (drop.abs() < ADVANCES * yields);
+    let share = goes / larger(donor, 1e-9);
+    let share = if pinned { 0.0 } else { share };
+    larger(smaller(share, 0.25), -0.25)
+}
+
 wide! {
-    /// What flows through the faces toward the cells `next` places on; the most of it.
+    /// What flows in the active blocks through the faces toward the cells `next` places on, and the most of it
+    /// in each.
     fn flow(
         levelling: &Levelling,
         area: &Area,
@@ -228,38 +321,31 @@ wide! {
         bare: f32,
         next: usize,
         faces: &mut [f32],
-        most: &mut f32,
+        blocks: &mut Blocks,
     ) {
         let columns = area.size[0];
+        let of_row = columns.div_ceil(BLOCK);
         // Nothing goes through the border of the area: it would be lost there.
         let across = usize::from(next == 1);
         let [inner, rows] = [columns - across, area.size[1] + across - 1];
         for (row, faces) in faces.chunks_exact_mut(columns).take(rows).enumerate() {
             let start = (row + HALO) * levelling.width + HALO;
-            let [wet, wet_next] = [start, start + next].map(|at| &levelling.wet[at..at + columns]);
-            let [s, s_next] = [start, start + next].map(|at| &levelling.surface[at..at + columns]);
-            let [own, beside] = [start, start + next];
-            let [tau, tau_next] = [own, beside].map(|at| &levelling.body[0][at..at + columns]);
-            let [fluid, fluid_next] = [own, beside].map(|at| &levelling.body[1][at..at + columns]);
-            let [k, k_next] = [start, start + next].map(|at| &levelling.curve[at..at + columns]);
-            for x in 0..inner {
-                // Pressure falls where curvature grows.
-                let gradient = round.tension * (k_next[x] - k[x]) + round.weight * (s[x] - s_next[x]);
-                let height = 0.5 * (wet[x] + wet_next[x]);
-                let yields = 0.5 * (tau[x] + tau_next[x]);
-                let sheared = (height - yields / gradient.abs().max(1e-12)).max(0.0);
-                let mobility = round.mobility * 0.5 * (fluid[x] + fluid_next[x]);
-                let mobility = mobility * sheared * sheared * (3.0 * height - sheared) / 6.0;
-                let mobility = if mobility < round.most { mobility } else { round.most };
-                let goes = mobility * gradient;
-                let donor = if goes > 0.0 { wet[x] } else { wet_next[x] };
-                let drop = s[x] - s_next[x];
-                let onto = if goes > 0.0 { wet_next[x] } else { wet[x] };
-                let pinned = (donor <= bare) | (onto <= bare) & (drop.abs() < ADVANCES * yields);
-                let share = if pinned { 0.0 } else { goes / donor.max(1e-9) };
-                let share = share.clamp(-0.25, 0.25);
-                *most = most.max(share.abs());
-                faces[x] += share;
+            for (block, faces) in faces[..inner].chunks_mut(BLOCK).enumerate() {
+                let place = row / BLOCK * of_row + block;
+                if !blocks.active[place] {
+                    continue;
+                }
+                let (from, cells) = (start + block * BLOCK, faces.len());
+                let [own, beside] = [from, from + next].map(|at| Run::of(levelling, at, cells));
+                let mut shares = [0.0f32; BLOCK];
+                for (i, of) in shares[..cells].iter_mut().enumerate() {
+                    *of = share(round, bare, &own, &beside, i);
+                }
+                for (face, share) in faces.iter_mut().zip(&shares) {
+                    *face += share;
+                }
+                let most = shares.iter().fold(0.0, |most, share| larger(share.abs(), most));
+                blocks.flowed[place] = larger(blocks.flowed[place], most);
             }
         }
     }

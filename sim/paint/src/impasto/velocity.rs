@@ -150,7 +150,7 @@ impl Faces {
         let round = Round::new(Body::TUBE, cell_m, seconds, to_cells, step.stain);
         let around = &footprint.around;
         let faces = [&mut self.right[..], &mut self.above[..]];
-        levelling.add(&*step.window, around, &round, step.thinner, faces);
+        levelling.add(&*step.window, around, &round, step.thinner, 0.0, faces);
         self.limit(around.size[0]);
     }
 

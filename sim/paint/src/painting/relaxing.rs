@@ -67,7 +67,7 @@ impl Painting {
         for number in 0..ROUNDS {
             faces.stop();
             let planes = [&mut faces.right[..], &mut faces.above[..]];
-            let most = levelling.add(window, &area, &round, thinner, planes);
+            let most = levelling.add(window, &area, &round, thinner, RESTS, planes);
             if most < RESTS {
                 break;
             }

@@ -148,7 +148,7 @@ fn levelled(film: &Film<'_>, area: &Area) -> (Faces, f32) {
     let round = Round::new(film.body, CELL_M, film.seconds, to_cells, film.bare as f32);
     let mut faces = Faces::still(area);
     let planes = [&mut faces.right[..], &mut faces.above[..]];
-    let most = Levelling::default().add(film.window, area, &round, film.thinner, planes);
+    let most = Levelling::default().add(film.window, area, &round, film.thinner, 0.0, planes);
     (faces, most)
 }
 
