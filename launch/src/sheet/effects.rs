@@ -62,7 +62,7 @@ const EFFECTS: [Effect; 8] = [
     },
     Effect {
         name: "scumbling",
-        words: "thick strokes, dried; white lightly over the right half",
+        words: "thick strokes, dried; a wiped white brush over them",
         paint: scumbling,
     },
     Effect {
@@ -114,9 +114,11 @@ impl Panel {
     }
 
     fn take_up(&mut self, name: &str, kind: &str, width_mm: f64) -> Result<(), Fault> {
-        let taken = self
-            .offline
-            .take_up(name, sized(kind, width_mm)?, DEPTH_SHARE);
+        self.take_up_file(name, sized(kind, width_mm)?)
+    }
+
+    fn take_up_file(&mut self, name: &str, file: maulstick_brush::BrushFile) -> Result<(), Fault> {
+        let taken = self.offline.take_up(name, file, DEPTH_SHARE);
         taken.map_err(refused)
     }
 
@@ -296,6 +298,9 @@ fn impasto(library: PaintLibrary, cell_mm: f64) -> Result<Panel, Fault> {
     Ok(panel)
 }
 
+/// Share of its load that a brush carries which is wiped for scumbling.
+const NEARLY_EMPTY: f64 = 0.2;
+
 fn scumbling(library: PaintLibrary, cell_mm: f64) -> Result<Panel, Fault> {
     let mut panel = Panel::of("bright", 10.0, (library, cell_mm))?;
     for i in 0..14 {
@@ -306,7 +311,11 @@ fn scumbling(library: PaintLibrary, cell_mm: f64) -> Result<Panel, Fault> {
         panel.paint(&line([x - 2.5, y - 10.0], [x + 2.5, y + 10.0], 0.25, 0.0))?;
     }
     panel.dry(1.0)?;
-    panel.take_up("scumble", "flat", 13.0)?;
+    // Wiped on a rag.
+    let mut wiped = sized("flat", 13.0)?;
+    wiped.load.film_um *= NEARLY_EMPTY;
+    wiped.load.inside_um *= NEARLY_EMPTY;
+    panel.take_up_file("scumble", wiped)?;
     panel.load("scumble", WHITE)?;
     for y in [40.0, 30.0, 19.0, 9.0] {
         let gesture = Gesture {
