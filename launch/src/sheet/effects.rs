@@ -1,5 +1,6 @@
 //! The seven effects of Baxter 2004, fig. 6.2, and thinned paint: what the paint model is for.
 
+use maulstick_brush::BrushFile;
 use maulstick_optics::PaintLibrary;
 use maulstick_paint::picture::Picture;
 use maulstick_rig::Fault;
@@ -15,6 +16,8 @@ use crate::performance::refused;
 const PANEL_MM: [f64; 2] = [86.0, 48.0];
 /// Room for the words over a panel, mm.
 const WORDS_MM: f64 = 13.0;
+/// Size of those that say what is done, mm.
+const WORDS_SIZE_MM: f64 = 3.75;
 
 const YELLOW: &str = "Hansa Yellow Opaque";
 const BLUE: &str = "Ultramarine Blue=0.6,Titanium White=0.4";
@@ -91,7 +94,7 @@ pub fn effects(
         let x = GAP_MM + (place % columns) as f64 * (across + GAP_MM);
         let y = GAP_MM + (place / columns) as f64 * (WORDS_MM + up + GAP_MM);
         sheet.write(effect.name, [x, y + 5.0], 5.5);
-        sheet.write(effect.words, [x, y + 10.0], 3.75);
+        sheet.write(effect.words, [x, y + 10.0], WORDS_SIZE_MM);
         let panel = (effect.paint)(library.clone(), cell_mm)?;
         sheet.paste(&panel.picture(), [x, y + WORDS_MM]);
         told(place + 1, EFFECTS.len());
@@ -113,11 +116,7 @@ impl Panel {
         )
     }
 
-    fn take_up(&mut self, name: &str, kind: &str, width_mm: f64) -> Result<(), Fault> {
-        self.take_up_file(name, sized(kind, width_mm)?)
-    }
-
-    fn take_up_file(&mut self, name: &str, file: maulstick_brush::BrushFile) -> Result<(), Fault> {
+    fn take_up(&mut self, name: &str, file: BrushFile) -> Result<(), Fault> {
         let taken = self.offline.take_up(name, file, DEPTH_SHARE);
         taken.map_err(refused)
     }
@@ -132,7 +131,7 @@ impl Panel {
     }
 }
 
-fn sized(kind: &str, width_mm: f64) -> Result<maulstick_brush::BrushFile, Fault> {
+fn sized(kind: &str, width_mm: f64) -> Result<BrushFile, Fault> {
     let sized = library_brush(kind)?.scaled_to(width_mm);
     sized.map_err(|error| Fault::failure(error.to_string()))
 }
@@ -161,7 +160,7 @@ fn transfer(library: PaintLibrary, cell_mm: f64) -> Result<Panel, Fault> {
             panel.paint(&line([from, y], [86.0 - from, y], 0.4, 90.0))?;
         }
     }
-    panel.take_up("round", "round", 6.0)?;
+    panel.take_up("round", sized("round", 6.0)?)?;
     for x in [20.0, 45.0, 70.0] {
         panel.load("round", "Titanium White=0.5,Thinner=0.5")?;
         let way = (0..9).map(|i| {
@@ -210,7 +209,7 @@ fn drying(library: PaintLibrary, cell_mm: f64) -> Result<Panel, Fault> {
         panel.paint(&line([81.0, y], [5.0, y], 0.4, 90.0))?;
     }
     for (i, x) in [15.0, 33.0, 51.0, 69.0].into_iter().enumerate() {
-        panel.take_up(&format!("clean-{i}"), "filbert", 8.0)?;
+        panel.take_up(&format!("clean-{i}"), sized("filbert", 8.0)?)?;
         panel.paint(&line([x, 48.5], [x, 1.5], 1.0, 0.0))?;
     }
     Ok(panel)
@@ -229,7 +228,7 @@ fn blending(library: PaintLibrary, cell_mm: f64) -> Result<Panel, Fault> {
             }
         }
     }
-    panel.take_up("filbert", "filbert", 10.0)?;
+    panel.take_up("filbert", sized("filbert", 10.0)?)?;
     for pass in 0..2 {
         for i in 0..5 {
             let x = 44.0 + 7.5 * f64::from(i) + 2.5 * f64::from(pass);
@@ -257,7 +256,7 @@ fn glazing(library: PaintLibrary, cell_mm: f64) -> Result<Panel, Fault> {
         panel.paint(&line([80.0, y + 1.5], [6.0, y - 1.5], 0.4, 90.0))?;
     }
     panel.dry(1.0)?;
-    panel.take_up("glaze", "flat", 14.0)?;
+    panel.take_up("glaze", sized("flat", 14.0)?)?;
     let glazes = [
         ("Quinacridone Magenta=0.15,Thinner=0.85", 48.0),
         ("Phthalo Green Blue Shade=0.1,Thinner=0.9", 70.0),
@@ -298,7 +297,7 @@ fn impasto(library: PaintLibrary, cell_mm: f64) -> Result<Panel, Fault> {
     Ok(panel)
 }
 
-/// Share of its load that a brush carries which is wiped for scumbling.
+/// Share of its load on a brush that is wiped for scumbling.
 const NEARLY_EMPTY: f64 = 0.2;
 
 fn scumbling(library: PaintLibrary, cell_mm: f64) -> Result<Panel, Fault> {
@@ -311,11 +310,7 @@ fn scumbling(library: PaintLibrary, cell_mm: f64) -> Result<Panel, Fault> {
         panel.paint(&line([x - 2.5, y - 10.0], [x + 2.5, y + 10.0], 0.25, 0.0))?;
     }
     panel.dry(1.0)?;
-    // Wiped on a rag.
-    let mut wiped = sized("flat", 13.0)?;
-    wiped.load.film_um *= NEARLY_EMPTY;
-    wiped.load.inside_um *= NEARLY_EMPTY;
-    panel.take_up_file("scumble", wiped)?;
+    panel.take_up("scumble", sized("flat", 13.0)?.wiped(NEARLY_EMPTY))?;
     panel.load("scumble", WHITE)?;
     for y in [40.0, 30.0, 19.0, 9.0] {
         let gesture = Gesture {
@@ -350,4 +345,24 @@ fn thinning(library: PaintLibrary, cell_mm: f64) -> Result<Panel, Fault> {
         panel.paint(&wave(way.collect(), 0.4, 2.4))?;
     }
     Ok(panel)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn words_end_with_their_panel() {
+        let sheet = Sheet::new([10.0, 10.0], 0.125).expect("small");
+        let fits = |words: &str| {
+            let size = (WORDS_SIZE_MM / sheet.cell_mm) as f32;
+            sheet.page.length(words, size) <= sheet.pixels(PANEL_MM[0])
+        };
+        for effect in &EFFECTS {
+            assert!(fits(effect.words), "{}", effect.words);
+        }
+        assert!(!fits(
+            "thick strokes, dried; a wiped brush of white over the right half"
+        ));
+    }
 }

@@ -12,6 +12,7 @@ pub mod cores;
 mod elementary;
 pub mod geometry;
 pub mod lanes;
+pub mod select;
 mod wide;
 
 pub use elementary::{Decay, acos, atan2, cos, decay_f32, exp, exp_f32, ln, powf, sin, sin_cos};

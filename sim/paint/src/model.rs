@@ -67,7 +67,7 @@ pub struct BrushTraits {
 }
 
 /// How paint seeps between the films of texels beside each other.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Seep {
     /// Share of their difference that evens out between strips, beyond what the yield stress holds.
     pub beside: f64,
@@ -82,9 +82,11 @@ impl BrushTraits {
     const REFILL: f64 = 0.1;
     /// Share of the difference between texels that evens out along a reference cell.
     const CREEP: f64 = 0.02;
-    /// Share of the difference between films that evens out along a reference cell: beside each other, and along
-    /// a strip.
-    const SEEPS: [f64; 2] = [0.3, 0.25];
+    /// Shares of the difference between films that even out along a reference cell.
+    const SEEP: Seep = Seep {
+        beside: 0.3,
+        along: 0.25,
+    };
     /// Difference between the films of two strips that stays, by a full film: so a bristle keeps its streak.
     pub const HOLDS: f64 = 0.3;
 
@@ -127,8 +129,8 @@ impl BrushTraits {
             refill: share(Self::REFILL),
             creep: share(Self::CREEP),
             seep: Seep {
-                beside: share(Self::SEEPS[0]),
-                along: share(Self::SEEPS[1]),
+                beside: share(Self::SEEP.beside),
+                along: share(Self::SEEP.along),
             },
         }
     }

@@ -172,6 +172,14 @@ impl BrushFile {
         Ok(brush)
     }
 
+    /// The brush wiped on a rag: it carries this share of its load.
+    #[must_use]
+    pub fn wiped(mut self, share: f64) -> Self {
+        self.load.film_um *= share;
+        self.load.inside_um *= share;
+        self
+    }
+
     /// Length of the head, m.
     #[must_use]
     pub fn length_m(&self) -> f64 {

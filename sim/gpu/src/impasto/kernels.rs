@@ -2,6 +2,7 @@
 
 use maulstick_paint::impasto::levelling::{ADVANCES, THINS};
 use maulstick_paint::impasto::velocity::{EASE, SLIP, SQUISH, STABLE};
+use maulstick_paint::model::BrushTraits;
 use maulstick_paint::transfer::SWAP_FILM;
 
 use crate::device::Device;
@@ -193,8 +194,8 @@ pub(crate) static KERNELS: [Kernel; 16] = [
         bindings: &[B::Head, B::Load, B::Asks],
         groups: Groups::Planned(1),
     },
-    seep(&[("second", 0.0)]),
-    seep(&[("second", 1.0)]),
+    seep(&[("second", 0.0), ("HOLDS", BrushTraits::HOLDS)]),
+    seep(&[("second", 1.0), ("HOLDS", BrushTraits::HOLDS)]),
 ];
 
 const fn seep(constants: &'static [(&'static str, f64)]) -> Kernel {

@@ -10,9 +10,7 @@ use maulstick_num::lanes::Lanes;
 use crate::load::ALONG;
 
 /// A ribbon that covers a cell only in part counts as higher by this much, cells: of ribbons beside each
-/// other each has the cells that it covers most, so more of them give paint where cells are coarse. A
-/// round brush that runs out leaves 4.0 % more on cells half as large, with .6 it was 5.5 %; one that never
-/// runs out leaves 7.5 % more.
+/// other each has the cells that it covers most, so more of them give paint where cells are coarse.
 const EDGE_PENALTY: f32 = 0.9;
 /// Nothing here.
 const NOTHING: f32 = -1.0;

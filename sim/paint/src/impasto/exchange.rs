@@ -6,6 +6,7 @@
 //! demands summed, scaled together where they exceed what it holds, and truncated once.
 
 use maulstick_num::cores::{Balance, both_if};
+use maulstick_num::select::{larger, smaller};
 use maulstick_num::wide;
 
 use super::SHARED;
@@ -141,23 +142,13 @@ pub fn wanted(meeting: &Meeting, rule: &Exchanging, handling: &Handling) -> [f32
             (net, rule.swapped(meeting.on_brush, on_canvas, share))
         }
     };
-    let most = least(handling.most, CELL_MAX as f32);
-    let room = positive(most - meeting.lying);
+    let most = smaller(handling.most, CELL_MAX as f32);
+    let room = larger(most - meeting.lying, 0.0);
     // What changes places has room on both sides, or stays on both.
-    let swap = least(swap * quanta, room);
-    let given = least(positive(net) * quanta + swap, room);
-    let taken = least(positive(-net) * quanta + swap, meeting.lying);
+    let swap = smaller(swap * quanta, room);
+    let given = smaller(larger(net, 0.0) * quanta + swap, room);
+    let taken = smaller(larger(-net, 0.0) * quanta + swap, meeting.lying);
     [given.floor(), taken.floor()]
-}
-
-#[inline(always)]
-fn least(a: f32, b: f32) -> f32 {
-    if a < b { a } else { b }
-}
-
-#[inline(always)]
-fn positive(a: f32) -> f32 {
-    if a > 0.0 { a } else { 0.0 }
 }
 
 wide! {

@@ -4,6 +4,7 @@
 //! It does so in every strip, also in one that is the lowest of no cell just now: how many are depends
 //! on the size of cells.
 
+use maulstick_num::select::larger;
 use maulstick_num::wide;
 
 use crate::load::{ALONG, PaintOnBrush, film_share};
@@ -130,11 +131,6 @@ impl Shares {
         }
         shares
     }
-}
-
-#[inline(always)]
-fn larger(a: f64, b: f64) -> f64 {
-    if a > b { a } else { b }
 }
 
 /// A share of a count, truncated.

@@ -10,6 +10,7 @@
 //! (Smith, Orchard and Rhind-Tutt 1961). Edges are pinned: paint flows onto bare ground only
 //! down a steep slope.
 
+use maulstick_num::select::{larger, smaller};
 use maulstick_num::{exp_f32, wide};
 
 use crate::window::{Area, Window};
@@ -107,6 +108,7 @@ pub struct Levelling {
     curve: Vec<f32>,
     /// Yield stress and fluidity by those of paint from the tube.
     body: [Vec<f32>; 2],
+    /// Where something flows.
     blocks: Blocks,
 }
 
@@ -256,7 +258,7 @@ wide! {
     }
 }
 
-/// Cells in a row.
+/// What levelling has looked at, of cells side by side in a row.
 struct Run<'a> {
     wet: &'a [f32],
     surface: &'a [f32],
@@ -278,16 +280,6 @@ impl<'a> Run<'a> {
             fluid: run(fluid),
         }
     }
-}
-
-#[inline(always)]
-fn larger(a: f32, b: f32) -> f32 {
-    if a > b { a } else { b }
-}
-
-#[inline(always)]
-fn smaller(a: f32, b: f32) -> f32 {
-    if a < b { a } else { b }
 }
 
 /// The share of a donor's paint that flows from a cell to the one beside it, `i` cells on.

@@ -1,6 +1,6 @@
 //! Stage 2: where the paint under the brush goes (Baxter 2004, § 6.4.2).
 //!
-//! Paint sticks to brush and canvas, so on the whole it goes half as far as the bristle above it,
+//! Paint sticks to brush and canvas, so on the whole it goes about half as far as the bristle above it,
 //! whose motion holds the turning of the brush. What the bristles press aside flows down the
 //! gradient of the penetration: −c·∇p. Both are found for the faces between cells, where paint goes
 //! over: so the squish from a cell into the next is told by these two alone.

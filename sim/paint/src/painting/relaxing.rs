@@ -16,7 +16,7 @@ use crate::window::Area;
 
 /// How long a stroke levels once the brush is lifted, s.
 const SECONDS: f64 = 1.0;
-/// Rounds in which it does: ripples shorter than six cells are gone after them.
+/// Rounds in which it does: of ripples six cells long a fifth is left after them.
 const ROUNDS: u32 = 64;
 /// Where less than this share of a cell would flow, all rests.
 const RESTS: f32 = 2e-4;

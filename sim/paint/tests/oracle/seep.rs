@@ -29,8 +29,8 @@ fn total(films: &Films, texel: usize) -> f64 {
     films.iter().map(|film| film[texel]).sum()
 }
 
-/// Half the share of their difference beyond what is held goes from the fuller film to the other, so that all
-/// would make them equal.
+/// Half the share of their difference beyond what is held goes from the fuller film to the other: all of it would
+/// leave just what is held.
 fn even_out(films: &mut Films, [a, b]: [usize; 2], share: f64, holds: f64) {
     let (one, other) = (total(films, a), total(films, b));
     let (from, to) = if one > other { (a, b) } else { (b, a) };

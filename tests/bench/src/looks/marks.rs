@@ -1,6 +1,5 @@
 //! The measurements: each paints a few strokes and reads films and heights.
 
-use maulstick_brush::BrushFile;
 use maulstick_rig::Fault;
 
 use super::easel::{Easel, Map, Stroke, brush, correlation, slope};
@@ -194,17 +193,9 @@ fn by_height(film: &Map, ground: &Map) -> [f64; 4] {
 /// Share of its load on a brush that is nearly empty.
 const NEARLY_EMPTY: f64 = 0.15;
 
-/// A brush that carries so much of its load: wiped on a rag.
-fn wiped(kind: &str, width_mm: f64, share: f64) -> Result<BrushFile, Fault> {
-    let mut file = brush(kind, width_mm)?;
-    file.load.film_um *= share;
-    file.load.inside_um *= share;
-    Ok(file)
-}
-
 /// A nearly empty brush, lightly.
 pub(crate) fn dry_brush(trial: Trial) -> Result<Vec<Number>, Fault> {
-    let flat = wiped("flat", 14.0, trial.pick(NEARLY_EMPTY, 1.0))?;
+    let flat = brush("flat", 14.0)?.wiped(trial.pick(NEARLY_EMPTY, 1.0));
     let mut easel = Easel::new([115.0, 24.0], trial.cell_mm, "linen", flat)?;
     easel.load(PAINT)?;
     easel.stroke(&Stroke::along(12.0, 15.0, 100.0, trial.pick(0.01, 0.8)))?;
@@ -234,7 +225,10 @@ pub(crate) fn scumble(trial: Trial) -> Result<Vec<Number>, Fault> {
         }
     }
     easel.dry()?;
-    easel.take_up("white", wiped("flat", 14.0, trial.pick(NEARLY_EMPTY, 1.0))?)?;
+    easel.take_up(
+        "white",
+        brush("flat", 14.0)?.wiped(trial.pick(NEARLY_EMPTY, 1.0)),
+    )?;
     easel.load("Titanium White")?;
     for x in [35.0, 48.0, 61.0] {
         easel.stroke(&Stroke {

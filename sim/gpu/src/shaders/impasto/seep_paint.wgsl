@@ -3,8 +3,8 @@
 
 // The first pass goes between strips that stand beside each other, the second one along each strip.
 override second: u32 = 0u;
-// Difference between the films of two strips that stays, by a full film.
-const HOLDS = 0.3;
+// Difference between the films of two strips that stays, by a full film (model.rs).
+override HOLDS: f32;
 
 fn even_out(a: u32, b: u32, part: f32, holds: f32) {
     let films = vec2(load[1u + a], load[1u + b]);
