@@ -21,9 +21,11 @@ pub const STROKE_GAP_NS: u64 = 150_000_000;
 /// Longest pause between two samples in contact that the brush crosses along its path, ns; after a
 /// longer one it begins another stroke.
 pub const BRIDGED_NS: u64 = 300_000_000;
-/// A touching brush is solved each time its handle has moved so far, cells: a little less than one,
-/// so that the strips, which may overtake it, seldom move more than one.
-const SOLVE_CELLS: f64 = 0.7;
+/// A touching brush is solved each time its handle has moved so far, and again between where a joint in contact
+/// moves [farther](FARTHEST_M), m: about as finely as paint is stepped. In between it is interpolated.
+const SOLVE_M: f64 = 0.175e-3;
+/// See [`SOLVE_M`].
+const FARTHEST_M: f64 = 0.25e-3;
 /// Solves between two samples at most: a hand is seldom that fast.
 const MOST_SOLVES: f64 = 64.0;
 /// The time for which that many are enough, ns: a pause that is bridged may have more.
@@ -76,7 +78,7 @@ struct Held {
     /// The sample before the newest one, if the brush touched there and has since.
     before: Option<Sampled>,
     /// Cells from the newest sample back to where the head was solved last.
-    left_over: f64,
+    left_over_m: f64,
 }
 
 impl BrushModel {
@@ -165,7 +167,7 @@ impl BrushModel {
     /// Follows one sample of the device `origin`: none while there is no scene, else the solves on
     /// the way to it, the last at the sample itself.
     ///
-    /// A touching brush is solved each time it has moved by about a cell, counted on across samples,
+    /// A touching brush is solved each time it has moved by about a step, counted on across samples,
     /// so that its path does not depend on how often it is sampled; between two of these a sample gives
     /// a glimpse. A pen lands and lifts at its sample. A pause of up to [`BRIDGED_NS`] in contact is
     /// crossed like any way between two samples. A longer one, another device, time that does not
@@ -211,7 +213,7 @@ impl BrushModel {
                 (held, vec![solve])
             }
             Some(mut held) if !paused(&held) => {
-                (held.before, held.left_over) = (None, 0.0);
+                (held.before, held.left_over_m) = (None, 0.0);
                 let solve = self.land(&mut held, here, sample.in_air(), &plane);
                 (held, vec![solve])
             }
@@ -230,7 +232,7 @@ impl BrushModel {
     /// Begins another stroke with a head that is bent as it was before a pause in contact: one that
     /// landed anew would be dragged round to there, and leave a notch.
     fn resume(&mut self, held: &mut Held, here: Sampled, plane: &Plane) -> Solve {
-        (held.before, held.left_over) = (None, 0.0);
+        (held.before, held.left_over_m) = (None, 0.0);
         let brush = self.placed(held, &here);
         held.head.slide(&self.tuft, &brush);
         let mut solve = self.solve(held, here, plane);
@@ -268,7 +270,7 @@ impl BrushModel {
         brush
     }
 
-    /// Solves a touching brush at each cell of its way to a sample, and gives a glimpse of it there.
+    /// Solves a touching brush at each step of its way to a sample, and gives a glimpse of it there.
     fn go(&mut self, held: &mut Held, here: Sampled, plane: &Plane) -> Vec<Solve> {
         let start_ns = held.newest.event_ns;
         let way = Way::new(
@@ -277,27 +279,26 @@ impl BrushModel {
             &here,
             self.file.length_m(),
         );
-        let cell_m = plane.cell_m * plane.zoom;
-        let motion = way.length_m() / cell_m;
+        let motion_m = way.length_m();
         let pause = (here.event_ns - start_ns) as f64 / MOST_SOLVES_NS;
-        let part = (motion / (MOST_SOLVES * pause.max(1.0))).max(SOLVE_CELLS);
-        let whole = held.left_over + motion;
+        let part_m = (motion_m / (MOST_SOLVES * pause.max(1.0))).max(SOLVE_M);
+        let whole_m = held.left_over_m + motion_m;
         let mut solves = Vec::new();
-        let (mut cells, mut at) = (part, 0.0);
-        while cells <= whole {
-            let s = way.after((cells - held.left_over) * cell_m);
+        let (mut gone_m, mut at) = (part_m, 0.0);
+        while gone_m <= whole_m {
+            let s = way.after(gone_m - held.left_over_m);
             let piece = Piece {
                 way: &way,
                 from: at,
                 to: s,
                 start_ns,
                 end_ns: here.event_ns,
-                length_m: part * cell_m,
+                length_m: part_m,
             };
             self.walk(held, &piece, plane, SPLITS, &mut solves);
-            (cells, at) = (cells + part, s);
+            (gone_m, at) = (gone_m + part_m, s);
         }
-        held.left_over = whole - (cells - part);
+        held.left_over_m = whole_m - (gone_m - part_m);
         let mut seen = held.clone();
         self.stay(&seen, here.event_ns);
         let mut glimpse = self.solve(&mut seen, here, plane);
@@ -323,7 +324,7 @@ impl BrushModel {
         self.stay(&tried, end.event_ns);
         let solve = self.solve(&mut tried, end, plane);
         let moved = tried.head.moved_in_contact(&held.head);
-        if splits > 0 && moved > plane.cell_m * plane.zoom {
+        if splits > 0 && moved > FARTHEST_M {
             (self.strokes, self.last_contact_ns) = strokes;
             let [first, second] = piece.halves();
             self.walk(held, &first, plane, splits - 1, solves);
@@ -462,7 +463,7 @@ impl BrushModel {
             bent: DVec2::ZERO,
             force_n: 0.0,
             before: None,
-            left_over: 0.0,
+            left_over_m: 0.0,
         }
     }
 }

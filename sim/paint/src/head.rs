@@ -7,6 +7,8 @@ use maulstick_num::lanes::Lanes;
 use maulstick_num::wide;
 use maulstick_types::brush::Solve;
 
+use crate::model::BrushTraits;
+
 /// Strips looked at at a time.
 const LANES: usize = 8;
 /// A strip lower than this may touch, cells.
@@ -55,6 +57,21 @@ pub struct Scale {
     pub cell_m: f64,
     /// Desk lengths per surface length.
     pub zoom: f64,
+}
+
+/// Way of a brush in one step, m of its own lengths.
+pub const STEP_M: f64 = 0.25e-3;
+
+impl Scale {
+    /// Way of a brush in one step, cells: at least one. One that is `fine` goes no farther: paint goes before the
+    /// edge of a blade, which is narrow, and a hairline would become wider by what its slanting hair sweeps.
+    #[must_use]
+    pub fn step_cells(&self, fine: bool) -> f64 {
+        if fine {
+            return 1.0;
+        }
+        (STEP_M / (self.cell_m * self.zoom)).max(1.0)
+    }
 }
 
 impl Waypoint {
@@ -141,18 +158,17 @@ wide! {
     }
 }
 
-/// The cells that strips of `half_width` cells lower than `height` cells cover, and those beside
-/// them that paint may be pushed to, from the first up to but not with the second; none where all
-/// strips are higher.
+/// The cells that strips lower than `height` cells cover in a step that ends at `pose`, from the first up to
+/// but not with the second; none where all strips are higher.
 #[must_use]
 pub fn low_bounds(
     head: &Head,
     pose: &HeadPose,
-    half_width: f32,
+    traits: &BrushTraits,
     height: f32,
 ) -> Option<([i64; 2], [i64; 2])> {
     let strips = head.strips();
-    let border = border(half_width);
+    let border = border(traits);
     let (mut from, mut to) = ([f32::MAX; 2], [f32::MIN; 2]);
     let row = |station: usize| station * strips..(station + 1) * strips;
     for station in 1..STATIONS {
@@ -187,11 +203,12 @@ pub fn low_bounds(
     })
 }
 
-/// How many cells a ribbon of a half width reaches beyond its middle line: it covers half a cell beyond its
-/// edge, seen across at most √2 times as far.
+/// How many cells a ribbon reaches beyond its middle line at the end of a step: where it was in the middle of
+/// it, its edge as wide as it is soft, seen across at most √2 times as far.
 #[must_use]
-pub fn border(half_width: f32) -> i64 {
-    (std::f32::consts::SQRT_2 * (half_width + 0.5) + 0.5).ceil() as i64
+pub fn border(traits: &BrushTraits) -> i64 {
+    let half = 0.5 * traits.step_cells;
+    (std::f32::consts::SQRT_2 * (traits.half_width + half) + 0.5 + half).ceil() as i64
 }
 
 /// The farthest that a strip near the surface moves between two poses, cells: along the surface, or

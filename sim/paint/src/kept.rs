@@ -20,8 +20,8 @@ pub struct KeptBrush {
     pub load: u64,
     /// Epoch of the brush and number of the newest stroke.
     pub stroke: Option<(u32, u64)>,
-    /// Where it is on which surface, while it paints.
-    pub path: Option<(u32, Scale, KeptWaypoint)>,
+    /// While it paints, on which surface, where it stepped last, and where it has come to since.
+    pub path: Option<(u32, Scale, KeptWaypoint, Option<KeptWaypoint>)>,
     /// What its strokes take in turn, and how many it made since its take began.
     pub loads: Vec<Mixture>,
     /// See `loads`.

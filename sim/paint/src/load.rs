@@ -262,10 +262,9 @@ impl BrushLoad {
         Self::spread(strips, &self.counts())
     }
 
-    /// Counts a step with contact; whether it is one in `every`.
-    pub fn is_due(&mut self, every: u64) -> bool {
+    /// Counts a step with contact.
+    pub fn count_step(&mut self) {
         self.steps += 1;
-        self.steps.is_multiple_of(every)
     }
 
     /// Whether any of a paint may be there.

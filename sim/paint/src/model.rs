@@ -5,6 +5,7 @@ use maulstick_brush::file::sections::Hair;
 use maulstick_brush::head::{Head, HeadPose, STATIONS};
 use maulstick_num::exp;
 
+use crate::head::Scale;
 use crate::load::{ALONG, BrushLoad};
 use crate::quantum::{
     CELL_MAX, Counts, QUANTA_PER_UNIT, QUANTUM_M, REFERENCE_CELL_M, SLOTS, UNIT_M,
@@ -24,6 +25,10 @@ pub struct Sweep<'a> {
 /// What a paint model needs to know of a brush, in cells of a surface and in quanta.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BrushTraits {
+    /// Way of a step, cells.
+    pub step_cells: f32,
+    /// In so many parts the paint of a step moves, so that none goes farther than a cell in one.
+    pub parts: u32,
     /// Half the width of a strip, cells.
     pub half_width: f32,
     /// Share of that width which a strip loses up to its point.
@@ -76,16 +81,16 @@ pub struct Seep {
 }
 
 impl BrushTraits {
-    /// Paint flows within the head once in so many steps.
-    pub const FLOW_STEPS: u64 = 4;
+    /// Paint flows within each strip once in so many steps: in others at another step, so that strokes show none.
+    pub const FLOW_STEPS: u64 = 2;
     /// Share of what a film lacks that comes from inside along a reference cell.
-    const REFILL: f64 = 0.1;
+    const REFILL: f64 = 0.15;
     /// Share of the difference between texels that evens out along a reference cell.
-    const CREEP: f64 = 0.02;
+    const CREEP: f64 = 0.03;
     /// Shares of the difference between films that even out along a reference cell.
     const SEEP: Seep = Seep {
-        beside: 0.3,
-        along: 0.25,
+        beside: 0.4,
+        along: 0.35,
     };
     /// Difference between the films of two strips that stays, by a full film: so a bristle keeps its streak.
     pub const HOLDS: f64 = 0.3;
@@ -99,9 +104,12 @@ impl BrushTraits {
         let texel_cells = file.strips.width_mm * 1e-3 * along_m / (cell_m * cell_m);
         let quanta = |um: f64| um * 1e-6 / QUANTUM_M * texel_cells;
         let steps = cell_m / REFERENCE_CELL_M;
-        let flow = Self::FLOW_STEPS as f64 * steps;
+        let step_cells = Scale { cell_m, zoom }.step_cells(rigid || file.surface.is_some());
+        let flow = Self::FLOW_STEPS as f64 * steps * step_cells;
         let share = |of_reference: f64| 1.0 - exp(maulstick_num::ln(1.0 - of_reference) * flow);
         Self {
+            step_cells: step_cells as f32,
+            parts: step_cells.ceil() as u32,
             half_width: (0.5 * file.strips.width_mm * seen) as f32,
             taper: file.strips.taper as f32,
             recede: file

@@ -1,19 +1,18 @@
-//! Motion cut into steps of at most one cell.
+//! Motion cut into steps of one length.
 //!
-//! The brush is solved about once a cell of its way, whatever the rate of samples; a motion whose
-//! strips go farther is cut into even parts. Strips that stand still make no step: their motion adds
-//! up from where they stepped last.
+//! Poses come as the brush is solved; steps are cut from the way between them, each as long as the last,
+//! whatever the rate of samples. What is left of a way waits for more of it, or for the end of the contact.
 
 use maulstick_brush::{Head, HeadPose};
 
 use crate::head::{Scale, Waypoint, motion};
 use crate::model::Sweep;
 
-/// A shorter motion waits for the next, cells.
+/// A shorter motion is none, cells.
 const STILL: f64 = 0.02;
-/// A longer motion is no motion of a hand: nothing is painted on its way, cells.
-const LEAP: f64 = 8192.0;
-/// A motion longer than one cell by less than this is still one step.
+/// A longer motion is no motion of a hand: nothing is painted on its way, m of the brush.
+const LEAP_M: f64 = 2.0;
+/// A motion short of a step by less than this share is one.
 const ROUNDING: f64 = 1e-6;
 
 /// Cuts the motion of one brush on one surface.
@@ -21,6 +20,8 @@ const ROUNDING: f64 = 1e-6;
 pub struct PathStepper {
     at: Waypoint,
     stepped: HeadPose,
+    /// Where it has come to since, less than a step on.
+    ahead: Option<Waypoint>,
     scale: Scale,
 }
 
@@ -30,13 +31,27 @@ impl PathStepper {
     pub fn begin(head: &Head, at: Waypoint, scale: Scale) -> Self {
         let mut stepped = HeadPose::default();
         at.pose(head, scale, &mut stepped);
-        Self { at, stepped, scale }
+        Self {
+            at,
+            stepped,
+            ahead: None,
+            scale,
+        }
     }
 
-    /// Where it is.
+    /// A path that was kept: where it stepped last, and where it had come to since.
     #[must_use]
-    pub fn at(&self) -> &Waypoint {
-        &self.at
+    pub fn going_on(head: &Head, (at, ahead): (Waypoint, Option<Waypoint>), scale: Scale) -> Self {
+        Self {
+            ahead,
+            ..Self::begin(head, at, scale)
+        }
+    }
+
+    /// Where it stepped last, and where it has come to since.
+    #[must_use]
+    pub fn places(&self) -> (&Waypoint, Option<&Waypoint>) {
+        (&self.at, self.ahead.as_ref())
     }
 
     /// How the brush's lengths are seen.
@@ -47,26 +62,35 @@ impl PathStepper {
 
     /// Moves on to `to` and calls `step` for each step on the way.
     pub fn advance(&mut self, head: &Head, to: Waypoint, mut step: impl FnMut(Sweep<'_>)) {
+        let whole = self.scale.step_cells(head.is_fine());
         let mut next = HeadPose::default();
         to.pose(head, self.scale, &mut next);
         let motion = motion(&self.stepped, &next);
-        if motion < STILL {
-            return;
-        }
-        if motion > LEAP {
+        if motion > LEAP_M / (self.scale.cell_m * self.scale.zoom) {
             *self = Self::begin(head, to, self.scale);
             return;
         }
-        let parts = (motion - ROUNDING).ceil().max(1.0) as u64;
-        for part in 1..parts {
-            let t = part as f64 / parts as f64;
-            let mut pose = HeadPose::default();
-            self.at.toward(&to, t).pose(head, self.scale, &mut pose);
-            step(Sweep {
-                from: &self.stepped,
-                to: &pose,
-            });
-            self.stepped = pose;
+        let steps = (motion / whole + ROUNDING).floor() as u64;
+        let from = self.at.clone();
+        for number in 1..=steps {
+            let at = from.toward(&to, number as f64 * whole / motion);
+            self.step_to(head, at, &mut step);
+        }
+        self.ahead = Some(to);
+    }
+
+    /// Ends the contact: what waits is stepped.
+    pub fn end(&mut self, head: &Head, mut step: impl FnMut(Sweep<'_>)) {
+        if let Some(to) = self.ahead.take() {
+            self.step_to(head, to, &mut step);
+        }
+    }
+
+    fn step_to(&mut self, head: &Head, to: Waypoint, step: &mut impl FnMut(Sweep<'_>)) {
+        let mut next = HeadPose::default();
+        to.pose(head, self.scale, &mut next);
+        if motion(&self.stepped, &next) < STILL {
+            return;
         }
         step(Sweep {
             from: &self.stepped,
@@ -108,9 +132,10 @@ mod tests {
     }
 
     proptest! {
-        /// However a motion of 10.4 cells is cut, its steps are at most a cell and make up the whole.
+        /// However a motion of 10.4 cells is cut, its steps are a cell long, but for the last one, and make up the
+        /// whole.
         #[test]
-        fn steps_are_at_most_a_cell_and_make_up_the_motion(
+        fn steps_are_of_one_length_and_make_up_the_motion(
             cuts in prop::collection::vec(0.0..1.0f64, 0..30),
         ) {
             let head = Head::of(&BrushFile::library("round").expect("round"));
@@ -119,14 +144,36 @@ mod tests {
             cuts.push(1.0);
             let mut path = PathStepper::begin(&head, waypoint(0.1), SCALE);
             let mut steps = Vec::new();
+            let mut note = |sweep: Sweep<'_>| steps.push(motion(sweep.from, sweep.to));
             for cut in cuts {
-                path.advance(&head, waypoint(0.1 + cut * 10.4 * 2.5e-4), |sweep| {
-                    steps.push(motion(sweep.from, sweep.to));
-                });
+                path.advance(&head, waypoint(0.1 + cut * 10.4 * 2.5e-4), &mut note);
             }
-            let whole: f64 = steps.iter().sum();
-            prop_assert!((whole - 10.4).abs() < STILL + 1e-3, "{whole}");
-            prop_assert!(steps.iter().all(|cells| *cells < 1.001), "{:?}", steps);
+            path.end(&head, &mut note);
+            let last = steps.pop().expect("steps");
+            prop_assert_eq!(steps.len(), 10);
+            prop_assert!(steps.iter().all(|cells| (cells - 1.0).abs() < 1e-3), "{:?}", steps);
+            prop_assert!((last - 0.4).abs() < 1e-3, "{}", last);
+        }
+
+        /// A path that was kept goes on as the one that was not.
+        #[test]
+        fn a_kept_path_goes_on(first in 0.0..10.0f64, second in 0.0..10.0f64) {
+            let head = Head::of(&BrushFile::library("round").expect("round"));
+            let mut path = PathStepper::begin(&head, waypoint(0.1), SCALE);
+            path.advance(&head, waypoint(0.1 + first * 2.5e-4), |_| ());
+            let (at, ahead) = path.places();
+            let mut kept = PathStepper::going_on(&head, (at.clone(), ahead.cloned()), SCALE);
+            let rest = |path: &mut PathStepper, goes_on: bool| {
+                let mut ends = Vec::new();
+                let mut note = |sweep: Sweep<'_>| ends.push(sweep.to.x.clone());
+                if goes_on {
+                    path.advance(&head, waypoint(0.1 + second * 2.5e-4), &mut note);
+                }
+                path.end(&head, &mut note);
+                ends
+            };
+            let goes_on = second > 5.0;
+            prop_assert_eq!(rest(&mut path, goes_on), rest(&mut kept, goes_on));
         }
     }
 }

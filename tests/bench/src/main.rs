@@ -31,6 +31,7 @@ mod latency;
 mod looks;
 mod optics;
 mod paint;
+mod peers;
 mod render;
 mod report;
 mod running;

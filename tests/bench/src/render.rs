@@ -9,9 +9,12 @@ use maulstick_device::demo;
 use maulstick_device::table::{TableLayout, import};
 use maulstick_rig::Fault;
 
-use crate::report::{Report, quantile, sorted};
+use crate::peers::Libmypaint;
+use crate::report::Report;
 use crate::running::maulstick;
 
+/// Side of the canvas, mm.
+const SIDE_MM: f64 = 256.0;
 /// Runs of which the median is reported.
 const RUNS: usize = 5;
 /// Four loads in turn.
@@ -45,28 +48,27 @@ pub(crate) fn performance(place: &Path) -> Result<(PathBuf, f64), Fault> {
 pub(crate) fn run(report: &mut Report) -> Result<(), Fault> {
     let fault = |error: std::io::Error| Fault::failure(error.to_string());
     let place = tempfile::tempdir().map_err(fault)?;
-    let (take, _) = performance(place.path())?;
-    let mut seconds = Vec::new();
-    for _ in 0..RUNS {
-        let start = Instant::now();
-        let mut command = Command::new(maulstick()?);
-        command.arg("render").arg(&take).args([
-            "-o",
-            "p.png",
-            "--ledger",
-            "l.json",
-            "--cell-mm",
-            "0.25",
-        ]);
-        command.args(LOADS.iter().flat_map(|load| ["--load", load]));
-        let status = command.current_dir(place.path()).status().map_err(fault)?;
-        if !status.success() {
-            return Err(Fault::failure("the recording cannot be rendered"));
-        }
-        seconds.push(start.elapsed().as_secs_f64());
+    let place = place.path();
+    let (take, _) = performance(place)?;
+    let peer = Libmypaint::build(place, &Take::read(&take)?);
+    if peer.is_none() {
+        eprintln!("libmypaint-dev, mypaint-brushes or cc are missing: without libmypaint");
     }
-    report.row("recording.time", quantile(&sorted(seconds), 0.5), "s");
-    let ledger = std::fs::read(place.path().join("l.json")).map_err(fault)?;
+    let (mut seconds, mut pairs) = (Vec::new(), Vec::new());
+    for _ in 0..RUNS {
+        seconds.push(painted(place, &take, 0.25)?);
+        if let Some(peer) = &peer {
+            let start = Instant::now();
+            peer.paint()?;
+            pairs.push((seconds[seconds.len() - 1], start.elapsed().as_secs_f64()));
+        }
+    }
+    let name = "recording.025.time";
+    match pairs.is_empty() {
+        true => report.median(name, "s", seconds),
+        false => report.paired(name, "s", "libmypaint, modelling", &pairs),
+    }
+    let ledger = std::fs::read(place.join("l.json")).map_err(fault)?;
     let ledger: serde_json::Value =
         serde_json::from_slice(&ledger).map_err(|error| Fault::failure(error.to_string()))?;
     for (name, key) in [
@@ -77,5 +79,28 @@ pub(crate) fn run(report: &mut Report) -> Result<(), Fault> {
     ] {
         report.row(name, ledger[key].as_f64().unwrap_or(f64::NAN), "");
     }
+    for (name, cell_mm) in [
+        ("recording.0125.time", 0.125),
+        ("recording.00625.time", 0.0625),
+    ] {
+        report.row(name, painted(place, &take, cell_mm)?, "s");
+    }
     Ok(())
+}
+
+/// Paints the take on cells of a side; how long that takes, s.
+fn painted(place: &Path, take: &Path, cell_mm: f64) -> Result<f64, Fault> {
+    let fault = |error: std::io::Error| Fault::failure(error.to_string());
+    let start = Instant::now();
+    let side = (SIDE_MM / cell_mm).round();
+    let mut command = Command::new(maulstick()?);
+    command.arg("render").arg(take).args(["-o", "p.png"]);
+    command.args(["--ledger", "l.json", "--cell-mm", &cell_mm.to_string()]);
+    command.args(["--size", &format!("{side}x{side}")]);
+    command.args(LOADS.iter().flat_map(|load| ["--load", load]));
+    let status = command.current_dir(place).status().map_err(fault)?;
+    match status.success() {
+        true => Ok(start.elapsed().as_secs_f64()),
+        false => Err(Fault::failure("the recording cannot be rendered")),
+    }
 }

@@ -237,6 +237,12 @@ impl Head {
         &self.capacity
     }
 
+    /// Whether it is a blade, or has a skin that comes to a point.
+    #[must_use]
+    pub fn is_fine(&self) -> bool {
+        self.rigid || self.skin.is_some()
+    }
+
     /// The skin, if it has one.
     #[must_use]
     pub fn skin(&self) -> Option<&Skin> {

@@ -113,11 +113,11 @@ fn paused(pause_ms: u64) -> Vec<Solve> {
 }
 
 #[test]
-fn a_pause_in_contact_is_crossed_cell_by_cell_in_one_stroke() {
+fn a_pause_in_contact_is_crossed_step_by_step_in_one_stroke() {
     for pause_ms in [40, 110, 250, 300] {
         let solves = paused(pause_ms);
-        // 12 mm are 48 cells.
-        assert!(solves.len() > 48, "{pause_ms} ms: {} solves", solves.len());
+        // Of 12 mm the last 11.5 are ways of .175 mm.
+        assert!(solves.len() >= 65, "{pause_ms} ms: {} solves", solves.len());
         for pair in solves.windows(2) {
             let [from, to] = [0, 1].map(|i| pair[i].pose.position_m[0]);
             assert!(to > from - 1e-5 && to - from < 4e-4, "{from} {to}");

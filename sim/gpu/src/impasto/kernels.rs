@@ -1,6 +1,5 @@
 //! The stages as compute pipelines, each with those buffers of impasto.wgsl that it uses.
 
-use maulstick_paint::impasto::levelling::{ADVANCES, THINS};
 use maulstick_paint::impasto::velocity::{EASE, SLIP, SQUISH, STABLE};
 use maulstick_paint::model::BrushTraits;
 use maulstick_paint::transfer::SWAP_FILM;
@@ -72,8 +71,11 @@ macro_rules! source {
 
 use Binding as B;
 
+/// The stage that pushes paint along an axis.
+pub(crate) const PUSHES: &str = "push_paint";
+
 /// The stages of a step, in order.
-pub(crate) static KERNELS: [Kernel; 16] = [
+pub(crate) static KERNELS: [Kernel; 14] = [
     Kernel {
         name: "weigh_films",
         source: source!("weigh_films"),
@@ -138,28 +140,14 @@ pub(crate) static KERNELS: [Kernel; 16] = [
         groups: Groups::Planned(4),
     },
     Kernel {
-        name: "level_paint",
-        source: source!("level_paint"),
-        constants: &[("ADVANCES", ADVANCES as f64), ("THINS", THINS as f64)],
-        bindings: &[B::Planes, B::Base, B::Faces, B::Totals, B::Stats, B::Wants],
-        groups: Groups::Planned(4),
-    },
-    Kernel {
-        name: "limit_velocity",
-        source: source!("limit_velocity"),
-        constants: &[],
-        bindings: &[B::Faces, B::Wants],
-        groups: Groups::Planned(4),
-    },
-    Kernel {
-        name: "push_paint",
+        name: PUSHES,
         source: source!("push_paint"),
         constants: &[("second", 0.0)],
         bindings: &[B::Planes, B::Other, B::Faces, B::Totals, B::Stats],
         groups: Groups::Planned(2),
     },
     Kernel {
-        name: "push_paint",
+        name: PUSHES,
         source: source!("push_paint"),
         constants: &[("second", 1.0)],
         bindings: &[B::Planes, B::Other, B::Faces, B::Totals, B::Stats],

@@ -4,11 +4,9 @@ use bytemuck::{Pod, Zeroable};
 use maulstick_brush::head::STATIONS;
 use maulstick_paint::head::border;
 use maulstick_paint::impasto::advection::STAIN;
-use maulstick_paint::impasto::band::rank;
-use maulstick_paint::impasto::levelling::{Body, STABLE, TENSION_N_PER_M, WEIGHT_N_PER_M3};
-use maulstick_paint::impasto::velocity::HAND_M_PER_S;
+use maulstick_paint::impasto::band::{middle, rank};
 use maulstick_paint::model::{Step, Transfer};
-use maulstick_paint::quantum::{CELL_MAX, QUANTUM_M};
+use maulstick_paint::quantum::CELL_MAX;
 
 use super::residence::Residence;
 
@@ -67,7 +65,7 @@ pub(crate) struct StepRecord {
     swap: f32,
     film_most: f32,
     seep: [f32; 2],
-    levelling: [f32; 4],
+    room: [u32; 4],
 }
 
 /// Bytes from one record to the next.
@@ -135,19 +133,19 @@ impl StepRecord {
             inside: touched.map(|edge| [0, 1].map(|i| edge[i] - from[i])),
             cell_max: CELL_MAX as f32,
             reach: traits.sink + step.window.ride_below(),
-            border: border(traits.half_width) as i32,
+            border: border(traits) as i32,
             lasting: u32::from(step.lasting),
             sink: traits.sink * after.press,
             ride_below: step.window.ride_below(),
             round: 2.0 * traits.half_thickness,
-            follows: traits.follows,
+            follows: traits.follows / traits.parts as f32,
             ln_kept: traits.exchanging.ln_kept,
             evens: traits.exchanging.evens,
             most_over: traits.exchanging.most,
             swap: traits.exchanging.swap,
             film_most: traits.film_most as f32,
             seep: [traits.seep.beside, traits.seep.along].map(|v| v as f32),
-            levelling: levelling(QUANTUM_M / f64::from(traits.cells_per_quantum)),
+            room: [0; 4],
         };
         debug_assert_eq!(after.x.len(), strips * STATIONS);
         let motion = |after: &[f32], before: &[f32], poses: &mut Vec<f32>| {
@@ -158,8 +156,13 @@ impl StepRecord {
                     .map(|(after, before)| after - before),
             );
         };
-        for plane in [&after.x, &after.y, &after.z] {
-            poses.extend_from_slice(plane);
+        // Strips are drawn where they are in the middle of the step.
+        for (after, before) in [
+            (&after.x, &before.x),
+            (&after.y, &before.y),
+            (&after.z, &before.z),
+        ] {
+            poses.extend(after.iter().zip(before).map(|(a, b)| middle(*a, *b)));
         }
         motion(&after.x, &before.x, poses);
         motion(&after.y, &before.y, poses);
@@ -202,16 +205,4 @@ impl StepRecord {
     pub(crate) fn rows(&self) -> std::ops::Range<usize> {
         self.from[1] as usize..(self.from[1] + self.size[1]) as usize
     }
-}
-
-/// `tension`, `weight`, `mobility` and `most_mobile` of impasto.wgsl, on cells of `cell_m`.
-fn levelling(cell_m: f64) -> [f32; 4] {
-    let Body {
-        yield_pa,
-        viscosity_pa_s,
-    } = Body::TUBE;
-    let tension = TENSION_N_PER_M / (cell_m * yield_pa);
-    let weight = WEIGHT_N_PER_M3 * cell_m / yield_pa;
-    let mobility = cell_m / HAND_M_PER_S * yield_pa / viscosity_pa_s;
-    [tension, weight, mobility, STABLE / tension].map(|number| number as f32)
 }

@@ -10,7 +10,6 @@ mod scene;
 
 mod easel;
 mod footprint;
-mod levelling;
 mod modes;
 mod probed;
 mod stroke;

@@ -292,7 +292,11 @@ fn paint_goes_both_ways() {
         let mut pushed = scene();
         let counts = pushed.counts();
         let probe = run(&mut prober, &mut pushed, "push_paint");
-        let expected = exchanged(&probe, &pushed, rule);
+        let mut expected = exchanged(&probe, &pushed, rule);
+        // In every second strip paint flows besides.
+        expected.retain(|(is_cell, _, at), _| {
+            *is_cell || (at / maulstick_paint::load::ALONG).is_multiple_of(2)
+        });
         let mut scene = scene();
         let last = run(&mut prober, &mut scene, "tend_strips");
         assert_eq!(last.contacts, probe.contacts);

@@ -16,6 +16,10 @@ use crate::window::Area;
 /// Strips of the same depth lie over each other in the order of their roots along the way that the
 /// head is bent (Baxter 2004, § 3.5.2), the last this much higher, cells.
 const RANKS: f32 = 0.02;
+/// An end is soft over so many cells at least.
+const SHARP: f32 = 0.25;
+/// How far a strip goes on past its tip, cells.
+const TIP: f32 = 0.5;
 /// A head that is bent by this share of its length has that order in full.
 const BENT: f32 = 0.2;
 /// A point of a ribbon's middle line.
@@ -35,8 +39,10 @@ struct Ribbon {
     bottom: f32,
     /// Among strips of the same depth it counts as higher by this much, cells.
     rank: f32,
-    /// How far it goes on past its end, cells.
-    past: f32,
+    /// Half its width, cells.
+    half: f32,
+    /// Whether what touches of it begins here, and whether it ends here.
+    ends: [bool; 2],
 }
 
 impl Point {
@@ -59,7 +65,8 @@ wide! {
                 // Another load has other bristles stand out.
                 bottom: loose * lift[(strip + turned) % lift.len()],
                 rank: rank(step.head, step.sweep.to, strip),
-                past: 0.0,
+                half: 0.0,
+                ends: [false; 2],
             };
             let film = step.load.thickest_of(strip) as f32 * step.traits.film_cells_per_quantum;
             band.draw_strip::<L>(step, ribbon, top + film - ribbon.bottom);
@@ -99,47 +106,80 @@ impl Band {
     fn draw_strip<L: Lanes>(&mut self, step: &Step<'_>, mut ribbon: Ribbon, height: f32) {
         let (before, after) = (step.sweep.from, step.sweep.to);
         let strips = step.head.strips();
+        let height_at = |i: usize| middle(after.z[i], before.z[i]);
         let point = |station: usize| {
             let i = station * strips + ribbon.strip;
+            let moved = [after.x[i] - before.x[i], after.y[i] - before.y[i]];
             Point {
-                at: [after.x[i], after.y[i], after.z[i]],
-                moved: [after.x[i] - before.x[i], after.y[i] - before.y[i]],
+                at: [
+                    middle(after.x[i], before.x[i]),
+                    middle(after.y[i], before.y[i]),
+                    height_at(i),
+                ],
+                moved,
                 along: station as f32 * (ALONG as f32 / (STATIONS - 1) as f32),
             }
         };
         for station in 1..STATIONS {
             let i = station * strips + ribbon.strip;
-            if after.z[i - strips].min(after.z[i]) >= height {
+            let (first, last) = (height_at(i - strips), height_at(i));
+            if first.min(last) >= height {
                 continue;
             }
             let (p, q) = below(&point(station - 1), &point(station), height);
-            ribbon.past = if station == STATIONS - 1 { 0.5 } else { 0.0 };
-            let half_width = step.traits.half_width_before(station);
-            self.draw::<L>(step, &ribbon, half_width, &p, &q);
+            ribbon.ends = [first > height, last > height || station == STATIONS - 1];
+            ribbon.half = step.traits.half_width_before(station);
+            self.draw::<L>(step, &ribbon, &p, &q);
         }
     }
 
-    /// Draws a ribbon from `a` to `b`: of each column of cells, or each row where it goes rather up
-    /// than across, those whose middle it covers, and with a soft edge half a cell to either side.
+    /// Draws a ribbon from `a` to `b` as it goes over the cells in the step: of each column of cells, or each
+    /// row where it goes rather up than across, those that it covers, each by the share of its area and of the
+    /// way.
     #[inline(always)]
-    fn draw<L: Lanes>(
-        &mut self,
-        step: &Step<'_>,
-        ribbon: &Ribbon,
-        half_width: f32,
-        a: &Point,
-        b: &Point,
-    ) {
+    fn draw<L: Lanes>(&mut self, step: &Step<'_>, ribbon: &Ribbon, a: &Point, b: &Point) {
         let start = [a.at[0] - self.offset[0], a.at[1] - self.offset[1]];
         let d = [b.at[0] - a.at[0], b.at[1] - a.at[1]];
         let major = usize::from(d[1].abs() > d[0].abs());
         let length = d[major].abs();
-        // Segments of a strip share their ends: each has the columns from its first up to its last,
-        // and the last segment goes on past the tip.
-        let (low, high) = if d[major] >= 0.0 {
-            (start[major], start[major] + length + ribbon.past)
+        let inverse = if length > 1e-4 { 1.0 / d[major] } else { 0.0 };
+        let slope = d[1 - major] * inverse;
+        let cosine = 1.0 / (1.0 + slope * slope).sqrt();
+        let way = [0, 1].map(|i| 0.5 * (a.moved[i] + b.moved[i]));
+        let aside = (way[1 - major] - slope * way[major]).abs() * cosine;
+        let along = (way[major] + slope * way[1 - major]).abs() * cosine * cosine;
+        let (soft, blurred) = (aside.max(1.0), along.max(SHARP));
+        // Segments of a strip share their ends: each has the columns from its first up to its last. Where
+        // nothing follows, a tip goes on past its end, and cells there are met for a part of the way.
+        let past = |ends: bool| if ends { 0.5 * blurred } else { 0.0 };
+        let on = [
+            past(ribbon.ends[0]),
+            past(ribbon.ends[1]) + if ribbon.ends[1] { TIP } else { 0.0 },
+        ];
+        let (low, high, on) = if d[major] >= 0.0 {
+            (start[major], start[major] + length, on)
         } else {
-            (start[major] - length - ribbon.past, start[major])
+            (start[major] - length, start[major], [on[1], on[0]])
+        };
+        let (low, high) = (low - on[0], high + on[1]);
+        let rate = 1.0 / blurred;
+        let fades = [
+            if on[0] > 0.0 {
+                [rate, (0.5 - low) * rate]
+            } else {
+                [0.0, 1.0]
+            },
+            if on[1] > 0.0 {
+                [-rate, (high - 0.5) * rate]
+            } else {
+                [0.0, 1.0]
+            },
+        ];
+        let whole = length + if ribbon.ends[1] { TIP } else { 0.0 };
+        let dwells = if ribbon.ends == [true; 2] {
+            whole * rate
+        } else {
+            1.0
         };
         let last = self.grid.size[major] as f32;
         let column = |edge: f32| ((edge + 0.5).clamp(0.0, last)) as usize;
@@ -147,8 +187,6 @@ impl Band {
         if columns.is_empty() {
             return;
         }
-        let inverse = if length > 1e-4 { 1.0 / d[major] } else { 0.0 };
-        let slope = d[1 - major] * inverse;
         let piece = Piece {
             texel: (ribbon.strip * ALONG) as u32,
             along: [a.along, b.along - a.along],
@@ -162,8 +200,11 @@ impl Band {
                 start,
                 inverse,
                 slope,
-                cosine: 1.0 / (1.0 + slope * slope).sqrt(),
-                reach: half_width + 0.5,
+                cosine,
+                half: ribbon.half,
+                soft,
+                most: (ribbon.half / soft + 0.5).min(1.0) * dwells.min(1.0),
+                fades,
             },
         };
         self.drawing.draw::<L>(&piece, columns);
@@ -213,6 +254,12 @@ impl Band {
             }
         }
     }
+}
+
+/// Where in the middle of a step is what goes on to `after` from `before`.
+#[must_use]
+pub fn middle(after: f32, before: f32) -> f32 {
+    after - 0.5 * (after - before)
 }
 
 /// By how much a strip counts as higher among those of the same depth, cells: of a head that lies to

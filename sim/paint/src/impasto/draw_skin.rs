@@ -92,7 +92,7 @@ impl Band {
                         [0.0; 2],
                     ],
                     line: Line {
-                        reach: f32::MAX,
+                        half: f32::MAX,
                         ..Line::default()
                     },
                     ..Piece::default()

@@ -54,8 +54,14 @@ pub(super) struct Line {
     pub(super) slope: f32,
     /// Of the angle to the major axis.
     pub(super) cosine: f32,
-    /// Half the width and half a cell of soft edge.
-    pub(super) reach: f32,
+    /// Half the width, cells.
+    pub(super) half: f32,
+    /// Cells over which an edge is soft: a cell, or the way across.
+    pub(super) soft: f32,
+    /// The most of a cell that it covers.
+    pub(super) most: f32,
+    /// Share of a column before the beginning and after the end, by column: factor and at column 0.
+    pub(super) fades: [[f32; 2]; 2],
 }
 
 impl Line {
@@ -71,7 +77,13 @@ impl Line {
     fn place(&self, cell: [f32; 2]) -> [f32; 2] {
         let (t, middle) = self.at(cell[self.major]);
         let off = (cell[1 - self.major] - middle).abs() * self.cosine;
-        [t, (off / (self.reach - 0.5)).min(1.0)]
+        let off = (off - 0.5 * (self.soft - 1.0)).max(0.0);
+        [t, (off / self.half).min(1.0)]
+    }
+
+    /// How far from its middle it covers anything.
+    fn reach(&self) -> f32 {
+        self.half + 0.5 * self.soft
     }
 }
 
@@ -184,11 +196,15 @@ impl Drawing {
     #[inline(always)]
     fn draw_up<L: Lanes>(&mut self, piece: &Piece, number: f32, rows: Range<usize>) {
         let line = &piece.line;
-        let across = line.reach / line.cosine;
+        let across = line.reach() / line.cosine;
         let edge = self.size[0] as f32;
-        let [reach, cosine] = [line.reach, line.cosine].map(L::splat);
+        let hard = 1.0 / line.soft;
+        let [reach, cosine] = [line.reach() * hard, line.cosine * hard].map(L::splat);
         for row in rows.start.max(self.rows.start)..rows.end.min(self.rows.end) {
             let (t, middle) = line.at(row as f32);
+            let fade = |[rate, at]: [f32; 2]| at + rate * row as f32;
+            let fade = fade(line.fades[0]).min(fade(line.fades[1])).clamp(0.0, 1.0);
+            let (most, fade) = (L::splat(line.most), L::splat(fade));
             let lowest = piece.lower_side(t) + piece.rank;
             let from = (middle - across + 1.0).clamp(0.0, edge) as usize;
             let to = (middle + across + 1.0).clamp(0.0, edge) as usize;
@@ -196,7 +212,7 @@ impl Drawing {
             while x < to {
                 let column = L::splat(x as f32) + L::of(&LANE);
                 let off = (column - L::splat(middle)).abs();
-                let cover = reach - off * cosine;
+                let cover = (reach - off * cosine).least(most) * fade;
                 self.lanes::<L>(row, x, number, cover, L::splat(lowest));
                 x += LANES;
             }
@@ -207,7 +223,7 @@ impl Drawing {
     #[inline(always)]
     fn draw_across<L: Lanes>(&mut self, piece: &Piece, number: f32, columns: Range<usize>) {
         let line = &piece.line;
-        let across = line.reach / line.cosine;
+        let across = line.reach() / line.cosine;
         let (_, first) = line.at(columns.start as f32);
         let (_, last) = line.at(columns.end as f32 - 1.0);
         let edge = self.size[1] as f32;
@@ -220,7 +236,10 @@ impl Drawing {
         let per_row = if steep { 1.0 / line.slope } else { 0.0 };
         let [start, aside] = line.start.map(L::splat);
         let [inverse, slope] = [line.inverse, line.slope].map(L::splat);
-        let [reach, cosine] = [line.reach, line.cosine].map(L::splat);
+        let hard = 1.0 / line.soft;
+        let [reach, cosine] = [line.reach() * hard, line.cosine * hard].map(L::splat);
+        let most = L::splat(line.most);
+        let [starts, ends] = line.fades.map(|fade| fade.map(L::splat));
         let [z, rise] = piece.z.map(L::splat);
         let [bottom, rank] = [piece.bottom, piece.rank].map(L::splat);
         for row in from.max(self.rows.start)..to.min(self.rows.end) {
@@ -238,7 +257,9 @@ impl Drawing {
                 let column = L::splat(x as f32) + L::of(&LANE);
                 let off = column + L::splat(0.5) - start;
                 let middle = aside + off * slope - L::splat(0.5);
-                let cover = reach - (L::splat(y) - middle).abs() * cosine;
+                let cover = (reach - (L::splat(y) - middle).abs() * cosine).least(most);
+                let fade = (starts[1] + starts[0] * column).least(ends[1] + ends[0] * column);
+                let cover = cover * fade.least(L::splat(1.0)).most(L::splat(0.0));
                 let inside = (L::splat(high) - column) * L::splat(BEYOND);
                 let t = (off * inverse).most(L::splat(0.0)).least(L::splat(1.0));
                 let lowest = z + t * rise + bottom + rank;
@@ -307,7 +328,10 @@ mod tests {
                 inverse: 0.2,
                 slope: [0.0, 2.0 * unit(9) - 1.0][(case as usize >> 1) & 1],
                 cosine: 0.8,
-                reach: 0.6 + 3.0 * unit(13),
+                half: 0.1 + 3.0 * unit(13),
+                soft: 1.0,
+                most: 1.0,
+                fades: [[0.0, 1.0]; 2],
             };
             let piece = Piece {
                 z: [unit(3), -0.5],
@@ -320,7 +344,7 @@ mod tests {
                 for x in 0..size[0] {
                     let cell = [x as f32, y as f32];
                     let (_, middle) = line.at(cell[line.major]);
-                    let cover = line.reach - (cell[1 - line.major] - middle).abs() * line.cosine;
+                    let cover = line.reach() - (cell[1 - line.major] - middle).abs() * line.cosine;
                     let inside = columns.contains(&[x, y][line.major]) && cover > 1e-4;
                     let outside = !columns.contains(&[x, y][line.major]) || cover < -1e-4;
                     let drawn = drawing.over(x, y).is_some();

@@ -7,19 +7,19 @@
 use maulstick_num::select::larger;
 use maulstick_num::wide;
 
+use super::seep::first_of;
 use crate::load::{ALONG, PaintOnBrush, film_share};
 use crate::model::{BrushTraits, Step};
 
-/// Moves paint within the strips, every few steps for as many.
+/// Counts a step and moves paint within the strips whose turn it is.
 pub fn flow(step: &mut Step<'_>) {
-    if !step.load.is_due(BrushTraits::FLOW_STEPS) {
-        return;
-    }
+    step.load.count_step();
+    let steps = step.load.steps();
     let (films, paints) = step.load.parts_mut();
     let mut paints: Vec<PaintOnBrush<'_>> = paints.collect();
     let thinner = paints.iter().position(|p| Some(p.slot) == step.thinner);
     let capacity = step.head.capacity();
-    flow_in_strips(films, &mut paints, thinner, capacity, &step.traits);
+    flow_in_strips(films, &mut paints, thinner, capacity, &step.traits, steps);
 }
 
 wide! {
@@ -29,9 +29,11 @@ wide! {
         thinner: Option<usize>,
         capacity: &[f32],
         traits: &BrushTraits,
+        steps: u64,
     ) {
+        let every = BrushTraits::FLOW_STEPS as usize;
         let strips = films.as_chunks_mut::<ALONG>().0.iter_mut().zip(capacity);
-        for (strip, (film, capacity)) in strips.enumerate() {
+        for (strip, (film, capacity)) in strips.enumerate().skip(first_of(steps)).step_by(every) {
             let inside = all_inside(strip, paints);
             let thin = thinner.map_or(0.0, |thinner| {
                 let there = film.iter().chain(&inside).map(|count| f64::from(*count)).sum();
@@ -135,7 +137,7 @@ impl Shares {
 
 /// A share of a count, truncated.
 #[inline(always)]
-fn part(count: u32, share: f64) -> u32 {
+pub(super) fn part(count: u32, share: f64) -> u32 {
     // The low bits of a number from 2⁵² on are its whole part, and unlike a cast they are read four at
     // a time.
     const WHOLE: f64 = 4_503_599_627_370_496.0;

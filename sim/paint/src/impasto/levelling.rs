@@ -108,6 +108,11 @@ pub struct Levelling {
     curve: Vec<f32>,
     /// Yield stress and fluidity by those of paint from the tube.
     body: [Vec<f32>; 2],
+    /// What flows through the right and the upper face of each cell in a round, and in all, cells.
+    flows: [Vec<f32>; 2],
+    sums: [Vec<f32>; 2],
+    /// Height of the wet paint before.
+    before: Vec<f32>,
     /// Where something flows.
     blocks: Blocks,
 }
@@ -125,6 +130,11 @@ struct Blocks {
 }
 
 impl Blocks {
+    /// All may flow in the next round.
+    fn forget(&mut self) {
+        self.flowed.clear();
+    }
+
     /// Begins a round: those may flow where at least `rests` did, and those beside them.
     fn begin(&mut self, area: &Area, rests: f32) {
         let [across, up] = area.size.map(|cells| cells.div_ceil(BLOCK));
@@ -146,33 +156,50 @@ impl Blocks {
 pub const HALO: usize = 2;
 
 impl Levelling {
-    /// Adds what flows in a round to the velocities through the right and upper faces of an area's cells: the
-    /// share of a donor's paint that goes through. Nothing leaves the area; beyond the window it is as at its
-    /// edge. Returns the most.
+    /// Adds what flows in so many rounds to the velocities through the right and upper faces of an area's
+    /// cells: the share of a donor's paint that goes through. Nothing leaves the area; beyond the window it is
+    /// as at its edge. Returns the most that flowed in a round.
     ///
-    /// Where less than `rests` flowed in the last round on the same area, and all around, nothing does in this one.
+    /// Heights alone go through the rounds: paint follows once, by their sum. Where less than `rests` flowed in
+    /// the last round, and all around, nothing does in the next.
     pub fn add(
         &mut self,
         window: &Window,
         area: &Area,
         round: &Round,
         thinner: Option<usize>,
-        rests: f32,
-        [right, above]: [&mut [f32]; 2],
+        (rounds, rests): (u32, f32),
+        faces: [&mut [f32]; 2],
     ) -> f32 {
         if area.is_empty() {
             return 0.0;
         }
         let mut blocks = std::mem::take(&mut self.blocks);
-        blocks.begin(area, rests);
         self.look(window, area, round.to_cells);
         self.soften(window, area, round.to_cells, thinner);
-        let bare = round.bare * round.to_cells;
-        flow(self, area, round, bare, 1, right, &mut blocks);
-        flow(self, area, round, bare, self.width, above, &mut blocks);
+        self.before.clone_from(&self.wet);
+        for plane in self.flows.iter_mut().chain(&mut self.sums) {
+            plane.clear();
+            plane.resize(self.wet.len(), 0.0);
+        }
+        blocks.forget();
+        let mut most = 0.0f32;
+        for _ in 0..rounds {
+            blocks.begin(area, rests);
+            go_on(self, area, round, &mut blocks);
+            let flowed = blocks.flowed.iter();
+            let flowed = flowed.fold(0.0, |most: f32, flowed| most.max(*flowed));
+            most = most.max(flowed);
+            if flowed < rests {
+                break;
+            }
+        }
         self.blocks = blocks;
-        let flowed = self.blocks.flowed.iter();
-        flowed.fold(0.0, |most, flowed| most.max(*flowed))
+        let bare = round.bare * round.to_cells;
+        for (axis, faces) in faces.into_iter().enumerate() {
+            share_out(self, area, bare, axis, faces);
+        }
+        most
     }
 
     /// Wet heights and surfaces of the area and its halo, and the curvature.
@@ -182,7 +209,8 @@ impl Levelling {
         let height = area.size[1] + 2 * HALO;
         for plane in [&mut self.wet, &mut self.surface, &mut self.curve] {
             plane.clear();
-            plane.resize(self.width * height, 0.0);
+            // The last block is read as a whole.
+            plane.resize(self.width * height + BLOCK, 0.0);
         }
         // Columns of the window that the halo covers, as far as the window goes.
         let first = area.from[0].saturating_sub(HALO);
@@ -215,7 +243,6 @@ impl Levelling {
             }
             surface.iter_mut().zip(wet).for_each(|(s, wet)| *s += *wet);
         }
-        bend(&self.surface, self.width, &mut self.curve);
     }
 
     /// How thinner changes the paint's body.
@@ -239,52 +266,38 @@ impl Levelling {
     }
 }
 
-wide! {
-    /// The five-point Laplacian, but at the border.
-    fn bend(surface: &[f32], width: usize, curve: &mut [f32]) {
-        let rows = surface.len() / width;
-        for row in 1..rows - 1 {
-            let at = row * width;
-            let (low, own, high) = (
-                &surface[at - width..at],
-                &surface[at..at + width],
-                &surface[at + width..at + 2 * width],
-            );
-            let out = &mut curve[at..at + width];
-            for x in 1..width - 1 {
-                out[x] = low[x] + high[x] + own[x - 1] + own[x + 1] - 4.0 * own[x];
-            }
-        }
-    }
-}
-
 /// What levelling has looked at, of cells side by side in a row.
 struct Run<'a> {
-    wet: &'a [f32],
-    surface: &'a [f32],
-    curve: &'a [f32],
-    yields: &'a [f32],
-    fluid: &'a [f32],
+    wet: &'a [f32; BLOCK],
+    surface: &'a [f32; BLOCK],
+    curve: &'a [f32; BLOCK],
+    yields: &'a [f32; BLOCK],
+    fluid: &'a [f32; BLOCK],
+}
+
+/// As many cells of a plane as a block has columns.
+#[inline(always)]
+fn run(plane: &[f32], at: usize) -> &[f32; BLOCK] {
+    plane[at..].first_chunk().expect("planes go on beyond")
 }
 
 impl<'a> Run<'a> {
     #[inline(always)]
-    fn of(levelling: &'a Levelling, from: usize, cells: usize) -> Self {
-        let run = |plane: &'a [f32]| &plane[from..from + cells];
+    fn of(levelling: &'a Levelling, at: usize) -> Self {
         let [yields, fluid] = &levelling.body;
         Self {
-            wet: run(&levelling.wet),
-            surface: run(&levelling.surface),
-            curve: run(&levelling.curve),
-            yields: run(yields),
-            fluid: run(fluid),
+            wet: run(&levelling.wet, at),
+            surface: run(&levelling.surface, at),
+            curve: run(&levelling.curve, at),
+            yields: run(yields, at),
+            fluid: run(fluid, at),
         }
     }
 }
 
-/// The share of a donor's paint that flows from a cell to the one beside it, `i` cells on.
+/// The share of what a donor may give that flows from a cell to the one beside it, and what it may give.
 #[inline(always)]
-fn share(round: &Round, bare: f32, own: &Run<'_>, next: &Run<'_>, i: usize) -> f32 {
+fn flow(round: &Round, bare: f32, own: &Run<'_>, next: &Run<'_>, i: usize) -> [f32; 2] {
     let (wet, wet_next) = (own.wet[i], next.wet[i]);
     let drop = own.surface[i] - next.surface[i];
     // Pressure falls where curvature grows.
@@ -300,44 +313,124 @@ fn share(round: &Round, bare: f32, own: &Run<'_>, next: &Run<'_>, i: usize) -> f
     let pinned = (donor <= bare) | (onto <= bare) & (drop.abs() < ADVANCES * yields);
     let share = goes / larger(donor, 1e-9);
     let share = if pinned { 0.0 } else { share };
-    larger(smaller(share, 0.25), -0.25)
+    [
+        larger(smaller(share, 0.25), -0.25),
+        larger(donor - bare, 0.0),
+    ]
 }
 
 wide! {
-    /// What flows in the active blocks through the faces toward the cells `next` places on, and the most of it
-    /// in each.
-    fn flow(
-        levelling: &Levelling,
-        area: &Area,
-        round: &Round,
-        bare: f32,
-        next: usize,
-        faces: &mut [f32],
-        blocks: &mut Blocks,
-    ) {
-        let columns = area.size[0];
-        let of_row = columns.div_ceil(BLOCK);
-        // Nothing goes through the border of the area: it would be lost there.
-        let across = usize::from(next == 1);
-        let [inner, rows] = [columns - across, area.size[1] + across - 1];
-        for (row, faces) in faces.chunks_exact_mut(columns).take(rows).enumerate() {
-            let start = (row + HALO) * levelling.width + HALO;
-            for (block, faces) in faces[..inner].chunks_mut(BLOCK).enumerate() {
-                let place = row / BLOCK * of_row + block;
-                if !blocks.active[place] {
-                    continue;
+    /// A round in the active blocks.
+    fn go_on(levelling: &mut Levelling, area: &Area, round: &Round, blocks: &mut Blocks) {
+        let width = levelling.width;
+        let bare = round.bare * round.to_cells;
+        let of_row = area.size[0].div_ceil(BLOCK);
+        for place in 0..blocks.active.len() {
+            if blocks.active[place] {
+                levelling.bend(area, [place % of_row, place / of_row]);
+            }
+        }
+        for place in 0..blocks.active.len() {
+            if !blocks.active[place] {
+                continue;
+            }
+            let (from, size) = block_of(area, [place % of_row, place / of_row]);
+            let mut most = [0.0f32; BLOCK];
+            for y in from[1]..from[1] + size[1] {
+                let at = (y + HALO) * width + from[0] + HALO;
+                // Nothing goes through the border of the area: it would be lost there.
+                let inner = [
+                    size[0].min(area.size[0] - 1 - from[0]),
+                    if y + 1 < area.size[1] { size[0] } else { 0 },
+                ];
+                for (axis, next) in [1, width].into_iter().enumerate() {
+                    let (own, beside) = (Run::of(levelling, at), Run::of(levelling, at + next));
+                    let mut flows = [0.0f32; BLOCK];
+                    for i in 0..BLOCK {
+                        let [share, loose] = flow(round, bare, &own, &beside, i);
+                        let share = if i < inner[axis] { share } else { 0.0 };
+                        flows[i] = share * loose;
+                        most[i] = larger(share.abs(), most[i]);
+                    }
+                    let cells = inner[axis];
+                    levelling.flows[axis][at..at + cells].copy_from_slice(&flows[..cells]);
                 }
-                let (from, cells) = (start + block * BLOCK, faces.len());
-                let [own, beside] = [from, from + next].map(|at| Run::of(levelling, at, cells));
-                let mut shares = [0.0f32; BLOCK];
-                for (i, of) in shares[..cells].iter_mut().enumerate() {
-                    *of = share(round, bare, &own, &beside, i);
+            }
+            blocks.flowed[place] = most.into_iter().fold(0.0, larger);
+        }
+        for place in 0..blocks.active.len() {
+            if blocks.active[place] {
+                levelling.go(area, [place % of_row, place / of_row]);
+            }
+        }
+    }
+}
+
+wide! {
+    /// Adds the shares of what donors had that flowed through the faces of an axis.
+    fn share_out(levelling: &Levelling, area: &Area, bare: f32, axis: usize, faces: &mut [f32]) {
+        let next = [1, levelling.width][axis];
+        for (row, faces) in faces.chunks_exact_mut(area.size[0]).enumerate() {
+            let at = (row + HALO) * levelling.width + HALO;
+            let flows = &levelling.sums[axis][at..at + faces.len()];
+            let own = &levelling.before[at..at + faces.len()];
+            let beside = &levelling.before[at + next..at + next + faces.len()];
+            for (i, face) in faces.iter_mut().enumerate() {
+                let donor = if flows[i] > 0.0 { own[i] } else { beside[i] };
+                let share = flows[i] / larger(donor - bare, 1e-9);
+                *face += larger(smaller(share, 1.0), -1.0);
+            }
+        }
+    }
+}
+
+/// The first cell of a block of an area, and its columns and rows.
+fn block_of(area: &Area, block: [usize; 2]) -> ([usize; 2], [usize; 2]) {
+    let from = block.map(|place| place * BLOCK);
+    (from, [0, 1].map(|i| BLOCK.min(area.size[i] - from[i])))
+}
+
+impl Levelling {
+    /// The five-point Laplacian of a block and the cells beside it.
+    #[inline(always)]
+    fn bend(&mut self, area: &Area, block: [usize; 2]) {
+        let (from, size) = block_of(area, block);
+        let (width, surface) = (self.width, &self.surface);
+        for y in from[1] + HALO - 1..from[1] + HALO + size[1] + 1 {
+            let at = y * width + from[0] + HALO - 1;
+            let cells = size[0] + 2;
+            let out = &mut self.curve[at..at + cells];
+            let (low, high) = (
+                &surface[at - width..][..cells],
+                &surface[at + width..][..cells],
+            );
+            let (own, left, right) = (
+                &surface[at..][..cells],
+                &surface[at - 1..][..cells],
+                &surface[at + 1..][..cells],
+            );
+            for x in 0..cells {
+                out[x] = low[x] + high[x] + left[x] + right[x] - 4.0 * own[x];
+            }
+        }
+    }
+
+    /// What flowed in a block goes over.
+    #[inline(always)]
+    fn go(&mut self, area: &Area, block: [usize; 2]) {
+        let (from, size) = block_of(area, block);
+        for (axis, next) in [1, self.width].into_iter().enumerate() {
+            for y in from[1]..from[1] + size[1] {
+                let at = (y + HALO) * self.width + from[0] + HALO;
+                let flows = &self.flows[axis][at..at + size[0]];
+                let sums = self.sums[axis][at..at + size[0]].iter_mut();
+                sums.zip(flows).for_each(|(sum, flow)| *sum += flow);
+                for plane in [&mut self.wet, &mut self.surface] {
+                    let own = plane[at..at + size[0]].iter_mut();
+                    own.zip(flows).for_each(|(height, flow)| *height -= flow);
+                    let beside = plane[at + next..at + next + size[0]].iter_mut();
+                    beside.zip(flows).for_each(|(height, flow)| *height += flow);
                 }
-                for (face, share) in faces.iter_mut().zip(&shares) {
-                    *face += share;
-                }
-                let most = shares.iter().fold(0.0, |most, share| larger(share.abs(), most));
-                blocks.flowed[place] = larger(blocks.flowed[place], most);
             }
         }
     }

@@ -5,26 +5,39 @@
 //! the bristles that touch, and two colours beside each other stay two. Between strips the yield stress holds
 //! a difference, so that a bristle that took up more paints its streak to the end.
 
+use maulstick_num::select::larger;
 use maulstick_num::wide;
 
+use super::flow::part;
 use crate::load::{ALONG, PaintOnBrush};
 use crate::model::{BrushTraits, Step};
 
-/// Evens films out, every few steps for as many; in turn along strips and between those of either order.
+/// Evens films out: in turn between strips of either order, and along them.
 pub fn seep(step: &mut Step<'_>) {
     let steps = step.load.steps();
-    if !steps.is_multiple_of(BrushTraits::FLOW_STEPS) {
-        return;
-    }
-    let turn = steps / BrushTraits::FLOW_STEPS;
     let seep = step.traits.seep;
     let holds = BrushTraits::HOLDS * step.traits.film_full;
     let (films, paints) = step.load.parts_mut();
     let mut paints: Vec<PaintOnBrush<'_>> = paints.collect();
+    let turn = steps / BrushTraits::FLOW_STEPS;
     let order = &step.head.beside()[(turn % 2) as usize];
     let first = (turn / 2 % 2) as usize;
-    between_strips(films, &mut paints, &order[first..], seep.beside, holds);
-    along_strips(films, &mut paints, first, seep.along);
+    between_strips(
+        films,
+        &mut paints,
+        &order[first..],
+        seep.beside,
+        holds,
+        steps,
+    );
+    along_strips(films, &mut paints, seep.along, steps);
+}
+
+/// The first of those strips, or pairs of them, whose turn it is: every [`BrushTraits::FLOW_STEPS`]th.
+#[inline(always)]
+pub(super) fn first_of(steps: u64) -> usize {
+    let every = BrushTraits::FLOW_STEPS;
+    ((every - steps % every) % every) as usize
 }
 
 wide! {
@@ -34,22 +47,49 @@ wide! {
         order: &[u32],
         share: f64,
         holds: f64,
+        steps: u64,
     ) {
-        for pair in order.as_chunks::<2>().0 {
-            let [one, other] = pair.map(|strip| strip as usize * ALONG);
-            let mut shares = [[0.0; ALONG]; 2];
+        let every = BrushTraits::FLOW_STEPS as usize;
+        for pair in order.as_chunks::<2>().0.iter().skip(first_of(steps)).step_by(every) {
+            let pair = pair.map(|strip| strip as usize);
+            let [one, other] = of_strips(films, pair);
+            let (mut on, mut back, mut goes) = ([0.0; ALONG], [0.0; ALONG], 0.0);
             for k in 0..ALONG {
-                let fall = f64::from(films[one + k]) - f64::from(films[other + k]);
-                shares[0][k] = given(share, fall - holds, films[one + k]);
-                shares[1][k] = given(share, -fall - holds, films[other + k]);
+                let fall = f64::from(one[k]) - f64::from(other[k]);
+                on[k] = given(share, fall - holds, one[k]);
+                back[k] = given(share, -fall - holds, other[k]);
+                goes = larger(goes, on[k] + back[k]);
             }
+            if goes == 0.0 {
+                continue;
+            }
+            let mut sums = [[0; ALONG]; 2];
             for paint in &mut *paints {
+                let [mut one, mut other] = of_strips(paint.film, pair);
                 for k in 0..ALONG {
-                    let (a, b) = (one + k, other + k);
-                    exchange(films, paint.film, [a, b], [shares[0][k], shares[1][k]]);
+                    let (on, back) = (part(one[k], on[k]), part(other[k], back[k]));
+                    one[k] = one[k] - on + back;
+                    other[k] = other[k] + on - back;
+                    sums[0][k] += one[k];
+                    sums[1][k] += other[k];
                 }
+                put(paint.film, pair, [one, other]);
             }
+            put(films, pair, sums);
         }
+    }
+}
+
+/// The texels of two strips.
+#[inline(always)]
+fn of_strips(plane: &[u32], pair: [usize; 2]) -> [[u32; ALONG]; 2] {
+    pair.map(|strip| plane.as_chunks().0[strip])
+}
+
+#[inline(always)]
+fn put(plane: &mut [u32], pair: [usize; 2], texels: [[u32; ALONG]; 2]) {
+    for (strip, texels) in pair.into_iter().zip(texels) {
+        plane.as_chunks_mut().0[strip] = texels;
     }
 }
 
@@ -57,17 +97,43 @@ wide! {
     fn along_strips(
         films: &mut [u32],
         paints: &mut [PaintOnBrush<'_>],
-        first: usize,
         share: f64,
+        steps: u64,
     ) {
-        for start in (0..films.len()).step_by(ALONG) {
-            for k in (first..ALONG - 1).step_by(2) {
-                let (a, b) = (start + k, start + k + 1);
-                let fall = f64::from(films[a]) - f64::from(films[b]);
-                let shares = [given(share, fall, films[a]), given(share, -fall, films[b])];
-                for paint in &mut *paints {
-                    exchange(films, paint.film, [a, b], shares);
+        let every = BrushTraits::FLOW_STEPS as usize;
+        let strips = films.as_chunks_mut::<ALONG>().0.iter_mut().enumerate();
+        for (strip, films) in strips.skip(first_of(steps)).step_by(every) {
+            // In turn from the first and from the second texel on.
+            let first = (steps as usize + strip) / every % 2;
+            // By each texel but the last, what goes between it and the next; of every second pair.
+            let (mut on, mut back, mut falls) = ([0.0; ALONG], [0.0; ALONG], 0.0);
+            for k in 0..ALONG - 1 {
+                let own = if k % 2 == first { share } else { 0.0 };
+                let fall = f64::from(films[k]) - f64::from(films[k + 1]);
+                on[k] = given(own, fall, films[k]);
+                back[k] = given(own, -fall, films[k + 1]);
+                falls = larger(falls, own * fall.abs());
+            }
+            // Not a quantum would go.
+            if falls < 2.0 {
+                continue;
+            }
+            *films = [0; ALONG];
+            for paint in &mut *paints {
+                let film = &mut paint.film.as_chunks_mut::<ALONG>().0[strip];
+                let before = *film;
+                let (mut leaves, mut comes) = ([0; ALONG], [0; ALONG]);
+                for k in 0..ALONG - 1 {
+                    leaves[k] = part(before[k], on[k]);
+                    comes[k] = part(before[k + 1], back[k]);
                 }
+                for k in 0..ALONG - 1 {
+                    film[k] = film[k] - leaves[k] + comes[k];
+                }
+                for k in 1..ALONG {
+                    film[k] = film[k] + leaves[k - 1] - comes[k - 1];
+                }
+                films.iter_mut().zip(film).for_each(|(sum, count)| *sum += *count);
             }
         }
     }
@@ -76,21 +142,5 @@ wide! {
 /// The share of a film that goes over, where it is fuller by `fall` quanta than the one beside it.
 #[inline(always)]
 fn given(share: f64, fall: f64, film: u32) -> f64 {
-    let goes = 0.5 * share * fall;
-    if goes > 0.0 {
-        goes / f64::from(film)
-    } else {
-        0.0
-    }
-}
-
-/// One paint of two films: of each so much of it goes to the other.
-#[inline(always)]
-fn exchange(films: &mut [u32], film: &mut [u32], [a, b]: [usize; 2], shares: [f64; 2]) {
-    let on = (f64::from(film[a]) * shares[0]) as u32;
-    let back = (f64::from(film[b]) * shares[1]) as u32;
-    film[a] = film[a] - on + back;
-    film[b] = film[b] + on - back;
-    films[a] = films[a] - on + back;
-    films[b] = films[b] + on - back;
+    0.5 * share * larger(fall, 0.0) / larger(f64::from(film), 1.0)
 }

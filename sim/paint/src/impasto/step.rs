@@ -4,7 +4,6 @@ use super::advection::{Advection, Axis};
 use super::exchange::Exchange;
 use super::flow::flow;
 use super::footprint::Footprint;
-use super::levelling::Levelling;
 use super::modes::{sample, vacuum};
 use super::seep::seep;
 use super::velocity::Faces;
@@ -18,7 +17,6 @@ pub struct Impasto {
     faces: Faces,
     advection: Advection,
     exchange: Exchange,
-    levelling: Levelling,
 }
 
 impl PaintModel for Impasto {
@@ -47,19 +45,20 @@ impl PaintModel for Impasto {
             _ => {
                 if step.handling.push {
                     self.faces.find(footprint, step);
-                    self.faces.level(footprint, step, &mut self.levelling);
                     let first = if step.load.steps().is_multiple_of(2) {
                         Axis::X
                     } else {
                         Axis::Y
                     };
-                    self.advection.run(
-                        footprint.around,
-                        &self.faces,
-                        step.window,
-                        first,
-                        step.stain,
-                    );
+                    for _ in 0..step.traits.parts {
+                        self.advection.run(
+                            footprint.around,
+                            &self.faces,
+                            step.window,
+                            first,
+                            step.stain,
+                        );
+                    }
                 }
                 report.from_nowhere = self.exchange.run(footprint, step);
                 flow(step);

@@ -12,14 +12,9 @@ use maulstick_num::wide;
 
 use super::SHARED;
 use super::footprint::{Contact, Footprint};
-use super::levelling::{Body, Levelling, Round};
 use crate::model::Step;
-use crate::quantum::QUANTUM_M;
 use crate::window::Area;
 
-/// Speed of a hand, m/s: paint levels under the brush as long as it is there at this speed, whatever the
-/// hand's own, so that a stroke does not depend on it.
-pub const HAND_M_PER_S: f64 = 0.1;
 /// c of the squish: cells of flow in a step of one cell, per cell of penetration by cell.
 pub const SQUISH: f32 = 3.0;
 /// The squish diffuses paint by c·h in a step, h its height in cells; explicit steps are stable up to
@@ -81,7 +76,8 @@ wide! {
 }
 
 impl Faces {
-    /// Finds the velocities; no cell loses more than it holds along either axis.
+    /// Finds the velocities in each [part](crate::model::BrushTraits::parts) of the step; no cell loses more than it
+    /// holds along either axis.
     pub fn find(&mut self, footprint: &Footprint, step: &Step<'_>) {
         let [width, height] = footprint.around.size;
         let [push_x, push_y] = &mut self.push;
@@ -97,7 +93,8 @@ impl Faces {
                 false => 0.0,
             };
             // What lies in gaps below the bristles stays there.
-            let follows = follows(step.traits.follows, thinner) * contact.cover * contact.fraction;
+            let follows = follows(step.traits.follows, thinner) * contact.cover * contact.fraction
+                / step.traits.parts as f32;
             self.push[0][place] = follows * contact.moved[0];
             self.push[1][place] = follows * contact.moved[1];
             self.depth[place] = contact.depth * contact.cover;
@@ -134,24 +131,6 @@ impl Faces {
     pub fn stop(&mut self) {
         self.right.fill(0.0);
         self.above.fill(0.0);
-    }
-
-    /// Adds what levels under the brush while it goes the mean way of its contacts.
-    pub fn level(&mut self, footprint: &Footprint, step: &Step<'_>, levelling: &mut Levelling) {
-        let ways = footprint.contacts.iter().map(|contact| {
-            let [u, v] = contact.moved;
-            (u * u + v * v).sqrt()
-        });
-        let cells = ways.sum::<f32>() / footprint.contacts.len().max(1) as f32;
-        let to_cells = step.traits.cells_per_quantum;
-        // Its way by reference cells is longer where it is stirred; its cells are not.
-        let cell_m = QUANTUM_M / f64::from(to_cells);
-        let seconds = f64::from(cells) * cell_m / HAND_M_PER_S;
-        let round = Round::new(Body::TUBE, cell_m, seconds, to_cells, step.stain);
-        let around = &footprint.around;
-        let faces = [&mut self.right[..], &mut self.above[..]];
-        levelling.add(&*step.window, around, &round, step.thinner, 0.0, faces);
-        self.limit(around.size[0]);
     }
 
     /// Slows what leaves a cell to what it holds, along either axis.

@@ -155,7 +155,8 @@ impl Painting {
         let brushes = self.brushes.iter().map(|(name, track)| {
             let path = track.path.as_ref().and_then(|(sheet, path)| {
                 let surface = self.sheets.get(*sheet)?.id;
-                Some((surface, path.scale(), path.at().into()))
+                let (at, ahead) = path.places();
+                Some((surface, path.scale(), at.into(), ahead.map(Into::into)))
             });
             let kept = KeptBrush {
                 file: track.file.to_toml().unwrap_or_default(),
@@ -321,9 +322,10 @@ fn restored_track(
     })?;
     let tidy = Arc::new(Head::of(&file));
     let head = Arc::new(tidy.disordered(brush.seed));
-    let path = brush.path.and_then(|(surface, scale, at)| {
+    let path = brush.path.and_then(|(surface, scale, at, ahead)| {
         let sheet = sheets.iter().position(|sheet| sheet.id == surface)?;
-        Some((sheet, PathStepper::begin(&head, Waypoint::from(at), scale)))
+        let places = (Waypoint::from(at), ahead.map(Waypoint::from));
+        Some((sheet, PathStepper::going_on(&head, places, scale)))
     });
     let strips = head.strips();
     let content = load.as_ref().map(Page::get);

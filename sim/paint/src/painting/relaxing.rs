@@ -18,8 +18,10 @@ use crate::window::Area;
 const SECONDS: f64 = 1.0;
 /// Rounds in which it does: of ripples six cells long a fifth is left after them.
 const ROUNDS: u32 = 64;
+/// Of them heights alone go through so many, before their paint follows at once.
+const AT_ONCE: u32 = 16;
 /// Where less than this share of a cell would flow, all rests.
-const RESTS: f32 = 2e-4;
+const RESTS: f32 = 1e-3;
 
 impl Painting {
     /// Lets what a brush's stroke has reached on a sheet level.
@@ -64,10 +66,10 @@ impl Painting {
         let round = Round::new(Body::TUBE, cell_m, seconds, to_cells, stain);
         let (mut levelling, mut advection) = (Levelling::default(), Advection::default());
         let mut faces = Faces::still(&area);
-        for number in 0..ROUNDS {
+        for number in 0..ROUNDS / AT_ONCE {
             faces.stop();
             let planes = [&mut faces.right[..], &mut faces.above[..]];
-            let most = levelling.add(window, &area, &round, thinner, RESTS, planes);
+            let most = levelling.add(window, &area, &round, thinner, (AT_ONCE, RESTS), planes);
             if most < RESTS {
                 break;
             }

@@ -89,13 +89,16 @@ impl Painting {
         let traits = BrushTraits::of(&track.file, scale.cell_m, scale.zoom);
         let waypoint = Waypoint::of(solve, scale, self.seen_fullness(name, &traits)?);
         let track = self.brush(name)?;
-        let running = track
-            .path
-            .take()
-            .filter(|(on, path)| *on == sheet && path.scale() == scale && !restarted);
-        let Some((_, mut path)) = running else {
+        let goes_on =
+            |(on, path): &(usize, PathStepper)| *on == sheet && path.scale() == scale && !restarted;
+        if !track.path.as_ref().is_some_and(goes_on) {
+            self.end_path(name)?;
+            let track = self.brush(name)?;
             let path = PathStepper::begin(&track.head, waypoint, scale);
             track.path = Some((sheet, path));
+            return Ok(());
+        }
+        let Some((_, mut path)) = track.path.take() else {
             return Ok(());
         };
         let head = Arc::clone(&track.head);
@@ -108,10 +111,21 @@ impl Painting {
 
     /// Ends a brush's contact: what it left relaxes.
     fn lift(&mut self, name: &str) -> Result<(), PaintRefusal> {
-        if let Some((sheet, _)) = self.brush(name)?.path.take() {
+        if let Some(sheet) = self.end_path(name)? {
             self.relax(name, sheet);
         }
         Ok(())
+    }
+
+    /// Steps what is left of a brush's way; on which sheet, if it was in contact.
+    fn end_path(&mut self, name: &str) -> Result<Option<usize>, PaintRefusal> {
+        let track = self.brush(name)?;
+        let Some((sheet, mut path)) = track.path.take() else {
+            return Ok(None);
+        };
+        let (head, scale) = (Arc::clone(&track.head), path.scale());
+        path.end(&head, |sweep| self.step(name, sheet, scale, sweep));
+        Ok(Some(sheet))
     }
 
     /// Has the bristles of a brush lie otherwise: as chance has it for the strokes since its take began, so
@@ -157,7 +171,7 @@ impl Painting {
             let tooth = (self.sheets[sheet].bare.relief.depth_m() / scale.cell_m) as f32;
             wet + film + traits.sink + tooth
         };
-        let Some((from, to)) = low_bounds(&track.head, sweep.to, traits.half_width, height) else {
+        let Some((from, to)) = low_bounds(&track.head, sweep.to, &traits, height) else {
             return;
         };
         if self.history.open_of(Some(name)).is_none() {

@@ -12,6 +12,10 @@ use crate::scene::{CELL_M, CELLS, Scene};
 const EDGE_PENALTY: f64 = 0.9;
 const RANKS: f64 = 0.02;
 const BENT: f64 = 0.2;
+/// An end is soft over so many cells at least.
+const SHARP: f64 = 0.25;
+/// How far a strip goes on past its tip, cells.
+const TIP: f64 = 0.5;
 /// Sixteen roundings of a place below 128 cells in f32.
 const ROUNDING: f64 = 16.0 * 128.0 / 33_554_432.0;
 
@@ -46,10 +50,10 @@ struct Cell {
     none: bool,
 }
 
-/// The segment from station `station − 1` of a strip, in f64.
+/// The segment from station `station − 1` of a strip in the middle of the step, in f64.
 struct Segment {
-    a: [f64; 3],
-    b: [f64; 3],
+    /// Places, cells.
+    ends: [[f64; 3]; 2],
     moved: [[f64; 2]; 2],
     is_last: bool,
 }
@@ -57,27 +61,41 @@ struct Segment {
 fn segment(scene: &Scene, strip: usize, station: usize) -> Segment {
     let point = |station: usize| {
         let i = station * scene.head.strips() + strip;
-        let to = &scene.to;
+        let (from, to) = (&scene.from, &scene.to);
         // Motion is a difference of places in f32, as the stage's input is.
-        let moved = [to.x[i] - scene.from.x[i], to.y[i] - scene.from.y[i]];
+        let moved = [to.x[i] - from.x[i], to.y[i] - from.y[i]];
+        let ways = [moved[0], moved[1], to.z[i] - from.z[i]].map(f64::from);
+        let at = [to.x[i], to.y[i], to.z[i]].map(f64::from);
         (
-            [to.x[i], to.y[i], to.z[i]].map(f64::from),
+            [0, 1, 2].map(|k| at[k] - 0.5 * ways[k]),
             moved.map(f64::from),
         )
     };
     let ((a, from), (b, to)) = (point(station - 1), point(station));
     Segment {
-        a,
-        b,
+        ends: [a, b],
         moved: [from, to],
         is_last: station == STATIONS - 1,
     }
 }
 
-/// Whether and how a segment covers the cell with this middle; `reach` is half the ribbon's width
-/// and half a cell, and nothing above `height` counts.
-fn cover(s: &Segment, middle: [f64; 2], reach: f64, height: f64) -> Option<Candidate> {
-    let d = [0, 1, 2].map(|i| s.b[i] - s.a[i]);
+/// Whether and how a segment of half a width covers the cell with this middle; nothing above `height` counts.
+fn cover(s: &Segment, middle: [f64; 2], half: f64, height: f64) -> Option<Candidate> {
+    let [z, z_end] = s.ends.map(|end| end[2]);
+    if z.min(z_end) >= height {
+        return None;
+    }
+    let crosses = (height - z) / (z_end - z);
+    let [begins, above] = [z > height, z_end > height];
+    let stops = above || s.is_last;
+    let shares = [
+        if begins { crosses } else { 0.0 },
+        if above { crosses } else { 1.0 },
+    ];
+    let at = |t: f64, i: usize| s.ends[0][i] + t * (s.ends[1][i] - s.ends[0][i]);
+    let went = |t: f64, i: usize| s.moved[0][i] + t * (s.moved[1][i] - s.moved[0][i]);
+    let [a, b] = shares.map(|t| [0, 1, 2].map(|i| at(t, i)));
+    let d = [0, 1, 2].map(|i| b[i] - a[i]);
     let major = usize::from(d[1].abs() > d[0].abs());
     let minor = 1 - major;
     let length = d[major].abs();
@@ -86,65 +104,64 @@ fn cover(s: &Segment, middle: [f64; 2], reach: f64, height: f64) -> Option<Candi
     } else {
         (0.0, 0.0)
     };
-    let past = if s.is_last { 0.5 } else { 0.0 };
-    // How far along the segment the cell's middle lies; a segment owns the cells up to its end.
-    let way = (middle[major] - s.a[major]) * d[major].signum();
-    // Only what lies below the height counts; a short rest has a rough direction.
-    if s.a[2].min(s.b[2]) >= height {
+    let cosine = 1.0 / (1.0 + slope * slope).sqrt();
+    // Its way in the step: across it, and along it as its major axis sees it.
+    let way = [0, 1].map(|i| 0.5 * (went(shares[0], i) + went(shares[1], i)));
+    let soft = ((way[minor] - slope * way[major]) * cosine).abs().max(1.0);
+    let blurred = (way[major] + slope * way[minor]).abs() * cosine * cosine;
+    let blurred = blurred.max(SHARP);
+    // A short rest has a rough direction.
+    let off =
+        ROUNDING * (1.0 + steep.abs() + (1.0 + TIP) / length.max(1e-9) + 1.0 / blurred).min(1e4);
+    let along = (middle[major] - a[major]) * d[major].signum();
+    let end = length + if stops { TIP } else { 0.0 };
+    // Where another segment goes on it owns the cells.
+    if (!begins && along < -off) || (!stops && along > end + off) {
         return None;
     }
-    let cut = s.a[2].max(s.b[2]) > height;
-    let visible = if cut {
-        ((height - s.a[2]) / d[2]).clamp(0.0, 1.0) * length
-    } else {
-        length
+    let there = match (begins, stops) {
+        (false, false) => 1.0,
+        (true, false) => 0.5 + along / blurred,
+        (false, true) => 0.5 + (end - along) / blurred,
+        // A piece shorter than its way is over no cell for all of it.
+        (true, true) => {
+            let least = (along.min(end - along) / blurred + 0.5).min(end / blurred);
+            least.min(1.0)
+        }
     };
-    let short = if s.a[2] > height {
-        length - visible
-    } else {
-        visible
-    };
-    let off = ROUNDING * (1.0 + steep.abs() + (1.0 + past) / short.max(1e-9)).min(1e4);
-    let end = length + past;
-    if way < -off || way > end + off {
+    let line = a[minor] + (middle[major] - a[major]) * slope;
+    let aside = (middle[minor] - line).abs() * cosine;
+    // A ribbon narrower than its soft edges covers a half, and what its width is of them.
+    let most = (half / soft + 0.5).min(1.0);
+    let across = ((half + 0.5 * soft - aside) / soft).min(most);
+    if across.min(there) < -2.0 * off {
         return None;
     }
+    let cover = across * there.clamp(0.0, 1.0);
+    let near = |value: f64| value.abs() <= 2.0 * off;
+    let owned = (!begins && near(along)) || (!stops && near(along - end));
+    let cut = near(z - height) || near(z_end - height);
+    let diagonal = near(d[0].abs() - d[1].abs());
+    let sure = !(owned || cut || near(cover) || diagonal) && length > 1e-3;
     let t = if length > 1e-4 {
-        (way / length).clamp(0.0, 1.0)
+        (along / length).clamp(0.0, 1.0)
     } else {
         0.0
     };
-    let line = s.a[minor] + (middle[major] - s.a[major]) * slope;
-    let cosine = 1.0 / (1.0 + slope * slope).sqrt();
-    let aside = (middle[minor] - line).abs() * cosine;
-    let cover = reach - aside;
-    let half_width = reach - 0.5;
-    let mut z = s.a[2] + t * d[2];
-    // A tip above the height is cut off, and the rest goes on past the cut.
-    let beyond_cut = s.is_last && s.b[2] > height && way <= visible + past + off;
-    if cover < -off || (z > height + off && !beyond_cut) {
-        return None;
-    }
-    let near = |value: f64| value.abs() <= off;
-    let diagonal = near(d[0].abs() - d[1].abs());
-    let sure = !(near(way) || near(way - end) || near(cover) || diagonal)
-        && z < height - off
-        && length > 1e-3;
-    if z > height {
-        z = height;
-    }
     let cover = cover.clamp(0.0, 1.0);
+    let low = a[2] + t * d[2];
+    let place = shares[0] + t * (shares[1] - shares[0]);
     Some(Candidate {
-        score: z + (1.0 - cover) * EDGE_PENALTY,
-        z,
+        score: low + (1.0 - cover) * EDGE_PENALTY,
+        z: low,
         keeps: 0.0,
-        across: (aside / half_width).min(1.0),
-        across_off: off / half_width,
+        across: ((aside - 0.5 * (soft - 1.0)).max(0.0) / half).min(1.0),
+        across_off: off / half,
         cover,
         strip: 0,
-        along: t,
-        moved: [0, 1].map(|i| s.moved[0][i] + t * (s.moved[1][i] - s.moved[0][i])),
-        off,
+        along: place,
+        moved: [0, 1].map(|i| went(place, i)),
+        off: 2.0 * off,
         sure,
     })
 }
@@ -180,8 +197,8 @@ fn candidates(scene: &Scene, at: [usize; 2], most: f64) -> Vec<Candidate> {
         for station in 1..STATIONS {
             let s = segment(scene, strip, station);
             let along = (station as f64 - 0.5) / (STATIONS - 1) as f64;
-            let reach = wide * (1.0 - f64::from(traits.taper) * along) + 0.5;
-            found.extend(cover(&s, middle, reach, height).map(|c| Candidate {
+            let half = wide * (1.0 - f64::from(traits.taper) * along);
+            found.extend(cover(&s, middle, half, height).map(|c| Candidate {
                 score: c.score + keeps + rank,
                 keeps,
                 strip,
@@ -339,8 +356,12 @@ fn found(scene: &mut Scene) -> Footprint {
 #[test]
 fn the_deepest_strip_touches_where_it_reaches() {
     let (mut touched, mut doubtful) = (0, 0);
-    for seed in 0..24 {
-        let mut scene = Scene::new(seed);
+    for seed in 0..32 {
+        let mut scene = match seed % 4 {
+            0 => Scene::far(seed, 4.0),
+            1 => Scene::far(seed, 0.01),
+            _ => Scene::new(seed),
+        };
         let contacts = found(&mut scene).contacts;
         let oracle = oracle(&scene, scene.window.ride());
         compare(&scene, &contacts, &oracle).unwrap_or_else(|error| panic!("scene {seed}: {error}"));
@@ -448,7 +469,7 @@ fn other_bristles_and_rides_are_told_apart() {
 fn the_bounds_hold_all_that_is_touched() {
     let mut touched = 0;
     for seed in 0..40 {
-        let mut scene = Scene::new(seed);
+        let mut scene = Scene::far(seed, [1.0, 4.0][seed as usize % 2]);
         for slot in 0..16 {
             scene.window.plane_mut(slot).fill(0.0);
         }
@@ -457,7 +478,7 @@ fn the_bounds_hold_all_that_is_touched() {
         let film = scene.load.thickest() as f32 * scene.traits.film_cells_per_quantum;
         // Linen is 80 µm deep.
         let height = film + scene.traits.sink + (80e-6 / CELL_M) as f32;
-        let bounds = low_bounds(&scene.head, &scene.to, scene.traits.half_width, height);
+        let bounds = low_bounds(&scene.head, &scene.to, &scene.traits, height);
         for c in &contacts {
             let width = scene.window.width();
             let at = [c.cell as usize % width, c.cell as usize / width].map(|cell| cell as i64);

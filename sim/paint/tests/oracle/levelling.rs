@@ -1,6 +1,5 @@
 //! Levelling under the brush: the flow of a thin layer of a Bingham fluid, face by face.
 
-use maulstick_paint::impasto::footprint::Footprint;
 use maulstick_paint::impasto::levelling::{Body, Levelling, Round};
 use maulstick_paint::impasto::velocity::Faces;
 use maulstick_paint::window::{Area, Window};
@@ -16,8 +15,6 @@ const STABLE: f64 = 1.0 / 40.0;
 const ADVANCES: f64 = 1.0;
 /// The most of a donor that goes through one of its four faces.
 const MOST: f64 = 0.25;
-/// Speed of a hand, m/s.
-const HAND: f64 = 0.1;
 /// 2⁻²⁴, the rounding of a height.
 const EPS: f64 = 1.0 / 16_777_216.0;
 
@@ -148,7 +145,7 @@ fn levelled(film: &Film<'_>, area: &Area) -> (Faces, f32) {
     let round = Round::new(film.body, CELL_M, film.seconds, to_cells, film.bare as f32);
     let mut faces = Faces::still(area);
     let planes = [&mut faces.right[..], &mut faces.above[..]];
-    let most = Levelling::default().add(film.window, area, &round, film.thinner, 0.0, planes);
+    let most = Levelling::default().add(film.window, area, &round, film.thinner, (1, 0.0), planes);
     (faces, most)
 }
 
@@ -265,72 +262,4 @@ fn other_paint_is_told_apart() {
     for (number, fault) in faults.iter().enumerate() {
         assert!(!agrees(&film(*fault), &want), "fault {number} passes");
     }
-}
-
-/// Under the brush paint levels as long as a hand takes for the mean way of the contacts, on cells that
-/// are as large as they are, however long the way counts where a brush is stirred; and no cell gives more
-/// than it holds.
-#[test]
-fn paint_levels_while_a_hand_goes_its_way() {
-    let mut levels = 0;
-    for seed in 0..12 {
-        let mut scene = Scene::new(seed);
-        scene.thinner = [None, Some(2)][seed as usize % 2];
-        if seed % 3 == 0 {
-            scene.traits.cell_per_reference *= 6.0;
-        }
-        let mut footprint = Footprint::default();
-        footprint.find(&mut scene.step());
-        let (mut pushed, mut got) = (Faces::default(), Faces::default());
-        pushed.find(&footprint, &scene.step());
-        got.find(&footprint, &scene.step());
-        got.level(&footprint, &scene.step(), &mut Levelling::default());
-        let ways = footprint.contacts.iter().map(|c| {
-            let [u, v] = c.moved.map(f64::from);
-            (u * u + v * v).sqrt()
-        });
-        let way = ways.sum::<f64>() / footprint.contacts.len() as f64;
-        let film = Film {
-            window: &scene.window,
-            body: Body::TUBE,
-            seconds: way * CELL_M / HAND,
-            bare: 2013.0,
-            thinner: scene.thinner,
-            to_cells: f64::from(scene.traits.cells_per_quantum),
-        };
-        let around = footprint.around;
-        let flows = levelled(&film, &around).0;
-        let limited = |pushed: &[f32], flows: &[f32], next: usize| -> Vec<f64> {
-            let sum: Vec<f64> = pushed
-                .iter()
-                .zip(flows)
-                .map(|(a, b)| f64::from(*a) + f64::from(*b))
-                .collect();
-            let leaves = |cell: usize| {
-                let back = cell.checked_sub(next).map_or(0.0, |below| sum[below]);
-                (sum[cell].max(0.0) - back.min(0.0)).max(1.0)
-            };
-            let face = |(cell, v): (usize, &f64)| {
-                let donor = if *v > 0.0 { cell } else { cell + next };
-                if *v == 0.0 { 0.0 } else { v / leaves(donor) }
-            };
-            sum.iter().enumerate().map(face).collect()
-        };
-        let width = around.size[0];
-        let want = [
-            limited(&pushed.right, &flows.right, 1),
-            limited(&pushed.above, &flows.above, width),
-        ];
-        let near = |got: &[f32], want: &[f64]| {
-            let mut pairs = got.iter().zip(want);
-            pairs.all(|(got, want)| (f64::from(*got) - want).abs() <= 4e-6)
-        };
-        assert!(
-            near(&got.right, &want[0]) && near(&got.above, &want[1]),
-            "scene {seed}"
-        );
-        let added = flows.right.iter().chain(&flows.above);
-        levels += added.filter(|v| v.abs() > 4e-5).count();
-    }
-    assert!(levels > 1000, "{levels}: without levelling it passes");
 }

@@ -95,6 +95,20 @@ impl Scene {
         }
     }
 
+    /// The same, but its brush goes so many times as far, and a little up or down.
+    pub(crate) fn far(seed: u64, times: f32) -> Self {
+        let mut scene = Self::new(seed);
+        let mut random = Random::new(seed + 50);
+        let (from, to) = (&mut scene.from, &scene.to);
+        for i in 0..to.x.len() {
+            from.x[i] = to.x[i] + times * (from.x[i] - to.x[i]);
+            from.y[i] = to.y[i] + times * (from.y[i] - to.y[i]);
+            from.z[i] = (to.z[i] + random.range(-0.2, 0.2) as f32).max(0.0);
+        }
+        scene.traits.step_cells = times;
+        scene
+    }
+
     pub(crate) fn step(&mut self) -> Step<'_> {
         Step {
             window: &mut self.window,

@@ -80,7 +80,7 @@ impl Bench {
             + self.traits.sink
             + self.relief.depth_m() as f32 * self.relief.cells_per_m()
             + 2.0;
-        let Some(bounds) = low_bounds(&self.head, sweep.to, self.traits.half_width, height) else {
+        let Some(bounds) = low_bounds(&self.head, sweep.to, &self.traits, height) else {
             return StepReport::default();
         };
         let (from, to) = match windows {

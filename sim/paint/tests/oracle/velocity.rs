@@ -1,4 +1,4 @@
-//! Stage 2: half the brush's motion and −c·∇p, through the faces between cells.
+//! Stage 2: a share of the brush's motion in each part of the step and −c·∇p, through the faces between cells.
 
 use std::collections::BTreeMap;
 
@@ -129,13 +129,15 @@ fn paint_follows_the_brush_and_goes_out_of_its_way() {
         let kind = ["round", "knife"][seed as usize / 4 % 2];
         let file = BrushFile::library(kind).expect(kind);
         scene.traits.follows = BrushTraits::of(&file, CELL_M, 1.0).follows;
-        let follows = followed(kind);
+        scene.traits.parts = 1 + seed as u32 % 3;
+        let follows = followed(kind) / f64::from(scene.traits.parts);
         let mut footprint = Footprint::default();
         footprint.find(&mut scene.step());
         if seed % 2 == 0 {
             // Faster than steps are, so that the clamp is seen at work.
             for contact in &mut footprint.contacts {
-                contact.moved = contact.moved.map(|cells| 4.0 * cells);
+                let times = 4.0 * scene.traits.parts as f32;
+                contact.moved = contact.moved.map(|cells| times * cells);
             }
         }
         let mut faces = Faces::default();

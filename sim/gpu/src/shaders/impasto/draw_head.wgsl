@@ -132,35 +132,29 @@ fn draw_segment(number: u32, strip: u32, station: u32, scale: Scale) {
     if min(a.at.z, b.at.z) >= height {
         return;
     }
+    let ends = select(0.0, 1.0, a.at.z > height)
+        + select(0.0, 2.0, b.at.z > height || station == STATIONS - 1u);
     if a.at.z > height {
         a = toward(a, b, (a.at.z - height) / (a.at.z - b.at.z));
     } else if b.at.z > height {
         b = toward(a, b, (height - a.at.z) / (b.at.z - a.at.z));
     }
-    let past = select(0.0, 0.5, station == STATIONS - 1u);
     let half_width = step.half_widths[(station - 1u) / 4u][(station - 1u) % 4u];
     let start = a.at.xy - vec2(step.offset_x, step.offset_y);
     let way = b.at - a.at;
     let ribbon = Ribbon(
         start, way.xy, vec2(a.at.z, way.z), bottom, rank, vec2(a.along, b.along - a.along),
-        half_width + 0.5, past, a.moved, b.moved - a.moved,
+        half_width, ends, a.moved, b.moved - a.moved,
     );
     store_ribbon(number, ribbon);
     let line = line_of(ribbon);
     let major = line.major;
-    let length = abs(way[major]);
-    var low = start[major];
-    var high = start[major] + length + past;
-    if way[major] < 0.0 {
-        low = start[major] - length - past;
-        high = start[major];
-    }
     let touched = inside();
     let in_low = vec2<f32>(touched.low);
     let in_high = vec2<f32>(touched.high);
-    let first = u32(clamp(low + 0.5, in_low[major], in_high[major]));
-    let last = u32(clamp(high + 0.5, in_low[major], in_high[major]));
-    let across = ribbon.reach / line.cosine;
+    let first = u32(clamp(line.low + 0.5, in_low[major], in_high[major]));
+    let last = u32(clamp(line.high + 0.5, in_low[major], in_high[major]));
+    let across = reach_of(ribbon, line) / line.cosine;
     for (var m = first; m < last; m++) {
         let place = place_on(ribbon, line, f32(m));
         let minor = 1u - major;

@@ -44,7 +44,7 @@ fn of_ribbon(number: u32, x: u32, y: u32) -> Fragment {
     let z = ribbon.z.x + place.t * ribbon.z.y;
     // A bristle is round below.
     let aside = abs(at[1u - line.major] - place.middle) * line.cosine;
-    let across = min(aside / (ribbon.reach - 0.5), 1.0);
+    let across = min(max(aside - 0.5 * (line.soft - 1.0), 0.0) / ribbon.half, 1.0);
     let off = ribbon.bottom + step.round * across * across;
     let moved = ribbon.moved + place.t * ribbon.moves;
     return Fragment(strip * ALONG + along, z, off, moved);
@@ -56,15 +56,12 @@ fn lower_side(fragment: Fragment, ride: f32) -> f32 {
     return rests - step.sink + fragment.off;
 }
 
-// Notes where a contact is, and how far it went.
-fn note_contact(at: vec2<u32>, way: f32) {
+// Notes where a contact is.
+fn note_contact(at: vec2<u32>) {
     for (var axis = 0u; axis < 2u; axis++) {
         raise(stat(LEAST_TOUCHED) + axis, u32(BIAS) - at[axis]);
         raise(stat(MOST_TOUCHED) + axis, at[axis] + 1u);
     }
-    let went = u32(min(way, 4000.0) * PER_CELL + 0.5);
-    atomicAdd(&stats[stat(WAY)], went & ((1u << LOW_BITS) - 1u));
-    atomicAdd(&stats[stat(WAY) + 1u], went >> LOW_BITS);
 }
 
 @compute @workgroup_size(256)
@@ -108,7 +105,7 @@ fn find_contacts(@builtin(global_invocation_id) id: vec3<u32>) {
     contacts[i] = Contact(
         fragment.texel, cover, fragment.moved, min(reach, wet), fraction, squish, follows,
     );
-    note_contact(vec2(x, y), length(fragment.moved));
+    note_contact(vec2(x, y));
     atomicAdd(&stats[stat(TOUCHED)], 1u);
     atomicAdd(&stats[stat(WET)], u32(totals[i] / 256.0 + 0.5));
     atomicAdd(&stats[stat(THINNER)], u32(totals[i] * thinner / 256.0 + 0.5));

@@ -72,7 +72,7 @@ struct Step {
     ride_below: f32,
     // By how much the edges of a strip are higher than its middle.
     round: f32,
-    // Share of the brush's motion that paint follows.
+    // Share of the brush's motion that paint follows in a part of the step.
     follows: f32,
     // By what paint goes over (`Exchanging` of transfer.rs): ln of what stays along a reference cell, whether
     // the two sides even out, and the most.
@@ -86,12 +86,8 @@ struct Step {
     // Share of the difference between films that evens out in FLOW_STEPS, between strips and along them.
     seep_beside: f32,
     seep_along: f32,
-    // Levelling (`Round` of levelling.rs): gradient by difference of curvature and of height, in yields
-    // of paint one cell thick; mobility of such paint by the way of the brush, and the most of one.
-    tension: f32,
-    weight: f32,
-    mobility: f32,
-    most_mobile: f32,
+    // So that records lie 256 bytes apart.
+    room: vec4<u32>,
 }
 
 // A cell in contact.
@@ -114,15 +110,15 @@ const NONE = 0xffffffffu;
 const PER_LOG = 262144.0;
 const STATIONS = 9u;
 const ALONG = 16u;
-// Paint moves within the head once in so many steps.
-const FLOW_STEPS = 4u;
+// Paint moves within each strip once in so many steps, in others at another step.
+const FLOW_STEPS = 2u;
 const QUANTA_PER_UNIT = 16777216.0;
 const PAINT = 0u;
 const SPONGE = 1u;
 const MARKER = 2u;
 
 @group(0) @binding(0) var<uniform> step: Step;
-// Poses: x, y, z, and motion in x and y of all stations; by strip how far it keeps off what it lies on, and
+// Poses: x, y, z in the middle of the step, and motion in x and y of all stations; by strip how far it keeps off what it lies on, and
 // its rank; x, y, z and motion of the skin's points.
 @group(0) @binding(1) var<storage, read> poses: array<f32>;
 // Faces of the skin, four points each; places of its points around and along; the strips in their
@@ -180,14 +176,15 @@ const AWAY = 60000.0;
 // The least and the most column and row of the contacts, away from a bias and from 1.
 const LEAST_TOUCHED = 11u;
 const MOST_TOUCHED = 13u;
-// The sum of the ways of the contacts, in cells by PER_CELL: the low bits, and the others.
-const WAY = 15u;
-const PER_CELL = 1048576.0;
-const LOW_BITS = 12u;
 const STEP_STATS = 20u;
 
 // Of all steps: the highest that paint ever stood.
 const TOP_EVER = 3u;
+
+// Whether it is the turn of a strip, or of a pair of them.
+fn is_due(number: u32) -> bool {
+    return (load[0] + number) % FLOW_STEPS == 0u;
+}
 
 fn stat(which: u32) -> u32 {
     return 4u + STEP_STATS * step.number + which;

@@ -31,8 +31,7 @@ fn plan_step() {
     groups[0] = vec4(covering(cells(), 256u), 1u, 1u, 0u);
     groups[1] = vec4(covering(step.strips, 64u), 1u, 1u, 0u);
     groups[4] = select(vec4(0u), groups[0], step.push != 0u);
-    let seeps = (steps + 1u) % FLOW_STEPS == 0u;
-    groups[5] = select(vec4(0u), vec4(covering(texels() / 2u, 64u), 1u, 1u, 0u), seeps);
+    groups[5] = vec4(covering(texels() / 2u, 64u), 1u, 1u, 0u);
     for (var second = 0u; second < 2u; second++) {
         var size = vec4(0u);
         if step.push != 0u {

@@ -33,8 +33,9 @@ fn seep_paint(@builtin(global_invocation_id) id: vec3<u32>) {
     let turn = load[0] / FLOW_STEPS;
     let first = turn / 2u % 2u;
     if second == 0u {
-        let place = first + 2u * (id.x / ALONG);
-        if place + 1u < step.strips {
+        let pair = id.x / ALONG;
+        let place = first + 2u * pair;
+        if place + 1u < step.strips && is_due(pair) {
             let order = 4u * step.faces + 2u * step.vertices + (2u + turn % 2u) * step.strips;
             let along = id.x % ALONG;
             even_out(
@@ -48,8 +49,9 @@ fn seep_paint(@builtin(global_invocation_id) id: vec3<u32>) {
     }
     let pairs = ALONG / 2u;
     let strip = id.x / pairs;
-    let along = first + 2u * (id.x % pairs);
-    if strip < step.strips && along + 1u < ALONG {
+    let begins = (load[0] + strip) / FLOW_STEPS % 2u;
+    let along = begins + 2u * (id.x % pairs);
+    if strip < step.strips && along + 1u < ALONG && is_due(strip) {
         even_out(strip * ALONG + along, strip * ALONG + along + 1u, step.seep_along, 0.0);
     }
 }

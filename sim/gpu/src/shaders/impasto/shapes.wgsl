@@ -11,10 +11,10 @@ struct Ribbon {
     rank: f32,
     // Place along the strip in texels.
     along: vec2<f32>,
-    // Half its width and half a cell.
-    reach: f32,
-    // How far it goes on past its end.
-    past: f32,
+    // Half its width.
+    half: f32,
+    // Whether what touches of it begins here (1) and whether it ends here (2).
+    ends: f32,
     moved: vec2<f32>,
     moves: vec2<f32>,
 }
@@ -23,7 +23,7 @@ fn store_ribbon(number: u32, ribbon: Ribbon) {
     let at = 4u * (number - 2u * step.faces);
     segments[at] = vec4(ribbon.start, ribbon.way);
     segments[at + 1u] = vec4(ribbon.z, ribbon.bottom, ribbon.rank);
-    segments[at + 2u] = vec4(ribbon.along, ribbon.reach, ribbon.past);
+    segments[at + 2u] = vec4(ribbon.along, ribbon.half, ribbon.ends);
     segments[at + 3u] = vec4(ribbon.moved, ribbon.moves);
 }
 
@@ -36,37 +36,86 @@ fn ribbon_of(number: u32) -> Ribbon {
     return Ribbon(a.xy, a.zw, b.xy, b.z, b.w, c.xy, c.z, c.w, d.xy, d.zw);
 }
 
-// The direction of a ribbon: along which axis it mostly goes, and how it leaves it.
+// The direction of a ribbon: along which axis it mostly goes, and how it leaves it; and how it goes over the
+// cells in the step.
 struct Line {
     major: u32,
     inverse: f32,
     slope: f32,
     cosine: f32,
+    // Cells over which an edge is soft: a cell, or the way across; and the most of a cell that is covered.
+    soft: f32,
+    most: f32,
+    // Columns from its lower to its upper end, with what it goes on past them.
+    low: f32,
+    high: f32,
+    // By column, share of a column before the lower and after the upper end; 0 where others go on.
+    fades: vec2<f32>,
 }
+
+// An end is soft over so many cells at least.
+const SHARP = 0.25;
+// How far a strip goes on past its tip.
+const TIP = 0.5;
 
 fn line_of(ribbon: Ribbon) -> Line {
     let major = select(0u, 1u, abs(ribbon.way.y) > abs(ribbon.way.x));
     let long = abs(ribbon.way[major]) > 1e-4;
     let inverse = select(0.0, 1.0 / ribbon.way[major], long);
     let slope = ribbon.way[1u - major] * inverse;
-    return Line(major, inverse, slope, 1.0 / sqrt(1.0 + slope * slope));
+    let cosine = 1.0 / sqrt(1.0 + slope * slope);
+    let way = ribbon.moved + 0.5 * ribbon.moves;
+    let soft = max(abs(way[1u - major] - slope * way[major]) * cosine, 1.0);
+    let along = abs(way[major] + slope * way[1u - major]) * cosine * cosine;
+    let blurred = max(along, SHARP);
+    let begins = ribbon.ends == 1.0 || ribbon.ends == 3.0;
+    let stops = ribbon.ends >= 2.0;
+    var on = vec2(
+        select(0.0, 0.5 * blurred, begins),
+        select(0.0, 0.5 * blurred + TIP, stops),
+    );
+    let length = abs(ribbon.way[major]);
+    var low = ribbon.start[major];
+    if ribbon.way[major] < 0.0 {
+        low -= length;
+        on = on.yx;
+    }
+    let whole = length + select(0.0, TIP, stops);
+    let dwells = select(1.0, min(whole / blurred, 1.0), begins && stops);
+    return Line(
+        major, inverse, slope, cosine, soft,
+        min(ribbon.half / soft + 0.5, 1.0) * dwells,
+        low - on.x, low + length + on.y,
+        select(vec2(0.0), vec2(1.0 / blurred), on > vec2(0.0)),
+    );
+}
+
+// How far from its middle a ribbon covers anything.
+fn reach_of(ribbon: Ribbon, line: Line) -> f32 {
+    return ribbon.half + 0.5 * line.soft;
 }
 
 // Where a column of cells (or a row, along `major`) crosses the ribbon.
 struct Crossing {
     t: f32,
     middle: f32,
+    // Share of the way for which the ribbon is there.
+    fade: f32,
 }
 
 fn place_on(ribbon: Ribbon, line: Line, m: f32) -> Crossing {
     let off = m + 0.5 - ribbon.start[line.major];
     let middle = ribbon.start[1u - line.major] + off * line.slope - 0.5;
-    return Crossing(clamp(off * line.inverse, 0.0, 1.0), middle);
+    let ends = vec2(m + 0.5 - line.low, line.high - m - 0.5) * line.fades;
+    let fades = select(vec2(1.0), ends, line.fades > vec2(0.0));
+    let fade = clamp(min(fades.x, fades.y), 0.0, 1.0);
+    return Crossing(clamp(off * line.inverse, 0.0, 1.0), middle, fade);
 }
 
 // Share of a cell that the ribbon covers; not above 0 where it does not.
 fn cover_of(ribbon: Ribbon, line: Line, place: Crossing, n: f32) -> f32 {
-    return min(ribbon.reach - abs(n - place.middle) * line.cosine, 1.0);
+    let off = abs(n - place.middle) * line.cosine;
+    return min((reach_of(ribbon, line) - off) / line.soft, line.most) * place.fade;
 }
 
 // Half a face of the skin, in the grid's coordinates.

@@ -1,5 +1,5 @@
-// The films of strips that touch have what came and went. Every few steps paint moves within all
-// strips: from inside to a film that lacks some, from one that has too much inward, and along.
+// The films of strips that touch have what came and went. Every few steps paint moves within a
+// strip: from inside to a film that lacks some, from one that has too much inward, and along.
 
 // By this share the film of thinner alone is thinner than one of paint.
 const RUNS_OFF = 0.7;
@@ -97,7 +97,7 @@ fn tend_strips(@builtin(global_invocation_id) id: vec3<u32>) {
     if strip >= step.strips {
         return;
     }
-    let flows = load[0] % FLOW_STEPS == 0u;
+    let flows = is_due(strip);
     if atomicLoad(&asks[touch_of(strip)]) == 0u && !flows {
         return;
     }
