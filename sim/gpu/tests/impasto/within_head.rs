@@ -80,7 +80,7 @@ fn paint_flows_within_all_strips() {
                     let pairs = pairs.enumerate();
                     let pairs = pairs.filter(|(texel, _)| {
                         let strip = texel / ALONG;
-                        strip % 2 == 0 && touched[strip] == of_touched
+                        strip.is_multiple_of(2) && touched[strip] == of_touched
                     });
                     *worst = pairs.fold(*worst, |worst, (_, (a, b))| worst.max(a.abs_diff(*b)));
                 }

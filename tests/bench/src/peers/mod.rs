@@ -1,6 +1,5 @@
 //! Peers in other languages, built where their libraries are installed.
 
-use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 
@@ -71,7 +70,7 @@ impl Libmypaint {
 
 /// The samples in contact, as libmypaint.c reads them.
 fn events_of(take: &Take) -> String {
-    let (mut events, mut before, mut strokes) = (String::new(), None, 0);
+    let (mut events, mut before, mut strokes) = (Vec::new(), None, 0);
     for sample in &take.samples {
         let StylusPose::Contact {
             point_m, pressure, ..
@@ -92,8 +91,7 @@ fn events_of(take: &Take) -> String {
         };
         let [hue, saturation] = PAINTS[(strokes - 1) % PAINTS.len()];
         let [x, y] = [point_m[0], -point_m[1]].map(|m| m / PIXEL_M + 0.5 * SIDE);
-        // Writing to a string cannot fail.
-        let _ = writeln!(events, "{x} {y} {pressure} {seconds} {hue} {saturation}");
+        events.push(format!("{x} {y} {pressure} {seconds} {hue} {saturation}"));
     }
-    events
+    events.join("\n")
 }
