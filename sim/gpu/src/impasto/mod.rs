@@ -169,7 +169,6 @@ impl PaintModel for GpuImpasto {
             return StepReport::default();
         };
         batch.records.push(record);
-        batch.parts = step.traits.parts;
         session.kept.keep(step);
         session.uncounted |= step.lasting || step.handling.transfer == Transfer::Sponge;
         let rows = record.rows();

@@ -53,7 +53,6 @@ impl Prober {
             return Ok(None);
         };
         batch.records.push(record);
-        batch.parts = step.traits.parts;
         let workspace = &mut self.workspace;
         let place = KERNELS.iter().rposition(|kernel| kernel.name == last);
         workspace.stages = place.map_or(0, |place| place + 1);

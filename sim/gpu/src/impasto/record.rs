@@ -65,7 +65,9 @@ pub(crate) struct StepRecord {
     swap: f32,
     film_most: f32,
     seep: [f32; 2],
-    room: [u32; 4],
+    /// In so many parts its paint moves.
+    pub(crate) parts: u32,
+    room: [u32; 3],
 }
 
 /// Bytes from one record to the next.
@@ -145,7 +147,8 @@ impl StepRecord {
             swap: traits.exchanging.swap,
             film_most: traits.film_most as f32,
             seep: [traits.seep.beside, traits.seep.along].map(|v| v as f32),
-            room: [0; 4],
+            parts: traits.parts,
+            room: [0; 3],
         };
         debug_assert_eq!(after.x.len(), strips * STATIONS);
         let motion = |after: &[f32], before: &[f32], poses: &mut Vec<f32>| {

@@ -29,8 +29,6 @@ const GROUP: [u64; 2] = [256, 64];
 pub(crate) struct Batch {
     pub(crate) records: Vec<StepRecord>,
     pub(crate) poses: Vec<f32>,
-    /// In so many parts the paint of each step moves.
-    pub(crate) parts: u32,
 }
 
 /// The device with its pipelines and buffers.
@@ -132,12 +130,11 @@ impl Workspace {
                 .iter()
                 .map(|p| p.bind(&gpu, records, |binding| buffers[binding as usize]))
                 .collect();
-            let order = stages(self.stages, batch.parts);
             let mut pass = encoder.begin_compute_pass(&Default::default());
             for (step, record) in batch.records.iter().enumerate() {
                 let offset = (step as u64 * RECORD_BYTES) as u32;
-                for place in &order {
-                    let (pipeline, bound) = (&self.pipelines[*place], &bound[*place]);
+                for place in stages(self.stages, record.parts) {
+                    let (pipeline, bound) = (&self.pipelines[place], &bound[place]);
                     pass.set_pipeline(&pipeline.pipeline);
                     pass.set_bind_group(0, bound, &[offset]);
                     let [grid, few] = GROUP;
@@ -214,10 +211,10 @@ impl Workspace {
 }
 
 /// The first so many stages, in order; those that push paint once for each part of a step.
-fn stages(count: usize, parts: u32) -> Vec<usize> {
+fn stages(count: usize, parts: u32) -> impl Iterator<Item = usize> {
     let pushes = |place: &usize| KERNELS[*place].name == PUSHES;
     let pushing: Vec<usize> = (0..count).filter(pushes).collect();
     let end = pushing.last().map_or(0, |last| last + 1);
     let again = pushing.repeat(parts.saturating_sub(1) as usize);
-    (0..end).chain(again).chain(end..count).collect()
+    (0..end).chain(again).chain(end..count)
 }

@@ -10,8 +10,8 @@ use maulstick_types::brush::{BrushState, Solve};
 use maulstick_types::scene::CANVAS;
 use maulstick_types::{Mixture, Pose};
 
-/// Cells of the canvas either way.
-pub(crate) const SIDE: u32 = 128;
+/// Cells of .25 mm of the canvas either way.
+const SIDE: u32 = 128;
 /// Quanta of 1 µm.
 const MICROMETRE: f32 = 671.0;
 
@@ -28,8 +28,14 @@ pub(crate) fn mixture(text: &str) -> Mixture {
 
 /// A canvas with a film of white, and a brush with blue.
 pub(crate) fn easel(gpu: Option<Device>) -> Painting {
+    easel_of(1, gpu)
+}
+
+/// The same with cells `finer` times as small.
+pub(crate) fn easel_of(finer: u32, gpu: Option<Device>) -> Painting {
     let setup = PaintingSetup {
-        cells: [SIDE, SIDE],
+        cells: [finer * SIDE; 2],
+        cell_m: 2.5e-4 / f64::from(finer),
         ..PaintingSetup::default()
     };
     let library = PaintLibrary::measured().expect("whole");
@@ -149,9 +155,9 @@ fn colours(painting: &mut Painting) -> Vec<[f64; 3]> {
 
 /// Wet quanta by cell, in the order of the pictures: from the top row.
 fn wet(painting: &mut Painting) -> Vec<f32> {
-    let side = SIDE as usize;
-    let mut wet = vec![0.0; side * side];
     painting.commit();
+    let side = painting.store(CANVAS).expect("a canvas").cells()[0] as usize;
+    let mut wet = vec![0.0; side * side];
     for (id, version) in painting.store(CANVAS).expect("a canvas").iter() {
         let Some(tile) = &version.tile else { continue };
         for (_, plane) in &*tile.wet() {

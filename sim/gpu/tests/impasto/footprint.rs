@@ -64,7 +64,9 @@ fn crumpled(seed: u64) -> Scene {
 #[test]
 fn the_same_cells_are_touched() {
     let mut prober = Prober::new(device()).expect("taken");
+    // Of a cell's way, and of one of several cells.
     let strips = (0..12).map(Scene::new);
+    let strips = strips.chain((12..20).map(|seed| Scene::far(seed, 4.0)));
     let mut touched = 0;
     for (seed, mut scene) in strips.chain((0..4).map(crumpled)).enumerate() {
         let mut footprint = Footprint::default();

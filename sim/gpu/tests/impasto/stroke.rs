@@ -7,7 +7,7 @@ use maulstick_types::paint::Entry;
 use maulstick_types::{Flags, Header, Message as _, name_hash};
 
 use crate::device;
-use crate::easel::{all, difference, easel, lifted, mixture, paint, stroke, volume};
+use crate::easel::{all, difference, easel, easel_of, lifted, mixture, paint, stroke, volume};
 
 /// Mean and 99th percentile of ΔE00 by which the backends may differ.
 const COLOURS: [f64; 2] = [0.3, 2.0];
@@ -41,6 +41,21 @@ fn both_backends_paint_the_same_stroke() {
     let mut beside = easel(None);
     paint(&mut beside, "main", &stroke(1, 0.05, 48));
     paint(&mut beside, "main", &stroke(2, 1.55, 48));
+    assert!(!agree(&mut beside, &mut gpu, before), "a fault passes");
+}
+
+/// On finer cells a step is several of them long, and paint moves in as many parts.
+#[test]
+fn both_backends_paint_the_same_on_fine_cells() {
+    let (mut cpu, mut gpu) = (easel_of(3, None), easel_of(3, Some(device())));
+    let before = volume(&mut cpu);
+    for painting in [&mut cpu, &mut gpu] {
+        paint(painting, "main", &stroke(1, 0.0, 48));
+    }
+    assert!(agree(&mut cpu, &mut gpu, before));
+    assert_eq!(gpu.report().quanta_missing, 0);
+    let mut beside = easel_of(3, None);
+    paint(&mut beside, "main", &stroke(1, 0.05, 48));
     assert!(!agree(&mut beside, &mut gpu, before), "a fault passes");
 }
 

@@ -16,10 +16,6 @@ use crate::window::Area;
 /// Strips of the same depth lie over each other in the order of their roots along the way that the
 /// head is bent (Baxter 2004, § 3.5.2), the last this much higher, cells.
 const RANKS: f32 = 0.02;
-/// An end is soft over so many cells at least.
-const SHARP: f32 = 0.25;
-/// How far a strip goes on past its tip, cells.
-const TIP: f32 = 0.5;
 /// A head that is bent by this share of its length has that order in full.
 const BENT: f32 = 0.2;
 /// A point of a ribbon's middle line.
@@ -140,48 +136,9 @@ impl Band {
     fn draw<L: Lanes>(&mut self, step: &Step<'_>, ribbon: &Ribbon, a: &Point, b: &Point) {
         let start = [a.at[0] - self.offset[0], a.at[1] - self.offset[1]];
         let d = [b.at[0] - a.at[0], b.at[1] - a.at[1]];
-        let major = usize::from(d[1].abs() > d[0].abs());
-        let length = d[major].abs();
-        let inverse = if length > 1e-4 { 1.0 / d[major] } else { 0.0 };
-        let slope = d[1 - major] * inverse;
-        let cosine = 1.0 / (1.0 + slope * slope).sqrt();
         let way = [0, 1].map(|i| 0.5 * (a.moved[i] + b.moved[i]));
-        let aside = (way[1 - major] - slope * way[major]).abs() * cosine;
-        let along = (way[major] + slope * way[1 - major]).abs() * cosine * cosine;
-        let (soft, blurred) = (aside.max(1.0), along.max(SHARP));
-        // Segments of a strip share their ends: each has the columns from its first up to its last. Where
-        // nothing follows, a tip goes on past its end, and cells there are met for a part of the way.
-        let past = |ends: bool| if ends { 0.5 * blurred } else { 0.0 };
-        let on = [
-            past(ribbon.ends[0]),
-            past(ribbon.ends[1]) + if ribbon.ends[1] { TIP } else { 0.0 },
-        ];
-        let (low, high, on) = if d[major] >= 0.0 {
-            (start[major], start[major] + length, on)
-        } else {
-            (start[major] - length, start[major], [on[1], on[0]])
-        };
-        let (low, high) = (low - on[0], high + on[1]);
-        let rate = 1.0 / blurred;
-        let fades = [
-            if on[0] > 0.0 {
-                [rate, (0.5 - low) * rate]
-            } else {
-                [0.0, 1.0]
-            },
-            if on[1] > 0.0 {
-                [-rate, (high - 0.5) * rate]
-            } else {
-                [0.0, 1.0]
-            },
-        ];
-        let whole = length + if ribbon.ends[1] { TIP } else { 0.0 };
-        let dwells = if ribbon.ends == [true; 2] {
-            whole * rate
-        } else {
-            1.0
-        };
-        let last = self.grid.size[major] as f32;
+        let (line, [low, high]) = Line::swept(start, d, way, ribbon.half, ribbon.ends);
+        let last = self.grid.size[line.major] as f32;
         let column = |edge: f32| ((edge + 0.5).clamp(0.0, last)) as usize;
         let columns = column(low)..column(high);
         if columns.is_empty() {
@@ -195,17 +152,7 @@ impl Band {
             round: 2.0 * step.traits.half_thickness,
             rank: ribbon.rank,
             moved: [a.moved, [0, 1].map(|i| b.moved[i] - a.moved[i])],
-            line: Line {
-                major,
-                start,
-                inverse,
-                slope,
-                cosine,
-                half: ribbon.half,
-                soft,
-                most: (ribbon.half / soft + 0.5).min(1.0) * dwells.min(1.0),
-                fades,
-            },
+            line,
         };
         self.drawing.draw::<L>(&piece, columns);
     }

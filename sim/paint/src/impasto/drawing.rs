@@ -14,6 +14,10 @@ use crate::load::ALONG;
 const EDGE_PENALTY: f32 = 0.9;
 /// Nothing here.
 const NOTHING: f32 = -1.0;
+/// An end is soft over so many cells at least.
+const SHARP: f32 = 0.25;
+/// How far a strip goes on past its tip, cells.
+const TIP: f32 = 0.5;
 /// Cells drawn at a time; rows are padded so that such a run never ends in the next one.
 const LANES: usize = 8;
 const LANE: [f32; LANES] = [0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0];
@@ -65,6 +69,59 @@ pub(super) struct Line {
 }
 
 impl Line {
+    /// The middle line of a ribbon that goes `way` in the step, in the middle of which it begins at `start` and
+    /// goes by `d`, half of it `half` wide, cells; and the columns from which up to which it covers any. `ends`
+    /// say whether nothing goes on before its beginning and after its end: there it is soft by its way along.
+    #[inline(always)]
+    pub(super) fn swept(
+        start: [f32; 2],
+        d: [f32; 2],
+        way: [f32; 2],
+        half: f32,
+        [begins, stops]: [bool; 2],
+    ) -> (Self, [f32; 2]) {
+        let major = usize::from(d[1].abs() > d[0].abs());
+        let length = d[major].abs();
+        let inverse = if length > 1e-4 { 1.0 / d[major] } else { 0.0 };
+        let slope = d[1 - major] * inverse;
+        let cosine = 1.0 / (1.0 + slope * slope).sqrt();
+        let soft = ((way[1 - major] - slope * way[major]).abs() * cosine).max(1.0);
+        let along = (way[major] + slope * way[1 - major]).abs() * cosine * cosine;
+        let blurred = along.max(SHARP);
+        let tip = if stops { TIP } else { 0.0 };
+        let past = [begins, stops].map(|ends| if ends { 0.5 * blurred } else { 0.0 });
+        // Segments of a strip share their ends: each has the columns from its first up to its last.
+        let on = [past[0], past[1] + tip];
+        let (low, [below, above]) = match d[major] >= 0.0 {
+            true => (start[major], on),
+            false => (start[major] - length, [on[1], on[0]]),
+        };
+        let (low, high) = (low - below, low + length + above);
+        let rate = 1.0 / blurred;
+        let whole = [0.0, 1.0];
+        let rises = [rate, (0.5 - low) * rate];
+        let falls = [-rate, (high - 0.5) * rate];
+        let dwells = match begins && stops {
+            true => ((length + tip) * rate).min(1.0),
+            false => 1.0,
+        };
+        let line = Self {
+            major,
+            start,
+            inverse,
+            slope,
+            cosine,
+            half,
+            soft,
+            most: (half / soft + 0.5).min(1.0) * dwells,
+            fades: [
+                if below > 0.0 { rises } else { whole },
+                if above > 0.0 { falls } else { whole },
+            ],
+        };
+        (line, [low, high])
+    }
+
     /// Of a column: the place along the piece, 0 to 1, and that of the middle across it.
     #[inline(always)]
     fn at(&self, column: f32) -> (f32, f32) {

@@ -7,7 +7,6 @@
 use maulstick_num::select::larger;
 use maulstick_num::wide;
 
-use super::seep::first_of;
 use crate::load::{ALONG, PaintOnBrush, film_share};
 use crate::model::{BrushTraits, Step};
 
@@ -52,6 +51,13 @@ wide! {
             }
         }
     }
+}
+
+/// The first of those strips, or pairs of them, whose turn it is: every [`BrushTraits::FLOW_STEPS`]th.
+#[inline(always)]
+pub(super) fn first_of(steps: u64) -> usize {
+    let every = BrushTraits::FLOW_STEPS;
+    ((every - steps % every) % every) as usize
 }
 
 /// The texels of a strip.

@@ -113,8 +113,6 @@ pub struct Levelling {
     sums: [Vec<f32>; 2],
     /// Height of the wet paint before.
     before: Vec<f32>,
-    /// Where something flows.
-    blocks: Blocks,
 }
 
 /// Columns and rows of a block, which rests as a whole.
@@ -130,11 +128,6 @@ struct Blocks {
 }
 
 impl Blocks {
-    /// All may flow in the next round.
-    fn forget(&mut self) {
-        self.flowed.clear();
-    }
-
     /// Begins a round: those may flow where at least `rests` did, and those beside them.
     fn begin(&mut self, area: &Area, rests: f32) {
         let [across, up] = area.size.map(|cells| cells.div_ceil(BLOCK));
@@ -174,7 +167,6 @@ impl Levelling {
         if area.is_empty() {
             return 0.0;
         }
-        let mut blocks = std::mem::take(&mut self.blocks);
         self.look(window, area, round.to_cells);
         self.soften(window, area, round.to_cells, thinner);
         self.before.clone_from(&self.wet);
@@ -182,11 +174,11 @@ impl Levelling {
             plane.clear();
             plane.resize(self.wet.len(), 0.0);
         }
-        blocks.forget();
+        let mut blocks = Blocks::default();
         let mut most = 0.0f32;
         for _ in 0..rounds {
             blocks.begin(area, rests);
-            go_on(self, area, round, &mut blocks);
+            flow_once(self, area, round, &mut blocks);
             let flowed = blocks.flowed.iter();
             let flowed = flowed.fold(0.0, |most: f32, flowed| most.max(*flowed));
             most = most.max(flowed);
@@ -194,7 +186,6 @@ impl Levelling {
                 break;
             }
         }
-        self.blocks = blocks;
         let bare = round.bare * round.to_cells;
         for (axis, faces) in faces.into_iter().enumerate() {
             share_out(self, area, bare, axis, faces);
@@ -321,7 +312,7 @@ fn flow(round: &Round, bare: f32, own: &Run<'_>, next: &Run<'_>, i: usize) -> [f
 
 wide! {
     /// A round in the active blocks.
-    fn go_on(levelling: &mut Levelling, area: &Area, round: &Round, blocks: &mut Blocks) {
+    fn flow_once(levelling: &mut Levelling, area: &Area, round: &Round, blocks: &mut Blocks) {
         let width = levelling.width;
         let bare = round.bare * round.to_cells;
         let of_row = area.size[0].div_ceil(BLOCK);
@@ -360,7 +351,7 @@ wide! {
         }
         for place in 0..blocks.active.len() {
             if blocks.active[place] {
-                levelling.go(area, [place % of_row, place / of_row]);
+                levelling.carry(area, [place % of_row, place / of_row]);
             }
         }
     }
@@ -415,9 +406,9 @@ impl Levelling {
         }
     }
 
-    /// What flowed in a block goes over.
+    /// Carries over what flowed in a block.
     #[inline(always)]
-    fn go(&mut self, area: &Area, block: [usize; 2]) {
+    fn carry(&mut self, area: &Area, block: [usize; 2]) {
         let (from, size) = block_of(area, block);
         for (axis, next) in [1, self.width].into_iter().enumerate() {
             for y in from[1]..from[1] + size[1] {

@@ -8,7 +8,7 @@
 use maulstick_num::select::larger;
 use maulstick_num::wide;
 
-use super::flow::part;
+use super::flow::{first_of, part};
 use crate::load::{ALONG, PaintOnBrush};
 use crate::model::{BrushTraits, Step};
 
@@ -31,13 +31,6 @@ pub fn seep(step: &mut Step<'_>) {
         steps,
     );
     along_strips(films, &mut paints, seep.along, steps);
-}
-
-/// The first of those strips, or pairs of them, whose turn it is: every [`BrushTraits::FLOW_STEPS`]th.
-#[inline(always)]
-pub(super) fn first_of(steps: u64) -> usize {
-    let every = BrushTraits::FLOW_STEPS;
-    ((every - steps % every) % every) as usize
 }
 
 wide! {

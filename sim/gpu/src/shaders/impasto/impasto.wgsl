@@ -86,8 +86,8 @@ struct Step {
     // Share of the difference between films that evens out in FLOW_STEPS, between strips and along them.
     seep_beside: f32,
     seep_along: f32,
-    // So that records lie 256 bytes apart.
-    room: vec4<u32>,
+    // In so many parts paint moves, which the host dispatches; and room, so that records lie 256 bytes apart.
+    parts: vec4<u32>,
 }
 
 // A cell in contact.
