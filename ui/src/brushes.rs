@@ -105,7 +105,7 @@ impl Brushes {
             hair: held.file.head.hair,
             tones: tones(held.file.head.hair).map(|tone| self.tint.seen(tone)),
             coat: kept
-                .tinted(held.coat.as_ref(), &self.tint)
+                .tinted(held.coat.as_ref(), &self.tint, head)
                 .filter(|coat| coat.strips() == head.strips()),
         };
         shapes.push(ribbons(&self.pose, head.strips(), &bristles, &sight).into());
@@ -189,14 +189,14 @@ impl Brushes {
 
 impl Kept {
     /// The paint on the brush as the display takes it.
-    fn tinted(&mut self, coat: Option<&Arc<Coat>>, tint: &Tint) -> Option<&Coat> {
+    fn tinted(&mut self, coat: Option<&Arc<Coat>>, tint: &Tint, head: &Head) -> Option<&Coat> {
         let coat = coat?;
         if !self
             .coat
             .as_ref()
             .is_some_and(|(of, _)| Arc::ptr_eq(of, coat))
         {
-            self.coat = Some((Arc::clone(coat), coat.tinted(tint)));
+            self.coat = Some((Arc::clone(coat), coat.tinted(tint).on(head)));
         }
         self.coat.as_ref().map(|(_, tinted)| tinted)
     }

@@ -2,6 +2,7 @@
 
 use glam::Vec3;
 use half::f16;
+use maulstick_brush::Head;
 use maulstick_types::brush::BrushLook;
 
 use crate::tint::Tint;
@@ -46,6 +47,21 @@ impl Coat {
         }
     }
 
+    /// On all strips of a head, of which this has the first: each has what the nearest of those has.
+    #[must_use]
+    pub fn on(self, head: &Head) -> Self {
+        let strips = self.strips();
+        if !(1..head.strips()).contains(&strips) {
+            return self;
+        }
+        let nearest = head.nearest_of_first(strips).into_iter();
+        let own = |strip: usize| &self.samples[strip * self.along..(strip + 1) * self.along];
+        Self {
+            along: self.along,
+            samples: nearest.flat_map(own).copied().collect(),
+        }
+    }
+
     /// Colour and film at a place along a strip, 0 at the ferrule to 1; none for one that there is not.
     #[must_use]
     pub fn at(&self, strip: usize, along: f32) -> Option<(Vec3, f32)> {
@@ -70,6 +86,8 @@ impl Coat {
 
 #[cfg(test)]
 pub(crate) mod tests {
+    use maulstick_brush::BrushFile;
+
     use super::*;
 
     pub(crate) fn look_of(strips: u32, along: u32, samples: &[[f32; 4]]) -> BrushLook {
@@ -98,6 +116,25 @@ pub(crate) mod tests {
         );
         assert_eq!(coat.at(1, 0.5), None);
         assert_eq!(coat.strips(), 1);
+    }
+
+    /// A head that is thinned for the canvas shows its paint on all of its bristles.
+    #[test]
+    fn all_strips_have_what_those_that_stand_for_them_have() {
+        let file = BrushFile::library("flat").expect("flat");
+        let (head, few) = (Head::of(&file), Head::of(&file.thinned_to(56)));
+        let red = |strip: &[f32; 2]| [f32::from(u8::from(strip[0] > 0.0)), 0.0, 0.0, 1.0];
+        let samples: Vec<[f32; 4]> = few.roots().iter().map(red).collect();
+        let coat = coat_of(56, 1, &samples).on(&head);
+        assert_eq!(coat.strips(), head.strips());
+        let right = head.roots().iter().enumerate();
+        let right = right.filter(|(_, root)| root[0].abs() > 0.15);
+        for (strip, root) in right {
+            let (colour, _) = coat.at(strip, 0.5).expect("a strip");
+            assert_eq!(colour.x > 0.5, root[0] > 0.0, "{strip}");
+        }
+        let alien = coat_of(1000, 1, &vec![[0.0; 4]; 1000]);
+        assert_eq!(alien.clone().on(&head), alien);
     }
 
     #[test]

@@ -148,7 +148,7 @@ message! {
     /// How the paint on a brush looks, at most fifteen times a second and only where it has changed;
     /// cached for late joiners.
     pub struct BrushLook [version 1, at most 263168 bytes] {
-        /// Strips of the head: as many as its file has.
+        /// Strips of the head: all of its file, or the first of them, each of which stands for those nearest to it.
         pub strips: u32,
         /// Samples along a strip, each the mean of its part, from the ferrule.
         pub along: u32,

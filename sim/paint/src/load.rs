@@ -253,13 +253,43 @@ impl BrushLoad {
         load
     }
 
-    /// This load on so many strips: spread where it was on others.
+    /// This load on so many strips of a head, of which `finer` has the more: what several strips carry comes
+    /// together on the one that stands for them, and is parted among them evenly. Spread where it was on another
+    /// head.
     #[must_use]
-    pub fn onto(self, strips: usize) -> Self {
-        if self.texels == strips * ALONG {
-            return self;
+    pub fn onto(&self, strips: usize, finer: &Head) -> Self {
+        let own = self.texels / ALONG;
+        if own == strips {
+            return self.clone();
         }
-        Self::spread(strips, &self.counts())
+        if finer.strips() != own.max(strips) {
+            return Self::spread(strips, &self.counts());
+        }
+        let mut load = Self::clean(strips);
+        load.steps = self.steps;
+        let stands = finer.nearest_of_first(own.min(strips));
+        let mut shares = vec![0; own.min(strips)];
+        stands.iter().for_each(|strip| shares[*strip] += 1);
+        for (slot, held) in self.held.iter().enumerate() {
+            let Some(held) = held else { continue };
+            let into = load.held_mut(slot);
+            for (from, to) in [(&held.film, &mut into.film), (&held.inside, &mut into.inside)] {
+                for (strip, stands) in stands.iter().enumerate() {
+                    for k in 0..ALONG {
+                        let (fine, coarse) = (strip * ALONG + k, stands * ALONG + k);
+                        if strips < own {
+                            to[coarse] += from[fine];
+                            continue;
+                        }
+                        // The first of the strips is the one that stood for them: it has what is left over.
+                        let (whole, parts) = (from[coarse], shares[*stands]);
+                        to[fine] = whole / parts + if strip == *stands { whole % parts } else { 0 };
+                    }
+                }
+            }
+        }
+        load.count_films();
+        load
     }
 
     /// Counts a step with contact.
@@ -379,7 +409,40 @@ pub fn by_slot<E>(
 
 #[cfg(test)]
 mod tests {
+    use maulstick_brush::BrushFile;
+
     use super::*;
+
+    /// Whatever strips a head is thinned to, what they carry is all there, and near where it was.
+    #[test]
+    fn what_thinned_strips_carry_is_all_there() {
+        let file = BrushFile::library("flat").expect("flat");
+        let (head, few) = (Head::of(&file), file.thinned_to(112));
+        assert_eq!(few.strips.count, 112);
+        let traits = BrushTraits::of(&file, 2.5e-4, 1.0);
+        let mut load = BrushLoad::clean(head.strips());
+        load.fill(&head, &traits, &[(3, 1.0)], None, (Half::Left, 7));
+        load.add_film(5, 4321, 17);
+        let on_few = load.onto(112, &head);
+        let again = on_few.onto(head.strips(), &head);
+        for other in [&on_few, &again] {
+            assert_eq!((other.counts(), other.seed()), (load.counts(), load.seed()));
+        }
+        let right = |load: &BrushLoad, roots: &[[f32; 2]]| -> u64 {
+            let right = |strip: &usize| roots[*strip][0] > 0.1;
+            let strips = (0..load.texels() / ALONG).filter(right);
+            strips.map(|strip| u64::from(load.film(strip * ALONG))).sum()
+        };
+        let roots = head.roots();
+        assert_eq!(&roots[..112], Head::of(&few).roots());
+        let whole: u64 = load.films().iter().map(|film| u64::from(*film)).sum();
+        assert!(right(&on_few, &roots[..112]) < whole / 1000);
+        assert!(right(&again, roots) < whole / 1000);
+        let mut evenly = BrushLoad::spread(112, &load.counts());
+        evenly.count_films();
+        let inside = evenly.inside(3).expect("spread");
+        assert!(inside.iter().all(|count| *count > 0), "a fault passes: spread evenly");
+    }
 
     #[test]
     fn what_is_spread_over_other_strips_is_all_there() {

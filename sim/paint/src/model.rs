@@ -106,7 +106,8 @@ impl BrushTraits {
         let steps = cell_m / REFERENCE_CELL_M;
         let step_cells = Scale { cell_m, zoom }.step_cells(rigid || file.surface.is_some());
         let flow = Self::FLOW_STEPS as f64 * steps * step_cells;
-        let share = |of_reference: f64| 1.0 - exp(maulstick_num::ln(1.0 - of_reference) * flow);
+        let part = |of_reference: f64, flow| 1.0 - exp(maulstick_num::ln(1.0 - of_reference) * flow);
+        let share = |of_reference: f64| part(of_reference, flow);
         Self {
             step_cells: step_cells as f32,
             parts: step_cells.ceil() as u32,
@@ -137,7 +138,8 @@ impl BrushTraits {
             refill: share(Self::REFILL),
             creep: share(Self::CREEP),
             seep: Seep {
-                beside: share(Self::SEEP.beside),
+                // Paint seeps as it diffuses: by the square of the distance, which grows as the root of how many it stands for.
+                beside: part(Self::SEEP.beside, flow / file.strips.stands_for),
                 along: share(Self::SEEP.along),
             },
         }

@@ -42,6 +42,15 @@ use self::check::within;
 use self::sections::{Contact, Force, Head, Load, Spines, Strips, Surface};
 use crate::tuft::Tuft;
 
+/// A ferrule thinner than so many strips is a line.
+const THIN: f64 = 1.5;
+/// Strips narrower than so many cells cannot be told apart.
+const SEEN: f64 = 2.0;
+/// The fewest strips of a thinned head.
+const FEWEST: usize = 24;
+/// A width beyond by less than this share is not beyond.
+const ROUNDING: f64 = 1e-6;
+
 /// Why a brush cannot be had.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum BrushError {
@@ -170,6 +179,46 @@ impl BrushFile {
         }
         brush.check()?;
         Ok(brush)
+    }
+
+    /// Whether its strips stand in a line: its ferrule is thinner than so many strips are wide.
+    #[must_use]
+    pub fn is_line(&self) -> bool {
+        2e3 * self.half_thickness_m(0.0) < THIN * self.strips.width_mm
+    }
+
+    /// The brush with half as many strips, each twice as wide: the first of them, which stand as evenly as all.
+    /// None of one whose strips stand in a line, or are few.
+    fn halved(&self) -> Option<Self> {
+        let mut brush = self.clone();
+        let strips = &mut brush.strips;
+        strips.count /= 2;
+        let times = self.strips.count as f64 / strips.count.max(1) as f64;
+        strips.width_mm *= times;
+        strips.stands_for *= times;
+        (strips.count >= FEWEST && !brush.is_line()).then_some(brush)
+    }
+
+    /// The brush with as many strips as cells of `cell_m` can tell apart: halved as long as they are narrower than
+    /// [`SEEN`] cells even so.
+    #[must_use]
+    pub fn thinned(&self, cell_m: f64) -> Self {
+        let most = SEEN * cell_m * (1.0 + ROUNDING);
+        self.halved_while(|brush| brush.strips.width_mm * 1e-3 <= most)
+    }
+
+    /// The brush halved to no fewer than so many strips.
+    #[must_use]
+    pub fn thinned_to(&self, strips: usize) -> Self {
+        self.halved_while(|brush| brush.strips.count >= strips)
+    }
+
+    fn halved_while(&self, goes_on: impl Fn(&Self) -> bool) -> Self {
+        let mut brush = self.clone();
+        while let Some(halved) = brush.halved().filter(&goes_on) {
+            brush = halved;
+        }
+        brush
     }
 
     /// The brush wiped on a rag: it carries this share of its load.

@@ -196,6 +196,14 @@ pub struct Strips {
     /// How far the points of a clump come together on a clean brush and on a full one, 0 to 1.
     #[serde(default)]
     pub clumping: [f64; 2],
+    /// Strips of the file that each stands for, where the head is [thinned](super::BrushFile::thinned): no part
+    /// of the file.
+    #[serde(skip, default = "itself")]
+    pub stands_for: f64,
+}
+
+const fn itself() -> f64 {
+    1.0
 }
 
 /// The skin: a closed surface around the strips, which paints where they lie close.

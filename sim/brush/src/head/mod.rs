@@ -136,7 +136,10 @@ impl Head {
         let rigid = file.head.hair == Hair::Steel;
         // A blade keeps off as a whole.
         let lift = |own: f64| if rigid { 1.0 } else { own as f32 };
-        let lift = (0..count).map(|_| lift(random.unit())).collect();
+        // A thinned head has the first strips of the whole one.
+        let whole = (count as f64 * file.strips.stands_for).round() as usize;
+        let mut lift: Vec<f32> = (0..whole).map(|_| lift(random.unit())).collect();
+        lift.truncate(count);
         let capacity = (0..count)
             .map(|_| (1.0 + unruly(file.strips.unevenness, &mut random)) as f32)
             .collect();
@@ -208,6 +211,21 @@ impl Head {
     #[must_use]
     pub fn roots(&self) -> &[[f32; 2]] {
         &self.roots
+    }
+
+    /// By strip, the nearest of the first so many: of a thinned head that one stands for it.
+    #[must_use]
+    pub fn nearest_of_first(&self, strips: usize) -> Vec<usize> {
+        let first = &self.roots[..strips.min(self.strips)];
+        let nearest = |root: &[f32; 2]| {
+            let off = |other: &[f32; 2]| {
+                let off = [0, 1].map(|i| (root[i] - other[i]) * self.half_m[0][i]);
+                off[0] * off[0] + off[1] * off[1]
+            };
+            let near = |a: &usize, b: &usize| off(&first[*a]).total_cmp(&off(&first[*b]));
+            (0..first.len()).min_by(near).unwrap_or(0)
+        };
+        self.roots.iter().map(nearest).collect()
     }
 
     /// The strip at a place around the head, 0 to 1 from +x counterclockwise.

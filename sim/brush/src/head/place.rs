@@ -12,8 +12,6 @@ use crate::file::sections::Outline;
 
 /// Points of the ferrule's edge.
 const EDGE: usize = 32;
-/// A ferrule thinner than so many strips is a line.
-const THIN: f64 = 1.5;
 /// The exponent of the superellipse that a flat ferrule is.
 const FLAT: f64 = 8.0;
 /// Powers of the root of x⁴ = x + 1, by which a sequence in three dimensions is spread evenly
@@ -59,7 +57,7 @@ pub fn edge(outline: Outline, turn: f64) -> DVec2 {
 #[must_use]
 pub fn roots(file: &BrushFile, spines: &[DVec2], random: &mut Random) -> Vec<DVec2> {
     let count = file.strips.count;
-    if 2e3 * file.half_thickness_m(0.0) < THIN * file.strips.width_mm {
+    if file.is_line() {
         let place = |i: usize, jitter: f64| 2.0 * (i as f64 + jitter) / count as f64 - 1.0;
         return (0..count)
             .map(|i| DVec2::new(place(i, random.unit()), 0.0))

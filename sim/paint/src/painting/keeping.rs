@@ -18,7 +18,7 @@ use crate::history::{History, Place, Rest, Step};
 use crate::impasto::Impasto;
 use crate::kept::{KeptBrush, KeptOpen, KeptPainting, KeptRows};
 use crate::light::studio_settings;
-use crate::load::BrushLoad;
+use crate::load::{ALONG, BrushLoad};
 use crate::look::Look;
 use crate::page::{Page, Pager};
 use crate::path::PathStepper;
@@ -320,7 +320,12 @@ fn restored_track(
             "`maulstick painting recover` takes out what is whole",
         )
     })?;
-    let tidy = Arc::new(Head::of(&file));
+    let content = load.as_ref().map(Page::get);
+    let seen = match &content {
+        Some(load) => file.thinned_to(load.texels() / ALONG),
+        None => file.thinned(sheets[0].cell_m),
+    };
+    let tidy = Arc::new(Head::of(&seen));
     let head = Arc::new(tidy.disordered(brush.seed));
     let path = brush.path.and_then(|(surface, scale, at, ahead)| {
         let sheet = sheets.iter().position(|sheet| sheet.id == surface)?;
@@ -328,17 +333,17 @@ fn restored_track(
         Some((sheet, PathStepper::going_on(&head, places, scale)))
     });
     let strips = head.strips();
-    let content = load.as_ref().map(Page::get);
     let (load, kept) = match (content, load) {
-        (Some(content), Some(page)) if content.texels() == BrushLoad::clean(strips).texels() => {
+        (Some(content), Some(page)) if content.texels() == strips * ALONG => {
             (Arc::clone(&content), Some((content, page)))
         }
-        (Some(content), _) => (Arc::new((*content).clone().onto(strips)), None),
+        (Some(content), _) => (Arc::new(content.onto(strips, &tidy)), None),
         _ => (Arc::new(BrushLoad::clean(strips)), None),
     };
     Ok(BrushTrack {
         under: UnderBrush::default(),
         file,
+        seen,
         tidy,
         head,
         load,

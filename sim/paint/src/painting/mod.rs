@@ -107,7 +107,9 @@ const SEEDS: u64 = 0x7fff_ffff;
 /// A brush as the painting knows it.
 struct BrushTrack {
     file: BrushFile,
-    /// The head as its file has it.
+    /// The brush with as many strips as cells can tell apart.
+    seen: BrushFile,
+    /// Its head as its file has it.
     tidy: Arc<Head>,
     /// The same with its bristles as they lie since the newest stroke began.
     head: Arc<Head>,
@@ -134,6 +136,22 @@ impl BrushTrack {
     /// Seed of how its bristles lie in its next stroke, and of a load before that.
     fn next_seed(&self) -> u64 {
         (self.strokes as u64 + 1).wrapping_mul(0x9e37_79b1) & SEEDS
+    }
+
+    /// Has it seen on cells so wide, m, by as many strips as those can tell apart.
+    fn see(&mut self, cell_m: f64) {
+        let seen = self.file.thinned(cell_m);
+        if seen == self.seen {
+            return;
+        }
+        let head = Arc::new(Head::of(&seen));
+        let finer = match head.strips() > self.tidy.strips() {
+            true => &head,
+            false => &self.tidy,
+        };
+        self.load = Arc::new(self.load.onto(head.strips(), finer));
+        (self.kept, self.seen, self.tidy) = (None, seen, head);
+        self.head = self.disordered();
     }
 
     /// The head with its bristles as they lie by its seed.
@@ -292,14 +310,15 @@ impl Painting {
         {
             return false;
         }
-        let head = Arc::new(Head::of(&file));
+        let seen = file.thinned(self.sheets[0].cell_m);
+        let head = Arc::new(Head::of(&seen));
         self.close_windows();
         match self.brushes.get_mut(name) {
             Some(track) => {
                 if head.strips() != track.head.strips() {
                     track.load = BrushLoad::spread(head.strips(), &track.load.counts()).into();
                 }
-                (track.file, track.path) = (file, None);
+                (track.file, track.seen, track.path) = (file, seen, None);
                 track.tidy = head;
                 track.head = track.disordered();
             }
@@ -308,6 +327,7 @@ impl Painting {
                     load: BrushLoad::clean(head.strips()).into(),
                     kept: None,
                     file,
+                    seen,
                     tidy: Arc::clone(&head),
                     head,
                     stroke: None,
@@ -346,7 +366,7 @@ impl Painting {
         let mut brushes = self.brushes.iter();
         let found = brushes.find(|(name, _)| name_hash(name) == source);
         found.map_or(0.0, |(_, track)| {
-            let traits = BrushTraits::of(&track.file, self.sheets[0].cell_m, 1.0);
+            let traits = BrushTraits::of(&track.seen, self.sheets[0].cell_m, 1.0);
             track.load.fullness(&traits)
         })
     }

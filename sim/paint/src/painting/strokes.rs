@@ -3,6 +3,7 @@
 use std::sync::Arc;
 
 use maulstick_types::brush::{BrushState, Solve, solve_flags};
+use maulstick_types::scene::CANVAS;
 
 use super::backend::Deferral;
 use super::modes::{Prepared, handling_of};
@@ -86,26 +87,36 @@ impl Painting {
             zoom: solve.zoom,
         };
         let track = self.brush(name)?;
-        let traits = BrushTraits::of(&track.file, scale.cell_m, scale.zoom);
+        let running = track
+            .path
+            .take_if(|(on, path)| *on == sheet && path.scale() == scale && !restarted);
+        if running.is_none() {
+            self.end_path(name)?;
+            self.see(name, sheet, scale)?;
+        }
+        let track = self.brush(name)?;
+        let traits = BrushTraits::of(&track.seen, scale.cell_m, scale.zoom);
         let waypoint = Waypoint::of(solve, scale, self.seen_fullness(name, &traits)?);
         let track = self.brush(name)?;
-        let goes_on =
-            |(on, path): &(usize, PathStepper)| *on == sheet && path.scale() == scale && !restarted;
-        if !track.path.as_ref().is_some_and(goes_on) {
-            self.end_path(name)?;
-            let track = self.brush(name)?;
-            let path = PathStepper::begin(&track.head, waypoint, scale);
-            track.path = Some((sheet, path));
-            return Ok(());
-        }
-        let Some((_, mut path)) = track.path.take() else {
+        let head = Arc::clone(&track.head);
+        let Some((_, mut path)) = running else {
+            track.path = Some((sheet, PathStepper::begin(&head, waypoint, scale)));
             return Ok(());
         };
-        let head = Arc::clone(&track.head);
         path.advance(&head, waypoint, |sweep| {
             self.step(name, sheet, scale, sweep);
         });
         self.brush(name)?.path = Some((sheet, path));
+        Ok(())
+    }
+
+    /// Has a brush that comes down on the canvas seen as its cells tell strips apart. On a palette it stays as it is:
+    /// what its bristles carry would come together and be parted at each dip.
+    fn see(&mut self, name: &str, sheet: usize, scale: Scale) -> Result<(), PaintRefusal> {
+        if self.sheets[sheet].id == CANVAS {
+            self.settle();
+            self.brush(name)?.see(scale.cell_m * scale.zoom);
+        }
         Ok(())
     }
 
@@ -160,7 +171,7 @@ impl Painting {
         let Some(track) = self.brushes.get(name) else {
             return;
         };
-        let traits = BrushTraits::of(&track.file, scale.cell_m, scale.zoom);
+        let traits = BrushTraits::of(&track.seen, scale.cell_m, scale.zoom);
         let deferred = self.model.defers() && !self.has_wells(sheet);
         let height = if deferred {
             // How high paint stands is not known here.

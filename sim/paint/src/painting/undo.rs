@@ -3,12 +3,13 @@
 use std::collections::{BTreeMap, HashSet};
 use std::sync::Arc;
 
+use maulstick_brush::Head;
 use maulstick_types::scene::{Layer, Scene};
 
 use super::backend::Deferral;
 use super::{PaintRefusal, Painting};
 use crate::history::{Change, Deed, Held, Make, OpenStep, Place, Rest, Step, same};
-use crate::load::BrushLoad;
+use crate::load::{ALONG, BrushLoad};
 use crate::page::Page;
 use crate::tile::Version;
 
@@ -324,7 +325,12 @@ impl Painting {
             track.load = Arc::clone(&load);
             track.kept = Some((load, page.clone()));
         } else {
-            track.load = Arc::new((*load).clone().onto(track.head.strips()));
+            let strips = load.texels() / ALONG;
+            let finer = match strips > track.tidy.strips() {
+                true => Arc::new(Head::of(&track.file.thinned_to(strips))),
+                false => Arc::clone(&track.tidy),
+            };
+            track.load = Arc::new(load.onto(track.tidy.strips(), &finer));
             track.kept = None;
         }
     }
