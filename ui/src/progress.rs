@@ -1,10 +1,11 @@
 //! How far long work is: a bar over the desk with the time left and a way to end it, for all that takes
-//! more than half a second; and, for as long as it is so, that the painting cannot be saved.
+//! more than half a second; and, for as long as it is so, that the painting cannot be saved or falls behind.
 
 use std::collections::BTreeMap;
 
 use eframe::egui::{Align2, Area, Context, Frame, Id, Order, ProgressBar, Ui};
 use maulstick_types::command::Command;
+use maulstick_types::paint::PaintStatus;
 use maulstick_types::scene::{CANVAS, Light};
 
 use crate::studio::Studio;
@@ -65,15 +66,10 @@ impl Progress {
     /// Shows it at the lower edge; `waits` names the processes that an order has waited for so long that
     /// it is to be told. `true` where the painter waits no longer.
     pub fn show(&mut self, context: &Context, work: &mut Work<'_>, waits: &[String]) -> bool {
-        let fault = work
-            .studio
-            .paint
-            .as_ref()
-            .map_or("", |it| it.status.fault.as_str());
-        let unsaved =
-            (!fault.is_empty()).then(|| format!("A fault of the painting's file: {fault}"));
+        let status = work.studio.paint.as_ref().map(|paint| &paint.status);
+        let lines: Vec<String> = status.into_iter().flat_map(lines).collect();
         let jobs = self.jobs(work.studio, waits);
-        if jobs.is_empty() && unsaved.is_none() {
+        if jobs.is_empty() && lines.is_empty() {
             return false;
         }
         let mut cancelled = None;
@@ -82,7 +78,7 @@ impl Progress {
             .anchor(Align2::CENTER_BOTTOM, [0.0, -12.0])
             .show(context, |ui| {
                 Frame::popup(ui.style()).show(ui, |ui| {
-                    if let Some(line) = &unsaved {
+                    for line in &lines {
                         ui.label(line);
                     }
                     for (job, begun_ns) in &jobs {
@@ -150,6 +146,18 @@ impl Progress {
             hint: "Go back to the light before",
         })
     }
+}
+
+/// What the painter should know of the painting and can do nothing about here.
+fn lines(status: &PaintStatus) -> impl Iterator<Item = String> {
+    let PaintStatus { fault, longer, .. } = status;
+    let unsaved = (!fault.is_empty()).then(|| format!("A fault of the painting's file: {fault}"));
+    let late = (*longer > 1).then(|| {
+        format!(
+            "Painting falls behind: until the brush lifts, its steps are {longer} times as long"
+        )
+    });
+    unsaved.into_iter().chain(late)
 }
 
 fn drying(studio: &Studio) -> Option<Job> {
@@ -331,6 +339,19 @@ mod tests {
             harness.get_by_label("Cancel").click();
             harness.run_steps(2);
             assert!(harness.state().given_up, "{name}");
+        }
+    }
+
+    #[test]
+    fn that_painting_falls_behind_is_told_while_it_does() {
+        let mut harness = harness();
+        harness.state_mut().baked(1.0, 100);
+        let words = "Painting falls behind: until the brush lifts, its steps are 4 times as long";
+        for longer in [1, 4, 1] {
+            let paint = harness.state_mut().studio.paint.as_mut();
+            paint.expect("paint").status.longer = longer;
+            harness.run_steps(2);
+            assert_eq!(harness.query_by_label(words).is_some(), longer > 1);
         }
     }
 

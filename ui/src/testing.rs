@@ -41,6 +41,7 @@ pub(crate) fn status() -> PaintStatus {
         steps: 0,
         footprint_cells: 0,
         lag_ns: 0,
+        longer: 1,
         memory_bytes: 0,
         lost: 0,
         refused: 0,

@@ -11,6 +11,10 @@ pub mod solve_flags {
     pub const NOT_CONVERGED: u32 = 2;
     /// Where the brush is at a sample between two solves of its path: to be shown, not to be painted.
     pub const GLIMPSE: u32 = 4;
+    /// The way to it is painted in steps twice as long as the brush's own, for painting was late.
+    pub const TWICE: u32 = 8;
+    /// As [`TWICE`], four times.
+    pub const FOUR_TIMES: u32 = 16;
 }
 
 wire_struct! {
@@ -79,6 +83,16 @@ impl BrushState {
 }
 
 impl Solve {
+    /// How many times the steps of the way to it are doubled: 0, 1 or 2.
+    #[must_use]
+    pub const fn doublings(&self) -> u32 {
+        if self.flags & solve_flags::FOUR_TIMES != 0 {
+            2
+        } else {
+            (self.flags & solve_flags::TWICE != 0) as u32
+        }
+    }
+
     /// Bytes that it takes in a message.
     #[must_use]
     pub fn wire_bytes(&self) -> usize {

@@ -187,7 +187,7 @@ wire_struct! {
 
 message! {
     /// How the paint node fares, ten times a second.
-    pub struct PaintStatus [version 4, at most 32768 bytes] {
+    pub struct PaintStatus [version 5, at most 32768 bytes] {
         /// Entries of the journal so far.
         pub journal: u64,
         /// Steps of the paint model so far.
@@ -196,6 +196,9 @@ message! {
         pub footprint_cells: u64,
         /// Age of the oldest brush state that waits, ns.
         pub lag_ns: u64,
+        /// How many times longer than the brush's own the steps of the present stroke are: 1, or more where painting
+        /// is late.
+        pub longer: u32,
         /// Bytes that the tiles take.
         pub memory_bytes: u64,
         /// Brush states that were lost for good.

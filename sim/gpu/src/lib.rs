@@ -21,4 +21,4 @@ mod stage;
 
 pub use device::{Choice, Device, GpuError};
 pub use films::GpuFilms;
-pub use impasto::GpuImpasto;
+pub use impasto::{GpuImpasto, Traffic};

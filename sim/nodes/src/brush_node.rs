@@ -2,6 +2,7 @@
 
 mod commands;
 mod felt;
+mod pace;
 mod progress;
 mod settings;
 
@@ -32,6 +33,7 @@ use crate::backlog::{Backlog, Place, Waiting};
 use crate::feel::{NO_GRAIN, drag, grain};
 use crate::outbox::Outbox;
 
+use pace::Pace;
 use progress::Progress;
 pub use settings::BrushSettings;
 use settings::{Told, moved_by};
@@ -78,6 +80,7 @@ pub struct BrushNode {
     models: Recent<(Sender<ContactModel>, u64)>,
     arbiter: Arbiter,
     backlog: Backlog,
+    pace: Pace,
     outbox: Outbox,
     progress: Progress,
     /// The take that has this brush to itself.
@@ -147,6 +150,7 @@ impl BrushNode {
             models: Recent::default(),
             arbiter: Arbiter::default(),
             backlog: Backlog::new(settings.file.length_m()),
+            pace: Pace::default(),
             outbox: Outbox::default(),
             progress: Progress::default(),
             take: None,
@@ -213,7 +217,7 @@ impl BrushNode {
             while let Some(received) = self.next_sample(Some(scene.header.event_ns)) {
                 self.sample(received, now_ns)?;
             }
-            self.solve();
+            self.solve(now_ns);
             self.scene_ns = sent_ns;
             self.model.set_scene(&scene.message);
             self.grain = grain(&scene.message);
@@ -329,6 +333,7 @@ impl BrushNode {
         if !received.header.flags.has(Flags::REPLAY) {
             let sample = received.message;
             let place = self.place(&sample);
+            self.pace.hear(now_ns, place);
             self.backlog.push(Waiting {
                 origin,
                 seq,
@@ -425,12 +430,12 @@ impl BrushNode {
         if late || busy {
             return Ok(());
         }
-        self.solve();
+        self.solve(now_ns);
         self.send(now_ns)
     }
 
     /// Solves what waits, as one state.
-    fn solve(&mut self) {
+    fn solve(&mut self, now_ns: u64) {
         let waiting = self.backlog.take();
         let Some(last) = waiting.last().cloned() else {
             return;
@@ -439,10 +444,12 @@ impl BrushNode {
             .iter()
             .map(|w| (w.origin.source, w.origin.epoch))
             .collect();
-        let solves: Vec<Solve> = waiting
+        let flag = self.pace.solve(now_ns);
+        let mut solves: Vec<Solve> = waiting
             .iter()
             .flat_map(|w| self.model.follow(w.origin, w.event_ns, &w.sample))
             .collect();
+        solves.iter_mut().for_each(|solve| solve.flags |= flag);
         let state = BrushState {
             device: last.origin.source,
             device_epoch: last.origin.epoch,

@@ -240,6 +240,53 @@ fn a_live_brush_merges_while_paint_is_busy_and_keeps_the_path() {
     );
 }
 
+/// Paint that has its turn each so many samples: its steps, cells covered, and how much longer steps ever were.
+fn painted_late(every: usize) -> (u64, u64, u32) {
+    let mut live = Live::new(MemoryNet::new(1, START_NS, Faults::default()));
+    let load = Command::Load {
+        brush: "main".into(),
+        mixture: loads()[0].clone(),
+    };
+    live.command(1, load);
+    let mut mouse = live.device("mouse", 5);
+    let mut longest = 1;
+    for number in 0..400u32 {
+        let angle = 0.05 * f64::from(number);
+        let (x, y) = (10.0 * libm::cos(angle), 10.0 * libm::sin(angle));
+        mouse.send(&pen(1e-3 * (16.0 + x), 1e-3 * (16.0 + y), 0.4));
+        live.net.advance(4_000_000);
+        live.brush.turn().expect("turned");
+        if (number as usize).is_multiple_of(every) {
+            live.paint.turn().expect("turned");
+            longest = longest.max(live.paint.painting_mut().longer());
+        }
+    }
+    mouse.send(&pen(0.016, 0.016, 0.0));
+    for _ in 0..200 {
+        live.net.advance(5_000_000);
+        live.brush.turn().expect("turned");
+        live.paint.turn().expect("turned");
+    }
+    let painting = live.paint.painting_mut();
+    assert_eq!(painting.longer(), 1, "the brush has lifted");
+    let report = painting.report();
+    assert_eq!(report.quanta_missing, 0);
+    (painting.work().0, report.covered_cells, longest)
+}
+
+#[test]
+fn painting_that_falls_behind_goes_in_longer_steps() {
+    let (steps, covered, longest) = painted_late(1);
+    assert_eq!(longest, 1, "in time");
+    for (every, longer) in [(40, 2), (100, 4)] {
+        let late = painted_late(every);
+        assert_eq!(late.2, longer, "a turn each {} ms", 4 * every);
+        assert!(late.0 < steps * 4 / 5, "{} steps of {steps}", late.0);
+        let off = late.1 as f64 / covered as f64 - 1.0;
+        assert!(off.abs() < 0.05, "{} cells of {covered}", late.1);
+    }
+}
+
 #[test]
 fn what_has_waited_long_is_sent_in_messages_that_fit() {
     let mut settings = settings();

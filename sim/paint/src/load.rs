@@ -273,7 +273,10 @@ impl BrushLoad {
         for (slot, held) in self.held.iter().enumerate() {
             let Some(held) = held else { continue };
             let into = load.held_mut(slot);
-            for (from, to) in [(&held.film, &mut into.film), (&held.inside, &mut into.inside)] {
+            for (from, to) in [
+                (&held.film, &mut into.film),
+                (&held.inside, &mut into.inside),
+            ] {
                 for (strip, stands) in stands.iter().enumerate() {
                     for k in 0..ALONG {
                         let (fine, coarse) = (strip * ALONG + k, stands * ALONG + k);
@@ -431,7 +434,9 @@ mod tests {
         let right = |load: &BrushLoad, roots: &[[f32; 2]]| -> u64 {
             let right = |strip: &usize| roots[*strip][0] > 0.1;
             let strips = (0..load.texels() / ALONG).filter(right);
-            strips.map(|strip| u64::from(load.film(strip * ALONG))).sum()
+            strips
+                .map(|strip| u64::from(load.film(strip * ALONG)))
+                .sum()
         };
         let roots = head.roots();
         assert_eq!(&roots[..112], Head::of(&few).roots());
@@ -441,7 +446,10 @@ mod tests {
         let mut evenly = BrushLoad::spread(112, &load.counts());
         evenly.count_films();
         let inside = evenly.inside(3).expect("spread");
-        assert!(inside.iter().all(|count| *count > 0), "a fault passes: spread evenly");
+        assert!(
+            inside.iter().all(|count| *count > 0),
+            "a fault passes: spread evenly"
+        );
     }
 
     #[test]

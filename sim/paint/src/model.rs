@@ -106,7 +106,8 @@ impl BrushTraits {
         let steps = cell_m / REFERENCE_CELL_M;
         let step_cells = Scale { cell_m, zoom }.step_cells(rigid || file.surface.is_some());
         let flow = Self::FLOW_STEPS as f64 * steps * step_cells;
-        let part = |of_reference: f64, flow| 1.0 - exp(maulstick_num::ln(1.0 - of_reference) * flow);
+        let part =
+            |of_reference: f64, flow| 1.0 - exp(maulstick_num::ln(1.0 - of_reference) * flow);
         let share = |of_reference: f64| part(of_reference, flow);
         Self {
             step_cells: step_cells as f32,
@@ -119,7 +120,7 @@ impl BrushTraits {
                 .map_or(0.0, |skin| (skin.recede_mm * seen) as f32),
             half_thickness: (0.5 * file.strips.thickness_mm * seen) as f32,
             lift: (file.strips.lift_mm * seen) as f32,
-            sink: (file.strips.sink_mm * seen * (PEAK_M / cell_m).min(1.0).powi(2)) as f32,
+            sink: (file.strips.sink_mm * seen * (PEAK_M / cell_m).min(1.0)) as f32,
             film_full: quanta(file.load.film_um),
             film_most: quanta(file.load.film_um) * if rigid { BLADE_OVER } else { FILM_OVER },
             inside_full: quanta(file.load.inside_um),
@@ -143,6 +144,21 @@ impl BrushTraits {
                 along: share(Self::SEEP.along),
             },
         }
+    }
+}
+
+impl BrushTraits {
+    /// Those of a step that is doubled so many times.
+    #[must_use]
+    pub fn doubled(mut self, doublings: u32) -> Self {
+        let Seep { beside, along } = &mut self.seep;
+        for share in [&mut self.refill, &mut self.creep, beside, along] {
+            let rest = (0..doublings).fold(1.0 - *share, |rest, _| rest * rest);
+            *share = 1.0 - rest;
+        }
+        self.step_cells *= (1 << doublings) as f32;
+        self.parts = self.step_cells.ceil() as u32;
+        self
     }
 }
 

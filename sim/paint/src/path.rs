@@ -12,6 +12,10 @@ use crate::model::Sweep;
 const STILL: f64 = 0.02;
 /// A longer motion is no motion of a hand: nothing is painted on its way, m of the brush.
 const LEAP_M: f64 = 2.0;
+/// A motion so many times as long as a step is painted as one that is doubled.
+const OVER: f64 = 1.5;
+/// Doublings of a step at most.
+const MOST_DOUBLINGS: u32 = 2;
 /// A motion short of a step by less than this share is one.
 const ROUNDING: f64 = 1e-6;
 
@@ -60,9 +64,15 @@ impl PathStepper {
         self.scale
     }
 
-    /// Moves on to `to` and calls `step` for each step on the way.
-    pub fn advance(&mut self, head: &Head, to: Waypoint, mut step: impl FnMut(Sweep<'_>)) {
-        let whole = self.scale.step_cells(head.is_fine());
+    /// Moves on to `to` and calls `step` for each step on the way, with how many times it is doubled: as often as
+    /// the way to `to` is, unless it is the last of another way.
+    pub fn advance(
+        &mut self,
+        head: &Head,
+        (to, doublings): (Waypoint, u32),
+        mut step: impl FnMut(Sweep<'_>, u32),
+    ) {
+        let whole = self.scale.step_cells(head.is_fine()) * f64::from(1 << doublings);
         let mut next = HeadPose::default();
         to.pose(head, self.scale, &mut next);
         let motion = motion(&self.stepped, &next);
@@ -79,23 +89,27 @@ impl PathStepper {
         self.ahead = Some(to);
     }
 
-    /// Ends the contact: what waits is stepped.
-    pub fn end(&mut self, head: &Head, mut step: impl FnMut(Sweep<'_>)) {
+    /// Ends the contact: what waits is stepped, doubled as often as it is long.
+    pub fn end(&mut self, head: &Head, mut step: impl FnMut(Sweep<'_>, u32)) {
         if let Some(to) = self.ahead.take() {
             self.step_to(head, to, &mut step);
         }
     }
 
-    fn step_to(&mut self, head: &Head, to: Waypoint, step: &mut impl FnMut(Sweep<'_>)) {
+    fn step_to(&mut self, head: &Head, to: Waypoint, step: &mut impl FnMut(Sweep<'_>, u32)) {
         let mut next = HeadPose::default();
         to.pose(head, self.scale, &mut next);
-        if motion(&self.stepped, &next) < STILL {
+        let motion = motion(&self.stepped, &next);
+        if motion < STILL {
             return;
         }
-        step(Sweep {
+        let own = self.scale.step_cells(head.is_fine());
+        let longer = |doublings: &u32| motion > own * f64::from(1 << doublings) * OVER;
+        let sweep = Sweep {
             from: &self.stepped,
             to: &next,
-        });
+        };
+        step(sweep, (0..MOST_DOUBLINGS).take_while(longer).count() as u32);
         (self.at, self.stepped) = (to, next);
     }
 }
@@ -144,9 +158,9 @@ mod tests {
             cuts.push(1.0);
             let mut path = PathStepper::begin(&head, waypoint(0.1), SCALE);
             let mut steps = Vec::new();
-            let mut note = |sweep: Sweep<'_>| steps.push(motion(sweep.from, sweep.to));
+            let mut note = |sweep: Sweep<'_>, _: u32| steps.push(motion(sweep.from, sweep.to));
             for cut in cuts {
-                path.advance(&head, waypoint(0.1 + cut * 10.4 * 2.5e-4), &mut note);
+                path.advance(&head, (waypoint(0.1 + cut * 10.4 * 2.5e-4), 0), &mut note);
             }
             path.end(&head, &mut note);
             let last = steps.pop().expect("steps");
@@ -155,19 +169,36 @@ mod tests {
             prop_assert!((last - 0.4).abs() < 1e-3, "{}", last);
         }
 
+        /// Doubled steps are as long as they say, and what is left at the end says how long it is.
+        #[test]
+        fn doubled_steps_are_told_by_their_length(doublings in 0..3u32, cells in 5.0..30.0f64) {
+            let head = Head::of(&BrushFile::library("round").expect("round"));
+            let mut path = PathStepper::begin(&head, waypoint(0.1), SCALE);
+            let mut steps = Vec::new();
+            let mut note = |sweep: Sweep<'_>, doubled: u32| steps.push((motion(sweep.from, sweep.to), doubled));
+            path.advance(&head, (waypoint(0.1 + cells * 2.5e-4), doublings), &mut note);
+            path.end(&head, &mut note);
+            let whole = f64::from(1 << doublings);
+            prop_assert!((steps.iter().map(|step| step.0).sum::<f64>() - cells).abs() < 1e-2);
+            let full = steps.iter().filter(|step| (step.0 / whole - 1.0).abs() < 1e-3);
+            prop_assert!(full.clone().count() as f64 + 1.01 > cells / whole);
+            prop_assert!(full.clone().all(|step| step.1 == doublings));
+            prop_assert!(steps.iter().all(|step| step.0 <= f64::from(1 << step.1) * OVER + 1e-3));
+        }
+
         /// A path that was kept goes on as the one that was not.
         #[test]
         fn a_kept_path_goes_on(first in 0.0..10.0f64, second in 0.0..10.0f64) {
             let head = Head::of(&BrushFile::library("round").expect("round"));
             let mut path = PathStepper::begin(&head, waypoint(0.1), SCALE);
-            path.advance(&head, waypoint(0.1 + first * 2.5e-4), |_| ());
+            path.advance(&head, (waypoint(0.1 + first * 2.5e-4), 0), |_, _| ());
             let (at, ahead) = path.places();
             let mut kept = PathStepper::going_on(&head, (at.clone(), ahead.cloned()), SCALE);
             let rest = |path: &mut PathStepper, goes_on: bool| {
                 let mut ends = Vec::new();
-                let mut note = |sweep: Sweep<'_>| ends.push(sweep.to.x.clone());
+                let mut note = |sweep: Sweep<'_>, _: u32| ends.push(sweep.to.x.clone());
                 if goes_on {
-                    path.advance(&head, waypoint(0.1 + second * 2.5e-4), &mut note);
+                    path.advance(&head, (waypoint(0.1 + second * 2.5e-4), 0), &mut note);
                 }
                 path.end(&head, &mut note);
                 ends

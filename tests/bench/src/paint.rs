@@ -1,9 +1,10 @@
 //! Steps of the paint model by themselves: states of a brush that were solved before, on wet paint.
 
+use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 use maulstick_brush::BrushFile;
-use maulstick_gpu::{Choice, Device, GpuImpasto};
+use maulstick_gpu::{Choice, Device, GpuImpasto, Traffic};
 use maulstick_num::cores::with_help;
 use maulstick_optics::PaintLibrary;
 use maulstick_paint::{Painting, PaintingSetup, Sequencer};
@@ -32,6 +33,8 @@ const ROUNDS: usize = 7;
 
 /// A footprint of so many cells either way, of a brush of so many strips.
 const SIZES: [(usize, usize); 2] = [(26, 64), (88, 256)];
+/// As [`SIZES`], of one that cores are worth sharing.
+const WIDE: (usize, usize) = (352, 1024);
 
 fn fault(error: impl ToString) -> Fault {
     Fault::failure(error.to_string())
@@ -42,7 +45,8 @@ struct Round {
     sequencer: Sequencer,
     states: Vec<BrushState>,
     seq: u64,
-    on_gpu: bool,
+    /// Of the graphics processor, if one paints.
+    traffic: Option<Arc<Traffic>>,
 }
 
 impl Round {
@@ -57,8 +61,11 @@ impl Round {
         };
         let library = PaintLibrary::measured().map_err(fault)?;
         let mut painting = Painting::new(&setup, library).map_err(fault)?;
+        let mut traffic = None;
         if let Some(gpu) = gpu {
-            painting.set_model(Box::new(GpuImpasto::new(gpu.clone()).map_err(fault)?));
+            let model = GpuImpasto::new(gpu.clone()).map_err(fault)?;
+            traffic = Some(model.traffic());
+            painting.set_model(Box::new(model));
         }
         let mut sequencer = Sequencer::new(painting);
         sequencer.define_brush(BRUSH, file.clone());
@@ -104,7 +111,7 @@ impl Round {
             states: states.collect(),
             sequencer,
             seq: 0,
-            on_gpu: gpu.is_some(),
+            traffic,
         })
     }
 
@@ -121,7 +128,7 @@ impl Round {
                 .map_err(fault)?;
         }
         // What a device does is done when it is read.
-        if self.on_gpu {
+        if self.traffic.is_some() {
             self.sequencer.painting_mut().commit();
         }
         let took = begun.elapsed();
@@ -156,7 +163,43 @@ pub(crate) fn run(report: &mut Report, backend: &str) -> Result<(), Fault> {
         report.on(gpu.name());
     }
     with_help(|| rounds(report, gpu.as_ref()))?;
+    if gpu.is_none() {
+        cells(report)?;
+        speed_up(report)?;
+    }
     advection::run(report, gpu)
+}
+
+/// Cells in contact that a core paints, beside the copy of as many.
+fn cells(report: &mut Report) -> Result<(), Fault> {
+    let (side, strips) = SIZES[1];
+    let mut round = fitted(side, strips, None)?;
+    round.paint()?;
+    let mut pairs = Vec::new();
+    for _ in 0..ROUNDS {
+        let ([steps, cells], took) = round.paint()?;
+        let copied = (side * side) as f64 * steps as f64;
+        let rate = |cells: f64, took: Duration| cells / took.as_secs_f64();
+        pairs.push((rate(cells as f64, took), rate(copied, copy(side, steps))));
+    }
+    report.paired("cells_per_s", "cells/s", "a copy of cells", &pairs);
+    Ok(())
+}
+
+/// How many times as fast two cores paint with a wide brush as one.
+fn speed_up(report: &mut Report) -> Result<(), Fault> {
+    let (side, strips) = WIDE;
+    let mut round = fitted(side, strips, None)?;
+    round.paint()?;
+    let mut pairs = Vec::new();
+    for _ in 0..ROUNDS {
+        let ([steps, _], alone) = round.paint()?;
+        let ([again, _], both) = with_help(|| round.paint())?;
+        let rate = |steps: u64, took: Duration| steps as f64 / took.as_secs_f64();
+        pairs.push((rate(again, both), rate(steps, alone)));
+    }
+    report.paired("steps_per_s.352", "steps/s", "on one core", &pairs);
+    Ok(())
 }
 
 /// Both sizes.
@@ -176,6 +219,12 @@ fn rounds(report: &mut Report, gpu: Option<&Device>) -> Result<(), Fault> {
         report.paired(&name, "steps/s", "a copy of its cells", &pairs);
         let name = format!("footprint_cells.{side}");
         report.row(&name, quantile(&sorted(covered), 0.5), "cells");
+        if let Some(traffic) = &round.traffic {
+            let [steps, dispatches, bytes] = traffic.counts().map(|count| count as f64);
+            let (each, moved) = (dispatches / steps.max(1.0), bytes / steps.max(1.0));
+            report.row(&format!("dispatches_a_step.{side}"), each, "");
+            report.row(&format!("bytes_a_step.{side}"), moved, "bytes");
+        }
     }
     Ok(())
 }

@@ -74,6 +74,7 @@ pub(crate) fn paint_status() -> PaintStatus {
         steps: 2,
         footprint_cells: 3,
         lag_ns: 4,
+        longer: 2,
         memory_bytes: 5,
         lost: 6,
         refused: 7,

@@ -30,6 +30,16 @@ pub(crate) enum Binding {
 }
 
 impl Binding {
+    /// Words that a cell of the grid has in it; 0 of one that has none.
+    pub(crate) fn words_by_cell(self) -> u64 {
+        match self {
+            Self::Keys | Self::Faces | Self::Wants => 2,
+            Self::Contacts => 8,
+            Self::Totals => 5,
+            _ => 0,
+        }
+    }
+
     fn read_only(self) -> bool {
         matches!(self, Self::Poses | Self::Head | Self::Base)
     }

@@ -10,6 +10,7 @@
 //! | `kernels` | the stages in their order, and their pipelines |
 //! | `record` | a step as the shaders take it |
 //! | `residence` | a window and a load while they are on the device |
+//! | [`Traffic`] | what steps move, counted |
 //! | `workspace` | the buffers; upload, steps, read-back |
 //! | [`measure`] | the advection beside a copy, for the benchmark |
 //! | [`probe`] | what single stages leave, for tests |
@@ -21,7 +22,10 @@ pub mod measure;
 pub mod probe;
 mod record;
 mod residence;
+mod traffic;
 mod workspace;
+
+use std::sync::Arc;
 
 use maulstick_paint::impasto::Impasto;
 use maulstick_paint::load::BrushLoad;
@@ -32,6 +36,7 @@ use crate::device::{Device, GpuError};
 use kept::KeptSteps;
 use record::StepRecord;
 use residence::Residence;
+pub use traffic::Traffic;
 use workspace::{BATCH, Batch, Workspace};
 
 /// Unsettled steps after which they are settled at the latest.
@@ -88,6 +93,13 @@ impl GpuImpasto {
     #[must_use]
     pub fn adapter(&self) -> &str {
         &self.name
+    }
+
+    /// What its steps move, counted for as long as the device lasts.
+    #[must_use]
+    pub fn traffic(&self) -> Arc<Traffic> {
+        let workspace = self.workspace.as_ref();
+        workspace.map_or_else(Arc::default, |workspace| Arc::clone(&workspace.traffic))
     }
 
     /// Gives the device what it has not heard of yet.

@@ -1,6 +1,7 @@
 //! The buffers of the device and what is done with them: upload, steps, read-back.
 
 use std::ops::Range;
+use std::sync::Arc;
 
 use bytemuck::cast_slice;
 use maulstick_brush::Head;
@@ -12,6 +13,7 @@ use wgpu::BufferUsages as Usage;
 use super::kernels::{Binding, Groups, KERNELS, PUSHES, Pipeline};
 use super::record::{RECORD_BYTES, StepRecord};
 use super::residence::{Residence, Settled};
+use super::traffic::Traffic;
 use crate::arena::{Arena, read};
 use crate::device::{Device, GpuError};
 
@@ -39,6 +41,7 @@ pub(crate) struct Workspace {
     /// By binding.
     buffers: Vec<Arena>,
     back: Arena,
+    pub(crate) traffic: Arc<Traffic>,
     /// How far a step goes: fewer stages where somebody looks at one of them.
     pub(crate) stages: usize,
 }
@@ -61,6 +64,7 @@ impl Workspace {
             records: Arena::new("records", Usage::UNIFORM | Usage::COPY_DST),
             buffers: (0..=Binding::Wants as usize).map(buffer).collect(),
             back: Arena::new("back", Usage::MAP_READ | Usage::COPY_DST),
+            traffic: Arc::default(),
             stages: KERNELS.len(),
             gpu,
         })
@@ -107,14 +111,14 @@ impl Workspace {
         gpu.guarded(|| {
             let cells = batch.records.iter().map(StepRecord::cells).max();
             let cells = cells.unwrap_or(0);
-            for (binding, words) in [
-                (Binding::Keys, 2),
-                (Binding::Contacts, 8),
-                (Binding::Faces, 2),
-                (Binding::Totals, 5),
-                (Binding::Wants, 2),
+            for binding in [
+                Binding::Keys,
+                Binding::Contacts,
+                Binding::Faces,
+                Binding::Totals,
+                Binding::Wants,
             ] {
-                self.room(binding, words * cells);
+                self.room(binding, binding.words_by_cell() * cells);
             }
             self.fill(Binding::Poses, &[cast_slice(&batch.poses)])?;
             self.records.filled(&gpu, &[cast_slice(&batch.records)])?;
@@ -130,11 +134,15 @@ impl Workspace {
                 .iter()
                 .map(|p| p.bind(&gpu, records, |binding| buffers[binding as usize]))
                 .collect();
+            let poses = (batch.poses.len() / batch.records.len().max(1)) as u64;
             let mut pass = encoder.begin_compute_pass(&Default::default());
             for (step, record) in batch.records.iter().enumerate() {
                 let offset = (step as u64 * RECORD_BYTES) as u32;
+                self.traffic.step();
                 for place in stages(self.stages, record.parts) {
                     let (pipeline, bound) = (&self.pipelines[place], &bound[place]);
+                    self.traffic
+                        .dispatch(pipeline.kernel, on, record.cells(), poses);
                     pass.set_pipeline(&pipeline.pipeline);
                     pass.set_bind_group(0, bound, &[offset]);
                     let [grid, few] = GROUP;

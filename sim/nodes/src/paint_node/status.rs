@@ -52,6 +52,7 @@ impl PaintNode {
             steps,
             footprint_cells,
             lag_ns,
+            longer: painting.longer(),
             memory_bytes: painting.bytes() as u64,
             committed,
             committed_ns: self.committed.1,

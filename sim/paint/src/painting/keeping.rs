@@ -279,6 +279,7 @@ impl Painting {
             pager,
             versions: kept.versions,
             steps: kept.steps,
+            longer: 1,
             footprint_cells: kept.footprint_cells,
             span_ns: kept.span_ns,
             clock: kept.clock,

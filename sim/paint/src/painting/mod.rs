@@ -186,6 +186,8 @@ pub struct Painting {
     pager: Arc<Pager>,
     versions: u64,
     steps: u64,
+    /// How many times longer than the brush's own the steps of the present stroke are.
+    longer: u32,
     footprint_cells: u64,
     span_ns: Option<(u64, u64)>,
     clock: Clock,
@@ -243,6 +245,7 @@ impl Painting {
             pager,
             versions: 1,
             steps: 0,
+            longer: 1,
             footprint_cells: 0,
             span_ns: None,
             clock: Clock::default(),
@@ -298,6 +301,13 @@ impl Painting {
     #[must_use]
     pub fn work(&self) -> (u64, u64) {
         (self.steps, self.footprint_cells)
+    }
+
+    /// How many times longer than the brush's own the steps of the present stroke are: 1, or more where painting was
+    /// late.
+    #[must_use]
+    pub fn longer(&self) -> u32 {
+        self.longer
     }
 
     /// Introduces a brush, or gives a known one another file; what it carries it keeps, spread anew

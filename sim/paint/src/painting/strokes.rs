@@ -103,8 +103,9 @@ impl Painting {
             track.path = Some((sheet, PathStepper::begin(&head, waypoint, scale)));
             return Ok(());
         };
-        path.advance(&head, waypoint, |sweep| {
-            self.step(name, sheet, scale, sweep);
+        self.longer = 1 << solve.doublings();
+        path.advance(&head, (waypoint, solve.doublings()), |sweep, doublings| {
+            self.step(name, sheet, scale, (sweep, doublings));
         });
         self.brush(name)?.path = Some((sheet, path));
         Ok(())
@@ -124,6 +125,7 @@ impl Painting {
     fn lift(&mut self, name: &str) -> Result<(), PaintRefusal> {
         if let Some(sheet) = self.end_path(name)? {
             self.relax(name, sheet);
+            self.longer = 1;
         }
         Ok(())
     }
@@ -135,7 +137,9 @@ impl Painting {
             return Ok(None);
         };
         let (head, scale) = (Arc::clone(&track.head), path.scale());
-        path.end(&head, |sweep| self.step(name, sheet, scale, sweep));
+        path.end(&head, |sweep, doublings| {
+            self.step(name, sheet, scale, (sweep, doublings));
+        });
         Ok(Some(sheet))
     }
 
@@ -165,13 +169,19 @@ impl Painting {
         self.fill(name, &[(&slots, Half::Both)], seed)
     }
 
-    /// One step of the paint model.
-    pub(super) fn step(&mut self, name: &str, sheet: usize, scale: Scale, sweep: Sweep<'_>) {
+    /// One step of the paint model, doubled so many times.
+    pub(super) fn step(
+        &mut self,
+        name: &str,
+        sheet: usize,
+        scale: Scale,
+        (sweep, doublings): (Sweep<'_>, u32),
+    ) {
         self.steps += 1;
         let Some(track) = self.brushes.get(name) else {
             return;
         };
-        let traits = BrushTraits::of(&track.seen, scale.cell_m, scale.zoom);
+        let traits = BrushTraits::of(&track.seen, scale.cell_m, scale.zoom).doubled(doublings);
         let deferred = self.model.defers() && !self.has_wells(sheet);
         let height = if deferred {
             // How high paint stands is not known here.

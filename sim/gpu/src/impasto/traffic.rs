@@ -1,0 +1,47 @@
+//! What the stages of steps move, counted for who plans for a card: each buffer that a stage is bound to once, gone
+//! over as far as the step's cells or the brush's texels go. A device's caches spare some of it.
+
+use std::sync::atomic::{AtomicU64, Ordering::Relaxed};
+
+use super::kernels::{Binding, Kernel};
+use super::residence::Residence;
+
+/// Counted since the model was made.
+#[derive(Debug, Default)]
+pub struct Traffic {
+    steps: AtomicU64,
+    dispatches: AtomicU64,
+    bytes: AtomicU64,
+}
+
+impl Traffic {
+    /// Steps, their dispatches and bytes.
+    #[must_use]
+    pub fn counts(&self) -> [u64; 3] {
+        [&self.steps, &self.dispatches, &self.bytes].map(|count| count.load(Relaxed))
+    }
+
+    /// Counts a step.
+    pub(crate) fn step(&self) {
+        self.steps.fetch_add(1, Relaxed);
+    }
+
+    /// Counts a dispatch over a grid of so many cells, of a brush whose poses take so many words.
+    pub(crate) fn dispatch(&self, kernel: &Kernel, on: &Residence, cells: u64, poses: u64) {
+        let (slots, strips) = (on.slots.len() as u64, on.strips as u64);
+        let words = |binding: &Binding| match binding {
+            Binding::Poses => poses,
+            Binding::Head => 4 * strips + 6 * (on.faces + on.vertices) as u64,
+            Binding::Segments => 16 * on.segments() as u64,
+            Binding::Planes | Binding::Other => slots * cells,
+            Binding::Load => on.load_words() as u64,
+            Binding::Asks => on.asks_words() as u64,
+            Binding::Base => 2 * cells,
+            Binding::Stats | Binding::Groups => 0,
+            of_grid => of_grid.words_by_cell() * cells,
+        };
+        let words: u64 = kernel.bindings.iter().map(words).sum();
+        self.dispatches.fetch_add(1, Relaxed);
+        self.bytes.fetch_add(4 * words, Relaxed);
+    }
+}
