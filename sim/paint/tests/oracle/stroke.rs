@@ -164,7 +164,9 @@ fn arc(bench: &Bench) -> Vec<HeadPose> {
     let mut path = PathStepper::begin(&bench.head, waypoint(0), SCALE);
     let mut way = Vec::new();
     for i in 1..=40 {
-        path.advance(&bench.head, waypoint(i), |sweep| way.push(sweep.to.clone()));
+        path.advance(&bench.head, (waypoint(i), 0), |sweep, _| {
+            way.push(sweep.to.clone());
+        });
     }
     way.iter_mut().for_each(exact);
     way
