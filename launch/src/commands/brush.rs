@@ -185,8 +185,7 @@ fn take_up(options: &TakeOptions) -> Result<i32, Fault> {
         brush: options.brush.clone(),
         toml,
     };
-    command.check().map_err(Fault::told)?;
-    Session::open(&options.target)?.send(&options.brush, command)?;
+    Session::command(&options.target, &options.brush, command)?;
     Ok(0)
 }
 

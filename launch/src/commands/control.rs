@@ -96,7 +96,7 @@ pub fn load(options: &LoadOptions) -> Result<i32, Fault> {
             right: mixture_of(beside)?,
         },
     };
-    send(&options.target, PAINT, command)?;
+    Session::command(&options.target, PAINT, command)?;
     Ok(0)
 }
 
@@ -104,11 +104,6 @@ pub fn load(options: &LoadOptions) -> Result<i32, Fault> {
 fn mixture_of(text: &str) -> Result<Mixture, Fault> {
     text.parse()
         .map_err(|error| refused(PaintRefusal::paint(PaintError::Mixture(error))))
-}
-
-/// Sends one command to a node of a rig.
-fn send(target: &Target, node: &str, command: Command) -> Result<String, Fault> {
-    Session::open(target)?.send(node, command)
 }
 
 /// Makes a brush stiffer or softer.
@@ -123,8 +118,7 @@ pub fn tune(options: &TuneOptions) -> Result<i32, Fault> {
             wetness: options.wetness,
         },
     };
-    command.check().map_err(Fault::told)?;
-    send(&options.target, PAINT, command)?;
+    Session::command(&options.target, PAINT, command)?;
     Ok(0)
 }
 
@@ -133,8 +127,7 @@ pub fn tune(options: &TuneOptions) -> Result<i32, Fault> {
 /// # Errors
 /// A [`Fault`] for an unknown brush, or where no rig runs.
 pub fn clean(options: &CleanOptions) -> Result<i32, Fault> {
-    send(
-        &options.target,
+    Session::command(&options.target,
         PAINT,
         Command::Clean {
             brush: options.brush.clone(),
@@ -149,7 +142,7 @@ pub fn clean(options: &CleanOptions) -> Result<i32, Fault> {
 /// A [`Fault`] where there is none, or where no rig runs.
 pub fn undo(options: &HistoryOptions) -> Result<i32, Fault> {
     let brush = options.brush.clone();
-    let what = send(&options.target, PAINT, Command::Undo { brush })?;
+    let what = Session::command(&options.target, PAINT, Command::Undo { brush })?;
     say!("undone: {what}");
     Ok(0)
 }
@@ -160,7 +153,7 @@ pub fn undo(options: &HistoryOptions) -> Result<i32, Fault> {
 /// A [`Fault`] where there is none, or where no rig runs.
 pub fn redo(options: &HistoryOptions) -> Result<i32, Fault> {
     let brush = options.brush.clone();
-    let what = send(&options.target, PAINT, Command::Redo { brush })?;
+    let what = Session::command(&options.target, PAINT, Command::Redo { brush })?;
     say!("redone: {what}");
     Ok(0)
 }
@@ -182,7 +175,7 @@ pub fn snapshot(options: &SnapshotOptions) -> Result<i32, Fault> {
         path: picture.asked(),
         ledger: ledger.as_ref().map(Relayed::asked),
     };
-    let said = send(&options.target, PAINT, command)?;
+    let said = Session::command(&options.target, PAINT, command)?;
     if let Some(ledger) = ledger {
         ledger.arrive("")?;
     }
