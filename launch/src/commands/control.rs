@@ -127,7 +127,8 @@ pub fn tune(options: &TuneOptions) -> Result<i32, Fault> {
 /// # Errors
 /// A [`Fault`] for an unknown brush, or where no rig runs.
 pub fn clean(options: &CleanOptions) -> Result<i32, Fault> {
-    Session::command(&options.target,
+    Session::command(
+        &options.target,
         PAINT,
         Command::Clean {
             brush: options.brush.clone(),

@@ -434,7 +434,7 @@ mod tests {
         let roots = head.roots();
         assert_eq!(&roots[..112], Head::of(&few).roots());
         let is_left = |load: &BrushLoad| {
-            let right = |texel: &usize| roots[*texel / ALONG][0] > 0.1;
+            let right = |texel: &usize| roots[*texel / ALONG][0] > 0.3;
             let inside = load.inside(3).expect("carried");
             let carried = |texel| u64::from(load.film(texel)) + u64::from(inside[texel]);
             let whole: u64 = (0..load.texels()).map(carried).sum();
