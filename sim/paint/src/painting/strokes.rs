@@ -62,7 +62,7 @@ impl Painting {
         else {
             return Ok(());
         };
-        if solve.flags & solve_flags::GLIMPSE != 0 {
+        if solve.flags & solve_flags::PREVIEW != 0 {
             return Ok(());
         }
         let track = self.brush(name)?;

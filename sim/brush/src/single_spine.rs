@@ -19,7 +19,7 @@ use serde::{Deserialize, Serialize};
 use crate::energy::friction::Anisotropy;
 use crate::file::BrushError;
 use crate::file::check::{MOST_JOINTS, within};
-use crate::solver::{Energy, Settings, Solver, Stop};
+use crate::solver::{ContactConstraint, Energy, Settings, Solver};
 use crate::spine::{Spine, SpineShape};
 
 /// A number for all joints, or one for each.
@@ -349,7 +349,7 @@ pub fn follow(file: &SpineFile, poses: &[TrialPose]) -> Vec<TrialRow> {
         return Vec::new();
     };
     let mut solver = Solver::default();
-    let mut stops = Stop::on_surface(spine.joints());
+    let mut constraints = ContactConstraint::on_surface(spine.joints());
     let Rigid {
         rotation,
         translation,
@@ -358,7 +358,7 @@ pub fn follow(file: &SpineFile, poses: &[TrialPose]) -> Vec<TrialRow> {
     let mut ends = Vec::new();
     let mut row = |pose: &TrialPose| {
         shape.carry(pose.brush.translation, pose.brush.rotation);
-        let solution = solver.solve(&spine, &mut shape, &mut stops, &[], &settings);
+        let solution = solver.solve(&spine, &mut shape, &mut constraints, &[], &settings);
         shape.joints(&spine, &mut ends);
         let (theta, phi) = shape
             .exact_angles()

@@ -24,7 +24,7 @@ pub struct Sampled {
 
 /// The way between two samples.
 #[derive(Clone, Debug)]
-pub struct Way {
+pub struct HandlePath {
     from: Rigid,
     to: Rigid,
     /// What bends it: the second difference of place and quaternion.
@@ -33,7 +33,7 @@ pub struct Way {
     lengths: [f64; CHORDS + 1],
 }
 
-impl Way {
+impl HandlePath {
     /// The way from `from` to `to` of a hand that came from `before`; straight without it. Across a
     /// pause it bends by at most what lets it go nowhere backward: a hand that was fast before may have
     /// stopped in it. Its length is that of the farther of the ferrule and the point of a head of
@@ -69,21 +69,21 @@ impl Way {
                 }
             },
         );
-        let mut way = Self {
+        let mut path = Self {
             from: from.pose,
             to: end,
             bend,
             lengths: [0.0; CHORDS + 1],
         };
         let tip = DVec3::NEG_Z * head_m;
-        let mut last = way.at(0.0);
+        let mut last = path.at(0.0);
         for chord in 1..=CHORDS {
-            let next = way.at(chord as f64 / CHORDS as f64);
+            let next = path.at(chord as f64 / CHORDS as f64);
             let moved = |p: DVec3| (next.point(p) - last.point(p)).length();
-            way.lengths[chord] = way.lengths[chord - 1] + moved(tip).max(moved(DVec3::ZERO));
+            path.lengths[chord] = path.lengths[chord - 1] + moved(tip).max(moved(DVec3::ZERO));
             last = next;
         }
-        way
+        path
     }
 
     /// Its length, m.
@@ -121,9 +121,9 @@ impl Way {
 }
 
 /// The bend of a way with which neither its part along the surface nor its height turns back.
-fn limited(bend: DVec3, way: DVec3) -> DVec3 {
-    let along = bend.truncate().clamp_length_max(way.truncate().length());
-    along.extend(bend.z.clamp(-way.z.abs(), way.z.abs()))
+fn limited(bend: DVec3, path: DVec3) -> DVec3 {
+    let along = bend.truncate().clamp_length_max(path.truncate().length());
+    along.extend(bend.z.clamp(-path.z.abs(), path.z.abs()))
 }
 
 /// As [`limited`], of a turn.
@@ -134,9 +134,9 @@ fn limited_turn(bend: DQuat, turn: DQuat) -> DQuat {
 
 /// A piece of the way between two samples.
 #[derive(Clone, Copy, Debug)]
-pub struct Piece<'a> {
+pub struct PathSegment<'a> {
     /// The way.
-    pub way: &'a Way,
+    pub path: &'a HandlePath,
     /// Its parameter where the piece begins.
     pub from: f64,
     /// And where it ends.
@@ -150,13 +150,13 @@ pub struct Piece<'a> {
     pub length_m: f64,
 }
 
-impl Piece<'_> {
+impl PathSegment<'_> {
     /// Its end.
     #[must_use]
     pub fn end(&self) -> Sampled {
         let whole = (self.end_ns - self.start_ns) as f64;
         Sampled {
-            pose: self.way.at(self.to),
+            pose: self.path.at(self.to),
             event_ns: self.start_ns + (whole * self.to) as u64,
         }
     }
@@ -201,9 +201,9 @@ mod tests {
     /// Farthest of the way from the circle that its samples lie on.
     fn error(h: f64, before: Option<f64>) -> f64 {
         let before = before.map(sampled);
-        let way = Way::new(before.as_ref(), &sampled(1.0), &sampled(1.0 + h), 0.1);
+        let path = HandlePath::new(before.as_ref(), &sampled(1.0), &sampled(1.0 + h), 0.1);
         (0..=20)
-            .map(|i| (way.at(f64::from(i) / 20.0).translation.length() - 1.0).abs())
+            .map(|i| (path.at(f64::from(i) / 20.0).translation.length() - 1.0).abs())
             .fold(0.0, f64::max)
     }
 
@@ -232,8 +232,8 @@ mod tests {
         let before = at(-0.002, 0.0004, 996);
         let (from, to) = (at(0.0, 0.0, 1000), at(0.003, -0.001, 1250));
         let monotone = |to: &Sampled| {
-            let way = Way::new(Some(&before), &from, to, 0.1);
-            let places: Vec<Rigid> = (0..=20).map(|i| way.at(f64::from(i) / 20.0)).collect();
+            let path = HandlePath::new(Some(&before), &from, to, 0.1);
+            let places: Vec<Rigid> = (0..=20).map(|i| path.at(f64::from(i) / 20.0)).collect();
             places.windows(2).all(|pair| {
                 let [a, b] = [pair[0], pair[1]];
                 let turned = b.rotation.z - a.rotation.z;
@@ -253,14 +253,14 @@ mod tests {
 
     #[test]
     fn its_ends_are_the_samples_and_its_length_is_walked_evenly() {
-        let way = Way::new(Some(&sampled(0.9)), &sampled(1.0), &sampled(1.2), 0.1);
+        let path = HandlePath::new(Some(&sampled(0.9)), &sampled(1.0), &sampled(1.2), 0.1);
         for (s, t) in [(0.0, 1.0), (1.0, 1.2)] {
             let pose = sampled(t).pose;
-            assert!((way.at(s).translation - pose.translation).length() < 1e-14);
-            assert!(way.at(s).rotation.dot(pose.rotation).abs() > 1.0 - 1e-12);
+            assert!((path.at(s).translation - pose.translation).length() < 1e-14);
+            assert!(path.at(s).rotation.dot(pose.rotation).abs() > 1.0 - 1e-12);
         }
         for part in [0.0, 0.3, 0.5, 1.0] {
-            let s = way.after(part * way.length_m());
+            let s = path.after(part * path.length_m());
             assert!((s - part).abs() < 0.02, "{part}: {s}");
         }
     }

@@ -7,8 +7,9 @@ use maulstick_types::haptics::HermiteKnot;
 
 use crate::desk::Obstacle;
 use crate::file::BrushFile;
-use crate::held::{HeadSolver, HeldHead, settings_of};
-use crate::tuft::{Seat, Tuft};
+use crate::head_solver::{HeadSolver, SolvedHead, settings_of};
+use crate::spine_layout::SpineLayout;
+use crate::spine_root::SpineRoot;
 
 /// A head less pressed in than this share of its length feels as at rest.
 const LEAST_DEPTH: f64 = 0.04;
@@ -19,29 +20,29 @@ const MOST: f64 = 4.0;
 
 /// What the hand feels.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Feel {
+pub struct HeadStiffness {
     /// k₁: the normal force at which the head would be pressed in by its whole length along the
     /// normal, were it as stiff as between its first touch and how it is bent, N.
     pub k1_n: f64,
 }
 
-impl Feel {
+impl HeadStiffness {
     /// A head that touches nothing: half of the loads, summed, under which its spines begin to give
     /// way (1/ΣK⁻¹ by the length), for a head is rarely held upright.
     #[must_use]
-    pub fn at_rest(tuft: &Tuft, length_m: f64) -> Self {
-        let load = |seat: &Seat| {
-            let compliance: f64 = seat.spine.stiffness.iter().map(|k| 1.0 / k).sum();
+    pub fn at_rest(tuft: &SpineLayout, length_m: f64) -> Self {
+        let load = |root: &SpineRoot| {
+            let compliance: f64 = root.spine.stiffness.iter().map(|k| 1.0 / k).sum();
             1.0 / (compliance * length_m)
         };
         Self {
-            k1_n: 0.5 * tuft.seats.iter().map(load).sum::<f64>(),
+            k1_n: 0.5 * tuft.roots.iter().map(load).sum::<f64>(),
         }
     }
 
     /// A head that is held at `brush` over the surface z = 0 and presses with `force_n`.
     #[must_use]
-    pub fn bent(tuft: &Tuft, length_m: f64, brush: &Rigid, force_n: f64) -> Self {
+    pub fn bent(tuft: &SpineLayout, length_m: f64, brush: &Rigid, force_n: f64) -> Self {
         let rest = Self::at_rest(tuft, length_m);
         let upright = brush.vector(DVec3::Z).z;
         let along = (upright * length_m).max(LEAST_ALONG * length_m);
@@ -77,7 +78,7 @@ const WHOLE_MOST_N: f64 = 3.0;
 #[must_use]
 pub fn tuples(file: &BrushFile) -> Vec<HermiteKnot> {
     let own = file.force.as_ref();
-    let whole = || WHOLE * Feel::at_rest(&file.tuft(), file.length_m()).k1_n;
+    let whole = || WHOLE * HeadStiffness::at_rest(&SpineLayout::of(file), file.length_m()).k1_n;
     let (rows, by) = own.map_or_else(
         || (&TUPLES[..], whole().min(WHOLE_MOST_N)),
         |force| (&force.hermite[..], 1.0),
@@ -125,7 +126,7 @@ pub(crate) const AT_ONCE_M: f64 = 5e-4;
 /// head is as it was there.
 #[must_use]
 pub fn press(file: &BrushFile, theta: f64, depths_m: &[f64]) -> Vec<Press> {
-    let (tuft, length) = (file.tuft(), file.length_m());
+    let (tuft, length) = (SpineLayout::of(file), file.length_m());
     let (settings, ground) = (settings_of(file, &tuft), [Obstacle::ground()]);
     let lean = rotation(DVec3::Y, theta);
     let along = (lean * DVec3::Z).z * length;
@@ -138,9 +139,9 @@ pub fn press(file: &BrushFile, theta: f64, depths_m: &[f64]) -> Vec<Press> {
         brush
     };
     let mut room = HeadSolver::default();
-    let mut head = HeldHead::at_rest(&tuft, &at(0.0));
+    let mut head = SolvedHead::at_rest(&tuft, &at(0.0));
     let mut last: f64 = 0.0;
-    let mut solve = |head: &mut HeldHead, depth: f64| {
+    let mut solve = |head: &mut SolvedHead, depth: f64| {
         head.solve(&mut room, &tuft, &at(depth), &ground, &settings);
         head.force_n()
     };
@@ -180,13 +181,13 @@ mod tests {
     #[test]
     fn a_stiffer_head_feels_stiffer_and_a_larger_force_too() {
         let file = BrushFile::library("round").expect("round");
-        let (mut tuft, length) = (file.tuft(), file.length_m());
-        let soft = Feel::at_rest(&tuft, length);
+        let (mut tuft, length) = (SpineLayout::of(&file), file.length_m());
+        let soft = HeadStiffness::at_rest(&tuft, length);
         assert!((0.1..3.0).contains(&soft.k1_n), "{soft:?}");
         tuft.stiffen(2.0);
-        let stiff = Feel::at_rest(&tuft, length);
+        let stiff = HeadStiffness::at_rest(&tuft, length);
         assert!((stiff.k1_n / soft.k1_n - 2.0).abs() < 1e-12);
-        let pressed = |force| Feel::bent(&tuft, length, &held(0.3, length), force).k1_n;
+        let pressed = |force| HeadStiffness::bent(&tuft, length, &held(0.3, length), force).k1_n;
         assert!((pressed(0.3) - 1.0).abs() < 1e-12, "F·l/d");
         assert!(pressed(0.35) > pressed(0.3));
     }
@@ -194,11 +195,13 @@ mod tests {
     #[test]
     fn it_goes_over_from_rest_without_a_jump() {
         let file = BrushFile::library("round").expect("round");
-        let (tuft, length) = (file.tuft(), file.length_m());
+        let (tuft, length) = (SpineLayout::of(&file), file.length_m());
         let force = |depth: f64| depth * 2.0;
-        let feel = |depth: f64| Feel::bent(&tuft, length, &held(depth, length), force(depth)).k1_n;
+        let feel = |depth: f64| {
+            HeadStiffness::bent(&tuft, length, &held(depth, length), force(depth)).k1_n
+        };
         let mut last = feel(0.0);
-        assert_eq!(last, Feel::at_rest(&tuft, length).k1_n);
+        assert_eq!(last, HeadStiffness::at_rest(&tuft, length).k1_n);
         for step in 1..400 {
             let next = feel(f64::from(step) * 1e-3);
             assert!((next - last).abs() < 0.03 * 2.0, "{step}: {last} {next}");

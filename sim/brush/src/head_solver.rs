@@ -9,9 +9,10 @@ use crate::desk::Obstacle;
 use crate::energy::bond::Bond;
 use crate::energy::friction::Anisotropy;
 use crate::file::BrushFile;
-use crate::solver::{Neighbour, Settings, Solver, Stop};
+use crate::solver::{ContactConstraint, Neighbour, Settings, Solver};
 use crate::spine::SpineShape;
-use crate::tuft::{Seat, Tuft};
+use crate::spine_layout::SpineLayout;
+use crate::spine_root::SpineRoot;
 
 /// Times that all spines are solved where the head is put down anew: each sees the others as they
 /// were, and nothing was before.
@@ -22,18 +23,18 @@ const MOVED_M: f64 = 1e-6;
 
 /// A spine and what it touches.
 #[derive(Clone, Debug)]
-struct HeldSpine {
+struct SolvedSpine {
     shape: SpineShape,
     /// Those of the first obstacle, the surface, come first: one a joint.
-    stops: Vec<Stop>,
+    constraints: Vec<ContactConstraint>,
     ends: Vec<DVec3>,
 }
 
 /// All spines of a head, in the frame of a surface, m.
 #[derive(Clone, Debug)]
-pub struct HeldHead {
-    spines: Vec<HeldSpine>,
-    core: HeldSpine,
+pub struct SolvedHead {
+    spines: Vec<SolvedSpine>,
+    core: SolvedSpine,
     fresh: bool,
 }
 
@@ -48,38 +49,41 @@ pub struct HeadSolver {
     bonds: Vec<Bond>,
 }
 
-impl HeldSpine {
-    fn at_rest(seat: &Seat, brush: &Rigid) -> Self {
-        let shape = seat.at_rest(brush);
-        let joints = seat.spine.joints();
+impl SolvedSpine {
+    fn at_rest(root: &SpineRoot, brush: &Rigid) -> Self {
+        let shape = root.at_rest(brush);
+        let joints = root.spine.joints();
         Self {
-            stops: Stop::on_surface(joints),
-            ends: (0..joints).map(|i| shape.joint(&seat.spine, i)).collect(),
+            constraints: ContactConstraint::on_surface(joints),
+            ends: (0..joints).map(|i| shape.joint(&root.spine, i)).collect(),
             shape,
         }
     }
 }
 
-impl HeldHead {
+impl SolvedHead {
     /// A head at rest at `brush`.
     #[must_use]
-    pub fn at_rest(tuft: &Tuft, brush: &Rigid) -> Self {
-        let at_rest = |seat: &Seat| HeldSpine::at_rest(seat, brush);
+    pub fn at_rest(tuft: &SpineLayout, brush: &Rigid) -> Self {
+        let at_rest = |root: &SpineRoot| SolvedSpine::at_rest(root, brush);
         Self {
-            spines: tuft.seats.iter().map(at_rest).collect(),
-            core: at_rest(&tuft.core.seat),
+            spines: tuft.roots.iter().map(at_rest).collect(),
+            core: at_rest(&tuft.core.root),
             fresh: true,
         }
     }
 
     /// Slides a head along the surface to `brush`, bent and touching as it is: nothing is dragged.
-    pub fn slide(&mut self, tuft: &Tuft, brush: &Rigid) {
-        let to = tuft.core.seat.held(brush).translation;
+    pub fn slide(&mut self, tuft: &SpineLayout, brush: &Rigid) {
+        let to = tuft.core.root.frame(brush).translation;
         let by = (to - self.core.shape.root).with_z(0.0);
         for spine in self.spines.iter_mut().chain([&mut self.core]) {
             spine.shape.root += by;
             spine.ends.iter_mut().for_each(|end| *end += by);
-            let anchors = spine.stops.iter_mut().flat_map(|stop| &mut stop.anchor);
+            let anchors = spine
+                .constraints
+                .iter_mut()
+                .flat_map(|constraint| &mut constraint.anchor);
             anchors.for_each(|anchor| *anchor += by);
         }
     }
@@ -87,35 +91,38 @@ impl HeldHead {
     /// Whether a joint touches the surface.
     #[must_use]
     pub fn touches(&self) -> bool {
-        self.on_surface().any(|(_, stop)| stop.touches())
+        self.on_surface()
+            .any(|(_, constraint)| constraint.touches())
     }
 
     /// The normal force of all contacts with the surface, N.
     #[must_use]
     pub fn force_n(&self) -> f64 {
-        self.on_surface().map(|(_, stop)| stop.force_n).sum()
+        self.on_surface()
+            .map(|(_, constraint)| constraint.force_n)
+            .sum()
     }
 
     /// What touches the surface.
     #[must_use]
     pub fn contacts(&self) -> Vec<Contact> {
         self.on_surface()
-            .filter(|(_, stop)| stop.touches())
-            .map(|(spine, stop)| Contact {
+            .filter(|(_, constraint)| constraint.touches())
+            .map(|(spine, constraint)| Contact {
                 spine: spine as u16,
-                joint: (stop.joint + 1) as u16,
-                force_n: stop.force_n as f32,
+                joint: (constraint.joint + 1) as u16,
+                force_n: constraint.force_n as f32,
             })
             .collect()
     }
 
-    fn on_surface(&self) -> impl Iterator<Item = (usize, &Stop)> {
+    fn on_surface(&self) -> impl Iterator<Item = (usize, &ContactConstraint)> {
         self.spines.iter().enumerate().flat_map(|(number, spine)| {
             let joints = spine.ends.len();
-            let stops = spine.stops[..joints].iter();
+            let constraints = spine.constraints[..joints].iter();
             // Beside a raised palette a joint may lean on its edge.
-            let upon = stops.filter(|stop| stop.wall.normal.z > 0.5);
-            upon.map(move |stop| (number, stop))
+            let upon = constraints.filter(|constraint| constraint.half_space.normal.z > 0.5);
+            upon.map(move |constraint| (number, constraint))
         })
     }
 
@@ -137,9 +144,11 @@ impl HeldHead {
         let spines = self.spines.iter().zip(&before.spines);
         spines
             .flat_map(|(now, then)| {
-                let stops = now.stops.iter().zip(&then.stops);
-                let both = stops.filter(|(a, b)| a.touches() && b.touches());
-                both.map(|(stop, _)| (now.ends[stop.joint] - then.ends[stop.joint]).truncate())
+                let constraints = now.constraints.iter().zip(&then.constraints);
+                let both = constraints.filter(|(a, b)| a.touches() && b.touches());
+                both.map(|(constraint, _)| {
+                    (now.ends[constraint.joint] - then.ends[constraint.joint]).truncate()
+                })
             })
             .map(|way| way.length())
             .fold(0.0, f64::max)
@@ -150,7 +159,7 @@ impl HeldHead {
     pub fn solve(
         &mut self,
         room: &mut HeadSolver,
-        tuft: &Tuft,
+        tuft: &SpineLayout,
         brush: &Rigid,
         obstacles: &[Obstacle],
         settings: &Settings,
@@ -159,33 +168,33 @@ impl HeldHead {
         let anew = std::mem::take(&mut self.fresh) || !self.touches();
         let mut converged = self.bend_core(room, tuft, brush, obstacles, settings);
         core_spine::frames(&self.core.shape, &mut room.frames);
-        for (spine, seat) in self.spines.iter_mut().zip(&tuft.seats) {
-            let held = seat.held(brush);
+        for (spine, root) in self.spines.iter_mut().zip(&tuft.roots) {
+            let held = root.frame(brush);
             spine.shape.carry(held.translation, held.rotation);
         }
         // The spines beside one are where the handle has carried them.
-        for ((spine, seat), ends) in self.spines.iter().zip(&tuft.seats).zip(&mut room.ends) {
-            spine.shape.joints(&seat.spine, ends);
+        for ((spine, root), ends) in self.spines.iter().zip(&tuft.roots).zip(&mut room.ends) {
+            spine.shape.joints(&root.spine, ends);
         }
-        let sweeps = match anew && tuft.crowd_n_m > 0.0 {
+        let sweeps = match anew && tuft.repulsion_n_m > 0.0 {
             true => SETTLING,
             false => 1,
         };
         for _ in 0..sweeps {
-            for (number, (spine, seat)) in self.spines.iter_mut().zip(&tuft.seats).enumerate() {
+            for (number, (spine, root)) in self.spines.iter_mut().zip(&tuft.roots).enumerate() {
                 tuft.neighbours(number, &room.ends, &mut room.neighbours);
                 let (core, frames) = (&tuft.core, &room.frames);
-                core.bonds(number, frames, &seat.spine, tuft.bond, &mut room.bonds);
-                face(&mut spine.stops, &spine.ends, obstacles);
+                core.bonds(number, frames, &root.spine, tuft.bond, &mut room.bonds);
+                face(&mut spine.constraints, &spine.ends, obstacles);
                 let solution = room.solver.solve_bound(
-                    &seat.spine,
+                    &root.spine,
                     &mut spine.shape,
-                    &mut spine.stops,
+                    &mut spine.constraints,
                     (&room.neighbours, &room.bonds),
                     settings,
                 );
                 converged &= solution.converged;
-                spine.shape.joints(&seat.spine, &mut spine.ends);
+                spine.shape.joints(&root.spine, &mut spine.ends);
                 room.ends[number].clone_from(&spine.ends);
             }
         }
@@ -197,43 +206,45 @@ impl HeldHead {
     fn bend_core(
         &mut self,
         room: &mut HeadSolver,
-        tuft: &Tuft,
+        tuft: &SpineLayout,
         brush: &Rigid,
         obstacles: &[Obstacle],
         settings: &Settings,
     ) -> bool {
-        let (core, seat) = (&mut self.core, &tuft.core.seat);
-        let held = seat.held(brush);
+        let (core, root) = (&mut self.core, &tuft.core.root);
+        let held = root.frame(brush);
         let way = (held.translation - core.shape.root).truncate();
         let yields = match way.length() > MOVED_M {
             true => -way.normalize(),
             false => settings.yields,
         };
         core.shape.carry(held.translation, held.rotation);
-        core.shape.joints(&seat.spine, &mut core.ends);
-        face(&mut core.stops, &core.ends, obstacles);
+        core.shape.joints(&root.spine, &mut core.ends);
+        face(&mut core.constraints, &core.ends, obstacles);
         let settings = Settings {
             yields,
             ..*settings
         };
-        let (shape, stops) = (&mut core.shape, &mut core.stops);
-        let solution = room.solver.solve(&seat.spine, shape, stops, &[], &settings);
-        core.shape.joints(&seat.spine, &mut core.ends);
+        let (shape, constraints) = (&mut core.shape, &mut core.constraints);
+        let solution = room
+            .solver
+            .solve(&root.spine, shape, constraints, &[], &settings);
+        core.shape.joints(&root.spine, &mut core.ends);
         solution.converged
     }
 }
 
 /// Turns each joint's stops to the faces of the obstacles that it is outside of.
-fn face(stops: &mut Vec<Stop>, ends: &[DVec3], obstacles: &[Obstacle]) {
+fn face(constraints: &mut Vec<ContactConstraint>, ends: &[DVec3], obstacles: &[Obstacle]) {
     let joints = ends.len();
-    stops.truncate(joints * obstacles.len().max(1));
+    constraints.truncate(joints * obstacles.len().max(1));
     for (number, obstacle) in obstacles.iter().enumerate() {
         for (joint, end) in ends.iter().enumerate() {
             let wall = obstacle.face_toward(*end);
-            match stops.get_mut(number * joints + joint) {
-                Some(stop) if stop.wall == wall => {}
-                Some(stop) => *stop = Stop::new(joint, wall),
-                None => stops.push(Stop::new(joint, wall)),
+            match constraints.get_mut(number * joints + joint) {
+                Some(constraint) if constraint.half_space == wall => {}
+                Some(constraint) => *constraint = ContactConstraint::new(joint, wall),
+                None => constraints.push(ContactConstraint::new(joint, wall)),
             }
         }
     }
@@ -241,7 +252,7 @@ fn face(stops: &mut Vec<Stop>, ends: &[DVec3], obstacles: &[Obstacle]) {
 
 /// What the solver is asked for by a brush file with this tuft.
 #[must_use]
-pub fn settings_of(file: &BrushFile, tuft: &Tuft) -> Settings {
+pub fn settings_of(file: &BrushFile, tuft: &SpineLayout) -> Settings {
     let contact = &file.contact;
     Settings {
         friction: contact.friction,
@@ -251,7 +262,7 @@ pub fn settings_of(file: &BrushFile, tuft: &Tuft) -> Settings {
             focus: contact.focus,
             ..Anisotropy::default()
         },
-        crowd_n_m: tuft.crowd_n_m,
+        repulsion_n_m: tuft.repulsion_n_m,
         ..Settings::for_length(file.length_m())
     }
 }

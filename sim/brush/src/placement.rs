@@ -15,14 +15,14 @@ pub const TILT_MOST: f64 = 1.05;
 
 /// Where a surface lies, and how it may be moved.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Lie {
+pub struct SurfacePlacement {
     /// Surface frame to desk frame.
     pub pose: Rigid,
     /// Desk lengths per surface length.
     pub zoom: f64,
 }
 
-impl From<&Surface> for Lie {
+impl From<&Surface> for SurfacePlacement {
     fn from(surface: &Surface) -> Self {
         Self {
             pose: Rigid::from(&surface.pose),
@@ -31,7 +31,7 @@ impl From<&Surface> for Lie {
     }
 }
 
-impl Lie {
+impl SurfacePlacement {
     /// Moved along the desk, within reach.
     #[must_use]
     pub fn moved(&self, by: DVec3) -> Self {
@@ -101,10 +101,10 @@ impl Lie {
 
 /// A surface that lies so.
 #[must_use]
-pub fn laid(surface: &Surface, lie: &Lie) -> Surface {
+pub fn placed(surface: &Surface, placement: &SurfacePlacement) -> Surface {
     Surface {
-        pose: lie.pose.to_pose(),
-        zoom: lie.zoom,
+        pose: placement.pose.to_pose(),
+        zoom: placement.zoom,
         ..surface.clone()
     }
 }
@@ -113,7 +113,7 @@ pub fn laid(surface: &Surface, lie: &Lie) -> Surface {
 mod tests {
     use super::*;
 
-    const LIE: Lie = Lie {
+    const PLACEMENT: SurfacePlacement = SurfacePlacement {
         pose: Rigid {
             translation: DVec3::new(-0.128, -0.128, 0.0),
             ..Rigid::IDENTITY
@@ -122,44 +122,50 @@ mod tests {
     };
 
     /// The place on the surface under a point of the desk, its own lengths.
-    fn under(lie: &Lie, desk: DVec3) -> DVec3 {
-        lie.pose.inverse().point(desk) / lie.zoom
+    fn under(placement: &SurfacePlacement, desk: DVec3) -> DVec3 {
+        placement.pose.inverse().point(desk) / placement.zoom
     }
 
     #[test]
     fn what_the_hand_holds_stays_under_it() {
         let held = DVec3::new(0.05, -0.02, 0.0);
-        let own = under(&LIE, held);
-        let zoomed = LIE.zoomed(held, 3.0);
+        let own = under(&PLACEMENT, held);
+        let zoomed = PLACEMENT.zoomed(held, 3.0);
         let turned = zoomed.turned(held, DVec3::Z, 0.7);
         let tilted = turned.tilted(held, 0.4);
-        for lie in [zoomed, turned, tilted] {
-            assert!((under(&lie, held) - own).length() < 1e-12, "{lie:?}");
-            assert_eq!(lie.command(0).check(), Ok(()));
+        for placement in [zoomed, turned, tilted] {
+            assert!(
+                (under(&placement, held) - own).length() < 1e-12,
+                "{placement:?}"
+            );
+            assert_eq!(placement.command(0).check(), Ok(()));
         }
         let beside = held + DVec3::X * 1e-3;
-        let off = (under(&LIE.zoomed(beside, 3.0), held) - own).length();
+        let off = (under(&PLACEMENT.zoomed(beside, 3.0), held) - own).length();
         assert!(off > 1e-4, "a fault would pass");
-        let moved = LIE.moved(DVec3::X * 0.01);
+        let moved = PLACEMENT.moved(DVec3::X * 0.01);
         assert!((under(&moved, held) - own - DVec3::X * -0.01).length() < 1e-12);
     }
 
     #[test]
     fn however_far_it_is_moved_it_stays_within_reach() {
-        let (mut lie, about) = (LIE, DVec3::new(0.3, 0.3, 0.0));
+        let (mut placement, about) = (PLACEMENT, DVec3::new(0.3, 0.3, 0.0));
         for _ in 0..200 {
-            lie = lie
+            placement = placement
                 .zoomed(about, 1.3)
                 .moved(DVec3::splat(1.0))
                 .tilted(about, 0.1);
         }
-        assert!(lie.zoom <= ZOOMS[1]);
-        assert!(lie.pose.translation.abs().max_element() <= FARTHEST_M * ZOOMS[1]);
+        assert!(placement.zoom <= ZOOMS[1]);
+        assert!(placement.pose.translation.abs().max_element() <= FARTHEST_M * ZOOMS[1]);
         assert!(
-            lie.pose.vector(DVec3::Z).z > 0.45,
+            placement.pose.vector(DVec3::Z).z > 0.45,
             "never away from the painter"
         );
-        let small = Lie { zoom: 0.05, ..LIE };
+        let small = SurfacePlacement {
+            zoom: 0.05,
+            ..PLACEMENT
+        };
         assert_eq!(small.zoomed(about, 0.5).zoom, 0.05, "no leap to the bound");
     }
 }

@@ -17,14 +17,14 @@ const LAG: f64 = 2e-3;
 
 /// A half-space that joints stay in: n·x ≥ offset.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Wall {
+pub struct HalfSpace {
     /// Unit normal, out of the wall.
     pub normal: DVec3,
     /// Its distance from the origin along the normal, m.
     pub offset_m: f64,
 }
 
-impl Wall {
+impl HalfSpace {
     /// The surface z = 0.
     pub const SURFACE: Self = Self {
         normal: DVec3::Z,
@@ -44,11 +44,11 @@ impl Wall {
 
 /// A joint's far end and a wall that it stays out of.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Stop {
+pub struct ContactConstraint {
     /// The joint.
     pub joint: usize,
     /// The wall.
-    pub wall: Wall,
+    pub half_space: HalfSpace,
     /// Normal force, N: the multiplier of the constraint, 0 in the air.
     pub force_n: f64,
     /// Where it touched, or where it began to stick; none if it was in the air.
@@ -59,13 +59,13 @@ pub struct Stop {
     preferred: DVec3,
 }
 
-impl Stop {
+impl ContactConstraint {
     /// A joint that does not touch.
     #[must_use]
-    pub fn new(joint: usize, wall: Wall) -> Self {
+    pub fn new(joint: usize, half_space: HalfSpace) -> Self {
         Self {
             joint,
-            wall,
+            half_space,
             force_n: 0.0,
             anchor: None,
             sticks: false,
@@ -77,7 +77,7 @@ impl Stop {
     #[must_use]
     pub fn on_surface(joints: usize) -> Vec<Self> {
         (0..joints)
-            .map(|joint| Self::new(joint, Wall::SURFACE))
+            .map(|joint| Self::new(joint, HalfSpace::SURFACE))
             .collect()
     }
 
@@ -89,14 +89,14 @@ impl Stop {
 
     /// Puts it into the air.
     pub fn clear(&mut self) {
-        *self = Self::new(self.joint, self.wall);
+        *self = Self::new(self.joint, self.half_space);
     }
 
     /// Notes which way its segment points: the unit projection onto the wall of the way from the end
     /// of the segment to its root.
-    pub fn aim(&mut self, spine: &Spine, shape: &SpineShape) {
+    pub fn update_preferred(&mut self, spine: &Spine, shape: &SpineShape) {
         let back = -shape.directions[self.joint];
-        let lies = self.wall.along(back);
+        let lies = self.half_space.along(back);
         let short = 1e-6 * spine.lengths_m[self.joint];
         self.preferred = if lies.length() > short {
             lies.normalize()
@@ -107,7 +107,7 @@ impl Stop {
 
     /// The friction of a joint that is at `p`.
     pub(super) fn friction(&self, p: DVec3, settings: &Settings) -> Option<Friction> {
-        let slip = self.wall.along(p - self.anchor?);
+        let slip = self.half_space.along(p - self.anchor?);
         let coefficient = if self.sticks {
             settings.friction_static.max(settings.friction)
         } else {
@@ -121,7 +121,7 @@ impl Stop {
         Some(friction(
             weight,
             slip,
-            self.wall.normal,
+            self.half_space.normal,
             settings.epsilon_m,
             &anisotropy,
         ))
@@ -142,7 +142,7 @@ impl Stop {
         let Some(anchor) = self.anchor else {
             return false;
         };
-        let loose = self.wall.along(p - anchor).length() > LOOSE * settings.epsilon_m;
+        let loose = self.half_space.along(p - anchor).length() > LOOSE * settings.epsilon_m;
         let breaks = self.sticks && loose && settings.friction_static > settings.friction;
         self.sticks &= !loose;
         let lags = (force_n - self.force_n).abs() > LAG * force_n.max(least_n);
@@ -151,7 +151,7 @@ impl Stop {
     }
 
     /// Notes what came of a solve that put the joint to `p`.
-    pub(super) fn settle(&mut self, force_n: f64, p: DVec3, settings: &Settings) {
+    pub(super) fn commit(&mut self, force_n: f64, p: DVec3, settings: &Settings) {
         if force_n <= 0.0 {
             self.clear();
             return;
@@ -160,7 +160,7 @@ impl Stop {
         match self.anchor {
             Some(_) if self.sticks => {}
             Some(anchor) => {
-                let slip = self.wall.along(p - anchor).length();
+                let slip = self.half_space.along(p - anchor).length();
                 self.sticks = slip < STUCK * settings.epsilon_m;
                 self.anchor = Some(p);
             }

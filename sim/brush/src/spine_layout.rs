@@ -1,6 +1,6 @@
 //! The tuft: where the spines of a head stand in the ferrule.
 
-use glam::{DQuat, DVec2, DVec3};
+use glam::{DVec2, DVec3};
 use maulstick_num::geometry::{Rigid, shortest_arc};
 use maulstick_num::sin_cos;
 
@@ -8,72 +8,23 @@ use crate::core_spine::Core;
 use crate::file::BrushFile;
 use crate::file::sections::{Chain, Layout};
 use crate::solver::Neighbour;
-use crate::spine::{Spine, SpineShape};
+use crate::spine::Spine;
+use crate::spine_root::SpineRoot;
 
 /// The ferrule is held off the surface by at least this share of the head's length.
 const LEAST_HEIGHT: f64 = 0.05;
 
-/// A spine and where it begins.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Seat {
-    /// Its root in the brush frame, m.
-    pub root: DVec3,
-    /// Turns the brush frame so that its −z is the spine's direction where it leaves the ferrule.
-    pub lean: DQuat,
-    /// What it is made of: each has its share of the head's stiffness.
-    pub spine: Spine,
-}
-
-impl Seat {
-    /// A spine that rests as drawn: from a root on by segments, brush frame, m.
-    #[must_use]
-    pub fn drawn(root: DVec3, segments: &[DVec3], spine: Spine) -> Self {
-        let lean = shortest_arc(DVec3::NEG_Z, segments[0].normalize());
-        let directions: Vec<DVec3> = segments
-            .iter()
-            .map(|segment| lean.conjugate() * segment.normalize())
-            .collect();
-        let straight = directions
-            .iter()
-            .all(|d| (*d - DVec3::NEG_Z).length() < 1e-9);
-        Self {
-            root,
-            lean,
-            spine: match straight {
-                true => spine,
-                false => spine.resting(&directions),
-            },
-        }
-    }
-
-    /// The seat of a brush that is held at `brush`: root and orientation of the spine's own frame.
-    #[must_use]
-    pub fn held(&self, brush: &Rigid) -> Rigid {
-        Rigid {
-            rotation: brush.rotation * self.lean,
-            translation: brush.point(self.root),
-        }
-    }
-
-    /// The spine at rest in a brush that is held at `brush`.
-    #[must_use]
-    pub fn at_rest(&self, brush: &Rigid) -> SpineShape {
-        let held = self.held(brush);
-        SpineShape::at_rest(held.translation, held.rotation, &self.spine)
-    }
-}
-
 /// The spines of a head.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Tuft {
+pub struct SpineLayout {
     /// Ring: the one in the middle first, then those around it, counterclockwise seen from the
     /// handle. Row: along x.
-    pub seats: Vec<Seat>,
+    pub roots: Vec<SpineRoot>,
     /// For each spine the joints of the others that keep it out of their room: number of the other
     /// spine, joint, and the distance at rest, m.
     pub rooms: Vec<Vec<Room>>,
     /// Stiffness of that room, N/m.
-    pub crowd_n_m: f64,
+    pub repulsion_n_m: f64,
     /// What the spines are bound to.
     pub core: Core,
     /// Stiffness of their bonds by that of their joints.
@@ -91,7 +42,7 @@ pub struct Room {
     pub at_rest_m: f64,
 }
 
-impl Tuft {
+impl SpineLayout {
     /// The tuft of a brush file.
     #[must_use]
     pub fn of(file: &BrushFile) -> Self {
@@ -113,26 +64,29 @@ impl Tuft {
                 .collect(),
             Layout::Chains => Vec::new(),
         };
-        let seats: Vec<Seat> = match spines.layout {
-            Layout::Ring | Layout::Row => places.iter().map(|place| seat(file, *place)).collect(),
-            Layout::Chains => spines.chains.iter().map(chain_seat).collect(),
+        let roots: Vec<SpineRoot> = match spines.layout {
+            Layout::Ring | Layout::Row => places
+                .iter()
+                .map(|place| spine_root(file, *place))
+                .collect(),
+            Layout::Chains => spines.chains.iter().map(chain_root).collect(),
         };
-        let rooms = rooms(&seats);
+        let rooms = rooms(&roots);
         // The stiffness of a spine's point against a force across it is 3·EI/L³.
-        let soft = |seat: &Seat| {
-            let spine = &seat.spine;
+        let soft = |root: &SpineRoot| {
+            let spine = &root.spine;
             let n = spine.joints();
             let ei = spine.stiffness[n - 1] * spine.lengths_m[n - 1];
             let length = spine.length_m();
             3.0 * ei / (length * length * length)
         };
-        let mean = seats.iter().map(soft).sum::<f64>() / seats.len().max(1) as f64;
+        let mean = roots.iter().map(soft).sum::<f64>() / roots.len().max(1) as f64;
         Self {
             rooms,
-            crowd_n_m: spines.volume * mean,
-            core: Core::of(&seats),
+            repulsion_n_m: spines.volume * mean,
+            core: Core::of(&roots),
             bond: spines.bond[0],
-            seats,
+            roots,
         }
     }
 
@@ -140,14 +94,14 @@ impl Tuft {
     #[must_use]
     pub fn places(&self, file: &BrushFile) -> Vec<DVec2> {
         let half = DVec2::new(file.radius_m(0.0), file.half_thickness_m(0.0));
-        let seats = self.seats.iter();
-        seats.map(|seat| seat.root.truncate() / half).collect()
+        let roots = self.roots.iter();
+        roots.map(|root| root.origin.truncate() / half).collect()
     }
 
     /// Height of the lowest root of a brush that is held at `brush`, m.
     #[must_use]
     pub fn lowest_root(&self, brush: &Rigid) -> f64 {
-        let roots = self.seats.iter().map(|seat| brush.point(seat.root).z);
+        let roots = self.roots.iter().map(|root| brush.point(root.origin).z);
         roots.fold(brush.translation.z, f64::min)
     }
 
@@ -159,9 +113,9 @@ impl Tuft {
 
     /// Multiplies all stiffness by a factor.
     pub fn stiffen(&mut self, factor: f64) {
-        self.crowd_n_m *= factor;
-        for seat in self.seats.iter_mut().chain([&mut self.core.seat]) {
-            let spine = &mut seat.spine;
+        self.repulsion_n_m *= factor;
+        for root in self.roots.iter_mut().chain([&mut self.core.root]) {
+            let spine = &mut root.spine;
             let torques = spine.stiffness.iter_mut().chain(&mut spine.damping);
             torques.for_each(|torque| *torque *= factor);
         }
@@ -170,13 +124,13 @@ impl Tuft {
     /// Number of joints of all spines.
     #[must_use]
     pub fn joints(&self) -> usize {
-        self.seats.iter().map(|seat| seat.spine.joints()).sum()
+        self.roots.iter().map(|root| root.spine.joints()).sum()
     }
 
     /// What pushes spine `number` aside, given where the ends of all segments are.
     pub fn neighbours(&self, number: usize, ends: &[Vec<DVec3>], into: &mut Vec<Neighbour>) {
         into.clear();
-        if self.crowd_n_m > 0.0 {
+        if self.repulsion_n_m > 0.0 {
             into.extend(self.rooms[number].iter().map(|room| Neighbour {
                 joint: room.joint,
                 at: ends[room.other][room.joint],
@@ -186,7 +140,7 @@ impl Tuft {
     }
 }
 
-fn seat(file: &BrushFile, place: [f64; 2]) -> Seat {
+fn spine_root(file: &BrushFile, place: [f64; 2]) -> SpineRoot {
     let spines = &file.spines;
     let half = |s: f64| [file.radius_m(s), file.half_thickness_m(s)];
     let at = |s: f64| {
@@ -223,10 +177,14 @@ fn seat(file: &BrushFile, place: [f64; 2]) -> Seat {
         };
         spine.resting(&(0..n).map(bent).collect::<Vec<DVec3>>())
     };
-    Seat { root, lean, spine }
+    SpineRoot {
+        origin: root,
+        lean,
+        spine,
+    }
 }
 
-fn chain_seat(chain: &Chain) -> Seat {
+fn chain_root(chain: &Chain) -> SpineRoot {
     let segments: Vec<DVec3> = chain
         .segments_mm
         .iter()
@@ -238,16 +196,16 @@ fn chain_seat(chain: &Chain) -> Seat {
         damping: chain.damping_n_mm.iter().map(|d| d * 1e-3).collect(),
         rest: Vec::new(),
     };
-    Seat::drawn(DVec3::from_array(chain.root_mm) * 1e-3, &segments, spine)
+    SpineRoot::drawn(DVec3::from_array(chain.root_mm) * 1e-3, &segments, spine)
 }
 
-fn rooms(seats: &[Seat]) -> Vec<Vec<Room>> {
-    let ends: Vec<Vec<DVec3>> = seats
+fn rooms(roots: &[SpineRoot]) -> Vec<Vec<Room>> {
+    let ends: Vec<Vec<DVec3>> = roots
         .iter()
-        .map(|seat| {
-            let shape = seat.at_rest(&Rigid::IDENTITY);
-            (0..seat.spine.joints())
-                .map(|i| shape.joint(&seat.spine, i))
+        .map(|root| {
+            let shape = root.at_rest(&Rigid::IDENTITY);
+            (0..root.spine.joints())
+                .map(|i| shape.joint(&root.spine, i))
                 .collect()
         })
         .collect();
@@ -260,9 +218,9 @@ fn rooms(seats: &[Seat]) -> Vec<Vec<Room>> {
             at_rest_m: (a[joint] - b[joint]).length(),
         })
     };
-    (0..seats.len())
+    (0..roots.len())
         .map(|one| {
-            let others = (0..seats.len()).filter(|other| *other != one);
+            let others = (0..roots.len()).filter(|other| *other != one);
             let rooms = others.flat_map(|other| room(one, other));
             rooms.filter(|room| room.at_rest_m > 1e-6).collect()
         })
@@ -276,19 +234,19 @@ mod tests {
     #[test]
     fn spines_lean_to_the_point() {
         let file = BrushFile::library("round").expect("round");
-        let tuft = Tuft::of(&file);
-        assert_eq!(tuft.seats.len(), file.spines.number());
+        let tuft = SpineLayout::of(&file);
+        assert_eq!(tuft.roots.len(), file.spines.number());
         assert_eq!(tuft.joints(), file.spines.all_joints());
         let reach = file.spines.share * file.radius_m(1.0);
-        for seat in &tuft.seats[1..] {
-            let tip = seat.at_rest(&Rigid::IDENTITY).tip(&seat.spine);
+        for root in &tuft.roots[1..] {
+            let tip = root.at_rest(&Rigid::IDENTITY).tip(&root.spine);
             assert!(
                 (tip.truncate().length() - reach).abs() < 0.05 * file.radius_m(0.0),
                 "{tip}"
             );
-            assert!(tip.truncate().dot(seat.root.truncate()) > 0.0);
+            assert!(tip.truncate().dot(root.origin.truncate()) > 0.0);
         }
-        let whole: f64 = tuft.seats.iter().map(|seat| seat.spine.stiffness[0]).sum();
+        let whole: f64 = tuft.roots.iter().map(|root| root.spine.stiffness[0]).sum();
         let ei = file.spines.bending_stiffness_n_mm2 * 1e-6;
         let one = Spine::uniform(file.length_m(), file.spines.joints, ei);
         assert!((whole / one.stiffness[0] - 1.0).abs() < 1e-12);
@@ -300,9 +258,9 @@ mod tests {
         let mut straight = file.clone();
         straight.spines.curl_deg = 0.0;
         let reach = |file: &BrushFile| {
-            let tuft = Tuft::of(file);
-            let seat = tuft.seats.last().expect("some");
-            seat.at_rest(&Rigid::IDENTITY).tip(&seat.spine).x.abs()
+            let tuft = SpineLayout::of(file);
+            let root = tuft.roots.last().expect("some");
+            root.at_rest(&Rigid::IDENTITY).tip(&root.spine).x.abs()
         };
         assert!(reach(&file) < 0.9 * reach(&straight));
     }
@@ -315,8 +273,8 @@ mod tests {
             stiffness_n_mm: vec![1.0; 3],
             damping_n_mm: vec![0.0; 3],
         };
-        let seat = chain_seat(&chain);
-        let tip = seat.at_rest(&Rigid::IDENTITY).tip(&seat.spine);
+        let root = chain_root(&chain);
+        let tip = root.at_rest(&Rigid::IDENTITY).tip(&root.spine);
         assert!(
             (tip - DVec3::new(10e-3, 3e-3, -24e-3)).length() < 1e-12,
             "{tip}"
