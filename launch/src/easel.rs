@@ -6,7 +6,7 @@ use std::time::Instant;
 use indicatif::ProgressBar;
 use maulstick_nodes::{Keeper, Offline};
 use maulstick_paint::Sequencer;
-use maulstick_paint::embedded::IMAGE;
+use maulstick_paint::assets::IMAGE;
 use maulstick_paint::light::changes_colour;
 use maulstick_paint::store::TileStore;
 use maulstick_rig::Fault;

@@ -21,7 +21,7 @@ use maulstick_nodes::worker::Fallen;
 use maulstick_nodes::{BrushNode, BrushSettings, PaintNode, Worker};
 use maulstick_num::cores::with_help_beyond;
 use maulstick_optics::backend::{CpuFilms, FilmBackend};
-use maulstick_paint::{PaintRefusal, Painting, Sequencer};
+use maulstick_paint::{EditError, Painting, Sequencer};
 use maulstick_rig::config::{
     DeviceSection, FOREIGN_PRIORITY, MOUSE_PRIORITY, PLAYER_PRIORITY, RigConfig,
 };
@@ -429,7 +429,7 @@ pub fn player() -> Result<i32, Fault> {
         .iter()
         .map(|text| {
             text.parse::<Mixture>()
-                .map_err(|error| refused(PaintRefusal::paint(error.into())))
+                .map_err(|error| refused(EditError::paint(error.into())))
         })
         .collect::<Result<_, _>>()?;
     let settings = PlayerSettings {

@@ -169,8 +169,8 @@ impl SolvedHead {
         let mut converged = self.bend_core(room, tuft, brush, obstacles, settings);
         core_spine::frames(&self.core.shape, &mut room.frames);
         for (spine, root) in self.spines.iter_mut().zip(&tuft.roots) {
-            let held = root.frame(brush);
-            spine.shape.carry(held.translation, held.rotation);
+            let frame = root.frame(brush);
+            spine.shape.carry(frame.translation, frame.rotation);
         }
         // The spines beside one are where the handle has carried them.
         for ((spine, root), ends) in self.spines.iter().zip(&tuft.roots).zip(&mut room.ends) {
@@ -212,13 +212,13 @@ impl SolvedHead {
         settings: &Settings,
     ) -> bool {
         let (core, root) = (&mut self.core, &tuft.core.root);
-        let held = root.frame(brush);
-        let way = (held.translation - core.shape.root).truncate();
+        let frame = root.frame(brush);
+        let way = (frame.translation - core.shape.root).truncate();
         let yields = match way.length() > MOVED_M {
             true => -way.normalize(),
             false => settings.yields,
         };
-        core.shape.carry(held.translation, held.rotation);
+        core.shape.carry(frame.translation, frame.rotation);
         core.shape.joints(&root.spine, &mut core.ends);
         face(&mut core.constraints, &core.ends, obstacles);
         let settings = Settings {

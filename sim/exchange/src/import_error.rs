@@ -1,6 +1,6 @@
 //! Why a picture cannot be imported.
 
-use maulstick_paint::PaintRefusal;
+use maulstick_paint::EditError;
 
 use crate::read_image::MOST_SIDE;
 
@@ -32,14 +32,14 @@ pub enum ImportError {
     Paints(usize),
     /// The painting refuses.
     #[error("{}", .0.what)]
-    Refused(PaintRefusal),
+    Refused(EditError),
     /// It cannot be written as a PNG.
     #[error("the picture cannot be kept: {0}")]
     Png(#[source] png::EncodingError),
 }
 
-impl From<PaintRefusal> for ImportError {
-    fn from(refusal: PaintRefusal) -> Self {
+impl From<EditError> for ImportError {
+    fn from(refusal: EditError) -> Self {
         Self::Refused(refusal)
     }
 }

@@ -9,9 +9,9 @@ use std::sync::Arc;
 
 use maulstick_optics::Paint;
 use maulstick_paint::Painting;
-use maulstick_paint::bare::Bare;
+use maulstick_paint::blank_surface::BlankSurface;
 use maulstick_paint::ground::Ground;
-use maulstick_paint::look::Look;
+use maulstick_paint::appearance::Appearance;
 use maulstick_paint::painting::LaidTile;
 use maulstick_paint::quantum::{QUANTUM_M, SLOTS};
 use maulstick_paint::tile::{TILE_CELLS, TileId};
@@ -31,8 +31,8 @@ const FILM_M: std::ops::RangeInclusive<f64> = 1e-6..=5e-3;
 /// What is painted on, and with what: all that the search needs, so that painting can go on meanwhile.
 #[derive(Clone, Debug)]
 pub struct Support {
-    look: Arc<Look>,
-    bare: Arc<Bare>,
+    look: Arc<Appearance>,
+    bare: Arc<BlankSurface>,
     cells: [u32; 2],
     paints: Vec<Paint>,
 }
@@ -44,7 +44,7 @@ impl Support {
     /// [`ImportError`] for an unknown surface or paint, none, or more than 16 paints.
     pub fn of(painting: &Painting, surface: u32, paints: &[String]) -> Result<Self, ImportError> {
         let (Some(bare), Some(store)) = (painting.bare(surface), painting.store(surface)) else {
-            return Err(ImportError::Refused(maulstick_paint::PaintRefusal::new(
+            return Err(ImportError::Refused(maulstick_paint::EditError::new(
                 format!("there is no surface {surface}"),
                 "the canvas is 0, the palette 1",
             )));
@@ -55,7 +55,7 @@ impl Support {
         let mut found: Vec<Paint> = Vec::new();
         for name in paints {
             let paint = painting.library().find(name);
-            let paint = paint.map_err(maulstick_paint::PaintRefusal::paint)?;
+            let paint = paint.map_err(maulstick_paint::EditError::paint)?;
             if !found.iter().any(|other| other.name == paint.name) {
                 found.push(paint.clone());
             }
@@ -99,7 +99,7 @@ pub struct Underpainting {
 /// The colours of a ground as far as they are told apart.
 #[derive(Clone, Debug)]
 struct Grounds {
-    bare: Arc<Bare>,
+    bare: Arc<BlankSurface>,
     cells: [u32; 2],
 }
 

@@ -24,9 +24,9 @@ pub struct Waypoint {
 
 /// A [`Waypoint`] as it is kept: rotation x, y, z, w and translation of the brush, joint angles, how
 /// full the brush is.
-pub type KeptWaypoint = ([f64; 4], [f64; 3], Vec<[f32; 2]>, f32);
+pub type WaypointSnapshot = ([f64; 4], [f64; 3], Vec<[f32; 2]>, f32);
 
-impl From<&Waypoint> for KeptWaypoint {
+impl From<&Waypoint> for WaypointSnapshot {
     fn from(from: &Waypoint) -> Self {
         let Rigid {
             rotation,
@@ -37,8 +37,8 @@ impl From<&Waypoint> for KeptWaypoint {
     }
 }
 
-impl From<KeptWaypoint> for Waypoint {
-    fn from((rotation, translation, angles, wetness): KeptWaypoint) -> Self {
+impl From<WaypointSnapshot> for Waypoint {
+    fn from((rotation, translation, angles, wetness): WaypointSnapshot) -> Self {
         Self {
             brush: Rigid {
                 rotation: glam::DQuat::from_array(rotation),

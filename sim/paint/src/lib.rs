@@ -24,23 +24,23 @@
 //! | [`coat`] | the paint on a brush as it is shown |
 //! | [`bands`], [`picture`] | a surface row of tiles by row of tiles, and pictures of it |
 
+pub mod appearance;
+pub mod assets;
 pub mod bands;
-pub mod bare;
-pub mod coat;
+pub mod blank_surface;
+pub mod brush_colour;
 pub mod display;
 pub mod dry;
-pub mod embedded;
+mod error;
 pub mod ground;
 pub mod head;
 pub mod history;
 pub mod impasto;
-pub mod kept;
 pub mod lamp;
 mod lattice_noise;
 pub mod ledger;
 pub mod light;
 pub mod load;
-pub mod look;
 pub mod model;
 pub mod page;
 pub mod painting;
@@ -52,6 +52,7 @@ pub mod rewet;
 pub mod ride;
 pub mod sequencer;
 pub mod setup;
+pub mod snapshot;
 pub mod store;
 pub mod streaks;
 pub mod tile;
@@ -61,7 +62,8 @@ pub mod transfer;
 mod weave;
 pub mod window;
 
+pub use error::EditError;
 pub use model::PaintModel;
-pub use painting::{PaintRefusal, Painting};
+pub use painting::Painting;
 pub use sequencer::{Effect, Sequencer};
 pub use setup::PaintingSetup;

@@ -9,9 +9,9 @@ use crate::quantum::{Counts, SLOTS};
 use crate::streaks::streaks;
 
 /// Texels along a strip.
-pub const ALONG: usize = 16;
+pub const TEXELS_PER_STRIP: usize = 16;
 
-/// One paint on a brush: counts by texel, `strip · ALONG + along`, 0 at the ferrule.
+/// One paint on a brush: counts by texel, `strip · TEXELS_PER_STRIP + along`, 0 at the ferrule.
 #[derive(Clone, Debug, PartialEq, Eq)]
 struct Held {
     film: Vec<u32>,
@@ -131,7 +131,7 @@ impl BrushLoad {
     /// A clean brush with this many strips.
     #[must_use]
     pub fn clean(strips: usize) -> Self {
-        let texels = strips * ALONG;
+        let texels = strips * TEXELS_PER_STRIP;
         Self {
             texels,
             held: [const { None }; SLOTS],
@@ -196,14 +196,14 @@ impl BrushLoad {
     /// Counts of the thickest film of a strip.
     #[must_use]
     pub fn thickest_of(&self, strip: usize) -> u32 {
-        let run = &self.films[strip * ALONG..(strip + 1) * ALONG];
+        let run = &self.films[strip * TEXELS_PER_STRIP..(strip + 1) * TEXELS_PER_STRIP];
         run.iter().copied().max().unwrap_or(0)
     }
 
     /// Takes all paint off.
     pub fn take_all(&mut self) -> Counts {
         let counts = self.counts();
-        *self = Self::clean(self.texels / ALONG);
+        *self = Self::clean(self.texels / TEXELS_PER_STRIP);
         counts
     }
 
@@ -228,7 +228,7 @@ impl BrushLoad {
             let held = self.held_mut(*slot);
             let texels = held.film.iter_mut().zip(&mut held.inside);
             for (texel, (film, inside)) in texels.enumerate() {
-                let strip = texel / ALONG;
+                let strip = texel / TEXELS_PER_STRIP;
                 let half = half.share(f64::from(head.roots()[strip][0]));
                 let part = share * half * f64::from(taken[strip]);
                 *film += (film_full * part) as u32;
@@ -258,7 +258,7 @@ impl BrushLoad {
     /// head.
     #[must_use]
     pub fn onto(&self, strips: usize, finer: &Head) -> Self {
-        let own = self.texels / ALONG;
+        let own = self.texels / TEXELS_PER_STRIP;
         if own == strips {
             return self.clone();
         }
@@ -278,8 +278,9 @@ impl BrushLoad {
                 (&held.inside, &mut into.inside),
             ] {
                 for (strip, stands) in stands.iter().enumerate() {
-                    for k in 0..ALONG {
-                        let (fine, coarse) = (strip * ALONG + k, stands * ALONG + k);
+                    for k in 0..TEXELS_PER_STRIP {
+                        let (fine, coarse) =
+                            (strip * TEXELS_PER_STRIP + k, stands * TEXELS_PER_STRIP + k);
                         if strips < own {
                             to[coarse] += from[fine];
                             continue;
@@ -433,9 +434,9 @@ mod tests {
         }
         let right = |load: &BrushLoad, roots: &[[f32; 2]]| -> u64 {
             let right = |strip: &usize| roots[*strip][0] > 0.1;
-            let strips = (0..load.texels() / ALONG).filter(right);
+            let strips = (0..load.texels() / TEXELS_PER_STRIP).filter(right);
             strips
-                .map(|strip| u64::from(load.film(strip * ALONG)))
+                .map(|strip| u64::from(load.film(strip * TEXELS_PER_STRIP)))
                 .sum()
         };
         let roots = head.roots();

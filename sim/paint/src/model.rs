@@ -6,7 +6,7 @@ use maulstick_brush::head::{Head, HeadPose, STATIONS};
 use maulstick_num::exp;
 
 use crate::head::Scale;
-use crate::load::{ALONG, BrushLoad};
+use crate::load::{BrushLoad, TEXELS_PER_STRIP};
 use crate::quantum::{
     CELL_MAX, Counts, QUANTA_PER_UNIT, QUANTUM_M, REFERENCE_CELL_M, SLOTS, UNIT_M,
 };
@@ -100,7 +100,7 @@ impl BrushTraits {
     pub fn of(file: &BrushFile, cell_m: f64, zoom: f64) -> Self {
         let seen = 1e-3 / (cell_m * zoom);
         let rigid = file.head.hair == Hair::Steel;
-        let along_m = file.length_m() / ALONG as f64;
+        let along_m = file.length_m() / TEXELS_PER_STRIP as f64;
         let texel_cells = file.strips.width_mm * 1e-3 * along_m / (cell_m * cell_m);
         let quanta = |um: f64| um * 1e-6 / QUANTUM_M * texel_cells;
         let steps = cell_m / REFERENCE_CELL_M;

@@ -1,10 +1,10 @@
 //! Paint within the head, on what the stages before left: beside the processor's.
 
 use maulstick_gpu::impasto::probe::Prober;
-use maulstick_paint::impasto::flow::flow;
+use maulstick_paint::impasto::bristle_flow::flow;
 use maulstick_paint::impasto::footprint::Contact;
 use maulstick_paint::impasto::seep::seep;
-use maulstick_paint::load::{ALONG, BrushLoad};
+use maulstick_paint::load::{TEXELS_PER_STRIP, BrushLoad};
 use maulstick_paint::quantum::SLOTS;
 
 use crate::device;
@@ -65,7 +65,7 @@ fn paint_flows_within_all_strips() {
         still.load = stepped(&still.load, 1);
         flow(&mut still.step());
         let mut touched = vec![false; still.head.strips()];
-        let strip = |contact: &Contact| contact.texel as usize / ALONG;
+        let strip = |contact: &Contact| contact.texel as usize / TEXELS_PER_STRIP;
         let contacts = probe.contacts.iter();
         contacts.for_each(|contact| touched[strip(contact)] = true);
         let off = |one: &BrushLoad, two: &BrushLoad, of_touched: bool| {
@@ -79,7 +79,7 @@ fn paint_flows_within_all_strips() {
                     let pairs = one.unwrap_or_default().iter().zip(two.unwrap_or_default());
                     let pairs = pairs.enumerate();
                     let pairs = pairs.filter(|(texel, _)| {
-                        let strip = texel / ALONG;
+                        let strip = texel / TEXELS_PER_STRIP;
                         strip.is_multiple_of(2) && touched[strip] == of_touched
                     });
                     *worst = pairs.fold(*worst, |worst, (_, (a, b))| worst.max(a.abs_diff(*b)));

@@ -6,7 +6,7 @@
 
 use maulstick_num::cores::{Balance, both_if};
 
-use super::SHARED;
+use super::PARALLEL_MIN_CELLS;
 use super::band::{Band, draw_strips};
 use crate::model::{Step, StepReport};
 use crate::window::{Area, Window};
@@ -18,7 +18,7 @@ pub struct Contact {
     pub cell: u32,
     /// Its place in the planes of the cells [around](Footprint::around).
     pub local: u32,
-    /// The brush texel that touches it: `strip · ALONG + along`.
+    /// The brush texel that touches it: `strip · TEXELS_PER_STRIP + along`.
     pub texel: u32,
     /// Share of the cell that is covered, 0 to 1.
     pub cover: f32,
@@ -77,7 +77,7 @@ impl Footprint {
             draw_strips(band, step, low, loose);
             band.touch(step, lying, sink);
         };
-        let middle = match grid.cells() >= SHARED {
+        let middle = match grid.cells() >= PARALLEL_MIN_CELLS {
             true => self.balance.cut(height),
             false => height,
         };
@@ -103,7 +103,9 @@ impl Footprint {
         let [low, high] = area.halves();
         let (below, above) = self.lying.split_at_mut(low.cells());
         let one = || weigh(&low, below);
-        let (below, above) = both_if(area.cells() >= SHARED, one, || weigh(&high, above));
+        let (below, above) = both_if(area.cells() >= PARALLEL_MIN_CELLS, one, || {
+            weigh(&high, above)
+        });
         let top = below.max(above);
         step.window.note_top(top / to_cells);
         top

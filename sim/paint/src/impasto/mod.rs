@@ -14,13 +14,13 @@
 
 pub mod advection;
 pub mod band;
+pub mod bristle_flow;
 mod draw_skin;
-mod drawing;
 pub mod exchange;
-pub mod flow;
 pub mod footprint;
 pub mod levelling;
 pub mod modes;
+mod rasterizer;
 pub mod seep;
 pub mod step;
 pub mod velocity;
@@ -28,4 +28,4 @@ pub mod velocity;
 pub use step::Impasto;
 
 /// Fewer cells are one core's: the other would hardly come in time.
-const SHARED: usize = 400;
+const PARALLEL_MIN_CELLS: usize = 400;

@@ -2,7 +2,7 @@
 //! brush, held while it moves, which lifts paint like a vacuum cleaner.
 
 use super::footprint::Footprint;
-use crate::load::ALONG;
+use crate::load::TEXELS_PER_STRIP;
 use crate::model::Step;
 use crate::quantum::{Counts, SLOTS};
 
@@ -45,7 +45,7 @@ pub fn sample(footprint: &Footprint, step: &mut Step<'_>) -> [i64; SLOTS] {
         if total <= 0.0 {
             continue;
         }
-        let capacity = f64::from(step.head.capacity()[texel / ALONG]);
+        let capacity = f64::from(step.head.capacity()[texel / TEXELS_PER_STRIP]);
         let full = [step.traits.film_full, step.traits.inside_full].map(|full| full * capacity);
         for (slot, seen) in seen.iter().enumerate() {
             let holds = full.map(|full| (full * seen / total) as u32);

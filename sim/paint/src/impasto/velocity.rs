@@ -10,7 +10,7 @@
 use maulstick_num::cores::both_if;
 use maulstick_num::wide;
 
-use super::SHARED;
+use super::PARALLEL_MIN_CELLS;
 use super::footprint::{Contact, Footprint};
 use crate::model::Step;
 use crate::window::Area;
@@ -111,7 +111,7 @@ impl Faces {
         let [leaves_x, leaves_y] = &mut self.leaves;
         let x = || through_faces(&across, &mut self.right, leaves_x);
         let y = || through_faces(&up, &mut self.above, leaves_y);
-        both_if(width * height >= SHARED, x, y);
+        both_if(width * height >= PARALLEL_MIN_CELLS, x, y);
     }
 }
 

@@ -11,8 +11,9 @@ use std::sync::Arc;
 use maulstick_types::Region;
 use serde::{Deserialize, Serialize};
 
+use super::Painting;
 use super::layers::{Changed, Part};
-use super::{PaintRefusal, Painting};
+use crate::error::EditError;
 
 /// Most tiles that dry in a tick.
 const TILES_A_TICK: usize = 32;
@@ -99,7 +100,7 @@ impl Painting {
     /// Has the wet paint of a part dry evenly into one new layer over so many ticks.
     ///
     /// # Errors
-    /// [`PaintRefusal`] for an unknown surface, a part beside it, where nothing is wet, and where a
+    /// [`EditError`] for an unknown surface, a part beside it, where nothing is wet, and where a
     /// drying goes on.
     pub fn dry_over(
         &mut self,
@@ -107,10 +108,10 @@ impl Painting {
         ticks: u32,
         name: &str,
         region: Option<&Region>,
-    ) -> Result<String, PaintRefusal> {
+    ) -> Result<String, EditError> {
         let part = self.part(surface, region)?;
         if self.clock.dryings.iter().any(|it| it.surface == surface) {
-            return Err(PaintRefusal::new(
+            return Err(EditError::new(
                 "a drying of this surface goes on already".to_owned(),
                 "wait for its end, or stop it: `maulstick dry --stop`",
             ));
@@ -136,13 +137,13 @@ impl Painting {
     /// Ends the drying of a surface: what is wet still stays wet.
     ///
     /// # Errors
-    /// [`PaintRefusal`] where none goes on.
-    pub fn stop_drying(&mut self, surface: u32) -> Result<(), PaintRefusal> {
+    /// [`EditError`] where none goes on.
+    pub fn stop_drying(&mut self, surface: u32) -> Result<(), EditError> {
         let count = self.clock.dryings.len();
         self.let_stay_wet(Some(surface));
         match self.clock.dryings.len() < count {
             true => Ok(()),
-            false => Err(PaintRefusal::new(
+            false => Err(EditError::new(
                 "no drying of this surface goes on".to_owned(),
                 "`maulstick dry --over 90s` begins one",
             )),

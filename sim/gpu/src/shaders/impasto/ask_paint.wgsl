@@ -55,5 +55,5 @@ fn ask_paint(@builtin(global_invocation_id) id: vec3<u32>) {
     wants[i] = vec2(to_canvas, to_brush);
     atomicAdd(&asks[contact.texel], u32(to_canvas));
     atomicAdd(&asks[texels() + contact.texel], u32(to_brush));
-    atomicStore(&asks[touch_of(contact.texel / ALONG)], 1u);
+    atomicStore(&asks[touch_of(contact.texel / TEXELS_PER_STRIP)], 1u);
 }

@@ -109,7 +109,7 @@ fn point(strip: u32, station: u32) -> Point {
     return Point(
         vec3(poses[i], poses[i + count], poses[i + 2u * count]),
         vec2(poses[i + 3u * count], poses[i + 4u * count]),
-        f32(station) * (f32(ALONG) / f32(STATIONS - 1u)),
+        f32(station) * (f32(TEXELS_PER_STRIP) / f32(STATIONS - 1u)),
     );
 }
 

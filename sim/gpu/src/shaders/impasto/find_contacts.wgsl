@@ -29,9 +29,9 @@ fn of_triangle(number: u32, x: u32, y: u32) -> Fragment {
     let v = side(triangle.c, triangle.a, at) * inverse;
     let shares = vec3(u, v, 1.0 - u - v);
     let strip = strip_around(dot(shares, triangle.around));
-    let along = min(u32(dot(shares, triangle.along) * f32(ALONG)), ALONG - 1u);
+    let along = min(u32(dot(shares, triangle.along) * f32(TEXELS_PER_STRIP)), TEXELS_PER_STRIP - 1u);
     let moved = vec2(dot(shares, triangle.moved_x), dot(shares, triangle.moved_y));
-    return Fragment(strip * ALONG + along, dot(shares, triangle.z), step.skin_bottom, moved);
+    return Fragment(strip * TEXELS_PER_STRIP + along, dot(shares, triangle.z), step.skin_bottom, moved);
 }
 
 fn of_ribbon(number: u32, x: u32, y: u32) -> Fragment {
@@ -40,14 +40,14 @@ fn of_ribbon(number: u32, x: u32, y: u32) -> Fragment {
     let at = vec2(f32(x), f32(y));
     let place = place_on(ribbon, line, at[line.major]);
     let strip = (number - 2u * step.faces) / (STATIONS - 1u);
-    let along = min(u32(ribbon.along.x + place.t * ribbon.along.y), ALONG - 1u);
+    let along = min(u32(ribbon.along.x + place.t * ribbon.along.y), TEXELS_PER_STRIP - 1u);
     let z = ribbon.z.x + place.t * ribbon.z.y;
     // A bristle is round below.
     let aside = abs(at[1u - line.major] - place.middle) * line.cosine;
     let across = min(max(aside - 0.5 * (line.soft - 1.0), 0.0) / ribbon.half, 1.0);
     let off = ribbon.bottom + step.round * across * across;
     let moved = ribbon.moved + place.t * ribbon.moves;
-    return Fragment(strip * ALONG + along, z, off, moved);
+    return Fragment(strip * TEXELS_PER_STRIP + along, z, off, moved);
 }
 
 // What is pressed down follows the ride into the valleys of the tooth, and is lifted by what stands higher.

@@ -33,25 +33,25 @@ fn seep_paint(@builtin(global_invocation_id) id: vec3<u32>) {
     let turn = load[0] / FLOW_STEPS;
     let first = turn / 2u % 2u;
     if second == 0u {
-        let pair = id.x / ALONG;
+        let pair = id.x / TEXELS_PER_STRIP;
         let place = first + 2u * pair;
         if place + 1u < step.strips && is_due(pair) {
             let order = 4u * step.faces + 2u * step.vertices + (2u + turn % 2u) * step.strips;
-            let along = id.x % ALONG;
+            let along = id.x % TEXELS_PER_STRIP;
             even_out(
-                head[order + place] * ALONG + along,
-                head[order + place + 1u] * ALONG + along,
+                head[order + place] * TEXELS_PER_STRIP + along,
+                head[order + place + 1u] * TEXELS_PER_STRIP + along,
                 step.seep_beside,
                 HOLDS * step.film_full,
             );
         }
         return;
     }
-    let pairs = ALONG / 2u;
+    let pairs = TEXELS_PER_STRIP / 2u;
     let strip = id.x / pairs;
     let begins = (load[0] + strip) / FLOW_STEPS % 2u;
     let along = begins + 2u * (id.x % pairs);
-    if strip < step.strips && along + 1u < ALONG && is_due(strip) {
-        even_out(strip * ALONG + along, strip * ALONG + along + 1u, step.seep_along, 0.0);
+    if strip < step.strips && along + 1u < TEXELS_PER_STRIP && is_due(strip) {
+        even_out(strip * TEXELS_PER_STRIP + along, strip * TEXELS_PER_STRIP + along + 1u, step.seep_along, 0.0);
     }
 }

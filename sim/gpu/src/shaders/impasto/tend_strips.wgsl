@@ -15,26 +15,26 @@ fn thinner_in(strip: u32, all: f32) -> f32 {
         return 0.0;
     }
     var thin = 0.0;
-    for (var k = 0u; k < ALONG; k++) {
-        let texel = strip * ALONG + k;
+    for (var k = 0u; k < TEXELS_PER_STRIP; k++) {
+        let texel = strip * TEXELS_PER_STRIP + k;
         thin += f32(load[film_of(step.thinner) + texel] + load[inside_of(step.thinner) + texel]);
     }
     return select(0.0, thin / all, all > 0.0);
 }
 
 fn flow_in(strip: u32) {
-    let first = strip * ALONG;
+    let first = strip * TEXELS_PER_STRIP;
     var film: array<f32, 16>;
     var inside: array<f32, 16>;
     for (var paint = 0u; paint < step.planes; paint++) {
-        for (var k = 0u; k < ALONG; k++) {
+        for (var k = 0u; k < TEXELS_PER_STRIP; k++) {
             film[k] += f32(load[film_of(paint) + first + k]);
             inside[k] += f32(load[inside_of(paint) + first + k]);
         }
     }
     let capacity = head[4u * step.faces + 2u * step.vertices + step.strips + strip];
     var all = 0.0;
-    for (var k = 0u; k < ALONG; k++) {
+    for (var k = 0u; k < TEXELS_PER_STRIP; k++) {
         all += film[k] + inside[k];
     }
     let thin = 1.0 - RUNS_OFF * thinner_in(strip, all);
@@ -44,14 +44,14 @@ fn flow_in(strip: u32) {
     var inward: array<f32, 16>;
     var onward: array<f32, 16>;
     var back: array<f32, 16>;
-    for (var k = 0u; k < ALONG; k++) {
+    for (var k = 0u; k < TEXELS_PER_STRIP; k++) {
         let missing = full - film[k];
         if missing > 0.0 && inside[k] > 0.0 {
             out[k] = min(step.refill * missing / inside[k], step.refill);
         } else if missing < 0.0 {
             inward[k] = step.refill * -missing / film[k];
         }
-        if k + 1u < ALONG {
+        if k + 1u < TEXELS_PER_STRIP {
             let fall = step.creep * (inside[k] - inside[k + 1u]);
             if fall > 0.0 {
                 onward[k] = fall / inside[k];
@@ -60,7 +60,7 @@ fn flow_in(strip: u32) {
             }
         }
     }
-    for (var k = 0u; k < ALONG; k++) {
+    for (var k = 0u; k < TEXELS_PER_STRIP; k++) {
         let leaves = max(out[k] + onward[k] + back[k], 1.0);
         out[k] /= leaves;
         onward[k] /= leaves;
@@ -68,10 +68,10 @@ fn flow_in(strip: u32) {
     }
     for (var paint = 0u; paint < step.planes; paint++) {
         var before: array<u32, 16>;
-        for (var k = 0u; k < ALONG; k++) {
+        for (var k = 0u; k < TEXELS_PER_STRIP; k++) {
             before[k] = load[inside_of(paint) + first + k];
         }
-        for (var k = 0u; k < ALONG; k++) {
+        for (var k = 0u; k < TEXELS_PER_STRIP; k++) {
             let at = inside_of(paint) + first + k;
             let film_at = film_of(paint) + first + k;
             let held = load[film_at];
@@ -102,8 +102,8 @@ fn tend_strips(@builtin(global_invocation_id) id: vec3<u32>) {
         return;
     }
     atomicStore(&asks[touch_of(strip)], 0u);
-    for (var k = 0u; k < ALONG; k++) {
-        let texel = strip * ALONG + k;
+    for (var k = 0u; k < TEXELS_PER_STRIP; k++) {
+        let texel = strip * TEXELS_PER_STRIP + k;
         atomicStore(&asks[texel], 0u);
         atomicStore(&asks[texels() + texel], 0u);
         for (var paint = 0u; paint < step.planes; paint++) {
@@ -115,8 +115,8 @@ fn tend_strips(@builtin(global_invocation_id) id: vec3<u32>) {
     if flows {
         flow_in(strip);
     }
-    for (var k = 0u; k < ALONG; k++) {
-        let texel = strip * ALONG + k;
+    for (var k = 0u; k < TEXELS_PER_STRIP; k++) {
+        let texel = strip * TEXELS_PER_STRIP + k;
         var sum = 0u;
         for (var paint = 0u; paint < step.planes; paint++) {
             sum += load[film_of(paint) + texel];

@@ -4,7 +4,8 @@ use maulstick_optics::THINNER;
 use maulstick_types::scene::{BrushHandling, BrushMode, PALETTE, Surface};
 use maulstick_types::{Mixture, mixture::Part};
 
-use super::{PaintRefusal, Painting};
+use super::Painting;
+use crate::error::EditError;
 use crate::ledger::Ledger;
 use crate::model::{BrushTraits, Handling, StepReport, Transfer};
 use crate::quantum::{CELL_MAX, QUANTUM_M, REFERENCE_CELL_M, UNIT_M};
@@ -113,8 +114,8 @@ impl Painting {
     /// Says how a brush is used from now on.
     ///
     /// # Errors
-    /// [`PaintRefusal`] for an unknown brush.
-    pub fn handle(&mut self, handling: &BrushHandling) -> Result<(), PaintRefusal> {
+    /// [`EditError`] for an unknown brush.
+    pub fn handle(&mut self, handling: &BrushHandling) -> Result<(), EditError> {
         self.brush(&handling.brush)?;
         let handlings = &mut self.scene.handlings;
         handlings.retain(|other| other.brush != handling.brush);
@@ -128,16 +129,16 @@ impl Painting {
     /// Sizes a surface: so much paint stays however hard it is brushed, m.
     ///
     /// # Errors
-    /// [`PaintRefusal`] for an unknown surface.
-    pub fn size(&mut self, surface: u32, stain_m: f64) -> Result<(), PaintRefusal> {
+    /// [`EditError`] for an unknown surface.
+    pub fn size(&mut self, surface: u32, stain_m: f64) -> Result<(), EditError> {
         self.change_surface(surface, |surface| surface.stain_m = stain_m)
     }
 
     /// Says whether paint on a surface lasts, however much of it brushes take up.
     ///
     /// # Errors
-    /// [`PaintRefusal`] for an unknown surface.
-    pub fn piles(&mut self, surface: u32, last: bool) -> Result<(), PaintRefusal> {
+    /// [`EditError`] for an unknown surface.
+    pub fn piles(&mut self, surface: u32, last: bool) -> Result<(), EditError> {
         self.change_surface(surface, |surface| surface.piles_last = last)
     }
 
@@ -145,7 +146,7 @@ impl Painting {
         &mut self,
         id: u32,
         change: impl FnOnce(&mut Surface),
-    ) -> Result<(), PaintRefusal> {
+    ) -> Result<(), EditError> {
         self.surface(id)?;
         let mut surfaces = self.scene.surfaces.iter_mut();
         if let Some(surface) = surfaces.find(|own| own.id == id) {
@@ -159,19 +160,19 @@ impl Painting {
     /// keeps what it has.
     ///
     /// # Errors
-    /// [`PaintRefusal`] for an unknown surface or brush, or one that carries nothing.
+    /// [`EditError`] for an unknown surface or brush, or one that carries nothing.
     pub fn fill_with(
         &mut self,
         surface: u32,
         brush: &str,
         thickness_m: f64,
-    ) -> Result<(), PaintRefusal> {
+    ) -> Result<(), EditError> {
         self.surface(surface)?;
         self.commit();
         let counts = self.brush(brush)?.load.counts();
         let total: u64 = counts.iter().sum();
         if total == 0 {
-            return Err(PaintRefusal::new(
+            return Err(EditError::new(
                 format!("brush '{brush}' carries no paint to fill with"),
                 "load it first",
             ));

@@ -8,13 +8,13 @@ use maulstick_optics::colour::srgb_decode;
 use maulstick_optics::{FilmPlanes, Studio, Under, Upsampler};
 use maulstick_types::brush::BrushLook;
 
-use crate::load::{ALONG, BrushLoad};
+use crate::load::{BrushLoad, TEXELS_PER_STRIP};
 use crate::quantum::SLOTS;
 
 /// Samples along a strip: each the mean of as many texels as divide it.
 pub const SAMPLES: usize = 8;
 /// Texels of a sample.
-const TEXELS: usize = ALONG / SAMPLES;
+const TEXELS: usize = TEXELS_PER_STRIP / SAMPLES;
 
 /// What a brush carries, and what is to be known of the brush to show it. It shares the load.
 #[derive(Clone, Debug)]
@@ -75,7 +75,7 @@ impl Carried {
             .flat_map(|(i, share)| [rgb[0][i], rgb[1][i], rgb[2][i], share])
             .flat_map(|value| f16::from_f32(value).to_le_bytes());
         BrushLook {
-            strips: (self.load.texels() / ALONG) as u32,
+            strips: (self.load.texels() / TEXELS_PER_STRIP) as u32,
             along: SAMPLES as u32,
             samples: samples.collect::<Vec<u8>>().into(),
         }

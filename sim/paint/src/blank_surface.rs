@@ -30,7 +30,7 @@ pub const CLEANER_RGB: [f32; 3] = [0.30, 0.37, 0.40];
 
 /// A surface without what was painted on it.
 #[derive(Clone, Debug)]
-pub struct Bare {
+pub struct BlankSurface {
     /// What it is primed with.
     pub ground: Ground,
     /// Heights of what lies under the paint.
@@ -39,7 +39,7 @@ pub struct Bare {
     pub wells: Vec<WellLook>,
 }
 
-impl Bare {
+impl BlankSurface {
     /// The cells of a tile that lie in a well, by their place in the tile, with the well.
     pub fn in_wells(&self, id: TileId) -> impl Iterator<Item = (usize, &WellLook)> {
         let corner = [f64::from(id.x), f64::from(id.y)].map(|tile| tile * TILE as f64);

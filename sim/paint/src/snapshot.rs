@@ -7,13 +7,13 @@ use maulstick_types::command::Outcome;
 use maulstick_types::scene::Scene;
 use serde::{Deserialize, Serialize};
 
-use crate::head::{KeptWaypoint, Scale};
+use crate::head::{Scale, WaypointSnapshot};
 use crate::ledger::Ledger;
 use crate::painting::Clock;
 
 /// A brush as the painting knows it.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct KeptBrush {
+pub struct BrushSnapshot {
     /// Its file, TOML; in the document the file's hash.
     pub file: String,
     /// The page of what it carries.
@@ -21,7 +21,7 @@ pub struct KeptBrush {
     /// Epoch of the brush and number of the newest stroke.
     pub stroke: Option<(u32, u64)>,
     /// While it paints, on which surface, where it stepped last, and where it has come to since.
-    pub path: Option<(u32, Scale, KeptWaypoint, Option<KeptWaypoint>)>,
+    pub path: Option<(u32, Scale, WaypointSnapshot, Option<WaypointSnapshot>)>,
     /// What its strokes take in turn, and how many it made since its take began.
     pub loads: Vec<Mixture>,
     /// See `loads`.
@@ -32,7 +32,7 @@ pub struct KeptBrush {
 
 /// A step that is not finished.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct KeptOpen {
+pub struct OpenStepSnapshot {
     /// Its number.
     pub step: u64,
     /// The tiles that it may have changed: surface, column, row.
@@ -43,7 +43,7 @@ pub struct KeptOpen {
 
 /// A painting besides its tiles.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct KeptPainting {
+pub struct PaintingSnapshot {
     /// The desk.
     pub scene: Scene,
     /// The paints, as a file; in the document the file's hash.
@@ -51,7 +51,7 @@ pub struct KeptPainting {
     /// Most quanta that a cell of a surface ever had.
     pub tops: BTreeMap<u32, f32>,
     /// The brushes, by name.
-    pub brushes: BTreeMap<String, KeptBrush>,
+    pub brushes: BTreeMap<String, BrushSnapshot>,
     /// The books.
     pub ledger: Ledger,
     /// Number of the newest tile version.
@@ -61,7 +61,7 @@ pub struct KeptPainting {
     /// Number of the newest step.
     pub step: u64,
     /// The steps that are not finished.
-    pub open_steps: Vec<KeptOpen>,
+    pub open_steps: Vec<OpenStepSnapshot>,
     /// Steps that were undone, the last one at the end.
     pub undone: Vec<u64>,
     /// The version from which the painter goes on.
@@ -80,12 +80,12 @@ pub struct KeptPainting {
     pub clock: Clock,
     /// How many rows the document has of it; none in paintings of before they were counted.
     #[serde(default)]
-    pub rows: Option<KeptRows>,
+    pub rows: Option<RowCounts>,
 }
 
 /// How many rows a document has of what the painter made.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
-pub struct KeptRows {
+pub struct RowCounts {
     /// Tiles that were ever painted on.
     pub tiles: u64,
     /// Steps of the history, those that are not finished among them.
@@ -100,7 +100,7 @@ fn quota() -> u64 {
 
 /// A take that may paint.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-pub struct KeptTake {
+pub struct TakeSnapshot {
     /// Its player.
     pub device: u32,
     /// Epoch of its playing.
@@ -113,7 +113,7 @@ pub struct KeptTake {
 
 /// The newest reply to a client.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct KeptAnswer {
+pub struct ReplySnapshot {
     /// The command's number.
     pub number: u64,
     /// What became of it.
@@ -124,17 +124,17 @@ pub struct KeptAnswer {
 
 /// The sequencer at a place of its journal.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub struct KeptSequencer {
+pub struct SequencerSnapshot {
     /// Index of the next journal entry.
     pub next: u64,
     /// How many things were accepted.
     pub serial: u64,
     /// Takes that may paint, by brush.
-    pub takes: BTreeMap<String, KeptTake>,
+    pub takes: BTreeMap<String, TakeSnapshot>,
     /// Players that are gone.
     pub gone: Vec<u32>,
     /// How far the states of brushes are consumed: source, epoch, next.
     pub consumed: Vec<(u32, u32, u64)>,
     /// Replies, by client.
-    pub answers: BTreeMap<u64, KeptAnswer>,
+    pub answers: BTreeMap<u64, ReplySnapshot>,
 }

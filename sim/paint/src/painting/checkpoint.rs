@@ -7,22 +7,23 @@ use maulstick_brush::{BrushFile, Head};
 use maulstick_optics::{PaintLibrary, Studio};
 use maulstick_types::scene::{CANVAS, PALETTE};
 
-use super::backend::{Deferral, Fall};
+use super::backend::{BackendFallback, Deferral};
+use super::brush_modes::UnderBrush;
 use super::lighting::paint_slot;
-use super::modes::UnderBrush;
 use super::undo::makes;
-use super::{BrushTrack, Named, PaintRefusal, Painting, Sheet, bare};
-use crate::embedded::Embedded;
+use super::{Named, Painting, PaintingBrush, SurfaceState, bare};
+use crate::appearance::Appearance;
+use crate::assets::Assets;
+use crate::error::EditError;
 use crate::head::Waypoint;
-use crate::history::{History, Place, Rest, Step};
+use crate::history::{History, NonTileState, Step, TilePlace};
 use crate::impasto::Impasto;
-use crate::kept::{KeptBrush, KeptOpen, KeptPainting, KeptRows};
 use crate::light::studio_settings;
-use crate::load::{ALONG, BrushLoad};
-use crate::look::Look;
+use crate::load::{BrushLoad, TEXELS_PER_STRIP};
 use crate::page::{Page, Pager};
 use crate::path::PathStepper;
 use crate::setup::check_size;
+use crate::snapshot::{BrushSnapshot, OpenStepSnapshot, PaintingSnapshot, RowCounts};
 use crate::store::TileStore;
 use crate::tile::{TileId, Version};
 
@@ -30,9 +31,9 @@ use crate::tile::{TileId, Version};
 #[derive(Clone, Debug)]
 pub struct Checkpoint {
     /// The painting besides its tiles.
-    pub kept: KeptPainting,
+    pub kept: PaintingSnapshot,
     /// Tiles that changed.
-    pub tiles: Vec<(Place, Version)>,
+    pub tiles: Vec<(TilePlace, Version)>,
     /// What the brushes carry, by name.
     pub loads: BTreeMap<String, Page<BrushLoad>>,
     /// Steps that came or changed; those that are not finished are among them.
@@ -51,9 +52,9 @@ pub struct Checkpoint {
 #[derive(Debug)]
 pub struct Restored {
     /// The painting besides its tiles, with the files of its brushes.
-    pub kept: KeptPainting,
+    pub kept: PaintingSnapshot,
     /// Its tiles.
-    pub tiles: Vec<(Place, Version)>,
+    pub tiles: Vec<(TilePlace, Version)>,
     /// What the brushes carry, by name.
     pub loads: BTreeMap<String, Page<BrushLoad>>,
     /// The steps of its history.
@@ -61,7 +62,7 @@ pub struct Restored {
     /// Its versions.
     pub named: Vec<Named>,
     /// The pictures that its grounds and teeth are made of, those of its history among them.
-    pub embedded: Embedded,
+    pub embedded: Assets,
 }
 
 impl Painting {
@@ -71,7 +72,7 @@ impl Painting {
         let loads = self.rest().loads;
         let (mut steps, gone_steps) = self.history.take_touched();
         let open = self.open_steps();
-        let open_steps = self.history.open().map(|step| KeptOpen {
+        let open_steps = self.history.open().map(|step| OpenStepSnapshot {
             step: step.id,
             tops: step.before.tops.clone(),
             reached: step
@@ -103,7 +104,7 @@ impl Painting {
             tiles.extend(changed.map(|(id, version)| ((sheet.id, id), version.clone())));
         }
         let (step, undone) = self.history.position();
-        let kept = KeptPainting {
+        let kept = PaintingSnapshot {
             scene: self.scene.clone(),
             paints: self.library.text().to_owned(),
             tops: self
@@ -124,7 +125,7 @@ impl Painting {
             span_ns: self.span_ns,
             quota: self.quota,
             clock: self.clock.clone(),
-            rows: Some(KeptRows {
+            rows: Some(RowCounts {
                 tiles: all_tiles as u64,
                 steps: (self.history.steps().count() + self.history.open().count()) as u64,
                 versions: self.named.len() as u64,
@@ -151,14 +152,14 @@ impl Painting {
     fn kept_brushes(
         &self,
         loads: &BTreeMap<String, Page<BrushLoad>>,
-    ) -> BTreeMap<String, KeptBrush> {
+    ) -> BTreeMap<String, BrushSnapshot> {
         let brushes = self.brushes.iter().map(|(name, track)| {
             let path = track.path.as_ref().and_then(|(sheet, path)| {
                 let surface = self.sheets.get(*sheet)?.id;
                 let (at, ahead) = path.places();
                 Some((surface, path.scale(), at.into(), ahead.map(Into::into)))
             });
-            let kept = KeptBrush {
+            let kept = BrushSnapshot {
                 file: track.file.to_toml().unwrap_or_default(),
                 load: loads.get(name).map_or(0, Page::id),
                 stroke: track.stroke,
@@ -175,12 +176,12 @@ impl Painting {
     /// A painting as its document has it.
     ///
     /// # Errors
-    /// [`PaintRefusal`] where what was kept does not hold together.
+    /// [`EditError`] where what was kept does not hold together.
     pub fn restore(
         restored: Restored,
         library: PaintLibrary,
         pager: Arc<Pager>,
-    ) -> Result<Self, PaintRefusal> {
+    ) -> Result<Self, EditError> {
         let kept = restored.kept;
         let scene = kept.scene;
         for surface in &scene.surfaces {
@@ -188,17 +189,17 @@ impl Painting {
         }
         let ids: Vec<u32> = scene.surfaces.iter().map(|surface| surface.id).collect();
         if ids != [CANVAS, PALETTE] {
-            return Err(PaintRefusal::new(
+            return Err(EditError::new(
                 "the document has no canvas and palette".to_owned(),
                 "`maulstick painting recover` takes out what is whole",
             ));
         }
-        let mut look = Look::new(Studio::new(
+        let mut look = Appearance::new(Studio::new(
             &studio_settings(&scene.light)?,
             library.paints(),
         ));
         for (place, slot) in scene.paints.iter().enumerate() {
-            let paint = library.find(&slot.name).map_err(PaintRefusal::paint)?;
+            let paint = library.find(&slot.name).map_err(EditError::paint)?;
             paint_slot(&mut look.studio, paint, slot.file_hash);
             if paint.is_thinner() {
                 look.thinner = Some(place);
@@ -208,7 +209,7 @@ impl Painting {
         let makers = (&library, &restored.embedded);
         let mut sheets = Vec::new();
         for surface in &scene.surfaces {
-            sheets.push(Sheet {
+            sheets.push(SurfaceState {
                 id: surface.id,
                 cell_m: surface.cell_m,
                 store: TileStore::paged(surface.cells, &pager),
@@ -233,7 +234,7 @@ impl Painting {
         }
         let (open, steps) = (restored.steps.into_iter())
             .partition(|step| kept.open_steps.iter().any(|open| open.step == step.id));
-        let rest = Rest {
+        let rest = NonTileState {
             loads: restored.loads,
             ledger: kept.ledger.clone(),
             layers: scene.layers.clone(),
@@ -264,7 +265,7 @@ impl Painting {
             brushes,
             model: Box::new(Impasto::default()),
             unsettled: None,
-            fall: Fall::default(),
+            fall: BackendFallback::default(),
             accounted: kept.ledger.clone(),
             ledger: kept.ledger,
             history,
@@ -311,19 +312,19 @@ impl Painting {
 
 fn restored_track(
     name: &str,
-    brush: KeptBrush,
+    brush: BrushSnapshot,
     load: Option<Page<BrushLoad>>,
-    sheets: &[Sheet],
-) -> Result<BrushTrack, PaintRefusal> {
+    sheets: &[SurfaceState],
+) -> Result<PaintingBrush, EditError> {
     let file = BrushFile::parse(&brush.file).map_err(|error| {
-        PaintRefusal::new(
+        EditError::new(
             format!("the file of brush '{name}' in the document is wrong: {error}"),
             "`maulstick painting recover` takes out what is whole",
         )
     })?;
     let content = load.as_ref().map(Page::get);
     let seen = match &content {
-        Some(load) => file.thinned_to(load.texels() / ALONG),
+        Some(load) => file.thinned_to(load.texels() / TEXELS_PER_STRIP),
         None => file.thinned(sheets[0].cell_m),
     };
     let tidy = Arc::new(Head::of(&seen));
@@ -335,13 +336,13 @@ fn restored_track(
     });
     let strips = head.strips();
     let (load, kept) = match (content, load) {
-        (Some(content), Some(page)) if content.texels() == strips * ALONG => {
+        (Some(content), Some(page)) if content.texels() == strips * TEXELS_PER_STRIP => {
             (Arc::clone(&content), Some((content, page)))
         }
         (Some(content), _) => (Arc::new(content.onto(strips, &tidy)), None),
         _ => (Arc::new(BrushLoad::clean(strips)), None),
     };
-    Ok(BrushTrack {
+    Ok(PaintingBrush {
         under: UnderBrush::default(),
         file,
         seen,

@@ -7,7 +7,7 @@
 use maulstick_num::select::larger;
 use maulstick_num::wide;
 
-use crate::load::{ALONG, PaintOnBrush, film_share};
+use crate::load::{PaintOnBrush, TEXELS_PER_STRIP, film_share};
 use crate::model::{BrushTraits, Step};
 
 /// Counts a step and moves paint within the strips whose turn it is.
@@ -31,7 +31,7 @@ wide! {
         steps: u64,
     ) {
         let every = BrushTraits::FLOW_STEPS as usize;
-        let strips = films.as_chunks_mut::<ALONG>().0.iter_mut().zip(capacity);
+        let strips = films.as_chunks_mut::<TEXELS_PER_STRIP>().0.iter_mut().zip(capacity);
         for (strip, (film, capacity)) in strips.enumerate().skip(first_of(steps)).step_by(every) {
             let inside = all_inside(strip, paints);
             let thin = thinner.map_or(0.0, |thinner| {
@@ -43,7 +43,7 @@ wide! {
                 continue;
             }
             let shares = Shares::of(film, &inside, full, traits);
-            *film = [0; ALONG];
+            *film = [0; TEXELS_PER_STRIP];
             for paint in &mut *paints {
                 move_paint(strip, paint, &shares);
                 let counts = film.iter_mut().zip(of_strip(strip, paint.film));
@@ -62,14 +62,14 @@ pub(super) fn first_of(steps: u64) -> usize {
 
 /// The texels of a strip.
 #[inline(always)]
-fn of_strip(strip: usize, plane: &[u32]) -> &[u32; ALONG] {
+fn of_strip(strip: usize, plane: &[u32]) -> &[u32; TEXELS_PER_STRIP] {
     &plane.as_chunks().0[strip]
 }
 
 /// What all paints have inside a strip.
 #[inline(always)]
-fn all_inside(strip: usize, paints: &[PaintOnBrush<'_>]) -> [u32; ALONG] {
-    let mut all = [0; ALONG];
+fn all_inside(strip: usize, paints: &[PaintOnBrush<'_>]) -> [u32; TEXELS_PER_STRIP] {
+    let mut all = [0; TEXELS_PER_STRIP];
     for paint in paints {
         let inside = of_strip(strip, paint.inside);
         all.iter_mut()
@@ -90,12 +90,17 @@ fn thinner_in(strip: usize, thinner: &PaintOnBrush<'_>, all: f64) -> f64 {
 
 /// Whether not a quantum would move: so of most strips of a brush.
 #[inline(always)]
-fn is_at_rest(film: &[u32; ALONG], inside: &[u32; ALONG], full: f64, traits: &BrushTraits) -> bool {
+fn is_at_rest(
+    film: &[u32; TEXELS_PER_STRIP],
+    inside: &[u32; TEXELS_PER_STRIP],
+    full: f64,
+    traits: &BrushTraits,
+) -> bool {
     let (mut off, mut falls) = (0, 0);
     for count in film {
         off = off.max(count.abs_diff(full as u32));
     }
-    for k in 1..ALONG {
+    for k in 1..TEXELS_PER_STRIP {
         falls = falls.max(inside[k].abs_diff(inside[k - 1]));
     }
     traits.refill * (f64::from(off) + 1.0) < 1.0 && traits.creep * f64::from(falls) < 1.0
@@ -105,32 +110,37 @@ fn is_at_rest(film: &[u32; ALONG], inside: &[u32; ALONG], full: f64, traits: &Br
 /// of the film that go inside.
 #[derive(Clone, Copy, Debug, Default)]
 struct Shares {
-    out: [f64; ALONG],
-    onward: [f64; ALONG],
-    back: [f64; ALONG],
-    inward: [f64; ALONG],
+    out: [f64; TEXELS_PER_STRIP],
+    onward: [f64; TEXELS_PER_STRIP],
+    back: [f64; TEXELS_PER_STRIP],
+    inward: [f64; TEXELS_PER_STRIP],
 }
 
 impl Shares {
     #[inline(always)]
-    fn of(film: &[u32; ALONG], inside: &[u32; ALONG], full: f64, traits: &BrushTraits) -> Self {
+    fn of(
+        film: &[u32; TEXELS_PER_STRIP],
+        inside: &[u32; TEXELS_PER_STRIP],
+        full: f64,
+        traits: &BrushTraits,
+    ) -> Self {
         let mut shares = Self::default();
         let (film, inside) = (film.map(f64::from), inside.map(f64::from));
         // By quantum; of none nothing goes, whatever its share.
         let by = inside.map(|count| 1.0 / larger(count, 1.0));
-        for k in 0..ALONG {
+        for k in 0..TEXELS_PER_STRIP {
             let missing = full - film[k];
             let lacks = larger(missing, 0.0) * by[k];
             shares.out[k] = traits.refill * if lacks < 1.0 { lacks } else { 1.0 };
             shares.inward[k] = traits.refill * larger(-missing, 0.0) / larger(film[k], 1.0);
         }
-        for k in 0..ALONG - 1 {
+        for k in 0..TEXELS_PER_STRIP - 1 {
             let fall = traits.creep * (inside[k] - inside[k + 1]);
             shares.onward[k] = larger(fall, 0.0) * by[k];
             shares.back[k + 1] = larger(-fall, 0.0) * by[k + 1];
         }
         // On coarse cells a step is a long way: what would leave beyond what is there stays.
-        for k in 0..ALONG {
+        for k in 0..TEXELS_PER_STRIP {
             let leaves = shares.out[k] + shares.onward[k] + shares.back[k];
             let stays = 1.0 / larger(leaves, 1.0);
             shares.out[k] *= stays;
@@ -153,17 +163,17 @@ pub(super) fn part(count: u32, share: f64) -> u32 {
 /// Moves one paint within a strip.
 #[inline(always)]
 fn move_paint(strip: usize, paint: &mut PaintOnBrush<'_>, shares: &Shares) {
-    let film: &mut [u32; ALONG] = &mut paint.film.as_chunks_mut().0[strip];
-    let inside: &mut [u32; ALONG] = &mut paint.inside.as_chunks_mut().0[strip];
+    let film: &mut [u32; TEXELS_PER_STRIP] = &mut paint.film.as_chunks_mut().0[strip];
+    let inside: &mut [u32; TEXELS_PER_STRIP] = &mut paint.inside.as_chunks_mut().0[strip];
     let before = *inside;
     // What goes over the end of a strip is none.
-    let mut onward = [0; ALONG + 1];
-    let mut back = [0; ALONG + 1];
-    for k in 0..ALONG {
+    let mut onward = [0; TEXELS_PER_STRIP + 1];
+    let mut back = [0; TEXELS_PER_STRIP + 1];
+    for k in 0..TEXELS_PER_STRIP {
         onward[k + 1] = part(before[k], shares.onward[k]);
         back[k] = part(before[k], shares.back[k]);
     }
-    for k in 0..ALONG {
+    for k in 0..TEXELS_PER_STRIP {
         let rises = part(before[k], shares.out[k]);
         let sinks = part(film[k], shares.inward[k]);
         film[k] = film[k] + rises - sinks;
@@ -183,9 +193,9 @@ mod tests {
         let file = BrushFile::library("round").expect("round");
         let traits = BrushTraits::of(&file, 2.5e-4, 1.0);
         let full = 1_000_000.5;
-        let moves = |film: &[u32; ALONG], inside: &[u32; ALONG]| {
+        let moves = |film: &[u32; TEXELS_PER_STRIP], inside: &[u32; TEXELS_PER_STRIP]| {
             let shares = Shares::of(film, inside, full, &traits);
-            (0..ALONG).any(|k| {
+            (0..TEXELS_PER_STRIP).any(|k| {
                 let leaves = [shares.out[k], shares.onward[k], shares.back[k]];
                 let leaves = leaves.into_iter().any(|share| part(inside[k], share) > 0);
                 leaves || part(film[k], shares.inward[k]) > 0
@@ -193,12 +203,15 @@ mod tests {
         };
         let mut seen = [0; 2];
         for off in -40_i32..=40 {
-            let (mut film, mut inside) = ([1_000_000_u32; ALONG], [200_000; ALONG]);
-            let place = (off + 40) as usize % ALONG;
+            let (mut film, mut inside) = (
+                [1_000_000_u32; TEXELS_PER_STRIP],
+                [200_000; TEXELS_PER_STRIP],
+            );
+            let place = (off + 40) as usize % TEXELS_PER_STRIP;
             film[place] = film[place].saturating_add_signed(off);
             for falls in [false, true] {
                 if falls {
-                    (film, inside[place]) = ([1_000_000; ALONG], film[place] - 800_000);
+                    (film, inside[place]) = ([1_000_000; TEXELS_PER_STRIP], film[place] - 800_000);
                 }
                 let (rests, moves) = (
                     is_at_rest(&film, &inside, full, &traits),

@@ -7,7 +7,7 @@ use std::ops::Range;
 
 use maulstick_num::lanes::Lanes;
 
-use crate::load::ALONG;
+use crate::load::TEXELS_PER_STRIP;
 
 /// A ribbon that covers a cell only in part counts as higher by this much, cells: of ribbons beside each
 /// other each has the cells that it covers most, so more of them give paint where cells are coarse.
@@ -176,7 +176,7 @@ impl Over<'_> {
     /// The texel.
     pub(super) fn texel(&self) -> u32 {
         let along = (self.piece.along[0] + self.t * self.piece.along[1]) as usize;
-        self.piece.texel + along.min(ALONG - 1) as u32
+        self.piece.texel + along.min(TEXELS_PER_STRIP - 1) as u32
     }
 
     /// How far it went since the step before, cells.

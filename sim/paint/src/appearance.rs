@@ -17,7 +17,7 @@ const KEPT_BYTES: usize = 128 << 20;
 
 /// Everything that turns the paint of a tile into colour.
 #[derive(Clone, Debug)]
-pub struct Look {
+pub struct Appearance {
     /// The optics of the paints in use.
     pub studio: Studio,
     /// Slot of the thinner, if it is in use.
@@ -28,7 +28,7 @@ pub struct Look {
     print: i64,
 }
 
-impl Look {
+impl Appearance {
     /// The first look of a painting.
     #[must_use]
     pub fn new(studio: Studio) -> Self {
@@ -178,7 +178,13 @@ pub struct Bakery {
 impl Bakery {
     /// Whether a tile of a surface need not be baked.
     #[must_use]
-    pub fn holds(&self, look: &Look, surface: u32, id: TileId, stack: &Arc<DryStack>) -> bool {
+    pub fn holds(
+        &self,
+        look: &Appearance,
+        surface: u32,
+        id: TileId,
+        stack: &Arc<DryStack>,
+    ) -> bool {
         let kept = self.kept.get(&(surface, id));
         self.generation == look.generation
             && kept.is_some_and(|kept| Arc::ptr_eq(&kept.stack, stack))
@@ -188,7 +194,7 @@ impl Bakery {
     /// stack that only grew since, just the new layers are computed.
     pub fn planes(
         &mut self,
-        (look, backend): (&Look, &mut dyn FilmBackend),
+        (look, backend): (&Appearance, &mut dyn FilmBackend),
         surface: u32,
         id: TileId,
         (stack, ground): (&Arc<DryStack>, Under<'_>),
@@ -239,12 +245,12 @@ mod tests {
 
     use super::*;
 
-    fn look() -> Look {
+    fn look() -> Appearance {
         let library = PaintLibrary::measured().expect("whole");
         let mut studio = Studio::daylight();
         studio.add(library.find("Ultramarine Blue").expect("known"));
         studio.add(library.find("Hansa Yellow Opaque").expect("known"));
-        Look::new(studio)
+        Appearance::new(studio)
     }
 
     fn layer(number: u32, slot: usize, quanta: usize) -> DryLayer {
@@ -291,7 +297,7 @@ mod tests {
         let stack = DryStack::over(None, layer(7, 0, 8000));
         let mut bakery = Bakery::default();
         let full = bakery.planes((&look, &mut CpuFilms::new()), 0, id, (&stack, ground));
-        let set = |look: &mut Look, opacity: f32| {
+        let set = |look: &mut Appearance, opacity: f32| {
             look.set_layers(&[Layer {
                 number: 7,
                 name: String::new(),

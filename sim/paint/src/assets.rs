@@ -15,7 +15,7 @@ use std::sync::{Arc, Mutex, PoisonError, Weak};
 use maulstick_optics::Reflectance;
 use sha2::{Digest as _, Sha256};
 
-use crate::painting::PaintRefusal;
+use crate::error::EditError;
 
 /// What the name of a ground or a tooth begins with that is made of a picture; its hash follows.
 pub const IMAGE: &str = "image:";
@@ -69,7 +69,7 @@ struct Entry {
 
 /// The pictures of one painting.
 #[derive(Clone, Default)]
-pub struct Embedded(BTreeMap<String, Entry>);
+pub struct Assets(BTreeMap<String, Entry>);
 
 /// The hash by which a painting knows a picture of these bytes: SHA-256, lower-case hexadecimal.
 #[must_use]
@@ -87,29 +87,29 @@ pub fn kind_of(bytes: &[u8]) -> &'static str {
     }
 }
 
-fn spectrum(bytes: &[u8]) -> Result<Reflectance, PaintRefusal> {
+fn spectrum(bytes: &[u8]) -> Result<Reflectance, EditError> {
     let text = std::str::from_utf8(bytes).unwrap_or_default();
     Reflectance::parse(text.trim_start_matches('\u{feff}')).map_err(|error| {
-        PaintRefusal::new(
+        EditError::new(
             format!("this is no spectrum of a ground: {error}"),
             "a row a wavelength: nm,reflectance, rising, 0 to 1",
         )
     })
 }
 
-fn refused(what: String) -> PaintRefusal {
-    PaintRefusal::new(
+fn refused(what: String) -> EditError {
+    EditError::new(
         what,
         "a painting holds PNG pictures of 8-bit RGB or 16-bit grey, of 67 million pixels at most",
     )
 }
 
-impl Embedded {
+impl Assets {
     /// Takes a picture in and returns its hash.
     ///
     /// # Errors
-    /// [`PaintRefusal`] where the bytes are no PNG of the two kinds, or of too many pixels.
-    pub fn add(&mut self, bytes: Arc<[u8]>) -> Result<String, PaintRefusal> {
+    /// [`EditError`] where the bytes are no PNG of the two kinds, or of too many pixels.
+    pub fn add(&mut self, bytes: Arc<[u8]>) -> Result<String, EditError> {
         let hash = hash_of(&bytes);
         if !self.0.contains_key(&hash) {
             decode(&bytes)?;
@@ -122,8 +122,8 @@ impl Embedded {
     /// Takes a spectrum in and returns its hash.
     ///
     /// # Errors
-    /// [`PaintRefusal`] with the line where the text is no table of reflectances.
-    pub fn add_spectrum(&mut self, text: &str) -> Result<String, PaintRefusal> {
+    /// [`EditError`] with the line where the text is no table of reflectances.
+    pub fn add_spectrum(&mut self, text: &str) -> Result<String, EditError> {
         spectrum(text.as_bytes())?;
         let bytes: Arc<[u8]> = text.as_bytes().into();
         let hash = hash_of(&bytes);
@@ -134,8 +134,8 @@ impl Embedded {
     /// The reflectances of a spectrum.
     ///
     /// # Errors
-    /// [`PaintRefusal`] where there is none of this hash, or it is a picture's.
-    pub fn reflectance(&self, hash: &str) -> Result<Reflectance, PaintRefusal> {
+    /// [`EditError`] where there is none of this hash, or it is a picture's.
+    pub fn reflectance(&self, hash: &str) -> Result<Reflectance, EditError> {
         spectrum(&self.entry(hash)?.bytes)
     }
 
@@ -156,15 +156,15 @@ impl Embedded {
         self.0.iter().map(|(hash, entry)| (&**hash, &entry.bytes))
     }
 
-    fn entry(&self, hash: &str) -> Result<&Entry, PaintRefusal> {
+    fn entry(&self, hash: &str) -> Result<&Entry, EditError> {
         self.0.get(hash).ok_or_else(|| {
             let digits = hash.bytes().all(|c| matches!(c, b'0'..=b'9' | b'a'..=b'f'));
             match digits && hash.len() == HASH_DIGITS {
-                true => PaintRefusal::new(
+                true => EditError::new(
                     format!("this painting holds no picture {hash}"),
                     "import the picture first",
                 ),
-                false => PaintRefusal::new(
+                false => EditError::new(
                     format!("'{hash}' is not the hash of a picture"),
                     "write image: and the 64 digits of its SHA-256",
                 ),
@@ -173,7 +173,7 @@ impl Embedded {
     }
 
     /// Decodes a picture, unless somebody still holds what was decoded before.
-    fn decoded(&self, hash: &str) -> Result<Decoded, PaintRefusal> {
+    fn decoded(&self, hash: &str) -> Result<Decoded, EditError> {
         let entry = self.entry(hash)?;
         let mut lent = entry.lent.lock().unwrap_or_else(PoisonError::into_inner);
         let held = match &*lent {
@@ -195,11 +195,11 @@ impl Embedded {
     /// The pixels of a picture of colours.
     ///
     /// # Errors
-    /// [`PaintRefusal`] where there is none of this hash, or it is one of heights.
-    pub fn colours(&self, hash: &str) -> Result<Arc<Colours>, PaintRefusal> {
+    /// [`EditError`] where there is none of this hash, or it is one of heights.
+    pub fn colours(&self, hash: &str) -> Result<Arc<Colours>, EditError> {
         match self.decoded(hash)? {
             Decoded::Colours(colours) => Ok(colours),
-            Decoded::Heights(_) => Err(PaintRefusal::new(
+            Decoded::Heights(_) => Err(EditError::new(
                 "this picture is one of heights".to_owned(),
                 "import it as a ground: then it is kept with its colours",
             )),
@@ -209,11 +209,11 @@ impl Embedded {
     /// The pixels of a picture of heights.
     ///
     /// # Errors
-    /// [`PaintRefusal`] where there is none of this hash, or it is one of colours.
-    pub fn heights(&self, hash: &str) -> Result<Arc<Heights>, PaintRefusal> {
+    /// [`EditError`] where there is none of this hash, or it is one of colours.
+    pub fn heights(&self, hash: &str) -> Result<Arc<Heights>, EditError> {
         match self.decoded(hash)? {
             Decoded::Heights(heights) => Ok(heights),
-            Decoded::Colours(_) => Err(PaintRefusal::new(
+            Decoded::Colours(_) => Err(EditError::new(
                 "this picture is one of colours".to_owned(),
                 "import it as a tooth: then it is kept as 16-bit heights",
             )),
@@ -222,7 +222,7 @@ impl Embedded {
 }
 
 /// Reads a PNG of either kind.
-fn decode(bytes: &[u8]) -> Result<Decoded, PaintRefusal> {
+fn decode(bytes: &[u8]) -> Result<Decoded, EditError> {
     let wrong = |error: png::DecodingError| refused(format!("this is no whole PNG: {error}"));
     let limits = png::Limits { bytes: 1 << 30 };
     let decoder = png::Decoder::new_with_limits(Cursor::new(bytes), limits);
@@ -266,7 +266,7 @@ fn decode(bytes: &[u8]) -> Result<Decoded, PaintRefusal> {
     }
 }
 
-impl fmt::Debug for Embedded {
+impl fmt::Debug for Assets {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let sizes = self.iter().map(|(hash, bytes)| (hash, bytes.len()));
         f.debug_map().entries(sizes).finish()
@@ -274,7 +274,7 @@ impl fmt::Debug for Embedded {
 }
 
 /// The same pictures: a hash says it.
-impl PartialEq for Embedded {
+impl PartialEq for Assets {
     fn eq(&self, other: &Self) -> bool {
         self.0.keys().eq(other.0.keys())
     }
@@ -303,7 +303,7 @@ pub(crate) mod tests {
 
     #[test]
     fn pictures_are_known_by_their_hash_and_come_from_the_bottom_up() {
-        let mut embedded = Embedded::default();
+        let mut embedded = Assets::default();
         let rgb = [1, 2, 3, 4, 5, 6];
         let bytes = png_of([1, 2], png::ColorType::Rgb, png::BitDepth::Eight, &rgb);
         let hash = embedded.add(Arc::clone(&bytes)).expect("taken");
@@ -335,8 +335,8 @@ pub(crate) mod tests {
 
     #[test]
     fn what_is_no_such_picture_is_refused() {
-        let mut embedded = Embedded::default();
-        let says = |error: PaintRefusal, word: &str| {
+        let mut embedded = Assets::default();
+        let says = |error: EditError, word: &str| {
             assert!(error.what.contains(word), "{error}");
         };
         says(embedded.add((*b"GIF89a").into()).expect_err("no"), "PNG");
@@ -355,6 +355,6 @@ pub(crate) mod tests {
             embedded.colours(&"0".repeat(64)).expect_err("no"),
             "no picture",
         );
-        assert_eq!(embedded, Embedded::default());
+        assert_eq!(embedded, Assets::default());
     }
 }

@@ -4,16 +4,17 @@ use std::sync::Arc;
 
 use maulstick_types::scene::Surface;
 
-use super::{PaintRefusal, Painting, bare};
-use crate::embedded::SPECTRUM;
-use crate::history::Make;
+use super::{Painting, bare};
+use crate::assets::SPECTRUM;
+use crate::error::EditError;
+use crate::history::SurfaceMaterial;
 use crate::setup::{check_ground, relief_called};
 
 impl Painting {
-    pub(super) fn surface(&self, id: u32) -> Result<&Surface, PaintRefusal> {
+    pub(super) fn surface(&self, id: u32) -> Result<&Surface, EditError> {
         let found = self.scene.surfaces.iter().find(|surface| surface.id == id);
         found.ok_or_else(|| {
-            PaintRefusal::new(
+            EditError::new(
                 format!("there is no surface {id}"),
                 "the canvas is 0, the palette 1",
             )
@@ -23,8 +24,8 @@ impl Painting {
     /// Gives a surface another ground.
     ///
     /// # Errors
-    /// [`PaintRefusal`] for an unknown surface or ground.
-    pub fn set_ground(&mut self, surface: u32, ground: &str) -> Result<(), PaintRefusal> {
+    /// [`EditError`] for an unknown surface or ground.
+    pub fn set_ground(&mut self, surface: u32, ground: &str) -> Result<(), EditError> {
         self.surface(surface)?;
         check_ground(ground, &self.embedded)?;
         self.make("ground", surface, |make| {
@@ -37,8 +38,8 @@ impl Painting {
     /// painting holds from then on.
     ///
     /// # Errors
-    /// [`PaintRefusal`] for an unknown surface, or with the line of what is no reflectance.
-    pub fn set_ground_spectrum(&mut self, surface: u32, text: &str) -> Result<(), PaintRefusal> {
+    /// [`EditError`] for an unknown surface, or with the line of what is no reflectance.
+    pub fn set_ground_spectrum(&mut self, surface: u32, text: &str) -> Result<(), EditError> {
         self.surface(surface)?;
         let hash = self.embedded.add_spectrum(text)?;
         self.set_ground(surface, &format!("{SPECTRUM}{hash}"))
@@ -47,8 +48,8 @@ impl Painting {
     /// Gives a surface another tooth.
     ///
     /// # Errors
-    /// [`PaintRefusal`] for an unknown surface or tooth.
-    pub fn set_tooth(&mut self, surface: u32, tooth: &str, seed: u64) -> Result<(), PaintRefusal> {
+    /// [`EditError`] for an unknown surface or tooth.
+    pub fn set_tooth(&mut self, surface: u32, tooth: &str, seed: u64) -> Result<(), EditError> {
         let cell_m = self.surface(surface)?.cell_m;
         relief_called(tooth, seed, cell_m, &self.embedded)?;
         self.make("tooth", surface, |make| {
@@ -58,7 +59,7 @@ impl Painting {
         Ok(())
     }
 
-    fn make(&mut self, what: &str, surface: u32, change: impl FnOnce(&mut Make)) {
+    fn make(&mut self, what: &str, surface: u32, change: impl FnOnce(&mut SurfaceMaterial)) {
         self.begin_step(what, None);
         let mut makes = self.rest().makes;
         let found = makes.iter_mut().find(|make| make.surface == surface);
@@ -70,7 +71,7 @@ impl Painting {
     }
 
     /// Makes the surfaces of what they are to be made of.
-    pub(super) fn remake(&mut self, makes: &[Make]) {
+    pub(super) fn remake(&mut self, makes: &[SurfaceMaterial]) {
         self.close_windows();
         for make in makes {
             let surfaces = &mut self.scene.surfaces;

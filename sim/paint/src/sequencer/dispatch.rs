@@ -4,11 +4,11 @@
 use maulstick_types::command::Command;
 
 use super::Sequencer;
-use crate::painting::PaintRefusal;
+use crate::error::EditError;
 
 impl Sequencer {
     /// Does a command about ways of painting; any other asks nothing of the painting.
-    pub(super) fn ways(&mut self, command: &Command) -> Result<String, PaintRefusal> {
+    pub(super) fn ways(&mut self, command: &Command) -> Result<String, EditError> {
         let painting = &mut self.painting;
         let done = match command {
             Command::Place {
@@ -35,7 +35,7 @@ impl Sequencer {
 }
 
 /// Why a command that changes no painting is none of its sequencer's.
-pub(super) fn elsewhere(command: &Command) -> PaintRefusal {
+pub(super) fn elsewhere(command: &Command) -> EditError {
     let (what, help) = match command {
         Command::Define { brush, .. } => (
             "a brush file is no matter of the painting",
@@ -50,5 +50,5 @@ pub(super) fn elsewhere(command: &Command) -> PaintRefusal {
             "send it to the launcher of a running rig, 'rig'".to_owned(),
         ),
     };
-    PaintRefusal::new(what.to_owned(), &help)
+    EditError::new(what.to_owned(), &help)
 }
