@@ -32,8 +32,8 @@ fn a_recorded_pen_paints_and_is_recorded_as_it_was() {
     place.done(&["load", "Bone Black"]);
     let recording = Path::new(env!("CARGO_MANIFEST_DIR")).join("../docs/examples/pen.hid");
     let mut samples = listen::<StylusSample>(&bus, &topics.sample("tablet"), Class::RealTime);
-    let pen = Command::new(env!("CARGO_BIN_EXE_maulstick-hid"))
-        .arg("--folder")
+    let pen = Command::new(support::MAULSTICK)
+        .args(["node", "hid", "--folder"])
         .arg(place.path("maulstick/studio"))
         .args(["--node", "hand", "--device", "tablet"])
         .arg("--replay")
@@ -70,8 +70,8 @@ fn a_recorder_runs_beside_the_daemon_of_its_device() {
     let topic = topics.sample("tablet-recorder");
     let mut samples = listen::<StylusSample>(&bus, &topic, Class::RealTime);
     let recording = Path::new(env!("CARGO_MANIFEST_DIR")).join("../docs/examples/pen.hid");
-    let mut recorder = Command::new(env!("CARGO_BIN_EXE_maulstick-hid"))
-        .arg("--folder")
+    let mut recorder = Command::new(support::MAULSTICK)
+        .args(["node", "hid", "--folder"])
         .arg(place.path("maulstick/studio"))
         .args(["--device", "tablet", "--record", "beside.hid", "--replay"])
         .arg(&recording)

@@ -1,6 +1,8 @@
 //! The command line of `maulstick`.
 
-use clap::{Parser, Subcommand};
+use std::fmt::Write as _;
+
+use clap::{CommandFactory as _, FromArgMatches as _, Parser, Subcommand};
 use maulstick_rig::Fault;
 use maulstick_rig::files::{allow_overwriting, clear_on_signals};
 
@@ -9,6 +11,7 @@ use crate::commands::{
     layers, light, matching, mix, mode, open, painting, paints, render, save_as, schema, surface,
     take,
 };
+use crate::processes::{self, NodeCommand};
 use crate::up;
 
 /// A painting rig that you can feel
@@ -17,88 +20,127 @@ use crate::up;
 struct Cli {
     #[command(subcommand)]
     command: Command,
-    /// Write over a file of another kind; over a painting never
+    /// Overwrite an existing file that is not a painting
     #[arg(long, global = true)]
     overwrite: bool,
 }
 
 #[derive(Subcommand, Debug)]
 enum Command {
-    /// Starts a rig and keeps it running
+    /// Start a rig and keep it running
     Up(up::UpOptions),
-    /// Paints a take without a rig
+    /// Paint a take without a rig
     Render(render::RenderOptions),
-    /// Makes a take of a table of strokes
+    /// Make a take from a table of strokes
     Import(import::ImportOptions),
-    /// Makes a take of a performance from a seed
+    /// Make a demo: a take, a painting or a sheet of marks
     Demo(demo::DemoOptions),
-    /// Shows or repairs takes
+    /// Show or repair takes
     #[command(subcommand)]
     Take(take::TakeCommand),
-    /// Loads a brush of a running rig
+    /// Load a brush with paint
     Load(control::LoadOptions),
-    /// Makes a brush of a running rig stiffer or softer
+    /// Make a brush stiffer or softer
     Tune(control::TuneOptions),
-    /// Takes all paint off a brush of a running rig
+    /// Clean a brush
     Clean(control::CleanOptions),
-    /// Shows or changes the light over a running rig
+    /// Show or change the light
     Light(light::LightOptions),
-    /// Dries the wet paint of a running rig into a new layer
+    /// Dry the wet paint into a new layer
     Dry(layers::DryOptions),
-    /// Makes dry layers of a running rig wet again
+    /// Make dry layers wet again
     Wet(layers::WetOptions),
-    /// Makes a dry layer of a running rig more or less opaque
+    /// Make a dry layer more or less opaque
     Opacity(layers::OpacityOptions),
-    /// Takes the newest step in a running rig back
+    /// Undo the newest step
     Undo(control::HistoryOptions),
-    /// Does the newest undone step in a running rig again
+    /// Redo the newest undone step
     Redo(control::HistoryOptions),
-    /// Writes the picture of a running rig
+    /// Write the picture as a file
     Snapshot(control::SnapshotOptions),
-    /// Goes on in another painting in a running rig
+    /// Open another painting in the running rig
     Open(open::OpenOptions),
-    /// Begins a painting in a running rig
+    /// Begin a new painting in the running rig
     New(begin::NewOptions),
-    /// Puts the painting of a running rig into another file, where it goes on
+    /// Save the painting under another name and go on there
     SaveAs(save_as::SaveAsOptions),
-    /// Writes the painting of a running rig for other programs
+    /// Export the painting for other programs
     Export(export::ExportOptions),
-    /// Lists what is attached, and how to use it
+    /// List attached devices and how to use them
     Devices(devices::DevicesOptions),
-    /// Tells a program in any language how to join a running rig
+    /// Run one process of a rig by hand
+    #[command(subcommand)]
+    Node(NodeCommand),
+    /// Print how a program in any language joins the rig
     Endpoint(endpoint::EndpointOptions),
-    /// Prints the messages of the rig
+    /// Print the message formats
     Schema(schema::SchemaOptions),
-    /// Shows the brushes
+    /// Show, export or import brushes
     #[command(subcommand)]
     Brush(brush::BrushCommand),
-    /// Shows, exports, imports, repairs and packs paintings, and keeps versions of them
+    /// Show, export, import, repair, pack painting files; keep versions
     #[command(subcommand)]
     Painting(painting::PaintingCommand),
-    /// Lays a film of wet paint over the canvas of a running rig
+    /// Lay a film of wet paint over the canvas
     Fill(surface::FillOptions),
-    /// Gives the canvas of a running rig another ground
+    /// Change the ground of the canvas
     Ground(surface::GroundOptions),
-    /// Gives the canvas of a running rig another tooth
+    /// Change the tooth of the canvas
     Tooth(surface::ToothOptions),
-    /// Sizes the canvas of a running rig
+    /// Size the canvas
     Size(mode::SizeOptions),
-    /// Says whether paint on the palette of a running rig depletes or lasts
+    /// Let paint on the palette deplete or last
     Piles(mode::PilesOptions),
-    /// Lists the paints
+    /// List the paints
     Paints(paints::PaintsOptions),
-    /// Mixes paints and shows their colour
+    /// Mix paints and show their colour
     Mix(mix::MixOptions),
-    /// Proposes mixtures for a colour
+    /// Propose mixtures for a colour
     Match(matching::MatchOptions),
-    /// Makes paints of measured reflectances
+    /// Fit paints to measured reflectances
     Fit(fit::FitCommand),
-    /// Measures, beside peers
+    /// Run benchmarks against reference programs
     Bench(bench::BenchOptions),
-    /// Fits a device to the canvas by three corners that a hand touches
+    /// Fit a device to the canvas by touching three corners
     Calibrate(calibrate::CalibrateOptions),
-    /// Shows the force that a brush gives to the hand, by depth and angle
+    /// Show the force of a brush on the hand, by depth and angle
     Force(force::ForceOptions),
+}
+
+/// The commands as `maulstick --help` lists them.
+const GROUPS: &[(&str, &[&str])] = &[
+    ("Rig", &["up", "node", "endpoint", "schema"]),
+    (
+        "Painting",
+        &["new", "open", "save-as", "snapshot", "export", "painting"],
+    ),
+    ("Paint", &["fill", "undo", "redo"]),
+    ("Canvas", &["ground", "tooth", "size", "light"]),
+    ("Layers", &["dry", "wet", "opacity"]),
+    ("Brush", &["load", "clean", "tune", "piles", "brush"]),
+    ("Colour", &["paints", "mix", "match", "fit"]),
+    ("Takes", &["demo", "import", "render", "take"]),
+    ("Devices", &["devices", "calibrate", "force"]),
+    ("Measure", &["bench"]),
+];
+
+/// A command whose help lists its subcommands in [`GROUPS`].
+fn grouped(command: clap::Command) -> clap::Command {
+    let mut list = String::new();
+    for (group, names) in GROUPS {
+        writeln!(list, "{group}:").ok();
+        for name in *names {
+            let found = command.find_subcommand(name);
+            let about = found.and_then(clap::Command::get_about);
+            let about = about.map(ToString::to_string).unwrap_or_default();
+            writeln!(list, "  {name:<10} {about}").ok();
+        }
+        list.push('\n');
+    }
+    command.help_template(format!(
+        "{{about-with-newline}}\n{{usage-heading}} {{usage}}\n\n{list}Options:\n{{options}}\n\n\
+         'maulstick COMMAND --help' shows the options of a command."
+    ))
 }
 
 /// Runs the command line and returns the exit code.
@@ -106,17 +148,23 @@ enum Command {
 /// # Errors
 /// A [`Fault`] as the user sees it.
 pub fn run() -> Result<i32, Fault> {
-    let Cli { command, overwrite } = Cli::parse();
+    let matches = grouped(Cli::command()).get_matches();
+    let Cli { command, overwrite } =
+        Cli::from_arg_matches(&matches).unwrap_or_else(|error| error.exit());
     if overwrite {
         allow_overwriting();
     }
-    // A rig has processes to end first, a device to be let go.
-    if !matches!(command, Command::Up(_) | Command::Calibrate(_)) {
+    // A rig ends its processes first, a node its work, a calibration its device.
+    if !matches!(
+        command,
+        Command::Up(_) | Command::Calibrate(_) | Command::Node(_)
+    ) {
         clear_on_signals(crate::EXIT_INTERRUPTED)
             .map_err(|error| Fault::failure(format!("cannot watch for signals: {error}")))?;
     }
     match command {
         Command::Up(options) => up::run(&options),
+        Command::Node(command) => processes::run(&command),
         Command::Render(options) => render::run(&options),
         Command::Import(options) => import::run(&options),
         Command::Demo(options) => demo::run(&options),
@@ -157,10 +205,29 @@ pub fn run() -> Result<i32, Fault> {
 
 #[cfg(test)]
 mod tests {
-    use clap::CommandFactory as _;
+    use super::*;
 
     #[test]
     fn the_command_line_is_consistent() {
-        super::Cli::command().debug_assert();
+        grouped(Cli::command()).debug_assert();
+    }
+
+    #[test]
+    fn help_lists_each_command_once() {
+        let command = Cli::command();
+        let mut commands: Vec<_> = command.get_subcommands().map(|c| c.get_name()).collect();
+        let mut listed: Vec<_> = GROUPS
+            .iter()
+            .flat_map(|(_, names)| *names)
+            .copied()
+            .collect();
+        commands.sort_unstable();
+        listed.sort_unstable();
+        assert_eq!(commands, listed);
+        let help = grouped(command).render_help().to_string();
+        assert!(
+            help.contains("Rig:\n  up         Start a rig and keep it running\n"),
+            "{help}"
+        );
     }
 }

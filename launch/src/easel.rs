@@ -4,12 +4,12 @@ use std::sync::Arc;
 use std::time::Instant;
 
 use indicatif::ProgressBar;
-use maulstick_nodes::{Keeper, Offline};
 use maulstick_paint::Sequencer;
 use maulstick_paint::assets::IMAGE;
 use maulstick_paint::light::changes_colour;
 use maulstick_paint::store::TileStore;
 use maulstick_rig::Fault;
+use maulstick_session::{Autosave, Offline};
 use maulstick_types::Mixture;
 use maulstick_types::command::Command;
 use maulstick_types::scene::{BrushHandling, CANVAS};
@@ -28,7 +28,7 @@ const PAUSE_NS: u64 = 1_000_000_000;
 pub struct Easel<'a> {
     /// Brush and paint.
     pub offline: Offline,
-    keeper: &'a mut Option<Keeper>,
+    autosave: &'a mut Option<Autosave>,
     begun: Instant,
     bar: ProgressBar,
     /// Time of the takes, strokes and waits so far, ns.
@@ -38,12 +38,12 @@ pub struct Easel<'a> {
 }
 
 impl<'a> Easel<'a> {
-    /// An easel; what is painted goes to the document of `keeper`, if there is one, and `bar` shows how far
+    /// An easel; what is painted goes to the document of `autosave`, if there is one, and `bar` shows how far
     /// it is.
-    pub fn new(offline: Offline, keeper: &'a mut Option<Keeper>, bar: ProgressBar) -> Self {
+    pub fn new(offline: Offline, autosave: &'a mut Option<Autosave>, bar: ProgressBar) -> Self {
         Self {
             offline,
-            keeper,
+            autosave,
             begun: Instant::now(),
             bar,
             painted_ns: 0,
@@ -167,9 +167,9 @@ impl<'a> Easel<'a> {
     fn embed(&mut self, bytes: Arc<[u8]>) -> Result<String, Fault> {
         let painting = self.offline.painting_mut();
         let hash = painting.embed(bytes).map_err(refused)?;
-        if let Some(keeper) = self.keeper {
+        if let Some(autosave) = self.autosave {
             // The document has the picture before the journal names it.
-            keeper.settle(self.offline.sequencer_mut());
+            autosave.settle(self.offline.sequencer_mut());
         }
         Ok(hash)
     }
@@ -203,13 +203,13 @@ impl<'a> Easel<'a> {
     fn wait(&mut self, ticks: u32) {
         let Self {
             offline,
-            keeper,
+            autosave,
             begun,
             painted_ns,
             ..
         } = self;
         offline.wait(ticks, |sequencer| {
-            turn(keeper, *begun, sequencer);
+            turn(autosave, *begun, sequencer);
         });
         *painted_ns += time_ns(ticks);
     }
@@ -229,7 +229,7 @@ impl<'a> Easel<'a> {
             .collect();
         let Self {
             offline,
-            keeper,
+            autosave,
             begun,
             bar,
             painted_ns,
@@ -240,7 +240,7 @@ impl<'a> Easel<'a> {
                 let painted_ns = *painted_ns + samples[number].0 - first_ns;
                 bar.set_position(painted_ns / 1_000_000 + *done);
             }
-            turn(keeper, *begun, sequencer);
+            turn(autosave, *begun, sequencer);
         });
         followed.map_err(refused)?;
         self.painted_ns += samples[samples.len() - 1].0 - first_ns + PAUSE_NS;
@@ -248,13 +248,13 @@ impl<'a> Easel<'a> {
     }
 
     fn keep(&mut self) {
-        turn(self.keeper, self.begun, self.offline.sequencer_mut());
+        turn(self.autosave, self.begun, self.offline.sequencer_mut());
     }
 }
 
 /// Hands what is new to the document, if there is one.
-fn turn(keeper: &mut Option<Keeper>, begun: Instant, sequencer: &mut Sequencer) {
-    if let Some(keeper) = keeper {
-        keeper.turn(sequencer, begun.elapsed().as_nanos() as u64);
+fn turn(autosave: &mut Option<Autosave>, begun: Instant, sequencer: &mut Sequencer) {
+    if let Some(autosave) = autosave {
+        autosave.turn(sequencer, begun.elapsed().as_nanos() as u64);
     }
 }

@@ -5,7 +5,7 @@
 //! | [`cli`] | the command line |
 //! | [`commands`] | what its subcommands do |
 //! | [`up`] | the supervisor |
-//! | [`nodes`] | the mains of the nodes |
+//! | [`processes`] | the processes of a rig |
 //! | [`page`] | pictures made of patches, pictures and words |
 //! | [`plot`] | curves over two axes |
 //! | [`destination`] | the display or file that colours go to: profile and gamut |
@@ -41,12 +41,12 @@ pub mod ground;
 pub mod kit;
 pub mod lamp;
 pub mod memory;
-pub mod nodes;
 pub mod outputs;
 pub mod page;
 pub mod paintings;
 pub mod performance;
 pub mod plot;
+pub mod processes;
 pub mod script;
 pub mod sheet;
 pub mod swatch;

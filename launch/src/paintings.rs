@@ -4,10 +4,10 @@ use std::path::Path;
 
 use indicatif::ProgressBar;
 use maulstick_brush::BrushFile;
-use maulstick_nodes::Offline;
 use maulstick_optics::PaintLibrary;
 use maulstick_paint::{Painting, PaintingSetup};
 use maulstick_rig::Fault;
+use maulstick_session::Offline;
 
 use crate::easel::Easel;
 use crate::performance::refused;
@@ -62,9 +62,9 @@ pub fn paint(
     let painting = Painting::new(&setup, library).map_err(refused)?;
     let file = BrushFile::library("flat").map_err(|error| Fault::failure(error.to_string()))?;
     let offline = Offline::new(painting, BRUSH, file, DEPTH_SHARE, Vec::new()).map_err(refused)?;
-    let mut keeper = None;
+    let mut autosave = None;
     bar.set_length(script.length_ns() / 1_000_000);
-    let mut easel = Easel::new(offline, &mut keeper, bar);
+    let mut easel = Easel::new(offline, &mut autosave, bar);
     easel.follow_script(script)?;
     Ok(easel.offline)
 }

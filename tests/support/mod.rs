@@ -136,10 +136,10 @@ impl Place {
 
     /// Process of a node of the rig, by its program.
     pub fn pid(&self, program: &str) -> Option<u32> {
-        let name = format!("/{program} ");
+        let name = format!("{program} ");
         self.processes()
             .into_iter()
-            .find(|(_, line)| line.contains(&name))
+            .find(|(_, line)| line.starts_with(&name))
             .map(|(pid, _)| pid)
     }
 

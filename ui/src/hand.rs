@@ -209,7 +209,14 @@ impl Hand {
         self.send(now, canvas.id, from, to, orders);
     }
 
-    fn send(&mut self, now: f64, surface: u32, from: SurfacePlacement, to: SurfacePlacement, orders: &mut Orders) {
+    fn send(
+        &mut self,
+        now: f64,
+        surface: u32,
+        from: SurfacePlacement,
+        to: SurfacePlacement,
+        orders: &mut Orders,
+    ) {
         if to != from {
             orders.paint(to.command(surface));
             self.sent = Some((surface, to, now));
@@ -331,7 +338,10 @@ mod tests {
         let view = view(&surfaces);
         let (from, to) = (pos2(520.0, 300.0), pos2(570.0, 280.0));
         let held = view.on_desk(from);
-        let first = SurfacePlacement::from(&surfaces[0]).pose.inverse().point(held);
+        let first = SurfacePlacement::from(&surfaces[0])
+            .pose
+            .inverse()
+            .point(held);
         let moves = placed(
             false,
             drag(PointerButton::Middle, Modifiers::NONE, from, to),

@@ -2,8 +2,8 @@
 
 use eframe::egui::{Color32, Pos2, Rect, Vec2, vec2};
 use glam::{DVec2, DVec3};
-use maulstick_brush::placement::SurfacePlacement;
 use maulstick_brush::palette_place::{GAP_M, Side, corner_radii, is_on, size_m};
+use maulstick_brush::placement::SurfacePlacement;
 use maulstick_num::geometry::Rigid;
 use maulstick_types::scene::Surface;
 
@@ -196,8 +196,8 @@ pub fn level(cells: u32, pixels: f32) -> u32 {
 mod tests {
     use super::*;
     use eframe::egui::pos2;
-    use maulstick_brush::placement::placed;
     use maulstick_brush::palette_place::beside;
+    use maulstick_brush::placement::placed;
     use maulstick_num::geometry::rotation;
     use maulstick_paint::PaintingSetup;
     use maulstick_types::Pose;

@@ -1,6 +1,6 @@
 //! Switches of a stylus beside a brush node and a paint node.
 
-#[path = "../../../sim/nodes/tests/support/mod.rs"]
+#[path = "../../paint/tests/support/mod.rs"]
 mod support;
 
 use std::sync::Arc;

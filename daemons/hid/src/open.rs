@@ -186,7 +186,7 @@ pub fn means(kind: Kind, identity: &Identity, bytes: &[u8]) -> Result<Means, Fau
             let layout = Layout::of(&descriptor).ok_or_else(|| {
                 other(
                     "choose another device by `address`; if it is a tablet, its reports are in a format \
-                     of its maker's own: record it with `maulstick-hid --record` and send us that",
+                     of its maker's own: record it with `maulstick node hid --record` and send us that",
                 )
             })?;
             Ok(Means::Pen(Decoder::Described(layout)))

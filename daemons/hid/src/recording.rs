@@ -23,7 +23,7 @@ pub const LONGEST_REPORT: usize = 16_384;
 /// A recording spans no more time than this, s.
 const LONGEST_S: u64 = 100_000;
 /// What to do about a line that is none of a recording.
-const HELP: &str = "record anew with `maulstick-hid --record` or with `hid-recorder`";
+const HELP: &str = "record anew with `maulstick node hid --record` or with `hid-recorder`";
 
 /// A report, and when it came.
 #[derive(Clone, Debug, PartialEq, Eq)]

@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use clap::Args;
 use maulstick_exchange::Format;
-use maulstick_nodes::exporter::kind_of;
+use maulstick_paint_node::exporter::kind_of;
 use maulstick_rig::Fault;
 use maulstick_rig::files::Kind;
 use maulstick_types::command::{Command, ExportOrder};

@@ -4,11 +4,11 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 use maulstick_device::Take;
-use maulstick_nodes::snapshots::write_snapshot;
-use maulstick_nodes::{Keeper, Offline};
 use maulstick_paint::{Painting, Sequencer};
+use maulstick_paint_node::snapshots::write_snapshot;
 use maulstick_rig::files::Kind;
 use maulstick_rig::{Fault, RigConfig};
+use maulstick_session::{Autosave, Offline};
 
 use crate::backend::choose_backend;
 use crate::cells::picture_settings;
@@ -172,14 +172,14 @@ pub fn run(options: &RenderOptions) -> Result<i32, Fault> {
     written.extend(options.document.iter().map(|path| UsedFile::painting(path)));
     check_apart(&written, &script.files)?;
     check_outputs(&outputs, &inputs)?;
-    let (mut keeper, mut sequencer) = match &options.document {
+    let (mut autosave, mut sequencer) = match &options.document {
         Some(path) => {
             let (document, mut sequencer, since) = match begun {
                 Some(begun) => begun,
                 None => go_on(&config, path)?,
             };
-            let keeper = Keeper::new(document, &mut sequencer, since);
-            (Some(keeper), sequencer)
+            let autosave = Autosave::new(document, &mut sequencer, since);
+            (Some(autosave), sequencer)
         }
         None => {
             let setup = painting_setup(&config, &library)?;
@@ -192,7 +192,7 @@ pub fn run(options: &RenderOptions) -> Result<i32, Fault> {
     let (name, share) = (&section.name, section.depth_share);
     let offline = Offline::going_on(sequencer, name, file, share, loads).map_err(refused)?;
     let bar = progress_bar(script.length_ns()).with_message("painting");
-    let mut easel = Easel::new(offline, &mut keeper, bar);
+    let mut easel = Easel::new(offline, &mut autosave, bar);
     let painted = easel
         .follow_script(script)
         .map_err(|fault| match options.script {
@@ -200,8 +200,8 @@ pub fn run(options: &RenderOptions) -> Result<i32, Fault> {
             None => fault,
         });
     let mut offline = easel.offline;
-    let mut close = |offline: &mut Offline| match (keeper.take(), &options.document) {
-        (Some(keeper), Some(path)) => keeper
+    let mut close = |offline: &mut Offline| match (autosave.take(), &options.document) {
+        (Some(autosave), Some(path)) => autosave
             .close(offline.sequencer_mut())
             .map_err(|error| wrong(path, &error)),
         _ => Ok(()),

@@ -2,8 +2,8 @@
 
 use std::f64::consts::PI;
 
-use maulstick_nodes::Offline;
 use maulstick_paint::EditError;
+use maulstick_session::Offline;
 use maulstick_types::stylus::{StylusPose, StylusSample, axes};
 
 /// Samples a second.

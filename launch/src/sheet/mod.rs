@@ -18,12 +18,12 @@ mod tests;
 
 use maulstick_brush::BrushFile;
 use maulstick_brush::file::library::LIBRARY;
-use maulstick_nodes::Offline;
 use maulstick_optics::PaintLibrary;
 use maulstick_paint::picture::{Picture, picture};
 use maulstick_paint::setup::PaintingSetup;
 use maulstick_paint::{EditError, Painting};
 use maulstick_rig::Fault;
+use maulstick_session::Offline;
 use maulstick_types::Mixture;
 use maulstick_types::command::Command;
 

@@ -110,8 +110,14 @@ impl Node {
     /// # Errors
     /// A [`Fault`] where the system cannot.
     pub fn start(&mut self, folder: &Path) -> Result<(), Fault> {
-        let mut child = Command::new(&self.spec.program)
-            .arg("--folder")
+        let program = self.spec.program;
+        let failed = |error: std::io::Error| {
+            let what = format!("node '{}' cannot be started: {error}", self.spec.name);
+            Fault::failure(what).help("is the program still installed? start the rig anew")
+        };
+        let mut child = Command::new(std::env::current_exe().map_err(failed)?)
+            .arg0(program.process_name())
+            .args(["node", program.subcommand(), "--folder"])
             .arg(folder)
             .args(["--node", &self.spec.name, "--guarded"])
             .args(&self.spec.args)
@@ -119,13 +125,7 @@ impl Node {
             .stdout(Stdio::null())
             .process_group(0)
             .spawn()
-            .map_err(|error| {
-                Fault::failure(format!(
-                    "node '{}' cannot be started: {error}",
-                    self.spec.name
-                ))
-                .at(self.spec.program.display().to_string())
-            })?;
+            .map_err(failed)?;
         let stdin = child.stdin.take();
         self.process = Some((child, stdin));
         self.state = State::Starting;

@@ -15,8 +15,8 @@ use maulstick_types::command::Command;
 use maulstick_types::stylus::{TakeEnd, TakeStatus};
 use maulstick_types::topics::Topics;
 
-use crate::nodes::PLAYER;
 use crate::outputs::Relayed;
+use crate::processes::{PLAYER, Program};
 use crate::up::plan::{NodeSpec, Role, node};
 
 /// What is played, and what becomes of it.
@@ -89,10 +89,8 @@ impl Conductor {
     }
 
     /// The player's process; it plays as fast as it can up to where the take has been before.
-    ///
-    /// # Errors
-    /// A [`Fault`] where its program is missing.
-    pub fn player(&self, config: &RigConfig) -> Result<NodeSpec, Fault> {
+    #[must_use]
+    pub fn player(&self, config: &RigConfig) -> NodeSpec {
         let performance = &self.performance;
         let mut args = vec![
             "--take".to_owned(),
@@ -111,7 +109,7 @@ impl Conductor {
         for load in &performance.loads {
             args.extend(["--load".to_owned(), load.clone()]);
         }
-        node(config, PLAYER, Role::Player, "maulstick-player", args)
+        node(config, PLAYER, Role::Player, Program::Player, args)
     }
 
     /// Takes in where the player is; returns its position in the take, ns.

@@ -204,7 +204,7 @@ pub fn run(options: &UpOptions) -> Result<i32, Fault> {
         Some(_) => Hands::Take,
         None => Hands::Devices,
     };
-    let nodes = plan::nodes(&config, window, hands)?;
+    let nodes = plan::nodes(&config, window, hands);
     // In a painting that goes on the brushes carry what they carried.
     let first_load = match (loads.into_iter().next(), presence) {
         (None, Some(Presence::There)) => None,

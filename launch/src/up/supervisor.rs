@@ -304,7 +304,8 @@ impl Supervisor {
                 self.due.push((node.spec.name.clone(), Instant::now()));
             }
         }
-        self.due.retain(|(name, _)| name != crate::nodes::PLAYER);
+        self.due
+            .retain(|(name, _)| name != crate::processes::PLAYER);
         self.nodes.retain(|node| node.spec.role != Role::Player);
     }
 
@@ -373,12 +374,7 @@ impl Supervisor {
         );
         eprintln!("  {:<16} {:>8}  {:<10} program", "node", "pid", "state");
         for node in &self.nodes {
-            let program = node
-                .spec
-                .program
-                .file_name()
-                .unwrap_or_default()
-                .to_string_lossy();
+            let program = node.spec.program.process_name();
             eprintln!(
                 "  {:<16} {:>8}  {:<10} {program}",
                 node.spec.name,
@@ -411,7 +407,7 @@ impl Supervisor {
         };
         if !self.nodes.iter().any(|node| node.spec.role == Role::Player) {
             if ready {
-                let spec = conductor.player(&self.config)?;
+                let spec = conductor.player(&self.config);
                 self.nodes.push(Node::new(spec));
                 self.start_node(self.nodes.len() - 1)?;
             }

@@ -9,6 +9,7 @@
 //! | [`header`] | the header, flags, and the errors of reading a message |
 //! | [`schema`] | field tables and their hash |
 //! | [`topics`] | the key expressions of a rig |
+//! | [`reply_cache`] | the newest reply to each client |
 //! | [`advice`] | what to do about something that is wrong |
 //! | [`stylus`], [`control`], [`haptics`], [`brush`], [`scene`], [`paint`], [`command`], [`window`] | the messages |
 
@@ -29,6 +30,7 @@ pub mod older;
 pub mod paint;
 pub mod pose;
 pub mod region;
+pub mod reply_cache;
 pub mod scene;
 pub mod schema;
 pub mod stylus;

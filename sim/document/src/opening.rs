@@ -4,16 +4,17 @@ use std::collections::{BTreeMap, HashMap};
 use std::sync::Arc;
 
 use maulstick_optics::PaintLibrary;
-use maulstick_paint::dry::{DryLayer, DryStack};
+use maulstick_paint::EditError;
 use maulstick_paint::assets::Assets;
-use maulstick_paint::history::{Change, StepEffects, TileRef, TilePlace, NonTileState, Step};
-use maulstick_paint::snapshot::{PaintingSnapshot, SequencerSnapshot};
+use maulstick_paint::dry::{DryLayer, DryStack};
+use maulstick_paint::history::{Change, NonTileState, Step, StepEffects, TilePlace, TileRef};
 use maulstick_paint::load::BrushLoad;
 use maulstick_paint::page::{Page, Pager};
-use maulstick_paint::EditError;
 use maulstick_paint::painting::{Named, Restored};
+use maulstick_paint::planes::Planes;
 use maulstick_paint::sequencer::Record;
-use maulstick_paint::tile::{Planes, Tile, Version};
+use maulstick_paint::snapshot::{PaintingSnapshot, SequencerSnapshot};
+use maulstick_paint::tile::{Tile, Version};
 use maulstick_paint::{Painting, Sequencer};
 use maulstick_types::paint::TILE;
 use maulstick_types::scene::Scene;
@@ -352,7 +353,8 @@ fn tiles(database: &Database, shelves: &Shelves) -> Result<Tiles, DocumentError>
 
 /// The steps, where neighbours share the tiles that one left to the other.
 fn steps(database: &Database, shelves: &Shelves) -> Result<Vec<Step>, DocumentError> {
-    let query = "SELECT id, what, brush, operations, done, effects, tiles, sum FROM step ORDER BY id";
+    let query =
+        "SELECT id, what, brush, operations, done, effects, tiles, sum FROM step ORDER BY id";
     let mut statement = database.connection.prepare(query)?;
     let mut rows = statement.query(params![])?;
     let mut steps = Vec::new();

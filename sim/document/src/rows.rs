@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use maulstick_paint::history::{Booked, TileRef, SurfaceMaterial, TilePlace};
+use maulstick_paint::history::{Booked, SurfaceMaterial, TilePlace, TileRef};
 use maulstick_paint::ledger::Ledger;
 use maulstick_paint::tile::{Tile, TileId};
 use maulstick_types::scene::Layer;
@@ -16,7 +16,7 @@ pub fn place_number((surface, id): TilePlace) -> i64 {
 
 /// Reads [`place_number`].
 #[must_use]
-pub fn place_of(number: i64) -> Place {
+pub fn place_of(number: i64) -> TilePlace {
     let part = |shift: u32| (number >> shift) as u32 & 0xf_ffff;
     let id = TileId {
         y: part(20),

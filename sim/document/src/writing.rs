@@ -6,12 +6,12 @@ use std::time::Instant;
 
 use maulstick_paint::Sequencer;
 use maulstick_paint::assets::{hash_of, kind_of};
-use maulstick_paint::history::{TileRef, Step};
-use maulstick_paint::snapshot::SequencerSnapshot;
+use maulstick_paint::history::{Step, TileRef};
 use maulstick_paint::load::BrushLoad;
 use maulstick_paint::page::Page;
 use maulstick_paint::painting::{Checkpoint, Named};
-use maulstick_paint::tile::Planes;
+use maulstick_paint::planes::Planes;
+use maulstick_paint::snapshot::SequencerSnapshot;
 use rusqlite::{OptionalExtension as _, params};
 
 use crate::database::{DEPTH_MAX, Database, load_sum, page_sum, shown_sum};

@@ -9,12 +9,13 @@ use std::sync::Arc;
 
 use maulstick_optics::Paint;
 use maulstick_paint::Painting;
+use maulstick_paint::appearance::Appearance;
 use maulstick_paint::blank_surface::BlankSurface;
 use maulstick_paint::ground::Ground;
-use maulstick_paint::appearance::Appearance;
 use maulstick_paint::painting::LaidTile;
+use maulstick_paint::planes::TILE_CELLS;
 use maulstick_paint::quantum::{QUANTUM_M, SLOTS};
-use maulstick_paint::tile::{TILE_CELLS, TileId};
+use maulstick_paint::tile::TileId;
 use maulstick_types::paint::TILE;
 
 use crate::films::{Films, Shares};

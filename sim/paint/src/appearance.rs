@@ -9,8 +9,9 @@ use maulstick_optics::{FilmPlanes, Studio, Under};
 use maulstick_types::scene::Layer;
 
 use crate::dry::{DryLayer, DryStack};
+use crate::planes::{Planes, TILE_CELLS};
 use crate::quantum::QUANTUM_M;
-use crate::tile::{Planes, TILE_CELLS, TileId};
+use crate::tile::TileId;
 
 /// Baked tiles take this much at most, bytes; one with sixteen wavelengths takes 256 KiB.
 const KEPT_BYTES: usize = 128 << 20;

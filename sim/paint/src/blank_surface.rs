@@ -8,9 +8,11 @@ use maulstick_optics::{FilmPlanes, Studio, Under};
 use maulstick_types::paint::TILE;
 
 use crate::ground::Ground;
-use crate::painting::WELL_M;
 use crate::relief::Relief;
 use crate::tile::TileId;
+
+/// Thickness of the paint in a well, m.
+pub const WELL_M: f64 = 2e-3;
 
 /// A well as it looks.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -8,8 +8,9 @@ use maulstick_optics::colour::srgb_decode;
 use maulstick_optics::{FilmPlanes, Studio, Under, Upsampler};
 use maulstick_types::brush::BrushLook;
 
-use crate::load::{BrushLoad, TEXELS_PER_STRIP};
+use crate::load::BrushLoad;
 use crate::quantum::SLOTS;
+use crate::traits::TEXELS_PER_STRIP;
 
 /// Samples along a strip: each the mean of as many texels as divide it.
 pub const SAMPLES: usize = 8;
@@ -99,7 +100,7 @@ mod tests {
 
     use super::*;
     use crate::load::Half;
-    use crate::model::BrushTraits;
+    use crate::traits::BrushTraits;
 
     struct Bench {
         studio: Studio,

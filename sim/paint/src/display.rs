@@ -10,8 +10,9 @@ use maulstick_types::paint::TILE;
 use crate::appearance::thickness;
 use crate::blank_surface::BlankSurface;
 use crate::dry::DryStack;
+use crate::planes::TILE_CELLS;
 use crate::quantum::QUANTUM_M;
-use crate::tile::{TILE_CELLS, Tile, TileId};
+use crate::tile::{Tile, TileId};
 
 /// A tile as it is shown, before light.
 #[derive(Clone, Debug, PartialEq)]

@@ -10,8 +10,9 @@ use maulstick_types::paint::TILE;
 
 use crate::assets::{Assets, Colours, IMAGE, SPECTRUM};
 use crate::error::EditError;
+use crate::planes::TILE_CELLS;
 use crate::setup::ground_reflectance;
-use crate::tile::{TILE_CELLS, TileId};
+use crate::tile::TileId;
 
 /// Reflectances of tiles that are kept, bytes; a tile at sixteen wavelengths takes 256 KiB.
 const KEPT_BYTES: usize = 64 << 20;

@@ -7,7 +7,8 @@ use maulstick_num::lanes::Lanes;
 use maulstick_num::wide;
 use maulstick_types::brush::Solve;
 
-use crate::model::BrushTraits;
+use crate::scale::Scale;
+use crate::traits::BrushTraits;
 
 /// Strips looked at at a time.
 const LANES: usize = 8;
@@ -47,30 +48,6 @@ impl From<WaypointSnapshot> for Waypoint {
             angles,
             wetness,
         }
-    }
-}
-
-/// How a brush's lengths are seen on a surface.
-#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
-pub struct Scale {
-    /// Side of a cell in the surface's own lengths, m.
-    pub cell_m: f64,
-    /// Desk lengths per surface length.
-    pub zoom: f64,
-}
-
-/// Way of a brush in one step, m of its own lengths.
-pub const STEP_M: f64 = 0.25e-3;
-
-impl Scale {
-    /// Way of a brush in one step, cells: at least one. One that is `fine` goes no farther: paint goes before the
-    /// edge of a blade, which is narrow, and a hairline would become wider by what its slanting hair sweeps.
-    #[must_use]
-    pub fn step_cells(&self, fine: bool) -> f64 {
-        if fine {
-            return 1.0;
-        }
-        (STEP_M / (self.cell_m * self.zoom)).max(1.0)
     }
 }
 

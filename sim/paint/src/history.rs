@@ -17,6 +17,8 @@ use crate::page::Page;
 use crate::store::TileRect;
 use crate::tile::{Tile, TileId};
 
+/// Bytes of a history at most, unless a painting says otherwise.
+pub const QUOTA: u64 = 2 << 30;
 /// The newest steps, which are never merged.
 const APART: usize = 16;
 

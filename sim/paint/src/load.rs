@@ -3,13 +3,9 @@
 use maulstick_brush::Head;
 use maulstick_types::Mixture;
 
-use crate::model::BrushTraits;
-use crate::page::{Backing, Content};
 use crate::quantum::{Counts, SLOTS};
 use crate::streaks::streaks;
-
-/// Texels along a strip.
-pub const TEXELS_PER_STRIP: usize = 16;
+use crate::traits::{BrushTraits, TEXELS_PER_STRIP};
 
 /// One paint on a brush: counts by texel, `strip · TEXELS_PER_STRIP + along`, 0 at the ferrule.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -75,22 +71,14 @@ pub struct BrushLoad {
     steps: u64,
 }
 
-impl Content for BrushLoad {
-    fn bytes(&self) -> usize {
+impl BrushLoad {
+    /// Bytes in memory.
+    #[must_use]
+    pub fn bytes(&self) -> usize {
         let planes = 1 + 2 * self.held.iter().flatten().count();
         planes * self.texels * size_of::<u32>()
     }
 
-    fn fetch(backing: &dyn Backing, id: u64) -> Result<Self, String> {
-        backing.load(id)
-    }
-
-    fn nothing() -> Self {
-        Self::clean(0)
-    }
-}
-
-impl BrushLoad {
     /// A load as it was kept: steps with contact, all paints' films as last counted, and for each
     /// paint its films and what it has inside, by texel. None where the planes do not fit.
     #[must_use]
@@ -262,7 +250,7 @@ impl BrushLoad {
         if own == strips {
             return self.clone();
         }
-        if finer.strips() != own.max(strips) {
+        if own == 0 || finer.strips() != own.max(strips) {
             return Self::spread(strips, &self.counts());
         }
         let mut load = Self::clean(strips);
@@ -432,25 +420,28 @@ mod tests {
         for other in [&on_few, &again] {
             assert_eq!((other.counts(), other.seed()), (load.counts(), load.seed()));
         }
-        let right = |load: &BrushLoad, roots: &[[f32; 2]]| -> u64 {
-            let right = |strip: &usize| roots[*strip][0] > 0.1;
-            let strips = (0..load.texels() / TEXELS_PER_STRIP).filter(right);
-            strips
-                .map(|strip| u64::from(load.film(strip * TEXELS_PER_STRIP)))
-                .sum()
-        };
         let roots = head.roots();
         assert_eq!(&roots[..112], Head::of(&few).roots());
-        let whole: u64 = load.films().iter().map(|film| u64::from(*film)).sum();
-        assert!(right(&on_few, &roots[..112]) < whole / 1000);
-        assert!(right(&again, roots) < whole / 1000);
-        let mut evenly = BrushLoad::spread(112, &load.counts());
-        evenly.count_films();
-        let inside = evenly.inside(3).expect("spread");
-        assert!(
-            inside.iter().all(|count| *count > 0),
-            "a fault passes: spread evenly"
-        );
+        let is_left = |load: &BrushLoad| {
+            let right = |texel: &usize| roots[*texel / TEXELS_PER_STRIP][0] > 0.1;
+            let inside = load.inside(3).expect("carried");
+            let carried = |texel| u64::from(load.film(texel)) + u64::from(inside[texel]);
+            let whole: u64 = (0..load.texels()).map(carried).sum();
+            let right: u64 = (0..load.texels()).filter(right).map(carried).sum();
+            right < whole / 1000
+        };
+        assert!(is_left(&load) && is_left(&on_few) && is_left(&again));
+        let evenly = BrushLoad::spread(112, &load.counts());
+        assert!(!is_left(&evenly), "a fault passes: spread evenly");
+    }
+
+    /// A page that cannot be read is a load of no strips.
+    #[test]
+    fn no_strips_carry_nothing() {
+        let head = Head::of(&BrushFile::library("flat").expect("flat"));
+        let load = BrushLoad::clean(0).onto(head.strips(), &head);
+        assert_eq!(load.texels(), head.strips() * TEXELS_PER_STRIP);
+        assert_eq!(load.counts(), [0; SLOTS]);
     }
 
     #[test]

@@ -7,9 +7,10 @@ use maulstick_types::command::Outcome;
 use maulstick_types::scene::Scene;
 use serde::{Deserialize, Serialize};
 
-use crate::head::{Scale, WaypointSnapshot};
+use crate::clock::Clock;
+use crate::head::WaypointSnapshot;
 use crate::ledger::Ledger;
-use crate::painting::Clock;
+use crate::scale::Scale;
 
 /// A brush as the painting knows it.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -95,7 +96,7 @@ pub struct RowCounts {
 }
 
 fn quota() -> u64 {
-    crate::painting::QUOTA
+    crate::history::QUOTA
 }
 
 /// A take that may paint.

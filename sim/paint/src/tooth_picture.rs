@@ -10,7 +10,8 @@ use maulstick_types::paint::TILE;
 
 use crate::assets::{Assets, Heights, IMAGE};
 use crate::error::EditError;
-use crate::tile::{TILE_CELLS, TileId};
+use crate::planes::TILE_CELLS;
+use crate::tile::TileId;
 
 /// Widths that a picture may have on a surface, mm.
 pub const WIDTH_MM: std::ops::RangeInclusive<f64> = 1.0..=10_000.0;

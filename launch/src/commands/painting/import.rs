@@ -5,10 +5,10 @@ use std::path::PathBuf;
 use clap::{Args, ValueEnum};
 use maulstick_exchange::underpaint::underpaint;
 use maulstick_exchange::{Image, ImportError, Support, embed};
-use maulstick_nodes::Keeper;
 use maulstick_paint::painting::Wetness;
 use maulstick_paint::{Painting, Sequencer};
 use maulstick_rig::{Fault, RigConfig};
+use maulstick_session::Autosave;
 use maulstick_types::command::Command;
 use maulstick_types::scene::{CANVAS, WellKind};
 
@@ -69,13 +69,13 @@ pub(super) fn run(options: &ImportOptions) -> Result<i32, Fault> {
     there(path)?;
     let image = Image::open(&options.picture).map_err(|error| options.fault(&error))?;
     let (document, mut sequencer, since) = go_on(&RigConfig::default(), path)?;
-    let keeper = Keeper::new(document, &mut sequencer, since);
+    let autosave = Autosave::new(document, &mut sequencer, since);
     let done = match options.purpose {
         Purpose::Underpainting => options.paint(&mut sequencer, &image),
         Purpose::Ground => options.ground(&mut sequencer, &image),
         Purpose::Tooth => options.tooth(&mut sequencer, image),
     };
-    let closed = keeper.close(&mut sequencer);
+    let closed = autosave.close(&mut sequencer);
     let said = done?;
     closed.map_err(|error| wrong(path, &error))?;
     say!("{}: {said}", path.display());

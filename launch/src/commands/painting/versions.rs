@@ -91,9 +91,9 @@ pub(super) fn run(options: &VersionsOptions) -> Result<i32, Fault> {
     };
     there(path)?;
     let (document, mut sequencer, since) = go_on(&RigConfig::default(), path)?;
-    let keeper = maulstick_nodes::Keeper::new(document, &mut sequencer, since);
+    let autosave = maulstick_session::Autosave::new(document, &mut sequencer, since);
     let done = sequencer.ask(command).map_err(refused);
-    keeper
+    autosave
         .close(&mut sequencer)
         .map_err(|error| wrong(path, &error))?;
     done.map_err(|fault| fault.at(path.display().to_string()))?;

@@ -6,11 +6,11 @@ use std::sync::Arc;
 
 use maulstick_bus::typed::{Reader, Receiver, random_epoch};
 use maulstick_bus::{Bus, BusError, Class, Queue, Request, Server, Wake};
-use maulstick_nodes::answers::Answers;
 use maulstick_rig::Fault;
 use maulstick_types::advice::parted;
 use maulstick_types::command::{Command, CommandReply, CommandRequest, Outcome};
 use maulstick_types::paint::PaintStatus;
+use maulstick_types::reply_cache::ReplyCache;
 use maulstick_types::topics::Topics;
 use maulstick_types::{Flags, Origin, encode, name_hash};
 
@@ -23,7 +23,7 @@ pub(super) struct Orders {
     server: Server,
     reader: Reader,
     me: Origin,
-    pub(super) answers: Answers,
+    pub(super) replies: ReplyCache,
     statuses: Receiver<PaintStatus>,
     status: Option<PaintStatus>,
     /// Statuses heard so far.
@@ -47,7 +47,7 @@ impl Leaving {
 }
 
 impl Orders {
-    /// Answers for the rig.
+    /// ReplyCache for the rig.
     ///
     /// # Errors
     /// [`BusError::Topic`].
@@ -60,7 +60,7 @@ impl Orders {
                 source: name_hash(RIG),
                 epoch: random_epoch(),
             },
-            answers: Answers::default(),
+            replies: ReplyCache::default(),
             statuses: Receiver::new(bus, &topic, Class::Background, Queue::Ring(4), wake)?,
             status: None,
             heard: 0,
@@ -131,7 +131,7 @@ impl Supervisor {
         }
     }
 
-    /// Answers what is asked of the rig.
+    /// ReplyCache what is asked of the rig.
     pub(super) fn take_orders(&mut self) {
         let bus = Arc::clone(&self.bus);
         while let Some(status) = self.orders.statuses.try_recv() {
@@ -146,15 +146,15 @@ impl Supervisor {
                 .reader
                 .read::<CommandRequest>(&request.key, &request.bytes);
             let Some((_, asked)) = read else { continue };
-            let outcome = match orders.answers.find(&asked) {
+            let outcome = match orders.replies.find(&asked) {
                 Some(outcome) => outcome,
                 // It is asked again, and done when its turn comes.
                 None if self.switch.is_some() || !orders.has_heard(&asked) => Outcome::Waiting,
                 None => {
                     orders.leaving.0.clear();
                     let outcome = self.order(&asked).unwrap_or_else(refusal);
-                    let answers = &mut self.orders.answers;
-                    answers.keep(asked.client, asked.number, outcome.clone());
+                    let replies = &mut self.orders.replies;
+                    replies.keep(asked.client, asked.number, outcome.clone());
                     outcome
                 }
             };

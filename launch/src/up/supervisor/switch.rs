@@ -276,7 +276,7 @@ impl Supervisor {
         };
         match next {
             Ok(stage) => self.switch = Some(Switch { asker, stage }),
-            Err(outcome) => self.orders.answers.keep(asker.0, asker.1, outcome),
+            Err(outcome) => self.orders.replies.keep(asker.0, asker.1, outcome),
         }
         Ok(())
     }

@@ -4,10 +4,10 @@ use std::collections::{BTreeMap, BTreeSet, HashMap};
 
 use maulstick_brush::BrushFile;
 use maulstick_optics::PaintLibrary;
-use maulstick_paint::snapshot::{PaintingSnapshot, SequencerSnapshot};
 use maulstick_paint::ledger::Ledger;
 use maulstick_paint::load::BrushLoad;
 use maulstick_paint::quantum::{Counts, SLOTS, add};
+use maulstick_paint::snapshot::{PaintingSnapshot, SequencerSnapshot};
 use maulstick_types::scene::{NamedVersion, WellKind};
 use rusqlite::params;
 

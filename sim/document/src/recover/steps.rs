@@ -3,8 +3,8 @@
 use std::collections::{BTreeMap, HashMap};
 
 use maulstick_paint::history::SurfaceMaterial;
-use maulstick_paint::snapshot::PaintingSnapshot;
 use maulstick_paint::quantum::{Counts, SLOTS};
+use maulstick_paint::snapshot::PaintingSnapshot;
 use maulstick_types::scene::{Layer, Scene};
 
 use super::found::Found;
@@ -64,7 +64,11 @@ pub(super) fn makes(scene: &Scene) -> Vec<SurfaceMaterial> {
 
 impl Steps {
     /// The steps that were found, of a painting that was kept so.
-    pub(super) fn of(gathered: &mut Gathered, kept: &PaintingSnapshot, pictures: &Pictures) -> Self {
+    pub(super) fn of(
+        gathered: &mut Gathered,
+        kept: &PaintingSnapshot,
+        pictures: &Pictures,
+    ) -> Self {
         let found = std::mem::take(&mut gathered.steps);
         let torn = gathered.torn_steps.iter().map(|id| (*id, Vec::new()));
         let mut all: BTreeMap<i64, Vec<Found>> = torn.collect();

@@ -4,7 +4,7 @@
 
 use maulstick_brush::BrushFile;
 use maulstick_optics::PaintLibrary;
-use maulstick_paint::history::{TileRef, TilePlace};
+use maulstick_paint::history::{TilePlace, TileRef};
 use maulstick_paint::page::Pager;
 use maulstick_paint::{Painting, PaintingSetup, Sequencer};
 use maulstick_types::brush::{BrushState, Solve};
@@ -318,7 +318,7 @@ impl Painter {
 pub fn content(held: &TileRef) -> Vec<u64> {
     let Some(tile) = held else { return Vec::new() };
     let mut words = Vec::new();
-    let mut add = |planes: &maulstick_paint::tile::Planes| {
+    let mut add = |planes: &maulstick_paint::planes::Planes| {
         for (slot, plane) in planes {
             words.push(*slot as u64);
             let sum = plane.iter().enumerate().fold(17u64, |sum, (cell, count)| {

@@ -1,7 +1,7 @@
 //! The stages as compute pipelines, each with those buffers of impasto.wgsl that it uses.
 
 use maulstick_paint::impasto::velocity::{EASE, SLIP, SQUISH, STABLE};
-use maulstick_paint::model::BrushTraits;
+use maulstick_paint::traits::BrushTraits;
 use maulstick_paint::transfer::SWAP_FILM;
 
 use crate::device::Device;

@@ -3,8 +3,9 @@
 use maulstick_brush::head::STATIONS;
 use maulstick_brush::{BrushFile, Head};
 use maulstick_gpu::impasto::probe::Prober;
-use maulstick_paint::impasto::footprint::{Contact, Footprint};
-use maulstick_paint::model::BrushTraits;
+use maulstick_paint::impasto::contact::Contact;
+use maulstick_paint::impasto::footprint::Footprint;
+use maulstick_paint::traits::BrushTraits;
 
 use crate::device;
 use crate::scene::{CELL_M, Random, Scene};

@@ -295,7 +295,7 @@ fn paint_goes_both_ways() {
         let mut expected = exchanged(&probe, &pushed, rule);
         // In every second strip paint flows besides.
         expected.retain(|(is_cell, _, at), _| {
-            *is_cell || (at / maulstick_paint::load::TEXELS_PER_STRIP).is_multiple_of(2)
+            *is_cell || (at / maulstick_paint::traits::TEXELS_PER_STRIP).is_multiple_of(2)
         });
         let mut scene = scene();
         let last = run(&mut prober, &mut scene, "tend_strips");

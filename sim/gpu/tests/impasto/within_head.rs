@@ -2,10 +2,11 @@
 
 use maulstick_gpu::impasto::probe::Prober;
 use maulstick_paint::impasto::bristle_flow::flow;
-use maulstick_paint::impasto::footprint::Contact;
+use maulstick_paint::impasto::contact::Contact;
 use maulstick_paint::impasto::seep::seep;
-use maulstick_paint::load::{TEXELS_PER_STRIP, BrushLoad};
+use maulstick_paint::load::BrushLoad;
 use maulstick_paint::quantum::SLOTS;
+use maulstick_paint::traits::TEXELS_PER_STRIP;
 
 use crate::device;
 use crate::probed::{run, scene, stepped};

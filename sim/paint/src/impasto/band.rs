@@ -7,10 +7,10 @@ use maulstick_brush::{Head, HeadPose};
 use maulstick_num::lanes::Lanes;
 use maulstick_num::wide;
 
-use super::footprint::Contact;
+use super::contact::Contact;
 use super::rasterizer::{Drawing, Line, Piece};
-use crate::load::TEXELS_PER_STRIP;
 use crate::model::Step;
+use crate::traits::TEXELS_PER_STRIP;
 use crate::window::Area;
 
 /// Strips of the same depth lie over each other in the order of their roots along the way that the

@@ -7,8 +7,10 @@
 use maulstick_num::select::larger;
 use maulstick_num::wide;
 
-use crate::load::{PaintOnBrush, TEXELS_PER_STRIP, film_share};
-use crate::model::{BrushTraits, Step};
+use crate::load::{PaintOnBrush, film_share};
+use crate::model::Step;
+use crate::traits::BrushTraits;
+use crate::traits::TEXELS_PER_STRIP;
 
 /// Counts a step and moves paint within the strips whose turn it is.
 pub fn flow(step: &mut Step<'_>) {

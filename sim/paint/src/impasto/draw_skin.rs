@@ -2,8 +2,8 @@
 
 use super::band::Band;
 use super::rasterizer::{Line, Piece};
-use crate::load::TEXELS_PER_STRIP;
 use crate::model::Step;
+use crate::traits::TEXELS_PER_STRIP;
 
 /// A corner of a triangle.
 #[derive(Clone, Copy, Debug)]

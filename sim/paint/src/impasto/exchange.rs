@@ -10,10 +10,12 @@ use maulstick_num::select::{larger, smaller};
 use maulstick_num::wide;
 
 use super::PARALLEL_MIN_CELLS;
-use super::footprint::{Contact, Footprint};
+use super::contact::Contact;
+use super::footprint::Footprint;
 use crate::load::BrushLoad;
-use crate::model::{BrushTraits, Handling, Step, Transfer};
+use crate::model::{Handling, Step, Transfer};
 use crate::quantum::{CELL_MAX, QUANTA_PER_UNIT, SLOTS};
+use crate::traits::BrushTraits;
 use crate::transfer::Exchanging;
 
 /// Room for a step. Of the brush's many texels few touch at a time: these are numbered afresh in each

@@ -8,29 +8,9 @@ use maulstick_num::cores::{Balance, both_if};
 
 use super::PARALLEL_MIN_CELLS;
 use super::band::{Band, draw_strips};
+use super::contact::Contact;
 use crate::model::{Step, StepReport};
 use crate::window::{Area, Window};
-
-/// A cell in contact.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Contact {
-    /// Its place in the window's planes.
-    pub cell: u32,
-    /// Its place in the planes of the cells [around](Footprint::around).
-    pub local: u32,
-    /// The brush texel that touches it: `strip · TEXELS_PER_STRIP + along`.
-    pub texel: u32,
-    /// Share of the cell that is covered, 0 to 1.
-    pub cover: f32,
-    /// How far the strip went since the step before, cells.
-    pub moved: [f32; 2],
-    /// How deep it reaches below the top of the wet paint, cells; at most its thickness.
-    pub depth: f32,
-    /// `depth` by the thickness of the wet paint, 0 to 1.
-    pub fraction: f32,
-    /// How far it stays above the top of the wet paint, bridged by its film, cells.
-    pub gap: f32,
-}
 
 /// The footprint of one step.
 #[derive(Clone, Debug, Default)]

@@ -15,6 +15,7 @@
 pub mod advection;
 pub mod band;
 pub mod bristle_flow;
+pub mod contact;
 mod draw_skin;
 pub mod exchange;
 pub mod footprint;

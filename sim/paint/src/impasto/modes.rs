@@ -2,9 +2,9 @@
 //! brush, held while it moves, which lifts paint like a vacuum cleaner.
 
 use super::footprint::Footprint;
-use crate::load::TEXELS_PER_STRIP;
 use crate::model::Step;
 use crate::quantum::{Counts, SLOTS};
+use crate::traits::TEXELS_PER_STRIP;
 
 /// Lifts the wet paint off the cells that are at least half covered, and a part of it off the others;
 /// what was lifted.

@@ -7,7 +7,7 @@ use std::ops::Range;
 
 use maulstick_num::lanes::Lanes;
 
-use crate::load::TEXELS_PER_STRIP;
+use crate::traits::TEXELS_PER_STRIP;
 
 /// A ribbon that covers a cell only in part counts as higher by this much, cells: of ribbons beside each
 /// other each has the cells that it covers most, so more of them give paint where cells are coarse.

@@ -9,8 +9,10 @@ use maulstick_num::select::larger;
 use maulstick_num::wide;
 
 use super::bristle_flow::{first_of, part};
-use crate::load::{PaintOnBrush, TEXELS_PER_STRIP};
-use crate::model::{BrushTraits, Step};
+use crate::load::PaintOnBrush;
+use crate::model::Step;
+use crate::traits::BrushTraits;
+use crate::traits::TEXELS_PER_STRIP;
 
 /// Evens films out: in turn between strips of either order, and along them.
 pub fn seep(step: &mut Step<'_>) {

@@ -11,7 +11,8 @@ use maulstick_num::cores::both_if;
 use maulstick_num::wide;
 
 use super::PARALLEL_MIN_CELLS;
-use super::footprint::{Contact, Footprint};
+use super::contact::Contact;
+use super::footprint::Footprint;
 use crate::model::Step;
 use crate::window::Area;
 
@@ -76,7 +77,7 @@ wide! {
 }
 
 impl Faces {
-    /// Finds the velocities in each [part](crate::model::BrushTraits::parts) of the step; no cell loses more than it
+    /// Finds the velocities in each [part](crate::traits::BrushTraits::parts) of the step; no cell loses more than it
     /// holds along either axis.
     pub fn find(&mut self, footprint: &Footprint, step: &Step<'_>) {
         let [width, height] = footprint.around.size;

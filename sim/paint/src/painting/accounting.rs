@@ -6,9 +6,10 @@ use maulstick_types::scene::{CANVAS, PALETTE};
 
 use super::Painting;
 use crate::ledger::{LedgerReport, Stocks, Tallies, balance};
+use crate::planes::TILE_CELLS;
 use crate::quantum::{add, quantum_m3};
 use crate::store::TileStore;
-use crate::tile::{TILE_CELLS, Tile};
+use crate::tile::Tile;
 
 impl Painting {
     /// Bytes that its tiles, and those of its history, take in memory.

@@ -6,7 +6,8 @@ use std::sync::Arc;
 use super::Painting;
 use super::brush_modes::UnderBrush;
 use crate::error::EditError;
-use crate::model::{BrushTraits, PaintModel, StepReport};
+use crate::model::{PaintModel, StepReport};
+use crate::traits::BrushTraits;
 
 /// Deferred steps are settled after so many at the latest. How full the brush is, is seen just then:
 /// when somebody looks at the painting must not matter.

@@ -7,8 +7,9 @@ use maulstick_types::{Mixture, mixture::Part};
 use super::Painting;
 use crate::error::EditError;
 use crate::ledger::Ledger;
-use crate::model::{BrushTraits, Handling, StepReport, Transfer};
+use crate::model::{Handling, StepReport, Transfer};
 use crate::quantum::{CELL_MAX, QUANTUM_M, REFERENCE_CELL_M, UNIT_M};
+use crate::traits::BrushTraits;
 
 /// Share of what a film lacks that comes from inside, and of its surplus that goes there, each time
 /// that paint flows in a brush on the palette, on reference cells: there it is filled through and

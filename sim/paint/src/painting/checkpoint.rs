@@ -19,13 +19,14 @@ use crate::head::Waypoint;
 use crate::history::{History, NonTileState, Step, TilePlace};
 use crate::impasto::Impasto;
 use crate::light::studio_settings;
-use crate::load::{BrushLoad, TEXELS_PER_STRIP};
+use crate::load::BrushLoad;
 use crate::page::{Page, Pager};
 use crate::path::PathStepper;
 use crate::setup::check_size;
 use crate::snapshot::{BrushSnapshot, OpenStepSnapshot, PaintingSnapshot, RowCounts};
 use crate::store::TileStore;
 use crate::tile::{TileId, Version};
+use crate::traits::TEXELS_PER_STRIP;
 
 /// What changed since the document last heard of it; a moment of the painting, whole.
 #[derive(Clone, Debug)]
@@ -280,7 +281,6 @@ impl Painting {
             pager,
             versions: kept.versions,
             steps: kept.steps,
-            longer: 1,
             footprint_cells: kept.footprint_cells,
             span_ns: kept.span_ns,
             clock: kept.clock,
@@ -323,11 +323,11 @@ fn restored_track(
         )
     })?;
     let content = load.as_ref().map(Page::get);
-    let seen = match &content {
-        Some(load) => file.thinned_to(load.texels() / TEXELS_PER_STRIP),
-        None => file.thinned(sheets[0].cell_m),
+    let thinned = match &content {
+        Some(load) if load.texels() > 0 => file.thinned_to(load.texels() / TEXELS_PER_STRIP),
+        _ => file.thinned(sheets[0].cell_m),
     };
-    let tidy = Arc::new(Head::of(&seen));
+    let tidy = Arc::new(Head::of(&thinned));
     let head = Arc::new(tidy.disordered(brush.seed));
     let path = brush.path.and_then(|(surface, scale, at, ahead)| {
         let sheet = sheets.iter().position(|sheet| sheet.id == surface)?;
@@ -345,7 +345,7 @@ fn restored_track(
     Ok(PaintingBrush {
         under: UnderBrush::default(),
         file,
-        seen,
+        thinned,
         tidy,
         head,
         load,

@@ -11,8 +11,9 @@ use crate::error::EditError;
 use crate::history::TilePlace;
 use crate::ledger::Ledger;
 use crate::page::Page;
+use crate::planes::{Planes, TILE_CELLS};
 use crate::quantum::{CELL_MAX, Counts, QUANTUM_M, SLOTS};
-use crate::tile::{Planes, TILE_CELLS, Tile, TileId};
+use crate::tile::{Tile, TileId};
 
 /// Wet paint of a tile with more laid on it.
 #[derive(Clone)]

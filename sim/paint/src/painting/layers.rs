@@ -8,7 +8,8 @@ use maulstick_types::scene::Layer;
 
 use super::Painting;
 use crate::error::EditError;
-use crate::tile::{TILE_CELLS, Tile, TileId};
+use crate::planes::TILE_CELLS;
+use crate::tile::{Tile, TileId};
 
 /// A part of a surface.
 pub(super) struct Part {

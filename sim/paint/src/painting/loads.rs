@@ -11,8 +11,8 @@ use super::lighting::paint_slot;
 use crate::brush_colour::Carried;
 use crate::error::EditError;
 use crate::load::{Half, by_slot};
-use crate::model::BrushTraits;
 use crate::quantum::SLOTS;
+use crate::traits::BrushTraits;
 
 impl Painting {
     /// The slots of several mixtures; where one is refused no paint gets a slot.
@@ -120,7 +120,7 @@ impl Painting {
         track.deferral = Deferral::default();
         let load = Arc::make_mut(&mut track.load);
         let left = load.take_all();
-        let traits = BrushTraits::of(&track.seen, cell_m, 1.0);
+        let traits = BrushTraits::of(&track.thinned, cell_m, 1.0);
         for (slots, half) in parts {
             load.fill(&track.tidy, &traits, slots, thinner, (*half, seed));
         }
@@ -167,12 +167,14 @@ impl Painting {
         self.brush(brush)?;
         self.all_slots(loads)?;
         self.close_windows();
+        let cell_m = self.sheets[0].cell_m;
         let track = self.brush(brush)?;
         track.loads = loads.to_vec();
         (track.strokes, track.seed) = (0, 0);
-        track.head = track.disordered();
         track.stroke = None;
         track.path = None;
+        track.head = track.disordered();
+        track.thin_for(cell_m);
         Ok(())
     }
 
@@ -180,7 +182,7 @@ impl Painting {
     pub fn carried(&self) -> impl Iterator<Item = (&str, Carried)> {
         let cell_m = self.sheets[0].cell_m;
         self.brushes.iter().map(move |(name, track)| {
-            let traits = BrushTraits::of(&track.seen, cell_m, 1.0);
+            let traits = BrushTraits::of(&track.thinned, cell_m, 1.0);
             let carried = Carried {
                 load: Arc::clone(&track.load),
                 hair: track.file.head.hair,

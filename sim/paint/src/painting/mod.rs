@@ -21,10 +21,8 @@ mod wetting;
 
 pub use brush_modes::UnderBrush;
 pub use checkpoint::{Checkpoint, Restored};
-pub use drying::{Clock, Drying, Round, TICKS_A_SECOND};
 pub use underpainting::{LaidTile, Wetness};
 pub use versions::{NOW, Named};
-pub use wells::WELL_M;
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
@@ -37,25 +35,24 @@ use maulstick_types::{Mixture, name_hash};
 
 use crate::appearance::Appearance;
 use crate::assets::Assets;
-use crate::blank_surface::{BlankSurface, CLEANER_RGB, WellLook, well_colour};
+use crate::blank_surface::{BlankSurface, CLEANER_RGB, WELL_M, WellLook, well_colour};
+use crate::clock::Clock;
 use crate::error::EditError;
 use crate::ground::Ground;
-use crate::history::History;
+use crate::history::{History, QUOTA};
 use crate::impasto::Impasto;
 use crate::ledger::Ledger;
 use crate::light::studio_settings;
 use crate::load::BrushLoad;
-use crate::model::{BrushTraits, PaintModel};
+use crate::model::PaintModel;
 use crate::page::{Page, Pager};
 use crate::path::PathStepper;
 use crate::relief::Relief;
 use crate::setup::{PaintingSetup, relief_called};
 use crate::store::TileStore;
+use crate::traits::BrushTraits;
 use crate::window::Window;
 use backend::{BackendFallback, Deferral};
-
-/// Most bytes of the history of a painting for which nothing else is said.
-pub const QUOTA: u64 = 2 << 30;
 
 /// A surface: its tiles and what lies under them.
 #[derive(Debug)]
@@ -75,7 +72,7 @@ const SEEDS: u64 = 0x7fff_ffff;
 struct PaintingBrush {
     file: BrushFile,
     /// The brush with as many strips as cells can tell apart.
-    seen: BrushFile,
+    thinned: BrushFile,
     /// Its head as its file has it.
     tidy: Arc<Head>,
     /// The same with its bristles as they lie since the newest stroke began.
@@ -105,19 +102,19 @@ impl PaintingBrush {
         (self.strokes as u64 + 1).wrapping_mul(0x9e37_79b1) & SEEDS
     }
 
-    /// Has it seen on cells so wide, m, by as many strips as those can tell apart.
-    fn see(&mut self, cell_m: f64) {
-        let seen = self.file.thinned(cell_m);
-        if seen == self.seen {
+    /// Thins it to the strips that cells so wide, m, can tell apart.
+    fn thin_for(&mut self, cell_m: f64) {
+        let thinned = self.file.thinned(cell_m);
+        if thinned == self.thinned {
             return;
         }
-        let head = Arc::new(Head::of(&seen));
+        let head = Arc::new(Head::of(&thinned));
         let finer = match head.strips() > self.tidy.strips() {
             true => &head,
             false => &self.tidy,
         };
         self.load = Arc::new(self.load.onto(head.strips(), finer));
-        (self.kept, self.seen, self.tidy) = (None, seen, head);
+        (self.kept, self.thinned, self.tidy) = (None, thinned, head);
         self.head = self.disordered();
     }
 
@@ -153,8 +150,6 @@ pub struct Painting {
     pager: Arc<Pager>,
     versions: u64,
     steps: u64,
-    /// How many times longer than the brush's own the steps of the present stroke are.
-    longer: u32,
     footprint_cells: u64,
     span_ns: Option<(u64, u64)>,
     clock: Clock,
@@ -212,7 +207,6 @@ impl Painting {
             pager,
             versions: 1,
             steps: 0,
-            longer: 1,
             footprint_cells: 0,
             span_ns: None,
             clock: Clock::default(),
@@ -270,11 +264,14 @@ impl Painting {
         (self.steps, self.footprint_cells)
     }
 
-    /// How many times longer than the brush's own the steps of the present stroke are: 1, or more where painting was
-    /// late.
+    /// Length of the steps of the present strokes by the brushes' own, the longest: 1, or more where painting is late.
     #[must_use]
     pub fn longer(&self) -> u32 {
-        self.longer
+        let paths = self
+            .brushes
+            .values()
+            .filter_map(|track| track.path.as_ref());
+        paths.map(|(_, path)| path.longer()).max().unwrap_or(1)
     }
 
     /// Introduces a brush, or gives a known one another file; what it carries it keeps, spread anew
@@ -287,15 +284,15 @@ impl Painting {
         {
             return false;
         }
-        let seen = file.thinned(self.sheets[0].cell_m);
-        let head = Arc::new(Head::of(&seen));
+        let thinned = file.thinned(self.sheets[0].cell_m);
+        let head = Arc::new(Head::of(&thinned));
         self.close_windows();
         match self.brushes.get_mut(name) {
             Some(track) => {
                 if head.strips() != track.head.strips() {
                     track.load = BrushLoad::spread(head.strips(), &track.load.counts()).into();
                 }
-                (track.file, track.seen, track.path) = (file, seen, None);
+                (track.file, track.thinned, track.path) = (file, thinned, None);
                 track.tidy = head;
                 track.head = track.disordered();
             }
@@ -304,7 +301,7 @@ impl Painting {
                     load: BrushLoad::clean(head.strips()).into(),
                     kept: None,
                     file,
-                    seen,
+                    thinned,
                     tidy: Arc::clone(&head),
                     head,
                     stroke: None,
@@ -343,7 +340,7 @@ impl Painting {
         let mut brushes = self.brushes.iter();
         let found = brushes.find(|(name, _)| name_hash(name) == source);
         found.map_or(0.0, |(_, track)| {
-            let traits = BrushTraits::of(&track.seen, self.sheets[0].cell_m, 1.0);
+            let traits = BrushTraits::of(&track.thinned, self.sheets[0].cell_m, 1.0);
             track.load.fullness(&traits)
         })
     }

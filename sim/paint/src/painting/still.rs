@@ -4,7 +4,8 @@ use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use super::backend::BackendFallback;
-use super::{Clock, Painting, SurfaceState};
+use super::{Painting, SurfaceState};
+use crate::clock::Clock;
 use crate::error::EditError;
 use crate::history::History;
 use crate::impasto::Impasto;
@@ -42,7 +43,6 @@ impl Painting {
             pager: Arc::clone(&self.pager),
             versions: self.versions,
             steps: self.steps,
-            longer: 1,
             footprint_cells: self.footprint_cells,
             span_ns: self.span_ns,
             clock: Clock::default(),

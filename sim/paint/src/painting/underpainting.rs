@@ -27,7 +27,7 @@ pub enum Wetness {
 pub struct LaidTile {
     /// Which.
     pub id: TileId,
-    /// Number of a paint, and its quanta in each of the [`TILE_CELLS`](crate::tile::TILE_CELLS) cells,
+    /// Number of a paint, and its quanta in each of the [`TILE_CELLS`](crate::planes::TILE_CELLS) cells,
     /// row after row from the bottom.
     pub planes: Vec<(usize, Vec<u32>)>,
 }

@@ -12,9 +12,10 @@ use crate::error::EditError;
 use crate::history::{
     Change, NonTileState, OpenStep, Step, StepEffects, SurfaceMaterial, TilePlace, TileRef, same,
 };
-use crate::load::{BrushLoad, TEXELS_PER_STRIP};
+use crate::load::BrushLoad;
 use crate::page::Page;
 use crate::tile::Version;
+use crate::traits::TEXELS_PER_STRIP;
 
 /// Which way a step is taken.
 #[derive(Clone, Copy, PartialEq, Eq)]
@@ -328,13 +329,17 @@ impl Painting {
             track.load = Arc::clone(&load);
             track.kept = Some((load, page.clone()));
         } else {
-            let strips = load.texels() / TEXELS_PER_STRIP;
-            let finer = match strips > track.tidy.strips() {
-                true => Arc::new(Head::of(&track.file.thinned_to(strips))),
-                false => Arc::clone(&track.tidy),
-            };
-            track.load = Arc::new(load.onto(track.tidy.strips(), &finer));
-            track.kept = None;
+            let thinned = track.file.thinned_to(load.texels() / TEXELS_PER_STRIP);
+            let head = Head::of(&thinned);
+            if head.strips() * TEXELS_PER_STRIP == load.texels() {
+                (track.thinned, track.tidy) = (thinned, Arc::new(head));
+                track.head = track.disordered();
+                track.load = Arc::clone(&load);
+                track.kept = Some((load, page.clone()));
+            } else {
+                track.load = Arc::new(load.onto(track.tidy.strips(), &track.tidy));
+                track.kept = None;
+            }
         }
     }
 

@@ -10,14 +10,13 @@ use maulstick_types::Mixture;
 use maulstick_types::scene::{Well, WellKind};
 
 use super::{Painting, bare};
+use crate::blank_surface::WELL_M;
 use crate::error::EditError;
 use crate::ledger::Ledger;
-use crate::model::BrushTraits;
 use crate::quantum::{QUANTUM_M, SLOTS};
+use crate::traits::BrushTraits;
 use crate::window::Window;
 
-/// How thick paint lies in a well, m.
-pub const WELL_M: f64 = 2e-3;
 /// Wells may reach beyond the edge of their surface by what rounding makes of it, m.
 const EDGE_M: f64 = 1e-6;
 /// A strip is down within this of the surface, cells.

@@ -8,7 +8,8 @@ use maulstick_types::Region;
 use super::Painting;
 use super::layers::{Changed, Part};
 use crate::error::EditError;
-use crate::tile::{TILE_CELLS, Tile, TileId};
+use crate::planes::TILE_CELLS;
+use crate::tile::{Tile, TileId};
 
 impl Painting {
     /// Makes the newest `layers` dry layers of a part wet paint again where they lie; 0 means all. Says

@@ -2,9 +2,10 @@
 
 use maulstick_brush::Head;
 use maulstick_paint::impasto::bristle_flow::flow;
-use maulstick_paint::load::{BrushLoad, TEXELS_PER_STRIP};
-use maulstick_paint::model::BrushTraits;
+use maulstick_paint::load::BrushLoad;
 use maulstick_paint::quantum::SLOTS;
+use maulstick_paint::traits::BrushTraits;
+use maulstick_paint::traits::TEXELS_PER_STRIP;
 
 use crate::scene::{Scene, brush};
 

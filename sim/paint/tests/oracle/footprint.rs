@@ -3,8 +3,10 @@
 
 use maulstick_brush::head::STATIONS;
 use maulstick_paint::head::low_bounds;
-use maulstick_paint::impasto::footprint::{Contact, Footprint};
-use maulstick_paint::load::{Half, TEXELS_PER_STRIP};
+use maulstick_paint::impasto::contact::Contact;
+use maulstick_paint::impasto::footprint::Footprint;
+use maulstick_paint::load::Half;
+use maulstick_paint::traits::TEXELS_PER_STRIP;
 
 use crate::scene::{CELL_M, CELLS, Scene};
 

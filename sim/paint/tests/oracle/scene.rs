@@ -4,12 +4,14 @@
 use maulstick_brush::head::STATIONS;
 use maulstick_brush::{BrushFile, Head, HeadPose};
 use maulstick_paint::impasto::advection::STAIN;
-use maulstick_paint::load::{BrushLoad, Half, TEXELS_PER_STRIP};
-use maulstick_paint::model::{BrushTraits, Handling, Step, Sweep};
+use maulstick_paint::load::{BrushLoad, Half};
+use maulstick_paint::model::{Handling, Step, Sweep};
 use maulstick_paint::quantum::{Counts, SLOTS};
 use maulstick_paint::relief::Relief;
 use maulstick_paint::store::TileStore;
 use maulstick_paint::tooth::Tooth;
+use maulstick_paint::traits::BrushTraits;
+use maulstick_paint::traits::TEXELS_PER_STRIP;
 use maulstick_paint::window::Window;
 use rand_pcg::Pcg32;
 use rand_pcg::rand_core::Rng as _;

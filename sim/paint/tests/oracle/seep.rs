@@ -1,9 +1,10 @@
 //! Paint between bristles: of two films beside each other the fuller one gives, of its own mixture.
 
 use maulstick_paint::impasto::seep::seep;
-use maulstick_paint::load::{BrushLoad, TEXELS_PER_STRIP};
-use maulstick_paint::model::{BrushTraits, Seep};
+use maulstick_paint::load::BrushLoad;
 use maulstick_paint::quantum::SLOTS;
+use maulstick_paint::traits::TEXELS_PER_STRIP;
+use maulstick_paint::traits::{BrushTraits, Seep};
 
 use crate::scene::{Scene, brush};
 

@@ -4,9 +4,10 @@ use std::collections::BTreeMap;
 
 use maulstick_brush::head::STATIONS;
 use maulstick_brush::{BrushFile, Head, HeadPose};
-use maulstick_paint::impasto::footprint::{Contact, Footprint};
-use maulstick_paint::load::TEXELS_PER_STRIP;
-use maulstick_paint::model::BrushTraits;
+use maulstick_paint::impasto::contact::Contact;
+use maulstick_paint::impasto::footprint::Footprint;
+use maulstick_paint::traits::BrushTraits;
+use maulstick_paint::traits::TEXELS_PER_STRIP;
 
 use crate::scene::{CELL_M, CELLS, Random, Scene};
 

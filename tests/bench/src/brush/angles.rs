@@ -9,7 +9,7 @@
 use std::cell::RefCell;
 
 use glam::{DMat3, DVec3};
-use maulstick_brush::solver::{Energy, Settings, Solver, ContactConstraint};
+use maulstick_brush::solver::{ContactConstraint, Energy, Settings, Solver};
 use maulstick_brush::{Spine, SpineShape};
 use maulstick_num::sin_cos;
 use slsqp::{Func, StopTols};

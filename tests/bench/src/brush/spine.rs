@@ -3,7 +3,7 @@
 use std::time::Instant;
 
 use maulstick_brush::energy::friction::Anisotropy;
-use maulstick_brush::solver::{Settings, Solver, ContactConstraint};
+use maulstick_brush::solver::{ContactConstraint, Settings, Solver};
 use maulstick_brush::{Spine, SpineShape};
 use maulstick_rig::Fault;
 
@@ -65,7 +65,13 @@ pub(crate) fn beside_slsqp(report: &mut Report, joints: usize) -> Result<(), Fau
             residual.push(solution.residual / spine.stiffest());
             iterations.push(solution.iterations as f64);
             let last_constraints = solver.last_constraints().to_vec();
-            let problem = Angles::new(&spine, &settings, &last_constraints, &mut solver, before.clone());
+            let problem = Angles::new(
+                &spine,
+                &settings,
+                &last_constraints,
+                &mut solver,
+                before.clone(),
+            );
             let clock = Instant::now();
             let minimum = problem.minimise(&start);
             theirs.push(clock.elapsed().as_secs_f64() * 1e6);

@@ -5,10 +5,10 @@ use std::time::{Duration, Instant};
 
 use maulstick_brush::BrushFile;
 use maulstick_document::{Access, Document, DocumentSettings};
-use maulstick_nodes::Keeper;
 use maulstick_optics::PaintLibrary;
 use maulstick_paint::{Painting, PaintingSetup, Sequencer};
 use maulstick_rig::Fault;
+use maulstick_session::Autosave;
 use maulstick_types::Pose;
 use maulstick_types::brush::{BrushState, Solve};
 use maulstick_types::command::Command;
@@ -33,7 +33,7 @@ const STATE_M: f64 = 2e-3;
 /// A painting in a document with the hand over it.
 pub(super) struct Easel {
     pub(super) sequencer: Sequencer,
-    pub(super) keeper: Keeper,
+    pub(super) autosave: Autosave,
     size_m: [f64; 2],
     file: BrushFile,
     dice: Pcg64Mcg,
@@ -70,12 +70,12 @@ impl Easel {
         let painting = Painting::paged(&setup, library, pager).map_err(fault)?;
         let mut sequencer = Sequencer::new(painting);
         sequencer.painting_mut().set_quota(quota);
-        let keeper = Keeper::new(document, &mut sequencer, 0);
+        let autosave = Autosave::new(document, &mut sequencer, 0);
         let file = BrushFile::library("round").map_err(fault)?;
         sequencer.define_brush(BRUSH, file.clone());
         Ok(Self {
             sequencer,
-            keeper,
+            autosave,
             size_m: [f64::from(cells) * setup.cell_m; 2],
             file,
             dice: Pcg64Mcg::new(7),
@@ -95,13 +95,13 @@ impl Easel {
         let opened = opened.ok_or_else(|| fault("the painting is gone"))?;
         let since = opened.kept().versions;
         let mut sequencer = opened.sequencer().map_err(fault)?;
-        let keeper = Keeper::new(document, &mut sequencer, since);
+        let autosave = Autosave::new(document, &mut sequencer, since);
         let canvas = &sequencer.painting().scene().surfaces[0];
         let size_m = canvas.cells.map(|cells| f64::from(cells) * canvas.cell_m);
         Ok(Self {
             size_m,
             sequencer,
-            keeper,
+            autosave,
             file: BrushFile::library("round").map_err(fault)?,
             dice: Pcg64Mcg::new(8),
             stroke: 1 << 32,
@@ -146,7 +146,7 @@ impl Easel {
     pub(super) fn keep(&mut self) {
         let now_ns = self.begun.elapsed().as_nanos() as u64;
         self.sequencer.drain_journal();
-        self.keeper.turn(&mut self.sequencer, now_ns);
+        self.autosave.turn(&mut self.sequencer, now_ns);
     }
 
     fn state(&mut self, [x, y]: [f64; 2], took: &mut Took) -> Result<(), Fault> {
@@ -173,12 +173,12 @@ impl Easel {
             solves: vec![solve],
         };
         let steps = self.sequencer.painting().work().0;
-        let paged = self.keeper.document().page_in_cpu();
+        let paged = self.autosave.document().page_in_cpu();
         let busy = thread_cpu();
         let (_, painted) = self.sequencer.state(BRUSH, &header, &state);
         took.busy += thread_cpu().saturating_sub(busy);
         painted.map_err(fault)?;
-        let paged = self.keeper.document().page_in_cpu().saturating_sub(paged);
+        let paged = self.autosave.document().page_in_cpu().saturating_sub(paged);
         took.paging_ms.push(1e3 * paged.as_secs_f64());
         took.steps += self.sequencer.painting().work().0 - steps;
         Ok(())

@@ -6,8 +6,8 @@ use std::time::{Duration, Instant};
 use maulstick_bus::bus::Answer;
 use maulstick_bus::{Bus, Class, Faults, MemoryNet, Wake};
 use maulstick_document::{Access, Document, DocumentSettings};
-use maulstick_nodes::PaintNode;
-use maulstick_nodes::frames::FrameServer;
+use maulstick_paint_node::PaintNode;
+use maulstick_paint_node::frames::FrameServer;
 use maulstick_rig::Fault;
 use maulstick_types::paint::{FrameReply, FrameRequest};
 use maulstick_types::scene::CANVAS;
@@ -92,7 +92,7 @@ pub(super) fn run(report: &mut Report) -> Result<(), Fault> {
         }
         easel.stroke(STROKE_M, &mut took)?;
     }
-    easel.keeper.close(&mut easel.sequencer).map_err(fault)?;
+    easel.autosave.close(&mut easel.sequencer).map_err(fault)?;
     let first = once(&path)?[0];
     report.row(
         "document: first frame of 4096², never shown before",

@@ -32,7 +32,7 @@ pub(super) fn run(report: &mut Report) -> Result<(), Fault> {
     let file = std::fs::File::create(&exr).map_err(fault)?;
     let painting = easel.sequencer.painting_mut();
     write_open_exr(painting, CANVAS, file, &mut |_, _| {}).map_err(fault)?;
-    easel.keeper.close(&mut easel.sequencer).map_err(fault)?;
+    easel.autosave.close(&mut easel.sequencer).map_err(fault)?;
     let [before, after] = pack(&path, History::Forgotten, &mut |_, _| {}).map_err(fault)?;
     let mib = |bytes: u64| bytes as f64 / f64::from(1 << 20);
     let exr = mib(std::fs::metadata(&exr).map_err(fault)?.len());

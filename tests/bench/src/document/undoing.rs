@@ -28,13 +28,17 @@ pub(super) fn run(report: &mut Report) -> Result<(), Fault> {
     let (steps, _) = easel.sequencer.painting().history_depth();
     let mut spent_ms = Vec::new();
     for _ in 0..STEPS {
-        let (busy, paged) = (thread_cpu(), easel.keeper.document().page_in_cpu());
+        let (busy, paged) = (thread_cpu(), easel.autosave.document().page_in_cpu());
         easel
             .sequencer
             .ask(Command::Undo { brush: None })
             .map_err(fault)?;
         let busy = thread_cpu().saturating_sub(busy);
-        let paged = easel.keeper.document().page_in_cpu().saturating_sub(paged);
+        let paged = easel
+            .autosave
+            .document()
+            .page_in_cpu()
+            .saturating_sub(paged);
         spent_ms.push(1e3 * (busy + paged).as_secs_f64());
         easel.keep();
     }
@@ -50,7 +54,7 @@ pub(super) fn run(report: &mut Report) -> Result<(), Fault> {
         quantile(&spent_ms, 0.5),
         "ms",
     );
-    easel.keeper.close(&mut easel.sequencer).map_err(fault)?;
+    easel.autosave.close(&mut easel.sequencer).map_err(fault)?;
     let bytes = std::fs::metadata(&path).map_or(0, |about| about.len());
     report.row(
         "document: file with 10,000 steps",

@@ -80,7 +80,7 @@ pub(super) fn run(report: &mut Report) -> Result<(), Fault> {
     );
     for mut easel in [small, vast] {
         easel.keep();
-        easel.keeper.close(&mut easel.sequencer).map_err(fault)?;
+        easel.autosave.close(&mut easel.sequencer).map_err(fault)?;
     }
     again(report, &folder.path().join("vast.maul"))
 }
@@ -108,5 +108,5 @@ fn again(report: &mut Report, path: &std::path::Path) -> Result<(), Fault> {
         quantile(&sorted(took.paging_ms), 0.999),
         "ms",
     );
-    easel.keeper.close(&mut easel.sequencer).map_err(fault)
+    easel.autosave.close(&mut easel.sequencer).map_err(fault)
 }

@@ -1,13 +1,13 @@
 //! A canvas, a brush and a hand for the measurements of looks, and the films that they leave.
 
 use maulstick_brush::BrushFile;
-use maulstick_nodes::Offline;
 use maulstick_num::atan2;
 use maulstick_optics::PaintLibrary;
 use maulstick_paint::quantum::QUANTUM_M;
 use maulstick_paint::setup::PaintingSetup;
 use maulstick_paint::{EditError, Painting};
 use maulstick_rig::Fault;
+use maulstick_session::Offline;
 use maulstick_types::command::Command;
 use maulstick_types::paint::TILE;
 use maulstick_types::scene::CANVAS;

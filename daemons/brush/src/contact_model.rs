@@ -1,0 +1,230 @@
+//! The contact model for the hand that holds a brush.
+
+use glam::DVec3;
+use maulstick_brush::desk::Plane;
+use maulstick_brush::head_stiffness::Press;
+use maulstick_brush::{BrushFile, BrushModel};
+use maulstick_paint::tooth::Tooth;
+use maulstick_types::Origin;
+use maulstick_types::haptics::{ContactModel, ForceLaw, Grain};
+use maulstick_types::paint::BrushCredit;
+use maulstick_types::scene::{CANVAS, Scene};
+
+/// k₂ of eq. 8.1: further force a head's length below, N.
+const K2_N: f64 = 6.0;
+/// k₁ at most: a stiffer brush would be a hard wall to a hand that light, N.
+const K1_MOST_N: f64 = 3.0;
+/// After this time without another model the force fades, ns.
+const TIME_TO_LIVE_NS: u64 = 100_000_000;
+/// A change of model is spread over this time, ns.
+const RECOVERY_NS: u64 = 15_000_000;
+
+/// Density of paint, kg/m³.
+const DENSITY_KG_M3: f64 = 1e3;
+/// Half of the drag is felt in a film of this thickness, m: bristles in a thinner one slide.
+const HALF_FILM_M: f64 = 25e-6;
+/// Drag at most, N·s/m: the servo samples it.
+const DRAG_MOST: f64 = 0.5;
+
+/// Drag of the paint that a brush was last found in, N·s/m: μ·L, the viscous force by velocity on a
+/// contact of length L (Baxter 2004, eq. 8.8), as far as there is a film for it.
+#[must_use]
+pub fn drag(credit: &BrushCredit) -> f64 {
+    let [film, viscosity, contact] = [credit.film_m, credit.viscosity_m2_s, credit.contact_m];
+    let wet = f64::from(film) / (f64::from(film) + HALF_FILM_M);
+    let drag = DENSITY_KG_M3 * f64::from(viscosity) * f64::from(contact) * wet;
+    // What comes over the bus may be anything.
+    if drag.is_finite() {
+        drag.clamp(0.0, DRAG_MOST)
+    } else {
+        0.0
+    }
+}
+
+/// Which law of force a hand feels.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum ForceKind {
+    /// Two straight pieces, k₁ that of the solved head (Baxter 2004, eq. 8.1).
+    #[default]
+    Linear,
+    /// The piecewise cubic of the brush file (fig. 8.2).
+    Hermite,
+    /// The solved head, linearised where it is.
+    Local,
+    /// A hard wall, for comparison.
+    Rigid,
+    /// No force, for comparison.
+    None,
+}
+
+impl ForceKind {
+    /// The law of this name in `rig.toml`.
+    #[must_use]
+    pub fn of(name: &str) -> Option<Self> {
+        Some(match name {
+            "linear" => Self::Linear,
+            "hermite" => Self::Hermite,
+            "local" => Self::Local,
+            "rigid" => Self::Rigid,
+            "none" => Self::None,
+            _ => return None,
+        })
+    }
+}
+
+/// The hard wall: each device bears less, and gives what it bears, N/m.
+const RIGID_N_M: f64 = 2000.0;
+
+/// Normal force by depth over `plane`, as the brush is bent now.
+#[must_use]
+pub fn law(kind: ForceKind, brush: &mut BrushModel, plane: &Plane) -> ForceLaw {
+    let pressed = match kind {
+        ForceKind::Local => brush.press(),
+        _ => None,
+    };
+    match (kind, pressed) {
+        (ForceKind::None, _) => ForceLaw::None,
+        (ForceKind::Rigid, _) => ForceLaw::Rigid {
+            stiffness_n_m: RIGID_N_M,
+        },
+        (ForceKind::Hermite, _) => ForceLaw::Hermite {
+            knots: brush.tuples(),
+        },
+        (_, Some(press)) => local(&press, plane.normal()),
+        // A head in the air, too.
+        _ => ForceLaw::Linear {
+            k1_n: brush.feel().k1_n.min(K1_MOST_N),
+            k2_n: K2_N,
+        },
+    }
+}
+
+/// A pressed head: its force along the normal, and how that goes with depth.
+fn local(press: &Press, normal: DVec3) -> ForceLaw {
+    let [x, y, z] = normal.to_array();
+    let rows = [x, y, z].map(|a| [x, y, z].map(|b| -press.stiffness_n_m * a * b));
+    ForceLaw::Local {
+        pose: press.pose.to_pose(),
+        force_n: (normal * press.force_n).to_array(),
+        stiffness_n_m: rows,
+    }
+}
+
+/// No grain.
+pub const NO_GRAIN: Grain = Grain {
+    amplitude: 0.0,
+    wavelength_m: 1e-3,
+    seed: 0,
+};
+/// Of the slope of the tooth, by the part that a tuft feels: it lies on many threads.
+const FELT_OF_SLOPE: f64 = 0.1;
+
+/// Finer waves are not felt, m: twice what a device refuses.
+const FINEST_M: f64 = 4e-4;
+
+/// The grain of the canvas: amplitude π·depth/λ, the steepest slope of a wave as deep as the tooth,
+/// by the share of it that is felt.
+#[must_use]
+pub fn grain(scene: &Scene) -> Grain {
+    let canvas = scene.surfaces.iter().find(|surface| surface.id == CANVAS);
+    let tooth = canvas.and_then(|surface| {
+        let tooth = Tooth::new(&surface.tooth, surface.tooth_seed, surface.cell_m)?;
+        Some((surface, tooth.relief_m()))
+    });
+    let grain = tooth.map(|(surface, [depth, wide])| Grain {
+        amplitude: FELT_OF_SLOPE * std::f64::consts::PI * depth / wide,
+        wavelength_m: wide * surface.zoom,
+        seed: surface.tooth_seed,
+    });
+    // Of a canvas seen from afar it is too fine for a device.
+    let felt = grain.filter(|grain| grain.wavelength_m >= FINEST_M);
+    felt.unwrap_or(NO_GRAIN)
+}
+
+/// What is felt of a contact.
+#[derive(Clone, Debug, PartialEq)]
+pub struct SurfaceFeel {
+    /// Normal force by depth.
+    pub law: ForceLaw,
+    /// [`drag`] of the paint, N·s/m.
+    pub drag_n_s_m: f64,
+    /// Grain of the canvas.
+    pub grain: Grain,
+}
+
+/// What the hand feels of a surface through a brush.
+#[must_use]
+pub fn contact_model(
+    device: Origin,
+    brush: &str,
+    file: &BrushFile,
+    plane: &Plane,
+    felt: SurfaceFeel,
+) -> ContactModel {
+    let friction = file.contact.friction;
+    let on_canvas = plane.id == CANVAS;
+    ContactModel {
+        device: device.source,
+        device_epoch: device.epoch,
+        brush: brush.to_owned(),
+        plane_point_m: plane.to_desk.point(DVec3::ZERO).to_array(),
+        plane_normal: plane.normal().to_array(),
+        friction_static: file.contact.friction_static.unwrap_or(friction),
+        friction_kinetic: friction,
+        viscous_n_s_m: felt.drag_n_s_m,
+        grain: if on_canvas { felt.grain } else { NO_GRAIN },
+        law: felt.law,
+        head_length_m: file.length_m(),
+        time_to_live_ns: TIME_TO_LIVE_NS,
+        recovery_ns: RECOVERY_NS,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use maulstick_paint::setup::PaintingSetup;
+
+    use super::*;
+
+    fn scene(tooth: &str, zoom: f64) -> Scene {
+        let mut scene = PaintingSetup::default().scene();
+        scene.surfaces[0].tooth = tooth.into();
+        scene.surfaces[0].zoom = zoom;
+        scene
+    }
+
+    fn credit(film_m: f32, viscosity_m2_s: f32) -> BrushCredit {
+        BrushCredit {
+            brush: 1,
+            epoch: 1,
+            next: 1,
+            wetness: 1.0,
+            film_m,
+            viscosity_m2_s,
+            contact_m: 0.01,
+        }
+    }
+
+    #[test]
+    fn stiff_paint_drags_and_thin_or_missing_paint_hardly_does() {
+        let tube = drag(&credit(1e-3, 1e-2));
+        assert!((tube - 0.1 * 1e-3 / 1.025e-3).abs() < 1e-6, "μ·L: {tube}");
+        assert!(drag(&credit(1e-3, 1e-4)) < 0.02 * tube);
+        assert!(drag(&credit(5e-6, 1e-2)) < 0.2 * tube);
+        assert_eq!(drag(&credit(0.0, 0.0)), 0.0);
+        assert_eq!(drag(&credit(f32::NAN, 1.0)), 0.0);
+        assert_eq!(drag(&credit(1.0, f32::MAX)), DRAG_MOST);
+    }
+
+    #[test]
+    fn a_rough_canvas_is_felt_more_than_a_smooth_one_and_none_from_afar() {
+        let of = |tooth: &str| grain(&scene(tooth, 1.0));
+        let linen = of("linen");
+        // 80 µm deep every .9 mm.
+        assert!((linen.amplitude - 0.0279).abs() < 1e-4, "{linen:?}");
+        assert!((linen.wavelength_m - 0.9e-3).abs() < 1e-12);
+        assert!(of("panel").amplitude < 0.1 * linen.amplitude);
+        assert_eq!(grain(&scene("linen", 0.1)), NO_GRAIN);
+        assert_eq!(of("no tooth"), NO_GRAIN);
+    }
+}

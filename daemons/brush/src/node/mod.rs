@@ -1,0 +1,448 @@
+//! The brush node: stylus samples in; brush states, credit and contact models out.
+
+mod commands;
+mod contact_publisher;
+mod pace;
+mod progress;
+mod settings;
+mod takes;
+
+use std::collections::BTreeSet;
+use std::sync::Arc;
+use std::time::Duration;
+
+use glam::DVec3;
+use maulstick_brush::BrushModel;
+use maulstick_brush::desk::aim;
+use maulstick_bus::credit::Stamp;
+use maulstick_bus::rivals::Once;
+use maulstick_bus::typed::{Reader, Received, Receiver, Sender};
+use maulstick_bus::{
+    Announcer, Bus, BusError, Class, CreditReceiver, CreditSender, Queue, Recent, Server,
+    Subscription, Wake,
+};
+use maulstick_types::brush::{BrushConsumed, BrushDef, BrushState, Solve};
+use maulstick_types::haptics::{ContactModel, Grain};
+use maulstick_types::paint::PaintConsumed;
+use maulstick_types::reply_cache::ReplyCache;
+use maulstick_types::scene::Scene;
+use maulstick_types::stylus::{StylusInfo, StylusPose, StylusSample};
+use maulstick_types::topics::Topics;
+use maulstick_types::{Flags, Origin, name_hash};
+
+use crate::arbiter::{Arbiter, Range, Stroke};
+use crate::contact_model::{NO_GRAIN, drag, grain};
+use crate::outbox::Outbox;
+use crate::path_simplifier::{PathSimplifier, Place, Waiting};
+
+use pace::Pace;
+use progress::Progress;
+pub use settings::BrushSettings;
+use settings::{DeviceClaims, moved_by};
+use takes::Take;
+
+/// Live, states older than this are not added to: the brush merges, ns.
+const OLDEST_NS: u64 = 50_000_000;
+
+/// The paint node's name.
+const PAINT: &str = "paint";
+
+/// Whether the paint node is there: where it is not, nothing is painted and nothing is felt.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Painter {
+    /// It is, or was never heard of.
+    There,
+    /// It has gone.
+    Gone,
+}
+
+/// The brush node.
+pub struct BrushNode {
+    bus: Arc<dyn Bus>,
+    topics: Topics,
+    settings: BrushSettings,
+    model: BrushModel,
+    samples: CreditReceiver<StylusSample>,
+    states: CreditSender<BrushState>,
+    credit: Receiver<PaintConsumed>,
+    scene: Receiver<Scene>,
+    /// When the scene that is followed was sent, ns.
+    scene_ns: u64,
+    infos: Receiver<StylusInfo>,
+    consumed: Sender<BrushConsumed>,
+    /// What each device says that it is.
+    devices: Recent<DeviceClaims>,
+    models: Recent<(Sender<ContactModel>, u64)>,
+    arbiter: Arbiter,
+    backlog: PathSimplifier,
+    pace: Pace,
+    outbox: Outbox,
+    progress: Progress,
+    /// The take that has this brush to itself.
+    take: Option<Take>,
+    /// Devices that are gone: their takes have ended.
+    gone: Recent<()>,
+    /// Whether the paint node is there, as far as it is known.
+    painter: Painter,
+    tokens: Subscription,
+    touching: bool,
+    /// Drag of the paint under the brush, N·s/m.
+    drag_n_s_m: f64,
+    /// Grain of the canvas.
+    grain: Grain,
+    /// Number of the newest state that touches.
+    newest_contact: Option<u64>,
+    /// Devices of whose faulty samples it was said.
+    faulty: Once,
+    def: Announcer<BrushDef>,
+    commands: Server,
+    replies: ReplyCache,
+    reader: Reader,
+}
+
+impl BrushNode {
+    /// A node on `bus`; it rings `wake` when there is something to do.
+    ///
+    /// # Errors
+    /// [`BusError`].
+    pub fn new(
+        bus: Arc<dyn Bus>,
+        topics: &Topics,
+        wake: &Wake,
+        settings: BrushSettings,
+    ) -> Result<Self, BusError> {
+        let me = Origin {
+            source: name_hash(&settings.name),
+            epoch: settings.epoch,
+        };
+        let b = &*bus;
+        let name = settings.name.as_str();
+        let mut def = Announcer::new(b, &topics.brush_def(name), me, wake)?;
+        commands::define(&mut def, b.now_ns(), name, &settings.file)?;
+        Ok(Self {
+            samples: CreditReceiver::new(b, topics, &topics.sample("*"), me, wake)?,
+            states: CreditSender::new(b, topics, &topics.brush_state(name), me, wake)?,
+            credit: Receiver::new(
+                b,
+                &topics.paint_consumed(),
+                Class::Control,
+                Queue::Ring(64),
+                wake,
+            )?,
+            scene: Receiver::new(b, &topics.scene(), Class::Cached, Queue::Ring(16), wake)?
+                .checking(Scene::fault),
+            scene_ns: 0,
+            infos: Receiver::new(
+                b,
+                &topics.stylus_info("*"),
+                Class::Cached,
+                Queue::Ring(64),
+                wake,
+            )?,
+            consumed: Sender::new(b, &topics.brush_consumed(name), Class::Control, me)?,
+            model: BrushModel::new(settings.file.clone(), settings.depth_share),
+            devices: Recent::default(),
+            models: Recent::default(),
+            arbiter: Arbiter::default(),
+            backlog: PathSimplifier::new(settings.file.length_m()),
+            pace: Pace::default(),
+            outbox: Outbox::default(),
+            progress: Progress::default(),
+            take: None,
+            gone: Recent::default(),
+            painter: Painter::There,
+            tokens: b.watch(&topics.node("*"), wake)?,
+            touching: false,
+            drag_n_s_m: 0.0,
+            grain: NO_GRAIN,
+            newest_contact: None,
+            faulty: Once::default(),
+            def,
+            commands: b.serve(&topics.command(name), 16, wake)?,
+            replies: ReplyCache::default(),
+            reader: Reader::default(),
+            topics: topics.clone(),
+            settings,
+            bus,
+        })
+    }
+
+    /// How many states were sent.
+    #[must_use]
+    pub fn sent(&self) -> u64 {
+        self.states.next_seq()
+    }
+
+    /// Does all there is to do and returns how long to wait at most.
+    ///
+    /// # Errors
+    /// [`BusError`].
+    pub fn turn(&mut self) -> Result<Duration, BusError> {
+        let bus = Arc::clone(&self.bus);
+        let now_ns = bus.now_ns();
+        self.take_in(now_ns);
+        self.serve_commands(now_ns)?;
+        self.def.turn(now_ns)?;
+        self.samples.poll(&*bus)?;
+        self.follow_scene(now_ns)?;
+        while let Some(received) = self.next_sample(None) {
+            self.sample(received, now_ns)?;
+        }
+        self.flush(now_ns)?;
+        self.states.serve(now_ns)?;
+        for topic in self.samples.unheard() {
+            let device = self.topics.middle(&topic).unwrap_or_default();
+            self.progress.forget_told(device);
+        }
+        let backlog = &self.backlog;
+        let waits = |device: Origin| backlog.holds(device);
+        self.progress.tell(now_ns, &mut self.consumed, waits)?;
+        Ok(Duration::from_millis(20))
+    }
+
+    /// Follows the desk. What a hand did before belongs on the desk as it was: a canvas that is moved under
+    /// a stroke does not take along what waits to be solved.
+    fn follow_scene(&mut self, now_ns: u64) -> Result<(), BusError> {
+        while let Some(scene) = self.scene.try_recv() {
+            // Only a late scene is passed over: another painting counts its own anew.
+            let sent_ns = scene.header.sent_ns.min(scene.arrived_ns);
+            if sent_ns < self.scene_ns {
+                continue;
+            }
+            while let Some(received) = self.next_sample(Some(scene.header.event_ns)) {
+                self.sample(received, now_ns)?;
+            }
+            self.solve(now_ns);
+            self.scene_ns = sent_ns;
+            self.model.set_scene(&scene.message);
+            self.grain = grain(&scene.message);
+            self.model.tune(scene.message.tuning(&self.settings.name));
+            self.model.soak(scene.message.wetness(&self.settings.name));
+        }
+        Ok(())
+    }
+
+    /// Credit, and what the devices are.
+    fn take_in(&mut self, now_ns: u64) {
+        while let Some(token) = self.tokens.try_recv() {
+            let node = self.topics.node_of(&token.key).unwrap_or_default();
+            if node == PAINT {
+                self.painter = match token.present {
+                    true => Painter::There,
+                    false => Painter::Gone,
+                };
+            } else if token.present {
+                self.gone.remove(node);
+            } else {
+                self.gone.set(node, ());
+                if self.progress.follows(node) {
+                    self.touching = false;
+                }
+            }
+        }
+        while let Some(credit) = self.credit.try_recv() {
+            let me = self.states.origin();
+            for brush in credit
+                .message
+                .brushes
+                .iter()
+                .filter(|b| b.brush == me.source)
+            {
+                self.states.consumed(brush.epoch, brush.next, now_ns);
+                self.drag_n_s_m = drag(brush);
+            }
+        }
+        while let Some(info) = self.infos.try_recv() {
+            let device = self.topics.middle(&info.key).unwrap_or_default();
+            self.devices.set(device, DeviceClaims::of(info.message));
+        }
+    }
+
+    /// The next sample that may be consumed: a replayed one waits for credit, and all wait for a
+    /// scene. None waits for another device's. A take that is played anew does not wait for what
+    /// the one before is owed. Where a time is given, only what a live hand did before it.
+    fn next_sample(&mut self, before_ns: Option<u64>) -> Option<Received<StylusSample>> {
+        let (topics, settings, devices) = (&self.topics, &self.settings, &self.devices);
+        let mine = |next: &Received<StylusSample>| {
+            let device = topics.middle(&next.key).unwrap_or_default();
+            settings
+                .priority(device, moved_by(devices, device))
+                .is_some()
+        };
+        let anew = Flags::REPLAY.with(Flags::FIRST);
+        if self
+            .samples
+            .heads()
+            .any(|next| next.header.flags.has(anew) && mine(next))
+        {
+            self.states.forgive();
+        }
+        let has_scene = self.model.has_scene();
+        let has_credit = self.outbox.is_empty() && self.states.has_credit();
+        self.samples.pop_where(|next| {
+            let replayed = next.header.flags.has(Flags::REPLAY);
+            if before_ns.is_some_and(|before| replayed || next.header.event_ns >= before) {
+                return false;
+            }
+            !mine(next) || (has_scene && (has_credit || !replayed))
+        })
+    }
+
+    fn sample(&mut self, received: Received<StylusSample>, now_ns: u64) -> Result<(), BusError> {
+        let origin = received.header.origin();
+        let (seq, event_ns) = (received.header.seq, received.header.event_ns);
+        let device = self
+            .topics
+            .middle(&received.key)
+            .unwrap_or_default()
+            .to_owned();
+        let moves = moved_by(&self.devices, &device);
+        let Some(priority) = self.settings.priority(&device, moves) else {
+            return Ok(());
+        };
+        let (brush, next) = (self.states.origin(), self.states.next_seq());
+        self.progress.note(&device, origin, seq, brush.epoch, next);
+        if let Some(fault) = received.message.fault()
+            && self.faulty.say(&device)
+        {
+            tracing::warn!("{}: sample {seq} is dropped: {fault}", received.key);
+        }
+        let moved = if received.header.flags.has(Flags::REPLAY) {
+            self.replay(&device, &received, now_ns)?
+        } else if received.message.fault().is_some() || self.is_held() {
+            false
+        } else {
+            let range = match received.message.in_range {
+                true => Range::Near,
+                false => Range::Away,
+            };
+            let stroke = match self.touching {
+                true => Stroke::GoesOn,
+                false => Stroke::None,
+            };
+            self.arbiter.hear(&device, priority, range, stroke, now_ns)
+        };
+        if !moved {
+            return Ok(());
+        }
+        if !received.header.flags.has(Flags::REPLAY) {
+            let sample = received.message;
+            let place = self.place(&sample);
+            self.pace.note(now_ns, place);
+            self.backlog.push(Waiting {
+                origin,
+                seq,
+                event_ns,
+                sample,
+                place,
+            });
+            self.flush(now_ns)?;
+        }
+        self.feel(&device, origin, now_ns)
+    }
+
+    /// Whether a sample puts the brush clear of the surface: a pen without pressure hovers, a head
+    /// that is higher than it is long does not reach.
+    fn place(&self, sample: &StylusSample) -> Place {
+        let clear = !sample.in_range
+            || match &sample.pose {
+                StylusPose::Contact { pressure, .. } => *pressure == 0.0,
+                StylusPose::Ferrule { pose } => {
+                    let length_m = self.model.file().length_m();
+                    let desk = self.model.desk();
+                    let plane = desk.and_then(|desk| desk.under(aim(sample, length_m)));
+                    plane.is_some_and(|plane| {
+                        let above =
+                            DVec3::from_array(pose.position_m) - plane.to_desk.point(DVec3::ZERO);
+                        above.dot(plane.normal()) > 1.5 * length_m
+                    })
+                }
+            };
+        match clear {
+            true => Place::Air,
+            false => Place::Surface,
+        }
+    }
+
+    /// Sends what is solved while there is credit, and solves what waits, if paint keeps up: what
+    /// has waited is one state.
+    fn flush(&mut self, now_ns: u64) -> Result<(), BusError> {
+        self.send(now_ns)?;
+        let late = self.states.oldest_age_ns(now_ns) > OLDEST_NS;
+        let busy = !self.outbox.is_empty() || !self.states.has_credit();
+        if late || busy {
+            return Ok(());
+        }
+        self.solve(now_ns);
+        self.send(now_ns)
+    }
+
+    /// Solves what waits, as one state.
+    fn solve(&mut self, now_ns: u64) {
+        let waiting = self.backlog.take();
+        let Some(last) = waiting.last().cloned() else {
+            return;
+        };
+        let devices: BTreeSet<(u32, u32)> = waiting
+            .iter()
+            .map(|w| (w.origin.source, w.origin.epoch))
+            .collect();
+        let mut solves: Vec<Solve> = waiting
+            .iter()
+            .flat_map(|w| self.model.follow(w.origin, w.event_ns, &w.sample))
+            .collect();
+        self.pace.flag(now_ns, &mut solves);
+        let state = BrushState {
+            device: last.origin.source,
+            device_epoch: last.origin.epoch,
+            device_seq: last.seq,
+            solves,
+        };
+        if !state.solves.is_empty() {
+            let number = self.post(Flags::NONE, Flags::NONE, Flags::NONE, state);
+            for (source, epoch) in devices {
+                self.progress.posted(Origin { source, epoch }, number);
+            }
+        }
+    }
+
+    /// Puts a state into the outbox; the number by which its last part will go.
+    fn post(&mut self, flags: Flags, first: Flags, last: Flags, state: BrushState) -> u64 {
+        if let Some(newest) = state.solves.last() {
+            self.touching = !newest.contacts.is_empty();
+        }
+        let touches = state.solves.iter().any(|solve| solve.stroke != 0);
+        let origin = Origin {
+            source: state.device,
+            epoch: state.device_epoch,
+        };
+        self.outbox.push(flags, first, last, state);
+        let number = self.states.next_seq() + self.outbox.len() as u64 - 1;
+        if touches {
+            self.newest_contact = Some(number);
+        }
+        self.progress.posted(origin, number);
+        number
+    }
+
+    /// Sends what waits in the outbox while there is credit.
+    fn send(&mut self, now_ns: u64) -> Result<(), BusError> {
+        while self.states.has_credit() {
+            let Some((flags, state)) = self.outbox.pop() else {
+                return Ok(());
+            };
+            let event_ns = state.solves.last().map_or(now_ns, |last| last.event_ns);
+            self.states
+                .send(flags, Stamp { now_ns, event_ns }, &state)?;
+        }
+        Ok(())
+    }
+}
+
+impl std::fmt::Debug for BrushNode {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("BrushNode")
+            .field("states", &self.states)
+            .finish_non_exhaustive()
+    }
+}

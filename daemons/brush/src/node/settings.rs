@@ -1,0 +1,65 @@
+//! What a brush node is told at its start, and by its devices.
+
+use std::collections::BTreeMap;
+
+use maulstick_brush::BrushFile;
+use maulstick_bus::Recent;
+use maulstick_types::stylus::{StylusInfo, axes};
+
+use crate::contact_model::ForceKind;
+
+/// What a brush node is told at its start.
+#[derive(Clone, Debug)]
+pub struct BrushSettings {
+    /// Name of the brush.
+    pub name: String,
+    /// Its file, at its size.
+    pub file: BrushFile,
+    /// Share of the head's length that full pressure presses in.
+    pub depth_share: f64,
+    /// The devices that move it, by name, with their priority.
+    pub devices: BTreeMap<String, i32>,
+    /// How the brush pushes back on devices, by name; two straight pieces where none is said.
+    pub laws: BTreeMap<String, ForceKind>,
+    /// Devices that move other brushes.
+    pub others: Vec<String>,
+    /// Priority of a device that is in neither list, if it may move this brush.
+    pub foreign_priority: Option<i32>,
+    /// Epoch of this start.
+    pub epoch: u32,
+}
+
+impl BrushSettings {
+    /// Priority of a device, if it moves this brush: rig.toml and the device itself (`moves`: the
+    /// brush that it says it moves, or nothing) may say that it moves another one.
+    pub(super) fn priority(&self, device: &str, moves: &str) -> Option<i32> {
+        let elsewhere = !moves.is_empty() && moves != self.name;
+        if elsewhere || self.others.iter().any(|other| other == device) {
+            return None;
+        }
+        self.devices.get(device).copied().or(self.foreign_priority)
+    }
+}
+
+/// What a device says that it is.
+#[derive(Clone, Debug)]
+pub(super) struct DeviceClaims {
+    /// The brush that it moves; any if empty.
+    brush: String,
+    /// Whether it drives a force.
+    pub(super) drives_force: bool,
+}
+
+impl DeviceClaims {
+    pub(super) fn of(info: StylusInfo) -> Self {
+        Self {
+            brush: info.brush,
+            drives_force: info.drives & axes::FORCE != 0,
+        }
+    }
+}
+
+/// The brush that a device says it moves.
+pub(super) fn moved_by<'a>(devices: &'a Recent<DeviceClaims>, device: &str) -> &'a str {
+    devices.get(device).map_or("", |told| told.brush.as_str())
+}

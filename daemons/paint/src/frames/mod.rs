@@ -1,0 +1,362 @@
+//! Pictures of what changed, for whoever asks: a thread of its own between the paint and its views.
+//!
+//! The stepper hands over versions of tiles, which are shared and never copied; colour is computed
+//! here, only for tiles that someone looks at.
+
+mod brush_looks;
+mod films;
+mod pyramid;
+
+use std::collections::BTreeMap;
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use std::time::{Duration, Instant};
+
+use maulstick_bus::typed::Reader;
+use maulstick_bus::{Bus, BusError, Request, Server, Wake};
+use maulstick_document::Shelf;
+use maulstick_optics::backend::FilmBackend;
+use maulstick_paint::appearance::Appearance;
+use maulstick_paint::blank_surface::BlankSurface;
+use maulstick_paint::brush_colour::Carried;
+use maulstick_paint::dry::DryStack;
+use maulstick_paint::tile::{Tile, TileId};
+use maulstick_types::paint::{FrameHolds, FrameReply, FrameRequest, FrameTile};
+use maulstick_types::topics::Topics;
+use maulstick_types::{DecodeError, Flags, Origin, encode, encode_into, encoded_bytes};
+
+use brush_looks::BrushLooks;
+use films::SteadyFilms;
+use pyramid::{BARE_VERSIONS, Pyramid, coarsest, grid};
+
+/// A reply holds at most this much; the rest comes with the next one, bytes.
+const REPLY_BYTES: usize = 12 << 20;
+/// Longest wait for a change, ms.
+const LONGEST_WAIT_MS: u32 = 400;
+/// Tiles of a reply that are computed together, and tiles of full detail of those at most.
+const BATCH: usize = 16;
+const MOST_TILES: usize = 64;
+/// A view waits this long for tiles that take their time; the rest comes with the next reply.
+const REPLY_WORK: Duration = Duration::from_millis(100);
+/// What has dried is baked ahead for this long between two looks at what is asked.
+const AHEAD: Duration = Duration::from_millis(10);
+
+/// A surface as its views see it.
+#[derive(Clone, Debug)]
+pub struct FedSurface {
+    /// Cells across and up.
+    pub cells: [u32; 2],
+    /// Tiles across and up.
+    pub grid: [u32; 2],
+    /// What it shows where nothing was painted.
+    pub bare: Arc<BlankSurface>,
+    /// Tiles on which something was painted, with the number of their version.
+    pub tiles: BTreeMap<TileId, (u64, Option<Arc<Tile>>)>,
+}
+
+impl FedSurface {
+    /// What has dried on a tile.
+    #[must_use]
+    pub fn dry_on(&self, id: TileId) -> Option<&Arc<DryStack>> {
+        self.tiles.get(&id)?.1.as_deref()?.dry()
+    }
+
+    /// The tiles on which something has dried.
+    pub fn dry_tiles(&self) -> impl Iterator<Item = (TileId, &Arc<DryStack>)> {
+        self.tiles
+            .iter()
+            .filter_map(|(id, (_, tile))| Some((*id, tile.as_deref()?.dry()?)))
+    }
+}
+
+/// What the stepper has handed over.
+#[derive(Clone, Debug, Default)]
+pub struct FrameState {
+    /// Surfaces by number.
+    pub surfaces: BTreeMap<u32, FedSurface>,
+    /// How paint becomes colour.
+    pub look: Option<Arc<Appearance>>,
+    /// The newest version.
+    pub version: u64,
+    /// Journal entries below this index are in it.
+    pub journal: u64,
+    /// Brush states that are in it.
+    pub holds: Vec<FrameHolds>,
+    /// Whether a view waits for news.
+    pub wanted: bool,
+    /// Tiles with dry layers that are to be baked for this look, and those that are.
+    pub baking: Progress,
+    /// What brushes carry, by their names.
+    pub carried: BTreeMap<String, Carried>,
+    /// When a view last asked, rig clock, ns.
+    pub watched_ns: u64,
+}
+
+/// How far a long work is.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Progress {
+    /// Tiles in all.
+    pub all: u32,
+    /// Of them done.
+    pub done: u32,
+}
+
+/// Where stepper and frame thread meet.
+#[derive(Clone, Debug, Default)]
+pub struct Feed {
+    fed: Arc<Mutex<FrameState>>,
+    wake: Wake,
+}
+
+impl Feed {
+    /// An empty feed.
+    #[must_use]
+    pub fn new() -> Self {
+        Self::default()
+    }
+
+    /// What was handed over, for as long as the guard lives.
+    pub fn lock(&self) -> MutexGuard<'_, FrameState> {
+        self.fed.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    /// Rings the frame thread.
+    pub fn ring(&self) {
+        self.wake.ring();
+    }
+}
+
+/// A view that waits.
+struct Waiting {
+    request: Request,
+    asked: FrameRequest,
+    deadline_ns: u64,
+}
+
+/// ReplyCache views.
+pub struct FrameServer {
+    bus: Arc<dyn Bus>,
+    server: Server,
+    reader: Reader,
+    feed: Feed,
+    stepper: Wake,
+    me: Origin,
+    pyramid: Pyramid,
+    looks: Option<BrushLooks>,
+    waiting: Vec<Waiting>,
+}
+
+impl FrameServer {
+    /// Serves `topic`; rings `stepper` when a view waits for news.
+    ///
+    /// # Errors
+    /// [`BusError::Topic`].
+    pub fn new(
+        bus: Arc<dyn Bus>,
+        topic: &str,
+        feed: Feed,
+        stepper: &Wake,
+        me: Origin,
+    ) -> Result<Self, BusError> {
+        let server = bus.serve(topic, 16, &feed.wake)?;
+        Ok(Self {
+            bus,
+            server,
+            reader: Reader::default(),
+            feed,
+            stepper: stepper.clone(),
+            me,
+            pyramid: Pyramid::default(),
+            looks: None,
+            waiting: Vec::new(),
+        })
+    }
+
+    /// Computes colours with `films` from now on.
+    #[must_use]
+    pub fn with_films(mut self, films: Box<dyn FilmBackend>) -> Self {
+        self.pyramid.films = SteadyFilms::new(films);
+        self
+    }
+
+    /// Looks for tiles among those that were shown before, and puts new ones there.
+    #[must_use]
+    pub fn with_shelf(mut self, shelf: Shelf) -> Self {
+        self.pyramid.shelf = Some(shelf);
+        self
+    }
+
+    /// Tells on the topics of a rig how the paint on its brushes looks, as far as it is handed over.
+    #[must_use]
+    pub fn telling_brushes(mut self, topics: &Topics) -> Self {
+        self.looks = Some(BrushLooks::new(topics));
+        self
+    }
+
+    /// ReplyCache who can be answered and returns how long to wait at most.
+    pub fn turn(&mut self) -> Duration {
+        let now_ns = self.bus.now_ns();
+        while let Some(request) = self.server.try_recv() {
+            let read = self
+                .reader
+                .read::<FrameRequest>(&request.key, &request.bytes);
+            if let Some((_, asked)) = read {
+                self.feed.lock().watched_ns = now_ns;
+                let wait_ms = asked.wait_ms.min(LONGEST_WAIT_MS);
+                let deadline_ns = now_ns + u64::from(wait_ms) * 1_000_000;
+                self.waiting.push(Waiting {
+                    request,
+                    asked,
+                    deadline_ns,
+                });
+            }
+        }
+        let fed = self.feed.lock().clone();
+        if let Some(looks) = &mut self.looks
+            && let Err(error) = looks.tell(&*self.bus, self.me, &fed)
+        {
+            tracing::error!("the paint on a brush cannot be told: {error}");
+        }
+        for waiting in std::mem::take(&mut self.waiting) {
+            let reply = self.reply(&fed, &waiting.asked);
+            let asked = (waiting.asked.epoch, waiting.asked.look);
+            let news = !reply.tiles.is_empty() || asked != (reply.epoch, reply.look);
+            if !news && now_ns < waiting.deadline_ns {
+                self.waiting.push(waiting);
+                continue;
+            }
+            if let Err(error) = self.answer(waiting, now_ns, &reply) {
+                tracing::error!("a frame cannot be sent: {error}");
+            }
+        }
+        if !self.waiting.is_empty() {
+            self.feed.lock().wanted = true;
+            self.stepper.ring();
+        }
+        if self.bake_ahead(&fed) {
+            return Duration::ZERO;
+        }
+        Duration::from_millis(if self.waiting.is_empty() { 100 } else { 20 })
+    }
+
+    /// Sends a reply, in shared memory where the view asks for it.
+    fn answer(&self, waiting: Waiting, now_ns: u64, reply: &FrameReply) -> Result<(), DecodeError> {
+        let (me, sent_ns) = (&self.me, self.bus.now_ns());
+        let sent = if waiting.asked.shared {
+            let mut encoded = Ok(());
+            let length = encoded_bytes(reply)?;
+            let sent = waiting.request.answer_shared(length, &mut |into| {
+                encoded = encode_into(me, Flags::NONE, 0, now_ns, sent_ns, reply, into);
+            });
+            encoded?;
+            sent
+        } else {
+            let bytes = encode(me, Flags::NONE, 0, now_ns, sent_ns, reply)?;
+            waiting.request.answer(bytes)
+        };
+        if let Err(error) = sent {
+            tracing::debug!("a view is gone: {error}");
+        }
+        Ok(())
+    }
+
+    /// Bakes dry layers that nobody has looked at yet, for a short while; true where there are more.
+    fn bake_ahead(&mut self, fed: &FrameState) -> bool {
+        let progress = self.pyramid.bake_ahead(fed, AHEAD);
+        let mut shared = self.feed.lock();
+        // A look that was handed over meanwhile begins anew.
+        let same = shared.look.as_ref().map(|look| look.generation());
+        if same == fed.look.as_ref().map(|look| look.generation()) {
+            shared.baking = progress;
+        }
+        progress.done < progress.all
+    }
+
+    /// Serves until `stop` says so.
+    pub fn run(mut self, stop: &maulstick_rig::Stop) {
+        while !stop.requested() {
+            let wait = self.turn();
+            self.feed.wake.wait(wait);
+        }
+    }
+
+    fn reply(&mut self, fed: &FrameState, asked: &FrameRequest) -> FrameReply {
+        let mut reply = FrameReply {
+            surface: asked.surface,
+            epoch: self.me.epoch,
+            look: fed.look.as_ref().map_or(0, |look| look.generation()),
+            version: BARE_VERSIONS + fed.version,
+            level: 0,
+            cells: [0; 2],
+            journal: fed.journal,
+            holds: fed.holds.clone(),
+            more: false,
+            tiles: Vec::new(),
+        };
+        let (Some(surface), Some(look)) = (fed.surfaces.get(&asked.surface), &fed.look) else {
+            return reply;
+        };
+        let level = asked.level.min(coarsest(surface));
+        reply.level = level;
+        reply.cells = surface.cells.map(|cells| cells.div_ceil(1 << level));
+        let since = if (asked.epoch, asked.look) == (reply.epoch, reply.look) {
+            asked.since
+        } else {
+            0
+        };
+        let grid = grid(surface, level);
+        let mut changed = Vec::new();
+        for y in asked.tiles[1]..asked.tiles[3].min(grid[1]) {
+            for x in asked.tiles[0]..asked.tiles[2].min(grid[0]) {
+                let id = TileId { x, y };
+                let version = Pyramid::version(surface, level, id);
+                if version > since {
+                    changed.push((version, id));
+                }
+            }
+        }
+        changed.sort();
+        let (mut bytes, begun) = (0, Instant::now());
+        for (place, (version, id)) in changed.iter().enumerate() {
+            if place % BATCH == 0 {
+                let part = &changed[place..(place + BATCH).min(changed.len())];
+                let pyramid = &mut self.pyramid;
+                // What was shown before need not be computed.
+                let new = part
+                    .iter()
+                    .filter(|(_, id)| !pyramid.recall(look, asked.surface, surface, level, *id));
+                let new: Vec<TileId> = new.map(|(_, id)| *id).collect();
+                let ids = new
+                    .iter()
+                    .flat_map(|id| self.pyramid.stale(asked.surface, surface, level, *id));
+                let ids: Vec<TileId> = ids.take(MOST_TILES).collect();
+                self.pyramid.shade(look, asked.surface, surface, &ids);
+            }
+            let shown = self.pyramid.tile(look, asked.surface, surface, level, *id);
+            let planes = shown.to_bytes();
+            bytes += planes.len();
+            reply.tiles.push(FrameTile {
+                x: id.x,
+                y: id.y,
+                planes: planes.into(),
+            });
+            // No two tiles share a version, so the rest can be asked for from any of them on.
+            let enough = bytes >= REPLY_BYTES || begun.elapsed() > REPLY_WORK;
+            if enough && place + 1 < changed.len() {
+                (reply.more, reply.version) = (true, *version);
+                break;
+            }
+        }
+        reply
+    }
+}
+
+impl std::fmt::Debug for FrameServer {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("FrameServer")
+            .field("waiting", &self.waiting.len())
+            .finish_non_exhaustive()
+    }
+}
+
+#[cfg(test)]
+mod tests;

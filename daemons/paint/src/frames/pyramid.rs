@@ -1,0 +1,360 @@
+//! Display tiles at every level of detail, made of those below and kept for the next request.
+
+use std::collections::{BTreeMap, VecDeque};
+use std::sync::Arc;
+use std::time::{Duration, Instant};
+
+use maulstick_document::rows::shown_number;
+use maulstick_document::{Shelf, ShownTile};
+use maulstick_optics::backend::FilmBackend;
+use maulstick_optics::{FilmPlanes, Under};
+use maulstick_paint::appearance::{Appearance, Bakery};
+use maulstick_paint::display::{DisplayTile, WetFilms};
+use maulstick_paint::dry::DryStack;
+use maulstick_paint::tile::{Tile, TileId};
+
+use super::films::SteadyFilms;
+use super::{FedSurface, FrameState, Progress};
+
+/// Display tiles that are kept for the next request.
+const KEPT_TILES: usize = 1024;
+
+/// From this level on, eight cells to a point and coarser, a bare ground looks even.
+const PLAIN_LEVEL: u32 = 3;
+/// Surfaces of more tiles than this are not drawn tile by tile where they are bare.
+const PLAIN_TILES: u32 = 1024;
+
+/// Whether a surface is so vast that what is bare of it is drawn as if it were even.
+fn is_plain(surface: &FedSurface) -> bool {
+    surface.grid[0] * surface.grid[1] > PLAIN_TILES && surface.bare.wells.is_empty()
+}
+
+/// The coarsest level: a single tile shows the whole surface.
+pub(super) fn coarsest(surface: &FedSurface) -> u32 {
+    let [across, up] = surface.grid;
+    across.max(up).max(1).next_power_of_two().trailing_zeros()
+}
+
+/// Tiles across and up at a level.
+pub(super) fn grid(surface: &FedSurface, level: u32) -> [u32; 2] {
+    surface.grid.map(|tiles| tiles.div_ceil(1 << level))
+}
+
+/// Versions of bare tiles lie below this, those of painted ones above: a surface has no more tiles.
+pub(super) const BARE_VERSIONS: u64 = 1 << 32;
+
+/// Display tiles by level and place, with the version that they show.
+#[derive(Debug, Default)]
+pub(super) struct Pyramid {
+    kept: BTreeMap<(u32, u32, TileId), (u64, Arc<DisplayTile>)>,
+    /// What lies beyond the edge of a surface.
+    outside: BTreeMap<u32, Arc<DisplayTile>>,
+    /// A bare tile of a vast surface, from afar.
+    plain: BTreeMap<u32, Arc<DisplayTile>>,
+    bakery: Bakery,
+    pub(super) films: SteadyFilms,
+    /// Tiles as they were shown before, in the document.
+    pub(super) shelf: Option<Shelf>,
+    /// Generation of the look that all this shows.
+    generation: Option<u64>,
+    /// What is still to be baked for it, as far as nobody looks at it first.
+    ahead: VecDeque<(u32, TileId, Arc<DryStack>)>,
+    /// For which generation that is, and how many they were.
+    ahead_of: (Option<u64>, u32),
+}
+
+impl Pyramid {
+    /// Version of a tile of a level: the newest of what lies in it; 0 where nothing was painted.
+    fn painted(surface: &FedSurface, level: u32, id: TileId) -> u64 {
+        let [across, up] = grid(surface, level);
+        if id.x >= across || id.y >= up {
+            return 0;
+        }
+        if level == 0 {
+            return surface.tiles.get(&id).map_or(0, |(version, _)| *version);
+        }
+        (0..4)
+            .map(|quarter| Self::painted(surface, level - 1, child(id, quarter)))
+            .max()
+            .unwrap_or(0)
+    }
+
+    /// Version of a tile as views count them: no two tiles of a level share one, and bare tiles
+    /// come first, one after the other, so that any number of tiles is told in parts.
+    pub(super) fn version(surface: &FedSurface, level: u32, id: TileId) -> u64 {
+        match Self::painted(surface, level, id) {
+            0 => u64::from(id.y) * u64::from(grid(surface, level)[0]) + u64::from(id.x) + 1,
+            painted => BARE_VERSIONS + painted,
+        }
+    }
+
+    /// Begins anew under another look.
+    fn turn_to(&mut self, look: &Appearance) {
+        if self.generation != Some(look.generation()) {
+            self.generation = Some(look.generation());
+            self.kept.clear();
+            self.outside.clear();
+            self.plain.clear();
+        }
+    }
+
+    /// Bakes what has dried for the present look, a tile after the other, for as long as `limit`.
+    /// What dries later is baked when it is looked at.
+    pub(super) fn bake_ahead(&mut self, fed: &FrameState, limit: Duration) -> Progress {
+        let Some(look) = &fed.look else {
+            return Progress::default();
+        };
+        self.turn_to(look);
+        if self.ahead_of.0 != Some(look.generation()) {
+            let dry = fed.surfaces.iter().flat_map(|(number, surface)| {
+                let tiles = surface.dry_tiles();
+                tiles.map(|(id, stack)| (*number, id, Arc::clone(stack)))
+            });
+            self.ahead = dry.collect();
+            self.ahead_of = (Some(look.generation()), self.ahead.len() as u32);
+        }
+        let begun = Instant::now();
+        while begun.elapsed() < limit
+            && let Some((number, id, stack)) = self.ahead.pop_front()
+        {
+            // What has dried since was, or will be, baked by whoever looks at it.
+            if let Some(surface) = fed.surfaces.get(&number)
+                && surface
+                    .dry_on(id)
+                    .is_some_and(|now| Arc::ptr_eq(now, &stack))
+            {
+                let ground = surface.bare.ground.tile(id);
+                let over = (&stack, ground.under());
+                let sight = (&**look, &mut self.films as &mut dyn FilmBackend);
+                self.bakery.planes(sight, number, id, over);
+            }
+        }
+        Progress {
+            all: self.ahead_of.1,
+            done: self.ahead_of.1 - self.ahead.len() as u32,
+        }
+    }
+
+    /// The tiles of full detail of a rectangle of a level that are not kept or have changed.
+    pub(super) fn stale(
+        &self,
+        number: u32,
+        surface: &FedSurface,
+        level: u32,
+        id: TileId,
+    ) -> Vec<TileId> {
+        let [across, up] = surface.grid;
+        let span = |from: u32, most: u32| {
+            let side = 1u64 << level;
+            let to = (u64::from(from) + 1) * side;
+            (u64::from(from) * side).min(u64::from(most)) as u32..to.min(u64::from(most)) as u32
+        };
+        let columns = span(id.x, across);
+        let all = span(id.y, up).flat_map(|y| columns.clone().map(move |x| TileId { x, y }));
+        let stale = |id: &TileId| {
+            let version = Self::painted(surface, 0, *id);
+            self.kept
+                .get(&(number, 0, *id))
+                .is_none_or(|(kept, _)| *kept != version)
+        };
+        all.filter(stale).collect()
+    }
+
+    /// Computes tiles of full detail together.
+    pub(super) fn shade(
+        &mut self,
+        look: &Appearance,
+        number: u32,
+        surface: &FedSurface,
+        ids: &[TileId],
+    ) {
+        self.turn_to(look);
+        let painted = |id: &TileId| surface.tiles.get(id).and_then(|(_, tile)| tile.as_deref());
+        let grounds: Vec<_> = ids.iter().map(|id| surface.bare.ground.tile(*id)).collect();
+        let mut baked = Vec::with_capacity(ids.len());
+        for (id, ground) in ids.iter().zip(&grounds) {
+            baked.push(painted(id).and_then(Tile::dry).map(|stack| {
+                let sight = (look, &mut self.films as &mut dyn FilmBackend);
+                self.bakery
+                    .planes(sight, number, *id, (stack, ground.under()))
+            }));
+        }
+        let films: Vec<WetFilms> = ids.iter().map(|id| WetFilms::of(painted(id))).collect();
+        let planes: Vec<Vec<(usize, &[f32])>> = films.iter().map(WetFilms::planes).collect();
+        let batch: Vec<FilmPlanes<'_>> = planes
+            .iter()
+            .zip(baked.iter().zip(&grounds))
+            .map(|(paints, (baked, ground))| FilmPlanes {
+                paints,
+                opacity: 1.0,
+                under: match baked {
+                    Some(baked) => Under::Planes(baked),
+                    None => ground.under(),
+                },
+            })
+            .collect();
+        let colours = match self.films.shade(&look.studio, &batch) {
+            Ok(colours) => colours,
+            Err(error) => {
+                tracing::error!("tiles cannot be shown: {error}");
+                return;
+            }
+        };
+        for ((id, films), rgb) in ids.iter().zip(&films).zip(colours) {
+            let shown =
+                DisplayTile::on(&surface.bare, *id, painted(id), (films, rgb), look.thinner);
+            let version = Self::painted(surface, 0, *id);
+            self.put_aside(look, (number, 0, *id), version, &shown);
+            self.keep((number, 0, *id), version, Arc::new(shown));
+        }
+    }
+
+    /// What lies beyond the edge of a surface, as if it went on.
+    fn outside(
+        &mut self,
+        look: &Appearance,
+        number: u32,
+        surface: &FedSurface,
+    ) -> Arc<DisplayTile> {
+        let bare = || {
+            let films = WetFilms::default();
+            let rgb = films.shade(&look.studio, Under::Even(surface.bare.ground.mean()));
+            Arc::new(DisplayTile::of(None, (&films, rgb), None))
+        };
+        Arc::clone(self.outside.entry(number).or_insert_with(bare))
+    }
+
+    /// A tile as it was shown before.
+    fn shown(
+        &self,
+        look: &Appearance,
+        place: (u32, u32, TileId),
+        version: u64,
+    ) -> Option<Arc<DisplayTile>> {
+        let (number, level, id) = place;
+        let shelf = self.shelf.as_ref().filter(|_| version > 0)?;
+        let bytes = shelf.get(shown_number(number, level, id), version, look.print())?;
+        DisplayTile::from_bytes(&bytes).map(Arc::new)
+    }
+
+    /// Whether a tile is kept, in memory or, as it was shown before, in the document.
+    pub(super) fn recall(
+        &mut self,
+        look: &Appearance,
+        number: u32,
+        surface: &FedSurface,
+        level: u32,
+        id: TileId,
+    ) -> bool {
+        self.turn_to(look);
+        let place = (number, level, id);
+        let version = Self::painted(surface, level, id);
+        if self
+            .kept
+            .get(&place)
+            .is_some_and(|(kept, _)| *kept == version)
+        {
+            return true;
+        }
+        let shown = self.shown(look, place, version);
+        let recalled = shown.is_some();
+        if let Some(shown) = shown {
+            self.keep(place, version, shown);
+        }
+        recalled
+    }
+
+    /// Has the document keep a tile as it is shown.
+    fn put_aside(
+        &self,
+        look: &Appearance,
+        place: (u32, u32, TileId),
+        version: u64,
+        tile: &DisplayTile,
+    ) {
+        if let Some(shelf) = self.shelf.as_ref().filter(|_| version > 0) {
+            let (number, level, id) = place;
+            shelf.put(ShownTile {
+                place: shown_number(number, level, id),
+                version,
+                look: look.print(),
+                bytes: tile.to_bytes(),
+            });
+        }
+    }
+
+    /// A bare tile seen from afar, where threads and grain are too small to be seen.
+    fn plain(&mut self, look: &Appearance, number: u32, surface: &FedSurface) -> Arc<DisplayTile> {
+        if let Some(plain) = self.plain.get(&number) {
+            return Arc::clone(plain);
+        }
+        let near = self.tile(look, number, surface, 0, TileId { x: 0, y: 0 });
+        let plain = Arc::new(near.even());
+        self.plain.insert(number, Arc::clone(&plain));
+        plain
+    }
+
+    fn keep(&mut self, place: (u32, u32, TileId), version: u64, tile: Arc<DisplayTile>) {
+        if self.kept.len() >= KEPT_TILES {
+            // What is coarse is made of many: it is kept as long as there is room.
+            self.kept.retain(|(_, level, _), _| *level > 0);
+            if self.kept.len() >= KEPT_TILES {
+                self.kept.clear();
+            }
+        }
+        self.kept.insert(place, (version, tile));
+    }
+
+    pub(super) fn tile(
+        &mut self,
+        look: &Appearance,
+        number: u32,
+        surface: &FedSurface,
+        level: u32,
+        id: TileId,
+    ) -> Arc<DisplayTile> {
+        self.turn_to(look);
+        let version = Self::painted(surface, level, id);
+        if let Some((kept, tile)) = self.kept.get(&(number, level, id))
+            && *kept == version
+        {
+            return Arc::clone(tile);
+        }
+        if version == 0 && level >= PLAIN_LEVEL && is_plain(surface) {
+            return self.plain(look, number, surface);
+        }
+        if let Some(shown) = self.shown(look, (number, level, id), version) {
+            self.keep((number, level, id), version, Arc::clone(&shown));
+            return shown;
+        }
+        if level == 0 {
+            self.shade(look, number, surface, &[id]);
+            let kept = self.kept.get(&(number, level, id));
+            let kept = kept.map(|(_, tile)| Arc::clone(tile));
+            return kept.unwrap_or_else(|| self.outside(look, number, surface));
+        }
+        let tile = Arc::new({
+            let outside = self.outside(look, number, surface);
+            let [across, up] = grid(surface, level - 1);
+            let children: [Option<Arc<DisplayTile>>; 4] = std::array::from_fn(|quarter| {
+                let child = child(id, quarter as u32);
+                let inside = child.x < across && child.y < up;
+                inside.then(|| self.tile(look, number, surface, level - 1, child))
+            });
+            let children = children.each_ref().map(|child| child.as_deref());
+            let finer = (1u64 << (level - 1).min(31)) as f32;
+            let cell_m = finer / surface.bare.relief.cells_per_m();
+            DisplayTile::coarser(children, &outside, cell_m)
+        });
+        self.put_aside(look, (number, level, id), version, &tile);
+        self.keep((number, level, id), version, Arc::clone(&tile));
+        tile
+    }
+}
+
+fn child(id: TileId, quarter: u32) -> TileId {
+    TileId {
+        x: 2 * id.x + quarter % 2,
+        y: 2 * id.y + quarter / 2,
+    }
+}

@@ -1,0 +1,145 @@
+//! Commands to the paint node: most are the sequencer's, some go on beside the painting.
+
+use std::path::Path;
+
+use maulstick_bus::Request;
+use maulstick_paint::EditError;
+use maulstick_paint::Effect;
+use maulstick_paint::sequencer::Replied;
+use maulstick_types::advice::parted;
+use maulstick_types::command::{Command, CommandReply, CommandRequest, Outcome};
+use maulstick_types::{Flags, encode};
+
+use super::PaintNode;
+use crate::snapshots::Snapshot;
+
+impl PaintNode {
+    pub(super) fn serve_commands(&mut self, now_ns: u64) {
+        while let Some(request) = self.commands.try_recv() {
+            let read = self
+                .reader
+                .read::<CommandRequest>(&request.key, &request.bytes);
+            let Some((_, asked)) = read else { continue };
+            let number = asked.number;
+            let outcome = match self.beside(&asked, now_ns) {
+                Some(outcome) => outcome,
+                None if self.snapshots.has((asked.client, number)) => Outcome::Waiting,
+                None => {
+                    let replied = self.sequencer.command(asked);
+                    self.complete(replied)
+                }
+            };
+            self.answer(request, now_ns, CommandReply { number, outcome });
+        }
+    }
+
+    /// ReplyCache a command. Nothing that a client sends may end the node: what cannot be told in
+    /// full is told in short.
+    pub(super) fn answer(&self, request: Request, now_ns: u64, reply: CommandReply) {
+        let write = |reply: &CommandReply| {
+            encode(&self.me, Flags::NONE, 0, now_ns, self.bus.now_ns(), reply)
+        };
+        let bytes = write(&reply).or_else(|error| {
+            tracing::warn!("{}: {error}", request.key);
+            write(&CommandReply {
+                number: reply.number,
+                outcome: Outcome::Refused {
+                    what: "the answer to this command is too long".to_owned(),
+                    help: "send shorter names".to_owned(),
+                },
+            })
+        });
+        match bytes.map(|bytes| request.answer(bytes)) {
+            Ok(Ok(())) => {}
+            Ok(Err(error)) => tracing::debug!("a client is gone: {error}"),
+            Err(error) => tracing::error!("a command cannot be answered: {error}"),
+        }
+    }
+
+    /// Does a command that changes no painting; none where it is the sequencer's.
+    fn beside(&mut self, asked: &CommandRequest, now_ns: u64) -> Option<Outcome> {
+        let is_beside = matches!(
+            asked.command,
+            Command::Export { .. } | Command::StopExport | Command::SaveAs { .. }
+        );
+        if !is_beside {
+            return None;
+        }
+        if let Some(outcome) = self.replies.find(asked) {
+            return Some(outcome);
+        }
+        let outcome = match self.begin_beside(asked, now_ns) {
+            Ok(outcome) => outcome,
+            Err(EditError { what, help }) => Outcome::Refused { what, help },
+        };
+        self.replies
+            .keep(asked.client, asked.number, outcome.clone());
+        Some(outcome)
+    }
+
+    fn begin_beside(&mut self, asked: &CommandRequest, now_ns: u64) -> Result<Outcome, EditError> {
+        asked.command.check().map_err(|line| {
+            let (what, help) = parted(&line);
+            EditError::new(what.to_owned(), help.unwrap_or("correct the command"))
+        })?;
+        if asked.after.is_some() {
+            return Err(EditError::new(
+                "this command has no place in the journal".to_owned(),
+                "ask without a place in it",
+            ));
+        }
+        let asker = (asked.client, asked.number);
+        match &asked.command {
+            Command::Export { order } => {
+                let still = self.sequencer.painting_mut().still();
+                self.exporter
+                    .begin(asker, order, still, &self.export, now_ns)?;
+                Ok(Outcome::Waiting)
+            }
+            Command::SaveAs { path, replace } => self.save_as(asker, Path::new(path), *replace),
+            _ => {
+                self.exporter.stop()?;
+                Ok(Outcome::Done {
+                    journal: 0,
+                    detail: String::new(),
+                })
+            }
+        }
+    }
+
+    /// Looks how what goes on beside the painting fares.
+    pub(super) fn go_on_beside(&mut self, now_ns: u64) {
+        if let Some(((client, number), outcome)) = self.exporter.ended() {
+            self.replies.keep(client, number, outcome);
+        }
+        if let Some(((client, number), outcome)) = self.snapshots.turn() {
+            self.sequencer.remember(client, number, outcome);
+        }
+        self.go_on_saving(now_ns);
+    }
+
+    /// Does what a command still asks for.
+    pub(super) fn complete(&mut self, replied: Replied) -> Outcome {
+        let Some(Effect::Snapshot { path, ledger }) = &replied.effect else {
+            return replied.outcome;
+        };
+        let painting = self.sequencer.painting_mut();
+        let ledger = ledger.as_ref();
+        let added = self.snapshots.add(Snapshot {
+            asker: (replied.client, replied.number),
+            path: path.into(),
+            ledger: ledger.map(|path| (path.into(), painting.report())),
+            still: painting.still(),
+            export: self.export.clone(),
+        });
+        match added {
+            Ok(()) => Outcome::Waiting,
+            Err(EditError { what, help }) => {
+                let outcome = Outcome::Refused { what, help };
+                self.sequencer
+                    .remember(replied.client, replied.number, outcome.clone());
+                outcome
+            }
+        }
+    }
+}

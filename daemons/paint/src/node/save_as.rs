@@ -1,0 +1,216 @@
+//! The painting goes on in another file, while it is painted on.
+//!
+//! A painting in a file: the document's thread copies it between two commits and goes on in the copy. One
+//! in memory alone gets a document beside the file's name, which takes that name once it is whole.
+
+use std::path::{Path, PathBuf};
+
+use maulstick_document::{
+    Access, Document, DocumentError, DocumentSettings, Left, Moving, make_room, unfinished,
+};
+use maulstick_paint::EditError;
+use maulstick_types::command::Outcome;
+
+use super::PaintNode;
+use crate::exporter::Asker;
+use maulstick_session::Autosave;
+
+/// A painting on its way to another file.
+#[derive(Debug)]
+pub(super) struct Saving {
+    asker: Asker,
+    to: PathBuf,
+    replace: bool,
+    stage: Stage,
+}
+
+#[derive(Debug)]
+enum Stage {
+    /// It was in memory alone, and is written.
+    Written,
+    /// It is there, or was in another file: the document moves.
+    Moved(Moving),
+}
+
+fn refused(path: &Path, error: &DocumentError) -> EditError {
+    let help = match error {
+        DocumentError::Taken => {
+            "give another name, or say that the one that is there may go: `--replace`"
+        }
+        error => error.help(),
+    };
+    EditError::new(format!("{}: {error}", path.display()), help)
+}
+
+/// Whether two names lead to the same file.
+fn is_same(one: &Path, other: &Path) -> bool {
+    let real = |path: &Path| std::fs::canonicalize(path).ok();
+    one == other || real(one).is_some_and(|path| real(other) == Some(path))
+}
+
+impl PaintNode {
+    /// Begins to have the painting go on in another file.
+    ///
+    /// # Errors
+    /// [`EditError`] where it cannot be begun there, or is on its way already.
+    pub(super) fn save_as(
+        &mut self,
+        asker: Asker,
+        to: &Path,
+        replace: bool,
+    ) -> Result<Outcome, EditError> {
+        if let Some(saving) = &self.saving {
+            return Err(EditError::new(
+                format!("the painting is on its way to {}", saving.to.display()),
+                "wait until it is there, and ask again",
+            ));
+        }
+        let stage = match &self.autosave {
+            Some(autosave) if self.unnamed => {
+                Stage::Moved(autosave.document().move_to(to, Left::Goes, replace))
+            }
+            Some(autosave) if is_same(autosave.document().path(), to) => return Ok(there(to)),
+            Some(autosave) => Stage::Moved(autosave.document().move_to(to, Left::Stays, replace)),
+            None => {
+                self.begin_document(to, replace)
+                    .map_err(|error| refused(to, &error))?;
+                Stage::Written
+            }
+        };
+        self.saving = Some(Saving {
+            asker,
+            to: to.to_owned(),
+            replace,
+            stage,
+        });
+        Ok(Outcome::Waiting)
+    }
+
+    /// Gives a painting in memory alone a document beside the name that it is to have.
+    fn begin_document(&mut self, to: &Path, replace: bool) -> Result<(), DocumentError> {
+        make_room(to, replace)?;
+        let settings = DocumentSettings::new(&unfinished(to), Access::Paint);
+        let pager = self.sequencer.painting().pager().clone();
+        let document = Document::begin(&settings, &pager)?;
+        self.sequencer.painting_mut().tell_all_again();
+        self.autosave = Some(Autosave::new(document, &mut self.sequencer, 0));
+        self.unnamed = true;
+        Ok(())
+    }
+
+    /// Goes on with it, as far as that is possible now.
+    pub(super) fn go_on_saving(&mut self, now_ns: u64) {
+        let (Some(saving), Some(autosave)) = (&mut self.saving, &mut self.autosave) else {
+            return;
+        };
+        let outcome = match &saving.stage {
+            Stage::Written => {
+                let fault = autosave.document().fault();
+                if let Some((what, help)) = fault.filter(|_| autosave.document().take_back()) {
+                    // What was in memory alone stays there, and nothing of it anywhere else.
+                    let what = format!("{}: {what}", saving.to.display());
+                    let refusal = EditError::new(what, help);
+                    self.give_document_up();
+                    Some(Err(refusal))
+                } else {
+                    if autosave.document().is_ready() {
+                        autosave.document().take_over(self.memory);
+                        let moving =
+                            autosave
+                                .document()
+                                .move_to(&saving.to, Left::Goes, saving.replace);
+                        saving.stage = Stage::Moved(moving);
+                    }
+                    None
+                }
+            }
+            Stage::Moved(moving) => autosave
+                .document_mut()
+                .arrived(moving)
+                .map(|arrived| arrived.map_err(|error| refused(&saving.to, &error))),
+        };
+        let Some(outcome) = outcome else {
+            return;
+        };
+        let Some(saving) = self.saving.take() else {
+            return;
+        };
+        let outcome = match outcome {
+            Ok(()) => {
+                self.committed.1 = now_ns;
+                self.unnamed = false;
+                there(&saving.to)
+            }
+            Err(EditError { what, help }) => Outcome::Refused { what, help },
+        };
+        self.status_ns = 0;
+        let (client, number) = saving.asker;
+        self.replies.keep(client, number, outcome);
+    }
+
+    /// Waits until the painting has its name, where it is on its way to its first one.
+    ///
+    /// # Errors
+    /// Why it does not get that; where anything of it was written, it is kept beside that name.
+    pub(super) fn arrive(&mut self) -> Result<(), DocumentError> {
+        let Some(autosave) = self.autosave.as_mut().filter(|_| self.unnamed) else {
+            return Ok(());
+        };
+        let Some(Saving {
+            to, replace, stage, ..
+        }) = self.saving.take()
+        else {
+            // It was refused a name, and asked for no other.
+            tell_where(autosave.document());
+            return Ok(());
+        };
+        let moving = match stage {
+            Stage::Moved(moving) => moving,
+            Stage::Written => {
+                let is_written = autosave.settle(&mut self.sequencer);
+                if !is_written && autosave.document().committed() == 0 {
+                    let fault = autosave.document().fault();
+                    if autosave.document().take_back() {
+                        self.give_document_up();
+                    }
+                    let what = fault.map_or(String::new(), |(what, _)| what);
+                    return Err(DocumentError::Unwritten(what));
+                }
+                autosave.document().move_to(&to, Left::Goes, replace)
+            }
+        };
+        let arrived = autosave.document_mut().wait_for(&moving);
+        if arrived.is_err() {
+            tell_where(autosave.document());
+        }
+        arrived
+    }
+
+    /// Lets go of a document of which nothing could be written.
+    fn give_document_up(&mut self) {
+        let Some(autosave) = self.autosave.take() else {
+            return;
+        };
+        self.unnamed = false;
+        let path = autosave.document().path().to_owned();
+        autosave.abandon(&mut self.sequencer);
+        for ending in ["", "-wal", "-shm", "-journal"] {
+            let mut name = path.as_os_str().to_owned();
+            name.push(ending);
+            std::fs::remove_file(name).ok();
+        }
+    }
+}
+
+/// Says under which name a painting is that did not get its own.
+fn tell_where(document: &Document) {
+    let path = document.path().display();
+    tracing::warn!("the painting is kept in {path}: give that file a name of your own");
+}
+
+fn there(path: &Path) -> Outcome {
+    Outcome::Done {
+        journal: 0,
+        detail: path.display().to_string(),
+    }
+}

@@ -1,0 +1,229 @@
+//! Small pictures of the painting and of its versions, for whoever asks: drawn one at a time, on a
+//! thread of their own, from tiles that the painting shares.
+
+use std::sync::mpsc::{Receiver, TryRecvError, channel};
+use std::sync::{Arc, Weak};
+
+use maulstick_bus::typed::Reader;
+use maulstick_bus::{Bus, BusError, Request, Server, Wake};
+use maulstick_exchange::small_picture;
+use maulstick_paint::Painting;
+use maulstick_types::paint::{ThumbnailReply, ThumbnailRequest};
+use maulstick_types::scene::{CANVAS, Light};
+use maulstick_types::{Flags, Origin, encode};
+
+/// Pixels of the longer side.
+const SIDES: std::ops::RangeInclusive<u32> = 1..=512;
+/// Pictures that are kept.
+const KEPT: usize = 64;
+/// Views that wait, at most: who asks too often is answered later.
+const WAITING: usize = 256;
+
+/// What a picture shows: it holds as long as this is the same.
+#[derive(Clone, Debug)]
+struct Shows {
+    version: String,
+    side: u32,
+    light: Light,
+    state: State,
+}
+
+#[derive(Clone, Debug)]
+enum State {
+    /// The painting as it is: newest tile version and look.
+    Now([u64; 2]),
+    /// The tiles of a version: another one of its name has others.
+    Kept(Weak<dyn std::any::Any + Send + Sync>),
+}
+
+impl Shows {
+    /// What is asked for; none where there is no such version.
+    fn of(painting: &Painting, asked: &ThumbnailRequest) -> Option<Self> {
+        let state = match asked.version.as_str() {
+            "" => State::Now([painting.versions(), painting.look().generation()]),
+            name => {
+                let version = painting.named().find(|version| version.name == name)?;
+                let tiles: Arc<dyn std::any::Any + Send + Sync> = version.tiles.clone();
+                State::Kept(Arc::downgrade(&tiles))
+            }
+        };
+        Some(Self {
+            version: asked.version.clone(),
+            side: asked.side.clamp(*SIDES.start(), *SIDES.end()),
+            light: painting.scene().light.clone(),
+            state,
+        })
+    }
+
+    fn is(&self, other: &Self) -> bool {
+        let state = match (&self.state, &other.state) {
+            (State::Now(one), State::Now(two)) => one == two,
+            (State::Kept(one), State::Kept(two)) => one.ptr_eq(two),
+            _ => false,
+        };
+        state
+            && self.side == other.side
+            && self.version == other.version
+            && self.light == other.light
+    }
+}
+
+/// ReplyCache for small pictures.
+pub struct Thumbnails {
+    server: Server,
+    reader: Reader,
+    wake: Wake,
+    me: Origin,
+    waiting: Vec<(Request, ThumbnailRequest)>,
+    drawing: Option<(Shows, Receiver<ThumbnailReply>)>,
+    /// Newest last.
+    kept: Vec<(Shows, ThumbnailReply)>,
+}
+
+impl Thumbnails {
+    /// Serves `topic`; rings `wake` when there is something to do.
+    ///
+    /// # Errors
+    /// [`BusError::Topic`].
+    pub fn new(bus: &dyn Bus, topic: &str, wake: &Wake, me: Origin) -> Result<Self, BusError> {
+        Ok(Self {
+            server: bus.serve(topic, 64, wake)?,
+            reader: Reader::default(),
+            wake: wake.clone(),
+            me,
+            waiting: Vec::new(),
+            drawing: None,
+            kept: Vec::new(),
+        })
+    }
+
+    /// ReplyCache who can be answered, and has the next picture drawn.
+    pub fn turn(&mut self, bus: &dyn Bus, painting: &mut Painting) {
+        while let Some(request) = self.server.try_recv() {
+            let read = self
+                .reader
+                .read::<ThumbnailRequest>(&request.key, &request.bytes);
+            if let Some((_, asked)) = read
+                && self.waiting.len() < WAITING
+            {
+                self.waiting.push((request, asked));
+            }
+        }
+        self.take_drawn(bus);
+        for (request, asked) in std::mem::take(&mut self.waiting) {
+            let reply = match Shows::of(painting, &asked) {
+                None => ThumbnailReply {
+                    width: 0,
+                    height: 0,
+                    rgb: Vec::new().into(),
+                    version: 0,
+                },
+                Some(shows) => match self.kept.iter().find(|(kept, _)| kept.is(&shows)) {
+                    Some((_, reply)) => reply.clone(),
+                    None => {
+                        if self.drawing.is_none() {
+                            self.draw(painting, shows);
+                        }
+                        self.waiting.push((request, asked));
+                        continue;
+                    }
+                },
+            };
+            self.answer(bus, request, &reply);
+        }
+    }
+
+    fn take_drawn(&mut self, bus: &dyn Bus) {
+        let Some((shows, drawn)) = self.drawing.take() else {
+            return;
+        };
+        match drawn.try_recv() {
+            Ok(reply) => {
+                let now = matches!(shows.state, State::Now(_));
+                // Of the painting as it is, older pictures are asked for no more.
+                self.kept.retain(|(kept, _)| {
+                    let older = matches!(kept.state, State::Now(_)) && kept.side == shows.side;
+                    !(now && older)
+                });
+                if self.kept.len() >= KEPT {
+                    self.kept.remove(0);
+                }
+                if now {
+                    self.answer_all_of_now(bus, &shows, &reply);
+                }
+                self.kept.push((shows, reply));
+            }
+            Err(TryRecvError::Empty) => self.drawing = Some((shows, drawn)),
+            Err(TryRecvError::Disconnected) => {
+                tracing::error!("a small picture of '{}' cannot be drawn", shows.version);
+                // Asked again they would be drawn again.
+                self.waiting.clear();
+            }
+        }
+    }
+
+    /// Who waits for the painting as it is gets it as it was just now: while somebody paints, no picture
+    /// would ever be the newest.
+    fn answer_all_of_now(&mut self, bus: &dyn Bus, shows: &Shows, reply: &ThumbnailReply) {
+        let of_it = |asked: &ThumbnailRequest| {
+            let side = asked.side.clamp(*SIDES.start(), *SIDES.end());
+            asked.version.is_empty() && side == shows.side
+        };
+        let (answered, waiting): (Vec<_>, Vec<_>) = std::mem::take(&mut self.waiting)
+            .into_iter()
+            .partition(|(_, asked)| of_it(asked));
+        self.waiting = waiting;
+        for (request, _) in answered {
+            self.answer(bus, request, reply);
+        }
+    }
+
+    fn draw(&mut self, painting: &mut Painting, shows: Shows) {
+        let mut still = painting.still();
+        let (to_node, drawn) = channel();
+        let (version, side, wake) = (shows.version.clone(), shows.side, self.wake.clone());
+        let work = move || {
+            if !version.is_empty() && still.show_version(&version).is_err() {
+                return;
+            }
+            let Some(picture) = small_picture(&mut still, CANVAS, side as usize) else {
+                return;
+            };
+            let reply = ThumbnailReply {
+                width: picture.width as u32,
+                height: picture.height as u32,
+                rgb: picture.rgb.into(),
+                version: still.versions(),
+            };
+            to_node.send(reply).ok();
+            wake.ring();
+        };
+        match std::thread::Builder::new()
+            .name("thumbnail".into())
+            .spawn(work)
+        {
+            Ok(_) => self.drawing = Some((shows, drawn)),
+            Err(error) => tracing::error!("no small pictures are drawn: {error}"),
+        }
+    }
+
+    fn answer(&self, bus: &dyn Bus, request: Request, reply: &ThumbnailReply) {
+        let now_ns = bus.now_ns();
+        match encode(&self.me, Flags::NONE, 0, now_ns, now_ns, reply) {
+            Ok(bytes) => {
+                if let Err(error) = request.answer(bytes) {
+                    tracing::debug!("a view is gone: {error}");
+                }
+            }
+            Err(error) => tracing::error!("a small picture cannot be sent: {error}"),
+        }
+    }
+}
+
+impl std::fmt::Debug for Thumbnails {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("Thumbnails")
+            .field("waiting", &self.waiting.len())
+            .finish_non_exhaustive()
+    }
+}

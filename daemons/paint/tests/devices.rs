@@ -1,0 +1,289 @@
+//! Devices and brushes side by side: none takes from another, and none waits for another.
+
+mod support;
+
+use maulstick_brush::BrushFile;
+use maulstick_brush_node::contact_model::ForceKind;
+use maulstick_bus::credit::Stamp;
+use maulstick_bus::typed::{Receiver, Sender};
+use maulstick_bus::{Class, CreditSender, Faults, MemoryNet, Queue, Wake};
+use maulstick_types::brush::{BrushDef, BrushState};
+use maulstick_types::command::{Command, Outcome};
+use maulstick_types::haptics::{ContactModel, ForceLaw};
+use maulstick_types::scene::Tuning;
+use maulstick_types::stylus::{StylusInfo, axes};
+use maulstick_types::{Flags, Origin, name_hash};
+use support::{Device, Live, START_NS, loads, pen, take};
+
+fn live() -> Live {
+    Live::new(MemoryNet::new(1, START_NS, Faults::default()))
+}
+
+/// Lets everybody have a few turns.
+fn turn(live: &mut Live) {
+    for _ in 0..4 {
+        live.net.advance(1_000_000);
+        live.brush.turn().expect("turned");
+        live.net.advance(1_000_000);
+        live.paint.turn().expect("turned");
+    }
+}
+
+/// A device that drives a force says so.
+fn force_device(live: &Live) -> Device {
+    let bus = live.net.bus();
+    let arm = live.device("arm", 42);
+    let topic = live.topics.stylus_info("arm");
+    let mut info = Sender::new(&bus, &topic, Class::Cached, arm.samples.origin()).expect("one");
+    let told = StylusInfo {
+        device: "arm".into(),
+        driver: "foreign".into(),
+        brush: "main".into(),
+        priority: 0,
+        senses: axes::POSITION,
+        drives: axes::FORCE,
+        rate_hz: 1000.0,
+        max_force_n: 3.0,
+        max_stiffness_n_m: 800.0,
+        workspace_m: [0.0; 6],
+    };
+    info.send(0, 0, &told).expect("sent");
+    arm
+}
+
+#[test]
+fn a_force_device_with_a_number_of_its_own_gets_its_model() {
+    let mut live = live();
+    let (bus, wake) = (live.net.bus(), Wake::new());
+    let topic = live.topics.contact_model("arm");
+    let mut models =
+        Receiver::<ContactModel>::new(&bus, &topic, Class::RealTime, Queue::Ring(8), &wake)
+            .expect("subscribed");
+    let mut arm = force_device(&live);
+    turn(&mut live);
+    arm.send(&pen(0.0, 0.0, 0.3));
+    turn(&mut live);
+    let model = models.try_recv().expect("a model").message;
+    assert_eq!((model.device, model.device_epoch), (42, 11));
+}
+
+/// What a pressed brush gives to a device that feels it by a law.
+fn pressed(kind: ForceKind) -> ForceLaw {
+    let net = MemoryNet::new(1, START_NS, Faults::default());
+    let mut settings = support::settings();
+    settings.laws.insert("arm".into(), kind);
+    let mut live = Live::with(net, settings);
+    let (bus, wake) = (live.net.bus(), Wake::new());
+    let topic = live.topics.contact_model("arm");
+    let mut models =
+        Receiver::<ContactModel>::new(&bus, &topic, Class::RealTime, Queue::Ring(64), &wake)
+            .expect("subscribed");
+    let mut arm = force_device(&live);
+    turn(&mut live);
+    let mut law = None;
+    for _ in 0..8 {
+        arm.send(&pen(0.0, 0.0, 0.4));
+        turn(&mut live);
+        while let Some(model) = models.try_recv() {
+            maulstick_haptics::Contact::new(&model.message).expect("a servo takes it");
+            law = Some(model.message.law);
+        }
+    }
+    law.expect("a model")
+}
+
+#[test]
+fn each_device_feels_the_brush_by_its_own_law() {
+    assert!(matches!(pressed(ForceKind::None), ForceLaw::None));
+    assert!(matches!(pressed(ForceKind::Rigid), ForceLaw::Rigid { .. }));
+    assert!(matches!(
+        pressed(ForceKind::Linear),
+        ForceLaw::Linear { .. }
+    ));
+    let ForceLaw::Hermite { knots } = pressed(ForceKind::Hermite) else {
+        panic!("a curve");
+    };
+    assert_eq!((knots.len(), knots[3].depth), (5, 1.0));
+    let ForceLaw::Local {
+        force_n,
+        stiffness_n_m,
+        ..
+    } = pressed(ForceKind::Local)
+    else {
+        panic!("a local force");
+    };
+    assert!(force_n[2] > 0.05 && force_n[2] < 3.0, "{force_n:?}");
+    assert!(stiffness_n_m[2][2] < 0.0, "{stiffness_n_m:?}");
+}
+
+#[test]
+fn two_devices_of_one_number_are_two_devices() {
+    let mut live = live();
+    let (mut one, mut two) = (live.device("one", 7), live.device("two", 7));
+    two.samples.restart(12);
+    for _ in 0..5 {
+        one.send(&pen(0.0, 0.0, 0.0));
+        two.send(&pen(0.0, 0.0, 0.0));
+        turn(&mut live);
+    }
+    assert_eq!((one.consumed(), two.consumed()), (5, 5));
+}
+
+#[test]
+fn a_brush_without_a_file_holds_up_no_other() {
+    let mut live = live();
+    let load = Command::Load {
+        brush: "main".into(),
+        mixture: loads()[0].clone(),
+    };
+    live.command(1, load);
+    let (bus, wake) = (live.net.bus(), Wake::new());
+    let origin = Origin {
+        source: name_hash("ghost"),
+        epoch: 1,
+    };
+    let topic = live.topics.brush_state("ghost");
+    let mut ghost = CreditSender::new(&bus, &live.topics, &topic, origin, &wake).expect("a sender");
+    let state = BrushState {
+        device: 1,
+        device_epoch: 1,
+        device_seq: 0,
+        solves: Vec::new(),
+    };
+    let stamp = Stamp {
+        now_ns: START_NS,
+        event_ns: START_NS,
+    };
+    ghost.send(Flags::NONE, stamp, &state).expect("sent");
+    turn(&mut live);
+    let mut mouse = live.device("mouse", 5);
+    for step in 0..20 {
+        mouse.send(&pen(1e-3 * f64::from(step), 0.0, 0.5));
+        turn(&mut live);
+    }
+    assert!(live.paint.painting_mut().report().steps > 0);
+}
+
+#[test]
+fn a_take_without_credit_holds_up_no_other_device() {
+    let mut live = live();
+    live.announce(1);
+    let samples = take();
+    // Paint has no turn: the brush may send no more than 64 states.
+    for _ in 0..100 {
+        live.player_turn(&samples);
+        live.net.advance(1_000_000);
+        live.brush.turn().expect("turned");
+    }
+    assert_eq!(live.brush.sent(), 64);
+    let mut mouse = live.device("mouse", 5);
+    mouse.send(&pen(0.0, 0.0, 0.5));
+    for _ in 0..4 {
+        live.net.advance(1_000_000);
+        live.brush.turn().expect("turned");
+    }
+    assert_eq!(mouse.consumed(), 1);
+}
+
+/// Tells the brush's own node something and returns what it says against it.
+fn tell_brush(live: &mut Live, number: u64, command: Command) -> Option<String> {
+    match live.ask("main", number, command) {
+        Outcome::Refused { what, .. } => Some(what),
+        Outcome::Done { .. } | Outcome::Waiting => None,
+    }
+}
+
+#[test]
+fn another_brush_is_taken_up_and_a_bad_file_leaves_the_one_in_hand() {
+    let mut live = live();
+    let (bus, wake) = (live.net.bus(), Wake::new());
+    let topic = live.topics.brush_def("main");
+    let mut defs = Receiver::<BrushDef>::new(&bus, &topic, Class::Cached, Queue::Ring(8), &wake)
+        .expect("subscribed");
+    let define = |toml: String| Command::Define {
+        brush: "main".into(),
+        toml,
+    };
+    let text = BrushFile::library_text("flat").expect("flat").to_owned();
+    let misspelt = text.replace("friction =", "frictoin =");
+    let said = tell_brush(&mut live, 1, define(misspelt)).expect("refused");
+    assert!(said.contains("frictoin"), "{said}");
+    let negative = text.replace("length_mm = 26.0", "length_mm = -26.0");
+    let said = tell_brush(&mut live, 2, define(negative)).expect("refused");
+    assert!(said.contains("head.length_mm"), "{said}");
+    let said = tell_brush(&mut live, 3, Command::Undo { brush: None }).expect("refused");
+    assert!(said.contains("no matter"), "{said}");
+    let mut mouse = live.device("mouse", 5);
+    let load = Command::Load {
+        brush: "main".into(),
+        mixture: loads()[0].clone(),
+    };
+    live.command(4, load);
+    let mut paint = |live: &mut Live, y: f64| {
+        for step in 0..20 {
+            mouse.send(&pen(1e-3 * f64::from(step), y, 0.5));
+            turn(live);
+        }
+        let busy = tell_brush(live, 5, define(text.clone()));
+        mouse.send(&pen(0.0, y, 0.0));
+        turn(live);
+        let report = live.paint.painting_mut().report();
+        (busy, report.covered_cells, report.quanta_missing)
+    };
+    let (busy, round, missing) = paint(&mut live, 0.0);
+    assert!(busy.is_some_and(|said| said.contains("painting")));
+    assert!(round > 0 && missing == 0);
+    assert!(defs.try_recv().is_some(), "the first one");
+    assert_eq!(tell_brush(&mut live, 6, define(text.clone())), None);
+    turn(&mut live);
+    let newest = std::iter::from_fn(|| defs.try_recv()).last();
+    let told = newest.expect("another one").message;
+    assert_eq!(BrushFile::parse(&told.toml).expect("whole").kind, "flat");
+    let (_, both, missing) = paint(&mut live, 0.01);
+    println!(
+        "{:?} refused {:?}",
+        live.paint.painting_mut().report(),
+        live.paint
+    );
+    assert!(both > round + round / 2, "{round} {both}");
+    assert_eq!(missing, 0, "what the round carried is on the flat");
+}
+
+#[test]
+fn a_softer_brush_pushes_back_less() {
+    let mut live = live();
+    let (bus, wake) = (live.net.bus(), Wake::new());
+    let topic = live.topics.contact_model("arm");
+    let mut models =
+        Receiver::<ContactModel>::new(&bus, &topic, Class::RealTime, Queue::Ring(64), &wake)
+            .expect("subscribed");
+    let mut arm = force_device(&live);
+    turn(&mut live);
+    let mut felt = |live: &mut Live| {
+        let mut k1 = 0.0;
+        for _ in 0..8 {
+            arm.send(&pen(0.0, 0.0, 0.4));
+            turn(live);
+            while let Some(model) = models.try_recv() {
+                let ForceLaw::Linear { k1_n, .. } = model.message.law else {
+                    panic!("a linear law");
+                };
+                assert!(model.message.recovery_ns > 0, "no jump in the hand");
+                k1 = k1_n;
+            }
+        }
+        k1
+    };
+    let stiff = felt(&mut live);
+    let tuning = Tuning {
+        brush: "main".into(),
+        stiffness: 1.0,
+        wetness: 1.0,
+    };
+    live.command(1, Command::Tune { tuning });
+    let soft = felt(&mut live);
+    assert!(
+        soft < 0.7 * stiff && soft > 0.3 * stiff,
+        "a soaked head is half as stiff: {stiff} N, {soft} N"
+    );
+}

@@ -1,5 +1,0 @@
-//! The haptic process of a rig.
-
-fn main() {
-    maulstick::finish(maulstick::nodes::haptic());
-}

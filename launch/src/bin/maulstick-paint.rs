@@ -1,5 +1,0 @@
-//! The paint process of a rig.
-
-fn main() {
-    maulstick::finish(maulstick::nodes::paint());
-}

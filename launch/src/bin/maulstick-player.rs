@@ -1,5 +1,0 @@
-//! The player process of a rig.
-
-fn main() {
-    maulstick::finish(maulstick::nodes::player());
-}

@@ -1,5 +1,0 @@
-//! The window of a rig.
-
-fn main() {
-    maulstick::finish(maulstick::nodes::ui());
-}

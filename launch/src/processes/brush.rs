@@ -1,0 +1,78 @@
+//! The process of a brush: follows a stylus.
+
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
+use maulstick_brush_node::contact_model::ForceKind;
+use maulstick_brush_node::{BrushNode, BrushSettings};
+use maulstick_bus::typed::random_epoch;
+use maulstick_rig::Fault;
+use maulstick_rig::config::{FOREIGN_PRIORITY, MOUSE_PRIORITY, PLAYER_PRIORITY, RigConfig};
+use nix::sys::signal::Signal;
+
+use super::{MOUSE, NodeOptions, PLAYER, brush_node_name};
+use crate::performance::brush_file;
+
+/// Follows a stylus with a brush
+#[derive(clap::Args, Debug)]
+pub(crate) struct BrushOptions {
+    #[command(flatten)]
+    node: NodeOptions,
+    /// The brush of rig.toml
+    #[arg(long, value_name = "BRUSH")]
+    brush: String,
+}
+
+fn brush_settings(config: &RigConfig, brush: &str) -> Result<BrushSettings, Fault> {
+    let section = config.brush_named(brush).ok_or_else(|| {
+        let what = format!("there is no brush '{brush}' in rig.toml");
+        Fault::unknown(
+            what,
+            brush,
+            config.brush.iter().map(|brush| brush.name.as_str()),
+        )
+    })?;
+    let first = config.brush[0].name == brush;
+    let mut devices = BTreeMap::from([(PLAYER.to_owned(), PLAYER_PRIORITY)]);
+    if first {
+        devices.insert(MOUSE.to_owned(), MOUSE_PRIORITY);
+    }
+    let (mut others, mut laws) = (Vec::new(), BTreeMap::new());
+    for device in &config.device {
+        if device.brush == brush {
+            if let Some(law) = ForceKind::of(&device.force) {
+                laws.insert(device.name.clone(), law);
+            }
+            devices.insert(device.name.clone(), device.priority);
+        } else {
+            others.push(device.name.clone());
+        }
+    }
+    Ok(BrushSettings {
+        name: brush.to_owned(),
+        file: brush_file(section)?,
+        depth_share: section.depth_share,
+        devices,
+        laws,
+        others,
+        foreign_priority: first.then_some(FOREIGN_PRIORITY),
+        epoch: random_epoch(),
+    })
+}
+
+pub(super) fn run(options: &BrushOptions) -> Result<i32, Fault> {
+    let mut member = options
+        .node
+        .join(&brush_node_name(&options.brush), Signal::SIGKILL)?;
+    let settings = brush_settings(&member.config, &options.brush)?;
+    let mut node = BrushNode::new(
+        Arc::clone(&member.bus),
+        &member.topics,
+        &member.wake,
+        settings,
+    )?;
+    member.ready()?;
+    member.run(|| Ok(node.turn()?))?;
+    member.leave();
+    Ok(0)
+}

@@ -1,0 +1,38 @@
+//! The process of a force-feedback stylus.
+
+use std::path::PathBuf;
+
+use maulstick_haptic::daemon;
+use maulstick_haptic::open::HapticSettings;
+use maulstick_rig::Fault;
+use nix::sys::signal::Signal;
+
+use super::{NodeOptions, device_named};
+
+/// Drives a force-feedback stylus
+#[derive(clap::Args, Debug)]
+pub(crate) struct HapticOptions {
+    #[command(flatten)]
+    node: NodeOptions,
+    /// The device of rig.toml
+    #[arg(long, value_name = "DEVICE")]
+    device: String,
+    /// A take that a simulated hand follows
+    #[arg(long, value_name = "TAKE")]
+    hand: Option<PathBuf>,
+}
+
+pub(super) fn run(options: &HapticOptions) -> Result<i32, Fault> {
+    // The servo takes its force back before it ends, so it is asked, not killed.
+    let mut member = options.node.join(&options.device, Signal::SIGTERM)?;
+    let device = device_named(&member.config, &options.device)?;
+    daemon::run(
+        &mut member,
+        &HapticSettings {
+            device,
+            hand: options.hand.clone(),
+        },
+    )?;
+    member.leave();
+    Ok(0)
+}

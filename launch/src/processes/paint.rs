@@ -1,0 +1,147 @@
+//! The process of the paint.
+
+use std::path::Path;
+use std::sync::Arc;
+use std::time::Duration;
+
+use maulstick_document::{Document, DocumentError};
+use maulstick_gpu::{Choice, Device, GpuFilms};
+use maulstick_num::cores::with_help_beyond;
+use maulstick_optics::backend::{CpuFilms, FilmBackend};
+use maulstick_paint::{Painting, Sequencer};
+use maulstick_paint_node::frames::FrameServer;
+use maulstick_paint_node::worker::WorkerPanicked;
+use maulstick_paint_node::{PaintNode, Worker};
+use maulstick_rig::config::RigConfig;
+use maulstick_rig::{Fault, Member};
+use nix::sys::signal::Signal;
+
+use super::NodeOptions;
+use crate::backend::choose_backend;
+use crate::destination::{VIEW, export};
+use crate::document::{go_on, wrong};
+use crate::performance::{library_from, painting_setup, refused};
+
+/// A paint node that is to stop takes at most so many turns more: it is waited for.
+const LAST_TURNS: u32 = 8;
+
+/// Paints what the brushes do
+#[derive(clap::Args, Debug)]
+pub(crate) struct PaintOptions {
+    #[command(flatten)]
+    node: NodeOptions,
+}
+
+pub(super) fn run(options: &PaintOptions) -> Result<i32, Fault> {
+    let mut member = options.node.join("paint", Signal::SIGKILL)?;
+    let (document, mut sequencer, since) = painting(&member.config)?;
+    choose_backend(&mut sequencer, &member.config.paint.backend)?;
+    let origin = member.origin("paint");
+    let bus = Arc::clone(&member.bus);
+    let (topics, wake) = (&member.topics, &member.wake);
+    let mut node = PaintNode::going_on(Arc::clone(&bus), topics, wake, origin, sequencer)?
+        .exporting(export(&member.config.view, VIEW)?);
+    let (topic, feed) = (member.topics.frame(), node.feed());
+    let mut frames =
+        FrameServer::new(bus, &topic, feed.clone(), &member.wake, origin)?.telling_brushes(topics);
+    let (memory, _) = member.config.paint.bytes().map_err(Fault::usage)?;
+    node = node.with_memory(usize::try_from(memory).unwrap_or(usize::MAX));
+    if let Some(document) = document {
+        frames = frames.with_shelf(document.shelf());
+        node = node.keeping(document, since);
+    }
+    let stop = member.stop.clone();
+    let backend = member.config.paint.backend.clone();
+    let run = move || frames.with_films(film_backend(&backend)).run(&stop);
+    let mut thread =
+        Worker::start("frames", run).map_err(|error| Fault::failure(error.to_string()))?;
+    let fallen = |error: WorkerPanicked| Fault::failure(error.to_string());
+    let mut turn = |node: &mut PaintNode| {
+        thread.check().map_err(fallen)?;
+        let wait = node.turn()?;
+        match (node.fault(), node.document_path()) {
+            (Some(what), Some(path)) => Err(wrong(path, &DocumentError::Damaged(what.to_owned()))),
+            _ => Ok(wait),
+        }
+    };
+    // Its token says that commands to the rig's brushes and takes of them are done: it has to know
+    // their files.
+    let run = || {
+        wait_for_brushes(&member, &mut node, &mut turn)
+            .and_then(|()| member.ready())
+            .and_then(|()| member.run(|| turn(&mut node)))
+            .and_then(|()| paint_what_has_come(&mut node, &mut turn))
+    };
+    // The brush, the window and the frames have work for two cores.
+    let result = with_help_beyond(2, run);
+    member.stop.request();
+    feed.ring();
+    let ended = thread.join().map_err(fallen);
+    let path = node.document_path().map(Path::to_owned);
+    let closed = node.close().map_err(|error| match &path {
+        Some(path) => wrong(path, &error),
+        None => Fault::failure(error.to_string()),
+    });
+    member.leave();
+    result.and(ended).and(closed).map(|()| 0)
+}
+
+/// Has the node take turns until it has painted what had come when it was to stop.
+fn paint_what_has_come(
+    node: &mut PaintNode,
+    turn: &mut impl FnMut(&mut PaintNode) -> Result<Duration, Fault>,
+) -> Result<(), Fault> {
+    let mut left = LAST_TURNS;
+    while left > 0 && turn(node)?.is_zero() {
+        left -= 1;
+    }
+    Ok(())
+}
+
+/// The painting that the settings ask for: in its document, or in memory.
+fn painting(config: &RigConfig) -> Result<(Option<Document>, Sequencer, u64), Fault> {
+    if let Some(path) = &config.paint.document {
+        let (document, sequencer, since) = go_on(config, path)?;
+        return Ok((Some(document), sequencer, since));
+    }
+    let library = library_from(config.paint.paints.as_deref())?;
+    let setup = painting_setup(config, &library)?;
+    let mut sequencer = Sequencer::new(Painting::new(&setup, library).map_err(refused)?);
+    sequencer.decide("backend cpu");
+    Ok((None, sequencer, 0))
+}
+
+/// What computes the colours of frames, as rig.toml says: `auto` takes a real GPU, `gpu` any.
+fn film_backend(name: &str) -> Box<dyn FilmBackend> {
+    let choice = match name {
+        "cpu" => return Box::new(CpuFilms::new()),
+        "gpu" => Choice::Forced,
+        _ => Choice::Auto,
+    };
+    match Device::open(choice).and_then(GpuFilms::new) {
+        Ok(gpu) => {
+            tracing::info!("colour is computed by {}", gpu.name());
+            Box::new(gpu)
+        }
+        Err(error) => {
+            if matches!(choice, Choice::Forced) {
+                tracing::warn!("{error}; colour is computed by the processor");
+            }
+            Box::new(CpuFilms::new())
+        }
+    }
+}
+
+/// Has the node take turns until it knows every brush of rig.toml, or it is time to stop.
+fn wait_for_brushes(
+    member: &Member,
+    node: &mut PaintNode,
+    turn: &mut impl FnMut(&mut PaintNode) -> Result<Duration, Fault>,
+) -> Result<(), Fault> {
+    let brushes = &member.config.brush;
+    while !brushes.iter().all(|brush| node.knows_brush(&brush.name)) && !member.stop.requested() {
+        let wait = turn(node)?;
+        member.wake.wait(wait);
+    }
+    Ok(())
+}

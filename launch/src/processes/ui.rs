@@ -1,0 +1,25 @@
+//! The process of the window.
+
+use maulstick_rig::Fault;
+use nix::sys::signal::Signal;
+
+use super::{MOUSE, NodeOptions};
+use crate::destination::{VIEW, export};
+use crate::performance::library_from;
+
+/// Shows the painting and lends the mouse as a stylus
+#[derive(clap::Args, Debug)]
+pub(crate) struct UiOptions {
+    #[command(flatten)]
+    node: NodeOptions,
+}
+
+pub(super) fn run(options: &UiOptions) -> Result<i32, Fault> {
+    let member = options.node.join("ui", Signal::SIGKILL)?;
+    let by_signal = member.stop.clone();
+    let export = export(&member.config.view, VIEW)?;
+    let library = library_from(member.config.paint.paints.as_deref())?;
+    maulstick_ui::run(member, MOUSE, &export, library)?;
+    // Ended by a signal it has not been closed by the painter.
+    Ok(i32::from(by_signal.by_signal()))
+}

@@ -1,0 +1,229 @@
+//! The palette: a brush loads by touching a well, leaves paint in the mixing area, and is cleaned.
+
+use maulstick_brush::BrushFile;
+use maulstick_optics::PaintLibrary;
+use maulstick_paint::ledger::LedgerReport;
+use maulstick_paint::setup::wells_of;
+use maulstick_paint::{Painting, PaintingSetup};
+use maulstick_session::Offline;
+use maulstick_types::Mixture;
+use maulstick_types::command::Command;
+use maulstick_types::scene::{PALETTE, Scene, Surface, Well, WellKind};
+use maulstick_types::stylus::{DEFAULT_TILT_RAD, StylusPose, StylusSample};
+
+/// A brush over a canvas and its palette.
+struct Hand {
+    offline: Offline,
+    time_ns: u64,
+}
+
+impl Hand {
+    fn new() -> Self {
+        let setup = PaintingSetup {
+            cells: [128, 128],
+            ..PaintingSetup::default()
+        };
+        let library = PaintLibrary::measured().expect("whole");
+        let painting = Painting::new(&setup, library).expect("a painting");
+        let file = BrushFile::library("round").expect("round");
+        Self {
+            offline: Offline::new(painting, "main", file, 0.5, Vec::new()).expect("set up"),
+            time_ns: 1_000_000_000,
+        }
+    }
+
+    fn scene(&mut self) -> Scene {
+        self.offline.painting_mut().scene().clone()
+    }
+
+    fn palette(&mut self) -> Surface {
+        let surfaces = self.scene().surfaces;
+        surfaces
+            .into_iter()
+            .find(|s| s.id == PALETTE)
+            .expect("a palette")
+    }
+
+    /// The middle of the well of a paint on the desk, or of the cleaner.
+    fn well(&mut self, paint: Option<&str>) -> [f64; 2] {
+        let palette = self.palette();
+        let holds = |kind: &WellKind| match kind {
+            WellKind::Paint { mixture } => paint == Some(mixture.parts[0].paint.as_str()),
+            WellKind::Cleaner => paint.is_none(),
+        };
+        let well = palette
+            .wells
+            .iter()
+            .find(|well| holds(&well.kind))
+            .expect("a well");
+        [0, 1].map(|i| palette.pose.position_m[i] + well.center_m[i])
+    }
+
+    fn sample(&mut self, [x, y]: [f64; 2], pressure: f64) {
+        let pose = StylusPose::Contact {
+            point_m: [x, y, 0.0],
+            tilt_rad: DEFAULT_TILT_RAD,
+            twist_rad: 0.0,
+            pressure,
+        };
+        let sample = StylusSample {
+            pose,
+            in_range: true,
+            ..StylusSample::away()
+        };
+        self.time_ns += 5_000_000;
+        self.offline.sample(self.time_ns, &sample).expect("painted");
+    }
+
+    /// A stroke from one place to another, after a pause in the air.
+    fn stroke(&mut self, from: [f64; 2], to: [f64; 2]) {
+        for _ in 0..40 {
+            self.sample(from, 0.0);
+        }
+        for i in 0..=60 {
+            let t = f64::from(i) / 60.0;
+            self.sample([0, 1].map(|a| from[a] + t * (to[a] - from[a])), 0.4);
+        }
+        self.sample(to, 0.0);
+    }
+
+    fn drag_through(&mut self, [x, y]: [f64; 2]) {
+        self.stroke([x - 0.004, y], [x + 0.004, y]);
+    }
+
+    fn report(&mut self) -> LedgerReport {
+        let report = self.offline.painting_mut().report();
+        assert_eq!(report.quanta_missing, 0, "{report:#?}");
+        report
+    }
+}
+
+#[test]
+fn a_brush_loads_by_touching_paints_and_is_cleaned_by_touching() {
+    let mut hand = Hand::new();
+    assert!(
+        hand.scene().paints.is_empty(),
+        "wells take no slot before they are touched"
+    );
+    let blue = hand.well(Some("Ultramarine Blue"));
+    hand.drag_through(blue);
+    let names: Vec<String> = hand
+        .scene()
+        .paints
+        .into_iter()
+        .map(|slot| slot.name)
+        .collect();
+    assert_eq!(names, ["Ultramarine Blue"]);
+    let loaded = hand.report();
+    assert!(loaded.accounts_m3["brush"] > 1e-9, "{loaded:?}");
+    hand.stroke([-0.012, 0.0], [0.012, 0.003]);
+    let painted = hand.report();
+    assert!(painted.accounts_m3["canvas"] > 1e-10, "{painted:?}");
+    assert!(painted.accounts_m3["brush"] < loaded.accounts_m3["brush"]);
+    let cleaner = hand.well(None);
+    hand.drag_through(cleaner);
+    let cleaned = hand.report();
+    assert_eq!(cleaned.accounts_m3["brush"], 0.0);
+    assert!(cleaned.accounts_m3["cleaner"] > 0.0);
+}
+
+#[test]
+fn a_well_never_runs_out_and_never_gets_dirty() {
+    let mut hand = Hand::new();
+    let (white, red) = (
+        hand.well(Some("Titanium White")),
+        hand.well(Some("Pyrrole Red")),
+    );
+    hand.drag_through(red);
+    for _ in 0..3 {
+        hand.drag_through(white);
+    }
+    // What a brush finds there is the well's own paint: the cells under it are renewed.
+    let cleaner = hand.well(None);
+    hand.drag_through(cleaner);
+    hand.drag_through(white);
+    let report = hand.report();
+    let (own, other) = (
+        report.paints_m3["Titanium White"]["brush"],
+        report.paints_m3["Pyrrole Red"]["brush"],
+    );
+    assert!(own > 1e-9 && other < 0.02 * own, "{own} {other}");
+}
+
+#[test]
+fn the_mixing_area_takes_and_gives_paint() {
+    let mut hand = Hand::new();
+    let blue = hand.well(Some("Ultramarine Blue"));
+    hand.drag_through(blue);
+    let middle = [blue[0] + 0.06, blue[1]];
+    hand.stroke(middle, [middle[0] + 0.02, middle[1] + 0.004]);
+    let one = hand.report().paints_m3["Ultramarine Blue"]["palette"];
+    let yellow = hand.well(Some("Hansa Yellow Opaque"));
+    hand.drag_through(yellow);
+    for _ in 0..3 {
+        hand.stroke(middle, [middle[0] + 0.02, middle[1] + 0.004]);
+    }
+    let report = hand.report();
+    assert!(one > 0.0);
+    assert!(report.paints_m3["Hansa Yellow Opaque"]["palette"] > 0.0);
+}
+
+impl Hand {
+    /// Lays other wells on the palette, as a client of the paint node would.
+    fn lay(&mut self, wells: Vec<Well>) -> Result<(), maulstick_paint::EditError> {
+        let surface = PALETTE;
+        self.offline.command(Command::Wells { surface, wells })
+    }
+}
+
+#[test]
+fn other_wells_give_other_paint_and_what_was_stirred_stays() {
+    let mut hand = Hand::new();
+    let blue = hand.well(Some("Ultramarine Blue"));
+    hand.drag_through(blue);
+    let before = hand.report().paints_m3["Ultramarine Blue"]["palette"];
+    let steps = hand.offline.painting_mut().history_depth();
+    let palette = hand.palette();
+    let teal: Mixture = "phthalo green blue shade=0.5,Titanium White=0.5"
+        .parse()
+        .expect("a mixture");
+    let wells = wells_of(&[teal], palette.cells, palette.cell_m);
+    hand.lay(wells).expect("wells");
+    let palette = hand.palette();
+    assert_eq!(palette.wells.len(), 2, "one paint and the cleaner");
+    let WellKind::Paint { mixture } = &palette.wells[0].kind else {
+        panic!("a paint")
+    };
+    assert_eq!(mixture.parts[0].paint, "Phthalo Green Blue Shade");
+    assert_eq!(
+        hand.offline.painting_mut().history_depth(),
+        steps,
+        "wells are no step"
+    );
+    let after = hand.report().paints_m3["Ultramarine Blue"]["palette"];
+    assert!(before > 0.0 && after == before, "{before} {after}");
+    let cleaner = hand.well(None);
+    hand.drag_through(cleaner);
+    let teal = hand.well(Some("Phthalo Green Blue Shade"));
+    hand.drag_through(teal);
+    let report = hand.report();
+    assert!(report.paints_m3["Phthalo Green Blue Shade"]["brush"] > 1e-10);
+    let blue = report.paints_m3["Ultramarine Blue"]["brush"];
+    assert!(blue < 1e-12, "the old well gives nothing: {blue}");
+}
+
+#[test]
+fn wells_beside_the_palette_or_of_unknown_paint_are_refused() {
+    let mut hand = Hand::new();
+    let before = hand.palette();
+    let (cells, cell_m) = (before.cells, before.cell_m);
+    let unknown = wells_of(&[Mixture::pure("Colbat Blue")], cells, cell_m);
+    let error = hand.lay(unknown).expect_err("unknown");
+    assert!(error.what.contains("'Cobalt Blue'"), "{}", error.what);
+    let mut beside = wells_of(&[Mixture::pure("Cobalt Blue")], cells, cell_m);
+    beside[0].center_m[0] = -1e-3;
+    let error = hand.lay(beside).expect_err("beside");
+    assert!(error.what.contains("well 1"), "{}", error.what);
+    assert!(error.help.contains("128×256 mm"), "{}", error.help);
+    assert_eq!(hand.palette(), before, "a refused command changes nothing");
+}
