@@ -1,4 +1,4 @@
-//! The way of a handle from one sample to the next: the parabola through both and the one before,
+//! Path of the handle from one sample to the next: the parabola through both and the one before,
 //! walked cell by cell.
 //!
 //! A hand moves smoothly; straight chords between samples would depend on how often it is sampled,
@@ -22,7 +22,7 @@ pub struct Sampled {
     pub event_ns: u64,
 }
 
-/// The way between two samples.
+/// Path of the handle between two samples.
 #[derive(Clone, Debug)]
 pub struct HandlePath {
     from: Rigid,
@@ -132,7 +132,7 @@ fn limited_turn(bend: DQuat, turn: DQuat) -> DQuat {
     DQuat::from_vec4(bend.clamp_length_max(turn.length()))
 }
 
-/// A piece of the way between two samples.
+/// A segment of the path between two samples.
 #[derive(Clone, Copy, Debug)]
 pub struct PathSegment<'a> {
     /// The way.

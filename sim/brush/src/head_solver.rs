@@ -1,4 +1,4 @@
-//! The spines of a brush in the hand: bent one after the other, among walls and each other.
+//! Solver of a head: its spines are bent one after the other, among obstacles and each other.
 
 use glam::{DQuat, DVec3};
 use maulstick_num::geometry::Rigid;

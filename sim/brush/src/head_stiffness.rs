@@ -1,4 +1,4 @@
-//! The head as the hand feels it: k₁ of Baxter 2004, eq. 8.1, from the solved spines, the tuples of
+//! Stiffness of the head, as the hand feels it: k₁ of Baxter 2004, eq. 8.1, from the solved spines, the tuples of
 //! fig. 8.2 from the brush file, and the solved head itself as it is pressed down.
 
 use glam::DVec3;
@@ -18,7 +18,7 @@ const LEAST_ALONG: f64 = 0.2;
 /// A bent head feels at most this many times as stiff, or as soft, as at rest.
 const MOST: f64 = 4.0;
 
-/// What the hand feels.
+/// Stiffness of a head, as the hand feels it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct HeadStiffness {
     /// k₁: the normal force at which the head would be pressed in by its whole length along the

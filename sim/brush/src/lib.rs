@@ -8,7 +8,8 @@
 //! | [`file`] | the brush file and the library of brushes |
 //! | [`gltf`] | a brush modelled in Blender |
 //! | [`spine`] | a chain of segments: directions, joint angles, joints |
-//! | [`spine_layout`] | where the spines stand in the ferrule |
+//! | [`spine_layout`] | places of the spines in the ferrule |
+//! | [`spine_root`] | one spine and its frame there |
 //! | [`core_spine`] | the bend that the spines of a head share |
 //! | [`energy`] | spring, friction, damping, neighbours, bond: value, gradient, Hessian |
 //! | [`qp`] | the quadratic program of one Newton step |
@@ -18,11 +19,11 @@
 //! | [`skin`] | the surface around them |
 //! | [`subdivide`] | Catmull-Clark subdivision |
 //! | [`desk`] | surfaces, and where a stylus holds the ferrule |
-//! | [`handle_path`] | the handle's way between samples |
-//! | [`head_solver`] | the spines of a brush in the hand, among walls and each other |
-//! | [`mark`], [`lead`] | where it touches, and how a pen is led so that it does so under its point |
-//! | [`head_stiffness`] | what the hand feels of it |
-//! | [`placement`], [`palette_place`] | how a surface lies on the desk, and where the palette does |
+//! | [`handle_path`] | the handle's path between samples |
+//! | [`head_solver`] | a solved head: its spines among obstacles and each other |
+//! | [`mark`], [`lead`] | the mark of a brush, and the lead that brings it under the point of a pen |
+//! | [`head_stiffness`] | its stiffness, as the hand feels it |
+//! | [`placement`], [`palette_place`] | placement of surfaces and of the palette on the desk |
 //! | [`model`] | the brush that follows a stylus |
 //! | [`single_spine`] | one spine by itself, from a file and a list of poses |
 

@@ -1,4 +1,4 @@
-//! Where a surface lies on the desk, and how a free hand moves it.
+//! Placement of a surface on the desk, and its motion by the free hand.
 
 use glam::DVec3;
 use maulstick_num::geometry::{Rigid, canonical, rotation};
@@ -13,7 +13,7 @@ pub const FARTHEST_M: f64 = 1.0;
 /// A surface is tilted by this much at most, rad.
 pub const TILT_MOST: f64 = 1.05;
 
-/// Where a surface lies, and how it may be moved.
+/// Pose and zoom of a surface.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SurfacePlacement {
     /// Surface frame to desk frame.

@@ -1,10 +1,11 @@
-//! Why a picture cannot be imported.
+//! Errors of imports.
 
 use maulstick_paint::EditError;
 
-use crate::read_image::MOST_SIDE;
+/// Most pixels of a picture across and down.
+pub const MOST_SIDE: u32 = 20_000;
 
-/// Why a picture cannot be imported.
+/// A picture that cannot be imported.
 #[derive(Debug, thiserror::Error)]
 pub enum ImportError {
     /// The file cannot be read.

@@ -1,4 +1,4 @@
-//! What a surface shows where no brush has been: its ground, its relief, and the paint in its wells.
+//! A surface where no brush has been: its ground, its relief, and the paint in its wells.
 //!
 //! A well's paint is booked when a brush first comes to it; until then it is only shown.
 

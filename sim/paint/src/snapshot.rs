@@ -1,4 +1,4 @@
-//! What a document holds of a painting besides its tiles, its history and its versions.
+//! Snapshots: a painting and its sequencer as a document keeps them, without tiles, history and versions.
 
 use std::collections::BTreeMap;
 

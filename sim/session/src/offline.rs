@@ -5,7 +5,7 @@
 use std::sync::mpsc;
 
 use maulstick_brush::{BrushFile, BrushModel};
-use maulstick_num::cores::with_help_beyond;
+use maulstick_num::fork_join::with_help_beyond;
 use maulstick_paint::clock::TICKS_A_SECOND;
 use maulstick_paint::{EditError, Painting, Sequencer};
 use maulstick_types::brush::BrushState;

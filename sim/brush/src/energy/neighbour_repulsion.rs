@@ -1,4 +1,4 @@
-//! What keeps the spines of a head apart.
+//! Repulsion between the spines of a head.
 
 use glam::{DMat3, DVec3};
 

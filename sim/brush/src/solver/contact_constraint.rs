@@ -1,4 +1,4 @@
-//! What a joint has to do with a wall: whether it touches, sticks or slides.
+//! Contact of a joint with a half space: open, sticking or sliding.
 
 use glam::DVec3;
 
@@ -18,7 +18,7 @@ const LAG: f64 = 2e-3;
 /// A half-space that joints stay in: n·x ≥ offset.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct HalfSpace {
-    /// Unit normal, out of the wall.
+    /// Unit normal, out of the obstacle.
     pub normal: DVec3,
     /// Its distance from the origin along the normal, m.
     pub offset_m: f64,
@@ -42,12 +42,12 @@ impl HalfSpace {
     }
 }
 
-/// A joint's far end and a wall that it stays out of.
+/// The constraint that keeps the far end of a joint in a half space.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ContactConstraint {
     /// The joint.
     pub joint: usize,
-    /// The wall.
+    /// The half space.
     pub half_space: HalfSpace,
     /// Normal force, N: the multiplier of the constraint, 0 in the air.
     pub force_n: f64,

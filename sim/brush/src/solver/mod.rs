@@ -39,7 +39,7 @@ const YIELDS: DVec2 = DVec2::new(
     -std::f64::consts::FRAC_1_SQRT_2,
 );
 
-/// What the solver is asked for.
+/// Settings of the solver.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Settings {
     /// Coefficient of friction while sliding.
@@ -108,7 +108,7 @@ impl Energy {
     }
 }
 
-/// What came of a solve.
+/// Result of a solve.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Solution {
     /// Whether the tolerance was reached; if not, the shape is the last good one.
@@ -148,7 +148,7 @@ pub struct Solver {
     rest: Vec<DVec3>,
     damped: bool,
     last_constraints: Vec<ContactConstraint>,
-    /// The stops before the solve.
+    /// The constraints before the solve.
     constraints_before: Vec<ContactConstraint>,
     point: Point,
     multipliers: Vec<f64>,
@@ -173,7 +173,7 @@ struct Point {
     slopes: Vec<DVec3>,
     /// The same of the Lagrangian.
     lagrangian: Vec<DVec3>,
-    /// How far each stop's joint is outside its wall, m.
+    /// Gap of each constraint, m; negative where its joint penetrates.
     gaps: Vec<f64>,
 }
 

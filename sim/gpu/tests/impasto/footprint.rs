@@ -72,7 +72,7 @@ fn the_same_cells_are_touched() {
     for (seed, mut scene) in strips.chain((0..4).map(crumpled)).enumerate() {
         let mut footprint = Footprint::default();
         footprint.find(&mut scene.step());
-        let probe = prober.run(&mut scene.step(), "find_contacts");
+        let probe = prober.run(&mut scene.step(), "footprint");
         let probe = probe.expect("done").expect("on the surface");
         let (off, all) = apart(&footprint.contacts, &probe.contacts);
         println!("scene {seed}: {off} of {all} contacts differ");

@@ -18,10 +18,10 @@ fn paint_seeps_between_strips() {
     let mut prober = Prober::new(device()).expect("taken");
     for steps in [3, 7, 11, 15] {
         let mut flowed = scene(steps, steps);
-        run(&mut prober, &mut flowed, "tend_strips");
+        run(&mut prober, &mut flowed, "bristle_flow");
         let mut seeped = scene(steps, steps);
         let counts = seeped.counts();
-        run(&mut prober, &mut seeped, "seep_paint");
+        run(&mut prober, &mut seeped, "seep");
         assert_eq!(seeped.counts(), counts, "after {steps} steps");
         let off = |turn: u64| {
             let mut scene = scene(steps, steps);
@@ -56,11 +56,11 @@ fn paint_flows_within_all_strips() {
         let mut still = scene(seed, 2);
         still.handling.push = false;
         still.thinner = [None, Some(2)][seed as usize % 2];
-        let probe = run(&mut prober, &mut still, "tend_strips");
+        let probe = run(&mut prober, &mut still, "bristle_flow");
         let mut flowed = scene(seed, 1);
         (flowed.handling, flowed.thinner) = (still.handling, still.thinner);
         let counts = flowed.counts();
-        run(&mut prober, &mut flowed, "tend_strips");
+        run(&mut prober, &mut flowed, "bristle_flow");
         assert_eq!(flowed.counts(), counts, "scene {seed}");
         let not_flowed = still.load.clone();
         still.load = stepped(&still.load, 1);

@@ -8,7 +8,7 @@
 
 use std::ops::Range;
 
-use maulstick_num::cores::both_if;
+use maulstick_num::fork_join::both_if;
 use maulstick_num::wide;
 
 use super::PARALLEL_MIN_CELLS;

@@ -5,7 +5,7 @@
 //! there, still takes on the colour that it meets. Cells that draw on one brush texel have their
 //! demands summed, scaled together where they exceed what it holds, and truncated once.
 
-use maulstick_num::cores::{Balance, both_if};
+use maulstick_num::fork_join::{Balance, both_if};
 use maulstick_num::select::{larger, smaller};
 use maulstick_num::wide;
 

@@ -4,7 +4,7 @@
 //! the deepest one counts. It touches where it, with the film of paint that it carries, reaches the
 //! top of what lies there: tooth, dry relief and wet paint. All lengths are in cells.
 
-use maulstick_num::cores::{Balance, both_if};
+use maulstick_num::fork_join::{Balance, both_if};
 
 use super::PARALLEL_MIN_CELLS;
 use super::band::{Band, draw_strips};

@@ -7,7 +7,7 @@
 //!
 //! Thinned paint slips under the bristles and gives way sooner.
 
-use maulstick_num::cores::both_if;
+use maulstick_num::fork_join::both_if;
 use maulstick_num::wide;
 
 use super::PARALLEL_MIN_CELLS;

@@ -42,7 +42,7 @@ fn through(i: Side, j: Side, on_surface: bool) -> f32 {
 }
 
 // Through the face of a cell toward the next along an axis; what leaves a cell is at most all.
-fn velocity(at: vec2<i32>, axis: u32) -> f32 {
+fn face_velocity(at: vec2<i32>, axis: u32) -> f32 {
     var ahead = vec2(1, 0);
     var last = i32(step.limit_x) - i32(step.from_x) - 1;
     var first = -i32(step.from_x);
@@ -67,10 +67,10 @@ fn velocity(at: vec2<i32>, axis: u32) -> f32 {
 }
 
 @compute @workgroup_size(256)
-fn find_velocity(@builtin(global_invocation_id) id: vec3<u32>) {
+fn velocity(@builtin(global_invocation_id) id: vec3<u32>) {
     if id.x >= cells() {
         return;
     }
     let at = vec2(i32(id.x % step.width), i32(id.x / step.width));
-    faces[id.x] = vec2(velocity(at, 0u), velocity(at, 1u));
+    faces[id.x] = vec2(face_velocity(at, 0u), face_velocity(at, 1u));
 }

@@ -4,6 +4,11 @@
 //! Colours of 8 bits a channel are solved once each (`search.rs`). Over a ground that is a
 //! picture it is its colour of 5 bits a channel that counts.
 
+mod candidates;
+mod films;
+mod recipes;
+mod search;
+
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
@@ -18,11 +23,11 @@ use maulstick_paint::quantum::{QUANTUM_M, SLOTS};
 use maulstick_paint::tile::TileId;
 use maulstick_types::paint::TILE;
 
-use crate::films::{Films, Shares};
+use self::films::{Films, Shares};
+use self::search::{Search, Sought, shared};
 use crate::fit_to::{Raster, colours};
 use crate::import_error::ImportError;
 use crate::read_image::Image;
-use crate::search::{Search, Sought, shared};
 
 /// What of a channel of the ground counts.
 const GROUND_BITS: u8 = 0xf8;

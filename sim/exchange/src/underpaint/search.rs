@@ -18,9 +18,9 @@ use maulstick_optics::colour::{Matrix, RgbSpace, apply, delta_e_2000, inverse, l
 use maulstick_optics::gamut::{FOR_COLOUR, Gamut, GamutMapping};
 use maulstick_paint::quantum::SLOTS;
 
-use crate::candidates::Candidates;
-use crate::films::{Films, Shares};
-use crate::recipes::{Recipe, Target, refine};
+use super::candidates::Candidates;
+use super::films::{Films, Shares};
+use super::recipes::{Recipe, Target, refine};
 
 /// Threads that search: painting itself needs the others.
 const THREADS: usize = 2;
@@ -320,7 +320,7 @@ impl<'a> Search<'a> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::films::tests::palette;
+    use crate::underpaint::films::tests::palette;
 
     #[test]
     fn neighbours_differ_little_however_far_outside_they_are() {

@@ -65,7 +65,7 @@ fn note_contact(at: vec2<u32>) {
 }
 
 @compute @workgroup_size(256)
-fn find_contacts(@builtin(global_invocation_id) id: vec3<u32>) {
+fn footprint(@builtin(global_invocation_id) id: vec3<u32>) {
     let i = id.x;
     if i >= cells() {
         return;

@@ -11,7 +11,7 @@
 use maulstick_optics::colour::{Matrix, apply, delta_e_2000_near, solve3};
 use maulstick_paint::quantum::SLOTS;
 
-use crate::films::{Films, Shares};
+use super::films::{Films, Shares};
 
 /// As near as this a colour is reached, ΔE₀₀.
 const REACHED: f64 = 0.02;
@@ -201,8 +201,8 @@ mod tests {
     use maulstick_optics::colour::delta_e_2000;
 
     use super::*;
-    use crate::candidates::Candidates;
-    use crate::films::tests::palette;
+    use crate::underpaint::candidates::Candidates;
+    use crate::underpaint::films::tests::palette;
 
     /// ΔE₀₀ of the nearest that is found.
     fn nearest(films: &Films, starts: &[Shares], ground: &[f64], target: [f64; 3]) -> f64 {

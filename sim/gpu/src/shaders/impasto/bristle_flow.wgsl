@@ -92,7 +92,7 @@ fn flow_in(strip: u32) {
 }
 
 @compute @workgroup_size(64)
-fn tend_strips(@builtin(global_invocation_id) id: vec3<u32>) {
+fn bristle_flow(@builtin(global_invocation_id) id: vec3<u32>) {
     let strip = id.x;
     if strip >= step.strips {
         return;

@@ -24,7 +24,7 @@ fn transfer(on_brush: f32, on_canvas: f32, lies: f32, gap: f32, share: f32, trav
 }
 
 @compute @workgroup_size(256)
-fn ask_paint(@builtin(global_invocation_id) id: vec3<u32>) {
+fn exchange_ask(@builtin(global_invocation_id) id: vec3<u32>) {
     let i = id.x;
     if i >= cells() {
         return;

@@ -4,7 +4,7 @@
 use maulstick_num::exp;
 use maulstick_paint::quantum::SLOTS;
 
-use crate::films::{Films, Shares};
+use super::films::{Films, Shares};
 
 /// Bound on ln of a ratio of shares: one part in 1100.
 const FARTHEST: f64 = 7.0;

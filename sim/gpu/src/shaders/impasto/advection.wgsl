@@ -48,7 +48,7 @@ fn inflow(v: f32, donor: u32) -> f32 {
 }
 
 @compute @workgroup_size(32, 8)
-fn push_paint(
+fn advection(
     @builtin(local_invocation_id) local: vec3<u32>,
     @builtin(local_invocation_index) index: u32,
     @builtin(workgroup_id) group: vec3<u32>,

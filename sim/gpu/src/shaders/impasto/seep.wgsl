@@ -29,7 +29,7 @@ fn even_out(a: u32, b: u32, part: f32, holds: f32) {
 }
 
 @compute @workgroup_size(64)
-fn seep_paint(@builtin(global_invocation_id) id: vec3<u32>) {
+fn seep(@builtin(global_invocation_id) id: vec3<u32>) {
     let turn = load[0] / FLOW_STEPS;
     let first = turn / 2u % 2u;
     if second == 0u {

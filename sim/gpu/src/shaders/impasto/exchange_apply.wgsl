@@ -23,7 +23,7 @@ fn note_left(i: u32, total: f32) {
 }
 
 @compute @workgroup_size(256)
-fn exchange_paint(@builtin(global_invocation_id) id: vec3<u32>) {
+fn exchange_apply(@builtin(global_invocation_id) id: vec3<u32>) {
     let i = id.x;
     if i >= cells() {
         return;

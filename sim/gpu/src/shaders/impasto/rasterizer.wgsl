@@ -174,7 +174,7 @@ fn draw_segment(number: u32, strip: u32, station: u32, scale: Scale) {
 }
 
 @compute @workgroup_size(64)
-fn draw_head(@builtin(global_invocation_id) id: vec3<u32>) {
+fn rasterizer(@builtin(global_invocation_id) id: vec3<u32>) {
     let triangles = 2u * step.faces;
     let scale = scale();
     if id.x < triangles {

@@ -16,10 +16,10 @@ use std::sync::atomic::{AtomicBool, AtomicU32, AtomicU64, Ordering};
 use std::thread::{Builder, Thread, available_parallelism, park, scope, yield_now};
 use std::time::Instant;
 
-/// Looks for a job before the helper lets others have its core, and before it sleeps.
-const KEEN: u32 = 2_000;
-/// See [`KEEN`].
-const AWAKE: u32 = KEEN + 200;
+/// Spin iterations before yielding the core.
+const SPIN_LIMIT: u32 = 2_000;
+/// Iterations, spinning and yielding, before sleeping.
+const AWAKE: u32 = SPIN_LIMIT + 200;
 
 /// Nothing to do.
 const EMPTY: u32 = 0;
@@ -36,7 +36,7 @@ type Job<'a> = dyn FnMut() + Send + 'a;
 
 /// Where one thread leaves a job for the other.
 #[derive(Default)]
-struct Desk {
+struct JobSlot {
     state: AtomicU32,
     sleeping: AtomicBool,
     job: UnsafeCell<Option<NonNull<Job<'static>>>>,
@@ -45,23 +45,23 @@ struct Desk {
 
 #[allow(
     unsafe_code,
-    reason = "a desk hands a job from one thread to the other"
+    reason = "a slot hands a job from one thread to the other"
 )]
 // SAFETY: `job` and `panic` are used by the owner while the state is EMPTY or DONE, and by the thread that
 // has made it TAKEN while it is; the state's releases and acquires order the accesses.
-unsafe impl Sync for Desk {}
+unsafe impl Sync for JobSlot {}
 #[allow(
     unsafe_code,
-    reason = "a desk hands a job from one thread to the other"
+    reason = "a slot hands a job from one thread to the other"
 )]
 // SAFETY: the job is `Send`, and its pointer is used as told above alone.
-unsafe impl Send for Desk {}
+unsafe impl Send for JobSlot {}
 
 thread_local! {
-    static HELP: RefCell<Option<(Arc<Desk>, Thread)>> = const { RefCell::new(None) };
+    static HELP: RefCell<Option<(Arc<JobSlot>, Thread)>> = const { RefCell::new(None) };
 }
 
-impl Desk {
+impl JobSlot {
     /// Does what is offered until the desk is closed.
     fn serve(&self) {
         let mut looks = 0;
@@ -77,7 +77,7 @@ impl Desk {
                     }
                     looks = 0;
                 }
-                _ if looks < KEEN => std::hint::spin_loop(),
+                _ if looks < SPIN_LIMIT => std::hint::spin_loop(),
                 _ if looks < AWAKE => yield_now(),
                 _ => self.sleep(),
             }
@@ -126,7 +126,7 @@ impl Desk {
             helper.unpark();
         }
         Offer {
-            desk: self,
+            slot: self,
             ended: false,
         }
     }
@@ -134,24 +134,24 @@ impl Desk {
 
 /// A job that was offered.
 struct Offer<'a> {
-    desk: &'a Desk,
+    slot: &'a JobSlot,
     ended: bool,
 }
 
 impl Offer<'_> {
     /// Does the job if nobody has begun it, or waits for its end; what it panicked with.
     fn end(&mut self) -> Option<Box<dyn Any + Send>> {
-        let desk = self.desk;
+        let slot = self.slot;
         self.ended = true;
         let (from, to) = (Ordering::Acquire, Ordering::Relaxed);
-        let mine = desk.state.compare_exchange(OFFERED, TAKEN, from, to);
+        let mine = slot.state.compare_exchange(OFFERED, TAKEN, from, to);
         if mine.is_ok() {
-            desk.perform();
+            slot.perform();
         } else {
             let mut looks = 0u32;
-            while desk.state.load(Ordering::Acquire) != DONE {
+            while slot.state.load(Ordering::Acquire) != DONE {
                 match looks {
-                    0..KEEN => std::hint::spin_loop(),
+                    0..SPIN_LIMIT => std::hint::spin_loop(),
                     _ => yield_now(),
                 }
                 looks = looks.saturating_add(1);
@@ -160,10 +160,10 @@ impl Offer<'_> {
         #[allow(unsafe_code, reason = "the helper is done with the cells")]
         // SAFETY: the job is done, and no other begins before the state is EMPTY.
         let panic = unsafe {
-            *desk.job.get() = None;
-            (*desk.panic.get()).take()
+            *slot.job.get() = None;
+            (*slot.panic.get()).take()
         };
-        desk.state.store(EMPTY, Ordering::Release);
+        slot.state.store(EMPTY, Ordering::Release);
         panic
     }
 }
@@ -177,7 +177,7 @@ impl Drop for Offer<'_> {
 }
 
 /// Ends the helper, however the work ends.
-struct Closing<'a>(&'a Desk);
+struct Closing<'a>(&'a JobSlot);
 
 impl Drop for Closing<'_> {
     fn drop(&mut self) {
@@ -195,17 +195,17 @@ pub fn with_help<T>(work: impl FnOnce() -> T) -> T {
     if cores < 2 || has_help() {
         return work();
     }
-    let desk = Arc::new(Desk::default());
+    let slot = Arc::new(JobSlot::default());
     scope(|scope| {
-        let serve = || desk.serve();
+        let serve = || slot.serve();
         let Ok(helper) = Builder::new()
             .name("help".into())
             .spawn_scoped(scope, serve)
         else {
             return work();
         };
-        HELP.set(Some((Arc::clone(&desk), helper.thread().clone())));
-        let _closing = Closing(&desk);
+        HELP.set(Some((Arc::clone(&slot), helper.thread().clone())));
+        let _closing = Closing(&slot);
         work()
     })
 }
@@ -227,13 +227,13 @@ pub fn has_help() -> bool {
 /// Does both jobs, at the same time where there is [help](with_help) that is free.
 pub fn both<A, B: Send>(one: impl FnOnce() -> A, other: impl FnOnce() -> B + Send) -> (A, B) {
     let help = HELP.with_borrow(Clone::clone);
-    let free = help.filter(|(desk, _)| desk.state.load(Ordering::Relaxed) == EMPTY);
-    let Some((desk, helper)) = free else {
+    let free = help.filter(|(slot, _)| slot.state.load(Ordering::Relaxed) == EMPTY);
+    let Some((slot, helper)) = free else {
         return (one(), other());
     };
     let (mut other, mut result) = (Some(other), None);
     let mut job = || result = other.take().map(|other| other());
-    let mut offer = desk.offer(&mut job, &helper);
+    let mut offer = slot.offer(&mut job, &helper);
     let first = one();
     let panic = offer.end();
     drop(offer);
@@ -342,7 +342,7 @@ mod tests {
                 let asleep = || {
                     HELP.with_borrow(|help| {
                         help.as_ref()
-                            .is_none_or(|(desk, _)| desk.sleeping.load(Ordering::SeqCst))
+                            .is_none_or(|(slot, _)| slot.sleeping.load(Ordering::SeqCst))
                     })
                 };
                 while round % 500 == 0 && !asleep() {
