@@ -26,6 +26,21 @@
 //! | [`placement`], [`palette_place`] | placement of surfaces and of the palette on the desk |
 //! | [`model`] | the brush that follows a stylus |
 //! | [`single_spine`] | one spine by itself, from a file and a list of poses |
+//!
+//! A round brush, pressed 3 mm onto a surface while it leans by 40°:
+//!
+//! ```
+//! use maulstick_brush::BrushFile;
+//! use maulstick_brush::head_stiffness::press;
+//!
+//! # fn main() -> Result<(), maulstick_brush::BrushError> {
+//! let file = BrushFile::library("round")?;
+//! let pressed = press(&file, f64::to_radians(40.0), &[0.0, 3e-3]);
+//! assert!(pressed[1].force_n > pressed[0].force_n);
+//! println!("{:.3} N", pressed[1].force_n);
+//! # Ok(())
+//! # }
+//! ```
 
 pub mod blocks;
 pub mod core_spine;

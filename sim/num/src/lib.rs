@@ -7,6 +7,14 @@
 //! plane vectorises and so that a shader can hold the same polynomial.
 //!
 //! Neither the registers ([`lanes`], [`wide!`]) nor the cores ([`fork_join`]) change a byte of what comes out.
+//!
+//! ```
+//! use maulstick_num::{cos, sin_cos};
+//!
+//! let (sine, cosine) = sin_cos(0.5);
+//! assert_eq!(cosine, cos(0.5));
+//! assert!((sine * sine + cosine * cosine - 1.0).abs() < 1e-15);
+//! ```
 
 mod elementary;
 pub mod fork_join;
