@@ -269,7 +269,7 @@ impl Known {
         let touched = self.touches.and_then(|surface| desk.plane(surface));
         let plane = *touched.or_else(|| desk.under(aim(sample, length)))?;
         let place = |sample: &StylusSample| {
-            let on_desk = ferrule(sample, length, depth_share, &plane.wall());
+            let on_desk = ferrule(sample, length, depth_share, &plane.half_space());
             plane.to_desk.inverse().after(&on_desk)
         };
         let mut brush = place(sample);

@@ -8,7 +8,7 @@ use std::time::{Duration, Instant};
 use half::f16;
 use maulstick_bus::bus::Answer;
 use maulstick_bus::{Bus, BusError, Class, Payload, Wake};
-use maulstick_paint::tile::TILE_CELLS;
+use maulstick_paint::planes::TILE_CELLS;
 use maulstick_rig::Stop;
 use maulstick_types::paint::{FrameHolds, FrameRequest};
 use maulstick_types::{DecodeError, Flags, FrameView, Origin, encode};

@@ -3,7 +3,7 @@
 
 use eframe::egui::{Event, InputState, Modifiers, MouseWheelUnit, PointerButton, Pos2};
 use glam::DVec3;
-use maulstick_brush::lie::Lie;
+use maulstick_brush::placement::SurfacePlacement;
 use maulstick_num::exp;
 use maulstick_types::scene::{CANVAS, PALETTE, Surface};
 
@@ -35,7 +35,7 @@ struct Drag {
     button: PointerButton,
     surface: u32,
     /// Where the surface lies by this hand; the scene follows.
-    lie: Lie,
+    lie: SurfacePlacement,
     at: Pos2,
 }
 
@@ -57,7 +57,7 @@ pub struct Around<'a> {
 pub struct Hand {
     drag: Option<Drag>,
     /// Where a surface was sent last, and when: the scene follows.
-    sent: Option<(u32, Lie, f64)>,
+    sent: Option<(u32, SurfacePlacement, f64)>,
 }
 
 /// After this the scene has followed the hand, s.
@@ -167,10 +167,10 @@ impl Hand {
     }
 
     /// Where a surface lies: as this hand has sent it newly, or as the scene has it.
-    fn newest(&self, now: f64, surface: &Surface) -> Lie {
+    fn newest(&self, now: f64, surface: &Surface) -> SurfacePlacement {
         match self.sent {
             Some((id, lie, at)) if id == surface.id && now - at < FOLLOWED_S => lie,
-            _ => Lie::from(surface),
+            _ => SurfacePlacement::from(surface),
         }
     }
 
@@ -209,7 +209,14 @@ impl Hand {
         self.send(now, canvas.id, from, to, orders);
     }
 
-    fn send(&mut self, now: f64, surface: u32, from: Lie, to: Lie, orders: &mut Orders) {
+    fn send(
+        &mut self,
+        now: f64,
+        surface: u32,
+        from: SurfacePlacement,
+        to: SurfacePlacement,
+        orders: &mut Orders,
+    ) {
         if to != from {
             orders.paint(to.command(surface));
             self.sent = Some((surface, to, now));
@@ -252,7 +259,7 @@ mod tests {
     use crate::orders::Order;
 
     /// What events make of the scene's surfaces, as orders of places.
-    fn placed(free: bool, events: impl IntoIterator<Item = Event>) -> Vec<(u32, Lie)> {
+    fn placed(free: bool, events: impl IntoIterator<Item = Event>) -> Vec<(u32, SurfacePlacement)> {
         let surfaces = PaintingSetup::default().scene().surfaces;
         let (hand, orders) = (
             RefCell::new(Hand::default()),
@@ -290,7 +297,7 @@ mod tests {
                 ..
             } => (
                 surface,
-                Lie {
+                SurfacePlacement {
                     pose: Rigid::from(&pose),
                     zoom,
                 },
@@ -331,7 +338,10 @@ mod tests {
         let view = view(&surfaces);
         let (from, to) = (pos2(520.0, 300.0), pos2(570.0, 280.0));
         let held = view.on_desk(from);
-        let first = Lie::from(&surfaces[0]).pose.inverse().point(held);
+        let first = SurfacePlacement::from(&surfaces[0])
+            .pose
+            .inverse()
+            .point(held);
         let moves = placed(
             false,
             drag(PointerButton::Middle, Modifiers::NONE, from, to),
@@ -391,11 +401,11 @@ mod tests {
         };
         let surfaces = PaintingSetup::default().scene().surfaces;
         let view = view(&surfaces);
-        let own = |lie: &Lie| lie.pose.inverse().point(view.on_desk(at)) / lie.zoom;
+        let own = |lie: &SurfacePlacement| lie.pose.inverse().point(view.on_desk(at)) / lie.zoom;
         let moves = placed(false, [Event::PointerMoved(at), wheel(), wheel(), wheel()]);
         let last = moves[moves.len() - 1].1;
         assert!((last.zoom - exp(3.0 * WHEEL)).abs() < 1e-9, "{}", last.zoom);
-        let first = Lie::from(&surfaces[0]);
+        let first = SurfacePlacement::from(&surfaces[0]);
         assert!((own(&last) - own(&first)).length() < 1e-9);
         assert!(
             (own(&first.zoomed(DVec3::ZERO, 2.0)) - own(&first)).length() > 1e-3,

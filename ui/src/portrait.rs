@@ -3,7 +3,7 @@
 
 use eframe::egui::{Mesh, Pos2, pos2};
 use glam::{DQuat, DVec3, Vec3};
-use maulstick_brush::{BrushFile, Head, HeadPose, Hold};
+use maulstick_brush::{BrushFile, Head, HeadPose, Hold, SpineLayout};
 use maulstick_num::geometry::{Rigid, rotation};
 use maulstick_optics::colour::srgb_decode;
 
@@ -33,7 +33,7 @@ pub struct Portrait {
 /// picture of this size whose middle is above the middle of the head.
 #[must_use]
 pub fn portrait(file: &BrushFile, width: usize, height: usize, scale: f64) -> Portrait {
-    let tuft = file.tuft();
+    let tuft = SpineLayout::of(file);
     let head = Head::of(file);
     // The brush lies: its axis along y, its point at the bottom, so near that its handle does not fade.
     let brush = Rigid {
@@ -41,8 +41,8 @@ pub fn portrait(file: &BrushFile, width: usize, height: usize, scale: f64) -> Po
         translation: DVec3::new(0.0, 0.0, 0.03),
     };
     let mut angles = Vec::new();
-    for seat in &tuft.seats {
-        seat.at_rest(&brush).angles(&mut angles);
+    for root in &tuft.roots {
+        root.at_rest(&brush).angles(&mut angles);
     }
     let mut pose = HeadPose::default();
     let hold = Hold {

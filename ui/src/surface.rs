@@ -198,7 +198,7 @@ pub(crate) mod tests {
     use maulstick_optics::light::{Facet, HeightField, LampSetup, Spot, Surroundings, lit};
     use maulstick_paint::PaintingSetup;
     use maulstick_paint::display::DisplayTile;
-    use maulstick_paint::tile::TILE_CELLS;
+    use maulstick_paint::planes::TILE_CELLS;
     use maulstick_types::paint::TILE;
 
     use super::*;

@@ -2,8 +2,8 @@
 
 use eframe::egui::{Color32, Pos2, Rect, Vec2, vec2};
 use glam::{DVec2, DVec3};
-use maulstick_brush::lie::Lie;
 use maulstick_brush::palette_place::{GAP_M, Side, corner_radii, is_on, size_m};
+use maulstick_brush::placement::SurfacePlacement;
 use maulstick_num::geometry::Rigid;
 use maulstick_types::scene::Surface;
 
@@ -97,10 +97,10 @@ impl View {
 
     /// The canvas as large as the view has room for it, upright and flat.
     #[must_use]
-    pub fn fitted(&self, canvas: &Surface) -> Lie {
+    pub fn fitted(&self, canvas: &Surface) -> SurfacePlacement {
         let size = size_m(canvas);
         let zoom = (self.room / size).min_element();
-        Lie {
+        SurfacePlacement {
             pose: Rigid {
                 translation: (-0.5 * zoom * size).extend(0.0),
                 ..Rigid::IDENTITY
@@ -111,9 +111,9 @@ impl View {
 
     /// The canvas with a cell a pixel, about the middle of the desk.
     #[must_use]
-    pub fn hundred(&self, canvas: &Surface, pixels_per_point: f32) -> Lie {
+    pub fn hundred(&self, canvas: &Surface, pixels_per_point: f32) -> SurfacePlacement {
         let pixel_m = 1.0 / (self.scale * f64::from(pixels_per_point));
-        let lie = Lie::from(canvas);
+        let lie = SurfacePlacement::from(canvas);
         lie.zoomed(DVec3::ZERO, pixel_m / canvas.cell_m / lie.zoom)
     }
 
@@ -196,8 +196,8 @@ pub fn level(cells: u32, pixels: f32) -> u32 {
 mod tests {
     use super::*;
     use eframe::egui::pos2;
-    use maulstick_brush::lie::laid;
     use maulstick_brush::palette_place::beside;
+    use maulstick_brush::placement::placed;
     use maulstick_num::geometry::rotation;
     use maulstick_paint::PaintingSetup;
     use maulstick_types::Pose;
@@ -262,7 +262,7 @@ mod tests {
         let mut surfaces = surfaces();
         surfaces[0].cells = [400, 200];
         let view = view(&surfaces);
-        let fitted = laid(&surfaces[0], &view.fitted(&surfaces[0]));
+        let fitted = placed(&surfaces[0], &view.fitted(&surfaces[0]));
         let shown = bounds(&view, &fitted);
         let room = view.room * view.scale;
         assert!(
@@ -270,7 +270,7 @@ mod tests {
             "{shown:?} {room}"
         );
         assert!(shown.right() < view.area.right() - 72.0 && shown.left() > view.area.left());
-        let hundred = laid(&surfaces[0], &view.hundred(&fitted, 2.0));
+        let hundred = placed(&surfaces[0], &view.hundred(&fitted, 2.0));
         let shown = bounds(&view, &hundred);
         assert!(
             (shown.width() - 200.0).abs() < 1e-2,

@@ -11,7 +11,7 @@ use std::thread::JoinHandle;
 use std::time::{Duration, Instant};
 
 use glam::DVec3;
-use maulstick_brush::lie::Lie;
+use maulstick_brush::placement::SurfacePlacement;
 use maulstick_bus::typed::Receiver;
 use maulstick_bus::{Bus, Class, Queue, Wake};
 use maulstick_num::exp;
@@ -40,7 +40,7 @@ const ASK: Duration = Duration::from_millis(300);
 
 /// Where a surface lies after a push of `dt` s.
 #[must_use]
-pub fn pushed(lie: &Lie, control: &ControlSample, dt: f64) -> Lie {
+pub fn pushed(lie: &SurfacePlacement, control: &ControlSample, dt: f64) -> SurfacePlacement {
     // Slow where the push is light: the third power leaves the stops where they are.
     let eased = |value: f64| value * value * value;
     let [x, y, z] = control.push.map(eased);
@@ -122,10 +122,10 @@ impl std::fmt::Debug for Mover {
 /// Follows the hand until nobody can push any more; `shown` is where the canvas has newly been seen.
 fn follow(
     heard: &Ear<ControlSample>,
-    mut shown: impl FnMut() -> Option<Lie>,
+    mut shown: impl FnMut() -> Option<SurfacePlacement>,
     mut send: impl FnMut(Command) -> Result<(), Fault>,
 ) {
-    let mut lie: Option<Lie> = None;
+    let mut lie: Option<SurfacePlacement> = None;
     while let Ok(mut control) = heard.recv() {
         // Where it lies is the scene's until the hand pushes, and our own while it does.
         lie = shown().or(lie);
@@ -154,20 +154,20 @@ fn follow(
     }
 }
 
-fn canvas(scene: &Scene) -> Option<Lie> {
+fn canvas(scene: &Scene) -> Option<SurfacePlacement> {
     let surface = scene.surfaces.iter().find(|surface| surface.id == CANVAS)?;
-    Some(Lie::from(surface))
+    Some(SurfacePlacement::from(surface))
 }
 
 #[cfg(test)]
 mod tests {
-    use maulstick_brush::lie::{FARTHEST_M, ZOOMS};
+    use maulstick_brush::placement::{FARTHEST_M, ZOOMS};
     use maulstick_num::geometry::Rigid;
 
     use super::*;
 
-    fn lie() -> Lie {
-        Lie {
+    fn lie() -> SurfacePlacement {
+        SurfacePlacement {
             pose: Rigid {
                 translation: DVec3::new(-0.128, -0.128, 0.0),
                 ..Rigid::IDENTITY
@@ -177,7 +177,7 @@ mod tests {
     }
 
     /// The place on the surface that lies in the middle of the desk, m.
-    fn middle(lie: &Lie) -> DVec3 {
+    fn middle(lie: &SurfacePlacement) -> DVec3 {
         lie.pose.inverse().point(DVec3::ZERO) / lie.zoom
     }
 
@@ -222,7 +222,7 @@ mod tests {
     fn a_zoom_beyond_what_a_hand_may_choose_stays_in_a_pan_and_comes_back_without_a_leap() {
         let mut control = ControlSample::at_rest();
         control.push[0] = 1.0;
-        let far = Lie {
+        let far = SurfacePlacement {
             zoom: 0.05,
             ..lie()
         };

@@ -208,7 +208,7 @@ fn the_palette_slides_over_the_canvas_where_a_brush_finds_it_and_back() {
         rig.until("over", |rig| under(rig) == Some(PALETTE));
         let desk = Desk::of(&rig.scene());
         let palette = desk.plane(PALETTE).expect("there");
-        let gap = palette.wall().gap(DVec3::ZERO);
+        let gap = palette.half_space().gap(DVec3::ZERO);
         assert!((gap + 0.01).abs() < 1e-12, "its board lies over the paint");
         hold(&mut actor, 0);
         hold(&mut actor, PALETTE_SWITCH);

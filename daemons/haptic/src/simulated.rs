@@ -3,7 +3,7 @@
 
 use glam::{DQuat, DVec3};
 use maulstick_brush::desk::{ferrule, pen_orientation};
-use maulstick_brush::solver::Wall;
+use maulstick_brush::solver::HalfSpace;
 use maulstick_device::Take;
 use maulstick_device::fitting::Fitting;
 use maulstick_haptics::contact::Held;
@@ -66,7 +66,7 @@ impl Simulated {
             .samples
             .iter()
             .map(|s| {
-                let on_desk = ferrule(&s.sample, head_length_m, depth_share, &Wall::SURFACE);
+                let on_desk = ferrule(&s.sample, head_length_m, depth_share, &HalfSpace::SURFACE);
                 let orientation = fitting.to_desk.turned_back(on_desk.rotation);
                 let ferrule = fitting.to_desk.point_back(on_desk.translation);
                 Target {

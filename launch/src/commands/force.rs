@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use clap::{Args, ValueEnum};
 use glam::{DQuat, DVec3};
 use maulstick_brush::BrushFile;
-use maulstick_brush::feel::{press, tuples};
+use maulstick_brush::head_stiffness::{press, tuples};
 use maulstick_haptics::Contact;
 use maulstick_haptics::contact::Held;
 use maulstick_num::cos;

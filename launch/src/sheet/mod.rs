@@ -21,7 +21,7 @@ use maulstick_brush::file::library::LIBRARY;
 use maulstick_optics::PaintLibrary;
 use maulstick_paint::picture::{Picture, picture};
 use maulstick_paint::setup::PaintingSetup;
-use maulstick_paint::{PaintRefusal, Painting};
+use maulstick_paint::{EditError, Painting};
 use maulstick_rig::Fault;
 use maulstick_session::Offline;
 use maulstick_types::Mixture;
@@ -146,7 +146,7 @@ impl Panel {
 
 fn mixture_of(text: &str) -> Result<Mixture, Fault> {
     let error = |error| {
-        refused(PaintRefusal::paint(maulstick_optics::PaintError::Mixture(
+        refused(EditError::paint(maulstick_optics::PaintError::Mixture(
             error,
         )))
     };

@@ -5,8 +5,9 @@
 
 use maulstick_brush::{Head, HeadPose};
 
-use crate::head::{Scale, Waypoint, motion};
+use crate::head::{Waypoint, motion};
 use crate::model::Sweep;
+use crate::scale::Scale;
 
 /// A shorter motion is none, cells.
 const STILL: f64 = 0.02;

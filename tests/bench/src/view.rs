@@ -10,7 +10,7 @@ use maulstick_paint::PaintingSetup;
 use maulstick_paint::display::DisplayTile;
 use maulstick_paint::lamp::lamp_over;
 use maulstick_paint::picture::Export;
-use maulstick_paint::tile::TILE_CELLS;
+use maulstick_paint::planes::TILE_CELLS;
 use maulstick_rig::Fault;
 use maulstick_types::Origin;
 use maulstick_types::paint::TILE;

@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use eframe::egui::{CollapsingHeader, DragValue, Key, TextEdit, Ui};
-use maulstick_paint::embedded::{IMAGE, SPECTRUM};
+use maulstick_paint::assets::{IMAGE, SPECTRUM};
 use maulstick_paint::setup::GROUNDS;
 use maulstick_paint::tooth::Tooth;
 use maulstick_types::command::Command;

@@ -5,7 +5,7 @@ use glam::{DVec2, DVec3};
 use maulstick_num::geometry::rotation;
 use maulstick_optics::light::shadow::REACH;
 use maulstick_paint::display::DisplayTile;
-use maulstick_paint::tile::TILE_CELLS;
+use maulstick_paint::planes::TILE_CELLS;
 use maulstick_types::FrameView;
 use maulstick_types::paint::TILE;
 

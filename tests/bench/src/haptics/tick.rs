@@ -6,7 +6,7 @@ use std::ops::ControlFlow;
 use std::time::{Duration, Instant};
 
 use maulstick_brush::BrushFile;
-use maulstick_brush::feel::tuples;
+use maulstick_brush::head_stiffness::tuples;
 use maulstick_device::fitting::Fitting;
 use maulstick_device::{Take, TakeSample};
 use maulstick_haptic::Placed;

@@ -1,7 +1,7 @@
 //! How to dry what is wet: how much of it, where, at once or in time.
 
 use eframe::egui::{DragValue, ProgressBar, TextEdit, Ui};
-use maulstick_paint::painting::TICKS_A_SECOND;
+use maulstick_paint::clock::TICKS_A_SECOND;
 use maulstick_types::Region;
 use maulstick_types::command::{Command, DRYING_TICKS};
 use maulstick_types::paint::PaintStatus;
