@@ -13,7 +13,7 @@ use maulstick_device::player::{self, PlayerSettings, Rate};
 use maulstick_document::{Document, DocumentError};
 use maulstick_gpu::{Choice, Device, GpuFilms};
 use maulstick_haptic::daemon;
-use maulstick_haptic::open::HapticSettings;
+use maulstick_haptic::device::open::HapticSettings;
 use maulstick_hid::daemon::HidSettings;
 use maulstick_nodes::feel::ForceKind;
 use maulstick_nodes::frames::FrameServer;

@@ -10,8 +10,8 @@ use glam::DVec3;
 use maulstick_bus::{RigFolder, Wake};
 use maulstick_device::corners::{Corners, Glimpse, Progress};
 use maulstick_device::fitting::{by_corners, canvas_m, check_side};
-use maulstick_haptic::open::{HapticSettings, open};
-use maulstick_haptic::showing::watch;
+use maulstick_haptic::device::open::{HapticSettings, open};
+use maulstick_haptic::device::probe::probe;
 use maulstick_hid::hidraw::Hidraw;
 use maulstick_hid::tablet::Tablet;
 use maulstick_rig::config::DeviceSection;
@@ -158,8 +158,8 @@ fn watch_ferrule(
     let opened = open(config, &settings)?;
     say!("{}: {}", device.name, opened.what);
     Showing::of(device).ask()?;
-    watch(opened, DVec3::from(device.ferrule_m), look)
-        .map_err(|trouble| Fault::failure(trouble.to_string()).help(trouble.help))
+    probe(opened, DVec3::from(device.ferrule_m), look)
+        .map_err(|error| Fault::failure(error.to_string()).help(error.help))
 }
 
 /// A hand on its way around the canvas.

@@ -8,7 +8,7 @@ pub enum Fault {
     /// The hand was faster than any hand is, with force on it.
     TooFast,
     /// It went on shaking, however soft the force was made.
-    Shaking,
+    Oscillation,
 }
 
 impl std::fmt::Display for Fault {
@@ -16,7 +16,7 @@ impl std::fmt::Display for Fault {
         f.write_str(match self {
             Self::NotANumber => "a reading or a force was not a number",
             Self::TooFast => "the hand was faster than its limit",
-            Self::Shaking => "the hand shook, however soft the force was made",
+            Self::Oscillation => "the hand shook, however soft the force was made",
         })
     }
 }
