@@ -6,8 +6,8 @@ use maulstick_bus::credit::Stamp;
 use maulstick_bus::typed::{Reader, Receiver, Sender};
 use maulstick_bus::{Class, CreditSender, Queue, Server};
 use maulstick_device::actions::{Action, Actions, Actor};
-use maulstick_device::fitting::Fitting;
-use maulstick_device::missing::miss;
+use maulstick_device::device_missing::report_missing;
+use maulstick_device::registration::Registration;
 use maulstick_haptics::contact::Contact;
 use maulstick_haptics::{Limits, Recipient, ServoMemory, Switch};
 use maulstick_num::geometry::Rigid;
@@ -58,7 +58,7 @@ struct Daemon {
     /// Actions of the switches except the clutch; ended after the servo, for it may wait for the paint node.
     actor: Actor,
     /// Registration of the device to the canvas.
-    fitting: Fitting,
+    registration: Registration,
     /// Time of the next attempt to open the device, ns.
     attempt_ns: u64,
     senses: u32,
@@ -90,8 +90,8 @@ impl Daemon {
         let origin = member.origin(&device.name);
         let state_file = ForceStateFile::of(&member.folder, &device.name, member.clock.offset_ns());
         let state = state_file.read();
-        let fitting = Fitting::of(device, &member.config.canvas)?;
-        if let Some(warning) = fitting.warning() {
+        let registration = Registration::of(device, &member.config.canvas)?;
+        if let Some(warning) = registration.warning() {
             let name = &device.name;
             tracing::warn!("{name}: {warning}; touch them again: `maulstick calibrate {name}`");
         }
@@ -118,7 +118,7 @@ impl Daemon {
             previous: None,
             what: String::new(),
             actor,
-            fitting,
+            registration,
             attempt_ns: 0,
             senses: 0,
             recipient: Recipient {
@@ -194,7 +194,7 @@ impl Daemon {
         let opened = match open(&self.config, &self.settings) {
             Ok(opened) => opened,
             Err(fault) => {
-                miss(&self.settings.device.name, &fault, &mut self.told);
+                report_missing(&self.settings.device.name, &fault, &mut self.told);
                 return Ok(());
             }
         };
@@ -204,7 +204,7 @@ impl Daemon {
             self.what = opened.what;
         }
         let clutch = Actions::of(device).bits(Action::Clutch);
-        let mounted = MountedDevice::new(opened.driver, self.fitting, clutch);
+        let mounted = MountedDevice::new(opened.driver, self.registration, clutch);
         let abilities = mounted.abilities();
         let scale = mounted.scale();
         let limits = Limits {
@@ -284,14 +284,14 @@ impl Daemon {
             velocity_m_s: [0.0; 3],
             ..self.newest.clone()
         };
-        self.actor.hear(&away);
+        self.actor.receive(&away);
         if self.newest.in_range {
             self.send(now_ns, now_ns, away)?;
         }
         self.told.force_n = 0.0;
         self.attempt_ns = now_ns + ATTEMPT_PERIOD_NS;
         let fault = Fault::failure(error.to_string()).help(error.help);
-        miss(&self.settings.device.name, &fault, &mut self.told);
+        report_missing(&self.settings.device.name, &fault, &mut self.told);
         Ok(())
     }
 
@@ -403,7 +403,7 @@ impl Daemon {
             switches: reading.switches,
             in_range: reading.in_range,
         };
-        self.actor.hear(&sample);
+        self.actor.receive(&sample);
         let left = self.newest.in_range && !sample.in_range;
         if !sample.in_range && !left && event_ns < self.published_ns + IDLE_PERIOD_NS {
             return Ok(());
@@ -414,7 +414,13 @@ impl Daemon {
     /// Reports a latched fault, once.
     fn latch(&mut self, fault: maulstick_haptics::Fault) {
         if self.told.faults.is_empty() {
-            let what = format!("{fault}: no force until `maulstick force rearm`");
+            let commands = match fault {
+                maulstick_haptics::Fault::UnknownState => {
+                    "`maulstick force on` and `maulstick force rearm`"
+                }
+                _ => "`maulstick force rearm`",
+            };
+            let what = format!("{fault}: no force until {commands}");
             tracing::warn!("{}: {what}", self.settings.device.name);
             self.told.faults.push(what);
             self.latched = Some(fault);

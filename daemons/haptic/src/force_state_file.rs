@@ -25,17 +25,22 @@ impl ForceState {
         strength: 1.0,
         fault: None,
     };
-    /// The state in place of an unreadable file: no force until somebody wants it.
+    /// The state in place of an unreadable file: no force until somebody switches it on and re-arms it.
     const UNKNOWN: Self = Self {
         switch: Switch::Off,
-        ..Self::INITIAL
+        strength: 1.0,
+        fault: Some(Fault::UnknownState),
     };
 }
 
-const FAULTS: [(&str, Fault); 3] = [
+/// The word in place of a fault.
+const NO_FAULT: &str = "none";
+/// The word of each fault.
+const FAULTS: [(&str, Fault); 4] = [
     ("not-a-number", Fault::NotANumber),
     ("too-fast", Fault::TooFast),
     ("shaking", Fault::Oscillation),
+    ("unknown-state", Fault::UnknownState),
 ];
 
 /// The state file of a device.
@@ -71,9 +76,18 @@ impl ForceStateFile {
         let [run, switch, strength, fault] = words[..] else {
             return ForceState::UNKNOWN;
         };
-        if run.parse() != Ok(self.run) {
-            return ForceState::INITIAL;
+        match run.parse::<u64>() {
+            Ok(run) if run == self.run => {}
+            Ok(_) => return ForceState::INITIAL,
+            Err(_) => return ForceState::UNKNOWN,
         }
+        let fault = match fault {
+            NO_FAULT => None,
+            word => match FAULTS.iter().find(|(known, _)| *known == word) {
+                Some((_, fault)) => Some(*fault),
+                None => return ForceState::UNKNOWN,
+            },
+        };
         let share = strength.parse().ok();
         match (switch, share.filter(|share| (0.0..=1.0).contains(share))) {
             ("on" | "off", Some(strength)) => ForceState {
@@ -83,10 +97,7 @@ impl ForceStateFile {
                     Switch::Off
                 },
                 strength,
-                fault: FAULTS
-                    .iter()
-                    .find(|(word, _)| *word == fault)
-                    .map(|(_, f)| *f),
+                fault,
             },
             _ => ForceState::UNKNOWN,
         }
@@ -102,7 +113,7 @@ impl ForceStateFile {
             Switch::Off => "off",
         };
         let fault = FAULTS.iter().find(|(_, fault)| Some(*fault) == state.fault);
-        let fault = fault.map_or("none", |(word, _)| word);
+        let fault = fault.map_or(NO_FAULT, |(word, _)| word);
         let (run, strength) = (self.run, state.strength);
         write_whole(&self.path, Kind::Own, |file| {
             writeln!(file, "{run} {switch} {strength} {fault}")
@@ -124,6 +135,7 @@ mod tests {
             Some(Fault::TooFast),
             Some(Fault::Oscillation),
             Some(Fault::NotANumber),
+            Some(Fault::UnknownState),
         ] {
             let state = ForceState {
                 switch: Switch::Off,
@@ -140,7 +152,7 @@ mod tests {
     }
 
     #[test]
-    fn an_unreadable_file_means_no_force() {
+    fn an_unreadable_file_means_force_off_and_a_fault_that_says_so() {
         let folder = tempfile::tempdir().expect("a folder");
         let file = ForceStateFile::of(folder.path(), "phantom", 7);
         for text in [
@@ -149,9 +161,15 @@ mod tests {
             "7 on 2.0 none",
             "7 maybe 1 none",
             "7 on NaN none",
+            "7 on 1 none none",
+            "7 on 1 too-hot",
+            "7 on 1 shakin",
+            "x7 on 1 none",
         ] {
             std::fs::write(&file.path, text).expect("written");
-            assert_eq!(file.read().switch, Switch::Off, "{text}");
+            let state = file.read();
+            assert_eq!(state.switch, Switch::Off, "{text}");
+            assert_eq!(state.fault, Some(Fault::UnknownState), "{text}");
         }
     }
 }

@@ -5,7 +5,7 @@
 //! for what that means to the servo's bounds.
 
 use glam::DVec3;
-use maulstick_device::fitting::Fitting;
+use maulstick_device::registration::Registration;
 use maulstick_haptics::Switch;
 use maulstick_haptics::contact::HandleState;
 
@@ -70,7 +70,7 @@ impl Lever {
 /// through this.
 pub struct MountedDevice {
     driver: Box<dyn Driver>,
-    fitting: Fitting,
+    registration: Registration,
     max_torque_nm: f64,
     lever: Lever,
     clutch: Clutch,
@@ -79,11 +79,11 @@ pub struct MountedDevice {
 impl MountedDevice {
     /// Mounts a device by its registration; the switches of the bits `clutch` are its clutch.
     #[must_use]
-    pub fn new(driver: Box<dyn Driver>, fitting: Fitting, clutch: u32) -> Self {
+    pub fn new(driver: Box<dyn Driver>, registration: Registration, clutch: u32) -> Self {
         let max_torque_nm = driver.abilities().max_torque_nm.max(0.0);
         Self {
             driver,
-            fitting,
+            registration,
             max_torque_nm,
             lever: Lever::default(),
             clutch: Clutch {
@@ -103,7 +103,7 @@ impl MountedDevice {
         for x in [x0, x1] {
             for y in [y0, y1] {
                 for z in [z0, z1] {
-                    let corner = self.fitting.to_desk.point(DVec3::new(x, y, z));
+                    let corner = self.registration.to_desk.point(DVec3::new(x, y, z));
                     (least, greatest) = (least.min(corner), greatest.max(corner));
                 }
             }
@@ -119,7 +119,7 @@ impl MountedDevice {
     /// Desk lengths per device length.
     #[must_use]
     pub fn scale(&self) -> f64 {
-        self.fitting.to_desk.scale
+        self.registration.to_desk.scale
     }
 
     /// Reads the device, `dt` s after the previous reading; desk frame.
@@ -130,9 +130,9 @@ impl MountedDevice {
         let Some(reading) = self.driver.read(dt)? else {
             return Ok(None);
         };
-        let (handle, to_desk) = (reading.handle, &self.fitting.to_desk);
+        let (handle, to_desk) = (reading.handle, &self.registration.to_desk);
         self.lever
-            .turn(handle.orientation * self.fitting.ferrule_m, dt);
+            .turn(handle.orientation * self.registration.ferrule_m, dt);
         let place = to_desk.point(handle.position + self.lever.arm);
         let place = self.clutch.follow(place, reading.switches);
         let handle = HandleState {
@@ -166,7 +166,7 @@ impl MountedDevice {
     /// # Errors
     /// As [`Driver::write`].
     pub fn write(&mut self, force: DVec3) -> Result<(), DeviceError> {
-        let force = self.fitting.to_desk.turn_back(self.on_hand(force));
+        let force = self.registration.to_desk.turn_back(self.on_hand(force));
         let torque = self.lever.arm.cross(force);
         self.driver.write(Wrench {
             force,

@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use maulstick_device::fitting::Fitting;
+use maulstick_device::registration::Registration;
 use maulstick_device::{Take, brush_file};
 use maulstick_rig::config::DeviceSection;
 use maulstick_rig::{Fault, RigConfig};
@@ -51,7 +51,7 @@ fn simulated(config: &RigConfig, settings: &HapticSettings) -> Result<Opened, Fa
         .ok_or_else(|| Fault::usage(format!("no brush '{}'", settings.device.brush)))?;
     let file = brush_file(section)?;
     let (length_m, share) = (file.length_m(), section.depth_share);
-    let fitting = Fitting::of(&settings.device, &config.canvas)?;
-    let driver = Simulated::following(&take, length_m, share, &fitting);
+    let registration = Registration::of(&settings.device, &config.canvas)?;
+    let driver = Simulated::following(&take, length_m, share, &registration);
     Ok(opened(driver, "a simulated hand that follows a take"))
 }

@@ -6,8 +6,8 @@ use std::sync::mpsc::{RecvTimeoutError, sync_channel};
 use std::time::Duration;
 
 use glam::DVec3;
-use maulstick_device::corners::{Glimpse, Seen, Touch};
-use maulstick_device::fitting::{Fitting, Similarity};
+use maulstick_device::corner_calibration::{HandReading, HandSample, Touch};
+use maulstick_device::registration::{Registration, Similarity};
 use maulstick_haptics::Switch;
 use maulstick_types::stylus::axes;
 
@@ -30,16 +30,16 @@ const FIRST_SWITCH: u32 = 1;
 pub fn probe(
     opened: Opened,
     ferrule_m: DVec3,
-    mut look: impl FnMut(Glimpse) -> ControlFlow<()>,
+    mut look: impl FnMut(HandReading) -> ControlFlow<()>,
 ) -> Result<(), DeviceError> {
-    let fitting = Fitting {
+    let registration = Registration {
         to_desk: Similarity::IDENTITY,
         ferrule_m,
         corners: None,
     };
     let mut clock = opened.clock;
     let senses = opened.driver.abilities().senses;
-    let mut device = MountedDevice::new(opened.driver, fitting, 0);
+    let mut device = MountedDevice::new(opened.driver, registration, 0);
     let (to_caller, readings) = sync_channel(WAITING);
     let stop = AtomicBool::new(false);
     std::thread::scope(|scope| {
@@ -61,7 +61,9 @@ pub fn probe(
                     Ok(Some(reading)) => {
                         last_ns = now_ns;
                         // A caller that does not keep up sees the older ones.
-                        to_caller.try_send(glimpse(&reading, senses, now_ns)).ok();
+                        to_caller
+                            .try_send(hand_reading(&reading, senses, now_ns))
+                            .ok();
                     }
                     Ok(None) => {}
                     Err(error) => {
@@ -77,12 +79,12 @@ pub fn probe(
             lost.map_or(run, Err)
         });
         loop {
-            let glimpse = match readings.recv_timeout(SILENCE) {
-                Ok(glimpse) => glimpse,
-                Err(RecvTimeoutError::Timeout) => Glimpse::Away,
+            let reading = match readings.recv_timeout(SILENCE) {
+                Ok(reading) => reading,
+                Err(RecvTimeoutError::Timeout) => HandReading::Away,
                 Err(RecvTimeoutError::Disconnected) => break,
             };
-            if look(glimpse).is_break() {
+            if look(reading).is_break() {
                 break;
             }
         }
@@ -104,15 +106,15 @@ impl Drop for Ending<'_> {
     }
 }
 
-fn glimpse(reading: &Reading, senses: u32, now_ns: u64) -> Glimpse {
+fn hand_reading(reading: &Reading, senses: u32, now_ns: u64) -> HandReading {
     if !reading.in_range {
-        return Glimpse::Away;
+        return HandReading::Away;
     }
     let touch = match reading.switches & FIRST_SWITCH {
         0 => Touch::Unknown,
         _ => Touch::Down,
     };
-    Glimpse::Seen(Seen {
+    HandReading::Sample(HandSample {
         point: reading.handle.position,
         handle: (senses & axes::ORIENTATION != 0).then(|| reading.handle.orientation * DVec3::Z),
         touch,
@@ -196,8 +198,8 @@ mod tests {
             what: String::new(),
         };
         let (mut seen, mut pressed) = (Vec::new(), 0);
-        let lost = probe(opened(), DVec3::Z, |glimpse| {
-            if let Glimpse::Seen(hand) = glimpse {
+        let lost = probe(opened(), DVec3::Z, |reading| {
+            if let HandReading::Sample(hand) = reading {
                 assert_eq!(hand.point.z, 1.0, "the ferrule");
                 seen.push(hand.point.x);
                 pressed += usize::from(hand.touch == Touch::Down);

@@ -5,7 +5,7 @@ use glam::{DQuat, DVec3};
 use maulstick_brush::desk::{ferrule, pen_orientation};
 use maulstick_brush::solver::Wall;
 use maulstick_device::Take;
-use maulstick_device::fitting::Fitting;
+use maulstick_device::registration::Registration;
 use maulstick_haptics::contact::HandleState;
 use maulstick_haptics::{Hand, Plant};
 use maulstick_types::stylus::{DEFAULT_TILT_RAD, axes};
@@ -60,18 +60,23 @@ impl Simulated {
     /// A hand that follows a take with a brush whose head is `head_length_m` long. A take is in the
     /// desk frame; `fitting` says where the device stands, and which point of it is the ferrule.
     #[must_use]
-    pub fn following(take: &Take, head_length_m: f64, depth_share: f64, fitting: &Fitting) -> Self {
+    pub fn following(
+        take: &Take,
+        head_length_m: f64,
+        depth_share: f64,
+        registration: &Registration,
+    ) -> Self {
         let start_ns = take.samples.first().map_or(0, |first| first.time_ns);
         let targets: Vec<Target> = take
             .samples
             .iter()
             .map(|s| {
                 let on_desk = ferrule(&s.sample, head_length_m, depth_share, &Wall::SURFACE);
-                let orientation = fitting.to_desk.turned_back(on_desk.rotation);
-                let ferrule = fitting.to_desk.point_back(on_desk.translation);
+                let orientation = registration.to_desk.turned_back(on_desk.rotation);
+                let ferrule = registration.to_desk.point_back(on_desk.translation);
                 Target {
                     time_s: (s.time_ns - start_ns) as f64 * 1e-9,
-                    position: ferrule - orientation * fitting.ferrule_m,
+                    position: ferrule - orientation * registration.ferrule_m,
                     orientation,
                     switches: s.sample.switches,
                     in_range: s.sample.in_range,
@@ -150,7 +155,7 @@ impl Driver for Simulated {
 #[cfg(test)]
 mod tests {
     use maulstick_device::demo::{Subject, performance};
-    use maulstick_device::fitting::Similarity;
+    use maulstick_device::registration::Similarity;
     use maulstick_num::geometry::{Rigid, rotation};
 
     use super::*;
@@ -160,8 +165,8 @@ mod tests {
         device.read(1e-3).expect("there").expect("new")
     }
 
-    fn fitting(rigid: Rigid, ferrule_m: DVec3) -> Fitting {
-        Fitting {
+    fn registration(rigid: Rigid, ferrule_m: DVec3) -> Registration {
+        Registration {
             to_desk: Similarity { rigid, scale: 1.0 },
             ferrule_m,
             corners: None,
@@ -171,7 +176,7 @@ mod tests {
     #[test]
     fn a_free_hand_follows_its_take_with_the_lag_of_its_grip() {
         let take = performance(Subject::Flower, 1);
-        let plain = fitting(Rigid::IDENTITY, DVec3::ZERO);
+        let plain = registration(Rigid::IDENTITY, DVec3::ZERO);
         let mut device = Simulated::following(&take, 0.025, 0.5, &plain);
         let (mut sum, mut count) = (0.0, 0);
         for tick in 0..10_000 {
@@ -197,8 +202,8 @@ mod tests {
             rotation: rotation(DVec3::new(0.0, 0.6, 0.8), 1.2),
             translation: DVec3::new(0.3, -0.1, 0.2),
         };
-        let plain = fitting(Rigid::IDENTITY, DVec3::ZERO);
-        let to_desk = fitting(to_desk, DVec3::new(0.0, 0.01, -0.06));
+        let plain = registration(Rigid::IDENTITY, DVec3::ZERO);
+        let to_desk = registration(to_desk, DVec3::new(0.0, 0.01, -0.06));
         let mut plain = Simulated::following(&take, 0.025, 0.5, &plain);
         let turned = Simulated::following(&take, 0.025, 0.5, &to_desk);
         let mut turned = MountedDevice::new(Box::new(turned), to_desk, 0);

@@ -4,7 +4,7 @@ use std::io::Write;
 use std::sync::{Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
-use maulstick_device::fitting::Fitting;
+use maulstick_device::registration::Registration;
 use maulstick_haptic::MountedDevice;
 use maulstick_haptic::device::driver::Opened;
 use maulstick_haptic::device::open::HapticSettings;
@@ -58,7 +58,7 @@ pub(crate) fn patient() -> Limits {
 
 /// A servo over the opened device, which stands on the desk as it is.
 pub(crate) fn start(opened: Opened, limits: Limits) -> ServoThread {
-    let placed = MountedDevice::new(opened.driver, Fitting::IDENTITY, 0);
+    let placed = MountedDevice::new(opened.driver, Registration::IDENTITY, 0);
     ServoThread::start(placed, opened.clock, limits).expect("started")
 }
 

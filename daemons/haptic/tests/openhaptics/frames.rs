@@ -3,7 +3,7 @@
 use std::ops::ControlFlow;
 
 use glam::{DQuat, DVec3};
-use maulstick_device::fitting::Fitting;
+use maulstick_device::registration::Registration;
 use maulstick_haptic::MountedDevice;
 use maulstick_haptic::device::driver::{Opened, Reading, Wrench};
 use maulstick_libhd::script::Grip;
@@ -56,7 +56,7 @@ fn a_stylus_is_on_the_desk_where_it_is_and_as_it_is_turned() {
         translation: DVec3::new(0.3, 0.0, 0.1),
     };
     let opened = open(&section()).expect("opened");
-    let placed = MountedDevice::new(opened.driver, Fitting::standing(to_desk), 0);
+    let placed = MountedDevice::new(opened.driver, Registration::standing(to_desk), 0);
     assert_eq!(
         placed.abilities().senses,
         axes::POSITION | axes::ORIENTATION | axes::VELOCITY | axes::SWITCHES
@@ -111,7 +111,7 @@ fn a_force_on_the_desk_arrives_in_newtons_in_the_base_s_frame() {
                 translation: DVec3::new(0.1, 0.2, 0.3),
             },
         );
-        let mut placed = MountedDevice::new(opened.driver, Fitting::standing(to_desk), 0);
+        let mut placed = MountedDevice::new(opened.driver, Registration::standing(to_desk), 0);
         let mut forces = vec![DVec3::Z, DVec3::Y, DVec3::X];
         clock
             .run(&mut |_| {
@@ -375,7 +375,7 @@ fn a_model_whose_dead_man_s_switch_is_silent_gives_no_force_and_says_so() {
     listen();
     let mut servo = serve();
     wall(&mut servo);
-    let words = "does not say whether the stylus is handle";
+    let words = "does not say whether the stylus is held";
     wait("the words", || told().contains(words));
     let mut left = 100;
     tick(&mut servo, |record| {

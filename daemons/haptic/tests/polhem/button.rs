@@ -5,8 +5,8 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::time::{Duration, Instant};
 
 use glam::DVec3;
-use maulstick_device::corners::{Glimpse, Touch};
-use maulstick_device::fitting::{Fitting, Similarity};
+use maulstick_device::corner_calibration::{HandReading, Touch};
+use maulstick_device::registration::{Registration, Similarity};
 use maulstick_haptic::MountedDevice;
 use maulstick_haptic::device::driver::Opened;
 use maulstick_haptic::device::probe::probe;
@@ -54,13 +54,13 @@ fn until(
 fn a_clutch_at_the_button_holds_for_as_long_as_it_is_pressed() {
     let cable = cable();
     let press = |d| cable.bench().firmware.encoders[3] = d;
-    let fitting = Fitting {
+    let registration = Registration {
         to_desk: Similarity::IDENTITY,
         ferrule_m: DVec3::ZERO,
         corners: None,
     };
     let polhem = Polhem::new(cable.clone(), Length::Short);
-    let placed = MountedDevice::new(Box::new(polhem), fitting, 1);
+    let placed = MountedDevice::new(Box::new(polhem), registration, 1);
     let (ticks, mut told) = rtrb::RingBuffer::new(64);
     let (_, models) = triple_buffer::triple_buffer(&Delivery::default());
     let (_, controls) = triple_buffer::triple_buffer(&ForceControl::default());
@@ -112,8 +112,8 @@ fn a_hand_that_shows_a_place_is_seen_to_press() {
     cable.bench().firmware.encoders[3] = PRESSED;
     let give_up = Instant::now() + Duration::from_secs(20);
     let mut is_seen = false;
-    let probed = probe(opened(&cable), DVec3::ZERO, |glimpse| {
-        is_seen |= matches!(glimpse, Glimpse::Seen(seen) if seen.touch == Touch::Down);
+    let probed = probe(opened(&cable), DVec3::ZERO, |reading| {
+        is_seen |= matches!(reading, HandReading::Sample(seen) if seen.touch == Touch::Down);
         match is_seen || Instant::now() > give_up {
             true => ControlFlow::Break(()),
             false => ControlFlow::Continue(()),

@@ -2,7 +2,7 @@
 
 use std::time::{Duration, Instant};
 
-use maulstick_device::fitting::Fitting;
+use maulstick_device::registration::Registration;
 use maulstick_haptic::MountedDevice;
 use maulstick_haptic::device::open::{HapticSettings, open};
 use maulstick_haptic::servo::channels::Delivery;
@@ -39,8 +39,8 @@ pub(crate) fn push(device: &DeviceSection, mut is_felt: impl FnMut() -> bool) ->
         longest_tick_s: 1e3,
         ..Limits::default()
     };
-    let fitting = Fitting::of(device, &config.canvas).expect("a fitting");
-    let placed = MountedDevice::new(opened.driver, fitting, 0);
+    let registration = Registration::of(device, &config.canvas).expect("a registration");
+    let placed = MountedDevice::new(opened.driver, registration, 0);
     let mut servo = ServoThread::start(placed, opened.clock, limits).expect("started");
     servo.models.write(Delivery {
         contact: Some(wall()),

@@ -1,4 +1,4 @@
-//! Why a servo gives no force until it is re-armed.
+//! Faults that latch the force at zero until the servo is re-armed.
 
 /// A latched fault.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -9,6 +9,8 @@ pub enum Fault {
     TooFast,
     /// It went on shaking, however soft the force was made.
     Oscillation,
+    /// The force state of an earlier servo could not be read.
+    UnknownState,
 }
 
 impl std::fmt::Display for Fault {
@@ -17,6 +19,7 @@ impl std::fmt::Display for Fault {
             Self::NotANumber => "a reading or a force was not a number",
             Self::TooFast => "the hand was faster than its limit",
             Self::Oscillation => "the hand shook, however soft the force was made",
+            Self::UnknownState => "the saved force state cannot be read, so force is switched off",
         })
     }
 }

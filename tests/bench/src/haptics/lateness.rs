@@ -6,7 +6,7 @@
 
 use std::time::{Duration, Instant};
 
-use maulstick_device::fitting::Fitting;
+use maulstick_device::registration::Registration;
 use maulstick_haptic::MountedDevice;
 use maulstick_haptic::servo::servo_thread::ServoThread;
 use maulstick_haptic::servo::clock::MonotonicClock;
@@ -83,7 +83,7 @@ pub(super) fn run(report: &mut Report) -> Result<(), Fault> {
 
 /// How late so many ticks of our servo are, and how it was scheduled.
 fn ours(ticks: u64) -> Result<(Histogram, Scheduling), Fault> {
-    let device = MountedDevice::new(Box::new(Simulated::at_rest()), Fitting::IDENTITY, 0);
+    let device = MountedDevice::new(Box::new(Simulated::at_rest()), Registration::IDENTITY, 0);
     let mut servo = ServoThread::start(device, Box::new(MonotonicClock), Limits::default()).map_err(fault)?;
     let scheduling = match servo.warnings.iter().any(|what| what.contains("real-time")) {
         true => Scheduling::Other,

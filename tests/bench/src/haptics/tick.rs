@@ -7,7 +7,7 @@ use std::time::{Duration, Instant};
 
 use maulstick_brush::BrushFile;
 use maulstick_brush::feel::tuples;
-use maulstick_device::fitting::Fitting;
+use maulstick_device::registration::Registration;
 use maulstick_device::{Take, TakeSample};
 use maulstick_haptic::MountedDevice;
 use maulstick_haptic::servo::channels::Delivery;
@@ -61,7 +61,7 @@ impl ServoClock for Timed {
 pub(super) fn run(report: &mut Report) -> Result<(), Fault> {
     let brush = BrushFile::library("round").map_err(fault)?;
     let take = sliding();
-    let desk = Fitting::IDENTITY;
+    let desk = Registration::IDENTITY;
     let device = Simulated::following(&take, brush.length_m(), DEPTH_SHARE, &desk);
     let all = TICKS + WARM_UP;
     let (to_us, mut spent) = rtrb::RingBuffer::new(all);
@@ -125,7 +125,7 @@ fn sliding() -> Take {
         }
     });
     Take {
-        kit: None,
+        setup: None,
         device: "hand".into(),
         samples: samples.collect(),
     }

@@ -4,7 +4,7 @@ use std::f64::consts::FRAC_PI_2;
 use std::sync::{Arc, Mutex};
 
 use glam::DQuat;
-use maulstick_device::fitting::{Similarity, canvas_m};
+use maulstick_device::registration::{Similarity, canvas_m};
 use maulstick_num::geometry::{Rigid, canonical, rotation};
 use maulstick_rig::config::CanvasSection;
 use maulstick_types::stylus::axes;
@@ -80,8 +80,8 @@ impl Driver for Put {
     }
 }
 
-fn fitting(rigid: Rigid, scale: f64, ferrule_m: DVec3) -> Fitting {
-    Fitting {
+fn registration(rigid: Rigid, scale: f64, ferrule_m: DVec3) -> Registration {
+    Registration {
         to_desk: Similarity { rigid, scale },
         ferrule_m,
         corners: None,
@@ -103,7 +103,7 @@ fn the_working_area_turns_and_grows_with_the_device() {
     };
     let driver = Put::new();
     let [x0, y0, z0, x1, y1, z1] = driver.abilities().workspace_m;
-    let placed = MountedDevice::new(Box::new(driver), fitting(to_desk, 2.0, DVec3::ZERO), 0);
+    let placed = MountedDevice::new(Box::new(driver), registration(to_desk, 2.0, DVec3::ZERO), 0);
     // A quarter turn about x: y is minus what z was, z is what y was.
     let [x, y, z] = [[x0, x1], [-z1, -z0], [y0, y1]].map(|ends| ends.map(|end| 2.0 * end));
     let expected = [x[0] + 1.0, y[0], z[0], x[1] + 1.0, y[1], z[1]];
@@ -130,7 +130,7 @@ proptest! {
         let along = DVec3::new(0.0, 0.6, 0.8);
         put.put(along * y, 0);
         put.bench().reading.handle.velocity = along * speed;
-        let mut placed = MountedDevice::new(Box::new(put.clone()), fitting(rigid, scale, DVec3::ZERO), 0);
+        let mut placed = MountedDevice::new(Box::new(put.clone()), registration(rigid, scale, DVec3::ZERO), 0);
         let handle = read(&mut placed).handle;
         let (k, b) = (400.0, 3.0);
         let force = (handle.position - rigid.translation) * -k - handle.velocity * b;
@@ -150,7 +150,7 @@ proptest! {
         moves in prop::collection::vec((prop::array::uniform3(-0.02..0.02f64), 0u32..2), 1..100),
     ) {
         let put = Put::new();
-        let to_desk = fitting(Rigid::IDENTITY, scale, DVec3::ZERO);
+        let to_desk = registration(Rigid::IDENTITY, scale, DVec3::ZERO);
         let mut placed = MountedDevice::new(Box::new(put.clone()), to_desk, CLUTCH);
         let mut device = DVec3::ZERO;
         let mut last = read(&mut placed);
@@ -164,7 +164,7 @@ proptest! {
             if reading.switches & CLUTCH != 0 {
                 prop_assert!(!reading.in_range && !reading.is_permitted);
                 prop_assert_eq!(reading.handle.velocity, DVec3::ZERO);
-                prop_assert!(!released || went == 0.0, "{} while handle", went);
+                prop_assert!(!released || went == 0.0, "{} while held", went);
             } else {
                 prop_assert!(reading.in_range && reading.is_permitted);
             }
@@ -178,7 +178,7 @@ proptest! {
 fn the_brush_turns_with_the_hand_while_the_clutch_holds_its_place() {
     let put = Put::new();
     let lever = DVec3::new(0.0, 0.0, -0.05);
-    let to_desk = fitting(Rigid::IDENTITY, 1.0, lever);
+    let to_desk = registration(Rigid::IDENTITY, 1.0, lever);
     let mut placed = MountedDevice::new(Box::new(put.clone()), to_desk, CLUTCH);
     put.put(DVec3::new(0.01, 0.02, 0.08), 0);
     let before = read(&mut placed).handle;
@@ -233,7 +233,7 @@ fn reach(placed: &mut MountedDevice, put: &Put, goal: DVec3, clutch: u32) -> (u3
 #[test]
 fn a_phantom_reaches_every_place_of_a_canvas_that_is_larger_by_clutching() {
     let size = canvas_m(&CanvasSection::default());
-    let to_desk = fitting(Rigid::IDENTITY, 1.0, DVec3::ZERO);
+    let to_desk = registration(Rigid::IDENTITY, 1.0, DVec3::ZERO);
     let (mut clutched, mut out_of_reach) = (0, 0);
     let put = Put::new();
     let mut placed = MountedDevice::new(Box::new(put.clone()), to_desk, CLUTCH);
@@ -264,7 +264,7 @@ fn the_ferrule_is_where_it_is_held_and_as_fast() {
     // A quarter turn about x takes −z to y; the point turns by 2 rad/s about x.
     let put = Put::new();
     let lever = DVec3::new(0.0, 0.0, -0.05);
-    let to_desk = fitting(Rigid::IDENTITY, 2.0, lever);
+    let to_desk = registration(Rigid::IDENTITY, 2.0, lever);
     let mut placed = MountedDevice::new(Box::new(put.clone()), to_desk, 0);
     let mut last = None;
     for tick in 0..200 {
@@ -292,7 +292,7 @@ fn the_ferrule_is_where_it_is_held_and_as_fast() {
 fn a_force_at_the_ferrule_turns_the_hand_as_far_as_the_device_can() {
     let put = Put::new();
     put.bench().max_torque_nm = 0.1;
-    let to_desk = fitting(Rigid::IDENTITY, 2.0, DVec3::new(0.0, 0.0, -0.05));
+    let to_desk = registration(Rigid::IDENTITY, 2.0, DVec3::new(0.0, 0.0, -0.05));
     let mut placed = MountedDevice::new(Box::new(put.clone()), to_desk, 0);
     read(&mut placed);
     placed.write(DVec3::X * 2.0).expect("there");

@@ -64,7 +64,7 @@ impl Notice {
                 "the device had a trouble with its motors and cut them for a moment"
             }
             Self::NoSwitch => {
-                "the library does not say whether the stylus is handle, so there is no force: install the driver that fits this model"
+                "the library does not say whether the stylus is held, so there is no force: install the driver that fits this model"
             }
         }
     }

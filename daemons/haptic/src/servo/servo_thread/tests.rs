@@ -3,7 +3,7 @@
 use std::time::{Duration, Instant};
 
 use glam::{DQuat, DVec3};
-use maulstick_device::fitting::{Fitting, Similarity};
+use maulstick_device::registration::{Registration, Similarity};
 use maulstick_haptics::Switch;
 use maulstick_haptics::contact::{Contact, HandleState};
 use maulstick_num::geometry::{Rigid, canonical, rotation};
@@ -25,12 +25,12 @@ fn bins_double() {
 
 /// A device that stands somewhere, with the point that it senses as its ferrule.
 fn placed(device: impl Driver + 'static, rigid: Rigid, scale: f64) -> MountedDevice {
-    let fitting = Fitting {
+    let registration = Registration {
         to_desk: Similarity { rigid, scale },
         ferrule_m: DVec3::ZERO,
         corners: None,
     };
-    MountedDevice::new(Box::new(device), fitting, 0)
+    MountedDevice::new(Box::new(device), registration, 0)
 }
 
 /// A servo on our own clock.
@@ -375,7 +375,7 @@ impl Driver for Moved {
 fn a_clutch_in_mid_stroke_takes_the_force_away_until_the_hand_has_come_up() {
     for (clutch, lets_go) in [(1, true), (0, false)] {
         let device = Moved::default();
-        let fitting = Fitting {
+        let registration = Registration {
             to_desk: Similarity::IDENTITY,
             ferrule_m: DVec3::ZERO,
             corners: None,
@@ -386,7 +386,7 @@ fn a_clutch_in_mid_stroke_takes_the_force_away_until_the_hand_has_come_up() {
             ..Limits::default()
         };
         device.put(0.03, 0);
-        let placed = MountedDevice::new(Box::new(device.clone()), fitting, clutch);
+        let placed = MountedDevice::new(Box::new(device.clone()), registration, clutch);
         let mut servo = start(placed, limits);
         servo.models.write(Delivery {
             contact: Some(wall()),

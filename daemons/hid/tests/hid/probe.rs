@@ -4,10 +4,10 @@ use std::collections::VecDeque;
 use std::ops::ControlFlow;
 use std::time::Duration;
 
-use maulstick_device::corners::{Corners, Glimpse, Progress};
+use maulstick_device::corner_calibration::{CornerCalibration, HandReading, Progress};
+use maulstick_hid::device_source::{Found, HidSource, Ports};
+use maulstick_hid::probe;
 use maulstick_hid::recording::{Event, Recorded};
-use maulstick_hid::showing;
-use maulstick_hid::source::{Found, HidSource, Ports};
 use maulstick_rig::Fault;
 use maulstick_rig::config::DeviceSection;
 
@@ -74,23 +74,21 @@ impl HidSource for Desk {
     }
 }
 
-/// The corners that are found, and how the watch ended.
+/// The corners that are found, and how the probe ended.
 fn shown(ports: &mut dyn Ports, device: &DeviceSection) -> (usize, Result<(), Fault>) {
-    let (mut corners, mut found) = (Corners::new(), 0);
-    let ended = showing::open(ports, device)
-        .expect("open")
-        .watch(|glimpse| {
-            match glimpse {
-                Glimpse::Away => corners.lose(),
-                Glimpse::Seen(seen) => {
-                    found += usize::from(matches!(corners.see(&seen), Progress::Found(..)));
-                }
+    let (mut corners, mut found) = (CornerCalibration::new(), 0);
+    let ended = probe::open(ports, device).expect("open").probe(|reading| {
+        match reading {
+            HandReading::Away => corners.lose(),
+            HandReading::Sample(seen) => {
+                found += usize::from(matches!(corners.see(&seen), Progress::Found(..)));
             }
-            match corners.all() {
-                Some(_) => ControlFlow::Break(()),
-                None => ControlFlow::Continue(()),
-            }
-        });
+        }
+        match corners.all() {
+            Some(_) => ControlFlow::Break(()),
+            None => ControlFlow::Continue(()),
+        }
+    });
     (found, ended)
 }
 
@@ -105,7 +103,7 @@ fn a_tablet_shows_three_corners_whether_its_pen_hovers_or_not() {
 }
 
 #[test]
-fn a_tablet_that_is_lost_before_ends_the_watch_by_a_fault() {
+fn a_tablet_that_is_lost_before_ends_the_probe_by_a_fault() {
     let said = reports(Senses::Touch, 5)
         .into_iter()
         .map(|(_, report)| report);

@@ -6,7 +6,7 @@
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
-use std::sync::mpsc::{Receiver as Ear, RecvTimeoutError, SyncSender, sync_channel};
+use std::sync::mpsc::{Receiver as Samples, RecvTimeoutError, SyncSender, sync_channel};
 use std::thread::JoinHandle;
 use std::time::{Duration, Instant};
 
@@ -56,13 +56,13 @@ pub fn pushes(control: &ControlSample) -> bool {
 }
 
 /// Sends the commands from a thread of its own: nobody who reads a device waits for an answer.
-pub struct Mover {
+pub struct CanvasMover {
     controls: Option<SyncSender<ControlSample>>,
     stop: Arc<AtomicBool>,
     thread: Option<JoinHandle<()>>,
 }
 
-impl Mover {
+impl CanvasMover {
     /// A mover of the canvas of a rig.
     ///
     /// # Errors
@@ -96,14 +96,14 @@ impl Mover {
     }
 
     /// Takes in a sample; one that finds no room is followed by the next.
-    pub fn hear(&self, control: &ControlSample) {
+    pub fn receive(&self, control: &ControlSample) {
         if let Some(controls) = &self.controls {
             controls.try_send(control.clone()).ok();
         }
     }
 }
 
-impl Drop for Mover {
+impl Drop for CanvasMover {
     fn drop(&mut self) {
         self.stop.store(true, Ordering::SeqCst);
         self.controls = None;
@@ -113,15 +113,15 @@ impl Drop for Mover {
     }
 }
 
-impl std::fmt::Debug for Mover {
+impl std::fmt::Debug for CanvasMover {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.debug_struct("Mover").finish_non_exhaustive()
+        f.debug_struct("CanvasMover").finish_non_exhaustive()
     }
 }
 
 /// Follows the hand until nobody can push any more; `shown` is where the canvas has newly been seen.
 fn follow(
-    heard: &Ear<ControlSample>,
+    heard: &Samples<ControlSample>,
     mut shown: impl FnMut() -> Option<Lie>,
     mut send: impl FnMut(Command) -> Result<(), Fault>,
 ) {

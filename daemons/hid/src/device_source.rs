@@ -1,23 +1,22 @@
-//! Where reports come from: a device that is plugged in. Above this decoding begins, below it hidapi ends,
-//! so tests stand a device of their own here.
+//! Interface to plugged-in devices, above hidapi and below decoding; tests put a fake device here.
 
 use std::fmt;
 use std::time::Duration;
 
 use maulstick_rig::Fault;
 
-/// What a HID device says that it is.
+/// Identity of a HID device.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Identity {
     /// 3 USB, 5 Bluetooth, as in Linux's `input.h`.
     pub bus: u16,
-    /// Of its maker.
+    /// USB number of the maker.
     pub vendor: u16,
-    /// Of its kind.
+    /// USB number of the product.
     pub product: u16,
-    /// In words.
+    /// Product name.
     pub name: String,
-    /// Its path below /dev, or where a recorded one was plugged in.
+    /// Path below /dev, or the port of a recorded device.
     pub place: String,
 }
 
@@ -31,41 +30,41 @@ impl fmt::Display for Identity {
     }
 }
 
-/// A device that is open.
+/// An open device.
 pub trait HidSource: Send {
-    /// Its report descriptor.
+    /// Report descriptor.
     fn descriptor(&self) -> &[u8];
-    /// Waits at most `limit` for a report; how many bytes of `report` it has, 0 where none came.
+    /// Waits at most `limit` for a report; returns its length in `report`, bytes, or 0 if none came.
     ///
     /// # Errors
-    /// A [`Fault`] where the device is gone.
+    /// [`Fault`] if the device is gone.
     fn read(&mut self, report: &mut [u8], limit: Duration) -> Result<usize, Fault>;
     /// Sends a report to the device, its number first.
     ///
     /// # Errors
-    /// A [`Fault`] where it does not take it.
+    /// [`Fault`] if the device refuses it.
     fn write(&mut self, report: &[u8]) -> Result<(), Fault>;
 }
 
 /// A device that is plugged in.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Found {
-    /// What it is.
+    /// Identity of the device.
     pub identity: Identity,
-    /// Pages and numbers of the usages of its collections, which anyone may read.
+    /// Usage pages and usages of its collections, which need no permission to read.
     pub usages: Vec<(u16, u16)>,
 }
 
-/// Where devices are plugged in.
+/// The ports of the machine.
 pub trait Ports: Send {
-    /// What is there now.
+    /// Lists the devices that are plugged in.
     ///
     /// # Errors
-    /// A [`Fault`] where the system does not say.
+    /// [`Fault`] if the system cannot list them.
     fn list(&mut self) -> Result<Vec<Found>, Fault>;
     /// Opens a device.
     ///
     /// # Errors
-    /// A [`Fault`] that says why it cannot be opened, and what to do.
+    /// [`Fault`] with the reason and the remedy.
     fn open(&mut self, found: &Found) -> Result<Box<dyn HidSource>, Fault>;
 }

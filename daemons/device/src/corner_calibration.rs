@@ -20,7 +20,7 @@ pub enum Touch {
 
 /// A sample of the hand.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Seen {
+pub struct HandSample {
     /// Where it is, device frame, m.
     pub point: DVec3,
     /// Where its handle points, away from the canvas, device frame; none where that is not sensed.
@@ -33,9 +33,9 @@ pub struct Seen {
 
 /// What is seen of the hand at a time.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Glimpse {
+pub enum HandReading {
     /// Where it is.
-    Seen(Seen),
+    Sample(HandSample),
     /// It is out of range, or the device says nothing.
     Away,
 }
@@ -74,19 +74,19 @@ pub enum Progress {
     /// A corner: the mean of where the hand was, m.
     Found(Corner, DVec3),
     /// A touch that is none.
-    Refused(Refusal),
+    Rejected(TouchRejection),
 }
 
 /// Why a touch is none.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Refusal {
+pub enum TouchRejection {
     /// The hand moved in it.
     Moved,
     /// It is where another corner is.
     SamePlace,
 }
 
-impl std::fmt::Display for Refusal {
+impl std::fmt::Display for TouchRejection {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         f.write_str(match self {
             Self::Moved => "the hand moved; touch the corner again and keep still",
@@ -99,7 +99,7 @@ impl std::fmt::Display for Refusal {
 const STILL_M: f64 = 1e-3;
 /// It keeps still for so long, s.
 const STILL_S: f64 = 1.0;
-/// Corners are at least as far apart, and a hand has moved that has gone so far, m.
+/// CornerCalibration are at least as far apart, and a hand has moved that has gone so far, m.
 const APART_M: f64 = 5e-3;
 /// Samples that are farther apart are not of one touch, s.
 const GAP_S: f64 = 0.25;
@@ -118,23 +118,23 @@ struct Stay {
 }
 
 impl Stay {
-    fn at(seen: &Seen) -> Self {
+    fn at(sample: &HandSample) -> Self {
         Self {
-            first: seen.point,
-            sum: seen.point,
-            handle: seen.handle.unwrap_or_default(),
+            first: sample.point,
+            sum: sample.point,
+            handle: sample.handle.unwrap_or_default(),
             count: 1.0,
-            since_s: seen.time_s,
-            last_s: seen.time_s,
+            since_s: sample.time_s,
+            last_s: sample.time_s,
             moved: false,
         }
     }
 
-    fn add(&mut self, seen: &Seen) {
-        self.moved |= seen.point.distance(self.first) > STILL_M;
-        self.sum += seen.point;
+    fn add(&mut self, sample: &HandSample) {
+        self.moved |= sample.point.distance(self.first) > STILL_M;
+        self.sum += sample.point;
         self.count += 1.0;
-        self.last_s = seen.time_s;
+        self.last_s = sample.time_s;
     }
 
     fn mean(&self) -> DVec3 {
@@ -144,7 +144,7 @@ impl Stay {
 
 /// Follows a hand to the three corners.
 #[derive(Clone, Copy, Debug)]
-pub struct Corners {
+pub struct CornerCalibration {
     found: [DVec3; 3],
     /// Sum over the found corners of where the handle pointed.
     handle: DVec3,
@@ -156,13 +156,13 @@ pub struct Corners {
     begun: bool,
 }
 
-impl Default for Corners {
+impl Default for CornerCalibration {
     fn default() -> Self {
         Self::new()
     }
 }
 
-impl Corners {
+impl CornerCalibration {
     /// None is found.
     #[must_use]
     pub fn new() -> Self {
@@ -201,59 +201,59 @@ impl Corners {
     }
 
     /// Takes in a sample. One that is no number, or is not after the one before, ends what the hand began.
-    pub fn see(&mut self, seen: &Seen) -> Progress {
+    pub fn see(&mut self, sample: &HandSample) -> Progress {
         let Some(corner) = self.wanted() else {
             return Progress::Going;
         };
-        if !seen.point.is_finite() || !seen.time_s.is_finite() {
+        if !sample.point.is_finite() || !sample.time_s.is_finite() {
             self.lose();
             return Progress::Going;
         }
         if !self.begun {
-            (self.start, self.begun) = (Some(seen.point), true);
+            (self.start, self.begun) = (Some(sample.point), true);
         }
         if self
             .start
-            .is_some_and(|start| start.distance(seen.point) > APART_M)
+            .is_some_and(|start| start.distance(sample.point) > APART_M)
         {
             self.start = None;
         }
         let goes_on = self.stay.is_some_and(|stay| {
-            let passed_s = seen.time_s - stay.last_s;
+            let passed_s = sample.time_s - stay.last_s;
             (0.0..=GAP_S).contains(&passed_s)
         });
-        let ended = self.touch == Touch::Down && seen.touch != Touch::Down;
+        let ended = self.touch == Touch::Down && sample.touch != Touch::Down;
         let touched = self.stay.take().filter(|_| goes_on);
-        if self.touch != seen.touch {
-            self.touch = seen.touch;
-            self.stay = (seen.touch != Touch::Up).then(|| Stay::at(seen));
+        if self.touch != sample.touch {
+            self.touch = sample.touch;
+            self.stay = (sample.touch != Touch::Up).then(|| Stay::at(sample));
             return match touched.filter(|_| ended) {
                 Some(stay) => self.judge(corner, &stay),
                 None => Progress::Going,
             };
         }
-        match seen.touch {
+        match sample.touch {
             Touch::Up => {}
             Touch::Down => {
                 // A touch that was out of sight for a while is judged by none of its parts.
                 self.stay = touched;
                 if let Some(stay) = &mut self.stay {
-                    stay.add(seen);
+                    stay.add(sample);
                 }
             }
-            Touch::Unknown => return self.wait(corner, touched, seen),
+            Touch::Unknown => return self.wait(corner, touched, sample),
         }
         Progress::Going
     }
 
     /// A hand that cannot say that it touches.
-    fn wait(&mut self, corner: Corner, stay: Option<Stay>, seen: &Seen) -> Progress {
-        let mut stay = stay.unwrap_or_else(|| Stay::at(seen));
-        stay.add(seen);
+    fn wait(&mut self, corner: Corner, stay: Option<Stay>, sample: &HandSample) -> Progress {
+        let mut stay = stay.unwrap_or_else(|| Stay::at(sample));
+        stay.add(sample);
         if stay.moved {
-            stay = Stay::at(seen);
+            stay = Stay::at(sample);
         }
-        let still = seen.time_s - stay.since_s >= STILL_S;
+        let still = sample.time_s - stay.since_s >= STILL_S;
         if still && self.start.is_none() && self.is_apart(stay.mean()) {
             return self.find(corner, &stay);
         }
@@ -264,11 +264,11 @@ impl Corners {
     /// A touch that has ended.
     fn judge(&mut self, corner: Corner, stay: &Stay) -> Progress {
         if stay.moved {
-            return Progress::Refused(Refusal::Moved);
+            return Progress::Rejected(TouchRejection::Moved);
         }
         match self.is_apart(stay.mean()) {
             true => self.find(corner, stay),
-            false => Progress::Refused(Refusal::SamePlace),
+            false => Progress::Rejected(TouchRejection::SamePlace),
         }
     }
 
@@ -303,7 +303,7 @@ mod tests {
 
     /// A hand that comes by places at 1 kHz, with a tremor of 10 Hz.
     struct Hand {
-        corners: Corners,
+        corners: CornerCalibration,
         time_s: f64,
         at: DVec3,
         tremor_m: f64,
@@ -313,7 +313,7 @@ mod tests {
     impl Hand {
         fn new(tremor_m: f64) -> Self {
             Self {
-                corners: Corners::new(),
+                corners: CornerCalibration::new(),
                 time_s: 0.0,
                 at: REST,
                 tremor_m,
@@ -324,13 +324,13 @@ mod tests {
         fn sample(&mut self, point: DVec3, touch: Touch) {
             self.time_s += 1e-3;
             let shake = self.tremor_m * sin(2.0 * std::f64::consts::PI * 10.0 * self.time_s);
-            let seen = Seen {
+            let sample = HandSample {
                 point: point + DVec3::new(shake, 0.0, -shake),
                 handle: Some(DVec3::Z),
                 touch,
                 time_s: self.time_s,
             };
-            match self.corners.see(&seen) {
+            match self.corners.see(&sample) {
                 Progress::Going => {}
                 told => self.told.push(told),
             }
@@ -395,7 +395,7 @@ mod tests {
         hand.go(PLACES[0] + DVec3::X * 0.003, 0.5, Touch::Up);
         hand.go(PLACES[0], 0.2, Touch::Down);
         hand.stay(0.1, Touch::Up);
-        assert_eq!(hand.told, [Progress::Refused(Refusal::Moved)]);
+        assert_eq!(hand.told, [Progress::Rejected(TouchRejection::Moved)]);
         hand.stay(0.2, Touch::Down);
         hand.stay(0.1, Touch::Up);
         hand.stay(0.2, Touch::Down);
@@ -405,7 +405,7 @@ mod tests {
                 hand.told[1..],
                 [
                     Progress::Found(Corner::LowerLeft, _),
-                    Progress::Refused(Refusal::SamePlace)
+                    Progress::Rejected(TouchRejection::SamePlace)
                 ]
             ),
             "{:?}",
@@ -463,7 +463,7 @@ mod tests {
             steps in prop::collection::vec(
                 (0u8..8, 0u8..3, -0.1..0.1f64, -0.5..2.0f64, 1u8..20), 1..40),
         ) {
-            let mut corners = Corners::new();
+            let mut corners = CornerCalibration::new();
             let (mut at, mut time_s) = (DVec3::ZERO, 0.0);
             for (kind, touch, by, passed_s, times) in steps {
                 match kind {
@@ -477,7 +477,7 @@ mod tests {
                 let touch = [Touch::Down, Touch::Up, Touch::Unknown][usize::from(touch)];
                 for _ in 0..times {
                     time_s += if kind == 5 { passed_s } else { 0.1 };
-                    corners.see(&Seen { point: at, handle: None, touch, time_s });
+                    corners.see(&HandSample { point: at, handle: None, touch, time_s });
                 }
             }
             if let Some(found) = corners.all() {

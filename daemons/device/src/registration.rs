@@ -12,7 +12,7 @@ use maulstick_rig::config::{CanvasSection, DeviceSection};
 
 /// Desk lengths per device length that a device may have.
 const SCALES: std::ops::RangeInclusive<f64> = 0.05..=20.0;
-/// Corners that a hand has touched are those of the canvas within this: of the ratio of its sides,
+/// CornerCalibration that a hand has touched are those of the canvas within this: of the ratio of its sides,
 /// and of the sine of the angle that is too much between them.
 pub const TOLERANCE: f64 = 0.1;
 
@@ -71,7 +71,7 @@ impl Similarity {
 
 /// How well three places are three corners of the canvas.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Match {
+pub struct CornerFit {
     /// Width by height of the places, by that of the canvas: 1 where they fit.
     pub ratio: f64,
     /// Angle at the lower left corner, rad: a right one where they fit.
@@ -80,7 +80,7 @@ pub struct Match {
     pub off_m: f64,
 }
 
-impl Match {
+impl CornerFit {
     /// Whether they fit within [`TOLERANCE`].
     #[must_use]
     pub fn is_good(&self) -> bool {
@@ -90,7 +90,7 @@ impl Match {
     }
 }
 
-impl std::fmt::Display for Match {
+impl std::fmt::Display for CornerFit {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         write!(
             f,
@@ -103,16 +103,16 @@ impl std::fmt::Display for Match {
 
 /// A device on the desk.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Fitting {
+pub struct Registration {
     /// Device frame to desk frame.
     pub to_desk: Similarity,
     /// From the point that it senses to where head and ferrule meet, brush frame, m of the device.
     pub ferrule_m: DVec3,
     /// How well its corners fit the canvas, where it has any.
-    pub corners: Option<Match>,
+    pub corners: Option<CornerFit>,
 }
 
-impl Fitting {
+impl Registration {
     /// A device that is its own desk.
     pub const IDENTITY: Self = Self {
         to_desk: Similarity::IDENTITY,
@@ -197,7 +197,7 @@ pub fn check_side(places: &[DVec3; 3], handle: DVec3) -> Result<(), Fault> {
 ///
 /// # Errors
 /// A [`Fault`] for places that span no plane, or that differ from the canvas in size too much.
-pub fn by_corners(places: &[DVec3; 3], size: DVec2) -> Result<(Similarity, Match), Fault> {
+pub fn by_corners(places: &[DVec3; 3], size: DVec2) -> Result<(Similarity, CornerFit), Fault> {
     let again = "touch them again: `maulstick calibrate`";
     let (right, up) = (places[1] - places[0], places[2] - places[0]);
     let normal = right.cross(up);
@@ -242,7 +242,7 @@ pub fn by_corners(places: &[DVec3; 3], size: DVec2) -> Result<(Similarity, Match
         .iter()
         .zip(corners)
         .map(|(place, corner)| (to_desk.point(*place) - corner.extend(0.0)).length());
-    let fit = Match {
+    let fit = CornerFit {
         ratio: right.length() / up.length() * (size.y / size.x),
         angle_rad: right.angle_between(up),
         off_m: off.fold(0.0, f64::max),
@@ -341,7 +341,9 @@ mod tests {
                 height_mm: 192.0,
                 ..CanvasSection::default()
             };
-            Fitting::of(&device, &canvas).expect("a plane").warning()
+            Registration::of(&device, &canvas)
+                .expect("a plane")
+                .warning()
         };
         assert_eq!(warning(corners()), None);
         let moved = |which: usize, by: DVec3| {
@@ -380,12 +382,13 @@ mod tests {
     fn without_corners_position_orientation_and_scale_say_it() {
         let mut device = DeviceSection::new("arm", "polhem", "main");
         let canvas = CanvasSection::default();
-        let fitting = |device: &DeviceSection| Fitting::of(device, &canvas).expect("a fitting");
-        assert_eq!(fitting(&device).to_desk, Similarity::IDENTITY);
+        let registration =
+            |device: &DeviceSection| Registration::of(device, &canvas).expect("a registration");
+        assert_eq!(registration(&device).to_desk, Similarity::IDENTITY);
         device.position_m = [0.1, 0.0, -0.2];
         device.scale = Some(2.0);
         device.ferrule_m = [0.0, 0.0, -0.05];
-        let found = fitting(&device);
+        let found = registration(&device);
         assert_eq!(found.to_desk.point(DVec3::X), DVec3::new(2.1, 0.0, -0.2));
         assert_eq!((found.ferrule_m.z, found.corners), (-0.05, None));
     }

@@ -7,7 +7,7 @@ use maulstick_types::stylus::StylusStatus;
 const LONGEST: usize = 2048;
 
 /// Says why there is no device called `name`, in the log once and in the status for as long as it holds.
-pub fn miss(name: &str, fault: &Fault, told: &mut StylusStatus) {
+pub fn report_missing(name: &str, fault: &Fault, told: &mut StylusStatus) {
     let place = fault.place.as_ref().map(|place| format!(" ({place})"));
     let mut trouble = format!("{}{}", fault.what, place.unwrap_or_default());
     if let Some(help) = &fault.help {
@@ -30,9 +30,9 @@ mod tests {
         let fault = Fault::failure("no pen")
             .at("/dev/hidraw0")
             .help("plug it in");
-        miss("tablet", &fault, &mut told);
+        report_missing("tablet", &fault, &mut told);
         assert_eq!(told.trouble, "no pen (/dev/hidraw0); plug it in");
-        miss("tablet", &Fault::failure("ä".repeat(5000)), &mut told);
+        report_missing("tablet", &Fault::failure("ä".repeat(5000)), &mut told);
         assert_eq!(told.trouble.len(), LONGEST);
     }
 }

@@ -1,11 +1,11 @@
-//! A 6-DOF mouse on the bus.
+//! A 6-DOF mouse on the bus: its samples, the canvas that it moves, its switches.
 
 use std::sync::Arc;
 
 use maulstick_bus::typed::Sender;
 use maulstick_bus::{Bus, BusError, Class};
 use maulstick_device::actions::{Actions, Actor};
-use maulstick_device::mover::Mover;
+use maulstick_device::canvas_mover::CanvasMover;
 use maulstick_rig::Fault;
 use maulstick_rig::config::DeviceSection;
 use maulstick_types::Origin;
@@ -15,30 +15,31 @@ use maulstick_types::topics::Topics;
 
 use crate::spacemouse::{SILENCE_NS, SpaceMouse};
 
-/// A mouse that comes to rest by itself is told of this often, ns.
+/// Time between two samples of a mouse that comes to rest by itself, ns.
 const DECAY_STEP_NS: u64 = 10_000_000;
-/// What a mouse does is told of again after this time, ns: a sample may be lost, and it may be the last.
+/// Time after which the newest sample is repeated, ns: it may have been lost, and may be the last.
 const REPEAT_NS: u64 = 100_000_000;
 
 /// Reports a second of most mice while they are pushed.
 const RATE_HZ: f64 = 125.0;
 
 /// A mouse, from its reports to its samples.
-pub struct FreeHand {
+pub struct SpaceMouseNode {
     mouse: Option<SpaceMouse>,
     samples: Sender<ControlSample>,
     info: Sender<StylusInfo>,
     /// Moves the canvas.
-    mover: Mover,
-    /// Does what its switches ask for.
+    mover: CanvasMover,
+    /// Performs the actions of its switches.
     actor: Actor,
-    /// When it was last told of, and when it last reported, ns.
-    told_ns: u64,
-    heard_ns: u64,
+    /// Time of the newest sample, ns.
+    sent_ns: u64,
+    /// Time of the newest report, ns.
+    reported_ns: u64,
     sent: u64,
 }
 
-impl FreeHand {
+impl SpaceMouseNode {
     /// The mouse of a section.
     ///
     /// # Errors
@@ -59,15 +60,15 @@ impl FreeHand {
                 Class::Cached,
                 origin,
             )?,
-            mover: Mover::start(bus, topics)?,
+            mover: CanvasMover::start(bus, topics)?,
             actor: Actor::start(Arc::clone(bus), topics, &device.brush, actions)?,
-            told_ns: 0,
-            heard_ns: 0,
+            sent_ns: 0,
+            reported_ns: 0,
             sent: 0,
         })
     }
 
-    /// A mouse is there.
+    /// Begins with a mouse that was opened.
     ///
     /// # Errors
     /// [`BusError`].
@@ -78,8 +79,8 @@ impl FreeHand {
         now_ns: u64,
     ) -> Result<(), BusError> {
         self.mouse = Some(mouse);
-        // It is no stylus, but is listed with them.
-        let told = StylusInfo {
+        // Not a stylus, but listed with them.
+        let info = StylusInfo {
             device: device.name.clone(),
             driver: device.driver.clone(),
             brush: device.brush.clone(),
@@ -91,10 +92,10 @@ impl FreeHand {
             max_stiffness_n_m: 0.0,
             workspace_m: [0.0; 6],
         };
-        self.info.send(now_ns, now_ns, &told)
+        self.info.send(now_ns, now_ns, &info)
     }
 
-    /// A report of time `event_ns`.
+    /// Takes in a report of time `event_ns`.
     ///
     /// # Errors
     /// [`BusError`].
@@ -103,71 +104,71 @@ impl FreeHand {
         if !mouse.is_some_and(|mouse| mouse.follow(report, event_ns)) {
             return Ok(());
         }
-        self.heard_ns = event_ns;
-        self.tell(event_ns, now_ns)
+        self.reported_ns = event_ns;
+        self.publish(event_ns, now_ns)
     }
 
-    /// Nothing came until `until_ns`.
+    /// Advances to `until_ns` without a report.
     ///
     /// # Errors
     /// [`BusError`].
     pub fn silent(&mut self, until_ns: u64, now_ns: u64) -> Result<(), BusError> {
         match self.due_ns() {
-            Some(due_ns) if due_ns <= until_ns => self.tell(until_ns, now_ns),
+            Some(due_ns) if due_ns <= until_ns => self.publish(until_ns, now_ns),
             _ => Ok(()),
         }
     }
 
-    /// The mouse is gone: nobody pushes it.
+    /// Ends with a mouse that is gone: it is not pushed any more.
     ///
     /// # Errors
     /// [`BusError`].
     pub fn end(&mut self, event_ns: u64, now_ns: u64) -> Result<(), BusError> {
         if let Some(mouse) = &mut self.mouse {
             mouse.leave();
-            self.tell(event_ns, now_ns)?;
+            self.publish(event_ns, now_ns)?;
         }
         self.mouse = None;
         Ok(())
     }
 
-    /// When to tell of it again, ns.
+    /// Time of the next sample, ns.
     #[must_use]
     pub fn due_ns(&self) -> Option<u64> {
         let mouse = self.mouse.as_ref()?;
-        let again_ns = self.told_ns + REPEAT_NS;
+        let again_ns = self.sent_ns + REPEAT_NS;
         Some(match mouse.is_deflected() {
             true => {
-                let decay_ns = (self.heard_ns + SILENCE_NS).max(self.told_ns) + DECAY_STEP_NS;
+                let decay_ns = (self.reported_ns + SILENCE_NS).max(self.sent_ns) + DECAY_STEP_NS;
                 again_ns.min(decay_ns)
             }
             false => again_ns,
         })
     }
 
-    /// Samples sent.
+    /// Number of samples sent.
     #[must_use]
     pub fn sent(&self) -> u64 {
         self.sent
     }
 
-    fn tell(&mut self, event_ns: u64, now_ns: u64) -> Result<(), BusError> {
+    fn publish(&mut self, event_ns: u64, now_ns: u64) -> Result<(), BusError> {
         let Some(mouse) = &mut self.mouse else {
             return Ok(());
         };
         let sample = mouse.sample(event_ns);
         self.samples.send(now_ns, event_ns, &sample)?;
-        self.mover.hear(&sample);
+        self.mover.receive(&sample);
         self.actor.press(sample.switches);
-        self.told_ns = event_ns;
+        self.sent_ns = event_ns;
         self.sent += 1;
         Ok(())
     }
 }
 
-impl std::fmt::Debug for FreeHand {
+impl std::fmt::Debug for SpaceMouseNode {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.debug_struct("FreeHand")
+        f.debug_struct("SpaceMouseNode")
             .field("mouse", &self.mouse)
             .field("sent", &self.sent)
             .finish_non_exhaustive()

@@ -1,26 +1,26 @@
-//! A pen in a hand that shows something: it is read, and there is no rig.
+//! Reads a pen without a rig, for calibration.
 
 use std::ops::ControlFlow;
 use std::time::{Duration, Instant};
 
 use glam::DVec3;
-use maulstick_device::corners::{Glimpse, Seen, Touch};
+use maulstick_device::corner_calibration::{HandReading, HandSample, Touch};
 use maulstick_rig::Fault;
 use maulstick_rig::config::DeviceSection;
 
+use crate::device_source::{HidSource, Identity, Ports};
 use crate::open::{self, Address, Decoder, Kind, Means};
 use crate::pen::{Pen, Presence, Reading};
 use crate::recording::{self, Event, LONGEST_REPORT};
-use crate::source::{HidSource, Identity, Ports};
 
-/// A pen that says nothing is looked at again after this: nothing has changed.
+/// Time without a report after which the last reading is repeated.
 const SILENCE: Duration = Duration::from_millis(50);
 /// The same of a recording, ns.
 const SILENCE_NS: u64 = 50_000_000;
 
-/// A pen that is open, or a recording of one.
-pub struct Shown {
-    /// What it is, in words.
+/// An open pen, or a recording of one.
+pub struct ProbedPen {
+    /// Description for the log.
     pub what: String,
     decoder: Decoder,
     reports: Reports,
@@ -34,12 +34,12 @@ enum Reports {
 /// Opens the pen of a section of `rig.toml`, or the recording that is played in its place.
 ///
 /// # Errors
-/// A [`Fault`] where it is not there, may not be read, or is no pen.
-pub fn open(ports: &mut dyn Ports, device: &DeviceSection) -> Result<Shown, Fault> {
+/// [`Fault`] if it is missing, may not be read, or is not a pen.
+pub fn open(ports: &mut dyn Ports, device: &DeviceSection) -> Result<ProbedPen, Fault> {
     let pen = |identity: &Identity, means: Means, reports| {
-        let what = open::told(identity, &means);
+        let what = open::description(identity, &means);
         match means {
-            Means::Pen(decoder) => Ok(Shown {
+            Means::Pen(decoder) => Ok(ProbedPen {
                 what,
                 decoder,
                 reports,
@@ -62,12 +62,12 @@ pub fn open(ports: &mut dyn Ports, device: &DeviceSection) -> Result<Shown, Faul
     pen(&recorded.identity, means, Reports::Played(recorded.events))
 }
 
-impl Shown {
-    /// Hands on what is seen of the pen, in the tablet's frame, until `look` breaks off.
+impl ProbedPen {
+    /// Hands the pen's readings, in the tablet's frame, to `look` until that breaks off.
     ///
     /// # Errors
-    /// A [`Fault`] where the tablet is lost, or the recording ends before.
-    pub fn watch(self, mut look: impl FnMut(Glimpse) -> ControlFlow<()>) -> Result<(), Fault> {
+    /// [`Fault`] if the tablet is lost or the recording ends before.
+    pub fn probe(self, mut look: impl FnMut(HandReading) -> ControlFlow<()>) -> Result<(), Fault> {
         let Self {
             mut decoder,
             reports,
@@ -84,8 +84,8 @@ impl Shown {
             if readings.is_empty() {
                 readings.push(*pen.newest());
             }
-            let mut glimpses = readings.iter().map(|reading| glimpse(reading, time_s));
-            glimpses.try_for_each(&mut look)
+            let mut seen = readings.iter().map(|reading| hand_reading(reading, time_s));
+            seen.try_for_each(&mut look)
         };
         match reports {
             Reports::Played(events) => {
@@ -121,14 +121,14 @@ impl Shown {
     }
 }
 
-fn glimpse(reading: &Reading, time_s: f64) -> Glimpse {
+fn hand_reading(reading: &Reading, time_s: f64) -> HandReading {
     let touch = match reading.presence {
-        Presence::Away => return Glimpse::Away,
+        Presence::Away => return HandReading::Away,
         Presence::Hovering => Touch::Up,
         Presence::Touching => Touch::Down,
     };
     let [x, y] = reading.point_m;
-    Glimpse::Seen(Seen {
+    HandReading::Sample(HandSample {
         point: DVec3::new(x, y, 0.0),
         handle: Some(DVec3::Z),
         touch,
@@ -136,9 +136,9 @@ fn glimpse(reading: &Reading, time_s: f64) -> Glimpse {
     })
 }
 
-impl std::fmt::Debug for Shown {
+impl std::fmt::Debug for ProbedPen {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.debug_struct("Shown")
+        f.debug_struct("ProbedPen")
             .field("what", &self.what)
             .finish_non_exhaustive()
     }

@@ -32,7 +32,7 @@ const KINDS: [(&str, &str); 7] = [
 
 /// What a take is painted with.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
-pub struct Kit {
+pub struct TakeSetup {
     /// Name of the settings among the files: a `rig.toml` whose paths are names of other ones.
     pub settings: String,
     /// What each stroke loads, in turn.
@@ -41,7 +41,7 @@ pub struct Kit {
     pub files: BTreeMap<String, Vec<u8>>,
 }
 
-impl Kit {
+impl TakeSetup {
     /// Takes a file in; its name, which is returned, ends in one of [`KINDS`].
     pub fn add(&mut self, bytes: Vec<u8>, extension: &str) -> String {
         let name = name_of(&bytes, extension);
@@ -54,7 +54,7 @@ impl Kit {
     /// # Errors
     /// What is wrong with it, in words.
     pub(crate) fn read(records: &[Found<'_>]) -> Result<Option<Self>, String> {
-        let mut kit = Self::default();
+        let mut setup = Self::default();
         let mut stated = None;
         for found in records {
             if ![op::ATTACHMENT, op::METADATA].contains(&found.opcode) {
@@ -68,7 +68,7 @@ impl Kit {
                     let kind = header.name.split_once('.').map_or("", |(_, kind)| kind);
                     let known = KINDS.iter().any(|(known, _)| *known == kind);
                     if known && header.name == name_of(&data, kind) {
-                        kit.files.insert(header.name, data.into_owned());
+                        setup.files.insert(header.name, data.into_owned());
                     }
                 }
                 Some(Ok(Record::Metadata(metadata))) if metadata.name == RECORD => {
@@ -82,14 +82,14 @@ impl Kit {
             return Ok(None);
         };
         let settings = stated.metadata.get(SETTINGS);
-        let settings = settings.filter(|name| kit.files.contains_key(*name));
-        kit.settings = settings
+        let settings = settings.filter(|name| setup.files.contains_key(*name));
+        setup.settings = settings
             .ok_or("the settings that it embeds are missing, or not what they were")?
             .clone();
         let loads = stated.metadata.iter();
         let loads = loads.filter(|(key, _)| key.starts_with(LOAD));
-        kit.loads = loads.map(|(_, load)| load.clone()).collect();
-        Ok(Some(kit))
+        setup.loads = loads.map(|(_, load)| load.clone()).collect();
+        Ok(Some(setup))
     }
 
     pub(crate) fn write<W: Write + Seek>(

@@ -1,4 +1,4 @@
-//! Reports with their times, live or from a recording.
+//! Reports with their times, from a device or a recording.
 //!
 //! A live device is read on a thread of its own into a bounded queue, so that no stroke waits for the bus.
 //! A recording is played by the rig's clock, and its reports have the times at which they were recorded:
@@ -12,46 +12,46 @@ use std::time::Duration;
 use maulstick_bus::{Bus, Inbox, Queue, Wake};
 use maulstick_rig::Fault;
 
+use crate::device_source::HidSource;
 use crate::recording::{Event, LONGEST_REPORT};
-use crate::source::HidSource;
 
-/// Reports that wait for the daemon: seconds of the fastest tablet.
+/// Capacity of the queue to the daemon: seconds of the fastest tablet.
 const WAITING: usize = 8192;
-/// How long the thread waits for a report before it looks whether to end.
+/// Time that the thread waits for a report before it checks for its end.
 const LIMIT: Duration = Duration::from_millis(100);
 
-/// What a feed gives.
+/// Item of a report stream.
 #[derive(Debug)]
-pub enum Heard {
+pub enum StreamItem {
     /// A report, at a time of the rig's clock.
     Report(Event),
-    /// Nothing for now; the time at which there will be something, ns, where that is known.
+    /// Nothing for now; the time of the next report, ns, if that is known.
     Nothing(Option<u64>),
-    /// A recording is over.
+    /// End of a recording.
     Over,
-    /// The device is gone.
+    /// Loss of the device.
     Lost(Fault),
 }
 
-/// A device's reports in order.
+/// Reports of a device in order.
 #[derive(Debug)]
-pub enum Feed {
-    /// Of a device.
+pub enum ReportStream {
+    /// Of a device that is read now.
     Live(Live),
     /// Of a recording.
     Played(Played),
 }
 
-impl Feed {
-    /// The next report that is due.
-    pub fn hear(&mut self, now_ns: u64) -> Heard {
+impl ReportStream {
+    /// The next item that is due.
+    pub fn next(&mut self, now_ns: u64) -> StreamItem {
         match self {
-            Self::Live(live) => live.hear(),
-            Self::Played(played) => played.hear(now_ns),
+            Self::Live(live) => live.next(),
+            Self::Played(played) => played.next(now_ns),
         }
     }
 
-    /// Reports that did not fit into the queue.
+    /// Number of reports that did not fit into the queue.
     #[must_use]
     pub fn dropped(&self) -> u64 {
         match self {
@@ -61,7 +61,7 @@ impl Feed {
     }
 }
 
-/// A device that a thread reads.
+/// Reports of a device that a thread reads.
 #[derive(Debug)]
 pub struct Live {
     inbox: Inbox<Result<Event, Fault>>,
@@ -70,7 +70,7 @@ pub struct Live {
 }
 
 impl Live {
-    /// Starts to read a device; each report rings `wake` and has the bus's time of its reading.
+    /// Starts to read a device; each report rings `wake` and carries the bus's time of its reading.
     ///
     /// # Errors
     /// A [`Fault`] where the system has no thread for it.
@@ -82,10 +82,10 @@ impl Live {
         let inbox = Inbox::new(Queue::Bounded(WAITING), wake);
         let stop = Arc::new(AtomicBool::new(false));
         let (queue, ended) = (inbox.clone(), Arc::clone(&stop));
-        let read = move || {
+        let run = move || {
             let mut report = vec![0; LONGEST_REPORT];
             while !ended.load(Ordering::Relaxed) {
-                let heard = match source.read(&mut report, LIMIT) {
+                let read = match source.read(&mut report, LIMIT) {
                     Ok(0) => continue,
                     Ok(length) => Ok(Event {
                         time_ns: bus.now_ns(),
@@ -93,8 +93,8 @@ impl Live {
                     }),
                     Err(fault) => Err(fault),
                 };
-                let is_over = heard.is_err();
-                queue.push(heard);
+                let is_over = read.is_err();
+                queue.push(read);
                 if is_over {
                     return;
                 }
@@ -102,7 +102,7 @@ impl Live {
         };
         let thread = std::thread::Builder::new()
             .name("hid".into())
-            .spawn(read)
+            .spawn(run)
             .map_err(|error| Fault::failure(format!("the device has no thread: {error}")))?;
         Ok(Self {
             inbox,
@@ -111,19 +111,19 @@ impl Live {
         })
     }
 
-    fn hear(&mut self) -> Heard {
+    fn next(&mut self) -> StreamItem {
         match self.inbox.try_recv() {
-            Some(Ok(event)) => Heard::Report(event),
-            Some(Err(fault)) => Heard::Lost(fault),
-            // A queue that was full lost the thread's last word.
+            Some(Ok(event)) => StreamItem::Report(event),
+            Some(Err(fault)) => StreamItem::Lost(fault),
+            // A full queue lost the thread's last item.
             None if self.thread.as_ref().is_none_or(JoinHandle::is_finished)
                 && self.inbox.is_empty() =>
             {
-                Heard::Lost(
+                StreamItem::Lost(
                     Fault::failure("the device is not read any more").help("plug it in again"),
                 )
             }
-            None => Heard::Nothing(None),
+            None => StreamItem::Nothing(None),
         }
     }
 }
@@ -141,7 +141,7 @@ impl Drop for Live {
 #[derive(Debug)]
 pub struct Played {
     events: std::vec::IntoIter<Event>,
-    /// Recorded times are from here, rig clock, ns.
+    /// Origin of the recorded times, rig clock, ns.
     start_ns: u64,
 }
 
@@ -156,20 +156,20 @@ impl Played {
         }
     }
 
-    fn hear(&mut self, now_ns: u64) -> Heard {
+    fn next(&mut self, now_ns: u64) -> StreamItem {
         let Some(next) = self.events.as_slice().first() else {
-            return Heard::Over;
+            return StreamItem::Over;
         };
         let due_ns = self.start_ns + next.time_ns;
         if due_ns > now_ns {
-            return Heard::Nothing(Some(due_ns));
+            return StreamItem::Nothing(Some(due_ns));
         }
         match self.events.next() {
-            Some(event) => Heard::Report(Event {
+            Some(event) => StreamItem::Report(Event {
                 time_ns: due_ns,
                 ..event
             }),
-            None => Heard::Over,
+            None => StreamItem::Over,
         }
     }
 }
