@@ -1,4 +1,4 @@
-//! What the switches of a stylus do, and its eraser end.
+//! Actions of a stylus's switches and its eraser end.
 //!
 //! The device's own thread only tells edges; a thread beside it asks the paint node for what they mean,
 //! one after the other, however long that takes. The clutch is no command: the device itself lets go of
@@ -24,7 +24,7 @@ pub const SWITCHES: usize = 31;
 /// Edges that may wait for the paint node.
 const WAITING: usize = 32;
 
-/// What a switch does.
+/// Action of a switch.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Action {
     /// Nothing.
@@ -42,7 +42,7 @@ pub enum Action {
     Clean,
 }
 
-/// What each switch does.
+/// Action of each switch.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Actions([Action; SWITCHES]);
 

@@ -7,7 +7,7 @@
 
 use glam::DVec3;
 
-/// Whether the hand says that it is at a corner.
+/// Touch of the hand, as the device senses it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Touch {
     /// It does.
@@ -31,10 +31,10 @@ pub struct HandSample {
     pub time_s: f64,
 }
 
-/// What is seen of the hand at a time.
+/// Reading of the hand at a time.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum HandReading {
-    /// Where it is.
+    /// A sample.
     Sample(HandSample),
     /// It is out of range, or the device says nothing.
     Away,
@@ -66,18 +66,18 @@ impl std::fmt::Display for Corner {
     }
 }
 
-/// What a sample has brought.
+/// Progress by a sample.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Progress {
     /// Nothing yet.
     Going,
     /// A corner: the mean of where the hand was, m.
     Found(Corner, DVec3),
-    /// A touch that is none.
+    /// A rejected touch.
     Rejected(TouchRejection),
 }
 
-/// Why a touch is none.
+/// Reason why a touch was rejected.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum TouchRejection {
     /// The hand moved in it.
@@ -142,7 +142,7 @@ impl Stay {
     }
 }
 
-/// Follows a hand to the three corners.
+/// Calibration by the three corners that a hand touches.
 #[derive(Clone, Copy, Debug)]
 pub struct CornerCalibration {
     found: [DVec3; 3],

@@ -1,4 +1,4 @@
-//! What a daemon says of a device that is not there.
+//! Report of a device that is not there.
 
 use maulstick_rig::Fault;
 use maulstick_types::stylus::StylusStatus;
@@ -6,7 +6,7 @@ use maulstick_types::stylus::StylusStatus;
 /// A status has no room for more, bytes.
 const LONGEST: usize = 2048;
 
-/// Says why there is no device called `name`, in the log once and in the status for as long as it holds.
+/// Reports why the device `name` is missing, once in the log and in the status while it lasts.
 pub fn report_missing(name: &str, fault: &Fault, told: &mut StylusStatus) {
     let place = fault.place.as_ref().map(|place| format!(" ({place})"));
     let mut trouble = format!("{}{}", fault.what, place.unwrap_or_default());

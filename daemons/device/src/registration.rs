@@ -69,7 +69,7 @@ impl Similarity {
     }
 }
 
-/// How well three places are three corners of the canvas.
+/// Fit of three touched places to three corners of the canvas.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CornerFit {
     /// Width by height of the places, by that of the canvas: 1 where they fit.
@@ -101,7 +101,7 @@ impl std::fmt::Display for CornerFit {
     }
 }
 
-/// A device on the desk.
+/// Registration of a device to the desk.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Registration {
     /// Device frame to desk frame.

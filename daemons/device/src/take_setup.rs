@@ -1,4 +1,4 @@
-//! What a take is painted with, embedded in it: settings of the rig and the files they name, each under
+//! Setup embedded in a take: settings of the rig and the files they name, each under
 //! the hash of its bytes, so that it gives the same painting wherever it is played.
 //!
 //! In the MCAP file each of them is an attachment; the metadata record `maulstick.kit` names the
@@ -17,7 +17,7 @@ use crate::records::Found;
 const RECORD: &str = "maulstick.kit";
 /// Key of the settings' attachment in it.
 const SETTINGS: &str = "settings";
-/// What the keys of the loads begin with; four digits follow, so that they are in order.
+/// Prefix of the keys of the loads; four digits follow, so that they are in order.
 const LOAD: &str = "load.";
 /// Kinds of files, by the extension of their names.
 const KINDS: [(&str, &str); 7] = [
@@ -30,12 +30,12 @@ const KINDS: [(&str, &str); 7] = [
     ("tiff", "image/tiff"),
 ];
 
-/// What a take is painted with.
+/// Setup of a take.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct TakeSetup {
     /// Name of the settings among the files: a `rig.toml` whose paths are names of other ones.
     pub settings: String,
-    /// What each stroke loads, in turn.
+    /// Load of each stroke, in turn.
     pub loads: Vec<String>,
     /// Bytes by name: hash and extension.
     pub files: BTreeMap<String, Vec<u8>>,

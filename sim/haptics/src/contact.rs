@@ -7,10 +7,10 @@ use crate::force_law::{Law, Normal, Penetration};
 use crate::friction::{drag, friction, ramp};
 use crate::grain::Texture;
 
-/// The brush in the hand.
+/// State of the handle in the hand.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct HandleState {
-    /// Where head and ferrule meet, desk frame, m.
+    /// Position of the ferrule, desk frame, m.
     pub position: DVec3,
     /// Brush frame to desk frame.
     pub orientation: DQuat,
@@ -36,12 +36,12 @@ pub struct Contact {
     pub recovery_s: f64,
 }
 
-/// What a hand feels of a contact.
+/// Contact force on the handle.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct ContactForce {
-    /// The force on the hand, N.
+    /// Whole force on the hand, N.
     pub force: DVec3,
-    /// What of it depends on where the hand is alone, N: without friction and drag.
+    /// Part that depends on position alone, N: without friction and drag.
     pub conservative: DVec3,
     /// Depth of the undeformed point below the plane, m; negative above it.
     pub depth_m: f64,
@@ -110,7 +110,7 @@ impl Contact {
         handle.position + handle.orientation * DVec3::NEG_Z * self.head_length
     }
 
-    /// How the head meets the plane.
+    /// Penetration of the head into the plane.
     #[must_use]
     pub fn penetration(&self, handle: &HandleState) -> Penetration {
         let cosine = -(handle.orientation * DVec3::NEG_Z).dot(self.normal);
@@ -121,7 +121,7 @@ impl Contact {
         }
     }
 
-    /// What the hand feels; stiffness never exceeds `max_stiffness`, N/m.
+    /// The force on the handle; stiffness never exceeds `max_stiffness`, N/m.
     #[must_use]
     pub fn evaluate(&self, handle: &HandleState, max_stiffness: f64) -> ContactForce {
         let penetration = self.penetration(handle);

@@ -7,7 +7,7 @@
 //! | [`force_law`] | normal force by depth: eq. 8.1, the Hermite curve, a local force |
 //! | [`friction`], [`grain`] | what is felt across the normal |
 //! | [`contact`] | the force of one contact model at one pose |
-//! | [`recipient`] | whom a model is for |
+//! | [`recipient`] | the device, session and brush that accept a model |
 //! | [`servo`] | one tick: models, ageing, limits |
 //! | [`plant`] | a device and a hand that hold each other, for the simulated stylus and for tests |
 //! | [`stability_grid`] | hands, walls, rates and losses by the thousand: whether the servo is stable |

@@ -1,20 +1,20 @@
-//! Whom a model is for. Nobody else may feel it: another device stands elsewhere, a device that was
-//! started anew may be held otherwise, and another brush is another hand's.
+//! Recipient of a contact model: a model is accepted only by the device, session and brush it was
+//! computed for.
 
 use maulstick_types::Origin;
 use maulstick_types::haptics::ContactModel;
 
-/// A device as it is now, and its brush.
+/// A device in its current session, and its brush.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Recipient {
-    /// The device and its epoch, as in its samples.
+    /// Device and epoch, as in its samples.
     pub device: Origin,
-    /// Its brush as in `rig.toml`.
+    /// Name of its brush in `rig.toml`.
     pub brush: String,
 }
 
 impl Recipient {
-    /// Whether a model is for it.
+    /// True if a model is addressed to this recipient.
     #[must_use]
     pub fn accepts(&self, model: &ContactModel) -> bool {
         model.device == self.device.source

@@ -8,12 +8,13 @@
 //!
 //! | module | holds |
 //! | --- | --- |
-//! | [`limits`] | what a force may be |
-//! | [`fault`] | what latches the force at zero |
-//! | [`motor_thermal`] | the largest force by the motors' temperature |
-//! | [`persistent`] | what outlasts a servo |
+//! | [`limits`] | bounds of the force |
+//! | [`fault`] | faults that latch the force at zero |
+//! | [`motor_thermal`] | thermal model of the motors, which bounds the force |
+//! | [`persistent`] | state that survives the loss of the device |
 //! | [`passivity`] | the energy that sampling gives, taken back |
-//! | [`oscillation`] | a hand that shakes makes the force softer |
+//! | [`oscillation`] | detection of a shaking hand, which makes the force softer |
+//! | [`tick`] | input and report of a tick |
 
 pub mod fault;
 pub mod limits;
@@ -34,7 +35,7 @@ use self::persistent::ServoMemory;
 use self::tick::{Sender, Switch, Tick};
 use crate::contact::{Contact, ContactForce, HandleState};
 
-/// Whether force has begun. Given to a hand that is deep in the canvas it would push it out; so it
+/// Engagement of the force. Given to a hand that is deep in the canvas it would push it out; so it
 /// begins where the models ask for little, and a hand that stays deep feels nothing until it has
 /// come up.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -154,16 +155,16 @@ impl Servo {
 
     /// Makes all force weaker: a share from 0 to 1.
     pub fn set_strength(&mut self, share: f64) {
-        // A share that is no number is none.
+        // NaN counts as 0.
         self.strength = if share > 0.0 { share.min(1.0) } else { 0.0 };
     }
 
-    /// What the device says of its motors: 0 cold to 1 hot, the hottest of them.
+    /// Takes in the temperature of the hottest motor, 0 cold to 1 hot.
     pub fn measure(&mut self, temperature: f64) {
         self.thermal.measure(temperature);
     }
 
-    /// Nothing of what was felt holds any more.
+    /// Discards models and correction; the force engages anew.
     fn engage_anew(&mut self) {
         self.engagement = Engagement::Waiting(0);
         self.model = None;
@@ -173,13 +174,13 @@ impl Servo {
         self.passivity.forgive();
     }
 
-    /// What holds the force at zero, if something does.
+    /// Latched fault.
     #[must_use]
     pub fn fault(&self) -> Option<Fault> {
         self.fault
     }
 
-    /// What the next servo over the device is to know.
+    /// State for the next servo over the device.
     #[must_use]
     pub fn memory(&self) -> ServoMemory {
         let mut thermal = self.thermal;

@@ -1,4 +1,4 @@
-//! Normal force by depth: what each law of a contact model says, and how stiff it is there.
+//! Normal force and stiffness by depth, for each law of a contact model.
 //!
 //! | module | holds |
 //! | --- | --- |
@@ -16,7 +16,7 @@ use self::hermite::Curve;
 use self::linear::Linear;
 use self::local::Local;
 
-/// How a head meets the plane.
+/// Penetration of a head into the plane.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Penetration {
     /// d_p: depth of the undeformed point below the plane, m; negative above it.

@@ -1,5 +1,5 @@
-//! The largest force by the temperature of the motors: what they bear for a moment is several times
-//! what they bear for long.
+//! Thermal model of the motors, which bounds the force: motors bear several times their continuous force
+//! for a moment.
 //!
 //! The rule of the vendor's own example for Phantoms, by time instead of ticks: above .7 the largest
 //! force falls by a part in a thousand each millisecond, to the continuous one; below .5 it comes
@@ -18,12 +18,12 @@ const COOL: f64 = 0.5;
 /// How fast the largest force falls and comes back, by itself, 1/s.
 const RATE: f64 = 1.0;
 
-/// Where motors end up that give the continuous force for ever.
+/// Steady temperature at the continuous force.
 const STEADY: f64 = 0.6;
-/// Time in which they get there, s: of motors as small as a stylus's, at least.
+/// Time constant, s; a lower bound for motors as small as a stylus's.
 const WARMING_S: f64 = 60.0;
 
-/// The largest force as the motors warm.
+/// Thermal state of the motors, and the largest force.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct MotorThermal {
     temperature: f64,
@@ -42,7 +42,7 @@ impl MotorThermal {
         }
     }
 
-    /// What the device says: 0 cold to 1 hot, the hottest of its motors.
+    /// Takes in the temperature of the hottest motor, 0 cold to 1 hot.
     pub fn measure(&mut self, temperature: f64) {
         self.temperature = temperature;
     }
@@ -57,13 +57,13 @@ impl MotorThermal {
         self.reckoned += (STEADY * load * load - self.reckoned) * (dt / WARMING_S).clamp(0.0, 1.0);
     }
 
-    /// Whether what the device said is a number.
+    /// False if the device reported NaN or infinity.
     #[must_use]
     pub fn is_known(&self) -> bool {
         self.temperature.is_finite()
     }
 
-    /// What is known of the motors stays; a temperature that is no number is cold until the next.
+    /// Replaces a temperature that is not finite by 0, until the next report.
     pub fn forget_unknown(&mut self) {
         if !self.is_known() {
             self.temperature = 0.0;

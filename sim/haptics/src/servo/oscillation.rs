@@ -20,7 +20,7 @@ const SOFTEST: f64 = 0.15;
 /// How fast stiffness comes back to a still hand, 1/s.
 const RECOVERY: f64 = 0.02;
 
-/// Watches one hand.
+/// Detector of an oscillating hand.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Oscillation {
     /// Stiffness by that asked for.
@@ -97,7 +97,7 @@ impl Oscillation {
     }
 }
 
-/// Whether the head touches.
+/// Contact of the head.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Touch {
     /// It does.

@@ -1,20 +1,20 @@
-//! What outlasts a servo: a device that is lost and found again is no other device.
+//! Servo state that survives the loss of its device.
 
 use super::fault::Fault;
 use super::limits::Limits;
 use super::motor_thermal::MotorThermal;
 
-/// What the next servo over a device is to know of the one before.
+/// State that the next servo over a device takes over.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ServoMemory {
-    /// The fault that is latched.
+    /// Latched fault.
     pub fault: Option<Fault>,
-    /// How warm the motors are.
+    /// Thermal state of the motors.
     pub thermal: MotorThermal,
 }
 
 impl ServoMemory {
-    /// There was none before.
+    /// The state without an earlier servo.
     #[must_use]
     pub fn fresh(limits: Limits) -> Self {
         Self {
@@ -23,7 +23,7 @@ impl ServoMemory {
         }
     }
 
-    /// The motors have cooled for so long, s.
+    /// The state after the motors have cooled for `seconds`.
     #[must_use]
     pub fn cooled(mut self, seconds: f64) -> Self {
         self.thermal.warm(0.0, 1.0, seconds.max(0.0));

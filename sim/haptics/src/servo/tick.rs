@@ -2,14 +2,14 @@
 
 use super::fault::Fault;
 
-/// What happened in a tick.
+/// Report of a tick.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[expect(
     clippy::struct_excessive_bools,
     reason = "each may be so without the others"
 )]
 pub struct Tick {
-    /// Why the servo gives no force until it is re-armed.
+    /// Latched fault.
     pub fault: Option<Fault>,
     /// The tick took too long.
     pub late: bool,
@@ -33,12 +33,12 @@ pub struct Tick {
     pub stiffness_n_m: f64,
 }
 
-/// Who sent a model.
+/// Sender of a model, relative to the previous model.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Sender {
-    /// Who sent the model before.
+    /// The same sender.
     Same,
-    /// Another, or the same one started anew: the force engages anew.
+    /// Another sender, or the same one restarted: the force engages anew.
     Another,
 }
 

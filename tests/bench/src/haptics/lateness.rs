@@ -8,9 +8,9 @@ use std::time::{Duration, Instant};
 
 use maulstick_device::registration::Registration;
 use maulstick_haptic::MountedDevice;
-use maulstick_haptic::servo::servo_thread::ServoThread;
-use maulstick_haptic::servo::clock::MonotonicClock;
 use maulstick_haptic::drivers::simulated::Simulated;
+use maulstick_haptic::servo::clock::MonotonicClock;
+use maulstick_haptic::servo::servo_thread::ServoThread;
 use maulstick_haptics::Limits;
 use maulstick_rig::Fault;
 
@@ -84,7 +84,8 @@ pub(super) fn run(report: &mut Report) -> Result<(), Fault> {
 /// How late so many ticks of our servo are, and how it was scheduled.
 fn ours(ticks: u64) -> Result<(Histogram, Scheduling), Fault> {
     let device = MountedDevice::new(Box::new(Simulated::at_rest()), Registration::IDENTITY, 0);
-    let mut servo = ServoThread::start(device, Box::new(MonotonicClock), Limits::default()).map_err(fault)?;
+    let mut servo =
+        ServoThread::start(device, Box::new(MonotonicClock), Limits::default()).map_err(fault)?;
     let scheduling = match servo.warnings.iter().any(|what| what.contains("real-time")) {
         true => Scheduling::Other,
         false => Scheduling::Fifo,
