@@ -44,7 +44,7 @@ fn actor(net: &MemoryNet, live: &Live, brush: &str) -> Actor {
 }
 
 fn hold(actor: &mut Actor, switches: u32) {
-    actor.hear(&StylusSample {
+    actor.receive(&StylusSample {
         switches,
         in_range: true,
         ..StylusSample::away()
@@ -187,7 +187,7 @@ fn the_eraser_end_lifts_paint_off_while_it_is_near() {
     hold(&mut actor, switch::ERASER);
     rig.until_mode(&BrushMode::Vacuum);
     // Out of range it is not near.
-    actor.hear(&StylusSample {
+    actor.receive(&StylusSample {
         switches: switch::ERASER,
         ..StylusSample::away()
     });
