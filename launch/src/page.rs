@@ -3,7 +3,7 @@
 use ab_glyph::{Font as _, FontRef, PxScale, ScaleFont as _};
 use maulstick_paint::picture::Picture;
 use maulstick_rig::Fault;
-use maulstick_ui::portrait::Portrait;
+use maulstick_ui::render::brush::thumbnail::Portrait;
 
 /// Paper and ink, sRGB.
 const PAPER: [u8; 3] = [250, 248, 244];

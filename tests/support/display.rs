@@ -9,9 +9,9 @@ use maulstick_brush::palette_place::Side;
 use maulstick_bus::typed::Receiver;
 use maulstick_paint::PaintingSetup;
 use maulstick_types::stylus::StylusSample;
-use maulstick_ui::habits::Habits;
-use maulstick_ui::rack;
-use maulstick_ui::view::View;
+use maulstick_ui::settings::preferences::Habits;
+use maulstick_ui::app::rack;
+use maulstick_ui::view::camera::View;
 use x11rb::connection::Connection as _;
 use x11rb::protocol::xproto::{
     AtomEnum, BUTTON_PRESS_EVENT, BUTTON_RELEASE_EVENT, ClientMessageEvent, ConnectionExt as _,

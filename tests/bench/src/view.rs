@@ -16,17 +16,17 @@ use maulstick_types::Origin;
 use maulstick_types::paint::TILE;
 use maulstick_types::scene::{CANVAS, PALETTE, Scene, Surface};
 use maulstick_types::stylus::{DEFAULT_TILT_RAD, StylusPose, StylusSample};
-use maulstick_ui::backdrop::Backdrop;
-use maulstick_ui::brushes::{Below, Brushes};
-use maulstick_ui::follow::Held;
-use maulstick_ui::frames::{Shown, ShownTile, texels};
-use maulstick_ui::offscreen::Offscreen;
-use maulstick_ui::pulling::SheetState;
-use maulstick_ui::rack;
-use maulstick_ui::show_surface::Place;
-use maulstick_ui::surface::{Passes, SurfaceView};
-use maulstick_ui::view::{View, level};
-use maulstick_ui::visible::TileRect;
+use maulstick_ui::render::backdrop::Backdrop;
+use maulstick_ui::render::brush::renderer::{Below, Brushes};
+use maulstick_ui::rig::brushes::Held;
+use maulstick_ui::render::frames::{Shown, ShownTile, texels};
+use maulstick_ui::render::offscreen::Offscreen;
+use maulstick_ui::render::tile_planner::SheetState;
+use maulstick_ui::app::rack;
+use maulstick_ui::render::show_surface::Place;
+use maulstick_ui::render::surface::{Passes, SurfaceView};
+use maulstick_ui::view::camera::{View, level};
+use maulstick_ui::view::visible_tiles::TileRect;
 
 use crate::report::{Report, quantile, sorted};
 

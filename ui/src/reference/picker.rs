@@ -11,7 +11,7 @@ use maulstick_paint::light::studio_settings;
 use maulstick_types::Mixture;
 use maulstick_types::scene::{Light, Surface, WellKind};
 
-use crate::task::Task;
+use crate::background_task::Task;
 
 /// How many mixtures are proposed.
 const PROPOSED: usize = 3;

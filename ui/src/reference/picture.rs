@@ -10,7 +10,7 @@ use eframe::egui::{Color32, ColorImage, Context, TextureHandle, TextureOptions};
 use maulstick_exchange::{Image, ImportError, fit_to};
 use maulstick_optics::colour::srgb_decode;
 
-use crate::task::Task;
+use crate::background_task::Task;
 
 /// Most pixels of the longer side that are kept: every display takes such a texture.
 const MOST_SIDE: usize = 2048;

@@ -7,11 +7,11 @@ use maulstick_types::Mixture;
 use maulstick_types::scene::{Well, WellKind};
 
 use super::*;
-use crate::orders::{Orders, PAINT};
-use crate::shell_bench::{Bench, ctrl, let_go, picture, press, until, window};
-use crate::studio::Studio;
-use crate::testing::studio;
-use crate::toasts::Toasts;
+use crate::rig::requests::{Orders, PAINT};
+use crate::rig::state::Studio;
+use crate::test_support::overlay_bench::{Bench, ctrl, let_go, picture, press, until, window};
+use crate::test_support::panel_bench::studio;
+use crate::widgets::notifications::Toasts;
 
 const PICTURE: &str = "Reference picture. Arrow keys move the cross, Enter picks, + and - zoom";
 

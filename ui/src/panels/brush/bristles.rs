@@ -3,9 +3,9 @@
 use eframe::egui::{Slider, SliderClamping, Ui};
 use maulstick_brush::BrushFile;
 
-use crate::brush_choice::{is_of_library, of_library};
-use crate::row;
-use crate::work::Work;
+use crate::input::brush_choice::{is_of_library, of_library};
+use crate::widgets::context::Work;
+use crate::widgets::labelled;
 
 /// A number of a brush file.
 struct Number {
@@ -78,10 +78,10 @@ pub(super) fn show(
             .max_decimals(2)
             .clamping(SliderClamping::Edits)
             .suffix(number.unit);
-        let slider = row::named(ui, number.name, number.hover, slider);
+        let slider = labelled::named(ui, number.name, number.hover, slider);
         is_held |= slider.dragged();
         // A slider rounds what it shows.
-        if row::is_moved(*value, shown) {
+        if labelled::is_moved(*value, shown) {
             *value = shown;
         }
     }

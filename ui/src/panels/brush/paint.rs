@@ -4,9 +4,9 @@ use eframe::egui::{Button, TextEdit, Ui};
 use maulstick_rig::Fault;
 use maulstick_types::command::Command;
 
-use crate::loading::{MOST_THINNER, completed, completions};
-use crate::row;
-use crate::work::Work;
+use crate::settings::brush_load::{MOST_THINNER, completed, completions};
+use crate::widgets::context::Work;
+use crate::widgets::labelled;
 
 /// Names that are proposed at most.
 const PROPOSED: usize = 4;
@@ -37,10 +37,10 @@ impl PaintRows {
         }
         let mut percent = (work.habits.loading.thinner * 100.0).round();
         let most = MOST_THINNER * 100.0;
-        let slider = row::slider(&mut percent, 0.0..=most, " %").max_decimals(0);
+        let slider = labelled::slider(&mut percent, 0.0..=most, " %").max_decimals(0);
         let hover =
             "Share of thinner in what the brush takes up: thin paint is transparent and runs.";
-        if row::named(ui, "Thinner", hover, slider).changed() {
+        if labelled::named(ui, "Thinner", hover, slider).changed() {
             work.habits.loading.thinner = percent / 100.0;
         }
         ui.horizontal(|ui| {
@@ -61,7 +61,7 @@ impl PaintRows {
             self.fault = None;
         }
         if let Some(fault) = &self.fault {
-            row::wrong(ui, &fault.what);
+            labelled::wrong(ui, &fault.what);
             if let Some(help) = &fault.help {
                 ui.label(help);
             }
@@ -87,7 +87,7 @@ fn field(
     work: &mut Work<'_>,
     name: &str,
     hover: &str,
-    part: impl Fn(&mut crate::loading::Loading) -> Option<&mut String>,
+    part: impl Fn(&mut crate::settings::brush_load::Loading) -> Option<&mut String>,
 ) -> bool {
     let Some(text) = part(&mut work.habits.loading) else {
         return false;
@@ -96,7 +96,7 @@ fn field(
         .hint_text("Cobalt Blue=0.7,…")
         .char_limit(4096)
         .desired_width(190.0);
-    let shown = row::named(ui, name, hover, edit);
+    let shown = labelled::named(ui, name, hover, edit);
     let enter = shown.lost_focus() && ui.input(|input| input.key_pressed(eframe::egui::Key::Enter));
     let names = completions(text, &work.studio.library, PROPOSED);
     if !names.is_empty() {

@@ -3,9 +3,9 @@
 use eframe::egui::{Button, Key, TextEdit, Ui, vec2};
 
 use super::entry;
-use crate::presets::{Preset, check_name};
-use crate::row;
-use crate::work::Work;
+use crate::settings::presets::{Preset, check_name};
+use crate::widgets::context::Work;
+use crate::widgets::labelled;
 
 /// The rows.
 #[derive(Debug, Default)]
@@ -116,7 +116,7 @@ impl PresetRows {
         let Some((_, name)) = &mut self.renamed else {
             return;
         };
-        let shown = row::named(
+        let shown = labelled::named(
             ui,
             "New name",
             "",
@@ -145,7 +145,7 @@ impl PresetRows {
             .hint_text("Sky wash")
             .desired_width(190.0);
         let hover = "What the brush in the hand, its settings and its paint are to be called.";
-        let shown = row::named(ui, "Name", hover, edit);
+        let shown = labelled::named(ui, "Name", hover, edit);
         if shown.changed() {
             self.wrong = None;
         }
@@ -170,7 +170,7 @@ impl PresetRows {
             }
         }
         if let Some(what) = &self.wrong {
-            row::wrong(ui, what);
+            labelled::wrong(ui, what);
         }
     }
 }

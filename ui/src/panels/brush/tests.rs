@@ -7,8 +7,8 @@ use maulstick_types::Mixture;
 use maulstick_types::scene::{BrushMode, MARKER_FLOW};
 
 use super::*;
-use crate::presets::Preset;
-use crate::workbench::{Bench, differ, harness, pictures};
+use crate::settings::presets::Preset;
+use crate::test_support::context_bench::{Bench, differ, harness, pictures};
 
 fn panel<'a>(bench: Bench) -> Harness<'a, Bench> {
     let mut harness = harness(BrushPanel::default(), bench);

@@ -5,8 +5,8 @@ use maulstick_types::Mixture;
 use maulstick_types::command::Command;
 use maulstick_types::scene::CANVAS;
 
-use crate::rows::{Number, Sliders, ask, below, choice};
-use crate::work::Work;
+use crate::widgets::context::Work;
+use crate::widgets::rows::{Number, Sliders, ask, below, choice};
 
 /// The paint that the brush carries.
 const CARRIED: &str = "What the brush carries";

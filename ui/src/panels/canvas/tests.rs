@@ -4,7 +4,7 @@ use egui_kittest::kittest::Queryable as _;
 use maulstick_types::Mixture;
 
 use super::*;
-use crate::testing::{Bench, harness, picture, studio};
+use crate::test_support::panel_bench::{Bench, harness, picture, studio};
 
 fn panel() -> Harness<'static, Bench<CanvasPanel>> {
     harness(studio())

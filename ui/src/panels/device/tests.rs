@@ -6,9 +6,9 @@ use maulstick_types::haptics::ForceOrder;
 use maulstick_types::stylus::{StylusInfo, StylusPose, StylusSample, StylusStatus, axes};
 
 use super::*;
-use crate::orders::Order;
-use crate::studio::Studio;
-use crate::testing::{Bench, harness, picture, studio};
+use crate::rig::requests::Order;
+use crate::rig::state::Studio;
+use crate::test_support::panel_bench::{Bench, harness, picture, studio};
 
 fn info(device: &str, driver: &str, priority: i32, senses: u32, drives: u32) -> StylusInfo {
     StylusInfo {
@@ -185,6 +185,6 @@ fn it_looks_like_its_picture() {
     studio.devices.retain(|name, _| name == "phantom");
     picture::<DevicePanel>("device", &studio, open, |studio| {
         let phantom = studio.devices.get_mut("phantom").expect("a phantom");
-        phantom.felt = crate::felt::Felt::default();
+        phantom.felt = crate::rig::force_history::Felt::default();
     });
 }

@@ -3,8 +3,8 @@ use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable as _;
 
 use super::*;
-use crate::studio::{PaintNode, Studio};
-use crate::testing::{Bench, harness, picture, steps, studio};
+use crate::rig::state::{PaintNode, Studio};
+use crate::test_support::panel_bench::{Bench, harness, picture, steps, studio};
 
 fn landscape([red, green, blue]: [u8; 3]) -> Picture {
     let pixel = |i: usize| match i / 40 < 18 {

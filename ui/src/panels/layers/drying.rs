@@ -7,9 +7,9 @@ use maulstick_types::command::{Command, DRYING_TICKS};
 use maulstick_types::paint::PaintStatus;
 use maulstick_types::scene::CANVAS;
 
-use super::part;
-use crate::rows::{Number, Sliders, ask, choice, row};
-use crate::work::Work;
+use super::region;
+use crate::widgets::context::Work;
+use crate::widgets::rows::{Number, Sliders, ask, choice, row};
 
 /// Where it dries.
 const PLACES: [&str; 2] = ["All of it", "A part"];
@@ -25,7 +25,7 @@ const SHARE: Number<'_> = Number {
 
 /// A drying that goes on.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Drying {
+pub(super) struct Drying {
     /// Share of its time that went by, 0 to 1.
     pub share: f32,
     /// How long it still goes on, s.
@@ -83,10 +83,10 @@ impl DryingForm {
         let size_m = canvas.cells.map(|cells| f64::from(cells) * canvas.cell_m);
         let place = PLACES[usize::from(self.part.is_some())];
         if let Some(chosen) = choice(ui, "Where", place, PLACES) {
-            self.part = (chosen == PLACES[1]).then(|| part::middle(size_m));
+            self.part = (chosen == PLACES[1]).then(|| region::middle(size_m));
         }
         if let Some(region) = &mut self.part {
-            part::show(ui, region, size_m);
+            region::show(ui, region, size_m);
         }
         ui.horizontal(|ui| {
             let dry = ui

@@ -5,8 +5,8 @@ use maulstick_types::Region;
 use maulstick_types::scene::CANVAS;
 
 use super::*;
-use crate::studio::Studio;
-use crate::testing::{Bench, harness, picture, studio};
+use crate::rig::state::Studio;
+use crate::test_support::panel_bench::{Bench, harness, picture, studio};
 
 fn layered() -> Studio {
     let mut studio = studio();

@@ -3,7 +3,7 @@ use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable as _;
 
 use super::*;
-use crate::testing::{Bench, harness, picture, studio};
+use crate::test_support::panel_bench::{Bench, harness, picture, studio};
 
 fn panel() -> Harness<'static, Bench<LightPanel>> {
     harness(studio())
