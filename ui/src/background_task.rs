@@ -7,11 +7,11 @@ use eframe::egui::Context;
 
 /// Work that goes on. Who drops it no longer wants what it finds.
 #[derive(Debug)]
-pub(crate) struct Task<T> {
+pub(crate) struct BackgroundTask<T> {
     found: Receiver<T>,
 }
 
-impl<T: Send + 'static> Task<T> {
+impl<T: Send + 'static> BackgroundTask<T> {
     /// Begins work; the window of `context` is drawn anew when it is done.
     #[must_use]
     pub(crate) fn start(
@@ -47,7 +47,7 @@ impl<T: Send + 'static> Task<T> {
 mod tests {
     use super::*;
 
-    fn ended<T: Send + 'static>(task: &Task<T>) -> Option<T> {
+    fn ended<T: Send + 'static>(task: &BackgroundTask<T>) -> Option<T> {
         loop {
             match task.poll() {
                 Poll::Ready(found) => return found,
@@ -59,10 +59,10 @@ mod tests {
     #[test]
     fn what_is_found_comes_once_and_a_fall_is_told() {
         let context = Context::default();
-        let task = Task::start(&context, "sum", || 2 + 2);
+        let task = BackgroundTask::start(&context, "sum", || 2 + 2);
         assert_eq!(ended(&task), Some(4));
         assert_eq!(ended(&task), None);
-        let fell = Task::start(&context, "fall", || -> u8 { panic!("a damaged file") });
+        let fell = BackgroundTask::start(&context, "fall", || -> u8 { panic!("a damaged file") });
         assert_eq!(ended(&fell), None);
     }
 }

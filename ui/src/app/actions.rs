@@ -7,11 +7,11 @@ use maulstick_types::command::Command;
 use maulstick_types::scene::{CANVAS, PALETTE, Surface};
 
 use super::{App, STILL};
-use crate::input::keys::{self, Act};
+use crate::input::keys::{self, Action};
 use crate::input::mouse_stylus::Pointer;
 use crate::input::navigation::Around;
 use crate::rig::force_history;
-use crate::settings::preferences::Habits;
+use crate::settings::preferences::Preferences;
 use crate::view::camera::View;
 use crate::view::well_labels::{self, Shown};
 
@@ -22,12 +22,12 @@ const ARROW: Color32 = Color32::from_rgb(230, 120, 40);
 impl App {
     /// Where the pointer went since the last frame, on the desk.
     pub(super) fn pointer(&mut self, context: &Context) -> Vec<Pointer> {
-        let (Some(scene), Some(view)) = (&self.studio.scene, &self.view) else {
+        let (Some(scene), Some(view)) = (&self.rig.scene, &self.view) else {
             return Vec::new();
         };
         // Two fingers move the canvas.
         let fingers = context.input(|input| input.multi_touch().is_some());
-        if fingers || self.hand.holds() || over_panel(context) && !self.pressed {
+        if fingers || self.navigation.holds() || over_panel(context) && !self.pressed {
             self.pressed = false;
             return Vec::new();
         }
@@ -68,33 +68,33 @@ impl App {
     }
 
     /// Does what concerns the desk.
-    pub(super) fn act(&mut self, act: Act, pixels_per_point: f32) {
-        let (Some(canvas), Some(view)) = (self.studio.canvas(), &self.view) else {
+    pub(super) fn act(&mut self, act: Action, pixels_per_point: f32) {
+        let (Some(canvas), Some(view)) = (self.rig.canvas(), &self.view) else {
             return;
         };
-        self.hand.forget();
+        self.navigation.forget();
         match act {
-            Act::Fit => self.orders.paint(view.fitted(canvas).command(CANVAS)),
-            Act::Hundred => {
+            Action::Fit => self.requests.paint(view.fitted(canvas).command(CANVAS)),
+            Action::Hundred => {
                 let lie = view.hundred(canvas, pixels_per_point);
-                self.orders.paint(lie.command(CANVAS));
+                self.requests.paint(lie.command(CANVAS));
             }
-            Act::Palette => self.slide(),
+            Action::Palette => self.slide(),
             _ => {}
         }
     }
 
     /// Slides the palette over the canvas, or back beside it.
     pub(super) fn slide(&mut self) {
-        let (Some(canvas), Some(palette)) = (self.studio.canvas(), self.studio.palette()) else {
+        let (Some(canvas), Some(palette)) = (self.rig.canvas(), self.rig.palette()) else {
             return;
         };
-        let side = side(&self.habits);
+        let side = side(&self.preferences);
         let pose = match is_out(canvas, palette, side) {
             true => beside(canvas, palette, side),
             false => over(canvas, palette),
         };
-        self.orders.paint(Command::Place {
+        self.requests.paint(Command::Place {
             surface: PALETTE,
             pose,
             zoom: palette.zoom,
@@ -106,17 +106,17 @@ impl App {
         let Some(view) = &self.view else {
             return;
         };
-        let surfaces = self.studio.scene.as_ref().map(|scene| &scene.surfaces[..]);
+        let surfaces = self.rig.scene.as_ref().map(|scene| &scene.surfaces[..]);
         let around = Around {
             view,
             surfaces: surfaces.unwrap_or_default(),
             free: self.mouse.is_free(now_ns),
             over_panel: over_panel(context),
         };
-        let (hand, orders) = (&mut self.hand, &mut self.orders);
-        context.input(|input| hand.follow(input, &around, orders));
-        let brush = self.studio.brush_name();
-        let aim = self.follower.aim(brush);
+        let (navigation, requests) = (&mut self.navigation, &mut self.requests);
+        context.input(|input| navigation.follow(input, &around, requests));
+        let brush = self.rig.brush_name();
+        let aim = self.tracker.aim(brush);
         let now_s = context.input(|input| input.time);
         let typing = context.memory(|memory| memory.focused().is_some());
         let is_down = !typing && context.input(|input| input.key_down(keys::CLEAN));
@@ -129,19 +129,19 @@ impl App {
                 }
             });
         }
-        let handling = self.studio.handling();
-        self.lifting
-            .follow(now_s, is_down, painting, &handling, &mut self.orders);
-        if self.lifting.is_down() {
+        let handling = self.rig.handling();
+        self.clean_key
+            .follow(now_s, is_down, painting, &handling, &mut self.requests);
+        if self.clean_key.is_down() {
             context.request_repaint_after(STILL);
         }
         let wide_m = f64::from(view.area.width()) / view.scale;
         let at = aim.map(|(at, _)| (at.truncate() - view.middle) / wide_m);
         let at = gone(context, view).or(at);
-        let free = !painting && !self.hand.holds();
+        let free = !painting && !self.navigation.holds();
         if self
-            .wave
-            .follow(now_s, at, wide_m, free, side(&self.habits))
+            .palette_gesture
+            .follow(now_s, at, wide_m, free, side(&self.preferences))
         {
             self.slide();
         }
@@ -150,11 +150,11 @@ impl App {
     /// Names the wells on the palette as it is seen.
     pub(super) fn name_wells(&self, painter: &egui::Painter, view: &View, seen: &[Surface]) {
         let palette = seen.iter().find(|surface| surface.id == PALETTE);
-        let (Some(canvas), Some(palette)) = (self.studio.canvas(), palette) else {
+        let (Some(canvas), Some(palette)) = (self.rig.canvas(), palette) else {
             return;
         };
-        let aim = self.follower.aim(self.studio.brush_name());
-        let shown = match is_out(canvas, palette, side(&self.habits)) {
+        let aim = self.tracker.aim(self.rig.brush_name());
+        let shown = match is_out(canvas, palette, side(&self.preferences)) {
             true => Some(Shown::All),
             false => aim.map(|(at, _)| Shown::Under(at)),
         };
@@ -165,8 +165,9 @@ impl App {
 
     /// Draws the force in the hand as an arrow from the brush, as long as its panel is seen.
     pub(super) fn draw_force(&self, painter: &egui::Painter, view: &View) {
-        let seen = self.habits.panels && self.habits.is_open("Device");
-        let Some((place_m, force_n)) = force_history::arrow(&self.studio).filter(|_| seen) else {
+        let seen = self.preferences.panels && self.preferences.is_open("Device");
+        let Some((place_m, force_n)) = force_history::force_arrow(&self.rig).filter(|_| seen)
+        else {
             return;
         };
         let from = DVec3::from_array(place_m);
@@ -180,8 +181,8 @@ impl App {
 
     /// Lays palette and wells for the hand that paints, where the painter has changed it.
     pub(super) fn change_hands(&mut self) {
-        let side = side(&self.habits);
-        let (Some(canvas), Some(palette)) = (self.studio.canvas(), self.studio.palette()) else {
+        let side = side(&self.preferences);
+        let (Some(canvas), Some(palette)) = (self.rig.canvas(), self.rig.palette()) else {
             return;
         };
         let other = match side {
@@ -189,15 +190,15 @@ impl App {
             Side::Right => Side::Left,
         };
         // Once for each start of the paint node, and when the painter has changed hands.
-        let key = (side, self.studio.starts);
+        let key = (side, self.rig.starts);
         let rests = is_same(&palette.pose, &beside(canvas, palette, other));
         if self.side.replace(key) != Some(key) && rests {
-            self.orders.paint(Command::Place {
+            self.requests.paint(Command::Place {
                 surface: PALETTE,
                 pose: beside(canvas, palette, side),
                 zoom: palette.zoom,
             });
-            self.orders.paint(Command::Wells {
+            self.requests.paint(Command::Wells {
                 surface: PALETTE,
                 wells: mirrored(&palette.wells, size_m(palette)),
             });
@@ -213,8 +214,8 @@ fn over_panel(context: &Context) -> bool {
 }
 
 /// The side of the palette for the hand that paints.
-pub(super) fn side(habits: &Habits) -> Side {
-    match habits.left_handed {
+pub(super) fn side(preferences: &Preferences) -> Side {
+    match preferences.left_handed {
         false => Side::Left,
         true => Side::Right,
     }

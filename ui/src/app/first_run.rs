@@ -5,8 +5,8 @@ use std::time::Duration;
 
 use eframe::egui::{Align2, Area, Color32, Context, Frame, Id, Margin, Order, RichText, Stroke};
 
-use crate::rig::state::Studio;
-use crate::settings::preferences::Habits;
+use crate::rig::state::RigState;
+use crate::settings::preferences::Preferences;
 
 /// What it says.
 pub(super) const HELP: &str = "Drag the brush through a paint of the palette, then over the canvas.  \
@@ -25,20 +25,25 @@ pub(super) struct FirstRun {
 
 impl FirstRun {
     /// Follows the painting, and shows the line while it helps.
-    pub(super) fn show(&mut self, context: &Context, studio: &Studio, habits: &mut Habits) {
-        let is_new = *self.is_new.get_or_insert(!habits.has_painted);
+    pub(super) fn show(
+        &mut self,
+        context: &Context,
+        rig: &RigState,
+        preferences: &mut Preferences,
+    ) {
+        let is_new = *self.is_new.get_or_insert(!preferences.has_painted);
         if !is_new {
             return;
         }
         let now = context.input(|input| input.time);
-        let status = studio.paint.as_ref().map(|node| &node.status);
+        let status = rig.paint.as_ref().map(|node| &node.status);
         let is_bare = status.is_none_or(|status| status.blank);
         if !is_bare {
-            habits.has_painted = true;
+            preferences.has_painted = true;
             self.blank = None;
             return;
         }
-        if habits.has_painted {
+        if preferences.has_painted {
             let path = status.map_or("", |status| &status.path);
             let known = self.blank.take().filter(|(known, _)| known == path);
             let (_, since) = self.blank.insert(known.unwrap_or((path.to_owned(), now)));
@@ -81,26 +86,26 @@ mod tests {
     use maulstick_types::paint::PaintStatus;
 
     use super::*;
-    use crate::test_support::panel_bench::{status, studio};
+    use crate::test_support::panel_bench::{rig, status};
 
     struct Day {
         first_run: FirstRun,
-        studio: Studio,
-        habits: Habits,
+        rig: RigState,
+        preferences: Preferences,
     }
 
     fn day(has_painted: bool) -> Harness<'static, Day> {
-        let habits = Habits {
+        let preferences = Preferences {
             has_painted,
-            ..Habits::default()
+            ..Preferences::default()
         };
         let day = Day {
             first_run: FirstRun::default(),
-            studio: studio(),
-            habits,
+            rig: rig(),
+            preferences,
         };
         let show = |ui: &mut eframe::egui::Ui, day: &mut Day| {
-            day.first_run.show(ui.ctx(), &day.studio, &mut day.habits);
+            day.first_run.show(ui.ctx(), &day.rig, &mut day.preferences);
         };
         let mut harness = Harness::builder()
             .with_size([800.0, 200.0])
@@ -111,7 +116,7 @@ mod tests {
     }
 
     fn says(harness: &mut Harness<'static, Day>, change: impl FnOnce(&mut PaintStatus)) -> bool {
-        let node = harness.state_mut().studio.paint.as_mut();
+        let node = harness.state_mut().rig.paint.as_mut();
         change(&mut node.expect("a node").status);
         harness.run_steps(2);
         harness.query_by_label(HELP).is_some()
@@ -123,11 +128,11 @@ mod tests {
         assert!(says(&mut harness, |status| (status.journal, status.undo) =
             (7, 1)));
         assert!(
-            !harness.state().habits.has_painted,
+            !harness.state().preferences.has_painted,
             "nothing is painted yet"
         );
         assert!(!says(&mut harness, |status| status.blank = false));
-        assert!(harness.state().habits.has_painted);
+        assert!(harness.state().preferences.has_painted);
         let another = PaintStatus {
             path: "/another.maul".into(),
             ..status()

@@ -25,28 +25,28 @@ use maulstick_types::topics::Topics;
 use maulstick_types::{Origin, name_hash};
 
 use self::actions::side;
-use crate::app::overlay::Shell;
-use crate::input::clean_key::LiftingKey;
+use crate::app::overlay::Overlay;
+use crate::input::clean_key::CleanKey;
 use crate::input::mouse_stylus::Mouse;
-use crate::input::navigation::Hand;
-use crate::input::palette_gesture::Wave;
-use crate::render::device_loss::LostDevice;
-use crate::render::display_transform::Tint;
+use crate::input::navigation::Navigation;
+use crate::input::palette_gesture::PaletteGesture;
+use crate::render::device_loss::DeviceLoss;
+use crate::render::display_transform::DisplayTransform;
 use crate::render::frame_reports::Presenter;
-use crate::render::scene::{Source, Stage};
-use crate::rig::brushes::{Follower, SILENCE_NS};
-use crate::rig::dispatcher::Courier;
-use crate::rig::health::Watch;
-use crate::rig::listener::Hearing;
-use crate::rig::requests::Orders;
-use crate::rig::state::Studio;
-use crate::rig::stroke_barrier::Landing;
+use crate::render::scene::{SceneRenderer, Source};
+use crate::rig::brushes::{BrushTracker, SILENCE_NS};
+use crate::rig::dispatcher::CommandDispatcher;
+use crate::rig::health::HealthMonitor;
+use crate::rig::listener::RigListener;
+use crate::rig::requests::Requests;
+use crate::rig::state::RigState;
+use crate::rig::stroke_barrier::StrokeBarrier;
 use crate::rig::thumbnails::{Picture, ThumbnailFetcher};
-use crate::settings::preferences::Habits;
+use crate::settings::preferences::Preferences;
 use crate::view::camera::{DESK_COLOUR, View};
-use crate::view::palette_slide::Glide;
-use crate::widgets::context::Work;
-use crate::widgets::notifications::Toasts;
+use crate::view::palette_slide::PaletteSlide;
+use crate::widgets::context::PanelContext;
+use crate::widgets::notifications::Notifications;
 use crate::widgets::progress::Progress;
 
 mod actions;
@@ -61,7 +61,7 @@ const FETCH: Duration = Duration::from_secs(1);
 const STILL: Duration = Duration::from_millis(30);
 
 /// An order that waits for its stroke is looked at again after this, whatever comes.
-const LANDING_LOOK: Duration = Duration::from_millis(50);
+const BARRIER_LOOK: Duration = Duration::from_millis(50);
 
 /// The painter's view.
 pub struct App {
@@ -69,32 +69,32 @@ pub struct App {
     stop: Stop,
     wake: Wake,
     topics: Topics,
-    hearing: Hearing,
-    studio: Studio,
-    stage: Stage,
+    listener: RigListener,
+    rig: RigState,
+    scene_renderer: SceneRenderer,
     presenter: Option<Presenter>,
-    lost: LostDevice,
-    follower: Follower,
+    lost: DeviceLoss,
+    tracker: BrushTracker,
     progress: Progress,
-    watch: Watch,
+    watch: HealthMonitor,
     mouse: Mouse,
     view: Option<View>,
     pressed: bool,
-    hand: Hand,
-    glide: Glide,
-    lifting: LiftingKey,
-    wave: Wave,
+    navigation: Navigation,
+    palette_slide: PaletteSlide,
+    clean_key: CleanKey,
+    palette_gesture: PaletteGesture,
     /// The side of the palette as it was last looked at, and the start of the paint node then.
     side: Option<(Side, u64)>,
-    shell: Shell,
-    orders: Orders,
-    landing: Landing,
-    courier: Courier,
+    overlay: Overlay,
+    requests: Requests,
+    barrier: StrokeBarrier,
+    dispatcher: CommandDispatcher,
     fetcher: ThumbnailFetcher,
-    toasts: Toasts,
-    habits: Habits,
+    notifications: Notifications,
+    preferences: Preferences,
     /// Habits as they were last kept, and where.
-    kept: (Habits, Option<PathBuf>),
+    kept: (Preferences, Option<PathBuf>),
     member: Option<Member>,
 }
 
@@ -111,25 +111,25 @@ impl App {
             .iter()
             .map(|brush| (brush.name.clone(), brush.depth_share));
         let me = member.origin(mouse);
-        let mut toasts = Toasts::default();
-        let place = Habits::place();
+        let mut notifications = Notifications::default();
+        let place = Preferences::place();
         let read = place
             .as_deref()
-            .map_or_else(|| Ok(Habits::default()), Habits::read);
-        let habits = read.unwrap_or_else(|fault| {
-            toasts.of(&fault);
-            Habits::default()
+            .map_or_else(|| Ok(Preferences::default()), Preferences::read);
+        let preferences = read.unwrap_or_else(|fault| {
+            notifications.of(&fault);
+            Preferences::default()
         });
-        let lost = LostDevice::new(&member.folder);
+        let lost = DeviceLoss::new(&member.folder);
         if let Some(why) = lost.word() {
-            toasts.fault(
+            notifications.fault(
                 format!("The graphics device was lost: {why}"),
                 "The window was opened again, and nothing is missing.",
             );
         }
         Ok(Self {
             mouse: Mouse::new(&**bus, topics, mouse, brush, me)?,
-            follower: Follower::new(
+            tracker: BrushTracker::new(
                 &**bus,
                 topics,
                 &member.wake,
@@ -137,31 +137,31 @@ impl App {
                 me.source,
             )?,
             progress: Progress::default(),
-            watch: Watch::default(),
-            hearing: Hearing::new(&**bus, topics, &member.wake)?,
-            studio: Studio::new(&member.config.rig.name, &names, Arc::new(library)),
-            courier: Courier::new(Arc::clone(bus), topics, &member.wake),
+            watch: HealthMonitor::default(),
+            listener: RigListener::new(&**bus, topics, &member.wake)?,
+            rig: RigState::new(&member.config.rig.name, &names, Arc::new(library)),
+            dispatcher: CommandDispatcher::new(Arc::clone(bus), topics, &member.wake),
             fetcher: fetcher(member),
             bus: Arc::clone(bus),
             stop: member.stop.clone(),
             wake: member.wake.clone(),
             topics: topics.clone(),
-            hand: Hand::default(),
-            glide: Glide::default(),
-            lifting: LiftingKey::default(),
-            wave: Wave::default(),
+            navigation: Navigation::default(),
+            palette_slide: PaletteSlide::default(),
+            clean_key: CleanKey::default(),
+            palette_gesture: PaletteGesture::default(),
             side: None,
-            stage: Stage::default(),
+            scene_renderer: SceneRenderer::default(),
             presenter: None,
             lost,
             view: None,
             pressed: false,
-            shell: Shell::default(),
-            orders: Orders::default(),
-            landing: Landing::new(&**bus, topics, &member.wake)?,
-            toasts,
-            kept: (habits.clone(), place),
-            habits,
+            overlay: Overlay::default(),
+            requests: Requests::default(),
+            barrier: StrokeBarrier::new(&**bus, topics, &member.wake)?,
+            notifications,
+            kept: (preferences.clone(), place),
+            preferences,
             member: None,
         })
     }
@@ -176,12 +176,12 @@ impl App {
     /// Width and height that the window had, points.
     #[must_use]
     pub fn size(&self) -> [f32; 2] {
-        self.habits.size
+        self.preferences.size
     }
 
     /// What watches over the graphics device.
     #[must_use]
-    pub fn lost(&self) -> LostDevice {
+    pub fn lost(&self) -> DeviceLoss {
         self.lost.clone()
     }
 
@@ -203,26 +203,26 @@ impl App {
             stop: self.stop.clone(),
             completion: completion.unwrap_or_default(),
         };
-        self.studio.tint = Arc::new(Tint::new(export));
-        self.stage.begin(context, state, export, source);
+        self.rig.tint = Arc::new(DisplayTransform::new(export));
+        self.scene_renderer.begin(context, state, export, source);
         self.lost.follow(&state.device, context);
     }
 
     fn take_in(&mut self, now_ns: u64) {
-        self.hearing.take_in(now_ns, &mut self.studio);
-        self.follower.take_in(now_ns);
-        let (studio, toasts) = (&mut self.studio, &mut self.toasts);
-        self.watch.look(studio, &self.topics, toasts);
-        self.stage.take_in(&mut self.studio);
-        self.fetcher.exchange(&mut self.studio.thumbnails, now_ns);
-        for told in self.courier.told() {
-            self.shell.hear(
-                &told,
-                &mut Work {
-                    studio: &mut self.studio,
-                    orders: &mut self.orders,
-                    habits: &mut self.habits,
-                    toasts: &mut self.toasts,
+        self.listener.take_in(now_ns, &mut self.rig);
+        self.tracker.take_in(now_ns);
+        let (rig, notifications) = (&mut self.rig, &mut self.notifications);
+        self.watch.look(rig, &self.topics, notifications);
+        self.scene_renderer.take_in(&mut self.rig);
+        self.fetcher.exchange(&mut self.rig.thumbnails, now_ns);
+        for outcome in self.dispatcher.outcomes() {
+            self.overlay.hear(
+                &outcome,
+                &mut PanelContext {
+                    rig: &mut self.rig,
+                    requests: &mut self.requests,
+                    preferences: &mut self.preferences,
+                    notifications: &mut self.notifications,
                 },
             );
         }
@@ -231,15 +231,15 @@ impl App {
     /// Sends what is asked for, as soon as the strokes before it have landed.
     fn send(&mut self, context: &Context) {
         let now_ns = self.bus.now_ns();
-        for order in self.orders.take() {
-            self.landing
-                .give(now_ns, order, self.follower.newest(now_ns));
+        for request in self.requests.take() {
+            self.barrier
+                .push(now_ns, request, self.tracker.newest(now_ns));
         }
-        while let Some(due) = self.landing.due(now_ns) {
-            self.courier.send(due);
+        while let Some(ready) = self.barrier.next_ready(now_ns) {
+            self.dispatcher.send(ready);
         }
-        if self.landing.holds() {
-            context.request_repaint_after(LANDING_LOOK);
+        if self.barrier.is_waiting() {
+            context.request_repaint_after(BARRIER_LOOK);
         }
     }
 
@@ -251,19 +251,19 @@ impl App {
             rests.then(|| input.content_rect().size())
         });
         if let Some(size) = size {
-            self.habits.size = size.round().into();
+            self.preferences.size = size.round().into();
         }
     }
 
     /// Keeps the habits where they have changed.
     fn keep(&mut self) {
         let (kept, place) = &mut self.kept;
-        if *kept == self.habits {
+        if *kept == self.preferences {
             return;
         }
-        kept.clone_from(&self.habits);
+        kept.clone_from(&self.preferences);
         if let Some(Err(fault)) = place.as_deref().map(|place| kept.keep(place)) {
-            self.toasts.of(&fault);
+            self.notifications.of(&fault);
         }
     }
 }
@@ -293,14 +293,14 @@ impl eframe::App for App {
         }
         let places = self.pointer(context);
         let now_ns = self.bus.now_ns();
-        let brush = self.studio.brush_name();
+        let brush = self.rig.brush_name();
         let taken = self.mouse.take(now_ns, brush);
         if let Err(error) = taken.and_then(|()| self.mouse.send(now_ns, &places)) {
             tracing::warn!("the mouse: {error}");
         }
         // After the mouse has told where it is: its brush is drawn there.
         self.take_in(now_ns);
-        self.landing.take_in();
+        self.barrier.take_in();
         self.send(context);
         self.follow(context, now_ns);
         if self.pressed {
@@ -310,8 +310,8 @@ impl eframe::App for App {
 
     fn ui(&mut self, ui: &mut egui::Ui, _frame: &mut eframe::Frame) {
         CentralPanel::default().frame(Frame::NONE).show(ui, |ui| {
-            let side = side(&self.habits);
-            let (canvas, palette) = (self.studio.canvas(), self.studio.palette());
+            let side = side(&self.preferences);
+            let (canvas, palette) = (self.rig.canvas(), self.rig.palette());
             self.view = canvas
                 .and_then(|canvas| View::of(ui.max_rect(), canvas, palette, side, rack::WIDTH));
             let Some(view) = self.view else {
@@ -319,17 +319,17 @@ impl eframe::App for App {
                 return;
             };
             ui.ctx().set_cursor_icon(CursorIcon::Crosshair);
-            let surfaces = self.studio.scene.iter().flat_map(|scene| &scene.surfaces);
+            let surfaces = self.rig.scene.iter().flat_map(|scene| &scene.surfaces);
             let mut surfaces: Vec<Surface> = surfaces.cloned().collect();
             let now_s = ui.input(|input| input.time);
-            if self.glide.show(now_s, &mut surfaces) {
+            if self.palette_slide.show(now_s, &mut surfaces) {
                 ui.ctx().request_repaint();
             }
             let pixels_per_point = ui.ctx().pixels_per_point();
-            let shapes = self.stage.shapes(
-                &self.studio,
+            let shapes = self.scene_renderer.shapes(
+                &self.rig,
                 &surfaces,
-                &self.follower,
+                &self.tracker,
                 &view,
                 pixels_per_point,
             );
@@ -337,7 +337,7 @@ impl eframe::App for App {
             self.name_wells(ui.painter(), &view, &surfaces);
             self.draw_force(ui.painter(), &view);
             if let Some(presenter) = &mut self.presenter {
-                let (begun_ns, holding) = (self.studio.now_ns, self.stage.holding());
+                let (begun_ns, holding) = (self.rig.now_ns, self.scene_renderer.holding());
                 ui.painter()
                     .add(presenter.shape(view.area, begun_ns, holding));
             }
@@ -345,23 +345,23 @@ impl eframe::App for App {
             let silence = Duration::from_nanos(SILENCE_NS);
             ui.ctx().request_repaint_after(silence);
         });
-        let waits = self.courier.waits();
-        let work = &mut Work {
-            studio: &mut self.studio,
-            orders: &mut self.orders,
-            habits: &mut self.habits,
-            toasts: &mut self.toasts,
+        let waits = self.dispatcher.waits();
+        let work = &mut PanelContext {
+            rig: &mut self.rig,
+            requests: &mut self.requests,
+            preferences: &mut self.preferences,
+            notifications: &mut self.notifications,
         };
         if self.progress.show(ui.ctx(), work, &waits) {
-            self.courier.give_up();
+            self.dispatcher.give_up();
         }
-        let acts = self.shell.show(
+        let acts = self.overlay.show(
             ui,
-            &mut Work {
-                studio: &mut self.studio,
-                orders: &mut self.orders,
-                habits: &mut self.habits,
-                toasts: &mut self.toasts,
+            &mut PanelContext {
+                rig: &mut self.rig,
+                requests: &mut self.requests,
+                preferences: &mut self.preferences,
+                notifications: &mut self.notifications,
             },
         );
         for act in acts {
@@ -380,7 +380,7 @@ impl eframe::App for App {
     fn on_exit(&mut self) {
         self.stop.request();
         self.wake.ring();
-        self.stage.end();
+        self.scene_renderer.end();
         if let Some(member) = self.member.take() {
             member.leave();
         }
@@ -391,7 +391,7 @@ impl std::fmt::Debug for App {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         f.debug_struct("App")
             .field("view", &self.view)
-            .field("follower", &self.follower)
+            .field("follower", &self.tracker)
             .finish_non_exhaustive()
     }
 }

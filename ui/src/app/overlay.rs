@@ -9,11 +9,11 @@ use maulstick_types::scene::CANVAS;
 use crate::app::first_run::FirstRun;
 use crate::app::rack;
 use crate::dialogs::Files;
-use crate::input::keys::{self, Act};
+use crate::input::keys::{self, Action};
 use crate::panels::{self, Panel};
 use crate::reference::Reference;
-use crate::rig::dispatcher::Told;
-use crate::widgets::context::Work;
+use crate::rig::dispatcher::Outcome;
+use crate::widgets::context::PanelContext;
 
 /// Width of the column of panels, points.
 const COLUMN: f32 = 300.0;
@@ -21,7 +21,7 @@ const COLUMN: f32 = 300.0;
 const MARGIN: f32 = 8.0;
 
 /// What is over the desk.
-pub(crate) struct Shell {
+pub(crate) struct Overlay {
     panels: Vec<Box<dyn Panel>>,
     keys: bool,
     /// Whether the panels are to have the keyboard.
@@ -31,7 +31,7 @@ pub(crate) struct Shell {
     first_run: FirstRun,
 }
 
-impl Default for Shell {
+impl Default for Overlay {
     fn default() -> Self {
         Self {
             panels: panels::all(),
@@ -44,10 +44,10 @@ impl Default for Shell {
     }
 }
 
-impl Shell {
+impl Overlay {
     /// Shows it and follows the keys; what concerns the desk itself is returned.
     #[must_use]
-    pub(crate) fn show(&mut self, ui: &mut Ui, work: &mut Work<'_>) -> Vec<Act> {
+    pub(crate) fn show(&mut self, ui: &mut Ui, work: &mut PanelContext<'_>) -> Vec<Action> {
         let context = ui.ctx().clone();
         let mut rest = Vec::new();
         // Keys are a dialog's while one is open.
@@ -55,66 +55,71 @@ impl Shell {
             true => keys::force_off(&context),
             false => keys::pressed(&context),
         };
-        acts.append(&mut work.orders.take_acts());
+        acts.append(&mut work.requests.take_acts());
         for act in acts {
             if !self.follow(&context, act, work) {
                 rest.push(act);
             }
         }
         rack::show(&context, work);
-        if work.habits.panels {
+        if work.preferences.panels {
             self.column(&context, work);
         }
         if self.keys {
             self.table_of_keys(&context);
         }
         if !self.files.is_open() {
-            self.first_run.show(&context, work.studio, work.habits);
+            self.first_run.show(&context, work.rig, work.preferences);
         }
         if let Some(act) = self.reference.show(&context, work) {
             self.files.follow(&context, act, work);
         }
         self.files.show(&context, &mut self.reference, work);
-        work.toasts.show(&context);
+        work.notifications.show(&context);
         rest
     }
 
     /// Hears what became of an order: what was not done is told.
-    pub(crate) fn hear(&mut self, told: &Told, work: &mut Work<'_>) {
-        if self.files.hear(told, work) {
+    pub(crate) fn hear(&mut self, outcome: &Outcome, work: &mut PanelContext<'_>) {
+        if self.files.hear(outcome, work) {
             return;
         }
-        work.brush_answered(told);
-        if let Err(fault) = &told.result {
-            work.toasts.of(fault);
+        work.brush_answered(outcome);
+        if let Err(fault) = &outcome.result {
+            work.notifications.of(fault);
         }
     }
 
     /// Does what a key asks for; `false` where it concerns the desk.
-    fn follow(&mut self, context: &Context, act: Act, work: &mut Work<'_>) -> bool {
+    fn follow(&mut self, context: &Context, act: Action, work: &mut PanelContext<'_>) -> bool {
         match act {
-            Act::Undo => work.orders.paint(Command::Undo { brush: None }),
-            Act::Redo => work.orders.paint(Command::Redo { brush: None }),
-            Act::Dry => work.orders.paint(Command::Dry {
+            Action::Undo => work.requests.paint(Command::Undo { brush: None }),
+            Action::Redo => work.requests.paint(Command::Redo { brush: None }),
+            Action::Dry => work.requests.paint(Command::Dry {
                 surface: CANVAS,
                 share: 1.0,
                 name: String::new(),
             }),
-            Act::Smaller => work.step_width(false),
-            Act::Larger => work.step_width(true),
-            Act::NextBrush => work.next_brush(),
-            Act::Panels => work.habits.panels = !work.habits.panels,
-            Act::Focus => {
-                work.habits.panels = true;
+            Action::Smaller => work.step_width(false),
+            Action::Larger => work.step_width(true),
+            Action::NextBrush => work.next_brush(),
+            Action::Panels => work.preferences.panels = !work.preferences.panels,
+            Action::Focus => {
+                work.preferences.panels = true;
                 self.to_panels = true;
             }
-            Act::Reference if self.reference.toggle(work.habits) => {}
-            Act::New | Act::Open | Act::Save | Act::SaveAs | Act::Export | Act::Reference => {
+            Action::Reference if self.reference.toggle(work.preferences) => {}
+            Action::New
+            | Action::Open
+            | Action::Save
+            | Action::SaveAs
+            | Action::Export
+            | Action::Reference => {
                 self.files.follow(context, act, work);
             }
-            Act::Keys => self.keys = !self.keys,
-            Act::ForceOff => panels::device::force_off(work),
-            Act::FullScreen => {
+            Action::Keys => self.keys = !self.keys,
+            Action::ForceOff => panels::device::force_off(work),
+            Action::FullScreen => {
                 let now = context.input(|input| input.viewport().fullscreen.unwrap_or(false));
                 context.send_viewport_cmd(egui::ViewportCommand::Fullscreen(!now));
             }
@@ -123,8 +128,8 @@ impl Shell {
         true
     }
 
-    fn column(&mut self, context: &Context, work: &mut Work<'_>) {
-        let (side, inward) = match work.habits.left_handed {
+    fn column(&mut self, context: &Context, work: &mut PanelContext<'_>) {
+        let (side, inward) = match work.preferences.left_handed {
             false => (Align2::RIGHT_TOP, -1.0),
             true => (Align2::LEFT_TOP, 1.0),
         };
@@ -142,7 +147,7 @@ impl Shell {
                         .show(ui, |ui| {
                             for panel in &mut self.panels {
                                 let title = panel.title();
-                                let open = work.habits.is_open(title);
+                                let open = work.preferences.is_open(title);
                                 let header = CollapsingHeader::new(RichText::new(title).strong())
                                     .id_salt(title)
                                     .default_open(open);
@@ -154,7 +159,7 @@ impl Shell {
                                     shown.header_response.request_focus();
                                 }
                                 if shown.header_response.clicked() {
-                                    work.habits.unfold(title, !open);
+                                    work.preferences.unfold(title, !open);
                                 }
                             }
                         });
@@ -190,7 +195,7 @@ impl Shell {
     }
 }
 
-impl std::fmt::Debug for Shell {
+impl std::fmt::Debug for Overlay {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         let titles: Vec<_> = self.panels.iter().map(|panel| panel.title()).collect();
         f.debug_struct("Shell").field("panels", &titles).finish()

@@ -11,7 +11,7 @@ use maulstick_brush::BrushFile;
 
 use crate::input::brush_choice::{called, is_of_library, library, millimetres};
 use crate::render::brush::icon_cache;
-use crate::widgets::context::Work;
+use crate::widgets::context::PanelContext;
 
 /// Width of the rack, points.
 pub const WIDTH: f32 = 72.0;
@@ -34,9 +34,9 @@ struct Place<'a> {
 }
 
 /// Shows the rack over the whole height of the window, at the hand's side; returns what it covers.
-pub(crate) fn show(context: &Context, work: &mut Work<'_>) -> Rect {
+pub(crate) fn show(context: &Context, work: &mut PanelContext<'_>) -> Rect {
     let window = context.content_rect();
-    let side = match work.habits.left_handed {
+    let side = match work.preferences.left_handed {
         false => Align2::RIGHT_TOP,
         true => Align2::LEFT_TOP,
     };
@@ -68,34 +68,34 @@ pub(crate) fn show(context: &Context, work: &mut Work<'_>) -> Rect {
 }
 
 /// Which of the rig's brushes the hand holds, where there are several.
-fn switch(ui: &mut Ui, work: &mut Work<'_>) {
-    if work.studio.brushes.len() < 2 {
+fn switch(ui: &mut Ui, work: &mut PanelContext<'_>) {
+    if work.rig.brushes.len() < 2 {
         return;
     }
-    for place in 0..work.studio.brushes.len() {
-        let name = work.studio.brushes[place].name.clone();
-        let button = eframe::egui::Button::selectable(work.studio.in_hand == place, &name)
+    for place in 0..work.rig.brushes.len() {
+        let name = work.rig.brushes[place].name.clone();
+        let button = eframe::egui::Button::selectable(work.rig.in_hand == place, &name)
             .min_size(vec2(ui.available_width(), 0.0))
             .truncate();
         let hover = format!("The brush called '{name}' in the rig's settings");
         if ui.add(button).on_hover_text(hover).clicked() {
-            work.studio.in_hand = place;
+            work.rig.in_hand = place;
         }
     }
     ui.separator();
 }
 
-fn brushes(ui: &mut Ui, work: &mut Work<'_>) {
+fn brushes(ui: &mut Ui, work: &mut PanelContext<'_>) {
     ui.spacing_mut().item_spacing.y = 2.0;
     let hand = work.in_hand().cloned();
-    let own: Vec<_> = work.habits.own_brushes.clone();
+    let own: Vec<_> = work.preferences.own_brushes.clone();
     let mut chosen = None;
     let mut is_shown = false;
     for file in library() {
         let in_hand = hand.as_ref().filter(|hand| hand.kind == file.kind);
         let in_hand = in_hand.filter(|hand| is_of_library(hand));
         is_shown |= in_hand.is_some();
-        let remembered = work.habits.widths_mm.get(&file.kind).copied();
+        let remembered = work.preferences.widths_mm.get(&file.kind).copied();
         let held_mm = in_hand.map(|hand| hand.head.width_mm);
         let place = Place {
             name: called(&file.kind),
@@ -132,7 +132,7 @@ fn brushes(ui: &mut Ui, work: &mut Work<'_>) {
                 let hover = "This brush file cannot be read; click: why";
                 if ui.add(button).on_hover_text(hover).clicked() {
                     icon_cache::forget(ui.ctx(), path);
-                    work.toasts.of(&fault);
+                    work.notifications.of(&fault);
                 }
             }
         }
@@ -162,7 +162,7 @@ fn stem(path: &Path) -> String {
 }
 
 /// A brush with its name; `clicked` also by the keyboard.
-fn cell(ui: &mut Ui, work: &Work<'_>, place: &Place<'_>) -> Response {
+fn cell(ui: &mut Ui, work: &PanelContext<'_>, place: &Place<'_>) -> Response {
     let size = vec2(ui.available_width(), CELL);
     let (area, response) = ui.allocate_exact_size(size, Sense::click());
     let words = format!("{}, {}", place.name, millimetres(place.width_mm));
@@ -178,7 +178,7 @@ fn cell(ui: &mut Ui, work: &Work<'_>, place: &Place<'_>) -> Response {
         ui.painter().rect_filled(area, 6.0, fill);
         let picture =
             Rect::from_min_max(area.min + vec2(4.0, 3.0), area.max - vec2(4.0, NAME + 2.0));
-        icon_cache::draw(ui, picture, &work.studio.tint, &place.key, place.file);
+        icon_cache::draw(ui, picture, &work.rig.tint, &place.key, place.file);
         let font = FontId::proportional(11.0);
         let galley = ui
             .painter()

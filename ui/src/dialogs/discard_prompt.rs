@@ -2,7 +2,7 @@
 
 use eframe::egui::Ui;
 
-use crate::rig::state::Studio;
+use crate::rig::state::RigState;
 
 /// What is known of the painting that would go.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -15,8 +15,8 @@ pub(crate) struct Unkept {
 impl Unkept {
     /// The painting on the easel.
     #[must_use]
-    pub(crate) fn of(studio: &Studio) -> Self {
-        let status = studio.paint.as_ref().map(|paint| &paint.status);
+    pub(crate) fn of(rig: &RigState) -> Self {
+        let status = rig.paint.as_ref().map(|paint| &paint.status);
         Self {
             would_go: status.is_some_and(|status| status.path.is_empty() && !status.blank),
             let_go: false,

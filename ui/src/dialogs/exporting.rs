@@ -7,7 +7,7 @@ use maulstick_types::command::Command;
 use maulstick_types::paint::ExportStatus;
 
 use crate::dialogs::paths;
-use crate::widgets::context::Work;
+use crate::widgets::context::PanelContext;
 
 /// An export that lasts no longer than this is not worth a word, ns.
 const SHORT_NS: u64 = 500_000_000;
@@ -28,8 +28,8 @@ fn left(export: &ExportStatus) -> String {
 }
 
 /// Shows it at the lower edge.
-pub(crate) fn show(context: &Context, work: &mut Work<'_>) {
-    let status = work.studio.paint.as_ref().map(|node| &node.status);
+pub(crate) fn show(context: &Context, work: &mut PanelContext<'_>) {
+    let status = work.rig.paint.as_ref().map(|node| &node.status);
     let export = status.and_then(|status| status.export.clone());
     let Some(export) = export.filter(|export| export.since_ns >= SHORT_NS) else {
         return;
@@ -46,7 +46,7 @@ pub(crate) fn show(context: &Context, work: &mut Work<'_>) {
                     ui.add(bar.show_percentage());
                     ui.label(left(&export));
                     if ui.button("Stop").clicked() {
-                        work.orders.paint(Command::StopExport);
+                        work.requests.paint(Command::StopExport);
                     }
                 });
             });

@@ -6,7 +6,7 @@ use std::time::SystemTime;
 
 use eframe::egui::Context;
 
-use crate::background_task::Task;
+use crate::background_task::BackgroundTask;
 use crate::dialogs::paths;
 
 /// So many entries of a folder are shown at most.
@@ -26,7 +26,7 @@ pub(crate) struct Entry {
 /// What a folder holds.
 #[derive(Debug)]
 enum Content {
-    Coming(Task<Result<Vec<Entry>, String>>),
+    Coming(BackgroundTask<Result<Vec<Entry>, String>>),
     Here(Result<Vec<Entry>, String>),
 }
 
@@ -76,7 +76,7 @@ impl Folder {
         let content = self.content.get_or_insert_with(|| {
             let (path, kinds) = (self.path.clone(), self.kinds);
             let read = move || read(&path, kinds);
-            Content::Coming(Task::start(context, "folder", read))
+            Content::Coming(BackgroundTask::start(context, "folder", read))
         });
         if let Content::Coming(task) = content
             && let Poll::Ready(found) = task.poll()

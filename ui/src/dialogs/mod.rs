@@ -30,12 +30,12 @@ use std::task::Poll;
 use eframe::egui::Context;
 use maulstick_types::command::Command;
 
-use crate::background_task::Task;
-use crate::input::keys::Act;
+use crate::background_task::BackgroundTask;
+use crate::input::keys::Action;
 use crate::reference::Reference;
-use crate::rig::dispatcher::Told;
-use crate::rig::requests::{Order, PAINT};
-use crate::widgets::context::Work;
+use crate::rig::dispatcher::Outcome;
+use crate::rig::requests::{PAINT, Request};
+use crate::widgets::context::PanelContext;
 use dialog::{Answer, in_words};
 use discard_prompt::Unkept;
 use dropped::Dropped;
@@ -64,9 +64,9 @@ enum Dialog {
 pub(crate) struct Files {
     dialog: Option<Dialog>,
     /// What the open dialog asked for and is not answered yet.
-    waiting: Option<Order>,
+    waiting: Option<Request>,
     /// What was dropped and is being looked at.
-    dropping: Option<Task<Dropped>>,
+    dropping: Option<BackgroundTask<Dropped>>,
     /// The painting that was last seen to be open.
     open: Option<PathBuf>,
 }
@@ -79,24 +79,29 @@ impl Files {
     }
 
     /// Does what a key asks for; `false` where it is about no file.
-    pub(crate) fn follow(&mut self, context: &Context, act: Act, work: &mut Work<'_>) -> bool {
+    pub(crate) fn follow(
+        &mut self,
+        context: &Context,
+        act: Action,
+        work: &mut PanelContext<'_>,
+    ) -> bool {
         match act {
-            Act::New => {
-                let unkept = Unkept::of(work.studio);
+            Action::New => {
+                let unkept = Unkept::of(work.rig);
                 let new = NewPainting::new(&folder(work), unkept);
                 self.begin(Dialog::New(new));
             }
-            Act::Open => {
+            Action::Open => {
                 let open = self.choose(context, work);
                 self.begin(Dialog::Open(open));
             }
-            Act::Save => self.save(work),
-            Act::SaveAs => self.save_as(work),
-            Act::Export => {
+            Action::Save => self.save(work),
+            Action::SaveAs => self.save_as(work),
+            Action::Export => {
                 let export = ExportPicture::new(&folder(work), &stem(work));
                 self.begin(Dialog::Export(export));
             }
-            Act::Reference => self.choose_picture(work),
+            Action::Reference => self.choose_picture(work),
             _ => return false,
         }
         true
@@ -107,22 +112,27 @@ impl Files {
         self.waiting = None;
     }
 
-    fn choose(&self, context: &Context, work: &Work<'_>) -> OpenPainting {
+    fn choose(&self, context: &Context, work: &PanelContext<'_>) -> OpenPainting {
         let open = self.open.as_deref().unwrap_or(Path::new(""));
-        let recent = RecentList::new(context, &work.habits.recent, open);
-        OpenPainting::new(&folder(work), recent, Unkept::of(work.studio))
+        let recent = RecentList::new(context, &work.preferences.recent, open);
+        OpenPainting::new(&folder(work), recent, Unkept::of(work.rig))
     }
 
     /// Asks for a picture to pin beside the canvas.
-    fn choose_picture(&mut self, work: &Work<'_>) {
-        let known = work.habits.reference.path.as_deref().and_then(Path::parent);
+    fn choose_picture(&mut self, work: &PanelContext<'_>) {
+        let known = work
+            .preferences
+            .reference
+            .path
+            .as_deref()
+            .and_then(Path::parent);
         let folder = known.map_or_else(paths::pictures, Path::to_owned);
         self.begin(Dialog::Picture(ChoosePicture::new(&folder)));
     }
 
-    fn save(&mut self, work: &mut Work<'_>) {
-        let Some(node) = &work.studio.paint else {
-            work.toasts.fault(
+    fn save(&mut self, work: &mut PanelContext<'_>) {
+        let Some(node) = &work.rig.paint else {
+            work.notifications.fault(
                 "nothing is known of the painting yet",
                 "wait for the paint node: it comes back by itself",
             );
@@ -132,7 +142,7 @@ impl Files {
             ("", _) => self.save_as(work),
             (path, all) => {
                 let file = paths::shown(Path::new(path));
-                work.toasts.note(match all {
+                work.notifications.note(match all {
                     true => format!("All is saved in {file}"),
                     false => format!("Being saved in {file}, as always by itself"),
                 });
@@ -140,7 +150,7 @@ impl Files {
         }
     }
 
-    fn save_as(&mut self, work: &Work<'_>) {
+    fn save_as(&mut self, work: &PanelContext<'_>) {
         let save_as = SaveAs::new(&folder(work), &stem(work));
         self.begin(Dialog::SaveAs(save_as));
     }
@@ -150,7 +160,7 @@ impl Files {
         &mut self,
         context: &Context,
         reference: &mut Reference,
-        work: &mut Work<'_>,
+        work: &mut PanelContext<'_>,
     ) {
         self.remember(work);
         self.take_dropped(context, reference, work);
@@ -162,7 +172,12 @@ impl Files {
         self.show_dialog(context, reference, work);
     }
 
-    fn show_dialog(&mut self, context: &Context, reference: &mut Reference, work: &mut Work<'_>) {
+    fn show_dialog(
+        &mut self,
+        context: &Context,
+        reference: &mut Reference,
+        work: &mut PanelContext<'_>,
+    ) {
         let busy = self.waiting.is_some();
         let Some(dialog) = &mut self.dialog else {
             return;
@@ -175,7 +190,7 @@ impl Files {
             Dialog::Picture(picture) => {
                 let (answer, path) = picture.show(context);
                 if let Some(path) = path {
-                    reference.pin(context, &path, work.habits);
+                    reference.pin(context, &path, work.preferences);
                     self.dialog = None;
                     return;
                 }
@@ -198,18 +213,18 @@ impl Files {
     }
 
     /// Hears what became of an order; `false` where it was about no file.
-    pub(crate) fn hear(&mut self, told: &Told, work: &mut Work<'_>) -> bool {
-        let Order::Command { command, .. } = &told.order else {
+    pub(crate) fn hear(&mut self, outcome: &Outcome, work: &mut PanelContext<'_>) -> bool {
+        let Request::Command { command, .. } = &outcome.request else {
             return false;
         };
         let Some(done) = done(command) else {
             return false;
         };
-        let is_waited_for = self.waiting.as_ref() == Some(&told.order);
+        let is_waited_for = self.waiting.as_ref() == Some(&outcome.request);
         if switches(command) {
-            work.studio.switching = false;
+            work.rig.switching = false;
         }
-        match &told.result {
+        match &outcome.result {
             Ok(detail) => {
                 // Some say nothing but the path, which is told already.
                 let is_told = done.contains(&paths::shown(Path::new(detail)));
@@ -218,7 +233,7 @@ impl Files {
                 } else {
                     in_words(detail, "")
                 };
-                work.toasts
+                work.notifications
                     .note(format!("{done} {sentence}").trim().to_owned());
                 if is_waited_for {
                     (self.dialog, self.waiting) = (None, None);
@@ -231,39 +246,46 @@ impl Files {
                     Some(Dialog::New(new)) => new.refused(words),
                     Some(Dialog::Open(open)) => open.refused(words),
                     Some(Dialog::SaveAs(save_as)) => save_as.refused(words),
-                    Some(Dialog::Export(_) | Dialog::Picture(_)) | None => work.toasts.of(fault),
+                    Some(Dialog::Export(_) | Dialog::Picture(_)) | None => {
+                        work.notifications.of(fault)
+                    }
                 }
             }
-            Err(fault) => work.toasts.of(fault),
+            Err(fault) => work.notifications.of(fault),
         }
         true
     }
 
     /// Remembers which paintings were open.
-    fn remember(&mut self, work: &mut Work<'_>) {
-        let Some(node) = &work.studio.paint else {
+    fn remember(&mut self, work: &mut PanelContext<'_>) {
+        let Some(node) = &work.rig.paint else {
             return;
         };
         // Empty for one in memory: the one before is no longer open then.
         let path = PathBuf::from(&node.status.path);
         if self.open.as_ref() != Some(&path) {
             if !path.as_os_str().is_empty() {
-                work.habits.opened(&path);
+                work.preferences.opened(&path);
             }
             self.open = Some(path);
         }
     }
 
-    fn take_dropped(&mut self, context: &Context, reference: &mut Reference, work: &mut Work<'_>) {
+    fn take_dropped(
+        &mut self,
+        context: &Context,
+        reference: &mut Reference,
+        work: &mut PanelContext<'_>,
+    ) {
         let files = context.input(|input| input.raw.dropped_files.clone());
         if let Some(first) = files.first() {
             if files.len() > 1 {
                 let what = format!("{} files were dropped", files.len());
-                work.toasts.fault(what, "drop one at a time");
+                work.notifications.fault(what, "drop one at a time");
             } else {
                 let path = first.path().to_owned();
                 let look = move || dropped::found(&path);
-                self.dropping = Some(Task::start(context, "dropped", look));
+                self.dropping = Some(BackgroundTask::start(context, "dropped", look));
             }
         }
         let Some(task) = &self.dropping else {
@@ -276,24 +298,25 @@ impl Files {
         self.dropping = None;
         match found {
             Some(Dropped::Painting(path)) => self.open_dropped(context, &path, work),
-            Some(Dropped::Picture(path)) => reference.pin(context, &path, work.habits),
+            Some(Dropped::Picture(path)) => reference.pin(context, &path, work.preferences),
             Some(Dropped::Brush(file)) => work.take_up(*file),
-            Some(Dropped::Nothing { what, help }) => work.toasts.fault(what, help),
+            Some(Dropped::Nothing { what, help }) => work.notifications.fault(what, help),
             None => work
-                .toasts
+                .notifications
                 .fault("the dropped file cannot be read", dropped::KINDS),
         }
     }
 
-    fn open_dropped(&mut self, context: &Context, path: &Path, work: &mut Work<'_>) {
-        if let Err(words) = Unkept::of(work.studio).check() {
+    fn open_dropped(&mut self, context: &Context, path: &Path, work: &mut PanelContext<'_>) {
+        if let Err(words) = Unkept::of(work.rig).check() {
             let mut open = self.choose(context, work);
             open.propose(path);
             open.refused(words);
             self.begin(Dialog::Open(open));
             return;
         }
-        work.toasts.note(format!("Opening {} …", paths::name(path)));
+        work.notifications
+            .note(format!("Opening {} …", paths::name(path)));
         ask(
             Command::Open {
                 path: path.display().to_string(),
@@ -305,14 +328,14 @@ impl Files {
 }
 
 /// Sends a command about files to who does it.
-fn ask(command: Command, work: &mut Work<'_>) -> Order {
+fn ask(command: Command, work: &mut PanelContext<'_>) -> Request {
     let node = match &command {
         Command::Export { .. } | Command::StopExport => PAINT,
         _ => RIG,
     };
-    work.studio.switching |= switches(&command);
-    work.orders.node(node, command.clone());
-    Order::Command {
+    work.rig.switching |= switches(&command);
+    work.requests.node(node, command.clone());
+    Request::Command {
         node: node.to_owned(),
         command,
     }
@@ -343,11 +366,11 @@ fn done(command: &Command) -> Option<String> {
 }
 
 /// The folder in which a dialog begins: that of the painting, or of the one before.
-fn folder(work: &Work<'_>) -> PathBuf {
-    let status = work.studio.paint.as_ref().map(|node| &node.status);
+fn folder(work: &PanelContext<'_>) -> PathBuf {
+    let status = work.rig.paint.as_ref().map(|node| &node.status);
     let open = status.filter(|status| !status.path.is_empty());
     let open = open.map(|status| PathBuf::from(&status.path));
-    let known = open.as_ref().or(work.habits.recent.first());
+    let known = open.as_ref().or(work.preferences.recent.first());
     let folder = known.and_then(|path| path.parent());
     folder
         .filter(|folder| folder.is_dir())
@@ -355,8 +378,8 @@ fn folder(work: &Work<'_>) -> PathBuf {
 }
 
 /// What the painting is called.
-fn stem(work: &Work<'_>) -> String {
-    let status = work.studio.paint.as_ref().map(|node| &node.status);
+fn stem(work: &PanelContext<'_>) -> String {
+    let status = work.rig.paint.as_ref().map(|node| &node.status);
     let stem = status.and_then(|status| Path::new(&status.path).file_stem());
     stem.map_or_else(
         || "Painting".to_owned(),

@@ -6,7 +6,7 @@ use std::time::SystemTime;
 
 use eframe::egui::{Button, Context, RichText, Ui};
 
-use crate::background_task::Task;
+use crate::background_task::BackgroundTask;
 use crate::dialogs::paths;
 
 /// So many are shown.
@@ -24,7 +24,7 @@ pub(crate) struct Recent {
 /// The recent paintings, as they come.
 #[derive(Debug)]
 pub(crate) struct RecentList {
-    coming: Option<Task<Vec<Recent>>>,
+    coming: Option<BackgroundTask<Vec<Recent>>>,
     here: Vec<Recent>,
 }
 
@@ -46,7 +46,7 @@ impl RecentList {
             paths.into_iter().map(of).collect()
         };
         Self {
-            coming: Some(Task::start(context, "recent", look)),
+            coming: Some(BackgroundTask::start(context, "recent", look)),
             here: Vec::new(),
         }
     }

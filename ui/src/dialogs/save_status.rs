@@ -9,24 +9,24 @@ use eframe::egui::{
 };
 
 use crate::dialogs::paths;
-use crate::input::keys::{Act, BINDINGS};
-use crate::widgets::context::Work;
+use crate::input::keys::{Action, BINDINGS};
+use crate::widgets::context::PanelContext;
 
 /// What is not saved for so long is told, ns.
 const LATE_NS: u64 = 2_000_000_000;
 /// What its menu offers.
-const OFFERS: [Act; 6] = [
-    Act::New,
-    Act::Open,
-    Act::Save,
-    Act::SaveAs,
-    Act::Export,
-    Act::Reference,
+const OFFERS: [Action; 6] = [
+    Action::New,
+    Action::Open,
+    Action::Save,
+    Action::SaveAs,
+    Action::Export,
+    Action::Reference,
 ];
 
 /// The line; empty where nothing is known of the painting.
-fn words(work: &Work<'_>) -> String {
-    let Some(node) = &work.studio.paint else {
+fn words(work: &PanelContext<'_>) -> String {
+    let Some(node) = &work.rig.paint else {
         return String::new();
     };
     let status = &node.status;
@@ -37,7 +37,7 @@ fn words(work: &Work<'_>) -> String {
         };
     }
     let name = paths::name(Path::new(&status.path));
-    let since = work.studio.now_ns.saturating_sub(status.committed_ns);
+    let since = work.rig.now_ns.saturating_sub(status.committed_ns);
     let state = match (status.fault.is_empty(), status.all_committed) {
         (false, _) => "not saved",
         (true, false) if since > LATE_NS => "saving …",
@@ -47,12 +47,12 @@ fn words(work: &Work<'_>) -> String {
 }
 
 /// Shows the line; what was chosen under it.
-pub(crate) fn show(context: &Context, work: &Work<'_>) -> Option<Act> {
+pub(crate) fn show(context: &Context, work: &PanelContext<'_>) -> Option<Action> {
     let words = words(work);
     if words.is_empty() {
         return None;
     }
-    let (corner, inward) = match work.habits.left_handed {
+    let (corner, inward) = match work.preferences.left_handed {
         false => (Align2::RIGHT_BOTTOM, -1.0),
         true => (Align2::LEFT_BOTTOM, 1.0),
     };

@@ -9,10 +9,10 @@ use maulstick_brush::{BrushError, BrushFile};
 use maulstick_rig::Fault;
 use maulstick_types::command::Command;
 
-use crate::rig::dispatcher::Told;
-use crate::rig::requests::Order;
+use crate::rig::dispatcher::Outcome;
+use crate::rig::requests::Request;
 use crate::rig::state::RigBrush;
-use crate::widgets::context::Work;
+use crate::widgets::context::PanelContext;
 
 /// A painter's step from one width to the next: this factor, but at least half a millimetre.
 const STEP: f64 = 0.15;
@@ -134,11 +134,11 @@ impl RigBrush {
     }
 }
 
-impl Work<'_> {
+impl PanelContext<'_> {
     /// What the brush in the hand is made of, or is about to be; none until its node has said so.
     #[must_use]
     pub fn in_hand(&self) -> Option<&BrushFile> {
-        self.studio.brush()?.wanted()
+        self.rig.brush()?.wanted()
     }
 
     /// Gives the hand another brush; one that the hand has already is not asked for again.
@@ -150,37 +150,41 @@ impl Work<'_> {
             Ok(toml) => toml,
             Err(error) => {
                 let help = "choose another width, or another brush";
-                return self.toasts.fault(error.to_string(), help);
+                return self.notifications.fault(error.to_string(), help);
             }
         };
-        let brush = self.studio.brush_name().to_owned();
+        let brush = self.rig.brush_name().to_owned();
         let command = Command::Define {
             brush: brush.clone(),
             toml,
         };
         if let Err(what) = command.check() {
-            return self.toasts.fault(what, "make its skin of fewer faces");
+            return self
+                .notifications
+                .fault(what, "make its skin of fewer faces");
         }
         let width_mm = file.head.width_mm;
-        self.habits.widths_mm.insert(file.kind.clone(), width_mm);
-        let in_hand = self.studio.in_hand;
-        if let Some(own) = self.studio.brushes.get_mut(in_hand) {
+        self.preferences
+            .widths_mm
+            .insert(file.kind.clone(), width_mm);
+        let in_hand = self.rig.in_hand;
+        if let Some(own) = self.rig.brushes.get_mut(in_hand) {
             own.asked = Some(file);
         }
-        self.orders.brush(&brush, command);
+        self.requests.brush(&brush, command);
     }
 
     /// Hears what became of an order: a brush that refused keeps what it has; one that is as it was
     /// asked to be takes up what waited for it.
-    pub fn brush_answered(&mut self, told: &Told) {
-        let Order::Command {
+    pub fn brush_answered(&mut self, outcome: &Outcome) {
+        let Request::Command {
             command: Command::Define { brush, toml },
             ..
-        } = &told.order
+        } = &outcome.request
         else {
             return;
         };
-        let mut brushes = self.studio.brushes.iter_mut();
+        let mut brushes = self.rig.brushes.iter_mut();
         let Some(own) = brushes.find(|own| own.name == *brush) else {
             return;
         };
@@ -189,8 +193,8 @@ impl Work<'_> {
             return;
         }
         let then = own.then.take();
-        match (&told.result, then) {
-            (Ok(_), Some(command)) => self.orders.paint(command),
+        match (&outcome.result, then) {
+            (Ok(_), Some(command)) => self.requests.paint(command),
             (Ok(_), None) => {}
             (Err(_), _) => own.asked = None,
         }
@@ -198,16 +202,16 @@ impl Work<'_> {
 
     /// Has the paint node do something with the brush in the hand once that is what it was asked to be.
     pub fn then(&mut self, command: Command) {
-        let in_hand = self.studio.in_hand;
-        match self.studio.brushes.get_mut(in_hand) {
+        let in_hand = self.rig.in_hand;
+        match self.rig.brushes.get_mut(in_hand) {
             Some(own) if own.asked.is_some() => own.then = Some(command),
-            _ => self.orders.paint(command),
+            _ => self.requests.paint(command),
         }
     }
 
     /// Takes a brush at the width that it was last used at, or at its own.
     pub fn choose(&mut self, file: &BrushFile) {
-        let width_mm = self.habits.widths_mm.get(&file.kind);
+        let width_mm = self.preferences.widths_mm.get(&file.kind);
         let scaled = width_mm.and_then(|width_mm| file.scaled_to(*width_mm).ok());
         self.take_up(scaled.unwrap_or_else(|| file.clone()));
     }
@@ -237,14 +241,14 @@ impl Work<'_> {
         };
         match file {
             Some(file) => {
-                self.toasts
+                self.notifications
                     .note(format!("{} {}", called(&file.kind), millimetres(next_mm)));
                 self.take_up(file);
             }
             None => {
                 let end = if up { "widest" } else { "narrowest" };
                 let kind = called(&file_kind(self));
-                self.toasts
+                self.notifications
                     .note(format!("{kind} {} is the {end}", millimetres(now_mm)));
             }
         }
@@ -261,7 +265,7 @@ impl Work<'_> {
     }
 }
 
-fn file_kind(work: &Work<'_>) -> String {
+fn file_kind(work: &PanelContext<'_>) -> String {
     work.in_hand()
         .map_or(String::new(), |file| file.kind.clone())
 }

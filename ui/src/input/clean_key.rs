@@ -3,7 +3,7 @@
 use maulstick_types::command::Command;
 use maulstick_types::scene::{BrushHandling, BrushMode};
 
-use crate::rig::requests::Orders;
+use crate::rig::requests::Requests;
 
 /// A key that is down for longer is held, s.
 const TAP_S: f64 = 0.25;
@@ -19,11 +19,11 @@ struct Down {
 
 /// The cleaning key.
 #[derive(Clone, Debug, Default)]
-pub(crate) struct LiftingKey {
+pub(crate) struct CleanKey {
     down: Option<Down>,
 }
 
-impl LiftingKey {
+impl CleanKey {
     /// Follows the key at a time of the window, s; `painting` while the brush touches something, `now` is
     /// how the brush in hand is used.
     pub(crate) fn follow(
@@ -32,15 +32,15 @@ impl LiftingKey {
         is_down: bool,
         painting: bool,
         now: &BrushHandling,
-        orders: &mut Orders,
+        requests: &mut Requests,
     ) {
         if !is_down {
             match self.down.take() {
                 Some(Down {
                     before: Some(handling),
                     ..
-                }) => orders.paint(Command::Handle { handling }),
-                Some(Down { brush, .. }) => orders.paint(Command::Clean { brush }),
+                }) => requests.paint(Command::Handle { handling }),
+                Some(Down { brush, .. }) => requests.paint(Command::Clean { brush }),
                 None => {}
             }
             return;
@@ -52,7 +52,7 @@ impl LiftingKey {
         });
         if down.before.is_none() && (painting || now_s - down.since_s > TAP_S) {
             down.before = Some(now.clone());
-            orders.paint(Command::Handle {
+            requests.paint(Command::Handle {
                 handling: BrushHandling {
                     mode: BrushMode::Vacuum,
                     ..now.clone()
@@ -71,22 +71,22 @@ impl LiftingKey {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::rig::requests::Order;
+    use crate::rig::requests::Request;
 
     fn asked(steps: &[(f64, bool, bool)]) -> Vec<Command> {
         let now = BrushHandling {
             mode: BrushMode::NoPush,
             ..BrushHandling::normal("main")
         };
-        let (mut key, mut orders) = (LiftingKey::default(), Orders::default());
+        let (mut key, mut requests) = (CleanKey::default(), Requests::default());
         for (at, down, painting) in steps {
-            key.follow(*at, *down, *painting, &now, &mut orders);
+            key.follow(*at, *down, *painting, &now, &mut requests);
         }
         let command = |order| match order {
-            Order::Command { command, .. } => command,
-            Order::Force { .. } => panic!("no force"),
+            Request::Command { command, .. } => command,
+            Request::Force { .. } => panic!("no force"),
         };
-        orders.take().into_iter().map(command).collect()
+        requests.take().into_iter().map(command).collect()
     }
 
     fn modes(commands: &[Command]) -> Vec<BrushMode> {

@@ -4,7 +4,7 @@ use eframe::egui::{Context, Event, Key, KeyboardShortcut, Modifiers, Plugin, Raw
 
 /// What a key asks for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Act {
+pub enum Action {
     /// A new painting.
     New,
     /// Another painting.
@@ -51,14 +51,14 @@ pub enum Act {
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Binding {
     /// What it asks for.
-    pub act: Act,
+    pub act: Action,
     /// The key.
     pub shortcut: KeyboardShortcut,
     /// What it does, in a painter's words.
     pub words: &'static str,
 }
 
-const fn key(act: Act, modifiers: Modifiers, key: Key, words: &'static str) -> Binding {
+const fn key(act: Action, modifiers: Modifiers, key: Key, words: &'static str) -> Binding {
     Binding {
         act,
         shortcut: KeyboardShortcut::new(modifiers, key),
@@ -69,82 +69,92 @@ const fn key(act: Act, modifiers: Modifiers, key: Key, words: &'static str) -> B
 /// All keys that are pressed once. One with more modifiers comes before the same with fewer.
 pub(crate) const BINDINGS: [Binding; 21] = [
     key(
-        Act::Palette,
+        Action::Palette,
         Modifiers::NONE,
         Key::Space,
         "Palette out, and back",
     ),
     key(
-        Act::Panels,
+        Action::Panels,
         Modifiers::NONE,
         Key::Tab,
         "Show or hide the panels",
     ),
     key(
-        Act::Smaller,
+        Action::Smaller,
         Modifiers::NONE,
         Key::OpenBracket,
         "Smaller brush",
     ),
     key(
-        Act::Larger,
+        Action::Larger,
         Modifiers::NONE,
         Key::CloseBracket,
         "Larger brush",
     ),
-    key(Act::NextBrush, Modifiers::NONE, Key::B, "Next brush"),
-    key(Act::Dry, Modifiers::NONE, Key::D, "Dry the canvas"),
-    key(Act::Fit, Modifiers::NONE, Key::Num0, "See the whole canvas"),
+    key(Action::NextBrush, Modifiers::NONE, Key::B, "Next brush"),
+    key(Action::Dry, Modifiers::NONE, Key::D, "Dry the canvas"),
     key(
-        Act::Hundred,
+        Action::Fit,
+        Modifiers::NONE,
+        Key::Num0,
+        "See the whole canvas",
+    ),
+    key(
+        Action::Hundred,
         Modifiers::NONE,
         Key::Num1,
         "A cell of the canvas a pixel",
     ),
     key(
-        Act::Focus,
+        Action::Focus,
         Modifiers::NONE,
         Key::F6,
         "The keyboard to the panels; Escape: back",
     ),
     key(
-        Act::FullScreen,
+        Action::FullScreen,
         Modifiers::NONE,
         Key::F11,
         "Whole screen, and back",
     ),
     key(
-        Act::Redo,
+        Action::Redo,
         Modifiers::COMMAND.plus(Modifiers::SHIFT),
         Key::Z,
         "Redo",
     ),
-    key(Act::Undo, Modifiers::COMMAND, Key::Z, "Undo"),
-    key(Act::New, Modifiers::COMMAND, Key::N, "New painting"),
-    key(Act::Open, Modifiers::COMMAND, Key::O, "Open a painting"),
+    key(Action::Undo, Modifiers::COMMAND, Key::Z, "Undo"),
+    key(Action::New, Modifiers::COMMAND, Key::N, "New painting"),
+    key(Action::Open, Modifiers::COMMAND, Key::O, "Open a painting"),
     key(
-        Act::SaveAs,
+        Action::SaveAs,
         Modifiers::COMMAND.plus(Modifiers::SHIFT),
         Key::S,
         "Save under another name",
     ),
-    key(Act::Save, Modifiers::COMMAND, Key::S, "Save"),
-    key(Act::Export, Modifiers::COMMAND, Key::E, "Export a picture"),
+    key(Action::Save, Modifiers::COMMAND, Key::S, "Save"),
     key(
-        Act::Reference,
+        Action::Export,
+        Modifiers::COMMAND,
+        Key::E,
+        "Export a picture",
+    ),
+    key(
+        Action::Reference,
         Modifiers::COMMAND,
         Key::R,
         "Reference picture, and away",
     ),
     key(
-        Act::Keys,
+        Action::Keys,
         Modifiers::SHIFT,
         Key::Questionmark,
         "Show these keys",
     ),
-    key(Act::Keys, Modifiers::NONE, Key::F1, "Show these keys"),
+    key(Action::Keys, Modifiers::NONE, Key::F1, "Show these keys"),
     key(
-        Act::ForceOff,
+        Action::ForceOff,
         Modifiers::NONE,
         Key::F9,
         "Force off, of every device",
@@ -207,25 +217,25 @@ impl Plugin for TabKey {
 
 /// The one key that acts whatever else is open.
 #[must_use]
-pub(crate) fn force_off(context: &Context) -> Vec<Act> {
+pub(crate) fn force_off(context: &Context) -> Vec<Action> {
     let pressed = context.input_mut(|input| input.consume_key(Modifiers::NONE, Key::F9));
-    pressed.then_some(Act::ForceOff).into_iter().collect()
+    pressed.then_some(Action::ForceOff).into_iter().collect()
 }
 
 /// What the keys that were pressed ask for, in order. While a control has the keyboard, keys without
 /// Ctrl are its own.
 #[must_use]
-pub(crate) fn pressed(context: &Context) -> Vec<Act> {
+pub(crate) fn pressed(context: &Context) -> Vec<Action> {
     let typing = context.memory(|memory| memory.focused().is_some());
     let tab = context.plugin_or_default::<TabKey>();
     let tab = std::mem::take(&mut tab.lock().pressed);
-    let mut acts: Vec<Act> = tab.then_some(Act::Panels).into_iter().collect();
+    let mut acts: Vec<Action> = tab.then_some(Action::Panels).into_iter().collect();
     context.input_mut(|input| {
         for binding in &BINDINGS {
             // A key that is held does its work once, but to step back and forth.
             let repeats = matches!(
                 binding.act,
-                Act::Undo | Act::Redo | Act::Smaller | Act::Larger
+                Action::Undo | Action::Redo | Action::Smaller | Action::Larger
             );
             let KeyboardShortcut {
                 modifiers: own,

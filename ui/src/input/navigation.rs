@@ -7,7 +7,7 @@ use maulstick_brush::lie::Lie;
 use maulstick_num::exp;
 use maulstick_types::scene::{CANVAS, PALETTE, Surface};
 
-use crate::rig::requests::Orders;
+use crate::rig::requests::Requests;
 use crate::view::camera::View;
 
 /// A line of the wheel zooms by e to this power.
@@ -21,7 +21,7 @@ const DRAG_ZOOM: f64 = 2.0;
 
 /// What a drag does.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Deed {
+enum DragMode {
     Pan,
     Turn,
     Tilt,
@@ -31,7 +31,7 @@ enum Deed {
 /// A drag that goes on.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Drag {
-    deed: Deed,
+    drag_mode: DragMode,
     button: PointerButton,
     surface: u32,
     /// Where the surface lies by this hand; the scene follows.
@@ -54,7 +54,7 @@ pub(crate) struct Around<'a> {
 
 /// The free hand.
 #[derive(Debug, Default)]
-pub(crate) struct Hand {
+pub(crate) struct Navigation {
     drag: Option<Drag>,
     /// Where a surface was sent last, and when: the scene follows.
     sent: Option<(u32, Lie, f64)>,
@@ -63,7 +63,7 @@ pub(crate) struct Hand {
 /// After this the scene has followed the hand, s.
 const FOLLOWED_S: f64 = 0.3;
 
-impl Hand {
+impl Navigation {
     /// Whether it holds a surface: the pointer is no brush then.
     #[must_use]
     pub(crate) fn holds(&self) -> bool {
@@ -71,11 +71,16 @@ impl Hand {
     }
 
     /// Follows the input of a frame; asks for what it does.
-    pub(crate) fn follow(&mut self, input: &InputState, around: &Around<'_>, orders: &mut Orders) {
+    pub(crate) fn follow(
+        &mut self,
+        input: &InputState,
+        around: &Around<'_>,
+        requests: &mut Requests,
+    ) {
         if let Some(touch) = input.multi_touch() {
             self.drag = None;
             if !around.over_panel {
-                self.touch(input.time, &touch, around, orders);
+                self.touch(input.time, &touch, around, requests);
             }
             return;
         }
@@ -87,15 +92,16 @@ impl Hand {
                     pressed: true,
                     modifiers,
                 } if self.drag.is_none() && !around.over_panel => {
-                    self.drag = deed(*button, *modifiers, around.free)
-                        .and_then(|deed| self.grasp(input.time, deed, *button, *pos, around));
+                    self.drag = drag_mode(*button, *modifiers, around.free).and_then(|drag_mode| {
+                        self.grasp(input.time, drag_mode, *button, *pos, around)
+                    });
                 }
                 Event::PointerButton {
                     button,
                     pressed: false,
                     ..
                 } if self.drag.is_some_and(|drag| drag.button == *button) => self.drag = None,
-                Event::PointerMoved(at) => self.drag_to(input.time, *at, around, orders),
+                Event::PointerMoved(at) => self.drag_to(input.time, *at, around, requests),
                 // A pointer that leaves the window still holds, but a button may be let go over another one.
                 Event::WindowFocused(false) => self.drag = None,
                 Event::MouseWheel { unit, delta, .. } if !around.over_panel => {
@@ -105,7 +111,7 @@ impl Hand {
                             MouseWheelUnit::Line => 1.0,
                             MouseWheelUnit::Page => 10.0,
                         };
-                    self.zoom(input, exp(WHEEL * lines), around, orders);
+                    self.zoom(input, exp(WHEEL * lines), around, requests);
                 }
                 _ => {}
             }
@@ -121,19 +127,19 @@ impl Hand {
     fn grasp(
         &self,
         now: f64,
-        deed: Deed,
+        drag_mode: DragMode,
         button: PointerButton,
         at: Pos2,
         around: &Around<'_>,
     ) -> Option<Drag> {
         let on_palette = find(around.surfaces, PALETTE)
-            .filter(|palette| deed == Deed::Pan && around.view.is_over(at, palette));
+            .filter(|palette| drag_mode == DragMode::Pan && around.view.is_over(at, palette));
         let surface = match on_palette {
             Some(palette) => palette,
             None => find(around.surfaces, CANVAS)?,
         };
         Some(Drag {
-            deed,
+            drag_mode,
             button,
             surface: surface.id,
             lie: self.newest(now, surface),
@@ -141,7 +147,7 @@ impl Hand {
         })
     }
 
-    fn drag_to(&mut self, now: f64, at: Pos2, around: &Around<'_>, orders: &mut Orders) {
+    fn drag_to(&mut self, now: f64, at: Pos2, around: &Around<'_>, requests: &mut Requests) {
         let Some(drag) = &mut self.drag else {
             return;
         };
@@ -149,19 +155,19 @@ impl Hand {
         let way = at - drag.at;
         let share = f64::from(way.y / view.area.height().max(1.0));
         let lie = drag.lie;
-        drag.lie = match drag.deed {
-            Deed::Pan => lie.moved(view.along(way)),
-            Deed::Turn => {
+        drag.lie = match drag.drag_mode {
+            DragMode::Pan => lie.moved(view.along(way)),
+            DragMode::Turn => {
                 let [from, to] = [drag.at, at].map(|at| view.on_desk(at));
                 let angle = from.truncate().angle_to(to.truncate());
                 lie.turned(DVec3::ZERO, DVec3::Z, angle)
             }
-            Deed::Tilt => lie.tilted(DVec3::ZERO, share * TILT),
-            Deed::Zoom => lie.zoomed(DVec3::ZERO, exp(-share * DRAG_ZOOM)),
+            DragMode::Tilt => lie.tilted(DVec3::ZERO, share * TILT),
+            DragMode::Zoom => lie.zoomed(DVec3::ZERO, exp(-share * DRAG_ZOOM)),
         };
         drag.at = at;
         if drag.lie != lie {
-            orders.paint(drag.lie.command(drag.surface));
+            requests.paint(drag.lie.command(drag.surface));
             self.sent = Some((drag.surface, drag.lie, now));
         }
     }
@@ -174,7 +180,13 @@ impl Hand {
         }
     }
 
-    fn zoom(&mut self, input: &InputState, factor: f64, around: &Around<'_>, orders: &mut Orders) {
+    fn zoom(
+        &mut self,
+        input: &InputState,
+        factor: f64,
+        around: &Around<'_>,
+        requests: &mut Requests,
+    ) {
         let Some(canvas) = find(around.surfaces, CANVAS) else {
             return;
         };
@@ -186,7 +198,7 @@ impl Hand {
             canvas.id,
             from,
             from.zoomed(about, factor),
-            orders,
+            requests,
         );
     }
 
@@ -195,7 +207,7 @@ impl Hand {
         now: f64,
         touch: &eframe::egui::MultiTouchInfo,
         around: &Around<'_>,
-        orders: &mut Orders,
+        requests: &mut Requests,
     ) {
         let Some(canvas) = find(around.surfaces, CANVAS) else {
             return;
@@ -206,30 +218,30 @@ impl Hand {
             .zoomed(about, f64::from(touch.zoom_delta))
             .turned(about, DVec3::Z, -f64::from(touch.rotation_delta))
             .moved(around.view.along(touch.translation_delta));
-        self.send(now, canvas.id, from, to, orders);
+        self.send(now, canvas.id, from, to, requests);
     }
 
-    fn send(&mut self, now: f64, surface: u32, from: Lie, to: Lie, orders: &mut Orders) {
+    fn send(&mut self, now: f64, surface: u32, from: Lie, to: Lie, requests: &mut Requests) {
         if to != from {
-            orders.paint(to.command(surface));
+            requests.paint(to.command(surface));
             self.sent = Some((surface, to, now));
         }
     }
 }
 
 /// What a button does with the modifiers that are held; none where it is the brush's.
-fn deed(button: PointerButton, modifiers: Modifiers, free: bool) -> Option<Deed> {
+fn drag_mode(button: PointerButton, modifiers: Modifiers, free: bool) -> Option<DragMode> {
     let grasps = match button {
         PointerButton::Middle => true,
         PointerButton::Primary => free || modifiers.command,
         _ => false,
     };
     match grasps {
-        false if button == PointerButton::Primary && modifiers.shift_only() => Some(Deed::Zoom),
+        false if button == PointerButton::Primary && modifiers.shift_only() => Some(DragMode::Zoom),
         false => None,
-        true if modifiers.shift => Some(Deed::Turn),
-        true if modifiers.alt => Some(Deed::Tilt),
-        true => Some(Deed::Pan),
+        true if modifiers.shift => Some(DragMode::Turn),
+        true if modifiers.alt => Some(DragMode::Tilt),
+        true => Some(DragMode::Pan),
     }
 }
 
@@ -249,14 +261,14 @@ mod tests {
     use maulstick_types::command::Command;
 
     use super::*;
-    use crate::rig::requests::Order;
+    use crate::rig::requests::Request;
 
     /// What events make of the scene's surfaces, as orders of places.
     fn placed(free: bool, events: impl IntoIterator<Item = Event>) -> Vec<(u32, Lie)> {
         let surfaces = PaintingSetup::default().scene().surfaces;
-        let (hand, orders) = (
-            RefCell::new(Hand::default()),
-            RefCell::new(Orders::default()),
+        let (hand, requests) = (
+            RefCell::new(Navigation::default()),
+            RefCell::new(Requests::default()),
         );
         let view = view(&surfaces);
         let mut harness = Harness::builder()
@@ -270,7 +282,7 @@ mod tests {
                 };
                 ui.input(|input| {
                     hand.borrow_mut()
-                        .follow(input, &around, &mut orders.borrow_mut());
+                        .follow(input, &around, &mut requests.borrow_mut());
                 });
             });
         for event in events {
@@ -278,9 +290,9 @@ mod tests {
             harness.step();
         }
         drop(harness);
-        let orders = orders.into_inner().take();
+        let requests = requests.into_inner().take();
         let lie = |order| match order {
-            Order::Command {
+            Request::Command {
                 command:
                     Command::Place {
                         surface,
@@ -297,7 +309,7 @@ mod tests {
             ),
             other => panic!("{other:?}"),
         };
-        orders.into_iter().map(lie).collect()
+        requests.into_iter().map(lie).collect()
     }
 
     fn view(surfaces: &[Surface]) -> View {

@@ -11,13 +11,13 @@ const FAST_M_S: f64 = 0.15;
 
 /// Whether the brush waved, seen from one place to the next.
 #[derive(Clone, Copy, Debug, Default)]
-pub(crate) struct Wave {
+pub(crate) struct PaletteGesture {
     last: Option<(DVec2, f64)>,
     /// Set once it has waved, until it has come back.
     gone: bool,
 }
 
-impl Wave {
+impl PaletteGesture {
     /// Follows the brush: `at` in the view's shares of its width and height from the middle (−½ to ½ is in
     /// view), none where there is no brush; `wide_m` the view's width; `in_air` whether it touches nothing.
     pub(crate) fn follow(
@@ -56,11 +56,11 @@ mod tests {
     use super::*;
 
     fn waves(way: impl Fn(f64) -> f64, in_air: bool, side: Side) -> usize {
-        let mut wave = Wave::default();
+        let mut palette_gesture = PaletteGesture::default();
         (0..200)
             .filter(|i| {
                 let now = f64::from(*i) * 0.01;
-                wave.follow(now, Some(DVec2::new(way(now), 0.0)), 0.5, in_air, side)
+                palette_gesture.follow(now, Some(DVec2::new(way(now), 0.0)), 0.5, in_air, side)
             })
             .count()
     }

@@ -6,7 +6,7 @@ use maulstick_types::Mixture;
 use maulstick_types::command::Command;
 use maulstick_types::scene::{Surface, WellKind};
 
-use crate::widgets::context::Work;
+use crate::widgets::context::PanelContext;
 
 /// Paints that a palette holds at most: more would lie in wells too small for a brush.
 pub(crate) const MOST: usize = 24;
@@ -21,35 +21,35 @@ pub(crate) fn mixtures(palette: &Surface) -> Vec<Mixture> {
     held.flatten().collect()
 }
 
-impl Work<'_> {
+impl PanelContext<'_> {
     /// What the wells of the palette hold, from the top; none before there is a palette.
     #[must_use]
     pub fn wells(&self) -> Vec<Mixture> {
-        self.studio.palette().map_or_else(Vec::new, mixtures)
+        self.rig.palette().map_or_else(Vec::new, mixtures)
     }
 
     /// Lays these mixtures in the palette's wells, from the top.
     pub fn lay_wells(&mut self, mixtures: &[Mixture]) {
         if mixtures.len() > MOST {
-            return self.toasts.fault(
+            return self.notifications.fault(
                 format!("A palette holds at most {MOST} paints."),
                 "Take one off the palette first.",
             );
         }
-        let Some(palette) = self.studio.palette() else {
+        let Some(palette) = self.rig.palette() else {
             return;
         };
         let wells = wells_of(mixtures, palette.cells, palette.cell_m);
         let command = Command::Wells {
             surface: palette.id,
-            wells: match self.habits.left_handed {
+            wells: match self.preferences.left_handed {
                 false => wells,
                 true => mirrored(&wells, size_m(palette)),
             },
         };
         match command.check() {
-            Ok(()) => self.orders.paint(command),
-            Err(what) => self.toasts.fault(what, String::new()),
+            Ok(()) => self.requests.paint(command),
+            Err(what) => self.notifications.fault(what, String::new()),
         }
     }
 }

@@ -12,7 +12,7 @@
 
 use eframe::egui::Ui;
 
-use crate::widgets::context::Work;
+use crate::widgets::context::PanelContext;
 
 /// A panel.
 pub(crate) trait Panel {
@@ -20,7 +20,7 @@ pub(crate) trait Panel {
     fn title(&self) -> &'static str;
 
     /// Shows it in a column of the window.
-    fn show(&mut self, ui: &mut Ui, work: &mut Work<'_>);
+    fn show(&mut self, ui: &mut Ui, work: &mut PanelContext<'_>);
 }
 
 /// All panels, from the top.
@@ -28,7 +28,7 @@ pub(crate) trait Panel {
 pub(crate) fn all() -> Vec<Box<dyn Panel>> {
     vec![
         Box::<brush::BrushPanel>::default(),
-        Box::<paints::TubesPanel>::default(),
+        Box::<paints::PaintsPanel>::default(),
         Box::<layers::LayersPanel>::default(),
         Box::<light::LightPanel>::default(),
         Box::<canvas::CanvasPanel>::default(),

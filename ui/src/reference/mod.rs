@@ -21,9 +21,9 @@ use maulstick_types::command::Command;
 use serde::{Deserialize, Serialize};
 
 use crate::dialogs::paths;
-use crate::input::keys::Act;
-use crate::settings::preferences::Habits;
-use crate::widgets::context::Work;
+use crate::input::keys::Action;
+use crate::settings::preferences::Preferences;
+use crate::widgets::context::PanelContext;
 use picker::{Ask, Match, Matches, Picker, of_palette};
 use picture::{Picture, Pinned};
 
@@ -37,7 +37,7 @@ const STEP: f32 = 8.0;
 /// What is remembered of the reference picture.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
-pub struct ReferenceHabits {
+pub struct ReferencePreferences {
     /// Whether it is shown.
     pub shown: bool,
     /// The picture.
@@ -52,7 +52,7 @@ pub struct ReferenceHabits {
     pub all_paints: bool,
 }
 
-impl Default for ReferenceHabits {
+impl Default for ReferencePreferences {
     fn default() -> Self {
         Self {
             shown: false,
@@ -65,7 +65,7 @@ impl Default for ReferenceHabits {
     }
 }
 
-impl ReferenceHabits {
+impl ReferencePreferences {
     /// The same with numbers that make a frame.
     fn sound(&self) -> Self {
         let within = |value: f32, least: f32, most: f32, usual: f32| match value.is_finite() {
@@ -115,27 +115,31 @@ pub(crate) struct Reference {
 
 impl Reference {
     /// Pins a picture beside the canvas.
-    pub(crate) fn pin(&mut self, context: &Context, path: &Path, habits: &mut Habits) {
+    pub(crate) fn pin(&mut self, context: &Context, path: &Path, preferences: &mut Preferences) {
         *self = Self {
             pinned: Pinned::read(context, path),
             ..Self::default()
         };
-        habits.reference.path = Some(path.to_owned());
-        habits.reference.shown = true;
+        preferences.reference.path = Some(path.to_owned());
+        preferences.reference.shown = true;
     }
 
     /// Shows the picture that there is, or takes it away; `false` where there is none yet.
-    pub(crate) fn toggle(&mut self, habits: &mut Habits) -> bool {
-        let known = habits.reference.path.is_some();
-        habits.reference.shown = known && !habits.reference.shown;
+    pub(crate) fn toggle(&mut self, preferences: &mut Preferences) -> bool {
+        let known = preferences.reference.path.is_some();
+        preferences.reference.shown = known && !preferences.reference.shown;
         known
     }
 
     /// Shows it; what its buttons ask for.
     #[must_use]
-    pub(crate) fn show(&mut self, context: &Context, work: &mut Work<'_>) -> Option<Act> {
-        let habits = work.habits.reference.sound();
-        let (true, Some(path)) = (habits.shown, &habits.path) else {
+    pub(crate) fn show(
+        &mut self,
+        context: &Context,
+        work: &mut PanelContext<'_>,
+    ) -> Option<Action> {
+        let preferences = work.preferences.reference.sound();
+        let (true, Some(path)) = (preferences.shown, &preferences.path) else {
             return None;
         };
         if self.pinned.path() != Some(path) {
@@ -149,9 +153,9 @@ impl Reference {
             .id(Id::unique("reference"))
             .open(&mut open)
             .collapsible(false)
-            .frame(frame.fill(fill.gamma_multiply(habits.opacity)))
-            .default_pos(habits.place)
-            .default_size(habits.size)
+            .frame(frame.fill(fill.gamma_multiply(preferences.opacity)))
+            .default_pos(preferences.place)
+            .default_size(preferences.size)
             .min_size(LEAST)
             .resizable(true)
             .show(context, |ui| {
@@ -161,7 +165,7 @@ impl Reference {
                     None => 22.0,
                 };
                 let room = ui.available_size() - vec2(0.0, below);
-                self.picture(ui, room.max(vec2(80.0, 60.0)), habits.opacity, work);
+                self.picture(ui, room.max(vec2(80.0, 60.0)), preferences.opacity, work);
                 self.proposals(ui, work);
                 ui.min_size()
             });
@@ -170,43 +174,43 @@ impl Reference {
             && !context.input(|input| input.pointer.any_down())
         {
             let whole = |v: f32| v.round();
-            let kept = &mut work.habits.reference;
+            let kept = &mut work.preferences.reference;
             kept.place = [shown.response.rect.left(), shown.response.rect.top()].map(whole);
             if let Some(size) = shown.inner {
                 kept.size = [size.x, size.y].map(whole);
             }
         }
         if !open {
-            work.habits.reference.shown = false;
+            work.preferences.reference.shown = false;
         }
         asked
     }
 
-    fn header(&mut self, ui: &mut Ui, work: &mut Work<'_>) -> Option<Act> {
+    fn header(&mut self, ui: &mut Ui, work: &mut PanelContext<'_>) -> Option<Action> {
         let mut asked = None;
         ui.horizontal(|ui| {
             let another = ui.button("Another …").on_hover_text("Pin another picture");
             if another.clicked() {
-                asked = Some(Act::Reference);
+                asked = Some(Action::Reference);
             }
             if ui.button("Fit").on_hover_text("See all of it").clicked() {
                 self.look.zoom = 1.0;
                 self.look.middle = pos2(0.5, 0.5);
             }
             ui.spacing_mut().slider_width = 60.0;
-            let mut opacity = work.habits.reference.sound().opacity;
+            let mut opacity = work.preferences.reference.sound().opacity;
             let label = ui.label("Opaque");
             let slider = Slider::new(&mut opacity, 0.1..=1.0).show_value(false);
             let slider = ui.add(slider).labelled_by(label.id);
             if slider.changed() {
-                work.habits.reference.opacity = (opacity * 100.0).round() * 0.01;
+                work.preferences.reference.opacity = (opacity * 100.0).round() * 0.01;
             }
         });
         asked
     }
 
     /// The picture itself: it follows the pointer and the keys.
-    fn picture(&mut self, ui: &mut Ui, room: Vec2, opacity: f32, work: &Work<'_>) {
+    fn picture(&mut self, ui: &mut Ui, room: Vec2, opacity: f32, work: &PanelContext<'_>) {
         let (area, response) = ui.allocate_exact_size(room, Sense::click_and_drag());
         response.widget_info(|| {
             let label = match &self.pinned {
@@ -317,8 +321,8 @@ impl Reference {
     }
 
     /// Asks for mixtures of the colour under the cross.
-    fn pick(&mut self, picture: &Picture, work: &Work<'_>) {
-        let (Some(cross), Some(scene)) = (self.look.cross, &work.studio.scene) else {
+    fn pick(&mut self, picture: &Picture, work: &PanelContext<'_>) {
+        let (Some(cross), Some(scene)) = (self.look.cross, &work.rig.scene) else {
             return;
         };
         let pixel = |at: f32, side: usize| ((at * side as f32) as usize).min(side - 1);
@@ -327,9 +331,9 @@ impl Reference {
             pixel(cross.y, picture.size[1]),
         ]);
         self.picked = Some(linear);
-        let paints = match work.habits.reference.all_paints {
+        let paints = match work.preferences.reference.all_paints {
             true => None,
-            false => of_palette(work.studio.palette()),
+            false => of_palette(work.rig.palette()),
         };
         self.picker.ask(Ask {
             linear,
@@ -339,7 +343,7 @@ impl Reference {
     }
 
     /// What was picked, and the mixtures that come near.
-    fn proposals(&mut self, ui: &mut Ui, work: &mut Work<'_>) {
+    fn proposals(&mut self, ui: &mut Ui, work: &mut PanelContext<'_>) {
         let Some(linear) = self.picked else {
             ui.weak("Click a colour: mixtures of it. Wheel: closer.");
             return;
@@ -348,7 +352,7 @@ impl Reference {
         ui.horizontal(|ui| {
             swatch(ui, bytes, "Picked");
             ui.label(RichText::new(hex(bytes)).monospace());
-            let all = &mut work.habits.reference.all_paints;
+            let all = &mut work.preferences.reference.all_paints;
             let choice = ui.checkbox(all, "All paints");
             let choice = choice.on_hover_text("Not only those on the palette");
             if choice.changed()
@@ -367,13 +371,13 @@ impl Reference {
                 self.picker.forget();
             }
         });
-        let library = std::sync::Arc::clone(&work.studio.library);
+        let library = std::sync::Arc::clone(&work.rig.library);
         let found = self.picker.found(ui.ctx(), &library).cloned();
         matches(ui, found.as_ref(), work);
     }
 }
 
-fn matches(ui: &mut Ui, found: Option<&Matches>, work: &mut Work<'_>) {
+fn matches(ui: &mut Ui, found: Option<&Matches>, work: &mut PanelContext<'_>) {
     match found {
         None => {
             ui.horizontal(|ui| {
@@ -393,7 +397,7 @@ fn matches(ui: &mut Ui, found: Option<&Matches>, work: &mut Work<'_>) {
 }
 
 /// A mixture, how near it comes, and what can be done with it.
-fn proposal(ui: &mut Ui, found: &Match, work: &mut Work<'_>) {
+fn proposal(ui: &mut Ui, found: &Match, work: &mut PanelContext<'_>) {
     let words = in_parts(found);
     ui.horizontal(|ui| {
         let near = format!("off by ΔE {:.1}", found.delta_e);
@@ -403,9 +407,9 @@ fn proposal(ui: &mut Ui, found: &Match, work: &mut Work<'_>) {
         let load = ui.button("Load").on_hover_text("Load the brush with it");
         load.widget_info(|| WidgetInfo::labeled(Role::Button, true, format!("Load {words}")));
         if load.clicked() {
-            let brush = work.studio.brush_name().to_owned();
+            let brush = work.rig.brush_name().to_owned();
             let mixture = found.mixture.clone();
-            work.orders.paint(Command::Load { brush, mixture });
+            work.requests.paint(Command::Load { brush, mixture });
         }
         let put = ui.button("+").on_hover_text("Put it on the palette");
         put.widget_info(|| {

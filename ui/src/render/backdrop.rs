@@ -167,7 +167,7 @@ mod tests {
             tiles.iter_mut().for_each(|tile| tile.colour.fill(0x35));
             shown(tiles, 0, false)
         };
-        let news = || shown(vec![tile(1, 0)], 0, false);
+        let events = || shown(vec![tile(1, 0)], 0, false);
         let mut view = SurfaceView::default();
         let turn = |view: &mut SurfaceView, backdrop: &mut Backdrop| {
             view.light(&gpu, &passes, &lamp(), 2.5e-4);
@@ -180,7 +180,7 @@ mod tests {
         view.update(&gpu, &passes, &bare());
         assert_eq!(turn(&mut view, &mut backdrop), 200 * 140);
         assert_eq!(turn(&mut view, &mut backdrop), 0, "nothing has changed");
-        view.update(&gpu, &passes, &news());
+        view.update(&gpu, &passes, &events());
         let drawn = turn(&mut view, &mut backdrop);
         // A tile, and what its shadow may reach away from the lamp.
         let side = |reach: f32| (64.0 + reach + 1.0) * 1.2 + 8.0;
@@ -201,7 +201,7 @@ mod tests {
         let by_parts = pixels(&backdrop);
         let mut whole = SurfaceView::default();
         whole.update(&gpu, &passes, &bare());
-        whole.update(&gpu, &passes, &news());
+        whole.update(&gpu, &passes, &events());
         let mut backdrop = Backdrop::new(&gpu);
         turn(&mut whole, &mut backdrop);
         assert!(by_parts == pixels(&backdrop), "the same pixels in one go");

@@ -16,12 +16,12 @@ const LONGEST: usize = 300;
 
 /// Watches over a graphics device; clones share it.
 #[derive(Clone, Debug)]
-pub struct LostDevice {
+pub struct DeviceLoss {
     why: Arc<Mutex<Option<String>>>,
     word: PathBuf,
 }
 
-impl LostDevice {
+impl DeviceLoss {
     /// Nothing is lost yet; word is left in `folder`.
     #[must_use]
     pub fn new(folder: &Path) -> Self {
@@ -97,13 +97,13 @@ mod tests {
     #[test]
     fn the_next_window_of_the_rig_says_once_why_the_last_one_ended() {
         let folder = tempfile::tempdir().expect("a folder");
-        let window = LostDevice::new(folder.path());
+        let window = DeviceLoss::new(folder.path());
         assert!(window.word().is_none() && !window.is_lost());
         assert_eq!(window.check(), Ok(()));
         window.lose(" the GPU was reset ");
         let fault = window.check().expect_err("it is lost");
         assert_eq!(fault.what, "the graphics device is lost: the GPU was reset");
-        let next = LostDevice::new(folder.path());
+        let next = DeviceLoss::new(folder.path());
         assert!(!next.is_lost(), "it has a device of its own");
         assert_eq!(next.word().as_deref(), Some("the GPU was reset"));
         assert_eq!(next.word(), None);
@@ -117,7 +117,7 @@ mod tests {
         let folder = tempfile::tempdir().expect("a folder");
         let (gpu, lost) = (
             crate::render::gpu::testing::gpu(),
-            LostDevice::new(folder.path()),
+            DeviceLoss::new(folder.path()),
         );
         lost.follow(&gpu.device, &Context::default());
         gpu.device.destroy();

@@ -15,12 +15,12 @@ static LINEAR: LazyLock<[f32; 256]> =
 
 /// From sRGB to the bytes of a display.
 #[derive(Debug)]
-pub struct Tint {
+pub struct DisplayTransform {
     gamut: Gamut,
     profile: Arc<Profile>,
 }
 
-impl Tint {
+impl DisplayTransform {
     /// For a display.
     #[must_use]
     pub fn new(export: &Export) -> Self {
@@ -66,7 +66,7 @@ mod tests {
     #[test]
     fn red_lacquer_is_sent_less_red_to_a_wide_display() {
         let tint = |space: RgbSpace| {
-            Tint::new(&Export {
+            DisplayTransform::new(&Export {
                 profile: Arc::new(Profile::of(space)),
                 ..Default::default()
             })

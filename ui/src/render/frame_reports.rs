@@ -34,7 +34,7 @@ impl Completion {
     pub(crate) fn wait(&self, limit: Duration) {
         let state = self.0.state();
         let busy = |state: &mut State| state.under_way > 0 && !state.ended;
-        drop(self.0.news.wait_timeout_while(state, limit, busy));
+        drop(self.0.events.wait_timeout_while(state, limit, busy));
     }
 }
 
@@ -50,7 +50,7 @@ pub(crate) struct Presenter {
 #[derive(Debug, Default)]
 struct Line {
     state: Mutex<State>,
-    news: Condvar,
+    events: Condvar,
 }
 
 #[derive(Debug, Default)]
@@ -139,7 +139,7 @@ impl std::fmt::Debug for Presenter {
 impl Drop for Presenter {
     fn drop(&mut self) {
         self.line.state().ended = true;
-        self.line.news.notify_all();
+        self.line.events.notify_all();
         if let Some(thread) = self.thread.take() {
             thread.join().ok();
         }
@@ -189,7 +189,7 @@ struct Way(Arc<Line>);
 impl Way {
     fn begin(line: &Arc<Line>) -> Self {
         line.state().under_way += 1;
-        line.news.notify_all();
+        line.events.notify_all();
         Self(Arc::clone(line))
     }
 
@@ -201,7 +201,7 @@ impl Way {
 impl Drop for Way {
     fn drop(&mut self) {
         self.0.state().under_way -= 1;
-        self.0.news.notify_all();
+        self.0.events.notify_all();
     }
 }
 
@@ -223,11 +223,11 @@ fn tell(line: &Line, mut sender: Sender<Presented>, bus: &dyn Bus, ask: &dyn Fn(
             ask();
             state = line.state();
             if state.completed.is_empty() && state.under_way > 0 {
-                let waited = line.news.wait_timeout(state, ASK);
+                let waited = line.events.wait_timeout(state, ASK);
                 state = waited.unwrap_or_else(PoisonError::into_inner).0;
             }
         } else {
-            let waited = line.news.wait(state);
+            let waited = line.events.wait(state);
             state = waited.unwrap_or_else(PoisonError::into_inner);
         }
     }
@@ -285,7 +285,7 @@ mod tests {
             std::thread::yield_now();
         }
         line.state().ended = true;
-        line.news.notify_all();
+        line.events.notify_all();
         thread.join().expect("ended");
         net.advance(1_000_000);
         let presented = told.newest().expect("told");

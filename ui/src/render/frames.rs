@@ -13,7 +13,7 @@ use maulstick_rig::Stop;
 use maulstick_types::paint::{FrameHolds, FrameRequest};
 use maulstick_types::{DecodeError, Flags, FrameView, Origin, encode};
 
-use crate::render::tile_planner::{Asked, Part, Plan, SheetState};
+use crate::render::tile_planner::{Asked, AtlasState, Part, TilePlanner};
 use crate::view::visible_tiles::Wanted;
 
 /// A frame that does not come within this time is asked for again.
@@ -53,7 +53,7 @@ pub struct Shown {
     /// Which of the surface's sheets the tiles are of.
     pub part: Part,
     /// That sheet with these tiles.
-    pub sheet: SheetState,
+    pub atlas: AtlasState,
     /// Cells of the surface at the sheet's level.
     pub cells: [u32; 2],
     /// Changed tiles.
@@ -132,7 +132,7 @@ pub fn pull(source: &FrameSource, inbox: &FrameInbox, wake: &Wake, stop: &Stop) 
         source,
         inbox,
         stop,
-        plan: Plan::default(),
+        plan: TilePlanner::default(),
         strikes: 0,
         told: BTreeSet::new(),
         newest: (0, Vec::new()),
@@ -156,7 +156,7 @@ struct Puller<'a> {
     source: &'a FrameSource,
     inbox: &'a FrameInbox,
     stop: &'a Stop,
-    plan: Plan,
+    plan: TilePlanner,
     strikes: u32,
     told: BTreeSet<String>,
     /// What the window was told of the journal.
@@ -292,16 +292,16 @@ impl Puller<'_> {
 
     /// What a reply brings to the window, if anything.
     fn shown(&mut self, asked: &Asked, reply: &FrameView<'_>) -> Option<Shown> {
-        let before = self.plan.sheet(asked.part);
+        let before = self.plan.atlas(asked.part);
         if !self.plan.take(asked, reply) {
             self.pause(PAUSE);
             return None;
         }
-        let sheet = self.plan.sheet(asked.part);
-        let tells = asked.part == Part::Detail && !reply.more && sheet.held == asked.tiles;
+        let atlas = self.plan.atlas(asked.part);
+        let tells = asked.part == Part::Detail && !reply.more && atlas.held == asked.tiles;
         let newest = (reply.journal, reply.holds.clone());
-        let news = tells && self.newest != newest;
-        if reply.tiles.is_empty() && before == sheet && !news {
+        let events = tells && self.newest != newest;
+        if reply.tiles.is_empty() && before == atlas && !events {
             return None;
         }
         if tells {
@@ -309,7 +309,7 @@ impl Puller<'_> {
         }
         let tiles = reply.tiles.iter().filter_map(|tile| {
             let (mut colour, height) = texels(tile.planes)?;
-            if sheet.wet {
+            if atlas.wet {
                 tint_wet(&mut colour, tile.planes);
             }
             Some(ShownTile {
@@ -321,7 +321,7 @@ impl Puller<'_> {
         });
         Some(Shown {
             part: asked.part,
-            sheet,
+            atlas,
             cells: reply.cells,
             tiles: tiles.collect(),
             journal: if tells { reply.journal } else { 0 },

@@ -16,14 +16,14 @@ use maulstick_types::scene::{CANVAS, PALETTE, Surface};
 use maulstick_types::{Origin, name_hash};
 
 use crate::render::backdrop::Backdrop;
-use crate::render::brush::renderer::{Below, Brushes};
+use crate::render::brush::renderer::{Below, BrushRenderer};
 use crate::render::frame_reports::{Completion, Holding};
 use crate::render::frames::{FrameInbox, FrameSource, pull};
 use crate::render::gpu::Gpu;
 use crate::render::surface::{Passes, SurfaceView};
-use crate::rig::brushes::Follower;
-use crate::rig::health::News;
-use crate::rig::state::Studio;
+use crate::rig::brushes::BrushTracker;
+use crate::rig::health::RigEvent;
+use crate::rig::state::RigState;
 use crate::view::camera::View;
 use crate::view::visible_tiles::Wanted;
 
@@ -40,7 +40,7 @@ const SURFACES: [u32; 2] = [CANVAS, PALETTE];
 
 /// Frames of a surface and what they make.
 #[derive(Debug, Default)]
-struct Pulled {
+struct SurfaceLayer {
     inbox: FrameInbox,
     view: SurfaceView,
 }
@@ -51,7 +51,7 @@ struct Painter {
     gpu: Gpu,
     passes: Passes,
     backdrop: Backdrop,
-    brushes: Brushes,
+    brushes: BrushRenderer,
 }
 
 /// Where frames come from, and who is told of them.
@@ -70,8 +70,8 @@ pub(crate) struct Source {
 
 /// The desk in the window.
 #[derive(Debug, Default)]
-pub(crate) struct Stage {
-    surfaces: [Pulled; SURFACES.len()],
+pub(crate) struct SceneRenderer {
+    surfaces: [SurfaceLayer; SURFACES.len()],
     painter: Option<Painter>,
     threads: Vec<JoinHandle<()>>,
     /// What the picture of the canvas holds.
@@ -80,7 +80,7 @@ pub(crate) struct Stage {
     topic: String,
 }
 
-impl Stage {
+impl SceneRenderer {
     /// Starts to pull frames and to draw them, for a window on the display of `export`.
     pub(crate) fn begin(
         &mut self,
@@ -97,7 +97,7 @@ impl Stage {
         self.painter = Some(Painter {
             passes: Passes::new(&gpu, export),
             backdrop: Backdrop::new(&gpu),
-            brushes: Brushes::new(&gpu, export),
+            brushes: BrushRenderer::new(&gpu, export),
             gpu,
         });
         let me = Origin {
@@ -112,14 +112,14 @@ impl Stage {
             completion,
         } = source;
         self.topic.clone_from(&topic);
-        for (pulled, surface) in self.surfaces.iter().zip(SURFACES) {
+        for (layer, surface) in self.surfaces.iter().zip(SURFACES) {
             let source = FrameSource {
                 bus: Arc::clone(&bus),
                 topic: topic.clone(),
                 me,
                 surface,
             };
-            let inbox = pulled.inbox.clone();
+            let inbox = layer.inbox.clone();
             let (wake, stop) = (wake.clone(), stop.clone());
             let run = move || pull(&source, &inbox, &wake, &stop);
             self.threads.extend(thread("frames", run));
@@ -134,28 +134,28 @@ impl Stage {
     }
 
     /// Takes in the frames that have come.
-    pub(crate) fn take_in(&mut self, studio: &mut Studio) {
-        for pulled in &self.surfaces {
-            if let Some(error) = pulled.inbox.fault() {
+    pub(crate) fn take_in(&mut self, rig: &mut RigState) {
+        for layer in &self.surfaces {
+            if let Some(error) = layer.inbox.fault() {
                 let (topic, reason) = (self.topic.clone(), error.into());
                 let refusal = Refusal { topic, reason };
-                studio.news.push(News::Refused(refusal));
+                rig.events.push(RigEvent::Refused(refusal));
             }
         }
-        let (Some(painter), Some(scene)) = (&self.painter, &studio.scene) else {
+        let (Some(painter), Some(scene)) = (&self.painter, &rig.scene) else {
             return;
         };
-        for (pulled, id) in self.surfaces.iter_mut().zip(SURFACES) {
-            for shown in pulled.inbox.take() {
+        for (layer, id) in self.surfaces.iter_mut().zip(SURFACES) {
+            for shown in layer.inbox.take() {
                 if id == CANVAS && !shown.holds.is_empty() {
                     self.holding = shown.holding();
                 }
-                pulled.view.update(&painter.gpu, &painter.passes, &shown);
+                layer.view.update(&painter.gpu, &painter.passes, &shown);
             }
-            if let Some(surface) = studio.surface(id) {
+            if let Some(surface) = rig.surface(id) {
                 let lamp = lamp_over(scene, id);
                 let (gpu, passes) = (&painter.gpu, &painter.passes);
-                pulled.view.light(gpu, passes, &lamp, surface.cell_m);
+                layer.view.light(gpu, passes, &lamp, surface.cell_m);
             }
         }
     }
@@ -163,37 +163,36 @@ impl Stage {
     /// The desk from the bottom: `surfaces` where they are to be seen, brushes.
     pub(crate) fn shapes(
         &mut self,
-        studio: &Studio,
+        rig: &RigState,
         surfaces: &[Surface],
-        follower: &Follower,
+        tracker: &BrushTracker,
         view: &View,
         pixels_per_point: f32,
     ) -> Vec<Shape> {
-        let (Some(painter), Some(scene), Some(desk)) =
-            (&mut self.painter, &studio.scene, &studio.desk)
+        let (Some(painter), Some(scene), Some(desk)) = (&mut self.painter, &rig.scene, &rig.desk)
         else {
             return Vec::new();
         };
         let mut laid = Vec::new();
-        for (pulled, id) in self.surfaces.iter_mut().zip(SURFACES) {
+        for (layer, id) in self.surfaces.iter_mut().zip(SURFACES) {
             let Some(surface) = surfaces.iter().find(|surface| surface.id == id) else {
                 continue;
             };
             let wanted = Wanted {
-                wet: id == CANVAS && studio.show_wet,
+                wet: id == CANVAS && rig.show_wet,
                 ..Wanted::of(surface, view, pixels_per_point)
             };
-            pulled.inbox.want(wanted);
+            layer.inbox.want(wanted);
             let (gpu, passes) = (&painter.gpu, &painter.passes);
-            let sheets = &mut pulled.view;
-            laid.extend(sheets.lay(gpu, passes, surface, view, pixels_per_point));
+            let atlases = &mut layer.view;
+            laid.extend(atlases.lay(gpu, passes, surface, view, pixels_per_point));
         }
         let size = view.pixels(pixels_per_point);
         let (gpu, passes) = (&painter.gpu, &painter.passes);
         painter.backdrop.update(gpu, passes, size, &laid);
         let mut shapes: Vec<Shape> = painter.backdrop.shape(view).into_iter().collect();
-        for held in follower.held(desk) {
-            if let Some(head) = follower.head(held.name) {
+        for held in tracker.held(desk) {
+            if let Some(head) = tracker.head(held.name) {
                 let lamp = lamp_over(scene, held.plane.id);
                 let brushes = &mut painter.brushes;
                 let below = Below {

@@ -10,7 +10,7 @@ use crate::render::frames::Shown;
 use crate::render::gpu::Gpu;
 use crate::render::light_surface::LightSurface;
 use crate::render::show_surface::{PixelRect, Place, Region, ShowSurface};
-use crate::render::tile_atlas::Sheet;
+use crate::render::tile_atlas::TileAtlas;
 use crate::render::tile_planner::Part;
 use crate::view::camera::View;
 
@@ -37,36 +37,37 @@ impl Passes {
 /// A sheet as it is shown, and the one that will take its place once it has come whole.
 #[derive(Debug, Default)]
 struct Slot {
-    shown: Option<Sheet>,
-    coming: Option<Sheet>,
+    shown: Option<TileAtlas>,
+    coming: Option<TileAtlas>,
 }
 
 impl Slot {
     fn update(&mut self, gpu: &Gpu, pass: &LightSurface, shown: &Shown) {
-        let is_new = |sheet: &Option<Sheet>| sheet.as_ref().is_none_or(|sheet| !sheet.is_of(shown));
+        let is_new =
+            |atlas: &Option<TileAtlas>| atlas.as_ref().is_none_or(|atlas| !atlas.is_of(shown));
         if is_new(&self.coming) {
             self.coming = None;
             if is_new(&self.shown) {
-                self.coming = Sheet::of(gpu, pass, shown);
+                self.coming = TileAtlas::of(gpu, pass, shown);
                 if let (Some(old), Some(_)) = (&mut self.shown, &self.coming) {
                     old.freeze();
                 }
             }
         }
-        let old = self.shown.as_mut().filter(|sheet| sheet.is_of(shown));
-        let Some(sheet) = self.coming.as_mut().or(old) else {
+        let old = self.shown.as_mut().filter(|atlas| atlas.is_of(shown));
+        let Some(atlas) = self.coming.as_mut().or(old) else {
             return;
         };
-        sheet.take(gpu, shown);
-        let is_whole = !sheet.state().held.is_empty();
+        atlas.take(gpu, shown);
+        let is_whole = !atlas.state().held.is_empty();
         if is_whole && self.coming.is_some() {
             self.shown = self.coming.take();
         }
     }
 
     fn bytes(&self) -> u64 {
-        let sheets = self.shown.iter().chain(&self.coming);
-        sheets.map(Sheet::bytes).sum()
+        let atlases = self.shown.iter().chain(&self.coming);
+        atlases.map(TileAtlas::bytes).sum()
     }
 }
 
@@ -106,11 +107,11 @@ impl SurfaceView {
 
     /// Lights what has changed, under a lamp in the surface's frame.
     pub fn light(&mut self, gpu: &Gpu, passes: &Passes, lamp: &Lamp, cell_m: f64) {
-        for sheet in [&mut self.detail.shown, &mut self.base.shown]
+        for atlas in [&mut self.detail.shown, &mut self.base.shown]
             .into_iter()
             .flatten()
         {
-            sheet.light(gpu, &passes.light, lamp, cell_m);
+            atlas.light(gpu, &passes.light, lamp, cell_m);
         }
     }
 
@@ -125,27 +126,28 @@ impl SurfaceView {
         pixels_per_point: f32,
     ) -> Option<Laid> {
         let (fine, coarse) = (self.detail.shown.as_mut(), self.base.shown.as_mut());
-        let region = |sheet: &Option<&mut Sheet>| {
-            let region = sheet.as_ref().map(|sheet| sheet.region(surface.cells));
+        let region = |atlas: &Option<&mut TileAtlas>| {
+            let region = atlas.as_ref().map(|atlas| atlas.region(surface.cells));
             region.unwrap_or_default()
         };
-        let number = |sheet: &Option<&mut Sheet>| sheet.as_ref().map_or(0, |s| s.state().number);
+        let number =
+            |atlas: &Option<&mut TileAtlas>| atlas.as_ref().map_or(0, |s| s.state().number);
         let of = [number(&fine), number(&coarse)];
         // A base without a detail is one.
         let regions = match (&fine, &coarse) {
             (None, _) => [region(&coarse), Region::default()],
             _ => [region(&fine), region(&coarse)],
         };
-        let mut sheets: Vec<&mut Sheet> = fine.into_iter().chain(coarse).collect();
+        let mut atlases: Vec<&mut TileAtlas> = fine.into_iter().chain(coarse).collect();
         let place = Place::of(surface, view, pixels_per_point, regions);
         let mut fresh = PixelRect::NOTHING;
-        for sheet in &mut sheets {
-            let extent = sheet.region(surface.cells).extent;
-            for area in sheet.fresh() {
+        for atlas in &mut atlases {
+            let extent = atlas.region(surface.cells).extent;
+            for area in atlas.fresh() {
                 fresh = fresh.with(&place.covered(&area, extent));
             }
         }
-        let lit = [sheets.first()?, sheets.last()?].map(|sheet| &sheet.lit);
+        let lit = [atlases.first()?, atlases.last()?].map(|atlas| &atlas.lit);
         if let Some(placed) = self.placed.as_ref().filter(|placed| placed.of == of) {
             let mut changed = fresh;
             if placed.place != place {
@@ -204,7 +206,7 @@ pub(crate) mod tests {
     use super::*;
     use crate::render::frames::{ShownTile, texels};
     use crate::render::gpu::testing::{draw, gpu, read, target};
-    use crate::render::tile_planner::SheetState;
+    use crate::render::tile_planner::AtlasState;
     use crate::view::camera::corners;
     use crate::view::visible_tiles::TileRect;
 
@@ -260,7 +262,7 @@ pub(crate) mod tests {
             TileRect::up_to(room)
         };
         Shown {
-            sheet: SheetState {
+            atlas: AtlasState {
                 number: u64::from(level) + 1,
                 level,
                 room,

@@ -14,7 +14,7 @@ use crate::render::light_surface::{
     COLOUR, CellRect, HEIGHT, LIT, LampUniform, LightSurface, WindowUniform, joined,
 };
 use crate::render::show_surface::Region;
-use crate::render::tile_planner::SheetState;
+use crate::render::tile_planner::AtlasState;
 use crate::view::visible_tiles::TileRect;
 
 /// From this many changed areas on, the whole sheet is lit in one go.
@@ -39,8 +39,8 @@ struct Unlit {
 
 /// The textures.
 #[derive(Debug)]
-pub(crate) struct Sheet {
-    state: SheetState,
+pub(crate) struct TileAtlas {
+    state: AtlasState,
     /// Cells of the whole surface at its level.
     cells: [u32; 2],
     /// Texels.
@@ -57,13 +57,13 @@ fn view(texture: &wgpu::Texture) -> wgpu::TextureView {
     texture.create_view(&wgpu::TextureViewDescriptor::default())
 }
 
-impl Sheet {
+impl TileAtlas {
     /// An empty sheet as a reply tells of it; none where a device cannot have one so large.
     #[must_use]
     pub(crate) fn of(gpu: &Gpu, pass: &LightSurface, shown: &Shown) -> Option<Self> {
         let most = gpu.device.limits().max_texture_dimension_2d;
         let size = shown
-            .sheet
+            .atlas
             .room
             .map(|tiles| tiles.saturating_mul(TILE as u32));
         if size.iter().any(|side| !(1..=most).contains(side)) || shown.cells.contains(&0) {
@@ -81,9 +81,9 @@ impl Sheet {
         let window = gpu.uniform::<WindowUniform>("window");
         let bound = pass.bind(gpu, [&lamp, &window], &view(&colour), &view(&height));
         Some(Self {
-            state: SheetState {
+            state: AtlasState {
                 held: TileRect::NONE,
-                ..shown.sheet
+                ..shown.atlas
             },
             cells: shown.cells,
             size,
@@ -104,14 +104,14 @@ impl Sheet {
 
     /// Its number, level, room, and the tiles that are whole.
     #[must_use]
-    pub(crate) fn state(&self) -> &SheetState {
+    pub(crate) fn state(&self) -> &AtlasState {
         &self.state
     }
 
     /// Whether a reply is about this sheet.
     #[must_use]
     pub(crate) fn is_of(&self, shown: &Shown) -> bool {
-        (self.state.number, self.cells) == (shown.sheet.number, shown.cells)
+        (self.state.number, self.cells) == (shown.atlas.number, shown.cells)
     }
 
     /// Bytes of its textures.
@@ -130,7 +130,7 @@ impl Sheet {
     /// Takes in tiles, and which of all are whole from now on.
     pub(crate) fn take(&mut self, gpu: &Gpu, shown: &Shown) {
         let before = self.state.held;
-        self.state.held = shown.sheet.held;
+        self.state.held = shown.atlas.held;
         for tile in &shown.tiles {
             self.put(gpu, tile);
         }

@@ -23,7 +23,7 @@ pub enum Part {
 
 /// A sheet, as far as it has come.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct SheetState {
+pub struct AtlasState {
     /// Its number: another one is another picture.
     pub number: u64,
     /// Its level.
@@ -52,8 +52,8 @@ pub struct Asked {
 }
 
 #[derive(Clone, Copy, Debug, Default)]
-struct Sheet {
-    state: SheetState,
+struct TileAtlas {
+    state: AtlasState,
     /// What is held is as new as this.
     since: u64,
     /// What is on its way, and how much of it has come.
@@ -62,10 +62,10 @@ struct Sheet {
     more: bool,
 }
 
-impl Sheet {
+impl TileAtlas {
     /// Whether it is of a level, has room for so many tiles, and shows wet paint as it is wanted.
     fn takes(&self, level: u32, size: [u32; 2], wet: bool) -> bool {
-        let SheetState { room, .. } = self.state;
+        let AtlasState { room, .. } = self.state;
         let fits = (0..2).all(|i| size[i] <= room[i]);
         let own = self.state.level == level && self.state.wet == wet;
         self.state.number > 0 && own && fits
@@ -129,8 +129,8 @@ fn around(one: &TileRect, other: &TileRect) -> TileRect {
 
 /// The state of a puller.
 #[derive(Clone, Debug, Default)]
-pub struct Plan {
-    sheets: [Sheet; 2],
+pub struct TilePlanner {
+    atlases: [TileAtlas; 2],
     numbers: u64,
     epoch: u32,
     look: u64,
@@ -139,7 +139,7 @@ pub struct Plan {
     last: Part,
 }
 
-impl Plan {
+impl TilePlanner {
     /// Epoch and look that all is of.
     #[must_use]
     pub fn of(&self) -> (u32, u64) {
@@ -148,39 +148,39 @@ impl Plan {
 
     /// A sheet as it is.
     #[must_use]
-    pub fn sheet(&self, part: Part) -> SheetState {
-        self.sheets[part as usize].state
+    pub fn atlas(&self, part: Part) -> AtlasState {
+        self.atlases[part as usize].state
     }
 
     fn begin(&mut self, part: Part, level: u32, room: [u32; 2], wet: bool) {
         self.numbers += 1;
-        self.sheets[part as usize] = Sheet {
-            state: SheetState {
+        self.atlases[part as usize] = TileAtlas {
+            state: AtlasState {
                 number: self.numbers,
                 level,
                 room,
                 held: TileRect::NONE,
                 wet,
             },
-            ..Sheet::default()
+            ..TileAtlas::default()
         };
     }
 
     /// What to ask for a view that wants this.
     pub fn next(&mut self, wanted: &Wanted) -> Asked {
-        if !self.sheets[1].takes(wanted.level, wanted.tiles.size(), wanted.wet) {
+        if !self.atlases[1].takes(wanted.level, wanted.tiles.size(), wanted.wet) {
             self.begin(Part::Detail, wanted.level, wanted.room, wanted.wet);
         }
-        self.sheets[1].turn_to(&wanted.tiles);
+        self.atlases[1].turn_to(&wanted.tiles);
         let mut due = false;
         if let Some(level) = wanted.base {
-            if !self.sheets[0].takes(level, wanted.base_tiles, wanted.wet) {
+            if !self.atlases[0].takes(level, wanted.base_tiles, wanted.wet) {
                 self.begin(Part::Base, level, wanted.base_tiles, wanted.wet);
             }
-            self.sheets[0].turn_to(&TileRect::up_to(wanted.base_tiles));
-            due = self.sheets[0].coming.is_some()
-                || self.sheets[0].more
-                || self.sheets[1].coming.is_some()
+            self.atlases[0].turn_to(&TileRect::up_to(wanted.base_tiles));
+            due = self.atlases[0].coming.is_some()
+                || self.atlases[0].more
+                || self.atlases[1].coming.is_some()
                 || self.behind >= BASE_EACH;
         }
         let part = if due && self.last == Part::Detail {
@@ -189,7 +189,7 @@ impl Plan {
             Part::Detail
         };
         self.last = part;
-        let mut asked = self.sheets[part as usize].asked(part);
+        let mut asked = self.atlases[part as usize].asked(part);
         if part == Part::Base {
             self.behind = 0;
             asked.waits = false;
@@ -200,12 +200,12 @@ impl Plan {
     /// Whether a question that waits for news keeps what the view wants by now waiting.
     #[must_use]
     pub fn is_late(&self, asked: &Asked, wanted: &Wanted) -> bool {
-        let detail = &self.sheets[1];
+        let detail = &self.atlases[1];
         let own = detail.state.level == wanted.level && detail.state.wet == wanted.wet;
         let same = own && detail.state.held == wanted.tiles;
         let base = wanted
             .base
-            .is_none_or(|level| self.sheets[0].takes(level, wanted.base_tiles, wanted.wet));
+            .is_none_or(|level| self.atlases[0].takes(level, wanted.base_tiles, wanted.wet));
         asked.waits && !(same && base)
     }
 
@@ -216,44 +216,44 @@ impl Plan {
             return false;
         }
         if reply.level != asked.level {
-            self.sheets = Default::default();
+            self.atlases = Default::default();
             return false;
         }
         if reply.epoch != self.epoch {
             // Another start of the paint node: pictures of its own.
             for part in [Part::Base, Part::Detail] {
-                let SheetState {
+                let AtlasState {
                     level, room, wet, ..
-                } = self.sheet(part);
-                if self.sheets[part as usize].state.number > 0 {
+                } = self.atlas(part);
+                if self.atlases[part as usize].state.number > 0 {
                     self.begin(part, level, room, wet);
                 }
             }
-            self.sheets[asked.part as usize].coming = Some((asked.tiles, 0));
+            self.atlases[asked.part as usize].coming = Some((asked.tiles, 0));
         } else if reply.look != self.look {
             // All come anew, into the same pictures.
-            for sheet in &mut self.sheets {
-                sheet.since = 0;
-                sheet.more = true;
+            for atlas in &mut self.atlases {
+                atlas.since = 0;
+                atlas.more = true;
             }
         }
         (self.epoch, self.look) = (reply.epoch, reply.look);
-        let sheet = &mut self.sheets[asked.part as usize];
-        match &mut sheet.coming {
+        let atlas = &mut self.atlases[asked.part as usize];
+        match &mut atlas.coming {
             Some((_, since)) if reply.more => *since = reply.version,
             Some((tiles, _)) => {
-                let whole = sheet.state.held.is_empty();
-                sheet.since = if whole {
+                let whole = atlas.state.held.is_empty();
+                atlas.since = if whole {
                     reply.version
                 } else {
-                    sheet.since.min(reply.version)
+                    atlas.since.min(reply.version)
                 };
-                sheet.state.held = around(&sheet.state.held, tiles);
-                sheet.coming = None;
+                atlas.state.held = around(&atlas.state.held, tiles);
+                atlas.coming = None;
             }
             None => {
-                sheet.since = reply.version;
-                sheet.more = reply.more;
+                atlas.since = reply.version;
+                atlas.more = reply.more;
             }
         }
         if asked.part == Part::Detail {

@@ -11,7 +11,7 @@ static BYTES: LazyLock<SrgbTable> = LazyLock::new(SrgbTable::default);
 
 /// Who looks at a brush, and what light is on it. Lengths are desk lengths in the frame of the surface
 /// below, m.
-pub(crate) struct Sight<'a> {
+pub(crate) struct ViewLight<'a> {
     /// From that frame to the window, points.
     pub to_window: &'a dyn Fn(Vec3) -> Pos2,
     /// Points a metre.
@@ -24,7 +24,7 @@ pub(crate) struct Sight<'a> {
     pub light: f32,
 }
 
-impl Sight<'_> {
+impl ViewLight<'_> {
     /// Unit vector halfway between lamp and viewer.
     #[must_use]
     pub(crate) fn half(&self) -> Vec3 {

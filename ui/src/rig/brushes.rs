@@ -19,7 +19,7 @@ use maulstick_types::paint::PaintConsumed;
 use maulstick_types::stylus::StylusSample;
 use maulstick_types::topics::Topics;
 
-use crate::render::brush::paint_colour::Coat;
+use crate::render::brush::paint_colour::PaintColour;
 
 /// A device that is silent for this long holds no brush, ns.
 pub const SILENCE_NS: u64 = 1_000_000_000;
@@ -49,7 +49,7 @@ pub struct SampleNumber {
 
 /// A brush that made itself known.
 #[derive(Debug)]
-struct Known {
+struct TrackedBrush {
     file: BrushFile,
     head: Head,
     /// The device that it follows.
@@ -62,12 +62,12 @@ struct Known {
     /// How full it is, 0 to 1.
     wetness: f32,
     /// The paint on it, if that is known.
-    coat: Option<Arc<Coat>>,
+    coat: Option<Arc<PaintColour>>,
 }
 
 /// A brush in the hand.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Held<'a> {
+pub struct BrushPose<'a> {
     /// Its name.
     pub name: &'a str,
     /// Its file.
@@ -81,28 +81,28 @@ pub struct Held<'a> {
     /// How full it is, 0 to 1: wet bristles clump.
     pub wetness: f32,
     /// The paint on it, if that is known.
-    pub coat: Option<Arc<Coat>>,
+    pub coat: Option<Arc<PaintColour>>,
 }
 
 /// Follows all brushes of a rig.
-pub struct Follower {
+pub struct BrushTracker {
     topics: Topics,
     samples: Receiver<StylusSample>,
     states: Receiver<BrushState>,
     defs: Receiver<BrushDef>,
     credit: Receiver<PaintConsumed>,
     looks: Receiver<BrushLook>,
-    coats: BTreeMap<String, Option<Arc<Coat>>>,
+    coats: BTreeMap<String, Option<Arc<PaintColour>>>,
     depth_shares: BTreeMap<String, f64>,
     /// The source that is only heard when it moves.
     quiet: u32,
     newest: BTreeMap<u32, Heard>,
     /// The newest samples of all devices by source and time, the newest first.
     recent: VecDeque<((u32, u64), StylusSample)>,
-    known: BTreeMap<String, Known>,
+    known: BTreeMap<String, TrackedBrush>,
 }
 
-impl Follower {
+impl BrushTracker {
     /// Follows the brushes on `bus`, each with the depth share of its name; `quiet` is the source of
     /// the window's own mouse, which says nothing while it keeps still.
     ///
@@ -148,7 +148,7 @@ impl Follower {
         while let Some(def) = self.defs.try_recv() {
             match BrushFile::parse(&def.message.toml) {
                 Ok(file) => {
-                    let known = Known {
+                    let known = TrackedBrush {
                         head: Head::of(&file),
                         file,
                         device: None,
@@ -166,8 +166,10 @@ impl Follower {
         while let Some(look) = self.looks.try_recv() {
             let name = self.topics.middle(&look.key).unwrap_or_default();
             // Its file may be on its way still.
-            self.coats
-                .insert(name.to_owned(), Coat::of(&look.message).map(Arc::new));
+            self.coats.insert(
+                name.to_owned(),
+                PaintColour::of(&look.message).map(Arc::new),
+            );
         }
         for (name, known) in &mut self.known {
             known.coat = self.coats.get(name).cloned().flatten();
@@ -216,7 +218,7 @@ impl Follower {
     }
 
     /// The brushes that are held over a desk, by name.
-    pub fn held<'a>(&'a self, desk: &'a Desk) -> impl Iterator<Item = Held<'a>> {
+    pub fn held<'a>(&'a self, desk: &'a Desk) -> impl Iterator<Item = BrushPose<'a>> {
         self.known.iter().filter_map(|(name, known)| {
             let heard = self.newest.get(&known.device?)?;
             if !heard.sample.in_range {
@@ -256,14 +258,14 @@ impl Follower {
     }
 }
 
-impl Known {
+impl TrackedBrush {
     fn held<'a>(
         &'a self,
         name: &'a str,
         sample: &StylusSample,
         depth_share: f64,
         desk: &Desk,
-    ) -> Option<Held<'a>> {
+    ) -> Option<BrushPose<'a>> {
         let length = self.file.length_m();
         // A stroke stays on its surface.
         let touched = self.touches.and_then(|surface| desk.plane(surface));
@@ -284,7 +286,7 @@ impl Known {
             brush.translation += DVec3::new(shift.x, shift.y, 0.0);
         }
         let far = brush.translation.abs().max_element();
-        (far < 100.0).then(|| Held {
+        (far < 100.0).then(|| BrushPose {
             name,
             file: &self.file,
             plane,
@@ -296,7 +298,7 @@ impl Known {
     }
 }
 
-impl Held<'_> {
+impl BrushPose<'_> {
     /// A point of the surface's frame, in desk lengths, on the desk.
     #[must_use]
     pub fn on_desk(&self, local: [f64; 3]) -> DVec3 {
@@ -304,7 +306,7 @@ impl Held<'_> {
     }
 }
 
-impl std::fmt::Debug for Follower {
+impl std::fmt::Debug for BrushTracker {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         f.debug_struct("Follower")
             .field("known", &self.known.keys())

@@ -15,8 +15,8 @@ use maulstick_types::haptics::{ForceOrder, ForceReply, ForceRequest};
 use maulstick_types::topics::Topics;
 use maulstick_types::{Origin, name_hash};
 
-use crate::rig::requests::Order;
-use crate::rig::stroke_barrier::Due;
+use crate::rig::requests::Request;
+use crate::rig::stroke_barrier::Ready;
 
 /// How long a node may take for a command.
 const PATIENCE: Duration = Duration::from_secs(10);
@@ -36,23 +36,23 @@ const EXPORT: &str = "export";
 
 /// What became of an order.
 #[derive(Clone, Debug)]
-pub struct Told {
+pub struct Outcome {
     /// The order.
-    pub order: Order,
+    pub request: Request,
     /// What the process said.
     pub result: Result<String, Fault>,
 }
 
 /// Orders for one process.
 #[derive(Debug, Default)]
-struct Line {
-    orders: Mutex<Queue>,
-    news: Condvar,
+struct Queue {
+    state: Mutex<QueueState>,
+    changed: Condvar,
 }
 
 #[derive(Debug, Default)]
-struct Queue {
-    waiting: VecDeque<Due>,
+struct QueueState {
+    waiting: VecDeque<Ready>,
     /// Since when one is on its way.
     since: Option<Instant>,
     /// Whether the painter waits for it no longer.
@@ -61,15 +61,15 @@ struct Queue {
 }
 
 /// The courier of a window.
-pub(crate) struct Courier {
+pub(crate) struct CommandDispatcher {
     bus: Arc<dyn Bus>,
     topics: Topics,
     wake: Wake,
-    told: Arc<Mutex<Vec<Told>>>,
-    lines: BTreeMap<String, (Arc<Line>, Option<JoinHandle<()>>)>,
+    outcomes: Arc<Mutex<Vec<Outcome>>>,
+    queues: BTreeMap<String, (Arc<Queue>, Option<JoinHandle<()>>)>,
 }
 
-impl Courier {
+impl CommandDispatcher {
     /// A courier that rings `wake` when something was answered.
     #[must_use]
     pub(crate) fn new(bus: Arc<dyn Bus>, topics: &Topics, wake: &Wake) -> Self {
@@ -77,95 +77,107 @@ impl Courier {
             bus,
             topics: topics.clone(),
             wake: wake.clone(),
-            told: Arc::default(),
-            lines: BTreeMap::new(),
+            outcomes: Arc::default(),
+            queues: BTreeMap::new(),
         }
     }
 
     /// Sends an order after those that went to the same process. One that still waits gives way to a newer
     /// one that sets the same, as the place of a surface.
-    pub(crate) fn send(&mut self, due: Due) {
-        let (bus, topics, wake, told) = (&self.bus, &self.topics, &self.wake, &self.told);
-        let (line, _) = self.lines.entry(address(&due.order)).or_insert_with(|| {
-            let line = Arc::new(Line::default());
-            let mut carrier = Carrier {
-                bus: Arc::clone(bus),
-                topics: topics.clone(),
-                commander: None,
-                line: Arc::clone(&line),
-                told: Arc::clone(told),
-                wake: wake.clone(),
-            };
-            let thread = std::thread::Builder::new().name("courier".into());
-            let thread = thread.spawn(move || carrier.run());
-            let thread = thread
-                .inspect_err(|error| tracing::error!("no thread for commands: {error}"))
-                .ok();
-            (line, thread)
-        });
-        let mut queue = line.orders.lock().unwrap_or_else(PoisonError::into_inner);
-        push(&mut queue.waiting, due);
-        line.news.notify_one();
+    pub(crate) fn send(&mut self, ready: Ready) {
+        let (bus, topics, wake, outcomes) = (&self.bus, &self.topics, &self.wake, &self.outcomes);
+        let (queue_of, _) = self
+            .queues
+            .entry(address(&ready.request))
+            .or_insert_with(|| {
+                let queue_of = Arc::new(Queue::default());
+                let mut carrier = Worker {
+                    bus: Arc::clone(bus),
+                    topics: topics.clone(),
+                    commander: None,
+                    queue_of: Arc::clone(&queue_of),
+                    outcomes: Arc::clone(outcomes),
+                    wake: wake.clone(),
+                };
+                let thread = std::thread::Builder::new().name("courier".into());
+                let thread = thread.spawn(move || carrier.run());
+                let thread = thread
+                    .inspect_err(|error| tracing::error!("no thread for commands: {error}"))
+                    .ok();
+                (queue_of, thread)
+            });
+        let mut queue = queue_of
+            .state
+            .lock()
+            .unwrap_or_else(PoisonError::into_inner);
+        push(&mut queue.waiting, ready);
+        queue_of.changed.notify_one();
     }
 
     /// What was answered since the last call.
     #[must_use]
-    pub(crate) fn told(&self) -> Vec<Told> {
-        std::mem::take(&mut *self.told.lock().unwrap_or_else(PoisonError::into_inner))
+    pub(crate) fn outcomes(&self) -> Vec<Outcome> {
+        std::mem::take(&mut *self.outcomes.lock().unwrap_or_else(PoisonError::into_inner))
     }
 }
 
 /// From this time on a wait is told.
 const LONG: Duration = Duration::from_millis(500);
 
-impl Courier {
+impl CommandDispatcher {
     /// Who has not answered for half a second: `node` or `force`, and the name.
     #[must_use]
     pub(crate) fn waits(&self) -> Vec<String> {
-        let waits = |line: &Line| {
-            let queue = line.orders.lock().unwrap_or_else(PoisonError::into_inner);
+        let waits = |queue_of: &Queue| {
+            let queue = queue_of
+                .state
+                .lock()
+                .unwrap_or_else(PoisonError::into_inner);
             queue.since.is_some_and(|since| since.elapsed() > LONG)
         };
         // An export tells how far it is by itself.
         let asked = |name: &str| !name.starts_with(EXPORT) && !name.starts_with(OFF);
-        let lines = self.lines.iter();
-        let lines = lines.filter(|(name, (line, _))| asked(name) && waits(line));
-        lines.map(|(name, _)| name.clone()).collect()
+        let queues = self.queues.iter();
+        let queues = queues.filter(|(name, (queue_of, _))| asked(name) && waits(queue_of));
+        queues.map(|(name, _)| name.clone()).collect()
     }
 
     /// Waits no longer: what is on its way is not asked again, and what waits is not sent.
     /// Each order is told as not done.
     pub(crate) fn give_up(&self) {
         let late = self.waits();
-        let mut told = self.told.lock().unwrap_or_else(PoisonError::into_inner);
-        for (line, _) in late.iter().filter_map(|name| self.lines.get(name)) {
-            let mut queue = line.orders.lock().unwrap_or_else(PoisonError::into_inner);
+        let mut outcomes = self.outcomes.lock().unwrap_or_else(PoisonError::into_inner);
+        for (queue_of, _) in late.iter().filter_map(|name| self.queues.get(name)) {
+            let mut queue = queue_of
+                .state
+                .lock()
+                .unwrap_or_else(PoisonError::into_inner);
             queue.given_up = queue.since.is_some();
-            told.extend(queue.waiting.drain(..).map(|due| Told {
-                order: due.order,
+            outcomes.extend(queue.waiting.drain(..).map(|ready| Outcome {
+                request: ready.request,
                 result: Err(Fault::failure("it was not sent")),
             }));
         }
-        drop(told);
+        drop(outcomes);
         self.wake.ring();
     }
 }
 
 /// Who an order is for.
-fn address(order: &Order) -> String {
-    match order {
+fn address(request: &Request) -> String {
+    match request {
         // It takes long, and other commands to the node do not wait for its end.
-        Order::Command {
+        Request::Command {
             node,
             command: Command::Export { .. },
         } => format!("{EXPORT} {node}"),
-        Order::Command { node, .. } => format!("node {node}"),
+        Request::Command { node, .. } => format!("node {node}"),
         // It waits for no answer to what was asked before.
-        Order::Force {
+        Request::Force {
             device,
             order: ForceOrder::Off,
         } => format!("{OFF} {device}"),
-        Order::Force { device, .. } => format!("force {device}"),
+        Request::Force { device, .. } => format!("force {device}"),
     }
 }
 
@@ -179,11 +191,11 @@ fn patience(command: &Command) -> Duration {
 }
 
 /// Whether of two orders, one right after the other, the first need not be carried out.
-fn replaces(newer: &Order, older: &Order) -> bool {
+fn replaces(newer: &Request, older: &Request) -> bool {
     // An exposure that was to be chosen anew is chosen by the light that it was asked with.
     let chooses = matches!(
         older,
-        Order::Command {
+        Request::Command {
             command: Command::Relight { expose: true, .. },
             ..
         }
@@ -193,72 +205,75 @@ fn replaces(newer: &Order, older: &Order) -> bool {
 }
 
 /// Puts an order at the end; the last of those that wait gives way if this one makes it needless.
-fn push(waiting: &mut VecDeque<Due>, due: Due) {
+fn push(waiting: &mut VecDeque<Ready>, ready: Ready) {
     let last = waiting.back();
-    if last.is_some_and(|last| replaces(&due.order, &last.order)) {
+    if last.is_some_and(|last| replaces(&ready.request, &last.request)) {
         waiting.pop_back();
     }
-    waiting.push_back(due);
+    waiting.push_back(ready);
 }
 
 /// Serves one line.
-struct Carrier {
+struct Worker {
     bus: Arc<dyn Bus>,
     topics: Topics,
     commander: Option<Commander>,
-    line: Arc<Line>,
-    told: Arc<Mutex<Vec<Told>>>,
+    queue_of: Arc<Queue>,
+    outcomes: Arc<Mutex<Vec<Outcome>>>,
     wake: Wake,
 }
 
-impl Carrier {
+impl Worker {
     fn run(&mut self) {
-        while let Some(due) = self.next() {
-            let result = self.deliver(&due);
-            let told = Told {
-                order: due.order,
+        while let Some(ready) = self.next() {
+            let result = self.deliver(&ready);
+            let outcome = Outcome {
+                request: ready.request,
                 result,
             };
-            self.told
+            self.outcomes
                 .lock()
                 .unwrap_or_else(PoisonError::into_inner)
-                .push(told);
+                .push(outcome);
             self.wake.ring();
         }
     }
 
-    fn next(&self) -> Option<Due> {
+    fn next(&self) -> Option<Ready> {
         let mut queue = self.queue();
         (queue.since, queue.given_up) = (None, false);
         loop {
             if queue.ended {
                 return None;
             }
-            if let Some(due) = queue.waiting.pop_front() {
+            if let Some(ready) = queue.waiting.pop_front() {
                 queue.since = Some(Instant::now());
-                return Some(due);
+                return Some(ready);
             }
             queue = self
-                .line
-                .news
+                .queue_of
+                .changed
                 .wait(queue)
                 .unwrap_or_else(PoisonError::into_inner);
         }
     }
 
-    fn queue(&self) -> std::sync::MutexGuard<'_, Queue> {
-        self.line
-            .orders
+    fn queue(&self) -> std::sync::MutexGuard<'_, QueueState> {
+        self.queue_of
+            .state
             .lock()
             .unwrap_or_else(PoisonError::into_inner)
     }
 
-    fn deliver(&mut self, due: &Due) -> Result<String, Fault> {
-        match &due.order {
-            Order::Command { node, command } => {
-                let line = Arc::clone(&self.line);
+    fn deliver(&mut self, ready: &Ready) -> Result<String, Fault> {
+        match &ready.request {
+            Request::Command { node, command } => {
+                let queue_of = Arc::clone(&self.queue_of);
                 let ended = move || {
-                    let queue = line.orders.lock().unwrap_or_else(PoisonError::into_inner);
+                    let queue = queue_of
+                        .state
+                        .lock()
+                        .unwrap_or_else(PoisonError::into_inner);
                     queue.ended || queue.given_up
                 };
                 let (bus, topics) = (&self.bus, &self.topics);
@@ -267,12 +282,12 @@ impl Carrier {
                 });
                 commander.send(
                     command.clone(),
-                    due.after.clone(),
+                    ready.after.clone(),
                     patience(command),
                     &ended,
                 )
             }
-            Order::Force { device, order } => {
+            Request::Force { device, order } => {
                 let me = Origin {
                     source: name_hash("ui"),
                     epoch: random_epoch(),
@@ -292,14 +307,17 @@ impl Carrier {
     }
 }
 
-impl Drop for Courier {
+impl Drop for CommandDispatcher {
     fn drop(&mut self) {
-        for (line, _) in self.lines.values() {
-            let mut queue = line.orders.lock().unwrap_or_else(PoisonError::into_inner);
+        for (queue_of, _) in self.queues.values() {
+            let mut queue = queue_of
+                .state
+                .lock()
+                .unwrap_or_else(PoisonError::into_inner);
             queue.ended = true;
-            line.news.notify_all();
+            queue_of.changed.notify_all();
         }
-        for (_, thread) in self.lines.values_mut() {
+        for (_, thread) in self.queues.values_mut() {
             if let Some(thread) = thread.take() {
                 thread.join().ok();
             }
@@ -307,10 +325,10 @@ impl Drop for Courier {
     }
 }
 
-impl std::fmt::Debug for Courier {
+impl std::fmt::Debug for CommandDispatcher {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         f.debug_struct("Courier")
-            .field("lines", &self.lines.keys())
+            .field("lines", &self.queues.keys())
             .finish_non_exhaustive()
     }
 }
@@ -322,19 +340,19 @@ mod tests {
 
     use super::*;
 
-    fn order(command: Command) -> Order {
-        Order::Command {
+    fn request(command: Command) -> Request {
+        Request::Command {
             node: "paint".into(),
             command,
         }
     }
 
-    fn orders(waiting: &VecDeque<Due>) -> Vec<Order> {
-        waiting.iter().map(|due| due.order.clone()).collect()
+    fn state(waiting: &VecDeque<Ready>) -> Vec<Request> {
+        waiting.iter().map(|ready| ready.request.clone()).collect()
     }
 
-    fn place(surface: u32, zoom: f64) -> Order {
-        order(Command::Place {
+    fn place(surface: u32, zoom: f64) -> Request {
+        request(Command::Place {
             surface,
             pose: Pose::IDENTITY,
             zoom,
@@ -348,8 +366,8 @@ mod tests {
         };
         assert!(patience(&export) > patience(&Command::Mark));
         let (undo, stop) = (Command::Undo { brush: None }, Command::StopExport);
-        assert_eq!(address(&order(undo)), address(&order(stop.clone())));
-        assert_ne!(address(&order(export)), address(&order(stop)));
+        assert_eq!(address(&request(undo)), address(&request(stop.clone())));
+        assert_ne!(address(&request(export)), address(&request(stop)));
     }
 
     #[test]
@@ -357,7 +375,7 @@ mod tests {
         let tune = |brush: &str, stiffness: f64| {
             let brush = brush.to_owned();
             let wetness = 0.0;
-            order(Command::Tune {
+            request(Command::Tune {
                 tuning: Tuning {
                     brush,
                     stiffness,
@@ -366,14 +384,14 @@ mod tests {
             })
         };
         let mut waiting = VecDeque::new();
-        for order in [
+        for request in [
             tune("a", 1.0),
             tune("a", 2.0),
             place(0, 1.0),
             tune("a", 3.0),
             tune("b", 4.0),
         ] {
-            push(&mut waiting, order.into());
+            push(&mut waiting, request.into());
         }
         let expected = [
             tune("a", 2.0),
@@ -381,14 +399,14 @@ mod tests {
             tune("a", 3.0),
             tune("b", 4.0),
         ];
-        assert_eq!(orders(&waiting), expected);
+        assert_eq!(state(&waiting), expected);
     }
 
     #[test]
     fn of_places_that_wait_the_newest_is_sent_and_nothing_overtakes() {
-        let undo = || order(Command::Undo { brush: None });
+        let undo = || request(Command::Undo { brush: None });
         let mut waiting = VecDeque::new();
-        for order in [
+        for request in [
             place(0, 1.0),
             place(0, 2.0),
             place(1, 1.0),
@@ -396,10 +414,10 @@ mod tests {
             place(1, 3.0),
             undo(),
         ] {
-            push(&mut waiting, order.into());
+            push(&mut waiting, request.into());
         }
         let expected = [place(0, 2.0), place(1, 1.0), undo(), place(1, 3.0), undo()];
-        assert_eq!(orders(&waiting), expected);
+        assert_eq!(state(&waiting), expected);
     }
 
     #[test]
@@ -409,37 +427,37 @@ mod tests {
                 intensity,
                 ..Light::default()
             };
-            order(Command::Relight { light, expose })
+            request(Command::Relight { light, expose })
         };
         let mut waiting = VecDeque::new();
-        for order in [
+        for request in [
             relight(1.0, false),
             relight(2.0, true),
             relight(3.0, false),
             relight(4.0, false),
         ] {
-            push(&mut waiting, order.into());
+            push(&mut waiting, request.into());
         }
-        assert_eq!(orders(&waiting), [relight(2.0, true), relight(4.0, false)]);
+        assert_eq!(state(&waiting), [relight(2.0, true), relight(4.0, false)]);
     }
 
     #[test]
     fn of_strengths_that_wait_the_newest_is_sent_and_force_off_stays() {
-        let force = |order: ForceOrder| Order::Force {
+        let force = |order: ForceOrder| Request::Force {
             device: "arm".into(),
             order,
         };
         let strength = |share: f64| force(ForceOrder::Strength { share });
         let mut waiting = VecDeque::new();
-        for order in [
+        for request in [
             strength(0.1),
             strength(0.2),
             force(ForceOrder::Off),
             strength(0.3),
         ] {
-            push(&mut waiting, order.into());
+            push(&mut waiting, request.into());
         }
         let expected = [strength(0.2), force(ForceOrder::Off), strength(0.3)];
-        assert_eq!(orders(&waiting), expected);
+        assert_eq!(state(&waiting), expected);
     }
 }

@@ -5,7 +5,7 @@ use std::collections::VecDeque;
 
 use maulstick_types::stylus::{StylusPose, StylusSample, axes};
 
-use crate::rig::state::{Device, Studio};
+use crate::rig::state::{Device, RigState};
 
 /// Seconds that are kept.
 pub(crate) const KEPT_S: f64 = 5.0;
@@ -38,12 +38,12 @@ struct Newest {
 
 /// What was felt of a device.
 #[derive(Clone, Debug, Default)]
-pub struct Felt {
+pub struct ForceHistory {
     spans: VecDeque<Span>,
     newest: Option<Newest>,
 }
 
-impl Felt {
+impl ForceHistory {
     /// Takes in a sample.
     pub fn hear(&mut self, arrived_ns: u64, sample: &StylusSample) {
         if sample.fault().is_some() {
@@ -110,7 +110,7 @@ pub(crate) fn size(force_n: [f64; 3]) -> f64 {
 
 fn is_near(device: &Device, now_ns: u64) -> bool {
     let is_pointer = device.info.as_ref().is_some_and(|it| it.driver == POINTER);
-    device.felt.newest.as_ref().is_some_and(|newest| {
+    device.forces.newest.as_ref().is_some_and(|newest| {
         let heard = now_ns < newest.arrived_ns.saturating_add(SILENCE_NS);
         newest.in_range && (heard || is_pointer)
     })
@@ -118,10 +118,10 @@ fn is_near(device: &Device, now_ns: u64) -> bool {
 
 /// The device that moves the brush in hand: of those near the desk the one of highest priority.
 #[must_use]
-pub(crate) fn painting(studio: &Studio) -> Option<(&str, &Device)> {
-    let near = studio.devices.iter().filter_map(|(name, device)| {
+pub(crate) fn active_device(rig: &RigState) -> Option<(&str, &Device)> {
+    let near = rig.devices.iter().filter_map(|(name, device)| {
         let info = device.info.as_ref()?;
-        let moves = info.brush == studio.brush_name() && is_near(device, studio.now_ns);
+        let moves = info.brush == rig.brush_name() && is_near(device, rig.now_ns);
         moves.then_some((info.priority, name.as_str(), device))
     });
     let first = near.max_by_key(|(priority, ..)| *priority)?;
@@ -131,11 +131,11 @@ pub(crate) fn painting(studio: &Studio) -> Option<(&str, &Device)> {
 /// Where the force of the device that paints acts on the desk, m, and that force, N; none where there is
 /// none to speak of.
 #[must_use]
-pub(crate) fn arrow(studio: &Studio) -> Option<([f64; 3], [f64; 3])> {
-    let (_, device) = painting(studio)?;
+pub(crate) fn force_arrow(rig: &RigState) -> Option<([f64; 3], [f64; 3])> {
+    let (_, device) = active_device(rig)?;
     let drives = device.info.as_ref()?.drives & axes::FORCE != 0;
-    let force_n = device.felt.force_n(studio.now_ns)?;
-    let place_m = device.felt.newest.as_ref()?.place_m;
+    let force_n = device.forces.force_n(rig.now_ns)?;
+    let place_m = device.forces.newest.as_ref()?.place_m;
     (drives && size(force_n) >= LEAST_N).then_some((place_m, force_n))
 }
 
@@ -158,15 +158,15 @@ mod tests {
 
     #[test]
     fn a_kilohertz_for_a_minute_is_five_seconds_of_extremes() {
-        let mut felt = Felt::default();
+        let mut forces = ForceHistory::default();
         for ms in 0..60_000u64 {
             // A spike of one sample.
             let force = if ms == 59_000 { 3.0 } else { 1.0 };
-            felt.hear(ms * 1_000_000, &sample([0.0, 0.0, force]));
+            forces.hear(ms * 1_000_000, &sample([0.0, 0.0, force]));
         }
-        felt.hear(60_000_000_000, &sample([f64::NAN, 0.0, 0.0]));
-        assert!(felt.spans.len() <= SPANS, "{}", felt.spans.len());
-        let line = felt.line(60_000_000_000);
+        forces.hear(60_000_000_000, &sample([f64::NAN, 0.0, 0.0]));
+        assert!(forces.spans.len() <= SPANS, "{}", forces.spans.len());
+        let line = forces.line(60_000_000_000);
         let peak = line.iter().max_by(|a, b| a[1].total_cmp(&b[1]));
         let peak = peak.expect("a line");
         assert!(peak[1] == 3.0 && (peak[0] + 1.0).abs() < 0.03, "{peak:?}");
@@ -175,21 +175,21 @@ mod tests {
             "{line:?}"
         );
         assert_eq!(line.iter().filter(|at| at[1] == 3.0).count(), 1);
-        assert_eq!(felt.force_n(60_000_000_000), Some([0.0, 0.0, 1.0]));
-        assert_eq!(felt.force_n(61_000_000_000), None, "it is silent");
+        assert_eq!(forces.force_n(60_000_000_000), Some([0.0, 0.0, 1.0]));
+        assert_eq!(forces.force_n(61_000_000_000), None, "it is silent");
     }
 
     #[test]
     fn of_those_near_the_one_of_highest_priority_paints_and_shows_its_arrow() {
         let library = Arc::new(PaintLibrary::measured().expect("paints"));
-        let mut studio = Studio::new("t", &["main".to_owned()], library);
-        studio.now_ns = 10_000_000_000;
+        let mut rig = RigState::new("t", &["main".to_owned()], library);
+        rig.now_ns = 10_000_000_000;
         for (name, driver, priority, drives) in [
             ("mouse", POINTER, -100, 0),
             ("pen", "pen", 5, 0),
             ("arm", "simulated", 10, axes::FORCE),
         ] {
-            let device = studio.devices.entry(name.to_owned()).or_default();
+            let device = rig.devices.entry(name.to_owned()).or_default();
             device.info = Some(StylusInfo {
                 device: name.into(),
                 driver: driver.into(),
@@ -202,17 +202,17 @@ mod tests {
                 max_stiffness_n_m: 0.0,
                 workspace_m: [0.0; 6],
             });
-            device.felt.hear(9_900_000_000, &sample([0.0, 0.0, 0.5]));
+            device.forces.hear(9_900_000_000, &sample([0.0, 0.0, 0.5]));
         }
-        let who = |studio: &Studio| painting(studio).map(|(name, _)| name.to_owned());
-        assert_eq!(who(&studio).as_deref(), Some("arm"));
-        let (_, force_n) = arrow(&studio).expect("an arrow");
+        let who = |rig: &RigState| active_device(rig).map(|(name, _)| name.to_owned());
+        assert_eq!(who(&rig).as_deref(), Some("arm"));
+        let (_, force_n) = force_arrow(&rig).expect("an arrow");
         assert_eq!(force_n, [0.0, 0.0, 0.5]);
-        let arm = studio.devices.get_mut("arm").expect("an arm");
-        arm.felt.hear(9_950_000_000, &StylusSample::away());
-        assert_eq!(who(&studio).as_deref(), Some("pen"));
-        assert_eq!(arrow(&studio), None, "a pen gives no force");
-        studio.now_ns += SILENCE_NS;
-        assert_eq!(who(&studio).as_deref(), Some("mouse"), "it keeps still");
+        let arm = rig.devices.get_mut("arm").expect("an arm");
+        arm.forces.hear(9_950_000_000, &StylusSample::away());
+        assert_eq!(who(&rig).as_deref(), Some("pen"));
+        assert_eq!(force_arrow(&rig), None, "a pen gives no force");
+        rig.now_ns += SILENCE_NS;
+        assert_eq!(who(&rig).as_deref(), Some("mouse"), "it keeps still");
     }
 }

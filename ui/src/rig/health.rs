@@ -8,8 +8,8 @@ use maulstick_types::DecodeError;
 use maulstick_types::advice::parted;
 use maulstick_types::topics::Topics;
 
-use crate::rig::state::Studio;
-use crate::widgets::notifications::Toasts;
+use crate::rig::state::RigState;
+use crate::widgets::notifications::Notifications;
 
 /// The node of the painting.
 const PAINT: &str = "paint";
@@ -27,7 +27,7 @@ const FALL: &str = "backend cpu: ";
 
 /// Something heard that changes nothing of what is known of the rig.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub enum News {
+pub enum RigEvent {
     /// A message that this window does not understand.
     Refused(Refusal),
     /// The paint node has decided something, in its words.
@@ -36,7 +36,7 @@ pub enum News {
 
 /// What was told so far.
 #[derive(Debug, Default)]
-pub(crate) struct Watch {
+pub(crate) struct HealthMonitor {
     /// Nodes that were there, and those of them that are gone.
     known: BTreeSet<String>,
     gone: BTreeSet<String>,
@@ -50,46 +50,51 @@ pub(crate) struct Watch {
     unsaved: bool,
 }
 
-impl Watch {
+impl HealthMonitor {
     /// Tells what has changed since the last look.
-    pub(crate) fn look(&mut self, studio: &mut Studio, topics: &Topics, toasts: &mut Toasts) {
-        for news in std::mem::take(&mut studio.news) {
-            match news {
-                News::Refused(refusal) => self.refused(topics, &refusal, toasts),
-                News::Decided(what) => decided(&what, toasts),
+    pub(crate) fn look(
+        &mut self,
+        state: &mut RigState,
+        topics: &Topics,
+        notifications: &mut Notifications,
+    ) {
+        for events in std::mem::take(&mut state.events) {
+            match events {
+                RigEvent::Refused(refusal) => self.refused(topics, &refusal, notifications),
+                RigEvent::Decided(what) => decided(&what, notifications),
             }
         }
-        self.nodes(studio, toasts);
-        self.devices(studio, toasts);
-        self.saving(studio, toasts);
+        self.nodes(state, notifications);
+        self.devices(state, notifications);
+        self.saving(state, notifications);
     }
 
-    fn nodes(&mut self, studio: &Studio, toasts: &mut Toasts) {
-        let present: BTreeSet<String> = studio.nodes.iter().cloned().collect();
+    fn nodes(&mut self, state: &RigState, notifications: &mut Notifications) {
+        let present: BTreeSet<String> = state.nodes.iter().cloned().collect();
         for node in self.known.difference(&present) {
             if !self.gone.insert(node.clone()) {
                 continue;
             }
-            if studio.switching {
+            if state.switching {
                 self.expected.insert(node.clone());
-            } else if let Some((who, help)) = who(node, studio) {
-                toasts.fault(stopped(&who), help);
+            } else if let Some((who, help)) = who(node, state) {
+                notifications.fault(stopped(&who), help);
             }
         }
         for node in &present {
             if self.gone.remove(node)
                 && !self.expected.remove(node)
-                && let Some((who, _)) = who(node, studio)
+                && let Some((who, _)) = who(node, state)
             {
-                toasts.over(&stopped(&who));
-                toasts.note(format!("{who} is back."));
+                notifications.over(&stopped(&who));
+                notifications.note(format!("{who} is back."));
             }
         }
         self.known.extend(present);
     }
 
-    fn devices(&mut self, studio: &Studio, toasts: &mut Toasts) {
-        for (name, device) in &studio.devices {
+    fn devices(&mut self, state: &RigState, notifications: &mut Notifications) {
+        for (name, device) in &state.devices {
             let Some(status) = &device.status else {
                 continue;
             };
@@ -102,15 +107,15 @@ impl Watch {
                 continue;
             }
             if trouble.is_empty() {
-                toasts.note(format!("The device '{name}' is in order again."));
+                notifications.note(format!("The device '{name}' is in order again."));
             } else if status.faults.is_empty() {
                 let (what, help) = parted(&trouble);
-                toasts.fault(
+                notifications.fault(
                     format!("The device '{name}': {what}"),
                     help.unwrap_or_default(),
                 );
             } else {
-                toasts.fault(
+                notifications.fault(
                     format!("The device '{name}' gives no force: {trouble}"),
                     "Lift the brush, then press Re-arm in the panel Device (Tab).",
                 );
@@ -120,17 +125,17 @@ impl Watch {
     }
 
     /// That the painting cannot be saved stands on the window for as long as it is so; here its end is told.
-    fn saving(&mut self, studio: &Studio, toasts: &mut Toasts) {
-        let Some(paint) = &studio.paint else {
+    fn saving(&mut self, state: &RigState, notifications: &mut Notifications) {
+        let Some(paint) = &state.paint else {
             return;
         };
         let unsaved = !paint.status.fault.is_empty();
         if std::mem::replace(&mut self.unsaved, unsaved) && !unsaved {
-            toasts.note("The painting is being saved again.");
+            notifications.note("The painting is being saved again.");
         }
     }
 
-    fn refused(&mut self, topics: &Topics, refusal: &Refusal, toasts: &mut Toasts) {
+    fn refused(&mut self, topics: &Topics, refusal: &Refusal, notifications: &mut Notifications) {
         let relative = topics.relative(&refusal.topic).unwrap_or(&refusal.topic);
         let who = match relative.split('/').collect::<Vec<_>>()[..] {
             ["stylus" | "control" | "haptics", device, ..] => format!("The device '{device}'"),
@@ -142,15 +147,15 @@ impl Watch {
             return;
         }
         match &refusal.reason {
-            Reason::Unread(DecodeError::UnknownSchema { .. }) => toasts.fault(
+            Reason::Unread(DecodeError::UnknownSchema { .. }) => notifications.fault(
                 format!("{who} is of another version of Maulstick than this window."),
                 "End the rig, and start it again with all of its programs of one version.",
             ),
-            Reason::Rival | Reason::Leap => toasts.fault(
+            Reason::Rival | Reason::Leap => notifications.fault(
                 format!("{who} is there twice: the one that started last is followed."),
                 "End the other program, or give it another name.",
             ),
-            error => toasts.fault(
+            error => notifications.fault(
                 format!("{who} sends what is not understood: {error}"),
                 "Start it again; if it is a program of your own, see docs/devices.md.",
             ),
@@ -159,7 +164,7 @@ impl Watch {
 }
 
 /// A node in words, and what to do while it is away; none for one that comes and goes.
-fn who(node: &str, studio: &Studio) -> Option<(String, &'static str)> {
+fn who(node: &str, state: &RigState) -> Option<(String, &'static str)> {
     if node == PAINT {
         let help = "The canvas stays as it is shown, and goes on when it is back.";
         return Some(("The paint node".to_owned(), help));
@@ -168,15 +173,15 @@ fn who(node: &str, studio: &Studio) -> Option<(String, &'static str)> {
         let help = "Lift the stylus; the brush follows again when it is back.";
         return Some((format!("The node of the brush '{brush}'"), help));
     }
-    let is_device = node != PLAYER && studio.devices.contains_key(node);
+    let is_device = node != PLAYER && state.devices.contains_key(node);
     let help = "Any other stylus and the mouse go on painting.";
     is_device.then(|| (format!("The driver of '{node}'"), help))
 }
 
 /// Tells of a decision that the painter ought to know.
-fn decided(what: &str, toasts: &mut Toasts) {
+fn decided(what: &str, notifications: &mut Notifications) {
     if let Some(why) = what.strip_prefix(FALL) {
-        toasts.fault(
+        notifications.fault(
             format!("The paint is computed by the processor from now on: {why}"),
             "Nothing is missing, but large brushes may lag. Starting the rig again tries the \
              graphics card anew.",
@@ -197,28 +202,28 @@ mod tests {
     use crate::widgets::notifications::Weight;
 
     struct Rig {
-        watch: Watch,
-        studio: Studio,
+        watch: HealthMonitor,
+        state: RigState,
     }
 
     impl Rig {
         fn new() -> Self {
             let library = Arc::new(PaintLibrary::measured().expect("paints"));
-            let mut studio = Studio::new("t", &["main".to_owned()], library);
-            studio.nodes = ["paint", "brush-main", "arm", "player", "ui"]
+            let mut state = RigState::new("t", &["main".to_owned()], library);
+            state.nodes = ["paint", "brush-main", "arm", "player", "ui"]
                 .map(str::to_owned)
                 .to_vec();
             for device in ["arm", "player"] {
-                let device = studio.devices.entry(device.to_owned()).or_default();
+                let device = state.devices.entry(device.to_owned()).or_default();
                 device.status = Some(StylusStatus::fresh(0));
             }
-            studio.paint = Some(PaintNode {
+            state.paint = Some(PaintNode {
                 status: status(),
                 heard_ns: 0,
             });
             let mut rig = Self {
-                watch: Watch::default(),
-                studio,
+                watch: HealthMonitor::default(),
+                state,
             };
             assert_eq!(rig.look(), [], "all is well");
             rig
@@ -227,29 +232,30 @@ mod tests {
         /// What is told by a look, and that ten more tell nothing.
         fn look(&mut self) -> Vec<(Weight, String)> {
             let topics = Topics::new("t");
-            let told = |toasts: &Toasts| {
-                let told = toasts.told().iter();
+            let told = |notifications: &Notifications| {
+                let told = notifications.told().iter();
                 told.map(|toast| (toast.weight, toast.what.clone()))
                     .collect::<Vec<_>>()
             };
-            let mut toasts = Toasts::default();
-            self.watch.look(&mut self.studio, &topics, &mut toasts);
-            let first = told(&toasts);
-            let mut again = Toasts::default();
+            let mut notifications = Notifications::default();
+            self.watch
+                .look(&mut self.state, &topics, &mut notifications);
+            let first = told(&notifications);
+            let mut again = Notifications::default();
             for _ in 0..10 {
-                self.watch.look(&mut self.studio, &topics, &mut again);
+                self.watch.look(&mut self.state, &topics, &mut again);
             }
             assert_eq!(told(&again), [], "once is enough");
             first
         }
 
         fn arm(&mut self) -> &mut StylusStatus {
-            let arm = self.studio.devices.get_mut("arm").expect("an arm");
+            let arm = self.state.devices.get_mut("arm").expect("an arm");
             arm.status.as_mut().expect("a status")
         }
 
         fn saving(&mut self) -> &mut String {
-            &mut self.studio.paint.as_mut().expect("paint").status.fault
+            &mut self.state.paint.as_mut().expect("paint").status.fault
         }
     }
 
@@ -270,29 +276,29 @@ mod tests {
         ] {
             let mut rig = Rig::new();
             for _ in 0..2 {
-                rig.studio.nodes.retain(|other| other != node);
+                rig.state.nodes.retain(|other| other != node);
                 let told = fault(&format!("{who} stopped; it is being started again."));
                 assert_eq!(rig.look(), told);
-                rig.studio.nodes.push(node.to_owned());
+                rig.state.nodes.push(node.to_owned());
                 assert_eq!(rig.look(), note(&format!("{who} is back.")));
             }
         }
         let mut rig = Rig::new();
-        rig.studio.nodes.retain(|other| other != "player");
+        rig.state.nodes.retain(|other| other != "player");
         assert_eq!(rig.look(), [], "its take is over");
     }
 
     #[test]
     fn nodes_that_another_painting_starts_anew_are_not_told() {
         let mut rig = Rig::new();
-        rig.studio.switching = true;
-        rig.studio.nodes.retain(|node| node != "arm");
+        rig.state.switching = true;
+        rig.state.nodes.retain(|node| node != "arm");
         assert_eq!(rig.look(), []);
         // The answer may come before the last of them is back.
-        rig.studio.switching = false;
-        rig.studio.nodes.push("arm".to_owned());
+        rig.state.switching = false;
+        rig.state.nodes.push("arm".to_owned());
         assert_eq!(rig.look(), []);
-        rig.studio.nodes.retain(|node| node != "arm");
+        rig.state.nodes.retain(|node| node != "arm");
         assert_eq!(rig.look().len(), 1, "it is told where nothing is switched");
     }
 
@@ -328,34 +334,34 @@ mod tests {
                 got: 2,
                 version: 9,
             };
-            News::Refused(Refusal {
+            RigEvent::Refused(Refusal {
                 topic,
                 reason: error.into(),
             })
         };
-        rig.studio.news = vec![refused(topics.paint_status()), refused(topics.scene())];
+        rig.state.events = vec![refused(topics.paint_status()), refused(topics.scene())];
         let strange = |who: &str| {
             fault(&format!(
                 "{who} is of another version of Maulstick than this window."
             ))
         };
         assert_eq!(rig.look(), strange("The paint node"));
-        rig.studio.news = vec![refused(topics.paint_status())];
+        rig.state.events = vec![refused(topics.paint_status())];
         assert_eq!(rig.look(), []);
-        rig.studio.news = vec![refused(topics.stylus_info("arm"))];
+        rig.state.events = vec![refused(topics.stylus_info("arm"))];
         assert_eq!(rig.look(), strange("The device 'arm'"));
-        rig.studio.news = vec![refused(topics.brush_def("main"))];
+        rig.state.events = vec![refused(topics.brush_def("main"))];
         assert_eq!(rig.look(), strange("The node of the brush 'main'"));
     }
 
     #[test]
     fn that_the_processor_has_taken_over_is_told_and_a_choice_at_the_start_is_not() {
         let mut rig = Rig::new();
-        rig.studio.news = ["backend cpu", "backend gpu A: B", "goes on"]
-            .map(|what| News::Decided(what.to_owned()))
+        rig.state.events = ["backend cpu", "backend gpu A: B", "goes on"]
+            .map(|what| RigEvent::Decided(what.to_owned()))
             .to_vec();
         assert_eq!(rig.look(), []);
-        rig.studio.news = vec![News::Decided("backend cpu: the device is lost".into())];
+        rig.state.events = vec![RigEvent::Decided("backend cpu: the device is lost".into())];
         let told = fault("The paint is computed by the processor from now on: the device is lost");
         assert_eq!(rig.look(), told);
     }

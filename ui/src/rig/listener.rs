@@ -1,4 +1,4 @@
-//! Fills the [`Studio`] with what comes over the bus.
+//! Fills the [`RigState`] with what comes over the bus.
 
 use maulstick_brush::BrushFile;
 use maulstick_bus::typed::Receiver;
@@ -9,13 +9,13 @@ use maulstick_types::scene::Scene;
 use maulstick_types::stylus::{StylusInfo, StylusSample, StylusStatus};
 use maulstick_types::topics::Topics;
 
-use crate::rig::health::News;
+use crate::rig::health::RigEvent;
 use crate::rig::requests::PAINT;
-use crate::rig::state::{PaintNode, Studio};
+use crate::rig::state::{PaintNode, RigState};
 use crate::rig::thumbnails::Thumbnails;
 
 /// What the window listens to besides samples and brush states.
-pub(crate) struct Hearing {
+pub(crate) struct RigListener {
     topics: Topics,
     scenes: Receiver<Scene>,
     paint: Receiver<PaintStatus>,
@@ -27,7 +27,7 @@ pub(crate) struct Hearing {
     tokens: maulstick_bus::bus::Subscription,
 }
 
-impl Hearing {
+impl RigListener {
     /// Listens on `bus`, and rings `wake`.
     ///
     /// # Errors
@@ -80,18 +80,18 @@ impl Hearing {
     }
 
     /// Takes in what has come; `true` where the scene is another.
-    pub(crate) fn take_in(&mut self, now_ns: u64, studio: &mut Studio) -> bool {
-        studio.now_ns = now_ns;
+    pub(crate) fn take_in(&mut self, now_ns: u64, rig: &mut RigState) -> bool {
+        rig.now_ns = now_ns;
         while let Some(token) = self.tokens.try_recv() {
             let Some(node) = self.topics.node_of(&token.key) else {
                 continue;
             };
-            studio.nodes.retain(|known| known != node);
+            rig.nodes.retain(|known| known != node);
             if token.present {
-                studio.nodes.push(node.to_owned());
+                rig.nodes.push(node.to_owned());
                 if node == PAINT {
-                    studio.starts += 1;
-                    studio.thumbnails = Thumbnails::default();
+                    rig.starts += 1;
+                    rig.thumbnails = Thumbnails::default();
                 }
             }
         }
@@ -101,7 +101,7 @@ impl Hearing {
             let Ok(file) = BrushFile::parse(&toml) else {
                 continue;
             };
-            let known = studio.brushes.iter_mut().find(|known| known.name == brush);
+            let known = rig.brushes.iter_mut().find(|known| known.name == brush);
             if let Some(known) = known {
                 known.asked.take_if(|asked| *asked == file);
                 known.file = Some((file, toml));
@@ -109,30 +109,30 @@ impl Hearing {
         }
         while let Some(info) = self.infos.try_recv() {
             let name = info.message.device.clone();
-            let device = studio.devices.entry(name).or_default();
+            let device = rig.devices.entry(name).or_default();
             (device.info, device.heard_ns) = (Some(info.message), now_ns);
         }
         while let Some(status) = self.statuses.try_recv() {
             let Some(name) = self.topics.middle(&status.key) else {
                 continue;
             };
-            let device = studio.devices.entry(name.to_owned()).or_default();
+            let device = rig.devices.entry(name.to_owned()).or_default();
             (device.status, device.heard_ns) = (Some(status.message), now_ns);
         }
         while let Some(sample) = self.samples.try_recv() {
             let Some(name) = self.topics.middle(&sample.key) else {
                 continue;
             };
-            let device = studio.devices.entry(name.to_owned()).or_default();
-            device.felt.hear(sample.arrived_ns, &sample.message);
+            let device = rig.devices.entry(name.to_owned()).or_default();
+            device.forces.hear(sample.arrived_ns, &sample.message);
         }
         while let Some(entry) = self.journal.try_recv() {
             if let Entry::Decision { what } = entry.message.entry {
-                studio.news.push(News::Decided(what));
+                rig.events.push(RigEvent::Decided(what));
             }
         }
         if let Some(status) = self.paint.newest() {
-            studio.paint = Some(PaintNode {
+            rig.paint = Some(PaintNode {
                 status: status.message,
                 heard_ns: now_ns,
             });
@@ -148,16 +148,16 @@ impl Hearing {
             self.journal.refusals(),
         ];
         let refused = refused.into_iter().flatten();
-        studio.news.extend(refused.map(News::Refused));
+        rig.events.extend(refused.map(RigEvent::Refused));
         let is_new = scene.is_some();
         if let Some(scene) = scene {
-            studio.lay(scene.message);
+            rig.lay(scene.message);
         }
         is_new
     }
 }
 
-impl std::fmt::Debug for Hearing {
+impl std::fmt::Debug for RigListener {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         f.debug_struct("Hearing").finish_non_exhaustive()
     }

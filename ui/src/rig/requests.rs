@@ -4,14 +4,14 @@
 use maulstick_types::command::Command;
 use maulstick_types::haptics::ForceOrder;
 
-use crate::input::keys::Act;
+use crate::input::keys::Action;
 
 /// The node of the painting.
 pub(crate) const PAINT: &str = "paint";
 
 /// Something asked of a process of the rig.
 #[derive(Clone, Debug, PartialEq)]
-pub enum Order {
+pub enum Request {
     /// A command to a node.
     Command {
         /// The node.
@@ -28,7 +28,7 @@ pub enum Order {
     },
 }
 
-impl Order {
+impl Request {
     /// What it sets, where the newest of its kind alone counts.
     #[must_use]
     pub fn sets(&self) -> Option<(&'static str, String)> {
@@ -54,12 +54,12 @@ impl Order {
 
 /// Orders that wait to be sent.
 #[derive(Debug, Default)]
-pub struct Orders {
-    waiting: Vec<Order>,
-    acts: Vec<Act>,
+pub struct Requests {
+    waiting: Vec<Request>,
+    acts: Vec<Action>,
 }
 
-impl Orders {
+impl Requests {
     /// Asks the paint node.
     pub fn paint(&mut self, command: Command) {
         self.node(PAINT, command);
@@ -72,7 +72,7 @@ impl Orders {
 
     /// Asks a node.
     pub fn node(&mut self, node: &str, command: Command) {
-        self.waiting.push(Order::Command {
+        self.waiting.push(Request::Command {
             node: node.to_owned(),
             command,
         });
@@ -80,26 +80,26 @@ impl Orders {
 
     /// Orders the force of a device.
     pub fn force(&mut self, device: &str, order: ForceOrder) {
-        self.waiting.push(Order::Force {
+        self.waiting.push(Request::Force {
             device: device.to_owned(),
             order,
         });
     }
 
     /// Does what a key would do.
-    pub fn act(&mut self, act: Act) {
+    pub fn act(&mut self, act: Action) {
         self.acts.push(act);
     }
 
     /// Takes what is to be done as if by keys, the oldest first.
     #[must_use]
-    pub fn take_acts(&mut self) -> Vec<Act> {
+    pub fn take_acts(&mut self) -> Vec<Action> {
         std::mem::take(&mut self.acts)
     }
 
     /// Takes what waits, the oldest first.
     #[must_use]
-    pub fn take(&mut self) -> Vec<Order> {
+    pub fn take(&mut self) -> Vec<Request> {
         std::mem::take(&mut self.waiting)
     }
 }

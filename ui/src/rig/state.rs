@@ -12,9 +12,9 @@ use maulstick_types::paint::PaintStatus;
 use maulstick_types::scene::{BrushHandling, CANVAS, PALETTE, Scene, Surface, Tuning};
 use maulstick_types::stylus::{StylusInfo, StylusStatus};
 
-use crate::render::display_transform::Tint;
-use crate::rig::force_history::Felt;
-use crate::rig::health::News;
+use crate::render::display_transform::DisplayTransform;
+use crate::rig::force_history::ForceHistory;
+use crate::rig::health::RigEvent;
 use crate::rig::thumbnails::Thumbnails;
 
 /// A brush of the rig.
@@ -40,7 +40,7 @@ pub struct Device {
     /// When it was last heard, rig clock, ns.
     pub heard_ns: u64,
     /// Its newest samples.
-    pub felt: Felt,
+    pub forces: ForceHistory,
 }
 
 /// A paint node as it was last heard.
@@ -54,7 +54,7 @@ pub struct PaintNode {
 
 /// The rig as the window knows it.
 #[derive(Clone, Debug)]
-pub struct Studio {
+pub struct RigState {
     /// Name of the rig.
     pub rig: String,
     /// The time of the rig, ns.
@@ -84,12 +84,12 @@ pub struct Studio {
     /// Small pictures of the versions.
     pub thumbnails: Thumbnails,
     /// Colours of the window's own things as its display has to be sent them.
-    pub tint: Arc<Tint>,
+    pub tint: Arc<DisplayTransform>,
     /// What was heard and is to be told.
-    pub news: Vec<News>,
+    pub events: Vec<RigEvent>,
 }
 
-impl Studio {
+impl RigState {
     /// A rig of which nothing has been heard yet.
     #[must_use]
     pub fn new(rig: &str, brushes: &[String], library: Arc<PaintLibrary>) -> Self {
@@ -112,8 +112,8 @@ impl Studio {
             library,
             show_wet: false,
             thumbnails: Thumbnails::default(),
-            tint: Arc::new(Tint::new(&Export::default())),
-            news: Vec::new(),
+            tint: Arc::new(DisplayTransform::new(&Export::default())),
+            events: Vec::new(),
         }
     }
 

@@ -12,14 +12,14 @@ use maulstick_types::paint::{BrushCredit, PaintConsumed};
 use maulstick_types::topics::Topics;
 
 use crate::rig::brushes::SampleNumber;
-use crate::rig::requests::{Order, PAINT};
+use crate::rig::requests::{PAINT, Request};
 
 /// Nobody waits longer, ns: a brush may have ended in its stroke.
 const LONGEST_NS: u64 = 1_000_000_000;
 
 /// How far a sample has come on its way to the painting.
 #[derive(Clone, Copy, Debug)]
-enum Stage {
+enum SampleStage {
     /// It is to become a state of a brush.
     Sample(SampleNumber),
     /// It is in this state, which is to be painted: source, epoch and number.
@@ -29,22 +29,22 @@ enum Stage {
 /// An order, and what it waits for.
 #[derive(Debug)]
 struct Waiting {
-    order: Order,
-    samples: Vec<Stage>,
+    request: Request,
+    samples: Vec<SampleStage>,
     until_ns: u64,
 }
 
 /// An order that is sent.
 #[derive(Clone, Debug, PartialEq)]
-pub(crate) struct Due {
+pub(crate) struct Ready {
     /// The order.
-    pub order: Order,
+    pub request: Request,
     /// The state of a brush behind which the painting carries it out; at once if absent.
     pub after: Option<After>,
 }
 
 /// Orders that wait for a stroke.
-pub(crate) struct Landing {
+pub(crate) struct StrokeBarrier {
     topics: Topics,
     consumed: Receiver<BrushConsumed>,
     painted: Receiver<PaintConsumed>,
@@ -55,7 +55,7 @@ pub(crate) struct Landing {
     waiting: VecDeque<Waiting>,
 }
 
-impl Landing {
+impl StrokeBarrier {
     /// Listens to how far brushes and painting are.
     ///
     /// # Errors
@@ -87,64 +87,67 @@ impl Landing {
     }
 
     /// Takes an order that was given when these samples were the newest.
-    pub(crate) fn give(
+    pub(crate) fn push(
         &mut self,
         now_ns: u64,
-        order: Order,
+        request: Request,
         newest: impl IntoIterator<Item = SampleNumber>,
     ) {
-        let follows = follows(&order);
+        let follows = follows(&request);
         let newest = newest.into_iter().filter(|sample| {
             let mut followed = self.brushes.keys();
             follows && followed.any(|(_, device)| *device == sample.device)
         });
-        let samples = newest.map(Stage::Sample).collect();
+        let samples = newest.map(SampleStage::Sample).collect();
         self.waiting.push_back(Waiting {
-            order,
+            request,
             samples,
             until_ns: now_ns.saturating_add(LONGEST_NS),
         });
     }
 
     /// The next order that need not wait; call it until there is none.
-    pub(crate) fn due(&mut self, now_ns: u64) -> Option<Due> {
+    pub(crate) fn next_ready(&mut self, now_ns: u64) -> Option<Ready> {
         for waiting in &mut self.waiting {
             waiting
                 .samples
-                .retain_mut(|stage| !landed(stage, &self.brushes, &self.credits));
+                .retain_mut(|stage| !is_painted(stage, &self.brushes, &self.credits));
         }
         let place = (0..self.waiting.len()).find(|place| {
             let waiting = &self.waiting[*place];
             let mut before = self.waiting.iter().take(*place);
             let ready = waiting.is_ready() || now_ns >= waiting.until_ns;
-            ready && !before.any(|before| before.shares(&waiting.order))
+            ready && !before.any(|before| before.shares(&waiting.request))
         })?;
         let waiting = self.waiting.remove(place)?;
         if !waiting.is_ready() {
             // Who has not followed these devices for so long is not waited for again.
             for stage in &waiting.samples {
-                if let Stage::Sample(sample) = stage {
+                if let SampleStage::Sample(sample) = stage {
                     self.brushes
                         .retain(|(_, device), _| *device != sample.device);
                 }
             }
         }
-        Some(Due {
+        Some(Ready {
             after: waiting.after(),
-            order: waiting.order,
+            request: waiting.request,
         })
     }
 
     /// Whether an order waits.
     #[must_use]
-    pub(crate) fn holds(&self) -> bool {
+    pub(crate) fn is_waiting(&self) -> bool {
         !self.waiting.is_empty()
     }
 }
 
-impl From<Order> for Due {
-    fn from(order: Order) -> Self {
-        Self { order, after: None }
+impl From<Request> for Ready {
+    fn from(request: Request) -> Self {
+        Self {
+            request,
+            after: None,
+        }
     }
 }
 
@@ -156,9 +159,9 @@ impl Waiting {
 
     /// The state behind which it takes its place.
     fn after(&self) -> Option<After> {
-        let for_paint = matches!(&self.order, Order::Command { node, .. } if node == PAINT);
+        let for_paint = matches!(&self.request, Request::Command { node, .. } if node == PAINT);
         match self.samples[..] {
-            [Stage::State(brush, epoch, sequence)] if for_paint => Some(After {
+            [SampleStage::State(brush, epoch, sequence)] if for_paint => Some(After {
                 brush,
                 epoch,
                 sequence,
@@ -168,51 +171,53 @@ impl Waiting {
     }
 
     /// Whether another order is for the same process: none overtakes.
-    fn shares(&self, other: &Order) -> bool {
-        match (&self.order, other) {
-            (Order::Command { node: one, .. }, Order::Command { node: other, .. }) => one == other,
+    fn shares(&self, other: &Request) -> bool {
+        match (&self.request, other) {
+            (Request::Command { node: one, .. }, Request::Command { node: other, .. }) => {
+                one == other
+            }
             _ => false,
         }
     }
 }
 
 /// Whether an order means what has been painted.
-fn follows(order: &Order) -> bool {
-    match order {
-        Order::Command {
+fn follows(request: &Request) -> bool {
+    match request {
+        Request::Command {
             command: Command::StopExport,
             ..
         }
-        | Order::Force { .. } => false,
-        Order::Command { .. } => order.sets().is_none(),
+        | Request::Force { .. } => false,
+        Request::Command { .. } => request.sets().is_none(),
     }
 }
 
 /// Follows a sample; whether it is painted.
-fn landed(
-    stage: &mut Stage,
+fn is_painted(
+    stage: &mut SampleStage,
     brushes: &BTreeMap<(u32, u32), BrushConsumed>,
     credits: &BTreeMap<u32, BrushCredit>,
 ) -> bool {
-    if let Stage::Sample(sample) = *stage {
-        let holds = |consumed: &BrushConsumed| {
+    if let SampleStage::Sample(sample) = *stage {
+        let is_waiting = |consumed: &BrushConsumed| {
             (consumed.device, consumed.device_epoch) == (sample.device, sample.epoch)
                 && consumed.next > sample.seq
         };
-        let state = brushes.iter().find(|(_, consumed)| holds(consumed));
+        let state = brushes.iter().find(|(_, consumed)| is_waiting(consumed));
         let Some(((brush, _), consumed)) = state else {
             return false;
         };
-        *stage = Stage::State(*brush, consumed.brush_epoch, consumed.state);
+        *stage = SampleStage::State(*brush, consumed.brush_epoch, consumed.state);
     }
-    let Stage::State(brush, epoch, state) = *stage else {
+    let SampleStage::State(brush, epoch, state) = *stage else {
         return false;
     };
     let credit = credits.get(&brush);
     credit.is_some_and(|credit| credit.epoch == epoch && credit.next > state)
 }
 
-impl std::fmt::Debug for Landing {
+impl std::fmt::Debug for StrokeBarrier {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         f.debug_struct("Landing")
             .field("waiting", &self.waiting)
@@ -236,7 +241,7 @@ mod tests {
     /// A brush, a painting, and orders between them.
     struct Desk {
         net: MemoryNet,
-        landing: Landing,
+        barrier: StrokeBarrier,
         brush: Sender<BrushConsumed>,
         paint: Sender<PaintConsumed>,
     }
@@ -249,13 +254,13 @@ mod tests {
                 source: name_hash(name),
                 epoch: 1,
             };
-            let landing = Landing::new(&bus, &topics, &Wake::new()).expect("listens");
+            let barrier = StrokeBarrier::new(&bus, &topics, &Wake::new()).expect("listens");
             let topic = topics.brush_consumed(BRUSH);
             let brush = Sender::new(&bus, &topic, Class::Control, me(BRUSH)).expect("sends");
             let topic = topics.paint_consumed();
             let paint = Sender::new(&bus, &topic, Class::Control, me(PAINT)).expect("sends");
             let mut desk = Self {
-                landing,
+                barrier,
                 brush,
                 paint,
                 net,
@@ -266,7 +271,7 @@ mod tests {
 
         fn pass(&mut self) {
             self.net.advance(10 * MILLISECOND);
-            self.landing.take_in();
+            self.barrier.take_in();
         }
 
         /// The brush has consumed the mouse's samples below `next`, the newest of them in `state`.
@@ -300,8 +305,8 @@ mod tests {
             self.pass();
         }
 
-        fn give(&mut self, command: Command, seq: u64) {
-            let order = Order::Command {
+        fn push(&mut self, command: Command, seq: u64) {
+            let request = Request::Command {
                 node: PAINT.into(),
                 command,
             };
@@ -311,20 +316,20 @@ mod tests {
                 seq,
             };
             let now_ns = self.net.bus().now_ns();
-            self.landing.give(now_ns, order, [sample]);
+            self.barrier.push(now_ns, request, [sample]);
         }
 
         /// The next command, and the state that it goes behind.
-        fn due(&mut self) -> Option<(Command, Option<u64>)> {
+        fn next_ready(&mut self) -> Option<(Command, Option<u64>)> {
             let now_ns = self.net.bus().now_ns();
-            let due = self.landing.due(now_ns)?;
-            let after = due.after.map(|after| {
+            let next_ready = self.barrier.next_ready(now_ns)?;
+            let after = next_ready.after.map(|after| {
                 assert_eq!((after.brush, after.epoch), (name_hash(BRUSH), 5));
                 after.sequence
             });
-            match due.order {
-                Order::Command { command, .. } => Some((command, after)),
-                other @ Order::Force { .. } => panic!("{other:?}"),
+            match next_ready.request {
+                Request::Command { command, .. } => Some((command, after)),
+                other @ Request::Force { .. } => panic!("{other:?}"),
             }
         }
     }
@@ -343,23 +348,23 @@ mod tests {
     fn an_undo_goes_right_behind_the_stroke_before_it() {
         let mut desk = Desk::new();
         desk.painted(2);
-        desk.give(UNDO, 9);
-        assert_eq!(desk.due(), None, "the brush has not consumed it");
+        desk.push(UNDO, 9);
+        assert_eq!(desk.next_ready(), None, "the brush has not consumed it");
         desk.consumed(9, 20);
         desk.painted(30);
-        assert_eq!(desk.due(), None, "nor the last of its samples");
+        assert_eq!(desk.next_ready(), None, "nor the last of its samples");
         desk.consumed(10, 40);
-        assert_eq!(desk.due(), Some((UNDO, Some(40))));
-        assert!(!desk.landing.holds());
-        desk.give(UNDO, 9);
+        assert_eq!(desk.next_ready(), Some((UNDO, Some(40))));
+        assert!(!desk.barrier.is_waiting());
+        desk.push(UNDO, 9);
         desk.painted(41);
-        assert_eq!(desk.due(), Some((UNDO, None)), "it is painted");
+        assert_eq!(desk.next_ready(), Some((UNDO, None)), "it is painted");
     }
 
     #[test]
     fn another_node_is_asked_when_the_stroke_is_painted() {
         let mut desk = Desk::new();
-        let order = Order::Command {
+        let request = Request::Command {
             node: "rig".into(),
             command: UNDO,
         };
@@ -368,50 +373,50 @@ mod tests {
             epoch: 3,
             seq: 9,
         };
-        desk.landing.give(START_NS, order.clone(), [sample]);
+        desk.barrier.push(START_NS, request.clone(), [sample]);
         desk.consumed(10, 40);
         // What is painted later does not hold it up.
-        assert_eq!(desk.landing.due(START_NS), None);
+        assert_eq!(desk.barrier.next_ready(START_NS), None);
         desk.consumed(30, 90);
         desk.painted(40);
-        assert_eq!(desk.landing.due(START_NS), None);
+        assert_eq!(desk.barrier.next_ready(START_NS), None);
         desk.painted(41);
-        assert_eq!(desk.landing.due(START_NS), Some(order.into()));
+        assert_eq!(desk.barrier.next_ready(START_NS), Some(request.into()));
     }
 
     #[test]
     fn a_canvas_moves_at_once_but_overtakes_nothing() {
         let mut desk = Desk::new();
-        desk.give(place(), 9);
-        assert_eq!(desk.due(), Some((place(), None)));
-        desk.give(UNDO, 9);
-        desk.give(place(), 20);
-        assert_eq!(desk.due(), None);
+        desk.push(place(), 9);
+        assert_eq!(desk.next_ready(), Some((place(), None)));
+        desk.push(UNDO, 9);
+        desk.push(place(), 20);
+        assert_eq!(desk.next_ready(), None);
         desk.consumed(10, 4);
-        let due = [desk.due(), desk.due()];
-        assert_eq!(due, [Some((UNDO, Some(4))), Some((place(), None))]);
+        let next_ready = [desk.next_ready(), desk.next_ready()];
+        assert_eq!(next_ready, [Some((UNDO, Some(4))), Some((place(), None))]);
     }
 
     #[test]
     fn nobody_waits_for_a_brush_that_ended_nor_for_a_stylus_that_moves_none() {
         let mut desk = Desk::new();
-        desk.give(UNDO, 9);
+        desk.push(UNDO, 9);
         desk.net.advance(990 * MILLISECOND);
-        assert_eq!(desk.due(), None);
+        assert_eq!(desk.next_ready(), None);
         desk.net.advance(20 * MILLISECOND);
-        assert_eq!(desk.due(), Some((UNDO, None)));
-        desk.give(UNDO, 10);
-        assert_eq!(desk.due(), Some((UNDO, None)), "once is enough");
+        assert_eq!(desk.next_ready(), Some((UNDO, None)));
+        desk.push(UNDO, 10);
+        assert_eq!(desk.next_ready(), Some((UNDO, None)), "once is enough");
         let stranger = SampleNumber {
             device: MOUSE + 1,
             epoch: 3,
             seq: 9,
         };
-        let order = Order::Command {
+        let request = Request::Command {
             node: PAINT.into(),
             command: UNDO,
         };
-        desk.landing.give(START_NS, order.clone(), [stranger]);
-        assert_eq!(desk.landing.due(START_NS), Some(order.into()));
+        desk.barrier.push(START_NS, request.clone(), [stranger]);
+        assert_eq!(desk.barrier.next_ready(START_NS), Some(request.into()));
     }
 }

@@ -13,7 +13,7 @@ pub(crate) const MOST_THINNER: f64 = 0.95;
 /// What a brush takes up.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
-pub struct Loading {
+pub struct BrushLoad {
     /// A mixture such as "Cobalt Blue=0.7,Titanium White=0.3", or a paint.
     pub paint: String,
     /// What the other half of the brush takes up; as the first where there is none.
@@ -23,7 +23,7 @@ pub struct Loading {
     pub thinner: f64,
 }
 
-impl Loading {
+impl BrushLoad {
     /// A mixture of it, thinned.
     fn mixture(&self, text: &str, library: &PaintLibrary) -> Result<Mixture, Fault> {
         let mixture = read(text, library)?;
@@ -139,8 +139,8 @@ mod tests {
         PaintLibrary::measured().expect("whole")
     }
 
-    fn loading(paint: &str, beside: Option<&str>, thinner: f64) -> Loading {
-        Loading {
+    fn loading(paint: &str, beside: Option<&str>, thinner: f64) -> BrushLoad {
+        BrushLoad {
             paint: paint.into(),
             beside: beside.map(str::to_owned),
             thinner,
@@ -149,7 +149,7 @@ mod tests {
 
     #[test]
     fn a_load_is_one_mixture_or_two_and_thinned() {
-        let command = |loading: Loading| loading.command("main", &library());
+        let command = |loading: BrushLoad| loading.command("main", &library());
         let pure = command(loading("cobalt blue", None, 0.0)).expect("a paint");
         assert_eq!(
             pure,

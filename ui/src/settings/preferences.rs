@@ -9,8 +9,8 @@ use serde::{Deserialize, Serialize};
 use maulstick_rig::Fault;
 use maulstick_rig::files::{Kind, write_whole};
 
-use crate::reference::ReferenceHabits;
-use crate::settings::brush_load::Loading;
+use crate::reference::ReferencePreferences;
+use crate::settings::brush_load::BrushLoad;
 use crate::settings::paint_sets::PaintSet;
 use crate::settings::presets::Preset;
 
@@ -20,7 +20,7 @@ const RECENT: usize = 12;
 /// What is remembered.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
-pub struct Habits {
+pub struct Preferences {
     /// Whether the panels are shown.
     pub panels: bool,
     /// Titles of the panels that are unfolded.
@@ -34,11 +34,11 @@ pub struct Habits {
     /// Paintings that were open, the newest first.
     pub recent: Vec<PathBuf>,
     /// The picture that is pinned beside the canvas.
-    pub reference: ReferenceHabits,
+    pub reference: ReferencePreferences,
     /// Brush files of the painter's own, in the order of the rack.
     pub own_brushes: Vec<PathBuf>,
     /// What a brush is loaded with when it is next asked for.
-    pub loading: Loading,
+    pub loading: BrushLoad,
     /// Widths at which brushes were last used, by their kind, mm.
     pub widths_mm: BTreeMap<String, f64>,
     /// Brushes that are ready with their paint.
@@ -47,7 +47,7 @@ pub struct Habits {
     pub paint_sets: Vec<PaintSet>,
 }
 
-impl Default for Habits {
+impl Default for Preferences {
     fn default() -> Self {
         Self {
             panels: false,
@@ -56,9 +56,9 @@ impl Default for Habits {
             has_painted: false,
             size: [1280.0, 800.0],
             recent: Vec::new(),
-            reference: ReferenceHabits::default(),
+            reference: ReferencePreferences::default(),
             own_brushes: Vec::new(),
-            loading: Loading::default(),
+            loading: BrushLoad::default(),
             widths_mm: BTreeMap::new(),
             presets: Vec::new(),
             paint_sets: Vec::new(),
@@ -66,7 +66,7 @@ impl Default for Habits {
     }
 }
 
-impl Habits {
+impl Preferences {
     /// Where they are kept for this user; none where the system has no such place.
     #[must_use]
     pub fn place() -> Option<PathBuf> {
@@ -87,15 +87,15 @@ impl Habits {
             }
             Err(error) => return Err(Fault::reading(path, &error)),
         };
-        let mut habits: Self = toml::from_str(&text).map_err(|error| {
+        let mut preferences: Self = toml::from_str(&text).map_err(|error| {
             Fault::failure("the window's habits cannot be read; it begins with new ones")
                 .at(format!("{}: {}", path.display(), error.message()))
         })?;
         let sane = |side: f32| side.is_finite() && (200.0..=20_000.0).contains(&side);
-        if !habits.size.iter().all(|side| sane(*side)) {
-            habits.size = Self::default().size;
+        if !preferences.size.iter().all(|side| sane(*side)) {
+            preferences.size = Self::default().size;
         }
-        Ok(habits)
+        Ok(preferences)
     }
 
     /// Keeps them.
@@ -142,19 +142,22 @@ mod tests {
     fn what_is_kept_is_read_again() {
         let folder = tempfile::tempdir().expect("a folder");
         let path = folder.path().join("deep/window.toml");
-        assert_eq!(Habits::read(&path).expect("none"), Habits::default());
-        let mut habits = Habits {
+        assert_eq!(
+            Preferences::read(&path).expect("none"),
+            Preferences::default()
+        );
+        let mut preferences = Preferences {
             left_handed: true,
-            ..Habits::default()
+            ..Preferences::default()
         };
-        habits.unfold("Light", true);
+        preferences.unfold("Light", true);
         for number in 0..20 {
-            habits.opened(Path::new(&format!("/{}.maul", number % 15)));
+            preferences.opened(Path::new(&format!("/{}.maul", number % 15)));
         }
-        assert_eq!(habits.recent.len(), RECENT);
-        assert_eq!(habits.recent[0], Path::new("/4.maul"));
-        habits.keep(&path).expect("kept");
-        assert_eq!(Habits::read(&path).expect("read"), habits);
+        assert_eq!(preferences.recent.len(), RECENT);
+        assert_eq!(preferences.recent[0], Path::new("/4.maul"));
+        preferences.keep(&path).expect("kept");
+        assert_eq!(Preferences::read(&path).expect("read"), preferences);
     }
 
     #[test]
@@ -162,10 +165,10 @@ mod tests {
         let folder = tempfile::tempdir().expect("a folder");
         let path = folder.path().join("window.toml");
         std::fs::write(&path, "panels = 7").expect("written");
-        let fault = Habits::read(&path).expect_err("no truth value");
+        let fault = Preferences::read(&path).expect_err("no truth value");
         assert!(fault.to_string().contains("window.toml"), "{fault}");
         std::fs::write(&path, "size = [nan, 1e9]\nunknown = 1").expect("written");
-        let habits = Habits::read(&path).expect("of a newer window");
-        assert_eq!(habits.size, Habits::default().size);
+        let preferences = Preferences::read(&path).expect("of a newer window");
+        assert_eq!(preferences.size, Preferences::default().size);
     }
 }

@@ -7,8 +7,8 @@ use maulstick_types::scene::{BrushHandling, BrushMode, MARKER_FLOW, Tuning};
 use serde::{Deserialize, Serialize};
 
 use crate::input::brush_choice::{is_of_library, of_library};
-use crate::settings::brush_load::Loading;
-use crate::widgets::context::Work;
+use crate::settings::brush_load::BrushLoad;
+use crate::widgets::context::PanelContext;
 
 /// The name of a preset, or of a set of paints, has at most so many letters.
 pub(crate) const NAME_MAX: usize = 40;
@@ -37,7 +37,7 @@ pub struct Preset {
     /// It adds no paint where as much is wet, m; 0 for no such bound.
     pub most_m: f64,
     /// What it takes up; nothing where no paint is named.
-    pub loading: Loading,
+    pub loading: BrushLoad,
 }
 
 impl Default for Preset {
@@ -52,7 +52,7 @@ impl Default for Preset {
             mode: "normal".to_owned(),
             flow: MARKER_FLOW,
             most_m: 0.0,
-            loading: Loading::default(),
+            loading: BrushLoad::default(),
         }
     }
 }
@@ -60,9 +60,9 @@ impl Default for Preset {
 impl Preset {
     /// The brush in the hand as it is used now; none until it is known.
     #[must_use]
-    pub fn of(name: &str, work: &Work<'_>) -> Option<Self> {
+    pub fn of(name: &str, work: &PanelContext<'_>) -> Option<Self> {
         let file = work.in_hand()?;
-        let (tuning, handling) = (work.studio.tuning(), work.studio.handling());
+        let (tuning, handling) = (work.rig.tuning(), work.rig.handling());
         let text = match is_of_library(file) {
             true => String::new(),
             false => file.to_toml().ok()?,
@@ -79,7 +79,7 @@ impl Preset {
             mode: mode.map_or("normal", |(name, _)| name).to_owned(),
             flow: handling.flow,
             most_m: handling.most_m,
-            loading: work.habits.loading.clone(),
+            loading: work.preferences.loading.clone(),
         })
     }
 
@@ -104,9 +104,9 @@ impl Preset {
     ///
     /// # Errors
     /// A [`Fault`] where something of it is wrong; then nothing is changed.
-    pub fn apply(&self, work: &mut Work<'_>) -> Result<(), Fault> {
+    pub fn apply(&self, work: &mut PanelContext<'_>) -> Result<(), Fault> {
         let file = self.brush()?;
-        let brush = work.studio.brush_name().to_owned();
+        let brush = work.rig.brush_name().to_owned();
         let mode = BrushMode::called(&self.mode).map_err(Fault::told)?;
         let tuning = Tuning {
             brush: brush.clone(),
@@ -125,14 +125,14 @@ impl Preset {
         }
         let load = match self.loading.paint.is_empty() {
             true => None,
-            false => Some(self.loading.command(&brush, &work.studio.library)?),
+            false => Some(self.loading.command(&brush, &work.rig.library)?),
         };
         work.take_up(file);
         for command in commands {
-            work.orders.paint(command);
+            work.requests.paint(command);
         }
         if let Some(load) = load {
-            work.habits.loading = self.loading.clone();
+            work.preferences.loading = self.loading.clone();
             work.then(load);
         }
         Ok(())

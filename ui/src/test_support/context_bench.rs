@@ -10,24 +10,24 @@ use maulstick_paint::PaintingSetup;
 use maulstick_types::command::Command;
 
 use crate::panels::Panel;
-use crate::rig::requests::{Order, Orders};
-use crate::rig::state::Studio;
-use crate::settings::preferences::Habits;
-use crate::widgets::context::Work;
-use crate::widgets::notifications::Toasts;
+use crate::rig::requests::{Request, Requests};
+use crate::rig::state::RigState;
+use crate::settings::preferences::Preferences;
+use crate::widgets::context::PanelContext;
+use crate::widgets::notifications::Notifications;
 
 /// A rig with a new painting and two brushes, of which the first is the library's round one.
-pub(crate) fn studio() -> Studio {
+pub(crate) fn rig() -> RigState {
     let library = Arc::new(PaintLibrary::measured().expect("whole"));
     let names = ["main", "other"].map(str::to_owned);
-    let mut studio = Studio::new("test", &names, library);
-    studio.lay(PaintingSetup::default().scene());
-    for (brush, kind) in studio.brushes.iter_mut().zip(["round", "flat"]) {
+    let mut rig = RigState::new("test", &names, library);
+    rig.lay(PaintingSetup::default().scene());
+    for (brush, kind) in rig.brushes.iter_mut().zip(["round", "flat"]) {
         let text = BrushFile::library_text(kind).expect(kind);
         let file = BrushFile::library(kind).expect(kind);
         brush.file = Some((file, text.to_owned()));
     }
-    studio
+    rig
 }
 
 /// Pixels of a picture that another adapter may draw otherwise.
@@ -36,45 +36,45 @@ const FAILED: usize = 40;
 /// What a panel works with.
 #[derive(Debug)]
 pub(crate) struct Bench {
-    pub(crate) studio: Studio,
-    pub(crate) orders: Orders,
-    pub(crate) habits: Habits,
-    pub(crate) toasts: Toasts,
+    pub(crate) rig: RigState,
+    pub(crate) requests: Requests,
+    pub(crate) preferences: Preferences,
+    pub(crate) notifications: Notifications,
 }
 
 impl Bench {
     pub(crate) fn new() -> Self {
         Self {
-            studio: studio(),
-            orders: Orders::default(),
-            habits: Habits::default(),
-            toasts: Toasts::default(),
+            rig: rig(),
+            requests: Requests::default(),
+            preferences: Preferences::default(),
+            notifications: Notifications::default(),
         }
     }
 
-    pub(crate) fn work(&mut self) -> Work<'_> {
-        Work {
-            studio: &mut self.studio,
-            orders: &mut self.orders,
-            habits: &mut self.habits,
-            toasts: &mut self.toasts,
+    pub(crate) fn work(&mut self) -> PanelContext<'_> {
+        PanelContext {
+            rig: &mut self.rig,
+            requests: &mut self.requests,
+            preferences: &mut self.preferences,
+            notifications: &mut self.notifications,
         }
     }
 
     /// Commands that were asked for since the last call.
     pub(crate) fn commands(&mut self) -> Vec<Command> {
-        let orders = self.orders.take().into_iter();
+        let requests = self.requests.take().into_iter();
         let command = |order| match order {
-            Order::Command { command, .. } => Some(command),
-            Order::Force { .. } => None,
+            Request::Command { command, .. } => Some(command),
+            Request::Force { .. } => None,
         };
-        orders.filter_map(command).collect()
+        requests.filter_map(command).collect()
     }
 
     /// What is told.
     pub(crate) fn told(&self) -> Vec<&str> {
-        let toasts = self.toasts.told().iter();
-        toasts.map(|toast| toast.what.as_str()).collect()
+        let notifications = self.notifications.told().iter();
+        notifications.map(|toast| toast.what.as_str()).collect()
     }
 }
 
@@ -82,7 +82,7 @@ impl Bench {
 pub(crate) fn window<'a>(
     size: Vec2,
     bench: Bench,
-    mut show: impl FnMut(&mut Ui, &mut Work<'_>) + 'a,
+    mut show: impl FnMut(&mut Ui, &mut PanelContext<'_>) + 'a,
 ) -> Harness<'a, Bench> {
     Harness::builder()
         .with_size(size)

@@ -10,14 +10,14 @@ use egui_kittest::{Harness, SnapshotOptions};
 use maulstick_rig::Fault;
 use maulstick_types::command::Command;
 
-use crate::app::overlay::Shell;
-use crate::rig::dispatcher::Told;
-use crate::rig::requests::{Order, Orders};
-use crate::rig::state::Studio;
-use crate::settings::preferences::Habits;
-use crate::test_support::panel_bench::studio;
-use crate::widgets::context::Work;
-use crate::widgets::notifications::Toasts;
+use crate::app::overlay::Overlay;
+use crate::rig::dispatcher::Outcome;
+use crate::rig::requests::{Request, Requests};
+use crate::rig::state::RigState;
+use crate::settings::preferences::Preferences;
+use crate::test_support::panel_bench::rig;
+use crate::widgets::context::PanelContext;
+use crate::widgets::notifications::Notifications;
 
 /// How long work beside the window may take before a test gives up.
 const PATIENCE: Duration = Duration::from_secs(60);
@@ -26,49 +26,49 @@ const MOST_FAILED: usize = 60;
 
 /// A window without a desk.
 pub(crate) struct Bench {
-    pub shell: Shell,
-    pub studio: Studio,
-    pub orders: Orders,
-    pub habits: Habits,
-    pub toasts: Toasts,
+    pub overlay: Overlay,
+    pub rig: RigState,
+    pub requests: Requests,
+    pub preferences: Preferences,
+    pub notifications: Notifications,
 }
 
 impl Bench {
-    fn with<T>(&mut self, act: impl FnOnce(&mut Shell, &mut Work<'_>) -> T) -> T {
-        let mut work = Work {
-            studio: &mut self.studio,
-            orders: &mut self.orders,
-            habits: &mut self.habits,
-            toasts: &mut self.toasts,
+    fn with<T>(&mut self, act: impl FnOnce(&mut Overlay, &mut PanelContext<'_>) -> T) -> T {
+        let mut work = PanelContext {
+            rig: &mut self.rig,
+            requests: &mut self.requests,
+            preferences: &mut self.preferences,
+            notifications: &mut self.notifications,
         };
-        act(&mut self.shell, &mut work)
+        act(&mut self.overlay, &mut work)
     }
 
     /// Everything that was asked since the last call: the node, and of it.
     pub(crate) fn asked(&mut self) -> Vec<(String, Command)> {
-        let orders = self.orders.take().into_iter();
-        let command = |order| match order {
-            Order::Command { node, command } => (node, command),
-            other @ Order::Force { .. } => panic!("no command: {other:?}"),
+        let requests = self.requests.take().into_iter();
+        let command = |request| match request {
+            Request::Command { node, command } => (node, command),
+            other @ Request::Force { .. } => panic!("no command: {other:?}"),
         };
-        orders.map(command).collect()
+        requests.map(command).collect()
     }
 
     /// Answers a command.
     pub(crate) fn answer(&mut self, asked: &(String, Command), result: Result<&str, Fault>) {
-        let told = Told {
-            order: Order::Command {
+        let told = Outcome {
+            request: Request::Command {
                 node: asked.0.clone(),
                 command: asked.1.clone(),
             },
             result: result.map(str::to_owned),
         };
-        self.with(|shell, work| shell.hear(&told, work));
+        self.with(|overlay, work| overlay.hear(&told, work));
     }
 
     /// Words of all tellings.
     pub(crate) fn told(&self) -> String {
-        let words = self.toasts.told().iter();
+        let words = self.notifications.told().iter();
         let words = words.map(|toast| format!("{} {}", toast.what, toast.help));
         words.collect::<Vec<_>>().join("\n")
     }
@@ -76,23 +76,23 @@ impl Bench {
 
 /// A window of a painter who painted in this folder before.
 pub(crate) fn window(folder: Option<&Path>) -> Harness<'static, Bench> {
-    let habits = Habits {
+    let preferences = Preferences {
         recent: folder
             .map(|folder| folder.join("before.maul"))
             .into_iter()
             .collect(),
         has_painted: true,
-        ..Habits::default()
+        ..Preferences::default()
     };
     let bench = Bench {
-        shell: Shell::default(),
-        studio: studio(),
-        orders: Orders::default(),
-        habits,
-        toasts: Toasts::default(),
+        overlay: Overlay::default(),
+        rig: rig(),
+        requests: Requests::default(),
+        preferences,
+        notifications: Notifications::default(),
     };
     let show = |ui: &mut Ui, bench: &mut Bench| {
-        let rest = bench.with(|shell, work| shell.show(ui, work));
+        let rest = bench.with(|overlay, work| overlay.show(ui, work));
         assert!(rest.is_empty(), "{rest:?}");
     };
     let mut harness = Harness::builder()

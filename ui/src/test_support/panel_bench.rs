@@ -11,11 +11,11 @@ use maulstick_types::command::Command;
 use maulstick_types::paint::PaintStatus;
 
 use crate::panels::Panel;
-use crate::rig::requests::{Order, Orders};
-use crate::rig::state::{PaintNode, Studio};
-use crate::settings::preferences::Habits;
-use crate::widgets::context::Work;
-use crate::widgets::notifications::Toasts;
+use crate::rig::requests::{Request, Requests};
+use crate::rig::state::{PaintNode, RigState};
+use crate::settings::preferences::Preferences;
+use crate::widgets::context::PanelContext;
+use crate::widgets::notifications::Notifications;
 
 /// Width of the column of panels, points.
 const COLUMN: f32 = 300.0;
@@ -23,15 +23,15 @@ const COLUMN: f32 = 300.0;
 const MOST_FAILED: usize = 40;
 
 /// A studio as it is when a painting begins.
-pub(crate) fn studio() -> Studio {
+pub(crate) fn rig() -> RigState {
     let library = PaintLibrary::measured().expect("the paints that come with it");
-    let mut studio = Studio::new("default", &["main".to_owned()], Arc::new(library));
-    studio.lay(PaintingSetup::default().scene());
-    studio.paint = Some(PaintNode {
+    let mut rig = RigState::new("default", &["main".to_owned()], Arc::new(library));
+    rig.lay(PaintingSetup::default().scene());
+    rig.paint = Some(PaintNode {
         status: status(),
         heard_ns: 0,
     });
-    studio
+    rig
 }
 
 /// A paint node that has done nothing yet.
@@ -77,20 +77,20 @@ pub(crate) fn steps(undo: u32, redo: u32) -> PaintStatus {
 #[derive(Debug)]
 pub(crate) struct Bench<P> {
     pub(crate) panel: P,
-    pub(crate) studio: Studio,
-    pub(crate) orders: Orders,
-    pub(crate) habits: Habits,
-    pub(crate) toasts: Toasts,
+    pub(crate) rig: RigState,
+    pub(crate) requests: Requests,
+    pub(crate) preferences: Preferences,
+    pub(crate) notifications: Notifications,
 }
 
 impl<P: Panel + Default> Bench<P> {
-    pub(crate) fn new(studio: Studio) -> Self {
+    pub(crate) fn new(rig: RigState) -> Self {
         Self {
             panel: P::default(),
-            studio,
-            orders: Orders::default(),
-            habits: Habits::default(),
-            toasts: Toasts::default(),
+            rig,
+            requests: Requests::default(),
+            preferences: Preferences::default(),
+            notifications: Notifications::default(),
         }
     }
 }
@@ -98,33 +98,33 @@ impl<P: Panel + Default> Bench<P> {
 impl<P> Bench<P> {
     /// The commands to the paint node since the last call.
     pub(crate) fn asked(&mut self) -> Vec<Command> {
-        let orders = self.orders.take().into_iter();
+        let requests = self.requests.take().into_iter();
         let paint = |order| match order {
-            Order::Command { node, command } if node == crate::rig::requests::PAINT => command,
+            Request::Command { node, command } if node == crate::rig::requests::PAINT => command,
             other => panic!("not to the paint node: {other:?}"),
         };
-        orders.map(paint).collect()
+        requests.map(paint).collect()
     }
 }
 
 /// A panel in a column as wide as the window's.
-pub(crate) fn harness<P: Panel + Default + 'static>(studio: Studio) -> Harness<'static, Bench<P>> {
-    built(studio, Theme::Dark, 1.0)
+pub(crate) fn harness<P: Panel + Default + 'static>(rig: RigState) -> Harness<'static, Bench<P>> {
+    built(rig, Theme::Dark, 1.0)
 }
 
 fn built<P: Panel + Default + 'static>(
-    studio: Studio,
+    rig: RigState,
     theme: Theme,
     scale: f32,
 ) -> Harness<'static, Bench<P>> {
     let show = |ui: &mut Ui, bench: &mut Bench<P>| {
         ui.set_width(COLUMN);
         ui.spacing_mut().slider_width = 120.0;
-        let mut work = Work {
-            studio: &mut bench.studio,
-            orders: &mut bench.orders,
-            habits: &mut bench.habits,
-            toasts: &mut bench.toasts,
+        let mut work = PanelContext {
+            rig: &mut bench.rig,
+            requests: &mut bench.requests,
+            preferences: &mut bench.preferences,
+            notifications: &mut bench.notifications,
         };
         bench.panel.show(ui, &mut work);
     };
@@ -133,7 +133,7 @@ fn built<P: Panel + Default + 'static>(
         .with_pixels_per_point(scale)
         .with_theme(theme)
         .wgpu()
-        .build_ui_state(show, Bench::new(studio));
+        .build_ui_state(show, Bench::new(rig));
     harness.run();
     harness
 }
@@ -141,17 +141,17 @@ fn built<P: Panel + Default + 'static>(
 /// Compares a panel with its picture, and sees that `fault` makes another one.
 pub(crate) fn picture<P: Panel + Default + 'static>(
     name: &str,
-    studio: &Studio,
+    rig: &RigState,
     prepare: impl Fn(&mut Harness<'static, Bench<P>>),
-    fault: impl FnOnce(&mut Studio),
+    fault: impl FnOnce(&mut RigState),
 ) {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/snapshots");
     let options = SnapshotOptions::new()
         .output_path(&folder)
         .threshold(1.0)
         .max_failed_pixels(MOST_FAILED);
-    let drawn = |studio: Studio, theme: Theme, scale: f32| {
-        let mut harness = built::<P>(studio, theme, scale);
+    let drawn = |rig: RigState, theme: Theme, scale: f32| {
+        let mut harness = built::<P>(rig, theme, scale);
         prepare(&mut harness);
         harness.run();
         harness.fit_contents();
@@ -160,19 +160,19 @@ pub(crate) fn picture<P: Panel + Default + 'static>(
     // Where somebody wants to look at it: both themes, and finer pixels.
     if let Some(place) = std::env::var_os("MAULSTICK_LOOK") {
         for (theme, word) in [(Theme::Dark, "dark"), (Theme::Light, "light")] {
-            let mut harness = drawn(studio.clone(), theme, 2.0);
+            let mut harness = drawn(rig.clone(), theme, 2.0);
             let image = harness.render().expect("a picture");
             let path = Path::new(&place).join(format!("{name}_{word}.png"));
             image.save(path).expect("saved");
         }
     }
-    let mut harness = drawn(studio.clone(), Theme::Dark, 1.0);
+    let mut harness = drawn(rig.clone(), Theme::Dark, 1.0);
     let good = harness.render().expect("a picture");
     harness.snapshot_options(name, &options);
     let path = folder.join(format!("{name}.png"));
     let kept = std::fs::metadata(&path).expect("the picture").len();
     assert!(kept < 60 * 1024, "{} has {kept} bytes", path.display());
-    let mut other = studio.clone();
+    let mut other = rig.clone();
     fault(&mut other);
     let mut harness = drawn(other, Theme::Dark, 1.0);
     let bad = harness.render().expect("a picture");

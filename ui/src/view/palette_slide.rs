@@ -19,12 +19,12 @@ struct Slide {
 
 /// Where the palette is seen.
 #[derive(Clone, Copy, Debug, Default)]
-pub(crate) struct Glide {
+pub(crate) struct PaletteSlide {
     last: Option<DVec3>,
     slide: Option<Slide>,
 }
 
-impl Glide {
+impl PaletteSlide {
     /// Puts the palette of `surfaces` where it is seen at a time of the window, s; whether it slides.
     pub(crate) fn show(&mut self, now_s: f64, surfaces: &mut [Surface]) -> bool {
         let Some(palette) = surfaces.iter_mut().find(|surface| surface.id == PALETTE) else {
@@ -75,10 +75,10 @@ mod tests {
     #[test]
     fn it_goes_there_in_its_time_and_a_hand_is_followed_at_once() {
         let mut surfaces = PaintingSetup::default().scene().surfaces;
-        let (mut glide, rest) = (Glide::default(), surfaces[1].pose.position_m[0]);
+        let (mut palette_slide, rest) = (PaletteSlide::default(), surfaces[1].pose.position_m[0]);
         let mut at = |now, x: f64| {
             surfaces[1].pose.position_m[0] = x;
-            let slides = glide.show(now, &mut surfaces);
+            let slides = palette_slide.show(now, &mut surfaces);
             (surfaces[1].pose.position_m[0], slides)
         };
         assert_eq!(at(0.0, rest), (rest, false));

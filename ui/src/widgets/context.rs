@@ -1,19 +1,19 @@
 //! What a panel works with.
 
-use crate::rig::requests::Orders;
-use crate::rig::state::Studio;
-use crate::settings::preferences::Habits;
-use crate::widgets::notifications::Toasts;
+use crate::rig::requests::Requests;
+use crate::rig::state::RigState;
+use crate::settings::preferences::Preferences;
+use crate::widgets::notifications::Notifications;
 
 /// The rig as it is, and what the painter makes of it.
 #[derive(Debug)]
-pub struct Work<'a> {
+pub struct PanelContext<'a> {
     /// What is known of the rig.
-    pub studio: &'a mut Studio,
+    pub rig: &'a mut RigState,
     /// What is asked of it.
-    pub orders: &'a mut Orders,
+    pub requests: &'a mut Requests,
     /// What is remembered.
-    pub habits: &'a mut Habits,
+    pub preferences: &'a mut Preferences,
     /// What is told.
-    pub toasts: &'a mut Toasts,
+    pub notifications: &'a mut Notifications,
 }

@@ -69,17 +69,17 @@ pub(crate) fn wrong(ui: &mut Ui, what: &str) {
 /// A value of the rig that a control changes: what was asked for is shown until the rig has it, so that
 /// what is dragged does not jump back.
 #[derive(Clone, Debug)]
-pub(crate) struct Asked<T> {
+pub(crate) struct PendingValue<T> {
     asked: Option<(T, f64)>,
 }
 
-impl<T> Default for Asked<T> {
+impl<T> Default for PendingValue<T> {
     fn default() -> Self {
         Self { asked: None }
     }
 }
 
-impl<T: Clone + PartialEq> Asked<T> {
+impl<T: Clone + PartialEq> PendingValue<T> {
     /// The value to show where the rig's is `actual`.
     pub(crate) fn shown(&mut self, ui: &Ui, actual: T) -> T {
         let now = ui.input(|input| input.time);

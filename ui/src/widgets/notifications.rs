@@ -23,7 +23,7 @@ pub enum Weight {
 
 /// Something told.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Toast {
+pub struct Notification {
     /// How much it matters.
     pub weight: Weight,
     /// What there is to say.
@@ -36,11 +36,11 @@ pub struct Toast {
 
 /// What is told at present.
 #[derive(Debug, Default)]
-pub struct Toasts {
-    told: Vec<Toast>,
+pub struct Notifications {
+    told: Vec<Notification>,
 }
 
-impl Toasts {
+impl Notifications {
     /// Tells that something was done.
     pub fn note(&mut self, what: impl Into<String>) {
         self.tell(Weight::Note, what.into(), String::new());
@@ -62,7 +62,7 @@ impl Toasts {
     }
 
     /// What is told, the oldest first.
-    pub fn told(&self) -> &[Toast] {
+    pub fn told(&self) -> &[Notification] {
         &self.told
     }
 
@@ -72,7 +72,7 @@ impl Toasts {
         if self.told.len() >= MOST {
             self.told.remove(0);
         }
-        self.told.push(Toast {
+        self.told.push(Notification {
             weight,
             what,
             help,
@@ -142,22 +142,27 @@ mod tests {
 
     #[test]
     fn the_same_thing_is_told_once_and_the_oldest_goes() {
-        let mut toasts = Toasts::default();
+        let mut notifications = Notifications::default();
         for what in ["a", "b", "c", "a", "d", "e"] {
-            toasts.note(what);
+            notifications.note(what);
         }
-        let told: Vec<&str> = toasts.told().iter().map(|t| t.what.as_str()).collect();
+        let told: Vec<&str> = notifications
+            .told()
+            .iter()
+            .map(|t| t.what.as_str())
+            .collect();
         assert_eq!(told, ["c", "a", "d", "e"]);
     }
 
     #[test]
     fn a_fault_says_what_to_do_and_goes_by_itself() {
-        let mut toasts = Toasts::default();
-        toasts.fault("the arm is gone", "plug it in");
-        let show = |ui: &mut egui::Ui, toasts: &mut Toasts| toasts.show(ui.ctx());
+        let mut notifications = Notifications::default();
+        notifications.fault("the arm is gone", "plug it in");
+        let show =
+            |ui: &mut egui::Ui, notifications: &mut Notifications| notifications.show(ui.ctx());
         let mut harness = Harness::builder()
             .with_step_dt(1.0)
-            .build_ui_state(show, toasts);
+            .build_ui_state(show, notifications);
         harness.step();
         harness.get_by_label("the arm is gone");
         harness.get_by_label("plug it in");

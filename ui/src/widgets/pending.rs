@@ -5,17 +5,17 @@ const WAITED_S: f64 = 2.0;
 
 /// A value that may be in the hand.
 #[derive(Clone, Debug)]
-pub(crate) struct Held<T> {
+pub(crate) struct Pending<T> {
     asked: Option<(T, f64)>,
 }
 
-impl<T> Default for Held<T> {
+impl<T> Default for Pending<T> {
     fn default() -> Self {
         Self { asked: None }
     }
 }
 
-impl<T: Clone + PartialEq> Held<T> {
+impl<T: Clone + PartialEq> Pending<T> {
     /// What is shown at `now_s` of the window's clock where the rig's own value is `actual`.
     pub(crate) fn shown(&mut self, now_s: f64, actual: &T) -> T {
         let waits = |(asked, until_s): &(T, f64)| asked != actual && now_s < *until_s;
@@ -42,7 +42,7 @@ mod tests {
 
     #[test]
     fn what_is_asked_is_shown_until_it_is_so_or_nobody_answered() {
-        let mut held = Held::default();
+        let mut held = Pending::default();
         assert_eq!(held.shown(0.0, &1), 1);
         held.hold(0.0, 2);
         assert_eq!(held.shown(0.5, &1), 2, "the rig has not answered yet");

@@ -8,8 +8,8 @@ use maulstick_types::command::Command;
 use maulstick_types::paint::PaintStatus;
 use maulstick_types::scene::{CANVAS, Light};
 
-use crate::rig::state::Studio;
-use crate::widgets::context::Work;
+use crate::rig::state::RigState;
+use crate::widgets::context::PanelContext;
 
 /// Work that takes less is not told, ns.
 const SHORT_NS: u64 = 500_000_000;
@@ -68,12 +68,12 @@ impl Progress {
     pub(crate) fn show(
         &mut self,
         context: &Context,
-        work: &mut Work<'_>,
+        work: &mut PanelContext<'_>,
         waits: &[String],
     ) -> bool {
-        let status = work.studio.paint.as_ref().map(|paint| &paint.status);
+        let status = work.rig.paint.as_ref().map(|paint| &paint.status);
         let lines: Vec<String> = status.into_iter().flat_map(lines).collect();
-        let jobs = self.jobs(work.studio, waits);
+        let jobs = self.jobs(work.rig, waits);
         if jobs.is_empty() && lines.is_empty() {
             return false;
         }
@@ -87,7 +87,7 @@ impl Progress {
                         ui.label(line);
                     }
                     for (job, begun_ns) in &jobs {
-                        let elapsed_s = elapsed_s(work.studio.now_ns, *begun_ns);
+                        let elapsed_s = elapsed_s(work.rig.now_ns, *begun_ns);
                         if bar(ui, job, elapsed_s) {
                             cancelled.clone_from(&job.cancel);
                         }
@@ -95,7 +95,7 @@ impl Progress {
                 });
             });
         match cancelled {
-            Some(Cancel::Paint(command)) => work.orders.paint(*command),
+            Some(Cancel::Paint(command)) => work.requests.paint(*command),
             Some(Cancel::GiveUp) => return true,
             None => {}
         }
@@ -103,12 +103,12 @@ impl Progress {
     }
 
     /// What has gone on for long enough to be told, with its begin, rig clock, ns.
-    fn jobs(&mut self, studio: &Studio, waits: &[String]) -> Vec<(Job, u64)> {
+    fn jobs(&mut self, rig: &RigState, waits: &[String]) -> Vec<(Job, u64)> {
         let mut jobs: Vec<Job> = waits.iter().map(|name| waiting(name)).collect();
         let waited = jobs.len();
-        jobs.extend(self.relighting(studio));
-        jobs.extend(drying(studio));
-        let now_ns = studio.now_ns;
+        jobs.extend(self.relighting(rig));
+        jobs.extend(drying(rig));
+        let now_ns = rig.now_ns;
         self.since_ns
             .retain(|kind, _| jobs.iter().any(|job| job.kind == *kind));
         let begun = jobs.into_iter().enumerate().filter_map(|(place, job)| {
@@ -120,20 +120,20 @@ impl Progress {
         begun.collect()
     }
 
-    fn relighting(&mut self, studio: &Studio) -> Option<Job> {
-        let light = studio.scene.as_ref().map(|scene| &scene.light);
-        if self.starts != studio.starts {
+    fn relighting(&mut self, rig: &RigState) -> Option<Job> {
+        let light = rig.scene.as_ref().map(|scene| &scene.light);
+        if self.starts != rig.starts {
             // Another painting has another light.
-            (self.starts, self.lights) = (studio.starts, [None, None]);
+            (self.starts, self.lights) = (rig.starts, [None, None]);
         }
-        let status = &studio.paint.as_ref()?.status;
+        let status = &rig.paint.as_ref()?.status;
         let [now, before] = &mut self.lights;
         if light != now.as_ref() {
             // Of a lamp that is dragged, what counts is where it stood.
-            if studio.now_ns >= self.stood_ns.saturating_add(STOOD_NS) {
+            if rig.now_ns >= self.stood_ns.saturating_add(STOOD_NS) {
                 before.clone_from(now);
             }
-            (*now, self.stood_ns) = (light.cloned(), studio.now_ns);
+            (*now, self.stood_ns) = (light.cloned(), rig.now_ns);
         }
         let share = f64::from(status.baked) / f64::from(status.baking.max(1));
         let back = |light: &Light| {
@@ -165,8 +165,8 @@ fn lines(status: &PaintStatus) -> impl Iterator<Item = String> {
     unsaved.into_iter().chain(late)
 }
 
-fn drying(studio: &Studio) -> Option<Job> {
-    let drying = studio.paint.as_ref()?.status.drying.as_ref()?;
+fn drying(rig: &RigState) -> Option<Job> {
+    let drying = rig.paint.as_ref()?.status.drying.as_ref()?;
     let stop = Command::StopDrying { surface: CANVAS };
     Some(Job {
         kind: Kind::Drying,
@@ -245,50 +245,51 @@ mod tests {
     use egui_kittest::kittest::Queryable as _;
 
     use super::*;
-    use crate::rig::requests::{Order as Asked, Orders};
+    use crate::rig::requests::{Request as Asked, Requests};
     use crate::rig::state::PaintNode;
-    use crate::settings::preferences::Habits;
-    use crate::test_support::panel_bench::{status, studio};
-    use crate::widgets::notifications::Toasts;
+    use crate::settings::preferences::Preferences;
+    use crate::test_support::panel_bench::{rig, status};
+    use crate::widgets::notifications::Notifications;
 
     struct Desk {
         progress: Progress,
-        studio: Studio,
-        orders: Orders,
+        rig: RigState,
+        requests: Requests,
         waits: Vec<String>,
         given_up: bool,
     }
 
     impl Desk {
         fn baked(&mut self, seconds: f64, baked: u32) {
-            self.studio.now_ns = (1e9 * seconds) as u64;
+            self.rig.now_ns = (1e9 * seconds) as u64;
             let status = maulstick_types::paint::PaintStatus {
                 baking: 100,
                 baked,
                 ..status()
             };
-            self.studio.paint = Some(PaintNode {
+            self.rig.paint = Some(PaintNode {
                 status,
-                heard_ns: self.studio.now_ns,
+                heard_ns: self.rig.now_ns,
             });
         }
     }
 
     fn harness() -> Harness<'static, Desk> {
         let show = |ui: &mut egui::Ui, desk: &mut Desk| {
-            let (mut habits, mut toasts) = (Habits::default(), Toasts::default());
-            let mut work = Work {
-                studio: &mut desk.studio,
-                orders: &mut desk.orders,
-                habits: &mut habits,
-                toasts: &mut toasts,
+            let (mut preferences, mut notifications) =
+                (Preferences::default(), Notifications::default());
+            let mut work = PanelContext {
+                rig: &mut desk.rig,
+                requests: &mut desk.requests,
+                preferences: &mut preferences,
+                notifications: &mut notifications,
             };
             desk.given_up |= desk.progress.show(ui.ctx(), &mut work, &desk.waits);
         };
         let desk = Desk {
             progress: Progress::default(),
-            studio: studio(),
-            orders: Orders::default(),
+            rig: rig(),
+            requests: Requests::default(),
             waits: Vec::new(),
             given_up: false,
         };
@@ -302,10 +303,10 @@ mod tests {
     fn relighting_is_told_after_half_a_second_with_the_time_left_and_can_be_ended() {
         let mut harness = harness();
         harness.step();
-        let scene = harness.state().studio.scene.clone().expect("a scene");
+        let scene = harness.state().rig.scene.clone().expect("a scene");
         let mut other = scene.clone();
         other.light.intensity = 2.0;
-        harness.state_mut().studio.lay(other);
+        harness.state_mut().rig.lay(other);
         harness.state_mut().baked(10.0, 0);
         harness.step();
         let words = "Relighting dry layers";
@@ -316,7 +317,7 @@ mod tests {
         harness.get_by_label("about 30 s left");
         harness.get_by_label("Cancel").click();
         harness.run_steps(2);
-        let asked = harness.state_mut().orders.take();
+        let asked = harness.state_mut().requests.take();
         let back = Asked::Command {
             node: "paint".into(),
             command: Command::Relight {
@@ -353,7 +354,7 @@ mod tests {
         harness.state_mut().baked(1.0, 100);
         let words = "Painting falls behind: until the brush lifts, its steps are 4 times as long";
         for longer in [1, 4, 1] {
-            let paint = harness.state_mut().studio.paint.as_mut();
+            let paint = harness.state_mut().rig.paint.as_mut();
             paint.expect("paint").status.longer = longer;
             harness.run_steps(2);
             assert_eq!(harness.query_by_label(words).is_some(), longer > 1);
@@ -365,13 +366,13 @@ mod tests {
         let mut harness = harness();
         harness.state_mut().baked(1.0, 100);
         let fault = |desk: &mut Desk, what: &str| {
-            let paint = desk.studio.paint.as_mut().expect("paint");
+            let paint = desk.rig.paint.as_mut().expect("paint");
             what.clone_into(&mut paint.status.fault);
         };
         let words = "A fault of the painting's file: no room: free some space";
         fault(harness.state_mut(), "no room: free some space");
         for _ in 0..3 {
-            harness.state_mut().studio.now_ns += 100_000_000_000;
+            harness.state_mut().rig.now_ns += 100_000_000_000;
             harness.run_steps(2);
             harness.get_by_label(words);
         }

@@ -10,21 +10,21 @@ use eframe::egui::{
 use maulstick_rig::Fault;
 use maulstick_types::command::Command;
 
-use crate::widgets::context::Work;
-use crate::widgets::pending::Held;
+use crate::widgets::context::PanelContext;
+use crate::widgets::pending::Pending;
 
 /// Width of the words at the left, points.
 const WORDS: f32 = 84.0;
 
 /// Asks the paint node for what it can be asked; anything else is told.
-pub(crate) fn ask(work: &mut Work<'_>, command: Command) -> bool {
+pub(crate) fn ask(work: &mut PanelContext<'_>, command: Command) -> bool {
     match command.check() {
         Ok(()) => {
-            work.orders.paint(command);
+            work.requests.paint(command);
             true
         }
         Err(line) => {
-            work.toasts.of(&Fault::told(line));
+            work.notifications.of(&Fault::told(line));
             false
         }
     }
@@ -127,7 +127,7 @@ pub(crate) struct Change {
 /// The sliders of a panel, by name, with what is in the hand.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Sliders {
-    held: BTreeMap<String, Held<f64>>,
+    held: BTreeMap<String, Pending<f64>>,
 }
 
 impl Sliders {

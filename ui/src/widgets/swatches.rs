@@ -11,8 +11,8 @@ use maulstick_paint::light::{changes_colour, studio_settings};
 use maulstick_types::Mixture;
 use maulstick_types::scene::Light;
 
-use crate::render::display_transform::Tint;
-use crate::rig::state::Studio;
+use crate::render::display_transform::DisplayTransform;
+use crate::rig::state::RigState;
 
 /// Parts of white to one part of paint in a tint.
 const TINT: f64 = 10.0;
@@ -34,7 +34,7 @@ pub(crate) struct Swatches {
 struct Made {
     library: Arc<PaintLibrary>,
     light: Light,
-    tint: Arc<Tint>,
+    tint: Arc<DisplayTransform>,
     viewing: Viewing,
     white: Option<Blend>,
     paints: BTreeMap<String, [Color32; 2]>,
@@ -43,8 +43,8 @@ struct Made {
 
 impl Swatches {
     /// Masstone and tint of a paint.
-    pub(crate) fn paint(&mut self, studio: &Studio, paint: &Paint) -> [Color32; 2] {
-        let made = self.made_for(studio);
+    pub(crate) fn paint(&mut self, rig: &RigState, paint: &Paint) -> [Color32; 2] {
+        let made = self.made_for(rig);
         if let Some(colours) = made.paints.get(&paint.name) {
             return *colours;
         }
@@ -59,8 +59,8 @@ impl Swatches {
     }
 
     /// A mixture as it looks when it lies thick; none of paints that the rig does not have.
-    pub(crate) fn mixture(&mut self, studio: &Studio, mixture: &Mixture) -> Option<Color32> {
-        let made = self.made_for(studio);
+    pub(crate) fn mixture(&mut self, rig: &RigState, mixture: &Mixture) -> Option<Color32> {
+        let made = self.made_for(rig);
         let text = mixture.to_string();
         if let Some(colour) = made.mixtures.get(&text) {
             return Some(*colour);
@@ -73,34 +73,34 @@ impl Swatches {
         Some(colour)
     }
 
-    fn made_for(&mut self, studio: &Studio) -> &mut Made {
-        let light = studio.scene.as_ref().map(|scene| &scene.light);
+    fn made_for(&mut self, rig: &RigState) -> &mut Made {
+        let light = rig.scene.as_ref().map(|scene| &scene.light);
         let light = light.cloned().unwrap_or_default();
         let holds = |made: &Made| {
-            Arc::ptr_eq(&made.library, &studio.library)
-                && Arc::ptr_eq(&made.tint, &studio.tint)
+            Arc::ptr_eq(&made.library, &rig.library)
+                && Arc::ptr_eq(&made.tint, &rig.tint)
                 && !changes_colour(&made.light, &light)
         };
         if !self.made.as_ref().is_some_and(holds) {
             self.made = None;
         }
-        self.made.get_or_insert_with(|| Made::new(studio, light))
+        self.made.get_or_insert_with(|| Made::new(rig, light))
     }
 }
 
 impl Made {
-    fn new(studio: &Studio, light: Light) -> Self {
+    fn new(rig: &RigState, light: Light) -> Self {
         // A light that is none was refused where it was made.
         let settings = studio_settings(&light).unwrap_or_default();
         let settings = StudioSettings {
             rule: RuleKind::Reference,
             ..settings
         };
-        let viewing = Viewing::new(&settings, studio.library.paints());
+        let viewing = Viewing::new(&settings, rig.library.paints());
         Self {
-            white: whitest(&studio.library, &viewing),
-            library: Arc::clone(&studio.library),
-            tint: Arc::clone(&studio.tint),
+            white: whitest(&rig.library, &viewing),
+            library: Arc::clone(&rig.library),
+            tint: Arc::clone(&rig.tint),
             light,
             viewing,
             paints: BTreeMap::new(),
@@ -212,18 +212,18 @@ pub(crate) fn draw(ui: &Ui, area: Rect, colours: [Color32; 2]) {
 mod tests {
     use super::*;
 
-    fn studio() -> Studio {
+    fn rig() -> RigState {
         let library = Arc::new(PaintLibrary::measured().expect("whole"));
-        Studio::new("test", &["main".to_owned()], library)
+        RigState::new("test", &["main".to_owned()], library)
     }
 
     #[test]
     fn a_paint_looks_as_it_was_measured_and_lighter_with_white() {
-        let studio = studio();
+        let rig = rig();
         let mut swatches = Swatches::default();
         let mut look = |name: &str| {
-            let paint = studio.library.find(name).expect("known");
-            swatches.paint(&studio, paint)
+            let paint = rig.library.find(name).expect("known");
+            swatches.paint(&rig, paint)
         };
         let [blue, tint] = look("Ultramarine Blue");
         assert!(
@@ -239,24 +239,24 @@ mod tests {
 
     #[test]
     fn another_light_gives_other_swatches() {
-        let mut studio = studio();
+        let mut rig = rig();
         let mut swatches = Swatches::default();
         let mixture = Mixture::pure("Cobalt Blue");
-        let day = swatches.mixture(&studio, &mixture).expect("known");
+        let day = swatches.mixture(&rig, &mixture).expect("known");
         let mut scene = maulstick_paint::PaintingSetup::default().scene();
-        studio.lay(scene.clone());
-        assert_eq!(swatches.mixture(&studio, &mixture), Some(day));
+        rig.lay(scene.clone());
+        assert_eq!(swatches.mixture(&rig, &mixture), Some(day));
         scene.light.illuminant = "A".to_owned();
-        studio.lay(scene);
-        let lamp = swatches.mixture(&studio, &mixture).expect("known");
+        rig.lay(scene);
+        let lamp = swatches.mixture(&rig, &mixture).expect("known");
         assert_ne!(lamp, day, "a fault would pass");
-        assert_eq!(swatches.mixture(&studio, &Mixture::pure("x")), None);
+        assert_eq!(swatches.mixture(&rig, &Mixture::pure("x")), None);
     }
 
     #[test]
     fn a_paint_is_found_by_name_and_index_and_told_in_words() {
-        let studio = studio();
-        let find = |name: &str| studio.library.find(name).expect("known");
+        let rig = rig();
+        let find = |name: &str| rig.library.find(name).expect("known");
         let white = find("Titanium White");
         for typed in ["titan", "pw6", "PW 6", "um wh", ""] {
             assert!(matches(white, typed), "{typed}");

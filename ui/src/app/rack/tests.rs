@@ -8,7 +8,7 @@ use egui_kittest::kittest::Queryable as _;
 use maulstick_types::command::Command;
 
 use super::*;
-use crate::rig::requests::Order as Asked;
+use crate::rig::requests::Request as Asked;
 use crate::test_support::context_bench::{Bench, differ, pictures, window};
 
 fn rack<'a>(bench: Bench) -> Harness<'a, Bench> {
@@ -22,19 +22,19 @@ fn rack<'a>(bench: Bench) -> Harness<'a, Bench> {
 #[test]
 fn a_click_takes_a_brush_into_the_hand_at_its_width() {
     let mut bench = Bench::new();
-    bench.habits.widths_mm.insert("flat".into(), 30.0);
+    bench.preferences.widths_mm.insert("flat".into(), 30.0);
     let mut harness = rack(bench);
     harness.get_by_label("Flat, 30 mm").click();
     harness.run();
-    let orders = harness.state_mut().orders.take();
+    let requests = harness.state_mut().requests.take();
     let [
         Asked::Command {
             node,
             command: Command::Define { brush, toml },
         },
-    ] = &orders[..]
+    ] = &requests[..]
     else {
-        panic!("{orders:?}")
+        panic!("{requests:?}")
     };
     assert_eq!((node.as_str(), brush.as_str()), ("main", "main"));
     let file = BrushFile::parse(toml).expect("a brush");
@@ -46,14 +46,14 @@ fn the_keyboard_reaches_it_and_the_other_brush_of_the_rig() {
     let mut harness = rack(Bench::new());
     harness.get_by_label("other").click();
     harness.run();
-    assert_eq!(harness.state().studio.in_hand, 1);
+    assert_eq!(harness.state().rig.in_hand, 1);
     harness.get_by_label("Liner, 2.5 mm").focus();
     harness.run();
     harness.key_press(Key::Enter);
     harness.run();
-    let orders = harness.state_mut().orders.take();
-    let [Asked::Command { node, .. }] = &orders[..] else {
-        panic!("{orders:?}")
+    let requests = harness.state_mut().requests.take();
+    let [Asked::Command { node, .. }] = &requests[..] else {
+        panic!("{requests:?}")
     };
     assert_eq!(node, "other");
 }
@@ -62,7 +62,7 @@ fn the_keyboard_reaches_it_and_the_other_brush_of_the_rig() {
 fn it_covers_a_strip_at_the_side_of_the_hand() {
     for left_handed in [false, true] {
         let mut bench = Bench::new();
-        bench.habits.left_handed = left_handed;
+        bench.preferences.left_handed = left_handed;
         let covered = Cell::new(Rect::NOTHING);
         let mut harness = window(vec2(400.0, 300.0), bench, |ui, work| {
             covered.set(show(ui.ctx(), work));
@@ -87,7 +87,7 @@ fn files_of_ones_own_join_it_and_a_lost_one_is_told() {
     let text = text.replace("kind = \"fan\"", "kind = \"rake\"");
     std::fs::write(&path, text).expect("written");
     let mut bench = Bench::new();
-    bench.habits.own_brushes = vec![folder.path().join("lost.toml"), path];
+    bench.preferences.own_brushes = vec![folder.path().join("lost.toml"), path];
     let mut harness = rack(bench);
     harness.get_by_label("Rake, 40 mm").click_accesskit();
     harness.run();
@@ -107,6 +107,6 @@ fn it_looks_as_it_should() {
     let mut harness = rack(Bench::new());
     harness.snapshot_options("rack", &pictures());
     let mut other = Bench::new();
-    other.studio.in_hand = 1;
+    other.rig.in_hand = 1;
     assert!(differ(&mut harness, &mut rack(other)), "a fault would pass");
 }

@@ -102,28 +102,31 @@ fn a_brush_that_refuses_keeps_what_it_has_and_one_that_does_takes_up_its_paint()
     let mut bench = Bench::new();
     bench.work().step_width(true);
     bench.work().then(load());
-    let first = bench.orders.take().remove(0);
+    let first = bench.requests.take().remove(0);
     bench.work().step_width(true);
-    let second = bench.orders.take().remove(0);
-    let answer = |order: &Order, result| Told {
-        order: order.clone(),
+    let second = bench.requests.take().remove(0);
+    let answer = |request: &Request, result| Outcome {
+        request: request.clone(),
         result,
     };
     bench.work().brush_answered(&answer(&first, refused()));
     assert_eq!(width(&mut bench), 13.0, "the newer one was not answered");
     bench.work().brush_answered(&answer(&second, refused()));
     assert_eq!(width(&mut bench), 10.0, "as before");
-    assert!(bench.orders.take().is_empty(), "what waited for it is off");
+    assert!(
+        bench.requests.take().is_empty(),
+        "what waited for it is off"
+    );
     bench.work().step_width(true);
     bench.work().then(load());
-    let order = bench.orders.take().remove(0);
-    let done = answer(&order, Ok(String::new()));
+    let request = bench.requests.take().remove(0);
+    let done = answer(&request, Ok(String::new()));
     bench.work().brush_answered(&done);
-    let then = Order::Command {
+    let then = Request::Command {
         node: PAINT.to_owned(),
         command: load(),
     };
-    assert_eq!(bench.orders.take(), [then]);
+    assert_eq!(bench.requests.take(), [then]);
 }
 
 #[test]

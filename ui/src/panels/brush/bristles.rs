@@ -4,7 +4,7 @@ use eframe::egui::{Slider, SliderClamping, Ui};
 use maulstick_brush::BrushFile;
 
 use crate::input::brush_choice::{is_of_library, of_library};
-use crate::widgets::context::Work;
+use crate::widgets::context::PanelContext;
 use crate::widgets::labelled;
 
 /// A number of a brush file.
@@ -65,7 +65,7 @@ const NUMBERS: [Number; 6] = [
 /// Shows the numbers of a brush, changed ones go to `changed`; whether one is being dragged.
 pub(super) fn show(
     ui: &mut Ui,
-    work: &mut Work<'_>,
+    work: &mut PanelContext<'_>,
     file: &BrushFile,
     changed: &mut Option<BrushFile>,
 ) -> bool {
@@ -94,7 +94,7 @@ pub(super) fn show(
             Ok(()) => *changed = Some(wanted),
             Err(error) => {
                 let help = "choose a number within these bounds";
-                work.toasts.fault(error.to_string(), help);
+                work.notifications.fault(error.to_string(), help);
             }
         }
     }

@@ -6,7 +6,7 @@ use eframe::egui::{Button, Key, TextEdit, Ui};
 
 use super::entry;
 use crate::render::brush::icon_cache;
-use crate::widgets::context::Work;
+use crate::widgets::context::PanelContext;
 use crate::widgets::labelled;
 
 /// The rows.
@@ -16,7 +16,7 @@ pub(super) struct OwnBrushes {
 }
 
 impl OwnBrushes {
-    pub(super) fn show(&mut self, ui: &mut Ui, work: &mut Work<'_>) {
+    pub(super) fn show(&mut self, ui: &mut Ui, work: &mut PanelContext<'_>) {
         ui.label("A brush file (.toml, .glb) joins the rack.");
         let edit = TextEdit::singleline(&mut self.path)
             .hint_text("/home/me/brushes/rake.toml")
@@ -32,7 +32,7 @@ impl OwnBrushes {
             self.path.clear();
         }
         let mut gone = None;
-        for (place, path) in work.habits.own_brushes.iter().enumerate() {
+        for (place, path) in work.preferences.own_brushes.iter().enumerate() {
             let name = path.file_name().unwrap_or_default().to_string_lossy();
             let left = |ui: &mut Ui| {
                 ui.add(eframe::egui::Label::new(&*name).truncate())
@@ -48,23 +48,23 @@ impl OwnBrushes {
             entry(ui, left, right);
         }
         if let Some(place) = gone {
-            work.habits.own_brushes.remove(place);
+            work.preferences.own_brushes.remove(place);
         }
     }
 }
 
 /// Puts a brush file into the rack and the brush into the hand; false where it is none, which is told.
-fn add_file(ui: &Ui, work: &mut Work<'_>, path: PathBuf) -> bool {
+fn add_file(ui: &Ui, work: &mut PanelContext<'_>, path: PathBuf) -> bool {
     icon_cache::forget(ui.ctx(), &path);
     match icon_cache::own(ui.ctx(), &path) {
         Ok(file) => {
-            work.habits.own_brushes.retain(|known| *known != path);
-            work.habits.own_brushes.push(path);
+            work.preferences.own_brushes.retain(|known| *known != path);
+            work.preferences.own_brushes.push(path);
             work.take_up((*file).clone());
             true
         }
         Err(fault) => {
-            work.toasts.of(&fault);
+            work.notifications.of(&fault);
             false
         }
     }

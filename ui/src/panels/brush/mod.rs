@@ -24,8 +24,8 @@ use maulstick_types::scene::{BrushHandling, Tuning};
 use crate::input::brush_choice::{called, library, resized, widths_mm};
 use crate::panels::Panel;
 use crate::render::brush::icon_cache;
-use crate::widgets::context::Work;
-use crate::widgets::labelled::{self, Asked};
+use crate::widgets::context::PanelContext;
+use crate::widgets::labelled::{self, PendingValue};
 
 /// The portrait of the brush in the hand, points.
 const PORTRAIT: [f32; 2] = [44.0, 64.0];
@@ -37,8 +37,8 @@ pub(crate) struct BrushPanel {
     dragged: Option<BrushFile>,
     /// For which brush the widths hold that it can have, mm.
     widths: Option<(BrushFile, RangeInclusive<f64>)>,
-    tuning: Asked<Tuning>,
-    handling: Asked<BrushHandling>,
+    tuning: PendingValue<Tuning>,
+    handling: PendingValue<BrushHandling>,
     paint: paint::PaintRows,
     own: custom_brushes::OwnBrushes,
     presets: presets::PresetRows,
@@ -49,11 +49,11 @@ impl Panel for BrushPanel {
         "Brush"
     }
 
-    fn show(&mut self, ui: &mut Ui, work: &mut Work<'_>) {
+    fn show(&mut self, ui: &mut Ui, work: &mut PanelContext<'_>) {
         let Some(file) = self.dragged.clone().or_else(|| work.in_hand().cloned()) else {
             ui.label(format!(
                 "The brush '{}' has not said yet what it is.",
-                work.studio.brush_name()
+                work.rig.brush_name()
             ));
             return;
         };
@@ -78,11 +78,11 @@ impl Panel for BrushPanel {
 }
 
 /// The brush as it looks, and what else there is.
-fn shape(ui: &mut Ui, work: &mut Work<'_>, file: &BrushFile) {
+fn shape(ui: &mut Ui, work: &mut PanelContext<'_>, file: &BrushFile) {
     ui.horizontal(|ui| {
         let (area, _) = ui.allocate_exact_size(PORTRAIT.into(), Sense::hover());
         let key = file.to_toml().unwrap_or_default();
-        icon_cache::draw(ui, area, &work.studio.tint, &key, file);
+        icon_cache::draw(ui, area, &work.rig.tint, &key, file);
         ui.vertical(|ui| {
             let name = ui.label("Shape");
             let mut chosen = None;
@@ -108,10 +108,10 @@ fn shape(ui: &mut Ui, work: &mut Work<'_>, file: &BrushFile) {
 }
 
 /// A brush of the list; whether it was chosen.
-fn choice(ui: &mut Ui, work: &Work<'_>, file: &BrushFile, is_in_hand: bool) -> bool {
+fn choice(ui: &mut Ui, work: &PanelContext<'_>, file: &BrushFile, is_in_hand: bool) -> bool {
     ui.horizontal(|ui| {
         let (area, picture) = ui.allocate_exact_size(vec2(24.0, 34.0), Sense::click());
-        icon_cache::draw(ui, area, &work.studio.tint, &file.kind, file);
+        icon_cache::draw(ui, area, &work.rig.tint, &file.kind, file);
         let size = vec2(110.0, area.height());
         let button = Button::selectable(is_in_hand, called(&file.kind)).min_size(size);
         let shown = ui.add(button).on_hover_text(&file.about);
@@ -133,7 +133,7 @@ impl BrushPanel {
     }
 
     /// Whether the width is being dragged.
-    fn width(&mut self, ui: &mut Ui, work: &mut Work<'_>, file: &BrushFile) -> bool {
+    fn width(&mut self, ui: &mut Ui, work: &mut PanelContext<'_>, file: &BrushFile) -> bool {
         let mut width_mm = file.head.width_mm;
         let hover =
             "Width of the head. A wider brush is longer and stiffer in proportion.  [ and ]";
@@ -144,15 +144,15 @@ impl BrushPanel {
                 Ok(scaled) => self.dragged = Some(scaled),
                 Err(error) => {
                     let help = "choose another width";
-                    work.toasts.fault(error.to_string(), help);
+                    work.notifications.fault(error.to_string(), help);
                 }
             }
         }
         shown.dragged()
     }
 
-    fn tuning(&mut self, ui: &mut Ui, work: &mut Work<'_>) {
-        let tuning = self.tuning.shown(ui, work.studio.tuning());
+    fn tuning(&mut self, ui: &mut Ui, work: &mut PanelContext<'_>) {
+        let tuning = self.tuning.shown(ui, work.rig.tuning());
         let mut wanted = tuning.clone();
         let mut factor = wanted.stiffness;
         labelled::named(
@@ -172,7 +172,7 @@ impl BrushPanel {
         }
         if wanted != tuning {
             self.tuning.ask(ui, wanted.clone());
-            work.orders.paint(Command::Tune { tuning: wanted });
+            work.requests.paint(Command::Tune { tuning: wanted });
         }
     }
 }

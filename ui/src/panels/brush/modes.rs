@@ -4,8 +4,8 @@ use eframe::egui::{ComboBox, Ui};
 use maulstick_types::command::Command;
 use maulstick_types::scene::{BrushHandling, BrushMode, FLOWS};
 
-use crate::widgets::context::Work;
-use crate::widgets::labelled::{self, Asked};
+use crate::widgets::context::PanelContext;
+use crate::widgets::labelled::{self, PendingValue};
 
 /// Most paint that a painter is offered as a bound, µm.
 const MOST_UM: std::ops::RangeInclusive<f64> = 1.0..=2000.0;
@@ -52,8 +52,12 @@ const WAYS: [(BrushMode, &str, &str); 7] = [
 ];
 
 /// Shows how the brush in the hand is used, and asks for what is changed.
-pub(super) fn show(ui: &mut Ui, work: &mut Work<'_>, asked: &mut Asked<BrushHandling>) {
-    let handling = asked.shown(ui, work.studio.handling());
+pub(super) fn show(
+    ui: &mut Ui,
+    work: &mut PanelContext<'_>,
+    asked: &mut PendingValue<BrushHandling>,
+) {
+    let handling = asked.shown(ui, work.rig.handling());
     let mut wanted = handling.clone();
     ui.horizontal(|ui| {
         let hover = "What the brush does with the paint that it touches.";
@@ -94,7 +98,7 @@ pub(super) fn show(ui: &mut Ui, work: &mut Work<'_>, asked: &mut Asked<BrushHand
     }
     if wanted != handling {
         asked.ask(ui, wanted.clone());
-        work.orders.paint(Command::Handle { handling: wanted });
+        work.requests.paint(Command::Handle { handling: wanted });
     }
 }
 

@@ -14,11 +14,11 @@ use maulstick_paint::tooth::Tooth;
 use maulstick_types::command::Command;
 use maulstick_types::scene::{CANVAS, PALETTE, Surface};
 
-use crate::input::keys::Act;
+use crate::input::keys::Action;
 use crate::panels::Panel;
 use crate::spectrum_file;
-use crate::widgets::context::Work;
-use crate::widgets::pending::Held;
+use crate::widgets::context::PanelContext;
+use crate::widgets::pending::Pending;
 use crate::widgets::rows::{Number, Sliders, ask, below, choice, note, row, wrong};
 
 mod film;
@@ -64,7 +64,7 @@ const ZOOM: Number<'_> = Number {
 #[derive(Debug, Default)]
 pub(crate) struct CanvasPanel {
     sliders: Sliders,
-    posture: Held<Posture>,
+    posture: Pending<Posture>,
     film: FilmForm,
     /// Path of a measured ground, and what is wrong with it.
     file: String,
@@ -76,8 +76,8 @@ impl Panel for CanvasPanel {
         "Canvas"
     }
 
-    fn show(&mut self, ui: &mut Ui, work: &mut Work<'_>) {
-        let Some(canvas) = work.studio.canvas().cloned() else {
+    fn show(&mut self, ui: &mut Ui, work: &mut PanelContext<'_>) {
+        let Some(canvas) = work.rig.canvas().cloned() else {
             return;
         };
         size(ui, work, &canvas);
@@ -94,13 +94,13 @@ impl Panel for CanvasPanel {
         ui.separator();
         self.place(ui, work, &canvas);
         ui.separator();
-        habits(ui, work);
+        preferences(ui, work);
         CollapsingHeader::new("Lay a film").show(ui, |ui| self.film.show(ui, work));
     }
 }
 
 /// How large it is; another size is another painting.
-fn size(ui: &mut Ui, work: &mut Work<'_>, canvas: &Surface) {
+fn size(ui: &mut Ui, work: &mut PanelContext<'_>, canvas: &Surface) {
     let [width, height] = canvas
         .cells
         .map(|cells| f64::from(cells) * canvas.cell_m * 100.0);
@@ -114,7 +114,7 @@ fn size(ui: &mut Ui, work: &mut Work<'_>, canvas: &Surface) {
             .button("New…")
             .on_hover_text("A canvas of another size is a new painting");
         if new.clicked() {
-            work.orders.act(Act::New);
+            work.requests.act(Action::New);
         }
     });
 }
@@ -131,10 +131,10 @@ fn shown<'a>(name: &'a str, measured: &'a str) -> &'a str {
 }
 
 /// What is the painter's, whatever is painted.
-fn habits(ui: &mut Ui, work: &mut Work<'_>) {
-    ui.checkbox(&mut work.habits.left_handed, "Left-handed")
+fn preferences(ui: &mut Ui, work: &mut PanelContext<'_>) {
+    ui.checkbox(&mut work.preferences.left_handed, "Left-handed")
         .on_hover_text("The palette lies at the right, brushes and panels at the left");
-    let Some(mut last) = work.studio.palette().map(|palette| palette.piles_last) else {
+    let Some(mut last) = work.rig.palette().map(|palette| palette.piles_last) else {
         return;
     };
     let lasts = ui
@@ -150,7 +150,7 @@ fn habits(ui: &mut Ui, work: &mut Work<'_>) {
 }
 
 impl CanvasPanel {
-    fn tooth(&mut self, ui: &mut Ui, work: &mut Work<'_>, canvas: &Surface) {
+    fn tooth(&mut self, ui: &mut Ui, work: &mut PanelContext<'_>, canvas: &Surface) {
         let (name, seed) = (&canvas.tooth, canvas.tooth_seed);
         let command = |tooth: String, seed: u64| Command::Tooth {
             surface: CANVAS,
@@ -177,7 +177,7 @@ impl CanvasPanel {
         }
     }
 
-    fn ground(&mut self, ui: &mut Ui, work: &mut Work<'_>, canvas: &Surface) {
+    fn ground(&mut self, ui: &mut Ui, work: &mut PanelContext<'_>, canvas: &Surface) {
         let names = GROUNDS.map(|(name, _)| name);
         let chosen = choice(ui, "Ground", shown(&canvas.ground, "a measured one"), names);
         if let Some(ground) = chosen {
@@ -213,7 +213,7 @@ impl CanvasPanel {
     }
 
     /// How it lies.
-    fn place(&mut self, ui: &mut Ui, work: &mut Work<'_>, canvas: &Surface) {
+    fn place(&mut self, ui: &mut Ui, work: &mut PanelContext<'_>, canvas: &Surface) {
         let now_s = ui.input(|input| input.time);
         let before = self.posture.shown(now_s, &Posture::of(canvas));
         let mut posture = before.clone();
@@ -228,13 +228,13 @@ impl CanvasPanel {
         below(ui, |ui| {
             let fit = ui.button("Fit").on_hover_text("See the whole canvas: 0");
             if fit.clicked() {
-                work.orders.act(Act::Fit);
+                work.requests.act(Action::Fit);
             }
             let cells = ui
                 .button("Cells as pixels")
                 .on_hover_text("A cell of the canvas a pixel of the display: 1");
             if cells.clicked() {
-                work.orders.act(Act::Hundred);
+                work.requests.act(Action::Hundred);
             }
         });
         if posture != before {

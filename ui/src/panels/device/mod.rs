@@ -21,7 +21,7 @@ use maulstick_types::stylus::{StylusInfo, StylusStatus, axes};
 use crate::panels::Panel;
 use crate::rig::force_history::{self, KEPT_S, size};
 use crate::rig::state::Device;
-use crate::widgets::context::Work;
+use crate::widgets::context::PanelContext;
 
 /// Of the button that switches force off, and of a trouble.
 const RED: Color32 = Color32::from_rgb(178, 34, 34);
@@ -44,13 +44,13 @@ impl Panel for DevicePanel {
         "Device"
     }
 
-    fn show(&mut self, ui: &mut Ui, work: &mut Work<'_>) {
-        let painting = force_history::painting(work.studio).map(|(name, _)| name.to_owned());
+    fn show(&mut self, ui: &mut Ui, work: &mut PanelContext<'_>) {
+        let painting = force_history::active_device(work.rig).map(|(name, _)| name.to_owned());
         match &painting {
             Some(name) => ui.label(RichText::new(format!("{} paints", worded(name))).strong()),
             None => ui.label("No stylus is near the desk."),
         };
-        let mut devices: Vec<(&String, &Device)> = work.studio.devices.iter().collect();
+        let mut devices: Vec<(&String, &Device)> = work.rig.devices.iter().collect();
         let priority = |device: &Device| device.info.as_ref().map_or(i32::MIN, |it| it.priority);
         devices.sort_by_key(|(name, device)| (-i64::from(priority(device)), (*name).clone()));
         let devices: Vec<(String, Device)> = devices
@@ -67,7 +67,7 @@ impl Panel for DevicePanel {
 }
 
 impl DevicePanel {
-    fn device(&mut self, ui: &mut Ui, name: &str, device: &Device, work: &mut Work<'_>) {
+    fn device(&mut self, ui: &mut Ui, name: &str, device: &Device, work: &mut PanelContext<'_>) {
         ui.label(RichText::new(worded(name)).strong());
         if let Some(info) = &device.info {
             ui.label(what(info));
@@ -97,20 +97,20 @@ impl DevicePanel {
         ui: &mut Ui,
         name: &str,
         (device, info, status): (&Device, &StylusInfo, &StylusStatus),
-        work: &mut Work<'_>,
+        work: &mut PanelContext<'_>,
     ) {
         if status.is_on {
             let words = RichText::new("Force off").strong().color(Color32::WHITE);
             let button = Button::new(words).fill(RED).min_size(vec2(0.0, 32.0));
             let hint = "The device gives no force any more, at once (F9, for all devices)";
             if wide(ui, button).on_hover_text(hint).clicked() {
-                work.orders.force(name, ForceOrder::Off);
+                work.requests.force(name, ForceOrder::Off);
             }
         } else {
             let button = Button::new("Force on").min_size(vec2(0.0, 32.0));
             let hint = "The device gives force again, from nothing on";
             if wide(ui, button).on_hover_text(hint).clicked() {
-                work.orders.force(name, ForceOrder::On);
+                work.requests.force(name, ForceOrder::On);
             }
         }
         self.strength(ui, name, status, work);
@@ -118,26 +118,32 @@ impl DevicePanel {
             ui.colored_label(ui.visuals().error_fg_color, status.faults.join("; "));
             let hint = "Lift the brush first: force comes back from nothing on";
             if ui.button("Re-arm").on_hover_text(hint).clicked() {
-                work.orders.force(name, ForceOrder::Rearm);
+                work.requests.force(name, ForceOrder::Rearm);
             }
         }
-        let now_ns = work.studio.now_ns;
+        let now_ns = work.rig.now_ns;
         let most_n = match status.cap_n > 0.0 {
             true => status.cap_n,
             false => info.max_force_n,
         };
-        let force_n = device.felt.force_n(now_ns);
+        let force_n = device.forces.force_n(now_ns);
         ui.horizontal(|ui| {
             dial(ui, force_n.unwrap_or_default(), most_n);
             ui.vertical(|ui| numbers(ui, force_n, most_n, status));
         });
         ui.small("Force over the last 5 s, N");
-        graph(ui, name, device.felt.line(now_ns), most_n);
+        graph(ui, name, device.forces.line(now_ns), most_n);
         health::show(ui, status);
     }
 
-    fn strength(&mut self, ui: &mut Ui, name: &str, status: &StylusStatus, work: &mut Work<'_>) {
-        let now_ns = work.studio.now_ns;
+    fn strength(
+        &mut self,
+        ui: &mut Ui,
+        name: &str,
+        status: &StylusStatus,
+        work: &mut PanelContext<'_>,
+    ) {
+        let now_ns = work.rig.now_ns;
         let told = (100.0 * status.strength).round();
         self.asked = self.asked.take().filter(|(_, _, until)| now_ns < *until);
         let asked = self.asked.as_ref().filter(|(device, ..)| device == name);
@@ -150,7 +156,7 @@ impl DevicePanel {
         let response = ui.add(slider).on_hover_text(hint);
         if response.changed() {
             let share = (percent / 100.0).clamp(0.0, 1.0);
-            work.orders.force(name, ForceOrder::Strength { share });
+            work.requests.force(name, ForceOrder::Strength { share });
         }
         if response.changed() || response.dragged() {
             self.asked = Some((name.to_owned(), percent, now_ns.saturating_add(PATIENCE_NS)));
@@ -159,11 +165,11 @@ impl DevicePanel {
 }
 
 /// Switches off the force of every device that gives one.
-pub(crate) fn force_off(work: &mut Work<'_>) {
-    for (name, device) in &work.studio.devices {
+pub(crate) fn force_off(work: &mut PanelContext<'_>) {
+    for (name, device) in &work.rig.devices {
         let info = device.info.as_ref();
         if info.is_some_and(|info| info.drives & axes::FORCE != 0) {
-            work.orders.force(name, ForceOrder::Off);
+            work.requests.force(name, ForceOrder::Off);
         }
     }
 }

@@ -17,7 +17,7 @@ use maulstick_types::scene::NamedVersion;
 
 use crate::panels::Panel;
 use crate::rig::thumbnails::Picture;
-use crate::widgets::context::Work;
+use crate::widgets::context::PanelContext;
 use crate::widgets::rows::{ask, note};
 
 mod tree;
@@ -45,15 +45,15 @@ impl Panel for HistoryPanel {
         "History"
     }
 
-    fn show(&mut self, ui: &mut Ui, work: &mut Work<'_>) {
+    fn show(&mut self, ui: &mut Ui, work: &mut PanelContext<'_>) {
         steps(ui, work);
         self.keep(ui, work);
-        let Some(scene) = &work.studio.scene else {
+        let Some(scene) = &work.rig.scene else {
             return;
         };
         let versions = scene.versions.clone();
         let names = || versions.iter().map(|version| version.name.as_str());
-        work.studio.thumbnails.keep(names());
+        work.rig.thumbnails.keep(names());
         self.textures
             .retain(|name, _| names().any(|known| known == name));
         if versions.is_empty() {
@@ -66,8 +66,8 @@ impl Panel for HistoryPanel {
 }
 
 /// Undo and redo, and how many steps there are.
-fn steps(ui: &mut Ui, work: &mut Work<'_>) {
-    let status = work.studio.paint.as_ref().map(|paint| &paint.status);
+fn steps(ui: &mut Ui, work: &mut PanelContext<'_>) {
+    let status = work.rig.paint.as_ref().map(|paint| &paint.status);
     let (undo, redo) = status.map_or((0, 0), |status| (status.undo, status.redo));
     ui.horizontal(|ui| {
         let step = |ui: &mut Ui, word: &str, count: u32, hover: &str| {
@@ -107,7 +107,7 @@ fn naming(ui: &mut Ui, name: &mut String, label: &str, word: &str) -> (Response,
 
 impl HistoryPanel {
     /// Keeps the painting as it is.
-    fn keep(&mut self, ui: &mut Ui, work: &mut Work<'_>) {
+    fn keep(&mut self, ui: &mut Ui, work: &mut PanelContext<'_>) {
         let (_, done) = naming(ui, &mut self.name, "Name of a version", "Keep");
         if done {
             let name = self.name.trim().to_owned();
@@ -118,7 +118,13 @@ impl HistoryPanel {
     }
 
     /// The row of a version.
-    fn version(&mut self, ui: &mut Ui, work: &mut Work<'_>, depth: usize, version: &NamedVersion) {
+    fn version(
+        &mut self,
+        ui: &mut Ui,
+        work: &mut PanelContext<'_>,
+        depth: usize,
+        version: &NamedVersion,
+    ) {
         let name = &version.name;
         ui.horizontal(|ui| {
             ui.add_space(INWARD * depth.min(MOST_INWARD) as f32);
@@ -141,7 +147,7 @@ impl HistoryPanel {
         self.branch(ui, work, name);
     }
 
-    fn buttons(&mut self, ui: &mut Ui, work: &mut Work<'_>, name: &str) {
+    fn buttons(&mut self, ui: &mut Ui, work: &mut PanelContext<'_>, name: &str) {
         if self.forgetting.as_deref() == Some(name) {
             ui.label("Forget?");
             let yes = small(
@@ -179,7 +185,7 @@ impl HistoryPanel {
     }
 
     /// The name of the version that begins from this one.
-    fn branch(&mut self, ui: &mut Ui, work: &mut Work<'_>, from: &str) {
+    fn branch(&mut self, ui: &mut Ui, work: &mut PanelContext<'_>, from: &str) {
         let Some((parent, name)) = &mut self.branching else {
             return;
         };
@@ -199,13 +205,13 @@ impl HistoryPanel {
     }
 
     /// The small picture of a version, or its place.
-    fn picture(&mut self, ui: &mut Ui, work: &mut Work<'_>, name: &str) {
+    fn picture(&mut self, ui: &mut Ui, work: &mut PanelContext<'_>, name: &str) {
         let size = vec2(PICTURE[0], PICTURE[1]);
         let (place, response) = ui.allocate_exact_size(size, Sense::hover());
         response
             .widget_info(|| WidgetInfo::labeled(Role::Image, true, format!("Picture of {name}")));
-        let now_ns = work.studio.now_ns;
-        let Some(picture) = work.studio.thumbnails.of(name, now_ns) else {
+        let now_ns = work.rig.now_ns;
+        let Some(picture) = work.rig.thumbnails.of(name, now_ns) else {
             let colour = ui.visuals().faint_bg_color;
             ui.painter()
                 .rect_filled(place, CornerRadius::same(2), colour);

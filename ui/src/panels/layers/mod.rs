@@ -14,7 +14,7 @@ use maulstick_types::command::Command;
 use maulstick_types::scene::Layer;
 
 use crate::panels::Panel;
-use crate::widgets::context::Work;
+use crate::widgets::context::PanelContext;
 use crate::widgets::rows::{Number, Sliders, ask, cell, note};
 
 mod drying;
@@ -50,12 +50,12 @@ impl Panel for LayersPanel {
         "Layers"
     }
 
-    fn show(&mut self, ui: &mut Ui, work: &mut Work<'_>) {
-        let Some(scene) = &work.studio.scene else {
+    fn show(&mut self, ui: &mut Ui, work: &mut PanelContext<'_>) {
+        let Some(scene) = &work.rig.scene else {
             return;
         };
         let layers = scene.layers.clone();
-        ui.checkbox(&mut work.studio.show_wet, "Tint what is wet")
+        ui.checkbox(&mut work.rig.show_wet, "Tint what is wet")
             .on_hover_text("Wet paint is shown under a tint, so that it is told from dry paint");
         self.hidden
             .retain(|number, _| layers.iter().any(|layer| layer.number == *number));
@@ -72,7 +72,7 @@ impl Panel for LayersPanel {
 
 impl LayersPanel {
     /// The row of a layer.
-    fn layer(&mut self, ui: &mut Ui, work: &mut Work<'_>, layer: &Layer) {
+    fn layer(&mut self, ui: &mut Ui, work: &mut PanelContext<'_>, layer: &Layer) {
         let number = layer.number;
         ui.push_id(number, |ui| {
             ui.horizontal(|ui| {
@@ -145,7 +145,7 @@ impl LayersPanel {
     }
 
     /// The field of the name that is being given.
-    fn name(&mut self, ui: &mut Ui, work: &mut Work<'_>) {
+    fn name(&mut self, ui: &mut Ui, work: &mut PanelContext<'_>) {
         let Some((layer, name)) = &mut self.naming else {
             return;
         };

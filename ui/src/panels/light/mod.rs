@@ -15,8 +15,8 @@ use maulstick_types::scene::{Light, RULES, SAMPLES};
 
 use crate::panels::Panel;
 use crate::spectrum_file;
-use crate::widgets::context::Work;
-use crate::widgets::pending::Held;
+use crate::widgets::context::PanelContext;
+use crate::widgets::pending::Pending;
 use crate::widgets::rows::{Number, Sliders, ask, below, choice, note, row, wrong};
 
 mod pad;
@@ -78,7 +78,7 @@ const WAVELENGTHS: Number<'_> = Number {
 /// The panel.
 #[derive(Default)]
 pub(crate) struct LightPanel {
-    asked: Held<Light>,
+    asked: Pending<Light>,
     sliders: Sliders,
     sphere: Option<(Light, TextureHandle)>,
     /// Path of a spectrum, and what is wrong with it.
@@ -91,8 +91,8 @@ impl Panel for LightPanel {
         "Light"
     }
 
-    fn show(&mut self, ui: &mut Ui, work: &mut Work<'_>) {
-        let Some(actual) = work.studio.scene.as_ref().map(|scene| scene.light.clone()) else {
+    fn show(&mut self, ui: &mut Ui, work: &mut PanelContext<'_>) {
+        let Some(actual) = work.rig.scene.as_ref().map(|scene| scene.light.clone()) else {
             return;
         };
         let now_s = ui.input(|input| input.time);

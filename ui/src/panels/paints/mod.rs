@@ -13,7 +13,7 @@ mod wells;
 use eframe::egui::{ComboBox, TextEdit, Ui};
 
 use crate::panels::Panel;
-use crate::widgets::context::Work;
+use crate::widgets::context::PanelContext;
 use crate::widgets::labelled;
 use crate::widgets::swatches::Swatches;
 
@@ -22,7 +22,7 @@ const SWATCH: [f32; 2] = [44.0, 18.0];
 
 /// The panel.
 #[derive(Debug, Default)]
-pub(crate) struct TubesPanel {
+pub(crate) struct PaintsPanel {
     swatches: Swatches,
     /// What is searched for.
     search: String,
@@ -36,12 +36,12 @@ pub(crate) struct TubesPanel {
 #[derive(Clone, Debug, PartialEq)]
 struct Carried(String);
 
-impl Panel for TubesPanel {
+impl Panel for PaintsPanel {
     fn title(&self) -> &'static str {
         "Tubes"
     }
 
-    fn show(&mut self, ui: &mut Ui, work: &mut Work<'_>) {
+    fn show(&mut self, ui: &mut Ui, work: &mut PanelContext<'_>) {
         let edit = TextEdit::singleline(&mut self.search)
             .hint_text("Blue, or PB29")
             .desired_width(190.0);
@@ -55,10 +55,10 @@ impl Panel for TubesPanel {
     }
 }
 
-impl TubesPanel {
+impl PaintsPanel {
     /// Which of the painter's sets is shown.
-    fn choose_set(&mut self, ui: &mut Ui, work: &Work<'_>) {
-        let sets = &work.habits.paint_sets;
+    fn choose_set(&mut self, ui: &mut Ui, work: &PanelContext<'_>) {
+        let sets = &work.preferences.paint_sets;
         self.set
             .take_if(|own| sets.iter().all(|set| set.name != *own));
         if sets.is_empty() {

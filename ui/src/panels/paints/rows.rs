@@ -7,10 +7,10 @@ use eframe::egui::{
 use maulstick_optics::THINNER;
 use maulstick_types::Mixture;
 
-use super::{Carried, SWATCH, TubesPanel};
+use super::{Carried, PaintsPanel, SWATCH};
 use crate::settings::brush_load::{self, words};
 use crate::settings::paint_sets::PaintSet;
-use crate::widgets::context::Work;
+use crate::widgets::context::PanelContext;
 use crate::widgets::swatches;
 
 /// Height of the list, points: more is scrolled to.
@@ -39,7 +39,7 @@ enum Deed {
 }
 
 /// Shows the tubes that are searched for.
-pub(super) fn show(panel: &mut TubesPanel, ui: &mut Ui, work: &mut Work<'_>) {
+pub(super) fn show(panel: &mut PaintsPanel, ui: &mut Ui, work: &mut PanelContext<'_>) {
     let tubes = tubes(panel, work);
     if tubes.is_empty() {
         ui.label("No tube is called so. Search for a part of its name, or its colour index.");
@@ -59,24 +59,26 @@ pub(super) fn show(panel: &mut TubesPanel, ui: &mut Ui, work: &mut Work<'_>) {
         });
     match asked {
         Some((tube, Deed::Load)) => {
-            work.habits.loading.paint.clone_from(&tube.text);
-            work.habits.loading.beside = None;
+            work.preferences.loading.paint.clone_from(&tube.text);
+            work.preferences.loading.beside = None;
             if tube.name == THINNER {
-                work.habits.loading.thinner = 0.0;
+                work.preferences.loading.thinner = 0.0;
             }
-            let brush = work.studio.brush_name().to_owned();
-            let command = work.habits.loading.command(&brush, &work.studio.library);
+            let brush = work.rig.brush_name().to_owned();
+            let command = work.preferences.loading.command(&brush, &work.rig.library);
             match command {
                 Ok(command) => work.then(command),
-                Err(fault) => work.toasts.of(&fault),
+                Err(fault) => work.notifications.of(&fault),
             }
         }
         Some((tube, Deed::ToPalette)) => panel.wells.put(work, &tube.mixture),
         Some((tube, Deed::IntoSet(place, true))) => {
-            work.habits.paint_sets[place].paints.push(tube.text.clone());
+            work.preferences.paint_sets[place]
+                .paints
+                .push(tube.text.clone());
         }
         Some((tube, Deed::IntoSet(place, false))) => {
-            let set: &mut PaintSet = &mut work.habits.paint_sets[place];
+            let set: &mut PaintSet = &mut work.preferences.paint_sets[place];
             set.paints.retain(|own| *own != tube.text);
         }
         None => {}
@@ -84,12 +86,12 @@ pub(super) fn show(panel: &mut TubesPanel, ui: &mut Ui, work: &mut Work<'_>) {
 }
 
 /// The tubes that are shown: all paints and the thinner, or a set, as far as searched for.
-fn tubes(panel: &mut TubesPanel, work: &mut Work<'_>) -> Vec<Tube> {
-    let studio = &*work.studio;
-    let library = &studio.library;
+fn tubes(panel: &mut PaintsPanel, work: &mut PanelContext<'_>) -> Vec<Tube> {
+    let rig = &*work.rig;
+    let library = &rig.library;
     let mut tubes = Vec::new();
     let set = panel.set.as_ref().and_then(|own| {
-        let mut sets = work.habits.paint_sets.iter();
+        let mut sets = work.preferences.paint_sets.iter();
         sets.find(|set| set.name == *own)
     });
     let Some(set) = set else {
@@ -102,7 +104,7 @@ fn tubes(panel: &mut TubesPanel, work: &mut Work<'_>) -> Vec<Tube> {
                     about: swatches::words(paint),
                     text: paint.name.clone(),
                     mixture: Mixture::pure(&paint.name),
-                    colours: panel.swatches.paint(studio, paint),
+                    colours: panel.swatches.paint(rig, paint),
                 });
             }
         }
@@ -122,14 +124,14 @@ fn tubes(panel: &mut TubesPanel, work: &mut Work<'_>) -> Vec<Tube> {
             Some(paint) => swatches::matches(paint, &panel.search),
             None => name.to_lowercase().contains(&panel.search.to_lowercase()),
         };
-        let whole = panel.swatches.mixture(studio, &mixture);
+        let whole = panel.swatches.mixture(rig, &mixture);
         let whole = [whole.unwrap_or(Color32::TRANSPARENT); 2];
         if found {
             tubes.push(Tube {
                 index: single.map_or(String::new(), |paint| paint.colour_index.clone()),
                 about: single.map_or_else(|| name.clone(), swatches::words),
                 text: text.clone(),
-                colours: single.map_or(whole, |paint| panel.swatches.paint(studio, paint)),
+                colours: single.map_or(whole, |paint| panel.swatches.paint(rig, paint)),
                 mixture,
                 name,
             });
@@ -138,7 +140,7 @@ fn tubes(panel: &mut TubesPanel, work: &mut Work<'_>) -> Vec<Tube> {
     tubes
 }
 
-fn tube_row(ui: &mut Ui, work: &Work<'_>, tube: &Tube) -> Option<Deed> {
+fn tube_row(ui: &mut Ui, work: &PanelContext<'_>, tube: &Tube) -> Option<Deed> {
     let mut deed = None;
     ui.horizontal(|ui| {
         ui.spacing_mut().item_spacing.x = 2.0;
@@ -154,7 +156,7 @@ fn tube_row(ui: &mut Ui, work: &Work<'_>, tube: &Tube) -> Option<Deed> {
             if ui.button("To the palette").clicked() {
                 deed = Some(Deed::ToPalette);
             }
-            for (place, set) in work.habits.paint_sets.iter().enumerate() {
+            for (place, set) in work.preferences.paint_sets.iter().enumerate() {
                 let held = set.paints.contains(&tube.text);
                 let words = match held {
                     true => format!("Out of '{}'", set.name),

@@ -4,7 +4,7 @@ use eframe::egui::{Key, TextEdit, Ui};
 
 use crate::settings::paint_sets::PaintSet;
 use crate::settings::presets::check_name;
-use crate::widgets::context::Work;
+use crate::widgets::context::PanelContext;
 use crate::widgets::labelled;
 
 /// The rows.
@@ -18,15 +18,20 @@ pub(super) struct SetRows {
 
 impl SetRows {
     /// Shows what can be done with sets; `shown` is the one whose tubes are listed.
-    pub(super) fn show(&mut self, ui: &mut Ui, work: &mut Work<'_>, shown: &mut Option<String>) {
+    pub(super) fn show(
+        &mut self,
+        ui: &mut Ui,
+        work: &mut PanelContext<'_>,
+        shown: &mut Option<String>,
+    ) {
         ui.strong("Sets");
         let place = shown.as_ref().and_then(|own| {
-            let mut sets = work.habits.paint_sets.iter();
+            let mut sets = work.preferences.paint_sets.iter();
             sets.position(|set| set.name == *own)
         });
         if let Some(place) = place {
             self.deeds(ui, work, shown, place);
-        } else if !work.habits.paint_sets.is_empty() {
+        } else if !work.preferences.paint_sets.is_empty() {
             ui.label("Choose a set above to lay it out.");
         }
         self.bring_back(ui, work);
@@ -60,7 +65,7 @@ impl SetRows {
     fn deeds(
         &mut self,
         ui: &mut Ui,
-        work: &mut Work<'_>,
+        work: &mut PanelContext<'_>,
         shown: &mut Option<String>,
         place: usize,
     ) {
@@ -68,26 +73,26 @@ impl SetRows {
             let lay = ui.button("Lay out");
             let hover = "The palette holds the paints of this set, and no others.";
             if lay.on_hover_text(hover).clicked() {
-                let set = work.habits.paint_sets[place].clone();
-                match set.mixtures(&work.studio.library) {
+                let set = work.preferences.paint_sets[place].clone();
+                match set.mixtures(&work.rig.library) {
                     Ok(mixtures) => work.lay_wells(&mixtures),
-                    Err(fault) => work.toasts.of(&fault),
+                    Err(fault) => work.notifications.of(&fault),
                 }
             }
             let renew = ui.button("Renew");
             let hover = "The set becomes what lies on the palette now.";
             if renew.on_hover_text(hover).clicked() {
-                let name = work.habits.paint_sets[place].name.clone();
-                work.habits.paint_sets[place] = PaintSet::of(&name, &work.wells());
+                let name = work.preferences.paint_sets[place].name.clone();
+                work.preferences.paint_sets[place] = PaintSet::of(&name, &work.wells());
             }
             if ui.button("Delete set").clicked() {
-                self.deleted = Some((place, work.habits.paint_sets.remove(place)));
+                self.deleted = Some((place, work.preferences.paint_sets.remove(place)));
                 *shown = None;
             }
         });
     }
 
-    fn bring_back(&mut self, ui: &mut Ui, work: &mut Work<'_>) {
+    fn bring_back(&mut self, ui: &mut Ui, work: &mut PanelContext<'_>) {
         let Some((place, set)) = &self.deleted else {
             return;
         };
@@ -97,15 +102,15 @@ impl SetRows {
             back = ui.small_button("Bring back").clicked();
         });
         if back {
-            let place = (*place).min(work.habits.paint_sets.len());
-            work.habits.paint_sets.insert(place, set.clone());
+            let place = (*place).min(work.preferences.paint_sets.len());
+            work.preferences.paint_sets.insert(place, set.clone());
             self.deleted = None;
         }
     }
 
-    fn named(&mut self, work: &Work<'_>, besides: Option<usize>) -> Option<String> {
+    fn named(&mut self, work: &PanelContext<'_>, besides: Option<usize>) -> Option<String> {
         let name = self.name.trim().to_owned();
-        let others = work.habits.paint_sets.iter().enumerate();
+        let others = work.preferences.paint_sets.iter().enumerate();
         let others = others.filter(|(place, _)| Some(*place) != besides);
         match check_name(&name, others.map(|(_, set)| set.name.as_str())) {
             Ok(()) => {
@@ -120,18 +125,18 @@ impl SetRows {
         }
     }
 
-    fn keep(&mut self, work: &mut Work<'_>, shown: &mut Option<String>) {
+    fn keep(&mut self, work: &mut PanelContext<'_>, shown: &mut Option<String>) {
         let Some(name) = self.named(work, None) else {
             return;
         };
         let set = PaintSet::of(&name, &work.wells());
-        work.habits.paint_sets.push(set);
+        work.preferences.paint_sets.push(set);
         *shown = Some(name);
     }
 
-    fn rename(&mut self, work: &mut Work<'_>, shown: &mut Option<String>, place: usize) {
+    fn rename(&mut self, work: &mut PanelContext<'_>, shown: &mut Option<String>, place: usize) {
         if let Some(name) = self.named(work, Some(place)) {
-            work.habits.paint_sets[place].name.clone_from(&name);
+            work.preferences.paint_sets[place].name.clone_from(&name);
             *shown = Some(name);
         }
     }

@@ -12,7 +12,7 @@ use crate::settings::paint_sets::PaintSet;
 use crate::test_support::context_bench::{Bench, differ, harness, pictures};
 
 fn panel<'a>(bench: Bench) -> Harness<'a, Bench> {
-    let mut harness = harness(TubesPanel::default(), bench);
+    let mut harness = harness(PaintsPanel::default(), bench);
     harness.run();
     harness
 }
@@ -49,7 +49,7 @@ fn laid(harness: &mut Harness<'_, Bench>) -> Vec<String> {
 #[test]
 fn a_click_loads_the_brush_with_the_paint() {
     let mut bench = Bench::new();
-    bench.habits.loading.beside = Some("Bone Black".into());
+    bench.preferences.loading.beside = Some("Bone Black".into());
     let mut harness = panel(bench);
     write(&mut harness, "Search", "pb 28");
     harness.get_by_label("Cobalt Blue").click();
@@ -59,7 +59,7 @@ fn a_click_loads_the_brush_with_the_paint() {
         mixture: Mixture::pure("Cobalt Blue"),
     };
     assert_eq!(harness.state_mut().commands(), [load]);
-    assert_eq!(harness.state().habits.loading.paint, "Cobalt Blue");
+    assert_eq!(harness.state().preferences.loading.paint, "Cobalt Blue");
     let white = harness.query_by_label("Titanium White to the palette");
     assert!(white.is_none(), "it is not searched for");
 }
@@ -170,8 +170,8 @@ fn sets_are_kept_shown_laid_out_renamed_deleted_and_brought_back() {
             "Yellow Ochre=0.5,Bone Black=0.5".into(),
         ],
     };
-    harness.state_mut().habits.paint_sets.push(own);
-    assert_eq!(harness.state().habits.paint_sets[0].paints.len(), 10);
+    harness.state_mut().preferences.paint_sets.push(own);
+    assert_eq!(harness.state().preferences.paint_sets[0].paints.len(), 10);
     harness.get_by_label("Set").click();
     harness.run();
     harness.get_by_label("Earth").click();
@@ -187,25 +187,25 @@ fn sets_are_kept_shown_laid_out_renamed_deleted_and_brought_back() {
     write(&mut harness, "Name", "Ground");
     harness.get_by_label("Rename the set").click();
     harness.run();
-    assert_eq!(harness.state().habits.paint_sets[1].name, "Ground");
+    assert_eq!(harness.state().preferences.paint_sets[1].name, "Ground");
     harness.get_by_label("Delete set").click();
     harness.run();
-    assert_eq!(harness.state().habits.paint_sets.len(), 1);
+    assert_eq!(harness.state().preferences.paint_sets.len(), 1);
     harness.get_by_label("Bring back").click();
     harness.run();
-    assert_eq!(harness.state().habits.paint_sets[1].name, "Ground");
+    assert_eq!(harness.state().preferences.paint_sets[1].name, "Ground");
 }
 
 #[test]
 fn a_set_of_paints_that_the_rig_lacks_is_told() {
     let mut bench = Bench::new();
-    bench.habits.paint_sets.push(PaintSet {
+    bench.preferences.paint_sets.push(PaintSet {
         name: "Old".into(),
         paints: vec!["Lead White".into()],
     });
-    let mut panel = TubesPanel {
+    let mut panel = PaintsPanel {
         set: Some("Old".into()),
-        ..TubesPanel::default()
+        ..PaintsPanel::default()
     };
     let mut harness = harness(std::mem::take(&mut panel), bench);
     harness.run();
@@ -221,10 +221,10 @@ fn a_full_palette_takes_no_more() {
     let mut bench = Bench::new();
     let many = vec![Mixture::pure("Bone Black"); crate::input::palette_wells::MOST + 1];
     bench.work().lay_wells(&many);
-    assert!(bench.orders.take().is_empty());
+    assert!(bench.requests.take().is_empty());
     assert!(bench.told()[0].contains("at most 24"), "{:?}", bench.told());
     bench.work().lay_wells(&many[1..]);
-    assert_eq!(bench.orders.take().len(), 1);
+    assert_eq!(bench.requests.take().len(), 1);
 }
 
 #[test]
@@ -233,9 +233,9 @@ fn it_looks_as_it_should() {
     shown.fit_contents();
     shown.snapshot_options("tubes", &pictures());
     let mut lamp = Bench::new();
-    let mut scene = lamp.studio.scene.clone().expect("a scene");
+    let mut scene = lamp.rig.scene.clone().expect("a scene");
     scene.light.illuminant = "A".into();
-    lamp.studio.lay(scene);
+    lamp.rig.lay(scene);
     let mut lamp = panel(lamp);
     lamp.fit_contents();
     assert!(differ(&mut shown, &mut lamp), "a fault would pass");

@@ -10,7 +10,7 @@ use maulstick_types::Mixture;
 use super::{Carried, SWATCH};
 use crate::input::palette_wells::MOST;
 use crate::settings::brush_load::{self, completed, completions, words};
-use crate::widgets::context::Work;
+use crate::widgets::context::PanelContext;
 use crate::widgets::labelled;
 use crate::widgets::swatches::{Swatches, draw};
 
@@ -37,7 +37,7 @@ enum Deed {
 
 impl WellRows {
     /// Puts a mixture into the chosen well, or below the others.
-    pub(super) fn put(&mut self, work: &mut Work<'_>, mixture: &Mixture) {
+    pub(super) fn put(&mut self, work: &mut PanelContext<'_>, mixture: &Mixture) {
         let mut wells = work.wells();
         match self.chosen.take().filter(|place| *place < wells.len()) {
             Some(place) => wells[place] = mixture.clone(),
@@ -46,7 +46,12 @@ impl WellRows {
         work.lay_wells(&wells);
     }
 
-    pub(super) fn show(&mut self, ui: &mut Ui, work: &mut Work<'_>, swatches: &mut Swatches) {
+    pub(super) fn show(
+        &mut self,
+        ui: &mut Ui,
+        work: &mut PanelContext<'_>,
+        swatches: &mut Swatches,
+    ) {
         ui.strong("On the palette");
         let mut wells = work.wells();
         self.chosen.take_if(|place| *place >= wells.len());
@@ -54,7 +59,7 @@ impl WellRows {
         ui.scope(|ui| {
             ui.spacing_mut().item_spacing.y = 1.0;
             for (place, mixture) in wells.iter().enumerate() {
-                let colour = swatches.mixture(work.studio, mixture);
+                let colour = swatches.mixture(work.rig, mixture);
                 let colour = colour.unwrap_or(Color32::TRANSPARENT);
                 let end = place + 1 == wells.len();
                 let chosen = self.chosen == Some(place);
@@ -81,7 +86,7 @@ impl WellRows {
                 work.lay_wells(&wells);
             }
             Some((place, Deed::Drop(text))) => {
-                if let Ok(mixture) = brush_load::read(&text, &work.studio.library) {
+                if let Ok(mixture) = brush_load::read(&text, &work.rig.library) {
                     wells[place] = mixture;
                     work.lay_wells(&wells);
                 }
@@ -95,7 +100,7 @@ impl WellRows {
     }
 
     /// A mixture of one's own for a well.
-    fn field(&mut self, ui: &mut Ui, work: &mut Work<'_>, count: usize) {
+    fn field(&mut self, ui: &mut Ui, work: &mut PanelContext<'_>, count: usize) {
         let edit = TextEdit::singleline(&mut self.text)
             .hint_text("Cobalt Blue=0.7,…")
             .char_limit(4096)
@@ -106,7 +111,7 @@ impl WellRows {
             self.fault = None;
         }
         let enter = shown.lost_focus() && ui.input(|input| input.key_pressed(Key::Enter));
-        let names = completions(&self.text, &work.studio.library, PROPOSED);
+        let names = completions(&self.text, &work.rig.library, PROPOSED);
         if !names.is_empty() {
             ui.horizontal_wrapped(|ui| {
                 ui.add_space(8.0);
@@ -125,7 +130,7 @@ impl WellRows {
         let is_room = self.chosen.is_some() || count < MOST;
         let button = ui.add_enabled(is_room && !self.text.trim().is_empty(), Button::new(words));
         if button.clicked() || enter {
-            match brush_load::read(&self.text, &work.studio.library) {
+            match brush_load::read(&self.text, &work.rig.library) {
                 Ok(mixture) => {
                     self.put(work, &mixture);
                     self.text.clear();

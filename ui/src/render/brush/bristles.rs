@@ -6,8 +6,8 @@ use glam::Vec3;
 use maulstick_brush::HeadPose;
 use maulstick_brush::file::sections::Hair;
 
-use crate::render::brush::paint_colour::Coat;
-use crate::render::view_light::{Sight, smoothstep};
+use crate::render::brush::paint_colour::PaintColour;
+use crate::render::view_light::{ViewLight, smoothstep};
 
 /// Bristles in the light, and how dark those in the depth of the tuft are, sRGB.
 #[must_use]
@@ -50,7 +50,7 @@ pub(crate) struct Bristles<'a> {
     /// Linear light of bristles in the light and in the depth of the tuft, as the display takes it.
     pub tones: [Vec3; 2],
     /// The paint on them, if it is known.
-    pub coat: Option<&'a Coat>,
+    pub coat: Option<&'a PaintColour>,
 }
 
 /// The ribbons of a pose of so many strips, as one mesh.
@@ -59,7 +59,7 @@ pub(crate) fn ribbons(
     pose: &HeadPose,
     strips: usize,
     bristles: &Bristles<'_>,
-    sight: &Sight<'_>,
+    sight: &ViewLight<'_>,
 ) -> Mesh {
     let mut mesh = Mesh::default();
     if strips == 0 || pose.x.len() < 2 * strips {
@@ -136,7 +136,7 @@ struct Tuft<'a> {
 }
 
 impl<'a> Tuft<'a> {
-    fn of(pose: &'a HeadPose, strips: usize, sight: &Sight<'_>) -> Self {
+    fn of(pose: &'a HeadPose, strips: usize, sight: &ViewLight<'_>) -> Self {
         let all = pose.x.len() / strips;
         let ends = [0, all - 1].map(|station| Middle::of(pose, strips, station, sight));
         let length = (ends[1].at - ends[0].at).length() * sight.scale;
@@ -172,7 +172,7 @@ impl<'a> Tuft<'a> {
     }
 
     /// How many strips stand for all at this size.
-    fn some(&self, sight: &Sight<'_>) -> usize {
+    fn some(&self, sight: &ViewLight<'_>) -> usize {
         let widest = self.middles.iter().map(|m| m.radius).fold(0.0, f32::max);
         let enough = (2.0 * widest * sight.scale * DENSITY) as usize;
         enough.max(FEWEST).min(self.strips)
@@ -180,7 +180,7 @@ impl<'a> Tuft<'a> {
 
     /// The strips that are drawn: of an even sequence every so-many-th is an even sequence, and of a
     /// tuft that stands free the underside is not seen.
-    fn kept(&self, some: usize, sight: &Sight<'_>) -> Vec<usize> {
+    fn kept(&self, some: usize, sight: &ViewLight<'_>) -> Vec<usize> {
         let below = |i: usize, strip: usize| {
             let off = self.at(strip, i) - self.middles[i].at;
             off.dot(sight.up) < UNDER * self.middles[i].radius
@@ -192,7 +192,13 @@ impl<'a> Tuft<'a> {
     }
 
     /// The light that comes from a strip at a station.
-    fn colour(&self, strip: usize, i: usize, bristles: &Bristles<'_>, sight: &Sight<'_>) -> Vec3 {
+    fn colour(
+        &self,
+        strip: usize,
+        i: usize,
+        bristles: &Bristles<'_>,
+        sight: &ViewLight<'_>,
+    ) -> Vec3 {
         let (at, middle, along) = (self.at(strip, i), &self.middles[i], self.along(i));
         let last = self.stations.len() - 1;
         let way = self.at(strip, (i + 1).min(last)) - self.at(strip, i.saturating_sub(1));
@@ -245,7 +251,7 @@ struct Middle {
 }
 
 impl Middle {
-    fn of(pose: &HeadPose, strips: usize, station: usize, sight: &Sight<'_>) -> Self {
+    fn of(pose: &HeadPose, strips: usize, station: usize, sight: &ViewLight<'_>) -> Self {
         let points = || (0..strips).map(|strip| point(pose, station * strips + strip));
         let at = points().sum::<Vec3>() / strips.max(1) as f32;
         let far = points()
@@ -292,9 +298,9 @@ mod tests {
         }
     }
 
-    fn drawn(pose: &HeadPose, toward: [f32; 3], coat: Option<&Coat>) -> Mesh {
+    fn drawn(pose: &HeadPose, toward: [f32; 3], coat: Option<&PaintColour>) -> Mesh {
         let to_window = |p: Vec3| pos2(10_000.0 * p.x, -10_000.0 * p.y);
-        let sight = Sight {
+        let sight = ViewLight {
             to_window: &to_window,
             scale: 10_000.0,
             up: Vec3::Z,
@@ -382,7 +388,7 @@ mod tests {
         };
         let width = |scale: f32| {
             let to_window = |p: Vec3| pos2(scale * p.x, -scale * p.y);
-            let sight = Sight {
+            let sight = ViewLight {
                 to_window: &to_window,
                 scale,
                 up: Vec3::Z,

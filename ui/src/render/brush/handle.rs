@@ -5,8 +5,8 @@ use glam::{DVec3, Vec3};
 use maulstick_num::sin_cos;
 
 use crate::render::brush::geometry::{Material, Section};
-use crate::render::display_transform::Tint;
-use crate::render::view_light::{Sight, smoothstep};
+use crate::render::display_transform::DisplayTransform;
+use crate::render::view_light::{ViewLight, smoothstep};
 
 /// Width of the soft edge, points.
 const SOFT: f32 = 1.0;
@@ -39,7 +39,7 @@ impl Default for Finish {
 impl Finish {
     /// As a display takes it.
     #[must_use]
-    pub(crate) fn tinted(self, tint: &Tint) -> Self {
+    pub(crate) fn tinted(self, tint: &DisplayTransform) -> Self {
         let tinted = |colour: Vec3| Vec3::from_array(tint.linear(colour.to_array()));
         Self {
             nickel: tinted(self.nickel),
@@ -88,7 +88,7 @@ struct Across {
 }
 
 impl Across {
-    fn of(axis: Vec3, sight: &Sight<'_>) -> Self {
+    fn of(axis: Vec3, sight: &ViewLight<'_>) -> Self {
         let flat = |v: Vec3| (v - axis * v.dot(axis)).normalize_or(axis.any_orthonormal_vector());
         let (up, half) = (flat(sight.up), flat(sight.half()));
         let beside = axis.cross(half);
@@ -121,7 +121,7 @@ struct Ring {
 
 /// Ferrule and handle as one mesh, the lower parts first.
 #[must_use]
-pub(crate) fn handle(sections: &[Section], finish: &Finish, sight: &Sight<'_>) -> Mesh {
+pub(crate) fn handle(sections: &[Section], finish: &Finish, sight: &ViewLight<'_>) -> Mesh {
     let mut mesh = Mesh::default();
     let widest = sections
         .iter()
@@ -156,7 +156,7 @@ fn turns(radius: f32) -> Vec<f64> {
     turns
 }
 
-fn ring(section: &Section, turns: &[f64], sight: &Sight<'_>) -> Ring {
+fn ring(section: &Section, turns: &[f64], sight: &ViewLight<'_>) -> Ring {
     let point = |turn: &f64| {
         let (sin, cos) = sin_cos(*turn);
         (section.at + cos * section.half[0] + sin * section.half[1]).as_vec3()
@@ -219,7 +219,7 @@ impl Tube<'_> {
             .normalize_or(Vec3::Z)
     }
 
-    fn draw(&self, part: usize, finish: &Finish, sight: &Sight<'_>, mesh: &mut Mesh) {
+    fn draw(&self, part: usize, finish: &Finish, sight: &ViewLight<'_>, mesh: &mut Mesh) {
         let count = self.turns.len();
         let faces: Vec<bool> = (0..count).map(|t| self.faces(part, t, sight.up)).collect();
         let material = self.sections[part].material;
@@ -315,7 +315,7 @@ mod tests {
         };
         let file = BrushFile::library("flat").expect("flat");
         let to_window = |p: Vec3| pos2(SCALE * p.x, -SCALE * p.y);
-        let sight = Sight {
+        let sight = ViewLight {
             to_window: &to_window,
             scale: SCALE,
             up: Vec3::Z,

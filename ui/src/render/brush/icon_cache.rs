@@ -12,8 +12,8 @@ use maulstick_optics::colour::srgb_decode;
 use maulstick_rig::Fault;
 
 use crate::input::brush_choice::read;
-use crate::render::brush::thumbnail::portrait;
-use crate::render::display_transform::Tint;
+use crate::render::brush::thumbnail::brush_thumbnail;
+use crate::render::display_transform::DisplayTransform;
 
 /// Textures that are kept; beyond, all are drawn anew.
 const KEPT: usize = 128;
@@ -38,7 +38,7 @@ fn kept(context: &Context) -> Gallery {
 }
 
 /// Draws a brush, point downward, into a rectangle of the window; two of one `name` look alike.
-pub(crate) fn draw(ui: &Ui, area: Rect, tint: &Tint, name: &str, file: &BrushFile) {
+pub(crate) fn draw(ui: &Ui, area: Rect, tint: &DisplayTransform, name: &str, file: &BrushFile) {
     let texture = texture(ui.ctx(), area.size(), tint, name, file);
     let whole = Rect::from_min_max(pos2(0.0, 0.0), pos2(1.0, 1.0));
     ui.painter()
@@ -48,7 +48,7 @@ pub(crate) fn draw(ui: &Ui, area: Rect, tint: &Tint, name: &str, file: &BrushFil
 fn texture(
     context: &Context,
     size: Vec2,
-    tint: &Tint,
+    tint: &DisplayTransform,
     name: &str,
     file: &BrushFile,
 ) -> TextureHandle {
@@ -64,7 +64,7 @@ fn texture(
     let wide = file.head.width_mm.max(thickest) * 1e-3;
     let scale =
         (HEAD[0] * f64::from(width) / wide).min(HEAD[1] * f64::from(height) / file.length_m());
-    let picture = portrait(file, width as usize, height as usize, scale);
+    let picture = brush_thumbnail(file, width as usize, height as usize, scale);
     let pixels = picture.rgba.chunks_exact(4).map(|pixel| {
         let linear = [0, 1, 2].map(|i| srgb_decode(f64::from(pixel[i]) / 255.0) as f32);
         let [red, green, blue, _] = tint.colour(linear).to_array();

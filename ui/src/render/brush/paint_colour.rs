@@ -5,17 +5,17 @@ use half::f16;
 use maulstick_brush::Head;
 use maulstick_types::brush::BrushLook;
 
-use crate::render::display_transform::Tint;
+use crate::render::display_transform::DisplayTransform;
 
 /// Colours of films over the hair, and how thick they are.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Coat {
+pub struct PaintColour {
     along: usize,
     /// Strip after strip, from the ferrule: linear light, then the film's share of a full one.
     samples: Vec<(Vec3, f32)>,
 }
 
-impl Coat {
+impl PaintColour {
     /// Of a message; none where its lengths do not fit or a number is none.
     #[must_use]
     pub fn of(look: &BrushLook) -> Option<Self> {
@@ -37,7 +37,7 @@ impl Coat {
 
     /// As a display takes it.
     #[must_use]
-    pub fn tinted(&self, tint: &Tint) -> Self {
+    pub fn tinted(&self, tint: &DisplayTransform) -> Self {
         let tinted = |(colour, film): &(Vec3, f32)| {
             (Vec3::from_array(tint.linear(colour.to_array())), *film)
         };
@@ -102,8 +102,8 @@ pub(crate) mod tests {
         }
     }
 
-    pub(crate) fn coat_of(strips: u32, along: u32, samples: &[[f32; 4]]) -> Coat {
-        Coat::of(&look_of(strips, along, samples)).expect("it fits")
+    pub(crate) fn coat_of(strips: u32, along: u32, samples: &[[f32; 4]]) -> PaintColour {
+        PaintColour::of(&look_of(strips, along, samples)).expect("it fits")
     }
 
     #[test]
@@ -139,7 +139,7 @@ pub(crate) mod tests {
 
     #[test]
     fn what_does_not_fit_is_no_coat() {
-        let fits = |look: &BrushLook| Coat::of(look).is_some();
+        let fits = |look: &BrushLook| PaintColour::of(look).is_some();
         assert!(fits(&look_of(1, 1, &[[0.5; 4]])));
         assert!(!fits(&look_of(2, 1, &[[0.5; 4]])), "a strip is missing");
         assert!(!fits(&look_of(1, 1, &[[f32::NAN; 4]])));

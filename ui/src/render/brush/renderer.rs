@@ -19,11 +19,11 @@ use crate::render::brush::geometry::{
     Section, casters, head_discs, is_wide, sections, shaded_sections, shadow,
 };
 use crate::render::brush::handle::{Finish, handle};
-use crate::render::brush::paint_colour::Coat;
-use crate::render::display_transform::Tint;
+use crate::render::brush::paint_colour::PaintColour;
+use crate::render::display_transform::DisplayTransform;
 use crate::render::gpu::Gpu;
-use crate::render::view_light::Sight;
-use crate::rig::brushes::Held;
+use crate::render::view_light::ViewLight;
+use crate::rig::brushes::BrushPose;
 use crate::view::camera::View;
 
 /// What brushes are drawn over.
@@ -43,24 +43,24 @@ pub struct Below<'a> {
 struct Kept {
     slots: Vec<ShadowSlot>,
     /// The paint on it, and the same as the display takes it.
-    coat: Option<(Arc<Coat>, Coat)>,
+    coat: Option<(Arc<PaintColour>, PaintColour)>,
 }
 
 /// Draws brushes.
 #[derive(Debug)]
-pub struct Brushes {
+pub struct BrushRenderer {
     passes: CastShadow,
     kept: BTreeMap<String, Kept>,
     pose: HeadPose,
-    tint: Tint,
+    tint: DisplayTransform,
     finish: Finish,
 }
 
-impl Brushes {
+impl BrushRenderer {
     /// Draws on a device, for the display of `export`.
     #[must_use]
     pub fn new(gpu: &Gpu, export: &Export) -> Self {
-        let tint = Tint::new(export);
+        let tint = DisplayTransform::new(export);
         Self {
             passes: CastShadow::new(gpu),
             kept: BTreeMap::new(),
@@ -75,7 +75,7 @@ impl Brushes {
     pub fn shapes(
         &mut self,
         gpu: &Gpu,
-        held: &Held<'_>,
+        held: &BrushPose<'_>,
         head: &Head,
         lamp: &Lamp,
         below: &Below<'_>,
@@ -91,7 +91,7 @@ impl Brushes {
         let mut shapes = self.shadows(gpu, held, (head, &sections), lamp, below);
         let to_window =
             |local: Vec3| -> Pos2 { below.view.to_window(held.on_desk(local.as_dvec3().into())) };
-        let sight = Sight {
+        let sight = ViewLight {
             to_window: &to_window,
             scale: below.view.scale as f32,
             up: held.plane.to_desk.inverse().vector(DVec3::Z).as_vec3(),
@@ -117,7 +117,7 @@ impl Brushes {
     fn shadows(
         &mut self,
         gpu: &Gpu,
-        held: &Held<'_>,
+        held: &BrushPose<'_>,
         (head, sections): (&Head, &[Section]),
         lamp: &Lamp,
         below: &Below<'_>,
@@ -189,7 +189,12 @@ impl Brushes {
 
 impl Kept {
     /// The paint on the brush as the display takes it.
-    fn tinted(&mut self, coat: Option<&Arc<Coat>>, tint: &Tint, head: &Head) -> Option<&Coat> {
+    fn tinted(
+        &mut self,
+        coat: Option<&Arc<PaintColour>>,
+        tint: &DisplayTransform,
+        head: &Head,
+    ) -> Option<&PaintColour> {
         let coat = coat?;
         if !self
             .coat

@@ -10,7 +10,7 @@ use maulstick_optics::colour::srgb_decode;
 use crate::render::brush::bristles::{Bristles, ribbons, tones};
 use crate::render::brush::geometry::sections;
 use crate::render::brush::handle::{Finish, handle};
-use crate::render::view_light::Sight;
+use crate::render::view_light::ViewLight;
 
 /// Samples of a pixel, each way.
 const FINE: usize = 3;
@@ -20,7 +20,7 @@ const TOWARD: Vec3 = Vec3::new(-0.5, 0.5, std::f32::consts::FRAC_1_SQRT_2);
 /// A picture with eight bits of red, green, blue and cover a pixel, from the top row; colours are not
 /// multiplied by the cover.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Portrait {
+pub struct BrushThumbnail {
     /// Pixels across.
     pub width: usize,
     /// Pixels down.
@@ -32,7 +32,12 @@ pub struct Portrait {
 /// Draws a brush, point downward, as it lies with its broad side up: `scale` pixels a metre, in a
 /// picture of this size whose middle is above the middle of the head.
 #[must_use]
-pub fn portrait(file: &BrushFile, width: usize, height: usize, scale: f64) -> Portrait {
+pub fn brush_thumbnail(
+    file: &BrushFile,
+    width: usize,
+    height: usize,
+    scale: f64,
+) -> BrushThumbnail {
     let tuft = file.tuft();
     let head = Head::of(file);
     // The brush lies: its axis along y, its point at the bottom, so near that its handle does not fade.
@@ -64,7 +69,7 @@ pub fn portrait(file: &BrushFile, width: usize, height: usize, scale: f64) -> Po
         )
     };
     let mut canvas = Canvas::new(across, down);
-    let sight = Sight {
+    let sight = ViewLight {
         to_window: &to_window,
         scale: scale as f32,
         up: Vec3::Z,
@@ -152,7 +157,7 @@ impl Canvas {
         self.pixels[at] = [mix(0), mix(1), mix(2), 255.0 * cover];
     }
 
-    fn reduce(&self) -> Portrait {
+    fn reduce(&self) -> BrushThumbnail {
         let (width, height) = (self.width / FINE, self.height / FINE);
         let mut rgba = Vec::with_capacity(4 * width * height);
         for row in 0..height {
@@ -171,7 +176,7 @@ impl Canvas {
                 rgba.push((sum[3] / (FINE * FINE) as f32) as u8);
             }
         }
-        Portrait {
+        BrushThumbnail {
             width,
             height,
             rgba,
@@ -183,26 +188,31 @@ impl Canvas {
 mod tests {
     use super::*;
 
-    fn covered(portrait: &Portrait, row: usize) -> usize {
-        let row = &portrait.rgba[4 * row * portrait.width..4 * (row + 1) * portrait.width];
+    fn covered(brush_thumbnail: &BrushThumbnail, row: usize) -> usize {
+        let row = &brush_thumbnail.rgba
+            [4 * row * brush_thumbnail.width..4 * (row + 1) * brush_thumbnail.width];
         row.chunks_exact(4).filter(|pixel| pixel[3] > 127).count()
     }
 
     #[test]
     fn a_brush_is_as_wide_as_it_is() {
         let file = BrushFile::library("flat").expect("flat");
-        let portrait = portrait(&file, 120, 200, 3000.0);
+        let brush_thumbnail = brush_thumbnail(&file, 120, 200, 3000.0);
         // 20 mm at three pixels a millimetre, in the middle of the head.
         let middle = 200.0 * 0.94 - 13.0 * 3.0;
-        let wide = covered(&portrait, middle as usize);
+        let wide = covered(&brush_thumbnail, middle as usize);
         assert!((54..=64).contains(&wide), "{wide}");
-        assert!(covered(&portrait, 197) == 0, "nothing below the point");
-        assert!(covered(&portrait, 40) > 20, "the ferrule");
+        assert!(
+            covered(&brush_thumbnail, 197) == 0,
+            "nothing below the point"
+        );
+        assert!(covered(&brush_thumbnail, 40) > 20, "the ferrule");
     }
 
     #[test]
     fn brushes_look_different() {
-        let of = |kind: &str| portrait(&BrushFile::library(kind).expect(kind), 80, 120, 2000.0);
+        let of =
+            |kind: &str| brush_thumbnail(&BrushFile::library(kind).expect(kind), 80, 120, 2000.0);
         assert_ne!(of("fan"), of("round"));
         assert_eq!(of("fan"), of("fan"));
     }

@@ -13,7 +13,7 @@ use super::tests::{lamp, surface as small};
 use super::*;
 use crate::render::frames::{ShownTile, texels};
 use crate::render::gpu::testing::{draw, gpu, read, target};
-use crate::render::tile_planner::{Asked, Plan, SheetState};
+use crate::render::tile_planner::{Asked, AtlasState, TilePlanner};
 use crate::view::visible_tiles::{TileRect, Wanted};
 
 const CELLS: [u32; 2] = [2100, 1700];
@@ -77,7 +77,7 @@ struct Easel {
 /// A view of a paint node that answers at once.
 #[derive(Default)]
 struct Puller {
-    plan: Plan,
+    plan: TilePlanner,
     view: SurfaceView,
 }
 
@@ -108,7 +108,7 @@ impl Puller {
         if self.plan.take(&asked, &reply) {
             let shown = Shown {
                 part: asked.part,
-                sheet: self.plan.sheet(asked.part),
+                atlas: self.plan.atlas(asked.part),
                 cells,
                 tiles,
                 ..Shown::default()
@@ -152,7 +152,7 @@ impl Easel {
         let room = cells.map(|cells| cells.div_ceil(TILE as u32));
         let all = (0..room[1]).flat_map(|y| (0..room[0]).map(move |x| tile(level, x, y)));
         let shown = Shown {
-            sheet: SheetState {
+            atlas: AtlasState {
                 number: 1,
                 level,
                 room,
@@ -201,9 +201,9 @@ fn a_view_that_is_panned_zoomed_and_turned_shows_the_pixels_of_a_whole_sheet() {
         easel.surface.pose.orientation = pose.to_array();
         let look = look(&easel.surface, scale, around);
         puller.settle(&easel, &look);
-        let SheetState {
+        let AtlasState {
             level, held, room, ..
-        } = puller.plan.sheet(Part::Detail);
+        } = puller.plan.atlas(Part::Detail);
         moved += u32::from((0..2).any(|i| held.to[i] > room[i]));
         levels.insert(level);
         let shown = easel.drawn(&mut puller.view, &look);
@@ -233,7 +233,7 @@ fn what_has_not_come_yet_is_shown_coarse_without_a_hole_or_a_seam() {
     let after = look(&easel.surface, 1.0, [1160.0, 880.0]);
     let fine = easel.whole(0, &after);
     let shown = easel.drawn(&mut puller.view, &after);
-    let held = puller.plan.sheet(Part::Detail).held.cells(CELLS);
+    let held = puller.plan.atlas(Part::Detail).held.cells(CELLS);
     let edge = |i: usize| (held.from[i] + held.size[i] - (REACH + 1)) as f32;
     let origin = [1160.0 - 120.0, 880.0 + 90.0];
     let (right, top) = (edge(0) - origin[0], origin[1] - edge(1));
@@ -275,15 +275,15 @@ fn textures_are_bounded_by_the_window() {
             ..fit
         };
         let wanted = Wanted::of(&large, &look, 1.0);
-        let sheets = [
+        let atlases = [
             (Part::Base, wanted.base, wanted.base_tiles),
             (Part::Detail, Some(wanted.level), wanted.room),
         ];
-        for (part, level, room) in sheets {
+        for (part, level, room) in atlases {
             let Some(level) = level else { continue };
             let shown = Shown {
                 part,
-                sheet: SheetState {
+                atlas: AtlasState {
                     number,
                     level,
                     room,

@@ -18,7 +18,7 @@ struct Node {
 /// A view's sheets: what version of which tile they hold.
 #[derive(Default)]
 struct View {
-    plan: Plan,
+    plan: TilePlanner,
     tiles: BTreeMap<(u64, u32, u32), (u64, u64)>,
     sent: usize,
 }
@@ -65,19 +65,19 @@ impl Node {
         } else {
             0
         };
-        let mut news = Vec::new();
+        let mut events = Vec::new();
         for y in asked.tiles.from[1]..asked.tiles.to[1].min(grid[1]) {
             for x in asked.tiles.from[0]..asked.tiles.to[0].min(grid[0]) {
                 let version = self.version_of(asked.level, x, y);
                 if version > since {
-                    news.push((version, x, y));
+                    events.push((version, x, y));
                 }
             }
         }
-        news.sort_unstable();
-        let more = news.len() > self.most;
-        news.truncate(self.most);
-        let version = match news.last() {
+        events.sort_unstable();
+        let more = events.len() > self.most;
+        events.truncate(self.most);
+        let version = match events.last() {
             Some((version, ..)) if more => *version,
             _ => (1 << 32) + self.version,
         };
@@ -90,10 +90,10 @@ impl Node {
             journal: 0,
             holds: Vec::new(),
             more,
-            tiles: news.iter().map(|(_, x, y)| tile(*x, *y)).collect(),
+            tiles: events.iter().map(|(_, x, y)| tile(*x, *y)).collect(),
             look: self.look,
         };
-        (reply, news.iter().map(|(v, x, y)| (*x, *y, *v)).collect())
+        (reply, events.iter().map(|(v, x, y)| (*x, *y, *v)).collect())
     }
 }
 
@@ -104,10 +104,10 @@ impl View {
         let (reply, tiles) = node.answer(&asked, self.plan.of());
         self.sent += tiles.len();
         if self.plan.take(&asked, &reply) {
-            let sheet = self.plan.sheet(asked.part);
+            let atlas = self.plan.atlas(asked.part);
             for (x, y, version) in tiles {
                 self.tiles
-                    .insert((sheet.number, x, y), (version, reply.look));
+                    .insert((atlas.number, x, y), (version, reply.look));
             }
         }
         asked
@@ -126,12 +126,12 @@ impl View {
 
     /// Whether a sheet holds the newest of all that it says it holds.
     fn is_right(&self, node: &Node, part: Part) -> bool {
-        let sheet = self.plan.sheet(part);
-        let held = sheet.held;
+        let atlas = self.plan.atlas(part);
+        let held = atlas.held;
         (held.from[1]..held.to[1]).all(|y| {
             (held.from[0]..held.to[0]).all(|x| {
-                let version = node.version_of(sheet.level, x, y);
-                self.tiles.get(&(sheet.number, x, y)) == Some(&(version, node.look))
+                let version = node.version_of(atlas.level, x, y);
+                self.tiles.get(&(atlas.number, x, y)) == Some(&(version, node.look))
             })
         })
     }
@@ -162,9 +162,9 @@ fn a_view_that_moves_gets_each_tile_once_and_all_that_is_painted() {
     let mut view = View::default();
     let mut at = wanted(0, rect([10, 10], [20, 18]));
     view.settle(&node, &at);
-    assert_eq!(view.plan.sheet(Part::Detail).held, at.tiles);
+    assert_eq!(view.plan.atlas(Part::Detail).held, at.tiles);
     assert_eq!(view.sent, 80 + 64, "the detail and the base");
-    let number = view.plan.sheet(Part::Detail).number;
+    let number = view.plan.atlas(Part::Detail).number;
     for (from, to) in [
         ([12, 10], [22, 18]),
         ([11, 13], [21, 21]),
@@ -173,10 +173,10 @@ fn a_view_that_moves_gets_each_tile_once_and_all_that_is_painted() {
     ] {
         node.paint(from[0] + 1, from[1] + 1);
         node.paint(to[0] - 1, to[1] - 1);
-        let (before, sent) = (view.plan.sheet(Part::Detail).held, view.sent);
+        let (before, sent) = (view.plan.atlas(Part::Detail).held, view.sent);
         at.tiles = rect(from, to);
         view.settle(&node, &at);
-        let now = view.plan.sheet(Part::Detail);
+        let now = view.plan.atlas(Part::Detail);
         assert_eq!((now.held, now.number), (at.tiles, number));
         assert!(view.is_right(&node, Part::Detail));
         let new: u32 = at
@@ -204,18 +204,18 @@ fn another_level_is_a_sheet_of_its_own_that_says_what_it_holds_when_it_is_whole(
     let node = Node::new([64, 64]);
     let mut view = View::default();
     view.settle(&node, &wanted(0, rect([10, 10], [20, 18])));
-    let old = view.plan.sheet(Part::Detail);
+    let old = view.plan.atlas(Part::Detail);
     let next = wanted(1, rect([4, 4], [12, 10]));
     let mut parts = 0;
-    while view.plan.sheet(Part::Detail).held.is_empty()
-        || view.plan.sheet(Part::Detail).number == old.number
+    while view.plan.atlas(Part::Detail).held.is_empty()
+        || view.plan.atlas(Part::Detail).number == old.number
     {
         view.turn(&node, &next);
         parts += 1;
         assert!(parts < 20);
     }
     assert!(parts > 2, "it came in parts");
-    assert_eq!(view.plan.sheet(Part::Detail).held, next.tiles);
+    assert_eq!(view.plan.atlas(Part::Detail).held, next.tiles);
     assert!(view.is_right(&node, Part::Detail));
 }
 
@@ -224,7 +224,7 @@ fn a_first_picture_comes_although_the_view_moves_meanwhile() {
     let node = Node::new([64, 64]);
     let mut view = View::default();
     let mut turns = 0;
-    while view.plan.sheet(Part::Detail).held.is_empty() {
+    while view.plan.atlas(Part::Detail).held.is_empty() {
         let x = 10 + turns / 4;
         view.turn(&node, &wanted(0, rect([x, 10], [x + 10, 18])));
         turns += 1;
@@ -283,12 +283,12 @@ fn another_start_and_another_light_bring_all_anew() {
     let mut view = View::default();
     let at = wanted(0, rect([10, 10], [20, 18]));
     view.settle(&node, &at);
-    let old = view.plan.sheet(Part::Detail);
+    let old = view.plan.atlas(Part::Detail);
     node.look += 1;
     for _ in 0..60 {
         view.turn(&node, &at);
     }
-    assert_eq!(view.plan.sheet(Part::Detail), old, "in the same picture");
+    assert_eq!(view.plan.atlas(Part::Detail), old, "in the same picture");
     assert!(view.is_right(&node, Part::Detail) && view.is_right(&node, Part::Base));
     // The light changes while a strip is on its way.
     let moved = wanted(0, rect([12, 10], [22, 18]));
@@ -307,7 +307,7 @@ fn another_start_and_another_light_bring_all_anew() {
     for _ in 0..60 {
         view.turn(&node, &moved);
     }
-    assert_ne!(view.plan.sheet(Part::Detail).number, old.number);
+    assert_ne!(view.plan.atlas(Part::Detail).number, old.number);
     assert!(view.is_right(&node, Part::Detail) && view.is_right(&node, Part::Base));
 }
 
@@ -331,13 +331,13 @@ fn a_question_that_waits_is_late_when_the_view_wants_something_else() {
 #[test]
 fn wet_paint_that_is_to_be_told_is_another_picture() {
     let tiles = TileRect::up_to([4, 4]);
-    let (dry, mut plan) = (wanted(0, tiles), Plan::default());
+    let (dry, mut plan) = (wanted(0, tiles), TilePlanner::default());
     plan.next(&dry);
-    let first = plan.sheet(Part::Detail).number;
+    let first = plan.atlas(Part::Detail).number;
     plan.next(&dry);
-    assert_eq!(plan.sheet(Part::Detail).number, first);
+    assert_eq!(plan.atlas(Part::Detail).number, first);
     let wet = Wanted { wet: true, ..dry };
     plan.next(&wet);
-    let sheet = plan.sheet(Part::Detail);
-    assert!(sheet.wet && sheet.number > first, "{sheet:?}");
+    let atlas = plan.atlas(Part::Detail);
+    assert!(atlas.wet && atlas.number > first, "{atlas:?}");
 }

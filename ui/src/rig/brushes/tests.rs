@@ -26,7 +26,7 @@ struct Rig {
     states: Sender<BrushState>,
     _def: Sender<BrushDef>,
     model: BrushModel,
-    follower: Follower,
+    tracker: BrushTracker,
     desk: Desk,
     /// When the pen was sampled last.
     sampled_ns: u64,
@@ -55,7 +55,7 @@ impl Rig {
             pen: Sender::new(&bus, &topics.sample("pen"), real_time, PEN).expect("a pen"),
             states: Sender::new(&bus, &topics.brush_state("main"), real_time, BRUSH)
                 .expect("states"),
-            follower: Follower::new(&bus, &topics, &Wake::new(), shares, quiet)
+            tracker: BrushTracker::new(&bus, &topics, &Wake::new(), shares, quiet)
                 .expect("a follower"),
             _def: def,
             desk: Desk::of(&scene),
@@ -81,8 +81,8 @@ impl Rig {
 
     fn turn(&mut self) -> Option<(Rigid, u32, Vec<[f32; 2]>)> {
         self.net.advance(5_000_000);
-        self.follower.take_in(self.bus.now_ns());
-        let held = self.follower.held(&self.desk).next()?;
+        self.tracker.take_in(self.bus.now_ns());
+        let held = self.tracker.held(&self.desk).next()?;
         Some((held.brush, held.plane.id, held.angles))
     }
 }
@@ -170,7 +170,7 @@ fn a_brush_has_the_paint_that_was_told_newest() {
         rig.sample(&pen(0.0, 0.4));
         looks.send(0, 0, look).expect("sent");
         rig.turn();
-        let held = rig.follower.held(&rig.desk).next();
+        let held = rig.tracker.held(&rig.desk).next();
         held.expect("a brush").coat.map(|coat| coat.at(0, 0.5))
     };
     let [blue, red] = [[0.0, 0.0, 1.0, 1.0], [1.0, 0.0, 0.0, 0.5]];

@@ -20,7 +20,7 @@ struct InHand {
     plane: Plane,
     brush: Rigid,
     angles: Vec<[f32; 2]>,
-    coat: Option<Arc<Coat>>,
+    coat: Option<Arc<PaintColour>>,
 }
 
 impl InHand {
@@ -95,8 +95,8 @@ impl InHand {
         self
     }
 
-    fn held(&self) -> Held<'_> {
-        Held {
+    fn held(&self) -> BrushPose<'_> {
+        BrushPose {
             name: &self.file.kind,
             file: &self.file,
             plane: self.plane,
@@ -112,13 +112,13 @@ impl InHand {
 type Greys<'a> = &'a [(Rect, u8)];
 
 /// A picture of brushes over even greys, one pixel a point.
-struct Studio {
+struct RigState {
     scene: Scene,
     view: View,
     picture: Offscreen,
 }
 
-impl Studio {
+impl RigState {
     /// So many pixels, so many of them a metre.
     fn new(size: [u32; 2], scale: f64) -> Self {
         let picture = Offscreen::new(size).expect("a Vulkan driver");
@@ -185,7 +185,7 @@ impl Studio {
                 desk: &desk,
                 pixels: Some(&pixels),
             };
-            let mut brushes = Brushes::new(gpu, &Export::default());
+            let mut brushes = BrushRenderer::new(gpu, &Export::default());
             shapes.extend(brushes.shapes(gpu, &hand.held(), &hand.head, &lamp, &below));
         }
         self.picture.draw(shapes).expect("drawn");
@@ -256,10 +256,10 @@ fn shadow_of(hand: &InHand, scene: &Scene) -> DVec3 {
 
 #[test]
 fn a_shadow_darkens_light_ground_and_lightens_black() {
-    let mut studio = Studio::new([500, 400], 3000.0);
-    let hands = [InHand::new("round", [0.0, 0.0], 0.0, &studio.scene).lifted(0.02)];
-    let at = studio.place(shadow_of(&hands[0], &studio.scene));
-    let mut seen = |greys: u8, taken: u8| studio.draw(&hands, &over(greys), &over(taken)).at(at)[1];
+    let mut rig = RigState::new([500, 400], 3000.0);
+    let hands = [InHand::new("round", [0.0, 0.0], 0.0, &rig.scene).lifted(0.02)];
+    let at = rig.place(shadow_of(&hands[0], &rig.scene));
+    let mut seen = |greys: u8, taken: u8| rig.draw(&hands, &over(greys), &over(taken)).at(at)[1];
     let (white, black) = (seen(240, 240), seen(0, 0));
     assert!(white < 215, "{white}");
     assert!(black > 15, "{black}");
@@ -269,13 +269,13 @@ fn a_shadow_darkens_light_ground_and_lightens_black() {
 
 #[test]
 fn a_shadow_gets_softer_and_farther_off_with_height() {
-    let mut studio = Studio::new([500, 360], 1500.0);
+    let mut rig = RigState::new([500, 360], 1500.0);
     let mut steepest = |lift: f64| {
-        let hand = InHand::new("round", [0.0, 0.0], 0.0, &studio.scene).lifted(lift);
-        let at = studio.place(shadow_of(&hand, &studio.scene));
-        let own = studio.place(hand.plane.to_desk.point(hand.brush.translation));
+        let hand = InHand::new("round", [0.0, 0.0], 0.0, &rig.scene).lifted(lift);
+        let at = rig.place(shadow_of(&hand, &rig.scene));
+        let own = rig.place(hand.plane.to_desk.point(hand.brush.translation));
         let off = at[0].abs_diff(own[0]);
-        let pixels = studio.draw(&[hand], &over(240), &over(240));
+        let pixels = rig.draw(&[hand], &over(240), &over(240));
         let row = |dx: i64| i64::from(pixels.at([(at[0] as i64 + dx) as usize, at[1]])[1]);
         let steps = (0..60).map(|dx| (row(dx + 1) - row(dx)).abs());
         (steps.max().expect("some"), off)
@@ -287,15 +287,15 @@ fn a_shadow_gets_softer_and_farther_off_with_height() {
 
 #[test]
 fn a_shadow_falls_on_the_raised_palette_where_that_is_and_beside_it_on_the_canvas() {
-    let mut studio = Studio::new([600, 400], 2500.0);
+    let mut rig = RigState::new([600, 400], 2500.0);
     let palette = |scene: &Scene| Desk::of(scene).plane(PALETTE).copied().expect("a palette");
     // The right edge of the palette goes through the middle of the view.
-    let own = palette(&studio.scene);
-    studio.scene.surfaces[1].pose.position_m = [-own.size_m[0], -0.1, 0.0];
-    let hands = [InHand::new("flat", [0.03, 0.0], 0.0, &studio.scene).lifted(0.07)];
+    let own = palette(&rig.scene);
+    rig.scene.surfaces[1].pose.position_m = [-own.size_m[0], -0.1, 0.0];
+    let hands = [InHand::new("flat", [0.03, 0.0], 0.0, &rig.scene).lifted(0.07)];
     let mut drawn = |height_m: f64| {
-        studio.scene.surfaces[1].pose.position_m[2] = height_m;
-        studio.draw(&hands, &over(230), &over(230))
+        rig.scene.surfaces[1].pose.position_m[2] = height_m;
+        rig.draw(&hands, &over(230), &over(230))
     };
     let (even, raised) = (drawn(0.0), drawn(0.03));
     let differ = |from: usize, to: usize| {
@@ -316,11 +316,11 @@ fn a_shadow_falls_on_the_raised_palette_where_that_is_and_beside_it_on_the_canva
 
 #[test]
 fn a_brush_loaded_beside_shows_two_paints_and_a_clean_one_its_hair() {
-    let mut studio = Studio::new([400, 300], 6000.0);
-    let hand = || InHand::new("flat", [0.0, 0.0], 0.0, &studio.scene).lifted(0.01);
+    let mut rig = RigState::new([400, 300], 6000.0);
+    let hand = || InHand::new("flat", [0.0, 0.0], 0.0, &rig.scene).lifted(0.01);
     let [clean, beside] = [hand(), hand().loaded(BLUE, YELLOW)];
     let mut count = |hand: InHand| {
-        let pixels = studio.draw(&[hand], &over(128), &over(128));
+        let pixels = rig.draw(&[hand], &over(128), &over(128));
         let mut counts = [0; 3];
         for pixel in pixels.bytes.chunks_exact(4) {
             let [r, g, b] = [0, 1, 2].map(|i| i32::from(pixel[i]));
@@ -345,7 +345,7 @@ fn a_sheet_of_all_brushes() {
     let cell = vec2(108.0, 230.0);
     let size = [cell.x as u32 * library.len() as u32, 2 * cell.y as u32];
     let scale = 2300.0;
-    let mut studio = Studio::new(size, scale);
+    let mut rig = RigState::new(size, scale);
     let rows: [(u8, f64, bool); 2] = [(236, 0.0, false), (12, 0.5, true)];
     let grey = |(row, (grey, ..)): (usize, &(u8, f64, bool))| {
         let from = pos2(0.0, row as f32 * cell.y);
@@ -362,7 +362,7 @@ fn a_sheet_of_all_brushes() {
                 (f64::from(cell.x) * (column as f64 + 0.60) - 0.5 * f64::from(size[0])) / scale,
                 -(f64::from(cell.y) * (row as f64 + 0.82) - 0.5 * f64::from(size[1])) / scale,
             ];
-            let hand = InHand::new(kind, at, *pressure, &studio.scene);
+            let hand = InHand::new(kind, at, *pressure, &rig.scene);
             let lift = if *pressure > 0.0 { 0.0 } else { 0.008 };
             let hand = hand.lifted(lift);
             hands.push(if *loaded {
@@ -372,7 +372,7 @@ fn a_sheet_of_all_brushes() {
             });
         }
     }
-    let pixels = studio.draw(&hands, &greys, &greys);
+    let pixels = rig.draw(&hands, &greys, &greys);
     pixels.keep("brush-3d.png");
-    assert!(pixels != studio.draw(&[], &greys, &greys));
+    assert!(pixels != rig.draw(&[], &greys, &greys));
 }
