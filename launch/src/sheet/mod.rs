@@ -258,7 +258,8 @@ pub fn sheet(
         let file = library_brush(kind)?;
         let size = [SIDE_MM - 20.0, row].map(|mm| sheet.pixels(mm));
         let scale = 1e3 * PORTRAIT_SCALE / cell_mm;
-        let head = maulstick_ui::portrait::portrait(&file, size[0], size[1], scale);
+        let head =
+            maulstick_ui::render::brush::thumbnail::brush_thumbnail(&file, size[0], size[1], scale);
         let at = [18.75, y].map(|mm| sheet.pixels(mm));
         sheet.page.portray(&head, at);
         sheet.write(kind, [GAP_MM, y + 6.5], 6.0);
