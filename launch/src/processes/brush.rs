@@ -15,7 +15,7 @@ use crate::performance::brush_file;
 
 /// Follows a stylus with a brush
 #[derive(clap::Args, Debug)]
-pub(super) struct BrushOptions {
+pub(crate) struct BrushOptions {
     #[command(flatten)]
     node: NodeOptions,
     /// The brush of rig.toml

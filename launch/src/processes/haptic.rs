@@ -11,7 +11,7 @@ use super::{NodeOptions, device_named};
 
 /// Drives a force-feedback stylus
 #[derive(clap::Args, Debug)]
-pub(super) struct HapticOptions {
+pub(crate) struct HapticOptions {
     #[command(flatten)]
     node: NodeOptions,
     /// The device of rig.toml

@@ -15,7 +15,7 @@ const RECORDER: &str = "-recorder";
 
 /// Reads a pen tablet or a 6-DOF mouse
 #[derive(clap::Args, Debug)]
-pub(super) struct HidOptions {
+pub(crate) struct HidOptions {
     #[command(flatten)]
     node: NodeOptions,
     /// The device of rig.toml

@@ -25,7 +25,7 @@ pub const PLAYER: &str = "player";
 
 /// A process of a rig, with its options.
 #[derive(clap::Subcommand, Debug)]
-pub enum NodeCommand {
+pub(crate) enum NodeCommand {
     /// Move a brush by the samples of styluses
     Brush(brush::BrushOptions),
     /// Paint the strokes of the brushes
@@ -44,7 +44,7 @@ pub enum NodeCommand {
 ///
 /// # Errors
 /// A [`Fault`].
-pub fn run(command: &NodeCommand) -> Result<i32, Fault> {
+pub(crate) fn run(command: &NodeCommand) -> Result<i32, Fault> {
     command.program().name_this_process();
     match command {
         NodeCommand::Brush(options) => brush::run(options),

@@ -27,7 +27,7 @@ const LAST_TURNS: u32 = 8;
 
 /// Paints what the brushes do
 #[derive(clap::Args, Debug)]
-pub(super) struct PaintOptions {
+pub(crate) struct PaintOptions {
     #[command(flatten)]
     node: NodeOptions,
 }

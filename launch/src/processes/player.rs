@@ -14,7 +14,7 @@ use crate::performance::refused;
 
 /// Plays a take as a device
 #[derive(clap::Args, Debug)]
-pub(super) struct PlayerOptions {
+pub(crate) struct PlayerOptions {
     #[command(flatten)]
     node: NodeOptions,
     /// The take

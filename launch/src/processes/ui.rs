@@ -9,7 +9,7 @@ use crate::performance::library_from;
 
 /// Shows the painting and lends the mouse as a stylus
 #[derive(clap::Args, Debug)]
-pub(super) struct UiOptions {
+pub(crate) struct UiOptions {
     #[command(flatten)]
     node: NodeOptions,
 }

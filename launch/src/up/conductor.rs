@@ -16,7 +16,7 @@ use maulstick_types::stylus::{TakeEnd, TakeStatus};
 use maulstick_types::topics::Topics;
 
 use crate::outputs::Relayed;
-use crate::processes::PLAYER;
+use crate::processes::{PLAYER, Program};
 use crate::up::plan::{NodeSpec, Role, node};
 
 /// What is played, and what becomes of it.

@@ -262,7 +262,7 @@ impl BrushLoad {
         if own == strips {
             return self.clone();
         }
-        if finer.strips() != own.max(strips) {
+        if own == 0 || finer.strips() != own.max(strips) {
             return Self::spread(strips, &self.counts());
         }
         let mut load = Self::clean(strips);
@@ -431,25 +431,28 @@ mod tests {
         for other in [&on_few, &again] {
             assert_eq!((other.counts(), other.seed()), (load.counts(), load.seed()));
         }
-        let right = |load: &BrushLoad, roots: &[[f32; 2]]| -> u64 {
-            let right = |strip: &usize| roots[*strip][0] > 0.1;
-            let strips = (0..load.texels() / ALONG).filter(right);
-            strips
-                .map(|strip| u64::from(load.film(strip * ALONG)))
-                .sum()
-        };
         let roots = head.roots();
         assert_eq!(&roots[..112], Head::of(&few).roots());
-        let whole: u64 = load.films().iter().map(|film| u64::from(*film)).sum();
-        assert!(right(&on_few, &roots[..112]) < whole / 1000);
-        assert!(right(&again, roots) < whole / 1000);
-        let mut evenly = BrushLoad::spread(112, &load.counts());
-        evenly.count_films();
-        let inside = evenly.inside(3).expect("spread");
-        assert!(
-            inside.iter().all(|count| *count > 0),
-            "a fault passes: spread evenly"
-        );
+        let is_left = |load: &BrushLoad| {
+            let right = |texel: &usize| roots[*texel / ALONG][0] > 0.1;
+            let inside = load.inside(3).expect("carried");
+            let carried = |texel| u64::from(load.film(texel)) + u64::from(inside[texel]);
+            let whole: u64 = (0..load.texels()).map(carried).sum();
+            let right: u64 = (0..load.texels()).filter(right).map(carried).sum();
+            right < whole / 1000
+        };
+        assert!(is_left(&load) && is_left(&on_few) && is_left(&again));
+        let evenly = BrushLoad::spread(112, &load.counts());
+        assert!(!is_left(&evenly), "a fault passes: spread evenly");
+    }
+
+    /// A page that cannot be read is a load of no strips.
+    #[test]
+    fn no_strips_carry_nothing() {
+        let head = Head::of(&BrushFile::library("flat").expect("flat"));
+        let load = BrushLoad::clean(0).onto(head.strips(), &head);
+        assert_eq!(load.texels(), head.strips() * ALONG);
+        assert_eq!(load.counts(), [0; SLOTS]);
     }
 
     #[test]

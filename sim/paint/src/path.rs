@@ -13,7 +13,7 @@ const STILL: f64 = 0.02;
 /// A longer motion is no motion of a hand: nothing is painted on its way, m of the brush.
 const LEAP_M: f64 = 2.0;
 /// A motion so many times as long as a step is painted as one that is doubled.
-const OVER: f64 = 1.5;
+const DOUBLED_FROM: f64 = 1.5;
 /// Doublings of a step at most.
 const MOST_DOUBLINGS: u32 = 2;
 /// A motion short of a step by less than this share is one.
@@ -27,6 +27,7 @@ pub struct PathStepper {
     /// Where it has come to since, less than a step on.
     ahead: Option<Waypoint>,
     scale: Scale,
+    doublings: u32,
 }
 
 impl PathStepper {
@@ -40,6 +41,7 @@ impl PathStepper {
             stepped,
             ahead: None,
             scale,
+            doublings: 0,
         }
     }
 
@@ -64,17 +66,27 @@ impl PathStepper {
         self.scale
     }
 
-    /// Moves on to `to` and calls `step` for each step on the way, with how many times it is doubled: as often as
-    /// the way to `to` is, unless it is the last of another way.
+    /// Length of its steps by the brush's own.
+    #[must_use]
+    pub fn longer(&self) -> u32 {
+        1 << self.doublings
+    }
+
+    /// Moves on to `to` in steps that are doubled so many times, those of a blade never, and calls `step` for each,
+    /// with its doublings: they follow from its length, so that a path that was kept ends as it would have.
     pub fn advance(
         &mut self,
         head: &Head,
         (to, doublings): (Waypoint, u32),
         mut step: impl FnMut(Sweep<'_>, u32),
     ) {
-        let whole = self.scale.step_cells(head.is_fine()) * f64::from(1 << doublings);
+        self.doublings = if head.is_fine() { 0 } else { doublings };
+        let whole = self.scale.step_cells(head.is_fine()) * f64::from(self.longer());
         let mut next = HeadPose::default();
         to.pose(head, self.scale, &mut next);
+        if self.doublings > 0 {
+            self.turn(head, &next, &mut step);
+        }
         let motion = motion(&self.stepped, &next);
         if motion > LEAP_M / (self.scale.cell_m * self.scale.zoom) {
             *self = Self::begin(head, to, self.scale);
@@ -96,6 +108,20 @@ impl PathStepper {
         }
     }
 
+    /// Steps to where the brush turns back within a long step: the way there and back would be lost.
+    fn turn(&mut self, head: &Head, next: &HeadPose, step: &mut impl FnMut(Sweep<'_>, u32)) {
+        let Some(ahead) = self.ahead.take() else {
+            return;
+        };
+        let mut there = HeadPose::default();
+        ahead.pose(head, self.scale, &mut there);
+        let turns = motion(&self.stepped, next) < motion(&self.stepped, &there);
+        match turns {
+            true => self.step_to(head, ahead, step),
+            false => self.ahead = Some(ahead),
+        }
+    }
+
     fn step_to(&mut self, head: &Head, to: Waypoint, step: &mut impl FnMut(Sweep<'_>, u32)) {
         let mut next = HeadPose::default();
         to.pose(head, self.scale, &mut next);
@@ -104,7 +130,7 @@ impl PathStepper {
             return;
         }
         let own = self.scale.step_cells(head.is_fine());
-        let longer = |doublings: &u32| motion > own * f64::from(1 << doublings) * OVER;
+        let longer = |doublings: &u32| motion > own * f64::from(1 << doublings) * DOUBLED_FROM;
         let sweep = Sweep {
             from: &self.stepped,
             to: &next,
@@ -169,9 +195,9 @@ mod tests {
             prop_assert!((last - 0.4).abs() < 1e-3, "{}", last);
         }
 
-        /// Doubled steps are as long as they say, and what is left at the end says how long it is.
+        /// A step is as long as its doublings say, the last one too.
         #[test]
-        fn doubled_steps_are_told_by_their_length(doublings in 0..3u32, cells in 5.0..30.0f64) {
+        fn doublings_follow_from_the_length(doublings in 0..3u32, cells in 5.0..30.0f64) {
             let head = Head::of(&BrushFile::library("round").expect("round"));
             let mut path = PathStepper::begin(&head, waypoint(0.1), SCALE);
             let mut steps = Vec::new();
@@ -183,7 +209,23 @@ mod tests {
             let full = steps.iter().filter(|step| (step.0 / whole - 1.0).abs() < 1e-3);
             prop_assert!(full.clone().count() as f64 + 1.01 > cells / whole);
             prop_assert!(full.clone().all(|step| step.1 == doublings));
-            prop_assert!(steps.iter().all(|step| step.0 <= f64::from(1 << step.1) * OVER + 1e-3));
+            prop_assert!(steps.iter().all(|step| step.0 <= f64::from(1 << step.1) * DOUBLED_FROM + 1e-3));
+        }
+
+        /// To and fro within a long step, a brush goes all of the way but what it has not turned back from.
+        #[test]
+        fn a_long_step_ends_where_the_brush_turns(swings in prop::collection::vec(0.3..3.5f64, 2..9)) {
+            let head = Head::of(&BrushFile::library("round").expect("round"));
+            let mut path = PathStepper::begin(&head, waypoint(0.1), SCALE);
+            let (mut way, mut stepped) = (0.0, 0.0);
+            let mut note = |sweep: Sweep<'_>, _: u32| stepped += motion(sweep.from, sweep.to);
+            for cells in swings {
+                path.advance(&head, (waypoint(0.1 + cells * 2.5e-4), 2), &mut note);
+                path.advance(&head, (waypoint(0.1), 2), &mut note);
+                way += 2.0 * cells;
+            }
+            path.end(&head, &mut note);
+            prop_assert!((stepped - way).abs() < 0.01 * way, "{stepped} of {way} cells");
         }
 
         /// A path that was kept goes on as the one that was not.
@@ -206,5 +248,21 @@ mod tests {
             let goes_on = second > 5.0;
             prop_assert_eq!(rest(&mut path, goes_on), rest(&mut kept, goes_on));
         }
+    }
+
+    #[test]
+    fn the_steps_of_a_blade_grow_never() {
+        let lengths = |brush: &str| {
+            let head = Head::of(&BrushFile::library(brush).expect("in the library"));
+            let mut path = PathStepper::begin(&head, waypoint(0.1), SCALE);
+            let mut steps = Vec::new();
+            path.advance(&head, (waypoint(0.104), 2), |sweep, doublings| {
+                steps.push((motion(sweep.from, sweep.to), doublings));
+            });
+            steps
+        };
+        let is_short = |(cells, doublings): &(f64, u32)| *cells < 1.01 && *doublings == 0;
+        assert!(lengths("knife").iter().all(is_short));
+        assert!(!lengths("round").iter().all(is_short), "a fault passes");
     }
 }

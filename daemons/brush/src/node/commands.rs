@@ -7,6 +7,7 @@ use maulstick_types::command::{BRUSH_FILE_MAX, Command, CommandReply, CommandReq
 use maulstick_types::{Flags, encode, name_hash};
 
 use super::BrushNode;
+use super::pace::Pace;
 use crate::path_simplifier::PathSimplifier;
 
 /// Why a command was not done, and what to do.
@@ -121,7 +122,7 @@ impl BrushNode {
             return refused(what, "lift it, or let the take end, and ask again");
         }
         define(&mut self.def, now_ns, &self.settings.name, &file)?;
-        self.backlog = PathSimplifier::new(file.length_m());
+        (self.backlog, self.pace) = (PathSimplifier::new(file.length_m()), Pace::default());
         self.model.take_up(file);
         Ok(Ok(()))
     }

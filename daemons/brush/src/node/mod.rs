@@ -328,7 +328,7 @@ impl BrushNode {
         if !received.header.flags.has(Flags::REPLAY) {
             let sample = received.message;
             let place = self.place(&sample);
-            self.pace.hear(now_ns, place);
+            self.pace.note(now_ns, place);
             self.backlog.push(Waiting {
                 origin,
                 seq,
@@ -387,12 +387,11 @@ impl BrushNode {
             .iter()
             .map(|w| (w.origin.source, w.origin.epoch))
             .collect();
-        let flag = self.pace.solve(now_ns);
         let mut solves: Vec<Solve> = waiting
             .iter()
             .flat_map(|w| self.model.follow(w.origin, w.event_ns, &w.sample))
             .collect();
-        solves.iter_mut().for_each(|solve| solve.flags |= flag);
+        self.pace.flag(now_ns, &mut solves);
         let state = BrushState {
             device: last.origin.source,
             device_epoch: last.origin.epoch,

@@ -1,74 +1,95 @@
-//! How long the steps of a stroke are that is painted late: twice as long where its samples have waited for a tenth
-//! of a second, four times where for a fifth, until the brush lifts. So a brush that is too large for the machine
-//! stays near its hand. The solves say it, so the journal paints them again as they were.
+//! Length of the steps of a stroke whose paint is late: doubled once its samples have waited for a tenth of a second,
+//! twice for a fifth, to its end. A brush that is too large for the machine so stays near its hand. Its solves carry
+//! the doublings, so the journal paints them again as they were.
 
-use maulstick_types::brush::solve_flags;
+use maulstick_types::brush::{Solve, solve_flags};
 
 use crate::path_simplifier::Place;
 
-/// Samples that have waited so long are painted in steps twice as long, ns.
+/// Wait of a sample from which steps are doubled, ns.
 const LATE_NS: u64 = 100_000_000;
-/// See [`LATE_NS`]: four times.
+/// Wait of a sample from which steps are doubled twice, ns.
 const VERY_LATE_NS: u64 = 200_000_000;
 
 /// The pace of a stroke.
 #[derive(Debug, Default)]
 pub(super) struct Pace {
-    /// When the oldest sample that waits was heard, rig clock, ns.
+    /// When the oldest waiting sample on the surface arrived, rig clock, ns.
     since_ns: Option<u64>,
-    /// The flag of the stroke's solves.
+    /// Flag of the solves of `stroke`.
     flag: u32,
-    /// Whether the brush has lifted among what waits.
-    lifts: bool,
+    stroke: u64,
 }
 
 impl Pace {
-    /// Notes a sample that is to be solved.
-    pub(super) fn hear(&mut self, now_ns: u64, place: Place) {
-        self.since_ns.get_or_insert(now_ns);
-        self.lifts |= place == Place::Air;
+    /// Notes a sample that waits to be solved.
+    pub(super) fn note(&mut self, now_ns: u64, place: Place) {
+        if place == Place::Surface {
+            self.since_ns.get_or_insert(now_ns);
+        }
     }
 
-    /// The flag of what waited and is solved now.
-    pub(super) fn solve(&mut self, now_ns: u64) -> u32 {
+    /// Flags the solves of all that waited.
+    pub(super) fn flag(&mut self, now_ns: u64, solves: &mut [Solve]) {
         let since_ns = self.since_ns.take().unwrap_or(now_ns);
-        let flag = match now_ns.saturating_sub(since_ns) {
+        let late = match now_ns.saturating_sub(since_ns) {
             VERY_LATE_NS.. => solve_flags::FOUR_TIMES,
             LATE_NS.. => solve_flags::TWICE,
             _ => 0,
         };
-        let flag = flag.max(self.flag);
-        self.flag = if self.lifts { 0 } else { flag };
-        self.lifts = false;
-        flag
+        for solve in solves {
+            if solve.stroke != self.stroke {
+                (self.stroke, self.flag) = (solve.stroke, 0);
+            }
+            if solve.stroke != 0 {
+                self.flag = self.flag.max(late);
+                solve.flags |= self.flag;
+            }
+        }
     }
 }
 
 #[cfg(test)]
 mod tests {
+    use maulstick_types::Pose;
+
     use super::*;
 
     const MS: u64 = 1_000_000;
 
+    fn solve(stroke: u64) -> Solve {
+        Solve {
+            event_ns: 0,
+            stroke,
+            surface: 0,
+            flags: 0,
+            pose: Pose::IDENTITY,
+            zoom: 1.0,
+            angles_rad: Vec::new(),
+            contacts: Vec::new(),
+        }
+    }
+
     #[test]
-    fn steps_grow_with_the_wait_until_the_brush_lifts() {
+    fn steps_grow_with_the_wait_to_the_end_of_the_stroke() {
         let mut pace = Pace::default();
         let mut now_ns = 0;
-        let mut wait = |ms: u64, place: Place| {
-            pace.hear(now_ns, place);
+        let mut wait = |ms: u64, place: Place, strokes: &[u64]| -> Vec<u32> {
+            pace.note(now_ns, place);
             now_ns += ms * MS;
-            pace.hear(now_ns, Place::Surface);
-            pace.solve(now_ns)
+            pace.note(now_ns, Place::Surface);
+            let mut solves: Vec<_> = strokes.iter().map(|stroke| solve(*stroke)).collect();
+            pace.flag(now_ns, &mut solves);
+            solves.iter().map(|solve| solve.flags).collect()
         };
-        assert_eq!(wait(99, Place::Surface), 0);
-        assert_eq!(wait(100, Place::Surface), solve_flags::TWICE);
-        assert_eq!(
-            wait(5, Place::Surface),
-            solve_flags::TWICE,
-            "for the whole stroke"
-        );
-        assert_eq!(wait(250, Place::Surface), solve_flags::FOUR_TIMES);
-        assert_eq!(wait(150, Place::Air), solve_flags::FOUR_TIMES);
-        assert_eq!(wait(5, Place::Surface), 0, "another stroke");
+        const TWICE: u32 = solve_flags::TWICE;
+        const FOUR_TIMES: u32 = solve_flags::FOUR_TIMES;
+        assert_eq!(wait(99, Place::Surface, &[1]), [0]);
+        assert_eq!(wait(100, Place::Surface, &[1]), [TWICE]);
+        assert_eq!(wait(5, Place::Surface, &[1]), [TWICE], "the same stroke");
+        assert_eq!(wait(250, Place::Surface, &[1, 0]), [FOUR_TIMES, 0]);
+        assert_eq!(wait(5, Place::Surface, &[2]), [0], "another stroke");
+        assert_eq!(wait(250, Place::Air, &[3]), [0], "a hover is no wait");
+        assert_eq!(wait(150, Place::Surface, &[3, 0, 4]), [TWICE, 0, TWICE]);
     }
 }

@@ -45,7 +45,7 @@ use crate::tuft::Tuft;
 /// A ferrule thinner than so many strips is a line.
 const THIN: f64 = 1.5;
 /// Strips narrower than so many cells cannot be told apart.
-const SEEN: f64 = 2.0;
+const MOST_CELLS_WIDE: f64 = 2.0;
 /// The fewest strips of a thinned head.
 const FEWEST: usize = 24;
 /// A width beyond by less than this share is not beyond.
@@ -200,10 +200,10 @@ impl BrushFile {
     }
 
     /// The brush with as many strips as cells of `cell_m` can tell apart: halved as long as they are narrower than
-    /// [`SEEN`] cells even so.
+    /// [`MOST_CELLS_WIDE`] cells even so.
     #[must_use]
     pub fn thinned(&self, cell_m: f64) -> Self {
-        let most = SEEN * cell_m * (1.0 + ROUNDING);
+        let most = MOST_CELLS_WIDE * cell_m * (1.0 + ROUNDING);
         self.halved_while(|brush| brush.strips.width_mm * 1e-3 <= most)
     }
 

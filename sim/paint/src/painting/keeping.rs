@@ -279,7 +279,6 @@ impl Painting {
             pager,
             versions: kept.versions,
             steps: kept.steps,
-            longer: 1,
             footprint_cells: kept.footprint_cells,
             span_ns: kept.span_ns,
             clock: kept.clock,
@@ -322,11 +321,11 @@ fn restored_track(
         )
     })?;
     let content = load.as_ref().map(Page::get);
-    let seen = match &content {
-        Some(load) => file.thinned_to(load.texels() / ALONG),
-        None => file.thinned(sheets[0].cell_m),
+    let thinned = match &content {
+        Some(load) if load.texels() > 0 => file.thinned_to(load.texels() / ALONG),
+        _ => file.thinned(sheets[0].cell_m),
     };
-    let tidy = Arc::new(Head::of(&seen));
+    let tidy = Arc::new(Head::of(&thinned));
     let head = Arc::new(tidy.disordered(brush.seed));
     let path = brush.path.and_then(|(surface, scale, at, ahead)| {
         let sheet = sheets.iter().position(|sheet| sheet.id == surface)?;
@@ -344,7 +343,7 @@ fn restored_track(
     Ok(BrushTrack {
         under: UnderBrush::default(),
         file,
-        seen,
+        thinned,
         tidy,
         head,
         load,

@@ -123,7 +123,7 @@ impl Painting {
         track.deferral = Deferral::default();
         let load = Arc::make_mut(&mut track.load);
         let left = load.take_all();
-        let traits = BrushTraits::of(&track.seen, cell_m, 1.0);
+        let traits = BrushTraits::of(&track.thinned, cell_m, 1.0);
         for (slots, half) in parts {
             load.fill(&track.tidy, &traits, slots, thinner, (*half, seed));
         }
@@ -170,12 +170,14 @@ impl Painting {
         self.brush(brush)?;
         self.all_slots(loads)?;
         self.close_windows();
+        let cell_m = self.sheets[0].cell_m;
         let track = self.brush(brush)?;
         track.loads = loads.to_vec();
         (track.strokes, track.seed) = (0, 0);
-        track.head = track.disordered();
         track.stroke = None;
         track.path = None;
+        track.head = track.disordered();
+        track.thin_for(cell_m);
         Ok(())
     }
 
@@ -183,7 +185,7 @@ impl Painting {
     pub fn carried(&self) -> impl Iterator<Item = (&str, Carried)> {
         let cell_m = self.sheets[0].cell_m;
         self.brushes.iter().map(move |(name, track)| {
-            let traits = BrushTraits::of(&track.seen, cell_m, 1.0);
+            let traits = BrushTraits::of(&track.thinned, cell_m, 1.0);
             let carried = Carried {
                 load: Arc::clone(&track.load),
                 hair: track.file.head.hair,

@@ -108,7 +108,7 @@ const SEEDS: u64 = 0x7fff_ffff;
 struct BrushTrack {
     file: BrushFile,
     /// The brush with as many strips as cells can tell apart.
-    seen: BrushFile,
+    thinned: BrushFile,
     /// Its head as its file has it.
     tidy: Arc<Head>,
     /// The same with its bristles as they lie since the newest stroke began.
@@ -138,19 +138,19 @@ impl BrushTrack {
         (self.strokes as u64 + 1).wrapping_mul(0x9e37_79b1) & SEEDS
     }
 
-    /// Has it seen on cells so wide, m, by as many strips as those can tell apart.
-    fn see(&mut self, cell_m: f64) {
-        let seen = self.file.thinned(cell_m);
-        if seen == self.seen {
+    /// Thins it to the strips that cells so wide, m, can tell apart.
+    fn thin_for(&mut self, cell_m: f64) {
+        let thinned = self.file.thinned(cell_m);
+        if thinned == self.thinned {
             return;
         }
-        let head = Arc::new(Head::of(&seen));
+        let head = Arc::new(Head::of(&thinned));
         let finer = match head.strips() > self.tidy.strips() {
             true => &head,
             false => &self.tidy,
         };
         self.load = Arc::new(self.load.onto(head.strips(), finer));
-        (self.kept, self.seen, self.tidy) = (None, seen, head);
+        (self.kept, self.thinned, self.tidy) = (None, thinned, head);
         self.head = self.disordered();
     }
 
@@ -186,8 +186,6 @@ pub struct Painting {
     pager: Arc<Pager>,
     versions: u64,
     steps: u64,
-    /// How many times longer than the brush's own the steps of the present stroke are.
-    longer: u32,
     footprint_cells: u64,
     span_ns: Option<(u64, u64)>,
     clock: Clock,
@@ -245,7 +243,6 @@ impl Painting {
             pager,
             versions: 1,
             steps: 0,
-            longer: 1,
             footprint_cells: 0,
             span_ns: None,
             clock: Clock::default(),
@@ -303,11 +300,14 @@ impl Painting {
         (self.steps, self.footprint_cells)
     }
 
-    /// How many times longer than the brush's own the steps of the present stroke are: 1, or more where painting was
-    /// late.
+    /// Length of the steps of the present strokes by the brushes' own, the longest: 1, or more where painting is late.
     #[must_use]
     pub fn longer(&self) -> u32 {
-        self.longer
+        let paths = self
+            .brushes
+            .values()
+            .filter_map(|track| track.path.as_ref());
+        paths.map(|(_, path)| path.longer()).max().unwrap_or(1)
     }
 
     /// Introduces a brush, or gives a known one another file; what it carries it keeps, spread anew
@@ -320,15 +320,15 @@ impl Painting {
         {
             return false;
         }
-        let seen = file.thinned(self.sheets[0].cell_m);
-        let head = Arc::new(Head::of(&seen));
+        let thinned = file.thinned(self.sheets[0].cell_m);
+        let head = Arc::new(Head::of(&thinned));
         self.close_windows();
         match self.brushes.get_mut(name) {
             Some(track) => {
                 if head.strips() != track.head.strips() {
                     track.load = BrushLoad::spread(head.strips(), &track.load.counts()).into();
                 }
-                (track.file, track.seen, track.path) = (file, seen, None);
+                (track.file, track.thinned, track.path) = (file, thinned, None);
                 track.tidy = head;
                 track.head = track.disordered();
             }
@@ -337,7 +337,7 @@ impl Painting {
                     load: BrushLoad::clean(head.strips()).into(),
                     kept: None,
                     file,
-                    seen,
+                    thinned,
                     tidy: Arc::clone(&head),
                     head,
                     stroke: None,
@@ -376,7 +376,7 @@ impl Painting {
         let mut brushes = self.brushes.iter();
         let found = brushes.find(|(name, _)| name_hash(name) == source);
         found.map_or(0.0, |(_, track)| {
-            let traits = BrushTraits::of(&track.seen, self.sheets[0].cell_m, 1.0);
+            let traits = BrushTraits::of(&track.thinned, self.sheets[0].cell_m, 1.0);
             track.load.fullness(&traits)
         })
     }

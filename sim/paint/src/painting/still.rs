@@ -41,7 +41,6 @@ impl Painting {
             pager: Arc::clone(&self.pager),
             versions: self.versions,
             steps: self.steps,
-            longer: 1,
             footprint_cells: self.footprint_cells,
             span_ns: self.span_ns,
             clock: Clock::default(),

@@ -65,6 +65,10 @@ impl Painting {
         if solve.flags & solve_flags::GLIMPSE != 0 {
             return Ok(());
         }
+        let scale = Scale {
+            cell_m: self.sheets[sheet].cell_m,
+            zoom: solve.zoom,
+        };
         let track = self.brush(name)?;
         if solve.stroke == 0 {
             self.lift(name)?;
@@ -80,22 +84,19 @@ impl Painting {
             if !rested {
                 self.disorder(name)?;
             }
+            self.thin(name, sheet, scale)?;
             self.begin_stroke(name)?;
         }
-        let scale = Scale {
-            cell_m: self.sheets[sheet].cell_m,
-            zoom: solve.zoom,
-        };
         let track = self.brush(name)?;
         let running = track
             .path
             .take_if(|(on, path)| *on == sheet && path.scale() == scale && !restarted);
         if running.is_none() {
             self.end_path(name)?;
-            self.see(name, sheet, scale)?;
+            self.thin(name, sheet, scale)?;
         }
         let track = self.brush(name)?;
-        let traits = BrushTraits::of(&track.seen, scale.cell_m, scale.zoom);
+        let traits = BrushTraits::of(&track.thinned, scale.cell_m, scale.zoom);
         let waypoint = Waypoint::of(solve, scale, self.seen_fullness(name, &traits)?);
         let track = self.brush(name)?;
         let head = Arc::clone(&track.head);
@@ -103,7 +104,6 @@ impl Painting {
             track.path = Some((sheet, PathStepper::begin(&head, waypoint, scale)));
             return Ok(());
         };
-        self.longer = 1 << solve.doublings();
         path.advance(&head, (waypoint, solve.doublings()), |sweep, doublings| {
             self.step(name, sheet, scale, (sweep, doublings));
         });
@@ -111,12 +111,12 @@ impl Painting {
         Ok(())
     }
 
-    /// Has a brush that comes down on the canvas seen as its cells tell strips apart. On a palette it stays as it is:
-    /// what its bristles carry would come together and be parted at each dip.
-    fn see(&mut self, name: &str, sheet: usize, scale: Scale) -> Result<(), PaintRefusal> {
+    /// Thins a brush that comes down on the canvas to the strips that its cells can tell apart. On a palette it stays
+    /// as it is: its load would be merged and parted at each dip.
+    fn thin(&mut self, name: &str, sheet: usize, scale: Scale) -> Result<(), PaintRefusal> {
         if self.sheets[sheet].id == CANVAS {
             self.settle();
-            self.brush(name)?.see(scale.cell_m * scale.zoom);
+            self.brush(name)?.thin_for(scale.cell_m * scale.zoom);
         }
         Ok(())
     }
@@ -125,7 +125,6 @@ impl Painting {
     fn lift(&mut self, name: &str) -> Result<(), PaintRefusal> {
         if let Some(sheet) = self.end_path(name)? {
             self.relax(name, sheet);
-            self.longer = 1;
         }
         Ok(())
     }
@@ -181,7 +180,7 @@ impl Painting {
         let Some(track) = self.brushes.get(name) else {
             return;
         };
-        let traits = BrushTraits::of(&track.seen, scale.cell_m, scale.zoom).doubled(doublings);
+        let traits = BrushTraits::of(&track.thinned, scale.cell_m, scale.zoom).doubled(doublings);
         let deferred = self.model.defers() && !self.has_wells(sheet);
         let height = if deferred {
             // How high paint stands is not known here.

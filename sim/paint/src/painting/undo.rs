@@ -325,13 +325,17 @@ impl Painting {
             track.load = Arc::clone(&load);
             track.kept = Some((load, page.clone()));
         } else {
-            let strips = load.texels() / ALONG;
-            let finer = match strips > track.tidy.strips() {
-                true => Arc::new(Head::of(&track.file.thinned_to(strips))),
-                false => Arc::clone(&track.tidy),
-            };
-            track.load = Arc::new(load.onto(track.tidy.strips(), &finer));
-            track.kept = None;
+            let thinned = track.file.thinned_to(load.texels() / ALONG);
+            let head = Head::of(&thinned);
+            if head.strips() * ALONG == load.texels() {
+                (track.thinned, track.tidy) = (thinned, Arc::new(head));
+                track.head = track.disordered();
+                track.load = Arc::clone(&load);
+                track.kept = Some((load, page.clone()));
+            } else {
+                track.load = Arc::new(load.onto(track.tidy.strips(), &track.tidy));
+                track.kept = None;
+            }
         }
     }
 
