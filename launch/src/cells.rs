@@ -16,7 +16,7 @@ const SIDE: std::ops::RangeInclusive<f64> = 1.0..=65_536.0;
 /// The cells of a sheet.
 #[derive(Args, Clone, Copy, Debug)]
 pub struct SheetCells {
-    /// Side of a cell, mm, .02 to 2: a pixel of the sheet [default: 0.125]
+    /// Side of a cell, mm, .02 to 2; a cell is a pixel of the sheet [default: 0.125]
     #[arg(long, value_name = "MM", value_parser = parse_cell_mm, allow_negative_numbers = true)]
     pub cell_mm: Option<f64>,
 }

@@ -18,30 +18,30 @@ use crate::viewing::illuminant;
 /// What is painted with, and on.
 #[derive(Args, Clone, Debug, Default)]
 pub struct KitOptions {
-    /// Size of the canvas in cells, for example 1024x1024
+    /// Size of the canvas in cells, such as 1024x1024
     #[arg(long, value_name = "WxH", value_parser = parse_size)]
     pub size: Option<[u32; 2]>,
-    /// Side of a cell, mm, .02 to 2; that of the take or of rig.toml if absent, and 0.125 where a take
-    /// or a script is painted without either
+    /// Side of a cell, mm, .02 to 2 [default: that of the take or of rig.toml; 0.125 where a take or a
+    /// script is painted without either]
     #[arg(long, value_name = "MM", value_parser = parse_cell_mm, allow_negative_numbers = true)]
     pub cell_mm: Option<f64>,
-    /// The brush: one of rig.toml, one of the library, or a brush file
+    /// Brush: of rig.toml, of the library, or a brush file
     #[arg(long, value_name = "NAME")]
     pub brush: Option<String>,
-    /// What each stroke loads, in turn; give it several times: "Cobalt Blue=0.7,Titanium White=0.3".
-    /// Without a take it is what the brush carries at the start
+    /// Mixture to load, such as "Cobalt Blue=0.7,Titanium White=0.3"; given several times, strokes load
+    /// them in turn. Without a take, what the brush carries at the start
     #[arg(long, value_name = "MIX")]
     pub load: Vec<String>,
-    /// A paint file of one's own, as `maulstick fit` makes it
+    /// Paint file of your own, as `maulstick fit` makes it
     #[arg(long, value_name = "FILE")]
     pub paints: Option<PathBuf>,
-    /// The light: A, D50, D65, FL2, FL8, FL11, or a CSV file of nm,power
+    /// Light: A, D50, D65, FL2, FL8, FL11, or a CSV file of nm,power
     #[arg(long, value_name = "NAME|FILE")]
     pub illuminant: Option<String>,
-    /// The ground: gesso, grey, black, a CSV file of nm,reflectance, or a picture
+    /// Ground: gesso, grey, black, a CSV file of nm,reflectance, or a picture
     #[arg(long, value_name = "NAME|FILE")]
     pub ground: Option<String>,
-    /// Keeps the cast of the light: the eye is not adapted to it
+    /// Keep the cast of the light: no white balance
     #[arg(long)]
     pub no_adapt: bool,
 }
@@ -49,21 +49,21 @@ pub struct KitOptions {
 /// Options of a painting. What they leave open is as the take embeds it, else as rig.toml says.
 #[derive(Args, Clone, Debug, Default)]
 pub struct PaintingOptions {
-    /// What is painted with, and on.
+    /// Brush, canvas, loads and light.
     #[command(flatten)]
     pub kit: KitOptions,
-    /// Most memory of a painting in a file, such as 512M; that of rig.toml if absent
+    /// Memory for a painting in a file, at most, such as 512M [default: that of rig.toml]
     #[arg(long, value_name = "SIZE")]
     pub memory: Option<String>,
-    /// Most room of its history, such as 2G; beyond that its oldest steps are merged. The painting keeps
-    /// to it from then on
+    /// Room for its history, at most, such as 2G; beyond that the oldest steps are merged. The painting
+    /// remembers it
     #[arg(long, value_name = "SIZE")]
     pub history: Option<String>,
-    /// What computes paint and colour: auto takes a graphics processor where there is one; that of
-    /// rig.toml if absent
+    /// Where paint and colour are computed; auto uses a graphics processor if there is one [default: that
+    /// of rig.toml]
     #[arg(long, value_name = "NAME", value_parser = BACKENDS)]
     pub backend: Option<String>,
-    /// Writes the ledger of the paint to this JSON file
+    /// Ledger of the paint to write, JSON
     #[arg(long, value_name = "FILE")]
     pub ledger: Option<PathBuf>,
 }

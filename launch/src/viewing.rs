@@ -13,19 +13,19 @@ use crate::performance::refused;
 /// How colours are looked at.
 #[derive(Args, Clone, Debug)]
 pub struct ViewingOptions {
-    /// The light: A, D50, D65, FL2, FL8, FL11, or a CSV file with the columns nm and power
+    /// Light: A, D50, D65, FL2, FL8, FL11, or a CSV file with the columns nm and power
     #[arg(long, value_name = "NAME|CSV", default_value = "D65")]
     pub illuminant: String,
-    /// The CIE observer
+    /// CIE observer
     #[arg(long, value_name = "YEAR", default_value = "1931")]
     pub observer: ObserverYear,
-    /// Which wavelengths are computed: chosen for the paints, by Gauss, or all 101
+    /// Wavelength rule: fitted to the paints, Gaussian, or all 101
     #[arg(long, value_name = "RULE", default_value = "fitted")]
     pub rule: RuleName,
-    /// How many wavelengths, 4 to 16
+    /// Number of wavelengths, 4 to 16
     #[arg(long, value_name = "N", default_value = "16", value_parser = clap::value_parser!(u8).range(4..=16))]
     pub samples: u8,
-    /// Shows the light's own cast; otherwise the eye has adapted to it (CAT16)
+    /// Show the cast of the light: no white balance (CAT16)
     #[arg(long)]
     pub no_adapt: bool,
 }
@@ -44,9 +44,9 @@ pub enum ObserverYear {
 /// A rule by its name.
 #[derive(ValueEnum, Clone, Copy, Debug, PartialEq, Eq)]
 pub enum RuleName {
-    /// Chosen for the paints and the light
+    /// Fitted to the paints and the light
     Fitted,
-    /// Gaussian quadrature over the light that the eye sees
+    /// Gaussian quadrature, weighted by the light and the eye
     Gauss,
     /// All 101 samples
     Reference,

@@ -14,12 +14,12 @@ use crate::commands::session::{RIG, Session, Target};
 /// Options of `maulstick new`.
 #[derive(Args, Clone, Debug)]
 pub struct NewOptions {
-    /// Its file, which is not there yet; without one it is in memory alone
+    /// New file for the painting [default: none, in memory only]
     file: Option<PathBuf>,
-    /// Size of the canvas in cm, for example 40x30; that of rig.toml if absent
+    /// Size of the canvas in cm, such as 40x30 [default: that of rig.toml]
     #[arg(long, value_name = "WxH", value_parser = parse_cm)]
     cm: Option<[f64; 2]>,
-    /// Cells a mm
+    /// Cells per mm
     #[arg(
         long,
         value_name = "N",
@@ -27,16 +27,16 @@ pub struct NewOptions {
         allow_negative_numbers = true
     )]
     cells_per_mm: f64,
-    /// The ground: gesso, grey, black, a CSV file of nm,reflectance, or a picture
+    /// Ground: gesso, grey, black, a CSV file of nm,reflectance, or a picture
     #[arg(long, value_name = "NAME|FILE", default_value = "gesso")]
     ground: String,
-    /// The tooth: linen, cotton, panel, paper
+    /// Tooth: linen, cotton, panel, paper
     #[arg(long, default_value = "linen")]
     tooth: String,
-    /// Another piece of the same cloth
+    /// Number of the pattern: another piece of the same cloth
     #[arg(long, default_value_t = 1)]
     seed: u64,
-    /// What was painted in memory alone may go
+    /// Discard the current painting if it is in memory only
     #[arg(long)]
     forget: bool,
     #[command(flatten)]

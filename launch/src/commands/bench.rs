@@ -10,16 +10,16 @@ use maulstick_rig::config::MODELS;
 /// Options of `maulstick bench`.
 #[derive(Args, Clone, Debug)]
 pub struct BenchOptions {
-    /// What to measure: brush, bus, document, frames, haptics, latency, optics, paint, render, view,
-    /// window; everything if absent
+    /// What to measure: brush, bus, document, frames, haptics, latency, looks, optics, paint, render,
+    /// view, window [default: everything]
     area: Option<String>,
-    /// The paint model that `paint` measures
+    /// Paint model to measure in `paint` [default: impasto]
     #[arg(long, value_name = "NAME", value_parser = MODELS)]
     model: Option<String>,
-    /// What computes its steps there
+    /// Where `paint` computes its steps [default: cpu]
     #[arg(long, value_name = "NAME", value_parser = ["cpu", "gpu"])]
     backend: Option<String>,
-    /// As JSON
+    /// Print JSON
     #[arg(long)]
     json: bool,
 }

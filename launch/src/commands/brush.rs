@@ -28,35 +28,35 @@ use crate::sheet::sheet;
 /// `maulstick brush`.
 #[derive(Subcommand, Clone, Debug)]
 pub enum BrushCommand {
-    /// Lists the brushes of the library
+    /// List the brushes of the library
     List(ListOptions),
-    /// Draws each brush and its marks
+    /// Draw each brush and its marks
     Sheet(SheetOptions),
-    /// Makes a brush file of a brush modelled in Blender
+    /// Convert a brush modelled in Blender to a brush file
     Import(ImportOptions),
-    /// Puts another brush into the hand of a running rig
+    /// Take another brush in hand
     Take(TakeOptions),
-    /// Uses a brush in another way: as a sponge, a marker, a vacuum cleaner
+    /// Set the mode of a brush: sponge, marker, sampler, vacuum, …
     Mode(ModeOptions),
-    /// Bends one spine through a list of poses over the plane z = 0
+    /// Bend one spine through a list of poses above the plane z = 0
     ///
-    /// SPINE.toml has `lengths_m` and `stiffness_nm_per_rad` (lists from the ferrule to the point, 1
-    /// to 64 joints, used as they are) and may have `damping_nm` (a number or a list), `mu`,
-    /// `mu_static`, `c_eta` and `k`. POSES.csv has the header t,x,y,z,qx,qy,qz,qw (s, m, unit
-    /// quaternion from the brush's frame to the surface's) and a line a pose; unbent, the spine goes
-    /// from the pose's origin along the brush's −z. It comes to the first pose straight and without
-    /// friction, and to each other one as it was bent before.
+    /// SPINE.toml has `lengths_m` and `stiffness_nm_per_rad` (lists from ferrule to tip, 1 to 64
+    /// joints, used as given) and optionally `damping_nm` (a number or a list), `mu`, `mu_static`,
+    /// `c_eta` and `k`. POSES.csv has the header t,x,y,z,qx,qy,qz,qw (s, m, unit quaternion from the
+    /// brush frame to the surface frame) and one pose per line. An unbent spine runs from the pose's
+    /// origin along the brush's −z. It reaches the first pose straight and without friction, and each
+    /// later pose from the shape it had before.
     ///
-    /// With --json a line a pose: `joints` are the far ends of all segments (m, the tip last, the
-    /// root left out), `theta` and `phi` the angles of all joints (rad), `energy` is in J,
-    /// `residual` is the steepest slope of the Lagrangian by the stiffness of the stiffest joint.
+    /// With --json, one line per pose: `joints` are the far ends of the segments (m, tip last, without
+    /// the root), `theta` and `phi` the joint angles (rad), `energy` is in J, `residual` is the largest
+    /// gradient of the Lagrangian over the stiffness of the stiffest joint.
     Solve(SolveOptions),
 }
 
 /// Options of `maulstick brush list`.
 #[derive(Args, Clone, Debug)]
 pub struct ListOptions {
-    /// As JSON
+    /// Print JSON
     #[arg(long)]
     json: bool,
 }
@@ -64,7 +64,7 @@ pub struct ListOptions {
 /// Options of `maulstick brush sheet`.
 #[derive(Args, Clone, Debug)]
 pub struct SheetOptions {
-    /// The picture, a PNG
+    /// Picture to write, a PNG
     #[arg(short, long, value_name = "PNG")]
     output: PathBuf,
     #[command(flatten)]
@@ -74,13 +74,13 @@ pub struct SheetOptions {
 /// Options of `maulstick brush solve`.
 #[derive(Args, Clone, Debug)]
 pub struct SolveOptions {
-    /// The spine
+    /// Spine file
     #[arg(long, value_name = "SPINE.toml")]
     spine: PathBuf,
-    /// Where it is held
+    /// Poses of the handle
     #[arg(long, value_name = "POSES.csv")]
     poses: PathBuf,
-    /// As JSON, a line a pose
+    /// Print JSON, one line per pose
     #[arg(long)]
     json: bool,
 }
@@ -88,10 +88,10 @@ pub struct SolveOptions {
 /// Options of `maulstick brush import`.
 #[derive(Args, Clone, Debug)]
 pub struct ImportOptions {
-    /// The model, glTF 2.0
+    /// Model, glTF 2.0
     #[arg(value_name = "MODEL.glb")]
     model: PathBuf,
-    /// The brush file to write
+    /// Brush file to write
     #[arg(short, long, value_name = "TOML")]
     output: PathBuf,
 }
@@ -99,12 +99,12 @@ pub struct ImportOptions {
 /// Options of `maulstick brush take`.
 #[derive(Args, Clone, Debug)]
 pub struct TakeOptions {
-    /// A brush of the library, or a brush file
+    /// Brush of the library, or a brush file
     kind: String,
-    /// Width of the head, mm; that of its file if absent
+    /// Width of the head, mm [default: that of its file]
     #[arg(long, value_name = "MM", allow_negative_numbers = true)]
     size_mm: Option<f64>,
-    /// The brush of the rig that it takes the place of
+    /// Brush of the rig to replace
     #[arg(long, default_value = "main")]
     brush: String,
     #[command(flatten)]

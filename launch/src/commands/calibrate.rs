@@ -25,9 +25,9 @@ use crate::commands::say;
 /// Options of `maulstick calibrate`.
 #[derive(Args, Clone, Debug)]
 pub struct CalibrateOptions {
-    /// The device of rig.toml
+    /// Device of rig.toml
     device: String,
-    /// Settings of the rig; the corners are written into them
+    /// Settings of the rig; the corners are written to this file
     #[arg(long, value_name = "FILE")]
     rig: Option<PathBuf>,
 }

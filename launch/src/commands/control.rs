@@ -19,12 +19,12 @@ use crate::performance::refused;
 /// Options of `maulstick load`.
 #[derive(Args, Clone, Debug)]
 pub struct LoadOptions {
-    /// What the brush takes up: "Cobalt Blue=0.7,Titanium White=0.3"
+    /// Mixture to load, such as "Cobalt Blue=0.7,Titanium White=0.3"
     mixture: String,
-    /// Double loading: the first mixture goes to the brush's left half, this one to the right
+    /// Second mixture, for the right half of the brush; the first then loads the left half
     #[arg(long, value_name = "MIXTURE")]
     beside: Option<String>,
-    /// The brush
+    /// Brush of the rig
     #[arg(long, default_value = "main")]
     brush: String,
     #[command(flatten)]
@@ -34,13 +34,13 @@ pub struct LoadOptions {
 /// Options of `maulstick tune`.
 #[derive(Args, Clone, Debug)]
 pub struct TuneOptions {
-    /// Factor on the stiffness of its file
+    /// Factor on the stiffness in the brush file
     #[arg(long, default_value_t = 1.0, allow_negative_numbers = true)]
     stiffness: f64,
-    /// 0 as in its file to 1 soaked: half as stiff
+    /// Wetness, from 0 (as in the brush file) to 1 (soaked: half as stiff)
     #[arg(long, default_value_t = 0.0, allow_negative_numbers = true)]
     wetness: f64,
-    /// The brush
+    /// Brush of the rig
     #[arg(long, default_value = "main")]
     brush: String,
     #[command(flatten)]
@@ -50,7 +50,7 @@ pub struct TuneOptions {
 /// Options of `maulstick clean`.
 #[derive(Args, Clone, Debug)]
 pub struct CleanOptions {
-    /// The brush
+    /// Brush of the rig
     #[arg(long, default_value = "main")]
     brush: String,
     #[command(flatten)]
@@ -60,8 +60,8 @@ pub struct CleanOptions {
 /// Options of `maulstick undo` and `maulstick redo`.
 #[derive(Args, Clone, Debug)]
 pub struct HistoryOptions {
-    /// Whose newest step, where several brushes paint: that of this one, if nothing was painted over
-    /// it since; the newest of all if absent
+    /// Brush whose newest step is meant, unless something was painted over it [default: the newest step
+    /// of all brushes]
     #[arg(long, value_name = "BRUSH")]
     brush: Option<String>,
     #[command(flatten)]
@@ -71,10 +71,10 @@ pub struct HistoryOptions {
 /// Options of `maulstick snapshot`.
 #[derive(Args, Clone, Debug)]
 pub struct SnapshotOptions {
-    /// The picture, a PNG
+    /// Picture to write, a PNG
     #[arg(short, long, value_name = "PNG")]
     output: PathBuf,
-    /// The ledger of the paint, JSON
+    /// Ledger of the paint to write, JSON
     #[arg(long, value_name = "FILE")]
     ledger: Option<PathBuf>,
     #[command(flatten)]

@@ -20,22 +20,22 @@ use crate::sheet::effects::effects;
 /// Options of `maulstick demo`.
 #[derive(Args, Clone, Debug)]
 pub struct DemoOptions {
-    /// The take to write; with `--painting` the picture, a PNG [NAME.png]
+    /// Take to write; with --painting the picture, a PNG [default: NAME.png]
     #[arg(short, long, value_name = "FILE", required_unless_present_any = ["sheet", "painting"])]
     output: Option<PathBuf>,
-    /// A sheet of marks instead of the flower
+    /// Make strokes of a sheet of marks instead of the flower
     #[arg(long)]
     marks: bool,
-    /// Paints what the paint model is for, with words, into this PNG: transfer both ways, loading,
+    /// Paint a sheet of the effects of the paint model, with captions: transfer both ways, loading,
     /// drying, blending, glazing, impasto, scumbling
     #[arg(long, value_name = "PNG")]
     sheet: Option<PathBuf>,
-    /// Paints one of the paintings that come along: still-life, flower, landscape
+    /// Paint one of the bundled paintings: still-life, flower, landscape
     #[arg(long, value_name = "NAME", conflicts_with_all = ["sheet", "marks", "seed"])]
     painting: Option<String>,
     #[command(flatten)]
     cells: SheetCells,
-    /// The same seed gives the same performance; 1 if absent
+    /// Seed of the performance [default: 1]
     #[arg(long)]
     seed: Option<u64>,
 }

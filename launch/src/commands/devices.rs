@@ -17,10 +17,10 @@ use crate::commands::{print_json, print_text};
 /// Options of `maulstick devices`.
 #[derive(Args, Clone, Debug)]
 pub struct DevicesOptions {
-    /// As JSON
+    /// Print JSON
     #[arg(long)]
     json: bool,
-    /// Prints a rule for udev, by which who sits at this machine may use its devices
+    /// Print a udev rule that lets the user at this machine use its devices
     ///
     /// Install it: maulstick devices --udev | sudo tee /etc/udev/rules.d/70-maulstick.rules &&
     /// sudo udevadm control --reload && sudo udevadm trigger

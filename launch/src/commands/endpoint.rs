@@ -11,10 +11,10 @@ use crate::commands::say;
 /// Options of `maulstick endpoint`.
 #[derive(Args, Clone, Debug)]
 pub struct EndpointOptions {
-    /// The rig's name
+    /// Name of the rig
     #[arg(long, value_name = "RIG", default_value = "studio")]
     name: String,
-    /// As JSON
+    /// Print JSON
     #[arg(long)]
     json: bool,
 }

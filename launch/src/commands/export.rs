@@ -19,35 +19,34 @@ use crate::outputs::{Relayed, UsedFile, check_outputs, named_by};
 /// Options of `maulstick export`.
 #[derive(Args, Clone, Debug)]
 pub struct ExportOptions {
-    /// What to write: .png, .exr, .ora or .stl
+    /// File to write: .png, .exr, .ora or .stl
     #[arg(required_unless_present = "stop")]
     file: Option<PathBuf>,
-    /// Ends the export that goes on: its file is not written
+    /// Stop the running export; its file is not written
     #[arg(long, conflicts_with = "file")]
     stop: bool,
-    /// The format, where the name does not say it; `height` is a PNG too
+    /// Format, if the file name does not tell; `height` is a PNG too
     #[arg(long, value_parser = formats())]
     format: Option<String>,
-    /// The palette in the place of the canvas
+    /// Use the palette instead of the canvas
     #[arg(long)]
     palette: bool,
-    /// Bits a channel of a PNG: 8, 16
+    /// Bits per channel of a PNG: 8, 16
     #[arg(long, default_value_t = 8)]
     bits: u32,
-    /// Profile of a PNG: srgb, display-p3; that of the rig if absent
+    /// Colour profile of a PNG: srgb, display-p3 [default: that of the rig]
     #[arg(long, value_name = "PROFILE")]
     profile: Option<String>,
-    /// How colours of a PNG come into its gamut: soft, clamp; as in the rig if absent
+    /// Gamut mapping of a PNG: soft, clamp [default: that of the rig]
     #[arg(long, value_name = "MAPPING")]
     gamut: Option<String>,
-    /// Thickness of a solid under its lowest place, mm
+    /// Thickness of an STL solid below its lowest point, mm
     #[arg(long, default_value_t = 2.0, allow_negative_numbers = true)]
     base_mm: f64,
-    /// Factor on the heights of a solid
+    /// Factor on the heights of an STL solid
     #[arg(long, default_value_t = 1.0, allow_negative_numbers = true)]
     exaggeration: f64,
-    /// Cells from one point of a solid to the next; so that it has 4 million triangles at most if
-    /// absent
+    /// STL vertex spacing, cells [default: at most 4 million triangles]
     #[arg(long, value_name = "CELLS")]
     step: Option<u32>,
     #[command(flatten)]

@@ -17,25 +17,25 @@ use crate::outputs::{UsedFile, check_outputs};
 /// Options of `maulstick fit`.
 #[derive(Args, Clone, Debug)]
 pub struct FitCommand {
-    /// A table: sample, a column of shares for each paint, a column of reflectances for each
+    /// Table of samples: a column of shares for each paint, a column of reflectances for each
     /// wavelength (docs/measuring.md)
     measurements: PathBuf,
-    /// The paint file to write
+    /// Paint file to write
     #[arg(short, long, value_name = "CSV")]
     output: PathBuf,
-    /// The reference white, whose scattering is 1
+    /// Reference white, whose scattering is 1
     #[arg(long, value_name = "NAME")]
     white: Option<String>,
-    /// What the samples' surface reflects from outside and from inside
+    /// Shares that the samples' surface reflects from outside and from inside
     #[arg(long, value_name = "K1,K2", value_parser = parse_surface)]
     surface: Option<SurfaceCorrection>,
-    /// The reflectances are those below the surface already
+    /// Take the reflectances as internal: no surface correction
     #[arg(long, conflicts_with = "surface")]
     no_surface: bool,
-    /// The instrument leaves gloss out, as at 45°/0°, at 60°, or a sphere with an open trap
+    /// Take the readings as without gloss (45°/0°, 60°, or a sphere with an open trap)
     #[arg(long)]
     specular_excluded: bool,
-    /// As JSON
+    /// Print JSON
     #[arg(long)]
     json: bool,
 }

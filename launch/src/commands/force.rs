@@ -27,9 +27,9 @@ use crate::plot::{Axis, Curve, Panel, from_zero, plot};
 enum Model {
     /// No force
     None,
-    /// Two straight pieces (Baxter 2004, eq. 8.1), ending where the brush's curve ends
+    /// Two straight pieces (Baxter 2004, eq. 8.1), which end where the brush file's curve ends
     Linear,
-    /// The piecewise cubic of the brush file (fig. 8.2), its first touch by the angle (eq. 8.2)
+    /// The brush file's piecewise cubic (fig. 8.2); its first touch depends on the angle (eq. 8.2)
     Hermite,
     /// The solved head, linearised where it is
     Local,
@@ -55,32 +55,31 @@ impl Model {
 pub struct ForceOptions {
     #[command(subcommand)]
     order: Option<Order>,
-    /// How the force goes with depth
+    /// Force law
     #[arg(long, default_value = "hermite")]
     model: Model,
-    /// A brush of the library, or a brush file
+    /// Brush of the library, or a brush file
     #[arg(long, default_value = "round")]
     brush: String,
-    /// Width of the head, mm; that of its file if absent
+    /// Width of the head, mm [default: that of its file]
     #[arg(long, value_name = "MM", allow_negative_numbers = true)]
     size_mm: Option<f64>,
-    /// Depths of the head's undeformed point below the canvas: FROM..TO in steps of half a
-    /// millimetre, or a list
+    /// Depths of the undeformed tip below the canvas, mm: FROM..TO in steps of .5, or a list
     #[arg(long, value_name = "DEPTHS", default_value = "0..40", value_parser = depths)]
     depth_mm: List,
-    /// Angles between the canvas's normal and the handle, a list
+    /// Angles between the handle and the canvas normal, degrees, a list
     #[arg(long, value_name = "ANGLES", default_value = "0,15,30,45", value_parser = angles)]
     angle_deg: List,
-    /// Stiffness of the hard wall, N/m; 500 if absent
+    /// Stiffness of the hard wall, N/m [default: 500]
     #[arg(long, value_name = "N/M", value_parser = stiffness)]
     stiffness_n_m: Option<f64>,
-    /// What the device bears, N/m: no force rises faster
+    /// Largest stiffness that the device bears, N/m
     #[arg(long, value_name = "N/M", default_value_t = 500.0, value_parser = stiffness)]
     max_stiffness_n_m: f64,
-    /// As JSON, a line for each depth at each angle
+    /// Print JSON, one line for each depth at each angle
     #[arg(long)]
     json: bool,
-    /// A picture of the curves, a PNG
+    /// Picture of the curves to write, a PNG
     #[arg(long, value_name = "PNG")]
     plot: Option<PathBuf>,
 }

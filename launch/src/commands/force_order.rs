@@ -12,30 +12,30 @@ use maulstick_types::stylus::{StylusInfo, axes};
 use crate::commands::session::{Session, Target};
 use crate::commands::{print_text, session};
 
-/// What is wanted of the force.
+/// A command to the force of a device.
 #[derive(Clone, Debug, Subcommand)]
 pub enum Order {
-    /// Gives no force any more, at once
+    /// Switch the force off at once
     Off(Whose),
-    /// Gives force again, from nothing on
+    /// Switch the force on again; it rises from zero
     On(Whose),
-    /// Gives a share of the force
+    /// Give a share of the force
     Strength {
-        /// The share: 60% or 0.6
+        /// Share of the force: 60% or 0.6
         #[arg(value_parser = share)]
         share: f64,
         /// Of which devices
         #[command(flatten)]
         whose: Whose,
     },
-    /// Gives force again after a fault
+    /// Re-arm the force after a fault
     Rearm(Whose),
 }
 
-/// Which devices an order is for.
+/// The devices that a command is for.
 #[derive(Args, Clone, Debug)]
 pub struct Whose {
-    /// The device of rig.toml; all that give force if absent
+    /// Device of rig.toml [default: all that give force]
     #[arg(long, value_name = "DEVICE")]
     device: Option<String>,
     #[command(flatten)]

@@ -13,15 +13,15 @@ use crate::outputs::{UsedFile, check_outputs};
 /// Options of `maulstick import`.
 #[derive(Args, Clone, Debug)]
 pub struct ImportOptions {
-    /// A table: t (s), x, y, pressure (0 to 1) and, if there are any, tilt_x, tilt_y, twist (degrees)
+    /// Table: t (s), x, y, pressure (0 to 1) and optionally tilt_x, tilt_y, twist (degrees)
     table: PathBuf,
-    /// The take to write
+    /// Take to write
     #[arg(short, long, value_name = "TAKE")]
     output: PathBuf,
-    /// Length of a table unit
+    /// Length of a table unit, mm
     #[arg(long, value_name = "MM", default_value_t = 0.25)]
     unit_mm: f64,
-    /// The tablet's area in table units; its middle becomes the desk's origin
+    /// Area of the tablet, in table units; its centre becomes the origin of the desk
     #[arg(long, value_name = "WxH", value_parser = parse_area, default_value = "1024x1024")]
     size: [f64; 2],
     /// Unit of t: s, ms, us or ns [default: guessed from the time between samples]

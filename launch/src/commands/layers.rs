@@ -13,22 +13,22 @@ use crate::duration::ticks_in;
 /// Options of `maulstick dry`.
 #[derive(Args, Clone, Debug)]
 pub struct DryOptions {
-    /// The lower share of the wet film that dries
+    /// Share of the wet film to dry, from below, above 0 to 1
     #[arg(long, default_value_t = 1.0, allow_negative_numbers = true)]
     share: f32,
-    /// Name of the layer; its number if absent
+    /// Name of the new layer [default: its number]
     #[arg(long = "layer", value_name = "NAME", default_value = "")]
     layer: String,
-    /// Only the cells of this rectangle, mm of the surface from its lower left corner
+    /// Only this rectangle, mm from the lower left corner of the surface
     #[arg(long, value_name = "X,Y,WxH", allow_hyphen_values = true)]
     region: Option<Region>,
-    /// All that is wet dries evenly within this time, such as 90s, 20min, 2h; one may paint meanwhile
+    /// Dry all wet paint evenly over this time, such as 90s, 20min, 2h; you can paint meanwhile
     #[arg(long, value_name = "TIME", value_parser = ticks_in, conflicts_with = "share")]
     over: Option<u32>,
-    /// Ends a drying that goes on: what is wet still stays wet
+    /// Stop a running drying; what is still wet stays wet
     #[arg(long, conflicts_with_all = ["share", "layer", "region", "over"])]
     stop: bool,
-    /// The palette in the place of the canvas
+    /// Use the palette instead of the canvas
     #[arg(long)]
     palette: bool,
     #[command(flatten)]
@@ -38,16 +38,16 @@ pub struct DryOptions {
 /// Options of `maulstick wet`.
 #[derive(Args, Clone, Debug)]
 pub struct WetOptions {
-    /// How many of the newest dry layers
+    /// Number of the newest dry layers to make wet
     #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..))]
     layers: u32,
-    /// All dry layers
+    /// Make all dry layers wet
     #[arg(long, conflicts_with = "layers")]
     all: bool,
-    /// Only the cells of this rectangle, mm of the surface from its lower left corner
+    /// Only this rectangle, mm from the lower left corner of the surface
     #[arg(long, value_name = "X,Y,WxH", allow_hyphen_values = true)]
     region: Option<Region>,
-    /// The palette in the place of the canvas
+    /// Use the palette instead of the canvas
     #[arg(long)]
     palette: bool,
     #[command(flatten)]
@@ -59,7 +59,7 @@ pub struct WetOptions {
 pub struct OpacityOptions {
     /// Name or number of the layer
     layer: String,
-    /// Factor on its optical thickness, 0 to 1; its height stays
+    /// Factor on its optical thickness, 0 to 1; its height does not change
     #[arg(allow_negative_numbers = true)]
     opacity: f32,
     #[command(flatten)]

@@ -18,38 +18,37 @@ use crate::lamp::LightChange;
 /// Options of `maulstick light`; what is not given stays as it is.
 #[derive(Args, Clone, Debug)]
 pub struct LightOptions {
-    /// Its spectrum: A, D50, D65, FL2, FL8, FL11, or a CSV file of nm,power
+    /// Spectrum: A, D50, D65, FL2, FL8, FL11, or a CSV file of nm,power
     #[arg(long, value_name = "NAME|FILE")]
     illuminant: Option<String>,
-    /// Toward the lamp: right, up the canvas, out of it
+    /// Direction toward the lamp: right, up the canvas, out of it
     #[arg(long, value_name = "X,Y,Z", value_parser = three, allow_hyphen_values = true)]
     direction: Option<[f64; 3]>,
-    /// Factor on its strength
+    /// Factor on the strength of the light
     #[arg(long, allow_negative_numbers = true)]
     intensity: Option<f64>,
-    /// Factor of the eye that looks at it; auto: such that the bare canvas does not clip, which is
-    /// also what another spectrum begins with
+    /// Exposure; auto: the bare canvas just does not clip. Another spectrum starts with auto
     #[arg(long, value_name = "FACTOR|auto", value_parser = exposure, allow_negative_numbers = true)]
     exposure: Option<Exposure>,
     /// Factor on the slopes of the relief
     #[arg(long, allow_negative_numbers = true)]
     relief: Option<f64>,
-    /// Tangent of half the angle under which the lamp is seen: how soft shadows are
+    /// Softness of shadows: tangent of half the angle under which the lamp is seen
     #[arg(long, allow_negative_numbers = true)]
     softness: Option<f64>,
     /// CIE observer
     #[arg(long, value_name = "1931|1964")]
     observer: Option<u32>,
-    /// Sampling rule: fitted, gauss, reference
+    /// Wavelength rule: fitted, gauss, reference
     #[arg(long)]
     rule: Option<String>,
-    /// Wavelengths of the rule, 4 to 16
+    /// Number of wavelengths, 4 to 16
     #[arg(long)]
     samples: Option<u32>,
-    /// Whether the eye is adapted to the light's white
+    /// Adapt colours to the white of the light (white balance)
     #[arg(long, value_name = "true|false")]
     adapt: Option<bool>,
-    /// Prints the light as JSON
+    /// Print the light as JSON
     #[arg(long)]
     json: bool,
     #[command(flatten)]

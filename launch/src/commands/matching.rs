@@ -18,25 +18,25 @@ use crate::viewing::ViewingOptions;
 /// Options of `maulstick match`.
 #[derive(Args, Clone, Debug)]
 pub struct MatchOptions {
-    /// The colour, sRGB: "#8a5a3c"
+    /// Colour, sRGB: "#8a5a3c"
     #[arg(
         value_name = "HEX",
         required_unless_present = "lab",
         conflicts_with = "lab"
     )]
     hex: Option<String>,
-    /// The colour, CIELAB relative to the light's white: 44.5,17.2,24.1
+    /// Colour, CIELAB relative to the white of the light: 44.5,17.2,24.1
     #[arg(long, value_name = "L,A,B", allow_hyphen_values = true)]
     lab: Option<String>,
-    /// A paint that may be used; give it several times. Without it, all of them
+    /// Paint that may be used; can be given several times [default: all]
     #[arg(long, value_name = "NAME")]
     paint: Vec<String>,
     #[command(flatten)]
     viewing: ViewingOptions,
-    /// A paint file instead of the measured paints
+    /// Paint file instead of the measured paints
     #[arg(long, value_name = "FILE")]
     paints: Option<PathBuf>,
-    /// As JSON
+    /// Print JSON
     #[arg(long)]
     json: bool,
 }

@@ -21,28 +21,28 @@ use crate::viewing::ViewingOptions;
 /// Options of `maulstick mix`.
 #[derive(Args, Clone, Debug)]
 pub struct MixOptions {
-    /// The mixture: "Cobalt Blue=0.7,Titanium White=0.3", shares by volume; with --compare the two
+    /// Mixture, shares by volume, such as "Cobalt Blue=0.7,Titanium White=0.3"; with --compare the two
     /// ends of a graded mixture, or one mixture of two paints
     #[arg(value_name = "MIX", required_unless_present_any = ["chart", "compare"])]
     mixtures: Vec<String>,
-    /// Draws the mixing chart of all paints
+    /// Draw the mixing chart of all paints
     #[arg(long, requires = "output", conflicts_with_all = ["mixtures", "compare", "json", "FilmOptions"])]
     chart: bool,
-    /// Draws one graded mixture by four ways of mixing: K-M with 101 samples, with the rule, with
-    /// three samples taken for red, green and blue, and linear RGB
+    /// Draw one graded mixture, mixed in four ways: K-M with 101 samples, with the rule, with three
+    /// samples taken for red, green and blue, and linear RGB
     #[arg(long, conflicts_with = "FilmOptions")]
     compare: bool,
-    /// The picture of --chart and --compare, a PNG
+    /// Picture of --chart or --compare to write, a PNG
     #[arg(short, long, value_name = "PNG")]
     output: Option<PathBuf>,
     #[command(flatten)]
     film: FilmOptions,
     #[command(flatten)]
     viewing: ViewingOptions,
-    /// A paint file instead of the measured paints
+    /// Paint file instead of the measured paints
     #[arg(long, value_name = "FILE")]
     paints: Option<PathBuf>,
-    /// As JSON
+    /// Print JSON
     #[arg(long)]
     json: bool,
 }
@@ -50,18 +50,18 @@ pub struct MixOptions {
 /// How the paint lies.
 #[derive(Args, Clone, Debug)]
 pub struct FilmOptions {
-    /// A film of this thickness, µm, thinner included, instead of an opaque layer
+    /// Thickness of a film, µm, thinner included [default: an opaque layer]
     #[arg(long, value_name = "UM", value_parser = thickness, allow_negative_numbers = true)]
     film_um: Option<f64>,
-    /// What lies under the film: white, black, or what an instrument reads of it bare, gloss included, from
-    /// 0 to 1, as in the column `over` of `maulstick fit`
+    /// Ground under the film: white, black, or its reading by an instrument, gloss included, 0 to 1, as in
+    /// the column `over` of `maulstick fit`
     #[arg(long, value_name = "R", requires = "film_um", default_value = "white", value_parser = ground, allow_negative_numbers = true)]
     over: f64,
-    /// Share of the film's volume that is transparent medium; an opaque layer keeps its colour
+    /// Share of clear medium in the film, by volume; does not change an opaque layer
     #[arg(long, value_name = "SHARE", default_value = "0", value_parser = share, allow_negative_numbers = true)]
     thinner: f64,
-    /// What the eye and a spectrometer see: with the reflections of the paint's surface, gloss
-    /// included; otherwise the reflectance inside the paint
+    /// Include the reflections of the paint's surface, as an eye or a spectrometer sees them; otherwise show
+    /// the reflectance inside the paint
     #[arg(long)]
     saunderson: bool,
 }

@@ -12,15 +12,15 @@ use crate::commands::session::{PAINT, Session, Target};
 /// Options of `maulstick brush mode`.
 #[derive(Args, Clone, Debug)]
 pub struct ModeOptions {
-    /// normal, no-push, sponge, sponge-no-push, marker, sampler or vacuum
+    /// Mode: normal, no-push, sponge, sponge-no-push, marker, sampler or vacuum
     mode: String,
-    /// Flow of the marker: µm of paint that it leaves along a millimetre
+    /// Flow of the marker, µm of paint per mm of its path
     #[arg(long, value_name = "UM_PER_MM", allow_negative_numbers = true)]
     flow: Option<f64>,
-    /// It adds no paint where as much is wet, µm
+    /// Add no paint where the wet film is this thick, µm
     #[arg(long, value_name = "UM", allow_negative_numbers = true)]
     most_um: Option<f64>,
-    /// The brush
+    /// Brush of the rig
     #[arg(long, default_value = "main")]
     brush: String,
     #[command(flatten)]
@@ -30,7 +30,7 @@ pub struct ModeOptions {
 /// Options of `maulstick size`.
 #[derive(Args, Clone, Debug)]
 pub struct SizeOptions {
-    /// Thickness of paint that stays however hard it is brushed, µm: 0 on a canvas that is well sized
+    /// Thickness of paint that cannot be brushed off, µm; 0: a well-sized canvas
     #[arg(allow_negative_numbers = true)]
     stain_um: f64,
     #[command(flatten)]
@@ -40,7 +40,7 @@ pub struct SizeOptions {
 /// Options of `maulstick piles`.
 #[derive(Args, Clone, Debug)]
 pub struct PilesOptions {
-    /// What paint on the palette does as brushes take it up: deplete, or last
+    /// Paint on the palette when brushes take it up: deplete, or last
     piles: String,
     #[command(flatten)]
     target: Target,

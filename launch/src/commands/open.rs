@@ -16,9 +16,9 @@ pub(super) const LONGEST: Duration = Duration::from_secs(3600);
 /// Options of `maulstick open`.
 #[derive(Args, Clone, Debug)]
 pub struct OpenOptions {
-    /// The painting
+    /// Painting
     file: PathBuf,
-    /// What was painted in memory alone may go
+    /// Discard the current painting if it is in memory only
     #[arg(long)]
     forget: bool,
     #[command(flatten)]

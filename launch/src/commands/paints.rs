@@ -15,10 +15,10 @@ use crate::swatch::{Terminal, hex};
 /// Options of `maulstick paints`.
 #[derive(Args, Clone, Debug)]
 pub struct PaintsOptions {
-    /// A paint file instead of the measured paints
+    /// Paint file instead of the measured paints
     #[arg(long, value_name = "FILE")]
     paints: Option<PathBuf>,
-    /// As JSON
+    /// Print JSON
     #[arg(long)]
     json: bool,
 }

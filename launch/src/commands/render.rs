@@ -24,26 +24,26 @@ use crate::script::{Act, Script, in_steps};
 /// Options of `maulstick render`.
 #[derive(Args, Clone, Debug)]
 pub struct RenderOptions {
-    /// The take
+    /// Take
     #[arg(required_unless_present = "script", conflicts_with = "script")]
     take: Option<PathBuf>,
-    /// A script in the place of a take: brushes, loads, takes, drying, light, step by step
+    /// Script instead of a take: brushes, loads, takes, drying, light, step by step
     #[arg(long, value_name = "FILE")]
     script: Option<PathBuf>,
-    /// The picture, a PNG
+    /// Picture to write, a PNG
     #[arg(short, long, value_name = "PNG")]
     output: PathBuf,
     /// Settings of the rig
     #[arg(long, value_name = "FILE")]
     rig: Option<PathBuf>,
-    /// Where the picture goes: srgb, display-p3, or the ICC file of a display or printer; that of
-    /// rig.toml if absent
+    /// Colour profile: srgb, display-p3, or the ICC file of a display or printer [default: that of
+    /// rig.toml]
     #[arg(long, value_name = "PROFILE")]
     profile: Option<String>,
-    /// How colours come into its gamut: soft, clamp; that of rig.toml if absent
+    /// Gamut mapping: soft, clamp [default: that of rig.toml]
     #[arg(long, value_name = "MAPPING")]
     gamut: Option<String>,
-    /// Paints in this painting, and keeps it there; it is begun where there is none
+    /// Painting to paint in and save; begun if it does not exist
     #[arg(long, value_name = "FILE")]
     document: Option<PathBuf>,
     #[command(flatten)]

@@ -13,9 +13,9 @@ use crate::commands::session::{RIG, Session, Target};
 /// Options of `maulstick save-as`.
 #[derive(Args, Clone, Debug)]
 pub struct SaveAsOptions {
-    /// The file in which the painting goes on, with its history and versions
+    /// New file of the painting, with its history and versions
     file: PathBuf,
-    /// A painting that is there already may go
+    /// Replace a painting that is already there
     #[arg(long)]
     replace: bool,
     #[command(flatten)]

@@ -11,9 +11,9 @@ use crate::commands::{print_json, print_text, say};
 /// Options of `maulstick schema`.
 #[derive(Args, Clone, Debug)]
 pub struct SchemaOptions {
-    /// Only this message
+    /// Print only this message
     message: Option<String>,
-    /// As JSON
+    /// Print JSON
     #[arg(long)]
     json: bool,
 }

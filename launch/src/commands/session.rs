@@ -17,7 +17,7 @@ use maulstick_types::{Message, Origin, name_hash};
 /// Which rig a command is for.
 #[derive(Args, Clone, Debug)]
 pub struct Target {
-    /// The rig's name
+    /// Name of the rig
     #[arg(long, value_name = "RIG", default_value = "studio")]
     name: String,
 }

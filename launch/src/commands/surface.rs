@@ -12,16 +12,16 @@ use crate::performance::{library, mixture_of};
 /// Options of `maulstick fill`.
 #[derive(Args, Clone, Debug)]
 pub struct FillOptions {
-    /// The paint: "Yellow Ochre=0.7,Titanium White=0.3"
+    /// Mixture, such as "Yellow Ochre=0.7,Titanium White=0.3"
     #[arg(required_unless_present = "with_brush", conflicts_with = "with_brush")]
     mixture: Option<String>,
-    /// The colour that this brush carries on the whole in the place of a paint
+    /// Use the mean colour of the paint on this brush instead
     #[arg(long, value_name = "BRUSH")]
     with_brush: Option<String>,
     /// Thickness of the film, µm
     #[arg(long, default_value_t = 50.0, allow_negative_numbers = true)]
     um: f64,
-    /// The palette in the place of the canvas
+    /// Use the palette instead of the canvas
     #[arg(long)]
     palette: bool,
     #[command(flatten)]
@@ -31,7 +31,7 @@ pub struct FillOptions {
 /// Options of `maulstick ground`.
 #[derive(Args, Clone, Debug)]
 pub struct GroundOptions {
-    /// The ground: gesso, grey, black, or a CSV file of nm,reflectance
+    /// Ground: gesso, grey, black, or a CSV file of nm,reflectance
     #[arg(value_name = "NAME|FILE")]
     ground: String,
     #[command(flatten)]
@@ -41,9 +41,9 @@ pub struct GroundOptions {
 /// Options of `maulstick tooth`.
 #[derive(Args, Clone, Debug)]
 pub struct ToothOptions {
-    /// The tooth: linen, cotton, panel, paper
+    /// Tooth: linen, cotton, panel, paper
     tooth: String,
-    /// Another piece of the same cloth
+    /// Number of the pattern: another piece of the same cloth
     #[arg(long, default_value_t = 1)]
     seed: u64,
     #[command(flatten)]

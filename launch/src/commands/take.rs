@@ -19,22 +19,22 @@ use crate::performance::{KitOptions, library_from, painting_setup, refused};
 /// Subcommands of `maulstick take`.
 #[derive(Subcommand, Clone, Debug)]
 pub enum TakeCommand {
-    /// Shows what a take holds
+    /// Show what a take holds
     Info {
-        /// The take
+        /// Take
         take: PathBuf,
-        /// As JSON
+        /// Print JSON
         #[arg(long)]
         json: bool,
     },
-    /// Puts what a take is painted with into it: canvas, palette, brush, paints, light, loads. Then it
+    /// Embed in a take what it is painted with: canvas, palette, brush, paints, light, loads. It then
     /// gives the same painting anywhere
     Embed(EmbedOptions),
-    /// Write the samples of a damaged take that can be read to another file
+    /// Recover the readable samples of a damaged take
     Recover {
-        /// The damaged take, which stays as it is
+        /// Damaged take, which is not changed
         take: PathBuf,
-        /// The take to write
+        /// Take to write
         #[arg(short, long, value_name = "TAKE")]
         output: PathBuf,
     },
@@ -43,9 +43,9 @@ pub enum TakeCommand {
 /// Options of `maulstick take embed`.
 #[derive(Args, Clone, Debug)]
 pub struct EmbedOptions {
-    /// The take, which stays as it is
+    /// Take, which is not changed
     take: PathBuf,
-    /// The take to write
+    /// Take to write
     #[arg(short, long, value_name = "TAKE")]
     output: PathBuf,
     /// Settings of the rig

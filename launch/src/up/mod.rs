@@ -57,30 +57,30 @@ fn first_load(library: &PaintLibrary) -> Mixture {
 /// Options of `maulstick up`.
 #[derive(Args, Clone, Debug)]
 pub struct UpOptions {
-    /// The painting, begun where there is none; without it the painting is in memory alone
+    /// Painting to open or begin [default: none, in memory only]
     #[arg(value_name = "FILE")]
     file: Option<PathBuf>,
-    /// Settings of the rig; without it the built-in default
+    /// Settings of the rig [default: the built-in settings]
     #[arg(long, value_name = "FILE")]
     rig: Option<PathBuf>,
-    /// Name of the rig, instead of that in its settings
+    /// Name of the rig [default: that in its settings]
     #[arg(long, value_name = "RIG")]
     name: Option<String>,
-    /// No window
+    /// Open no window
     #[arg(long)]
     headless: bool,
-    /// Plays a take in the place of the devices
+    /// Play a take instead of the devices
     #[arg(long, value_name = "TAKE")]
     play: Option<PathBuf>,
-    /// Seconds of the take a second, or 'max'
+    /// Playback speed (1 = real time), or 'max'
     #[arg(long, value_name = "R|max", default_value = "1", requires = "play")]
     rate: Rate,
-    /// Writes the picture at the end of the take and stops
+    /// Write the picture at the end of the take, and stop
     #[arg(long, value_name = "PNG", requires = "play")]
     snapshot: Option<PathBuf>,
     #[command(flatten)]
     painting: PaintingOptions,
-    /// Prints the commented default settings and does nothing else
+    /// Print the default settings, with comments, and exit
     #[arg(long)]
     print_config: bool,
 }

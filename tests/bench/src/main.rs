@@ -46,20 +46,20 @@ use maulstick_rig::config::MODELS;
 
 use crate::report::Report;
 
-/// Measures, beside peers
+/// Run benchmarks against reference programs
 #[derive(Parser)]
 #[command(name = "maulstick-bench", version)]
 struct Options {
-    /// What to measure: brush, bus, document, frames, haptics, latency, looks, optics, paint, render, view,
-    /// window; everything if absent
+    /// What to measure: brush, bus, document, frames, haptics, latency, looks, optics, paint, render,
+    /// view, window [default: everything]
     area: Option<String>,
-    /// The paint model that is measured
+    /// Paint model to measure
     #[arg(long, default_value = "impasto", value_parser = MODELS)]
     model: String,
-    /// What computes its steps
+    /// Where its steps are computed
     #[arg(long, default_value = "cpu", value_parser = ["cpu", "gpu"])]
     backend: String,
-    /// As JSON
+    /// Print JSON
     #[arg(long)]
     json: bool,
     /// The far end of the bus benchmark

@@ -20,39 +20,38 @@ use crate::tooth::{DEPTH, ToothPicture};
 /// What becomes of a picture.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 enum Purpose {
-    /// Paint, mixed for each cell so that its colour comes nearest
+    /// Paint, mixed for each cell to come nearest to its colour
     Underpainting,
-    /// What the paint lies on
+    /// Ground, on which the paint lies
     Ground,
-    /// Relief that catches paint: white is high
+    /// Tooth: relief that catches paint; white is high
     Tooth,
 }
 
 /// Options of `maulstick painting import`.
 #[derive(Args, Clone, Debug)]
 pub struct ImportOptions {
-    /// The painting
+    /// Painting
     file: PathBuf,
-    /// The picture: PNG, JPEG or TIFF
+    /// Picture: PNG, JPEG or TIFF
     picture: PathBuf,
-    /// What it becomes
+    /// Use of the picture
     #[arg(long = "as", value_name = "PURPOSE", default_value = "underpainting")]
     purpose: Purpose,
     /// Thickness of an underpainting, µm
     #[arg(long, default_value_t = 60.0, allow_negative_numbers = true)]
     um: f64,
-    /// An underpainting is wet, as it is if nothing else is said
+    /// Leave the underpainting wet [default]
     #[arg(long, conflicts_with = "dry")]
     wet: bool,
-    /// An underpainting is dry: a layer of this name. What is wet dries before it, as a layer of its own
+    /// Dry the underpainting to a layer of this name; what is wet dries before it, to a layer of its own
     #[arg(long, value_name = "LAYER", num_args = 0..=1, default_missing_value = "underpainting")]
     dry: Option<String>,
-    /// A paint to mix it of; give it several times. Those in use in the painting if absent; where none
-    /// is, those of its palette
+    /// Paint to mix the picture from; can be given several times [default: those in use in the painting,
+    /// else those of its palette]
     #[arg(long = "paint", value_name = "NAME")]
     paints: Vec<String>,
-    /// Width of a tooth's picture on the canvas, mm; it is repeated beyond. That of the canvas if
-    /// absent
+    /// Width of a tooth's picture on the canvas, mm; it repeats beyond [default: that of the canvas]
     #[arg(long, value_name = "MM", allow_negative_numbers = true)]
     width_mm: Option<f64>,
     /// Depth of a tooth from white to black, µm

@@ -15,12 +15,12 @@ use crate::performance::refused;
 /// Options of `maulstick painting info`.
 #[derive(Args, Clone, Debug)]
 pub struct InfoOptions {
-    /// The painting
+    /// Painting
     file: PathBuf,
-    /// Reads every tile of it and of its history, to see that all are whole
+    /// Read every tile of the painting and its history, to check that all are intact
     #[arg(long)]
     check: bool,
-    /// As JSON
+    /// Print JSON
     #[arg(long)]
     json: bool,
 }

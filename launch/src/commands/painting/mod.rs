@@ -17,17 +17,17 @@ use maulstick_rig::Fault;
 /// Subcommands of `maulstick painting`.
 #[derive(Subcommand, Clone, Debug)]
 pub enum PaintingCommand {
-    /// Shows what a painting holds
+    /// Show what a painting holds
     Info(info::InfoOptions),
-    /// Writes a painting for other programs: PNG, OpenEXR, OpenRaster, a height map, STL
+    /// Export a painting: PNG, OpenEXR, OpenRaster, height map, STL
     Export(export::ExportOptions),
-    /// Takes a picture into a painting: as underpainting, as ground or as tooth
+    /// Import a picture as underpainting, ground or tooth
     Import(import::ImportOptions),
-    /// Takes what is whole out of a damaged painting
+    /// Recover what is intact in a damaged painting
     Recover(recover::RecoverOptions),
-    /// Lists the versions of a painting; keeps, compares and returns to them
+    /// List, keep, compare versions of a painting, or return to one
     Versions(versions::VersionsOptions),
-    /// Makes a painting's file as small as it gets
+    /// Make a painting's file as small as possible
     Pack(pack::PackOptions),
 }
 

@@ -13,9 +13,9 @@ use crate::document::wrong;
 /// Options of `maulstick painting pack`.
 #[derive(Args, Clone, Debug)]
 pub struct PackOptions {
-    /// The painting
+    /// Painting
     file: PathBuf,
-    /// Forgets all steps: nothing of before can be undone; versions stay
+    /// Discard all undo steps; versions stay
     #[arg(long)]
     forget_history: bool,
 }

@@ -19,12 +19,12 @@ const NAMES: usize = 20;
 /// Options of `maulstick painting recover`.
 #[derive(Args, Clone, Debug)]
 pub struct RecoverOptions {
-    /// The damaged painting, which stays as it is
+    /// Damaged painting, which is not changed
     file: PathBuf,
-    /// The painting to write
+    /// Painting to write
     #[arg(short, long, value_name = "NEW.maul")]
     output: PathBuf,
-    /// As JSON
+    /// Print JSON
     #[arg(long)]
     json: bool,
 }

@@ -19,27 +19,27 @@ use super::compare::compare;
 /// Options of `maulstick painting versions`.
 #[derive(Args, Clone, Debug)]
 pub struct VersionsOptions {
-    /// The painting; that of the running rig if absent
+    /// Painting [default: that of the running rig]
     file: Option<PathBuf>,
-    /// Keeps the painting as it is under this name
+    /// Keep the painting as a version of this name
     #[arg(long, value_name = "NAME", group = "act")]
     keep: Option<String>,
-    /// Makes the painting as it was in a version; this can be undone
+    /// Return the painting to a version; this can be undone
     #[arg(long = "return", value_name = "NAME", group = "act")]
     return_to: Option<String>,
-    /// Begins a version from another one: the painting becomes as it was there
+    /// Begin version NAME from version FROM, and return the painting to it
     #[arg(long, value_names = ["FROM", "NAME"], num_args = 2, group = "act")]
     branch: Option<Vec<String>>,
-    /// Forgets a version
+    /// Delete a version
     #[arg(long, value_name = "NAME", group = "act")]
     forget: Option<String>,
-    /// Draws two versions and their difference side by side; "now" is the painting as it is
+    /// Draw two versions and their difference side by side; "now" is the current painting
     #[arg(long, value_names = ["ONE", "OTHER"], num_args = 2, group = "act", requires = "output", requires = "file")]
     compare: Option<Vec<String>>,
-    /// The picture of the difference, a PNG
+    /// Picture of the difference to write, a PNG
     #[arg(short, long, value_name = "PNG", requires = "compare")]
     output: Option<PathBuf>,
-    /// As JSON
+    /// Print JSON
     #[arg(long)]
     json: bool,
     #[command(flatten)]
