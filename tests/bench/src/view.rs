@@ -16,15 +16,15 @@ use maulstick_types::Origin;
 use maulstick_types::paint::TILE;
 use maulstick_types::scene::{CANVAS, PALETTE, Scene, Surface};
 use maulstick_types::stylus::{DEFAULT_TILT_RAD, StylusPose, StylusSample};
+use maulstick_ui::app::rack;
 use maulstick_ui::render::backdrop::Backdrop;
 use maulstick_ui::render::brush::renderer::{Below, BrushRenderer};
-use maulstick_ui::rig::brushes::BrushPose;
 use maulstick_ui::render::frames::{Shown, ShownTile, texels};
 use maulstick_ui::render::offscreen::Offscreen;
-use maulstick_ui::render::tile_planner::AtlasState;
-use maulstick_ui::app::rack;
 use maulstick_ui::render::show_surface::Place;
 use maulstick_ui::render::surface::{Passes, SurfaceView};
+use maulstick_ui::render::tile_planner::AtlasState;
+use maulstick_ui::rig::brushes::BrushPose;
 use maulstick_ui::view::camera::{View, level};
 use maulstick_ui::view::visible_tiles::TileRect;
 
