@@ -42,8 +42,8 @@ pub struct Below<'a> {
 #[derive(Debug, Default)]
 struct Kept {
     slots: Vec<ShadowSlot>,
-    /// The paint on it, and the same as the display takes it.
-    coat: Option<(Arc<PaintColour>, PaintColour)>,
+    /// The paint on it, and the same on a head of so many strips, as the display takes it.
+    coat: Option<(Arc<PaintColour>, usize, PaintColour)>,
 }
 
 /// Draws brushes.
@@ -196,14 +196,13 @@ impl Kept {
         head: &Head,
     ) -> Option<&PaintColour> {
         let coat = coat?;
-        if !self
-            .coat
-            .as_ref()
-            .is_some_and(|(of, _)| Arc::ptr_eq(of, coat))
-        {
-            self.coat = Some((Arc::clone(coat), coat.tinted(tint).on(head)));
+        let strips = head.strips();
+        let is_kept =
+            |(of, on, _): &(Arc<PaintColour>, usize, _)| Arc::ptr_eq(of, coat) && *on == strips;
+        if !self.coat.as_ref().is_some_and(is_kept) {
+            self.coat = Some((Arc::clone(coat), strips, coat.tinted(tint).on(head)));
         }
-        self.coat.as_ref().map(|(_, tinted)| tinted)
+        self.coat.as_ref().map(|(_, _, tinted)| tinted)
     }
 }
 
