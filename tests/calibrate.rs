@@ -6,7 +6,7 @@ use std::io::{BufRead as _, BufReader};
 use std::process::{Child, Stdio};
 
 use glam::{DQuat, DVec3};
-use maulstick_device::fitting::{Fitting, Similarity};
+use maulstick_device::registration::{Registration, Similarity};
 use maulstick_device::{Take, TakeSample};
 use maulstick_num::geometry::{Rigid, canonical, rotation};
 use maulstick_rig::RigConfig;
@@ -59,7 +59,7 @@ fn showing(places: &[[f64; 2]]) -> Take {
         at = to;
     }
     Take {
-        kit: None,
+        setup: None,
         device: "hand".into(),
         samples,
     }
@@ -119,15 +119,18 @@ fn a_hand_that_shows_three_corners_fits_its_device_to_the_canvas() {
     );
     assert_eq!(after.lines().count(), before.lines().count() + 1);
     let config = RigConfig::read(&place.path("rig.toml")).expect("valid");
-    let fitting = Fitting::of(&config.device[0], &config.canvas).expect("fits");
-    assert_eq!(fitting.warning(), None);
+    let registration = Registration::of(&config.device[0], &config.canvas).expect("fits");
+    assert_eq!(registration.warning(), None);
     // Friction and the steps of the encoders hold a hand .3 mm from where it wants to be.
     for corner in CORNERS {
         let on_desk = DVec3::new(corner[0], corner[1], 0.0);
-        let off = fitting.to_desk.point(stand().point_back(on_desk)) - on_desk;
+        let off = registration.to_desk.point(stand().point_back(on_desk)) - on_desk;
         assert!(off.length() < 2e-3, "{off}: {after}");
     }
-    assert!((fitting.to_desk.scale - 2.0).abs() < 0.02, "{fitting:?}");
+    assert!(
+        (registration.to_desk.scale - 2.0).abs() < 0.02,
+        "{registration:?}"
+    );
 }
 
 #[test]

@@ -395,6 +395,21 @@ fn schemas_and_paints_are_listed() {
 }
 
 #[test]
+fn a_faulty_command_is_told_before_a_rig_is_asked() {
+    let place = Place::new();
+    let name = "b".repeat(65);
+    for args in [
+        &["tune", "--brush", &name, "2"][..],
+        &["load", "--brush", &name, "Bone Black"],
+        &["clean", "--brush", &name],
+    ] {
+        let said = fault(&place, args, 2);
+        assert!(!said.contains("no rig"), "{said}");
+        has(&said, &[&name[..20]]);
+    }
+}
+
+#[test]
 fn without_a_rig_nothing_answers_and_says_so() {
     let place = Place::new();
     for args in [

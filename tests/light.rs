@@ -31,7 +31,7 @@ fn one_stroke(path: &Path) {
         },
     });
     let take = Take {
-        kit: None,
+        setup: None,
         device: "hand".into(),
         samples: samples.collect(),
     };

@@ -4,5 +4,5 @@
 mod check_shaders;
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
-    check_shaders::check_all("src/shaders", &[])
+    check_shaders::check_all("src/render/shaders", &[])
 }

@@ -5,7 +5,7 @@ use std::time::Instant;
 
 use indicatif::ProgressBar;
 use maulstick_paint::Sequencer;
-use maulstick_paint::embedded::IMAGE;
+use maulstick_paint::assets::IMAGE;
 use maulstick_paint::light::changes_colour;
 use maulstick_paint::store::TileStore;
 use maulstick_rig::Fault;

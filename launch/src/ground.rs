@@ -6,7 +6,7 @@ use std::sync::Arc;
 use maulstick_exchange::{Image, ImportError, embed};
 use maulstick_optics::Reflectance;
 use maulstick_paint::PaintingSetup;
-use maulstick_paint::embedded::{IMAGE, SPECTRUM};
+use maulstick_paint::assets::{IMAGE, SPECTRUM};
 use maulstick_rig::Fault;
 use maulstick_rig::config::is_path;
 

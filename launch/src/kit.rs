@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use maulstick_device::{Kit, Take};
+use maulstick_device::{Take, TakeSetup};
 use maulstick_optics::paints::MEASURED;
 use maulstick_rig::Fault;
 use maulstick_rig::config::{BrushSection, RigConfig, is_path};
@@ -17,12 +17,16 @@ use crate::performance::brush_file;
 ///
 /// # Errors
 /// A [`Fault`] for a file that cannot be read.
-pub fn kit_of(config: &RigConfig, brush: &BrushSection, loads: &[Mixture]) -> Result<Kit, Fault> {
+pub fn kit_of(
+    config: &RigConfig,
+    brush: &BrushSection,
+    loads: &[Mixture],
+) -> Result<TakeSetup, Fault> {
     let read = |path: &Path| std::fs::read(path).map_err(|error| Fault::reading(path, &error));
     let unwritten = |what: String| Fault::failure(what);
-    let mut kit = Kit {
+    let mut kit = TakeSetup {
         loads: loads.iter().map(ToString::to_string).collect(),
-        ..Kit::default()
+        ..TakeSetup::default()
     };
     let mut settings = RigConfig {
         canvas: config.canvas.clone(),
@@ -71,7 +75,7 @@ pub fn use_kit(
     folder: &Path,
     config: &mut RigConfig,
 ) -> Result<Vec<String>, Fault> {
-    let Some(kit) = &take.kit else {
+    let Some(kit) = &take.setup else {
         return Ok(Vec::new());
     };
     std::fs::create_dir_all(folder).map_err(|error| Fault::writing(folder, &error))?;

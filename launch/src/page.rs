@@ -3,7 +3,7 @@
 use ab_glyph::{Font as _, FontRef, PxScale, ScaleFont as _};
 use maulstick_paint::picture::Picture;
 use maulstick_rig::Fault;
-use maulstick_ui::portrait::Portrait;
+use maulstick_ui::render::brush::thumbnail::BrushThumbnail;
 
 /// Paper and ink, sRGB.
 const PAPER: [u8; 3] = [250, 248, 244];
@@ -90,7 +90,7 @@ impl Page {
     }
 
     /// Puts a brush with its upper left corner here.
-    pub fn portray(&mut self, portrait: &Portrait, [x, y]: [usize; 2]) {
+    pub fn portray(&mut self, portrait: &BrushThumbnail, [x, y]: [usize; 2]) {
         for (i, pixel) in portrait.rgba.chunks_exact(4).enumerate() {
             let at = [x + i % portrait.width, y + i / portrait.width];
             let colour = [0, 1, 2].map(|i| f32::from(pixel[i]));

@@ -9,9 +9,9 @@ use maulstick_brush::palette_place::Side;
 use maulstick_bus::typed::Receiver;
 use maulstick_paint::PaintingSetup;
 use maulstick_types::stylus::StylusSample;
-use maulstick_ui::habits::Habits;
-use maulstick_ui::rack;
-use maulstick_ui::view::View;
+use maulstick_ui::app::rack;
+use maulstick_ui::settings::preferences::Preferences;
+use maulstick_ui::view::camera::View;
 use x11rb::connection::Connection as _;
 use x11rb::protocol::xproto::{
     AtomEnum, BUTTON_PRESS_EVENT, BUTTON_RELEASE_EVENT, ClientMessageEvent, ConnectionExt as _,
@@ -33,7 +33,7 @@ pub const ESCAPE: u32 = 0xff1b;
 /// Where a new painting of the default size lies in a window of the default size.
 pub fn desk_view() -> View {
     let scene = PaintingSetup::default().scene();
-    let size = Habits::default().size;
+    let size = Preferences::default().size;
     let area = Rect::from_min_size(Pos2::ZERO, size.into());
     let (canvas, palette) = (&scene.surfaces[0], scene.surfaces.get(1));
     View::of(area, canvas, palette, Side::Left, rack::WIDTH).expect("a view")

@@ -104,7 +104,7 @@ impl Place {
             .filter(|sample| sample.time_ns <= end)
             .collect();
         let take = maulstick_device::Take {
-            kit: None,
+            setup: None,
             device: "demo".into(),
             samples,
         };
@@ -339,7 +339,7 @@ pub fn press_for_minutes(path: &Path) {
         }
     });
     let take = Take {
-        kit: None,
+        setup: None,
         device: "hand".into(),
         samples: samples.collect(),
     };

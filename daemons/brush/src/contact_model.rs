@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 use maulstick_brush::desk::Plane;
-use maulstick_brush::feel::Press;
+use maulstick_brush::head_stiffness::Press;
 use maulstick_brush::{BrushFile, BrushModel};
 use maulstick_paint::tooth::Tooth;
 use maulstick_types::Origin;

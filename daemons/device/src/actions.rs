@@ -1,4 +1,4 @@
-//! What the switches of a stylus do, and its eraser end.
+//! Actions of a stylus's switches and its eraser end.
 //!
 //! The device's own thread only tells edges; a thread beside it asks the paint node for what they mean,
 //! one after the other, however long that takes. The clutch is no command: the device itself lets go of
@@ -24,7 +24,7 @@ pub const SWITCHES: usize = 31;
 /// Edges that may wait for the paint node.
 const WAITING: usize = 32;
 
-/// What a switch does.
+/// Action of a switch.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Action {
     /// Nothing.
@@ -42,7 +42,7 @@ pub enum Action {
     Clean,
 }
 
-/// What each switch does.
+/// Action of each switch.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Actions([Action; SWITCHES]);
 
@@ -86,7 +86,7 @@ enum Edge {
 
 /// Something to do for the paint node.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Deed {
+enum SwitchEvent {
     Switch(Action, Edge),
     /// The eraser end comes near, or goes.
     Eraser(Edge),
@@ -97,7 +97,7 @@ pub struct Actor {
     actions: Actions,
     /// Switches as they have been told.
     told: u32,
-    deeds: Option<SyncSender<Deed>>,
+    events: Option<SyncSender<SwitchEvent>>,
     stop: Arc<AtomicBool>,
     thread: Option<JoinHandle<()>>,
     /// Whether it was said that the paint node does not keep up.
@@ -115,7 +115,7 @@ impl Actor {
         brush: &str,
         actions: Actions,
     ) -> Result<Self, Fault> {
-        let (deeds, edges) = sync_channel(WAITING);
+        let (events, edges) = sync_channel(WAITING);
         let stop = Arc::new(AtomicBool::new(false));
         let mut worker = Worker::new(bus, topics, brush, Arc::clone(&stop))?;
         let thread = std::thread::Builder::new()
@@ -125,7 +125,7 @@ impl Actor {
         Ok(Self {
             actions,
             told: 0,
-            deeds: Some(deeds),
+            events: Some(events),
             stop,
             thread: Some(thread),
             warned: false,
@@ -134,7 +134,7 @@ impl Actor {
 
     /// Looks at a sample for switches that have gone down or up. It never waits: an edge for which there
     /// is no room is seen again in the next sample.
-    pub fn hear(&mut self, sample: &StylusSample) {
+    pub fn receive(&mut self, sample: &StylusSample) {
         let near = match sample.in_range {
             true => u32::MAX,
             false => !switch::ERASER,
@@ -155,24 +155,24 @@ impl Actor {
                 true => Edge::Pressed,
                 false => Edge::Released,
             };
-            let deed = match bit {
-                switch::ERASER => Deed::Eraser(edge),
-                _ => Deed::Switch(self.actions.of_bit(place as usize), edge),
+            let event = match bit {
+                switch::ERASER => SwitchEvent::Eraser(edge),
+                _ => SwitchEvent::Switch(self.actions.of_bit(place as usize), edge),
             };
-            if self.tell(deed) {
+            if self.tell(event) {
                 self.told ^= bit;
             }
         }
     }
 
-    fn tell(&mut self, deed: Deed) -> bool {
-        if let Deed::Switch(Action::None | Action::Clutch, _) = deed {
+    fn tell(&mut self, event: SwitchEvent) -> bool {
+        if let SwitchEvent::Switch(Action::None | Action::Clutch, _) = event {
             return true;
         }
-        let Some(deeds) = &self.deeds else {
+        let Some(events) = &self.events else {
             return true;
         };
-        match deeds.try_send(deed) {
+        match events.try_send(event) {
             Ok(()) | Err(TrySendError::Disconnected(_)) => {
                 self.warned = false;
                 true
@@ -194,7 +194,7 @@ impl Actor {
 impl Drop for Actor {
     fn drop(&mut self) {
         self.stop.store(true, Ordering::SeqCst);
-        self.deeds = None;
+        self.events = None;
         if let Some(thread) = self.thread.take() {
             thread.join().ok();
         }
@@ -234,14 +234,14 @@ mod tests {
     }
 
     /// An actor without a thread, with room for `room` deeds.
-    fn deaf(room: usize, actions: &[&str]) -> (Actor, Edges<Deed>) {
+    fn deaf(room: usize, actions: &[&str]) -> (Actor, Edges<SwitchEvent>) {
         let mut device = DeviceSection::new("arm", "polhem", "main");
         device.switches = Some(actions.iter().map(ToString::to_string).collect());
-        let (deeds, edges) = sync_channel(room);
+        let (events, edges) = sync_channel(room);
         let actor = Actor {
             actions: Actions::of(&device),
             told: 0,
-            deeds: Some(deeds),
+            events: Some(events),
             stop: Arc::default(),
             thread: None,
             warned: false,
@@ -261,9 +261,9 @@ mod tests {
     fn edges_are_told_once_in_order_and_the_clutch_never() {
         let (mut actor, edges) = deaf(32, &["undo", "clutch", "pick"]);
         for switches in [0, 1, 1, 0b101, 0b111, 0b110, 0] {
-            actor.hear(&sample(switches, true));
+            actor.receive(&sample(switches, true));
         }
-        let told: Vec<Deed> = edges.try_iter().collect();
+        let told: Vec<SwitchEvent> = edges.try_iter().collect();
         let expected = [
             (Action::Undo, Edge::Pressed),
             (Action::Pick, Edge::Pressed),
@@ -272,38 +272,41 @@ mod tests {
         ];
         assert_eq!(
             told,
-            expected.map(|(action, edge)| Deed::Switch(action, edge))
+            expected.map(|(action, edge)| SwitchEvent::Switch(action, edge))
         );
     }
 
     #[test]
     fn the_eraser_counts_while_it_is_near() {
         let (mut actor, edges) = deaf(32, &[]);
-        actor.hear(&sample(switch::ERASER, false));
+        actor.receive(&sample(switch::ERASER, false));
         assert_eq!(edges.try_iter().count(), 0);
-        actor.hear(&sample(switch::ERASER, true));
-        actor.hear(&sample(switch::ERASER, false));
-        let told: Vec<Deed> = edges.try_iter().collect();
+        actor.receive(&sample(switch::ERASER, true));
+        actor.receive(&sample(switch::ERASER, false));
+        let told: Vec<SwitchEvent> = edges.try_iter().collect();
         assert_eq!(
             told,
-            [Deed::Eraser(Edge::Pressed), Deed::Eraser(Edge::Released)]
+            [
+                SwitchEvent::Eraser(Edge::Pressed),
+                SwitchEvent::Eraser(Edge::Released)
+            ]
         );
     }
 
     #[test]
     fn a_release_for_which_there_was_no_room_is_told_later() {
         let (mut actor, edges) = deaf(1, &["pick"]);
-        actor.hear(&sample(1, true));
+        actor.receive(&sample(1, true));
         for _ in 0..100 {
-            actor.hear(&sample(0, true));
+            actor.receive(&sample(0, true));
         }
-        let pressed = Deed::Switch(Action::Pick, Edge::Pressed);
+        let pressed = SwitchEvent::Switch(Action::Pick, Edge::Pressed);
         assert_eq!(edges.try_recv(), Ok(pressed));
         assert!(edges.try_recv().is_err());
-        actor.hear(&sample(0, true));
+        actor.receive(&sample(0, true));
         assert_eq!(
             edges.try_recv(),
-            Ok(Deed::Switch(Action::Pick, Edge::Released))
+            Ok(SwitchEvent::Switch(Action::Pick, Edge::Released))
         );
     }
 }

@@ -6,9 +6,9 @@ use std::f64::consts::{PI, TAU};
 use maulstick_num::{cos, sin};
 use maulstick_types::stylus::{DEFAULT_TILT_RAD, StylusPose, StylusSample, axes};
 use rand_pcg::Pcg32;
-use rand_pcg::rand_core::Rng as _;
 
-use crate::sheet;
+use crate::mark_sheet;
+use crate::strokes::{Pressure, Stroke, Strokes};
 use crate::take::{Take, TakeSample};
 
 /// Samples a second.
@@ -16,173 +16,121 @@ const RATE_HZ: f64 = 250.0;
 /// Pause between strokes, s: longer than the 150 ms that join them.
 const PAUSE_S: f64 = 0.26;
 
-/// How the pressure of a stroke goes.
-#[derive(Clone, Copy, PartialEq)]
-pub(crate) enum Press {
-    /// It swells and fades.
-    Swell,
-    /// It grows from a touch to the whole.
-    Grow,
+fn flower(strokes: &mut Strokes) {
+    let head = [strokes.about(0.0, 0.02), strokes.about(0.042, 0.008)];
+    sky(strokes);
+    hills(strokes);
+    stem(strokes, head);
+    petals(strokes, head);
 }
 
-/// A stroke: a curve through points on the desk (m), how hard it is pressed, how long it takes.
-pub(crate) struct Stroke {
-    pub(crate) points: Vec<[f64; 2]>,
-    pub(crate) pressure: f64,
-    pub(crate) press: Press,
-    pub(crate) seconds: f64,
+/// Broad sweeps across the upper half.
+fn sky(strokes: &mut Strokes) {
+    for row in 0..3 {
+        let y = 0.092 - 0.030 * f64::from(row);
+        let points = (0..5)
+            .map(|i| [-0.105 + 0.0525 * f64::from(i), strokes.about(y, 0.004)])
+            .collect();
+        let pressure = strokes.about(0.78, 0.06);
+        strokes.stroke(points, pressure, 1.9);
+    }
 }
 
-/// Draws numbers and collects strokes.
-pub(crate) struct Hand {
-    random: Pcg32,
-    strokes: Vec<Stroke>,
-}
-
-impl Hand {
-    /// A number in 0..1.
-    fn chance(&mut self) -> f64 {
-        f64::from(self.random.next_u32()) / (f64::from(u32::MAX) + 1.0)
-    }
-
-    /// A number within `spread` of `middle`.
-    pub(crate) fn about(&mut self, middle: f64, spread: f64) -> f64 {
-        middle + spread * (2.0 * self.chance() - 1.0)
-    }
-
-    /// The strokes so far.
-    pub(crate) fn strokes_mut(&mut self) -> &mut Vec<Stroke> {
-        &mut self.strokes
-    }
-
-    pub(crate) fn stroke(&mut self, points: Vec<[f64; 2]>, pressure: f64, seconds: f64) {
-        self.strokes.push(Stroke {
-            points,
-            pressure,
-            press: Press::Swell,
-            seconds,
-        });
-    }
-
-    fn flower(&mut self) {
-        let head = [self.about(0.0, 0.02), self.about(0.042, 0.008)];
-        self.sky();
-        self.hills();
-        self.stem(head);
-        self.petals(head);
-    }
-
-    /// Broad sweeps across the upper half.
-    fn sky(&mut self) {
-        for row in 0..3 {
-            let y = 0.092 - 0.030 * f64::from(row);
-            let points = (0..5)
-                .map(|i| [-0.105 + 0.0525 * f64::from(i), self.about(y, 0.004)])
-                .collect();
-            let pressure = self.about(0.78, 0.06);
-            self.stroke(points, pressure, 1.9);
-        }
-    }
-
-    /// Rolling hills, each lower than the one before.
-    fn hills(&mut self) {
-        for row in 0..3 {
-            let base = -0.030 - 0.030 * f64::from(row);
-            let phase = TAU * self.chance();
-            let points = (0..7)
-                .map(|i| {
-                    let t = f64::from(i) / 6.0;
-                    [
-                        -0.108 + 0.216 * t,
-                        base + 0.010 * sin(phase + 1.4 * TAU * t),
-                    ]
-                })
-                .collect();
-            let pressure = self.about(0.72, 0.06);
-            self.stroke(points, pressure, 1.8);
-        }
-    }
-
-    /// A stem with two leaves.
-    fn stem(&mut self, head: [f64; 2]) {
-        let lean = self.about(0.008, 0.006);
-        let foot = [head[0] + 2.0 * lean, -0.098];
-        self.stroke(vec![head, [head[0] + lean, -0.02], foot], 0.22, 1.2);
-        for side in [-1.0, 1.0] {
-            let y = self.about(-0.055, 0.008);
-            let root = [head[0] + 1.3 * lean, y];
-            let reach = self.about(0.034, 0.004);
-            let tip = [root[0] + side * reach, y + 0.020];
-            let middle = [root[0] + side * 0.45 * reach, y + 0.018];
-            self.stroke(vec![root, middle, tip], 0.5, 0.8);
-        }
-    }
-
-    /// Petals around a head: each pulled from the rim inward.
-    fn petals(&mut self, head: [f64; 2]) {
-        let count = 7;
-        let first = TAU * self.chance();
-        for petal in 0..count {
-            let angle = first + TAU * f64::from(petal) / f64::from(count);
-            let long = self.about(0.041, 0.003);
-            let bend = self.about(0.18, 0.06);
-            let at = |radius: f64, turn: f64| {
-                [
-                    head[0] + radius * cos(angle + turn),
-                    head[1] + radius * sin(angle + turn),
-                ]
-            };
-            let points = vec![
-                at(long, bend),
-                at(0.6 * long, 0.3 * bend),
-                at(0.2 * long, 0.0),
-            ];
-            let pressure = self.about(0.55, 0.08);
-            self.stroke(points, pressure, 0.75);
-        }
-        let ring = (0..8)
+/// Rolling hills, each lower than the one before.
+fn hills(strokes: &mut Strokes) {
+    for row in 0..3 {
+        let base = -0.030 - 0.030 * f64::from(row);
+        let phase = TAU * strokes.chance();
+        let points = (0..7)
             .map(|i| {
-                let angle = PI * f64::from(i) / 3.0;
-                let radius = 0.0065 * (1.0 - f64::from(i) / 14.0);
-                [head[0] + radius * cos(angle), head[1] + radius * sin(angle)]
+                let t = f64::from(i) / 6.0;
+                [
+                    -0.108 + 0.216 * t,
+                    base + 0.010 * sin(phase + 1.4 * TAU * t),
+                ]
             })
             .collect();
-        self.stroke(ring, 0.45, 1.0);
+        let pressure = strokes.about(0.72, 0.06);
+        strokes.stroke(points, pressure, 1.8);
     }
 }
 
-/// What a demo paints.
+/// A stem with two leaves.
+fn stem(strokes: &mut Strokes, head: [f64; 2]) {
+    let lean = strokes.about(0.008, 0.006);
+    let foot = [head[0] + 2.0 * lean, -0.098];
+    strokes.stroke(vec![head, [head[0] + lean, -0.02], foot], 0.22, 1.2);
+    for side in [-1.0, 1.0] {
+        let y = strokes.about(-0.055, 0.008);
+        let root = [head[0] + 1.3 * lean, y];
+        let reach = strokes.about(0.034, 0.004);
+        let tip = [root[0] + side * reach, y + 0.020];
+        let middle = [root[0] + side * 0.45 * reach, y + 0.018];
+        strokes.stroke(vec![root, middle, tip], 0.5, 0.8);
+    }
+}
+
+/// Petals around a head: each pulled from the rim inward.
+fn petals(strokes: &mut Strokes, head: [f64; 2]) {
+    let count = 7;
+    let first = TAU * strokes.chance();
+    for petal in 0..count {
+        let angle = first + TAU * f64::from(petal) / f64::from(count);
+        let long = strokes.about(0.041, 0.003);
+        let bend = strokes.about(0.18, 0.06);
+        let at = |radius: f64, turn: f64| {
+            [
+                head[0] + radius * cos(angle + turn),
+                head[1] + radius * sin(angle + turn),
+            ]
+        };
+        let points = vec![
+            at(long, bend),
+            at(0.6 * long, 0.3 * bend),
+            at(0.2 * long, 0.0),
+        ];
+        let pressure = strokes.about(0.55, 0.08);
+        strokes.stroke(points, pressure, 0.75);
+    }
+    let ring = (0..8)
+        .map(|i| {
+            let angle = PI * f64::from(i) / 3.0;
+            let radius = 0.0065 * (1.0 - f64::from(i) / 14.0);
+            [head[0] + radius * cos(angle), head[1] + radius * sin(angle)]
+        })
+        .collect();
+    strokes.stroke(ring, 0.45, 1.0);
+}
+
+/// Subject of a demo.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Subject {
     /// A flower before hills.
     Flower,
-    /// A sheet of marks: what brush and paint can do.
+    /// A sheet of marks that shows what brush and paint can do.
     Marks,
 }
 
-/// The performance of a seed.
+/// The performance of a subject and a seed.
 #[must_use]
 pub fn performance(subject: Subject, seed: u64) -> Take {
-    let mut hand = Hand {
-        random: Pcg32::new(seed, 0x6465_6d6f),
-        strokes: Vec::new(),
-    };
+    let mut strokes = Strokes::new(Pcg32::new(seed, 0x6465_6d6f));
     match subject {
-        Subject::Flower => hand.flower(),
-        Subject::Marks => sheet::marks(&mut hand),
+        Subject::Flower => flower(&mut strokes),
+        Subject::Marks => mark_sheet::marks(&mut strokes),
     }
     let mut samples = Vec::new();
     let mut time_s = 0.0;
-    let strokes = std::mem::take(&mut hand.strokes);
-    let mut rest = strokes.first().map_or([0.0; 2], |stroke| stroke.points[0]);
-    for stroke in &strokes {
+    let drawn = strokes.take();
+    let mut rest = drawn.first().map_or([0.0; 2], |stroke| stroke.points[0]);
+    for stroke in &drawn {
         time_s = travel(&mut samples, time_s, rest, stroke.points[0]);
-        time_s = draw(&mut hand, &mut samples, time_s, stroke);
+        time_s = draw(&mut strokes, &mut samples, time_s, stroke);
         rest = *stroke.points.last().unwrap_or(&rest);
     }
     travel(&mut samples, time_s, rest, rest);
     Take {
-        kit: None,
+        setup: None,
         device: "demo".into(),
         samples,
     }
@@ -206,9 +154,14 @@ fn travel(samples: &mut Vec<TakeSample>, start_s: f64, from: [f64; 2], to: [f64;
     start_s + steps as f64 / RATE_HZ
 }
 
-fn draw(hand: &mut Hand, samples: &mut Vec<TakeSample>, start_s: f64, stroke: &Stroke) -> f64 {
+fn draw(
+    strokes: &mut Strokes,
+    samples: &mut Vec<TakeSample>,
+    start_s: f64,
+    stroke: &Stroke,
+) -> f64 {
     let steps = (stroke.seconds * RATE_HZ) as usize;
-    let phases = [TAU * hand.chance(), TAU * hand.chance()];
+    let phases = [TAU * strokes.chance(), TAU * strokes.chance()];
     for step in 0..=steps {
         let t = step as f64 / steps as f64;
         let s = minimum_jerk(t);
@@ -217,9 +170,9 @@ fn draw(hand: &mut Hand, samples: &mut Vec<TakeSample>, start_s: f64, stroke: &S
         let tremor = |phase: f64| 1e-4 * sin(phase + TAU * 9.0 * step as f64 / RATE_HZ);
         let at = [at[0] + tremor(phases[0]), at[1] + tremor(phases[1])];
         // The brush is set down and lifted while it moves: a press at rest would leave a hook.
-        let shape = match stroke.press {
-            Press::Swell => (6.0 * s).min(1.0),
-            Press::Grow => s,
+        let shape = match stroke.course {
+            Pressure::Swell => (6.0 * s).min(1.0),
+            Pressure::Grow => s,
         };
         let swell = shape.min(4.0 * (1.0 - s)).max(0.0);
         let pressure = stroke.pressure * swell * (0.9 + 0.1 * cos(TAU * t));

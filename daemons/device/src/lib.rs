@@ -1,37 +1,38 @@
-//! What device daemons share.
+//! Shared parts of the device daemons.
 //!
 //! | module | holds |
 //! | --- | --- |
 //! | [`take`] | recorded samples as MCAP files |
-//! | [`salvage`](mod@salvage) | what a take holds, whole or damaged |
-//! | [`kit`] | what a take is painted with, embedded in it |
+//! | [`salvage`](mod@salvage) | reading of takes, whole or damaged |
+//! | [`take_setup`] | settings and files that a take embeds |
 //! | [`table`] | tables of strokes, imported as takes |
-//! | [`demo`], [`sheet`] | performances made from a seed |
+//! | [`demo`], [`mark_sheet`] | performances made from a seed |
 //! | [`player`] | a device that plays a take |
-//! | [`brush`] | the brush that a section of `rig.toml` asks for |
-//! | [`missing`] | what is said of a device that is not there |
-//! | [`mover`] | the free hand moves the canvas |
-//! | [`fitting`] | a device's frame on the desk |
-//! | [`corners`] | the corners of the canvas, as a hand shows them |
-//! | [`actions`] | what the switches of a stylus do |
-//! | [`collections`] | what a HID device says that it is |
+//! | [`brush`] | the brush of a section of `rig.toml` |
+//! | [`device_missing`] | report of a device that is not there |
+//! | [`canvas_mover`] | motion of the canvas by a 6-DOF mouse |
+//! | [`registration`] | a device's frame on the desk |
+//! | [`corner_calibration`] | corners of the canvas, as a hand shows them |
+//! | [`actions`] | actions of a stylus's switches |
+//! | [`hid_collections`] | application collections of a HID report descriptor |
 
 pub mod actions;
 pub mod brush;
-pub mod collections;
-pub mod corners;
+pub mod canvas_mover;
+pub mod corner_calibration;
 pub mod demo;
-pub mod fitting;
-pub mod kit;
-pub mod missing;
-pub mod mover;
+pub mod device_missing;
+pub mod hid_collections;
+pub mod mark_sheet;
 pub mod player;
 mod records;
+pub mod registration;
 pub mod salvage;
-pub mod sheet;
+mod strokes;
 pub mod table;
 pub mod take;
+pub mod take_setup;
 
 pub use brush::{brush_file, read_brush};
-pub use kit::Kit;
 pub use take::{Take, TakeSample};
+pub use take_setup::TakeSetup;

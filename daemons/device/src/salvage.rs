@@ -13,9 +13,9 @@ use maulstick_types::stylus::StylusSample;
 use mcap::MAGIC;
 use mcap::records::{MessageHeader, Record, op};
 
-use crate::kit::Kit;
 use crate::records::{Found, HEAD, records, unpack};
 use crate::take::{Take, TakeSample};
+use crate::take_setup::TakeSetup;
 
 /// Name of a device whose channel record is lost.
 const UNNAMED: &str = "recovered";
@@ -78,7 +78,7 @@ pub(crate) fn from_bytes(bytes: &[u8]) -> Result<Salvage, Refusal> {
     if !begun {
         reading.damaged(0, "the file does not begin as an MCAP file does");
     }
-    let kit = Kit::read(&found).unwrap_or_else(|damage| {
+    let setup = TakeSetup::read(&found).unwrap_or_else(|damage| {
         reading.damaged(0, &damage);
         None
     });
@@ -96,7 +96,7 @@ pub(crate) fn from_bytes(bytes: &[u8]) -> Result<Salvage, Refusal> {
     if !ended {
         reading.damaged(bytes.len(), "the file ends before its closing record");
     }
-    reading.finish(kit)
+    reading.finish(setup)
 }
 
 /// What has been read so far.
@@ -211,12 +211,12 @@ impl Reading {
             None => self.devices.push(Take {
                 device: device.to_owned(),
                 samples: vec![sample],
-                kit: None,
+                setup: None,
             }),
         }
     }
 
-    fn finish(self, kit: Option<Kit>) -> Result<Salvage, Refusal> {
+    fn finish(self, setup: Option<TakeSetup>) -> Result<Salvage, Refusal> {
         let damage = self.damage.map(|(first, more)| match more {
             0 => first,
             1 => format!("{first}, and in another place"),
@@ -225,7 +225,7 @@ impl Reading {
         let mut devices = self.devices.into_iter();
         match (devices.next(), devices.next()) {
             (Some(take), None) => Ok(Salvage {
-                take: Take { kit, ..take },
+                take: Take { setup, ..take },
                 damage,
             }),
             (None, _) => Err(damage.map_or(Refusal::Empty, Refusal::Damaged)),

@@ -153,7 +153,7 @@ pub fn parse(text: &str, name: &str, layout: TableLayout, device: &str) -> Resul
     notes.extend(unpainted(&rows, &samples, layout));
     Ok(Imported {
         take: Take {
-            kit: None,
+            setup: None,
             device: device.to_owned(),
             samples,
         },

@@ -11,8 +11,8 @@ use maulstick_types::stylus::StylusSample;
 use maulstick_types::{Flags, Message as _, Origin, encode, name_hash};
 use mcap::records::MessageHeader;
 
-use crate::kit::Kit;
 use crate::salvage::salvage;
+use crate::take_setup::TakeSetup;
 
 /// Encoding of the messages: the bus's own header and body.
 pub const MESSAGE_ENCODING: &str = "x-maulstick";
@@ -39,7 +39,7 @@ pub struct Take {
     /// At least one.
     pub samples: Vec<TakeSample>,
     /// What it is painted with, where it embeds that.
-    pub kit: Option<Kit>,
+    pub setup: Option<TakeSetup>,
 }
 
 impl Take {
@@ -91,8 +91,8 @@ impl Take {
             .compression_threads(0)
             .chunk_size(Some(CHUNK_BYTES))
             .create(file)?;
-        if let Some(kit) = &self.kit {
-            kit.write(&mut writer)?;
+        if let Some(setup) = &self.setup {
+            setup.write(&mut writer)?;
         }
         let fields = serde_json::to_vec(&StylusSample::schema().whole()).unwrap_or_default();
         let schema = writer.add_schema("StylusSample/1", SCHEMA_ENCODING, &fields)?;
@@ -139,7 +139,7 @@ mod tests {
         Take {
             device: "pen".into(),
             samples: (0..5000).map(sample).collect(),
-            kit: None,
+            setup: None,
         }
     }
 
@@ -155,13 +155,13 @@ mod tests {
         assert!(bytes[0] == bytes[1]);
     }
 
-    fn with_a_kit() -> Take {
-        let mut kit = Kit::default();
-        kit.add(b"paint".to_vec(), "csv");
-        kit.settings = kit.add(b"[canvas]".to_vec(), "toml");
-        kit.loads = vec!["Ultramarine Blue".into(), "Titanium White".into()];
+    fn with_a_setup() -> Take {
+        let mut setup = TakeSetup::default();
+        setup.add(b"paint".to_vec(), "csv");
+        setup.settings = setup.add(b"[canvas]".to_vec(), "toml");
+        setup.loads = vec!["Ultramarine Blue".into(), "Titanium White".into()];
         Take {
-            kit: Some(kit),
+            setup: Some(setup),
             ..take()
         }
     }
@@ -170,8 +170,8 @@ mod tests {
     fn what_a_take_embeds_is_what_it_was_or_damaged() {
         let folder = tempfile::tempdir().expect("a folder");
         let path = folder.path().join("a.mcap");
-        with_a_kit().write(&path).expect("written");
-        assert_eq!(Take::read(&path), Ok(with_a_kit()));
+        with_a_setup().write(&path).expect("written");
+        assert_eq!(Take::read(&path), Ok(with_a_setup()));
         let mut bytes = std::fs::read(&path).expect("read");
         let at = bytes.windows(8).position(|found| found == b"[canvas]");
         bytes[at.expect("embedded as it is")] ^= 1;

@@ -44,7 +44,7 @@ fn actor(net: &MemoryNet, live: &Live, brush: &str) -> Actor {
 }
 
 fn hold(actor: &mut Actor, switches: u32) {
-    actor.hear(&StylusSample {
+    actor.receive(&StylusSample {
         switches,
         in_range: true,
         ..StylusSample::away()
@@ -187,7 +187,7 @@ fn the_eraser_end_lifts_paint_off_while_it_is_near() {
     hold(&mut actor, switch::ERASER);
     rig.until_mode(&BrushMode::Vacuum);
     // Out of range it is not near.
-    actor.hear(&StylusSample {
+    actor.receive(&StylusSample {
         switches: switch::ERASER,
         ..StylusSample::away()
     });
@@ -208,7 +208,7 @@ fn the_palette_slides_over_the_canvas_where_a_brush_finds_it_and_back() {
         rig.until("over", |rig| under(rig) == Some(PALETTE));
         let desk = Desk::of(&rig.scene());
         let palette = desk.plane(PALETTE).expect("there");
-        let gap = palette.wall().gap(DVec3::ZERO);
+        let gap = palette.half_space().gap(DVec3::ZERO);
         assert!((gap + 0.01).abs() < 1e-12, "its board lies over the paint");
         hold(&mut actor, 0);
         hold(&mut actor, PALETTE_SWITCH);

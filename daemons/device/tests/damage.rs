@@ -5,7 +5,7 @@ mod counting;
 use std::path::PathBuf;
 
 use maulstick_device::salvage::{Salvage, salvage};
-use maulstick_device::{Kit, Take, TakeSample};
+use maulstick_device::{Take, TakeSample, TakeSetup};
 use maulstick_types::stylus::{StylusPose, StylusSample};
 use rand_pcg::Pcg32;
 use rand_pcg::rand_core::Rng as _;
@@ -14,10 +14,10 @@ const PERIOD_NS: u64 = 8_000_000;
 
 /// A take of a pen that goes round, `count` samples, 8 ms apart.
 fn take(count: u64) -> Take {
-    let mut kit = Kit::default();
-    kit.add(b"paint".to_vec(), "csv");
-    kit.settings = kit.add(b"[canvas]".to_vec(), "toml");
-    kit.loads = vec!["Ultramarine Blue".into(), "Titanium White".into()];
+    let mut setup = TakeSetup::default();
+    setup.add(b"paint".to_vec(), "csv");
+    setup.settings = setup.add(b"[canvas]".to_vec(), "toml");
+    setup.loads = vec!["Ultramarine Blue".into(), "Titanium White".into()];
     let mut random = Pcg32::new(7, 1);
     let mut tremor = || f64::from(random.next_u32()) * 1e-13;
     let sample = |i: u64| {
@@ -39,7 +39,7 @@ fn take(count: u64) -> Take {
     Take {
         device: "pen".into(),
         samples: (0..count).map(sample).collect(),
-        kit: Some(kit),
+        setup: Some(setup),
     }
 }
 

@@ -72,7 +72,7 @@ fn the_file_alone_tells_how_its_samples_are_decoded() {
     let take = Take {
         device: "pen".into(),
         samples: (0..7).map(sample).collect(),
-        kit: None,
+        setup: None,
     };
     let folder = tempfile::tempdir().expect("a folder");
     let path = folder.path().join("a.mcap");

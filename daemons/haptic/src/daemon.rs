@@ -1,4 +1,4 @@
-//! The thread that talks to the rig: samples and status out, models in.
+//! The thread that talks to the rig: samples and status out, contact models and force orders in.
 
 use std::time::Duration;
 
@@ -6,34 +6,35 @@ use maulstick_bus::credit::Stamp;
 use maulstick_bus::typed::{Reader, Receiver, Sender};
 use maulstick_bus::{Class, CreditSender, Queue, Server};
 use maulstick_device::actions::{Action, Actions, Actor};
-use maulstick_device::fitting::Fitting;
-use maulstick_device::missing::miss;
+use maulstick_device::device_missing::report_missing;
+use maulstick_device::registration::Registration;
 use maulstick_haptics::contact::Contact;
-use maulstick_haptics::{Address, Kept, Limits, Switch};
+use maulstick_haptics::{Limits, Recipient, ServoMemory, Switch};
 use maulstick_num::geometry::Rigid;
 use maulstick_rig::{Fault, Member, RigConfig};
 use maulstick_types::haptics::{ContactModel, ForceOrder, ForceReply, ForceRequest};
 use maulstick_types::stylus::{StylusInfo, StylusPose, StylusSample, StylusStatus};
 use maulstick_types::{Flags, encode};
 
-use crate::beat::{Before, Delivery, Ticked};
-use crate::host::{BINS, Ended, Host, bin};
-use crate::open::{HapticSettings, open};
-use crate::placed::Placed;
-use crate::standing::{Orders, Standing};
-use crate::wish::Wish;
+use crate::device::mounted_device::MountedDevice;
+use crate::device::open::{HapticSettings, open};
+use crate::force_state_file::{ForceState, ForceStateFile};
+use crate::servo::channels::{Delivery, TickRecord};
+use crate::servo::force_control::ForceControl;
+use crate::servo::servo_loop::PreviousServo;
+use crate::servo::servo_thread::{BINS, Ended, ServoThread, bin};
 
 /// Time between two statuses, ns.
 const STATUS_PERIOD_NS: u64 = 100_000_000;
 /// Time between two attempts to open a device that is not there, ns.
 const ATTEMPT_PERIOD_NS: u64 = 1_000_000_000;
-/// Out of range a sample goes out only this often, ns.
+/// Time between two samples out of range, ns.
 const IDLE_PERIOD_NS: u64 = 50_000_000;
 
 /// Runs a device in the rig of `member`.
 ///
 /// # Errors
-/// A [`Fault`] where the device or the rig cannot be used.
+/// [`Fault`] if the device or the rig cannot be used.
 pub fn run(member: &mut Member, settings: &HapticSettings) -> Result<(), Fault> {
     let mut daemon = Daemon::new(member, settings)?;
     member.ready()?;
@@ -44,40 +45,41 @@ struct Daemon {
     bus: std::sync::Arc<dyn maulstick_bus::Bus>,
     config: RigConfig,
     settings: HapticSettings,
-    /// The servo, while there is a device.
-    host: Option<Host>,
-    /// What the servo before it has left, and when, ns.
-    before: Option<(Before, u64)>,
-    /// What of all this outlives this daemon, and the fault that is latched.
-    standing: Standing,
+    /// The servo, while a device is open.
+    servo: Option<ServoThread>,
+    /// State of the previous servo, and the time of its end, ns.
+    previous: Option<(PreviousServo, u64)>,
+    /// Force settings and latched fault as they survive this daemon.
+    state_file: ForceStateFile,
+    /// Latched fault.
     latched: Option<maulstick_haptics::Fault>,
-    /// The device that was told of last, in words.
+    /// Description of the device that was logged last.
     what: String,
-    /// What the switches do, but the clutch; ended after the servo, for it may wait for the paint node.
+    /// Actions of the switches except the clutch; ended after the servo, for it may wait for the paint node.
     actor: Actor,
-    /// Where the device stands.
-    fitting: Fitting,
-    /// When to look for the device again.
+    /// Registration of the device to the canvas.
+    registration: Registration,
+    /// Time of the next attempt to open the device, ns.
     attempt_ns: u64,
     senses: u32,
-    address: Address,
+    recipient: Recipient,
     samples: CreditSender<StylusSample>,
     models: Receiver<ContactModel>,
     orders: Server,
     reader: Reader,
-    wish: Wish,
+    control: ForceControl,
     status: Sender<StylusStatus>,
     info: Sender<StylusInfo>,
-    /// From `CLOCK_MONOTONIC`, which stamps the ticks, to the rig's clock, ns.
+    /// Offset from `CLOCK_MONOTONIC`, which stamps the ticks, to the rig's clock, ns.
     offset_ns: u64,
     told: StylusStatus,
-    /// Ticks that did not fit with devices that are gone.
+    /// Tick records dropped with devices that are gone.
     dropped_before: u64,
     deliveries: u64,
     status_ns: u64,
     published_ns: u64,
     newest: StylusSample,
-    /// Whether a bad model was told of.
+    /// True once a bad model has been logged.
     warned: bool,
 }
 
@@ -86,10 +88,10 @@ impl Daemon {
         let device = &settings.device;
         let (bus, topics) = (&*member.bus, &member.topics);
         let origin = member.origin(&device.name);
-        let standing = Standing::of(&member.folder, &device.name, member.clock.offset_ns());
-        let orders = standing.recall();
-        let fitting = Fitting::of(device, &member.config.canvas)?;
-        if let Some(warning) = fitting.warning() {
+        let state_file = ForceStateFile::of(&member.folder, &device.name, member.clock.offset_ns());
+        let state = state_file.read();
+        let registration = Registration::of(device, &member.config.canvas)?;
+        if let Some(warning) = registration.warning() {
             let name = &device.name;
             tracing::warn!("{name}: {warning}; touch them again: `maulstick calibrate {name}`");
         }
@@ -112,14 +114,14 @@ impl Daemon {
         let mut daemon = Self {
             config: member.config.clone(),
             settings: settings.clone(),
-            host: None,
-            before: None,
+            servo: None,
+            previous: None,
             what: String::new(),
             actor,
-            fitting,
+            registration,
             attempt_ns: 0,
             senses: 0,
-            address: Address {
+            recipient: Recipient {
                 device: samples.origin(),
                 brush: device.brush.clone(),
             },
@@ -127,12 +129,12 @@ impl Daemon {
             models: Receiver::new(bus, &topic, Class::RealTime, Queue::Ring(64), &member.wake)?,
             orders: bus.serve(&topics.force(&device.name), 16, &member.wake)?,
             reader: Reader::default(),
-            wish: Wish {
-                switch: orders.switch,
-                strength: orders.strength,
-                ..Wish::default()
+            control: ForceControl {
+                switch: state.switch,
+                strength: state.strength,
+                ..ForceControl::default()
             },
-            standing,
+            state_file,
             latched: None,
             status: Sender::new(
                 bus,
@@ -151,8 +153,8 @@ impl Daemon {
             warned: false,
             bus: member.bus.clone(),
         };
-        (daemon.told.is_on, daemon.told.strength) = (orders.switch == Switch::On, orders.strength);
-        if let Some(fault) = orders.fault {
+        (daemon.told.is_on, daemon.told.strength) = (state.switch == Switch::On, state.strength);
+        if let Some(fault) = state.fault {
             daemon.latch(fault);
         }
         Ok(daemon)
@@ -160,19 +162,19 @@ impl Daemon {
 
     fn turn(&mut self) -> Result<Duration, Fault> {
         let now_ns = self.bus.now_ns();
-        if self.host.is_none() && now_ns >= self.attempt_ns {
+        if self.servo.is_none() && now_ns >= self.attempt_ns {
             self.attempt_ns = now_ns + ATTEMPT_PERIOD_NS;
             self.attempt(now_ns)?;
         }
         self.obey(now_ns);
         self.deliver();
-        while let Some(Ok(ticked)) = self.host.as_mut().map(|host| host.ticks.pop()) {
-            self.publish(&ticked, now_ns)?;
+        while let Some(Ok(record)) = self.servo.as_mut().map(|servo| servo.ticks.pop()) {
+            self.publish(&record, now_ns)?;
         }
-        if self.host.as_ref().is_some_and(Host::has_ended) {
+        if self.servo.as_ref().is_some_and(ServoThread::has_ended) {
             self.lose(now_ns)?;
         }
-        // Nobody waits for credit on a live device; the ring is there for who missed something.
+        // A live device never waits for credit; the ring serves receivers that missed a sample.
         self.samples.forgive();
         self.samples.serve(now_ns)?;
         if now_ns >= self.status_ns + STATUS_PERIOD_NS {
@@ -184,15 +186,15 @@ impl Daemon {
     }
 
     fn dropped(&self) -> u64 {
-        self.dropped_before + self.host.as_ref().map_or(0, Host::dropped)
+        self.dropped_before + self.servo.as_ref().map_or(0, ServoThread::dropped)
     }
 
-    /// Opens the device, if it is there.
+    /// Tries to open the device.
     fn attempt(&mut self, now_ns: u64) -> Result<(), Fault> {
         let opened = match open(&self.config, &self.settings) {
             Ok(opened) => opened,
             Err(fault) => {
-                miss(&self.settings.device.name, &fault, &mut self.told);
+                report_missing(&self.settings.device.name, &fault, &mut self.told);
                 return Ok(());
             }
         };
@@ -202,9 +204,9 @@ impl Daemon {
             self.what = opened.what;
         }
         let clutch = Actions::of(device).bits(Action::Clutch);
-        let placed = Placed::new(opened.driver, self.fitting, clutch);
-        let abilities = placed.abilities();
-        let scale = placed.scale();
+        let mounted = MountedDevice::new(opened.driver, self.registration, clutch);
+        let abilities = mounted.abilities();
+        let scale = mounted.scale();
         let limits = Limits {
             max_force_n: device.max_force_n.min(abilities.max_force_n),
             continuous_force_n: device.max_force_n.min(abilities.continuous_force_n),
@@ -214,13 +216,13 @@ impl Daemon {
         };
         let unscaled = limits;
         let limits = limits.scaled(scale);
-        let before = self.before_of(limits, now_ns);
-        let mut host = Host::resume(placed, opened.pace, limits, before)
+        let previous = self.previous_of(limits, now_ns);
+        let mut servo = ServoThread::resume(mounted, opened.clock, limits, previous)
             .map_err(|error| Fault::failure(format!("the servo cannot start: {error}")))?;
-        for warning in &host.warnings {
+        for warning in &servo.warnings {
             tracing::warn!("{}: {warning}", device.name);
         }
-        host.wishes.write(self.wish);
+        servo.controls.write(self.control);
         let told = StylusInfo {
             device: device.name.clone(),
             driver: device.driver.clone(),
@@ -235,47 +237,46 @@ impl Daemon {
         };
         self.info.send(now_ns, now_ns, &told)?;
         self.senses = abilities.senses;
-        self.host = Some(host);
+        self.servo = Some(servo);
         Ok(())
     }
 
-    /// What a new servo is to know: a device that is lost and found again is still without force after a
-    /// fault, and its motors have cooled only for as long as it was away.
-    fn before_of(&self, limits: Limits, now_ns: u64) -> Before {
-        let (mut before, since_ns) = self.before.unwrap_or((
-            Before {
-                kept: Kept {
+    /// State for a new servo: a device that is lost and found again is still without force after a fault,
+    /// and its motors have cooled only while it was away.
+    fn previous_of(&self, limits: Limits, now_ns: u64) -> PreviousServo {
+        let (mut previous, since_ns) = self.previous.unwrap_or((
+            PreviousServo {
+                memory: ServoMemory {
                     fault: self.latched,
-                    ..Kept::nothing(limits)
+                    ..ServoMemory::fresh(limits)
                 },
-                armings: self.wish.armings,
+                rearms: self.control.rearms,
             },
             now_ns,
         ));
-        if before.armings != self.wish.armings {
-            before.kept.fault = None;
-            before.armings = self.wish.armings;
+        if previous.rearms != self.control.rearms {
+            previous.memory.fault = None;
+            previous.rearms = self.control.rearms;
         }
-        before.kept = before
-            .kept
-            .rested(now_ns.saturating_sub(since_ns) as f64 * 1e-9);
-        before
+        let away_s = now_ns.saturating_sub(since_ns) as f64 * 1e-9;
+        previous.memory = previous.memory.cooled(away_s);
+        previous
     }
 
-    /// The servo has ended: lifts the brush, and looks for the device again if it is that which is
-    /// lost.
+    /// Handles the end of the servo: lifts the brush, and looks for the device again if that was lost.
     fn lose(&mut self, now_ns: u64) -> Result<(), Fault> {
         self.dropped_before = self.dropped();
-        let Some(Ended { trouble, before }) = self.host.take().and_then(|host| host.ended()) else {
+        let Some(Ended { error, previous }) = self.servo.take().and_then(|servo| servo.ended())
+        else {
             return Err(Fault::failure("the servo has ended by a fault of its own")
                 .help("its own message above says why"));
         };
-        if let Some(fault) = before.kept.fault
-            && before.armings == self.wish.armings
+        if let Some(fault) = previous.memory.fault
+            && previous.rearms == self.control.rearms
         {
             self.latch(fault);
         }
-        self.before = Some((before, now_ns));
+        self.previous = Some((previous, now_ns));
         let away = StylusSample {
             in_range: false,
             switches: 0,
@@ -283,18 +284,18 @@ impl Daemon {
             velocity_m_s: [0.0; 3],
             ..self.newest.clone()
         };
-        self.actor.hear(&away);
+        self.actor.receive(&away);
         if self.newest.in_range {
             self.send(now_ns, now_ns, away)?;
         }
         self.told.force_n = 0.0;
         self.attempt_ns = now_ns + ATTEMPT_PERIOD_NS;
-        let fault = Fault::failure(trouble.to_string()).help(trouble.help);
-        miss(&self.settings.device.name, &fault, &mut self.told);
+        let fault = Fault::failure(error.to_string()).help(error.help);
+        report_missing(&self.settings.device.name, &fault, &mut self.told);
         Ok(())
     }
 
-    /// Does what is asked of the force, and tells how it is then.
+    /// Follows the force orders that have come, and answers each with the resulting state.
     fn obey(&mut self, now_ns: u64) {
         while let Some(request) = self.orders.try_recv() {
             let read = self
@@ -302,28 +303,28 @@ impl Daemon {
                 .read::<ForceRequest>(&request.key, &request.bytes);
             let Some((_, asked)) = read else { continue };
             match asked.order {
-                ForceOrder::Off => self.wish.switch = Switch::Off,
-                ForceOrder::On => self.wish.switch = Switch::On,
-                // A share that is no number is none.
+                ForceOrder::Off => self.control.switch = Switch::Off,
+                ForceOrder::On => self.control.switch = Switch::On,
+                // NaN counts as 0.
                 ForceOrder::Strength { share } if share > 0.0 => {
-                    self.wish.strength = share.min(1.0);
+                    self.control.strength = share.min(1.0);
                 }
-                ForceOrder::Strength { .. } => self.wish.strength = 0.0,
+                ForceOrder::Strength { .. } => self.control.strength = 0.0,
                 ForceOrder::Rearm => {
-                    self.wish.armings += 1;
+                    self.control.rearms += 1;
                     self.told.faults.clear();
                     self.latched = None;
                 }
             }
             (self.told.is_on, self.told.strength) =
-                (self.wish.switch == Switch::On, self.wish.strength);
-            if let Some(host) = &mut self.host {
-                host.wishes.write(self.wish);
+                (self.control.switch == Switch::On, self.control.strength);
+            if let Some(servo) = &mut self.servo {
+                servo.controls.write(self.control);
             }
-            self.keep();
+            self.write_state();
             let reply = ForceReply {
-                is_on: self.wish.switch == Switch::On,
-                strength: self.wish.strength,
+                is_on: self.control.switch == Switch::On,
+                strength: self.control.strength,
                 fault: self.fault(),
             };
             let me = self.samples.origin();
@@ -338,23 +339,23 @@ impl Daemon {
         }
     }
 
-    /// Hands the newest model to the servo, if it is meant for this device as it is now.
+    /// Hands the newest model to the servo, if it is addressed to this device in its current session.
     fn deliver(&mut self) {
         let Some(received) = self.models.newest() else {
             return;
         };
         let model = received.message;
-        if !self.address.takes(&model) {
+        if !self.recipient.accepts(&model) {
             self.told.foreign_models += 1;
             return;
         }
-        let Some(host) = &mut self.host else {
+        let Some(servo) = &mut self.servo else {
             return;
         };
         match Contact::new(&model) {
             Ok(contact) => {
                 self.deliveries += 1;
-                host.models.write(Delivery {
+                servo.models.write(Delivery {
                     contact: Some(contact),
                     sender: Some(received.header.origin()),
                     number: self.deliveries,
@@ -370,39 +371,39 @@ impl Daemon {
         }
     }
 
-    fn publish(&mut self, ticked: &Ticked, now_ns: u64) -> Result<(), Fault> {
-        self.told.lateness[bin(ticked.late_ns)] += 1;
-        self.told.execution[bin(ticked.spent_ns)] += 1;
-        self.told.force_n = ticked.force.length();
-        // A device that is lost before it says anything is still the same trouble.
+    fn publish(&mut self, record: &TickRecord, now_ns: u64) -> Result<(), Fault> {
+        self.told.lateness[bin(record.late_ns)] += 1;
+        self.told.execution[bin(record.spent_ns)] += 1;
+        self.told.force_n = record.force.length();
+        // Only a reading ends the reported trouble: a device may be lost again before it gives one.
         self.told.trouble.clear();
-        if let Some(fault) = ticked.tick.fault
-            && ticked.armings == self.wish.armings
+        if let Some(fault) = record.tick.fault
+            && record.rearms == self.control.rearms
         {
             self.latch(fault);
         }
-        let tick = &ticked.tick;
+        let tick = &record.tick;
         self.told.resting = tick.resting;
         (self.told.asked_n_m, self.told.stiffness_n_m) = (tick.asked_n_m, tick.stiffness_n_m);
         self.told.cap_n = tick.cap_n;
-        let reading = &ticked.reading;
+        let reading = &record.reading;
         self.told.motor_temperature = reading.motor_temperature;
-        let event_ns = ticked.monotonic_ns + self.offset_ns;
-        let held = Rigid {
-            rotation: reading.held.orientation,
-            translation: reading.held.position,
+        let event_ns = record.monotonic_ns + self.offset_ns;
+        let handle = Rigid {
+            rotation: reading.handle.orientation,
+            translation: reading.handle.position,
         };
         let sample = StylusSample {
             senses: self.senses,
             pose: StylusPose::Ferrule {
-                pose: held.to_pose(),
+                pose: handle.to_pose(),
             },
-            velocity_m_s: reading.held.velocity.to_array(),
-            force_n: ticked.force.to_array(),
+            velocity_m_s: reading.handle.velocity.to_array(),
+            force_n: record.force.to_array(),
             switches: reading.switches,
             in_range: reading.in_range,
         };
-        self.actor.hear(&sample);
+        self.actor.receive(&sample);
         let left = self.newest.in_range && !sample.in_range;
         if !sample.in_range && !left && event_ns < self.published_ns + IDLE_PERIOD_NS {
             return Ok(());
@@ -410,25 +411,31 @@ impl Daemon {
         self.send(now_ns, event_ns, sample)
     }
 
-    /// Tells of a latched fault, once.
+    /// Reports a latched fault, once.
     fn latch(&mut self, fault: maulstick_haptics::Fault) {
         if self.told.faults.is_empty() {
-            let what = format!("{fault}: no force until `maulstick force rearm`");
+            let commands = match fault {
+                maulstick_haptics::Fault::UnknownState => {
+                    "`maulstick force on` and `maulstick force rearm`"
+                }
+                _ => "`maulstick force rearm`",
+            };
+            let what = format!("{fault}: no force until {commands}");
             tracing::warn!("{}: {what}", self.settings.device.name);
             self.told.faults.push(what);
             self.latched = Some(fault);
-            self.keep();
+            self.write_state();
         }
     }
 
-    /// Has what is ordered, and what is latched, hold though this daemon dies.
-    fn keep(&self) {
-        let orders = Orders {
-            switch: self.wish.switch,
-            strength: self.wish.strength,
+    /// Writes force settings and latched fault to the state file.
+    fn write_state(&self) {
+        let state = ForceState {
+            switch: self.control.switch,
+            strength: self.control.strength,
             fault: self.latched,
         };
-        if let Err(error) = self.standing.keep(&orders) {
+        if let Err(error) = self.state_file.write(&state) {
             tracing::warn!("orders do not outlive this daemon: {error}");
         }
     }
@@ -442,7 +449,7 @@ impl Daemon {
         Ok(())
     }
 
-    /// What keeps the device without force, in words.
+    /// Reason why the device has no force, or an empty text.
     fn fault(&self) -> String {
         match self.told.faults.is_empty() {
             true => self.told.trouble.clone(),

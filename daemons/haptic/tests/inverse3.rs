@@ -14,8 +14,8 @@ use std::time::{Duration, Instant};
 
 use counting::allocations;
 use glam::DVec3;
-use maulstick_haptic::driver::{Driver, Reading, Trouble, Wrench};
-use maulstick_haptic::inverse3;
+use maulstick_haptic::device::driver::{DeviceError, Driver, Reading, Wrench};
+use maulstick_haptic::drivers::inverse3;
 use maulstick_haptics::Switch;
 use maulstick_rig::Fault;
 use maulstick_rig::config::DeviceSection;
@@ -58,13 +58,13 @@ fn push(force: DVec3) -> Wrench {
 }
 
 /// The next reading.
-fn reading(driver: &mut dyn Driver) -> Result<Option<Reading>, Trouble> {
+fn reading(driver: &mut dyn Driver) -> Result<Option<Reading>, DeviceError> {
     let read = wait_for(|| driver.read(1e-3).transpose());
     read.transpose()
 }
 
 /// Beats with a force until `look` has seen enough.
-fn beat<T>(
+fn run_ticks<T>(
     driver: &mut dyn Driver,
     force: DVec3,
     mut look: impl FnMut() -> Option<T>,
@@ -103,7 +103,7 @@ fn states_are_read_and_forces_arrive_in_the_services_axes() {
         first["inverse3"][0]["config"]["basis"]["permutation"] = json!(permutation);
         let service = steady(first);
         let mut driver = opened(&service.url);
-        let arrived = beat(&mut *driver, DVec3::new(1.0, 2.0, 3.0), || {
+        let arrived = run_ticks(&mut *driver, DVec3::new(1.0, 2.0, 3.0), || {
             let heard = service.heard();
             let force = force(heard.newest("049D")?, "vector")?;
             (force == expected).then_some(())
@@ -113,8 +113,8 @@ fn states_are_read_and_forces_arrive_in_the_services_axes() {
     let service = steady(inventory());
     let mut driver = opened(&service.url);
     let read = reading(&mut *driver).expect("there").expect("new");
-    assert_eq!(read.held.position, DVec3::new(0.01, 0.15, 0.12));
-    assert_eq!(read.held.velocity, DVec3::new(0.1, 0.3, -0.2));
+    assert_eq!(read.handle.position, DVec3::new(0.01, 0.15, 0.12));
+    assert_eq!(read.handle.velocity, DVec3::new(0.1, 0.3, -0.2));
     assert_eq!((read.switches, read.in_range), (0b101, true));
     let able = driver.abilities();
     assert!(able.senses & axes::ORIENTATION != 0 && able.max_force_n == 10.0);
@@ -146,7 +146,7 @@ fn a_service_before_3_5_is_spoken_to_as_it_wants() {
     });
     let mut driver = opened(&service.url);
     let heard = |driver: &mut dyn Driver, wanted: [f64; 3]| {
-        beat(driver, DVec3::new(0.0, 0.5, 0.0), || {
+        run_ticks(driver, DVec3::new(0.0, 0.5, 0.0), || {
             let heard = service.heard();
             (force(heard.newest("04BA")?, "values")? == wanted).then_some(())
         })
@@ -165,25 +165,34 @@ fn amplifiers_that_rest_are_told_so_by_no_force_in_the_tick_that_rests() {
         (newest == wanted).then_some(())
     };
     let pushed = [1.0, 0.0, 0.0];
-    assert_eq!(beat(&mut *driver, DVec3::X, || comes(pushed)), Some(()));
+    assert_eq!(
+        run_ticks(&mut *driver, DVec3::X, || comes(pushed)),
+        Some(())
+    );
     driver.write(Wrench::ZERO).expect("there");
     driver.switch(Switch::Off);
     assert_eq!(wait_for(|| comes([0.0; 3])), Some(()));
-    assert_eq!(beat(&mut *driver, DVec3::X, || comes([0.0; 3])), Some(()));
+    assert_eq!(
+        run_ticks(&mut *driver, DVec3::X, || comes([0.0; 3])),
+        Some(())
+    );
     driver.switch(Switch::On);
-    assert_eq!(beat(&mut *driver, DVec3::X, || comes(pushed)), Some(()));
+    assert_eq!(
+        run_ticks(&mut *driver, DVec3::X, || comes(pushed)),
+        Some(())
+    );
 }
 
 #[test]
 fn a_grip_is_told_of_also_while_amplifiers_rest() {
-    let held = |pressed: bool| {
-        let mut held = inventory();
-        held["wireless_verse_grip"] = json!([]);
-        held["verse_grip"] = json!([{ "device_id": "12", "state": { "button": pressed } }]);
-        held
+    let handle = |pressed: bool| {
+        let mut handle = inventory();
+        handle["wireless_verse_grip"] = json!([]);
+        handle["verse_grip"] = json!([{ "device_id": "12", "state": { "button": pressed } }]);
+        handle
     };
-    let service = Service::start(Act::Say(held(false)), move |count| {
-        Act::Say(held(count > 50))
+    let service = Service::start(Act::Say(handle(false)), move |count| {
+        Act::Say(handle(count > 50))
     });
     let mut driver = opened(&service.url);
     driver.switch(Switch::Off);
@@ -204,7 +213,7 @@ fn a_force_that_is_not_answered_is_taken_back_once_and_comes_again_with_the_answ
     });
     let mut driver = opened(&service.url);
     let done = || (service.heard().messages.len() > 300).then_some(());
-    assert_eq!(beat(&mut *driver, DVec3::X, done), Some(()));
+    assert_eq!(run_ticks(&mut *driver, DVec3::X, done), Some(()));
     let heard = service.heard();
     let told = |count: usize| {
         let commands = &heard.messages[count]["inverse3"][0]["commands"];
@@ -224,7 +233,7 @@ fn a_device_gives_the_force_of_its_kind_and_one_that_nobody_knows_the_least() {
         let able = driver.abilities();
         assert_eq!(able.max_force_n, newtons, "{kind}");
         assert!((able.continuous_force_n - 0.3 * newtons).abs() < 1e-12);
-        let cut = beat(&mut *driver, DVec3::X * 100.0, || {
+        let cut = run_ticks(&mut *driver, DVec3::X * 100.0, || {
             let newest = force(service.heard().newest("049D")?, "vector")?;
             (newest == [newtons, 0.0, 0.0]).then_some(())
         });
@@ -237,7 +246,7 @@ fn a_force_beyond_the_devices_is_cut_to_it_and_one_that_is_no_number_is_none() {
     let service = steady(inventory());
     let mut driver = opened(&service.url);
     let mut arrives = |asked: DVec3, wanted: [f64; 3]| {
-        beat(&mut *driver, asked, || {
+        run_ticks(&mut *driver, asked, || {
             let got = force(service.heard().newest("049D")?, "vector")?;
             let off = got.iter().zip(wanted).map(|(a, b)| (a - b).abs());
             (off.fold(0.0, f64::max) < 1e-9).then_some(())
@@ -257,7 +266,7 @@ fn a_force_that_is_not_renewed_is_none() {
     let mut driver = opened(&service.url);
     let newest = || force(service.heard().newest("049D")?, "vector");
     let pushed = || (newest()? == [1.0, 0.0, 0.0]).then_some(());
-    assert_eq!(beat(&mut *driver, DVec3::X, pushed), Some(()));
+    assert_eq!(run_ticks(&mut *driver, DVec3::X, pushed), Some(()));
     assert_eq!(wait_for(|| (newest()? == [0.0; 3]).then_some(())), Some(()));
 }
 
@@ -266,7 +275,7 @@ fn the_last_word_is_no_force_and_then_the_connection_is_closed() {
     let service = steady(inventory());
     let mut driver = opened(&service.url);
     let pushed = || (force(service.heard().newest("049D")?, "vector")? != [0.0; 3]).then_some(());
-    assert_eq!(beat(&mut *driver, DVec3::Y, pushed), Some(()));
+    assert_eq!(run_ticks(&mut *driver, DVec3::Y, pushed), Some(()));
     drop(driver);
     assert_eq!(wait_for(|| service.heard().closed.then_some(())), Some(()));
     let last = service
@@ -333,9 +342,9 @@ fn of_two_devices_the_one_that_is_named_is_read_and_pushed() {
 
     let mut driver = opened(&format!("{}#0AAA+61548", service.url));
     let read = reading(&mut *driver).expect("there").expect("new");
-    assert_eq!(read.held.position.y, 0.25);
+    assert_eq!(read.handle.position.y, 0.25);
     let pushed = || (force(service.heard().newest("0AAA")?, "vector")? != [0.0; 3]).then_some(());
-    assert_eq!(beat(&mut *driver, DVec3::Y, pushed), Some(()));
+    assert_eq!(run_ticks(&mut *driver, DVec3::Y, pushed), Some(()));
     let asked_of = |message: &Value| message["inverse3"][0]["device_id"].clone();
     assert!(
         service
@@ -377,9 +386,9 @@ fn without_a_grip_there_is_no_orientation_and_without_velocities_they_are_found(
     let mut before = None;
     for _ in 0..50 {
         let read = reading(&mut *driver).expect("there").expect("new");
-        assert!(before.is_none_or(|x| x < read.held.position.x));
-        before = Some(read.held.position.x);
-        if before.is_some_and(|x| x > 0.0) && read.held.velocity.x > 0.0 {
+        assert!(before.is_none_or(|x| x < read.handle.position.x));
+        before = Some(read.handle.position.x);
+        if before.is_some_and(|x| x > 0.0) && read.handle.velocity.x > 0.0 {
             return;
         }
     }

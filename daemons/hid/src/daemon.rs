@@ -1,4 +1,4 @@
-//! The daemon: looks for its device, hears it, and tells the rig.
+//! The daemon: opens its device, reads it, and publishes to the rig.
 
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -7,7 +7,7 @@ use std::time::Duration;
 use glam::DQuat;
 use maulstick_bus::typed::Sender;
 use maulstick_bus::{Bus, Class, Subscription, Wake};
-use maulstick_device::missing::miss;
+use maulstick_device::device_missing::report_missing;
 use maulstick_num::geometry::canonical;
 use maulstick_rig::config::{BRUSH_NODE, CanvasSection, DeviceSection};
 use maulstick_rig::{Fault, Member};
@@ -15,14 +15,14 @@ use maulstick_types::Origin;
 use maulstick_types::stylus::StylusStatus;
 use maulstick_types::topics::Topics;
 
-use crate::feed::{Feed, Heard, Live, Played};
-use crate::free_hand::FreeHand;
+use crate::device_source::{Identity, Ports};
 use crate::hidraw::Hidraw;
 use crate::open::{self, Address, Kind, Means};
 use crate::recorder::Recorder;
 use crate::recording::{self, Recorded};
-use crate::source::{Identity, Ports};
+use crate::report_stream::{Live, Played, ReportStream, StreamItem};
 use crate::spacemouse::SpaceMouse;
+use crate::spacemouse_node::SpaceMouseNode;
 use crate::stylus::Stylus;
 use crate::tablet::Tablet;
 
@@ -32,10 +32,10 @@ const STATUS_PERIOD_NS: u64 = 100_000_000;
 const ATTEMPT_PERIOD_NS: u64 = 1_000_000_000;
 /// Longest time between two turns.
 const LONGEST_TURN: Duration = Duration::from_millis(20);
-/// What `StylusStatus` says of a daemon without a servo: no bins.
+/// Histogram bins in the status of a daemon without a servo.
 const NO_BINS: usize = 0;
 
-/// What a HID daemon is told.
+/// Settings of a HID daemon.
 #[derive(Clone, Debug)]
 pub struct HidSettings {
     /// The device's section of `rig.toml`.
@@ -44,7 +44,7 @@ pub struct HidSettings {
     pub canvas: CanvasSection,
     /// A recording that is played in the device's place.
     pub replay: Option<PathBuf>,
-    /// Where to write what the device says.
+    /// File for a recording of the device.
     pub record: Option<PathBuf>,
 }
 
@@ -68,7 +68,7 @@ pub fn run(member: &mut Member, settings: &HidSettings) -> Result<(), Fault> {
     result.and(daemon.end())
 }
 
-/// Says of two sections that open the same device that they do; the second one says it.
+/// Warns of another section before this one that opens the same device.
 fn warn_of_twins(device: &DeviceSection, all: &[DeviceSection]) {
     let before = all.iter().take_while(|other| other.name != device.name);
     let is_twin = |other: &&DeviceSection| {
@@ -83,11 +83,11 @@ fn warn_of_twins(device: &DeviceSection, all: &[DeviceSection]) {
     }
 }
 
-/// What the device is to the rig.
+/// The device's side of the bus.
 #[derive(Debug)]
-enum Hand {
+enum Output {
     Stylus(Box<Stylus>),
-    Free(Box<FreeHand>),
+    SpaceMouse(Box<SpaceMouseNode>),
 }
 
 /// A device in a rig.
@@ -98,20 +98,20 @@ pub struct Daemon {
     kind: Kind,
     address: Address,
     ports: Box<dyn Ports>,
-    /// The recording that is played, until it is.
+    /// The recording to be played, until it starts.
     replay: Option<Recorded>,
-    /// What a played pen waits for: without its brush its stroke would be lost.
+    /// Token of the brush that a played pen waits for: without it the first stroke would be lost.
     brush: Option<Subscription>,
     recorder: Option<Recorder>,
-    hand: Hand,
-    /// The device, while there is one.
-    feed: Option<Feed>,
-    /// When to look for the device again; never where a recording takes its place.
+    output: Output,
+    /// The device's reports, while it is open.
+    stream: Option<ReportStream>,
+    /// Time of the next attempt to open the device, ns; none while a recording takes its place.
     attempt_ns: Option<u64>,
     status: Sender<StylusStatus>,
     told: StylusStatus,
     status_ns: u64,
-    /// Reports that devices that are gone had no room for.
+    /// Reports dropped with devices that are gone.
     dropped_before: u64,
     heard_ns: u64,
 }
@@ -141,14 +141,14 @@ impl Daemon {
             ),
             None => None,
         };
-        let hand = match kind {
+        let output = match kind {
             Kind::Pen => {
                 let stylus = Stylus::new(&bus, topics, device, origin, wake)?;
-                Hand::Stylus(Box::new(stylus))
+                Output::Stylus(Box::new(stylus))
             }
             Kind::SpaceMouse => {
-                let hand = FreeHand::new(&bus, topics, device, origin)?;
-                Hand::Free(Box::new(hand))
+                let mouse = SpaceMouseNode::new(&bus, topics, device, origin)?;
+                Output::SpaceMouse(Box::new(mouse))
             }
         };
         let node = topics.node(&format!("{BRUSH_NODE}{}", device.brush));
@@ -168,8 +168,8 @@ impl Daemon {
                 .as_deref()
                 .map(Recorder::begin)
                 .transpose()?,
-            hand,
-            feed: None,
+            output,
+            stream: None,
             attempt_ns: Some(0),
             status: Sender::new(&*bus, &topic, Class::Background, origin)?,
             told: StylusStatus {
@@ -187,31 +187,31 @@ impl Daemon {
         })
     }
 
-    /// Does what is to be done now; how long there is then nothing to do unless the wake rings.
+    /// Does the work that is due; returns the time until there is more, unless the wake rings.
     ///
     /// # Errors
     /// A [`Fault`] where the rig is gone.
     pub fn turn(&mut self) -> Result<Duration, Fault> {
         let now_ns = self.bus.now_ns();
-        if self.feed.is_none() && self.attempt_ns.is_some_and(|at| now_ns >= at) {
+        if self.stream.is_none() && self.attempt_ns.is_some_and(|at| now_ns >= at) {
             self.attempt(now_ns)?;
         }
         let due_ns = self.listen(now_ns)?;
-        if let Hand::Stylus(stylus) = &mut self.hand {
+        if let Output::Stylus(stylus) = &mut self.output {
             stylus.serve(now_ns)?;
         }
         if now_ns >= self.status_ns + STATUS_PERIOD_NS {
             self.status_ns = now_ns;
             self.told.dropped = self.dropped();
-            self.told.samples = match &self.hand {
-                Hand::Stylus(stylus) => stylus.sent(),
-                Hand::Free(hand) => hand.sent(),
+            self.told.samples = match &self.output {
+                Output::Stylus(stylus) => stylus.sent(),
+                Output::SpaceMouse(mouse) => mouse.sent(),
             };
             self.status.send(now_ns, now_ns, &self.told)?;
         }
-        let again_ns = match &self.hand {
-            Hand::Stylus(stylus) => stylus.due_ns(),
-            Hand::Free(hand) => hand.due_ns(),
+        let again_ns = match &self.output {
+            Output::Stylus(stylus) => stylus.due_ns(),
+            Output::SpaceMouse(mouse) => mouse.due_ns(),
         };
         let next_ns = [due_ns, again_ns].into_iter().flatten().min();
         let wait = next_ns.map_or(LONGEST_TURN, |at| {
@@ -220,73 +220,73 @@ impl Daemon {
         Ok(wait.min(LONGEST_TURN))
     }
 
-    /// Ends: the pen is lifted, and what was recorded is whole.
+    /// Ends the daemon: lifts the pen and completes the recording.
     ///
     /// # Errors
     /// A [`Fault`] where the recording could not be written or the rig is gone.
     pub fn end(mut self) -> Result<(), Fault> {
         let now_ns = self.bus.now_ns();
         let lifted = self.lift(now_ns, now_ns);
-        self.feed = None;
+        self.stream = None;
         let ended = self.recorder.take().map_or(Ok(()), Recorder::end);
         lifted.and(ended)
     }
 
     fn dropped(&self) -> u64 {
-        self.dropped_before + self.feed.as_ref().map_or(0, Feed::dropped)
+        self.dropped_before + self.stream.as_ref().map_or(0, ReportStream::dropped)
     }
 
-    /// Takes in what the device has said; when it will say something, where that is known.
+    /// Takes in the device's reports; returns the time of the next one, if that is known.
     fn listen(&mut self, now_ns: u64) -> Result<Option<u64>, Fault> {
         loop {
-            let Some(feed) = &mut self.feed else {
+            let Some(stream) = &mut self.stream else {
                 return Ok(None);
             };
-            match feed.hear(now_ns) {
-                Heard::Report(event) => {
+            match stream.next(now_ns) {
+                StreamItem::Report(event) => {
                     if let Some(recorder) = &mut self.recorder {
                         recorder.event(&event);
                     }
                     self.heard_ns = event.time_ns;
                     let (report, event_ns) = (&event.report, event.time_ns);
-                    match &mut self.hand {
-                        Hand::Stylus(stylus) => stylus.report(report, event_ns, now_ns)?,
-                        Hand::Free(hand) => hand.report(report, event_ns, now_ns)?,
+                    match &mut self.output {
+                        Output::Stylus(stylus) => stylus.report(report, event_ns, now_ns)?,
+                        Output::SpaceMouse(mouse) => mouse.report(report, event_ns, now_ns)?,
                     }
                 }
-                Heard::Nothing(due_ns) => {
-                    match &mut self.hand {
-                        Hand::Stylus(stylus) => stylus.silent(now_ns, now_ns)?,
-                        Hand::Free(hand) => hand.silent(now_ns, now_ns)?,
+                StreamItem::Nothing(due_ns) => {
+                    match &mut self.output {
+                        Output::Stylus(stylus) => stylus.silent(now_ns, now_ns)?,
+                        Output::SpaceMouse(mouse) => mouse.silent(now_ns, now_ns)?,
                     }
                     return Ok(due_ns);
                 }
-                Heard::Over => {
+                StreamItem::Over => {
                     // At its last report's time, whenever this turn is.
                     self.lift(self.heard_ns, now_ns)?;
-                    self.feed = None;
+                    self.stream = None;
                     tracing::info!("{}: the recording is over", self.settings.device.name);
                 }
-                Heard::Lost(fault) => {
+                StreamItem::Lost(fault) => {
                     self.lift(now_ns, now_ns)?;
                     self.dropped_before = self.dropped();
-                    self.feed = None;
+                    self.stream = None;
                     self.attempt_ns = Some(now_ns + ATTEMPT_PERIOD_NS);
-                    miss(&self.settings.device.name, &fault, &mut self.told);
+                    report_missing(&self.settings.device.name, &fault, &mut self.told);
                 }
             }
         }
     }
 
     fn lift(&mut self, event_ns: u64, now_ns: u64) -> Result<(), Fault> {
-        match &mut self.hand {
-            Hand::Stylus(stylus) => stylus.end(event_ns, now_ns)?,
-            Hand::Free(hand) => hand.end(event_ns, now_ns)?,
+        match &mut self.output {
+            Output::Stylus(stylus) => stylus.end(event_ns, now_ns)?,
+            Output::SpaceMouse(mouse) => mouse.end(event_ns, now_ns)?,
         }
         Ok(())
     }
 
-    /// Opens the device, if it is there, or begins to play in its place.
+    /// Tries to open the device, or begins to play the recording in its place.
     fn attempt(&mut self, now_ns: u64) -> Result<(), Fault> {
         if let Some(brush) = &self.brush {
             // Tokens come and go, and the newest counts; the wake rings for the next.
@@ -307,14 +307,14 @@ impl Daemon {
             self.begin(means, &identity, &descriptor, now_ns)?;
             // One without reports is over when it begins.
             self.heard_ns = now_ns;
-            self.feed = Some(Feed::Played(Played::start(events, now_ns)));
+            self.stream = Some(ReportStream::Played(Played::start(events, now_ns)));
             return Ok(());
         }
         self.attempt_ns = Some(now_ns + ATTEMPT_PERIOD_NS);
         let opened = match open::open(&mut *self.ports, self.kind, &self.address) {
             Ok(opened) => opened,
             Err(fault) => {
-                miss(&self.settings.device.name, &fault, &mut self.told);
+                report_missing(&self.settings.device.name, &fault, &mut self.told);
                 return Ok(());
             }
         };
@@ -325,16 +325,16 @@ impl Daemon {
                 self.begin(means, &identity, &descriptor, now_ns)?;
             }
             (Err(fault), None) => {
-                miss(&self.settings.device.name, &fault, &mut self.told);
+                report_missing(&self.settings.device.name, &fault, &mut self.told);
                 return Ok(());
             }
-            // What cannot be read can be recorded, for who will teach us to read it.
+            // An unknown device can still be recorded, for support in a later version.
             (Err(fault), Some(recorder)) => {
                 recorder.device(&identity, &descriptor);
-                miss(&self.settings.device.name, &fault, &mut self.told);
+                report_missing(&self.settings.device.name, &fault, &mut self.told);
             }
         }
-        self.feed = Some(Feed::Live(Live::start(
+        self.stream = Some(ReportStream::Live(Live::start(
             opened.source,
             Arc::clone(&self.bus),
             &self.wake,
@@ -350,23 +350,23 @@ impl Daemon {
         now_ns: u64,
     ) -> Result<(), Fault> {
         let device = &self.settings.device;
-        tracing::info!("{}: {}", device.name, open::told(identity, &means));
+        tracing::info!("{}: {}", device.name, open::description(identity, &means));
         if let Some(recorder) = &mut self.recorder {
             recorder.device(identity, descriptor);
         }
-        match (means, &mut self.hand) {
-            (Means::Pen(decoder), Hand::Stylus(stylus)) => {
+        match (means, &mut self.output) {
+            (Means::Pen(decoder), Output::Stylus(stylus)) => {
                 let (area_m, senses) = (decoder.area_m(), decoder.senses());
                 let tablet = Tablet::fit(area_m, senses, device, &self.settings.canvas)?;
                 stylus.begin(decoder, tablet, device, now_ns)?;
             }
-            (Means::SpaceMouse, Hand::Free(hand)) => {
+            (Means::SpaceMouse, Output::SpaceMouse(node)) => {
                 let to_desk = canonical(DQuat::from_array(device.orientation));
                 let mouse = SpaceMouse::new(identity.vendor, identity.product, to_desk);
-                hand.begin(mouse, device, now_ns)?;
+                node.begin(mouse, device, now_ns)?;
             }
-            // A kind has one hand.
-            (Means::Pen(_), Hand::Free(_)) | (Means::SpaceMouse, Hand::Stylus(_)) => {}
+            // A kind has one output.
+            (Means::Pen(_), Output::SpaceMouse(_)) | (Means::SpaceMouse, Output::Stylus(_)) => {}
         }
         Ok(())
     }
@@ -375,7 +375,7 @@ impl Daemon {
 impl std::fmt::Debug for Daemon {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         f.debug_struct("Daemon")
-            .field("hand", &self.hand)
+            .field("output", &self.output)
             .finish_non_exhaustive()
     }
 }

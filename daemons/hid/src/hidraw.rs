@@ -8,7 +8,7 @@ use hidapi::{BusType, HidApi, HidDevice, HidError};
 use maulstick_rig::Fault;
 
 use crate::descriptor::LONGEST;
-use crate::source::{Found, HidSource, Identity, Ports};
+use crate::device_source::{Found, HidSource, Identity, Ports};
 
 /// The machine's own ports.
 #[derive(Debug, Default)]

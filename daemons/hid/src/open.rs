@@ -1,12 +1,12 @@
 //! The device that a section of `rig.toml` asks for, and how it is read.
 
-use maulstick_device::collections::Collection;
+use maulstick_device::hid_collections::Collection;
 use maulstick_rig::Fault;
 
 use crate::descriptor::{self, describe};
+use crate::device_source::{Found, HidSource, Identity, Ports};
 use crate::layout::Layout;
 use crate::pen::Reading;
-use crate::source::{Found, HidSource, Identity, Ports};
 use crate::spacemouse::{LIGHT, SpaceMouse, VENDORS};
 use crate::wacom::Wacom;
 
@@ -305,7 +305,7 @@ fn missing(kind: Kind, address: &Address, all: &[Found]) -> Fault {
 
 /// What a device is in words, as the log tells it.
 #[must_use]
-pub fn told(identity: &Identity, means: &Means) -> String {
+pub fn description(identity: &Identity, means: &Means) -> String {
     match means {
         Means::Pen(decoder) => {
             let [width, height] = decoder.area_m().map(|side| (1e3 * side).round());

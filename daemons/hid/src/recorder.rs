@@ -8,8 +8,8 @@ use std::thread::JoinHandle;
 use maulstick_rig::Fault;
 use maulstick_rig::files::{Kind, check_writable, write_whole};
 
+use crate::device_source::Identity;
 use crate::recording::{Event, Recorded};
-use crate::source::Identity;
 
 /// Lines that wait for the disk.
 const WAITING: usize = 65_536;

@@ -15,8 +15,8 @@ use std::path::Path;
 use maulstick_rig::Fault;
 
 use crate::descriptor::LONGEST;
+use crate::device_source::Identity;
 use crate::open::{self, Kind};
-use crate::source::Identity;
 
 /// A report is no longer than this, bytes: the kernel's limit.
 pub const LONGEST_REPORT: usize = 16_384;

@@ -202,7 +202,7 @@ impl Stylus {
             event_ns: self.event_ns,
         };
         self.samples.send(Flags::NONE, stamp, &sample)?;
-        self.actor.hear(&sample);
+        self.actor.receive(&sample);
         self.newest = sample;
         self.sent += 1;
         Ok(())

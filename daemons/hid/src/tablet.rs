@@ -7,7 +7,7 @@
 //! 3. Neither: the same, with the least scale at which the tablet covers the canvas.
 
 use glam::{DMat2, DQuat, DVec2, DVec3};
-use maulstick_device::fitting::canvas_m;
+use maulstick_device::registration::canvas_m;
 use maulstick_num::{atan2, sin_cos};
 use maulstick_rig::Fault;
 use maulstick_rig::config::{CanvasSection, DeviceSection};

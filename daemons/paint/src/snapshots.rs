@@ -7,9 +7,9 @@ use std::thread::JoinHandle;
 
 use maulstick_exchange::{ExchangeError, write_lit_png};
 use maulstick_files::{Kind, write_whole};
+use maulstick_paint::EditError;
 use maulstick_paint::Painting;
 use maulstick_paint::ledger::LedgerReport;
-use maulstick_paint::painting::PaintRefusal;
 use maulstick_paint::picture::{Depth, Export};
 use maulstick_types::command::Outcome;
 use maulstick_types::scene::CANVAS;
@@ -23,7 +23,7 @@ const WAITING: usize = 16;
 #[derive(Debug, Default)]
 pub struct Snapshots {
     waiting: VecDeque<Snapshot>,
-    writing: Option<(Asker, JoinHandle<Result<(), PaintRefusal>>)>,
+    writing: Option<(Asker, JoinHandle<Result<(), EditError>>)>,
 }
 
 /// A picture of the canvas and, if asked, the ledger, to be written.
@@ -45,10 +45,10 @@ impl Snapshots {
     /// Adds a snapshot behind those that wait.
     ///
     /// # Errors
-    /// [`PaintRefusal`] where too many wait.
-    pub fn add(&mut self, snapshot: Snapshot) -> Result<(), PaintRefusal> {
+    /// [`EditError`] where too many wait.
+    pub fn add(&mut self, snapshot: Snapshot) -> Result<(), EditError> {
         if self.waiting.len() >= WAITING {
-            return Err(PaintRefusal::new(
+            return Err(EditError::new(
                 format!("{WAITING} pictures wait to be written already"),
                 "ask again when the disk has caught up",
             ));
@@ -73,7 +73,7 @@ impl Snapshots {
                 Ok(Err(refusal)) => Some((asker, refusal)),
                 Err(_) => Some((
                     asker,
-                    PaintRefusal::new(
+                    EditError::new(
                         "internal error: the thread that writes pictures panicked".to_owned(),
                         "see the messages of the rig, and report the fault",
                     ),
@@ -82,11 +82,11 @@ impl Snapshots {
             None => None,
         };
         let failed = failed.or_else(|| self.begin_next());
-        failed.map(|(asker, PaintRefusal { what, help })| (asker, Outcome::Refused { what, help }))
+        failed.map(|(asker, EditError { what, help })| (asker, Outcome::Refused { what, help }))
     }
 
     /// Begins the next one; on failure says whose.
-    fn begin_next(&mut self) -> Option<(Asker, PaintRefusal)> {
+    fn begin_next(&mut self) -> Option<(Asker, EditError)> {
         if self.writing.is_some() {
             return None;
         }
@@ -100,7 +100,7 @@ impl Snapshots {
             }
             Err(error) => {
                 let what = format!("no picture can be written: {error}");
-                Some((asker, PaintRefusal::new(what, "try again")))
+                Some((asker, EditError::new(what, "try again")))
             }
         }
     }
@@ -119,7 +119,7 @@ impl Drop for Snapshots {
 }
 
 impl Snapshot {
-    fn write(mut self) -> Result<(), PaintRefusal> {
+    fn write(mut self) -> Result<(), EditError> {
         write(&mut self.still, &self.path, self.ledger, &self.export)
             .map_err(|(path, error)| unwritable(&path, &error))
     }

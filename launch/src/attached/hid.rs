@@ -3,7 +3,7 @@
 
 use std::path::{Path, PathBuf};
 
-use maulstick_device::collections::{Collection, collections};
+use maulstick_device::hid_collections::{Collection, collections};
 
 use super::{Attached, Permission, Places, printable};
 

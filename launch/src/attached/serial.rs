@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use maulstick_haptic::polhem::find::is_board;
+use maulstick_haptic::drivers::polhem::find::is_board;
 
 use super::{Attached, Permission, Places, printable};
 

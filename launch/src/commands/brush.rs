@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use clap::{Args, Subcommand};
 use indicatif::ProgressBar;
 use maulstick_brush::file::library::LIBRARY;
-use maulstick_brush::trial::{SpineFile, TrialPose, TrialRow, follow, poses};
+use maulstick_brush::single_spine::{SpineFile, TrialPose, TrialRow, follow, poses};
 use maulstick_brush::{BrushError, BrushFile};
 use maulstick_device::read_brush;
 use maulstick_rig::Fault;
@@ -185,8 +185,7 @@ fn take_up(options: &TakeOptions) -> Result<i32, Fault> {
         brush: options.brush.clone(),
         toml,
     };
-    command.check().map_err(Fault::told)?;
-    Session::open(&options.target)?.send(&options.brush, command)?;
+    Session::command(&options.target, &options.brush, command)?;
     Ok(0)
 }
 

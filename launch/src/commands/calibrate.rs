@@ -8,10 +8,10 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 use glam::DVec3;
 use maulstick_bus::{RigFolder, Wake};
-use maulstick_device::corners::{Corners, Glimpse, Progress};
-use maulstick_device::fitting::{by_corners, canvas_m, check_side};
-use maulstick_haptic::open::{HapticSettings, open};
-use maulstick_haptic::showing::watch;
+use maulstick_device::corner_calibration::{CornerCalibration, HandReading, Progress};
+use maulstick_device::registration::{by_corners, canvas_m, check_side};
+use maulstick_haptic::device::open::{HapticSettings, open};
+use maulstick_haptic::device::probe::probe;
 use maulstick_hid::hidraw::Hidraw;
 use maulstick_hid::tablet::Tablet;
 use maulstick_rig::config::DeviceSection;
@@ -66,11 +66,11 @@ pub fn run(options: &CalibrateOptions) -> Result<i32, Fault> {
         .map_err(|error| Fault::failure(format!("cannot watch for signals: {error}")))?;
     let mut showing = Showing::of(&device);
     let mut broken = None;
-    let look = |glimpse| {
+    let look = |reading| {
         if stop.requested() {
             return ControlFlow::Break(());
         }
-        match showing.see(glimpse) {
+        match showing.see(reading) {
             Ok(flow) => flow,
             Err(fault) => {
                 broken = Some(fault);
@@ -138,18 +138,18 @@ fn fit_ferrule(config: &RigConfig, corners: &[DVec3; 3]) -> Result<(), Fault> {
 
 fn watch_pen(
     device: &DeviceSection,
-    look: impl FnMut(Glimpse) -> ControlFlow<()>,
+    look: impl FnMut(HandReading) -> ControlFlow<()>,
 ) -> Result<(), Fault> {
-    let shown = maulstick_hid::showing::open(&mut Hidraw, device)?;
+    let shown = maulstick_hid::probe::open(&mut Hidraw, device)?;
     say!("{}: {}", device.name, shown.what);
     Showing::of(device).ask()?;
-    shown.watch(look)
+    shown.probe(look)
 }
 
 fn watch_ferrule(
     config: &RigConfig,
     device: &DeviceSection,
-    look: impl FnMut(Glimpse) -> ControlFlow<()>,
+    look: impl FnMut(HandReading) -> ControlFlow<()>,
 ) -> Result<(), Fault> {
     let settings = HapticSettings {
         device: device.clone(),
@@ -158,13 +158,13 @@ fn watch_ferrule(
     let opened = open(config, &settings)?;
     say!("{}: {}", device.name, opened.what);
     Showing::of(device).ask()?;
-    watch(opened, DVec3::from(device.ferrule_m), look)
-        .map_err(|trouble| Fault::failure(trouble.to_string()).help(trouble.help))
+    probe(opened, DVec3::from(device.ferrule_m), look)
+        .map_err(|error| Fault::failure(error.to_string()).help(error.help))
 }
 
 /// A hand on its way around the canvas.
 struct Showing {
-    corners: Corners,
+    corners: CornerCalibration,
     /// How it says that it is at a corner.
     how: &'static str,
 }
@@ -172,7 +172,7 @@ struct Showing {
 impl Showing {
     fn of(device: &DeviceSection) -> Self {
         Self {
-            corners: Corners::new(),
+            corners: CornerCalibration::new(),
             how: match device.is_hid() {
                 true => "with the pen on its tablet",
                 false => "with the ferrule, and keep still for a second or press the first switch",
@@ -187,10 +187,10 @@ impl Showing {
         Ok(())
     }
 
-    fn see(&mut self, glimpse: Glimpse) -> Result<ControlFlow<()>, Fault> {
-        let progress = match glimpse {
-            Glimpse::Seen(seen) => self.corners.see(&seen),
-            Glimpse::Away => {
+    fn see(&mut self, reading: HandReading) -> Result<ControlFlow<()>, Fault> {
+        let progress = match reading {
+            HandReading::Sample(seen) => self.corners.see(&seen),
+            HandReading::Away => {
                 self.corners.lose();
                 Progress::Going
             }
@@ -202,7 +202,7 @@ impl Showing {
                 say!("{corner}: {x:.1}, {y:.1}, {z:.1} mm");
                 self.ask()?;
             }
-            Progress::Refused(why) => say!("{why}"),
+            Progress::Rejected(why) => say!("{why}"),
         }
         Ok(match self.corners.wanted() {
             Some(_) => ControlFlow::Continue(()),

@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use clap::Args;
 use maulstick_optics::PaintError;
-use maulstick_paint::PaintRefusal;
+use maulstick_paint::EditError;
 use maulstick_rig::Fault;
 use maulstick_rig::files::Kind;
 use maulstick_types::Mixture;
@@ -96,19 +96,14 @@ pub fn load(options: &LoadOptions) -> Result<i32, Fault> {
             right: mixture_of(beside)?,
         },
     };
-    send(&options.target, PAINT, command)?;
+    Session::command(&options.target, PAINT, command)?;
     Ok(0)
 }
 
 /// A mixture; whether there are such paints the rig knows.
 fn mixture_of(text: &str) -> Result<Mixture, Fault> {
     text.parse()
-        .map_err(|error| refused(PaintRefusal::paint(PaintError::Mixture(error))))
-}
-
-/// Sends one command to a node of a rig.
-fn send(target: &Target, node: &str, command: Command) -> Result<String, Fault> {
-    Session::open(target)?.send(node, command)
+        .map_err(|error| refused(EditError::paint(PaintError::Mixture(error))))
 }
 
 /// Makes a brush stiffer or softer.
@@ -123,8 +118,7 @@ pub fn tune(options: &TuneOptions) -> Result<i32, Fault> {
             wetness: options.wetness,
         },
     };
-    command.check().map_err(Fault::told)?;
-    send(&options.target, PAINT, command)?;
+    Session::command(&options.target, PAINT, command)?;
     Ok(0)
 }
 
@@ -133,7 +127,7 @@ pub fn tune(options: &TuneOptions) -> Result<i32, Fault> {
 /// # Errors
 /// A [`Fault`] for an unknown brush, or where no rig runs.
 pub fn clean(options: &CleanOptions) -> Result<i32, Fault> {
-    send(
+    Session::command(
         &options.target,
         PAINT,
         Command::Clean {
@@ -149,7 +143,7 @@ pub fn clean(options: &CleanOptions) -> Result<i32, Fault> {
 /// A [`Fault`] where there is none, or where no rig runs.
 pub fn undo(options: &HistoryOptions) -> Result<i32, Fault> {
     let brush = options.brush.clone();
-    let what = send(&options.target, PAINT, Command::Undo { brush })?;
+    let what = Session::command(&options.target, PAINT, Command::Undo { brush })?;
     say!("undone: {what}");
     Ok(0)
 }
@@ -160,7 +154,7 @@ pub fn undo(options: &HistoryOptions) -> Result<i32, Fault> {
 /// A [`Fault`] where there is none, or where no rig runs.
 pub fn redo(options: &HistoryOptions) -> Result<i32, Fault> {
     let brush = options.brush.clone();
-    let what = send(&options.target, PAINT, Command::Redo { brush })?;
+    let what = Session::command(&options.target, PAINT, Command::Redo { brush })?;
     say!("redone: {what}");
     Ok(0)
 }
@@ -182,7 +176,7 @@ pub fn snapshot(options: &SnapshotOptions) -> Result<i32, Fault> {
         path: picture.asked(),
         ledger: ledger.as_ref().map(Relayed::asked),
     };
-    let said = send(&options.target, PAINT, command)?;
+    let said = Session::command(&options.target, PAINT, command)?;
     if let Some(ledger) = ledger {
         ledger.arrive("")?;
     }

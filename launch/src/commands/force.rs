@@ -5,9 +5,9 @@ use std::path::PathBuf;
 use clap::{Args, ValueEnum};
 use glam::{DQuat, DVec3};
 use maulstick_brush::BrushFile;
-use maulstick_brush::feel::{press, tuples};
+use maulstick_brush::head_stiffness::{press, tuples};
 use maulstick_haptics::Contact;
-use maulstick_haptics::contact::Held;
+use maulstick_haptics::contact::HandleState;
 use maulstick_num::cos;
 use maulstick_num::geometry::rotation;
 use maulstick_rig::Fault;
@@ -268,8 +268,8 @@ fn rows(options: &ForceOptions, file: &BrushFile, degrees: f64) -> Result<Vec<Ro
         .into_iter()
         .map(|depth| {
             let height = length * cos(angle) - depth;
-            let felt = contact.felt(&still(lean, height), options.max_stiffness_n_m);
-            row(depth, angle, &felt)
+            let force = contact.evaluate(&still(lean, height), options.max_stiffness_n_m);
+            row(depth, angle, &force)
         })
         .collect())
 }
@@ -296,30 +296,30 @@ fn solved(
             force_n: [0.0, 0.0, press.force_n],
             stiffness_n_m: [[0.0; 3], [0.0; 3], [0.0, 0.0, -k]],
         };
-        let held = still(lean, length * cos(angle) - depth);
+        let handle = still(lean, length * cos(angle) - depth);
         Ok(row(
             *depth,
             angle,
-            &contact(file, law)?.felt(&held, options.max_stiffness_n_m),
+            &contact(file, law)?.evaluate(&handle, options.max_stiffness_n_m),
         ))
     });
     rows.collect()
 }
 
-fn still(orientation: DQuat, height_m: f64) -> Held {
-    Held {
+fn still(orientation: DQuat, height_m: f64) -> HandleState {
+    HandleState {
         position: DVec3::Z * height_m,
         orientation,
         velocity: DVec3::ZERO,
     }
 }
 
-fn row(depth_m: f64, angle_rad: f64, felt: &maulstick_haptics::Felt) -> Row {
+fn row(depth_m: f64, angle_rad: f64, contact: &maulstick_haptics::ContactForce) -> Row {
     Row {
         depth_m,
         angle_rad,
-        force_n: felt.force.z,
-        stiffness_n_m: felt.stiffness_n_m,
+        force_n: contact.force.z,
+        stiffness_n_m: contact.stiffness_n_m,
     }
 }
 

@@ -71,8 +71,7 @@ fn surface(palette: bool) -> u32 {
 }
 
 fn send(target: &Target, command: Command) -> Result<String, Fault> {
-    command.check().map_err(Fault::told)?;
-    Session::open(target)?.send(PAINT, command)
+    Session::command(target, PAINT, command)
 }
 
 /// Dries what is wet.

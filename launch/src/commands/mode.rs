@@ -103,8 +103,7 @@ pub fn piles_command(piles: &str) -> Result<Command, Fault> {
 }
 
 fn send(target: &Target, command: Command) -> Result<i32, Fault> {
-    command.check().map_err(Fault::told)?;
-    Session::open(target)?.send(PAINT, command)?;
+    Session::command(target, PAINT, command)?;
     Ok(0)
 }
 

@@ -65,6 +65,15 @@ impl Session {
         RigConfig::read(&self.folder.join(CONFIG_FILE))
     }
 
+    /// Sends a command to a node of the rig that `target` names, once it is checked; returns what the node says.
+    ///
+    /// # Errors
+    /// A [`Fault`] of the command, where no rig runs, or in the node's own words.
+    pub fn command(target: &Target, node: &str, command: Command) -> Result<String, Fault> {
+        command.check().map_err(Fault::told)?;
+        Self::open(target)?.send(node, command)
+    }
+
     /// The topics of the rig.
     #[must_use]
     pub fn topics(&self) -> &Topics {

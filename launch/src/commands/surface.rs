@@ -51,8 +51,7 @@ pub struct ToothOptions {
 }
 
 fn send(target: &Target, command: Command) -> Result<i32, Fault> {
-    command.check().map_err(Fault::told)?;
-    Session::open(target)?.send(PAINT, command)?;
+    Session::command(target, PAINT, command)?;
     Ok(0)
 }
 

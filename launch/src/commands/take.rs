@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use clap::{Args, Subcommand};
 use maulstick_device::salvage::salvage;
-use maulstick_device::{Kit, Take};
+use maulstick_device::{Take, TakeSetup};
 use maulstick_rig::files::Kind;
 use maulstick_rig::{Fault, RigConfig};
 use maulstick_types::stylus::StylusPose;
@@ -78,7 +78,7 @@ fn embed(options: &EmbedOptions) -> Result<i32, Fault> {
         .check(&library)
         .map_err(refused)?;
     let take = Take {
-        kit: Some(kit_of(&config, &brush, &loads)?),
+        setup: Some(kit_of(&config, &brush, &loads)?),
         ..take
     };
     write_take(&take, &options.output)?;
@@ -86,7 +86,7 @@ fn embed(options: &EmbedOptions) -> Result<i32, Fault> {
 }
 
 /// What a take embeds, in words; nothing where it embeds nothing.
-fn kit_in_words(kit: &Kit) -> String {
+fn kit_in_words(kit: &TakeSetup) -> String {
     let bytes: usize = kit.files.values().map(Vec::len).sum();
     let loads = match kit.loads.is_empty() {
         true => "no load".to_owned(),
@@ -119,8 +119,8 @@ pub fn run(command: &TakeCommand) -> Result<i32, Fault> {
                     "samples": take.samples.len(),
                     "seconds": seconds,
                     "rate_hz": rate,
-                    "loads": take.kit.as_ref().map(|kit| &kit.loads),
-                    "embeds": take.kit.as_ref().map(|kit| kit.files.keys().collect::<Vec<_>>()),
+                    "loads": take.setup.as_ref().map(|kit| &kit.loads),
+                    "embeds": take.setup.as_ref().map(|kit| kit.files.keys().collect::<Vec<_>>()),
                     "kind": if pens { "pen" } else { "6-DOF" },
                 }))?;
             } else {
@@ -130,7 +130,7 @@ pub fn run(command: &TakeCommand) -> Result<i32, Fault> {
                     "samples  {} over {seconds:.3} s, {rate:.1} a second",
                     take.samples.len()
                 );
-                if let Some(kit) = &take.kit {
+                if let Some(kit) = &take.setup {
                     say!("embeds   {}", kit_in_words(kit));
                 }
             }

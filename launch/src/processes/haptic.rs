@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use maulstick_haptic::daemon;
-use maulstick_haptic::open::HapticSettings;
+use maulstick_haptic::device::open::HapticSettings;
 use maulstick_rig::Fault;
 use nix::sys::signal::Signal;
 

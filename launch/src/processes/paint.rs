@@ -6,7 +6,7 @@ use std::time::Duration;
 
 use maulstick_document::{Document, DocumentError};
 use maulstick_gpu::{Choice, Device, GpuFilms};
-use maulstick_num::cores::with_help_beyond;
+use maulstick_num::fork_join::with_help_beyond;
 use maulstick_optics::backend::{CpuFilms, FilmBackend};
 use maulstick_paint::{Painting, Sequencer};
 use maulstick_paint_node::frames::FrameServer;

@@ -5,7 +5,7 @@ use std::path::Path;
 use maulstick_device::Take;
 use maulstick_optics::PaintLibrary;
 use maulstick_paint::PaintingSetup;
-use maulstick_paint::embedded::{Embedded, IMAGE, SPECTRUM};
+use maulstick_paint::assets::{Assets, IMAGE, SPECTRUM};
 use maulstick_paint::setup::{check_ground, relief_called};
 use maulstick_rig::Fault;
 use maulstick_rig::config::{BrushSection, is_path};
@@ -305,7 +305,7 @@ pub(super) fn ground(step: &Step<'_>, _: &PaintLibrary) -> Result<Act, Fault> {
     let ground = step.keys.named("ground", file(&name), ground)?;
     match &ground {
         GroundFile::Named(name) if !is_held(name) => {
-            check_ground(name, &Embedded::default()).map_err(refused)?;
+            check_ground(name, &Assets::default()).map_err(refused)?;
         }
         _ => {}
     }
@@ -339,7 +339,7 @@ pub(super) fn tooth(step: &Step<'_>, _: &PaintLibrary) -> Result<Act, Fault> {
     let seed = seed.unwrap_or(1);
     if !is_held(&tooth) {
         let cell_m = PaintingSetup::default().cell_m;
-        relief_called(&tooth, seed, cell_m, &Embedded::default()).map_err(refused)?;
+        relief_called(&tooth, seed, cell_m, &Assets::default()).map_err(refused)?;
     }
     command(Command::Tooth {
         surface: CANVAS,

@@ -2,7 +2,7 @@
 
 use std::f64::consts::PI;
 
-use maulstick_paint::PaintRefusal;
+use maulstick_paint::EditError;
 use maulstick_session::Offline;
 use maulstick_types::stylus::{StylusPose, StylusSample, axes};
 
@@ -82,8 +82,8 @@ impl Hand {
     /// Paints a gesture.
     ///
     /// # Errors
-    /// [`PaintRefusal`] where the painting refuses it.
-    pub fn paint(&mut self, on: &mut Offline, gesture: &Gesture) -> Result<(), PaintRefusal> {
+    /// [`EditError`] where the painting refuses it.
+    pub fn paint(&mut self, on: &mut Offline, gesture: &Gesture) -> Result<(), EditError> {
         let samples = (gesture.seconds * RATE_HZ).ceil().max(2.0) as usize;
         for i in 0..=samples {
             let moment = (gesture.hand)(i as f64 / samples as f64);
@@ -98,7 +98,7 @@ impl Hand {
         Ok(())
     }
 
-    fn sample(&mut self, on: &mut Offline, moment: &Moment) -> Result<(), PaintRefusal> {
+    fn sample(&mut self, on: &mut Offline, moment: &Moment) -> Result<(), EditError> {
         let desk = |i: usize| 1e-3 * (moment.at[i] - 0.5 * self.size_mm[i]);
         let radians = |degrees: f64| degrees * PI / 180.0;
         let sample = StylusSample {

@@ -21,7 +21,7 @@ use maulstick_brush::file::library::LIBRARY;
 use maulstick_optics::PaintLibrary;
 use maulstick_paint::picture::{Picture, picture};
 use maulstick_paint::setup::PaintingSetup;
-use maulstick_paint::{PaintRefusal, Painting};
+use maulstick_paint::{EditError, Painting};
 use maulstick_rig::Fault;
 use maulstick_session::Offline;
 use maulstick_types::Mixture;
@@ -146,7 +146,7 @@ impl Panel {
 
 fn mixture_of(text: &str) -> Result<Mixture, Fault> {
     let error = |error| {
-        refused(PaintRefusal::paint(maulstick_optics::PaintError::Mixture(
+        refused(EditError::paint(maulstick_optics::PaintError::Mixture(
             error,
         )))
     };
@@ -258,7 +258,8 @@ pub fn sheet(
         let file = library_brush(kind)?;
         let size = [SIDE_MM - 20.0, row].map(|mm| sheet.pixels(mm));
         let scale = 1e3 * PORTRAIT_SCALE / cell_mm;
-        let head = maulstick_ui::portrait::portrait(&file, size[0], size[1], scale);
+        let head =
+            maulstick_ui::render::brush::thumbnail::brush_thumbnail(&file, size[0], size[1], scale);
         let at = [18.75, y].map(|mm| sheet.pixels(mm));
         sheet.page.portray(&head, at);
         sheet.write(kind, [GAP_MM, y + 6.5], 6.0);

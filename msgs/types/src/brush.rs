@@ -10,7 +10,7 @@ pub mod solve_flags {
     /// The solver did not converge and kept its last good state.
     pub const NOT_CONVERGED: u32 = 2;
     /// Where the brush is at a sample between two solves of its path: to be shown, not to be painted.
-    pub const GLIMPSE: u32 = 4;
+    pub const PREVIEW: u32 = 4;
     /// The way to it is painted in steps twice as long as the brush's own, for painting was late.
     pub const TWICE: u32 = 8;
     /// As [`TWICE`], four times.

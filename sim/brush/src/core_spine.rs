@@ -9,13 +9,13 @@ use maulstick_num::geometry::{Rigid, shortest_arc};
 
 use crate::energy::bond::Bond;
 use crate::spine::{Spine, SpineShape};
-use crate::tuft::Seat;
+use crate::spine_root::SpineRoot;
 
 /// The core, and how the segments of all spines lie beside its own.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Core {
     /// Where it stands and what it is made of.
-    pub seat: Seat,
+    pub root: SpineRoot,
     /// For each spine and segment: the core's segment beside it, and its own direction at rest in
     /// that segment's frame.
     beside: Vec<Vec<(usize, DVec3)>>,
@@ -24,24 +24,24 @@ pub struct Core {
 impl Core {
     /// The mean of some spines.
     #[must_use]
-    pub fn of(seats: &[Seat]) -> Self {
-        let joints = seats.iter().map(|seat| seat.spine.joints()).max();
+    pub fn of(roots: &[SpineRoot]) -> Self {
+        let joints = roots.iter().map(|root| root.spine.joints()).max();
         let n = joints.unwrap_or(1);
-        let count = seats.len().max(1) as f64;
-        let rests: Vec<SpineShape> = seats
+        let count = roots.len().max(1) as f64;
+        let rests: Vec<SpineShape> = roots
             .iter()
-            .map(|seat| seat.at_rest(&Rigid::IDENTITY))
+            .map(|root| root.at_rest(&Rigid::IDENTITY))
             .collect();
-        let root = seats.iter().map(|seat| seat.root).sum::<DVec3>() / count;
+        let root = roots.iter().map(|root| root.origin).sum::<DVec3>() / count;
         let mut before = root;
         let segments: Vec<DVec3> = (1..=n)
             .map(|k| {
-                let places = seats.iter().zip(&rests).map(|(seat, shape)| {
-                    let m = seat.spine.joints();
+                let places = roots.iter().zip(&rests).map(|(root, shape)| {
+                    let m = root.spine.joints();
                     let place = (k * m) as f64 / n as f64;
                     let i = (place as usize).min(m - 1);
-                    let segment = shape.directions[i] * seat.spine.lengths_m[i];
-                    shape.joint(&seat.spine, i) - segment * ((i + 1) as f64 - place)
+                    let segment = shape.directions[i] * root.spine.lengths_m[i];
+                    shape.joint(&root.spine, i) - segment * ((i + 1) as f64 - place)
                 });
                 let end = places.sum::<DVec3>() / count;
                 let segment = end - before;
@@ -51,12 +51,12 @@ impl Core {
             .collect();
         let along = |of: &dyn Fn(&Spine, usize) -> f64| -> Vec<f64> {
             // A joint of a spine with fewer stands for several of the core's, one behind the other.
-            let share = |seat: &Seat, k: usize| {
-                let m = seat.spine.joints();
-                of(&seat.spine, k * m / n) * n as f64 / m as f64
+            let share = |root: &SpineRoot, k: usize| {
+                let m = root.spine.joints();
+                of(&root.spine, k * m / n) * n as f64 / m as f64
             };
             (0..n)
-                .map(|k| seats.iter().map(|seat| share(seat, k)).sum::<f64>() / count)
+                .map(|k| roots.iter().map(|root| share(root, k)).sum::<f64>() / count)
                 .collect()
         };
         let spine = Spine {
@@ -65,11 +65,11 @@ impl Core {
             damping: along(&|spine, i| spine.damping[i]),
             rest: Vec::new(),
         };
-        let seat = Seat::drawn(root, &segments, spine);
+        let root = SpineRoot::drawn(root, &segments, spine);
         let mut rested = Vec::new();
-        frames(&seat.at_rest(&Rigid::IDENTITY), &mut rested);
-        let beside = seats.iter().zip(&rests).map(|(seat, shape)| {
-            let m = seat.spine.joints();
+        frames(&root.at_rest(&Rigid::IDENTITY), &mut rested);
+        let beside = roots.iter().zip(&rests).map(|(root, shape)| {
+            let m = root.spine.joints();
             let directions = shape.directions.iter().enumerate();
             directions
                 .map(|(i, direction)| {
@@ -80,7 +80,7 @@ impl Core {
         });
         Self {
             beside: beside.collect(),
-            seat,
+            root,
         }
     }
 

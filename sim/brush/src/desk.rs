@@ -7,7 +7,7 @@ use maulstick_types::scene::{CANVAS, Scene, Surface};
 use maulstick_types::stylus::{StylusPose, StylusSample};
 
 use crate::palette_place::{corner_radii, is_on};
-use crate::solver::Wall;
+use crate::solver::HalfSpace;
 
 /// A pen without pressure holds the point of the head this far above the surface, m.
 pub const HOVER_M: f64 = 5e-3;
@@ -52,9 +52,9 @@ impl Plane {
 
     /// What lies under it, desk frame.
     #[must_use]
-    pub fn wall(&self) -> Wall {
+    pub fn half_space(&self) -> HalfSpace {
         let normal = self.normal();
-        Wall {
+        HalfSpace {
             normal,
             offset_m: normal.dot(self.to_desk.translation),
         }
@@ -71,7 +71,7 @@ impl Plane {
 /// least one of its faces. Lengths are the desk's, axes those of the surface.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Obstacle {
-    faces: Vec<Wall>,
+    faces: Vec<HalfSpace>,
 }
 
 impl Obstacle {
@@ -79,13 +79,13 @@ impl Obstacle {
     #[must_use]
     pub fn ground() -> Self {
         Self {
-            faces: vec![Wall::SURFACE],
+            faces: vec![HalfSpace::SURFACE],
         }
     }
 
     /// The face that a point is most outside of, or least within.
     #[must_use]
-    pub fn face_toward(&self, p: DVec3) -> Wall {
+    pub fn face_toward(&self, p: DVec3) -> HalfSpace {
         let mut best = self.faces[0];
         for face in &self.faces[1..] {
             if face.gap(p) > best.gap(p) {
@@ -103,20 +103,20 @@ impl Obstacle {
     /// A plane as seen from another: the canvas is all that lies under it, a palette a board.
     fn of(plane: &Plane, seen_from: &Plane) -> Self {
         let place = seen_from.to_desk.inverse().after(&plane.to_desk);
-        let wall = |normal: DVec3, through: DVec3| {
+        let face = |normal: DVec3, through: DVec3| {
             let normal = place.vector(normal);
-            Wall {
+            HalfSpace {
                 normal,
                 offset_m: normal.dot(place.point(through)),
             }
         };
         let far = DVec3::new(plane.size_m[0], plane.size_m[1], 0.0) * plane.zoom;
-        let mut faces = vec![wall(DVec3::Z, DVec3::ZERO)];
+        let mut faces = vec![face(DVec3::Z, DVec3::ZERO)];
         if plane.id != CANVAS {
-            faces.push(wall(DVec3::NEG_X, DVec3::ZERO));
-            faces.push(wall(DVec3::NEG_Y, DVec3::ZERO));
-            faces.push(wall(DVec3::X, far));
-            faces.push(wall(DVec3::Y, far));
+            faces.push(face(DVec3::NEG_X, DVec3::ZERO));
+            faces.push(face(DVec3::NEG_Y, DVec3::ZERO));
+            faces.push(face(DVec3::X, far));
+            faces.push(face(DVec3::Y, far));
         }
         Self { faces }
     }
@@ -207,7 +207,7 @@ pub fn ferrule(
     sample: &StylusSample,
     head_length_m: f64,
     depth_share: f64,
-    surface: &Wall,
+    surface: &HalfSpace,
 ) -> Rigid {
     match &sample.pose {
         StylusPose::Ferrule { pose } => Rigid::from(pose),
@@ -261,9 +261,9 @@ mod tests {
 
     #[test]
     fn a_pen_paints_on_a_raised_board_too() {
-        let level = plane(1, 0.0, 0.01).wall();
-        let on = |wall: &Wall| ferrule(&pen(0.5), 0.025, 0.5, wall).translation;
-        let raised = on(&level) - on(&Wall::SURFACE);
+        let level = plane(1, 0.0, 0.01).half_space();
+        let on = |wall: &HalfSpace| ferrule(&pen(0.5), 0.025, 0.5, wall).translation;
+        let raised = on(&level) - on(&HalfSpace::SURFACE);
         assert!((raised - DVec3::Z * 0.01).length() < 1e-15, "{raised}");
     }
 
@@ -313,7 +313,7 @@ mod tests {
     fn pressure_lowers_the_ferrule_along_the_pen() {
         let length = 0.025;
         let at = |pressure: f64| {
-            let rigid = ferrule(&pen(pressure), length, 0.5, &Wall::SURFACE);
+            let rigid = ferrule(&pen(pressure), length, 0.5, &HalfSpace::SURFACE);
             rigid.point(DVec3::new(0.0, 0.0, -length))
         };
         let contact = DVec3::new(0.01, 0.02, 0.0);

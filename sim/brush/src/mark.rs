@@ -8,9 +8,9 @@ use crate::desk::Obstacle;
 use crate::file::BrushFile;
 use crate::file::sections::Layout;
 use crate::head::{Head, HeadPose, Hold, STATIONS};
-use crate::held::{HeadSolver, HeldHead};
+use crate::head_solver::{HeadSolver, SolvedHead};
 use crate::solver::Settings;
-use crate::tuft::Tuft;
+use crate::spine_layout::SpineLayout;
 
 /// Strips by which the mark is measured.
 const STRIPS: usize = 200;
@@ -146,7 +146,7 @@ impl Beside {
     pub fn of(
         mark: &mut Mark,
         layout: Layout,
-        tuft: &Tuft,
+        tuft: &SpineLayout,
         settings: &Settings,
         length_m: f64,
     ) -> Self {
@@ -169,7 +169,7 @@ impl Beside {
                         translation: axis * (length_m * (1.0 - depth)),
                     };
                     tuft.raise(&mut brush, length_m);
-                    let mut head = HeldHead::at_rest(tuft, &brush);
+                    let mut head = SolvedHead::at_rest(tuft, &brush);
                     head.solve(&mut room, tuft, &brush, &ground, &settings);
                     table.push(mark.middle(&brush, &head.angles()).unwrap_or(DVec2::ZERO));
                 }

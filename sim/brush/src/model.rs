@@ -9,12 +9,12 @@ use maulstick_types::stylus::{StylusPose, StylusSample};
 
 use crate::desk::{Desk, Obstacle, Plane, aim, ferrule};
 use crate::file::BrushFile;
-use crate::held::{HeadSolver, HeldHead, settings_of};
+use crate::handle_path::{HandlePath, PathSegment, Sampled};
+use crate::head_solver::{HeadSolver, SolvedHead, settings_of};
 use crate::lead::Lead;
 use crate::mark::{Beside, Mark, point_of};
 use crate::solver::Settings;
-use crate::tuft::Tuft;
-use crate::way::{Piece, Sampled, Way};
+use crate::spine_layout::SpineLayout;
 
 /// Contacts less than this apart are one stroke, ns.
 pub const STROKE_GAP_NS: u64 = 150_000_000;
@@ -41,7 +41,7 @@ const SPLITS: u32 = 2;
 pub struct BrushModel {
     file: BrushFile,
     depth_share: f64,
-    tuft: Tuft,
+    tuft: SpineLayout,
     settings: Settings,
     solver: HeadSolver,
     mark: Mark,
@@ -49,7 +49,7 @@ pub struct BrushModel {
     beside: Option<Beside>,
     desk: Option<Desk>,
     follows: Option<Origin>,
-    held: Option<Held>,
+    tracked: Option<TrackedBrush>,
     strokes: u64,
     last_contact_ns: u64,
     /// Factor on the stiffness of the file.
@@ -60,11 +60,11 @@ pub struct BrushModel {
 
 /// The brush after a sample. Lengths are the desk's, axes those of the surface.
 #[derive(Clone, Debug)]
-struct Held {
+struct TrackedBrush {
     surface: u32,
     /// Its zoom: on a canvas that is larger the brush bends otherwise.
     zoom: f64,
-    head: HeldHead,
+    head: SolvedHead,
     /// Where the device holds it.
     newest: Sampled,
     /// Whether a pen holds it, which is led so that the mark lies under its point.
@@ -85,7 +85,7 @@ impl BrushModel {
     /// A brush; `depth_share` is the share of its head's length that full pressure presses in.
     #[must_use]
     pub fn new(file: BrushFile, depth_share: f64) -> Self {
-        let tuft = file.tuft();
+        let tuft = SpineLayout::of(&file);
         let settings = settings_of(&file, &tuft);
         let mark = Mark::of(&file);
         Self {
@@ -98,7 +98,7 @@ impl BrushModel {
             beside: None,
             desk: None,
             follows: None,
-            held: None,
+            tracked: None,
             strokes: 0,
             last_contact_ns: 0,
             tuned: 1.0,
@@ -108,11 +108,11 @@ impl BrushModel {
 
     /// Takes up another brush, as stiff or soft as it was tuned; strokes are counted on.
     pub fn take_up(&mut self, file: BrushFile) {
-        self.tuft = file.tuft();
+        self.tuft = SpineLayout::of(&file);
         self.tuft.stiffen(self.tuned);
         self.settings = settings_of(&file, &self.tuft);
         (self.mark, self.beside) = (Mark::of(&file), None);
-        (self.file, self.held) = (file, None);
+        (self.file, self.tracked) = (file, None);
         self.soak(self.wetness);
     }
 
@@ -131,9 +131,9 @@ impl BrushModel {
     pub fn tune(&mut self, factor: f64) {
         if factor != self.tuned && factor.is_finite() && factor > 0.0 {
             self.tuned = factor;
-            self.tuft = self.file.tuft();
+            self.tuft = SpineLayout::of(&self.file);
             self.tuft.stiffen(factor);
-            self.settings.crowd_n_m = self.tuft.crowd_n_m;
+            self.settings.repulsion_n_m = self.tuft.repulsion_n_m;
             self.soak(self.wetness);
         }
     }
@@ -154,7 +154,10 @@ impl BrushModel {
     /// The surface that the brush is over, or the canvas.
     #[must_use]
     pub fn plane(&self) -> Option<&Plane> {
-        let surface = self.held.as_ref().map_or(CANVAS, |held| held.surface);
+        let surface = self
+            .tracked
+            .as_ref()
+            .map_or(CANVAS, |tracked| tracked.surface);
         self.desk.as_ref()?.plane(surface)
     }
 
@@ -169,20 +172,20 @@ impl BrushModel {
     ///
     /// A touching brush is solved each time it has moved by about a step, counted on across samples,
     /// so that its path does not depend on how often it is sampled; between two of these a sample gives
-    /// a glimpse. A pen lands and lifts at its sample. A pause of up to [`BRIDGED_NS`] in contact is
+    /// a preview. A pen lands and lifts at its sample. A pause of up to [`BRIDGED_NS`] in contact is
     /// crossed like any way between two samples. A longer one, another device, time that does not
     /// advance and a zoom restart the solver at the new pose: the solve says so, and nothing is painted
     /// from the one before to it. After a pause alone the head stays bent as it was.
     pub fn follow(&mut self, origin: Origin, event_ns: u64, sample: &StylusSample) -> Vec<Solve> {
         if self.follows != Some(origin) {
             self.follows = Some(origin);
-            self.held = None;
+            self.tracked = None;
         }
         let Some(plane) = self.plane_under(sample) else {
             return Vec::new();
         };
         let length = self.file.length_m();
-        let in_desk = ferrule(sample, length, self.depth_share, &plane.wall());
+        let in_desk = ferrule(sample, length, self.depth_share, &plane.half_space());
         let mut brush = plane.to_desk.inverse().after(&in_desk);
         if !sample.in_range {
             brush.translation.z = brush.translation.z.max(2.0 * length);
@@ -196,115 +199,121 @@ impl BrushModel {
             // While it hovers there is time.
             self.solve_table();
         }
-        let before = self.held.take().filter(|held| {
-            event_ns > held.newest.event_ns
-                && (held.surface, held.zoom, held.is_pen) == (plane.id, plane.zoom, is_pen)
+        let before = self.tracked.take().filter(|tracked| {
+            event_ns > tracked.newest.event_ns
+                && (tracked.surface, tracked.zoom, tracked.is_pen) == (plane.id, plane.zoom, is_pen)
         });
-        let stays = |held: &Held| held.head.touches() && !sample.in_air();
-        let paused = |held: &Held| event_ns - held.newest.event_ns > BRIDGED_NS;
-        let (mut held, solves) = match before {
-            Some(mut held) if stays(&held) && !paused(&held) => {
-                let solves = self.go(&mut held, here, &plane);
-                held.before = Some(held.newest);
-                (held, solves)
+        let stays = |tracked: &TrackedBrush| tracked.head.touches() && !sample.in_air();
+        let paused = |tracked: &TrackedBrush| event_ns - tracked.newest.event_ns > BRIDGED_NS;
+        let (mut tracked, solves) = match before {
+            Some(mut tracked) if stays(&tracked) && !paused(&tracked) => {
+                let solves = self.go(&mut tracked, here, &plane);
+                tracked.before = Some(tracked.newest);
+                (tracked, solves)
             }
-            Some(mut held) if stays(&held) => {
-                let solve = self.resume(&mut held, here, &plane);
-                (held, vec![solve])
+            Some(mut tracked) if stays(&tracked) => {
+                let solve = self.resume(&mut tracked, here, &plane);
+                (tracked, vec![solve])
             }
-            Some(mut held) if !paused(&held) => {
-                (held.before, held.left_over_m) = (None, 0.0);
-                let solve = self.land(&mut held, here, sample.in_air(), &plane);
-                (held, vec![solve])
+            Some(mut tracked) if !paused(&tracked) => {
+                (tracked.before, tracked.left_over_m) = (None, 0.0);
+                let solve = self.land(&mut tracked, here, sample.in_air(), &plane);
+                (tracked, vec![solve])
             }
             _ => {
-                let mut held = self.fresh(&plane, here, is_pen);
-                let mut solve = self.land(&mut held, here, sample.in_air(), &plane);
+                let mut tracked = self.fresh(&plane, here, is_pen);
+                let mut solve = self.land(&mut tracked, here, sample.in_air(), &plane);
                 solve.flags |= solve_flags::RESTARTED;
-                (held, vec![solve])
+                (tracked, vec![solve])
             }
         };
-        held.newest = here;
-        self.held = Some(held);
+        tracked.newest = here;
+        self.tracked = Some(tracked);
         solves
     }
 
     /// Begins another stroke with a head that is bent as it was before a pause in contact: one that
     /// landed anew would be dragged round to there, and leave a notch.
-    fn resume(&mut self, held: &mut Held, here: Sampled, plane: &Plane) -> Solve {
-        (held.before, held.left_over_m) = (None, 0.0);
-        let brush = self.placed(held, &here);
-        held.head.slide(&self.tuft, &brush);
-        let mut solve = self.solve(held, here, plane);
-        held.force_n = held.head.force_n();
+    fn resume(&mut self, tracked: &mut TrackedBrush, here: Sampled, plane: &Plane) -> Solve {
+        (tracked.before, tracked.left_over_m) = (None, 0.0);
+        let brush = self.placed(tracked, &here);
+        tracked.head.slide(&self.tuft, &brush);
+        let mut solve = self.solve(tracked, here, plane);
+        tracked.force_n = tracked.head.force_n();
         solve.flags |= solve_flags::RESTARTED;
         solve
     }
 
     /// Solves a brush that touched nothing at a sample. A pen is held so that its mark lies where it
     /// points.
-    fn land(&mut self, held: &mut Held, here: Sampled, in_air: bool, plane: &Plane) -> Solve {
-        held.lead = Lead::default();
-        if held.is_pen && !in_air {
+    fn land(
+        &mut self,
+        tracked: &mut TrackedBrush,
+        here: Sampled,
+        in_air: bool,
+        plane: &Plane,
+    ) -> Solve {
+        tracked.lead = Lead::default();
+        if tracked.is_pen && !in_air {
             for _ in 0..LANDINGS {
-                let mut tried = held.clone();
+                let mut tried = tracked.clone();
                 let brush = self.placed(&tried, &here);
                 self.bend(&mut tried, &brush, plane);
                 let Some(middle) = self.mark.middle(&brush, &tried.head.angles()) else {
                     break;
                 };
-                held.bent = middle - point_of(&here.pose) - held.lead.shift;
-                held.lead = Lead::landed(held.bent, self.tabled(held, &here));
+                tracked.bent = middle - point_of(&here.pose) - tracked.lead.shift;
+                tracked.lead = Lead::landed(tracked.bent, self.tabled(tracked, &here));
             }
         }
-        let solve = self.solve(held, here, plane);
-        held.force_n = held.head.force_n();
+        let solve = self.solve(tracked, here, plane);
+        tracked.force_n = tracked.head.force_n();
         solve
     }
 
     /// Where a brush is held at a sample.
-    fn placed(&self, held: &Held, at: &Sampled) -> Rigid {
+    fn placed(&self, tracked: &TrackedBrush, at: &Sampled) -> Rigid {
         let mut brush = at.pose;
-        brush.translation += held.lead.shift.extend(0.0);
+        brush.translation += tracked.lead.shift.extend(0.0);
         self.tuft.raise(&mut brush, self.file.length_m());
         brush
     }
 
-    /// Solves a touching brush at each step of its way to a sample, and gives a glimpse of it there.
-    fn go(&mut self, held: &mut Held, here: Sampled, plane: &Plane) -> Vec<Solve> {
-        let start_ns = held.newest.event_ns;
-        let way = Way::new(
-            held.before.as_ref(),
-            &held.newest,
+    /// Solves a touching brush at each step of its way to a sample, and gives a preview of it there.
+    fn go(&mut self, tracked: &mut TrackedBrush, here: Sampled, plane: &Plane) -> Vec<Solve> {
+        let start_ns = tracked.newest.event_ns;
+        let path = HandlePath::new(
+            tracked.before.as_ref(),
+            &tracked.newest,
             &here,
             self.file.length_m(),
         );
-        let motion_m = way.length_m();
+        let motion_m = path.length_m();
         let pause = (here.event_ns - start_ns) as f64 / MOST_SOLVES_NS;
         let part_m = (motion_m / (MOST_SOLVES * pause.max(1.0))).max(SOLVE_M);
-        let whole_m = held.left_over_m + motion_m;
+        let whole_m = tracked.left_over_m + motion_m;
         let mut solves = Vec::new();
         let (mut gone_m, mut at) = (part_m, 0.0);
         while gone_m <= whole_m {
-            let s = way.after(gone_m - held.left_over_m);
-            let piece = Piece {
-                way: &way,
+            let s = path.after(gone_m - tracked.left_over_m);
+            let segment = PathSegment {
+                path: &path,
                 from: at,
                 to: s,
                 start_ns,
                 end_ns: here.event_ns,
                 length_m: part_m,
             };
-            self.walk(held, &piece, plane, SPLITS, &mut solves);
+            self.walk(tracked, &segment, plane, SPLITS, &mut solves);
             (gone_m, at) = (gone_m + part_m, s);
         }
-        held.left_over_m = whole_m - (gone_m - part_m);
-        let mut seen = held.clone();
+        tracked.left_over_m = whole_m - (gone_m - part_m);
+        let mut seen = tracked.clone();
         self.stay(&seen, here.event_ns);
-        let mut glimpse = self.solve(&mut seen, here, plane);
-        held.force_n = seen.head.force_n();
-        glimpse.flags |= solve_flags::GLIMPSE;
-        solves.push(glimpse);
+        let mut preview = self.solve(&mut seen, here, plane);
+        tracked.force_n = seen.head.force_n();
+        preview.flags |= solve_flags::PREVIEW;
+        solves.push(preview);
         solves
     }
 
@@ -312,47 +321,47 @@ impl BrushModel {
     /// more than a cell.
     fn walk(
         &mut self,
-        held: &mut Held,
-        piece: &Piece<'_>,
+        tracked: &mut TrackedBrush,
+        segment: &PathSegment<'_>,
         plane: &Plane,
         splits: u32,
         solves: &mut Vec<Solve>,
     ) {
-        let mut tried = held.clone();
+        let mut tried = tracked.clone();
         let strokes = (self.strokes, self.last_contact_ns);
-        let end = piece.end();
+        let end = segment.end();
         self.stay(&tried, end.event_ns);
         let solve = self.solve(&mut tried, end, plane);
-        let moved = tried.head.moved_in_contact(&held.head);
+        let moved = tried.head.moved_in_contact(&tracked.head);
         if splits > 0 && moved > FARTHEST_M {
             (self.strokes, self.last_contact_ns) = strokes;
-            let [first, second] = piece.halves();
-            self.walk(held, &first, plane, splits - 1, solves);
-            self.walk(held, &second, plane, splits - 1, solves);
+            let [first, second] = segment.halves();
+            self.walk(tracked, &first, plane, splits - 1, solves);
+            self.walk(tracked, &second, plane, splits - 1, solves);
             return;
         }
-        *held = tried;
-        self.lead(held, &end, piece.length_m);
+        *tracked = tried;
+        self.lead(tracked, &end, segment.length_m);
         solves.push(solve);
     }
 
     /// Leads a pen after a way, so that the mark comes to lie where it points.
-    fn lead(&mut self, held: &mut Held, end: &Sampled, way_m: f64) {
-        if !held.is_pen {
+    fn lead(&mut self, tracked: &mut TrackedBrush, end: &Sampled, way_m: f64) {
+        if !tracked.is_pen {
             return;
         }
-        let brush = self.placed(held, end);
-        if let Some(middle) = self.mark.middle(&brush, &held.head.angles()) {
+        let brush = self.placed(tracked, end);
+        if let Some(middle) = self.mark.middle(&brush, &tracked.head.angles()) {
             let beside = middle - point_of(&end.pose);
-            held.bent = beside - held.lead.shift;
-            let tabled = self.tabled(held, end);
-            held.lead.go(beside, tabled, way_m, self.file.length_m());
+            tracked.bent = beside - tracked.lead.shift;
+            let tabled = self.tabled(tracked, end);
+            tracked.lead.go(beside, tabled, way_m, self.file.length_m());
         }
     }
 
     /// How far the mark lies beside the point of a pen that is set down as it is held now, m.
-    fn tabled(&self, held: &Held, at: &Sampled) -> DVec2 {
-        let of = |table: &Beside| table.at(&at.pose, held.bent, self.file.length_m());
+    fn tabled(&self, tracked: &TrackedBrush, at: &Sampled) -> DVec2 {
+        let of = |table: &Beside| table.at(&at.pose, tracked.bent, self.file.length_m());
         self.beside.as_ref().map_or(DVec2::ZERO, of)
     }
 
@@ -368,17 +377,20 @@ impl BrushModel {
     /// The surface that a sample is over; a touching brush stays on the one that it touches.
     fn plane_under(&self, sample: &StylusSample) -> Option<Plane> {
         let desk = self.desk.as_ref()?;
-        let touching = self.held.as_ref().filter(|held| held.head.touches());
-        let kept = touching.and_then(|held| desk.plane(held.surface));
+        let touching = self
+            .tracked
+            .as_ref()
+            .filter(|tracked| tracked.head.touches());
+        let kept = touching.and_then(|tracked| desk.plane(tracked.surface));
         kept.or_else(|| desk.under(aim(sample, self.file.length_m())))
             .copied()
     }
 
     /// Bends all spines of a brush that has moved.
-    fn solve(&mut self, held: &mut Held, at: Sampled, plane: &Plane) -> Solve {
-        let brush = self.placed(held, &at);
-        let converged = self.bend(held, &brush, plane);
-        let contacts = held.head.contacts();
+    fn solve(&mut self, tracked: &mut TrackedBrush, at: Sampled, plane: &Plane) -> Solve {
+        let brush = self.placed(tracked, &at);
+        let converged = self.bend(tracked, &brush, plane);
+        let contacts = tracked.head.contacts();
         let stroke = if contacts.is_empty() {
             0
         } else {
@@ -391,7 +403,7 @@ impl BrushModel {
         Solve {
             event_ns: at.event_ns,
             stroke,
-            surface: held.surface,
+            surface: tracked.surface,
             flags: if converged {
                 0
             } else {
@@ -399,20 +411,21 @@ impl BrushModel {
             },
             pose: in_surface.to_pose(),
             zoom: plane.zoom,
-            angles_rad: held.head.angles(),
+            angles_rad: tracked.head.angles(),
             contacts,
         }
     }
 
     /// Bends all spines of a brush that is held at `brush`; whether all of them converged.
-    fn bend(&mut self, held: &mut Held, brush: &Rigid, plane: &Plane) -> bool {
+    fn bend(&mut self, tracked: &mut TrackedBrush, brush: &Rigid, plane: &Plane) -> bool {
         let length = self.file.length_m();
         let obstacles = match &self.desk {
             Some(desk) => desk.obstacles(plane, brush.translation, length),
             None => vec![Obstacle::ground()],
         };
         let (room, settings) = (&mut self.solver, &self.settings);
-        held.head
+        tracked
+            .head
             .solve(room, &self.tuft, brush, &obstacles, settings)
     }
 
@@ -434,8 +447,8 @@ impl BrushModel {
     }
 
     /// Contact lasts from one solve of a way to the next, however long the pause between its samples.
-    fn stay(&mut self, held: &Held, until_ns: u64) {
-        if held.head.touches() {
+    fn stay(&mut self, tracked: &TrackedBrush, until_ns: u64) {
+        if tracked.head.touches() {
             self.last_contact_ns = until_ns;
         }
     }
@@ -450,13 +463,13 @@ impl BrushModel {
         self.strokes
     }
 
-    fn fresh(&self, plane: &Plane, here: Sampled, is_pen: bool) -> Held {
+    fn fresh(&self, plane: &Plane, here: Sampled, is_pen: bool) -> TrackedBrush {
         let mut brush = here.pose;
         self.tuft.raise(&mut brush, self.file.length_m());
-        Held {
+        TrackedBrush {
             surface: plane.id,
             zoom: plane.zoom,
-            head: HeldHead::at_rest(&self.tuft, &brush),
+            head: SolvedHead::at_rest(&self.tuft, &brush),
             newest: here,
             is_pen,
             lead: Lead::default(),

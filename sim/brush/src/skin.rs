@@ -12,8 +12,9 @@ use crate::file::BrushFile;
 use crate::head::place::edge;
 use crate::head::weights::{nearest_in_hull, weights_of};
 use crate::spine::{Spine, SpineShape};
+use crate::spine_layout::SpineLayout;
+use crate::spine_root::SpineRoot;
 use crate::subdivide::{Mesh, subdivide};
-use crate::tuft::{Seat, Tuft};
 
 /// Rings of the skin's own mesh, as places along the head, and vertices of each.
 const RINGS: [f64; 6] = [0.0, 0.2, 0.45, 0.7, 0.88, 0.98];
@@ -67,7 +68,7 @@ impl SkinPose {
 impl Skin {
     /// The skin of a brush file, if it has one.
     #[must_use]
-    pub fn of(file: &BrushFile, tuft: &Tuft) -> Option<Self> {
+    pub fn of(file: &BrushFile, tuft: &SpineLayout) -> Option<Self> {
         let section = file.surface.as_ref()?;
         let (mesh, control) = if section.vertices_mm.is_empty() {
             around(file, tuft)
@@ -101,9 +102,9 @@ impl Skin {
             std::array::from_fn(|i| face[i.min(face.len() - 1)] as u32)
         };
         let rest = tuft
-            .seats
+            .roots
             .iter()
-            .flat_map(|seat| frames(&seat.spine, &seat.at_rest(&Rigid::IDENTITY)))
+            .flat_map(|root| frames(&root.spine, &root.at_rest(&Rigid::IDENTITY)))
             .map(|frame| frame.inverse())
             .collect();
         Some(Self {
@@ -129,10 +130,16 @@ impl Skin {
     }
 
     /// The skin of bent spines, with `per_m` units a metre.
-    pub fn pose(&self, seats: &[Seat], shapes: &[SpineShape], per_m: f64, into: &mut SkinPose) {
-        let spines = seats.iter().zip(shapes);
+    pub fn pose(
+        &self,
+        roots: &[SpineRoot],
+        shapes: &[SpineShape],
+        per_m: f64,
+        into: &mut SkinPose,
+    ) {
+        let spines = roots.iter().zip(shapes);
         let bones: Vec<(DMat3, DVec3)> = spines
-            .flat_map(|(seat, shape)| frames(&seat.spine, shape))
+            .flat_map(|(root, shape)| frames(&root.spine, shape))
             .zip(&self.rest)
             .map(|(frame, rest)| {
                 let bone = frame.after(rest);
@@ -193,12 +200,12 @@ fn place_of(file: &BrushFile, at: DVec3) -> [f32; 2] {
 }
 
 /// A mesh around the strips: rings, and a lid at either end.
-fn around(file: &BrushFile, tuft: &Tuft) -> (Mesh, Vec<Vertex>) {
+fn around(file: &BrushFile, tuft: &SpineLayout) -> (Mesh, Vec<Vertex>) {
     let spines = tuft.places(file);
     let mut firsts = Vec::new();
-    for seat in &tuft.seats {
+    for root in &tuft.roots {
         let last = firsts.last().map_or(0, |(first, n)| first + n);
-        firsts.push((last, seat.spine.joints()));
+        firsts.push((last, root.spine.joints()));
     }
     let mut vertices = Vec::new();
     for ring in RINGS {
@@ -252,7 +259,7 @@ mod tests {
 
     use super::*;
 
-    fn skinned() -> (BrushFile, Tuft, Skin) {
+    fn skinned() -> (BrushFile, SpineLayout, Skin) {
         let mut file = BrushFile::library("round").expect("round");
         file.surface = Some(crate::file::sections::Surface {
             levels: 2,
@@ -261,23 +268,23 @@ mod tests {
             faces: Vec::new(),
             weights: Vec::new(),
         });
-        let tuft = file.tuft();
+        let tuft = SpineLayout::of(&file);
         let skin = Skin::of(&file, &tuft).expect("a skin");
         (file, tuft, skin)
     }
 
-    fn posed(tuft: &Tuft, skin: &Skin, brush: &Rigid, bend: f32) -> SkinPose {
+    fn posed(tuft: &SpineLayout, skin: &Skin, brush: &Rigid, bend: f32) -> SkinPose {
         let shapes: Vec<SpineShape> = tuft
-            .seats
+            .roots
             .iter()
-            .map(|seat| {
-                let held = seat.held(brush);
-                let angles = vec![[bend, 0.0]; seat.spine.joints()];
+            .map(|root| {
+                let held = root.frame(brush);
+                let angles = vec![[bend, 0.0]; root.spine.joints()];
                 SpineShape::from_angles(held.translation, held.rotation, &angles)
             })
             .collect();
         let mut pose = SkinPose::default();
-        skin.pose(&tuft.seats, &shapes, 1.0, &mut pose);
+        skin.pose(&tuft.roots, &shapes, 1.0, &mut pose);
         pose
     }
 

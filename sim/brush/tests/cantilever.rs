@@ -2,7 +2,7 @@
 //! pushes it along its normal, whatever the spine's shape, with the multiplier of its constraint.
 
 use glam::{DQuat, DVec3};
-use maulstick_brush::solver::{Settings, Solver, Stop, Wall};
+use maulstick_brush::solver::{ContactConstraint, HalfSpace, Settings, Solver};
 use maulstick_brush::{Spine, SpineShape};
 
 /// Where the tip of a spine of length 1 and EI 1 is held when pushed aside by `offset` along `normal`,
@@ -12,19 +12,19 @@ fn held(spine: &Spine, normal: DVec3, offset: f64) -> (DVec3, f64) {
     let mut shape = SpineShape::straight(DVec3::ZERO, DQuat::IDENTITY, joints);
     // The root is not above z = 0: the solver turns nothing to break a symmetry that is none.
     let settings = Settings::for_length(1.0).with_friction(0.0);
-    let mut stops = vec![Stop::new(
+    let mut constraints = vec![ContactConstraint::new(
         joints - 1,
-        Wall {
+        HalfSpace {
             normal,
             offset_m: 0.0,
         },
     )];
     for part in 1..=4 {
-        stops[0].wall.offset_m = offset * f64::from(part) / 4.0;
-        let solution = Solver::default().solve(spine, &mut shape, &mut stops, &[], &settings);
+        constraints[0].half_space.offset_m = offset * f64::from(part) / 4.0;
+        let solution = Solver::default().solve(spine, &mut shape, &mut constraints, &[], &settings);
         assert!(solution.converged, "{solution:?}");
     }
-    (shape.tip(spine), stops[0].force_n)
+    (shape.tip(spine), constraints[0].force_n)
 }
 
 /// The tip under the load `a`, by false position between offsets that bracket it.

@@ -2,7 +2,9 @@
 
 use glam::{DMat3, DVec3};
 use maulstick_brush::energy::friction::Anisotropy;
-use maulstick_brush::solver::{Neighbour, Settings, Solution, Solver, Stop, Wall};
+use maulstick_brush::solver::{
+    ContactConstraint, HalfSpace, Neighbour, Settings, Solution, Solver,
+};
 use maulstick_brush::{Spine, SpineShape};
 use maulstick_num::geometry::{rotation, shortest_arc};
 use maulstick_num::{cos, sin};
@@ -17,7 +19,7 @@ struct Bench {
     settings: Settings,
     solver: Solver,
     shape: SpineShape,
-    stops: Vec<Stop>,
+    constraints: Vec<ContactConstraint>,
 }
 
 impl Bench {
@@ -29,7 +31,7 @@ impl Bench {
             settings,
             solver: Solver::default(),
             shape: SpineShape::straight(root, rotation(DVec3::Y, -tilt), joints),
-            stops: Stop::on_surface(joints),
+            constraints: ContactConstraint::on_surface(joints),
         };
         bench.to(0.0);
         bench
@@ -38,10 +40,14 @@ impl Bench {
     /// Slides the ferrule to a place along x (m).
     fn to(&mut self, x: f64) -> Solution {
         self.shape.root.x = x;
-        let stops = &mut self.stops;
-        let solution = self
-            .solver
-            .solve(&self.spine, &mut self.shape, stops, &[], &self.settings);
+        let constraints = &mut self.constraints;
+        let solution = self.solver.solve(
+            &self.spine,
+            &mut self.shape,
+            constraints,
+            &[],
+            &self.settings,
+        );
         assert!(solution.converged, "{solution:?}");
         solution
     }
@@ -53,9 +59,18 @@ impl Bench {
     /// The force with which the surface acts on the point, from the springs alone: where only the point
     /// touches, the springs' derivative by each direction and the force's moment cancel.
     fn reaction(&mut self) -> DVec3 {
-        let free = Stop::on_surface(self.spine.joints());
-        let touching = self.stops.iter().filter(|stop| stop.touches());
-        assert!(touching.count() == 1 && self.stops.last().is_some_and(Stop::touches));
+        let free = ContactConstraint::on_surface(self.spine.joints());
+        let touching = self
+            .constraints
+            .iter()
+            .filter(|constraint| constraint.touches());
+        assert!(
+            touching.count() == 1
+                && self
+                    .constraints
+                    .last()
+                    .is_some_and(ContactConstraint::touches)
+        );
         let (_, slopes) = self
             .solver
             .energy(&self.spine, &self.shape, &free, &[], &self.settings);
@@ -91,15 +106,15 @@ fn friction_opposes_the_slip_within_its_cone() {
         bench.shape.root.y = 2e-3 * sin(f64::from(step) * 0.02);
         let solution = bench.to(f64::from(step) * -1e-4);
         let (slip, force) = (bench.tip() - before, bench.reaction());
-        let faced = bench.solver.faced()[4];
+        let last_constraints = bench.solver.last_constraints()[4];
         // Friction is that of the normal force before the step.
-        let bound = mu * faced.force_n;
+        let bound = mu * last_constraints.force_n;
         let along = force.truncate();
         assert!(
             along.length() <= bound * (1.0 + 1e-6),
             "{step}: {solution:?}"
         );
-        assert!((force.z - bench.stops[4].force_n).abs() < 1e-6 * force.z);
+        assert!((force.z - bench.constraints[4].force_n).abs() < 1e-6 * force.z);
         if step > 1 && slip.length() > 1e-5 {
             let cosine = -along.normalize().dot(slip.truncate().normalize());
             assert!(cosine > 0.9999, "{step}: {cosine}");
@@ -126,8 +141,9 @@ fn friction_has_the_normal_force_of_its_own_pose() {
             bench.shape.root += DVec3::new(cos(turn), sin(turn), 0.0) * way;
             bench.shape.root.z = height * LENGTH;
             bench.to(bench.shape.root.x);
-            let stops = &bench.stops;
-            let only = stops[4].touches() && !stops[..4].iter().any(Stop::touches);
+            let constraints = &bench.constraints;
+            let only = constraints[4].touches()
+                && !constraints[..4].iter().any(ContactConstraint::touches);
             if !only {
                 touched = false;
                 continue;
@@ -161,7 +177,7 @@ fn a_contact_holds_to_the_static_bound_and_slides_with_the_kinetic_one() {
         // Steps of less than the rounding: it holds.
         let mut held = 0.0;
         let mut steps = 0;
-        while bench.stops[2].sticks || steps == 0 {
+        while bench.constraints[2].sticks || steps == 0 {
             held = bench.share().max(held);
             x += way * 1e-6;
             bench.to(x);
@@ -169,8 +185,8 @@ fn a_contact_holds_to_the_static_bound_and_slides_with_the_kinetic_one() {
             assert!(steps < 1000, "it never broke loose: {held}");
         }
         // The bound is that of the normal force before, which rises as it breaks loose.
-        let faced = bench.solver.faced()[2].force_n;
-        let loose = bench.reaction().truncate().length() / faced;
+        let last_constraints = bench.solver.last_constraints()[2].force_n;
+        let loose = bench.reaction().truncate().length() / last_constraints;
         // Steps of many times the rounding: it slides on.
         let mut slid = 0.0;
         for _ in 0..40 {
@@ -185,7 +201,7 @@ fn a_contact_holds_to_the_static_bound_and_slides_with_the_kinetic_one() {
         // It stands still, and sticks where it is.
         bench.to(x);
         bench.to(x);
-        assert!(bench.stops[2].sticks);
+        assert!(bench.constraints[2].sticks);
     }
 }
 
@@ -222,22 +238,25 @@ fn a_pushed_bristle_drags_more_than_a_pulled_one() {
 
 #[test]
 fn a_wall_beside_the_surface_holds_the_spine_out() {
-    let solve = |wall: Option<Wall>| {
+    let solve = |wall: Option<HalfSpace>| {
         let mut bench = Bench::new(4, 1.2, 0.5, settings(0.25));
         if let Some(wall) = wall {
             bench
-                .stops
-                .extend((0..4).map(|joint| Stop::new(joint, wall)));
+                .constraints
+                .extend((0..4).map(|joint| ContactConstraint::new(joint, wall)));
         }
         for step in 0..=40 {
             bench.shape.root.z = (1.2 - 0.015 * f64::from(step)) * LENGTH;
             bench.to(0.0);
         }
-        let pushed: f64 = bench.stops[4..].iter().map(|stop| stop.force_n).sum();
+        let pushed: f64 = bench.constraints[4..]
+            .iter()
+            .map(|constraint| constraint.force_n)
+            .sum();
         (bench.tip(), pushed)
     };
     let (free, _) = solve(None);
-    let wall = Wall {
+    let wall = HalfSpace {
         normal: DVec3::NEG_X,
         offset_m: -(free.x - 2e-3),
     };
@@ -267,7 +286,10 @@ fn spines_of_one_joint_and_of_64_follow_a_stroke() {
                 solution.penetration_m <= 1e-6 * LENGTH,
                 "{joints}: {solution:?}"
             );
-            assert!(bench.stops.iter().any(Stop::touches), "{joints}");
+            assert!(
+                bench.constraints.iter().any(ContactConstraint::touches),
+                "{joints}"
+            );
         }
     }
 }
@@ -286,9 +308,9 @@ proptest! {
         bench.shape.carry(root, frame);
         let before = bench.shape.clone();
         let solution = bench.to(root.x);
-        let faced = bench.solver.faced().to_vec();
+        let last_constraints = bench.solver.last_constraints().to_vec();
         let none = bench.settings;
-        let (start, _) = bench.solver.energy(&bench.spine, &before, &faced, &[], &none);
+        let (start, _) = bench.solver.energy(&bench.spine, &before, &last_constraints, &[], &none);
         let feasible = (0..4).all(|joint| before.joint(&bench.spine, joint).z >= 0.0);
         if feasible {
             prop_assert!(solution.energy.total() <= start.total() * (1.0 + 1e-12));
@@ -309,19 +331,19 @@ fn the_energys_derivatives_agree_with_differences() {
         let turn = rotation(DVec3::new(0.36, 0.48, 0.8), 0.2 + 0.1 * i as f64);
         *d = turn * *d;
     }
-    let beside = Wall {
+    let beside = HalfSpace {
         normal: DVec3::NEG_Y,
         offset_m: -0.5,
     };
-    let mut stops = Stop::on_surface(4);
-    stops.push(Stop::new(3, beside));
-    for stop in &mut stops {
-        stop.aim(&spine, &shape);
-        stop.force_n = 0.3 + 0.1 * stop.joint as f64;
-        let at = shape.joint(&spine, stop.joint);
-        stop.anchor = Some(at + DVec3::new(-0.03, 0.02, 0.01));
+    let mut constraints = ContactConstraint::on_surface(4);
+    constraints.push(ContactConstraint::new(3, beside));
+    for constraint in &mut constraints {
+        constraint.update_preferred(&spine, &shape);
+        constraint.force_n = 0.3 + 0.1 * constraint.joint as f64;
+        let at = shape.joint(&spine, constraint.joint);
+        constraint.anchor = Some(at + DVec3::new(-0.03, 0.02, 0.01));
     }
-    stops[1].sticks = true;
+    constraints[1].sticks = true;
     let neighbours = [1, 3].map(|joint| Neighbour {
         joint,
         at: shape.joint(&spine, joint) + DVec3::new(0.02, 0.03, -0.01),
@@ -336,14 +358,19 @@ fn the_energys_derivatives_agree_with_differences() {
             ..Anisotropy::default()
         },
         epsilon_m: 1e-2,
-        crowd_n_m: 30.0,
+        repulsion_n_m: 30.0,
         ..Settings::for_length(0.9)
     };
     let mut solver = Solver::default();
     solver.begin(&spine, &begun);
-    let (energy, slopes) = solver.energy(&spine, &shape, &stops, &neighbours, &settings);
+    let (energy, slopes) = solver.energy(&spine, &shape, &constraints, &neighbours, &settings);
     let slopes = slopes.to_vec();
-    let parts = [energy.spring, energy.friction, energy.damping, energy.crowd];
+    let parts = [
+        energy.spring,
+        energy.friction,
+        energy.damping,
+        energy.repulsion,
+    ];
     assert!(parts.iter().all(|part| *part > 1e-4), "{energy:?}");
     for (i, slope) in slopes.iter().enumerate() {
         let (s, t) = shape.directions[i].any_orthonormal_pair();
@@ -352,7 +379,8 @@ fn the_energys_derivatives_agree_with_differences() {
                 let mut shape = shape.clone();
                 let d = shape.directions[i];
                 shape.directions[i] = shortest_arc(d, (d + tangent * h).normalize()) * d;
-                let (energy, _) = solver.energy(&spine, &shape, &stops, &neighbours, &settings);
+                let (energy, _) =
+                    solver.energy(&spine, &shape, &constraints, &neighbours, &settings);
                 energy.total()
             };
             let numeric = (moved(1e-5) - moved(-1e-5)) / 2e-5;
@@ -377,19 +405,19 @@ fn what_cannot_be_keeps_the_last_good_state() {
     let mut solver = Solver::default();
     let tilt = maulstick_num::geometry::rotation(DVec3::Y, 0.3);
     let mut shape = SpineShape::straight(DVec3::new(0.0, 0.0, 0.6 * length), tilt, 3);
-    let mut stops = Stop::on_surface(3);
+    let mut constraints = ContactConstraint::on_surface(3);
     for _ in 0..2 {
         assert!(
             solver
-                .solve(&spine, &mut shape, &mut stops, &[], &settings)
+                .solve(&spine, &mut shape, &mut constraints, &[], &settings)
                 .converged
         );
     }
-    let (good, held) = (shape.directions.clone(), stops.clone());
-    assert!(held.iter().any(Stop::touches));
+    let (good, held) = (shape.directions.clone(), constraints.clone());
+    assert!(held.iter().any(ContactConstraint::touches));
     for depth in [1.1, 5.0, 1e6] {
         shape.root.z = -depth * length;
-        let solution = solver.solve(&spine, &mut shape, &mut stops, &[], &settings);
+        let solution = solver.solve(&spine, &mut shape, &mut constraints, &[], &settings);
         assert!(!solution.converged);
         let numbers = [
             solution.residual,
@@ -401,12 +429,12 @@ fn what_cannot_be_keeps_the_last_good_state() {
             "{solution:?}"
         );
         assert!((solution.penetration_m / (depth * length) - 1.0).abs() < 1.0);
-        assert_eq!((&shape.directions, &stops), (&good, &held));
+        assert_eq!((&shape.directions, &constraints), (&good, &held));
     }
     shape.root.z = 0.6 * length;
     assert!(
         solver
-            .solve(&spine, &mut shape, &mut stops, &[], &settings)
+            .solve(&spine, &mut shape, &mut constraints, &[], &settings)
             .converged
     );
     assert!((shape.directions[2] - good[2]).length() < 1e-6);

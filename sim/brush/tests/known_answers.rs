@@ -1,21 +1,25 @@
 //! The numbers of a cantilever, a buckling spine, a tractrix; properties over random poses.
 
 use glam::{DQuat, DVec3};
-use maulstick_brush::solver::{Settings, Solution, Solver, Stop};
+use maulstick_brush::solver::{ContactConstraint, Settings, Solution, Solver};
 use maulstick_brush::{Spine, SpineShape};
 use maulstick_num::geometry::rotation;
 use proptest::prelude::*;
 
-fn settle(spine: &Spine, shape: &mut SpineShape, stops: &mut [Stop]) -> Solution {
+fn settle(
+    spine: &Spine,
+    shape: &mut SpineShape,
+    constraints: &mut [ContactConstraint],
+) -> Solution {
     let settings = Settings::for_length(spine.length_m());
-    Solver::default().solve(spine, shape, stops, &[], &settings)
+    Solver::default().solve(spine, shape, constraints, &[], &settings)
 }
 
 #[test]
 fn a_straight_spine_above_the_surface_stays_straight() {
     let spine = Spine::uniform(0.025, 3, 1.5e-4);
     let mut shape = SpineShape::straight(DVec3::new(0.0, 0.0, 0.03), DQuat::IDENTITY, 3);
-    let mut touches = Stop::on_surface(3);
+    let mut touches = ContactConstraint::on_surface(3);
     let solution = settle(&spine, &mut shape, &mut touches);
     assert!(
         solution.converged && solution.energy.spring < 1e-12,
@@ -45,7 +49,7 @@ fn buckling_loads() {
         };
         let down = rotation(DVec3::X, 1e-4);
         let mut shape = SpineShape::straight(DVec3::new(0.0, 0.0, 0.997), down, joints);
-        let mut touches = Stop::on_surface(joints);
+        let mut touches = ContactConstraint::on_surface(joints);
         let settings = Settings::for_length(length).with_friction(0.0);
         let solution = Solver::default().solve(&spine, &mut shape, &mut touches, &[], &settings);
         let load = touches[joints - 1].force_n;
@@ -75,7 +79,7 @@ fn a_dragged_spine_follows_the_tractrix() {
         let root = DVec3::new(0.0, 0.0, height);
         let mut shape = SpineShape::straight(root, DQuat::IDENTITY, 1);
         shape.directions[0] = DVec3::new(0.0, 1.0, -height) / length;
-        let mut touches = Stop::on_surface(1);
+        let mut touches = ContactConstraint::on_surface(1);
         let settings = Settings {
             epsilon_m: 1e-7,
             ..Settings::for_length(length)
@@ -115,7 +119,7 @@ proptest! {
         let spine = Spine::uniform(length, joints, 1.5e-4);
         let brush = tilted(tilt, azimuth);
         let mut shape = SpineShape::straight(DVec3::new(0.0, 0.0, height * length), brush, joints);
-        let mut touches = Stop::on_surface(joints);
+        let mut touches = ContactConstraint::on_surface(joints);
         let first = settle(&spine, &mut shape, &mut touches);
         shape.root.x += slide * length;
         let solution = settle(&spine, &mut shape, &mut touches);
@@ -134,7 +138,7 @@ proptest! {
             let brush = tilted(tilt, azimuth);
             let root = DVec3::new(0.0, 0.0, height * 0.025);
             let mut shape = SpineShape::straight(root, brush, 3);
-            let mut touches = Stop::on_surface(3);
+            let mut touches = ContactConstraint::on_surface(3);
             settle(&spine, &mut shape, &mut touches);
             rotation(DVec3::Z, -azimuth) * shape.tip(&spine)
         };
@@ -149,7 +153,7 @@ proptest! {
         let run = |sign: f64| {
             let root = DVec3::new(0.0, 0.0, height * 0.025);
             let mut shape = SpineShape::straight(root, tilted(tilt, sign * azimuth), 5);
-            let mut touches = Stop::on_surface(5);
+            let mut touches = ContactConstraint::on_surface(5);
             for step in 0..4 {
                 shape.root += DVec3::new(dx, sign * 0.1, 0.0) * (0.005 * f64::from(step));
                 settle(&spine, &mut shape, &mut touches);

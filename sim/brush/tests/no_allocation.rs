@@ -6,10 +6,10 @@ mod counting;
 use counting::allocations;
 use glam::{DQuat, DVec3};
 use maulstick_brush::desk::Obstacle;
-use maulstick_brush::held::settings_of;
-use maulstick_brush::held::{HeadSolver, HeldHead};
-use maulstick_brush::solver::{Settings, Solver, Stop};
-use maulstick_brush::{BrushFile, Spine, SpineShape};
+use maulstick_brush::head_solver::settings_of;
+use maulstick_brush::head_solver::{HeadSolver, SolvedHead};
+use maulstick_brush::solver::{ContactConstraint, Settings, Solver};
+use maulstick_brush::{BrushFile, Spine, SpineLayout, SpineShape};
 use maulstick_num::geometry::{Rigid, rotation};
 
 /// A tilted ferrule that slides, presses and lifts.
@@ -34,16 +34,16 @@ fn a_spine_is_solved_without_allocating() {
         let spine = Spine::uniform(0.025, joints, 1.5e-4).damped(0.01);
         let settings = Settings::for_length(0.025);
         let mut solver = Solver::default();
-        let mut stops = Stop::on_surface(joints);
+        let mut constraints = ContactConstraint::on_surface(joints);
         let mut shape = SpineShape::straight(DVec3::Z, DQuat::IDENTITY, joints);
         let mut touched = 0;
         let mut stroke = |steps: std::ops::Range<usize>| {
             for step in steps {
                 let held = place(step, 0.025);
                 shape.carry(held.translation, held.rotation);
-                let solution = solver.solve(&spine, &mut shape, &mut stops, &[], &settings);
+                let solution = solver.solve(&spine, &mut shape, &mut constraints, &[], &settings);
                 assert!(solution.converged, "{solution:?}");
-                touched += usize::from(stops.iter().any(Stop::touches));
+                touched += usize::from(constraints.iter().any(ContactConstraint::touches));
             }
         };
         stroke(0..STEPS / 2);
@@ -61,10 +61,10 @@ fn a_spine_is_solved_without_allocating() {
 fn a_head_is_solved_without_allocating() {
     for kind in ["round", "filbert"] {
         let file = BrushFile::library(kind).expect(kind);
-        let (tuft, walls) = (file.tuft(), [Obstacle::ground()]);
+        let (tuft, walls) = (SpineLayout::of(&file), [Obstacle::ground()]);
         let (settings, length) = (settings_of(&file, &tuft), file.length_m());
         let mut room = HeadSolver::default();
-        let mut head = HeldHead::at_rest(&tuft, &place(0, length));
+        let mut head = SolvedHead::at_rest(&tuft, &place(0, length));
         let mut touched = 0;
         let mut stroke = |steps: std::ops::Range<usize>| {
             for step in steps {

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use maulstick_files::{FileId, OpenDatabase, is_companion, read_head};
 use maulstick_paint::load::BrushLoad;
-use maulstick_paint::tile::Planes;
+use maulstick_paint::planes::Planes;
 use maulstick_types::scene::Scene;
 use rusqlite::config::DbConfig;
 use rusqlite::{Connection, OpenFlags, OptionalExtension as _, params};

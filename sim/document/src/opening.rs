@@ -4,15 +4,17 @@ use std::collections::{BTreeMap, HashMap};
 use std::sync::Arc;
 
 use maulstick_optics::PaintLibrary;
+use maulstick_paint::EditError;
+use maulstick_paint::assets::Assets;
 use maulstick_paint::dry::{DryLayer, DryStack};
-use maulstick_paint::embedded::Embedded;
-use maulstick_paint::history::{Change, Deed, Held, Place, Rest, Step};
-use maulstick_paint::kept::{KeptPainting, KeptSequencer};
+use maulstick_paint::history::{Change, NonTileState, Step, StepEffects, TilePlace, TileRef};
 use maulstick_paint::load::BrushLoad;
 use maulstick_paint::page::{Page, Pager};
-use maulstick_paint::painting::{Named, PaintRefusal, Restored};
+use maulstick_paint::painting::{Named, Restored};
+use maulstick_paint::planes::Planes;
 use maulstick_paint::sequencer::Record;
-use maulstick_paint::tile::{Planes, Tile, Version};
+use maulstick_paint::snapshot::{PaintingSnapshot, SequencerSnapshot};
+use maulstick_paint::tile::{Tile, Version};
 use maulstick_paint::{Painting, Sequencer};
 use maulstick_types::paint::TILE;
 use maulstick_types::scene::Scene;
@@ -34,7 +36,7 @@ const SKIP: u64 = 1 << 32;
 #[derive(Debug)]
 pub struct Opened {
     restored: Restored,
-    sequencer: KeptSequencer,
+    sequencer: SequencerSnapshot,
     records: Vec<Record>,
     library: PaintLibrary,
     pager: Arc<Pager>,
@@ -62,7 +64,7 @@ impl Opened {
 
     /// What it is besides its tiles.
     #[must_use]
-    pub fn kept(&self) -> &KeptPainting {
+    pub fn kept(&self) -> &PaintingSnapshot {
         &self.restored.kept
     }
 
@@ -81,7 +83,7 @@ impl Opened {
         let Some(rows) = kept.rows else {
             return Ok(());
         };
-        let there = |place: &Place| {
+        let there = |place: &TilePlace| {
             let mut surfaces = kept.scene.surfaces.iter();
             // Rows of a canvas before it got another size stay.
             surfaces.any(|surface| {
@@ -105,8 +107,8 @@ impl Opened {
     /// The painting where it was: as it was kept, and then what was accepted since done again.
     ///
     /// # Errors
-    /// [`PaintRefusal`] where what was kept does not hold together.
-    pub fn sequencer(self) -> Result<Sequencer, PaintRefusal> {
+    /// [`EditError`] where what was kept does not hold together.
+    pub fn sequencer(self) -> Result<Sequencer, EditError> {
         let painting = Painting::restore(self.restored, self.library, self.pager)?;
         let mut sequencer = Sequencer::restored(painting, self.sequencer);
         for record in self.records {
@@ -142,7 +144,7 @@ pub(crate) fn scene(database: &Database) -> Result<Option<Scene>, DocumentError>
     if !has_state(database)? {
         return Ok(None);
     }
-    let kept: KeptPainting = state(database, "painting")?;
+    let kept: PaintingSnapshot = state(database, "painting")?;
     Ok(Some(kept.scene))
 }
 
@@ -180,7 +182,7 @@ fn state_row<T: serde::de::DeserializeOwned>(
 
 /// The number of the next page.
 pub(crate) fn next_page(database: &Database) -> Result<u64, DocumentError> {
-    let kept: KeptPainting = state(database, "painting")?;
+    let kept: PaintingSnapshot = state(database, "painting")?;
     let newest: i64 = database
         .connection
         .query_row(NEWEST, params![], |row| row.get(0))?;
@@ -198,18 +200,18 @@ pub(crate) fn file(database: &Database, hash: &str) -> Result<Vec<u8>, DocumentE
         params![hash],
         |row| row.get(0),
     )?;
-    match maulstick_paint::embedded::hash_of(&data) == hash {
+    match maulstick_paint::assets::hash_of(&data) == hash {
         true => Ok(data),
         false => Err(damaged(format!("file {hash} is not what it was"))),
     }
 }
 
 /// The pictures and spectra of grounds and teeth.
-fn pictures(database: &Database) -> Result<Embedded, DocumentError> {
+fn pictures(database: &Database) -> Result<Assets, DocumentError> {
     let query = "SELECT hash FROM file WHERE kind IN ('picture', 'spectrum') ORDER BY hash";
     let mut statement = database.connection.prepare(query)?;
     let hashes = statement.query_map(params![], |row| row.get::<_, String>(0))?;
-    let mut embedded = Embedded::default();
+    let mut embedded = Assets::default();
     for hash in hashes {
         let hash = hash?;
         let bytes = file(database, &hash)?;
@@ -311,7 +313,7 @@ impl Shelves {
         found.ok_or_else(|| damaged(format!("load {id} is missing")))
     }
 
-    fn held(&self, [page, dry]: [i64; 2]) -> Result<Held, DocumentError> {
+    fn held(&self, [page, dry]: [i64; 2]) -> Result<TileRef, DocumentError> {
         if page == 0 && dry == 0 {
             return Ok(None);
         }
@@ -351,22 +353,23 @@ fn tiles(database: &Database, shelves: &Shelves) -> Result<Tiles, DocumentError>
 
 /// The steps, where neighbours share the tiles that one left to the other.
 fn steps(database: &Database, shelves: &Shelves) -> Result<Vec<Step>, DocumentError> {
-    let query = "SELECT id, what, brush, operations, done, deed, tiles, sum FROM step ORDER BY id";
+    let query =
+        "SELECT id, what, brush, operations, done, effects, tiles, sum FROM step ORDER BY id";
     let mut statement = database.connection.prepare(query)?;
     let mut rows = statement.query(params![])?;
     let mut steps = Vec::new();
-    let mut known: HashMap<[i64; 2], Held> = HashMap::new();
+    let mut known: HashMap<[i64; 2], TileRef> = HashMap::new();
     while let Some(row) = rows.next()? {
         let (id, operations, done): (i64, i64, i64) = (row.get(0)?, row.get(3)?, row.get(4)?);
         let texts: [String; 3] = [row.get(1)?, row.get(2)?, row.get(5)?];
         let packed: Vec<u8> = row.get(6)?;
-        let [what, brush, deed] = texts.each_ref().map(|text| text.as_bytes());
+        let [what, brush, effects] = texts.each_ref().map(|text| text.as_bytes());
         let sum = Sum::of(Table::Step).int(id).bytes(what).bytes(brush);
-        let sum = sum.int(operations).int(done).bytes(deed).bytes(&packed);
+        let sum = sum.int(operations).int(done).bytes(effects).bytes(&packed);
         if sum.done() != row.get::<_, i64>(7)? {
             return Err(damaged(format!("step {id} does not match its checksum")));
         }
-        let mut held = |numbers: [i64; 2]| -> Result<Held, DocumentError> {
+        let mut held = |numbers: [i64; 2]| -> Result<TileRef, DocumentError> {
             if let Some(held) = known.get(&numbers) {
                 return Ok(held.clone());
             }
@@ -396,7 +399,7 @@ fn steps(database: &Database, shelves: &Shelves) -> Result<Vec<Step>, DocumentEr
             operations: operations as u64,
             done: done != 0,
             tiles: Arc::new(tiles),
-            deed: Arc::new(Deed {
+            effects: Arc::new(StepEffects {
                 loads,
                 booked: kept.booked,
                 layers: kept.layers,
@@ -440,7 +443,7 @@ fn versions(database: &Database, shelves: &Shelves) -> Result<Vec<Named>, Docume
             name,
             parent: (!parent.is_empty()).then_some(parent),
             tiles: Arc::new(tiles),
-            rest: Rest {
+            rest: NonTileState {
                 loads,
                 ledger: kept.ledger,
                 layers: kept.layers,
@@ -454,8 +457,8 @@ fn versions(database: &Database, shelves: &Shelves) -> Result<Vec<Named>, Docume
 
 /// Reads a painting, but for its pages.
 pub(crate) fn opened(database: &Database, pager: &Arc<Pager>) -> Result<Opened, DocumentError> {
-    let mut kept: KeptPainting = state(database, "painting")?;
-    let sequencer: KeptSequencer = state(database, "sequencer")?;
+    let mut kept: PaintingSnapshot = state(database, "painting")?;
+    let sequencer: SequencerSnapshot = state(database, "sequencer")?;
     let library = PaintLibrary::parse(&text(database, &kept.paints)?).map_err(damaged)?;
     for brush in kept.brushes.values_mut() {
         brush.file = text(database, &brush.file)?;

@@ -6,10 +6,10 @@ use std::path::PathBuf;
 use std::sync::atomic::AtomicU64;
 use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError, mpsc};
 
+use maulstick_paint::backing::Backing;
 use maulstick_paint::load::BrushLoad;
-use maulstick_paint::page::Backing;
+use maulstick_paint::planes::Planes;
 use maulstick_paint::sequencer::Record;
-use maulstick_paint::tile::Planes;
 
 use crate::moving::Move;
 use crate::writing::{Moment, ShownTile};

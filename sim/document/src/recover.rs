@@ -25,8 +25,8 @@ mod tiles;
 
 use std::path::{Path, PathBuf};
 
-use maulstick_paint::history::Place;
-use maulstick_paint::kept::{KeptPainting, KeptSequencer};
+use maulstick_paint::history::TilePlace;
+use maulstick_paint::snapshot::{PaintingSnapshot, SequencerSnapshot};
 
 use crate::database::{Access, Database, beside, holder};
 use crate::error::DocumentError;
@@ -45,11 +45,11 @@ pub struct Salvage {
     /// Tiles with paint that are as they were.
     pub tiles: u64,
     /// Tiles that are as the history or an older copy had them.
-    pub older: Vec<Place>,
+    pub older: Vec<TilePlace>,
     /// Tiles that lost wet paint or a dry layer.
-    pub thinned: Vec<Place>,
+    pub thinned: Vec<TilePlace>,
     /// Tiles that lost everything.
-    pub missing: Vec<Place>,
+    pub missing: Vec<TilePlace>,
     /// Dry layers of tiles that lost their paint, or all that was below them.
     pub layers: u64,
     /// Steps that are there.
@@ -202,7 +202,7 @@ fn write(
     };
     let sequencer = gathered.sequencer.take();
     let (mut sequencer, of_sequencer) =
-        sequencer.unwrap_or((KeptSequencer::default(), Standing::Older));
+        sequencer.unwrap_or((SequencerSnapshot::default(), Standing::Older));
     let base = match (of_painting, of_sequencer) {
         (Standing::Current, Standing::Current) => Standing::Current,
         _ => Standing::Older,
@@ -243,7 +243,7 @@ fn write(
 
 fn tiles_and_steps(
     gathered: &mut Gathered,
-    kept: &mut KeptPainting,
+    kept: &mut PaintingSnapshot,
     (stock, pictures): (&Stock, &Pictures),
     salvage: &mut Salvage,
     database: &Database,

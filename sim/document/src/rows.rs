@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use maulstick_paint::history::{Booked, Held, Make, Place};
+use maulstick_paint::history::{Booked, SurfaceMaterial, TilePlace, TileRef};
 use maulstick_paint::ledger::Ledger;
 use maulstick_paint::tile::{Tile, TileId};
 use maulstick_types::scene::Layer;
@@ -10,13 +10,13 @@ use serde::{Deserialize, Serialize};
 
 /// A tile's place as one number: surface · 2⁴⁰ + row · 2²⁰ + column.
 #[must_use]
-pub fn place_number((surface, id): Place) -> i64 {
+pub fn place_number((surface, id): TilePlace) -> i64 {
     i64::from(surface) << 40 | i64::from(id.y) << 20 | i64::from(id.x)
 }
 
 /// Reads [`place_number`].
 #[must_use]
-pub fn place_of(number: i64) -> Place {
+pub fn place_of(number: i64) -> TilePlace {
     let part = |shift: u32| (number >> shift) as u32 & 0xf_ffff;
     let id = TileId {
         y: part(20),
@@ -33,7 +33,7 @@ pub fn shown_number(surface: u32, level: u32, id: TileId) -> i64 {
 
 /// The numbers of a tile's page and of its newest dry layer; 0 where there is none.
 #[must_use]
-pub fn numbers(held: &Held) -> [i64; 2] {
+pub fn numbers(held: &TileRef) -> [i64; 2] {
     let tile: Option<&Tile> = held.as_deref();
     let page = tile.and_then(Tile::wet_page).map_or(0, |page| page.id());
     let dry = tile.and_then(Tile::dry).map_or(0, |stack| stack.id());
@@ -71,7 +71,7 @@ pub struct KeptDeed {
     /// Dry layers.
     pub layers: Option<[Vec<Layer>; 2]>,
     /// Surfaces.
-    pub makes: Option<[Vec<Make>; 2]>,
+    pub makes: Option<[Vec<SurfaceMaterial>; 2]>,
     /// Most quanta that a cell of a surface ever had.
     pub tops: [BTreeMap<u32, f32>; 2],
 }
@@ -86,7 +86,7 @@ pub struct KeptRest {
     /// Dry layers.
     pub layers: Vec<Layer>,
     /// Surfaces.
-    pub makes: Vec<Make>,
+    pub makes: Vec<SurfaceMaterial>,
     /// Most quanta that a cell of a surface ever had.
     pub tops: BTreeMap<u32, f32>,
 }

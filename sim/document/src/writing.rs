@@ -5,13 +5,13 @@ use std::sync::Arc;
 use std::time::Instant;
 
 use maulstick_paint::Sequencer;
-use maulstick_paint::embedded::{hash_of, kind_of};
-use maulstick_paint::history::{Held, Step};
-use maulstick_paint::kept::KeptSequencer;
+use maulstick_paint::assets::{hash_of, kind_of};
+use maulstick_paint::history::{Step, TileRef};
 use maulstick_paint::load::BrushLoad;
 use maulstick_paint::page::Page;
 use maulstick_paint::painting::{Checkpoint, Named};
-use maulstick_paint::tile::Planes;
+use maulstick_paint::planes::Planes;
+use maulstick_paint::snapshot::SequencerSnapshot;
 use rusqlite::{OptionalExtension as _, params};
 
 use crate::database::{DEPTH_MAX, Database, load_sum, page_sum, shown_sum};
@@ -27,7 +27,7 @@ pub struct Moment {
     /// The painting.
     pub painting: Checkpoint,
     /// The sequencer.
-    pub sequencer: KeptSequencer,
+    pub sequencer: SequencerSnapshot,
     /// Pictures and spectra of grounds and teeth, by their hash.
     pub pictures: Vec<(String, Arc<[u8]>)>,
 }
@@ -163,7 +163,7 @@ impl<'a, 'b> Writer<'a, 'b> {
         Ok((self.stored, true))
     }
 
-    fn held(&mut self, held: &Held) -> Result<(), DocumentError> {
+    fn held(&mut self, held: &TileRef) -> Result<(), DocumentError> {
         let Some(tile) = held else {
             return Ok(());
         };
@@ -282,20 +282,20 @@ impl<'a, 'b> Writer<'a, 'b> {
             tiles.extend(numbers(&change.before));
             tiles.extend(numbers(&change.after));
         }
-        for page in step.deed.loads.values().flatten() {
+        for page in step.effects.loads.values().flatten() {
             self.load(page)?;
         }
-        let loads = step.deed.loads.iter();
-        let deed = KeptDeed {
+        let loads = step.effects.loads.iter();
+        let effects = KeptDeed {
             loads: loads
                 .map(|(name, pages)| (name.clone(), pages.each_ref().map(Page::id)))
                 .collect(),
-            booked: step.deed.booked.clone(),
-            layers: step.deed.layers.clone(),
-            makes: step.deed.makes.clone(),
-            tops: step.deed.tops.clone(),
+            booked: step.effects.booked.clone(),
+            layers: step.effects.layers.clone(),
+            makes: step.effects.makes.clone(),
+            tops: step.effects.tops.clone(),
         };
-        let deed = serde_json::to_string(&deed)?;
+        let effects = serde_json::to_string(&effects)?;
         let tiles = packed(tiles);
         let brush = step.brush.as_deref().unwrap_or_default();
         let (id, operations) = (step.id as i64, step.operations as i64);
@@ -305,7 +305,7 @@ impl<'a, 'b> Writer<'a, 'b> {
             .bytes(brush.as_bytes())
             .int(operations)
             .int(i64::from(step.done))
-            .bytes(deed.as_bytes())
+            .bytes(effects.as_bytes())
             .bytes(&tiles)
             .done();
         self.database
@@ -314,7 +314,7 @@ impl<'a, 'b> Writer<'a, 'b> {
                 "INSERT OR REPLACE INTO step VALUES(7, ?1, ?2, ?3, ?4, ?5, ?6, ?7, ?8)",
             )?
             .execute(params![
-                id, step.what, brush, operations, step.done, deed, tiles, sum
+                id, step.what, brush, operations, step.done, effects, tiles, sum
             ])?;
         Ok(())
     }

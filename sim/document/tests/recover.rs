@@ -11,7 +11,7 @@ use easel::Easel;
 use maulstick_document::rows::place_number;
 use maulstick_document::scan::{Row, Scan, Value};
 use maulstick_document::{Access, DocumentError, DocumentSettings, Salvage, recover};
-use maulstick_paint::history::Place;
+use maulstick_paint::history::TilePlace;
 use proptest::prelude::*;
 use studio::{Dice, Painter, content, print, tiles};
 use tempfile::TempDir;
@@ -57,9 +57,9 @@ struct Painted {
     rows: Rows,
     painter: Painter,
     print: Vec<String>,
-    tiles: BTreeMap<Place, Vec<u64>>,
+    tiles: BTreeMap<TilePlace, Vec<u64>>,
     /// All that ever lay on each tile.
-    seen: BTreeMap<Place, BTreeSet<Vec<u64>>>,
+    seen: BTreeMap<TilePlace, BTreeSet<Vec<u64>>>,
 }
 
 impl Painted {
@@ -69,7 +69,7 @@ impl Painted {
         let settings = DocumentSettings::new(&path, Access::Paint);
         let mut painter = Painter::new(seed);
         let mut easel = Easel::begin(&settings);
-        let mut seen: BTreeMap<Place, BTreeSet<Vec<u64>>> = BTreeMap::new();
+        let mut seen: BTreeMap<TilePlace, BTreeSet<Vec<u64>>> = BTreeMap::new();
         for _ in 0..acts {
             let act = painter.next();
             easel.act(&mut painter, &act);
@@ -122,7 +122,7 @@ impl Painted {
 
     /// Whether nothing of a tile was hurt: its row, its page and what that is a difference to, its
     /// dry layers and theirs.
-    fn is_untouched(&self, place: Place, damaged: &Rows) -> bool {
+    fn is_untouched(&self, place: TilePlace, damaged: &Rows) -> bool {
         let mut next = vec![Key::Number(6, place_number(place))];
         while let Some(key) = next.pop() {
             let Some([row]) = self.rows.0.get(&key).map(Vec::as_slice) else {

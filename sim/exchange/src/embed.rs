@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use maulstick_paint::embedded::MOST_PIXELS;
+use maulstick_paint::assets::MOST_PIXELS;
 
 use crate::fit_to::{colours, heights};
 use crate::import_error::ImportError;
@@ -76,7 +76,7 @@ mod tests {
     use std::io::Cursor;
 
     use image::{DynamicImage, ImageFormat, Rgb, RgbImage};
-    use maulstick_paint::embedded::Embedded;
+    use maulstick_paint::assets::Assets;
 
     use super::*;
 
@@ -94,7 +94,7 @@ mod tests {
         let image = read(RgbImage::from_fn(6, 4, |x, y| {
             Rgb([40 * x as u8, 60 * y as u8, 77])
         }));
-        let mut embedded = Embedded::default();
+        let mut embedded = Assets::default();
         let ground = ground(&image, [6, 4]).expect("a ground");
         let hash = embedded.add(ground).expect("taken");
         let colours = embedded.colours(&hash).expect("colours");

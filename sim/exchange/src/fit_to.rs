@@ -4,7 +4,7 @@
 use std::collections::VecDeque;
 
 use maulstick_optics::colour::SrgbTable;
-use maulstick_paint::embedded::MOST_PIXELS;
+use maulstick_paint::assets::MOST_PIXELS;
 
 use crate::import_error::ImportError;
 use crate::read_image::Image;

@@ -1,10 +1,11 @@
-//! Why a picture cannot be imported.
+//! Errors of imports.
 
-use maulstick_paint::PaintRefusal;
+use maulstick_paint::EditError;
 
-use crate::read_image::MOST_SIDE;
+/// Most pixels of a picture across and down.
+pub const MOST_SIDE: u32 = 20_000;
 
-/// Why a picture cannot be imported.
+/// A picture that cannot be imported.
 #[derive(Debug, thiserror::Error)]
 pub enum ImportError {
     /// The file cannot be read.
@@ -32,14 +33,14 @@ pub enum ImportError {
     Paints(usize),
     /// The painting refuses.
     #[error("{}", .0.what)]
-    Refused(PaintRefusal),
+    Refused(EditError),
     /// It cannot be written as a PNG.
     #[error("the picture cannot be kept: {0}")]
     Png(#[source] png::EncodingError),
 }
 
-impl From<PaintRefusal> for ImportError {
-    fn from(refusal: PaintRefusal) -> Self {
+impl From<EditError> for ImportError {
+    fn from(refusal: EditError) -> Self {
         Self::Refused(refusal)
     }
 }

@@ -23,36 +23,31 @@
 //! | [`fit_to`] | a picture as large as a canvas |
 //! | [`embed`] | pictures as a painting holds them: grounds and teeth |
 //! | [`underpaint`] | a picture as paint |
-//! | `films`, `candidates`, `recipes`, `search` | the mixtures whose films come nearest to its colours |
 //!
 //! Its errors are [`ImportError`].
 
-mod candidates;
 pub mod embed;
 mod error;
-mod films;
 pub mod fit_to;
+mod format;
 mod height_map;
 pub mod import_error;
 mod lit_png;
 mod open_exr;
 mod open_raster;
-mod order;
 pub mod read_image;
-mod recipes;
-mod search;
 mod stl;
 mod surface;
 mod thumbnail;
 pub mod underpaint;
 
 pub use error::ExchangeError;
+pub use format::{Format, Order};
 pub use height_map::{HeightRange, write_height_map};
 pub use import_error::ImportError;
 pub use lit_png::write_lit_png;
 pub use open_exr::write_open_exr;
 pub use open_raster::write_open_raster;
-pub use order::{Format, Order};
 pub use read_image::Image;
 pub use stl::{STL_TRIANGLES, StlSetup, StlSize, stl_step, write_stl};
 pub use surface::Progress;

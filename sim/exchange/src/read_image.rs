@@ -14,10 +14,8 @@ use image::{DynamicImage, ImageDecoder as _, ImageError, ImageReader, Limits};
 use maulstick_optics::colour::srgb_decode;
 use maulstick_optics::icc::Incoming;
 
-use crate::import_error::ImportError;
+use crate::import_error::{ImportError, MOST_SIDE};
 
-/// Most pixels of a picture across and down.
-pub const MOST_SIDE: u32 = 20_000;
 /// Most bytes that a decoder may take.
 const MOST_BYTES: u64 = 7 << 30;
 

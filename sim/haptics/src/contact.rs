@@ -3,14 +3,14 @@
 use glam::{DQuat, DVec3};
 use maulstick_types::haptics::ContactModel;
 
+use crate::force_law::{Law, Normal, Penetration};
 use crate::friction::{drag, friction, ramp};
 use crate::grain::Texture;
-use crate::law::{Law, Meeting, Normal};
 
-/// The brush in the hand.
+/// State of the handle in the hand.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Held {
-    /// Where head and ferrule meet, desk frame, m.
+pub struct HandleState {
+    /// Position of the ferrule, desk frame, m.
     pub position: DVec3,
     /// Brush frame to desk frame.
     pub orientation: DQuat,
@@ -36,12 +36,12 @@ pub struct Contact {
     pub recovery_s: f64,
 }
 
-/// What a hand feels of a contact.
+/// Contact force on the handle.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Felt {
-    /// The force on the hand, N.
+pub struct ContactForce {
+    /// Whole force on the hand, N.
     pub force: DVec3,
-    /// What of it depends on where the hand is alone, N: without friction and drag.
+    /// Part that depends on position alone, N: without friction and drag.
     pub conservative: DVec3,
     /// Depth of the undeformed point below the plane, m; negative above it.
     pub depth_m: f64,
@@ -106,29 +106,29 @@ impl Contact {
     }
 
     /// The undeformed point of the head, desk frame, m.
-    fn tip(&self, held: &Held) -> DVec3 {
-        held.position + held.orientation * DVec3::NEG_Z * self.head_length
+    fn tip(&self, handle: &HandleState) -> DVec3 {
+        handle.position + handle.orientation * DVec3::NEG_Z * self.head_length
     }
 
-    /// How the head meets the plane.
+    /// Penetration of the head into the plane.
     #[must_use]
-    pub fn meeting(&self, held: &Held) -> Meeting {
-        let cosine = -(held.orientation * DVec3::NEG_Z).dot(self.normal);
-        Meeting {
-            depth_m: (self.point - self.tip(held)).dot(self.normal),
+    pub fn penetration(&self, handle: &HandleState) -> Penetration {
+        let cosine = -(handle.orientation * DVec3::NEG_Z).dot(self.normal);
+        Penetration {
+            depth_m: (self.point - self.tip(handle)).dot(self.normal),
             projected_m: self.head_length * cosine.max(LEAST_PROJECTION),
             cosine,
         }
     }
 
-    /// What the hand feels; stiffness never exceeds `max_stiffness`, N/m.
+    /// The force on the handle; stiffness never exceeds `max_stiffness`, N/m.
     #[must_use]
-    pub fn felt(&self, held: &Held, max_stiffness: f64) -> Felt {
-        let meeting = self.meeting(held);
-        let depth_m = meeting.depth_m;
-        let none = Felt {
+    pub fn evaluate(&self, handle: &HandleState, max_stiffness: f64) -> ContactForce {
+        let penetration = self.penetration(handle);
+        let depth_m = penetration.depth_m;
+        let none = ContactForce {
             depth_m,
-            ..Felt::default()
+            ..ContactForce::default()
         };
         if depth_m <= 0.0 {
             return none;
@@ -136,7 +136,7 @@ impl Contact {
         let n = self.normal;
         let (normal, asked_n_m, leaning) = match &self.law {
             Law::Local(local) => {
-                let force = local.force(held.position, max_stiffness);
+                let force = local.force(handle.position, max_stiffness);
                 // A force that is there at the first touch would be a step in the hand.
                 let force_n = force.dot(n).max(0.0).min(max_stiffness * depth_m);
                 let normal = Normal {
@@ -147,24 +147,24 @@ impl Contact {
                 (normal, asked, force - n * force.dot(n))
             }
             law => (
-                law.normal(&meeting, max_stiffness),
-                law.normal(&meeting, f64::INFINITY).stiffness_n_m,
+                law.normal(&penetration, max_stiffness),
+                law.normal(&penetration, f64::INFINITY).stiffness_n_m,
                 DVec3::ZERO,
             ),
         };
-        let velocity = held.velocity - n * held.velocity.dot(n);
+        let velocity = handle.velocity - n * handle.velocity.dot(n);
         let ramp = ramp(depth_m);
         let leaning = leaning.clamp_length_max(self.sticking * normal.force_n * ramp);
         // What leans already sticks the less.
         let bound = (self.friction * normal.force_n * ramp)
             .min(self.sticking * normal.force_n * ramp - leaning.length());
         let sliding = friction(velocity, bound) + drag(velocity, self.viscous * ramp);
-        let place = self.tip(held) - self.point;
+        let place = self.tip(handle) - self.point;
         let grain = self
             .grain
             .force(place, n, velocity, normal.force_n * ramp, max_stiffness);
         let conservative = n * normal.force_n + leaning + grain;
-        Felt {
+        ContactForce {
             force: conservative + sliding,
             conservative,
             asked_n_m,
@@ -175,8 +175,8 @@ impl Contact {
 
     /// The force on the hand, N; stiffness never exceeds `max_stiffness`, N/m.
     #[must_use]
-    pub fn force(&self, held: &Held, max_stiffness: f64) -> DVec3 {
-        self.felt(held, max_stiffness).force
+    pub fn force(&self, handle: &HandleState, max_stiffness: f64) -> DVec3 {
+        self.evaluate(handle, max_stiffness).force
     }
 }
 
@@ -206,10 +206,10 @@ pub(crate) mod tests {
         }
     }
 
-    fn at(depth: f64, tilt: f64, velocity: DVec3) -> Held {
+    fn at(depth: f64, tilt: f64, velocity: DVec3) -> HandleState {
         let orientation = rotation(DVec3::Y, tilt);
         let tip = DVec3::new(0.0, 0.0, -depth);
-        Held {
+        HandleState {
             position: tip + orientation * DVec3::Z * 0.025,
             orientation,
             velocity,
@@ -286,7 +286,7 @@ pub(crate) mod tests {
         };
         let felt = Contact::new(&model(rigid))
             .expect("a model")
-            .felt(&at(0.002, 0.0, DVec3::ZERO), 300.0);
+            .evaluate(&at(0.002, 0.0, DVec3::ZERO), 300.0);
         assert_eq!((felt.asked_n_m, felt.stiffness_n_m), (800.0, 300.0));
         assert!((felt.force.z - 0.6).abs() < 1e-12);
     }
@@ -299,7 +299,7 @@ pub(crate) mod tests {
             stiffness_n_m: [[0.0; 3], [0.0; 3], [0.0, 0.0, -50.0]],
         };
         let contact = Contact::new(&model(law)).expect("a model");
-        let felt = |depth: f64| contact.felt(&at(depth, 0.0, DVec3::ZERO), 500.0);
+        let felt = |depth: f64| contact.evaluate(&at(depth, 0.0, DVec3::ZERO), 500.0);
         assert_eq!(felt(-1e-3).force, DVec3::ZERO);
         assert!(felt(1e-5).force.length() < 0.01, "no step at the touch");
         let pressed = felt(0.025).force;
@@ -328,10 +328,10 @@ pub(crate) mod tests {
             depth in 0.0..0.03f64, vx in -1.0..1.0f64, vy in -1.0..1.0f64, tilt in 0.0..1.5f64,
         ) {
             let contact = Contact::new(&model(linear())).expect("a model");
-            let held = at(depth, tilt, DVec3::new(vx, vy, 0.3));
-            let force = contact.force(&held, 1e9);
+            let handle = at(depth, tilt, DVec3::new(vx, vy, 0.3));
+            let force = contact.force(&handle, 1e9);
             let across = force.truncate();
-            prop_assert!(across.dot(held.velocity.truncate()) <= 0.0);
+            prop_assert!(across.dot(handle.velocity.truncate()) <= 0.0);
             prop_assert!(across.length() <= 0.2 * force.z * (1.0 + 1e-9));
         }
     }

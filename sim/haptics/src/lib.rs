@@ -4,31 +4,32 @@
 //!
 //! | module | holds |
 //! | --- | --- |
-//! | [`law`] | normal force by depth: eq. 8.1, the Hermite curve, a local force |
+//! | [`force_law`] | normal force by depth: eq. 8.1, the Hermite curve, a local force |
 //! | [`friction`], [`grain`] | what is felt across the normal |
 //! | [`contact`] | the force of one contact model at one pose |
-//! | [`address`] | whom a model is for |
+//! | [`recipient`] | the device, session and brush that accept a model |
 //! | [`servo`] | one tick: models, ageing, limits |
 //! | [`plant`] | a device and a hand that hold each other, for the simulated stylus and for tests |
-//! | [`grid`] | hands, walls, rates and losses by the thousand: whether the servo is stable |
+//! | [`stability_grid`] | hands, walls, rates and losses by the thousand: whether the servo is stable |
 
-pub mod address;
 pub mod contact;
+pub mod force_law;
 pub mod friction;
 pub mod grain;
-pub mod grid;
-pub mod law;
 pub mod plant;
+pub mod recipient;
 #[cfg(test)]
-mod scaled;
+mod scaled_tests;
 pub mod servo;
+pub mod stability_grid;
 #[cfg(test)]
-mod stability;
+mod stability_tests;
 
-pub use address::Address;
-pub use contact::{Contact, Felt};
+pub use contact::{Contact, ContactForce};
 pub use plant::{Hand, Plant};
+pub use recipient::Recipient;
+pub use servo::Servo;
 pub use servo::fault::Fault;
-pub use servo::kept::Kept;
 pub use servo::limits::Limits;
-pub use servo::{Sender, Servo, Switch, Tick};
+pub use servo::persistent::ServoMemory;
+pub use servo::tick::{Sender, Switch, Tick};

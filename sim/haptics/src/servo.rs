@@ -8,80 +8,34 @@
 //!
 //! | module | holds |
 //! | --- | --- |
-//! | [`limits`] | what a force may be |
-//! | [`fault`] | what latches the force at zero |
-//! | [`heat`] | the largest force by the motors' temperature |
-//! | [`kept`] | what outlasts a servo |
+//! | [`limits`] | bounds of the force |
+//! | [`fault`] | faults that latch the force at zero |
+//! | [`motor_thermal`] | thermal model of the motors, which bounds the force |
+//! | [`persistent`] | state that survives the loss of the device |
 //! | [`passivity`] | the energy that sampling gives, taken back |
-//! | [`shaking`] | a hand that shakes makes the force softer |
+//! | [`oscillation`] | detection of a shaking hand, which makes the force softer |
+//! | [`tick`] | input and report of a tick |
 
 pub mod fault;
-pub mod heat;
-pub mod kept;
 pub mod limits;
+pub mod motor_thermal;
+pub mod oscillation;
 pub mod passivity;
-pub mod shaking;
+pub mod persistent;
+pub mod tick;
 
 use glam::DVec3;
 
 use self::fault::Fault;
-use self::heat::Heat;
-use self::kept::Kept;
 use self::limits::Limits;
+use self::motor_thermal::MotorThermal;
+use self::oscillation::{Oscillation, Touch};
 use self::passivity::Passivity;
-use self::shaking::{Shaking, Touch};
-use crate::contact::{Contact, Felt, Held};
+use self::persistent::ServoMemory;
+use self::tick::{Sender, Switch, Tick};
+use crate::contact::{Contact, ContactForce, HandleState};
 
-/// What happened in a tick.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-#[expect(
-    clippy::struct_excessive_bools,
-    reason = "each may be so without the others"
-)]
-pub struct Tick {
-    /// Why the servo gives no force until it is re-armed.
-    pub fault: Option<Fault>,
-    /// The tick took too long.
-    pub late: bool,
-    /// The force was cut to its largest size.
-    pub clamped: bool,
-    /// The model is past its time to live.
-    pub stale: bool,
-    /// The head touches.
-    pub contact: bool,
-    /// Energy was taken back from the hand.
-    pub braked: bool,
-    /// The amplifiers are off: switched off, or nothing was touched for long.
-    pub resting: bool,
-    /// Force has yet to begin: there is no model, or the hand may be so deep that it would be pushed.
-    pub waiting: bool,
-    /// Largest force now, N.
-    pub cap_n: f64,
-    /// Stiffness along the normal that the model asks for, N/m.
-    pub asked_n_m: f64,
-    /// Stiffness along the normal that is given, N/m.
-    pub stiffness_n_m: f64,
-}
-
-/// Who sent a model.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Sender {
-    /// Who sent the model before.
-    Same,
-    /// Another, or the same one started anew: the force engages anew.
-    Another,
-}
-
-/// The painter's switch.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Switch {
-    /// Force is given.
-    On,
-    /// No force is given.
-    Off,
-}
-
-/// Whether force has begun. Given to a hand that is deep in the canvas it would push it out; so it
+/// Engagement of the force. Given to a hand that is deep in the canvas it would push it out; so it
 /// begins where the models ask for little, and a hand that stays deep feels nothing until it has
 /// come up.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -112,9 +66,9 @@ pub struct Servo {
     engagement: Engagement,
     engaged_s: f64,
     idle_s: f64,
-    heat: Heat,
+    thermal: MotorThermal,
     passivity: Passivity,
-    shaking: Shaking,
+    oscillation: Oscillation,
     last: Option<Last>,
     force: DVec3,
     fault: Option<Fault>,
@@ -142,12 +96,12 @@ impl Servo {
     /// A servo without a model, switched on at full strength.
     #[must_use]
     pub fn new(limits: Limits) -> Self {
-        Self::after(limits, Kept::nothing(limits))
+        Self::after(limits, ServoMemory::fresh(limits))
     }
 
     /// A servo in the place of one that has lost its device: a fault stays latched, motors warm.
     #[must_use]
-    pub fn after(limits: Limits, kept: Kept) -> Self {
+    pub fn after(limits: Limits, memory: ServoMemory) -> Self {
         Self {
             limits,
             switch: Switch::On,
@@ -160,12 +114,12 @@ impl Servo {
             engagement: Engagement::Waiting(0),
             engaged_s: 0.0,
             idle_s: 0.0,
-            heat: kept.heat,
+            thermal: memory.thermal,
             passivity: Passivity::default(),
-            shaking: Shaking::default(),
+            oscillation: Oscillation::default(),
             last: None,
             force: DVec3::ZERO,
-            fault: kept.fault,
+            fault: memory.fault,
         }
     }
 
@@ -180,8 +134,8 @@ impl Servo {
     /// Allows force again after a fault; it engages anew.
     pub fn rearm(&mut self) {
         self.fault = None;
-        self.heat.forget_unknown();
-        self.shaking = Shaking::default();
+        self.thermal.forget_unknown();
+        self.oscillation = Oscillation::default();
         self.engage_anew();
     }
 
@@ -192,25 +146,25 @@ impl Servo {
     }
 
     /// Follows the dead man's switch: let go, there is no force, and it engages anew.
-    pub fn permit(&mut self, held: Switch) {
-        self.permitted = held;
-        if held == Switch::Off {
+    pub fn permit(&mut self, dead_man: Switch) {
+        self.permitted = dead_man;
+        if dead_man == Switch::Off {
             self.engagement = Engagement::Waiting(0);
         }
     }
 
     /// Makes all force weaker: a share from 0 to 1.
     pub fn set_strength(&mut self, share: f64) {
-        // A share that is no number is none.
+        // NaN counts as 0.
         self.strength = if share > 0.0 { share.min(1.0) } else { 0.0 };
     }
 
-    /// What the device says of its motors: 0 cold to 1 hot, the hottest of them.
+    /// Takes in the temperature of the hottest motor, 0 cold to 1 hot.
     pub fn measure(&mut self, temperature: f64) {
-        self.heat.measure(temperature);
+        self.thermal.measure(temperature);
     }
 
-    /// Nothing of what was felt holds any more.
+    /// Discards models and correction; the force engages anew.
     fn engage_anew(&mut self) {
         self.engagement = Engagement::Waiting(0);
         self.model = None;
@@ -220,28 +174,28 @@ impl Servo {
         self.passivity.forgive();
     }
 
-    /// What holds the force at zero, if something does.
+    /// Latched fault.
     #[must_use]
     pub fn fault(&self) -> Option<Fault> {
         self.fault
     }
 
-    /// What the next servo over the device is to know.
+    /// State for the next servo over the device.
     #[must_use]
-    pub fn kept(&self) -> Kept {
-        let mut heat = self.heat;
-        heat.forget_unknown();
-        Kept {
+    pub fn memory(&self) -> ServoMemory {
+        let mut thermal = self.thermal;
+        thermal.forget_unknown();
+        ServoMemory {
             fault: self.fault,
-            heat,
+            thermal,
         }
     }
 
     /// The force on the hand for the next tick, N, `dt` s after the tick before.
-    pub fn step(&mut self, held: &Held, dt: f64) -> (DVec3, Tick) {
+    pub fn step(&mut self, handle: &HandleState, dt: f64) -> (DVec3, Tick) {
         let mut tick = Tick::default();
-        let cap_n = self.heat.follow(self.force.length(), &self.limits, dt);
-        self.check(held, dt);
+        let cap_n = self.thermal.follow(self.force.length(), &self.limits, dt);
+        self.check(handle, dt);
         if self.fault.is_some() {
             return self.nothing(tick);
         }
@@ -258,17 +212,17 @@ impl Servo {
         }
         let passed_s = dt.max(0.0);
         let dt = passed_s.min(self.limits.longest_tick_s);
-        self.observe(held, dt);
+        self.observe(handle, dt);
         self.age(dt, passed_s);
-        self.take_in(held, dt);
-        let felt = self.felt_of_newest(held);
-        tick.contact = felt.is_some_and(|felt| felt.depth_m > 0.0);
+        self.take_in(handle, dt);
+        let contact_force = self.evaluate_newest(handle);
+        tick.contact = contact_force.is_some_and(|force| force.depth_m > 0.0);
         let touch = if tick.contact {
             Touch::Contact
         } else {
             Touch::Air
         };
-        self.watch(held, touch, dt);
+        self.watch(handle, touch, dt);
         self.rest(touch, dt);
         let off = [self.switch, self.permitted].contains(&Switch::Off);
         tick.resting = off || self.idle_s >= self.limits.idle_s;
@@ -276,7 +230,7 @@ impl Servo {
             return self.nothing(tick);
         }
         tick.cap_n = cap_n;
-        let wanted = self.wanted(held, felt, dt, &mut tick);
+        let wanted = self.wanted(handle, contact_force, dt, &mut tick);
         let size = wanted.length();
         tick.clamped = size > tick.cap_n;
         let limited = if tick.clamped {
@@ -310,35 +264,38 @@ impl Servo {
     }
 
     /// Latches what is no number, and a hand that the device drives.
-    fn check(&mut self, held: &Held, dt: f64) {
+    fn check(&mut self, handle: &HandleState, dt: f64) {
         let sane = dt.is_finite()
-            && held.position.is_finite()
-            && held.velocity.is_finite()
-            && held.orientation.is_finite()
-            && self.heat.is_known();
+            && handle.position.is_finite()
+            && handle.velocity.is_finite()
+            && handle.orientation.is_finite()
+            && self.thermal.is_known();
         if !sane {
             self.fault = Some(Fault::NotANumber);
-        } else if self.force != DVec3::ZERO && held.velocity.length() > self.limits.max_speed_m_s {
+        } else if self.force != DVec3::ZERO && handle.velocity.length() > self.limits.max_speed_m_s
+        {
             self.fault = Some(self.fault.unwrap_or(Fault::TooFast));
         }
     }
 
     /// Sums the energy of the step that ends, by the force that was held over it and the models as
     /// they were in it.
-    fn observe(&mut self, held: &Held, dt: f64) {
+    fn observe(&mut self, handle: &HandleState, dt: f64) {
         let (Some(last), Some(model)) = (self.last, &self.model) else {
             return;
         };
-        let felt = model.contact.felt(held, self.limits.max_stiffness_n_m);
+        let contact_force = model
+            .contact
+            .evaluate(handle, self.limits.max_stiffness_n_m);
         let here = cut(
-            (felt.conservative + self.correction) * last.share,
+            (contact_force.conservative + self.correction) * last.share,
             last.cap_n,
         );
-        let way = held.position - last.position;
+        let way = handle.position - last.position;
         let models = (last.models + here) * 0.5;
         let damping = self.limits.damping_n_s_m;
         self.passivity.observe(self.force, models, way, damping, dt);
-        if felt.depth_m <= 0.0 && self.force == DVec3::ZERO {
+        if contact_force.depth_m <= 0.0 && self.force == DVec3::ZERO {
             self.passivity.forgive();
         }
     }
@@ -365,17 +322,17 @@ impl Servo {
     }
 
     /// Evaluates the model that has arrived, if one has, in the place of the one before.
-    fn take_in(&mut self, held: &Held, dt: f64) {
+    fn take_in(&mut self, handle: &HandleState, dt: f64) {
         let Some(contact) = self.arrived.take() else {
             return;
         };
-        let felt = |model: &&Active| self.fading(model) > 0.0;
-        let before = self.model.as_ref().filter(felt).map(|model| {
-            (model.contact.force(held, self.limits.max_stiffness_n_m) + self.correction)
+        let has_force = |model: &&Active| self.fading(model) > 0.0;
+        let before = self.model.as_ref().filter(has_force).map(|model| {
+            (model.contact.force(handle, self.limits.max_stiffness_n_m) + self.correction)
                 * self.fading(model)
         });
         self.model = Some(Active { contact, age_s: dt });
-        let now = contact.force(held, self.limits.max_stiffness_n_m);
+        let now = contact.force(handle, self.limits.max_stiffness_n_m);
         if let Some(before) = before
             && contact.recovery_s > 0.0
             && before != now + self.correction
@@ -388,9 +345,13 @@ impl Servo {
     }
 
     /// What the newest model makes the hand feel.
-    fn felt_of_newest(&self, held: &Held) -> Option<Felt> {
+    fn evaluate_newest(&self, handle: &HandleState) -> Option<ContactForce> {
         let model = self.model.as_ref()?;
-        Some(model.contact.felt(held, self.limits.max_stiffness_n_m))
+        Some(
+            model
+                .contact
+                .evaluate(handle, self.limits.max_stiffness_n_m),
+        )
     }
 
     /// What is left of a model past its time to live.
@@ -399,7 +360,7 @@ impl Servo {
     }
 
     /// Latches a hand that goes on shaking; without force no device shakes it.
-    fn watch(&mut self, held: &Held, touch: Touch, dt: f64) {
+    fn watch(&mut self, handle: &HandleState, touch: Touch, dt: f64) {
         let Some(model) = &self.model else {
             return;
         };
@@ -407,9 +368,12 @@ impl Servo {
             true => Touch::Air,
             false => touch,
         };
-        let place = held.position.dot(model.contact.normal());
-        if self.shaking.watch(place, self.limits.shaking_m, touch, dt) {
-            self.fault = Some(self.fault.unwrap_or(Fault::Shaking));
+        let place = handle.position.dot(model.contact.normal());
+        if self
+            .oscillation
+            .watch(place, self.limits.oscillation_m, touch, dt)
+        {
+            self.fault = Some(self.fault.unwrap_or(Fault::Oscillation));
         }
     }
 
@@ -426,19 +390,25 @@ impl Servo {
     }
 
     /// The force that the models ask for, and the brake.
-    fn wanted(&mut self, held: &Held, felt: Option<Felt>, dt: f64, tick: &mut Tick) -> DVec3 {
+    fn wanted(
+        &mut self,
+        handle: &HandleState,
+        contact_force: Option<ContactForce>,
+        dt: f64,
+        tick: &mut Tick,
+    ) -> DVec3 {
         tick.waiting = self.engagement != Engagement::Begun;
-        let (Some(model), Some(felt)) = (&self.model, felt) else {
+        let (Some(model), Some(contact_force)) = (&self.model, contact_force) else {
             self.last = None;
             return DVec3::ZERO;
         };
         tick.stale = model.overdue_s() > 0.0;
-        let softer = self.strength * self.shaking.softness();
-        tick.asked_n_m = felt.asked_n_m;
-        tick.stiffness_n_m = felt.stiffness_n_m * softer;
+        let softer = self.strength * self.oscillation.softness();
+        tick.asked_n_m = contact_force.asked_n_m;
+        tick.stiffness_n_m = contact_force.stiffness_n_m * softer;
         let (correction, cap_n) = (self.correction, tick.cap_n);
         if let Engagement::Waiting(calm) = self.engagement {
-            let asked_n = (felt.force + correction).length();
+            let asked_n = (contact_force.force + correction).length();
             // A model that is past its time says nothing of the canvas. Written so that a bound that is no
             // number lets no force begin.
             let calm = match asked_n <= self.limits.engage_n && !tick.stale {
@@ -456,14 +426,14 @@ impl Servo {
         let ramp = (self.engaged_s / self.limits.engage_s).min(1.0);
         let share = self.fading(model) * ramp * softer;
         self.last = Some(Last {
-            position: held.position,
-            models: cut((felt.conservative + correction) * share, cap_n),
+            position: handle.position,
+            models: cut((contact_force.conservative + correction) * share, cap_n),
             share,
             cap_n,
         });
         let brake = self.passivity.brake(dt);
         tick.braked = brake != DVec3::ZERO;
-        (felt.force + correction) * share + brake
+        (contact_force.force + correction) * share + brake
     }
 }
 
@@ -485,6 +455,6 @@ impl Active {
 }
 
 #[cfg(test)]
-mod guards;
+mod guard_tests;
 #[cfg(test)]
 mod tests;

@@ -5,7 +5,7 @@ mod counting;
 
 use counting::allocations;
 use glam::{DQuat, DVec3};
-use maulstick_haptics::contact::Held;
+use maulstick_haptics::contact::HandleState;
 use maulstick_haptics::{Contact, Limits, Sender, Servo, Switch};
 use maulstick_num::sin;
 use maulstick_types::Pose;
@@ -81,13 +81,13 @@ fn a_tick_allocates_nothing() {
                 _ => {}
             }
             let shake = 0.002 * sin(130.0 * t);
-            let held = Held {
+            let handle = HandleState {
                 position: DVec3::new(0.01 * sin(3.0 * t), 0.0, 0.02 + shake),
                 orientation: DQuat::IDENTITY,
                 velocity: DVec3::X * 0.03,
             };
             let dt = if tick % 3000 == 0 { 0.1 } else { 1e-3 };
-            pressed += usize::from(servo.step(&held, dt).0 != DVec3::ZERO);
+            pressed += usize::from(servo.step(&handle, dt).0 != DVec3::ZERO);
         }
     };
     assert_eq!(allocations(|| run(&mut servo)), 0);

@@ -21,7 +21,7 @@ use crate::links::check_links;
 use crate::measurements::{Ground, Layer, Measurements};
 use crate::notes::paint_called;
 use crate::residuals::{Residual, residuals};
-use crate::surface::Surface;
+use crate::surface::{Surface, internal_ground};
 use crate::usual::Usual;
 use crate::wavelength::{Observation, Unknowns, Wavelength};
 
@@ -304,11 +304,6 @@ fn trust(spectrum: &mut [(f64, Wavelength<'_>)], found: &[Unknowns], noise: f64)
         }
     }
     changed
-}
-
-/// Internal reflectance of a ground from the reading of it bare.
-pub(crate) fn internal_ground(reading: f64, surface: &Surface) -> f64 {
-    surface.internal(reading).clamp(0.0, 0.999)
 }
 
 /// The standard deviation of the readings from the residuals of all wavelengths; `None` where there

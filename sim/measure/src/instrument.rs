@@ -12,7 +12,7 @@
 
 use crate::error::MeasureError;
 use crate::headings::Headings;
-use crate::measurements::{Kind, Reading};
+use crate::reading::{Kind, Reading};
 use crate::table::Table;
 
 /// Turns readings of samples and grounds into reflectances, where the table holds raw spectra.

@@ -6,6 +6,7 @@
 //! | [`table`] | a table as a spreadsheet writes it |
 //! | [`headings`], [`notes`] | what its columns and comments mean |
 //! | [`measurements`] | samples: what they are made of, and what was read of them |
+//! | `reading` | rows of a table, as numbers |
 //! | [`instrument`] | raw spectra, the standard, the neutral-density filter |
 //! | [`surface`] | what the instrument reads of an internal reflectance |
 //! | [`layer`] | reflectance of a layer with its derivatives |
@@ -32,6 +33,7 @@ pub mod normal;
 pub mod notes;
 pub mod paint_file;
 pub mod programme;
+mod reading;
 pub mod residuals;
 pub mod surface;
 pub mod table;

@@ -6,6 +6,7 @@ use crate::error::MeasureError;
 use crate::headings::Headings;
 use crate::instrument;
 use crate::notes::Notes;
+use crate::reading::{Kind, Reading};
 use crate::table::{Row, Table};
 
 /// Reflectances above this are taken for a mistake.
@@ -73,23 +74,6 @@ pub enum Ground {
     Read(Vec<f64>),
 }
 
-/// What a row measures.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Kind {
-    /// Paint.
-    Sample,
-    /// A bare ground of drawdowns.
-    Ground,
-    /// The reflectance standard.
-    Standard,
-    /// The standard, seen through the neutral-density filter.
-    FilteredStandard,
-    /// A darker sample, for the filter's attenuation.
-    Dark,
-    /// The same through the filter.
-    FilteredDark,
-}
-
 const KINDS: [(&str, Kind); 6] = [
     ("sample", Kind::Sample),
     ("ground", Kind::Ground),
@@ -98,14 +82,6 @@ const KINDS: [(&str, Kind); 6] = [
     ("dark", Kind::Dark),
     ("dark+filter", Kind::FilteredDark),
 ];
-
-/// A row whose numbers have been read.
-#[derive(Clone, Debug, PartialEq)]
-pub(crate) struct Reading {
-    pub(crate) kind: Kind,
-    pub(crate) line: usize,
-    pub(crate) values: Vec<f64>,
-}
 
 impl Measurements {
     /// Reads a table of measurements; `docs/measuring.md` says what it may hold.

@@ -4,10 +4,9 @@ use maulstick_optics::colour::{delta_e_2000, lab};
 use maulstick_optics::spectrum::{SAMPLES, Spectrum, resample};
 use maulstick_optics::{Illuminant, Observer, Paint, km};
 
-use crate::fit::internal_ground;
 use crate::influence::Suspect;
 use crate::measurements::{Ground, Layer, Measurements, Sample};
-use crate::surface::Surface;
+use crate::surface::{Surface, internal_ground};
 
 /// What a fit leaves of a sample.
 #[derive(Clone, Debug, PartialEq)]

@@ -62,6 +62,11 @@ impl Surface {
     }
 }
 
+/// Internal reflectance of a ground from the reading of it bare.
+pub(crate) fn internal_ground(reading: f64, surface: &Surface) -> f64 {
+    surface.internal(reading).clamp(0.0, 0.999)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

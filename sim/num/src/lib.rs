@@ -6,10 +6,18 @@
 //! `libm` crate, plain Rust without such dispatch; those of f32 are written so that a loop over a
 //! plane vectorises and so that a shader can hold the same polynomial.
 //!
-//! Neither the registers ([`lanes`], [`wide!`]) nor the cores ([`cores`]) change a byte of what comes out.
+//! Neither the registers ([`lanes`], [`wide!`]) nor the cores ([`fork_join`]) change a byte of what comes out.
+//!
+//! ```
+//! use maulstick_num::{cos, sin_cos};
+//!
+//! let (sine, cosine) = sin_cos(0.5);
+//! assert_eq!(cosine, cos(0.5));
+//! assert!((sine * sine + cosine * cosine - 1.0).abs() < 1e-15);
+//! ```
 
-pub mod cores;
 mod elementary;
+pub mod fork_join;
 pub mod geometry;
 pub mod lanes;
 pub mod select;

@@ -21,7 +21,7 @@
 //! [`GamutMapping::Clamp`] is the clamp of Baxter 2004, § 7.8.1, which the comparison in this module's
 //! tests goes against.
 //!
-//! The same terms are in `ui/src/shaders/light_surface.wgsl`.
+//! The same terms are in `ui/src/render/shaders/light_surface.wgsl`.
 
 use crate::colour::{Matrix, inverse, product};
 

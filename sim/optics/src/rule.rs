@@ -1,7 +1,6 @@
 //! Which wavelengths a painting computes, and how their reflectances become XYZ.
 
 use crate::cie::{Illuminant, Observer};
-use crate::paints::Paint;
 use crate::quadrature::Recurrence;
 use crate::spectrum::{SAMPLES, Spectrum, wavelength};
 
@@ -48,17 +47,6 @@ impl SamplingRule {
             wavelengths_nm: rule.nodes,
             weights,
         }
-    }
-
-    /// `n` wavelengths and weights fitted to `paints` under `light`: exact for white, weights of 0 or
-    /// more, the least ΔE₀₀ from all 101 samples over mixtures and films of the paints. Without
-    /// paints it is [`gauss`](Self::gauss).
-    #[must_use]
-    pub fn fitted(n: usize, observer: Observer, light: &Illuminant, paints: &[Paint]) -> Self {
-        if paints.is_empty() {
-            return Self::gauss(n, observer, light);
-        }
-        crate::fitted::fit_once(n, observer, light, paints)
     }
 
     /// All 101 samples.

@@ -15,9 +15,9 @@ use maulstick_optics::light::HeightField;
 use maulstick_optics::light::shadow::REACH;
 use maulstick_types::paint::TILE;
 
-use crate::bare::Bare;
+use crate::appearance::{Appearance, Bakery};
+use crate::blank_surface::BlankSurface;
 use crate::display::{DisplayTile, WetFilms};
-use crate::look::{Bakery, Look};
 use crate::painting::Painting;
 use crate::store::TileStore;
 use crate::tile::{Tile, TileId};
@@ -113,8 +113,8 @@ impl BandHeights {
 #[derive(Debug)]
 pub struct Banded<'a> {
     store: &'a TileStore,
-    bare: &'a Bare,
-    look: &'a Look,
+    bare: &'a BlankSurface,
+    look: &'a Appearance,
     cell_m: f64,
     heights: Shelf<Vec<f32>>,
 }
@@ -136,7 +136,12 @@ impl<'a> Banded<'a> {
 
     /// Tiles on a ground, cells of side `cell_m`.
     #[must_use]
-    pub fn new(store: &'a TileStore, bare: &'a Bare, look: &'a Look, cell_m: f64) -> Self {
+    pub fn new(
+        store: &'a TileStore,
+        bare: &'a BlankSurface,
+        look: &'a Appearance,
+        cell_m: f64,
+    ) -> Self {
         Self {
             store,
             bare,

@@ -7,11 +7,12 @@ use maulstick_optics::light::gloss::{merged_gloss, roughness};
 use maulstick_optics::{FilmPlanes, Studio, Under};
 use maulstick_types::paint::TILE;
 
-use crate::bare::Bare;
+use crate::appearance::thickness;
+use crate::blank_surface::BlankSurface;
 use crate::dry::DryStack;
-use crate::look::thickness;
+use crate::planes::TILE_CELLS;
 use crate::quantum::QUANTUM_M;
-use crate::tile::{TILE_CELLS, Tile, TileId};
+use crate::tile::{Tile, TileId};
 
 /// A tile as it is shown, before light.
 #[derive(Clone, Debug, PartialEq)]
@@ -126,7 +127,7 @@ fn gloss(films: &[(usize, Vec<f32>)], dry: Option<&DryStack>, thinner: Option<us
 impl DisplayTile {
     /// Height of a tile of a surface alone, as in [`on`](Self::on), m.
     #[must_use]
-    pub fn height_on(bare: &Bare, id: TileId, tile: Option<&Tile>) -> Vec<f32> {
+    pub fn height_on(bare: &BlankSurface, id: TileId, tile: Option<&Tile>) -> Vec<f32> {
         let films = tile.map(|tile| thickness(&tile.wet())).unwrap_or_default();
         let mut heights = height(&films, tile.and_then(Tile::dry).map(|stack| &**stack));
         for (cell, well) in bare.in_wells(id) {
@@ -146,7 +147,7 @@ impl DisplayTile {
     /// colours of its wet `films` over what lies under them.
     #[must_use]
     pub fn on(
-        bare: &Bare,
+        bare: &BlankSurface,
         id: TileId,
         tile: Option<&Tile>,
         (films, rgb): (&WetFilms, [Vec<f32>; 3]),

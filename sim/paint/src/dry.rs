@@ -7,8 +7,8 @@ use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
 use std::sync::{Arc, Mutex, PoisonError, Weak};
 
 use crate::page::{Evict, Page, Pager};
+use crate::planes::{Planes, TILE_CELLS, plane_counts};
 use crate::quantum::{Counts, SLOTS, add};
-use crate::tile::{Planes, TILE_CELLS, plane_counts};
 
 /// Paint of a tile that dried at one time.
 #[derive(Clone, Debug, PartialEq)]

@@ -8,10 +8,11 @@ use maulstick_optics::colour::{SrgbTable, srgb_decode};
 use maulstick_optics::{Smooth, Studio, Under, Upsampler};
 use maulstick_types::paint::TILE;
 
-use crate::embedded::{Colours, Embedded, IMAGE, SPECTRUM};
-use crate::painting::PaintRefusal;
+use crate::assets::{Assets, Colours, IMAGE, SPECTRUM};
+use crate::error::EditError;
+use crate::planes::TILE_CELLS;
 use crate::setup::ground_reflectance;
-use crate::tile::{TILE_CELLS, TileId};
+use crate::tile::TileId;
 
 /// Reflectances of tiles that are kept, bytes; a tile at sixteen wavelengths takes 256 KiB.
 const KEPT_BYTES: usize = 64 << 20;
@@ -53,13 +54,13 @@ impl Ground {
     /// measured reflectance, which it has everywhere.
     ///
     /// # Errors
-    /// [`PaintRefusal`] where there is none of this name.
+    /// [`EditError`] where there is none of this name.
     pub fn called(
         name: &str,
         cells: [u32; 2],
         studio: &Studio,
-        embedded: &Embedded,
-    ) -> Result<Self, PaintRefusal> {
+        embedded: &Assets,
+    ) -> Result<Self, EditError> {
         if let Some(hash) = name.strip_prefix(SPECTRUM) {
             let internal = embedded.reflectance(hash)?.internal(&studio.surface());
             return Ok(Self::Even(studio.sample(&internal)));
@@ -251,7 +252,7 @@ mod tests {
     use maulstick_optics::{FilmBackend as _, FilmPlanes, PaintLibrary, StudioSettings};
 
     use super::*;
-    use crate::embedded::tests::png_of;
+    use crate::assets::tests::png_of;
 
     fn studio() -> Studio {
         let library = PaintLibrary::measured().expect("whole");
@@ -265,7 +266,7 @@ mod tests {
             .flat_map(|(x, y)| of(x, y))
             .collect();
         let png = png_of(size, png::ColorType::Rgb, png::BitDepth::Eight, &raw);
-        let mut embedded = Embedded::default();
+        let mut embedded = Assets::default();
         let hash = embedded.add(png).expect("taken");
         let name = format!("{IMAGE}{hash}");
         Ground::called(&name, cells, &studio(), &embedded).expect("a ground")

@@ -7,7 +7,8 @@ use maulstick_num::lanes::Lanes;
 use maulstick_num::wide;
 use maulstick_types::brush::Solve;
 
-use crate::model::BrushTraits;
+use crate::scale::Scale;
+use crate::traits::BrushTraits;
 
 /// Strips looked at at a time.
 const LANES: usize = 8;
@@ -24,9 +25,9 @@ pub struct Waypoint {
 
 /// A [`Waypoint`] as it is kept: rotation x, y, z, w and translation of the brush, joint angles, how
 /// full the brush is.
-pub type KeptWaypoint = ([f64; 4], [f64; 3], Vec<[f32; 2]>, f32);
+pub type WaypointSnapshot = ([f64; 4], [f64; 3], Vec<[f32; 2]>, f32);
 
-impl From<&Waypoint> for KeptWaypoint {
+impl From<&Waypoint> for WaypointSnapshot {
     fn from(from: &Waypoint) -> Self {
         let Rigid {
             rotation,
@@ -37,8 +38,8 @@ impl From<&Waypoint> for KeptWaypoint {
     }
 }
 
-impl From<KeptWaypoint> for Waypoint {
-    fn from((rotation, translation, angles, wetness): KeptWaypoint) -> Self {
+impl From<WaypointSnapshot> for Waypoint {
+    fn from((rotation, translation, angles, wetness): WaypointSnapshot) -> Self {
         Self {
             brush: Rigid {
                 rotation: glam::DQuat::from_array(rotation),
@@ -47,30 +48,6 @@ impl From<KeptWaypoint> for Waypoint {
             angles,
             wetness,
         }
-    }
-}
-
-/// How a brush's lengths are seen on a surface.
-#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
-pub struct Scale {
-    /// Side of a cell in the surface's own lengths, m.
-    pub cell_m: f64,
-    /// Desk lengths per surface length.
-    pub zoom: f64,
-}
-
-/// Way of a brush in one step, m of its own lengths.
-pub const STEP_M: f64 = 0.25e-3;
-
-impl Scale {
-    /// Way of a brush in one step, cells: at least one. One that is `fine` goes no farther: paint goes before the
-    /// edge of a blade, which is narrow, and a hairline would become wider by what its slanting hair sweeps.
-    #[must_use]
-    pub fn step_cells(&self, fine: bool) -> f64 {
-        if fine {
-            return 1.0;
-        }
-        (STEP_M / (self.cell_m * self.zoom)).max(1.0)
     }
 }
 

@@ -17,18 +17,20 @@ use crate::page::Page;
 use crate::store::TileRect;
 use crate::tile::{Tile, TileId};
 
+/// Bytes of a history at most, unless a painting says otherwise.
+pub const QUOTA: u64 = 2 << 30;
 /// The newest steps, which are never merged.
 const APART: usize = 16;
 
 /// A surface's number and a tile of it.
-pub type Place = (u32, TileId);
+pub type TilePlace = (u32, TileId);
 
 /// A tile; none where nothing was painted.
-pub type Held = Option<Arc<Tile>>;
+pub type TileRef = Option<Arc<Tile>>;
 
 /// Whether both are the same pages.
 #[must_use]
-pub fn same(one: &Held, other: &Held) -> bool {
+pub fn same(one: &TileRef, other: &TileRef) -> bool {
     match (one, other) {
         (Some(one), Some(other)) => one.is(other),
         (one, other) => [one, other]
@@ -42,15 +44,15 @@ pub fn same(one: &Held, other: &Held) -> bool {
 #[derive(Clone, Debug)]
 pub struct Change {
     /// The tile before it.
-    pub before: Held,
+    pub before: TileRef,
     /// The tile after it.
-    pub after: Held,
+    pub after: TileRef,
 }
 
 impl Change {
     /// The tile before it, 0, or after it, 1.
     #[must_use]
-    pub fn end(&self, which: usize) -> &Held {
+    pub fn end(&self, which: usize) -> &TileRef {
         match which {
             0 => &self.before,
             _ => &self.after,
@@ -60,7 +62,7 @@ impl Change {
 
 /// What a painting's surface is made of, as far as a step can change it.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Make {
+pub struct SurfaceMaterial {
     /// The surface.
     pub surface: u32,
     /// Name of its ground.
@@ -73,7 +75,7 @@ pub struct Make {
 
 /// What a painting is besides its tiles, as far as a step can change it.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Rest {
+pub struct NonTileState {
     /// What the brushes carry, by name.
     pub loads: BTreeMap<String, Page<BrushLoad>>,
     /// The books.
@@ -81,14 +83,14 @@ pub struct Rest {
     /// The dry layers.
     pub layers: Vec<Layer>,
     /// The surfaces.
-    pub makes: Vec<Make>,
+    pub makes: Vec<SurfaceMaterial>,
     /// Most quanta that a cell of a surface ever had.
     pub tops: BTreeMap<u32, f32>,
 }
 
 /// What a step did besides tiles.
 #[derive(Clone, Debug, Default)]
-pub struct Deed {
+pub struct StepEffects {
     /// What brushes carried before and after it, where it changed that.
     pub loads: BTreeMap<String, [Page<BrushLoad>; 2]>,
     /// What it booked.
@@ -96,15 +98,15 @@ pub struct Deed {
     /// The dry layers before and after it, if it changed them.
     pub layers: Option<[Vec<Layer>; 2]>,
     /// The surfaces before and after it, if it changed them.
-    pub makes: Option<[Vec<Make>; 2]>,
+    pub makes: Option<[Vec<SurfaceMaterial>; 2]>,
     /// Most quanta that a cell of a surface ever had, before and after it.
     pub tops: [BTreeMap<u32, f32>; 2],
 }
 
-impl Deed {
+impl StepEffects {
     /// What leads from one state to another, with what was booked on the way.
     #[must_use]
-    pub fn between(before: &Rest, after: &Rest, booked: Booked) -> Self {
+    pub fn between(before: &NonTileState, after: &NonTileState, booked: Booked) -> Self {
         let changed = after.loads.iter().filter_map(|(name, page)| {
             let was = before.loads.get(name)?;
             (!was.is(page)).then(|| (name.clone(), [was.clone(), page.clone()]))
@@ -157,9 +159,9 @@ pub struct Step {
     /// Whether it is done; if not, it was undone.
     pub done: bool,
     /// What it changed.
-    pub tiles: Arc<BTreeMap<Place, Change>>,
+    pub tiles: Arc<BTreeMap<TilePlace, Change>>,
     /// What it did besides.
-    pub deed: Arc<Deed>,
+    pub effects: Arc<StepEffects>,
 }
 
 impl Step {
@@ -171,21 +173,21 @@ impl Step {
             false => (&other.tiles, &self.tiles),
         };
         let mut tiles = few.iter();
-        let mut loads = self.deed.loads.keys();
+        let mut loads = self.effects.loads.keys();
         tiles.any(|(place, change)| changes(change) && many.get(place).is_some_and(changes))
-            || loads.any(|name| other.deed.loads.contains_key(name))
-            || self.deed.layers.is_some() && other.deed.layers.is_some()
-            || self.deed.makes.is_some() && other.deed.makes.is_some()
+            || loads.any(|name| other.effects.loads.contains_key(name))
+            || self.effects.layers.is_some() && other.effects.layers.is_some()
+            || self.effects.makes.is_some() && other.effects.makes.is_some()
     }
 
     /// The step before it was finished, in a painting that is besides as it is in `rest`.
     #[must_use]
-    pub fn reopened(self, rest: &Rest, reached: BTreeSet<Place>) -> OpenStep {
+    pub fn reopened(self, rest: &NonTileState, reached: BTreeSet<TilePlace>) -> OpenStep {
         let mut before = rest.clone();
-        for (name, [page, _]) in &self.deed.loads {
+        for (name, [page, _]) in &self.effects.loads {
             before.loads.insert(name.clone(), page.clone());
         }
-        if let Some([layers, _]) = &self.deed.layers {
+        if let Some([layers, _]) = &self.effects.layers {
             before.layers.clone_from(layers);
         }
         let tiles = self.tiles.iter();
@@ -197,7 +199,7 @@ impl Step {
                 .map(|(place, change)| (*place, change.before.clone()))
                 .collect(),
             before,
-            booked: self.deed.booked.clone(),
+            booked: self.effects.booked.clone(),
             reached,
             last_reach: None,
         }
@@ -214,13 +216,13 @@ pub struct OpenStep {
     /// As [`Step::brush`].
     pub brush: Option<String>,
     /// The tiles before it.
-    pub tiles: BTreeMap<Place, Held>,
+    pub tiles: BTreeMap<TilePlace, TileRef>,
     /// The rest before it.
-    pub before: Rest,
+    pub before: NonTileState,
     /// What it booked so far.
     pub booked: Booked,
     /// The tiles that it may have changed.
-    pub reached: BTreeSet<Place>,
+    pub reached: BTreeSet<TilePlace>,
     /// The tiles that its last motion reached.
     pub last_reach: Option<(u32, TileRect)>,
 }
@@ -256,7 +258,7 @@ impl History {
     }
 
     /// Begins a step; what this brush, or nobody's brush, undid is gone.
-    pub fn begin(&mut self, what: &str, brush: Option<&str>, before: Rest) {
+    pub fn begin(&mut self, what: &str, brush: Option<&str>, before: NonTileState) {
         let own = |step: &Step| match (&step.brush, brush) {
             (Some(one), Some(other)) => one == other,
             _ => true,
@@ -290,7 +292,7 @@ impl History {
     }
 
     /// Remembers what a step replaced: the first tile of each place.
-    pub fn replaced(&mut self, brush: Option<&str>, place: Place, tile: Held) {
+    pub fn replaced(&mut self, brush: Option<&str>, place: TilePlace, tile: TileRef) {
         if let Some(open) = self.open_of(brush) {
             open.tiles.entry(place).or_insert(tile);
         }
@@ -467,14 +469,14 @@ impl History {
             operations,
             done: true,
             tiles: Arc::new(tiles),
-            deed: Arc::new(Arc::unwrap_or_clone(first.deed).and(&second.deed)),
+            effects: Arc::new(Arc::unwrap_or_clone(first.effects).and(&second.effects)),
         });
     }
 
     /// Forgets undone steps, and those that were undone before them and lie on the same tiles: they
     /// could be redone only on top of them.
     fn drop_undone(&mut self, mut gone: BTreeSet<u64>) {
-        let mut lost: BTreeSet<Place> = BTreeSet::new();
+        let mut lost: BTreeSet<TilePlace> = BTreeSet::new();
         for id in self.undone.iter().rev() {
             let Some(step) = self.steps.get(id) else {
                 continue;

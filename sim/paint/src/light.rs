@@ -5,17 +5,17 @@ use maulstick_optics::{Illuminant, Observer, RuleKind, Spectrum, StudioSettings}
 use maulstick_types::advice::{choice, parted};
 use maulstick_types::scene::Light;
 
-use crate::painting::PaintRefusal;
+use crate::error::EditError;
 
 /// What the optics need to know of the light; where it comes from and how strong it is they do not.
 ///
 /// # Errors
-/// [`PaintRefusal`] for a light out of bounds, or a name of no illuminant.
-pub fn studio_settings(light: &Light) -> Result<StudioSettings, PaintRefusal> {
+/// [`EditError`] for a light out of bounds, or a name of no illuminant.
+pub fn studio_settings(light: &Light) -> Result<StudioSettings, EditError> {
     light.check().map_err(|line| {
         let (what, help) = parted(&line);
         let other = "`maulstick light --help` lists what a light may be";
-        PaintRefusal::new(what.to_owned(), help.unwrap_or(other))
+        EditError::new(what.to_owned(), help.unwrap_or(other))
     })?;
     let spectrum: Result<[f64; maulstick_optics::spectrum::SAMPLES], _> =
         light.spectrum.as_slice().try_into();
@@ -27,7 +27,7 @@ pub fn studio_settings(light: &Light) -> Result<StudioSettings, PaintRefusal> {
             };
             found
                 .check()
-                .map_err(|what| PaintRefusal::new(what, "give a light of more wavelengths"))?;
+                .map_err(|what| EditError::new(what, "give a light of more wavelengths"))?;
             found
         }
         Err(_) => illuminant_named(&light.illuminant)?,
@@ -47,11 +47,11 @@ pub fn studio_settings(light: &Light) -> Result<StudioSettings, PaintRefusal> {
 /// One of the CIE's illuminants.
 ///
 /// # Errors
-/// [`PaintRefusal`] with the nearest name and all of them.
-pub fn illuminant_named(name: &str) -> Result<Illuminant, PaintRefusal> {
+/// [`EditError`] with the nearest name and all of them.
+pub fn illuminant_named(name: &str) -> Result<Illuminant, EditError> {
     let names = maulstick_optics::cie::ILLUMINANTS;
     Illuminant::named(name).ok_or_else(|| {
-        PaintRefusal::new(
+        EditError::new(
             format!("there is no illuminant called '{name}'"),
             &format!("{}, and any spectrum from a CSV file", choice(name, names)),
         )

@@ -3,15 +3,11 @@
 use maulstick_brush::Head;
 use maulstick_types::Mixture;
 
-use crate::model::BrushTraits;
-use crate::page::{Backing, Content};
 use crate::quantum::{Counts, SLOTS};
 use crate::streaks::streaks;
+use crate::traits::{BrushTraits, TEXELS_PER_STRIP};
 
-/// Texels along a strip.
-pub const ALONG: usize = 16;
-
-/// One paint on a brush: counts by texel, `strip · ALONG + along`, 0 at the ferrule.
+/// One paint on a brush: counts by texel, `strip · TEXELS_PER_STRIP + along`, 0 at the ferrule.
 #[derive(Clone, Debug, PartialEq, Eq)]
 struct Held {
     film: Vec<u32>,
@@ -75,22 +71,14 @@ pub struct BrushLoad {
     steps: u64,
 }
 
-impl Content for BrushLoad {
-    fn bytes(&self) -> usize {
+impl BrushLoad {
+    /// Bytes in memory.
+    #[must_use]
+    pub fn bytes(&self) -> usize {
         let planes = 1 + 2 * self.held.iter().flatten().count();
         planes * self.texels * size_of::<u32>()
     }
 
-    fn fetch(backing: &dyn Backing, id: u64) -> Result<Self, String> {
-        backing.load(id)
-    }
-
-    fn nothing() -> Self {
-        Self::clean(0)
-    }
-}
-
-impl BrushLoad {
     /// A load as it was kept: steps with contact, all paints' films as last counted, and for each
     /// paint its films and what it has inside, by texel. None where the planes do not fit.
     #[must_use]
@@ -131,7 +119,7 @@ impl BrushLoad {
     /// A clean brush with this many strips.
     #[must_use]
     pub fn clean(strips: usize) -> Self {
-        let texels = strips * ALONG;
+        let texels = strips * TEXELS_PER_STRIP;
         Self {
             texels,
             held: [const { None }; SLOTS],
@@ -196,14 +184,14 @@ impl BrushLoad {
     /// Counts of the thickest film of a strip.
     #[must_use]
     pub fn thickest_of(&self, strip: usize) -> u32 {
-        let run = &self.films[strip * ALONG..(strip + 1) * ALONG];
+        let run = &self.films[strip * TEXELS_PER_STRIP..(strip + 1) * TEXELS_PER_STRIP];
         run.iter().copied().max().unwrap_or(0)
     }
 
     /// Takes all paint off.
     pub fn take_all(&mut self) -> Counts {
         let counts = self.counts();
-        *self = Self::clean(self.texels / ALONG);
+        *self = Self::clean(self.texels / TEXELS_PER_STRIP);
         counts
     }
 
@@ -228,7 +216,7 @@ impl BrushLoad {
             let held = self.held_mut(*slot);
             let texels = held.film.iter_mut().zip(&mut held.inside);
             for (texel, (film, inside)) in texels.enumerate() {
-                let strip = texel / ALONG;
+                let strip = texel / TEXELS_PER_STRIP;
                 let half = half.share(f64::from(head.roots()[strip][0]));
                 let part = share * half * f64::from(taken[strip]);
                 *film += (film_full * part) as u32;
@@ -258,7 +246,7 @@ impl BrushLoad {
     /// head.
     #[must_use]
     pub fn onto(&self, strips: usize, finer: &Head) -> Self {
-        let own = self.texels / ALONG;
+        let own = self.texels / TEXELS_PER_STRIP;
         if own == strips {
             return self.clone();
         }
@@ -278,8 +266,9 @@ impl BrushLoad {
                 (&held.inside, &mut into.inside),
             ] {
                 for (strip, stands) in stands.iter().enumerate() {
-                    for k in 0..ALONG {
-                        let (fine, coarse) = (strip * ALONG + k, stands * ALONG + k);
+                    for k in 0..TEXELS_PER_STRIP {
+                        let (fine, coarse) =
+                            (strip * TEXELS_PER_STRIP + k, stands * TEXELS_PER_STRIP + k);
                         if strips < own {
                             to[coarse] += from[fine];
                             continue;
@@ -434,7 +423,7 @@ mod tests {
         let roots = head.roots();
         assert_eq!(&roots[..112], Head::of(&few).roots());
         let is_left = |load: &BrushLoad| {
-            let right = |texel: &usize| roots[*texel / ALONG][0] > 0.1;
+            let right = |texel: &usize| roots[*texel / TEXELS_PER_STRIP][0] > 0.3;
             let inside = load.inside(3).expect("carried");
             let carried = |texel| u64::from(load.film(texel)) + u64::from(inside[texel]);
             let whole: u64 = (0..load.texels()).map(carried).sum();
@@ -451,7 +440,7 @@ mod tests {
     fn no_strips_carry_nothing() {
         let head = Head::of(&BrushFile::library("flat").expect("flat"));
         let load = BrushLoad::clean(0).onto(head.strips(), &head);
-        assert_eq!(load.texels(), head.strips() * ALONG);
+        assert_eq!(load.texels(), head.strips() * TEXELS_PER_STRIP);
         assert_eq!(load.counts(), [0; SLOTS]);
     }
 

@@ -9,35 +9,7 @@ use std::fmt;
 use std::sync::atomic::{AtomicBool, AtomicU64, AtomicUsize, Ordering::Relaxed};
 use std::sync::{Arc, Mutex, MutexGuard, OnceLock, PoisonError, Weak};
 
-use crate::load::BrushLoad;
-use crate::tile::Planes;
-
-/// Where pages are that are not in memory.
-pub trait Backing: Send + Sync {
-    /// The counts of a page.
-    ///
-    /// # Errors
-    /// What is wrong with it, in words.
-    fn planes(&self, id: u64) -> Result<Planes, String>;
-    /// What a brush carried.
-    ///
-    /// # Errors
-    /// What is wrong with it, in words.
-    fn load(&self, id: u64) -> Result<BrushLoad, String>;
-}
-
-/// What a page can hold.
-pub trait Content: Send + Sync + Sized + 'static {
-    /// Bytes in memory.
-    fn bytes(&self) -> usize;
-    /// Reads it.
-    ///
-    /// # Errors
-    /// As [`Backing`]'s.
-    fn fetch(backing: &dyn Backing, id: u64) -> Result<Self, String>;
-    /// What stands in for a page that cannot be read.
-    fn nothing() -> Self;
-}
+use crate::backing::{Backing, Content};
 
 /// Something that can leave memory.
 pub(crate) trait Evict: Send + Sync {
@@ -421,7 +393,8 @@ impl<T: Content + PartialEq> PartialEq for Page<T> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::tile::TILE_CELLS;
+    use crate::load::BrushLoad;
+    use crate::planes::{Planes, TILE_CELLS};
 
     /// Pages whose one plane holds their number.
     struct Numbers;

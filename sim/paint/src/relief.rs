@@ -3,7 +3,8 @@
 use std::collections::BTreeMap;
 use std::sync::{Arc, Mutex, PoisonError};
 
-use crate::tile::{TILE_CELLS, TileId};
+use crate::planes::TILE_CELLS;
+use crate::tile::TileId;
 use crate::tooth::Tooth;
 use crate::tooth_picture::PictureTooth;
 

@@ -4,8 +4,9 @@ use std::sync::Arc;
 
 use crate::dry::{DryLayer, DryStack};
 use crate::page::Page;
+use crate::planes::{Planes, TILE_CELLS};
 use crate::quantum::{CELL_MAX, SLOTS};
-use crate::tile::{Planes, TILE_CELLS, Tile};
+use crate::tile::Tile;
 
 /// A tile whose newest layers are wet again.
 #[derive(Clone, Debug, PartialEq)]
@@ -72,7 +73,7 @@ impl Wet {
             }
         }
         let rest = rest.into_iter().map(|(slot, plane)| (slot, plane.into()));
-        any.then(|| crate::tile::painted(rest))
+        any.then(|| crate::planes::painted(rest))
     }
 }
 

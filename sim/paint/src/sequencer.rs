@@ -1,8 +1,8 @@
 //! The sequencer: it decides what enters the journal and in which order; nothing else does.
 
+mod dispatch;
 mod layers;
 mod records;
-mod ways;
 
 pub use records::{Accepted, NO_ZOOM, Record};
 
@@ -14,9 +14,10 @@ use maulstick_types::command::{Command, CommandRequest, Outcome};
 use maulstick_types::paint::{Entry, JournalEntry};
 use maulstick_types::{Flags, Header, Mixture, Origin};
 
-use crate::kept::{KeptAnswer, KeptTake};
-use crate::painting::{PaintRefusal, Painting};
-use ways::elsewhere;
+use crate::error::EditError;
+use crate::painting::Painting;
+use crate::snapshot::{ReplySnapshot, TakeSnapshot};
+use dispatch::elsewhere;
 
 /// Clients whose last reply is kept, so that a repeated command is done once. A client repeats
 /// within seconds; of more clients than these the one that was answered longest ago is forgotten.
@@ -54,12 +55,12 @@ pub struct Sequencer {
     next: u64,
     journal: Vec<JournalEntry>,
     /// By brush, the take that may paint, and until its end alone.
-    announced: BTreeMap<String, KeptTake>,
+    announced: BTreeMap<String, TakeSnapshot>,
     /// Players that are gone: their takes hold no brush any more.
     gone: BTreeSet<u32>,
     consumed: BTreeMap<Origin, u64>,
     waiting: Vec<CommandRequest>,
-    answered: BTreeMap<u64, KeptAnswer>,
+    answered: BTreeMap<u64, ReplySnapshot>,
     answers: u64,
     ignored: u64,
     serial: u64,
@@ -148,10 +149,10 @@ impl Sequencer {
         brush: &str,
         header: &Header,
         state: &BrushState,
-    ) -> (Vec<Replied>, Result<(), PaintRefusal>) {
+    ) -> (Vec<Replied>, Result<(), EditError>) {
         let may_paint = self.may_paint(brush, header, state);
         let result = if let Some(fault) = state.fault() {
-            Err(PaintRefusal::new(
+            Err(EditError::new(
                 format!("a state of brush '{brush}' is wrong: {fault}"),
                 "restart the program that sends it, or report its fault",
             ))
@@ -174,12 +175,7 @@ impl Sequencer {
     }
 
     /// A live stroke takes up no loads of a take that was played before.
-    fn paint(
-        &mut self,
-        brush: &str,
-        header: &Header,
-        state: &BrushState,
-    ) -> Result<(), PaintRefusal> {
+    fn paint(&mut self, brush: &str, header: &Header, state: &BrushState) -> Result<(), EditError> {
         if !header.flags.has(Flags::REPLAY) {
             self.painting.forget_loads(brush);
         }
@@ -436,7 +432,7 @@ impl Sequencer {
                 self.note(journal, || Accepted::Entry(entry));
                 Outcome::Done { journal, detail }
             }
-            Err(PaintRefusal { what, help }) => Outcome::Refused { what, help },
+            Err(EditError { what, help }) => Outcome::Refused { what, help },
         };
         self.remember(client, number, outcome.clone());
         Replied {
@@ -454,7 +450,7 @@ impl Sequencer {
         [device, epoch]: [u32; 2],
         loads: &[Mixture],
         again: bool,
-    ) -> Result<String, PaintRefusal> {
+    ) -> Result<String, EditError> {
         let before = self.announced.get(brush).filter(|_| again);
         if let Some(step) = before.map(|take| take.step) {
             self.painting.undo_to(brush, step)?;
@@ -463,7 +459,7 @@ impl Sequencer {
         let step = self.painting.newest_step();
         // What may have to be taken back is not merged with what came before.
         self.painting.part_history(step);
-        let take = KeptTake {
+        let take = TakeSnapshot {
             device,
             epoch,
             ended: false,
@@ -484,7 +480,7 @@ impl Sequencer {
         }
         self.answers += 1;
         let age = self.answers;
-        let reply = KeptAnswer {
+        let reply = ReplySnapshot {
             number,
             outcome,
             age,

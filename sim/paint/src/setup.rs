@@ -6,9 +6,9 @@ use maulstick_types::advice::choice;
 use maulstick_types::scene::{CANVAS, Light, PALETTE, Scene, Surface, Well, WellKind};
 use maulstick_types::{Mixture, Pose};
 
-use crate::embedded::{Embedded, IMAGE, SPECTRUM};
+use crate::assets::{Assets, IMAGE, SPECTRUM};
+use crate::error::EditError;
 use crate::light::studio_settings;
-use crate::painting::PaintRefusal;
 use crate::relief::Relief;
 use crate::tooth::Tooth;
 use crate::tooth_picture::PictureTooth;
@@ -61,7 +61,7 @@ pub struct PaintingSetup {
     /// Factor of the eye that looks at it; none: such that the bare canvas does not clip.
     pub exposure: Option<f64>,
     /// The pictures that its ground and its tooth may be made of.
-    pub embedded: Embedded,
+    pub embedded: Assets,
 }
 
 impl Default for PaintingSetup {
@@ -80,7 +80,7 @@ impl Default for PaintingSetup {
                 .collect(),
             light: Light::default(),
             exposure: None,
-            embedded: Embedded::default(),
+            embedded: Assets::default(),
         }
     }
 }
@@ -89,14 +89,14 @@ impl PaintingSetup {
     /// Checks sizes, the ground's name and the wells' paints.
     ///
     /// # Errors
-    /// [`PaintRefusal`] with what to do.
-    pub fn check(&self, library: &PaintLibrary) -> Result<(), PaintRefusal> {
+    /// [`EditError`] with what to do.
+    pub fn check(&self, library: &PaintLibrary) -> Result<(), EditError> {
         check_size(self.cells, self.cell_m)?;
         check_ground(&self.ground, &self.embedded)?;
         relief_called(&self.tooth, self.tooth_seed, self.cell_m, &self.embedded)?;
         studio_settings(&self.light)?;
         for mixture in &self.wells {
-            library.check(mixture).map_err(PaintRefusal::paint)?;
+            library.check(mixture).map_err(EditError::paint)?;
         }
         Ok(())
     }
@@ -181,8 +181,8 @@ pub fn wells_of(mixtures: &[Mixture], cells: [u32; 2], cell_m: f64) -> Vec<Well>
 /// Checks that there is a ground called `name`.
 ///
 /// # Errors
-/// [`PaintRefusal`] with what there is.
-pub fn check_ground(name: &str, embedded: &Embedded) -> Result<(), PaintRefusal> {
+/// [`EditError`] with what there is.
+pub fn check_ground(name: &str, embedded: &Assets) -> Result<(), EditError> {
     if let Some(hash) = name.strip_prefix(SPECTRUM) {
         return embedded.reflectance(hash).map(drop);
     }
@@ -195,17 +195,17 @@ pub fn check_ground(name: &str, embedded: &Embedded) -> Result<(), PaintRefusal>
 /// Checks the size of a surface and of its cells.
 ///
 /// # Errors
-/// [`PaintRefusal`] with what is possible.
-pub fn check_size(cells: [u32; 2], cell_m: f64) -> Result<(), PaintRefusal> {
+/// [`EditError`] with what is possible.
+pub fn check_size(cells: [u32; 2], cell_m: f64) -> Result<(), EditError> {
     if cells.iter().any(|cells| !(1..=65_536).contains(cells)) {
-        return Err(PaintRefusal::new(
+        return Err(EditError::new(
             format!("a canvas of {}×{} cells", cells[0], cells[1]),
             "choose 1 to 65536 cells either way",
         ));
     }
     match (1e-5..=1e-2).contains(&cell_m) {
         true => Ok(()),
-        false => Err(PaintRefusal::new(
+        false => Err(EditError::new(
             format!("cells of {} mm", cell_m * 1e3),
             "choose .01 to 10 mm",
         )),
@@ -215,14 +215,14 @@ pub fn check_size(cells: [u32; 2], cell_m: f64) -> Result<(), PaintRefusal> {
 /// The internal reflectance of a ground that is the same everywhere.
 ///
 /// # Errors
-/// [`PaintRefusal`] with the names that there are.
-pub fn ground_reflectance(name: &str) -> Result<Spectrum, PaintRefusal> {
+/// [`EditError`] with the names that there are.
+pub fn ground_reflectance(name: &str) -> Result<Spectrum, EditError> {
     GROUNDS
         .iter()
         .find(|(ground, _)| *ground == name)
         .map(|(_, reflectance)| Spectrum::flat(*reflectance))
         .ok_or_else(|| {
-            PaintRefusal::new(
+            EditError::new(
                 format!("there is no ground called '{name}'"),
                 &choice(name, GROUNDS.map(|(ground, _)| ground)),
             )
@@ -232,19 +232,19 @@ pub fn ground_reflectance(name: &str) -> Result<Spectrum, PaintRefusal> {
 /// The relief of a tooth called `name` on cells of `cell_m`.
 ///
 /// # Errors
-/// [`PaintRefusal`] with the names that there are.
+/// [`EditError`] with the names that there are.
 pub fn relief_called(
     name: &str,
     seed: u64,
     cell_m: f64,
-    embedded: &Embedded,
-) -> Result<Relief, PaintRefusal> {
+    embedded: &Assets,
+) -> Result<Relief, EditError> {
     if name.starts_with(IMAGE) {
         let tooth = PictureTooth::called(name, cell_m, embedded)?;
         return Ok(Relief::pictured(tooth, cell_m));
     }
     let tooth = Tooth::new(name, seed, cell_m).ok_or_else(|| {
-        PaintRefusal::new(
+        EditError::new(
             format!("there is no tooth called '{name}'"),
             &choice(name, Tooth::names()),
         )

@@ -2,14 +2,10 @@
 
 use std::sync::Arc;
 
-use maulstick_types::paint::TILE;
-
 use crate::dry::{DryLayer, DryStack};
-use crate::page::{Backing, Content, Page, Pager};
-use crate::quantum::{CELL_MAX, Counts, SLOTS};
-
-/// Cells of a tile.
-pub const TILE_CELLS: usize = TILE * TILE;
+use crate::page::{Page, Pager};
+use crate::planes::{Planes, painted, plane_counts};
+use crate::quantum::{CELL_MAX, Counts};
 
 /// Column and row of a tile, row 0 at the bottom.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -20,44 +16,11 @@ pub struct TileId {
     pub x: u32,
 }
 
-/// A plane of counts for each paint that is there, in order of slot.
-pub type Planes = Vec<(usize, Arc<[f32]>)>;
-
-impl Content for Planes {
-    fn bytes(&self) -> usize {
-        self.len() * TILE_CELLS * size_of::<f32>()
-    }
-
-    fn fetch(backing: &dyn Backing, id: u64) -> Result<Self, String> {
-        backing.planes(id)
-    }
-
-    fn nothing() -> Self {
-        Self::new()
-    }
-}
-
-/// All counts of planes, by slot.
-#[must_use]
-pub fn plane_counts(planes: &Planes) -> Counts {
-    let mut counts = [0; SLOTS];
-    for (slot, plane) in planes {
-        counts[*slot] = plane.iter().map(|count| *count as u64).sum();
-    }
-    counts
-}
-
 /// What lies on a tile: wet paint over what has dried.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Tile {
     wet: Option<Page<Planes>>,
     dry: Option<Arc<DryStack>>,
-}
-
-pub(crate) fn painted(planes: impl Iterator<Item = (usize, Arc<[f32]>)>) -> Planes {
-    planes
-        .filter(|(_, plane)| plane.iter().any(|count| *count != 0.0))
-        .collect()
 }
 
 impl Tile {
@@ -238,6 +201,7 @@ pub struct Version {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::planes::TILE_CELLS;
 
     #[test]
     fn drying_loses_no_quantum_whatever_the_share() {

@@ -7,7 +7,8 @@
 use maulstick_types::paint::TILE;
 
 use crate::lattice_noise::LatticeNoise;
-use crate::tile::{TILE_CELLS, TileId};
+use crate::planes::TILE_CELLS;
+use crate::tile::TileId;
 use crate::weave::Weave;
 
 /// How a ground is made.

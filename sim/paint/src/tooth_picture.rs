@@ -8,9 +8,10 @@ use std::sync::Arc;
 
 use maulstick_types::paint::TILE;
 
-use crate::embedded::{Embedded, Heights, IMAGE};
-use crate::painting::PaintRefusal;
-use crate::tile::{TILE_CELLS, TileId};
+use crate::assets::{Assets, Heights, IMAGE};
+use crate::error::EditError;
+use crate::planes::TILE_CELLS;
+use crate::tile::TileId;
 
 /// Widths that a picture may have on a surface, mm.
 pub const WIDTH_MM: std::ops::RangeInclusive<f64> = 1.0..=10_000.0;
@@ -43,10 +44,10 @@ impl ToothName {
     /// Reads a name that begins with [`IMAGE`].
     ///
     /// # Errors
-    /// [`PaintRefusal`] with what is wrong with it.
-    pub fn parse(name: &str) -> Result<Self, PaintRefusal> {
+    /// [`EditError`] with what is wrong with it.
+    pub fn parse(name: &str) -> Result<Self, EditError> {
         let wrong = |what: &str| {
-            PaintRefusal::new(
+            EditError::new(
                 format!("'{name}' is no tooth: {what}"),
                 "write image:HASH@120mm,80um: a picture 120 mm wide, 80 µm deep",
             )
@@ -85,8 +86,8 @@ impl PictureTooth {
     /// The tooth called `name` on cells of `cell_m`.
     ///
     /// # Errors
-    /// [`PaintRefusal`] where the name is wrong, or there is no such picture.
-    pub fn called(name: &str, cell_m: f64, embedded: &Embedded) -> Result<Self, PaintRefusal> {
+    /// [`EditError`] where the name is wrong, or there is no such picture.
+    pub fn called(name: &str, cell_m: f64, embedded: &Assets) -> Result<Self, EditError> {
         let name = ToothName::parse(name)?;
         let pixels = embedded.heights(&name.hash)?;
         Ok(Self {
@@ -138,13 +139,13 @@ impl PictureTooth {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::embedded::tests::png_of;
+    use crate::assets::tests::png_of;
 
     /// Rows from the top of a picture of heights.
     fn tooth(size: [u32; 2], values: &[u16], place: &str, cell_m: f64) -> PictureTooth {
         let raw: Vec<u8> = values.iter().flat_map(|v| v.to_be_bytes()).collect();
         let kind = (png::ColorType::Grayscale, png::BitDepth::Sixteen);
-        let mut embedded = Embedded::default();
+        let mut embedded = Assets::default();
         let hash = embedded.add(png_of(size, kind.0, kind.1, &raw));
         let name = format!("image:{}@{place}", hash.expect("taken"));
         PictureTooth::called(&name, cell_m, &embedded).expect("a tooth")
@@ -208,7 +209,7 @@ mod tests {
         let none = PictureTooth::called(
             &format!("image:{}@9mm,9um", "0".repeat(64)),
             1e-3,
-            &Embedded::default(),
+            &Assets::default(),
         );
         assert!(none.expect_err("none").what.contains("no picture"));
     }

@@ -1,7 +1,7 @@
 //! Whatever is done to a painting in whatever order, the tubes gave just what is found.
 
 use maulstick_brush::BrushFile;
-use maulstick_num::cores::with_help;
+use maulstick_num::fork_join::with_help;
 use maulstick_optics::PaintLibrary;
 use maulstick_paint::quantum::CELL_MAX;
 use maulstick_paint::{Painting, PaintingSetup};

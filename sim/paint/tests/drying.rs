@@ -4,10 +4,10 @@ use std::collections::BTreeSet;
 
 use maulstick_brush::BrushFile;
 use maulstick_optics::PaintLibrary;
+use maulstick_paint::appearance::Bakery;
 use maulstick_paint::bands::Banded;
-use maulstick_paint::look::Bakery;
+use maulstick_paint::planes::TILE_CELLS;
 use maulstick_paint::quantum::{Counts, SLOTS};
-use maulstick_paint::tile::TILE_CELLS;
 use maulstick_paint::{Painting, PaintingSetup, Sequencer};
 use maulstick_types::brush::{BrushState, Solve};
 use maulstick_types::command::Command;

@@ -5,9 +5,9 @@
 use std::sync::mpsc;
 
 use maulstick_brush::{BrushFile, BrushModel};
-use maulstick_num::cores::with_help_beyond;
-use maulstick_paint::painting::TICKS_A_SECOND;
-use maulstick_paint::{PaintRefusal, Painting, Sequencer};
+use maulstick_num::fork_join::with_help_beyond;
+use maulstick_paint::clock::TICKS_A_SECOND;
+use maulstick_paint::{EditError, Painting, Sequencer};
 use maulstick_types::brush::BrushState;
 use maulstick_types::command::Command;
 use maulstick_types::stylus::StylusSample;
@@ -35,14 +35,14 @@ impl Offline {
     /// A brush called `brush` over a painting; each stroke takes the next of `loads` in turn.
     ///
     /// # Errors
-    /// [`PaintRefusal`] where a load is wrong.
+    /// [`EditError`] where a load is wrong.
     pub fn new(
         painting: Painting,
         brush: &str,
         file: BrushFile,
         depth_share: f64,
         loads: Vec<Mixture>,
-    ) -> Result<Self, PaintRefusal> {
+    ) -> Result<Self, EditError> {
         Self::going_on(Sequencer::new(painting), brush, file, depth_share, loads)
     }
 
@@ -56,7 +56,7 @@ impl Offline {
         file: BrushFile,
         depth_share: f64,
         loads: Vec<Mixture>,
-    ) -> Result<Self, PaintRefusal> {
+    ) -> Result<Self, EditError> {
         let mut model = BrushModel::new(file.clone(), depth_share);
         model.set_scene(sequencer.painting().scene());
         sequencer.define_brush(brush, file);
@@ -85,13 +85,13 @@ impl Offline {
     /// Puts the brush down and takes up another one, with what it carried when it was put down.
     ///
     /// # Errors
-    /// [`PaintRefusal`] where the painting refuses it.
+    /// [`EditError`] where the painting refuses it.
     pub fn take_up(
         &mut self,
         brush: &str,
         file: BrushFile,
         depth_share: f64,
-    ) -> Result<(), PaintRefusal> {
+    ) -> Result<(), EditError> {
         self.model = BrushModel::new(file.clone(), depth_share);
         self.sequencer.define_brush(brush, file);
         self.brush = brush.to_owned();
@@ -106,8 +106,8 @@ impl Offline {
     /// Begins another take with the brush in hand; its strokes take the next of `loads` in turn.
     ///
     /// # Errors
-    /// [`PaintRefusal`] where a load is wrong.
-    pub fn begin_take(&mut self, loads: Vec<Mixture>) -> Result<(), PaintRefusal> {
+    /// [`EditError`] where a load is wrong.
+    pub fn begin_take(&mut self, loads: Vec<Mixture>) -> Result<(), EditError> {
         self.ticker.pause();
         self.command(Command::Take {
             brush: self.brush.clone(),
@@ -127,8 +127,8 @@ impl Offline {
     /// Does a command now.
     ///
     /// # Errors
-    /// [`PaintRefusal`] where the painting refuses it.
-    pub fn command(&mut self, command: Command) -> Result<(), PaintRefusal> {
+    /// [`EditError`] where the painting refuses it.
+    pub fn command(&mut self, command: Command) -> Result<(), EditError> {
         self.sequencer.ask(command)?;
         let scene = self.sequencer.painting_mut().scene();
         self.model.set_scene(scene);
@@ -153,8 +153,8 @@ impl Offline {
     /// Follows one sample.
     ///
     /// # Errors
-    /// [`PaintRefusal`] where the painting refuses its state.
-    pub fn sample(&mut self, event_ns: u64, sample: &StylusSample) -> Result<(), PaintRefusal> {
+    /// [`EditError`] where the painting refuses its state.
+    pub fn sample(&mut self, event_ns: u64, sample: &StylusSample) -> Result<(), EditError> {
         self.follow(&[(event_ns, sample)], |_, _| {})
     }
 
@@ -162,12 +162,12 @@ impl Offline {
     /// paint. `each` is told after which sample the painting is.
     ///
     /// # Errors
-    /// [`PaintRefusal`] where the painting refuses a state.
+    /// [`EditError`] where the painting refuses a state.
     pub fn follow(
         &mut self,
         samples: &[(u64, &StylusSample)],
         mut each: impl FnMut(&mut Sequencer, usize),
-    ) -> Result<(), PaintRefusal> {
+    ) -> Result<(), EditError> {
         let first = self.samples;
         self.samples += samples.len() as u64;
         let (player, model) = (self.player, &mut self.model);

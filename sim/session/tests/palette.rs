@@ -170,7 +170,7 @@ fn the_mixing_area_takes_and_gives_paint() {
 
 impl Hand {
     /// Lays other wells on the palette, as a client of the paint node would.
-    fn lay(&mut self, wells: Vec<Well>) -> Result<(), maulstick_paint::PaintRefusal> {
+    fn lay(&mut self, wells: Vec<Well>) -> Result<(), maulstick_paint::EditError> {
         let surface = PALETTE;
         self.offline.command(Command::Wells { surface, wells })
     }

@@ -5,7 +5,7 @@ use std::time::{Duration, Instant};
 
 use maulstick_brush::BrushFile;
 use maulstick_gpu::{Choice, Device, GpuImpasto, Traffic};
-use maulstick_num::cores::with_help;
+use maulstick_num::fork_join::with_help;
 use maulstick_optics::PaintLibrary;
 use maulstick_paint::{Painting, PaintingSetup, Sequencer};
 use maulstick_rig::Fault;

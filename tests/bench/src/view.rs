@@ -10,23 +10,23 @@ use maulstick_paint::PaintingSetup;
 use maulstick_paint::display::DisplayTile;
 use maulstick_paint::lamp::lamp_over;
 use maulstick_paint::picture::Export;
-use maulstick_paint::tile::TILE_CELLS;
+use maulstick_paint::planes::TILE_CELLS;
 use maulstick_rig::Fault;
 use maulstick_types::Origin;
 use maulstick_types::paint::TILE;
 use maulstick_types::scene::{CANVAS, PALETTE, Scene, Surface};
 use maulstick_types::stylus::{DEFAULT_TILT_RAD, StylusPose, StylusSample};
-use maulstick_ui::backdrop::Backdrop;
-use maulstick_ui::brushes::{Below, Brushes};
-use maulstick_ui::follow::Held;
-use maulstick_ui::frames::{Shown, ShownTile, texels};
-use maulstick_ui::offscreen::Offscreen;
-use maulstick_ui::pulling::SheetState;
-use maulstick_ui::rack;
-use maulstick_ui::show_surface::Place;
-use maulstick_ui::surface::{Passes, SurfaceView};
-use maulstick_ui::view::{View, level};
-use maulstick_ui::visible::TileRect;
+use maulstick_ui::app::rack;
+use maulstick_ui::render::backdrop::Backdrop;
+use maulstick_ui::render::brush::renderer::{Below, BrushRenderer};
+use maulstick_ui::render::frames::{Shown, ShownTile, texels};
+use maulstick_ui::render::offscreen::Offscreen;
+use maulstick_ui::render::show_surface::Place;
+use maulstick_ui::render::surface::{Passes, SurfaceView};
+use maulstick_ui::render::tile_planner::AtlasState;
+use maulstick_ui::rig::brushes::BrushPose;
+use maulstick_ui::view::camera::{View, level};
+use maulstick_ui::view::visible_tiles::TileRect;
 
 use crate::report::{Report, quantile, sorted};
 
@@ -96,7 +96,7 @@ impl Sheet {
     fn shown(&self, tiles: Vec<ShownTile>) -> Shown {
         let room = self.grid();
         Shown {
-            sheet: SheetState {
+            atlas: AtlasState {
                 number: 1,
                 level: self.level,
                 room,
@@ -137,7 +137,7 @@ pub(crate) fn run(report: &mut Report) -> Result<(), Fault> {
     let (passes, mut backdrop, mut brushes) = {
         let gpu = picture.gpu();
         let passes = Passes::new(gpu, &export);
-        (passes, Backdrop::new(gpu), Brushes::new(gpu, &export))
+        (passes, Backdrop::new(gpu), BrushRenderer::new(gpu, &export))
     };
     let mut sheets = [
         Sheet::new(&scene, CANVAS, &view)?,
@@ -186,7 +186,7 @@ pub(crate) fn run(report: &mut Report) -> Result<(), Fault> {
         let state = model.state(pen, u64::from(frame), now_ns, &sample);
         let solve = state.as_ref().and_then(|state| state.solves.last());
         if let Some((solve, plane)) = solve.and_then(|s| Some((s, desk.plane(s.surface)?))) {
-            let held = Held {
+            let held = BrushPose {
                 name: BRUSH,
                 file: &file,
                 plane: *plane,

@@ -11,7 +11,7 @@ use maulstick_paint::light::studio_settings;
 use maulstick_types::Mixture;
 use maulstick_types::scene::{Light, Surface, WellKind};
 
-use crate::task::Task;
+use crate::background_task::BackgroundTask;
 
 /// How many mixtures are proposed.
 const PROPOSED: usize = 3;
@@ -105,7 +105,7 @@ pub(crate) fn search(ask: &Ask, library: &PaintLibrary) -> Matches {
 #[derive(Debug, Default)]
 pub(crate) struct Picker {
     asked: Option<Ask>,
-    running: Option<(Ask, Task<Matches>)>,
+    running: Option<(Ask, BackgroundTask<Matches>)>,
     found: Option<Matches>,
 }
 
@@ -144,7 +144,7 @@ impl Picker {
         {
             let (own, library) = (ask.clone(), Arc::clone(library));
             let run = move || search(&own, &library);
-            self.running = Some((ask.clone(), Task::start(context, "picker", run)));
+            self.running = Some((ask.clone(), BackgroundTask::start(context, "picker", run)));
         }
         self.found.as_ref()
     }

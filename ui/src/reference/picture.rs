@@ -10,7 +10,7 @@ use eframe::egui::{Color32, ColorImage, Context, TextureHandle, TextureOptions};
 use maulstick_exchange::{Image, ImportError, fit_to};
 use maulstick_optics::colour::srgb_decode;
 
-use crate::task::Task;
+use crate::background_task::BackgroundTask;
 
 /// Most pixels of the longer side that are kept: every display takes such a texture.
 const MOST_SIDE: usize = 2048;
@@ -109,7 +109,7 @@ pub(crate) enum Pinned {
     #[default]
     Nothing,
     /// It is being read.
-    Coming(PathBuf, Task<Result<Picture, String>>),
+    Coming(PathBuf, BackgroundTask<Result<Picture, String>>),
     /// It is here.
     Here(PathBuf, Picture, TextureHandle),
     /// It cannot be shown, and why.
@@ -122,7 +122,10 @@ impl Pinned {
     pub(crate) fn read(context: &Context, path: &Path) -> Self {
         let file = path.to_owned();
         let read = move || Picture::read(&file);
-        Self::Coming(path.to_owned(), Task::start(context, "reference", read))
+        Self::Coming(
+            path.to_owned(),
+            BackgroundTask::start(context, "reference", read),
+        )
     }
 
     /// A picture that is there.

@@ -7,11 +7,11 @@ use maulstick_types::Mixture;
 use maulstick_types::scene::{Well, WellKind};
 
 use super::*;
-use crate::orders::{Orders, PAINT};
-use crate::shell_bench::{Bench, ctrl, let_go, picture, press, until, window};
-use crate::studio::Studio;
-use crate::testing::studio;
-use crate::toasts::Toasts;
+use crate::rig::requests::{PAINT, Requests};
+use crate::rig::state::RigState;
+use crate::test_support::overlay_bench::{Bench, ctrl, let_go, picture, press, until, window};
+use crate::test_support::panel_bench::rig;
+use crate::widgets::notifications::Notifications;
 
 const PICTURE: &str = "Reference picture. Arrow keys move the cross, Enter picks, + and - zoom";
 
@@ -79,7 +79,7 @@ fn a_click_on_a_colour_proposes_mixtures_that_are_loaded_put_on_the_palette_and_
         panic!("{asked:?}");
     };
     assert_eq!((node.as_str(), brush.as_str()), (PAINT, "main"));
-    let names = of_palette(harness.state().studio.palette()).expect("paints");
+    let names = of_palette(harness.state().rig.palette()).expect("paints");
     assert!(mixture.parts.iter().all(|part| names.contains(&part.paint)));
     let copy = harness.query_all_by_label_contains("Copy ").next();
     copy.expect("a mixture").click();
@@ -138,7 +138,7 @@ fn it_goes_and_comes_by_its_key_and_is_remembered() {
     until(&mut harness, |harness| {
         harness.query_by_label(PICTURE).is_some()
     });
-    let kept = harness.state().habits.reference.clone();
+    let kept = harness.state().preferences.reference.clone();
     assert!(kept.shown && kept.path == Some(path));
     ctrl(&mut harness, Key::R, Modifiers::NONE);
     assert!(harness.query_by_label(PICTURE).is_none());
@@ -153,11 +153,11 @@ fn it_goes_and_comes_by_its_key_and_is_remembered() {
 
 #[test]
 fn numbers_that_make_no_frame_are_not_believed() {
-    let wild = ReferenceHabits {
+    let wild = ReferencePreferences {
         place: [f32::NAN, -1e9],
         size: [1.0, f32::INFINITY],
         opacity: -3.0,
-        ..ReferenceHabits::default()
+        ..ReferencePreferences::default()
     };
     let sound = wild.sound();
     assert_eq!((sound.place, sound.opacity), ([24.0, 0.0], 0.1));
@@ -167,25 +167,25 @@ fn numbers_that_make_no_frame_are_not_believed() {
 /// The frame alone, on a wall.
 struct Wall {
     reference: Reference,
-    studio: Studio,
-    habits: Habits,
+    rig: RigState,
+    preferences: Preferences,
     opacity: f32,
 }
 
 fn wall() -> Wall {
-    let habits = Habits {
-        reference: ReferenceHabits {
+    let preferences = Preferences {
+        reference: ReferencePreferences {
             shown: true,
             path: Some(PathBuf::from("/home/ada/Field.png")),
             place: [16.0, 16.0],
-            ..ReferenceHabits::default()
+            ..ReferencePreferences::default()
         },
-        ..Habits::default()
+        ..Preferences::default()
     };
     Wall {
         reference: Reference::default(),
-        studio: studio(),
-        habits,
+        rig: rig(),
+        preferences,
         opacity: 1.0,
     }
 }
@@ -196,13 +196,13 @@ fn show(ui: &mut Ui, wall: &mut Wall) {
         let picture = Picture::of([120, 80], landscape());
         wall.reference.pinned = Pinned::here(ui.ctx(), path, picture);
     }
-    wall.habits.reference.opacity = wall.opacity;
-    let (mut orders, mut toasts) = (Orders::default(), Toasts::default());
-    let mut work = Work {
-        studio: &mut wall.studio,
-        orders: &mut orders,
-        habits: &mut wall.habits,
-        toasts: &mut toasts,
+    wall.preferences.reference.opacity = wall.opacity;
+    let (mut requests, mut notifications) = (Requests::default(), Notifications::default());
+    let mut work = PanelContext {
+        rig: &mut wall.rig,
+        requests: &mut requests,
+        preferences: &mut wall.preferences,
+        notifications: &mut notifications,
     };
     assert_eq!(wall.reference.show(ui.ctx(), &mut work), None);
 }

@@ -15,7 +15,7 @@ use maulstick_types::command::Command;
 use maulstick_types::scene::{BrushHandling, BrushMode, CANVAS, PALETTE, Scene};
 use maulstick_types::topics::Topics;
 
-use super::{Action, Deed, Edge};
+use super::{Action, Edge, SwitchEvent};
 use maulstick_rig::commander::Commander;
 
 /// How long a command may take.
@@ -29,12 +29,12 @@ const SHOWN: Duration = Duration::from_secs(1);
 
 /// What uses the brush in another way for as long as it lasts.
 #[derive(Clone, Copy, Debug, Default)]
-struct Held {
+struct HeldModes {
     picks: bool,
     erases: bool,
 }
 
-impl Held {
+impl HeldModes {
     fn mode(self) -> Option<BrushMode> {
         match self {
             Self { erases: true, .. } => Some(BrushMode::Vacuum),
@@ -68,7 +68,7 @@ pub(super) struct Worker {
     wake: Wake,
     scene: Option<Scene>,
     brush: String,
-    held: Held,
+    held: HeldModes,
     /// How the brush was used before something was held, until it is so again.
     before: Option<BrushHandling>,
     /// What this has asked for last while something was held.
@@ -100,7 +100,7 @@ impl Worker {
             wake,
             scene: None,
             brush: brush.to_owned(),
-            held: Held::default(),
+            held: HeldModes::default(),
             before: None,
             asked: None,
             restored: None,
@@ -111,7 +111,7 @@ impl Worker {
     }
 
     /// Does what comes, one after the other, until nobody can press a switch any more.
-    pub(super) fn run(&mut self, edges: &Edges<Deed>) {
+    pub(super) fn run(&mut self, edges: &Edges<SwitchEvent>) {
         loop {
             let next = match self.owes() {
                 true => edges.recv_timeout(AGAIN),
@@ -122,12 +122,12 @@ impl Worker {
                 break;
             }
             match next {
-                Ok(deed) => self.act(deed),
+                Ok(event) => self.act(event),
                 Err(RecvTimeoutError::Timeout) => self.follow(),
                 Err(RecvTimeoutError::Disconnected) => break,
             }
         }
-        self.held = Held::default();
+        self.held = HeldModes::default();
         self.follow();
     }
 
@@ -136,25 +136,25 @@ impl Worker {
         self.before.is_some() && self.held.mode().is_none()
     }
 
-    fn act(&mut self, deed: Deed) {
+    fn act(&mut self, event: SwitchEvent) {
         let brush = self.brush.clone();
-        match deed {
-            Deed::Eraser(edge) => {
+        match event {
+            SwitchEvent::Eraser(edge) => {
                 self.held.erases = edge == Edge::Pressed;
                 self.follow();
             }
-            Deed::Switch(Action::Pick, edge) => {
+            SwitchEvent::Switch(Action::Pick, edge) => {
                 self.held.picks = edge == Edge::Pressed;
                 self.follow();
             }
-            Deed::Switch(Action::Undo, Edge::Pressed) => {
+            SwitchEvent::Switch(Action::Undo, Edge::Pressed) => {
                 self.send(Command::Undo { brush: Some(brush) });
             }
-            Deed::Switch(Action::Clean, Edge::Pressed) => {
+            SwitchEvent::Switch(Action::Clean, Edge::Pressed) => {
                 self.send(Command::Clean { brush });
             }
-            Deed::Switch(Action::Palette, Edge::Pressed) => self.slide(),
-            Deed::Switch(..) => {}
+            SwitchEvent::Switch(Action::Palette, Edge::Pressed) => self.slide(),
+            SwitchEvent::Switch(..) => {}
         }
     }
 

@@ -1,11 +1,11 @@
 //! Messages of the service, right and wrong, and the axes that they are in.
 
 use glam::{DQuat, DVec3};
-use maulstick_haptic::inverse3::basis::Basis;
-use maulstick_haptic::inverse3::follow::{
-    AWAY_NS, FARTHEST_M, FASTEST_M_S, Follower, LET_GO_NS, Pose, Seen,
+use maulstick_haptic::drivers::inverse3::axes::Basis;
+use maulstick_haptic::drivers::inverse3::message::{Dialect, Hindrance, Update, request};
+use maulstick_haptic::drivers::inverse3::state::{
+    AWAY_NS, DeviceTracker, FARTHEST_M, FASTEST_M_S, LET_GO_NS, Pose, Seen,
 };
-use maulstick_haptic::inverse3::message::{Dialect, Hindrance, Update, request};
 use maulstick_num::geometry::rotation;
 use proptest::prelude::*;
 use serde_json::{Value, json};
@@ -28,7 +28,7 @@ fn pose(seen: Seen) -> Pose {
 fn the_services_first_message_is_read_in_the_device_frame() {
     let message = read(&inventory());
     assert_eq!(message.dialect(), Dialect::Vector);
-    let pose = pose(Follower::new("049D", None).take(&message, 0));
+    let pose = pose(DeviceTracker::new("049D", None).take(&message, 0));
     // x right, y forward, z up to x right, y up, z toward the user.
     assert_eq!(pose.position, DVec3::new(0.01, 0.15, 0.12));
     assert_eq!(pose.velocity, Some(DVec3::new(0.1, 0.3, -0.2)));
@@ -39,7 +39,7 @@ fn the_services_first_message_is_read_in_the_device_frame() {
 fn what_services_before_3_5_say_is_read_as_well() {
     let message = read(&old_inventory());
     assert_eq!(message.dialect(), Dialect::Values);
-    let pose = pose(Follower::new("04BA", None).take(&message, 0));
+    let pose = pose(DeviceTracker::new("04BA", None).take(&message, 0));
     assert_eq!(
         pose.position,
         DVec3::new(0.07842738, 0.14297646, 0.14836666)
@@ -64,23 +64,23 @@ fn what_we_ask_is_what_the_service_documents() {
 
 #[test]
 fn what_a_state_leaves_out_is_as_it_was() {
-    let mut follower = Follower::new("049D", None);
-    follower.take(&read(&inventory()), 0);
+    let mut tracker = DeviceTracker::new("049D", None);
+    tracker.take(&read(&inventory()), 0);
     let partly = json!({ "inverse3": [{
         "device_id": "049D", "state": { "cursor_position": { "y": -0.2 } }
     }], "wireless_verse_grip": null });
-    let pose = pose(follower.take(&read(&partly), 0));
+    let pose = pose(tracker.take(&read(&partly), 0));
     assert_eq!(pose.position, DVec3::new(0.01, 0.15, 0.2));
     assert_eq!(
         (pose.velocity, pose.switches),
         (Some(DVec3::new(0.1, 0.3, -0.2)), 0b101)
     );
     // Where nothing was before, a part is no place.
-    let seen = Follower::new("049D", None).take(&read(&partly), 0);
+    let seen = DeviceTracker::new("049D", None).take(&read(&partly), 0);
     assert_eq!(seen, Seen::Nothing);
     let silent = json!({ "inverse3": [{ "device_id": "049D" }], "session": {} });
-    assert_eq!(follower.take(&read(&silent), 0), Seen::Nothing);
-    assert_eq!(follower.take(&read(&json!({})), 0), Seen::Nothing);
+    assert_eq!(tracker.take(&read(&silent), 0), Seen::Nothing);
+    assert_eq!(tracker.take(&read(&json!({})), 0), Seen::Nothing);
 }
 
 #[test]
@@ -88,21 +88,21 @@ fn numbers_that_no_device_sends_make_no_pose() {
     for metres in [1.001, -30.0, 1e300] {
         let mut wrong = state();
         wrong["cursor_position"]["z"] = json!(metres);
-        let mut follower = Follower::new("049D", None);
-        follower.take(&read(&inventory()), 0);
+        let mut tracker = DeviceTracker::new("049D", None);
+        tracker.take(&read(&inventory()), 0);
         assert_eq!(
-            follower.take(&read(&update("049D", wrong)), 0),
+            tracker.take(&read(&update("049D", wrong)), 0),
             Seen::Nowhere
         );
     }
     let mut fast = state();
     fast["cursor_velocity"]["x"] = json!(1e9);
-    let pose = pose(Follower::new("049D", None).take(&read(&update("049D", fast)), 0));
+    let pose = pose(DeviceTracker::new("049D", None).take(&read(&update("049D", fast)), 0));
     assert_eq!(pose.velocity, None);
     let mut message = inventory();
     message["wireless_verse_grip"][0]["state"]["orientation"]["w"] = json!(1e200);
-    let held = self::pose(Follower::new("049D", None).take(&read(&message), 0));
-    assert_eq!(held.orientation, DQuat::IDENTITY);
+    let handle = self::pose(DeviceTracker::new("049D", None).take(&read(&message), 0));
+    assert_eq!(handle.orientation, DQuat::IDENTITY);
     for text in [
         r#"{"inverse3":[{"device_id":"049D","state":{"cursor_position":{"x":1e999}}}]}"#,
         r#"{"inverse3":[{"device_id":"049D","state":{"cursor_position":{"x":NaN}}}]}"#,
@@ -125,14 +125,14 @@ fn what_hinders_a_device_is_told_most_important_first() {
     ] {
         let mut message = inventory();
         message["inverse3"][0]["status"][key] = json!(false);
-        let mut follower = Follower::new("049D", None);
-        assert_eq!(follower.take(&read(&message), 0), Seen::Hindered(hindrance));
+        let mut tracker = DeviceTracker::new("049D", None);
+        assert_eq!(tracker.take(&read(&message), 0), Seen::Hindered(hindrance));
         message["inverse3"][0]["status"] = json!(null);
-        assert!(matches!(follower.take(&read(&message), 0), Seen::Pose(_)));
+        assert!(matches!(tracker.take(&read(&message), 0), Seen::Pose(_)));
     }
     let mut message = inventory();
     message["inverse3"][0]["status"] = json!({ "calibrated": false, "power_supply": false });
-    let seen = Follower::new("049D", None).take(&read(&message), 0);
+    let seen = DeviceTracker::new("049D", None).take(&read(&message), 0);
     assert_eq!(seen, Seen::Hindered(Hindrance::NoPower));
 }
 
@@ -142,7 +142,7 @@ fn a_grip_is_followed_by_its_id() {
     message["verse_grip"] = json!([{
         "device_id": "12", "state": { "button": true, "orientation": { "x": 1.0, "y": 0, "z": 0, "w": 0 } }
     }]);
-    let switches = |grip| pose(Follower::new("049D", grip).take(&read(&message), 0)).switches;
+    let switches = |grip| pose(DeviceTracker::new("049D", grip).take(&read(&message), 0)).switches;
     assert_eq!(
         (
             switches(None),
@@ -157,24 +157,24 @@ fn a_grip_is_followed_by_its_id() {
 #[test]
 fn a_hand_does_not_change_its_grip_where_the_list_does() {
     let grip = |id: &str, pressed: bool| json!({ "device_id": id, "state": { "button": pressed } });
-    let (mut message, mut follower) = (inventory(), Follower::new("049D", None));
+    let (mut message, mut tracker) = (inventory(), DeviceTracker::new("049D", None));
     message["wireless_verse_grip"] = json!(null);
     for grips in [
         [grip("11", true), grip("12", false)],
         [grip("12", false), grip("11", true)],
     ] {
         message["verse_grip"] = json!(grips);
-        assert_eq!(pose(follower.take(&read(&message), 0)).switches, 1);
+        assert_eq!(pose(tracker.take(&read(&message), 0)).switches, 1);
     }
 }
 
 #[test]
 fn a_grip_that_goes_away_lets_its_buttons_go_and_then_is_out_of_range() {
-    let mut follower = Follower::new("049D", None);
+    let mut tracker = DeviceTracker::new("049D", None);
     let mut silent = inventory();
     silent["wireless_verse_grip"] = json!([]);
     let mut after = |message: &Value, ns| {
-        let pose = pose(follower.take(&read(message), ns));
+        let pose = pose(tracker.take(&read(message), ns));
         (pose.switches, pose.in_range)
     };
     assert_eq!(after(&inventory(), 0), (0b101, true));
@@ -183,7 +183,7 @@ fn a_grip_that_goes_away_lets_its_buttons_go_and_then_is_out_of_range() {
     assert_eq!(after(&silent, AWAY_NS), (0, false));
     assert_eq!(after(&inventory(), AWAY_NS), (0b101, true));
     // A device that never had one is there all the same.
-    let alone = Follower::new("049D", None).take(&read(&silent), u64::MAX);
+    let alone = DeviceTracker::new("049D", None).take(&read(&silent), u64::MAX);
     assert!(pose(alone).in_range);
 }
 
@@ -191,7 +191,7 @@ fn a_grip_that_goes_away_lets_its_buttons_go_and_then_is_out_of_range() {
 fn axes_that_cannot_be_read_are_not_taken_for_others() {
     let mut message = inventory();
     message["inverse3"][0]["config"]["basis"]["permutation"] = json!("XQZ");
-    let seen = Follower::new("049D", None).take(&read(&message), 0);
+    let seen = DeviceTracker::new("049D", None).take(&read(&message), 0);
     assert_eq!(seen, Seen::Hindered(Hindrance::UnknownAxes));
 }
 
@@ -236,8 +236,8 @@ fn is_safe(bytes: &[u8]) -> bool {
     let Ok(update) = Update::read(bytes) else {
         return true;
     };
-    let mut follower = Follower::new("A", None);
-    match (follower.take(&update, 0), follower.take(&update, 0)) {
+    let mut tracker = DeviceTracker::new("A", None);
+    match (tracker.take(&update, 0), tracker.take(&update, 0)) {
         (Seen::Pose(first), Seen::Pose(again)) => is_sound(&first) && is_sound(&again),
         _ => true,
     }
@@ -305,7 +305,7 @@ proptest! {
 
 #[test]
 fn the_message_that_is_mutated_has_a_pose() {
-    let seen = Follower::new("A", None).take(&Update::read(MESSAGE).expect("a message"), 0);
+    let seen = DeviceTracker::new("A", None).take(&Update::read(MESSAGE).expect("a message"), 0);
     assert!(is_sound(&pose(seen)));
     let wrong = Pose {
         position: DVec3::X * 1.1,

@@ -1,15 +1,15 @@
 //! Services that are absent, others', or go wrong in mid-run.
 
 use glam::DVec3;
-use maulstick_haptic::driver::{Driver, Trouble};
+use maulstick_haptic::device::driver::{DeviceError, Driver};
 use serde_json::json;
 use tungstenite::Message;
 
 use super::service::{Act, Service, inventory, state, update};
-use super::{beat, fault, opened, reading, wait_for};
+use super::{fault, opened, reading, run_ticks, wait_for};
 
 /// What a device is lost by, in the end.
-fn trouble(driver: &mut dyn Driver) -> Trouble {
+fn error_of(driver: &mut dyn Driver) -> DeviceError {
     wait_for(|| driver.read(1e-3).err()).expect("it is lost")
 }
 
@@ -144,15 +144,15 @@ fn a_service_or_device_that_goes_is_told_as_how_it_went() {
     for (act, what) in cases {
         let service = turning(act);
         let mut driver = opened(&service.url);
-        let trouble = trouble(&mut *driver);
-        assert_eq!(trouble.what, what);
-        assert!(!trouble.help.is_empty());
+        let error = error_of(&mut *driver);
+        assert_eq!(error.what, what);
+        assert!(!error.help.is_empty());
     }
     // One that goes on as it should is not lost.
     let service = turning(|| Act::Say(update("049D", state())));
     let mut driver = opened(&service.url);
     let long = || (service.heard().messages.len() > 500).then_some(());
-    assert_eq!(beat(&mut *driver, DVec3::ZERO, long), Some(()));
+    assert_eq!(run_ticks(&mut *driver, DVec3::ZERO, long), Some(()));
 }
 
 #[test]
@@ -168,7 +168,7 @@ fn what_cannot_be_read_between_states_is_passed_over() {
     let mut driver = opened(&service.url);
     for _ in 0..100 {
         let read = reading(&mut *driver).expect("there").expect("new");
-        assert_eq!(read.held.position, DVec3::new(0.01, 0.15, 0.12));
+        assert_eq!(read.handle.position, DVec3::new(0.01, 0.15, 0.12));
     }
 }
 

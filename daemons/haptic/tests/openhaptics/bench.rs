@@ -4,12 +4,12 @@ use std::io::Write;
 use std::sync::{Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
-use maulstick_device::fitting::Fitting;
-use maulstick_haptic::Placed;
-use maulstick_haptic::beat::{Delivery, Ticked};
-use maulstick_haptic::driver::Opened;
-use maulstick_haptic::host::Host;
-use maulstick_haptic::open::HapticSettings;
+use maulstick_device::registration::Registration;
+use maulstick_haptic::MountedDevice;
+use maulstick_haptic::device::driver::Opened;
+use maulstick_haptic::device::open::HapticSettings;
+use maulstick_haptic::servo::channels::{Delivery, TickRecord};
+use maulstick_haptic::servo::servo_thread::ServoThread;
 use maulstick_haptics::{Contact, Limits};
 use maulstick_libhd::{Call, Control, Script};
 use maulstick_rig::config::DeviceSection;
@@ -33,7 +33,7 @@ pub(crate) fn open(section: &DeviceSection) -> Result<Opened, Fault> {
         device: section.clone(),
         hand: None,
     };
-    maulstick_haptic::open::open(&RigConfig::default(), &settings)
+    maulstick_haptic::device::open::open(&RigConfig::default(), &settings)
 }
 
 /// Why a device cannot be opened.
@@ -57,25 +57,25 @@ pub(crate) fn patient() -> Limits {
 }
 
 /// A servo over the opened device, which stands on the desk as it is.
-pub(crate) fn start(opened: Opened, limits: Limits) -> Host {
-    let placed = Placed::new(opened.driver, Fitting::IDENTITY, 0);
-    Host::start(placed, opened.pace, limits).expect("started")
+pub(crate) fn start(opened: Opened, limits: Limits) -> ServoThread {
+    let placed = MountedDevice::new(opened.driver, Registration::IDENTITY, 0);
+    ServoThread::start(placed, opened.clock, limits).expect("started")
 }
 
 /// A servo over a device of our libHD.
-pub(crate) fn serve() -> Host {
+pub(crate) fn serve() -> ServoThread {
     start(open(&section()).expect("opened"), patient())
 }
 
 /// Sends a rigid wall of 100 N/m at the desk's z = 0, for a head of 25 mm.
-pub(crate) fn wall(host: &mut Host) {
+pub(crate) fn wall(servo: &mut ServoThread) {
     let law = ForceLaw::Rigid {
         stiffness_n_m: 100.0,
     };
     let mut contact = Contact::new(&ContactModel::bare(law, 0.025)).expect("a model");
     // Nobody sends it again.
     contact.time_to_live_s = f64::INFINITY;
-    host.models.write(Delivery {
+    servo.models.write(Delivery {
         contact: Some(contact),
         sender: None,
         number: 1,
@@ -92,13 +92,16 @@ pub(crate) fn wait(what: &str, mut is_so: impl FnMut() -> bool) {
 }
 
 /// The first tick that `look` accepts.
-pub(crate) fn tick(host: &mut Host, mut look: impl FnMut(&Ticked) -> bool) -> Ticked {
+pub(crate) fn tick(
+    servo: &mut ServoThread,
+    mut look: impl FnMut(&TickRecord) -> bool,
+) -> TickRecord {
     let mut found = None;
     wait("such a tick", || {
         while found.is_none()
-            && let Ok(ticked) = host.ticks.pop()
+            && let Ok(record) = servo.ticks.pop()
         {
-            found = Some(ticked).filter(&mut look);
+            found = Some(record).filter(&mut look);
         }
         found.is_some()
     });

@@ -1,7 +1,7 @@
 //! How a device learns where it is.
 
 use glam::DVec3;
-use maulstick_haptic::host::Host;
+use maulstick_haptic::servo::servo_thread::ServoThread;
 use maulstick_libhd::{Call, Event, Script};
 
 use crate::bench::{calls, disorder, listen, place, play, serve, tick, told, wait, wall};
@@ -24,10 +24,10 @@ fn script(styles: i32, calibration: &[u32]) -> Script {
 const RESET: &str = "put its arm into the reset position of its manual and press";
 
 /// So many more ticks, each out of range and without force.
-fn forceless(host: &mut Host, ticks: usize) {
+fn forceless(servo: &mut ServoThread, ticks: usize) {
     let mut left = ticks;
-    tick(host, |ticked| {
-        assert!(!ticked.reading.in_range && ticked.force == DVec3::ZERO);
+    tick(servo, |record| {
+        assert!(!record.reading.in_range && record.force == DVec3::ZERO);
         left -= 1;
         left == 0
     });
@@ -42,16 +42,16 @@ fn encoders_are_set_to_zero_where_the_user_says_that_the_arm_stands_right() {
             ..script(1, &[state, OK])
         });
         listen();
-        let mut host = serve();
-        wall(&mut host);
+        let mut servo = serve();
+        wall(&mut servo);
         wait("the words", || told().contains(RESET));
-        forceless(&mut host, 100);
+        forceless(&mut servo, 100);
         for buttons in [0, 2] {
             control.happen(&Event::Buttons(buttons)).expect("happens");
-            tick(&mut host, |ticked| {
-                ticked.reading.switches == buttons as u32
+            tick(&mut servo, |record| {
+                record.reading.switches == buttons as u32
             });
-            forceless(&mut host, 100);
+            forceless(&mut servo, 100);
         }
         let updates = || {
             let log = calls(&control);
@@ -61,10 +61,10 @@ fn encoders_are_set_to_zero_where_the_user_says_that_the_arm_stands_right() {
         };
         assert_eq!(updates(), 0);
         control.happen(&Event::Buttons(1)).expect("happens");
-        tick(&mut host, |ticked| {
-            ticked.reading.in_range && ticked.force.z > 0.39
+        tick(&mut servo, |record| {
+            record.reading.in_range && record.force.z > 0.39
         });
-        drop(host);
+        drop(servo);
         assert_eq!(updates(), 1);
         assert_eq!(told().matches(RESET).count(), 1, "{}", told());
         assert_eq!(disorder(&calls(&control)), None);
@@ -74,9 +74,9 @@ fn encoders_are_set_to_zero_where_the_user_says_that_the_arm_stands_right() {
 #[test]
 fn encoders_that_have_their_zero_keep_it() {
     let control = play(&script(1, &[OK]));
-    let mut host = serve();
-    tick(&mut host, |ticked| ticked.reading.in_range);
-    drop(host);
+    let mut servo = serve();
+    tick(&mut servo, |record| record.reading.in_range);
+    drop(servo);
     let log = calls(&control);
     assert!(!log.iter().any(|call| matches!(call, Call::Update(_))));
 }
@@ -86,11 +86,11 @@ fn other_styles_are_updated_while_the_scheduler_runs() {
     // All styles: by itself. The inkwell and the encoders: the inkwell.
     for (styles, style) in [(7, 2), (5, 4)] {
         let control = play(&script(styles, &[NEEDS_UPDATE, OK]));
-        let mut host = serve();
-        let first = tick(&mut host, |_| true);
+        let mut servo = serve();
+        let first = tick(&mut servo, |_| true);
         assert!(!first.reading.in_range && !first.reading.is_permitted);
-        tick(&mut host, |ticked| ticked.reading.in_range);
-        drop(host);
+        tick(&mut servo, |record| record.reading.in_range);
+        drop(servo);
         let log = calls(&control);
         let start = place(&log, |call| *call == Call::Start);
         let updated = place(&log, |call| *call == Call::Update(style));
@@ -115,8 +115,8 @@ fn a_device_that_needs_the_user_says_so_and_gives_no_force_until_then() {
     ] {
         let control = play(&script(styles, &[NEEDS_MANUAL_INPUT]));
         listen();
-        let mut host = serve();
-        wall(&mut host);
+        let mut servo = serve();
+        wall(&mut servo);
         wait("the words", || told().contains(words));
         let checks = || {
             let log = calls(&control);
@@ -124,8 +124,8 @@ fn a_device_that_needs_the_user_says_so_and_gives_no_force_until_then() {
             checks.count()
         };
         wait("two more looks", || {
-            while let Ok(ticked) = host.ticks.pop() {
-                assert!(!ticked.reading.in_range && ticked.force == DVec3::ZERO);
+            while let Ok(record) = servo.ticks.pop() {
+                assert!(!record.reading.in_range && record.force == DVec3::ZERO);
             }
             checks() >= 4
         });
@@ -136,13 +136,13 @@ fn a_device_that_needs_the_user_says_so_and_gives_no_force_until_then() {
         control
             .happen(&Event::Calibration(states))
             .expect("happens");
-        tick(&mut host, |ticked| {
-            ticked.reading.in_range && ticked.force.z > 0.39
+        tick(&mut servo, |record| {
+            record.reading.in_range && record.force.z > 0.39
         });
         wait("the good news", || {
             told().contains("phantom: the device is calibrated")
         });
-        drop(host);
+        drop(servo);
         assert_eq!(told().matches(words).count(), 1, "{}", told());
         assert_eq!(disorder(&calls(&control)), None);
     }
@@ -151,15 +151,15 @@ fn a_device_that_needs_the_user_says_so_and_gives_no_force_until_then() {
 #[test]
 fn a_device_that_loses_its_place_is_out_of_range_until_it_is_updated() {
     let control = play(&script(2, &[OK]));
-    let mut host = serve();
-    wall(&mut host);
-    tick(&mut host, |ticked| ticked.force.z > 0.39);
+    let mut servo = serve();
+    wall(&mut servo);
+    tick(&mut servo, |record| record.force.z > 0.39);
     let lost = Event::Calibration(vec![NEEDS_UPDATE, OK]);
     control.happen(&lost).expect("happens");
-    let ticked = tick(&mut host, |ticked| !ticked.reading.in_range);
-    assert_eq!(ticked.force, DVec3::ZERO);
-    tick(&mut host, |ticked| ticked.force.z > 0.39);
-    drop(host);
+    let record = tick(&mut servo, |record| !record.reading.in_range);
+    assert_eq!(record.force, DVec3::ZERO);
+    tick(&mut servo, |record| record.force.z > 0.39);
+    drop(servo);
     let log = calls(&control);
     assert!(log.contains(&Call::Update(2)));
     assert_eq!(disorder(&log), None);
@@ -169,26 +169,26 @@ fn a_device_that_loses_its_place_is_out_of_range_until_it_is_updated() {
 fn encoders_that_lose_their_zero_give_no_force_until_the_button() {
     let control = play(&script(1, &[OK]));
     listen();
-    let mut host = serve();
-    wall(&mut host);
-    tick(&mut host, |ticked| ticked.force.z > 0.39);
+    let mut servo = serve();
+    wall(&mut servo);
+    tick(&mut servo, |record| record.force.z > 0.39);
     let lost = Event::Calibration(vec![NEEDS_UPDATE, OK]);
     control.happen(&lost).expect("happens");
-    tick(&mut host, |ticked| !ticked.reading.in_range);
-    forceless(&mut host, 100);
+    tick(&mut servo, |record| !record.reading.in_range);
+    forceless(&mut servo, 100);
     wait("the words", || told().contains(RESET));
     control.happen(&Event::Buttons(1)).expect("happens");
-    tick(&mut host, |ticked| ticked.force.z > 0.39);
-    drop(host);
+    tick(&mut servo, |record| record.force.z > 0.39);
+    drop(servo);
     assert_eq!(disorder(&calls(&control)), None);
 }
 
 #[test]
 fn calibration_is_looked_at_within_frames_only() {
     let control = play(&script(2, &[NEEDS_UPDATE, OK]));
-    let mut host = serve();
-    tick(&mut host, |ticked| ticked.reading.in_range);
-    drop(host);
+    let mut servo = serve();
+    tick(&mut servo, |record| record.reading.in_range);
+    drop(servo);
     let mut is_open = false;
     for call in calls(&control) {
         match call {

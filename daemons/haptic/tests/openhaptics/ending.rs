@@ -3,7 +3,7 @@
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
 use glam::DVec3;
-use maulstick_haptic::driver::Wrench;
+use maulstick_haptic::device::driver::Wrench;
 use maulstick_haptics::Switch;
 use maulstick_libhd::{Call, Script};
 
@@ -19,10 +19,10 @@ fn pressed() -> Script {
 /// The calls of a servo that presses and is ended.
 fn ended() -> Vec<Call> {
     let control = play(&pressed());
-    let mut host = serve();
-    wall(&mut host);
-    tick(&mut host, |ticked| ticked.force.z > 0.39);
-    drop(host);
+    let mut servo = serve();
+    wall(&mut servo);
+    tick(&mut servo, |record| record.force.z > 0.39);
+    drop(servo);
     let log = calls(&control);
     assert_eq!(disorder(&log), None);
     log
@@ -66,7 +66,7 @@ fn a_servo_that_panics_within_a_frame_ends_it_without_force() {
     let mut frames = 0;
     let ended = catch_unwind(AssertUnwindSafe(|| {
         let driver = &mut opened.driver;
-        opened.pace.run(&mut |_| {
+        opened.clock.run(&mut |_| {
             driver.read(1e-3).expect("there");
             frames += 1;
             assert!(frames < 20, "the seeded fault");
@@ -91,7 +91,7 @@ fn a_servo_that_ends_between_frames_with_force_takes_it_back_in_one_more() {
     let control = play(&pressed());
     let mut opened = open(&section()).expect("opened");
     let driver = &mut opened.driver;
-    let ran = opened.pace.run(&mut |_| {
+    let ran = opened.clock.run(&mut |_| {
         driver.read(1e-3).expect("there");
         let torque = DVec3::ZERO;
         let force = DVec3::X;
@@ -127,25 +127,25 @@ fn a_device_that_was_opened_and_never_ran_is_let_go() {
 #[test]
 fn amplifiers_are_switched_within_a_frame() {
     let control = play(&pressed());
-    let mut host = serve();
-    wall(&mut host);
-    tick(&mut host, |ticked| ticked.force.z > 0.39);
-    let wish = |switch| maulstick_haptic::wish::Wish {
+    let mut servo = serve();
+    wall(&mut servo);
+    tick(&mut servo, |record| record.force.z > 0.39);
+    let settings = |switch| maulstick_haptic::servo::force_control::ForceControl {
         switch,
         ..Default::default()
     };
-    host.wishes.write(wish(Switch::Off));
+    servo.controls.write(settings(Switch::Off));
     wait("the amplifiers off", || {
         calls(&control).contains(&Call::Disable(0x4000))
     });
-    host.wishes.write(wish(Switch::On));
-    while host.ticks.pop().is_ok() {}
+    servo.controls.write(settings(Switch::On));
+    while servo.ticks.pop().is_ok() {}
     wait("the amplifiers on", || {
         let log = calls(&control);
         let ons = log.iter().filter(|call| **call == Call::Enable(0x4000));
         ons.count() == 2
     });
-    tick(&mut host, |ticked| ticked.force.z > 0.39);
-    drop(host);
+    tick(&mut servo, |record| record.force.z > 0.39);
+    drop(servo);
     assert_eq!(disorder(&calls(&control)), None);
 }

@@ -1,8 +1,8 @@
 //! What goes wrong while it runs.
 
 use glam::DVec3;
-use maulstick_haptic::driver::Trouble;
-use maulstick_haptic::host::Host;
+use maulstick_haptic::device::driver::DeviceError;
+use maulstick_haptic::servo::servo_thread::ServoThread;
 use maulstick_libhd::script::Scheduler;
 use maulstick_libhd::{Call, Control, Event, Moment, Script};
 
@@ -19,21 +19,21 @@ fn pressed() -> Script {
 }
 
 /// Why a servo over a device has ended.
-fn end(mut host: Host) -> Trouble {
+fn end(mut servo: ServoThread) -> DeviceError {
     wait("the end", || {
-        while host.ticks.pop().is_ok() {}
-        host.has_ended()
+        while servo.ticks.pop().is_ok() {}
+        servo.has_ended()
     });
-    host.trouble().expect("a trouble")
+    servo.error().expect("an error")
 }
 
 /// Serves until there is force, and has something happen then that ends the servo.
-fn lost(control: &Control, event: &Event) -> Trouble {
-    let mut host = serve();
-    wall(&mut host);
-    tick(&mut host, |ticked| ticked.force.z > 0.39);
+fn lost(control: &Control, event: &Event) -> DeviceError {
+    let mut servo = serve();
+    wall(&mut servo);
+    tick(&mut servo, |record| record.force.z > 0.39);
     control.happen(event).expect("happens");
-    end(host)
+    end(servo)
 }
 
 /// The forces of a log's frames, N.
@@ -48,7 +48,7 @@ fn forces(calls: &[Call]) -> Vec<DVec3> {
 }
 
 #[test]
-fn troubles_of_the_force_are_told_once_and_the_servo_goes_on() {
+fn errors_of_the_force_are_told_once_and_the_servo_goes_on() {
     for (code, words) in [
         (0x200, "the motors are warm"),
         (0x201, "a force was beyond"),
@@ -65,18 +65,18 @@ fn troubles_of_the_force_are_told_once_and_the_servo_goes_on() {
             ..pressed()
         });
         listen();
-        let mut host = serve();
-        wall(&mut host);
-        tick(&mut host, |ticked| ticked.force.z > 0.39);
+        let mut servo = serve();
+        wall(&mut servo);
+        tick(&mut servo, |record| record.force.z > 0.39);
         wait("both errors", || {
-            while host.ticks.pop().is_ok() {}
+            while servo.ticks.pop().is_ok() {}
             let log = calls(&control);
             let errors = log.iter().filter(|call| **call == Call::Error(code));
             errors.count() == 2
         });
         wait("the words", || told().contains(words));
-        tick(&mut host, |ticked| ticked.force.z > 0.39);
-        drop(host);
+        tick(&mut servo, |record| record.force.z > 0.39);
+        drop(servo);
         assert_eq!(told().matches(words).count(), 1, "{}", told());
         assert!(told().contains("phantom: "), "{}", told());
         // The errors are the only disorder.
@@ -94,8 +94,8 @@ fn every_other_error_ends_the_servo_without_force() {
     ] {
         for event in [Event::Error(code, -28), Event::ErrorAtEnd(code, -28)] {
             let control = play(&pressed());
-            let trouble = lost(&control, &event);
-            assert_eq!(trouble.code, i64::from(code), "{trouble}");
+            let error = lost(&control, &event);
+            assert_eq!(error.code, i64::from(code), "{error}");
             let mut log = calls(&control);
             let at = place(&log, |call| *call == Call::Error(code));
             // The frame that was open, and one that takes the force back.
@@ -113,9 +113,9 @@ fn every_other_error_ends_the_servo_without_force() {
 fn a_device_that_is_unplugged_is_lost_and_found_again() {
     let control = play(&pressed());
     listen();
-    let trouble = lost(&control, &Event::Unplug);
+    let error = lost(&control, &Event::Unplug);
     assert_eq!(
-        trouble.to_string(),
+        error.to_string(),
         "the haptic device does not answer (0x302)"
     );
     assert!(told().contains("(0x302, internal -28)"), "{}", told());
@@ -131,13 +131,13 @@ fn a_device_that_is_unplugged_is_lost_and_found_again() {
     let fault = refusal(&section());
     assert!(fault.what.contains("does not answer"), "{fault}");
     control.happen(&Event::Plug).expect("happens");
-    let mut host = serve();
-    wall(&mut host);
-    tick(&mut host, |ticked| ticked.force.z > 0.39);
+    let mut servo = serve();
+    wall(&mut servo);
+    tick(&mut servo, |record| record.force.z > 0.39);
 }
 
 #[test]
-fn a_scheduler_that_does_not_take_the_servo_is_a_trouble() {
+fn a_scheduler_that_does_not_take_the_servo_is_an_error() {
     let refused = Script {
         schedule_error: Some(0x501),
         ..Script::default()
@@ -157,9 +157,9 @@ fn a_scheduler_that_does_not_take_the_servo_is_a_trouble() {
 }
 
 #[test]
-fn a_scheduler_that_never_calls_or_calls_no_more_is_a_trouble() {
-    let in_order = |control: &Control, trouble: Trouble| {
-        assert!(trouble.what.contains("does not call the servo"));
+fn a_scheduler_that_never_calls_or_calls_no_more_is_an_error() {
+    let in_order = |control: &Control, error: DeviceError| {
+        assert!(error.what.contains("does not call the servo"));
         let log = calls(control);
         let end = place(&log, |call| *call == Call::Stop);
         assert!(matches!(
@@ -180,8 +180,8 @@ fn a_scheduler_that_never_calls_or_calls_no_more_is_a_trouble() {
 #[test]
 fn a_device_that_says_no_place_gives_no_force_and_is_lost_in_the_end() {
     let control = play(&pressed());
-    let trouble = lost(&control, &Event::Axes([[0.0; 3]; 3]));
-    assert!(trouble.what.contains("no place"), "{trouble}");
+    let error = lost(&control, &Event::Axes([[0.0; 3]; 3]));
+    assert!(error.what.contains("no place"), "{error}");
     let log = calls(&control);
     let forces = forces(&log);
     let without = forces.iter().rev();

@@ -3,9 +3,9 @@
 use std::ops::ControlFlow;
 
 use glam::{DQuat, DVec3};
-use maulstick_device::fitting::Fitting;
-use maulstick_haptic::Placed;
-use maulstick_haptic::driver::{Opened, Reading, Wrench};
+use maulstick_device::registration::Registration;
+use maulstick_haptic::MountedDevice;
+use maulstick_haptic::device::driver::{Opened, Reading, Wrench};
 use maulstick_libhd::script::Grip;
 use maulstick_libhd::{Call, Event, Script};
 use maulstick_num::geometry::{Rigid, rotation};
@@ -18,18 +18,22 @@ use crate::counting::allocations;
 
 /// Has the scheduler call `work` so often.
 fn during(opened: &mut Opened, times: usize, mut work: impl FnMut(&mut Opened) + Send) {
-    let mut pace = std::mem::replace(&mut opened.pace, Box::new(maulstick_haptic::pace::OwnClock));
+    let mut clock = std::mem::replace(
+        &mut opened.clock,
+        Box::new(maulstick_haptic::servo::clock::MonotonicClock),
+    );
     let mut left = times;
-    pace.run(&mut |_| {
-        work(opened);
-        left -= 1;
-        match left {
-            0 => ControlFlow::Break(()),
-            _ => ControlFlow::Continue(()),
-        }
-    })
-    .expect("ran");
-    opened.pace = pace;
+    clock
+        .run(&mut |_| {
+            work(opened);
+            left -= 1;
+            match left {
+                0 => ControlFlow::Break(()),
+                _ => ControlFlow::Continue(()),
+            }
+        })
+        .expect("ran");
+    opened.clock = clock;
 }
 
 fn read(opened: &mut Opened) -> Reading {
@@ -52,18 +56,19 @@ fn a_stylus_is_on_the_desk_where_it_is_and_as_it_is_turned() {
         translation: DVec3::new(0.3, 0.0, 0.1),
     };
     let opened = open(&section()).expect("opened");
-    let placed = Placed::new(opened.driver, Fitting::standing(to_desk), 0);
+    let placed = MountedDevice::new(opened.driver, Registration::standing(to_desk), 0);
     assert_eq!(
         placed.abilities().senses,
         axes::POSITION | axes::ORIENTATION | axes::VELOCITY | axes::SWITCHES
     );
-    let mut host =
-        maulstick_haptic::host::Host::start(placed, opened.pace, patient()).expect("started");
-    let reading = tick(&mut host, |ticked| ticked.reading.in_range).reading;
-    let held = reading.held;
-    assert!((held.position - DVec3::new(0.31, -0.03, 0.08)).length() < 1e-12);
-    assert!((held.velocity - DVec3::new(0.1, 0.3, 0.2)).length() < 1e-12);
-    assert!(held.orientation.angle_between(to_desk.rotation * turn) < 1e-7);
+    let mut servo =
+        maulstick_haptic::servo::servo_thread::ServoThread::start(placed, opened.clock, patient())
+            .expect("started");
+    let reading = tick(&mut servo, |record| record.reading.in_range).reading;
+    let handle = reading.handle;
+    assert!((handle.position - DVec3::new(0.31, -0.03, 0.08)).length() < 1e-12);
+    assert!((handle.velocity - DVec3::new(0.1, 0.3, 0.2)).length() < 1e-12);
+    assert!(handle.orientation.angle_between(to_desk.rotation * turn) < 1e-7);
     assert_eq!(reading.switches, 0b101);
     assert!(reading.is_permitted);
 }
@@ -82,7 +87,7 @@ fn a_stylus_that_senses_no_turning_points_away_from_the_user() {
         seen = Some(read(opened));
         opened.driver.write(Wrench::ZERO).expect("written");
     });
-    let orientation = seen.expect("a reading").held.orientation;
+    let orientation = seen.expect("a reading").handle.orientation;
     assert!(orientation.angle_between(DQuat::IDENTITY) < 1e-12);
 }
 
@@ -99,27 +104,28 @@ fn a_force_on_the_desk_arrives_in_newtons_in_the_base_s_frame() {
     ] {
         let control = play(&Script::default());
         let opened = open(&section()).expect("opened");
-        let (mut pace, to_desk) = (
-            opened.pace,
+        let (mut clock, to_desk) = (
+            opened.clock,
             Rigid {
                 rotation: to_desk,
                 translation: DVec3::new(0.1, 0.2, 0.3),
             },
         );
-        let mut placed = Placed::new(opened.driver, Fitting::standing(to_desk), 0);
+        let mut placed = MountedDevice::new(opened.driver, Registration::standing(to_desk), 0);
         let mut forces = vec![DVec3::Z, DVec3::Y, DVec3::X];
-        pace.run(&mut |_| {
-            placed.read(1e-3).expect("there");
-            match forces.pop() {
-                Some(force) => {
-                    placed.write(force * 1.5).expect("written");
-                    ControlFlow::Continue(())
+        clock
+            .run(&mut |_| {
+                placed.read(1e-3).expect("there");
+                match forces.pop() {
+                    Some(force) => {
+                        placed.write(force * 1.5).expect("written");
+                        ControlFlow::Continue(())
+                    }
+                    None => ControlFlow::Break(()),
                 }
-                None => ControlFlow::Break(()),
-            }
-        })
-        .expect("ran");
-        drop((placed, pace));
+            })
+            .expect("ran");
+        drop((placed, clock));
         let log = calls(&control);
         let given: Vec<DVec3> = log
             .iter()
@@ -210,16 +216,16 @@ fn a_stylus_in_its_inkwell_is_out_of_range() {
         inkwell: 1,
         ..Script::default()
     });
-    let mut host = serve();
+    let mut servo = serve();
     assert!(
-        !tick(&mut host, |ticked| ticked.tick.fault.is_none())
+        !tick(&mut servo, |record| record.tick.fault.is_none())
             .reading
             .in_range
     );
     control.happen(&Event::Inkwell(0)).expect("happens");
-    tick(&mut host, |ticked| ticked.reading.in_range);
+    tick(&mut servo, |record| record.reading.in_range);
     control.happen(&Event::Inkwell(1)).expect("happens");
-    tick(&mut host, |ticked| !ticked.reading.in_range);
+    tick(&mut servo, |record| !record.reading.in_range);
 }
 
 #[test]
@@ -230,19 +236,19 @@ fn a_hand_that_lets_go_of_a_touch_x_feels_nothing_and_a_touch_has_no_such_switch
             position: [0.0, 0.0, 21.0],
             ..Script::default()
         });
-        let mut host = serve();
-        wall(&mut host);
-        tick(&mut host, |ticked| ticked.force.z > 0.39);
+        let mut servo = serve();
+        wall(&mut servo);
+        tick(&mut servo, |record| record.force.z > 0.39);
         control.happen(&Event::Safety(0)).expect("happens");
         if senses {
-            let ticked = tick(&mut host, |ticked| !ticked.reading.is_permitted);
-            assert_eq!(ticked.force, DVec3::ZERO);
+            let record = tick(&mut servo, |record| !record.reading.is_permitted);
+            assert_eq!(record.force, DVec3::ZERO);
             control.happen(&Event::Safety(1)).expect("happens");
-            tick(&mut host, |ticked| ticked.force.z > 0.39);
+            tick(&mut servo, |record| record.force.z > 0.39);
         } else {
             let mut left = 100;
-            tick(&mut host, |ticked| {
-                assert!(ticked.reading.is_permitted && ticked.force.z > 0.39);
+            tick(&mut servo, |record| {
+                assert!(record.reading.is_permitted && record.force.z > 0.39);
                 left -= 1;
                 left == 0
             });
@@ -263,15 +269,15 @@ fn warm_motors_give_their_continuous_force() {
         continuous_force_n: can.continuous_force_n,
         ..patient()
     };
-    let mut host = start(opened, limits);
-    wall(&mut host);
+    let mut servo = start(opened, limits);
+    wall(&mut servo);
     // 20 mm into a wall of 100 N/m.
-    tick(&mut host, |ticked| (ticked.force.z - 2.0).abs() < 1e-9);
+    tick(&mut servo, |record| (record.force.z - 2.0).abs() < 1e-9);
     let hot = Event::Temperatures([0.1, 0.2, 0.1, 0.1, 0.95, 0.1]);
     control.happen(&hot).expect("happens");
-    let ticked = tick(&mut host, |ticked| ticked.tick.cap_n < 0.51);
-    assert_eq!(ticked.reading.motor_temperature, 0.95);
-    tick(&mut host, |ticked| (ticked.force.z - 0.5).abs() < 0.01);
+    let record = tick(&mut servo, |record| record.tick.cap_n < 0.51);
+    assert_eq!(record.reading.motor_temperature, 0.95);
+    tick(&mut servo, |record| (record.force.z - 0.5).abs() < 0.01);
 }
 
 #[test]
@@ -282,17 +288,17 @@ fn a_hand_that_presses_onto_the_wall_is_held_up_by_it() {
         position: [0.0, 0.0, 15.0],
         ..Script::default()
     });
-    let mut host = serve();
-    wall(&mut host);
+    let mut servo = serve();
+    wall(&mut servo);
     let depth = |z: f64| 0.025 - z;
     let mut rest = 0;
-    let ticked = tick(&mut host, |ticked| {
-        let near = (depth(ticked.reading.held.position.z) - 0.0067).abs() < 0.0012;
+    let record = tick(&mut servo, |record| {
+        let near = (depth(record.reading.handle.position.z) - 0.0067).abs() < 0.0012;
         rest = if near { rest + 1 } else { 0 };
         rest > 100
     });
-    assert!(ticked.force.z > 0.4, "{}", ticked.force);
-    drop(host);
+    assert!(record.force.z > 0.4, "{}", record.force);
+    drop(servo);
     assert_eq!(disorder(&calls(&control)), None);
 }
 
@@ -367,16 +373,16 @@ fn a_model_whose_dead_man_s_switch_is_silent_gives_no_force_and_says_so() {
         ..Script::default()
     });
     listen();
-    let mut host = serve();
-    wall(&mut host);
+    let mut servo = serve();
+    wall(&mut servo);
     let words = "does not say whether the stylus is held";
     wait("the words", || told().contains(words));
     let mut left = 100;
-    tick(&mut host, |ticked| {
-        assert_eq!(ticked.force, DVec3::ZERO);
+    tick(&mut servo, |record| {
+        assert_eq!(record.force, DVec3::ZERO);
         left -= 1;
         left == 0
     });
-    drop((host, control));
+    drop((servo, control));
     assert_eq!(told().matches(words).count(), 1, "{}", told());
 }

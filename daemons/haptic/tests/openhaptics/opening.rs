@@ -122,14 +122,14 @@ fn a_device_that_says_nothing_of_itself_is_taken_for_the_weakest() {
     assert_eq!(limits, (3.3, 0.88, 400.0));
     assert_eq!(can.workspace_m[3], 0.08);
     // What it cannot answer it is asked once, and is taken for in range and cold.
-    let mut host = serve();
+    let mut servo = serve();
     let mut count = 0;
-    let ticked = tick(&mut host, |ticked| {
-        count += u32::from(ticked.reading.in_range);
+    let record = tick(&mut servo, |record| {
+        count += u32::from(record.reading.in_range);
         count > 50
     });
-    assert_eq!(ticked.reading.motor_temperature, 0.0);
-    drop(host);
+    assert_eq!(record.reading.motor_temperature, 0.0);
+    drop(servo);
     let log = calls(&control);
     let first = log.iter().rposition(|call| *call == Call::Start);
     let errors = log[first.expect("a start")..]

@@ -5,10 +5,10 @@ use std::collections::VecDeque;
 use std::sync::{Arc, Mutex, MutexGuard};
 
 use glam::DVec3;
-use maulstick_haptic::driver::{Driver, Reading, Trouble, Wrench};
-use maulstick_haptic::polhem::Polhem;
-use maulstick_haptic::polhem::frame::Length;
-use maulstick_haptic::polhem::link::Wire;
+use maulstick_haptic::device::driver::{DeviceError, Driver, Reading, Wrench};
+use maulstick_haptic::drivers::polhem::Polhem;
+use maulstick_haptic::drivers::polhem::frame::Length;
+use maulstick_haptic::drivers::polhem::link::Wire;
 use nix::errno::Errno;
 
 use super::firmware::{Firmware, Reads, Style};
@@ -123,7 +123,7 @@ impl Wire for Cable {
 }
 
 /// A servo's beat over a driver, a millisecond at a time.
-pub(crate) struct Beat {
+pub(crate) struct TickHarness {
     pub(crate) polhem: Polhem<Cable>,
     pub(crate) cable: Cable,
     waited_s: f64,
@@ -131,23 +131,23 @@ pub(crate) struct Beat {
     pub(crate) longest_s: f64,
 }
 
-impl Beat {
+impl TickHarness {
     pub(crate) fn over(style: Style, reads: Reads, length: Length) -> Self {
         let cable = Cable::to(Firmware::new(style, reads));
-        let mut beat = Self {
+        let mut harness = Self {
             polhem: Polhem::new(cable.clone(), length),
             cable,
             waited_s: 0.0,
             longest_s: 0.0,
         };
         // The first pose, as after waking.
-        while beat.tick(DVec3::ZERO).expect("there").is_none() {}
-        beat.longest_s = 0.0;
-        beat
+        while harness.tick(DVec3::ZERO).expect("there").is_none() {}
+        harness.longest_s = 0.0;
+        harness
     }
 
     /// A tick in which the servo asks for `force`, if there is a reading.
-    pub(crate) fn tick(&mut self, force: DVec3) -> Result<Option<Reading>, Trouble> {
+    pub(crate) fn tick(&mut self, force: DVec3) -> Result<Option<Reading>, DeviceError> {
         self.cable.advance(1e-3);
         self.waited_s += 1e-3;
         self.longest_s = self.longest_s.max(self.waited_s);

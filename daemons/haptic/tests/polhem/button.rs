@@ -5,17 +5,20 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::time::{Duration, Instant};
 
 use glam::DVec3;
-use maulstick_device::corners::{Glimpse, Touch};
-use maulstick_device::fitting::{Fitting, Similarity};
-use maulstick_haptic::Placed;
-use maulstick_haptic::beat::{Beat, Before, Channels, Delivery, Ticked};
-use maulstick_haptic::driver::Opened;
-use maulstick_haptic::pace::OwnClock;
-use maulstick_haptic::polhem::Polhem;
-use maulstick_haptic::polhem::frame::Length;
-use maulstick_haptic::showing::watch;
-use maulstick_haptic::wish::Wish;
-use maulstick_haptics::{Kept, Limits};
+use maulstick_device::corner_calibration::{HandReading, Touch};
+use maulstick_device::registration::{Registration, Similarity};
+use maulstick_haptic::MountedDevice;
+use maulstick_haptic::device::driver::Opened;
+use maulstick_haptic::device::probe::probe;
+use maulstick_haptic::drivers::polhem::Polhem;
+use maulstick_haptic::drivers::polhem::frame::Length;
+use maulstick_haptic::servo::clock::MonotonicClock;
+use maulstick_haptic::servo::force_control::ForceControl;
+use maulstick_haptic::servo::{
+    channels::{Channels, Delivery, TickRecord},
+    servo_loop::{PreviousServo, ServoLoop},
+};
+use maulstick_haptics::{Limits, ServoMemory};
 
 use super::bench::Cable;
 use super::firmware::{Firmware, Reads, Style};
@@ -28,17 +31,17 @@ fn cable() -> Cable {
     Cable::to(Firmware::new(Style::Double, Reads::Lines))
 }
 
-/// Beats until a tick is as it is wanted.
+/// Ticks until a record is as wanted.
 fn until(
-    beat: &mut Beat,
-    told: &mut rtrb::Consumer<Ticked>,
-    mut is_wanted: impl FnMut(&Ticked) -> bool,
+    servo: &mut ServoLoop,
+    told: &mut rtrb::Consumer<TickRecord>,
+    mut is_wanted: impl FnMut(&TickRecord) -> bool,
 ) -> bool {
     let give_up = Instant::now() + Duration::from_secs(20);
     while Instant::now() < give_up {
-        assert!(beat.beat(0).is_continue(), "{:?}", beat.trouble());
-        while let Ok(ticked) = told.pop() {
-            if is_wanted(&ticked) {
+        assert!(servo.tick(0).is_continue(), "{:?}", servo.error());
+        while let Ok(record) = told.pop() {
+            if is_wanted(&record) {
                 return true;
             }
         }
@@ -51,46 +54,46 @@ fn until(
 fn a_clutch_at_the_button_holds_for_as_long_as_it_is_pressed() {
     let cable = cable();
     let press = |d| cable.bench().firmware.encoders[3] = d;
-    let fitting = Fitting {
+    let registration = Registration {
         to_desk: Similarity::IDENTITY,
         ferrule_m: DVec3::ZERO,
         corners: None,
     };
     let polhem = Polhem::new(cable.clone(), Length::Short);
-    let placed = Placed::new(Box::new(polhem), fitting, 1);
+    let placed = MountedDevice::new(Box::new(polhem), registration, 1);
     let (ticks, mut told) = rtrb::RingBuffer::new(64);
     let (_, models) = triple_buffer::triple_buffer(&Delivery::default());
-    let (_, wishes) = triple_buffer::triple_buffer(&Wish::default());
+    let (_, controls) = triple_buffer::triple_buffer(&ForceControl::default());
     let channels = Channels {
         ticks,
         models,
-        wishes,
+        controls,
         stop: std::sync::Arc::default(),
         dropped: std::sync::Arc::default(),
     };
     let limits = Limits::default();
-    let before = Before {
-        kept: Kept::nothing(limits),
-        armings: 0,
+    let previous = PreviousServo {
+        memory: ServoMemory::fresh(limits),
+        rearms: 0,
     };
-    let mut beat = Beat::new(placed, limits, before, channels);
+    let mut servo = ServoLoop::new(placed, limits, previous, channels);
 
     press(RELEASED);
-    assert!(until(&mut beat, &mut told, |ticked| ticked
+    assert!(until(&mut servo, &mut told, |record| record
         .reading
         .in_range));
     press(PRESSED);
-    assert!(until(&mut beat, &mut told, |ticked| !ticked
+    assert!(until(&mut servo, &mut told, |record| !record
         .reading
         .in_range));
     // Many times as long as the button is left unasked.
     let mut since_ns = None;
-    assert!(until(&mut beat, &mut told, |ticked| {
-        assert!(!ticked.reading.in_range && ticked.reading.switches == 1);
-        ticked.monotonic_ns - *since_ns.get_or_insert(ticked.monotonic_ns) > 400_000_000
+    assert!(until(&mut servo, &mut told, |record| {
+        assert!(!record.reading.in_range && record.reading.switches == 1);
+        record.monotonic_ns - *since_ns.get_or_insert(record.monotonic_ns) > 400_000_000
     }));
     press(RELEASED);
-    assert!(until(&mut beat, &mut told, |ticked| ticked
+    assert!(until(&mut servo, &mut told, |record| record
         .reading
         .in_range));
 }
@@ -98,7 +101,7 @@ fn a_clutch_at_the_button_holds_for_as_long_as_it_is_pressed() {
 fn opened(cable: &Cable) -> Opened {
     Opened {
         driver: Box::new(Polhem::new(cable.clone(), Length::Short)),
-        pace: Box::new(OwnClock),
+        clock: Box::new(MonotonicClock),
         what: String::new(),
     }
 }
@@ -109,22 +112,22 @@ fn a_hand_that_shows_a_place_is_seen_to_press() {
     cable.bench().firmware.encoders[3] = PRESSED;
     let give_up = Instant::now() + Duration::from_secs(20);
     let mut is_seen = false;
-    let watched = watch(opened(&cable), DVec3::ZERO, |glimpse| {
-        is_seen |= matches!(glimpse, Glimpse::Seen(seen) if seen.touch == Touch::Down);
+    let probed = probe(opened(&cable), DVec3::ZERO, |reading| {
+        is_seen |= matches!(reading, HandReading::Sample(seen) if seen.touch == Touch::Down);
         match is_seen || Instant::now() > give_up {
             true => ControlFlow::Break(()),
             false => ControlFlow::Continue(()),
         }
     });
-    assert_eq!((watched, is_seen), (Ok(()), true));
+    assert_eq!((probed, is_seen), (Ok(()), true));
 }
 
 #[test]
-fn whoever_looks_and_panics_ends_the_watching() {
-    let watched = catch_unwind(AssertUnwindSafe(|| {
-        watch(opened(&cable()), DVec3::ZERO, |_| {
+fn a_panic_of_the_caller_ends_the_probe() {
+    let probed = catch_unwind(AssertUnwindSafe(|| {
+        probe(opened(&cable()), DVec3::ZERO, |_| {
             panic!("the seeded fault")
         })
     }));
-    assert!(watched.is_err());
+    assert!(probed.is_err());
 }

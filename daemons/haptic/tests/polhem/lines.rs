@@ -1,8 +1,8 @@
 //! Lines as both sides write them, and as nobody should.
 
 use glam::DVec3;
-use maulstick_haptic::polhem::frame::{
-    Answer, FARTHEST_MM, FARTHEST_RAD, Heard, Length, Line, Lines, read,
+use maulstick_haptic::drivers::polhem::frame::{
+    Answer, FARTHEST_MM, FARTHEST_RAD, Length, Line, Lines, ParsedLine, read,
 };
 use proptest::prelude::*;
 
@@ -25,7 +25,7 @@ fn a_force_is_the_line_that_the_devices_own_host_writes() {
 
 #[test]
 fn a_pose_is_read_as_it_is_printed() {
-    let Some(Heard::Answer(Answer::Pose(pose))) = read(POSE) else {
+    let Some(ParsedLine::Answer(Answer::Pose(pose))) = read(POSE) else {
         panic!("no pose");
     };
     assert_eq!(pose.position_mm, [-59.276, 13.383, -148.002]);
@@ -36,7 +36,7 @@ fn a_pose_is_read_as_it_is_printed() {
 #[test]
 fn encoders_are_read_and_tell_the_button() {
     let pressed = |line: &[u8]| match read(line) {
-        Some(Heard::Answer(Answer::Encoders(encoders))) => Some(encoders.is_pressed()),
+        Some(ParsedLine::Answer(Answer::Encoders(encoders))) => Some(encoders.is_pressed()),
         _ => None,
     };
     assert_eq!(pressed(b"8298 -10771 19756 0 30 0 1       "), Some(false));
@@ -58,7 +58,7 @@ fn what_is_almost_a_line_is_none() {
         b"-59.276 13.383 -148.002\x00 0.0919 -1.8483 1.0370 -1.9512 0",
         b"OK",
     ] {
-        assert_eq!(read(line), Some(Heard::Garbage), "{line:?}");
+        assert_eq!(read(line), Some(ParsedLine::Garbage), "{line:?}");
     }
     for line in [&b""[..], b"   ", b"\r", b" \t "] {
         assert_eq!(read(line), None);
@@ -69,23 +69,23 @@ fn what_is_almost_a_line_is_none() {
 fn a_line_that_does_not_end_is_dropped_as_a_whole() {
     let mut lines = Lines::default();
     let bytes = [&[b' '; 500][..], POSE, b"\n", POSE, b"\n"].concat();
-    let heard: Vec<Heard> = bytes.iter().filter_map(|byte| lines.push(*byte)).collect();
+    let heard: Vec<ParsedLine> = bytes.iter().filter_map(|byte| lines.push(*byte)).collect();
     assert_eq!(heard.len(), 2);
-    assert_eq!(heard[0], Heard::Garbage);
+    assert_eq!(heard[0], ParsedLine::Garbage);
     assert_eq!(Some(heard[1]), read(POSE));
 }
 
 /// Whether an answer's numbers are in their ranges.
-fn is_sound(heard: &Heard) -> bool {
+fn is_sound(heard: &ParsedLine) -> bool {
     match heard {
-        Heard::Answer(Answer::Pose(pose)) => {
+        ParsedLine::Answer(Answer::Pose(pose)) => {
             pose.position_mm.iter().all(|mm| mm.abs() <= FARTHEST_MM)
                 && pose
                     .angles_rad
                     .iter()
                     .all(|angle| angle.abs() <= FARTHEST_RAD)
         }
-        Heard::Answer(Answer::Encoders(_)) | Heard::Garbage => true,
+        ParsedLine::Answer(Answer::Encoders(_)) | ParsedLine::Garbage => true,
     }
 }
 

@@ -7,8 +7,8 @@ use std::thread::JoinHandle;
 use std::time::{Duration, Instant};
 
 use glam::DVec3;
-use maulstick_haptic::driver::{Driver, Reading, Trouble, Wrench};
-use maulstick_haptic::polhem;
+use maulstick_haptic::device::driver::{DeviceError, Driver, Reading, Wrench};
+use maulstick_haptic::drivers::polhem;
 use maulstick_rig::Fault;
 use maulstick_rig::config::DeviceSection;
 use serialport::{SerialPort, TTYPort};
@@ -97,13 +97,13 @@ fn opened(path: &str) -> Box<dyn Driver> {
     opened.driver
 }
 
-/// Beats over the driver with a force until `look` has seen enough of its readings; None where that does
+/// Ticks over the driver with a force until `look` has seen enough of its readings; None where that does
 /// not happen.
-fn beat<T>(
+fn run_ticks<T>(
     driver: &mut dyn Driver,
     force: DVec3,
     mut look: impl FnMut(&Reading) -> Option<T>,
-) -> Result<Option<T>, Trouble> {
+) -> Result<Option<T>, DeviceError> {
     let give_up = Instant::now() + Duration::from_secs(20);
     let mut last = Instant::now();
     while Instant::now() < give_up {
@@ -132,9 +132,9 @@ fn a_stylus_at_a_terminal_is_opened_read_and_pushes() {
         let plugged = Plugged::new(Firmware::new(style, reads), piece);
         let mut driver = opened(&plugged.path);
         let force = DVec3::new(0.0, 2.0, 1.0);
-        let seen = beat(&mut *driver, force, |reading| {
+        let seen = run_ticks(&mut *driver, force, |reading| {
             // Device z is toward the user, which is the device's own x.
-            let z = reading.held.position.z;
+            let z = reading.handle.position.z;
             assert!((z + 59.276e-3).abs() < 1e-9, "{z}");
             let felt = plugged.firmware().force();
             (felt == [1.0, 0.0, 2.0]).then_some(())
@@ -173,20 +173,23 @@ fn a_stylus_pulled_out_in_mid_run_is_unplugged_and_can_be_opened_again() {
     let mut plugged = Plugged::new(Firmware::new(Style::Double, Reads::Lines), 64);
     let mut driver = opened(&plugged.path);
     let mut count = 0;
-    beat(&mut *driver, DVec3::X, |_| {
+    run_ticks(&mut *driver, DVec3::X, |_| {
         count += 1;
         (count == 50).then_some(())
     })
     .expect("there");
     assert_eq!(count, 50);
     plugged.pull();
-    let lost = beat(&mut *driver, DVec3::X, |_| None::<()>).expect_err("lost");
+    let lost = run_ticks(&mut *driver, DVec3::X, |_| None::<()>).expect_err("lost");
     assert_eq!(lost.what, "the stylus is unplugged");
     assert!(lost.code != 0 && !lost.help.is_empty());
     drop(driver);
     let again = Plugged::new(Firmware::new(Style::Double, Reads::Lines), 64);
     let mut driver = opened(&again.path);
-    assert_eq!(beat(&mut *driver, DVec3::X, |_| Some(())), Ok(Some(())));
+    assert_eq!(
+        run_ticks(&mut *driver, DVec3::X, |_| Some(())),
+        Ok(Some(()))
+    );
 }
 
 #[test]

@@ -2,11 +2,11 @@
 
 use std::time::{Duration, Instant};
 
-use maulstick_device::fitting::Fitting;
-use maulstick_haptic::Placed;
-use maulstick_haptic::beat::Delivery;
-use maulstick_haptic::host::Host;
-use maulstick_haptic::open::{HapticSettings, open};
+use maulstick_device::registration::Registration;
+use maulstick_haptic::MountedDevice;
+use maulstick_haptic::device::open::{HapticSettings, open};
+use maulstick_haptic::servo::channels::Delivery;
+use maulstick_haptic::servo::servo_thread::ServoThread;
 use maulstick_haptics::Limits;
 use maulstick_haptics::contact::Contact;
 use maulstick_rig::RigConfig;
@@ -39,20 +39,20 @@ pub(crate) fn push(device: &DeviceSection, mut is_felt: impl FnMut() -> bool) ->
         longest_tick_s: 1e3,
         ..Limits::default()
     };
-    let fitting = Fitting::of(device, &config.canvas).expect("a fitting");
-    let placed = Placed::new(opened.driver, fitting, 0);
-    let mut host = Host::start(placed, opened.pace, limits).expect("started");
-    host.models.write(Delivery {
+    let registration = Registration::of(device, &config.canvas).expect("a registration");
+    let placed = MountedDevice::new(opened.driver, registration, 0);
+    let mut servo = ServoThread::start(placed, opened.clock, limits).expect("started");
+    servo.models.write(Delivery {
         contact: Some(wall()),
         sender: None,
         number: 1,
     });
     let give_up = Instant::now() + Duration::from_secs(20);
-    while Instant::now() < give_up && !host.has_ended() {
+    while Instant::now() < give_up && !servo.has_ended() {
         if is_felt() {
             return true;
         }
-        while host.ticks.pop().is_ok() {}
+        while servo.ticks.pop().is_ok() {}
         std::thread::yield_now();
     }
     false

@@ -4,8 +4,8 @@ use std::collections::VecDeque;
 use std::sync::{Arc, Mutex};
 use std::time::{Duration, Instant};
 
+use maulstick_hid::device_source::{Found, HidSource, Identity, Ports};
 use maulstick_hid::recording;
-use maulstick_hid::source::{Found, HidSource, Identity, Ports};
 use maulstick_rig::Fault;
 use maulstick_types::stylus::StylusSample;
 

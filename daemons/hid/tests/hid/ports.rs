@@ -2,8 +2,8 @@
 
 use std::io::{Error, ErrorKind};
 
+use maulstick_hid::device_source::{Found, Identity, Ports as _};
 use maulstick_hid::hidraw::{Hidraw, closed};
-use maulstick_hid::source::{Found, Identity, Ports as _};
 use maulstick_hid::units::{metres, radians};
 
 use crate::support::identity;

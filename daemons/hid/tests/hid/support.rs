@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use maulstick_hid::source::Identity;
+use maulstick_hid::device_source::Identity;
 
 pub(crate) const DIGITIZER: u16 = 0x0D;
 pub(crate) const DESKTOP: u16 = 0x01;

@@ -13,8 +13,8 @@ use maulstick_files::{Kind, write_whole};
 use maulstick_optics::colour::RgbSpace;
 use maulstick_optics::gamut::GamutMapping;
 use maulstick_optics::icc::Profile;
+use maulstick_paint::EditError;
 use maulstick_paint::Painting;
-use maulstick_paint::painting::PaintRefusal;
 use maulstick_paint::picture::{Depth, Export};
 use maulstick_types::command::{ExportOrder, Outcome};
 use maulstick_types::paint::ExportStatus;
@@ -42,7 +42,7 @@ impl Exporter {
     /// working space where the order says nothing.
     ///
     /// # Errors
-    /// [`PaintRefusal`] for an unknown format, profile or gamut, and while another export goes on.
+    /// [`EditError`] for an unknown format, profile or gamut, and while another export goes on.
     pub fn begin(
         &mut self,
         asker: Asker,
@@ -50,9 +50,9 @@ impl Exporter {
         mut painting: Painting,
         usual: &Export,
         now_ns: u64,
-    ) -> Result<(), PaintRefusal> {
+    ) -> Result<(), EditError> {
         if let Some(running) = &self.0 {
-            return Err(PaintRefusal::new(
+            return Err(EditError::new(
                 format!("{} is being exported", running.path),
                 "wait for its end, or stop it: `maulstick export --stop`",
             ));
@@ -69,7 +69,7 @@ impl Exporter {
                 to_node.send(done).ok();
             })
             .map_err(|error| {
-                PaintRefusal::new(format!("nothing can be exported: {error}"), "try again")
+                EditError::new(format!("nothing can be exported: {error}"), "try again")
             })?;
         self.0 = Some(Running {
             asker,
@@ -86,14 +86,14 @@ impl Exporter {
     /// Has the export that goes on end without a file.
     ///
     /// # Errors
-    /// [`PaintRefusal`] where none goes on.
-    pub fn stop(&mut self) -> Result<(), PaintRefusal> {
+    /// [`EditError`] where none goes on.
+    pub fn stop(&mut self) -> Result<(), EditError> {
         match &self.0 {
             Some(running) => {
                 running.stop.store(true, SeqCst);
                 Ok(())
             }
-            None => Err(PaintRefusal::new(
+            None => Err(EditError::new(
                 "nothing is being exported".to_owned(),
                 "`maulstick export FILE` begins an export",
             )),
@@ -148,18 +148,18 @@ pub fn kind_of(format: Format) -> Kind {
     }
 }
 
-pub(crate) fn unwritable(path: &Path, error: &Error) -> PaintRefusal {
+pub(crate) fn unwritable(path: &Path, error: &Error) -> EditError {
     let help = match error.kind() {
         ErrorKind::AlreadyExists | ErrorKind::InvalidInput | ErrorKind::ResourceBusy => {
             "give another name"
         }
         _ => "check that the folder exists and can be written to",
     };
-    PaintRefusal::new(format!("cannot write {}: {error}", path.display()), help)
+    EditError::new(format!("cannot write {}: {error}", path.display()), help)
 }
 
 /// What is asked for, with all that the order leaves open.
-fn order(asked: &ExportOrder, usual: &Export) -> Result<Order, PaintRefusal> {
+fn order(asked: &ExportOrder, usual: &Export) -> Result<Order, EditError> {
     let path = Path::new(&asked.path);
     let format = match asked.format.as_str() {
         "" => Format::of(path),
@@ -170,7 +170,7 @@ fn order(asked: &ExportOrder, usual: &Export) -> Result<Order, PaintRefusal> {
             "" => path.extension().unwrap_or_default().to_string_lossy(),
             name => name.into(),
         };
-        PaintRefusal::new(
+        EditError::new(
             format!("nothing is exported as '{name}'"),
             "end the name in .png, .exr, .ora or .stl, or say which format: png, exr, ora, height, stl",
         )
@@ -180,7 +180,7 @@ fn order(asked: &ExportOrder, usual: &Export) -> Result<Order, PaintRefusal> {
         "srgb" => Arc::new(Profile::of(RgbSpace::Srgb)),
         "display-p3" => Arc::new(Profile::of(RgbSpace::DisplayP3)),
         name => {
-            return Err(PaintRefusal::new(
+            return Err(EditError::new(
                 format!("there is no profile called '{name}' here"),
                 "choose srgb or display-p3, or leave it to [view] of rig.toml",
             ));
@@ -191,7 +191,7 @@ fn order(asked: &ExportOrder, usual: &Export) -> Result<Order, PaintRefusal> {
         "soft" => GamutMapping::Soft,
         "clamp" => GamutMapping::Clamp,
         name => {
-            return Err(PaintRefusal::new(
+            return Err(EditError::new(
                 format!("colours come into no gamut by '{name}'"),
                 "choose soft or clamp",
             ));

@@ -62,7 +62,7 @@ fn every_format_is_written_and_what_is_none_is_refused_with_the_list() {
     let refused = |order: ExportOrder, words: [&str; 2]| {
         let mut exporter = Exporter::default();
         let said = match begin(&mut exporter, &order) {
-            Err(PaintRefusal { what, help }) => format!("{what}; {help}"),
+            Err(EditError { what, help }) => format!("{what}; {help}"),
             Ok(()) => match wait(&mut exporter) {
                 Outcome::Refused { what, help } => format!("{what}; {help}"),
                 done => unreachable!("{done:?}"),

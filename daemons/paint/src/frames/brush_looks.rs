@@ -6,8 +6,8 @@ use std::sync::Arc;
 use maulstick_brush::file::sections::Hair;
 use maulstick_bus::typed::Sender;
 use maulstick_bus::{Bus, BusError, Class};
-use maulstick_paint::coat::{Carried, hair};
-use maulstick_paint::look::Look;
+use maulstick_paint::appearance::Appearance;
+use maulstick_paint::brush_colour::{Carried, hair};
 use maulstick_types::Origin;
 use maulstick_types::brush::BrushLook;
 use maulstick_types::topics::Topics;
@@ -19,7 +19,7 @@ pub(super) struct BrushLooks {
     topics: Topics,
     told: BTreeMap<String, Told>,
     /// The look that all is told for, and reflectances of hair under it.
-    look: Option<Arc<Look>>,
+    look: Option<Arc<Appearance>>,
     hair: Vec<(Hair, Vec<f32>)>,
 }
 

@@ -15,10 +15,10 @@ use maulstick_bus::typed::Reader;
 use maulstick_bus::{Bus, BusError, Request, Server, Wake};
 use maulstick_document::Shelf;
 use maulstick_optics::backend::FilmBackend;
-use maulstick_paint::bare::Bare;
-use maulstick_paint::coat::Carried;
+use maulstick_paint::appearance::Appearance;
+use maulstick_paint::blank_surface::BlankSurface;
+use maulstick_paint::brush_colour::Carried;
 use maulstick_paint::dry::DryStack;
-use maulstick_paint::look::Look;
 use maulstick_paint::tile::{Tile, TileId};
 use maulstick_types::paint::{FrameHolds, FrameReply, FrameRequest, FrameTile};
 use maulstick_types::topics::Topics;
@@ -48,7 +48,7 @@ pub struct FedSurface {
     /// Tiles across and up.
     pub grid: [u32; 2],
     /// What it shows where nothing was painted.
-    pub bare: Arc<Bare>,
+    pub bare: Arc<BlankSurface>,
     /// Tiles on which something was painted, with the number of their version.
     pub tiles: BTreeMap<TileId, (u64, Option<Arc<Tile>>)>,
 }
@@ -74,7 +74,7 @@ pub struct FrameState {
     /// Surfaces by number.
     pub surfaces: BTreeMap<u32, FedSurface>,
     /// How paint becomes colour.
-    pub look: Option<Arc<Look>>,
+    pub look: Option<Arc<Appearance>>,
     /// The newest version.
     pub version: u64,
     /// Journal entries below this index are in it.

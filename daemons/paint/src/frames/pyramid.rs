@@ -8,9 +8,9 @@ use maulstick_document::rows::shown_number;
 use maulstick_document::{Shelf, ShownTile};
 use maulstick_optics::backend::FilmBackend;
 use maulstick_optics::{FilmPlanes, Under};
+use maulstick_paint::appearance::{Appearance, Bakery};
 use maulstick_paint::display::{DisplayTile, WetFilms};
 use maulstick_paint::dry::DryStack;
-use maulstick_paint::look::{Bakery, Look};
 use maulstick_paint::tile::{Tile, TileId};
 
 use super::films::SteadyFilms;
@@ -89,7 +89,7 @@ impl Pyramid {
     }
 
     /// Begins anew under another look.
-    fn turn_to(&mut self, look: &Look) {
+    fn turn_to(&mut self, look: &Appearance) {
         if self.generation != Some(look.generation()) {
             self.generation = Some(look.generation());
             self.kept.clear();
@@ -161,7 +161,13 @@ impl Pyramid {
     }
 
     /// Computes tiles of full detail together.
-    pub(super) fn shade(&mut self, look: &Look, number: u32, surface: &FedSurface, ids: &[TileId]) {
+    pub(super) fn shade(
+        &mut self,
+        look: &Appearance,
+        number: u32,
+        surface: &FedSurface,
+        ids: &[TileId],
+    ) {
         self.turn_to(look);
         let painted = |id: &TileId| surface.tiles.get(id).and_then(|(_, tile)| tile.as_deref());
         let grounds: Vec<_> = ids.iter().map(|id| surface.bare.ground.tile(*id)).collect();
@@ -204,7 +210,12 @@ impl Pyramid {
     }
 
     /// What lies beyond the edge of a surface, as if it went on.
-    fn outside(&mut self, look: &Look, number: u32, surface: &FedSurface) -> Arc<DisplayTile> {
+    fn outside(
+        &mut self,
+        look: &Appearance,
+        number: u32,
+        surface: &FedSurface,
+    ) -> Arc<DisplayTile> {
         let bare = || {
             let films = WetFilms::default();
             let rgb = films.shade(&look.studio, Under::Even(surface.bare.ground.mean()));
@@ -216,7 +227,7 @@ impl Pyramid {
     /// A tile as it was shown before.
     fn shown(
         &self,
-        look: &Look,
+        look: &Appearance,
         place: (u32, u32, TileId),
         version: u64,
     ) -> Option<Arc<DisplayTile>> {
@@ -229,7 +240,7 @@ impl Pyramid {
     /// Whether a tile is kept, in memory or, as it was shown before, in the document.
     pub(super) fn recall(
         &mut self,
-        look: &Look,
+        look: &Appearance,
         number: u32,
         surface: &FedSurface,
         level: u32,
@@ -254,7 +265,13 @@ impl Pyramid {
     }
 
     /// Has the document keep a tile as it is shown.
-    fn put_aside(&self, look: &Look, place: (u32, u32, TileId), version: u64, tile: &DisplayTile) {
+    fn put_aside(
+        &self,
+        look: &Appearance,
+        place: (u32, u32, TileId),
+        version: u64,
+        tile: &DisplayTile,
+    ) {
         if let Some(shelf) = self.shelf.as_ref().filter(|_| version > 0) {
             let (number, level, id) = place;
             shelf.put(ShownTile {
@@ -267,7 +284,7 @@ impl Pyramid {
     }
 
     /// A bare tile seen from afar, where threads and grain are too small to be seen.
-    fn plain(&mut self, look: &Look, number: u32, surface: &FedSurface) -> Arc<DisplayTile> {
+    fn plain(&mut self, look: &Appearance, number: u32, surface: &FedSurface) -> Arc<DisplayTile> {
         if let Some(plain) = self.plain.get(&number) {
             return Arc::clone(plain);
         }
@@ -290,7 +307,7 @@ impl Pyramid {
 
     pub(super) fn tile(
         &mut self,
-        look: &Look,
+        look: &Appearance,
         number: u32,
         surface: &FedSurface,
         level: u32,

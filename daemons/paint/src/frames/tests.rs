@@ -8,12 +8,12 @@ use maulstick_types::decode;
 
 use maulstick_optics::backend::{CpuFilms, FilmBackend};
 use maulstick_optics::{Illuminant, PaintLibrary, Studio, StudioSettings, Under};
+use maulstick_paint::appearance::{Appearance, Bakery};
+use maulstick_paint::assets::Assets;
 use maulstick_paint::display::{DisplayTile, WetFilms};
-use maulstick_paint::embedded::Embedded;
 use maulstick_paint::ground::Ground;
-use maulstick_paint::look::{Bakery, Look};
+use maulstick_paint::planes::TILE_CELLS;
 use maulstick_paint::relief::Relief;
-use maulstick_paint::tile::TILE_CELLS;
 
 use super::*;
 
@@ -35,10 +35,10 @@ fn rig() -> Rig {
 fn rig_of(cells: [u32; 2]) -> Rig {
     let net = MemoryNet::new(1, 0, Faults::default());
     let feed = Feed::new();
-    let look = Look::new(maulstick_optics::Studio::daylight());
+    let look = Appearance::new(maulstick_optics::Studio::daylight());
     {
         let mut fed = feed.lock();
-        let bare = Arc::new(Bare {
+        let bare = Arc::new(BlankSurface {
             ground: Ground::Even(vec![0.95; look.studio.wavelengths()]),
             relief: Arc::new(Relief::flat(2.5e-4)),
             wells: Vec::new(),
@@ -229,7 +229,7 @@ fn exported(rig: &Rig, tile: &Tile) -> [Vec<f32>; 3] {
     WetFilms::of(Some(tile)).shade(&look.studio, Under::Planes(&baked))
 }
 
-fn look_under(light: &str) -> Look {
+fn look_under(light: &str) -> Appearance {
     let library = PaintLibrary::measured().expect("whole");
     let settings = StudioSettings {
         light: Illuminant::named(light).expect("known"),
@@ -238,7 +238,7 @@ fn look_under(light: &str) -> Look {
     };
     let mut studio = Studio::new(&settings, library.paints());
     studio.add(library.find("Pyrrole Red").expect("known"));
-    Look::new(studio)
+    Appearance::new(studio)
 }
 
 #[test]
@@ -291,7 +291,7 @@ fn under_another_light_everything_comes_anew_as_an_export_has_it() {
 }
 
 /// A ground of a picture that goes from dark to light across the surface.
-fn pictured(look: &Look, cells: [u32; 2]) -> Ground {
+fn pictured(look: &Appearance, cells: [u32; 2]) -> Ground {
     let mut bytes = Vec::new();
     let mut encoder = png::Encoder::new(&mut bytes, cells[0], cells[1]);
     encoder.set_color(png::ColorType::Rgb);
@@ -300,7 +300,7 @@ fn pictured(look: &Look, cells: [u32; 2]) -> Ground {
     let mut writer = encoder.write_header().expect("a header");
     writer.write_image_data(&raw).expect("pixels");
     writer.finish().expect("whole");
-    let mut embedded = Embedded::default();
+    let mut embedded = Assets::default();
     let hash = embedded.add(bytes.into()).expect("taken");
     Ground::called(&format!("image:{hash}"), cells, &look.studio, &embedded).expect("a ground")
 }
@@ -373,7 +373,7 @@ fn a_look_of_a_brush_is_told_once_for_each_load_and_light() {
         Arc::make_mut(&mut carried.load).add_film(0, 3, 5);
     }
     assert_eq!(told(&mut rig), 1, "another load");
-    let look = Look::new(Studio::daylight());
+    let look = Appearance::new(Studio::daylight());
     rig.feed.lock().look = Some(Arc::new(look));
     assert_eq!(told(&mut rig), 1, "another light");
 }

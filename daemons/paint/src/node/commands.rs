@@ -3,8 +3,8 @@
 use std::path::Path;
 
 use maulstick_bus::Request;
+use maulstick_paint::EditError;
 use maulstick_paint::Effect;
-use maulstick_paint::painting::PaintRefusal;
 use maulstick_paint::sequencer::Replied;
 use maulstick_types::advice::parted;
 use maulstick_types::command::{Command, CommandReply, CommandRequest, Outcome};
@@ -70,24 +70,20 @@ impl PaintNode {
         }
         let outcome = match self.begin_beside(asked, now_ns) {
             Ok(outcome) => outcome,
-            Err(PaintRefusal { what, help }) => Outcome::Refused { what, help },
+            Err(EditError { what, help }) => Outcome::Refused { what, help },
         };
         self.replies
             .keep(asked.client, asked.number, outcome.clone());
         Some(outcome)
     }
 
-    fn begin_beside(
-        &mut self,
-        asked: &CommandRequest,
-        now_ns: u64,
-    ) -> Result<Outcome, PaintRefusal> {
+    fn begin_beside(&mut self, asked: &CommandRequest, now_ns: u64) -> Result<Outcome, EditError> {
         asked.command.check().map_err(|line| {
             let (what, help) = parted(&line);
-            PaintRefusal::new(what.to_owned(), help.unwrap_or("correct the command"))
+            EditError::new(what.to_owned(), help.unwrap_or("correct the command"))
         })?;
         if asked.after.is_some() {
-            return Err(PaintRefusal::new(
+            return Err(EditError::new(
                 "this command has no place in the journal".to_owned(),
                 "ask without a place in it",
             ));
@@ -138,7 +134,7 @@ impl PaintNode {
         });
         match added {
             Ok(()) => Outcome::Waiting,
-            Err(PaintRefusal { what, help }) => {
+            Err(EditError { what, help }) => {
                 let outcome = Outcome::Refused { what, help };
                 self.sequencer
                     .remember(replied.client, replied.number, outcome.clone());

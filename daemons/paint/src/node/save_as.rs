@@ -8,7 +8,7 @@ use std::path::{Path, PathBuf};
 use maulstick_document::{
     Access, Document, DocumentError, DocumentSettings, Left, Moving, make_room, unfinished,
 };
-use maulstick_paint::painting::PaintRefusal;
+use maulstick_paint::EditError;
 use maulstick_types::command::Outcome;
 
 use super::PaintNode;
@@ -32,14 +32,14 @@ enum Stage {
     Moved(Moving),
 }
 
-fn refused(path: &Path, error: &DocumentError) -> PaintRefusal {
+fn refused(path: &Path, error: &DocumentError) -> EditError {
     let help = match error {
         DocumentError::Taken => {
             "give another name, or say that the one that is there may go: `--replace`"
         }
         error => error.help(),
     };
-    PaintRefusal::new(format!("{}: {error}", path.display()), help)
+    EditError::new(format!("{}: {error}", path.display()), help)
 }
 
 /// Whether two names lead to the same file.
@@ -52,15 +52,15 @@ impl PaintNode {
     /// Begins to have the painting go on in another file.
     ///
     /// # Errors
-    /// [`PaintRefusal`] where it cannot be begun there, or is on its way already.
+    /// [`EditError`] where it cannot be begun there, or is on its way already.
     pub(super) fn save_as(
         &mut self,
         asker: Asker,
         to: &Path,
         replace: bool,
-    ) -> Result<Outcome, PaintRefusal> {
+    ) -> Result<Outcome, EditError> {
         if let Some(saving) = &self.saving {
-            return Err(PaintRefusal::new(
+            return Err(EditError::new(
                 format!("the painting is on its way to {}", saving.to.display()),
                 "wait until it is there, and ask again",
             ));
@@ -109,7 +109,7 @@ impl PaintNode {
                 if let Some((what, help)) = fault.filter(|_| autosave.document().take_back()) {
                     // What was in memory alone stays there, and nothing of it anywhere else.
                     let what = format!("{}: {what}", saving.to.display());
-                    let refusal = PaintRefusal::new(what, help);
+                    let refusal = EditError::new(what, help);
                     self.give_document_up();
                     Some(Err(refusal))
                 } else {
@@ -141,7 +141,7 @@ impl PaintNode {
                 self.unnamed = false;
                 there(&saving.to)
             }
-            Err(PaintRefusal { what, help }) => Outcome::Refused { what, help },
+            Err(EditError { what, help }) => Outcome::Refused { what, help },
         };
         self.status_ns = 0;
         let (client, number) = saving.asker;

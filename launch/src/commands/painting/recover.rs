@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use clap::Args;
 use maulstick_document::{DocumentError, Salvage, part_of, recover};
-use maulstick_paint::history::Place;
+use maulstick_paint::history::TilePlace;
 use maulstick_rig::Fault;
 use maulstick_rig::files::{Kind, Unfinished, check_writable};
 use maulstick_types::scene::{CANVAS, PALETTE};
@@ -63,7 +63,7 @@ pub(super) fn run(options: &RecoverOptions) -> Result<i32, Fault> {
 }
 
 fn as_json(salvage: &Salvage) -> serde_json::Value {
-    let places = |places: &[Place]| -> Vec<_> {
+    let places = |places: &[TilePlace]| -> Vec<_> {
         let each = places.iter();
         each.map(|(surface, id)| json!({"surface": surface, "column": id.x, "row": id.y}))
             .collect()
@@ -150,7 +150,7 @@ fn without(lost: u64) -> String {
     }
 }
 
-fn name((surface, id): &Place) -> String {
+fn name((surface, id): &TilePlace) -> String {
     match *surface {
         CANVAS => format!("canvas {}/{}", id.x, id.y),
         PALETTE => format!("palette {}/{}", id.x, id.y),

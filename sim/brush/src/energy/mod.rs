@@ -5,15 +5,15 @@
 //! | [`spring`] | of joints, straight or bent at rest |
 //! | [`friction`] | with a wall, anisotropic |
 //! | [`damping`] | within a joint |
-//! | [`crowd`] | of joints pushed into each other's room |
+//! | [`neighbour_repulsion`] | of joints pushed into each other's room |
 //! | [`bond`] | of segments held to the core of the head |
 
 use glam::{DMat3, DVec3};
 
 pub mod bond;
-pub mod crowd;
 pub mod damping;
 pub mod friction;
+pub mod neighbour_repulsion;
 pub mod spring;
 
 /// a·bᵀ.

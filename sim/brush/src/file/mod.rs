@@ -40,7 +40,6 @@ use serde::{Deserialize, Serialize};
 
 use self::check::within;
 use self::sections::{Contact, Force, Head, Load, Spines, Strips, Surface};
-use crate::tuft::Tuft;
 
 /// A ferrule thinner than so many strips is a line.
 const THIN: f64 = 1.5;
@@ -273,12 +272,6 @@ impl BrushFile {
             true => 1.0,
             false => share_at(&self.spines.stiffness_profile, s),
         }
-    }
-
-    /// The spines in their seats.
-    #[must_use]
-    pub fn tuft(&self) -> Tuft {
-        Tuft::of(self)
     }
 }
 

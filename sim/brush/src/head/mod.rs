@@ -27,7 +27,8 @@ use crate::file::BrushFile;
 use crate::file::sections::Hair;
 use crate::skin::{Skin, SkinPose};
 use crate::spine::SpineShape;
-use crate::tuft::Seat;
+use crate::spine_layout::SpineLayout;
+use crate::spine_root::SpineRoot;
 
 /// Stations along a strip.
 pub const STATIONS: usize = 9;
@@ -37,7 +38,7 @@ const OPEN_AT: f64 = 0.35;
 /// The strips of a brush.
 #[derive(Clone, Debug)]
 pub struct Head {
-    seats: Vec<Seat>,
+    spine_roots: Vec<SpineRoot>,
     joints: usize,
     strips: usize,
     /// Weights, a plane a spine.
@@ -114,7 +115,7 @@ impl Head {
     /// The head of a brush file.
     #[must_use]
     pub fn of(file: &BrushFile) -> Self {
-        let tuft = file.tuft();
+        let tuft = SpineLayout::of(file);
         let spines = tuft.places(file);
         let mut random = Random::new(file.strips.seed);
         let roots = place::roots(file, &spines, &mut random);
@@ -127,9 +128,9 @@ impl Head {
             }
         }
         let curves: Vec<Curve> = tuft
-            .seats
+            .roots
             .iter()
-            .map(|seat| curve(&seat.spine, &seat.at_rest(&Rigid::IDENTITY)))
+            .map(|root| curve(&root.spine, &root.at_rest(&Rigid::IDENTITY)))
             .collect();
         let (_, rest) = middle(&curves, DVec3::NEG_Z);
         let unruly = |range: f64, random: &mut Random| range * (2.0 * random.unit() - 1.0);
@@ -170,7 +171,7 @@ impl Head {
                 [file.radius_m(at), file.half_thickness_m(at)].map(|half| half as f32)
             }),
             weights,
-            seats: tuft.seats,
+            spine_roots: tuft.roots,
         };
         head.lay(file, &roots, &curves);
         head.clump(file, &roots);
@@ -276,13 +277,13 @@ impl Head {
     /// The spines of a hold.
     fn shapes(&self, hold: &Hold<'_>) -> Vec<SpineShape> {
         let mut angles = hold.angles;
-        self.seats
+        self.spine_roots
             .iter()
-            .map(|seat| {
-                let held = seat.held(hold.brush);
-                let (own, others) = angles.split_at(seat.spine.joints().min(angles.len()));
+            .map(|root| {
+                let frame = root.frame(hold.brush);
+                let (own, others) = angles.split_at(root.spine.joints().min(angles.len()));
                 angles = others;
-                SpineShape::from_angles(held.translation, held.rotation, own)
+                SpineShape::from_angles(frame.translation, frame.rotation, own)
             })
             .collect()
     }
@@ -290,9 +291,9 @@ impl Head {
     /// The strips of a hold, whose state must [`fit`](Self::fits).
     pub fn pose(&self, hold: &Hold<'_>, into: &mut HeadPose) {
         let shapes = self.shapes(hold);
-        let spines = self.seats.iter().zip(&shapes);
+        let spines = self.spine_roots.iter().zip(&shapes);
         let curves: Vec<Curve> = spines
-            .map(|(seat, shape)| curve(&seat.spine, shape))
+            .map(|(root, shape)| curve(&root.spine, shape))
             .collect();
         let brush = hold.brush;
         let unbent = brush.point(DVec3::new(0.0, 0.0, -self.length_m));
@@ -334,7 +335,7 @@ impl Head {
         }
         into.skin.clear();
         if let Some(skin) = &self.skin {
-            skin.pose(&self.seats, &shapes, hold.per_m, &mut into.skin);
+            skin.pose(&self.spine_roots, &shapes, hold.per_m, &mut into.skin);
         }
     }
 
@@ -410,8 +411,8 @@ mod tests {
             ..Rigid::IDENTITY
         };
         let mut angles = Vec::new();
-        for seat in &file.tuft().seats {
-            seat.at_rest(&brush).angles(&mut angles);
+        for root in &SpineLayout::of(&file).roots {
+            root.at_rest(&brush).angles(&mut angles);
         }
         assert!(head.fits(angles.len()));
         let mut pose = HeadPose::default();

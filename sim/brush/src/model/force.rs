@@ -3,21 +3,21 @@
 use maulstick_types::haptics::HermiteKnot;
 
 use super::BrushModel;
-use crate::feel::{AT_ONCE_M, Feel, Press, tuned, tuples};
+use crate::head_stiffness::{AT_ONCE_M, HeadStiffness, Press, tuned, tuples};
 
 impl BrushModel {
     /// What the hand feels of the head as it is bent now.
     #[must_use]
-    pub fn feel(&self) -> Feel {
+    pub fn feel(&self) -> HeadStiffness {
         let length = self.file.length_m();
-        match &self.held {
-            Some(held) => Feel::bent(
+        match &self.tracked {
+            Some(tracked) => HeadStiffness::bent(
                 &self.tuft,
                 length,
-                &self.placed(held, &held.newest),
-                held.force_n,
+                &self.placed(tracked, &tracked.newest),
+                tracked.force_n,
             ),
-            None => Feel::at_rest(&self.tuft, length),
+            None => HeadStiffness::at_rest(&self.tuft, length),
         }
     }
 
@@ -31,11 +31,14 @@ impl BrushModel {
     /// solve, half a millimetre deeper. None in the air.
     #[must_use]
     pub fn press(&mut self) -> Option<Press> {
-        let held = self.held.as_ref().filter(|held| held.force_n > 0.0)?;
+        let tracked = self
+            .tracked
+            .as_ref()
+            .filter(|tracked| tracked.force_n > 0.0)?;
         let desk = self.desk.as_ref()?;
-        let plane = desk.plane(held.surface)?;
-        let (force_n, mut further) = (held.force_n, held.head.clone());
-        let here = self.placed(held, &held.newest);
+        let plane = desk.plane(tracked.surface)?;
+        let (force_n, mut further) = (tracked.force_n, tracked.head.clone());
+        let here = self.placed(tracked, &tracked.newest);
         let mut deeper = here;
         deeper.translation.z -= AT_ONCE_M;
         let obstacles = desk.obstacles(plane, deeper.translation, self.file.length_m());
@@ -53,6 +56,6 @@ impl BrushModel {
     /// The normal force of all contacts now, N.
     #[must_use]
     pub fn force_n(&self) -> f64 {
-        self.held.as_ref().map_or(0.0, |held| held.force_n)
+        self.tracked.as_ref().map_or(0.0, |tracked| tracked.force_n)
     }
 }

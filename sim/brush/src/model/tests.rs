@@ -283,7 +283,7 @@ fn the_edge_of_the_palette_holds_the_bristles() {
     let drag = |scene: &Scene| {
         let mut model = brush();
         model.set_scene(scene);
-        let seats = model.tuft.seats.clone();
+        let roots = model.tuft.roots.clone();
         let mut deepest = 0.0f64;
         for step in 0..60u64 {
             let sample = pen(-0.12 - 4e-4 * step as f64, 0.0, 0.4);
@@ -292,13 +292,13 @@ fn the_edge_of_the_palette_holds_the_bristles() {
                 // The canvas begins at −128 mm.
                 let held = Rigid::from(&solve.pose);
                 let mut angles = &solve.angles_rad[..];
-                for seat in &seats {
-                    let (own, others) = angles.split_at(seat.spine.joints());
+                for root in &roots {
+                    let (own, others) = angles.split_at(root.spine.joints());
                     angles = others;
-                    let at = seat.held(&held);
+                    let at = root.frame(&held);
                     let shape = SpineShape::from_angles(at.translation, at.rotation, own);
-                    for i in 0..seat.spine.joints() {
-                        let p = shape.joint(&seat.spine, i) - glam::DVec3::splat(0.128);
+                    for i in 0..root.spine.joints() {
+                        let p = shape.joint(&root.spine, i) - glam::DVec3::splat(0.128);
                         let within = (edge - p.x).min(top - (p.z + 0.128));
                         deepest = deepest.max(within);
                     }

@@ -9,9 +9,9 @@
 
 use glam::{DMat2, DMat3, DVec2, DVec3};
 
-use super::{Energy, Model, Problem, Solver, Stop, Tangents};
-use crate::energy::crowd::crowd;
+use super::{ContactConstraint, Energy, Model, Problem, Solver, Tangents};
 use crate::energy::damping::damping;
+use crate::energy::neighbour_repulsion::neighbour_repulsion;
 use crate::energy::spring::{bent, rest_after, spring, straight};
 use crate::spine::{Spine, SpineShape};
 
@@ -21,7 +21,7 @@ impl Solver {
         &mut self,
         problem: Problem<'_>,
         shape: &SpineShape,
-        stops: &[Stop],
+        constraints: &[ContactConstraint],
     ) -> Energy {
         let spine = problem.spine;
         shape.joints(spine, &mut self.point.ends);
@@ -39,11 +39,13 @@ impl Solver {
             energy.bond += bond.value(*d);
             *slope += bond.slope();
         }
-        self.look_outside(problem, stops, &mut energy);
+        self.look_outside(problem, constraints, &mut energy);
         let point = &mut self.point;
         point.gaps.clear();
         let ends = &point.ends;
-        let gaps = stops.iter().map(|stop| stop.wall.gap(ends[stop.joint]));
+        let gaps = constraints
+            .iter()
+            .map(|constraint| constraint.half_space.gap(ends[constraint.joint]));
         point.gaps.extend(gaps);
         // What acts on the end of a segment acts on all segments above it too.
         let mut force = DVec3::ZERO;
@@ -99,22 +101,29 @@ impl Solver {
     }
 
     /// What acts on the ends of segments: friction and neighbours.
-    fn look_outside(&mut self, problem: Problem<'_>, stops: &[Stop], energy: &mut Energy) {
+    fn look_outside(
+        &mut self,
+        problem: Problem<'_>,
+        constraints: &[ContactConstraint],
+        energy: &mut Energy,
+    ) {
         let point = &mut self.point;
         point.pulls.clear();
         let none = (DVec3::ZERO, DMat3::ZERO);
         point.pulls.resize(point.ends.len(), none);
-        for stop in stops {
-            if let Some(f) = stop.friction(point.ends[stop.joint], problem.settings) {
+        for constraint in constraints {
+            if let Some(f) = constraint.friction(point.ends[constraint.joint], problem.settings) {
                 energy.friction += f.value;
-                let pull = &mut point.pulls[stop.joint];
+                let pull = &mut point.pulls[constraint.joint];
                 *pull = (pull.0 + f.force, pull.1 + f.hessian);
             }
         }
         for other in problem.neighbours {
             let way = point.ends[other.joint] - other.at;
-            if let Some(f) = crowd(problem.settings.crowd_n_m, way, other.at_rest_m) {
-                energy.crowd += f.value;
+            if let Some(f) =
+                neighbour_repulsion(problem.settings.repulsion_n_m, way, other.at_rest_m)
+            {
+                energy.repulsion += f.value;
                 let pull = &mut point.pulls[other.joint];
                 *pull = (pull.0 + f.force, pull.1 + f.hessian);
             }
@@ -123,12 +132,17 @@ impl Solver {
 
     /// ‖∇L‖∞, L = E − Σλ_i·gap_i with the multipliers at hand: the longest of the segments' gradients
     /// in their tangent planes, N·m.
-    pub(super) fn residual(&mut self, spine: &Spine, shape: &SpineShape, stops: &[Stop]) -> f64 {
+    pub(super) fn residual(
+        &mut self,
+        spine: &Spine,
+        shape: &SpineShape,
+        constraints: &[ContactConstraint],
+    ) -> f64 {
         let point = &mut self.point;
         point.lagrangian.clear();
         point.lagrangian.resize(spine.joints(), DVec3::ZERO);
-        for (stop, push) in stops.iter().zip(&self.multipliers) {
-            point.lagrangian[stop.joint] -= stop.wall.normal * *push;
+        for (constraint, push) in constraints.iter().zip(&self.multipliers) {
+            point.lagrangian[constraint.joint] -= constraint.half_space.normal * *push;
         }
         let (mut pushes, mut worst) = (DVec3::ZERO, 0.0);
         for (j, slope) in point.slopes.iter().enumerate().rev() {
@@ -267,13 +281,19 @@ impl Model {
 mod tests {
     use maulstick_num::geometry::rotation;
 
-    use super::super::{Neighbour, Settings, Wall};
+    use super::super::{HalfSpace, Neighbour, Settings};
     use super::*;
     use crate::energy::bond::Bond;
     use crate::energy::friction::Anisotropy;
 
     /// A bent, damped spine that is dragged over the surface beside another one.
-    fn scene() -> (Spine, SpineShape, Vec<Stop>, [Neighbour; 1], Settings) {
+    fn scene() -> (
+        Spine,
+        SpineShape,
+        Vec<ContactConstraint>,
+        [Neighbour; 1],
+        Settings,
+    ) {
         let rest = [0.1, 0.3, 0.6, 0.8]
             .map(|a| DVec3::new(maulstick_num::sin(a), 0.0, -maulstick_num::cos(a)));
         let spine = Spine::uniform(0.9, 4, 1.0).resting(&rest).damped(0.2);
@@ -282,18 +302,19 @@ mod tests {
         for (i, d) in shape.directions.iter_mut().enumerate() {
             *d = (*d + DVec3::new(0.2, 0.3 - 0.1 * i as f64, 0.25)).normalize();
         }
-        let mut stops = Stop::on_surface(4);
-        stops.push(Stop::new(
+        let mut constraints = ContactConstraint::on_surface(4);
+        constraints.push(ContactConstraint::new(
             3,
-            Wall {
+            HalfSpace {
                 normal: DVec3::X,
                 offset_m: -0.4,
             },
         ));
-        for (i, stop) in stops.iter_mut().enumerate().skip(2) {
-            stop.aim(&spine, &shape);
-            stop.force_n = 0.4 + 0.2 * i as f64;
-            stop.anchor = Some(shape.joint(&spine, stop.joint) + DVec3::new(-0.03, 0.02, 0.01));
+        for (i, constraint) in constraints.iter_mut().enumerate().skip(2) {
+            constraint.update_preferred(&spine, &shape);
+            constraint.force_n = 0.4 + 0.2 * i as f64;
+            constraint.anchor =
+                Some(shape.joint(&spine, constraint.joint) + DVec3::new(-0.03, 0.02, 0.01));
         }
         let neighbour = Neighbour {
             joint: 2,
@@ -307,15 +328,15 @@ mod tests {
                 preferred: DVec3::ZERO,
             },
             epsilon_m: 1e-2,
-            crowd_n_m: 3.0,
+            repulsion_n_m: 3.0,
             ..Settings::for_length(0.9)
         };
-        (spine, shape, stops, [neighbour], settings)
+        (spine, shape, constraints, [neighbour], settings)
     }
 
     #[test]
     fn the_hessian_is_the_derivative_of_the_lagrangians_gradient() {
-        let (spine, shape, stops, neighbours, settings) = scene();
+        let (spine, shape, constraints, neighbours, settings) = scene();
         let bonds = [0.2, 0.4, 0.5, 0.9].map(|a| Bond {
             toward: DVec3::new(0.0, maulstick_num::sin(a), -maulstick_num::cos(a)),
             stiffness: 0.7,
@@ -332,18 +353,18 @@ mod tests {
             &SpineShape::at_rest(shape.root, shape.frame, &spine),
         );
         solver.multipliers = vec![0.0, 0.3, 0.0, 0.5, 0.2];
-        let energy = solver.look(problem, &shape, &stops);
-        assert!(energy.friction > 0.0 && energy.damping > 0.0 && energy.crowd > 0.0);
+        let energy = solver.look(problem, &shape, &constraints);
+        assert!(energy.friction > 0.0 && energy.damping > 0.0 && energy.repulsion > 0.0);
         assert!(energy.bond > 0.0);
-        solver.residual(&spine, &shape, &stops);
+        solver.residual(&spine, &shape, &constraints);
         solver.assemble(&spine, &shape);
         let (tangents, hessian) = (solver.model.tangents.clone(), solver.model.hessian.clone());
         let along = |solver: &mut Solver, q: usize, h: f64| -> Vec<f64> {
             let mut moved = shape.clone();
             let d = &mut moved.directions[q / 2];
             *d = (*d + tangents[q / 2].vector(DVec2::AXES[q % 2]) * h).normalize();
-            solver.look(problem, &moved, &stops);
-            solver.residual(&spine, &moved, &stops);
+            solver.look(problem, &moved, &constraints);
+            solver.residual(&spine, &moved, &constraints);
             // The gradient along tangents that are carried along the way.
             let parts = tangents.iter().zip(&shape.directions).enumerate();
             let parts = parts.flat_map(|(j, (tangents, d))| {

@@ -1,6 +1,6 @@
 //! How far to go along a step.
 
-use super::{Energy, Problem, Solver, Stop};
+use super::{ContactConstraint, Energy, Problem, Solver};
 use crate::spine::SpineShape;
 
 /// A step turns no segment by more than this, rad.
@@ -20,7 +20,7 @@ impl Solver {
         &mut self,
         problem: Problem<'_>,
         shape: &mut SpineShape,
-        stops: &[Stop],
+        constraints: &[ContactConstraint],
         energy: Energy,
     ) -> Option<Energy> {
         let price = 2.0 * self.multipliers.iter().copied().fold(0.0, f64::max)
@@ -43,13 +43,13 @@ impl Solver {
             let part = self.step.iter().map(|step| *step * fraction);
             self.search.way.extend(part);
             self.turn(shape);
-            let tried = self.look(problem, shape, stops);
+            let tried = self.look(problem, shape, constraints);
             let aim = start + 1e-4 * fraction * slope.min(0.0) + noise;
             if merit(tried, &self.point.gaps) <= aim {
                 return Some(tried);
             }
             if self.correct(shape) {
-                let tried = self.look(problem, shape, stops);
+                let tried = self.look(problem, shape, constraints);
                 if merit(tried, &self.point.gaps) <= start + noise {
                     return Some(tried);
                 }
@@ -57,7 +57,7 @@ impl Solver {
             fraction *= 0.5;
         }
         shape.directions.copy_from_slice(&self.search.from);
-        self.look(problem, shape, stops);
+        self.look(problem, shape, constraints);
         None
     }
 
@@ -74,12 +74,15 @@ impl Solver {
     /// binding constraints; put the trial back onto them along their columns. False where none binds.
     fn correct(&mut self, shape: &mut SpineShape) -> bool {
         let program = &mut self.program;
-        let (near, gaps) = (&self.near, &self.point.gaps);
+        let (candidates, gaps) = (&self.candidates, &self.point.gaps);
         program.lambda.clear();
-        program
-            .lambda
-            .extend(near.iter().map(|near| -gaps[near.stop]));
-        let binding = (0..near.len()).filter(|i| self.multipliers[near[*i].stop] > 0.0);
+        program.lambda.extend(
+            candidates
+                .iter()
+                .map(|candidate| -gaps[candidate.constraint]),
+        );
+        let binding =
+            (0..candidates.len()).filter(|i| self.multipliers[candidates[*i].constraint] > 0.0);
         let floor = program.floor();
         if !program
             .active_set

@@ -2,13 +2,13 @@
 //! exact second derivatives, each a small quadratic program.
 
 mod assembly;
+mod contact_constraint;
 mod line_search;
 mod newton;
-mod stop;
 
 use glam::{DMat2, DMat3, DVec2, DVec3};
 
-pub use self::stop::{Stop, Wall};
+pub use self::contact_constraint::{ContactConstraint, HalfSpace};
 use crate::blocks::BlockFactor;
 use crate::energy::bond::Bond;
 use crate::energy::damping::Damping;
@@ -39,7 +39,7 @@ const YIELDS: DVec2 = DVec2::new(
     -std::f64::consts::FRAC_1_SQRT_2,
 );
 
-/// What the solver is asked for.
+/// Settings of the solver.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Settings {
     /// Coefficient of friction while sliding.
@@ -51,7 +51,7 @@ pub struct Settings {
     /// Slip over which friction is rounded off, m.
     pub epsilon_m: f64,
     /// Stiffness against neighbours that come nearer than at rest, N/m.
-    pub crowd_n_m: f64,
+    pub repulsion_n_m: f64,
     /// Where along the surface an upright spine gives way to, a unit vector.
     pub yields: DVec2,
     /// Newton steps at most.
@@ -70,7 +70,7 @@ impl Settings {
             friction_static: 0.25,
             anisotropy: Anisotropy::default(),
             epsilon_m: 8e-5 * length_m,
-            crowd_n_m: 0.0,
+            repulsion_n_m: 0.0,
             yields: YIELDS,
             max_iterations: 60,
             tolerance: 1e-9,
@@ -95,7 +95,7 @@ pub struct Energy {
     /// Work against friction in the joints.
     pub damping: f64,
     /// Of neighbours pushed aside.
-    pub crowd: f64,
+    pub repulsion: f64,
     /// Of the bonds with the core of the head.
     pub bond: f64,
 }
@@ -104,11 +104,11 @@ impl Energy {
     /// All of it.
     #[must_use]
     pub fn total(self) -> f64 {
-        self.spring + self.friction + self.damping + self.crowd + self.bond
+        self.spring + self.friction + self.damping + self.repulsion + self.bond
     }
 }
 
-/// What came of a solve.
+/// Result of a solve.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Solution {
     /// Whether the tolerance was reached; if not, the shape is the last good one.
@@ -147,16 +147,16 @@ pub struct Solver {
     /// Where each segment rests if the one before goes along the base; empty if that is straight.
     rest: Vec<DVec3>,
     damped: bool,
-    faced: Vec<Stop>,
-    /// The stops before the solve.
-    stops_before: Vec<Stop>,
+    last_constraints: Vec<ContactConstraint>,
+    /// The constraints before the solve.
+    constraints_before: Vec<ContactConstraint>,
     point: Point,
     multipliers: Vec<f64>,
     model: Model,
     /// The Newton step of each segment, along its tangents.
     step: Vec<DVec2>,
-    near: Vec<Near>,
-    program: Program,
+    candidates: Vec<ActiveCandidate>,
+    program: QuadraticProgram,
     search: Search,
 }
 
@@ -173,7 +173,7 @@ struct Point {
     slopes: Vec<DVec3>,
     /// The same of the Lagrangian.
     lagrangian: Vec<DVec3>,
-    /// How far each stop's joint is outside its wall, m.
+    /// Gap of each constraint, m; negative where its joint penetrates.
     gaps: Vec<f64>,
 }
 
@@ -204,15 +204,15 @@ struct Model {
 
 /// A constraint that binds, or would be broken by the step without it.
 #[derive(Clone, Copy, Debug)]
-struct Near {
-    stop: usize,
+struct ActiveCandidate {
+    constraint: usize,
     /// Stiffness of the spring that stands for it where the model is not convex.
     spring: f64,
 }
 
-/// The quadratic program of a step; its constraints are those that are [`Near`].
+/// The quadratic program of a step; its constraints are those that are [`ActiveCandidate`].
 #[derive(Clone, Debug, Default)]
-struct Program {
+struct QuadraticProgram {
     factor: BlockFactor,
     /// The model with springs.
     stiff: Vec<DMat2>,
@@ -263,11 +263,11 @@ impl Solver {
         &mut self,
         spine: &Spine,
         shape: &mut SpineShape,
-        stops: &mut [Stop],
+        constraints: &mut [ContactConstraint],
         neighbours: &[Neighbour],
         settings: &Settings,
     ) -> Solution {
-        self.solve_bound(spine, shape, stops, (neighbours, &[]), settings)
+        self.solve_bound(spine, shape, constraints, (neighbours, &[]), settings)
     }
 
     /// As [`solve`](Self::solve), with what binds the segments to the core of the head: one a segment,
@@ -276,7 +276,7 @@ impl Solver {
         &mut self,
         spine: &Spine,
         shape: &mut SpineShape,
-        stops: &mut [Stop],
+        constraints: &mut [ContactConstraint],
         (neighbours, bonds): (&[Neighbour], &[Bond]),
         settings: &Settings,
     ) -> Solution {
@@ -288,11 +288,11 @@ impl Solver {
         };
         self.before.clear();
         self.before.extend_from_slice(&shape.directions);
-        self.stops_before.clear();
-        self.stops_before.extend_from_slice(stops);
+        self.constraints_before.clear();
+        self.constraints_before.extend_from_slice(constraints);
         self.begin(spine, shape);
-        let solution = match is_within_reach(spine, shape, stops) {
-            true => self.attempt(problem, shape, stops),
+        let solution = match is_within_reach(spine, shape, constraints) {
+            true => self.attempt(problem, shape, constraints),
             false => Solution {
                 residual: f64::INFINITY,
                 ..Solution::default()
@@ -301,32 +301,36 @@ impl Solver {
         let finite = shape.directions.iter().all(|d| d.is_finite());
         if !solution.usable(spine) || !finite {
             shape.directions.copy_from_slice(&self.before);
-            stops.copy_from_slice(&self.stops_before);
-            return self.kept(problem, shape, stops, &solution);
+            constraints.copy_from_slice(&self.constraints_before);
+            return self.kept_shape(problem, shape, constraints, &solution);
         }
-        for (i, stop) in stops.iter_mut().enumerate() {
-            stop.settle(self.multipliers[i], self.point.ends[stop.joint], settings);
+        for (i, constraint) in constraints.iter_mut().enumerate() {
+            constraint.commit(
+                self.multipliers[i],
+                self.point.ends[constraint.joint],
+                settings,
+            );
         }
         solution
     }
 
     /// What may be said of a shape that was kept because none better was found.
-    fn kept(
+    fn kept_shape(
         &mut self,
         problem: Problem<'_>,
         shape: &SpineShape,
-        stops: &[Stop],
+        constraints: &[ContactConstraint],
         attempt: &Solution,
     ) -> Solution {
         self.begin(problem.spine, shape);
         self.multipliers.clear();
         self.multipliers
-            .extend(stops.iter().map(|stop| stop.force_n));
+            .extend(constraints.iter().map(|constraint| constraint.force_n));
         let mut kept = Solution {
-            energy: self.look(problem, shape, stops),
+            energy: self.look(problem, shape, constraints),
             ..Solution::default()
         };
-        self.measure(problem, shape, stops, &mut kept);
+        self.measure(problem, shape, constraints, &mut kept);
         kept.converged = false;
         kept.after(attempt)
     }
@@ -336,28 +340,30 @@ impl Solver {
         &mut self,
         problem: Problem<'_>,
         shape: &mut SpineShape,
-        stops: &mut [Stop],
+        constraints: &mut [ContactConstraint],
     ) -> Solution {
         let (spine, settings) = (problem.spine, problem.settings);
-        stops.iter_mut().for_each(|stop| stop.aim(spine, shape));
+        constraints
+            .iter_mut()
+            .for_each(|constraint| constraint.update_preferred(spine, shape));
         self.multipliers.clear();
         self.multipliers
-            .extend(stops.iter().map(|stop| stop.force_n));
+            .extend(constraints.iter().map(|constraint| constraint.force_n));
         break_symmetry(spine, shape, settings.yields);
-        let mut solution = self.minimise(problem, shape, stops);
+        let mut solution = self.minimise(problem, shape, constraints);
         for _ in 0..ROUNDS {
-            if !solution.usable(spine) || !self.follow_forces(problem, stops) {
+            if !solution.usable(spine) || !self.follow_forces(problem, constraints) {
                 break;
             }
-            solution = self.minimise(problem, shape, stops).after(&solution);
+            solution = self.minimise(problem, shape, constraints).after(&solution);
         }
         if !solution.usable(spine) {
             shape.relax(spine);
-            stops.iter_mut().for_each(Stop::clear);
+            constraints.iter_mut().for_each(ContactConstraint::clear);
             self.multipliers.fill(0.0);
             self.damped = false;
             break_symmetry(spine, shape, settings.yields);
-            solution = self.minimise(problem, shape, stops).after(&solution);
+            solution = self.minimise(problem, shape, constraints).after(&solution);
         }
         solution
     }
@@ -365,8 +371,8 @@ impl Solver {
     /// The stops as the newest [`solve`](Self::solve) saw them in the end: with the normal forces and
     /// anchors that its friction was reckoned with.
     #[must_use]
-    pub fn faced(&self) -> &[Stop] {
-        &self.faced
+    pub fn last_constraints(&self) -> &[ContactConstraint] {
+        &self.last_constraints
     }
 
     /// The energy of a shape in the step that [`begin`](Self::begin) began, with the friction of
@@ -375,7 +381,7 @@ impl Solver {
         &mut self,
         spine: &Spine,
         shape: &SpineShape,
-        stops: &[Stop],
+        constraints: &[ContactConstraint],
         neighbours: &[Neighbour],
         settings: &Settings,
     ) -> (Energy, &[DVec3]) {
@@ -385,7 +391,7 @@ impl Solver {
             bonds: &[],
             settings,
         };
-        let energy = self.look(problem, shape, stops);
+        let energy = self.look(problem, shape, constraints);
         (energy, &self.point.slopes)
     }
 
@@ -408,25 +414,25 @@ impl Solver {
         &mut self,
         problem: Problem<'_>,
         shape: &mut SpineShape,
-        stops: &[Stop],
+        constraints: &[ContactConstraint],
     ) -> Solution {
-        self.faced.clear();
-        self.faced.extend_from_slice(stops);
+        self.last_constraints.clear();
+        self.last_constraints.extend_from_slice(constraints);
         let most = problem.settings.max_iterations;
         let mut solution = Solution {
-            energy: self.look(problem, shape, stops),
+            energy: self.look(problem, shape, constraints),
             ..Solution::default()
         };
-        self.measure(problem, shape, stops, &mut solution);
+        self.measure(problem, shape, constraints, &mut solution);
         while !solution.converged && solution.iterations < most {
             self.assemble(problem.spine, shape);
-            self.direction(problem.spine, stops);
-            let found = self.line_search(problem, shape, stops, solution.energy);
+            self.direction(problem.spine, constraints);
+            let found = self.line_search(problem, shape, constraints, solution.energy);
             if let Some(energy) = found {
                 solution.energy = energy;
                 solution.iterations += 1;
             }
-            self.measure(problem, shape, stops, &mut solution);
+            self.measure(problem, shape, constraints, &mut solution);
             if found.is_none() {
                 break;
             }
@@ -439,11 +445,11 @@ impl Solver {
         &mut self,
         problem: Problem<'_>,
         shape: &SpineShape,
-        stops: &[Stop],
+        constraints: &[ContactConstraint],
         solution: &mut Solution,
     ) {
         let (spine, tolerance) = (problem.spine, problem.settings.tolerance);
-        solution.residual = self.residual(spine, shape, stops);
+        solution.residual = self.residual(spine, shape, constraints);
         let gaps = self.point.gaps.iter();
         solution.penetration_m = gaps.fold(0.0, |worst: f64, gap| worst.max(-gap));
         let pushed = self.point.gaps.iter().zip(&self.multipliers);
@@ -454,23 +460,23 @@ impl Solver {
     }
 
     /// Gives friction the normal forces at hand; whether it differs from what it was.
-    fn follow_forces(&self, problem: Problem<'_>, stops: &mut [Stop]) -> bool {
+    fn follow_forces(&self, problem: Problem<'_>, constraints: &mut [ContactConstraint]) -> bool {
         let (spine, settings) = (problem.spine, problem.settings);
         let least_n = LEAST_FORCE * spine.stiffest() / spine.length_m();
         let mut any = false;
-        for (i, stop) in stops.iter_mut().enumerate() {
-            let at = self.point.ends[stop.joint];
-            any |= stop.follow(self.multipliers[i], at, least_n, settings);
+        for (i, constraint) in constraints.iter_mut().enumerate() {
+            let at = self.point.ends[constraint.joint];
+            any |= constraint.follow(self.multipliers[i], at, least_n, settings);
         }
         any
     }
 }
 
 /// Whether every joint could come out of its wall at all.
-fn is_within_reach(spine: &Spine, shape: &SpineShape, stops: &[Stop]) -> bool {
-    stops.iter().all(|stop| {
-        let root = stop.wall.gap(shape.root);
-        let reach = || spine.lengths_m[..=stop.joint].iter().sum::<f64>();
+fn is_within_reach(spine: &Spine, shape: &SpineShape, constraints: &[ContactConstraint]) -> bool {
+    constraints.iter().all(|constraint| {
+        let root = constraint.half_space.gap(shape.root);
+        let reach = || spine.lengths_m[..=constraint.joint].iter().sum::<f64>();
         root >= 0.0 || root + reach() > 0.0
     })
 }

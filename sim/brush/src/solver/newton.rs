@@ -5,7 +5,7 @@
 
 use glam::{DMat2, DVec2, DVec3};
 
-use super::{Near, Program, Solver, Stop};
+use super::{ActiveCandidate, ContactConstraint, QuadraticProgram, Solver};
 use crate::blocks::dot;
 use crate::spine::Spine;
 
@@ -21,8 +21,8 @@ impl Solver {
     /// Where the Hessian is not convex, the constraints that bind are added to the model as springs:
     /// this changes no solution on them, and makes the model convex where it is convex along them. A
     /// spring that turns out to pull is taken out again.
-    pub(super) fn direction(&mut self, spine: &Spine, stops: &[Stop]) {
-        self.near.clear();
+    pub(super) fn direction(&mut self, spine: &Spine, constraints: &[ContactConstraint]) {
+        self.candidates.clear();
         self.program.rows.clear();
         let convex = self
             .program
@@ -33,10 +33,10 @@ impl Solver {
             true => 0.0,
             false => CONSTRAINT_STIFFNESS * spine.stiffest() / (length * length),
         };
-        for stop in 0..stops.len() {
-            let binds = self.multipliers[stop] > 0.0;
-            if binds || (!convex && self.point.gaps[stop] < 0.0) {
-                self.approach(spine, stops, Near { stop, spring });
+        for constraint in 0..constraints.len() {
+            let binds = self.multipliers[constraint] > 0.0;
+            if binds || (!convex && self.point.gaps[constraint] < 0.0) {
+                self.approach(spine, constraints, ActiveCandidate { constraint, spring });
             }
         }
         loop {
@@ -48,26 +48,31 @@ impl Solver {
                 self.stiffen();
             }
             self.program.factor.solve(&mut self.program.newton);
-            self.solve_program(spine, stops);
-            let pulls = |i: &usize| self.near[*i].spring > 0.0 && self.push(*i) < 0.0;
-            let Some(wrong) = (0..self.near.len()).find(pulls) else {
+            self.solve_program(spine, constraints);
+            let pulls = |i: &usize| self.candidates[*i].spring > 0.0 && self.push(*i) < 0.0;
+            let Some(wrong) = (0..self.candidates.len()).find(pulls) else {
                 break;
             };
-            self.near[wrong].spring = 0.0;
+            self.candidates[wrong].spring = 0.0;
         }
         self.multipliers.fill(0.0);
-        for (i, near) in self.near.iter().enumerate() {
-            self.multipliers[near.stop] = self.push(i).max(0.0);
+        for (i, candidate) in self.candidates.iter().enumerate() {
+            self.multipliers[candidate.constraint] = self.push(i).max(0.0);
         }
     }
 
     /// Takes a constraint into the program.
-    fn approach(&mut self, spine: &Spine, stops: &[Stop], near: Near) {
-        self.near.push(near);
-        let stop = &stops[near.stop];
+    fn approach(
+        &mut self,
+        spine: &Spine,
+        constraints: &[ContactConstraint],
+        candidate: ActiveCandidate,
+    ) {
+        self.candidates.push(candidate);
+        let constraint = &constraints[candidate.constraint];
         let segments = self.model.tangents.iter().zip(&spine.lengths_m).enumerate();
-        let row = segments.map(|(j, (tangents, length))| match j <= stop.joint {
-            true => tangents.of(stop.wall.normal) * *length,
+        let row = segments.map(|(j, (tangents, length))| match j <= constraint.joint {
+            true => tangents.of(constraint.half_space.normal) * *length,
             false => DVec2::ZERO,
         });
         self.program.rows.extend(row);
@@ -75,12 +80,12 @@ impl Solver {
 
     /// The force with which a constraint pushes after the step: its multiplier and its spring.
     fn push(&self, i: usize) -> f64 {
-        let near = self.near[i];
-        if near.spring == 0.0 {
+        let candidate = self.candidates[i];
+        if candidate.spring == 0.0 {
             return self.program.lambda[i];
         }
         let moved = dot(self.program.row(i, self.step.len()), &self.step);
-        self.program.lambda[i] - near.spring * (self.point.gaps[near.stop] + moved)
+        self.program.lambda[i] - candidate.spring * (self.point.gaps[candidate.constraint] + moved)
     }
 
     /// Factors the model with its springs, made convex by a shift of the diagonal if need be.
@@ -91,10 +96,10 @@ impl Solver {
         program.newton.clear();
         let downhill = self.model.gradient.iter().map(|g| -*g);
         program.newton.extend(downhill);
-        for (near, row) in self.near.iter().zip(program.rows.chunks_exact(n)) {
-            let gap = self.point.gaps[near.stop];
+        for (candidate, row) in self.candidates.iter().zip(program.rows.chunks_exact(n)) {
+            let gap = self.point.gaps[candidate.constraint];
             for j in 0..n {
-                let scaled = row[j] * near.spring;
+                let scaled = row[j] * candidate.spring;
                 program.newton[j] -= scaled * gap;
                 for k in j..n {
                     let block = DMat2::from_cols(scaled * row[k].x, scaled * row[k].y);
@@ -120,24 +125,30 @@ impl Solver {
     }
 
     /// Multipliers and step of the convex model.
-    fn solve_program(&mut self, spine: &Spine, stops: &[Stop]) {
+    fn solve_program(&mut self, spine: &Spine, constraints: &[ContactConstraint]) {
         self.program.lambda.clear();
-        let pushes = self.near.iter().map(|near| self.multipliers[near.stop]);
+        let pushes = self
+            .candidates
+            .iter()
+            .map(|candidate| self.multipliers[candidate.constraint]);
         self.program.lambda.extend(pushes);
         loop {
             let gaps = &self.point.gaps;
-            let near = self.near.iter().map(|near| gaps[near.stop]);
-            self.program.solve(near);
+            let gaps = self
+                .candidates
+                .iter()
+                .map(|candidate| gaps[candidate.constraint]);
+            self.program.solve(gaps);
             self.step.clone_from(&self.program.newton);
             self.program.follow_columns(&mut self.step);
-            if !self.meet(spine, stops) {
+            if !self.meet(spine, constraints) {
                 break;
             }
         }
     }
 
     /// Takes the constraints that the step would break into the program; whether there were any.
-    fn meet(&mut self, spine: &Spine, stops: &[Stop]) -> bool {
+    fn meet(&mut self, spine: &Spine, constraints: &[ContactConstraint]) -> bool {
         self.program.moves.clear();
         let mut moved = DVec3::ZERO;
         let segments = self.step.iter().zip(&self.model.tangents);
@@ -145,27 +156,34 @@ impl Solver {
             moved += tangents.vector(*step) * *length;
             self.program.moves.push(moved);
         }
-        let (slack, known) = (SLACK * spine.length_m(), self.near.len());
-        for (i, stop) in stops.iter().enumerate() {
-            let way = stop.wall.normal.dot(self.program.moves[stop.joint]);
-            let is_new = || self.near[..known].iter().all(|near| near.stop != i);
+        let (slack, known) = (SLACK * spine.length_m(), self.candidates.len());
+        for (i, constraint) in constraints.iter().enumerate() {
+            let way = constraint
+                .half_space
+                .normal
+                .dot(self.program.moves[constraint.joint]);
+            let is_new = || {
+                self.candidates[..known]
+                    .iter()
+                    .all(|candidate| candidate.constraint != i)
+            };
             if self.point.gaps[i] + way < -slack && is_new() {
                 self.approach(
                     spine,
-                    stops,
-                    Near {
-                        stop: i,
+                    constraints,
+                    ActiveCandidate {
+                        constraint: i,
                         spring: 0.0,
                     },
                 );
                 self.program.lambda.push(0.0);
             }
         }
-        self.near.len() > known
+        self.candidates.len() > known
     }
 }
 
-impl Program {
+impl QuadraticProgram {
     /// The derivative of the gap of constraint `i` by the directions of `n` segments.
     fn row(&self, i: usize, n: usize) -> &[DVec2] {
         &self.rows[i * n..(i + 1) * n]

@@ -4,7 +4,7 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs::File;
 
-use maulstick_paint::kept::{KeptPainting, KeptSequencer};
+use maulstick_paint::snapshot::{PaintingSnapshot, SequencerSnapshot};
 use rusqlite::{OptionalExtension as _, params};
 
 use super::found::{Found, Read};
@@ -39,8 +39,8 @@ pub(super) struct TileRows {
 /// What was found.
 #[derive(Debug, Default)]
 pub(super) struct Gathered {
-    pub(super) painting: Option<(KeptPainting, Standing)>,
-    pub(super) sequencer: Option<(KeptSequencer, Standing)>,
+    pub(super) painting: Option<(PaintingSnapshot, Standing)>,
+    pub(super) sequencer: Option<(SequencerSnapshot, Standing)>,
     /// Dry layers by number: layer below, layer's number in the painting, page.
     pub(super) dry: BTreeMap<i64, [i64; 3]>,
     /// Tiles by place number.
@@ -163,11 +163,11 @@ impl Gathered {
     fn state(&mut self, found: &Found, standing: Standing) {
         match found.text(0).trim_end_matches(COPY) {
             "painting" => {
-                let state = |kept: &KeptPainting| (kept.versions, kept.next_page, kept.step);
+                let state = |kept: &PaintingSnapshot| (kept.versions, kept.next_page, kept.step);
                 newest(&mut self.painting, found.text(1), standing, state);
             }
             "sequencer" => {
-                let state = |kept: &KeptSequencer| (kept.serial, kept.next, 0);
+                let state = |kept: &SequencerSnapshot| (kept.serial, kept.next, 0);
                 newest(&mut self.sequencer, found.text(1), standing, state);
             }
             _ => {}

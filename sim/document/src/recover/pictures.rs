@@ -3,8 +3,8 @@
 use std::collections::BTreeSet;
 
 use maulstick_paint::PaintingSetup;
-use maulstick_paint::embedded::{IMAGE, SPECTRUM};
-use maulstick_paint::history::Make;
+use maulstick_paint::assets::{IMAGE, SPECTRUM};
+use maulstick_paint::history::SurfaceMaterial;
 use maulstick_types::scene::Scene;
 use rusqlite::params;
 
@@ -38,7 +38,7 @@ impl Pictures {
     }
 
     /// Whether all is there that surfaces are made of.
-    pub(super) fn has_all(&self, makes: &[Make]) -> bool {
+    pub(super) fn has_all(&self, makes: &[SurfaceMaterial]) -> bool {
         let mut names = makes.iter().flat_map(|make| [&make.ground, &make.tooth]);
         names.all(|name| self.has(name))
     }
@@ -53,7 +53,7 @@ impl Pictures {
     }
 
     /// As [`mend`](Self::mend), in a version; true where something was lost.
-    pub(super) fn mend_makes(&self, makes: &mut [Make]) -> bool {
+    pub(super) fn mend_makes(&self, makes: &mut [SurfaceMaterial]) -> bool {
         let mut lost = false;
         for make in makes {
             lost |= !self.plain(&mut make.ground, &mut make.tooth).is_empty();

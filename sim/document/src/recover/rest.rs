@@ -4,10 +4,10 @@ use std::collections::{BTreeMap, BTreeSet, HashMap};
 
 use maulstick_brush::BrushFile;
 use maulstick_optics::PaintLibrary;
-use maulstick_paint::kept::{KeptPainting, KeptSequencer};
 use maulstick_paint::ledger::Ledger;
 use maulstick_paint::load::BrushLoad;
 use maulstick_paint::quantum::{Counts, SLOTS, add};
+use maulstick_paint::snapshot::{PaintingSnapshot, SequencerSnapshot};
 use maulstick_types::scene::{NamedVersion, WellKind};
 use rusqlite::params;
 
@@ -25,7 +25,7 @@ use crate::schema::Table;
 use crate::{journal, loads};
 
 /// Whether a library has all paints of a painting.
-fn knows_all(library: &PaintLibrary, kept: &KeptPainting) -> bool {
+fn knows_all(library: &PaintLibrary, kept: &PaintingSnapshot) -> bool {
     let scene = &kept.scene;
     let mut slots = scene.paints.iter();
     let mut wells = scene.surfaces.iter().flat_map(|surface| &surface.wells);
@@ -42,7 +42,7 @@ fn knows_all(library: &PaintLibrary, kept: &KeptPainting) -> bool {
 /// # Errors
 /// [`DocumentError::Lost`] where paints are known to no file, or what SQLite says.
 pub(super) fn files(
-    kept: &mut KeptPainting,
+    kept: &mut PaintingSnapshot,
     salvage: &mut Salvage,
     database: &Database,
 ) -> Result<(), DocumentError> {
@@ -84,7 +84,7 @@ fn put_file(
     name: &str,
     data: &str,
 ) -> Result<String, DocumentError> {
-    let hash = maulstick_paint::embedded::hash_of(data.as_bytes());
+    let hash = maulstick_paint::assets::hash_of(data.as_bytes());
     let texts = [hash.as_str(), kind, name].map(|text| Value::Text(text.to_owned()));
     let values = texts
         .into_iter()
@@ -107,7 +107,7 @@ fn clean_load(stock: &mut Stock, database: &Database) -> Result<i64, DocumentErr
 /// # Errors
 /// What SQLite says.
 pub(super) fn brushes(
-    kept: &mut KeptPainting,
+    kept: &mut PaintingSnapshot,
     stock: &mut Stock,
     salvage: &mut Salvage,
     database: &Database,
@@ -152,7 +152,7 @@ pub(super) fn paint<'a>(
 /// What SQLite says.
 pub(super) fn versions(
     gathered: &Gathered,
-    kept: &mut KeptPainting,
+    kept: &mut PaintingSnapshot,
     (stock, pictures): (&mut Stock, &Pictures),
     salvage: &mut Salvage,
     database: &Database,
@@ -253,7 +253,7 @@ fn version(
 /// What SQLite says.
 pub(super) fn journal(
     gathered: &Gathered,
-    sequencer: &mut KeptSequencer,
+    sequencer: &mut SequencerSnapshot,
     base: Standing,
     salvage: &mut Salvage,
     database: &Database,

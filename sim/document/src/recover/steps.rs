@@ -2,9 +2,9 @@
 
 use std::collections::{BTreeMap, HashMap};
 
-use maulstick_paint::history::Make;
-use maulstick_paint::kept::KeptPainting;
+use maulstick_paint::history::SurfaceMaterial;
 use maulstick_paint::quantum::{Counts, SLOTS};
+use maulstick_paint::snapshot::PaintingSnapshot;
 use maulstick_types::scene::{Layer, Scene};
 
 use super::found::Found;
@@ -48,12 +48,12 @@ pub(super) struct Now {
     pub(super) tiles: HashMap<i64, Numbers>,
     pub(super) loads: BTreeMap<String, Counts>,
     pub(super) layers: Vec<Layer>,
-    pub(super) makes: Vec<Make>,
+    pub(super) makes: Vec<SurfaceMaterial>,
 }
 
 /// What the surfaces of a scene are made of.
-pub(super) fn makes(scene: &Scene) -> Vec<Make> {
-    let made = scene.surfaces.iter().map(|surface| Make {
+pub(super) fn makes(scene: &Scene) -> Vec<SurfaceMaterial> {
+    let made = scene.surfaces.iter().map(|surface| SurfaceMaterial {
         surface: surface.id,
         ground: surface.ground.clone(),
         tooth: surface.tooth.clone(),
@@ -64,7 +64,11 @@ pub(super) fn makes(scene: &Scene) -> Vec<Make> {
 
 impl Steps {
     /// The steps that were found, of a painting that was kept so.
-    pub(super) fn of(gathered: &mut Gathered, kept: &KeptPainting, pictures: &Pictures) -> Self {
+    pub(super) fn of(
+        gathered: &mut Gathered,
+        kept: &PaintingSnapshot,
+        pictures: &Pictures,
+    ) -> Self {
         let found = std::mem::take(&mut gathered.steps);
         let torn = gathered.torn_steps.iter().map(|id| (*id, Vec::new()));
         let mut all: BTreeMap<i64, Vec<Found>> = torn.collect();

@@ -2,8 +2,8 @@
 
 use std::collections::{BTreeMap, BTreeSet, HashMap};
 
+use maulstick_paint::planes::{Planes, plane_counts};
 use maulstick_paint::quantum::{Counts, SLOTS, add};
-use maulstick_paint::tile::{Planes, plane_counts};
 use rusqlite::params;
 
 use super::found::Found;

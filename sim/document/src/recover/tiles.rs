@@ -2,7 +2,7 @@
 
 use std::collections::{BTreeSet, HashMap};
 
-use maulstick_paint::kept::KeptPainting;
+use maulstick_paint::snapshot::PaintingSnapshot;
 use maulstick_types::paint::TILE;
 
 use super::Salvage;
@@ -28,7 +28,7 @@ enum Fate {
 }
 
 /// Whether a place is on one of the painting's surfaces.
-fn is_inside(kept: &KeptPainting, place: i64) -> bool {
+fn is_inside(kept: &PaintingSnapshot, place: i64) -> bool {
     let (id, tile) = place_of(place);
     let mut surfaces = kept.scene.surfaces.iter();
     surfaces
@@ -48,7 +48,7 @@ pub(super) fn write(
     gathered: &Gathered,
     states: &HashMap<i64, Vec<Numbers>>,
     stock: &Stock,
-    kept: &mut KeptPainting,
+    kept: &mut PaintingSnapshot,
     salvage: &mut Salvage,
     database: &Database,
 ) -> Result<HashMap<i64, Numbers>, DocumentError> {

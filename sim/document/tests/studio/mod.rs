@@ -4,7 +4,7 @@
 
 use maulstick_brush::BrushFile;
 use maulstick_optics::PaintLibrary;
-use maulstick_paint::history::{Held, Place};
+use maulstick_paint::history::{TilePlace, TileRef};
 use maulstick_paint::page::Pager;
 use maulstick_paint::{Painting, PaintingSetup, Sequencer};
 use maulstick_types::brush::{BrushState, Solve};
@@ -315,10 +315,10 @@ impl Painter {
 }
 
 /// All that lies on a tile, in words of numbers.
-pub fn content(held: &Held) -> Vec<u64> {
+pub fn content(held: &TileRef) -> Vec<u64> {
     let Some(tile) = held else { return Vec::new() };
     let mut words = Vec::new();
-    let mut add = |planes: &maulstick_paint::tile::Planes| {
+    let mut add = |planes: &maulstick_paint::planes::Planes| {
         for (slot, plane) in planes {
             words.push(*slot as u64);
             let sum = plane.iter().enumerate().fold(17u64, |sum, (cell, count)| {
@@ -340,7 +340,7 @@ pub fn content(held: &Held) -> Vec<u64> {
 }
 
 /// What lies on every tile with paint.
-pub fn tiles(sequencer: &mut Sequencer) -> BTreeMap<Place, Vec<u64>> {
+pub fn tiles(sequencer: &mut Sequencer) -> BTreeMap<TilePlace, Vec<u64>> {
     let painting = sequencer.painting_mut();
     painting.commit();
     let mut tiles = BTreeMap::new();

@@ -2,10 +2,11 @@
 
 use std::ops::Range;
 
+use maulstick_paint::appearance::Bakery;
 use maulstick_paint::bands::{Banded, Shelf};
-use maulstick_paint::look::Bakery;
+use maulstick_paint::planes::Planes;
 use maulstick_paint::quantum::{QUANTUM_M, SLOTS};
-use maulstick_paint::tile::{Planes, Tile, TileId};
+use maulstick_paint::tile::{Tile, TileId};
 use maulstick_types::paint::TILE;
 
 use super::channels::Source;

@@ -4,7 +4,8 @@ use std::sync::Arc;
 
 use maulstick_brush::{Head, HeadPose};
 use maulstick_paint::load::BrushLoad;
-use maulstick_paint::model::{BrushTraits, Handling, PaintModel, Step, StepReport, Sweep};
+use maulstick_paint::model::{Handling, PaintModel, Step, StepReport, Sweep};
+use maulstick_paint::traits::BrushTraits;
 use maulstick_paint::window::Window;
 
 /// A step without window and load.

@@ -1,7 +1,7 @@
 //! The stages as compute pipelines, each with those buffers of impasto.wgsl that it uses.
 
 use maulstick_paint::impasto::velocity::{EASE, SLIP, SQUISH, STABLE};
-use maulstick_paint::model::BrushTraits;
+use maulstick_paint::traits::BrushTraits;
 use maulstick_paint::transfer::SWAP_FILM;
 
 use crate::device::Device;
@@ -82,7 +82,7 @@ macro_rules! source {
 use Binding as B;
 
 /// The stage that pushes paint along an axis.
-pub(crate) const PUSHES: &str = "push_paint";
+pub(crate) const PUSHES: &str = "advection";
 
 /// The stages of a step, in order.
 pub(crate) static KERNELS: [Kernel; 14] = [
@@ -108,15 +108,15 @@ pub(crate) static KERNELS: [Kernel; 14] = [
         groups: Groups::Grid,
     },
     Kernel {
-        name: "draw_head",
-        source: source!("draw_head"),
+        name: "rasterizer",
+        source: source!("rasterizer"),
         constants: &[],
         bindings: &[B::Poses, B::Head, B::Segments, B::Asks, B::Keys, B::Stats],
         groups: Groups::Segments,
     },
     Kernel {
-        name: "find_contacts",
-        source: source!("find_contacts"),
+        name: "footprint",
+        source: source!("footprint"),
         constants: &[
             ("SQUISH", SQUISH as f64),
             ("STABLE", STABLE as f64),
@@ -143,36 +143,36 @@ pub(crate) static KERNELS: [Kernel; 14] = [
         groups: Groups::One,
     },
     Kernel {
-        name: "find_velocity",
-        source: source!("find_velocity"),
+        name: "velocity",
+        source: source!("velocity"),
         constants: &[],
         bindings: &[B::Contacts, B::Faces],
         groups: Groups::Planned(4),
     },
     Kernel {
         name: PUSHES,
-        source: source!("push_paint"),
+        source: source!("advection"),
         constants: &[("second", 0.0)],
         bindings: &[B::Planes, B::Other, B::Faces, B::Totals, B::Stats],
         groups: Groups::Planned(2),
     },
     Kernel {
         name: PUSHES,
-        source: source!("push_paint"),
+        source: source!("advection"),
         constants: &[("second", 1.0)],
         bindings: &[B::Planes, B::Other, B::Faces, B::Totals, B::Stats],
         groups: Groups::Planned(3),
     },
     Kernel {
-        name: "ask_paint",
-        source: source!("ask_paint"),
+        name: "exchange_ask",
+        source: source!("exchange_ask"),
         constants: &[("SWAP_FILM", SWAP_FILM as f64)],
         bindings: &[B::Load, B::Asks, B::Contacts, B::Totals, B::Wants],
         groups: Groups::Planned(0),
     },
     Kernel {
-        name: "exchange_paint",
-        source: source!("exchange_paint"),
+        name: "exchange_apply",
+        source: source!("exchange_apply"),
         constants: &[],
         bindings: &[
             B::Planes,
@@ -186,8 +186,8 @@ pub(crate) static KERNELS: [Kernel; 14] = [
         groups: Groups::Planned(0),
     },
     Kernel {
-        name: "tend_strips",
-        source: source!("tend_strips"),
+        name: "bristle_flow",
+        source: source!("bristle_flow"),
         constants: &[],
         bindings: &[B::Head, B::Load, B::Asks],
         groups: Groups::Planned(1),
@@ -198,8 +198,8 @@ pub(crate) static KERNELS: [Kernel; 14] = [
 
 const fn seep(constants: &'static [(&'static str, f64)]) -> Kernel {
     Kernel {
-        name: "seep_paint",
-        source: source!("seep_paint"),
+        name: "seep",
+        source: source!("seep"),
         constants,
         bindings: &[B::Head, B::Load],
         groups: Groups::Planned(5),

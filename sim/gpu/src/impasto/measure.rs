@@ -32,7 +32,7 @@ impl Measured {
         };
         let storage = wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_DST;
         let mut measured = Self {
-            advection: gpu.guarded(|| Ok(made(&KERNELS, "push_paint")))?,
+            advection: gpu.guarded(|| Ok(made(&KERNELS, "advection")))?,
             copy: gpu.guarded(|| Ok(made(&COPIES, "copy_planes")))?,
             buffers: (0..=Binding::Wants as usize)
                 .map(|_| Arena::new("measured", storage))

@@ -1,7 +1,7 @@
 //! What stages of a step leave on the device: for the tests that hold each beside its twin.
 
 use bytemuck::pod_collect_to_vec;
-use maulstick_paint::impasto::footprint::Contact;
+use maulstick_paint::impasto::contact::Contact;
 use maulstick_paint::model::Step;
 
 use super::kernels::{Binding, KERNELS};

@@ -3,8 +3,9 @@
 use maulstick_brush::head::STATIONS;
 use maulstick_brush::{BrushFile, Head};
 use maulstick_gpu::impasto::probe::Prober;
-use maulstick_paint::impasto::footprint::{Contact, Footprint};
-use maulstick_paint::model::BrushTraits;
+use maulstick_paint::impasto::contact::Contact;
+use maulstick_paint::impasto::footprint::Footprint;
+use maulstick_paint::traits::BrushTraits;
 
 use crate::device;
 use crate::scene::{CELL_M, Random, Scene};
@@ -71,7 +72,7 @@ fn the_same_cells_are_touched() {
     for (seed, mut scene) in strips.chain((0..4).map(crumpled)).enumerate() {
         let mut footprint = Footprint::default();
         footprint.find(&mut scene.step());
-        let probe = prober.run(&mut scene.step(), "find_contacts");
+        let probe = prober.run(&mut scene.step(), "footprint");
         let probe = probe.expect("done").expect("on the surface");
         let (off, all) = apart(&footprint.contacts, &probe.contacts);
         println!("scene {seed}: {off} of {all} contacts differ");

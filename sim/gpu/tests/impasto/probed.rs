@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use maulstick_gpu::impasto::probe::{Probe, Prober};
-use maulstick_paint::impasto::footprint::Contact;
+use maulstick_paint::impasto::contact::Contact;
 use maulstick_paint::load::BrushLoad;
 use maulstick_paint::quantum::{QUANTA_PER_UNIT, SLOTS};
 

@@ -76,7 +76,7 @@ fn paint_follows_the_brush_and_goes_out_of_its_way() {
         let mut scene = scene(seed, 0);
         scene.thinner = [None, Some(2), Some(9)][seed as usize % 3];
         scene.traits.follows = [0.5, 1.0][seed as usize % 2];
-        let probe = run(&mut prober, &mut scene, "find_velocity");
+        let probe = run(&mut prober, &mut scene, "velocity");
         let grid = Grid::new(&probe, &scene);
         let mut worst = 0.0f64;
         for y in 0..grid.limit[1] {
@@ -162,7 +162,7 @@ fn paint_goes_where_it_is_pushed_and_none_is_lost() {
         scene.traits.follows = 0.5;
         let (before, counts) = (planes(&scene), scene.counts());
         let stain = f64::from(STAIN);
-        let probe = run(&mut prober, &mut scene, "push_paint");
+        let probe = run(&mut prober, &mut scene, "advection");
         assert_eq!(scene.counts(), counts, "scene {seed}");
         lying(&scene.window);
         let grid = Grid::new(&probe, &scene);
@@ -291,14 +291,14 @@ fn paint_goes_both_ways() {
         };
         let mut pushed = scene();
         let counts = pushed.counts();
-        let probe = run(&mut prober, &mut pushed, "push_paint");
+        let probe = run(&mut prober, &mut pushed, "advection");
         let mut expected = exchanged(&probe, &pushed, rule);
         // In every second strip paint flows besides.
         expected.retain(|(is_cell, _, at), _| {
-            *is_cell || (at / maulstick_paint::load::ALONG).is_multiple_of(2)
+            *is_cell || (at / maulstick_paint::traits::TEXELS_PER_STRIP).is_multiple_of(2)
         });
         let mut scene = scene();
-        let last = run(&mut prober, &mut scene, "tend_strips");
+        let last = run(&mut prober, &mut scene, "bristle_flow");
         assert_eq!(last.contacts, probe.contacts);
         assert_eq!(scene.counts(), counts, "scene {seed}");
         lying(&scene.window);

@@ -1,11 +1,12 @@
 //! Paint within the head, on what the stages before left: beside the processor's.
 
 use maulstick_gpu::impasto::probe::Prober;
-use maulstick_paint::impasto::flow::flow;
-use maulstick_paint::impasto::footprint::Contact;
+use maulstick_paint::impasto::bristle_flow::flow;
+use maulstick_paint::impasto::contact::Contact;
 use maulstick_paint::impasto::seep::seep;
-use maulstick_paint::load::{ALONG, BrushLoad};
+use maulstick_paint::load::BrushLoad;
 use maulstick_paint::quantum::SLOTS;
+use maulstick_paint::traits::TEXELS_PER_STRIP;
 
 use crate::device;
 use crate::probed::{run, scene, stepped};
@@ -17,10 +18,10 @@ fn paint_seeps_between_strips() {
     let mut prober = Prober::new(device()).expect("taken");
     for steps in [3, 7, 11, 15] {
         let mut flowed = scene(steps, steps);
-        run(&mut prober, &mut flowed, "tend_strips");
+        run(&mut prober, &mut flowed, "bristle_flow");
         let mut seeped = scene(steps, steps);
         let counts = seeped.counts();
-        run(&mut prober, &mut seeped, "seep_paint");
+        run(&mut prober, &mut seeped, "seep");
         assert_eq!(seeped.counts(), counts, "after {steps} steps");
         let off = |turn: u64| {
             let mut scene = scene(steps, steps);
@@ -55,17 +56,17 @@ fn paint_flows_within_all_strips() {
         let mut still = scene(seed, 2);
         still.handling.push = false;
         still.thinner = [None, Some(2)][seed as usize % 2];
-        let probe = run(&mut prober, &mut still, "tend_strips");
+        let probe = run(&mut prober, &mut still, "bristle_flow");
         let mut flowed = scene(seed, 1);
         (flowed.handling, flowed.thinner) = (still.handling, still.thinner);
         let counts = flowed.counts();
-        run(&mut prober, &mut flowed, "tend_strips");
+        run(&mut prober, &mut flowed, "bristle_flow");
         assert_eq!(flowed.counts(), counts, "scene {seed}");
         let not_flowed = still.load.clone();
         still.load = stepped(&still.load, 1);
         flow(&mut still.step());
         let mut touched = vec![false; still.head.strips()];
-        let strip = |contact: &Contact| contact.texel as usize / ALONG;
+        let strip = |contact: &Contact| contact.texel as usize / TEXELS_PER_STRIP;
         let contacts = probe.contacts.iter();
         contacts.for_each(|contact| touched[strip(contact)] = true);
         let off = |one: &BrushLoad, two: &BrushLoad, of_touched: bool| {
@@ -79,7 +80,7 @@ fn paint_flows_within_all_strips() {
                     let pairs = one.unwrap_or_default().iter().zip(two.unwrap_or_default());
                     let pairs = pairs.enumerate();
                     let pairs = pairs.filter(|(texel, _)| {
-                        let strip = texel / ALONG;
+                        let strip = texel / TEXELS_PER_STRIP;
                         strip.is_multiple_of(2) && touched[strip] == of_touched
                     });
                     *worst = pairs.fold(*worst, |worst, (_, (a, b))| worst.max(a.abs_diff(*b)));

@@ -1,4 +1,4 @@
-//! Why a servo gives no force until it is re-armed.
+//! Faults that latch the force at zero until the servo is re-armed.
 
 /// A latched fault.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -8,7 +8,9 @@ pub enum Fault {
     /// The hand was faster than any hand is, with force on it.
     TooFast,
     /// It went on shaking, however soft the force was made.
-    Shaking,
+    Oscillation,
+    /// The force state of an earlier servo could not be read.
+    UnknownState,
 }
 
 impl std::fmt::Display for Fault {
@@ -16,7 +18,8 @@ impl std::fmt::Display for Fault {
         f.write_str(match self {
             Self::NotANumber => "a reading or a force was not a number",
             Self::TooFast => "the hand was faster than its limit",
-            Self::Shaking => "the hand shook, however soft the force was made",
+            Self::Oscillation => "the hand shook, however soft the force was made",
+            Self::UnknownState => "the saved force state cannot be read, so force is switched off",
         })
     }
 }

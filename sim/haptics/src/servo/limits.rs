@@ -17,7 +17,7 @@ pub struct Limits {
     /// A hand that is faster than this with force on it is driven by the device, m/s.
     pub max_speed_m_s: f64,
     /// A shaking hand turns round by at least this much, m.
-    pub shaking_m: f64,
+    pub oscillation_m: f64,
     /// Time over which a model past its time to live fades to nothing, s.
     pub fade_s: f64,
     /// Force comes up first where the models ask for no more than this, N.
@@ -41,7 +41,7 @@ impl Default for Limits {
             damping_n_s_m: 0.1,
             slew_n_s: 400.0,
             max_speed_m_s: 1.5,
-            shaking_m: 3e-4,
+            oscillation_m: 3e-4,
             fade_s: 0.075,
             engage_n: 0.2,
             engage_s: 0.5,
@@ -68,7 +68,7 @@ impl Limits {
             continuous_force_n: scale * self.continuous_force_n,
             slew_n_s: scale * self.slew_n_s,
             max_speed_m_s: scale * self.max_speed_m_s,
-            shaking_m: scale * self.shaking_m,
+            oscillation_m: scale * self.oscillation_m,
             engage_n: scale * self.engage_n,
             ..*self
         }

@@ -9,8 +9,8 @@ use crate::contact::tests::{linear, model};
 
 const DT: f64 = 1e-3;
 
-fn held(depth: f64) -> Held {
-    Held {
+fn handle(depth: f64) -> HandleState {
+    HandleState {
         position: DVec3::new(0.0, 0.0, 0.025 - depth),
         orientation: DQuat::IDENTITY,
         velocity: DVec3::ZERO,
@@ -32,7 +32,7 @@ fn begun(limits: Limits) -> Servo {
     let mut servo = Servo::new(limits);
     for _ in 0..CALM_TICKS {
         servo.receive(contact(linear()), Sender::Same);
-        servo.step(&held(-0.001), DT);
+        servo.step(&handle(-0.001), DT);
     }
     servo
 }
@@ -42,7 +42,7 @@ fn engaged(depth: f64) -> Servo {
     let mut servo = begun(Limits::default());
     for _ in 0..1000 {
         servo.receive(contact(linear()), Sender::Same);
-        servo.step(&held(depth), DT);
+        servo.step(&handle(depth), DT);
     }
     servo
 }
@@ -53,7 +53,7 @@ fn the_force_comes_up_over_the_ramp_and_reaches_the_model() {
     let mut last = 0.0;
     for tick in 1..=600 {
         servo.receive(contact(linear()), Sender::Same);
-        let (force, _) = servo.step(&held(0.0125), DT);
+        let (force, _) = servo.step(&handle(0.0125), DT);
         assert!(force.z >= last - 1e-12 && force.z <= 0.4 * f64::from(tick) * DT / 0.5 + 1e-9);
         last = force.z;
     }
@@ -66,7 +66,7 @@ fn a_silent_sender_loses_its_force_within_time_to_live_and_fade() {
     let mut ticks = 0;
     loop {
         ticks += 1;
-        let (force, tick) = servo.step(&held(0.0125), DT);
+        let (force, tick) = servo.step(&handle(0.0125), DT);
         // The newest model came a tick before the first of these, so the 49th ends its 50 ms.
         assert!(ticks == 49 || tick.stale == (ticks > 49), "{ticks}");
         if force == DVec3::ZERO {
@@ -94,7 +94,7 @@ fn a_jump_of_the_plane_is_spread_over_the_recovery_time_whatever_the_rate_of_mod
             if tick % period == 0 {
                 servo.receive(plane_at(0.01), Sender::Same);
             }
-            let (force, _) = servo.step(&held(0.0125), DT);
+            let (force, _) = servo.step(&handle(0.0125), DT);
             let change = force.z - last;
             assert!(
                 (-1e-12..=0.32 / 15.0 + 1e-9).contains(&change),
@@ -114,7 +114,7 @@ fn a_jump_ends_in_its_time_though_every_model_differs_a_little() {
             let shiver = if tick % 8 == 0 { 1e-5 } else { -1e-5 };
             servo.receive(plane_at(0.01 + shiver), Sender::Same);
         }
-        servo.step(&held(0.0125), DT);
+        servo.step(&handle(0.0125), DT);
     }
     assert!((servo.force.z - 0.72).abs() < 1e-3, "{} N", servo.force.z);
 }
@@ -128,8 +128,12 @@ fn models_that_say_the_same_add_no_lag() {
     once.receive(endless, Sender::Same);
     for tick in 0..200 {
         often.receive(contact(linear()), Sender::Same);
-        let held = held(0.0125 + 0.005 * (f64::from(tick) / 40.0).fract());
-        assert_eq!(often.step(&held, DT).0, once.step(&held, DT).0, "{tick}");
+        let handle = handle(0.0125 + 0.005 * (f64::from(tick) / 40.0).fract());
+        assert_eq!(
+            often.step(&handle, DT).0,
+            once.step(&handle, DT).0,
+            "{tick}"
+        );
     }
 }
 
@@ -137,18 +141,18 @@ fn models_that_say_the_same_add_no_lag() {
 fn a_sender_that_was_silent_gives_no_force_to_a_hand_that_has_stayed_deep() {
     let mut servo = engaged(0.0125);
     while servo.force != DVec3::ZERO {
-        servo.step(&held(0.0125), DT);
+        servo.step(&handle(0.0125), DT);
     }
     for tick in 0..1000 {
         servo.receive(plane_at(0.0), Sender::Same);
-        let (force, told) = servo.step(&held(0.0125), DT);
+        let (force, told) = servo.step(&handle(0.0125), DT);
         assert!(force == DVec3::ZERO && told.waiting, "{tick}: {force}");
     }
     let mut last = 0.0;
     for tick in 0..1000 {
         servo.receive(plane_at(0.0), Sender::Same);
         let depth = if tick < 100 { -0.001 } else { 0.0125 };
-        last = servo.step(&held(depth), DT).0.z;
+        last = servo.step(&handle(depth), DT).0.z;
     }
     assert!((last - 0.4).abs() < 1e-9, "once it has come up: {last} N");
 }
@@ -156,22 +160,25 @@ fn a_sender_that_was_silent_gives_no_force_to_a_hand_that_has_stayed_deep() {
 #[test]
 fn what_is_kept_of_a_servo_latches_the_next_and_its_motors_stay_warm() {
     let mut servo = engaged(0.0125);
-    let mut fast = held(0.0125);
+    let mut fast = handle(0.0125);
     fast.velocity.x = 2.0;
     servo.step(&fast, DT);
-    assert_eq!(servo.kept().fault, Some(Fault::TooFast));
-    let mut next = Servo::after(Limits::default(), servo.kept().rested(1.0));
-    assert_ne!(next.kept().heat, Kept::nothing(Limits::default()).heat);
+    assert_eq!(servo.memory().fault, Some(Fault::TooFast));
+    let mut next = Servo::after(Limits::default(), servo.memory().cooled(1.0));
+    assert_ne!(
+        next.memory().thermal,
+        ServoMemory::fresh(Limits::default()).thermal
+    );
     for depth in [-0.001, 0.0125] {
         for _ in 0..100 {
             next.receive(contact(linear()), Sender::Same);
-            let (force, tick) = next.step(&held(depth), DT);
+            let (force, tick) = next.step(&handle(depth), DT);
             assert_eq!((force, tick.fault), (DVec3::ZERO, Some(Fault::TooFast)));
         }
     }
     next.rearm();
     next.receive(contact(linear()), Sender::Same);
-    assert_eq!(next.step(&held(0.0), DT).1.fault, None);
+    assert_eq!(next.step(&handle(0.0), DT).1.fault, None);
 }
 
 #[test]
@@ -182,25 +189,25 @@ fn motors_cool_at_rest_and_after_a_fault() {
     });
     for tick in 0..10_000 {
         warm.receive(contact(linear()), Sender::Same);
-        warm.step(&held(if tick < 10 { 0.0 } else { 0.0125 }), DT);
+        warm.step(&handle(if tick < 10 { 0.0 } else { 0.0125 }), DT);
     }
     let rests: [fn(&mut Servo); 2] = [
         |servo| servo.switch(Switch::Off),
-        |servo| servo.fault = Some(Fault::Shaking),
+        |servo| servo.fault = Some(Fault::Oscillation),
     ];
     for rest in rests {
         let mut servo = warm;
         rest(&mut servo);
-        servo.step(&held(0.0), DT);
-        let before = servo.heat;
-        servo.step(&held(0.0), 60.0);
-        assert_ne!(servo.heat, before);
+        servo.step(&handle(0.0), DT);
+        let before = servo.thermal;
+        servo.step(&handle(0.0), 60.0);
+        assert_ne!(servo.thermal, before);
     }
 }
 
 #[test]
 fn a_number_that_is_none_latches_the_fault() {
-    let whole = held(0.0125);
+    let whole = handle(0.0125);
     let broken = [f64::NAN, f64::INFINITY, f64::NEG_INFINITY].map(|none| {
         let (mut position, mut velocity, mut orientation) = (whole, whole, whole);
         position.position.z = none;
@@ -208,17 +215,17 @@ fn a_number_that_is_none_latches_the_fault() {
         orientation.orientation.w = none;
         [position, velocity, orientation]
     });
-    for (held, dt) in broken
+    for (handle, dt) in broken
         .into_iter()
         .flatten()
-        .map(|held| (held, DT))
+        .map(|handle| (handle, DT))
         .chain([(whole, f64::NAN), (whole, f64::INFINITY)])
     {
         let mut servo = engaged(0.0125);
-        let (force, tick) = servo.step(&held, dt);
+        let (force, tick) = servo.step(&handle, dt);
         assert!(
             tick.fault == Some(Fault::NotANumber) && force == DVec3::ZERO,
-            "{held:?} {dt}: {force}"
+            "{handle:?} {dt}: {force}"
         );
         for _ in 0..100 {
             servo.receive(contact(linear()), Sender::Another);
@@ -237,7 +244,7 @@ fn a_model_beyond_all_numbers_latches_the_fault() {
     let mut endless = model(linear());
     endless.viscous_n_s_m = f64::MAX;
     servo.receive(Contact::new(&endless).expect("a model"), Sender::Same);
-    let mut fast = held(0.0125);
+    let mut fast = handle(0.0125);
     fast.velocity.x = 1.2;
     let (force, tick) = servo.step(&fast, DT);
     assert!(
@@ -264,7 +271,7 @@ fn limits_that_make_no_sense_give_no_force() {
         let mut servo = begun(bad);
         for _ in 0..600 {
             servo.receive(contact(linear()), Sender::Same);
-            let (force, _) = servo.step(&held(0.0125), DT);
+            let (force, _) = servo.step(&handle(0.0125), DT);
             assert!(
                 force.is_finite() && force.length() <= 3.0,
                 "{bad:?}: {force}"
@@ -274,8 +281,8 @@ fn limits_that_make_no_sense_give_no_force() {
     let mut servo = begun(limits(|l| l.max_force_n = -1.0));
     for _ in 0..600 {
         servo.receive(contact(linear()), Sender::Same);
-        assert_eq!(servo.step(&held(0.0), DT).0, DVec3::ZERO);
-        assert_eq!(servo.step(&held(0.0125), DT).0, DVec3::ZERO);
+        assert_eq!(servo.step(&handle(0.0), DT).0, DVec3::ZERO);
+        assert_eq!(servo.step(&handle(0.0125), DT).0, DVec3::ZERO);
     }
 }
 
@@ -286,7 +293,7 @@ fn a_hard_press_is_cut_to_the_largest_force_and_slews_there() {
     let mut last = 0.0;
     for tick in 0..100 {
         servo.receive(rigid(400.0, 0.0), Sender::Same);
-        let (force, told) = servo.step(&held(0.02), DT);
+        let (force, told) = servo.step(&handle(0.02), DT);
         assert!(force.z - last <= limits.slew_n_s * DT + 1e-9, "{tick}");
         assert_eq!(
             told.clamped,
@@ -301,7 +308,7 @@ fn a_hard_press_is_cut_to_the_largest_force_and_slews_there() {
 #[test]
 fn a_long_tick_drops_the_force() {
     let mut servo = engaged(0.0125);
-    let (force, tick) = servo.step(&held(0.0125), 0.2);
+    let (force, tick) = servo.step(&handle(0.0125), 0.2);
     assert!(tick.late && force.length() < 0.01, "{force}");
 }
 
@@ -322,8 +329,8 @@ proptest! {
                 2 => servo.receive(contact(linear()), Sender::Another),
                 _ => {}
             }
-            let held = Held { velocity: DVec3::splat(speed), ..held(depth) };
-            let (force, tick) = servo.step(&held, dt);
+            let handle = HandleState { velocity: DVec3::splat(speed), ..handle(depth) };
+            let (force, tick) = servo.step(&handle, dt);
             prop_assert!(force.length() <= limits.max_force_n * (1.0 + 1e-12));
             if !tick.late {
                 let change = (force - last).length();

@@ -1,7 +1,7 @@
 //! Light on a relief: what a lamp makes of unlit colour, gloss and height.
 //!
 //! One definition for the export and the view, whose shader holds the same terms
-//! (`ui/src/shaders/light_surface.wgsl`). With the surface z = ρ·h(x, y), ρ the strength of the
+//! (`ui/src/render/shaders/light_surface.wgsl`). With the surface z = ρ·h(x, y), ρ the strength of the
 //! relief, its slope s = ρ·∇h and normal n = (−s, 1)/|…|, the unit vector l toward the middle of the
 //! lamp, the unit vector m at a right angle to it and higher, the viewer straight above at v = (0, 0, 1),
 //! and the half vector b = (l + v)/|l + v|:

@@ -8,10 +8,10 @@
 
 use std::ops::Range;
 
-use maulstick_num::cores::both_if;
+use maulstick_num::fork_join::both_if;
 use maulstick_num::wide;
 
-use super::SHARED;
+use super::PARALLEL_MIN_CELLS;
 use super::velocity::Faces;
 use crate::quantum::CELL_MAX;
 use crate::window::{Area, Window};
@@ -126,7 +126,7 @@ impl Advection {
             let ([one, other], [first, rest]) = (&mut self.movers, window.planes_halved());
             let one = || move_planes(one, &flux, first);
             let other = || move_planes(other, &flux, rest);
-            both_if(area.cells() >= SHARED, one, other);
+            both_if(area.cells() >= PARALLEL_MIN_CELLS, one, other);
         }
     }
 
@@ -139,7 +139,7 @@ impl Advection {
         let (loose, loose_above) = self.loose.split_at_mut(cut);
         let one = || weigh(window, &low, stain, below, loose);
         let other = || weigh(window, &high, stain, above, loose_above);
-        both_if(area.cells() >= SHARED, one, other);
+        both_if(area.cells() >= PARALLEL_MIN_CELLS, one, other);
     }
 
     /// A cell holds at most one unit: inflow beyond it stays with its donors.

@@ -7,10 +7,10 @@ use maulstick_brush::{Head, HeadPose};
 use maulstick_num::lanes::Lanes;
 use maulstick_num::wide;
 
-use super::drawing::{Drawing, Line, Piece};
-use super::footprint::Contact;
-use crate::load::ALONG;
+use super::contact::Contact;
+use super::rasterizer::{Drawing, Line, Piece};
 use crate::model::Step;
+use crate::traits::TEXELS_PER_STRIP;
 use crate::window::Area;
 
 /// Strips of the same depth lie over each other in the order of their roots along the way that the
@@ -113,7 +113,7 @@ impl Band {
                     height_at(i),
                 ],
                 moved,
-                along: station as f32 * (ALONG as f32 / (STATIONS - 1) as f32),
+                along: station as f32 * (TEXELS_PER_STRIP as f32 / (STATIONS - 1) as f32),
             }
         };
         for station in 1..STATIONS {
@@ -145,7 +145,7 @@ impl Band {
             return;
         }
         let piece = Piece {
-            texel: (ribbon.strip * ALONG) as u32,
+            texel: (ribbon.strip * TEXELS_PER_STRIP) as u32,
             along: [a.along, b.along - a.along],
             z: [a.at[2], b.at[2] - a.at[2]],
             bottom: ribbon.bottom,

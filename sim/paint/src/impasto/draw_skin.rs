@@ -1,9 +1,9 @@
 //! The skin of a head in its footprint: triangles over the middles of cells.
 
 use super::band::Band;
-use super::drawing::{Line, Piece};
-use crate::load::ALONG;
+use super::rasterizer::{Line, Piece};
 use crate::model::Step;
+use crate::traits::TEXELS_PER_STRIP;
 
 /// A corner of a triangle.
 #[derive(Clone, Copy, Debug)]
@@ -81,10 +81,11 @@ impl Band {
                 let mix = |of: [f32; 3]| u * of[0] + v * of[1] + w * of[2];
                 let z = mix(corners.map(|corner| corner.at[2]));
                 let around = mix(corners.map(|corner| corner.place[0]));
-                let along = mix(corners.map(|corner| corner.place[1])) * ALONG as f32;
+                let along = mix(corners.map(|corner| corner.place[1])) * TEXELS_PER_STRIP as f32;
                 let strip = step.head.strip_around(around);
                 let piece = Piece {
-                    texel: (strip * ALONG + (along as usize).min(ALONG - 1)) as u32,
+                    texel: (strip * TEXELS_PER_STRIP + (along as usize).min(TEXELS_PER_STRIP - 1))
+                        as u32,
                     z: [z, 0.0],
                     bottom,
                     moved: [

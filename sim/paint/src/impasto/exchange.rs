@@ -5,15 +5,17 @@
 //! there, still takes on the colour that it meets. Cells that draw on one brush texel have their
 //! demands summed, scaled together where they exceed what it holds, and truncated once.
 
-use maulstick_num::cores::{Balance, both_if};
+use maulstick_num::fork_join::{Balance, both_if};
 use maulstick_num::select::{larger, smaller};
 use maulstick_num::wide;
 
-use super::SHARED;
-use super::footprint::{Contact, Footprint};
+use super::PARALLEL_MIN_CELLS;
+use super::contact::Contact;
+use super::footprint::Footprint;
 use crate::load::BrushLoad;
-use crate::model::{BrushTraits, Handling, Step, Transfer};
+use crate::model::{Handling, Step, Transfer};
 use crate::quantum::{CELL_MAX, QUANTA_PER_UNIT, SLOTS};
+use crate::traits::BrushTraits;
 use crate::transfer::Exchanging;
 
 /// Room for a step. Of the brush's many texels few touch at a time: these are numbered afresh in each
@@ -24,7 +26,7 @@ pub struct Exchange {
     halves: [Half; 2],
     /// The texels that touch.
     texels: Vec<u32>,
-    /// The place of each texel of the brush in `texels`; [`NOWHERE`] but for those that touch.
+    /// The place of each texel of the brush in `texels`; [`ABSENT`] but for those that touch.
     place_of: Vec<u32>,
     granted: Granted,
     balance: Balance,
@@ -104,10 +106,10 @@ impl Meetings {
 }
 
 /// The place of a texel that does not touch.
-const NOWHERE: u32 = u32::MAX;
+const ABSENT: u32 = u32::MAX;
 /// What is shared out of a film that is all used up: so much less that rounding never takes more
 /// than there is.
-const ALL: f32 = 1.0 - 1.0 / 1_048_576.0;
+const SAFE_SHARE: f32 = 1.0 - 1.0 / 1_048_576.0;
 
 /// What is known of a contact before the exchange.
 #[derive(Clone, Copy, Debug, Default)]
@@ -209,7 +211,7 @@ impl Exchange {
     /// Exchanges the paint of one step; by slot, what came onto the canvas from nowhere.
     pub fn run(&mut self, footprint: &Footprint, step: &mut Step<'_>) -> [i64; SLOTS] {
         let contacts = footprint.contacts.len();
-        let middle = match contacts >= SHARED {
+        let middle = match contacts >= PARALLEL_MIN_CELLS {
             true => self.balance.cut(contacts),
             false => contacts,
         };
@@ -251,15 +253,15 @@ impl Exchange {
 
     fn find_texels(&mut self, footprint: &Footprint, middle: usize, texels: usize) {
         for texel in self.texels.drain(..) {
-            self.place_of[texel as usize] = NOWHERE;
+            self.place_of[texel as usize] = ABSENT;
         }
-        self.place_of.resize(texels, NOWHERE);
+        self.place_of.resize(texels, ABSENT);
         let (low, high) = footprint.contacts.split_at(middle);
         for (half, contacts) in self.halves.iter_mut().zip([low, high]) {
             half.places.clear();
             for contact in contacts {
                 let place = &mut self.place_of[contact.texel as usize];
-                if *place == NOWHERE {
+                if *place == ABSENT {
                     *place = self.texels.len() as u32;
                     self.texels.push(contact.texel);
                 }
@@ -402,7 +404,7 @@ impl Granted {
         for (texel, [drawn, offered]) in texels.iter().zip(&mut self.asked) {
             let film = load.film(*texel as usize) as f32;
             let granted = if *drawn > film && !sponge {
-                ALL * film / *drawn
+                SAFE_SHARE * film / *drawn
             } else {
                 1.0
             };

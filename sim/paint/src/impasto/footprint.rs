@@ -4,33 +4,13 @@
 //! the deepest one counts. It touches where it, with the film of paint that it carries, reaches the
 //! top of what lies there: tooth, dry relief and wet paint. All lengths are in cells.
 
-use maulstick_num::cores::{Balance, both_if};
+use maulstick_num::fork_join::{Balance, both_if};
 
-use super::SHARED;
+use super::PARALLEL_MIN_CELLS;
 use super::band::{Band, draw_strips};
+use super::contact::Contact;
 use crate::model::{Step, StepReport};
 use crate::window::{Area, Window};
-
-/// A cell in contact.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Contact {
-    /// Its place in the window's planes.
-    pub cell: u32,
-    /// Its place in the planes of the cells [around](Footprint::around).
-    pub local: u32,
-    /// The brush texel that touches it: `strip · ALONG + along`.
-    pub texel: u32,
-    /// Share of the cell that is covered, 0 to 1.
-    pub cover: f32,
-    /// How far the strip went since the step before, cells.
-    pub moved: [f32; 2],
-    /// How deep it reaches below the top of the wet paint, cells; at most its thickness.
-    pub depth: f32,
-    /// `depth` by the thickness of the wet paint, 0 to 1.
-    pub fraction: f32,
-    /// How far it stays above the top of the wet paint, bridged by its film, cells.
-    pub gap: f32,
-}
 
 /// The footprint of one step.
 #[derive(Clone, Debug, Default)]
@@ -77,7 +57,7 @@ impl Footprint {
             draw_strips(band, step, low, loose);
             band.touch(step, lying, sink);
         };
-        let middle = match grid.cells() >= SHARED {
+        let middle = match grid.cells() >= PARALLEL_MIN_CELLS {
             true => self.balance.cut(height),
             false => height,
         };
@@ -103,7 +83,9 @@ impl Footprint {
         let [low, high] = area.halves();
         let (below, above) = self.lying.split_at_mut(low.cells());
         let one = || weigh(&low, below);
-        let (below, above) = both_if(area.cells() >= SHARED, one, || weigh(&high, above));
+        let (below, above) = both_if(area.cells() >= PARALLEL_MIN_CELLS, one, || {
+            weigh(&high, above)
+        });
         let top = below.max(above);
         step.window.note_top(top / to_cells);
         top

@@ -9,23 +9,24 @@
 //! | [`velocity`] | 2: where the paint under it goes |
 //! | [`advection`] | 3: the paint goes there, counted |
 //! | [`exchange`] | 4 and 5: Algorithm 3, both ways |
-//! | [`flow`] | paint moves within the head |
+//! | [`bristle_flow`] | paint moves within the head |
 //! | [`modes`] | the sampler and the vacuum cleaner, in place of 2 to 5 |
 
 pub mod advection;
 pub mod band;
+pub mod bristle_flow;
+pub mod contact;
 mod draw_skin;
-mod drawing;
 pub mod exchange;
-pub mod flow;
 pub mod footprint;
 pub mod levelling;
 pub mod modes;
+mod rasterizer;
 pub mod seep;
 pub mod step;
 pub mod velocity;
 
 pub use step::Impasto;
 
-/// Fewer cells are one core's: the other would hardly come in time.
-const SHARED: usize = 400;
+/// Smaller footprints run on one core: fork-join would cost more than it saves.
+const PARALLEL_MIN_CELLS: usize = 400;

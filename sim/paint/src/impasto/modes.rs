@@ -2,9 +2,9 @@
 //! brush, held while it moves, which lifts paint like a vacuum cleaner.
 
 use super::footprint::Footprint;
-use crate::load::ALONG;
 use crate::model::Step;
 use crate::quantum::{Counts, SLOTS};
+use crate::traits::TEXELS_PER_STRIP;
 
 /// Lifts the wet paint off the cells that are at least half covered, and a part of it off the others;
 /// what was lifted.
@@ -45,7 +45,7 @@ pub fn sample(footprint: &Footprint, step: &mut Step<'_>) -> [i64; SLOTS] {
         if total <= 0.0 {
             continue;
         }
-        let capacity = f64::from(step.head.capacity()[texel / ALONG]);
+        let capacity = f64::from(step.head.capacity()[texel / TEXELS_PER_STRIP]);
         let full = [step.traits.film_full, step.traits.inside_full].map(|full| full * capacity);
         for (slot, seen) in seen.iter().enumerate() {
             let holds = full.map(|full| (full * seen / total) as u32);

@@ -8,9 +8,11 @@
 use maulstick_num::select::larger;
 use maulstick_num::wide;
 
-use super::flow::{first_of, part};
-use crate::load::{ALONG, PaintOnBrush};
-use crate::model::{BrushTraits, Step};
+use super::bristle_flow::{first_of, part};
+use crate::load::PaintOnBrush;
+use crate::model::Step;
+use crate::traits::BrushTraits;
+use crate::traits::TEXELS_PER_STRIP;
 
 /// Evens films out: in turn between strips of either order, and along them.
 pub fn seep(step: &mut Step<'_>) {
@@ -46,8 +48,8 @@ wide! {
         for pair in order.as_chunks::<2>().0.iter().skip(first_of(steps)).step_by(every) {
             let pair = pair.map(|strip| strip as usize);
             let [one, other] = of_strips(films, pair);
-            let (mut on, mut back, mut goes) = ([0.0; ALONG], [0.0; ALONG], 0.0);
-            for k in 0..ALONG {
+            let (mut on, mut back, mut goes) = ([0.0; TEXELS_PER_STRIP], [0.0; TEXELS_PER_STRIP], 0.0);
+            for k in 0..TEXELS_PER_STRIP {
                 let fall = f64::from(one[k]) - f64::from(other[k]);
                 on[k] = given(share, fall - holds, one[k]);
                 back[k] = given(share, -fall - holds, other[k]);
@@ -56,10 +58,10 @@ wide! {
             if goes == 0.0 {
                 continue;
             }
-            let mut sums = [[0; ALONG]; 2];
+            let mut sums = [[0; TEXELS_PER_STRIP]; 2];
             for paint in &mut *paints {
                 let [mut one, mut other] = of_strips(paint.film, pair);
-                for k in 0..ALONG {
+                for k in 0..TEXELS_PER_STRIP {
                     let (on, back) = (part(one[k], on[k]), part(other[k], back[k]));
                     one[k] = one[k] - on + back;
                     other[k] = other[k] + on - back;
@@ -75,12 +77,12 @@ wide! {
 
 /// The texels of two strips.
 #[inline(always)]
-fn of_strips(plane: &[u32], pair: [usize; 2]) -> [[u32; ALONG]; 2] {
+fn of_strips(plane: &[u32], pair: [usize; 2]) -> [[u32; TEXELS_PER_STRIP]; 2] {
     pair.map(|strip| plane.as_chunks().0[strip])
 }
 
 #[inline(always)]
-fn put(plane: &mut [u32], pair: [usize; 2], texels: [[u32; ALONG]; 2]) {
+fn put(plane: &mut [u32], pair: [usize; 2], texels: [[u32; TEXELS_PER_STRIP]; 2]) {
     for (strip, texels) in pair.into_iter().zip(texels) {
         plane.as_chunks_mut().0[strip] = texels;
     }
@@ -94,13 +96,13 @@ wide! {
         steps: u64,
     ) {
         let every = BrushTraits::FLOW_STEPS as usize;
-        let strips = films.as_chunks_mut::<ALONG>().0.iter_mut().enumerate();
+        let strips = films.as_chunks_mut::<TEXELS_PER_STRIP>().0.iter_mut().enumerate();
         for (strip, films) in strips.skip(first_of(steps)).step_by(every) {
             // In turn from the first and from the second texel on.
             let first = (steps as usize + strip) / every % 2;
             // By each texel but the last, what goes between it and the next; of every second pair.
-            let (mut on, mut back, mut falls) = ([0.0; ALONG], [0.0; ALONG], 0.0);
-            for k in 0..ALONG - 1 {
+            let (mut on, mut back, mut falls) = ([0.0; TEXELS_PER_STRIP], [0.0; TEXELS_PER_STRIP], 0.0);
+            for k in 0..TEXELS_PER_STRIP - 1 {
                 let own = if k % 2 == first { share } else { 0.0 };
                 let fall = f64::from(films[k]) - f64::from(films[k + 1]);
                 on[k] = given(own, fall, films[k]);
@@ -111,19 +113,19 @@ wide! {
             if falls < 2.0 {
                 continue;
             }
-            *films = [0; ALONG];
+            *films = [0; TEXELS_PER_STRIP];
             for paint in &mut *paints {
-                let film = &mut paint.film.as_chunks_mut::<ALONG>().0[strip];
+                let film = &mut paint.film.as_chunks_mut::<TEXELS_PER_STRIP>().0[strip];
                 let before = *film;
-                let (mut leaves, mut comes) = ([0; ALONG], [0; ALONG]);
-                for k in 0..ALONG - 1 {
+                let (mut leaves, mut comes) = ([0; TEXELS_PER_STRIP], [0; TEXELS_PER_STRIP]);
+                for k in 0..TEXELS_PER_STRIP - 1 {
                     leaves[k] = part(before[k], on[k]);
                     comes[k] = part(before[k + 1], back[k]);
                 }
-                for k in 0..ALONG - 1 {
+                for k in 0..TEXELS_PER_STRIP - 1 {
                     film[k] = film[k] - leaves[k] + comes[k];
                 }
-                for k in 1..ALONG {
+                for k in 1..TEXELS_PER_STRIP {
                     film[k] = film[k] + leaves[k - 1] - comes[k - 1];
                 }
                 films.iter_mut().zip(film).for_each(|(sum, count)| *sum += *count);

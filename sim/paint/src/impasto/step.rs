@@ -1,8 +1,8 @@
 //! The whole step.
 
 use super::advection::{Advection, Axis};
+use super::bristle_flow::flow;
 use super::exchange::Exchange;
-use super::flow::flow;
 use super::footprint::Footprint;
 use super::modes::{sample, vacuum};
 use super::seep::seep;

@@ -7,11 +7,12 @@
 //!
 //! Thinned paint slips under the bristles and gives way sooner.
 
-use maulstick_num::cores::both_if;
+use maulstick_num::fork_join::both_if;
 use maulstick_num::wide;
 
-use super::SHARED;
-use super::footprint::{Contact, Footprint};
+use super::PARALLEL_MIN_CELLS;
+use super::contact::Contact;
+use super::footprint::Footprint;
 use crate::model::Step;
 use crate::window::Area;
 
@@ -76,7 +77,7 @@ wide! {
 }
 
 impl Faces {
-    /// Finds the velocities in each [part](crate::model::BrushTraits::parts) of the step; no cell loses more than it
+    /// Finds the velocities in each [part](crate::traits::BrushTraits::parts) of the step; no cell loses more than it
     /// holds along either axis.
     pub fn find(&mut self, footprint: &Footprint, step: &Step<'_>) {
         let [width, height] = footprint.around.size;
@@ -111,7 +112,7 @@ impl Faces {
         let [leaves_x, leaves_y] = &mut self.leaves;
         let x = || through_faces(&across, &mut self.right, leaves_x);
         let y = || through_faces(&up, &mut self.above, leaves_y);
-        both_if(width * height >= SHARED, x, y);
+        both_if(width * height >= PARALLEL_MIN_CELLS, x, y);
     }
 }
 

@@ -3,9 +3,11 @@
 
 use std::sync::Arc;
 
-use super::modes::UnderBrush;
-use super::{PaintRefusal, Painting};
-use crate::model::{BrushTraits, PaintModel, StepReport};
+use super::Painting;
+use super::brush_modes::UnderBrush;
+use crate::error::EditError;
+use crate::model::{PaintModel, StepReport};
+use crate::traits::BrushTraits;
 
 /// Deferred steps are settled after so many at the latest. How full the brush is, is seen just then:
 /// when somebody looks at the painting must not matter.
@@ -31,12 +33,12 @@ impl Deferral {
 
 /// Why the model computes elsewhere than before. It is told where a stroke ends.
 #[derive(Debug, Default)]
-pub(super) struct Fall {
+pub(super) struct BackendFallback {
     found: Option<String>,
     due: bool,
 }
 
-impl Fall {
+impl BackendFallback {
     /// A stroke ends or begins.
     pub(super) fn stroke_ends(&mut self) {
         self.due |= self.found.is_some();
@@ -71,7 +73,7 @@ impl Painting {
         &mut self,
         name: &str,
         traits: &BrushTraits,
-    ) -> Result<f32, PaintRefusal> {
+    ) -> Result<f32, EditError> {
         let defers = self.model.defers();
         let track = self.brush(name)?;
         if !defers {

@@ -9,18 +9,14 @@
 use std::sync::Arc;
 
 use maulstick_types::Region;
-use serde::{Deserialize, Serialize};
 
+use super::Painting;
 use super::layers::{Changed, Part};
-use super::{PaintRefusal, Painting};
+use crate::clock::{Clock, Drying, Round, TICKS_A_SECOND};
+use crate::error::EditError;
 
 /// Most tiles that dry in a tick.
 const TILES_A_TICK: usize = 32;
-/// Ticks a second.
-pub const TICKS_A_SECOND: u32 = 60;
-/// Most rounds of a drying, and the fewest ticks of one.
-const ROUNDS: u32 = 32;
-const ROUND_TICKS: u32 = 30;
 /// A brush counts as painting for so many ticks after it was last in contact, .2 s: contacts less than
 /// 150 ms apart are one stroke.
 const LIFTED_TICKS: u32 = 12;
@@ -29,77 +25,11 @@ const STILL_TICKS: u32 = 120;
 /// What its steps are called.
 const STEP: &str = "drying";
 
-/// A drying that goes on.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Drying {
-    /// The surface.
-    pub surface: u32,
-    /// The part of it; all if absent.
-    pub region: Option<Region>,
-    /// What its layer is to be called; by its number if empty.
-    pub name: String,
-    /// Number of its layer, once something has dried into it.
-    pub layer: Option<u32>,
-    /// How long it takes, ticks.
-    pub ticks: u32,
-    /// How many of them went by.
-    pub elapsed: u32,
-    /// How many had when its newest round began.
-    pub reached: u32,
-    /// The round that is not done.
-    pub round: Option<Round>,
-}
-
-/// A walk over the tiles of a drying: each dries by the share of the time from `from` to the end that
-/// had gone by at `to`.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-pub struct Round {
-    /// Ticks.
-    pub from: u32,
-    /// Ticks.
-    pub to: u32,
-    /// Which tile is next, row after row from the bottom.
-    pub next: u32,
-}
-
-impl Drying {
-    /// The round that is to be gone on with now.
-    fn due(&self) -> Option<Round> {
-        let least = (self.ticks / ROUNDS).max(ROUND_TICKS);
-        let is_due = self.elapsed >= self.ticks || self.elapsed - self.reached >= least;
-        let next = Round {
-            from: self.reached,
-            to: self.elapsed,
-            next: 0,
-        };
-        self.round.or_else(|| is_due.then_some(next))
-    }
-
-    /// The share of a film that dries in a round.
-    fn share(&self, round: Round) -> f32 {
-        match self.ticks.saturating_sub(round.from) {
-            0 => 1.0,
-            left => ((round.to - round.from) as f32 / left as f32).min(1.0),
-        }
-    }
-}
-
-/// How far dryings are; what a document keeps of them.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub struct Clock {
-    /// Ticks since the painting began.
-    pub ticks: u64,
-    /// Ticks since a brush was last in contact.
-    pub quiet: u32,
-    /// The dryings that go on, one a surface at most.
-    pub dryings: Vec<Drying>,
-}
-
 impl Painting {
     /// Has the wet paint of a part dry evenly into one new layer over so many ticks.
     ///
     /// # Errors
-    /// [`PaintRefusal`] for an unknown surface, a part beside it, where nothing is wet, and where a
+    /// [`EditError`] for an unknown surface, a part beside it, where nothing is wet, and where a
     /// drying goes on.
     pub fn dry_over(
         &mut self,
@@ -107,10 +37,10 @@ impl Painting {
         ticks: u32,
         name: &str,
         region: Option<&Region>,
-    ) -> Result<String, PaintRefusal> {
+    ) -> Result<String, EditError> {
         let part = self.part(surface, region)?;
         if self.clock.dryings.iter().any(|it| it.surface == surface) {
-            return Err(PaintRefusal::new(
+            return Err(EditError::new(
                 "a drying of this surface goes on already".to_owned(),
                 "wait for its end, or stop it: `maulstick dry --stop`",
             ));
@@ -136,13 +66,13 @@ impl Painting {
     /// Ends the drying of a surface: what is wet still stays wet.
     ///
     /// # Errors
-    /// [`PaintRefusal`] where none goes on.
-    pub fn stop_drying(&mut self, surface: u32) -> Result<(), PaintRefusal> {
+    /// [`EditError`] where none goes on.
+    pub fn stop_drying(&mut self, surface: u32) -> Result<(), EditError> {
         let count = self.clock.dryings.len();
         self.let_stay_wet(Some(surface));
         match self.clock.dryings.len() < count {
             true => Ok(()),
-            false => Err(PaintRefusal::new(
+            false => Err(EditError::new(
                 "no drying of this surface goes on".to_owned(),
                 "`maulstick dry --over 90s` begins one",
             )),

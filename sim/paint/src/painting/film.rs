@@ -5,13 +5,15 @@ use std::sync::Arc;
 
 use maulstick_types::Mixture;
 
-use super::{PaintRefusal, Painting};
+use super::Painting;
 use crate::dry::DryStack;
-use crate::history::Place;
+use crate::error::EditError;
+use crate::history::TilePlace;
 use crate::ledger::Ledger;
 use crate::page::Page;
+use crate::planes::{Planes, TILE_CELLS};
 use crate::quantum::{CELL_MAX, Counts, QUANTUM_M, SLOTS};
-use crate::tile::{Planes, TILE_CELLS, Tile, TileId};
+use crate::tile::{Tile, TileId};
 
 /// Wet paint of a tile with more laid on it.
 #[derive(Clone)]
@@ -45,13 +47,13 @@ impl Painting {
     /// Lays an even film of wet paint over a whole surface, but for its wells.
     ///
     /// # Errors
-    /// [`PaintRefusal`] for an unknown surface or paint, or a 17th paint.
+    /// [`EditError`] for an unknown surface or paint, or a 17th paint.
     pub fn lay(
         &mut self,
         surface: u32,
         mixture: &Mixture,
         thickness_m: f64,
-    ) -> Result<(), PaintRefusal> {
+    ) -> Result<(), EditError> {
         self.lay_from(surface, mixture, thickness_m, Ledger::from_tube)
     }
 
@@ -62,7 +64,7 @@ impl Painting {
         mixture: &Mixture,
         thickness_m: f64,
         book: fn(&mut Ledger, &Counts),
-    ) -> Result<(), PaintRefusal> {
+    ) -> Result<(), EditError> {
         self.surface(surface)?;
         let slots = self.slots(mixture)?;
         let mut quanta = [0.0f32; SLOTS];
@@ -87,7 +89,7 @@ impl Painting {
     /// beyond the surface's edge and in wells get none. With `films` it is as much on every cell.
     pub(super) fn lay_on(
         &mut self,
-        place: Place,
+        place: TilePlace,
         quanta: impl Fn(usize, usize) -> f32,
         films: Option<&mut Films>,
         book: fn(&mut Ledger, &Counts),
@@ -127,7 +129,7 @@ impl Painting {
     }
 
     /// Most quanta that each cell of a tile takes, and whether it is all cells, none of them a well's.
-    fn room(&self, (surface, id): Place) -> (Vec<f32>, bool) {
+    fn room(&self, (surface, id): TilePlace) -> (Vec<f32>, bool) {
         let mut room = vec![CELL_MAX as f32; TILE_CELLS];
         let Some(sheet) = self.sheets.iter().find(|sheet| sheet.id == surface) else {
             return (room, false);

@@ -6,8 +6,10 @@ use maulstick_types::Region;
 use maulstick_types::paint::TILE;
 use maulstick_types::scene::Layer;
 
-use super::{PaintRefusal, Painting};
-use crate::tile::{TILE_CELLS, Tile, TileId};
+use super::Painting;
+use crate::error::EditError;
+use crate::planes::TILE_CELLS;
+use crate::tile::{Tile, TileId};
 
 /// A part of a surface.
 pub(super) struct Part {
@@ -21,9 +23,9 @@ pub(super) struct Part {
 pub(super) type Changed = Vec<(TileId, Arc<Tile>)>;
 
 /// Why nothing dries.
-pub(super) fn nothing_wet(region: Option<&Region>) -> PaintRefusal {
+pub(super) fn nothing_wet(region: Option<&Region>) -> EditError {
     let place = region.map_or(String::new(), |region| format!(" in {region}"));
-    PaintRefusal::new(format!("nothing is wet{place}"), "paint something first")
+    EditError::new(format!("nothing is wet{place}"), "paint something first")
 }
 
 impl Painting {
@@ -31,8 +33,8 @@ impl Painting {
     /// which.
     ///
     /// # Errors
-    /// [`PaintRefusal`] for an unknown surface, or where nothing is wet.
-    pub fn dry(&mut self, surface: u32, share: f32, name: &str) -> Result<String, PaintRefusal> {
+    /// [`EditError`] for an unknown surface, or where nothing is wet.
+    pub fn dry(&mut self, surface: u32, share: f32, name: &str) -> Result<String, EditError> {
         self.dry_part(surface, share, name, None)
     }
 
@@ -46,7 +48,7 @@ impl Painting {
         share: f32,
         name: &str,
         region: Option<&Region>,
-    ) -> Result<String, PaintRefusal> {
+    ) -> Result<String, EditError> {
         self.close_windows();
         let part = self.part(surface, region)?;
         let dried = self.drying(&part, share);
@@ -66,7 +68,7 @@ impl Painting {
         surface: u32,
         share: f32,
         name: &str,
-    ) -> Result<String, PaintRefusal> {
+    ) -> Result<String, EditError> {
         let part = self.part(surface, None)?;
         let dried = self.drying(&part, share);
         if dried.is_empty() {
@@ -81,7 +83,7 @@ impl Painting {
     }
 
     /// A part of a surface, or all of it.
-    pub(super) fn part(&self, surface: u32, region: Option<&Region>) -> Result<Part, PaintRefusal> {
+    pub(super) fn part(&self, surface: u32, region: Option<&Region>) -> Result<Part, EditError> {
         self.surface(surface)?;
         let found = self.sheets.iter().position(|sheet| sheet.id == surface);
         let sheet = found.unwrap_or_default();
@@ -95,7 +97,7 @@ impl Painting {
             let help = format!(
                 "the surface is {width:.1}x{height:.1} mm, its origin at the lower left corner"
             );
-            PaintRefusal::new(what, &help)
+            EditError::new(what, &help)
         };
         region.check().map_err(fault)?;
         let within = region.cells(cells, cell_m);
@@ -202,8 +204,8 @@ impl Painting {
     /// name it is the newest.
     ///
     /// # Errors
-    /// [`PaintRefusal`] for an unknown layer.
-    pub fn set_opacity_of(&mut self, layer: &str, opacity: f32) -> Result<(), PaintRefusal> {
+    /// [`EditError`] for an unknown layer.
+    pub fn set_opacity_of(&mut self, layer: &str, opacity: f32) -> Result<(), EditError> {
         let named = self.scene.layers.iter().rev();
         let number: Option<u32> = layer.parse().ok();
         let found = named.clone().find(|other| other.name == layer);
@@ -215,7 +217,7 @@ impl Painting {
         }
     }
 
-    fn no_layer(&self, which: &str) -> PaintRefusal {
+    fn no_layer(&self, which: &str) -> EditError {
         let known = self.scene.layers.iter();
         let known: Vec<String> = known
             .map(|layer| format!("{} ({})", layer.number, layer.name))
@@ -224,14 +226,14 @@ impl Painting {
             true => "nothing has dried yet: `maulstick dry` makes a layer".to_owned(),
             false => format!("there are {}", known.join(", ")),
         };
-        PaintRefusal::new(format!("there is no dry layer {which}"), &help)
+        EditError::new(format!("there is no dry layer {which}"), &help)
     }
 
     /// Makes a dry layer more or less opaque: a factor on its optical thickness, never on its height.
     ///
     /// # Errors
-    /// [`PaintRefusal`] for an unknown layer.
-    pub fn set_opacity(&mut self, layer: u32, opacity: f32) -> Result<(), PaintRefusal> {
+    /// [`EditError`] for an unknown layer.
+    pub fn set_opacity(&mut self, layer: u32, opacity: f32) -> Result<(), EditError> {
         let layers = &self.scene.layers;
         let Some(place) = layers.iter().position(|other| other.number == layer) else {
             return Err(self.no_layer(&layer.to_string()));
@@ -246,8 +248,8 @@ impl Painting {
     /// Gives a dry layer another name.
     ///
     /// # Errors
-    /// [`PaintRefusal`] for an unknown layer.
-    pub fn name_layer(&mut self, layer: u32, name: &str) -> Result<(), PaintRefusal> {
+    /// [`EditError`] for an unknown layer.
+    pub fn name_layer(&mut self, layer: u32, name: &str) -> Result<(), EditError> {
         let layers = &self.scene.layers;
         let Some(place) = layers.iter().position(|other| other.number == layer) else {
             return Err(self.no_layer(&layer.to_string()));

@@ -5,7 +5,8 @@ use std::sync::Arc;
 use maulstick_optics::Studio;
 use maulstick_types::scene::{CANVAS, Light, PaintSlot};
 
-use super::{PaintRefusal, Painting, bare};
+use super::{Painting, bare};
+use crate::error::EditError;
 use crate::light::{changes_colour, studio_settings};
 
 /// Thickness of an opaque layer, m.
@@ -16,14 +17,14 @@ impl Painting {
     /// baked anew by whoever looks at it, tile by tile.
     ///
     /// # Errors
-    /// [`PaintRefusal`] for a light that is none.
-    pub fn relight(&mut self, light: &Light) -> Result<(), PaintRefusal> {
+    /// [`EditError`] for a light that is none.
+    pub fn relight(&mut self, light: &Light) -> Result<(), EditError> {
         let settings = studio_settings(light)?;
         if changes_colour(light, &self.scene.light) {
             let mut studio = Studio::new(&settings, self.library.paints());
             let mut slots = Vec::new();
             for slot in &self.scene.paints {
-                let paint = self.library.find(&slot.name).map_err(PaintRefusal::paint)?;
+                let paint = self.library.find(&slot.name).map_err(EditError::paint)?;
                 slots.push(paint_slot(&mut studio, paint, slot.file_hash));
             }
             let mut bares = Vec::new();

@@ -5,17 +5,18 @@ use std::sync::Arc;
 use maulstick_types::Mixture;
 use maulstick_types::scene::{Scene, Tuning};
 
+use super::Painting;
 use super::backend::Deferral;
 use super::lighting::paint_slot;
-use super::{PaintRefusal, Painting};
-use crate::coat::Carried;
+use crate::brush_colour::Carried;
+use crate::error::EditError;
 use crate::load::{Half, by_slot};
-use crate::model::BrushTraits;
 use crate::quantum::SLOTS;
+use crate::traits::BrushTraits;
 
 impl Painting {
     /// The slots of several mixtures; where one is refused no paint gets a slot.
-    fn all_slots(&mut self, mixtures: &[Mixture]) -> Result<Vec<Vec<(usize, f64)>>, PaintRefusal> {
+    fn all_slots(&mut self, mixtures: &[Mixture]) -> Result<Vec<Vec<(usize, f64)>>, EditError> {
         let known = (self.scene.paints.clone(), Arc::clone(&self.look));
         let slots: Result<_, _> = mixtures.iter().map(|mixture| self.slots(mixture)).collect();
         if Result::is_err(&slots) {
@@ -25,22 +26,18 @@ impl Painting {
     }
 
     /// The slots of a mixture's paints; new paints get the next free ones.
-    pub(super) fn slots(&mut self, mixture: &Mixture) -> Result<Vec<(usize, f64)>, PaintRefusal> {
-        let mixture = self.library.check(mixture).map_err(PaintRefusal::paint)?;
+    pub(super) fn slots(&mut self, mixture: &Mixture) -> Result<Vec<(usize, f64)>, EditError> {
+        let mixture = self.library.check(mixture).map_err(EditError::paint)?;
         let known = |scene: &Scene, name: &str| scene.paints.iter().any(|slot| slot.name == name);
         let mut new = Vec::new();
         for part in &mixture.parts {
             if !known(&self.scene, &part.paint) {
-                new.push(
-                    self.library
-                        .find(&part.paint)
-                        .map_err(PaintRefusal::paint)?,
-                );
+                new.push(self.library.find(&part.paint).map_err(EditError::paint)?);
             }
         }
         // All or none: a refused mixture changes nothing.
         if self.scene.paints.len() + new.len() > SLOTS {
-            return Err(PaintRefusal::new(
+            return Err(EditError::new(
                 format!(
                     "'{}' would be paint {} of this painting",
                     new[SLOTS - self.scene.paints.len()].name,
@@ -63,7 +60,7 @@ impl Painting {
                 .paints
                 .iter()
                 .position(|slot| slot.name == name)
-                .ok_or_else(|| PaintRefusal::new(format!("'{name}' has no slot"), "load it first"))
+                .ok_or_else(|| EditError::new(format!("'{name}' has no slot"), "load it first"))
         };
         by_slot(&mixture, find)
     }
@@ -71,8 +68,8 @@ impl Painting {
     /// Loads a brush afresh.
     ///
     /// # Errors
-    /// [`PaintRefusal`] for an unknown brush or paint, or a 17th paint.
-    pub fn load(&mut self, brush: &str, mixture: &Mixture) -> Result<(), PaintRefusal> {
+    /// [`EditError`] for an unknown brush or paint, or a 17th paint.
+    pub fn load(&mut self, brush: &str, mixture: &Mixture) -> Result<(), EditError> {
         self.brush(brush)?;
         let slots = self.slots(mixture)?;
         self.begin_step(&format!("load {brush}"), Some(brush));
@@ -92,7 +89,7 @@ impl Painting {
         brush: &str,
         left: &Mixture,
         right: &Mixture,
-    ) -> Result<(), PaintRefusal> {
+    ) -> Result<(), EditError> {
         self.brush(brush)?;
         let slots = self.all_slots(&[left.clone(), right.clone()])?;
         self.begin_step(&format!("load {brush}"), Some(brush));
@@ -116,7 +113,7 @@ impl Painting {
         brush: &str,
         parts: &[(&[(usize, f64)], Half)],
         seed: u64,
-    ) -> Result<(), PaintRefusal> {
+    ) -> Result<(), EditError> {
         let (cell_m, thinner) = (self.sheets[0].cell_m, self.thinner());
         self.settle();
         let track = self.brush(brush)?;
@@ -136,8 +133,8 @@ impl Painting {
     /// Makes a brush stiffer or softer; who solves it hears of it by the scene.
     ///
     /// # Errors
-    /// [`PaintRefusal`] for an unknown brush.
-    pub fn tune(&mut self, tuning: &Tuning) -> Result<(), PaintRefusal> {
+    /// [`EditError`] for an unknown brush.
+    pub fn tune(&mut self, tuning: &Tuning) -> Result<(), EditError> {
         self.brush(&tuning.brush)?;
         let tunings = &mut self.scene.tunings;
         tunings.retain(|other| other.brush != tuning.brush);
@@ -149,8 +146,8 @@ impl Painting {
     /// Takes all paint off a brush.
     ///
     /// # Errors
-    /// [`PaintRefusal`] for an unknown brush.
-    pub fn clean(&mut self, brush: &str) -> Result<(), PaintRefusal> {
+    /// [`EditError`] for an unknown brush.
+    pub fn clean(&mut self, brush: &str) -> Result<(), EditError> {
         self.brush(brush)?;
         self.begin_step(&format!("clean {brush}"), Some(brush));
         let track = self.brush(brush)?;
@@ -166,7 +163,7 @@ impl Painting {
     ///
     /// # Errors
     /// As [`load`](Self::load).
-    pub fn take(&mut self, brush: &str, loads: &[Mixture]) -> Result<(), PaintRefusal> {
+    pub fn take(&mut self, brush: &str, loads: &[Mixture]) -> Result<(), EditError> {
         self.brush(brush)?;
         self.all_slots(loads)?;
         self.close_windows();

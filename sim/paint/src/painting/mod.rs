@@ -1,15 +1,15 @@
 //! The painting: surfaces, brushes, books. It does what it is told, in the order that it is told.
 
+mod accounting;
 mod backend;
-mod books;
+mod brush_modes;
+mod checkpoint;
 mod drying;
 mod film;
-mod keeping;
 mod layers;
 mod lighting;
 mod loads;
-mod makes;
-mod modes;
+mod materials;
 mod relaxing;
 mod still;
 mod strokes;
@@ -19,84 +19,48 @@ mod versions;
 mod wells;
 mod wetting;
 
-pub use drying::{Clock, Drying, Round, TICKS_A_SECOND};
-pub use keeping::{Checkpoint, Restored};
-pub use modes::UnderBrush;
+pub use brush_modes::UnderBrush;
+pub use checkpoint::{Checkpoint, Restored};
 pub use underpainting::{LaidTile, Wetness};
 pub use versions::{NOW, Named};
-pub use wells::WELL_M;
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
 use maulstick_brush::{BrushFile, Head};
-use maulstick_optics::{PaintError, PaintLibrary, Studio};
+use maulstick_optics::{PaintLibrary, Studio};
 use maulstick_types::brush::ZOOMS;
 use maulstick_types::scene::{Scene, Surface, WellKind};
 use maulstick_types::{Mixture, name_hash};
 
-use crate::bare::{Bare, CLEANER_RGB, WellLook, well_colour};
-use crate::embedded::Embedded;
+use crate::appearance::Appearance;
+use crate::assets::Assets;
+use crate::blank_surface::{BlankSurface, CLEANER_RGB, WELL_M, WellLook, well_colour};
+use crate::clock::Clock;
+use crate::error::EditError;
 use crate::ground::Ground;
-use crate::history::History;
+use crate::history::{History, QUOTA};
 use crate::impasto::Impasto;
 use crate::ledger::Ledger;
 use crate::light::studio_settings;
 use crate::load::BrushLoad;
-use crate::look::Look;
-use crate::model::{BrushTraits, PaintModel};
+use crate::model::PaintModel;
 use crate::page::{Page, Pager};
 use crate::path::PathStepper;
 use crate::relief::Relief;
 use crate::setup::{PaintingSetup, relief_called};
 use crate::store::TileStore;
+use crate::traits::BrushTraits;
 use crate::window::Window;
-use backend::{Deferral, Fall};
-
-/// Most bytes of the history of a painting for which nothing else is said.
-pub const QUOTA: u64 = 2 << 30;
-
-/// Why something was not done, and what to do about it.
-#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("{what}")]
-pub struct PaintRefusal {
-    /// What is wrong.
-    pub what: String,
-    /// What to do.
-    pub help: String,
-}
-
-impl PaintRefusal {
-    /// A refusal.
-    #[must_use]
-    pub fn new(what: String, help: &str) -> Self {
-        Self {
-            what,
-            help: help.to_owned(),
-        }
-    }
-
-    /// A refusal because of a paint or a mixture.
-    #[must_use]
-    pub fn paint(error: PaintError) -> Self {
-        let help = match &error {
-            PaintError::Unknown { .. } => "`maulstick paints` lists them all",
-            _ => "write mixtures as \"Cobalt Blue=0.7,Titanium White=0.3\"",
-        };
-        Self {
-            what: error.to_string(),
-            help: help.to_owned(),
-        }
-    }
-}
+use backend::{BackendFallback, Deferral};
 
 /// A surface: its tiles and what lies under them.
 #[derive(Debug)]
-struct Sheet {
+struct SurfaceState {
     id: u32,
     cell_m: f64,
     store: TileStore,
-    bare: Arc<Bare>,
+    bare: Arc<BlankSurface>,
     /// Most quanta that a cell ever had: how high strips may touch.
     top: f32,
 }
@@ -105,7 +69,7 @@ struct Sheet {
 const SEEDS: u64 = 0x7fff_ffff;
 
 /// A brush as the painting knows it.
-struct BrushTrack {
+struct PaintingBrush {
     file: BrushFile,
     /// The brush with as many strips as cells can tell apart.
     thinned: BrushFile,
@@ -132,7 +96,7 @@ struct BrushTrack {
     deferral: Deferral,
 }
 
-impl BrushTrack {
+impl PaintingBrush {
     /// Seed of how its bristles lie in its next stroke, and of a load before that.
     fn next_seed(&self) -> u64 {
         (self.strokes as u64 + 1).wrapping_mul(0x9e37_79b1) & SEEDS
@@ -164,14 +128,14 @@ impl BrushTrack {
 pub struct Painting {
     scene: Scene,
     library: PaintLibrary,
-    look: Arc<Look>,
-    sheets: Vec<Sheet>,
-    embedded: Embedded,
-    brushes: BTreeMap<String, BrushTrack>,
+    look: Arc<Appearance>,
+    sheets: Vec<SurfaceState>,
+    embedded: Assets,
+    brushes: BTreeMap<String, PaintingBrush>,
     model: Box<dyn PaintModel>,
     /// The brush whose newest steps the model has not settled.
     unsettled: Option<String>,
-    fall: Fall,
+    fall: BackendFallback,
     ledger: Ledger,
     /// The books as far as their changes are booked for a step.
     accounted: Ledger,
@@ -195,8 +159,8 @@ impl Painting {
     /// A new painting.
     ///
     /// # Errors
-    /// [`PaintRefusal`] where the setup is wrong.
-    pub fn new(setup: &PaintingSetup, library: PaintLibrary) -> Result<Self, PaintRefusal> {
+    /// [`EditError`] where the setup is wrong.
+    pub fn new(setup: &PaintingSetup, library: PaintLibrary) -> Result<Self, EditError> {
         Self::paged(setup, library, Arc::default())
     }
 
@@ -208,14 +172,14 @@ impl Painting {
         setup: &PaintingSetup,
         library: PaintLibrary,
         pager: Arc<Pager>,
-    ) -> Result<Self, PaintRefusal> {
+    ) -> Result<Self, EditError> {
         setup.check(&library)?;
         let scene = setup.scene();
         let settings = studio_settings(&scene.light)?;
         let studio = Studio::new(&settings, library.paints());
         let mut sheets = Vec::new();
         for surface in &scene.surfaces {
-            sheets.push(Sheet {
+            sheets.push(SurfaceState {
                 id: surface.id,
                 cell_m: surface.cell_m,
                 store: TileStore::paged(surface.cells, &pager),
@@ -226,13 +190,13 @@ impl Painting {
         let mut painting = Self {
             scene,
             library,
-            look: Arc::new(Look::new(studio)),
+            look: Arc::new(Appearance::new(studio)),
             sheets,
             embedded: setup.embedded.clone(),
             brushes: BTreeMap::new(),
             model: Box::new(Impasto::default()),
             unsettled: None,
-            fall: Fall::default(),
+            fall: BackendFallback::default(),
             ledger: Ledger::default(),
             accounted: Ledger::default(),
             history: History::default(),
@@ -268,13 +232,13 @@ impl Painting {
 
     /// How its paint becomes colour.
     #[must_use]
-    pub fn look(&self) -> &Arc<Look> {
+    pub fn look(&self) -> &Arc<Appearance> {
         &self.look
     }
 
     /// A surface without what was painted on it.
     #[must_use]
-    pub fn bare(&self, surface: u32) -> Option<&Arc<Bare>> {
+    pub fn bare(&self, surface: u32) -> Option<&Arc<BlankSurface>> {
         self.sheet(surface).map(|sheet| &sheet.bare)
     }
 
@@ -284,7 +248,7 @@ impl Painting {
         self.sheet(surface).map(|sheet| &sheet.store)
     }
 
-    fn sheet(&self, surface: u32) -> Option<&Sheet> {
+    fn sheet(&self, surface: u32) -> Option<&SurfaceState> {
         self.sheets.iter().find(|sheet| sheet.id == surface)
     }
 
@@ -333,7 +297,7 @@ impl Painting {
                 track.head = track.disordered();
             }
             None => {
-                let track = BrushTrack {
+                let track = PaintingBrush {
                     load: BrushLoad::clean(head.strips()).into(),
                     kept: None,
                     file,
@@ -381,10 +345,10 @@ impl Painting {
         })
     }
 
-    fn brush(&mut self, name: &str) -> Result<&mut BrushTrack, PaintRefusal> {
+    fn brush(&mut self, name: &str) -> Result<&mut PaintingBrush, EditError> {
         let names = self.brushes.keys().cloned().collect::<Vec<_>>().join(", ");
         self.brushes.get_mut(name).ok_or_else(|| {
-            PaintRefusal::new(
+            EditError::new(
                 format!("there is no brush called '{name}' in this rig"),
                 &format!("choose one of: {names}"),
             )
@@ -394,15 +358,15 @@ impl Painting {
     /// Moves, turns or zooms a surface.
     ///
     /// # Errors
-    /// [`PaintRefusal`] for an unknown surface or a bad pose.
+    /// [`EditError`] for an unknown surface or a bad pose.
     pub fn place(
         &mut self,
         surface: u32,
         pose: &maulstick_types::Pose,
         zoom: f64,
-    ) -> Result<(), PaintRefusal> {
+    ) -> Result<(), EditError> {
         if !pose.is_valid() || !ZOOMS.contains(&zoom) {
-            return Err(PaintRefusal::new(
+            return Err(EditError::new(
                 "the pose or the zoom is out of range".into(),
                 "send a finite pose, a unit quaternion and a zoom of .01 to 100",
             ));
@@ -413,7 +377,7 @@ impl Painting {
             .iter_mut()
             .find(|found| found.id == surface);
         let found = found.ok_or_else(|| {
-            PaintRefusal::new(
+            EditError::new(
                 format!("there is no surface {surface}"),
                 "the canvas is 0, the palette 1",
             )
@@ -428,9 +392,9 @@ impl Painting {
 fn bare(
     surface: &Surface,
     studio: &Studio,
-    (library, embedded): (&PaintLibrary, &Embedded),
+    (library, embedded): (&PaintLibrary, &Assets),
     relief: Option<Arc<Relief>>,
-) -> Result<Bare, PaintRefusal> {
+) -> Result<BlankSurface, EditError> {
     let ground = Ground::called(&surface.ground, surface.cells, studio, embedded)?;
     let relief = match relief {
         Some(relief) => relief,
@@ -452,11 +416,11 @@ fn bare(
             });
             continue;
         };
-        let mixture = library.check(mixture).map_err(PaintRefusal::paint)?;
+        let mixture = library.check(mixture).map_err(EditError::paint)?;
         let mut mixed = studio.clone();
         let mut shares = Vec::new();
         for part in &mixture.parts {
-            let paint = library.find(&part.paint).map_err(PaintRefusal::paint)?;
+            let paint = library.find(&part.paint).map_err(EditError::paint)?;
             shares.push((mixed.add(paint), part.share));
         }
         wells.push(WellLook {
@@ -466,7 +430,7 @@ fn bare(
             height_m: WELL_M as f32,
         });
     }
-    Ok(Bare {
+    Ok(BlankSurface {
         ground,
         relief,
         wells,

@@ -7,7 +7,7 @@
 use maulstick_types::paint::TILE;
 
 use super::Painting;
-use super::modes::Prepared;
+use super::brush_modes::Prepared;
 use crate::impasto::advection::{Advection, Axis};
 use crate::impasto::levelling::{Body, HALO, Levelling, Round};
 use crate::impasto::velocity::Faces;

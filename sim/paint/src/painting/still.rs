@@ -3,8 +3,10 @@
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-use super::backend::Fall;
-use super::{Clock, PaintRefusal, Painting, Sheet};
+use super::backend::BackendFallback;
+use super::{Painting, SurfaceState};
+use crate::clock::Clock;
+use crate::error::EditError;
 use crate::history::History;
 use crate::impasto::Impasto;
 use crate::tile::Version;
@@ -14,7 +16,7 @@ impl Painting {
     /// this one, whatever becomes of that; to make it takes as long as to count them.
     pub fn still(&mut self) -> Self {
         self.commit();
-        let sheets = self.sheets.iter().map(|sheet| Sheet {
+        let sheets = self.sheets.iter().map(|sheet| SurfaceState {
             id: sheet.id,
             cell_m: sheet.cell_m,
             store: sheet.store.clone(),
@@ -30,7 +32,7 @@ impl Painting {
             brushes: BTreeMap::new(),
             model: Box::new(Impasto::default()),
             unsettled: None,
-            fall: Fall::default(),
+            fall: BackendFallback::default(),
             ledger: self.ledger.clone(),
             accounted: self.accounted.clone(),
             history: History::default(),
@@ -50,8 +52,8 @@ impl Painting {
     /// Has a [`still`](Self::still) show the painting as it was in a version.
     ///
     /// # Errors
-    /// [`PaintRefusal`] for an unknown version.
-    pub fn show_version(&mut self, name: &str) -> Result<(), PaintRefusal> {
+    /// [`EditError`] for an unknown version.
+    pub fn show_version(&mut self, name: &str) -> Result<(), EditError> {
         let version = self.version(name)?.clone();
         for sheet in &mut self.sheets {
             let [across, up] = sheet.store.grid();

@@ -5,17 +5,20 @@ use std::sync::Arc;
 use maulstick_types::brush::{BrushState, Solve, solve_flags};
 use maulstick_types::scene::CANVAS;
 
+use super::Painting;
 use super::backend::Deferral;
-use super::modes::{Prepared, handling_of};
-use super::{PaintRefusal, Painting};
-use crate::head::{Scale, Waypoint, low_bounds};
+use super::brush_modes::{Prepared, handling_of};
+use crate::error::EditError;
+use crate::head::{Waypoint, low_bounds};
 use crate::history::OpenStep;
 use crate::load::Half;
-use crate::model::{BrushTraits, Step, Sweep};
+use crate::model::{Step, Sweep};
 use crate::path::PathStepper;
 use crate::quantum::QUANTUM_M;
 use crate::ride;
+use crate::scale::Scale;
 use crate::store::TileRect;
+use crate::traits::BrushTraits;
 use crate::window::Window;
 
 /// A window reaches this many cells beyond the head, so that it is not opened anew at each step.
@@ -25,30 +28,20 @@ impl Painting {
     /// Paints what a brush did in its epoch: strokes are numbered from 1 in each.
     ///
     /// # Errors
-    /// [`PaintRefusal`] for an unknown brush, or a state that does not fit its brush file.
-    pub fn state(
-        &mut self,
-        brush: &str,
-        epoch: u32,
-        state: &BrushState,
-    ) -> Result<(), PaintRefusal> {
+    /// [`EditError`] for an unknown brush, or a state that does not fit its brush file.
+    pub fn state(&mut self, brush: &str, epoch: u32, state: &BrushState) -> Result<(), EditError> {
         let solved = state.solves.iter();
         let painted = solved.map(|solve| self.solve(brush, epoch, solve));
-        let painted: Result<(), PaintRefusal> = painted.collect();
+        let painted: Result<(), EditError> = painted.collect();
         self.book(Some(brush));
         painted
     }
 
-    pub(super) fn solve(
-        &mut self,
-        name: &str,
-        epoch: u32,
-        solve: &Solve,
-    ) -> Result<(), PaintRefusal> {
+    pub(super) fn solve(&mut self, name: &str, epoch: u32, solve: &Solve) -> Result<(), EditError> {
         let track = self.brush(name)?;
         let fits = solve.stroke == 0 || track.head.fits(solve.angles_rad.len());
         if !fits || solve.fault().is_some() {
-            return Err(PaintRefusal::new(
+            return Err(EditError::new(
                 format!("a state of brush '{name}' does not fit its brush file"),
                 "restart the brush node: it runs with another file",
             ));
@@ -62,7 +55,7 @@ impl Painting {
         else {
             return Ok(());
         };
-        if solve.flags & solve_flags::GLIMPSE != 0 {
+        if solve.flags & solve_flags::PREVIEW != 0 {
             return Ok(());
         }
         let scale = Scale {
@@ -113,7 +106,7 @@ impl Painting {
 
     /// Thins a brush that comes down on the canvas to the strips that its cells can tell apart. On a palette it stays
     /// as it is: its load would be merged and parted at each dip.
-    fn thin(&mut self, name: &str, sheet: usize, scale: Scale) -> Result<(), PaintRefusal> {
+    fn thin(&mut self, name: &str, sheet: usize, scale: Scale) -> Result<(), EditError> {
         if self.sheets[sheet].id == CANVAS {
             self.settle();
             self.brush(name)?.thin_for(scale.cell_m * scale.zoom);
@@ -122,7 +115,7 @@ impl Painting {
     }
 
     /// Ends a brush's contact: what it left relaxes.
-    fn lift(&mut self, name: &str) -> Result<(), PaintRefusal> {
+    fn lift(&mut self, name: &str) -> Result<(), EditError> {
         if let Some(sheet) = self.end_path(name)? {
             self.relax(name, sheet);
         }
@@ -130,7 +123,7 @@ impl Painting {
     }
 
     /// Steps what is left of a brush's way; on which sheet, if it was in contact.
-    fn end_path(&mut self, name: &str) -> Result<Option<usize>, PaintRefusal> {
+    fn end_path(&mut self, name: &str) -> Result<Option<usize>, EditError> {
         let track = self.brush(name)?;
         let Some((sheet, mut path)) = track.path.take() else {
             return Ok(None);
@@ -144,7 +137,7 @@ impl Painting {
 
     /// Has the bristles of a brush lie otherwise: as chance has it for the strokes since its take began, so
     /// that a take is the same however often it is played.
-    fn disorder(&mut self, name: &str) -> Result<(), PaintRefusal> {
+    fn disorder(&mut self, name: &str) -> Result<(), EditError> {
         self.settle();
         let track = self.brush(name)?;
         track.seed = track.next_seed();
@@ -153,7 +146,7 @@ impl Painting {
         Ok(())
     }
 
-    pub(super) fn begin_stroke(&mut self, name: &str) -> Result<(), PaintRefusal> {
+    pub(super) fn begin_stroke(&mut self, name: &str) -> Result<(), EditError> {
         self.begin_step("stroke", Some(name));
         self.fall.stroke_ends();
         let track = self.brush(name)?;

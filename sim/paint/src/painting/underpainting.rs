@@ -3,8 +3,9 @@
 use maulstick_types::Mixture;
 use maulstick_types::mixture::Part;
 
-use super::{PaintRefusal, Painting};
-use crate::embedded::Embedded;
+use super::Painting;
+use crate::assets::Assets;
+use crate::error::EditError;
 use crate::ledger::Ledger;
 use crate::quantum::SLOTS;
 use crate::tile::TileId;
@@ -26,7 +27,7 @@ pub enum Wetness {
 pub struct LaidTile {
     /// Which.
     pub id: TileId,
-    /// Number of a paint, and its quanta in each of the [`TILE_CELLS`](crate::tile::TILE_CELLS) cells,
+    /// Number of a paint, and its quanta in each of the [`TILE_CELLS`](crate::planes::TILE_CELLS) cells,
     /// row after row from the bottom.
     pub planes: Vec<(usize, Vec<u32>)>,
 }
@@ -35,14 +36,14 @@ impl Painting {
     /// Takes a picture in, for a ground or a tooth that is called by its hash, which is returned.
     ///
     /// # Errors
-    /// As [`Embedded::add`].
-    pub fn embed(&mut self, bytes: std::sync::Arc<[u8]>) -> Result<String, PaintRefusal> {
+    /// As [`Assets::add`].
+    pub fn embed(&mut self, bytes: std::sync::Arc<[u8]>) -> Result<String, EditError> {
         self.embedded.add(bytes)
     }
 
     /// The pictures that were taken in.
     #[must_use]
-    pub fn embedded(&self) -> &Embedded {
+    pub fn embedded(&self) -> &Assets {
         &self.embedded
     }
 
@@ -52,14 +53,14 @@ impl Painting {
     /// dried.
     ///
     /// # Errors
-    /// [`PaintRefusal`] for an unknown surface or paint, or a 17th paint; then nothing is laid.
+    /// [`EditError`] for an unknown surface or paint, or a 17th paint; then nothing is laid.
     pub fn underpaint(
         &mut self,
         surface: u32,
         paints: &[String],
         wetness: &Wetness,
         tiles: impl Iterator<Item = LaidTile>,
-    ) -> Result<Option<String>, PaintRefusal> {
+    ) -> Result<Option<String>, EditError> {
         self.surface(surface)?;
         let slots = self.slots_of(paints)?;
         let grid = self.sheet(surface).map(|sheet| sheet.store.grid());
@@ -94,7 +95,7 @@ impl Painting {
     }
 
     /// The slot of each of `paints`.
-    fn slots_of(&mut self, paints: &[String]) -> Result<Vec<usize>, PaintRefusal> {
+    fn slots_of(&mut self, paints: &[String]) -> Result<Vec<usize>, EditError> {
         if paints.is_empty() {
             return Ok(Vec::new());
         }
@@ -108,8 +109,7 @@ impl Painting {
         let slot = |paint: &String| {
             let mut slots = self.scene.paints.iter();
             let found = slots.position(|slot| slot.name == *paint);
-            found
-                .ok_or_else(|| PaintRefusal::new(format!("'{paint}' has no slot"), "load it first"))
+            found.ok_or_else(|| EditError::new(format!("'{paint}' has no slot"), "load it first"))
         };
         paints.iter().map(slot).collect()
     }

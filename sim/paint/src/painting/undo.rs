@@ -6,12 +6,16 @@ use std::sync::Arc;
 use maulstick_brush::Head;
 use maulstick_types::scene::{Layer, Scene};
 
+use super::Painting;
 use super::backend::Deferral;
-use super::{PaintRefusal, Painting};
-use crate::history::{Change, Deed, Held, Make, OpenStep, Place, Rest, Step, same};
-use crate::load::{ALONG, BrushLoad};
+use crate::error::EditError;
+use crate::history::{
+    Change, NonTileState, OpenStep, Step, StepEffects, SurfaceMaterial, TilePlace, TileRef, same,
+};
+use crate::load::BrushLoad;
 use crate::page::Page;
 use crate::tile::Version;
+use crate::traits::TEXELS_PER_STRIP;
 
 /// Which way a step is taken.
 #[derive(Clone, Copy, PartialEq, Eq)]
@@ -39,10 +43,10 @@ impl Way {
 }
 
 /// What the surfaces of a scene are made of.
-pub(super) fn makes(scene: &Scene) -> Vec<Make> {
+pub(super) fn makes(scene: &Scene) -> Vec<SurfaceMaterial> {
     let surfaces = scene.surfaces.iter();
     surfaces
-        .map(|surface| Make {
+        .map(|surface| SurfaceMaterial {
             surface: surface.id,
             ground: surface.ground.clone(),
             tooth: surface.tooth.clone(),
@@ -52,7 +56,7 @@ pub(super) fn makes(scene: &Scene) -> Vec<Make> {
 }
 
 impl Painting {
-    pub(super) fn rest(&mut self) -> Rest {
+    pub(super) fn rest(&mut self) -> NonTileState {
         let mut loads = BTreeMap::new();
         for (name, track) in &mut self.brushes {
             let kept = track.kept.as_ref();
@@ -67,7 +71,7 @@ impl Painting {
             };
             loads.insert(name.clone(), page);
         }
-        Rest {
+        NonTileState {
             loads,
             ledger: self.ledger.clone(),
             layers: self.scene.layers.clone(),
@@ -124,7 +128,7 @@ impl Painting {
     }
 
     /// A step as it is if it ends now. A brush's step leaves what other brushes carry alone.
-    pub(super) fn finished(&self, open: &OpenStep, after: &Rest) -> Step {
+    pub(super) fn finished(&self, open: &OpenStep, after: &NonTileState) -> Step {
         let tiles = open.tiles.iter().map(|(place, before)| {
             let change = Change {
                 before: before.clone(),
@@ -132,10 +136,10 @@ impl Painting {
             };
             (*place, change)
         });
-        let mut deed = Deed::between(&open.before, after, open.booked.clone());
+        let mut effects = StepEffects::between(&open.before, after, open.booked.clone());
         if let Some(brush) = &open.brush {
-            deed.loads.retain(|name, _| name == brush);
-            (deed.layers, deed.makes) = (None, None);
+            effects.loads.retain(|name, _| name == brush);
+            (effects.layers, effects.makes) = (None, None);
         }
         Step {
             id: open.id,
@@ -144,7 +148,7 @@ impl Painting {
             operations: 1,
             done: true,
             tiles: Arc::new(tiles.collect()),
-            deed: Arc::new(deed),
+            effects: Arc::new(effects),
         }
     }
 
@@ -156,16 +160,16 @@ impl Painting {
     }
 
     /// What lies on a tile now.
-    pub(super) fn held(&self, (surface, id): Place) -> Held {
+    pub(super) fn held(&self, (surface, id): TilePlace) -> TileRef {
         self.sheet(surface)?.store.version(id).tile.clone()
     }
 
     /// Takes the newest step back, of a brush or of all, and says what it was.
     ///
     /// # Errors
-    /// [`PaintRefusal`] where there is none, or where something was painted over it since: then
+    /// [`EditError`] where there is none, or where something was painted over it since: then
     /// nothing has changed.
-    pub fn undo(&mut self, brush: Option<&str>) -> Result<String, PaintRefusal> {
+    pub fn undo(&mut self, brush: Option<&str>) -> Result<String, EditError> {
         if let Some(brush) = brush {
             self.brush(brush)?;
         }
@@ -175,7 +179,7 @@ impl Painting {
         if !self.history.open().any(own) {
             let step = self.history.last_done(brush).ok_or_else(|| {
                 let whose = brush.map_or(String::new(), |brush| format!(" of brush '{brush}'"));
-                PaintRefusal::new(
+                EditError::new(
                     format!("there is nothing{whose} to undo"),
                     "paint something first",
                 )
@@ -199,7 +203,7 @@ impl Painting {
     ///
     /// # Errors
     /// As [`undo`](Self::undo).
-    pub fn undo_to(&mut self, brush: &str, step: u64) -> Result<(), PaintRefusal> {
+    pub fn undo_to(&mut self, brush: &str, step: u64) -> Result<(), EditError> {
         self.end_step(|_| true);
         let later = |own: &Step| own.id > step;
         while self.history.last_done(Some(brush)).is_some_and(later) {
@@ -217,13 +221,13 @@ impl Painting {
     ///
     /// # Errors
     /// As [`undo`](Self::undo).
-    pub fn redo(&mut self, brush: Option<&str>) -> Result<String, PaintRefusal> {
+    pub fn redo(&mut self, brush: Option<&str>) -> Result<String, EditError> {
         if let Some(brush) = brush {
             self.brush(brush)?;
         }
         self.commit();
         let step = self.history.last_undone(brush).cloned().ok_or_else(|| {
-            PaintRefusal::new(
+            EditError::new(
                 "there is nothing to redo".into(),
                 "only what was undone and not painted over can be redone",
             )
@@ -234,17 +238,17 @@ impl Painting {
     }
 
     /// Sees that all is as the step left it, or found it.
-    fn check(&self, step: &Step, way: Way) -> Result<(), PaintRefusal> {
+    fn check(&self, step: &Step, way: Way) -> Result<(), EditError> {
         let from = way.ends()[0];
-        let deed = &step.deed;
+        let effects = &step.effects;
         let mut tiles = step.tiles.iter();
         let over = tiles.any(|(place, change)| !same(&self.held(*place), change.end(from)));
-        let mut loads = deed.loads.iter();
+        let mut loads = effects.loads.iter();
         let other_load = loads.any(|(name, pages)| !self.carries(name, &pages[from]));
-        let (layers, made) = (deed.layers.as_ref(), deed.makes.as_ref());
+        let (layers, made) = (effects.layers.as_ref(), effects.makes.as_ref());
         let other_rest = layers.is_some_and(|ends| ends[from] != self.scene.layers)
             || made.is_some_and(|ends| ends[from] != makes(&self.scene));
-        let other_books = !self.ledger.can_book(&deed.booked, way.times());
+        let other_books = !self.ledger.can_book(&effects.booked, way.times());
         // What came later may have led back to what this one left, as a return to a version does.
         let later = match way {
             Way::Back => self.history.later_on(step),
@@ -255,7 +259,7 @@ impl Painting {
         }
         let other = later.or_else(|| self.history.last_done(None));
         let other = other.map_or("something".to_owned(), |step| format!("'{}'", step.what));
-        Err(PaintRefusal::new(
+        Err(EditError::new(
             format!("'{}' lies under {other}, which came later", step.what),
             "undo that first: `maulstick undo` without a brush takes the newest step of all",
         ))
@@ -264,18 +268,18 @@ impl Painting {
     /// Takes a step back, or forth; it was checked.
     fn walk(&mut self, step: &Step, way: Way) -> String {
         let to = way.ends()[1];
-        let deed = &step.deed;
+        let effects = &step.effects;
         // Time would do again what is taken back.
         self.let_stay_wet(None);
         for (place, change) in &*step.tiles {
             self.put(*place, change.end(to).clone());
         }
-        for (name, pages) in &deed.loads {
+        for (name, pages) in &effects.loads {
             self.carry(name, &pages[to]);
         }
-        self.ledger.book(&deed.booked, way.times());
+        self.ledger.book(&effects.booked, way.times());
         self.accounted = self.ledger.clone();
-        let (layers, made) = (deed.layers.as_ref(), deed.makes.as_ref());
+        let (layers, made) = (effects.layers.as_ref(), effects.makes.as_ref());
         self.turn_rest(layers.map(|ends| &ends[to]), made.map(|ends| &ends[to]));
         self.turn_tops(step, way);
         match way {
@@ -289,7 +293,7 @@ impl Painting {
     /// motion paints the same again.
     fn turn_tops(&mut self, step: &Step, way: Way) {
         let newest = self.history.last_done(None).map_or(0, |newest| newest.id);
-        let [before, after] = &step.deed.tops;
+        let [before, after] = &step.effects.tops;
         let (from, to) = match way {
             Way::Back if step.id == newest => (after, before),
             Way::Forth if step.id > newest => (before, after),
@@ -325,9 +329,9 @@ impl Painting {
             track.load = Arc::clone(&load);
             track.kept = Some((load, page.clone()));
         } else {
-            let thinned = track.file.thinned_to(load.texels() / ALONG);
+            let thinned = track.file.thinned_to(load.texels() / TEXELS_PER_STRIP);
             let head = Head::of(&thinned);
-            if head.strips() * ALONG == load.texels() {
+            if head.strips() * TEXELS_PER_STRIP == load.texels() {
                 (track.thinned, track.tidy) = (thinned, Arc::new(head));
                 track.head = track.disordered();
                 track.load = Arc::clone(&load);
@@ -340,7 +344,7 @@ impl Painting {
     }
 
     /// Puts a tile in the place of another.
-    pub(super) fn put(&mut self, (surface, id): Place, tile: Held) -> Held {
+    pub(super) fn put(&mut self, (surface, id): TilePlace, tile: TileRef) -> TileRef {
         self.versions += 1;
         let number = self.versions;
         let sheet = self.sheets.iter_mut().find(|sheet| sheet.id == surface)?;
@@ -348,7 +352,11 @@ impl Painting {
     }
 
     /// Makes layers and surfaces what they are to be.
-    pub(super) fn turn_rest(&mut self, layers: Option<&Vec<Layer>>, makes: Option<&Vec<Make>>) {
+    pub(super) fn turn_rest(
+        &mut self,
+        layers: Option<&Vec<Layer>>,
+        makes: Option<&Vec<SurfaceMaterial>>,
+    ) {
         if let Some(layers) = layers {
             self.scene.layers.clone_from(layers);
             self.layers_changed();

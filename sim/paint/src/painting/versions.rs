@@ -6,8 +6,9 @@ use std::sync::Arc;
 use maulstick_types::advice::choice;
 use maulstick_types::scene::NamedVersion;
 
-use super::{PaintRefusal, Painting};
-use crate::history::{Held, Place, Rest, same};
+use super::Painting;
+use crate::error::EditError;
+use crate::history::{NonTileState, TilePlace, TileRef, same};
 use crate::load::BrushLoad;
 
 /// A painting as it was.
@@ -18,9 +19,9 @@ pub struct Named {
     /// The version that it was painted from.
     pub parent: Option<String>,
     /// Its tiles, where something was painted.
-    pub tiles: Arc<BTreeMap<Place, Held>>,
+    pub tiles: Arc<BTreeMap<TilePlace, TileRef>>,
     /// What it was besides.
-    pub rest: Rest,
+    pub rest: NonTileState,
 }
 
 /// What the painting as it is is called among its versions.
@@ -38,24 +39,24 @@ impl Painting {
         self.line.as_deref()
     }
 
-    pub(super) fn version(&self, name: &str) -> Result<&Named, PaintRefusal> {
+    pub(super) fn version(&self, name: &str) -> Result<&Named, EditError> {
         self.named.get(name).ok_or_else(|| {
             let names: Vec<&str> = self.named.keys().map(String::as_str).collect();
             let help = match names.is_empty() {
                 true => "this painting has none yet: keep one first".to_owned(),
                 false => choice(name, names),
             };
-            PaintRefusal::new(format!("there is no version called '{name}'"), &help)
+            EditError::new(format!("there is no version called '{name}'"), &help)
         })
     }
 
-    fn check_new(&self, name: &str) -> Result<(), PaintRefusal> {
+    fn check_new(&self, name: &str) -> Result<(), EditError> {
         match self.named.contains_key(name) {
-            _ if name == NOW => Err(PaintRefusal::new(
+            _ if name == NOW => Err(EditError::new(
                 format!("'{NOW}' is the painting as it is, not a version"),
                 "choose another name",
             )),
-            true => Err(PaintRefusal::new(
+            true => Err(EditError::new(
                 format!("there is a version called '{name}' already"),
                 "choose another name, or forget that version first",
             )),
@@ -75,11 +76,11 @@ impl Painting {
     }
 
     /// All tiles where something was painted.
-    fn painted(&self) -> BTreeMap<Place, Held> {
+    fn painted(&self) -> BTreeMap<TilePlace, TileRef> {
         let mut tiles = BTreeMap::new();
         for sheet in &self.sheets {
             let versions = sheet.store.iter();
-            let bare = |held: &Held| held.as_deref().is_none_or(crate::tile::Tile::is_bare);
+            let bare = |held: &TileRef| held.as_deref().is_none_or(crate::tile::Tile::is_bare);
             let painted = versions.filter(|(_, version)| !bare(&version.tile));
             tiles.extend(painted.map(|(id, version)| ((sheet.id, id), version.tile.clone())));
         }
@@ -89,8 +90,8 @@ impl Painting {
     /// Keeps the painting as it is.
     ///
     /// # Errors
-    /// [`PaintRefusal`] where there is a version of that name.
-    pub fn keep(&mut self, name: &str) -> Result<(), PaintRefusal> {
+    /// [`EditError`] where there is a version of that name.
+    pub fn keep(&mut self, name: &str) -> Result<(), EditError> {
         self.check_new(name)?;
         self.end_step(|_| true);
         let named = Named {
@@ -109,15 +110,15 @@ impl Painting {
     /// Makes the painting as it was in a version: a step that can be undone.
     ///
     /// # Errors
-    /// [`PaintRefusal`] for an unknown version.
-    pub fn return_to(&mut self, name: &str) -> Result<(), PaintRefusal> {
+    /// [`EditError`] for an unknown version.
+    pub fn return_to(&mut self, name: &str) -> Result<(), EditError> {
         let to = self.version(name)?.clone();
         self.let_stay_wet(None);
         self.begin_step(&format!("return to '{name}'"), None);
         let before = self.rest();
         let now = self.painted();
         let nowhere = now.keys().filter(|place| !to.tiles.contains_key(place));
-        let cleared: Vec<Place> = nowhere.copied().collect();
+        let cleared: Vec<TilePlace> = nowhere.copied().collect();
         let kept = to.tiles.iter().map(|(place, held)| (*place, held.clone()));
         for (place, held) in kept.chain(cleared.into_iter().map(|place| (place, None))) {
             if !same(&self.held(place), &held) {
@@ -152,8 +153,8 @@ impl Painting {
     /// Begins a version from another one: the painting becomes as it was there.
     ///
     /// # Errors
-    /// [`PaintRefusal`] where there is no such version, or one of the new name.
-    pub fn branch(&mut self, from: &str, name: &str) -> Result<(), PaintRefusal> {
+    /// [`EditError`] where there is no such version, or one of the new name.
+    pub fn branch(&mut self, from: &str, name: &str) -> Result<(), EditError> {
         self.check_new(name)?;
         let begun = Named {
             name: name.to_owned(),
@@ -171,8 +172,8 @@ impl Painting {
     /// Forgets a version; those painted from it count as painted from what it was painted from.
     ///
     /// # Errors
-    /// [`PaintRefusal`] for an unknown version.
-    pub fn forget(&mut self, name: &str) -> Result<(), PaintRefusal> {
+    /// [`EditError`] for an unknown version.
+    pub fn forget(&mut self, name: &str) -> Result<(), EditError> {
         let parent = self.version(name)?.parent.clone();
         self.named.remove(name);
         self.named_touched.insert(name.to_owned());

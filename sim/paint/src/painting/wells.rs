@@ -9,14 +9,14 @@ use maulstick_brush::HeadPose;
 use maulstick_types::Mixture;
 use maulstick_types::scene::{Well, WellKind};
 
-use super::{PaintRefusal, Painting, bare};
+use super::{Painting, bare};
+use crate::blank_surface::WELL_M;
+use crate::error::EditError;
 use crate::ledger::Ledger;
-use crate::model::BrushTraits;
 use crate::quantum::{QUANTUM_M, SLOTS};
+use crate::traits::BrushTraits;
 use crate::window::Window;
 
-/// How thick paint lies in a well, m.
-pub const WELL_M: f64 = 2e-3;
 /// Wells may reach beyond the edge of their surface by what rounding makes of it, m.
 const EDGE_M: f64 = 1e-6;
 /// A strip is down within this of the surface, cells.
@@ -66,8 +66,8 @@ impl Painting {
     /// Gives a surface other wells. What brushes have stirred in those that go stays there, wet.
     ///
     /// # Errors
-    /// [`PaintRefusal`] for an unknown surface or paint, or a well that does not lie on the surface.
-    pub fn set_wells(&mut self, surface: u32, wells: &[Well]) -> Result<(), PaintRefusal> {
+    /// [`EditError`] for an unknown surface or paint, or a well that does not lie on the surface.
+    pub fn set_wells(&mut self, surface: u32, wells: &[Well]) -> Result<(), EditError> {
         let mut changed = self.surface(surface)?.clone();
         let size = changed.cells.map(|cells| f64::from(cells) * changed.cell_m);
         changed.wells = wells.to_vec();
@@ -78,13 +78,13 @@ impl Painting {
             };
             if well.radius_m <= 0.0 || !(lies(0) && lies(1)) {
                 let [width, height] = size.map(|m| m * 1e3);
-                return Err(PaintRefusal::new(
+                return Err(EditError::new(
                     format!("well {} does not lie on the surface", place + 1),
                     &format!("it is {width:.0}×{height:.0} mm: give a middle and a radius within"),
                 ));
             }
             if let WellKind::Paint { mixture } = &mut well.kind {
-                *mixture = self.library.check(mixture).map_err(PaintRefusal::paint)?;
+                *mixture = self.library.check(mixture).map_err(EditError::paint)?;
             }
         }
         self.close_windows();

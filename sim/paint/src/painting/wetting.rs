@@ -5,9 +5,11 @@ use std::sync::Arc;
 
 use maulstick_types::Region;
 
+use super::Painting;
 use super::layers::{Changed, Part};
-use super::{PaintRefusal, Painting};
-use crate::tile::{TILE_CELLS, Tile, TileId};
+use crate::error::EditError;
+use crate::planes::TILE_CELLS;
+use crate::tile::{Tile, TileId};
 
 impl Painting {
     /// Makes the newest `layers` dry layers of a part wet paint again where they lie; 0 means all. Says
@@ -17,20 +19,20 @@ impl Painting {
     /// dry. A layer of which nothing is left is gone from the scene.
     ///
     /// # Errors
-    /// [`PaintRefusal`] for an unknown surface or a part beside it, where nothing has dried or has room,
+    /// [`EditError`] for an unknown surface or a part beside it, where nothing has dried or has room,
     /// and for a layer whose opacity is not 1, for wet paint has none. Then nothing has changed.
     pub fn wet(
         &mut self,
         surface: u32,
         layers: u32,
         region: Option<&Region>,
-    ) -> Result<String, PaintRefusal> {
+    ) -> Result<String, EditError> {
         let part = self.part(surface, region)?;
         self.close_windows();
         let numbers = self.newest_on(&part, layers);
         let place = region.map_or(String::new(), |region| format!(" in {region}"));
         let Some(least) = numbers.first().copied() else {
-            return Err(PaintRefusal::new(
+            return Err(EditError::new(
                 format!("nothing has dried{place}"),
                 "`maulstick dry` dries wet paint",
             ));
@@ -39,7 +41,7 @@ impl Painting {
         let chosen = known.filter(|layer| numbers.contains(&layer.number));
         if let Some(veiled) = chosen.clone().find(|layer| layer.opacity != 1.0) {
             let (number, name) = (veiled.number, &veiled.name);
-            return Err(PaintRefusal::new(
+            return Err(EditError::new(
                 format!("wet paint cannot keep the opacity of layer {number} ({name})"),
                 &format!("`maulstick opacity {number} 1` makes it as it was laid"),
             ));
@@ -54,7 +56,7 @@ impl Painting {
             }
         }
         if tiles.is_empty() {
-            return Err(PaintRefusal::new(
+            return Err(EditError::new(
                 format!("no cell{place} has room for more wet paint"),
                 "take some of the wet paint off first, or dry it",
             ));

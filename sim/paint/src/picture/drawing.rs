@@ -7,10 +7,10 @@ use maulstick_optics::light::{Facet, SURFACE, Spot, Surroundings, lit};
 use maulstick_types::paint::TILE;
 
 use super::{Depth, Export};
+use crate::appearance::Bakery;
 use crate::bands::{BandHeights, Banded};
 use crate::display::DisplayTile;
 use crate::lamp::lamp_over;
-use crate::look::Bakery;
 use crate::painting::Painting;
 use crate::tile::TileId;
 

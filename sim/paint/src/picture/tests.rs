@@ -7,9 +7,9 @@ use maulstick_types::paint::TILE;
 
 use super::drawing::flat;
 use super::*;
+use crate::appearance::Appearance;
 use crate::bands::Banded;
-use crate::bare::Bare;
-use crate::look::Look;
+use crate::blank_surface::BlankSurface;
 use crate::quantum::QUANTUM_M;
 use crate::relief::Relief;
 use crate::store::TileStore;
@@ -43,8 +43,8 @@ fn studio() -> Studio {
     studio
 }
 
-fn bare(studio: &Studio) -> Bare {
-    Bare {
+fn bare(studio: &Studio) -> BlankSurface {
+    BlankSurface {
         ground: crate::ground::Ground::Even(vec![0.95; studio.wavelengths()]),
         relief: Arc::new(Relief::flat(CELL_M)),
         wells: Vec::new(),
@@ -58,7 +58,7 @@ fn drawn(
 ) -> Picture {
     let studio = studio();
     let bare = bare(&studio);
-    let look = Look::new(studio);
+    let look = Appearance::new(studio);
     let export = Export {
         gamut: GamutMapping::Clamp,
         ..Default::default()
@@ -76,7 +76,7 @@ fn drawn(
 fn heights(store: &TileStore) -> Vec<f32> {
     let studio = studio();
     let bare = bare(&studio);
-    let look = Look::new(studio);
+    let look = Appearance::new(studio);
     let banded = Banded::new(store, &bare, &look, CELL_M);
     let bands = (0..banded.bands()).rev();
     bands

@@ -4,7 +4,7 @@ use maulstick_types::command::Command;
 use maulstick_types::paint::Entry;
 
 use super::{Accepted, Sequencer};
-use crate::painting::PaintRefusal;
+use crate::error::EditError;
 
 impl Sequencer {
     /// A sixtieth of a second goes by: entered where something dries by itself, else nothing happens.
@@ -20,8 +20,8 @@ impl Sequencer {
     }
 
     /// Does a command about layers; any other asks nothing of the painting.
-    pub(super) fn layers(&mut self, command: &Command) -> Result<String, PaintRefusal> {
-        let quietly = |done: Result<(), PaintRefusal>| done.map(|()| String::new());
+    pub(super) fn layers(&mut self, command: &Command) -> Result<String, EditError> {
+        let quietly = |done: Result<(), EditError>| done.map(|()| String::new());
         let painting = &mut self.painting;
         match command {
             Command::Dry {

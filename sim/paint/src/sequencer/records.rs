@@ -7,8 +7,9 @@ use maulstick_types::paint::Entry;
 use maulstick_types::{Header, Origin};
 
 use super::Sequencer;
-use crate::kept::KeptSequencer;
-use crate::painting::{PaintRefusal, Painting};
+use crate::error::EditError;
+use crate::painting::Painting;
+use crate::snapshot::SequencerSnapshot;
 
 /// The client that runs the sequencer.
 const OWN: u64 = 0;
@@ -104,8 +105,8 @@ impl Sequencer {
     /// Does a command of the one who runs the sequencer, at once.
     ///
     /// # Errors
-    /// [`PaintRefusal`] where the painting refuses it.
-    pub fn ask(&mut self, command: Command) -> Result<String, PaintRefusal> {
+    /// [`EditError`] where the painting refuses it.
+    pub fn ask(&mut self, command: Command) -> Result<String, EditError> {
         let number = self
             .answered
             .get(&OWN)
@@ -120,7 +121,7 @@ impl Sequencer {
         self.drain_journal();
         match outcome {
             Outcome::Done { detail, .. } => Ok(detail),
-            Outcome::Refused { what, help } => Err(PaintRefusal { what, help }),
+            Outcome::Refused { what, help } => Err(EditError { what, help }),
             Outcome::Waiting => Ok(String::new()),
         }
     }
@@ -229,9 +230,9 @@ impl Sequencer {
 
     /// The sequencer besides its painting, as a document keeps it.
     #[must_use]
-    pub fn kept(&self) -> KeptSequencer {
+    pub fn kept(&self) -> SequencerSnapshot {
         let consumed = self.consumed.iter();
-        KeptSequencer {
+        SequencerSnapshot {
             next: self.next,
             serial: self.serial,
             takes: self.announced.clone(),
@@ -245,7 +246,7 @@ impl Sequencer {
 
     /// A sequencer that goes on where it was kept.
     #[must_use]
-    pub fn restored(mut painting: Painting, kept: KeptSequencer) -> Self {
+    pub fn restored(mut painting: Painting, kept: SequencerSnapshot) -> Self {
         let answers = kept.answers.values().map(|answer| answer.age).max();
         let consumed = kept
             .consumed

@@ -3,11 +3,13 @@
 use std::collections::BTreeMap;
 
 use maulstick_brush::BrushFile;
+use maulstick_paint::impasto::contact::Contact;
 use maulstick_paint::impasto::exchange::Exchange;
-use maulstick_paint::impasto::footprint::{Contact, Footprint};
+use maulstick_paint::impasto::footprint::Footprint;
 use maulstick_paint::load::BrushLoad;
-use maulstick_paint::model::{BrushTraits, Handling, Transfer};
+use maulstick_paint::model::{Handling, Transfer};
 use maulstick_paint::quantum::{QUANTA_PER_UNIT, SLOTS};
+use maulstick_paint::traits::BrushTraits;
 use maulstick_paint::transfer::SWAP_FILM;
 use maulstick_paint::window::Window;
 

@@ -1,10 +1,11 @@
 //! Paint within the head: out to a film that lacks some, in from one that has too much, and along.
 
 use maulstick_brush::Head;
-use maulstick_paint::impasto::flow::flow;
-use maulstick_paint::load::{ALONG, BrushLoad};
-use maulstick_paint::model::BrushTraits;
+use maulstick_paint::impasto::bristle_flow::flow;
+use maulstick_paint::load::BrushLoad;
 use maulstick_paint::quantum::SLOTS;
+use maulstick_paint::traits::BrushTraits;
+use maulstick_paint::traits::TEXELS_PER_STRIP;
 
 use crate::scene::{Scene, brush};
 
@@ -12,13 +13,13 @@ use crate::scene::{Scene, brush};
 const FILM_BOUND: f64 = 2.0;
 const INSIDE_BOUND: f64 = 6.0;
 
-type Texels = [[f64; ALONG]; SLOTS];
+type Texels = [[f64; TEXELS_PER_STRIP]; SLOTS];
 
 /// Film and inside of a strip, by slot.
 fn strip_of(load: &BrushLoad, strip: usize) -> [Texels; 2] {
-    let run = strip * ALONG..(strip + 1) * ALONG;
+    let run = strip * TEXELS_PER_STRIP..(strip + 1) * TEXELS_PER_STRIP;
     let copy = |plane: Option<&[u32]>| {
-        plane.map_or([0.0; ALONG], |plane| {
+        plane.map_or([0.0; TEXELS_PER_STRIP], |plane| {
             std::array::from_fn(|k| f64::from(plane[run.clone()][k]))
         })
     };
@@ -31,10 +32,12 @@ fn strip_of(load: &BrushLoad, strip: usize) -> [Texels; 2] {
 fn oracle([film, inside]: &[Texels; 2], full: f64, traits: &BrushTraits) -> [Texels; 2] {
     let sum = |plane: &Texels, k: usize| plane.iter().map(|slot| slot[k]).sum::<f64>();
     let [mut new_film, mut new_inside] = [*film, *inside];
-    for k in 0..ALONG {
+    for k in 0..TEXELS_PER_STRIP {
         let (f, i) = (sum(film, k), sum(inside, k));
         let falls = |to: Option<usize>| {
-            let there = to.filter(|to| *to < ALONG).map_or(i, |to| sum(inside, to));
+            let there = to
+                .filter(|to| *to < TEXELS_PER_STRIP)
+                .map_or(i, |to| sum(inside, to));
             (traits.creep * (i - there)).max(0.0)
         };
         let missing = (full - f).max(0.0);
@@ -101,13 +104,13 @@ fn paint_flows_within_all_strips_and_none_is_lost() {
             assert!(agrees(&got, &want), "strip {strip} of scene {seed}");
             assert!(!agrees(&held[strip], &want), "no flow in {strip} passes");
             let sum = |film: &Texels, k: usize| film.iter().map(|slot| slot[k]).sum::<f64>();
-            for k in 0..ALONG {
+            for k in 0..TEXELS_PER_STRIP {
                 let (from, to) = (sum(&held[strip][0], k), sum(&got[0], k));
                 assert!(
                     from.min(full) <= to && to <= from.max(full),
                     "away from full"
                 );
-                assert_eq!(f64::from(scene.load.film(strip * ALONG + k)), to);
+                assert_eq!(f64::from(scene.load.film(strip * TEXELS_PER_STRIP + k)), to);
             }
             got[1][2][5] += 10.0 * INSIDE_BOUND;
             assert!(!agrees(&got, &want), "a fault in scene {seed} passes");
@@ -121,7 +124,7 @@ fn empty_some(load: &mut BrushLoad, head: &Head) {
         let Some((_, inside)) = load.planes_mut(slot) else {
             continue;
         };
-        for texel in (0..head.strips() * ALONG).filter(|texel| texel % 3 != 1) {
+        for texel in (0..head.strips() * TEXELS_PER_STRIP).filter(|texel| texel % 3 != 1) {
             inside[texel] = 0;
         }
     }

@@ -3,8 +3,10 @@
 
 use maulstick_brush::head::STATIONS;
 use maulstick_paint::head::low_bounds;
-use maulstick_paint::impasto::footprint::{Contact, Footprint};
-use maulstick_paint::load::{ALONG, Half};
+use maulstick_paint::impasto::contact::Contact;
+use maulstick_paint::impasto::footprint::Footprint;
+use maulstick_paint::load::Half;
+use maulstick_paint::traits::TEXELS_PER_STRIP;
 
 use crate::scene::{CELL_M, CELLS, Scene};
 
@@ -202,7 +204,8 @@ fn candidates(scene: &Scene, at: [usize; 2], most: f64) -> Vec<Candidate> {
                 score: c.score + keeps + rank,
                 keeps,
                 strip,
-                along: (station as f64 - 1.0 + c.along) * (ALONG / (STATIONS - 1)) as f64,
+                along: (station as f64 - 1.0 + c.along)
+                    * (TEXELS_PER_STRIP / (STATIONS - 1)) as f64,
                 ..c
             }));
         }
@@ -227,11 +230,11 @@ fn cell(scene: &Scene, ride: &[f32], at: [usize; 2], candidates: &[Candidate]) -
     let doubt = |c: &Candidate| if c.sure { c.off } else { c.cover + c.off };
     cell.cover_off = 1e-5 + candidates.iter().map(doubt).sum::<f64>();
     for c in candidates.iter().filter(|c| c.score - c.off <= best) {
-        let last = (ALONG - 1) as f64;
+        let last = (TEXELS_PER_STRIP - 1) as f64;
         let texels =
             [c.along - 2.0 * c.off, c.along + 2.0 * c.off].map(|k| k.clamp(0.0, last) as usize);
         for along in texels[0]..=texels[1] {
-            let texel = c.strip * ALONG + along;
+            let texel = c.strip * TEXELS_PER_STRIP + along;
             let film =
                 f64::from(scene.load.film(texel)) * f64::from(scene.traits.film_cells_per_quantum);
             // Solved on a plane at 0: it follows the ride down, and stands on it where that is higher.

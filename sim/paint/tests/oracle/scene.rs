@@ -4,12 +4,14 @@
 use maulstick_brush::head::STATIONS;
 use maulstick_brush::{BrushFile, Head, HeadPose};
 use maulstick_paint::impasto::advection::STAIN;
-use maulstick_paint::load::{ALONG, BrushLoad, Half};
-use maulstick_paint::model::{BrushTraits, Handling, Step, Sweep};
+use maulstick_paint::load::{BrushLoad, Half};
+use maulstick_paint::model::{Handling, Step, Sweep};
 use maulstick_paint::quantum::{Counts, SLOTS};
 use maulstick_paint::relief::Relief;
 use maulstick_paint::store::TileStore;
 use maulstick_paint::tooth::Tooth;
+use maulstick_paint::traits::BrushTraits;
+use maulstick_paint::traits::TEXELS_PER_STRIP;
 use maulstick_paint::window::Window;
 use rand_pcg::Pcg32;
 use rand_pcg::rand_core::Rng as _;
@@ -195,7 +197,7 @@ fn poses(random: &mut Random, strips: usize) -> (HeadPose, HeadPose) {
 fn load(random: &mut Random, head: &Head, traits: &BrushTraits, seed: u64) -> BrushLoad {
     let mut load = BrushLoad::clean(head.strips());
     load.fill(head, traits, &[], None, (Half::Both, seed));
-    for texel in 0..head.strips() * ALONG {
+    for texel in 0..head.strips() * TEXELS_PER_STRIP {
         for slot in [0, 2, 5] {
             let share = [0.0, 0.05, 0.3, 0.66][random.below(4)];
             let count = (traits.film_full * share * random.unit()) as u32;

@@ -1,9 +1,10 @@
 //! Paint between bristles: of two films beside each other the fuller one gives, of its own mixture.
 
 use maulstick_paint::impasto::seep::seep;
-use maulstick_paint::load::{ALONG, BrushLoad};
-use maulstick_paint::model::{BrushTraits, Seep};
+use maulstick_paint::load::BrushLoad;
 use maulstick_paint::quantum::SLOTS;
+use maulstick_paint::traits::TEXELS_PER_STRIP;
+use maulstick_paint::traits::{BrushTraits, Seep};
 
 use crate::scene::{Scene, brush};
 
@@ -58,17 +59,20 @@ fn oracle(scene: &Scene, seep: Seep, holds: f64) -> Films {
     let due = |number: usize| (scene.load.steps() + number as u64).is_multiple_of(2);
     let pairs = order[first..].chunks_exact(2).enumerate();
     for (_, pair) in pairs.filter(|(number, _)| due(*number)) {
-        for k in 0..ALONG {
-            let texels = [0, 1].map(|side| pair[side] as usize * ALONG + k);
+        for k in 0..TEXELS_PER_STRIP {
+            let texels = [0, 1].map(|side| pair[side] as usize * TEXELS_PER_STRIP + k);
             even_out(&mut films, texels, seep.beside, holds);
         }
     }
     for strip in (0..scene.head.strips()).filter(|strip| due(*strip)) {
         let first = (scene.load.steps() as usize + strip) / 2 % 2;
-        for k in (first..ALONG - 1).step_by(2) {
+        for k in (first..TEXELS_PER_STRIP - 1).step_by(2) {
             even_out(
                 &mut films,
-                [strip * ALONG + k, strip * ALONG + k + 1],
+                [
+                    strip * TEXELS_PER_STRIP + k,
+                    strip * TEXELS_PER_STRIP + k + 1,
+                ],
                 seep.along,
                 0.0,
             );
@@ -135,7 +139,7 @@ fn equal_films_of_two_colours_stay_two() {
     let mut scene = Scene::new(3);
     let mut load = BrushLoad::clean(scene.head.strips());
     for texel in 0..load.texels() {
-        load.add_film(texel / ALONG % 2, texel, 50_000);
+        load.add_film(texel / TEXELS_PER_STRIP % 2, texel, 50_000);
     }
     load.count_films();
     scene.load = load;
@@ -177,5 +181,8 @@ fn the_whole_head_feeds_a_bristle() {
         seep(&mut scene.step());
     }
     assert_eq!(scene.load.total() + used, before);
-    assert!(used > 3 * ALONG as u64 * u64::from(full), "{used}");
+    assert!(
+        used > 3 * TEXELS_PER_STRIP as u64 * u64::from(full),
+        "{used}"
+    );
 }

@@ -4,9 +4,10 @@ use std::collections::BTreeMap;
 
 use maulstick_brush::head::STATIONS;
 use maulstick_brush::{BrushFile, Head, HeadPose};
-use maulstick_paint::impasto::footprint::{Contact, Footprint};
-use maulstick_paint::load::ALONG;
-use maulstick_paint::model::BrushTraits;
+use maulstick_paint::impasto::contact::Contact;
+use maulstick_paint::impasto::footprint::Footprint;
+use maulstick_paint::traits::BrushTraits;
+use maulstick_paint::traits::TEXELS_PER_STRIP;
 
 use crate::scene::{CELL_M, CELLS, Random, Scene};
 
@@ -101,7 +102,8 @@ fn lying(scene: &Scene, at: [usize; 2]) -> Vec<Lies> {
                     moved(&pose.x, &scene.from.skin.x),
                     moved(&pose.y, &scene.from.skin.y),
                 ],
-                along: mix(number.map(|i| f64::from(skin.places()[i][1]))) * ALONG as f64,
+                along: mix(number.map(|i| f64::from(skin.places()[i][1])))
+                    * TEXELS_PER_STRIP as f64,
                 around: mix(number.map(around)),
                 sure: shares.iter().all(|share| *share > off),
                 off: (4.0 * off).min(1.0),
@@ -121,7 +123,7 @@ fn fits(scene: &Scene, at: [usize; 2], got: Option<&Contact>) -> bool {
     let wet = counts.sum::<f64>() * f64::from(scene.traits.cells_per_quantum);
     let ground = f64::from(scene.window.base()[place]);
     let film_of = |strip: usize, along: f64| {
-        let texel = strip * ALONG + (along as usize).min(ALONG - 1);
+        let texel = strip * TEXELS_PER_STRIP + (along as usize).min(TEXELS_PER_STRIP - 1);
         f64::from(scene.load.film(texel)) * f64::from(scene.traits.film_cells_per_quantum)
     };
     let ride = f64::from(scene.window.ride()[place]);
@@ -138,7 +140,7 @@ fn fits(scene: &Scene, at: [usize; 2], got: Option<&Contact>) -> bool {
             if reach + film > -lies.off {
                 let depth = reach.clamp(0.0, wet);
                 let is = got.is_some_and(|got| {
-                    got.texel as usize / ALONG == strip
+                    got.texel as usize / TEXELS_PER_STRIP == strip
                         && (f64::from(got.depth) - depth).abs() <= lies.off
                         && (f64::from(got.gap) - (-reach).max(0.0)).abs() <= lies.off
                         && (0..2)
@@ -201,7 +203,7 @@ fn the_lowest_face_touches_and_faults_are_found() {
             |c| c.gap += 0.7,
             |c| c.moved[0] += 0.7,
             |c| c.cover = 0.9,
-            |c| c.texel += ALONG as u32,
+            |c| c.texel += TEXELS_PER_STRIP as u32,
         ];
         for (number, fault) in faults.iter().enumerate() {
             let mut faulty = contacts.clone();

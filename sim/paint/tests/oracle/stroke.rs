@@ -2,17 +2,19 @@
 
 use maulstick_brush::{BrushFile, Head, HeadPose};
 use maulstick_num::geometry::{Rigid, rotation};
-use maulstick_paint::head::{Scale, Waypoint, low_bounds};
+use maulstick_paint::head::{Waypoint, low_bounds};
 use maulstick_paint::impasto::Impasto;
 use maulstick_paint::impasto::advection::STAIN;
 use maulstick_paint::load::{BrushLoad, Half};
-use maulstick_paint::model::{BrushTraits, Handling, PaintModel, Step, StepReport, Sweep};
+use maulstick_paint::model::{Handling, PaintModel, Step, StepReport, Sweep};
 use maulstick_paint::path::PathStepper;
 use maulstick_paint::quantum::{Counts, add};
 use maulstick_paint::relief::Relief;
 use maulstick_paint::ride::reach;
+use maulstick_paint::scale::Scale;
 use maulstick_paint::store::{TileRect, TileStore};
 use maulstick_paint::tooth::Tooth;
+use maulstick_paint::traits::BrushTraits;
 use maulstick_paint::window::Window;
 use maulstick_types::brush::Solve;
 

@@ -4,10 +4,11 @@ use std::collections::BTreeMap;
 
 use maulstick_brush::BrushFile;
 use maulstick_paint::impasto::advection::{Advection, Axis};
-use maulstick_paint::impasto::footprint::{Contact, Footprint};
+use maulstick_paint::impasto::contact::Contact;
+use maulstick_paint::impasto::footprint::Footprint;
 use maulstick_paint::impasto::velocity::{EASE, Faces, SLIP, SQUISH, STABLE};
-use maulstick_paint::model::BrushTraits;
 use maulstick_paint::relief::Relief;
+use maulstick_paint::traits::BrushTraits;
 use maulstick_paint::window::{Area, Window};
 
 use crate::scene::{CELL_M, Scene, window};

@@ -9,7 +9,7 @@
 use std::cell::RefCell;
 
 use glam::{DMat3, DVec3};
-use maulstick_brush::solver::{Energy, Settings, Solver, Stop};
+use maulstick_brush::solver::{ContactConstraint, Energy, Settings, Solver};
 use maulstick_brush::{Spine, SpineShape};
 use maulstick_num::sin_cos;
 use slsqp::{Func, StopTols};
@@ -26,7 +26,7 @@ const FTOL: f64 = 1e-10;
 pub(crate) struct Angles<'a> {
     spine: &'a Spine,
     settings: &'a Settings,
-    stops: &'a [Stop],
+    constraints: &'a [ContactConstraint],
     at: RefCell<At<'a>>,
 }
 
@@ -55,7 +55,7 @@ impl<'a> Angles<'a> {
     pub(crate) fn new(
         spine: &'a Spine,
         settings: &'a Settings,
-        stops: &'a [Stop],
+        constraints: &'a [ContactConstraint],
         solver: &'a mut Solver,
         shape: SpineShape,
     ) -> Self {
@@ -72,7 +72,7 @@ impl<'a> Angles<'a> {
         Self {
             spine,
             settings,
-            stops,
+            constraints,
             at: RefCell::new(at),
         }
     }
@@ -80,7 +80,7 @@ impl<'a> Angles<'a> {
     /// The energy of a shape, J.
     pub(crate) fn energy_of(&self, shape: &SpineShape) -> Energy {
         let solver = &mut self.at.borrow_mut().solver;
-        let (energy, _) = solver.energy(self.spine, shape, self.stops, &[], self.settings);
+        let (energy, _) = solver.energy(self.spine, shape, self.constraints, &[], self.settings);
         energy
     }
 
@@ -133,10 +133,10 @@ impl<'a> Angles<'a> {
             at.shape.directions[j] = z;
         }
         at.shape.joints(self.spine, &mut at.ends);
-        let (stops, settings) = (self.stops, self.settings);
+        let (constraints, settings) = (self.constraints, self.settings);
         let (energy, slopes) = at
             .solver
-            .energy(self.spine, &at.shape, stops, &[], settings);
+            .energy(self.spine, &at.shape, constraints, &[], settings);
         let scale = 1.0 / self.spine.stiffest();
         at.energy = energy.total() * scale;
         let mut torque = DVec3::ZERO;
@@ -188,18 +188,18 @@ mod tests {
         let (spine, settings) = (spine(5), settings());
         let length = spine.length_m();
         let frame = rotation(DVec3::new(0.6, 0.8, 0.0), 0.4);
-        let mut stops = Stop::on_surface(5);
+        let mut constraints = ContactConstraint::on_surface(5);
         let mut shape = SpineShape::straight(DVec3::new(0.0, 0.0, 0.7 * length), frame, 5);
         let mut solver = Solver::default();
         let mut wide = settings;
         wide.epsilon_m = 0.02 * length;
         for x in [0.0, 0.02] {
             shape.root.x = x * length;
-            solver.solve(&spine, &mut shape, &mut stops, &[], &wide);
+            solver.solve(&spine, &mut shape, &mut constraints, &[], &wide);
         }
-        let faced = solver.faced().to_vec();
+        let last_constraints = solver.last_constraints().to_vec();
         let start: Vec<f64> = shape.exact_angles().flatten().map(|a| a + 0.03).collect();
-        let problem = Angles::new(&spine, &wide, &faced, &mut solver, shape.clone());
+        let problem = Angles::new(&spine, &wide, &last_constraints, &mut solver, shape.clone());
         let shape = SpineShape::from_exact_angles(
             shape.root,
             shape.frame,
@@ -244,8 +244,8 @@ mod tests {
         let shape = SpineShape::straight(root, rotation(DVec3::Y, 0.5), 3);
         let mut solver = Solver::default();
         solver.begin(&spine, &shape);
-        let stops = Stop::on_surface(3);
-        let problem = Angles::new(&spine, &settings, &stops, &mut solver, shape);
+        let constraints = ContactConstraint::on_surface(3);
+        let problem = Angles::new(&spine, &settings, &constraints, &mut solver, shape);
         let minimum = problem.minimise(&[0.0; 6]);
         assert!(minimum.penetration <= LEVEL, "{}", minimum.penetration);
         assert!(

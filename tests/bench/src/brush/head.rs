@@ -3,9 +3,9 @@
 use std::time::Instant;
 
 use maulstick_brush::desk::Obstacle;
-use maulstick_brush::held::settings_of;
-use maulstick_brush::held::{HeadSolver, HeldHead};
-use maulstick_brush::{BrushFile, Head, HeadPose, Hold};
+use maulstick_brush::head_solver::settings_of;
+use maulstick_brush::head_solver::{HeadSolver, SolvedHead};
+use maulstick_brush::{BrushFile, Head, HeadPose, Hold, SpineLayout};
 use maulstick_rig::Fault;
 
 use super::stroke::stroke;
@@ -19,11 +19,11 @@ pub(crate) fn run(report: &mut Report) -> Result<(), Fault> {
     let fault = |error: maulstick_brush::BrushError| Fault::failure(error.to_string());
     let mut file = BrushFile::library("round").map_err(fault)?;
     file.strips.count = STRIPS;
-    let tuft = file.tuft();
+    let tuft = SpineLayout::of(&file);
     let settings = settings_of(&file, &tuft);
     let poses = stroke(1, file.length_m());
     let (head, walls) = (Head::of(&file), [Obstacle::ground()]);
-    let mut held = HeldHead::at_rest(&tuft, &poses[0]);
+    let mut held = SolvedHead::at_rest(&tuft, &poses[0]);
     let (mut room, mut into) = (HeadSolver::default(), HeadPose::default());
     let (mut solves, mut skins) = (Vec::new(), Vec::new());
     for brush in &poses {

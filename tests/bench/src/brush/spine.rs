@@ -3,7 +3,7 @@
 use std::time::Instant;
 
 use maulstick_brush::energy::friction::Anisotropy;
-use maulstick_brush::solver::{Settings, Solver, Stop};
+use maulstick_brush::solver::{ContactConstraint, Settings, Solver};
 use maulstick_brush::{Spine, SpineShape};
 use maulstick_rig::Fault;
 
@@ -44,28 +44,34 @@ pub(crate) fn beside_slsqp(report: &mut Report, joints: usize) -> Result<(), Fau
     let (spine, settings) = (spine(joints), settings());
     let poses = stroke(joints as u64, LENGTH_M);
     let mut solver = Solver::default();
-    let mut stops = Stop::on_surface(joints);
+    let mut constraints = ContactConstraint::on_surface(joints);
     let mut shape = SpineShape::straight(poses[0].translation, poses[0].rotation, joints);
     let (mut ours, mut theirs) = (Vec::new(), Vec::new());
     let (mut excess, mut residual, mut iterations) = (Vec::new(), Vec::new(), Vec::new());
     let mut touching = 0;
     for pose in &poses {
         shape.carry(pose.translation, pose.rotation);
-        let (before, stops_before) = (shape.clone(), stops.clone());
+        let (before, constraints_before) = (shape.clone(), constraints.clone());
         let start: Vec<f64> = before.exact_angles().flatten().collect();
         for _ in 0..TURNS {
             shape.clone_from(&before);
-            stops.clone_from(&stops_before);
+            constraints.clone_from(&constraints_before);
             let clock = Instant::now();
-            let solution = solver.solve(&spine, &mut shape, &mut stops, &[], &settings);
+            let solution = solver.solve(&spine, &mut shape, &mut constraints, &[], &settings);
             ours.push(clock.elapsed().as_secs_f64() * 1e6);
             if !solution.converged {
                 return Err(Fault::failure("a pose of the stroke has no solution"));
             }
             residual.push(solution.residual / spine.stiffest());
             iterations.push(solution.iterations as f64);
-            let faced = solver.faced().to_vec();
-            let problem = Angles::new(&spine, &settings, &faced, &mut solver, before.clone());
+            let last_constraints = solver.last_constraints().to_vec();
+            let problem = Angles::new(
+                &spine,
+                &settings,
+                &last_constraints,
+                &mut solver,
+                before.clone(),
+            );
             let clock = Instant::now();
             let minimum = problem.minimise(&start);
             theirs.push(clock.elapsed().as_secs_f64() * 1e6);
@@ -74,7 +80,7 @@ pub(crate) fn beside_slsqp(report: &mut Report, joints: usize) -> Result<(), Fau
                 excess.push(least / minimum.energy - 1.0);
             }
         }
-        touching += usize::from(stops.iter().any(Stop::touches));
+        touching += usize::from(constraints.iter().any(ContactConstraint::touches));
     }
     let excess = sorted(excess);
     let median = |values: Vec<f64>| quantile(&sorted(values), 0.5);
@@ -109,16 +115,16 @@ pub(crate) fn throughput(report: &mut Report) {
     let begin = |poses: &Vec<_>| {
         let first: &maulstick_num::geometry::Rigid = &poses[0];
         let shape = SpineShape::straight(first.translation, first.rotation, 3);
-        (shape, Stop::on_surface(3))
+        (shape, ContactConstraint::on_surface(3))
     };
     let mut spines: Vec<_> = strokes.iter().map(begin).collect();
     let mut solver = Solver::default();
     let mut rates = Vec::new();
     for tick in 0..strokes[0].len() {
         let clock = Instant::now();
-        for ((shape, stops), poses) in spines.iter_mut().zip(&strokes) {
+        for ((shape, constraints), poses) in spines.iter_mut().zip(&strokes) {
             shape.carry(poses[tick].translation, poses[tick].rotation);
-            solver.solve(&spine, shape, stops, &[], &settings);
+            solver.solve(&spine, shape, constraints, &[], &settings);
         }
         rates.push(1e-3 / clock.elapsed().as_secs_f64() * CROWD as f64);
     }

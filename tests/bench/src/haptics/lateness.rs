@@ -6,11 +6,11 @@
 
 use std::time::{Duration, Instant};
 
-use maulstick_device::fitting::Fitting;
-use maulstick_haptic::Placed;
-use maulstick_haptic::host::Host;
-use maulstick_haptic::pace::OwnClock;
-use maulstick_haptic::simulated::Simulated;
+use maulstick_device::registration::Registration;
+use maulstick_haptic::MountedDevice;
+use maulstick_haptic::drivers::simulated::Simulated;
+use maulstick_haptic::servo::clock::MonotonicClock;
+use maulstick_haptic::servo::servo_thread::ServoThread;
 use maulstick_haptics::Limits;
 use maulstick_rig::Fault;
 
@@ -83,9 +83,10 @@ pub(super) fn run(report: &mut Report) -> Result<(), Fault> {
 
 /// How late so many ticks of our servo are, and how it was scheduled.
 fn ours(ticks: u64) -> Result<(Histogram, Scheduling), Fault> {
-    let device = Placed::new(Box::new(Simulated::at_rest()), Fitting::IDENTITY, 0);
-    let mut host = Host::start(device, Box::new(OwnClock), Limits::default()).map_err(fault)?;
-    let scheduling = match host.warnings.iter().any(|what| what.contains("real-time")) {
+    let device = MountedDevice::new(Box::new(Simulated::at_rest()), Registration::IDENTITY, 0);
+    let mut servo =
+        ServoThread::start(device, Box::new(MonotonicClock), Limits::default()).map_err(fault)?;
+    let scheduling = match servo.warnings.iter().any(|what| what.contains("real-time")) {
         true => Scheduling::Other,
         false => Scheduling::Fifo,
     };
@@ -96,9 +97,9 @@ fn ours(ticks: u64) -> Result<(Histogram, Scheduling), Fault> {
         // Half of the ring comes together.
         std::thread::sleep(Duration::from_millis((ticks - seen).min(1000)));
         while seen < ticks
-            && let Ok(ticked) = host.ticks.pop()
+            && let Ok(record) = servo.ticks.pop()
         {
-            histogram.add(ticked.late_ns / 1000, 1);
+            histogram.add(record.late_ns / 1000, 1);
             (seen, heard) = (seen + 1, Instant::now());
         }
         if heard.elapsed() > PATIENCE {

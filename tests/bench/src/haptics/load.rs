@@ -137,7 +137,7 @@ fn to_and_fro() -> Take {
         }
     });
     Take {
-        kit: None,
+        setup: None,
         device: "load".into(),
         samples: samples.collect(),
     }

@@ -1,6 +1,6 @@
 //! The stability grid of the servo, the same that `./test` asserts, on its own clock.
 
-use maulstick_haptics::grid::{HANDS, Outcome, Path, Run, Worst, grid};
+use maulstick_haptics::stability_grid::{HANDS, Outcome, Path, Run, Worst, grid};
 use maulstick_rig::Fault;
 
 use super::fault;

@@ -6,15 +6,15 @@ use std::ops::ControlFlow;
 use std::time::{Duration, Instant};
 
 use maulstick_brush::BrushFile;
-use maulstick_brush::feel::tuples;
-use maulstick_device::fitting::Fitting;
+use maulstick_brush::head_stiffness::tuples;
+use maulstick_device::registration::Registration;
 use maulstick_device::{Take, TakeSample};
-use maulstick_haptic::Placed;
-use maulstick_haptic::beat::Delivery;
-use maulstick_haptic::driver::{Pace, Trouble};
-use maulstick_haptic::host::Host;
-use maulstick_haptic::pace::OwnClock;
-use maulstick_haptic::simulated::Simulated;
+use maulstick_haptic::MountedDevice;
+use maulstick_haptic::device::driver::{DeviceError, ServoClock};
+use maulstick_haptic::drivers::simulated::Simulated;
+use maulstick_haptic::servo::channels::Delivery;
+use maulstick_haptic::servo::clock::MonotonicClock;
+use maulstick_haptic::servo::servo_thread::ServoThread;
 use maulstick_haptics::Limits;
 use maulstick_haptics::contact::Contact;
 use maulstick_num::{cos, sin};
@@ -38,18 +38,18 @@ const IN_CONTACT: f64 = 0.9;
 /// Ticks from which nothing came for so long have stopped.
 const PATIENCE: Duration = Duration::from_secs(30);
 
-/// Our own clock; notes what each beat takes.
+/// The servo's own clock; notes the processor time of each tick.
 struct Timed(rtrb::Producer<Duration>);
 
-impl Pace for Timed {
+impl ServoClock for Timed {
     fn run(
         &mut self,
-        beat: &mut (dyn FnMut(u64) -> ControlFlow<()> + Send),
-    ) -> Result<(), Trouble> {
+        tick: &mut (dyn FnMut(u64) -> ControlFlow<()> + Send),
+    ) -> Result<(), DeviceError> {
         let spent = &mut self.0;
-        OwnClock.run(&mut |late_ns| {
+        MonotonicClock.run(&mut |late_ns| {
             let before = thread_cpu();
-            let flow = beat(late_ns);
+            let flow = tick(late_ns);
             // What does not fit comes after those that are measured.
             spent.push(thread_cpu().saturating_sub(before)).ok();
             flow
@@ -61,18 +61,18 @@ impl Pace for Timed {
 pub(super) fn run(report: &mut Report) -> Result<(), Fault> {
     let brush = BrushFile::library("round").map_err(fault)?;
     let take = sliding();
-    let desk = Fitting::IDENTITY;
+    let desk = Registration::IDENTITY;
     let device = Simulated::following(&take, brush.length_m(), DEPTH_SHARE, &desk);
     let all = TICKS + WARM_UP;
     let (to_us, mut spent) = rtrb::RingBuffer::new(all);
-    let placed = Placed::new(Box::new(device), desk, 0);
+    let placed = MountedDevice::new(Box::new(device), desk, 0);
     // The hand begins pressed: force comes up all the same.
     let limits = Limits {
         engage_n: f64::MAX,
         max_stiffness_n_m: placed.abilities().max_stiffness_n_m,
         ..Limits::default()
     };
-    let mut host = Host::start(placed, Box::new(Timed(to_us)), limits).map_err(fault)?;
+    let mut servo = ServoThread::start(placed, Box::new(Timed(to_us)), limits).map_err(fault)?;
     let contact = Contact::new(&model(&brush)).map_err(fault)?;
     let mut delivery = Delivery {
         contact: Some(contact),
@@ -81,19 +81,19 @@ pub(super) fn run(report: &mut Report) -> Result<(), Fault> {
     let (mut ticks, mut felt, mut heard) = (0, 0, Instant::now());
     while ticks < all {
         delivery.number += 1;
-        host.models.write(delivery);
+        servo.models.write(delivery);
         // Models come as often as a brush node sends them.
         std::thread::sleep(MODEL_PERIOD);
-        while let Ok(ticked) = host.ticks.pop() {
+        while let Ok(record) = servo.ticks.pop() {
             (ticks, heard) = (ticks + 1, Instant::now());
-            let counts = (WARM_UP..all).contains(&ticks) && ticked.force.length() > 0.0;
+            let counts = (WARM_UP..all).contains(&ticks) && record.force.length() > 0.0;
             felt += usize::from(counts);
         }
         if heard.elapsed() > PATIENCE {
             return Err(fault("the servo stands still"));
         }
     }
-    drop(host);
+    drop(servo);
     if (felt as f64) < IN_CONTACT * TICKS as f64 {
         return Err(fault(format!("{felt} of {TICKS} ticks give a force")));
     }
@@ -125,7 +125,7 @@ fn sliding() -> Take {
         }
     });
     Take {
-        kit: None,
+        setup: None,
         device: "hand".into(),
         samples: samples.collect(),
     }

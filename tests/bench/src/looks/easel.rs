@@ -5,7 +5,7 @@ use maulstick_num::atan2;
 use maulstick_optics::PaintLibrary;
 use maulstick_paint::quantum::QUANTUM_M;
 use maulstick_paint::setup::PaintingSetup;
-use maulstick_paint::{PaintRefusal, Painting};
+use maulstick_paint::{EditError, Painting};
 use maulstick_rig::Fault;
 use maulstick_session::Offline;
 use maulstick_types::command::Command;
@@ -55,7 +55,7 @@ pub(crate) struct Easel {
     now_s: f64,
 }
 
-fn refused(refusal: PaintRefusal) -> Fault {
+fn refused(refusal: EditError) -> Fault {
     Fault::failure(format!("{}; {}", refusal.what, refusal.help))
 }
 

@@ -39,7 +39,7 @@ impl Trial {
 
 /// All of them.
 pub(crate) const ALL: [Measure; 8] = [
-    long_stroke,
+    long_strokes,
     six_loads,
     dry_brush,
     scumble,
@@ -51,26 +51,43 @@ pub(crate) const ALL: [Measure; 8] = [
 
 const PAINT: &str = "Ultramarine Blue=0.6,Titanium White=0.4";
 
-/// One long stroke of a fully loaded 14 mm flat: films, roughness, how far it fills the tooth.
-pub(crate) fn long_stroke(trial: Trial) -> Result<Vec<Number>, Fault> {
+/// Long strokes of a fully loaded 14 mm flat, each loaded anew: films, roughness, how far they fill the tooth. Bristles
+/// lie otherwise in each, so the numbers are means of several.
+pub(crate) fn long_strokes(trial: Trial) -> Result<Vec<Number>, Fault> {
     let mut flat = brush("flat", 14.0)?;
     flat.load.film_um *= trial.pick(1.0, 0.1);
-    let mut easel = Easel::new([190.0, 30.0], trial.cell_mm, "linen", flat)?;
-    easel.load(PAINT)?;
-    easel.stroke(&Stroke::along(15.0, 15.0, 175.0, 0.5))?;
+    let mut easel = Easel::new([190.0, 105.0], trial.cell_mm, "linen", flat)?;
+    let heights = [15.0, 40.0, 65.0, 90.0];
+    for y in heights {
+        easel.load(PAINT)?;
+        easel.stroke(&Stroke::along(y, 15.0, 175.0, 0.5))?;
+    }
     let (film, ground) = (easel.film(None), easel.ground());
+    let strokes = heights.map(|y| long_stroke(&film, &ground, y));
+    let mean = |number: usize| {
+        let sum: f64 = strokes.iter().map(|stroke| stroke[number].1).sum();
+        sum / strokes.len() as f64
+    };
+    let numbers = strokes[0].iter().enumerate();
+    Ok(numbers
+        .map(|(number, (name, _, unit))| (*name, mean(number), *unit))
+        .collect())
+}
+
+/// The numbers of a stroke along x from 15 mm, at a height of `y` mm.
+fn long_stroke(film: &Map, ground: &Map, y: f64) -> [Number; 11] {
     let at = |mm: f64| {
-        film.cut([15.0 + mm - 1.0, 11.0], [15.0 + mm + 1.0, 19.0])
+        film.cut([15.0 + mm - 1.0, y - 4.0], [15.0 + mm + 1.0, y + 4.0])
             .mean()
     };
-    let thick = ([28.0, 12.0], [48.0, 18.0]);
-    let surface = film.plus(&ground).cut(thick.0, thick.1);
-    let [below, above] = [&ground, &film].map(|map| map.cut(thick.0, thick.1));
+    let thick = ([28.0, y - 3.0], [48.0, y + 3.0]);
+    let surface = film.plus(ground).cut(thick.0, thick.1);
+    let [below, above] = [ground, film].map(|map| map.cut(thick.0, thick.1));
     let fill = slope(&below.cells, &above.cells);
     // Streaks lie along the stroke as threads of the weave do: here rows are compared by themselves.
     let [below, above] = [below, above].map(Map::less_rows);
     let in_rows = slope(&below.cells, &above.cells);
-    Ok(vec![
+    [
         ("film_um.2mm", at(2.0), "um"),
         ("film_um.10mm", at(10.0), "um"),
         ("film_um.30mm", at(30.0), "um"),
@@ -82,7 +99,7 @@ pub(crate) fn long_stroke(trial: Trial) -> Result<Vec<Number>, Fault> {
         ("rough_um.across", rough(&surface, 1), "um"),
         ("ridges", rough(&surface, 1) / rough(&surface, 0), ""),
         ("towers_um", towers(&surface), "um"),
-    ])
+    ]
 }
 
 /// Roughness below 1 mm of wavelength along an axis, rms µm: heights less their running mean.

@@ -31,7 +31,7 @@ fn holds(measure: Measure, wants: &[(&str, RangeInclusive<f64>)]) {
 #[test]
 fn a_stroke_lays_films_of_oil_that_fill_the_tooth() {
     holds(
-        marks::long_stroke,
+        marks::long_strokes,
         &[
             ("film_um.10mm", 150.0..=400.0),
             ("film_um.150mm", 60.0..=ANY),
@@ -118,7 +118,7 @@ fn wet_paint_is_smooth_along_a_stroke() {
         cell_mm: 0.125,
         painter: Painter::Able,
     };
-    let stroke = marks::long_stroke(able).expect("painted");
+    let stroke = marks::long_strokes(able).expect("painted");
     let number = |name| {
         stroke
             .iter()

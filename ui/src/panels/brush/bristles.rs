@@ -3,9 +3,9 @@
 use eframe::egui::{Slider, SliderClamping, Ui};
 use maulstick_brush::BrushFile;
 
-use crate::brush_choice::{is_of_library, of_library};
-use crate::row;
-use crate::work::Work;
+use crate::input::brush_choice::{is_of_library, of_library};
+use crate::widgets::context::PanelContext;
+use crate::widgets::labelled;
 
 /// A number of a brush file.
 struct Number {
@@ -65,7 +65,7 @@ const NUMBERS: [Number; 6] = [
 /// Shows the numbers of a brush, changed ones go to `changed`; whether one is being dragged.
 pub(super) fn show(
     ui: &mut Ui,
-    work: &mut Work<'_>,
+    work: &mut PanelContext<'_>,
     file: &BrushFile,
     changed: &mut Option<BrushFile>,
 ) -> bool {
@@ -78,10 +78,10 @@ pub(super) fn show(
             .max_decimals(2)
             .clamping(SliderClamping::Edits)
             .suffix(number.unit);
-        let slider = row::named(ui, number.name, number.hover, slider);
+        let slider = labelled::named(ui, number.name, number.hover, slider);
         is_held |= slider.dragged();
         // A slider rounds what it shows.
-        if row::is_moved(*value, shown) {
+        if labelled::is_moved(*value, shown) {
             *value = shown;
         }
     }
@@ -94,7 +94,7 @@ pub(super) fn show(
             Ok(()) => *changed = Some(wanted),
             Err(error) => {
                 let help = "choose a number within these bounds";
-                work.toasts.fault(error.to_string(), help);
+                work.notifications.fault(error.to_string(), help);
             }
         }
     }

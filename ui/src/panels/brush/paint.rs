@@ -4,9 +4,9 @@ use eframe::egui::{Button, TextEdit, Ui};
 use maulstick_rig::Fault;
 use maulstick_types::command::Command;
 
-use crate::loading::{MOST_THINNER, completed, completions};
-use crate::row;
-use crate::work::Work;
+use crate::settings::brush_load::{MOST_THINNER, completed, completions};
+use crate::widgets::context::PanelContext;
+use crate::widgets::labelled;
 
 /// Names that are proposed at most.
 const PROPOSED: usize = 4;
@@ -18,16 +18,16 @@ pub(super) struct PaintRows {
 }
 
 impl PaintRows {
-    pub(super) fn show(&mut self, ui: &mut Ui, work: &mut Work<'_>) {
-        let before = work.habits.loading.clone();
+    pub(super) fn show(&mut self, ui: &mut Ui, work: &mut PanelContext<'_>) {
+        let before = work.preferences.loading.clone();
         let hover =
             "A paint's name, or a mixture by volume such as Cobalt Blue=0.7,Titanium White=0.3";
         let mut enter = field(ui, work, "Paint", hover, |loading| Some(&mut loading.paint));
-        let mut two = work.habits.loading.beside.is_some();
+        let mut two = work.preferences.loading.beside.is_some();
         let check = ui.checkbox(&mut two, "Another on the other half");
         let hover = "Two paints side by side on one brush (double loading).";
         if check.on_hover_text(hover).changed() {
-            work.habits.loading.beside = two.then(String::new);
+            work.preferences.loading.beside = two.then(String::new);
         }
         if two {
             let hover = "What the right half of the brush takes up.";
@@ -35,16 +35,19 @@ impl PaintRows {
                 loading.beside.as_mut()
             });
         }
-        let mut percent = (work.habits.loading.thinner * 100.0).round();
+        let mut percent = (work.preferences.loading.thinner * 100.0).round();
         let most = MOST_THINNER * 100.0;
-        let slider = row::slider(&mut percent, 0.0..=most, " %").max_decimals(0);
+        let slider = labelled::slider(&mut percent, 0.0..=most, " %").max_decimals(0);
         let hover =
             "Share of thinner in what the brush takes up: thin paint is transparent and runs.";
-        if row::named(ui, "Thinner", hover, slider).changed() {
-            work.habits.loading.thinner = percent / 100.0;
+        if labelled::named(ui, "Thinner", hover, slider).changed() {
+            work.preferences.loading.thinner = percent / 100.0;
         }
         ui.horizontal(|ui| {
-            let load = ui.add_enabled(!work.habits.loading.paint.is_empty(), Button::new("Load"));
+            let load = ui.add_enabled(
+                !work.preferences.loading.paint.is_empty(),
+                Button::new("Load"),
+            );
             let load = load.on_hover_text("The brush is cleaned, and full of this paint.");
             if load.clicked() || enter {
                 self.load(work);
@@ -53,24 +56,24 @@ impl PaintRows {
                 .button("Clean")
                 .on_hover_text("Takes all paint off the brush.  C");
             if clean.clicked() {
-                let brush = work.studio.brush_name().to_owned();
-                work.orders.paint(Command::Clean { brush });
+                let brush = work.rig.brush_name().to_owned();
+                work.requests.paint(Command::Clean { brush });
             }
         });
-        if before != work.habits.loading {
+        if before != work.preferences.loading {
             self.fault = None;
         }
         if let Some(fault) = &self.fault {
-            row::wrong(ui, &fault.what);
+            labelled::wrong(ui, &fault.what);
             if let Some(help) = &fault.help {
                 ui.label(help);
             }
         }
     }
 
-    fn load(&mut self, work: &mut Work<'_>) {
-        let brush = work.studio.brush_name().to_owned();
-        let command = work.habits.loading.command(&brush, &work.studio.library);
+    fn load(&mut self, work: &mut PanelContext<'_>) {
+        let brush = work.rig.brush_name().to_owned();
+        let command = work.preferences.loading.command(&brush, &work.rig.library);
         self.fault = match command {
             Ok(command) => {
                 work.then(command);
@@ -84,21 +87,21 @@ impl PaintRows {
 /// A field for a mixture, and names that go on with what is typed; whether Enter was pressed in it.
 fn field(
     ui: &mut Ui,
-    work: &mut Work<'_>,
+    work: &mut PanelContext<'_>,
     name: &str,
     hover: &str,
-    part: impl Fn(&mut crate::loading::Loading) -> Option<&mut String>,
+    part: impl Fn(&mut crate::settings::brush_load::BrushLoad) -> Option<&mut String>,
 ) -> bool {
-    let Some(text) = part(&mut work.habits.loading) else {
+    let Some(text) = part(&mut work.preferences.loading) else {
         return false;
     };
     let edit = TextEdit::singleline(text)
         .hint_text("Cobalt Blue=0.7,…")
         .char_limit(4096)
         .desired_width(190.0);
-    let shown = row::named(ui, name, hover, edit);
+    let shown = labelled::named(ui, name, hover, edit);
     let enter = shown.lost_focus() && ui.input(|input| input.key_pressed(eframe::egui::Key::Enter));
-    let names = completions(text, &work.studio.library, PROPOSED);
+    let names = completions(text, &work.rig.library, PROPOSED);
     if !names.is_empty() {
         ui.horizontal_wrapped(|ui| {
             ui.add_space(8.0);

@@ -3,9 +3,9 @@
 use eframe::egui::{Button, Key, TextEdit, Ui, vec2};
 
 use super::entry;
-use crate::presets::{Preset, check_name};
-use crate::row;
-use crate::work::Work;
+use crate::settings::presets::{Preset, check_name};
+use crate::widgets::context::PanelContext;
+use crate::widgets::labelled;
 
 /// The rows.
 #[derive(Debug, Default)]
@@ -27,15 +27,15 @@ enum Deed {
 }
 
 impl PresetRows {
-    pub(super) fn show(&mut self, ui: &mut Ui, work: &mut Work<'_>) {
+    pub(super) fn show(&mut self, ui: &mut Ui, work: &mut PanelContext<'_>) {
         ui.strong("Presets");
         let mut asked = None;
-        for place in 0..work.habits.presets.len() {
+        for place in 0..work.preferences.presets.len() {
             if self.renamed.as_ref().is_some_and(|(own, _)| *own == place) {
                 self.rename(ui, work, place);
                 continue;
             }
-            let preset = &work.habits.presets[place];
+            let preset = &work.preferences.presets[place];
             let name = preset.name.clone();
             let words = preset.words();
             let mut take = false;
@@ -75,17 +75,17 @@ impl PresetRows {
         }
         match asked {
             Some((place, Deed::Apply)) => {
-                let preset = work.habits.presets[place].clone();
+                let preset = work.preferences.presets[place].clone();
                 if let Err(fault) = preset.apply(work) {
-                    work.toasts.of(&fault);
+                    work.notifications.of(&fault);
                 }
             }
             Some((place, Deed::Rename)) => {
-                self.renamed = Some((place, work.habits.presets[place].name.clone()));
+                self.renamed = Some((place, work.preferences.presets[place].name.clone()));
                 self.wrong = None;
             }
             Some((place, Deed::Delete)) => {
-                self.deleted = Some((place, work.habits.presets.remove(place)));
+                self.deleted = Some((place, work.preferences.presets.remove(place)));
                 self.renamed = None;
             }
             None => {}
@@ -94,7 +94,7 @@ impl PresetRows {
         self.save(ui, work);
     }
 
-    fn take_back(&mut self, ui: &mut Ui, work: &mut Work<'_>) {
+    fn take_back(&mut self, ui: &mut Ui, work: &mut PanelContext<'_>) {
         let Some((place, preset)) = &self.deleted else {
             return;
         };
@@ -106,17 +106,17 @@ impl PresetRows {
             |ui| back = ui.small_button("Bring back").clicked(),
         );
         if back {
-            let place = (*place).min(work.habits.presets.len());
-            work.habits.presets.insert(place, preset.clone());
+            let place = (*place).min(work.preferences.presets.len());
+            work.preferences.presets.insert(place, preset.clone());
             self.deleted = None;
         }
     }
 
-    fn rename(&mut self, ui: &mut Ui, work: &mut Work<'_>, place: usize) {
+    fn rename(&mut self, ui: &mut Ui, work: &mut PanelContext<'_>, place: usize) {
         let Some((_, name)) = &mut self.renamed else {
             return;
         };
-        let shown = row::named(
+        let shown = labelled::named(
             ui,
             "New name",
             "",
@@ -130,22 +130,22 @@ impl PresetRows {
         }
         let name = name.trim().to_owned();
         let is_kept = ui.input(|input| input.key_pressed(Key::Escape));
-        let others = work.habits.presets.iter().enumerate();
+        let others = work.preferences.presets.iter().enumerate();
         let others = others.filter(|(other, _)| *other != place);
         match check_name(&name, others.map(|(_, preset)| preset.name.as_str())) {
             _ if is_kept => {}
-            Ok(()) => work.habits.presets[place].name = name,
-            Err(what) => work.toasts.fault(what, String::new()),
+            Ok(()) => work.preferences.presets[place].name = name,
+            Err(what) => work.notifications.fault(what, String::new()),
         }
         self.renamed = None;
     }
 
-    fn save(&mut self, ui: &mut Ui, work: &mut Work<'_>) {
+    fn save(&mut self, ui: &mut Ui, work: &mut PanelContext<'_>) {
         let edit = TextEdit::singleline(&mut self.name)
             .hint_text("Sky wash")
             .desired_width(190.0);
         let hover = "What the brush in the hand, its settings and its paint are to be called.";
-        let shown = row::named(ui, "Name", hover, edit);
+        let shown = labelled::named(ui, "Name", hover, edit);
         if shown.changed() {
             self.wrong = None;
         }
@@ -155,14 +155,14 @@ impl PresetRows {
         if button.on_hover_text(hover).clicked() || enter {
             let name = self.name.trim().to_owned();
             let others = work
-                .habits
+                .preferences
                 .presets
                 .iter()
                 .map(|preset| preset.name.as_str());
             match check_name(&name, others) {
                 Ok(()) => {
                     if let Some(preset) = Preset::of(&name, work) {
-                        work.habits.presets.push(preset);
+                        work.preferences.presets.push(preset);
                         self.name.clear();
                     }
                 }
@@ -170,7 +170,7 @@ impl PresetRows {
             }
         }
         if let Some(what) = &self.wrong {
-            row::wrong(ui, what);
+            labelled::wrong(ui, what);
         }
     }
 }

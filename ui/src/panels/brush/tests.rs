@@ -7,8 +7,8 @@ use maulstick_types::Mixture;
 use maulstick_types::scene::{BrushMode, MARKER_FLOW};
 
 use super::*;
-use crate::presets::Preset;
-use crate::workbench::{Bench, differ, harness, pictures};
+use crate::settings::presets::Preset;
+use crate::test_support::context_bench::{Bench, differ, harness, pictures};
 
 fn panel<'a>(bench: Bench) -> Harness<'a, Bench> {
     let mut harness = harness(BrushPanel::default(), bench);
@@ -69,13 +69,13 @@ fn sliders_ask_for_what_they_say() {
 #[test]
 fn what_the_rig_says_is_shown_where_nothing_was_asked() {
     let mut bench = Bench::new();
-    let mut scene = bench.studio.scene.clone().expect("a scene");
+    let mut scene = bench.rig.scene.clone().expect("a scene");
     scene.tunings = vec![Tuning {
         brush: "main".into(),
         stiffness: 0.5,
         wetness: 0.3,
     }];
-    bench.studio.lay(scene);
+    bench.rig.lay(scene);
     let harness = panel(bench);
     let value = |name: &str| {
         let slider = harness.get_by_role_and_label(Role::Slider, name);
@@ -106,7 +106,7 @@ fn the_way_shows_what_belongs_to_it() {
         }]
     );
     // The rig answers.
-    let scene = harness.state_mut().studio.scene.as_mut();
+    let scene = harness.state_mut().rig.scene.as_mut();
     scene.expect("a scene").handlings.push(marker.clone());
     harness.run();
     let flow = harness
@@ -224,7 +224,7 @@ fn bristles_are_changed_and_come_back() {
 #[test]
 fn a_preset_is_saved_taken_up_renamed_deleted_and_brought_back() {
     let mut bench = Bench::new();
-    bench.habits.loading.paint = "Bone Black".into();
+    bench.preferences.loading.paint = "Bone Black".into();
     let mut harness = panel(bench);
     harness.get_by_label("Save this brush").click();
     harness.run();
@@ -232,7 +232,7 @@ fn a_preset_is_saved_taken_up_renamed_deleted_and_brought_back() {
     write(&mut harness, "Name", "Ink");
     harness.get_by_label("Save this brush").click();
     harness.run();
-    let saved = harness.state().habits.presets.clone();
+    let saved = harness.state().preferences.presets.clone();
     assert_eq!(
         (saved[0].name.as_str(), saved[0].kind.as_str()),
         ("Ink", "round")
@@ -240,7 +240,7 @@ fn a_preset_is_saved_taken_up_renamed_deleted_and_brought_back() {
     assert!(saved[0].file.is_empty(), "it is of the library");
     // Another brush, and the preset again.
     harness.state_mut().work().next_brush();
-    harness.state_mut().habits.loading.paint.clear();
+    harness.state_mut().preferences.loading.paint.clear();
     harness.state_mut().commands();
     harness.run();
     harness.get_by_label("Ink").click();
@@ -254,12 +254,12 @@ fn a_preset_is_saved_taken_up_renamed_deleted_and_brought_back() {
     else {
         panic!("{commands:?}")
     };
-    let then = harness.state().studio.brushes[0].then.clone();
+    let then = harness.state().rig.brushes[0].then.clone();
     assert!(
         matches!(then, Some(Command::Load { .. })),
         "once it is a round one"
     );
-    assert_eq!(harness.state().habits.loading.paint, "Bone Black");
+    assert_eq!(harness.state().preferences.loading.paint, "Bone Black");
     harness.get_by_label("Rename").click();
     harness.run();
     harness.run();
@@ -267,13 +267,13 @@ fn a_preset_is_saved_taken_up_renamed_deleted_and_brought_back() {
     harness.run();
     harness.key_press(Key::Enter);
     harness.run();
-    assert_eq!(harness.state().habits.presets[0].name, "Ink wash");
+    assert_eq!(harness.state().preferences.presets[0].name, "Ink wash");
     harness.get_by_label("Delete").click();
     harness.run();
-    assert!(harness.state().habits.presets.is_empty());
+    assert!(harness.state().preferences.presets.is_empty());
     harness.get_by_label("Bring back").click();
     harness.run();
-    assert_eq!(harness.state().habits.presets[0].name, "Ink wash");
+    assert_eq!(harness.state().preferences.presets[0].name, "Ink wash");
 }
 
 #[test]
@@ -297,7 +297,7 @@ fn a_preset_that_was_spoilt_changes_nothing_and_is_told() {
     ];
     for preset in faults {
         assert!(preset.apply(&mut bench.work()).is_err(), "{preset:?}");
-        assert!(bench.orders.take().is_empty(), "{preset:?}");
+        assert!(bench.requests.take().is_empty(), "{preset:?}");
     }
     assert!(
         Preset::default().apply(&mut bench.work()).is_ok(),
@@ -313,15 +313,15 @@ fn a_brush_file_that_is_none_is_told() {
     write(&mut harness, "File", "/nowhere/rake.toml");
     harness.get_by_label("Add to the rack").click();
     harness.run();
-    assert!(harness.state().habits.own_brushes.is_empty());
-    let told = harness.state().toasts.told();
+    assert!(harness.state().preferences.own_brushes.is_empty());
+    let told = harness.state().notifications.told();
     assert_eq!(told.len(), 1, "{told:?}");
 }
 
 #[test]
 fn a_brush_that_has_said_nothing_is_waited_for() {
     let mut bench = Bench::new();
-    bench.studio.brushes[0].file = None;
+    bench.rig.brushes[0].file = None;
     let harness = panel(bench);
     harness.get_by_label("The brush 'main' has not said yet what it is.");
 }
@@ -330,16 +330,16 @@ fn a_brush_that_has_said_nothing_is_waited_for() {
 fn it_looks_as_it_should() {
     let bench = || {
         let mut bench = Bench::new();
-        bench.habits.loading.paint = "Ultramarine Blue=0.6,Titanium White=0.4".into();
+        bench.preferences.loading.paint = "Ultramarine Blue=0.6,Titanium White=0.4".into();
         let preset = Preset::of("Evening sky", &bench.work()).expect("a brush");
-        bench.habits.presets.push(preset);
+        bench.preferences.presets.push(preset);
         bench
     };
     let mut shown = panel(bench());
     shown.fit_contents();
     shown.snapshot_options("brush", &pictures());
     let mut other = bench();
-    other.studio.in_hand = 1;
+    other.rig.in_hand = 1;
     let mut other = panel(other);
     other.fit_contents();
     assert!(differ(&mut shown, &mut other), "a fault would pass");

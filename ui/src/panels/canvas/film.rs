@@ -5,8 +5,8 @@ use maulstick_types::Mixture;
 use maulstick_types::command::Command;
 use maulstick_types::scene::CANVAS;
 
-use crate::rows::{Number, Sliders, ask, below, choice};
-use crate::work::Work;
+use crate::widgets::context::PanelContext;
+use crate::widgets::rows::{Number, Sliders, ask, below, choice};
 
 /// The paint that the brush carries.
 const CARRIED: &str = "What the brush carries";
@@ -40,8 +40,8 @@ impl Default for FilmForm {
 
 impl FilmForm {
     /// Shows it.
-    pub(super) fn show(&mut self, ui: &mut Ui, work: &mut Work<'_>) {
-        let library = std::sync::Arc::clone(&work.studio.library);
+    pub(super) fn show(&mut self, ui: &mut Ui, work: &mut PanelContext<'_>) {
+        let library = std::sync::Arc::clone(&work.rig.library);
         let paints = library.paints().iter().map(|paint| paint.name.as_str());
         let names = std::iter::once(CARRIED).chain(paints);
         if let Some(paint) = choice(ui, "Paint", &self.paint, names) {
@@ -53,7 +53,7 @@ impl FilmForm {
             let button = ui.button("Lay it");
             let button = button.on_hover_text("Over the whole canvas; it can be undone");
             if button.clicked() {
-                ask(work, self.command(work.studio.brush_name()));
+                ask(work, self.command(work.rig.brush_name()));
             }
         });
     }

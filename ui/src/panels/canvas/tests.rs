@@ -4,10 +4,10 @@ use egui_kittest::kittest::Queryable as _;
 use maulstick_types::Mixture;
 
 use super::*;
-use crate::testing::{Bench, harness, picture, studio};
+use crate::test_support::panel_bench::{Bench, harness, picture, rig};
 
 fn panel() -> Harness<'static, Bench<CanvasPanel>> {
-    harness(studio())
+    harness(rig())
 }
 
 fn choose(harness: &mut Harness<'static, Bench<CanvasPanel>>, combo: &str, entry: &str) {
@@ -27,7 +27,7 @@ fn set(harness: &mut Harness<'static, Bench<CanvasPanel>>, role: Role, label: &s
 #[test]
 fn tooth_ground_and_sizing_are_asked_for() {
     let mut harness = panel();
-    let seed = harness.state().studio.canvas().expect("one").tooth_seed;
+    let seed = harness.state().rig.canvas().expect("one").tooth_seed;
     choose(&mut harness, "Tooth", "paper");
     set(&mut harness, Role::SpinButton, "Piece", 7.0);
     choose(&mut harness, "Ground", "grey");
@@ -52,7 +52,7 @@ fn tooth_ground_and_sizing_are_asked_for() {
     assert_eq!(harness.state_mut().asked(), expected);
     set(&mut harness, Role::Slider, "Stain", 5e4);
     assert!(harness.state_mut().asked().is_empty());
-    let told = harness.state().toasts.told();
+    let told = harness.state().notifications.told();
     assert!(
         told[0].what.contains("stain") && told[0].help.contains("1000 µm"),
         "{told:?}"
@@ -98,7 +98,7 @@ fn the_canvas_is_tilted_turned_and_zoomed_each_beside_the_others() {
     set(&mut harness, Role::Slider, "Tilt", 30.0);
     set(&mut harness, Role::Slider, "Turn", -15.0);
     set(&mut harness, Role::Slider, "Zoom", 200.0);
-    let canvas = harness.state().studio.canvas().expect("one").clone();
+    let canvas = harness.state().rig.canvas().expect("one").clone();
     let (pose, zoom) = Posture {
         tilt_deg: 30.0,
         turn_deg: -15.0,
@@ -123,8 +123,8 @@ fn buttons_do_what_keys_do() {
         harness.get_by_label(label).click();
         harness.run();
     }
-    let acts = harness.state_mut().orders.take_acts();
-    assert_eq!(acts, [Act::Fit, Act::Hundred, Act::New]);
+    let acts = harness.state_mut().requests.take_acts();
+    assert_eq!(acts, [Action::Fit, Action::Hundred, Action::New]);
 }
 
 #[test]
@@ -132,7 +132,7 @@ fn the_hand_and_the_lasting_paint_are_switched() {
     let mut harness = panel();
     harness.get_by_label("Left-handed").click();
     harness.run();
-    assert!(harness.state().habits.left_handed);
+    assert!(harness.state().preferences.left_handed);
     harness.get_by_label("Paint on the palette lasts").click();
     harness.run();
     let expected = Command::Piles {
@@ -170,7 +170,7 @@ fn a_film_is_of_a_paint_or_of_what_the_brush_carries() {
     set(&mut harness, Role::Slider, "Thickness", 9000.0);
     harness.get_by_label("Lay it").click();
     harness.run();
-    let told = harness.state().toasts.told();
+    let told = harness.state().notifications.told();
     assert!(told[0].help.contains("5000 µm"), "{told:?}");
 }
 
@@ -181,8 +181,8 @@ fn the_panel_looks_as_it_did() {
         harness.run();
         harness.remove_cursor();
     };
-    picture::<CanvasPanel>("canvas", &studio(), open, |studio| {
-        let scene = studio.scene.as_mut().expect("a scene");
+    picture::<CanvasPanel>("canvas", &rig(), open, |rig| {
+        let scene = rig.scene.as_mut().expect("a scene");
         scene.surfaces[0].zoom = 4.0;
     });
 }

@@ -6,9 +6,9 @@ use maulstick_types::haptics::ForceOrder;
 use maulstick_types::stylus::{StylusInfo, StylusPose, StylusSample, StylusStatus, axes};
 
 use super::*;
-use crate::orders::Order;
-use crate::studio::Studio;
-use crate::testing::{Bench, harness, picture, studio};
+use crate::rig::requests::Request;
+use crate::rig::state::RigState;
+use crate::test_support::panel_bench::{Bench, harness, picture, rig};
 
 fn info(device: &str, driver: &str, priority: i32, senses: u32, drives: u32) -> StylusInfo {
     StylusInfo {
@@ -26,9 +26,9 @@ fn info(device: &str, driver: &str, priority: i32, senses: u32, drives: u32) -> 
 }
 
 /// A mouse, a pen that is not there and an arm that pushes.
-fn devices() -> Studio {
-    let mut studio = studio();
-    studio.now_ns = 10_000_000_000;
+fn devices() -> RigState {
+    let mut rig = rig();
+    rig.now_ns = 10_000_000_000;
     let pen = axes::POSITION | axes::PRESSURE | axes::TILT | axes::PROXIMITY;
     let arm = axes::POSITION | axes::ORIENTATION | axes::SWITCHES | axes::VELOCITY;
     for info in [
@@ -36,15 +36,15 @@ fn devices() -> Studio {
         info("tablet", "pen", 5, pen, 0),
         info("phantom", "openhaptics", 10, arm, axes::FORCE),
     ] {
-        let device = studio.devices.entry(info.device.clone()).or_default();
+        let device = rig.devices.entry(info.device.clone()).or_default();
         device.info = Some(info);
     }
-    let tablet = studio.devices.get_mut("tablet").expect("a tablet");
+    let tablet = rig.devices.get_mut("tablet").expect("a tablet");
     tablet.status = Some(StylusStatus {
         trouble: "no pen (/dev/hidraw0); plug it in".into(),
         ..StylusStatus::fresh(0)
     });
-    let phantom = studio.devices.get_mut("phantom").expect("a phantom");
+    let phantom = rig.devices.get_mut("phantom").expect("a phantom");
     phantom.status = Some(StylusStatus {
         samples: 123_456,
         lateness: vec![100_000, 20_000, 900, 30, 4, 0, 0, 0, 0, 0, 0, 0],
@@ -67,23 +67,23 @@ fn devices() -> Studio {
             in_range: true,
             ..StylusSample::away()
         };
-        phantom.felt.hear(ms * 1_000_000, &sample);
+        phantom.forces.hear(ms * 1_000_000, &sample);
     }
-    studio
+    rig
 }
 
 fn status<'a>(harness: &'a mut Harness<'_, Bench<DevicePanel>>) -> &'a mut StylusStatus {
-    let devices = &mut harness.state_mut().studio.devices;
+    let devices = &mut harness.state_mut().rig.devices;
     let phantom = devices.get_mut("phantom").expect("a phantom");
     phantom.status.as_mut().expect("a status")
 }
 
-fn asked(harness: &mut Harness<'_, Bench<DevicePanel>>) -> Vec<Order> {
-    harness.state_mut().orders.take()
+fn asked(harness: &mut Harness<'_, Bench<DevicePanel>>) -> Vec<Request> {
+    harness.state_mut().requests.take()
 }
 
-fn order(order: ForceOrder) -> Order {
-    Order::Force {
+fn order(order: ForceOrder) -> Request {
+    Request::Force {
         device: "phantom".into(),
         order,
     }
@@ -98,7 +98,7 @@ fn who_paints_and_what_is_wrong_stand_in_words() {
     harness.get_by_label("Senses position, pressure, tilt, nearness");
     harness.get_by_label("400 of 700 N/m");
     harness.get_by_label_contains("Force on the hand: ");
-    harness.state_mut().studio.now_ns += 60_000_000_000;
+    harness.state_mut().rig.now_ns += 60_000_000_000;
     harness.run();
     harness.get_by_label("No stylus is near the desk.");
     harness.get_by_label("silent");
@@ -122,11 +122,11 @@ fn force_goes_off_and_on() {
 fn a_key_switches_off_the_force_of_those_that_give_one() {
     let mut harness = harness::<DevicePanel>(devices());
     let bench = harness.state_mut();
-    force_off(&mut Work {
-        studio: &mut bench.studio,
-        orders: &mut bench.orders,
-        habits: &mut bench.habits,
-        toasts: &mut bench.toasts,
+    force_off(&mut PanelContext {
+        rig: &mut bench.rig,
+        requests: &mut bench.requests,
+        preferences: &mut bench.preferences,
+        notifications: &mut bench.notifications,
     });
     assert_eq!(asked(&mut harness), [order(ForceOrder::Off)]);
 }
@@ -156,21 +156,21 @@ fn a_new_strength_is_asked_for_and_shown_until_the_device_has_it() {
     harness.run();
     harness.key_press(eframe::egui::Key::ArrowRight);
     harness.run();
-    let orders = asked(&mut harness);
+    let requests = asked(&mut harness);
     let [
-        Order::Force {
+        Request::Force {
             order: ForceOrder::Strength { share },
             ..
         },
-    ] = orders[..]
+    ] = requests[..]
     else {
-        panic!("{orders:?}");
+        panic!("{requests:?}");
     };
     assert!(share > 0.6 && share < 0.7, "{share}");
     assert_eq!(value(&harness), Some((100.0 * share).round()));
     // The device has something else in the end.
     status(&mut harness).strength = 0.3;
-    harness.state_mut().studio.now_ns += PATIENCE_NS;
+    harness.state_mut().rig.now_ns += PATIENCE_NS;
     harness.run();
     assert_eq!(value(&harness), Some(30.0));
 }
@@ -181,10 +181,10 @@ fn it_looks_like_its_picture() {
         harness.get_by_label("Loop health").click();
         harness.run_steps(20);
     };
-    let mut studio = devices();
-    studio.devices.retain(|name, _| name == "phantom");
-    picture::<DevicePanel>("device", &studio, open, |studio| {
-        let phantom = studio.devices.get_mut("phantom").expect("a phantom");
-        phantom.felt = crate::felt::Felt::default();
+    let mut rig = devices();
+    rig.devices.retain(|name, _| name == "phantom");
+    picture::<DevicePanel>("device", &rig, open, |rig| {
+        let phantom = rig.devices.get_mut("phantom").expect("a phantom");
+        phantom.forces = crate::rig::force_history::ForceHistory::default();
     });
 }

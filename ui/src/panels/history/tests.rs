@@ -3,8 +3,8 @@ use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable as _;
 
 use super::*;
-use crate::studio::{PaintNode, Studio};
-use crate::testing::{Bench, harness, picture, steps, studio};
+use crate::rig::state::{PaintNode, RigState};
+use crate::test_support::panel_bench::{Bench, harness, picture, rig, steps};
 
 fn landscape([red, green, blue]: [u8; 3]) -> Picture {
     let pixel = |i: usize| match i / 40 < 18 {
@@ -15,9 +15,9 @@ fn landscape([red, green, blue]: [u8; 3]) -> Picture {
     Picture::new([40, 30], rgb).expect("three bytes a pixel")
 }
 
-fn versioned() -> Studio {
-    let mut studio = studio();
-    let scene = studio.scene.as_mut().expect("a scene");
+fn versioned() -> RigState {
+    let mut rig = rig();
+    let scene = rig.scene.as_mut().expect("a scene");
     for (name, parent, here) in [
         ("Cold evening", "Sketch", false),
         ("Sketch", "", false),
@@ -29,15 +29,15 @@ fn versioned() -> Studio {
             here,
         });
     }
-    studio.paint = Some(PaintNode {
+    rig.paint = Some(PaintNode {
         status: steps(12, 0),
         heard_ns: 1,
     });
     for (name, colour) in [("Sketch", [90, 120, 60]), ("Warm", [200, 120, 60])] {
-        assert!(studio.thumbnails.of(name, 0).is_none());
-        studio.thumbnails.came(name, Some(landscape(colour)), 0);
+        assert!(rig.thumbnails.of(name, 0).is_none());
+        rig.thumbnails.came(name, Some(landscape(colour)), 0);
     }
-    studio
+    rig
 }
 
 fn panel() -> Harness<'static, Bench<HistoryPanel>> {
@@ -71,7 +71,7 @@ fn steps_go_back_and_forth_where_there_are_some() {
         [undo],
         "there is nothing to redo"
     );
-    let paint = harness.state_mut().studio.paint.as_mut().expect("a node");
+    let paint = harness.state_mut().rig.paint.as_mut().expect("a node");
     paint.status = steps(11, 1);
     harness.run();
     click(&mut harness, "Redo (1)");
@@ -126,7 +126,7 @@ fn a_name_that_no_version_can_have_is_told() {
     write(&mut harness, "Name of a version", &"x".repeat(200));
     click(&mut harness, "Keep");
     assert!(harness.state_mut().asked().is_empty());
-    let told = harness.state().toasts.told();
+    let told = harness.state().notifications.told();
     assert!(told[0].help.contains("128 bytes"), "{told:?}");
 }
 
@@ -134,7 +134,7 @@ fn a_name_that_no_version_can_have_is_told() {
 fn pictures_of_forgotten_versions_go() {
     let mut harness = panel();
     assert_eq!(harness.state().panel.textures.len(), 2);
-    let scene = harness.state_mut().studio.scene.as_mut().expect("a scene");
+    let scene = harness.state_mut().rig.scene.as_mut().expect("a scene");
     scene.versions.retain(|version| version.name != "Warm");
     harness.run();
     assert_eq!(harness.state().panel.textures.len(), 1);
@@ -147,8 +147,8 @@ fn the_panel_looks_as_it_did() {
         click(harness, "Branch from Warm");
         harness.remove_cursor();
     };
-    picture::<HistoryPanel>("history", &versioned(), ask, |studio| {
-        let scene = studio.scene.as_mut().expect("a scene");
+    picture::<HistoryPanel>("history", &versioned(), ask, |rig| {
+        let scene = rig.scene.as_mut().expect("a scene");
         scene.versions[2].here = false;
         scene.versions[0].here = true;
     });

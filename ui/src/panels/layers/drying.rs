@@ -1,15 +1,15 @@
 //! How to dry what is wet: how much of it, where, at once or in time.
 
 use eframe::egui::{DragValue, ProgressBar, TextEdit, Ui};
-use maulstick_paint::painting::TICKS_A_SECOND;
+use maulstick_paint::clock::TICKS_A_SECOND;
 use maulstick_types::Region;
 use maulstick_types::command::{Command, DRYING_TICKS};
 use maulstick_types::paint::PaintStatus;
 use maulstick_types::scene::CANVAS;
 
-use super::part;
-use crate::rows::{Number, Sliders, ask, choice, row};
-use crate::work::Work;
+use super::region;
+use crate::widgets::context::PanelContext;
+use crate::widgets::rows::{Number, Sliders, ask, choice, row};
 
 /// Where it dries.
 const PLACES: [&str; 2] = ["All of it", "A part"];
@@ -25,7 +25,7 @@ const SHARE: Number<'_> = Number {
 
 /// A drying that goes on.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Drying {
+pub(super) struct Drying {
     /// Share of its time that went by, 0 to 1.
     pub share: f32,
     /// How long it still goes on, s.
@@ -70,23 +70,23 @@ impl Default for DryingForm {
 
 impl DryingForm {
     /// Shows it; `layers` have dried so far.
-    pub(super) fn show(&mut self, ui: &mut Ui, work: &mut Work<'_>, layers: usize) {
+    pub(super) fn show(&mut self, ui: &mut Ui, work: &mut PanelContext<'_>, layers: usize) {
         let change = self.sliders.row(ui, &SHARE, self.percent);
         self.percent = change.moved.unwrap_or(self.percent);
         row(ui, "Name", |ui| {
             let name = TextEdit::singleline(&mut self.name).hint_text("of the new layer");
             ui.add(name.desired_width(f32::INFINITY))
         });
-        let Some(canvas) = work.studio.canvas() else {
+        let Some(canvas) = work.rig.canvas() else {
             return;
         };
         let size_m = canvas.cells.map(|cells| f64::from(cells) * canvas.cell_m);
         let place = PLACES[usize::from(self.part.is_some())];
         if let Some(chosen) = choice(ui, "Where", place, PLACES) {
-            self.part = (chosen == PLACES[1]).then(|| part::middle(size_m));
+            self.part = (chosen == PLACES[1]).then(|| region::middle(size_m));
         }
         if let Some(region) = &mut self.part {
-            part::show(ui, region, size_m);
+            region::show(ui, region, size_m);
         }
         ui.horizontal(|ui| {
             let dry = ui
@@ -129,7 +129,7 @@ impl DryingForm {
     }
 
     /// Drying while time goes by.
-    fn in_time(&mut self, ui: &mut Ui, work: &mut Work<'_>) {
+    fn in_time(&mut self, ui: &mut Ui, work: &mut PanelContext<'_>) {
         row(ui, "In time", |ui| {
             let most = f64::from(*DRYING_TICKS.end()) / f64::from(TICKS_A_SECOND);
             let time = DragValue::new(&mut self.time_s)
@@ -159,7 +159,7 @@ impl DryingForm {
             }
             time.on_hover_text("Minutes and seconds")
         });
-        let status = work.studio.paint.as_ref().map(|paint| &paint.status);
+        let status = work.rig.paint.as_ref().map(|paint| &paint.status);
         if let Some(goes_on) = status.and_then(drying) {
             let name = match goes_on.layer.as_str() {
                 "" => "Dries",

@@ -5,12 +5,12 @@ use maulstick_types::Region;
 use maulstick_types::scene::CANVAS;
 
 use super::*;
-use crate::studio::Studio;
-use crate::testing::{Bench, harness, picture, studio};
+use crate::rig::state::RigState;
+use crate::test_support::panel_bench::{Bench, harness, picture, rig};
 
-fn layered() -> Studio {
-    let mut studio = studio();
-    let scene = studio.scene.as_mut().expect("a scene");
+fn layered() -> RigState {
+    let mut rig = rig();
+    let scene = rig.scene.as_mut().expect("a scene");
     for (number, name, opacity) in [
         (1, "Underpainting", 1.0),
         (2, "Sky", 0.6),
@@ -22,7 +22,7 @@ fn layered() -> Studio {
             opacity,
         });
     }
-    studio
+    rig
 }
 
 fn panel() -> Harness<'static, Bench<LayersPanel>> {
@@ -39,7 +39,7 @@ fn the_eye_hides_a_layer_and_shows_it_as_it_was() {
     harness.get_by_label("Show Sky").click();
     harness.run();
     assert_eq!(harness.state_mut().asked(), [opacity(2, 0.0)]);
-    let scene = harness.state_mut().studio.scene.as_mut().expect("a scene");
+    let scene = harness.state_mut().rig.scene.as_mut().expect("a scene");
     scene.layers[1].opacity = 0.0;
     harness.run();
     harness.get_by_label("Show Sky").click();
@@ -161,7 +161,7 @@ fn a_part_is_drawn_and_one_that_is_none_is_told() {
     let [Command::DryRegion { region, .. }] = &asked[..] else {
         panic!("{asked:?}");
     };
-    let canvas = harness.state().studio.canvas().expect("a canvas");
+    let canvas = harness.state().rig.canvas().expect("a canvas");
     let size = canvas.cells.map(|cells| f64::from(cells) * canvas.cell_m);
     let expected = Region {
         corner_m: size.map(|side| 0.25 * side),
@@ -177,7 +177,7 @@ fn a_part_is_drawn_and_one_that_is_none_is_told() {
     harness.get_by_label("Dry").click();
     harness.run();
     assert!(harness.state_mut().asked().is_empty());
-    let told = harness.state().toasts.told();
+    let told = harness.state().notifications.told();
     assert!(
         told[0].what.contains("region") && told[0].help.contains("give"),
         "{told:?}"
@@ -195,8 +195,8 @@ fn the_panel_looks_as_it_did() {
         harness.run();
         harness.remove_cursor();
     };
-    picture::<LayersPanel>("layers", &layered(), part, |studio| {
-        let scene = studio.scene.as_mut().expect("a scene");
+    picture::<LayersPanel>("layers", &layered(), part, |rig| {
+        let scene = rig.scene.as_mut().expect("a scene");
         scene.layers[1].opacity = 0.1;
     });
 }

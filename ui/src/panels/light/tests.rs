@@ -3,10 +3,10 @@ use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable as _;
 
 use super::*;
-use crate::testing::{Bench, harness, picture, studio};
+use crate::test_support::panel_bench::{Bench, harness, picture, rig};
 
 fn panel() -> Harness<'static, Bench<LightPanel>> {
-    harness(studio())
+    harness(rig())
 }
 
 /// The lights that were asked for, and whether their exposure is to be chosen.
@@ -42,20 +42,14 @@ fn the_lamp_follows_the_pointer_and_nothing_else_changes() {
     };
     assert_eq!(
         &rest,
-        &harness
-            .state()
-            .studio
-            .scene
-            .as_ref()
-            .expect("a scene")
-            .light
+        &harness.state().rig.scene.as_ref().expect("a scene").light
     );
 }
 
 #[test]
 fn arrows_move_the_lamp() {
     let mut harness = panel();
-    let before = harness.state().studio.scene.as_ref().expect("a scene");
+    let before = harness.state().rig.scene.as_ref().expect("a scene");
     let [x, y, z] = before.light.direction;
     let length = (x * x + y * y + z * z).sqrt();
     harness.get_by_label("Lamp").focus();
@@ -145,7 +139,7 @@ fn a_strength_beyond_all_lamps_is_told() {
     slider.set_value_accesskit(5000.0);
     harness.run();
     assert!(lights(&mut harness).is_empty());
-    let told = harness.state().toasts.told();
+    let told = harness.state().notifications.told();
     assert!(
         told[0].what.contains("intensity") && told[0].help.contains("100"),
         "{told:?}"
@@ -181,8 +175,8 @@ fn the_panel_looks_as_it_did() {
         harness.run();
         harness.remove_cursor();
     };
-    picture::<LightPanel>("light", &studio(), open, |studio| {
-        let scene = studio.scene.as_mut().expect("a scene");
+    picture::<LightPanel>("light", &rig(), open, |rig| {
+        let scene = rig.scene.as_mut().expect("a scene");
         scene.light.direction = [0.5, -0.5, 0.7];
     });
 }

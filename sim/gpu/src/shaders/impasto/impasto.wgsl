@@ -109,7 +109,7 @@ const NONE = 0xffffffffu;
 // What a factor of e in the share of a cell that is left open counts.
 const PER_LOG = 262144.0;
 const STATIONS = 9u;
-const ALONG = 16u;
+const TEXELS_PER_STRIP = 16u;
 // Paint moves within each strip once in so many steps, in others at another step.
 const FLOW_STEPS = 2u;
 const QUANTA_PER_UNIT = 16777216.0;
@@ -237,7 +237,7 @@ fn cells() -> u32 {
 }
 
 fn texels() -> u32 {
-    return step.strips * ALONG;
+    return step.strips * TEXELS_PER_STRIP;
 }
 
 // The window's cell at a place of the grid.

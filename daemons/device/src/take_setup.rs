@@ -1,0 +1,123 @@
+//! Setup embedded in a take: settings of the rig and the files they name, each under
+//! the hash of its bytes, so that it gives the same painting wherever it is played.
+//!
+//! In the MCAP file each of them is an attachment; the metadata record `maulstick.kit` names the
+//! settings and what the strokes load.
+
+use std::borrow::Cow;
+use std::collections::BTreeMap;
+use std::io::{Seek, Write};
+
+use mcap::records::{Metadata, Record, op};
+use sha2::{Digest as _, Sha256};
+
+use crate::records::Found;
+
+/// Name of the metadata record.
+const RECORD: &str = "maulstick.kit";
+/// Key of the settings' attachment in it.
+const SETTINGS: &str = "settings";
+/// Prefix of the keys of the loads; four digits follow, so that they are in order.
+const LOAD: &str = "load.";
+/// Kinds of files, by the extension of their names.
+const KINDS: [(&str, &str); 7] = [
+    ("toml", "application/toml"),
+    ("csv", "text/csv"),
+    ("png", "image/png"),
+    ("jpg", "image/jpeg"),
+    ("jpeg", "image/jpeg"),
+    ("tif", "image/tiff"),
+    ("tiff", "image/tiff"),
+];
+
+/// Setup of a take.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct TakeSetup {
+    /// Name of the settings among the files: a `rig.toml` whose paths are names of other ones.
+    pub settings: String,
+    /// Load of each stroke, in turn.
+    pub loads: Vec<String>,
+    /// Bytes by name: hash and extension.
+    pub files: BTreeMap<String, Vec<u8>>,
+}
+
+impl TakeSetup {
+    /// Takes a file in; its name, which is returned, ends in one of [`KINDS`].
+    pub fn add(&mut self, bytes: Vec<u8>, extension: &str) -> String {
+        let name = name_of(&bytes, extension);
+        self.files.insert(name.clone(), bytes);
+        name
+    }
+
+    /// Reads that of a take from its records; absent where it has none.
+    ///
+    /// # Errors
+    /// What is wrong with it, in words.
+    pub(crate) fn read(records: &[Found<'_>]) -> Result<Option<Self>, String> {
+        let mut setup = Self::default();
+        let mut stated = None;
+        for found in records {
+            if ![op::ATTACHMENT, op::METADATA].contains(&found.opcode) {
+                continue;
+            }
+            let parsed = found
+                .whole
+                .then(|| mcap::parse_record(found.opcode, found.body));
+            match parsed {
+                Some(Ok(Record::Attachment { header, data, .. })) => {
+                    let kind = header.name.split_once('.').map_or("", |(_, kind)| kind);
+                    let known = KINDS.iter().any(|(known, _)| *known == kind);
+                    if known && header.name == name_of(&data, kind) {
+                        setup.files.insert(header.name, data.into_owned());
+                    }
+                }
+                Some(Ok(Record::Metadata(metadata))) if metadata.name == RECORD => {
+                    stated = Some(metadata);
+                }
+                Some(Ok(_)) => {}
+                Some(Err(_)) | None => return Err("a file that it embeds is damaged".to_owned()),
+            }
+        }
+        let Some(stated) = stated else {
+            return Ok(None);
+        };
+        let settings = stated.metadata.get(SETTINGS);
+        let settings = settings.filter(|name| setup.files.contains_key(*name));
+        setup.settings = settings
+            .ok_or("the settings that it embeds are missing, or not what they were")?
+            .clone();
+        let loads = stated.metadata.iter();
+        let loads = loads.filter(|(key, _)| key.starts_with(LOAD));
+        setup.loads = loads.map(|(_, load)| load.clone()).collect();
+        Ok(Some(setup))
+    }
+
+    pub(crate) fn write<W: Write + Seek>(
+        &self,
+        writer: &mut mcap::Writer<W>,
+    ) -> mcap::McapResult<()> {
+        for (name, bytes) in &self.files {
+            let kind = KINDS.iter().find(|(kind, _)| name.ends_with(kind));
+            writer.attach(&mcap::Attachment {
+                log_time: 0,
+                create_time: 0,
+                name: name.clone(),
+                media_type: kind.map_or("", |(_, media)| media).to_owned(),
+                data: Cow::Borrowed(bytes),
+            })?;
+        }
+        let loads = self.loads.iter().enumerate();
+        let loads = loads.map(|(i, load)| (format!("{LOAD}{i:04}"), load.clone()));
+        let metadata = loads.chain([(SETTINGS.to_owned(), self.settings.clone())]);
+        writer.write_metadata(&Metadata {
+            name: RECORD.to_owned(),
+            metadata: metadata.collect(),
+        })
+    }
+}
+
+fn name_of(bytes: &[u8], extension: &str) -> String {
+    let hash = Sha256::digest(bytes);
+    let hash: String = hash.iter().map(|byte| format!("{byte:02x}")).collect();
+    format!("{hash}.{extension}")
+}

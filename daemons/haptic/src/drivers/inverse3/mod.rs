@@ -1,0 +1,252 @@
+//! Haply's Inverse3 with its VerseGrip, by Haply's Inverse service: JSON over a WebSocket
+//! (docs.haply.co, inverseSDK, version 3.5, and what differs before).
+//!
+//! | module | holds |
+//! | --- | --- |
+//! | [`address`] | which device of which service |
+//! | [`message`] | the messages of both sides |
+//! | [`axes`] | from the service's axes to the device frame |
+//! | [`state`] | what is known of a device so far |
+//! | [`connection`] | a WebSocket that never waits for long |
+//! | [`link`] | the thread that talks to the service |
+
+pub mod address;
+pub mod axes;
+pub mod connection;
+pub mod link;
+pub mod message;
+pub mod state;
+
+use std::sync::atomic::AtomicBool;
+
+use glam::DVec3;
+use maulstick_haptics::Switch;
+use maulstick_haptics::contact::HandleState;
+use maulstick_rig::Fault;
+use maulstick_rig::config::DeviceSection;
+use maulstick_types::stylus;
+
+use self::address::Address;
+use self::connection::{Connection, End, SILENCE};
+use self::link::{FRESH_NS, Link, RequestedForce};
+use self::message::{Device, Update};
+use self::state::DeviceTracker;
+use crate::device::driver::{Abilities, DeviceError, Driver, Opened, Reading, Wrench};
+use crate::device::velocity::Velocity;
+use crate::servo::clock::{MonotonicClock, monotonic_ns};
+
+/// Largest force by what the service calls the device, N; see [`WEAKEST_N`] for others.
+const MAX_FORCES_N: [(&str, f64); 2] = [("inverse3", 10.0), ("inverse3x", 10.0)];
+/// Largest force of a Minverse, which is not published, and of what we do not know, N: as an Omni's.
+const WEAKEST_N: f64 = 3.0;
+/// Share of the largest force that warm motors bear is not published: as of an Omni's. The device tells
+/// no temperature.
+const CONTINUOUS: f64 = 0.3;
+/// Largest stiffness, N/m.
+const MAX_STIFFNESS_N_M: f64 = 1000.0;
+/// Its own viscous friction, N·s/m, is published by nobody: the least of devices of its kind.
+const DAMPING_N_S_M: f64 = 0.1;
+/// Its working area: before its foot, as far as its arms reach, m.
+const WORKSPACE_M: [f64; 6] = [-0.2, -0.05, -0.05, 0.2, 0.35, 0.3];
+
+/// Opens the Inverse3 of a section: see [`Address`].
+///
+/// # Errors
+/// A [`Fault`] that says what is missing.
+pub fn open(device: &DeviceSection) -> Result<Opened, Fault> {
+    let address = Address::read(device.address.as_deref())?;
+    let driver = Inverse3::connect(&address)?;
+    Ok(Opened {
+        what: format!("Inverse3 {} at {}", driver.id, address.url),
+        driver: Box::new(driver),
+        clock: Box::new(MonotonicClock),
+    })
+}
+
+/// An Inverse3.
+#[derive(Debug)]
+pub struct Inverse3 {
+    link: Link,
+    id: String,
+    senses: u32,
+    /// Largest force, N.
+    max_force_n: f64,
+    /// The number of the state that was read last.
+    seen: u64,
+    velocity: Velocity,
+    amplifiers: Switch,
+}
+
+impl Inverse3 {
+    /// Connects to the device of an address.
+    ///
+    /// # Errors
+    /// A [`Fault`] that says what is missing.
+    pub fn connect(address: &Address) -> Result<Self, Fault> {
+        let mut connection = Connection::open(address)?;
+        let update = inventory(&mut connection, address)?;
+        let device = chosen(&update, address)?;
+        let id = device.device_id.clone();
+        if device.is_in_use() {
+            let what = format!(
+                "the Inverse3 {id} at {} is in use by another program",
+                address.url
+            );
+            return Err(Fault::failure(what).help("end the other program"));
+        }
+        let max_force_n = max_force_n(device.kind());
+        let has_grip = update.grip(address.grip.as_deref()).is_some();
+        if let (Some(grip), false) = (&address.grip, has_grip) {
+            let ids: Vec<&str> = update.grips().collect();
+            return Err(Fault::failure(format!(
+                "the Inverse service at {} sees no VerseGrip {grip}",
+                address.url
+            ))
+            .help(match ids.is_empty() {
+                true => "switch it on, or leave it out of `address`".to_owned(),
+                false => format!("switch it on; there are: {}", ids.join(", ")),
+            }));
+        }
+        let mut tracker = DeviceTracker::new(&id, address.grip.as_deref());
+        if let state::Seen::Hindered(hindrance) = tracker.take(&update, monotonic_ns()) {
+            let what = format!("{} ({id} at {})", hindrance.what(), address.url);
+            return Err(Fault::failure(what).help(hindrance.help()));
+        }
+        let link = Link::start(connection, tracker, update.dialect())
+            .map_err(|error| Fault::failure(format!("no thread for the Inverse3: {error}")))?;
+        let handle = match has_grip {
+            true => stylus::axes::ORIENTATION | stylus::axes::SWITCHES,
+            false => 0,
+        };
+        Ok(Self {
+            link,
+            id,
+            senses: stylus::axes::POSITION | stylus::axes::VELOCITY | handle,
+            max_force_n,
+            seen: 0,
+            velocity: Velocity::default(),
+            amplifiers: Switch::On,
+        })
+    }
+
+    /// Asks for a force; resting amplifiers are asked for none, which must be said as well.
+    fn ask(&mut self, force: DVec3) {
+        self.link.ask(RequestedForce {
+            force: match self.amplifiers {
+                Switch::On => force,
+                Switch::Off => DVec3::ZERO,
+            },
+            at_ns: monotonic_ns(),
+        });
+    }
+}
+
+fn max_force_n(kind: Option<&str>) -> f64 {
+    MAX_FORCES_N
+        .into_iter()
+        .find_map(|(known, newtons)| (kind == Some(known)).then_some(newtons))
+        .unwrap_or(WEAKEST_N)
+}
+
+/// The service's first message, which names all devices.
+fn inventory(connection: &mut Connection, address: &Address) -> Result<Update, Fault> {
+    let foreign = |why: String| {
+        Fault::failure(format!(
+            "what answers at {} is no Inverse service: {why}",
+            address.url
+        ))
+        .help("name the service's own as the device's `address`")
+    };
+    let bytes = connection
+        .receive(&AtomicBool::new(false), SILENCE)
+        .map_err(|end| match end {
+            End::Closed | End::Stopped => foreign("it closes the connection".into()),
+            End::Silent => foreign("it does not say what devices there are".into()),
+            End::Foreign => foreign("its first message is no message".into()),
+        })?;
+    Update::read(&bytes).map_err(|error| foreign(format!("its first message is {error}")))
+}
+
+/// The device that an address means.
+fn chosen<'a>(update: &'a Update, address: &Address) -> Result<&'a Device, Fault> {
+    let ids = || {
+        let ids: Vec<&str> = update
+            .devices()
+            .iter()
+            .map(|device| device.device_id.as_str())
+            .collect();
+        ids.join(", ")
+    };
+    let url = &address.url;
+    match (&address.device, update.devices()) {
+        (_, []) => Err(
+            Fault::failure(format!("the Inverse service at {url} sees no Inverse3"))
+                .help("plug it in and switch it on, and look whether Haply Hub sees it"),
+        ),
+        (Some(id), _) => update.device(id).ok_or_else(|| {
+            Fault::failure(format!(
+                "the Inverse service at {url} sees no Inverse3 {id}"
+            ))
+            .help(format!("switch it on; there are: {}", ids()))
+        }),
+        (None, [device]) => Ok(device),
+        (None, _) => Err(Fault::failure(format!(
+            "the Inverse service at {url} sees several Inverse3s: {}",
+            ids()
+        ))
+        .help(format!("name one as the device's `address`: {url}#id"))),
+    }
+}
+
+impl Driver for Inverse3 {
+    fn abilities(&self) -> Abilities {
+        Abilities {
+            senses: self.senses,
+            drives: stylus::axes::FORCE,
+            max_force_n: self.max_force_n,
+            continuous_force_n: self.max_force_n * CONTINUOUS,
+            max_torque_nm: 0.0,
+            max_stiffness_n_m: MAX_STIFFNESS_N_M,
+            damping_n_s_m: DAMPING_N_S_M,
+            workspace_m: WORKSPACE_M,
+        }
+    }
+
+    fn read(&mut self, dt: f64) -> Result<Option<Reading>, DeviceError> {
+        let told = self.link.newest()?;
+        if told.number == self.seen {
+            return Ok(None);
+        }
+        self.seen = told.number;
+        if monotonic_ns().saturating_sub(told.at_ns) > FRESH_NS {
+            return Ok(None);
+        }
+        let pose = told.pose;
+        let found = self.velocity.after(pose.position, dt);
+        Ok(Some(Reading {
+            handle: HandleState {
+                position: pose.position,
+                orientation: pose.orientation,
+                velocity: pose.velocity.unwrap_or(found),
+            },
+            switches: pose.switches,
+            in_range: pose.in_range,
+            is_permitted: true,
+            motor_temperature: 0.0,
+        }))
+    }
+
+    fn write(&mut self, wrench: Wrench) -> Result<(), DeviceError> {
+        let force = match wrench.force.is_finite() {
+            true => wrench.force.clamp_length_max(self.max_force_n),
+            false => DVec3::ZERO,
+        };
+        self.ask(force);
+        Ok(())
+    }
+
+    fn switch(&mut self, amplifiers: Switch) {
+        self.amplifiers = amplifiers;
+        self.ask(DVec3::ZERO);
+    }
+}

@@ -1,0 +1,6 @@
+//! Drivers, one module for each family of devices.
+
+pub mod inverse3;
+pub mod openhaptics;
+pub mod polhem;
+pub mod simulated;

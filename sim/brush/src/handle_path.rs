@@ -1,0 +1,267 @@
+//! Path of the handle from one sample to the next: the parabola through both and the one before,
+//! walked cell by cell.
+//!
+//! A hand moves smoothly; straight chords between samples would depend on how often it is sampled,
+//! the parabola does so only in third order.
+
+use glam::{DQuat, DVec3, DVec4};
+use maulstick_num::geometry::{Rigid, canonical};
+
+/// Chords by which the length of the way is measured.
+const CHORDS: usize = 8;
+/// A pause that is longer than the interval before it by more than this factor: there the pace of that
+/// interval is no measure of the whole way.
+const PAUSE: f64 = 4.0;
+
+/// A sampled pose and its time.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Sampled {
+    /// Brush frame to surface axes.
+    pub pose: Rigid,
+    /// Rig clock, ns.
+    pub event_ns: u64,
+}
+
+/// Path of the handle between two samples.
+#[derive(Clone, Debug)]
+pub struct HandlePath {
+    from: Rigid,
+    to: Rigid,
+    /// What bends it: the second difference of place and quaternion.
+    bend: (DVec3, DQuat),
+    /// Length up to each of the chords' ends, m.
+    lengths: [f64; CHORDS + 1],
+}
+
+impl HandlePath {
+    /// The way from `from` to `to` of a hand that came from `before`; straight without it. Across a
+    /// pause it bends by at most what lets it go nowhere backward: a hand that was fast before may have
+    /// stopped in it. Its length is that of the farther of the ferrule and the point of a head of
+    /// `head_m`.
+    #[must_use]
+    pub fn new(before: Option<&Sampled>, from: &Sampled, to: &Sampled, head_m: f64) -> Self {
+        let near = |of: DQuat, q: DQuat| if of.dot(q) < 0.0 { -q } else { q };
+        let end = Rigid {
+            rotation: near(from.pose.rotation, to.pose.rotation),
+            ..to.pose
+        };
+        let bend = before.map_or(
+            (DVec3::ZERO, DQuat::from_xyzw(0.0, 0.0, 0.0, 0.0)),
+            |before| {
+                let (h1, h2) = (
+                    from.event_ns.saturating_sub(before.event_ns).max(1) as f64,
+                    to.event_ns.saturating_sub(from.event_ns).max(1) as f64,
+                );
+                // The second divided difference of three samples, in the parameter of this way.
+                let (first, second) = (h2 * h2 / (h1 * (h1 + h2)), h2 / (h1 + h2));
+                let start = near(from.pose.rotation, before.pose.rotation);
+                let place = (end.translation - from.pose.translation) * second
+                    - (from.pose.translation - before.pose.translation) * first;
+                let turn = (end.rotation - from.pose.rotation) * second
+                    - (from.pose.rotation - start) * first;
+                let gone = end.translation - from.pose.translation;
+                match h2 > PAUSE * h1 {
+                    true => (
+                        limited(place, gone),
+                        limited_turn(turn, end.rotation - from.pose.rotation),
+                    ),
+                    false => (place, turn),
+                }
+            },
+        );
+        let mut path = Self {
+            from: from.pose,
+            to: end,
+            bend,
+            lengths: [0.0; CHORDS + 1],
+        };
+        let tip = DVec3::NEG_Z * head_m;
+        let mut last = path.at(0.0);
+        for chord in 1..=CHORDS {
+            let next = path.at(chord as f64 / CHORDS as f64);
+            let moved = |p: DVec3| (next.point(p) - last.point(p)).length();
+            path.lengths[chord] = path.lengths[chord - 1] + moved(tip).max(moved(DVec3::ZERO));
+            last = next;
+        }
+        path
+    }
+
+    /// Its length, m.
+    #[must_use]
+    pub fn length_m(&self) -> f64 {
+        self.lengths[CHORDS]
+    }
+
+    /// The pose at `s` from 0 to 1.
+    #[must_use]
+    pub fn at(&self, s: f64) -> Rigid {
+        let bent = s * (s - 1.0);
+        let straight = self.from.translation.lerp(self.to.translation, s);
+        let turned = self.from.rotation * (1.0 - s) + self.to.rotation * s + self.bend.1 * bent;
+        Rigid {
+            translation: straight + self.bend.0 * bent,
+            rotation: canonical(turned),
+        }
+    }
+
+    /// The parameter where the way is `length` long, m.
+    #[must_use]
+    pub fn after(&self, length: f64) -> f64 {
+        let chord = (1..CHORDS)
+            .find(|chord| self.lengths[*chord] >= length)
+            .unwrap_or(CHORDS);
+        let (start, end) = (self.lengths[chord - 1], self.lengths[chord]);
+        let part = if end > start {
+            (length - start) / (end - start)
+        } else {
+            1.0
+        };
+        ((chord - 1) as f64 + part.clamp(0.0, 1.0)) / CHORDS as f64
+    }
+}
+
+/// The bend of a way with which neither its part along the surface nor its height turns back.
+fn limited(bend: DVec3, path: DVec3) -> DVec3 {
+    let along = bend.truncate().clamp_length_max(path.truncate().length());
+    along.extend(bend.z.clamp(-path.z.abs(), path.z.abs()))
+}
+
+/// As [`limited`], of a turn.
+fn limited_turn(bend: DQuat, turn: DQuat) -> DQuat {
+    let [bend, turn] = [bend, turn].map(DVec4::from);
+    DQuat::from_vec4(bend.clamp_length_max(turn.length()))
+}
+
+/// A segment of the path between two samples.
+#[derive(Clone, Copy, Debug)]
+pub struct PathSegment<'a> {
+    /// The way.
+    pub path: &'a HandlePath,
+    /// Its parameter where the piece begins.
+    pub from: f64,
+    /// And where it ends.
+    pub to: f64,
+    /// When the way begins, rig clock, ns.
+    pub start_ns: u64,
+    /// And when it ends.
+    pub end_ns: u64,
+    /// How far the brush goes from the solve before to its end, m: where no sample lay between, as
+    /// long as the piece.
+    pub length_m: f64,
+}
+
+impl PathSegment<'_> {
+    /// Its end.
+    #[must_use]
+    pub fn end(&self) -> Sampled {
+        let whole = (self.end_ns - self.start_ns) as f64;
+        Sampled {
+            pose: self.path.at(self.to),
+            event_ns: self.start_ns + (whole * self.to) as u64,
+        }
+    }
+
+    /// Its two halves.
+    #[must_use]
+    pub fn halves(&self) -> [Self; 2] {
+        let middle = 0.5 * (self.from + self.to);
+        [
+            Self {
+                to: middle,
+                length_m: 0.5 * self.length_m,
+                ..*self
+            },
+            Self {
+                from: middle,
+                length_m: 0.5 * self.length_m,
+                ..*self
+            },
+        ]
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use maulstick_num::geometry::rotation;
+    use maulstick_num::sin_cos;
+
+    use super::*;
+
+    fn sampled(t: f64) -> Sampled {
+        let (s, c) = sin_cos(t);
+        Sampled {
+            pose: Rigid {
+                rotation: rotation(DVec3::Z, 0.5 * t),
+                translation: DVec3::new(c, s, 0.0),
+            },
+            event_ns: 1_000 + (t * 1e9) as u64,
+        }
+    }
+
+    /// Farthest of the way from the circle that its samples lie on.
+    fn error(h: f64, before: Option<f64>) -> f64 {
+        let before = before.map(sampled);
+        let path = HandlePath::new(before.as_ref(), &sampled(1.0), &sampled(1.0 + h), 0.1);
+        (0..=20)
+            .map(|i| (path.at(f64::from(i) / 20.0).translation.length() - 1.0).abs())
+            .fold(0.0, f64::max)
+    }
+
+    #[test]
+    fn it_follows_a_circle_in_third_order() {
+        let (coarse, fine) = (error(0.1, Some(0.9)), error(0.05, Some(0.95)));
+        assert!(coarse / fine > 7.0, "{coarse:e} {fine:e}");
+        assert!(
+            error(0.1, Some(0.93)) < 0.2 * error(0.1, None),
+            "samples need not be even"
+        );
+        let (coarse, fine) = (error(0.1, None), error(0.05, None));
+        assert!(coarse / fine < 5.0, "straight chords are of second order");
+    }
+
+    #[test]
+    fn across_a_pause_it_goes_nowhere_backward() {
+        let at = |x: f64, z: f64, ms: u64| Sampled {
+            pose: Rigid {
+                rotation: rotation(DVec3::Z, x),
+                translation: DVec3::new(x, 0.0, z),
+            },
+            event_ns: ms * 1_000_000,
+        };
+        // At the pace before it would go 125 mm, and 25 mm deep; it goes 3 mm, and 1 mm.
+        let before = at(-0.002, 0.0004, 996);
+        let (from, to) = (at(0.0, 0.0, 1000), at(0.003, -0.001, 1250));
+        let monotone = |to: &Sampled| {
+            let path = HandlePath::new(Some(&before), &from, to, 0.1);
+            let places: Vec<Rigid> = (0..=20).map(|i| path.at(f64::from(i) / 20.0)).collect();
+            places.windows(2).all(|pair| {
+                let [a, b] = [pair[0], pair[1]];
+                let turned = b.rotation.z - a.rotation.z;
+                b.translation.x >= a.translation.x - 1e-12
+                    && b.translation.z <= a.translation.z + 1e-12
+                    && turned >= -1e-12
+            })
+        };
+        assert!(monotone(&to));
+        // Within evenly spaced samples a turn back is one.
+        let soon = Sampled {
+            event_ns: 1_004_000_000,
+            ..at(-0.003, -0.001, 0)
+        };
+        assert!(!monotone(&soon));
+    }
+
+    #[test]
+    fn its_ends_are_the_samples_and_its_length_is_walked_evenly() {
+        let path = HandlePath::new(Some(&sampled(0.9)), &sampled(1.0), &sampled(1.2), 0.1);
+        for (s, t) in [(0.0, 1.0), (1.0, 1.2)] {
+            let pose = sampled(t).pose;
+            assert!((path.at(s).translation - pose.translation).length() < 1e-14);
+            assert!(path.at(s).rotation.dot(pose.rotation).abs() > 1.0 - 1e-12);
+        }
+        for part in [0.0, 0.3, 0.5, 1.0] {
+            let s = path.after(part * path.length_m());
+            assert!((s - part).abs() < 0.02, "{part}: {s}");
+        }
+    }
+}

@@ -1,0 +1,76 @@
+//! Ticks of a painting, and the dryings that they drive.
+
+use maulstick_types::Region;
+use serde::{Deserialize, Serialize};
+
+/// Ticks a second.
+pub const TICKS_A_SECOND: u32 = 60;
+/// Most rounds of a drying, and the fewest ticks of one.
+const ROUNDS: u32 = 32;
+const ROUND_TICKS: u32 = 30;
+
+/// A drying that goes on.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Drying {
+    /// The surface.
+    pub surface: u32,
+    /// The part of it; all if absent.
+    pub region: Option<Region>,
+    /// What its layer is to be called; by its number if empty.
+    pub name: String,
+    /// Number of its layer, once something has dried into it.
+    pub layer: Option<u32>,
+    /// How long it takes, ticks.
+    pub ticks: u32,
+    /// How many of them went by.
+    pub elapsed: u32,
+    /// How many had when its newest round began.
+    pub reached: u32,
+    /// The round that is not done.
+    pub round: Option<Round>,
+}
+
+/// A walk over the tiles of a drying: each dries by the share of the time from `from` to the end that
+/// had gone by at `to`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Round {
+    /// Ticks.
+    pub from: u32,
+    /// Ticks.
+    pub to: u32,
+    /// Which tile is next, row after row from the bottom.
+    pub next: u32,
+}
+
+impl Drying {
+    /// The round that is to be gone on with now.
+    pub(crate) fn due(&self) -> Option<Round> {
+        let least = (self.ticks / ROUNDS).max(ROUND_TICKS);
+        let is_due = self.elapsed >= self.ticks || self.elapsed - self.reached >= least;
+        let next = Round {
+            from: self.reached,
+            to: self.elapsed,
+            next: 0,
+        };
+        self.round.or_else(|| is_due.then_some(next))
+    }
+
+    /// The share of a film that dries in a round.
+    pub(crate) fn share(&self, round: Round) -> f32 {
+        match self.ticks.saturating_sub(round.from) {
+            0 => 1.0,
+            left => ((round.to - round.from) as f32 / left as f32).min(1.0),
+        }
+    }
+}
+
+/// How far dryings are; what a document keeps of them.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Clock {
+    /// Ticks since the painting began.
+    pub ticks: u64,
+    /// Ticks since a brush was last in contact.
+    pub quiet: u32,
+    /// The dryings that go on, one a surface at most.
+    pub dryings: Vec<Drying>,
+}

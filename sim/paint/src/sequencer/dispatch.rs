@@ -1,0 +1,54 @@
+//! The commands about how brushes are used, how surfaces lie and are prepared, and those that are not the
+//! painting's.
+
+use maulstick_types::command::Command;
+
+use super::Sequencer;
+use crate::error::EditError;
+
+impl Sequencer {
+    /// Does a command about ways of painting; any other asks nothing of the painting.
+    pub(super) fn ways(&mut self, command: &Command) -> Result<String, EditError> {
+        let painting = &mut self.painting;
+        let done = match command {
+            Command::Place {
+                surface,
+                pose,
+                zoom,
+            } => painting.place(*surface, pose, *zoom),
+            Command::Handle { handling } => painting.handle(handling),
+            Command::FillWith {
+                surface,
+                brush,
+                thickness_m,
+            } => painting.fill_with(*surface, brush, *thickness_m),
+            Command::Size { surface, stain_m } => painting.size(*surface, *stain_m),
+            Command::Piles { surface, last } => painting.piles(*surface, *last),
+            Command::GroundSpectrum { surface, spectrum } => {
+                painting.set_ground_spectrum(*surface, spectrum)
+            }
+            Command::Wells { surface, wells } => painting.set_wells(*surface, wells),
+            _ => Ok(()),
+        };
+        done.map(|()| String::new())
+    }
+}
+
+/// Why a command that changes no painting is none of its sequencer's.
+pub(super) fn elsewhere(command: &Command) -> EditError {
+    let (what, help) = match command {
+        Command::Define { brush, .. } => (
+            "a brush file is no matter of the painting",
+            format!("send it to the node '{brush}'"),
+        ),
+        Command::Export { .. } | Command::StopExport => (
+            "nothing is exported here",
+            "send it to the paint node of a running rig".to_owned(),
+        ),
+        _ => (
+            "in which file a painting is, is no matter of the painting",
+            "send it to the launcher of a running rig, 'rig'".to_owned(),
+        ),
+    };
+    EditError::new(what.to_owned(), &help)
+}

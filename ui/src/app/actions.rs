@@ -1,0 +1,235 @@
+//! What pointer, other hand and keys do on the desk.
+
+use eframe::egui::{self, Color32, Context, Event, PointerButton, Stroke};
+use glam::{DVec2, DVec3};
+use maulstick_brush::palette_place::{Side, beside, is_out, is_same, mirrored, over, size_m};
+use maulstick_types::command::Command;
+use maulstick_types::scene::{CANVAS, PALETTE, Surface};
+
+use super::{App, STILL};
+use crate::input::keys::{self, Action};
+use crate::input::mouse_stylus::Pointer;
+use crate::input::navigation::Around;
+use crate::rig::force_history;
+use crate::settings::preferences::Preferences;
+use crate::view::camera::View;
+use crate::view::well_labels::{self, Shown};
+
+/// A newton is shown so long, m.
+const ARROW_M_N: f64 = 0.02;
+const ARROW: Color32 = Color32::from_rgb(230, 120, 40);
+
+impl App {
+    /// Where the pointer went since the last frame, on the desk.
+    pub(super) fn pointer(&mut self, context: &Context) -> Vec<Pointer> {
+        let (Some(scene), Some(view)) = (&self.rig.scene, &self.view) else {
+            return Vec::new();
+        };
+        // Two fingers move the canvas.
+        let fingers = context.input(|input| input.multi_touch().is_some());
+        if fingers || self.navigation.holds() || over_panel(context) && !self.pressed {
+            self.pressed = false;
+            return Vec::new();
+        }
+        let mut pressed = self.pressed;
+        let place = |at: egui::Pos2, pressed: bool| {
+            let counts = view.area.contains(at) || pressed;
+            counts.then(|| Pointer {
+                at: view.to_desk(at, &scene.surfaces).to_array(),
+                pressed,
+            })
+        };
+        let places = context.input(|input| {
+            let mut places = Vec::new();
+            for event in &input.events {
+                match event {
+                    Event::PointerMoved(at) => places.extend(place(*at, pressed)),
+                    Event::PointerButton {
+                        pos,
+                        button: PointerButton::Primary,
+                        pressed: p,
+                        modifiers,
+                    } => {
+                        // With a modifier it moves the canvas.
+                        pressed = *p && view.area.contains(*pos) && modifiers.is_none();
+                        places.extend(place(*pos, pressed));
+                    }
+                    _ => {}
+                }
+            }
+            // A still pointer is still there.
+            if places.is_empty() {
+                places.extend(input.pointer.latest_pos().and_then(|at| place(at, pressed)));
+            }
+            places
+        });
+        self.pressed = pressed;
+        places
+    }
+
+    /// Does what concerns the desk.
+    pub(super) fn act(&mut self, act: Action, pixels_per_point: f32) {
+        let (Some(canvas), Some(view)) = (self.rig.canvas(), &self.view) else {
+            return;
+        };
+        self.navigation.forget();
+        match act {
+            Action::Fit => self.requests.paint(view.fitted(canvas).command(CANVAS)),
+            Action::Hundred => {
+                let lie = view.hundred(canvas, pixels_per_point);
+                self.requests.paint(lie.command(CANVAS));
+            }
+            Action::Palette => self.slide(),
+            _ => {}
+        }
+    }
+
+    /// Slides the palette over the canvas, or back beside it.
+    pub(super) fn slide(&mut self) {
+        let (Some(canvas), Some(palette)) = (self.rig.canvas(), self.rig.palette()) else {
+            return;
+        };
+        let side = side(&self.preferences);
+        let pose = match is_out(canvas, palette, side) {
+            true => beside(canvas, palette, side),
+            false => over(canvas, palette),
+        };
+        self.requests.paint(Command::Place {
+            surface: PALETTE,
+            pose,
+            zoom: palette.zoom,
+        });
+    }
+
+    /// What the other hand, the cleaning key and a wave ask for.
+    pub(super) fn follow(&mut self, context: &Context, now_ns: u64) {
+        let Some(view) = &self.view else {
+            return;
+        };
+        let surfaces = self.rig.scene.as_ref().map(|scene| &scene.surfaces[..]);
+        let around = Around {
+            view,
+            surfaces: surfaces.unwrap_or_default(),
+            free: self.mouse.is_free(now_ns),
+            over_panel: over_panel(context),
+        };
+        let (navigation, requests) = (&mut self.navigation, &mut self.requests);
+        context.input(|input| navigation.follow(input, &around, requests));
+        let brush = self.rig.brush_name();
+        let aim = self.tracker.aim(brush);
+        let now_s = context.input(|input| input.time);
+        let typing = context.memory(|memory| memory.focused().is_some());
+        let is_down = !typing && context.input(|input| input.key_down(keys::CLEAN));
+        let painting = aim.is_some_and(|(_, in_air)| !in_air);
+        if painting && typing {
+            // A stylus that is no pointer takes the keyboard from no field.
+            context.memory_mut(|memory| {
+                if let Some(focused) = memory.focused() {
+                    memory.surrender_focus(focused);
+                }
+            });
+        }
+        let handling = self.rig.handling();
+        self.clean_key
+            .follow(now_s, is_down, painting, &handling, &mut self.requests);
+        if self.clean_key.is_down() {
+            context.request_repaint_after(STILL);
+        }
+        let wide_m = f64::from(view.area.width()) / view.scale;
+        let at = aim.map(|(at, _)| (at.truncate() - view.middle) / wide_m);
+        let at = gone(context, view).or(at);
+        let free = !painting && !self.navigation.holds();
+        if self
+            .palette_gesture
+            .follow(now_s, at, wide_m, free, side(&self.preferences))
+        {
+            self.slide();
+        }
+    }
+
+    /// Names the wells on the palette as it is seen.
+    pub(super) fn name_wells(&self, painter: &egui::Painter, view: &View, seen: &[Surface]) {
+        let palette = seen.iter().find(|surface| surface.id == PALETTE);
+        let (Some(canvas), Some(palette)) = (self.rig.canvas(), palette) else {
+            return;
+        };
+        let aim = self.tracker.aim(self.rig.brush_name());
+        let shown = match is_out(canvas, palette, side(&self.preferences)) {
+            true => Some(Shown::All),
+            false => aim.map(|(at, _)| Shown::Under(at)),
+        };
+        if let Some(shown) = shown {
+            well_labels::draw(painter, view, palette, shown);
+        }
+    }
+
+    /// Draws the force in the hand as an arrow from the brush, as long as its panel is seen.
+    pub(super) fn draw_force(&self, painter: &egui::Painter, view: &View) {
+        let seen = self.preferences.panels && self.preferences.is_open("Device");
+        let Some((place_m, force_n)) = force_history::force_arrow(&self.rig).filter(|_| seen)
+        else {
+            return;
+        };
+        let from = DVec3::from_array(place_m);
+        let to = from + DVec3::from_array(force_n) * ARROW_M_N;
+        let [from, to] = [from, to].map(|at| view.to_window(at));
+        painter.arrow(from, to - from, Stroke::new(2.5, ARROW));
+        // What pushes straight up is seen as a ring.
+        let ring = (force_n[2].max(0.0) * ARROW_M_N * view.scale) as f32;
+        painter.circle_stroke(from, ring, Stroke::new(1.5, ARROW));
+    }
+
+    /// Lays palette and wells for the hand that paints, where the painter has changed it.
+    pub(super) fn change_hands(&mut self) {
+        let side = side(&self.preferences);
+        let (Some(canvas), Some(palette)) = (self.rig.canvas(), self.rig.palette()) else {
+            return;
+        };
+        let other = match side {
+            Side::Left => Side::Right,
+            Side::Right => Side::Left,
+        };
+        // Once for each start of the paint node, and when the painter has changed hands.
+        let key = (side, self.rig.starts);
+        let rests = is_same(&palette.pose, &beside(canvas, palette, other));
+        if self.side.replace(key) != Some(key) && rests {
+            self.requests.paint(Command::Place {
+                surface: PALETTE,
+                pose: beside(canvas, palette, side),
+                zoom: palette.zoom,
+            });
+            self.requests.paint(Command::Wells {
+                surface: PALETTE,
+                wells: mirrored(&palette.wells, size_m(palette)),
+            });
+        }
+    }
+}
+
+/// Whether the pointer is over something that lies on the desk.
+fn over_panel(context: &Context) -> bool {
+    let at = context.input(|input| input.pointer.latest_pos());
+    at.and_then(|at| context.layer_id_at(at))
+        .is_some_and(|layer| layer.order != egui::Order::Background)
+}
+
+/// The side of the palette for the hand that paints.
+pub(super) fn side(preferences: &Preferences) -> Side {
+    match preferences.left_handed {
+        false => Side::Left,
+        true => Side::Right,
+    }
+}
+
+/// A pointer that has just left the window at its side, a little beyond: shares of the view's width.
+fn gone(context: &Context, view: &View) -> Option<DVec2> {
+    let (at, speed) = context.input(|input| {
+        let gone = input.events.contains(&Event::PointerGone);
+        let at = input.pointer.interact_pos().or(input.pointer.latest_pos());
+        gone.then_some((at?, input.pointer.velocity()))
+    })?;
+    let sideways = speed.x.abs() > speed.y.abs();
+    // Where it would be in a twentieth of a second.
+    let share = (at + 0.05 * speed - view.area.center()) / view.area.width();
+    (sideways && share.x.abs() > 0.5).then(|| DVec2::new(share.x.into(), (-share.y).into()))
+}

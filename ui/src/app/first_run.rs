@@ -1,0 +1,151 @@
+//! The line of help of a painter who has never painted here: it goes with the first paint that is deposited,
+//! and comes back for a moment when this painter begins another painting.
+
+use std::time::Duration;
+
+use eframe::egui::{Align2, Area, Color32, Context, Frame, Id, Margin, Order, RichText, Stroke};
+
+use crate::rig::state::RigState;
+use crate::settings::preferences::Preferences;
+
+/// What it says.
+pub(super) const HELP: &str = "Drag the brush through a paint of the palette, then over the canvas.  \
+                        Space: palette   Tab: panels   ?: keys";
+/// How long it is over another painting, s.
+const AGAIN_S: f64 = 10.0;
+
+/// What is known of a painter's first day.
+#[derive(Debug, Default)]
+pub(super) struct FirstRun {
+    /// Whether the painter was new when the window opened; none before it was first shown.
+    is_new: Option<bool>,
+    /// The painting that was last seen blank, and since when by the window's clock, s.
+    blank: Option<(String, f64)>,
+}
+
+impl FirstRun {
+    /// Follows the painting, and shows the line while it helps.
+    pub(super) fn show(
+        &mut self,
+        context: &Context,
+        rig: &RigState,
+        preferences: &mut Preferences,
+    ) {
+        let is_new = *self.is_new.get_or_insert(!preferences.has_painted);
+        if !is_new {
+            return;
+        }
+        let now = context.input(|input| input.time);
+        let status = rig.paint.as_ref().map(|node| &node.status);
+        let is_bare = status.is_none_or(|status| status.blank);
+        if !is_bare {
+            preferences.has_painted = true;
+            self.blank = None;
+            return;
+        }
+        if preferences.has_painted {
+            let path = status.map_or("", |status| &status.path);
+            let known = self.blank.take().filter(|(known, _)| known == path);
+            let (_, since) = self.blank.insert(known.unwrap_or((path.to_owned(), now)));
+            let left = *since + AGAIN_S - now;
+            if left <= 0.0 {
+                return;
+            }
+            context.request_repaint_after(Duration::from_secs_f64(left));
+        }
+        line(context);
+    }
+}
+
+/// Light on dark, with an edge: it is read over any canvas and in either theme.
+fn line(context: &Context) {
+    Area::new(Id::unique("help"))
+        .order(Order::Foreground)
+        .anchor(Align2::CENTER_BOTTOM, [0.0, -32.0])
+        .interactable(false)
+        .show(context, |ui| {
+            Frame::NONE
+                .fill(Color32::from_black_alpha(225))
+                .stroke(Stroke::new(1.0, Color32::from_gray(150)))
+                .corner_radius(8.0)
+                .inner_margin(Margin::symmetric(14, 8))
+                .show(ui, |ui| {
+                    ui.label(
+                        RichText::new(HELP)
+                            .color(Color32::from_gray(240))
+                            .size(15.0),
+                    );
+                });
+        });
+}
+
+#[cfg(test)]
+mod tests {
+    use egui_kittest::Harness;
+    use egui_kittest::kittest::Queryable as _;
+    use maulstick_types::paint::PaintStatus;
+
+    use super::*;
+    use crate::test_support::panel_bench::{rig, status};
+
+    struct Day {
+        first_run: FirstRun,
+        rig: RigState,
+        preferences: Preferences,
+    }
+
+    fn day(has_painted: bool) -> Harness<'static, Day> {
+        let preferences = Preferences {
+            has_painted,
+            ..Preferences::default()
+        };
+        let day = Day {
+            first_run: FirstRun::default(),
+            rig: rig(),
+            preferences,
+        };
+        let show = |ui: &mut eframe::egui::Ui, day: &mut Day| {
+            day.first_run.show(ui.ctx(), &day.rig, &mut day.preferences);
+        };
+        let mut harness = Harness::builder()
+            .with_size([800.0, 200.0])
+            .with_step_dt(1.0)
+            .build_ui_state(show, day);
+        harness.step();
+        harness
+    }
+
+    fn says(harness: &mut Harness<'static, Day>, change: impl FnOnce(&mut PaintStatus)) -> bool {
+        let node = harness.state_mut().rig.paint.as_mut();
+        change(&mut node.expect("a node").status);
+        harness.run_steps(2);
+        harness.query_by_label(HELP).is_some()
+    }
+
+    #[test]
+    fn the_line_goes_with_the_first_paint_and_is_over_the_next_painting_for_a_moment() {
+        let mut harness = day(false);
+        assert!(says(&mut harness, |status| (status.journal, status.undo) =
+            (7, 1)));
+        assert!(
+            !harness.state().preferences.has_painted,
+            "nothing is painted yet"
+        );
+        assert!(!says(&mut harness, |status| status.blank = false));
+        assert!(harness.state().preferences.has_painted);
+        let another = PaintStatus {
+            path: "/another.maul".into(),
+            ..status()
+        };
+        assert!(says(&mut harness, |status| *status = another));
+        harness.run_steps(10);
+        assert!(harness.query_by_label(HELP).is_none());
+    }
+
+    #[test]
+    fn who_has_painted_before_is_told_nothing() {
+        let mut harness = day(true);
+        assert!(!says(&mut harness, |status| status.path = "/new.maul".into()));
+        assert!(!says(&mut harness, |status| status.blank = false));
+    }
+}

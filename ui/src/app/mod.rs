@@ -1,0 +1,397 @@
+//! The window.
+//!
+//! | module | holds |
+//! | --- | --- |
+//! | `actions` | actions of the painter: keys, clicks and gestures |
+//! | `overlay` | what lies over the desk: panels, dialogs, help |
+//! | [`rack`] | the brush rack at the edge |
+//! | `first_run` | the line of help for a new painter |
+
+use std::path::PathBuf;
+use std::sync::Arc;
+use std::time::Duration;
+
+use eframe::egui::{self, CentralPanel, Context, CursorIcon, Frame, Visuals};
+use eframe::egui_wgpu::RenderState;
+use maulstick_brush::palette_place::Side;
+use maulstick_bus::typed::{ask, random_epoch};
+use maulstick_bus::{Bus, Class, Wake};
+use maulstick_optics::PaintLibrary;
+use maulstick_paint::picture::Export;
+use maulstick_rig::{Fault, Member, Stop};
+use maulstick_types::paint::{ThumbnailReply, ThumbnailRequest};
+use maulstick_types::scene::Surface;
+use maulstick_types::topics::Topics;
+use maulstick_types::{Origin, name_hash};
+
+use self::actions::side;
+use crate::app::overlay::Overlay;
+use crate::input::clean_key::CleanKey;
+use crate::input::mouse_stylus::Mouse;
+use crate::input::navigation::Navigation;
+use crate::input::palette_gesture::PaletteGesture;
+use crate::render::device_loss::DeviceLoss;
+use crate::render::display_transform::DisplayTransform;
+use crate::render::frame_reports::Presenter;
+use crate::render::scene::{SceneRenderer, Source};
+use crate::rig::brushes::{BrushTracker, SILENCE_NS};
+use crate::rig::dispatcher::CommandDispatcher;
+use crate::rig::health::HealthMonitor;
+use crate::rig::listener::RigListener;
+use crate::rig::requests::Requests;
+use crate::rig::state::RigState;
+use crate::rig::stroke_barrier::StrokeBarrier;
+use crate::rig::thumbnails::{Picture, ThumbnailFetcher};
+use crate::settings::preferences::Preferences;
+use crate::view::camera::{DESK_COLOUR, View};
+use crate::view::palette_slide::PaletteSlide;
+use crate::widgets::context::PanelContext;
+use crate::widgets::notifications::Notifications;
+use crate::widgets::progress::Progress;
+
+mod actions;
+mod first_run;
+pub(crate) mod overlay;
+pub mod rack;
+
+/// Longer side of a version's small picture, pixels, and how long one may take.
+const THUMBNAIL: u32 = 128;
+const FETCH: Duration = Duration::from_secs(1);
+/// A pressed pointer that stands still is told this often: a longer silence would lift the brush.
+const STILL: Duration = Duration::from_millis(30);
+
+/// An order that waits for its stroke is looked at again after this, whatever comes.
+const BARRIER_LOOK: Duration = Duration::from_millis(50);
+
+/// The painter's view.
+pub struct App {
+    bus: Arc<dyn Bus>,
+    stop: Stop,
+    wake: Wake,
+    topics: Topics,
+    listener: RigListener,
+    rig: RigState,
+    scene_renderer: SceneRenderer,
+    presenter: Option<Presenter>,
+    lost: DeviceLoss,
+    tracker: BrushTracker,
+    progress: Progress,
+    watch: HealthMonitor,
+    mouse: Mouse,
+    view: Option<View>,
+    pressed: bool,
+    navigation: Navigation,
+    palette_slide: PaletteSlide,
+    clean_key: CleanKey,
+    palette_gesture: PaletteGesture,
+    /// The side of the palette as it was last looked at, and the start of the paint node then.
+    side: Option<(Side, u64)>,
+    overlay: Overlay,
+    requests: Requests,
+    barrier: StrokeBarrier,
+    dispatcher: CommandDispatcher,
+    fetcher: ThumbnailFetcher,
+    notifications: Notifications,
+    preferences: Preferences,
+    /// Habits as they were last kept, and where.
+    kept: (Preferences, Option<PathBuf>),
+    member: Option<Member>,
+}
+
+impl App {
+    /// The view of a rig whose paints are those of `library`.
+    ///
+    /// # Errors
+    /// A [`Fault`] where the bus is closed.
+    pub fn new(member: &Member, mouse: &str, library: PaintLibrary) -> Result<Self, Fault> {
+        let (bus, topics, brushes) = (&member.bus, &member.topics, &member.config.brush);
+        let names: Vec<String> = brushes.iter().map(|brush| brush.name.clone()).collect();
+        let brush = names.first().map_or("main", String::as_str);
+        let depth_shares = brushes
+            .iter()
+            .map(|brush| (brush.name.clone(), brush.depth_share));
+        let me = member.origin(mouse);
+        let mut notifications = Notifications::default();
+        let place = Preferences::place();
+        let read = place
+            .as_deref()
+            .map_or_else(|| Ok(Preferences::default()), Preferences::read);
+        let preferences = read.unwrap_or_else(|fault| {
+            notifications.of(&fault);
+            Preferences::default()
+        });
+        let lost = DeviceLoss::new(&member.folder);
+        if let Some(why) = lost.word() {
+            notifications.fault(
+                format!("The graphics device was lost: {why}"),
+                "The window was opened again, and nothing is missing.",
+            );
+        }
+        Ok(Self {
+            mouse: Mouse::new(&**bus, topics, mouse, brush, me)?,
+            tracker: BrushTracker::new(
+                &**bus,
+                topics,
+                &member.wake,
+                depth_shares.collect(),
+                me.source,
+            )?,
+            progress: Progress::default(),
+            watch: HealthMonitor::default(),
+            listener: RigListener::new(&**bus, topics, &member.wake)?,
+            rig: RigState::new(&member.config.rig.name, &names, Arc::new(library)),
+            dispatcher: CommandDispatcher::new(Arc::clone(bus), topics, &member.wake),
+            fetcher: fetcher(member),
+            bus: Arc::clone(bus),
+            stop: member.stop.clone(),
+            wake: member.wake.clone(),
+            topics: topics.clone(),
+            navigation: Navigation::default(),
+            palette_slide: PaletteSlide::default(),
+            clean_key: CleanKey::default(),
+            palette_gesture: PaletteGesture::default(),
+            side: None,
+            scene_renderer: SceneRenderer::default(),
+            presenter: None,
+            lost,
+            view: None,
+            pressed: false,
+            overlay: Overlay::default(),
+            requests: Requests::default(),
+            barrier: StrokeBarrier::new(&**bus, topics, &member.wake)?,
+            notifications,
+            kept: (preferences.clone(), place),
+            preferences,
+            member: None,
+        })
+    }
+
+    /// Keeps the membership for as long as the window lives.
+    #[must_use]
+    pub fn with_member(mut self, member: Member) -> Self {
+        self.member = Some(member);
+        self
+    }
+
+    /// Width and height that the window had, points.
+    #[must_use]
+    pub fn size(&self) -> [f32; 2] {
+        self.preferences.size
+    }
+
+    /// What watches over the graphics device.
+    #[must_use]
+    pub fn lost(&self) -> DeviceLoss {
+        self.lost.clone()
+    }
+
+    /// Starts to pull frames and to draw them, for a window on the display of `export`.
+    pub fn begin(&mut self, context: &Context, state: &RenderState, export: &Export) {
+        let me = Origin {
+            source: name_hash("ui"),
+            epoch: random_epoch(),
+        };
+        let presenter = Presenter::new(Arc::clone(&self.bus), &self.topics, me, &state.device);
+        self.presenter = presenter
+            .inspect_err(|error| tracing::warn!("frames are not told of: {error}"))
+            .ok();
+        let completion = self.presenter.as_ref().map(Presenter::completion);
+        let source = Source {
+            bus: Arc::clone(&self.bus),
+            topic: self.topics.frame(),
+            wake: self.wake.clone(),
+            stop: self.stop.clone(),
+            completion: completion.unwrap_or_default(),
+        };
+        self.rig.tint = Arc::new(DisplayTransform::new(export));
+        self.scene_renderer.begin(context, state, export, source);
+        self.lost.follow(&state.device, context);
+    }
+
+    fn take_in(&mut self, now_ns: u64) {
+        self.listener.take_in(now_ns, &mut self.rig);
+        self.tracker.take_in(now_ns);
+        let (rig, notifications) = (&mut self.rig, &mut self.notifications);
+        self.watch.look(rig, &self.topics, notifications);
+        self.scene_renderer.take_in(&mut self.rig);
+        self.fetcher.exchange(&mut self.rig.thumbnails, now_ns);
+        for outcome in self.dispatcher.outcomes() {
+            self.overlay.hear(
+                &outcome,
+                &mut PanelContext {
+                    rig: &mut self.rig,
+                    requests: &mut self.requests,
+                    preferences: &mut self.preferences,
+                    notifications: &mut self.notifications,
+                },
+            );
+        }
+    }
+
+    /// Sends what is asked for, as soon as the strokes before it have landed.
+    fn send(&mut self, context: &Context) {
+        let now_ns = self.bus.now_ns();
+        for request in self.requests.take() {
+            self.barrier
+                .push(now_ns, request, self.tracker.newest(now_ns));
+        }
+        while let Some(ready) = self.barrier.next_ready(now_ns) {
+            self.dispatcher.send(ready);
+        }
+        if self.barrier.is_waiting() {
+            context.request_repaint_after(BARRIER_LOOK);
+        }
+    }
+
+    /// Remembers how large the window is, once nobody drags at it.
+    fn remember_size(&mut self, context: &Context) {
+        let size = context.input(|input| {
+            let whole = input.viewport().fullscreen.unwrap_or(false);
+            let rests = !whole && !input.pointer.any_down() && input.stable_dt < 0.5;
+            rests.then(|| input.content_rect().size())
+        });
+        if let Some(size) = size {
+            self.preferences.size = size.round().into();
+        }
+    }
+
+    /// Keeps the habits where they have changed.
+    fn keep(&mut self) {
+        let (kept, place) = &mut self.kept;
+        if *kept == self.preferences {
+            return;
+        }
+        kept.clone_from(&self.preferences);
+        if let Some(Err(fault)) = place.as_deref().map(|place| kept.keep(place)) {
+            self.notifications.of(&fault);
+        }
+    }
+}
+
+/// Fetches small pictures of versions from the paint node.
+fn fetcher(member: &Member) -> ThumbnailFetcher {
+    let (bus, topic) = (Arc::clone(&member.bus), member.topics.thumbnail());
+    let me = member.origin("ui");
+    let fetch = move |version: &str| {
+        let request = ThumbnailRequest {
+            version: version.to_owned(),
+            side: THUMBNAIL,
+        };
+        let reply = ask(&*bus, &topic, Class::Data, me, &request, FETCH).ok()?;
+        let ThumbnailReply {
+            width, height, rgb, ..
+        } = reply;
+        Picture::new([width as usize, height as usize], rgb.into_vec())
+    };
+    ThumbnailFetcher::new(fetch, &member.wake)
+}
+
+impl eframe::App for App {
+    fn logic(&mut self, context: &Context, _frame: &mut eframe::Frame) {
+        if self.stop.requested() || self.lost.is_lost() {
+            context.send_viewport_cmd(egui::ViewportCommand::Close);
+        }
+        let places = self.pointer(context);
+        let now_ns = self.bus.now_ns();
+        let brush = self.rig.brush_name();
+        let taken = self.mouse.take(now_ns, brush);
+        if let Err(error) = taken.and_then(|()| self.mouse.send(now_ns, &places)) {
+            tracing::warn!("the mouse: {error}");
+        }
+        // After the mouse has told where it is: its brush is drawn there.
+        self.take_in(now_ns);
+        self.barrier.take_in();
+        self.send(context);
+        self.follow(context, now_ns);
+        if self.pressed {
+            context.request_repaint_after(STILL);
+        }
+    }
+
+    fn ui(&mut self, ui: &mut egui::Ui, _frame: &mut eframe::Frame) {
+        CentralPanel::default().frame(Frame::NONE).show(ui, |ui| {
+            let side = side(&self.preferences);
+            let (canvas, palette) = (self.rig.canvas(), self.rig.palette());
+            self.view = canvas
+                .and_then(|canvas| View::of(ui.max_rect(), canvas, palette, side, rack::WIDTH));
+            let Some(view) = self.view else {
+                ui.centered_and_justified(|ui| ui.label("waiting for the paint …"));
+                return;
+            };
+            ui.ctx().set_cursor_icon(CursorIcon::Crosshair);
+            let surfaces = self.rig.scene.iter().flat_map(|scene| &scene.surfaces);
+            let mut surfaces: Vec<Surface> = surfaces.cloned().collect();
+            let now_s = ui.input(|input| input.time);
+            if self.palette_slide.show(now_s, &mut surfaces) {
+                ui.ctx().request_repaint();
+            }
+            let pixels_per_point = ui.ctx().pixels_per_point();
+            let shapes = self.scene_renderer.shapes(
+                &self.rig,
+                &surfaces,
+                &self.tracker,
+                &view,
+                pixels_per_point,
+            );
+            ui.painter().extend(shapes);
+            self.name_wells(ui.painter(), &view, &surfaces);
+            self.draw_force(ui.painter(), &view);
+            if let Some(presenter) = &mut self.presenter {
+                let (begun_ns, holding) = (self.rig.now_ns, self.scene_renderer.holding());
+                ui.painter()
+                    .add(presenter.shape(view.area, begun_ns, holding));
+            }
+            // Nothing tells when a device falls silent.
+            let silence = Duration::from_nanos(SILENCE_NS);
+            ui.ctx().request_repaint_after(silence);
+        });
+        let waits = self.dispatcher.waits();
+        let work = &mut PanelContext {
+            rig: &mut self.rig,
+            requests: &mut self.requests,
+            preferences: &mut self.preferences,
+            notifications: &mut self.notifications,
+        };
+        if self.progress.show(ui.ctx(), work, &waits) {
+            self.dispatcher.give_up();
+        }
+        let acts = self.overlay.show(
+            ui,
+            &mut PanelContext {
+                rig: &mut self.rig,
+                requests: &mut self.requests,
+                preferences: &mut self.preferences,
+                notifications: &mut self.notifications,
+            },
+        );
+        for act in acts {
+            self.act(act, ui.ctx().pixels_per_point());
+        }
+        self.change_hands();
+        self.remember_size(ui.ctx());
+        self.send(ui.ctx());
+        self.keep();
+    }
+
+    fn clear_color(&self, _visuals: &Visuals) -> [f32; 4] {
+        DESK_COLOUR.to_normalized_gamma_f32()
+    }
+
+    fn on_exit(&mut self) {
+        self.stop.request();
+        self.wake.ring();
+        self.scene_renderer.end();
+        if let Some(member) = self.member.take() {
+            member.leave();
+        }
+    }
+}
+
+impl std::fmt::Debug for App {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("App")
+            .field("view", &self.view)
+            .field("follower", &self.tracker)
+            .finish_non_exhaustive()
+    }
+}

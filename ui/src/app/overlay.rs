@@ -1,0 +1,203 @@
+//! What lies over the desk: rack, panels, tellings, the line of help; and what the keys do there.
+
+use eframe::egui::{
+    self, Align2, Area, CollapsingHeader, Context, Frame, Id, Order, RichText, ScrollArea, Ui,
+};
+use maulstick_types::command::Command;
+use maulstick_types::scene::CANVAS;
+
+use crate::app::first_run::FirstRun;
+use crate::app::rack;
+use crate::dialogs::Files;
+use crate::input::keys::{self, Action};
+use crate::panels::{self, Panel};
+use crate::reference::Reference;
+use crate::rig::dispatcher::Outcome;
+use crate::widgets::context::PanelContext;
+
+/// Width of the column of panels, points.
+const COLUMN: f32 = 300.0;
+/// Its distance from the window's edges, points.
+const MARGIN: f32 = 8.0;
+
+/// What is over the desk.
+pub(crate) struct Overlay {
+    panels: Vec<Box<dyn Panel>>,
+    keys: bool,
+    /// Whether the panels are to have the keyboard.
+    to_panels: bool,
+    files: Files,
+    reference: Reference,
+    first_run: FirstRun,
+}
+
+impl Default for Overlay {
+    fn default() -> Self {
+        Self {
+            panels: panels::all(),
+            keys: false,
+            to_panels: false,
+            files: Files::default(),
+            reference: Reference::default(),
+            first_run: FirstRun::default(),
+        }
+    }
+}
+
+impl Overlay {
+    /// Shows it and follows the keys; what concerns the desk itself is returned.
+    #[must_use]
+    pub(crate) fn show(&mut self, ui: &mut Ui, work: &mut PanelContext<'_>) -> Vec<Action> {
+        let context = ui.ctx().clone();
+        let mut rest = Vec::new();
+        // Keys are a dialog's while one is open.
+        let mut acts = match self.files.is_open() {
+            true => keys::force_off(&context),
+            false => keys::pressed(&context),
+        };
+        acts.append(&mut work.requests.take_acts());
+        for act in acts {
+            if !self.follow(&context, act, work) {
+                rest.push(act);
+            }
+        }
+        rack::show(&context, work);
+        if work.preferences.panels {
+            self.column(&context, work);
+        }
+        if self.keys {
+            self.table_of_keys(&context);
+        }
+        if !self.files.is_open() {
+            self.first_run.show(&context, work.rig, work.preferences);
+        }
+        if let Some(act) = self.reference.show(&context, work) {
+            self.files.follow(&context, act, work);
+        }
+        self.files.show(&context, &mut self.reference, work);
+        work.notifications.show(&context);
+        rest
+    }
+
+    /// Hears what became of an order: what was not done is told.
+    pub(crate) fn hear(&mut self, outcome: &Outcome, work: &mut PanelContext<'_>) {
+        if self.files.hear(outcome, work) {
+            return;
+        }
+        work.brush_answered(outcome);
+        if let Err(fault) = &outcome.result {
+            work.notifications.of(fault);
+        }
+    }
+
+    /// Does what a key asks for; `false` where it concerns the desk.
+    fn follow(&mut self, context: &Context, act: Action, work: &mut PanelContext<'_>) -> bool {
+        match act {
+            Action::Undo => work.requests.paint(Command::Undo { brush: None }),
+            Action::Redo => work.requests.paint(Command::Redo { brush: None }),
+            Action::Dry => work.requests.paint(Command::Dry {
+                surface: CANVAS,
+                share: 1.0,
+                name: String::new(),
+            }),
+            Action::Smaller => work.step_width(false),
+            Action::Larger => work.step_width(true),
+            Action::NextBrush => work.next_brush(),
+            Action::Panels => work.preferences.panels = !work.preferences.panels,
+            Action::Focus => {
+                work.preferences.panels = true;
+                self.to_panels = true;
+            }
+            Action::Reference if self.reference.toggle(work.preferences) => {}
+            Action::New
+            | Action::Open
+            | Action::Save
+            | Action::SaveAs
+            | Action::Export
+            | Action::Reference => {
+                self.files.follow(context, act, work);
+            }
+            Action::Keys => self.keys = !self.keys,
+            Action::ForceOff => panels::device::force_off(work),
+            Action::FullScreen => {
+                let now = context.input(|input| input.viewport().fullscreen.unwrap_or(false));
+                context.send_viewport_cmd(egui::ViewportCommand::Fullscreen(!now));
+            }
+            _ => return false,
+        }
+        true
+    }
+
+    fn column(&mut self, context: &Context, work: &mut PanelContext<'_>) {
+        let (side, inward) = match work.preferences.left_handed {
+            false => (Align2::RIGHT_TOP, -1.0),
+            true => (Align2::LEFT_TOP, 1.0),
+        };
+        let height = context.content_rect().height() - 4.0 * MARGIN;
+        Area::new(Id::unique("panels"))
+            .order(Order::Middle)
+            .anchor(side, [inward * (rack::WIDTH + 2.0 * MARGIN), MARGIN])
+            .accessible_name("Panels")
+            .show(context, |ui| {
+                Frame::popup(ui.style()).show(ui, |ui| {
+                    ui.set_width(COLUMN);
+                    ScrollArea::vertical()
+                        .max_height(height)
+                        .min_scrolled_height(height)
+                        .show(ui, |ui| {
+                            for panel in &mut self.panels {
+                                let title = panel.title();
+                                let open = work.preferences.is_open(title);
+                                let header = CollapsingHeader::new(RichText::new(title).strong())
+                                    .id_salt(title)
+                                    .default_open(open);
+                                let shown = header.show(ui, |ui| {
+                                    ui.spacing_mut().slider_width = 120.0;
+                                    panel.show(ui, work);
+                                });
+                                if std::mem::take(&mut self.to_panels) {
+                                    shown.header_response.request_focus();
+                                }
+                                if shown.header_response.clicked() {
+                                    work.preferences.unfold(title, !open);
+                                }
+                            }
+                        });
+                });
+            });
+    }
+
+    fn table_of_keys(&mut self, context: &Context) {
+        let mut open = self.keys;
+        egui::Window::new("Keys")
+            .open(&mut open)
+            .collapsible(false)
+            .resizable(false)
+            .anchor(Align2::CENTER_CENTER, [0.0, 0.0])
+            .show(context, |ui| {
+                egui::Grid::new("keys")
+                    .num_columns(2)
+                    .striped(true)
+                    .show(ui, |ui| {
+                        for binding in &keys::BINDINGS {
+                            ui.monospace(keys::written(context, &binding.shortcut));
+                            ui.label(binding.words);
+                            ui.end_row();
+                        }
+                        for (keys, words) in keys::HELD {
+                            ui.monospace(keys);
+                            ui.label(words);
+                            ui.end_row();
+                        }
+                    });
+            });
+        self.keys = open;
+    }
+}
+
+impl std::fmt::Debug for Overlay {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        let titles: Vec<_> = self.panels.iter().map(|panel| panel.title()).collect();
+        f.debug_struct("Shell").field("panels", &titles).finish()
+    }
+}

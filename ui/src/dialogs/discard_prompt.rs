@@ -1,0 +1,57 @@
+//! A painting that is in memory alone goes when another one is opened: then the painter says so first.
+
+use eframe::egui::Ui;
+
+use crate::rig::state::RigState;
+
+/// What is known of the painting that would go.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(crate) struct Unkept {
+    /// Whether it is in memory alone and something is painted.
+    would_go: bool,
+    let_go: bool,
+}
+
+impl Unkept {
+    /// The painting on the easel.
+    #[must_use]
+    pub(crate) fn of(rig: &RigState) -> Self {
+        let status = rig.paint.as_ref().map(|paint| &paint.status);
+        Self {
+            would_go: status.is_some_and(|status| status.path.is_empty() && !status.blank),
+            let_go: false,
+        }
+    }
+
+    /// Whether the painter lets it go.
+    #[must_use]
+    pub(crate) fn let_go(self) -> bool {
+        self.would_go && self.let_go
+    }
+
+    /// Asks, where there is something to ask.
+    pub(crate) fn show(&mut self, ui: &mut Ui) {
+        if self.would_go {
+            ui.add_space(6.0);
+            ui.checkbox(
+                &mut self.let_go,
+                "Let go of the painting on the easel: it is in no file",
+            );
+        }
+    }
+
+    /// Whether another painting may take its place.
+    ///
+    /// # Errors
+    /// What to do first, in words.
+    pub(crate) fn check(self) -> Result<(), String> {
+        match self.would_go && !self.let_go {
+            true => Err(
+                "The painting on the easel is in no file and would be gone. Keep it first \
+                 (Escape, then Ctrl+S), or tick that you let it go."
+                    .to_owned(),
+            ),
+            false => Ok(()),
+        }
+    }
+}

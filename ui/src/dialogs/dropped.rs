@@ -1,0 +1,180 @@
+//! Files that are dropped on the window: what each is, and what becomes of it.
+
+use std::fs::File;
+use std::io::Read as _;
+use std::path::{Path, PathBuf};
+
+use eframe::egui::{Align2, Area, Context, Frame, Id, Order, RichText};
+use maulstick_brush::BrushFile;
+use maulstick_types::command::BRUSH_FILE_MAX;
+
+use crate::dialogs::paths;
+
+/// What is to be dropped.
+pub(crate) const KINDS: &str =
+    "Drop a painting (.maul), a picture to look at (PNG, JPEG, TIFF) or a brush (.toml).";
+
+/// A file that was dropped, as it was found to be.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) enum Dropped {
+    /// A painting: it is opened.
+    Painting(PathBuf),
+    /// A picture: it is pinned beside the canvas.
+    Picture(PathBuf),
+    /// A brush file: the brush in hand becomes it.
+    Brush(Box<BrushFile>),
+    /// Something else.
+    Nothing {
+        /// What it is.
+        what: String,
+        /// What to do.
+        help: String,
+    },
+}
+
+/// What a file is, by its name and its first bytes.
+#[must_use]
+pub(crate) fn found(path: &Path) -> Dropped {
+    let name = paths::name(path);
+    let nothing = |what: String, help: &str| Dropped::Nothing {
+        what,
+        help: help.to_owned(),
+    };
+    if path.is_dir() {
+        return nothing(format!("{name} is a folder"), KINDS);
+    }
+    let head = match head(path) {
+        Ok(head) => head,
+        Err(error) => {
+            return nothing(
+                format!("{name} cannot be read: {error}"),
+                "See that it is there and that you may read it.",
+            );
+        }
+    };
+    let begins = |magic: &[u8]| head.starts_with(magic);
+    let ending = paths::ending(path);
+    if begins(b"SQLite format 3\0") || ending == paths::PAINTING {
+        return Dropped::Painting(path.to_owned());
+    }
+    let is_picture = begins(b"\x89PNG") || begins(b"\xff\xd8\xff");
+    let is_tiff = begins(b"II*\0") || begins(b"MM\0*");
+    if is_picture || is_tiff || paths::PICTURES.contains(&ending.as_str()) {
+        return Dropped::Picture(path.to_owned());
+    }
+    match ending.as_str() {
+        "toml" => brush(path, &name),
+        "mcap" => nothing(
+            format!("{name} is a take, and the window does not play one"),
+            "Paint it from a terminal: maulstick render TAKE -o picture.png",
+        ),
+        "" => nothing(format!("{name} is none that can be opened"), KINDS),
+        ending => nothing(format!("A .{ending} file cannot be opened"), KINDS),
+    }
+}
+
+/// The first bytes of a file.
+fn head(path: &Path) -> std::io::Result<Vec<u8>> {
+    let mut head = Vec::new();
+    File::open(path)?.take(16).read_to_end(&mut head)?;
+    Ok(head)
+}
+
+fn brush(path: &Path, name: &str) -> Dropped {
+    let mut toml = String::new();
+    let read = File::open(path).and_then(|file| {
+        file.take(BRUSH_FILE_MAX as u64 + 1)
+            .read_to_string(&mut toml)
+    });
+    let wrong = match read {
+        Err(error) => error.to_string(),
+        Ok(bytes) if bytes > BRUSH_FILE_MAX => "it has more than a megabyte".to_owned(),
+        Ok(_) => match BrushFile::parse(&toml) {
+            Ok(file) => return Dropped::Brush(Box::new(file)),
+            Err(error) => error.to_string(),
+        },
+    };
+    Dropped::Nothing {
+        what: format!("{name} is no brush that can be used: {wrong}"),
+        help: "Brushes are files as docs/brushes.md says.".to_owned(),
+    }
+}
+
+/// Says what would become of the file that is held over the window.
+pub(crate) fn hint(context: &Context) {
+    let hovered = context.input(|input| {
+        let first = input.raw.hovered_files.first();
+        first.map(|file| (file.path.clone(), input.raw.hovered_files.len()))
+    });
+    let Some((path, count)) = hovered else {
+        return;
+    };
+    let words = match (path.as_deref().map(paths::ending).as_deref(), count) {
+        (_, 2..) => "One file at a time.",
+        (Some(paths::PAINTING), _) => "Let go to open the painting.",
+        (Some("toml"), _) => "Let go to take this brush into the hand.",
+        (Some(ending), _) if paths::PICTURES.contains(&ending) => {
+            "Let go to pin the picture beside the canvas."
+        }
+        _ => KINDS,
+    };
+    Area::new(Id::unique("dropping"))
+        .order(Order::Tooltip)
+        .anchor(Align2::CENTER_CENTER, [0.0, 0.0])
+        .interactable(false)
+        .show(context, |ui| {
+            Frame::window(ui.style()).show(ui, |ui| {
+                ui.label(RichText::new(words).heading());
+            });
+        });
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_file_is_what_its_bytes_or_its_name_say() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let put = |name: &str, bytes: &[u8]| {
+            let path = folder.path().join(name);
+            std::fs::write(&path, bytes).expect("written");
+            path
+        };
+        let painting = put("sea", b"SQLite format 3\0more");
+        assert_eq!(found(&painting), Dropped::Painting(painting));
+        let picture = put("photo", b"\xff\xd8\xff\xe0more");
+        assert_eq!(found(&picture), Dropped::Picture(picture));
+        let named = put("scan.TIF", b"");
+        assert_eq!(found(&named), Dropped::Picture(named));
+        let round = BrushFile::library_text("round").expect("a brush");
+        match found(&put("round.toml", round.as_bytes())) {
+            Dropped::Brush(file) => assert_eq!(file.kind, "round"),
+            other => panic!("{other:?}"),
+        }
+    }
+
+    #[test]
+    fn what_cannot_be_opened_is_said_with_what_can() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let refused = |name: &str, bytes: &[u8], words: &[&str]| {
+            let path = folder.path().join(name);
+            std::fs::write(&path, bytes).expect("written");
+            let Dropped::Nothing { what, help } = found(&path) else {
+                panic!("{name} is something");
+            };
+            for word in words {
+                assert!(what.contains(word) || help.contains(word), "{what} {help}");
+            }
+        };
+        refused("song.mp3", b"ID3", &[".mp3", ".maul", "PNG", ".toml"]);
+        refused("notes", b"words", &["notes", ".maul"]);
+        refused("a.mcap", b"", &["a take", "render"]);
+        refused("b.toml", b"name = 7", &["b.toml", "docs/brushes.md"]);
+        refused("c.toml", b"\xff\xfe", &["c.toml"]);
+        refused("d.toml", &vec![b' '; BRUSH_FILE_MAX + 1], &["megabyte"]);
+        for path in [folder.path().to_owned(), folder.path().join("none.toml")] {
+            assert!(matches!(found(&path), Dropped::Nothing { .. }), "{path:?}");
+        }
+    }
+}

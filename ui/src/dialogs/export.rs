@@ -1,0 +1,238 @@
+//! A file for other programs is asked for.
+
+use std::path::Path;
+
+use eframe::egui::{ComboBox, Context, Grid, Ui};
+use maulstick_types::command::{Command, ExportOrder};
+
+use crate::dialogs::browser::{Browser, Purpose};
+use crate::dialogs::dialog::{self, Answer, Foot, line, number};
+use crate::dialogs::paths;
+
+/// A format: its name in the order, what its files end with, what it is.
+struct Format {
+    name: &'static str,
+    ending: &'static str,
+    words: &'static str,
+}
+
+const FORMATS: [Format; 5] = [
+    Format {
+        name: "png",
+        ending: "png",
+        words: "Picture under its light (PNG)",
+    },
+    Format {
+        name: "ora",
+        ending: "ora",
+        words: "Layers (OpenRaster)",
+    },
+    Format {
+        name: "exr",
+        ending: "exr",
+        words: "Unlit colour, height, each paint (OpenEXR)",
+    },
+    Format {
+        name: "height",
+        ending: "png",
+        words: "Heights in grey (PNG)",
+    },
+    Format {
+        name: "stl",
+        ending: "stl",
+        words: "Relief to print (STL)",
+    },
+];
+/// What the names of exports end with.
+const ENDINGS: &[&str] = &["png", "ora", "exr", "stl"];
+const DEPTHS: [(u32, &str); 2] = [(8, "8 bits a channel"), (16, "16 bits a channel")];
+const PROFILES: [(&str, &str); 3] = [
+    ("", "As the window"),
+    ("srgb", "sRGB"),
+    ("display-p3", "Display P3"),
+];
+
+/// An export that is being asked for.
+#[derive(Debug)]
+pub(crate) struct ExportPicture {
+    browser: Browser,
+    format: usize,
+    bits: u32,
+    profile: &'static str,
+    base_mm: String,
+    exaggeration: String,
+    wrong: Option<String>,
+}
+
+impl ExportPicture {
+    /// Begins with a PNG called as the painting, in `folder`.
+    #[must_use]
+    pub(crate) fn new(folder: &Path, stem: &str) -> Self {
+        Self::at(paths::shown(&folder.join(format!("{stem}.png"))))
+    }
+
+    fn at(path: String) -> Self {
+        Self {
+            browser: Browser::at(&path, Purpose::Write, ENDINGS),
+            format: 0,
+            bits: 8,
+            profile: PROFILES[0].0,
+            base_mm: "2".to_owned(),
+            exaggeration: "1".to_owned(),
+            wrong: None,
+        }
+    }
+
+    /// The same with a folder whose entries are known.
+    #[cfg(test)]
+    pub(crate) fn with(mut self, browser: Browser) -> Self {
+        self.browser = browser;
+        self
+    }
+
+    /// The order.
+    ///
+    /// # Errors
+    /// What is wrong and what to do, in words.
+    fn command(&self, path: &Path) -> Result<Command, String> {
+        let ending = paths::ending(path);
+        let format = &FORMATS[self.format];
+        if !ending.is_empty() && ending != format.ending {
+            return Err(format!(
+                "A name that ends in .{ending} says nothing that can be written. End it in .png, \
+                 .ora, .exr or .stl."
+            ));
+        }
+        if path.file_name().is_none() {
+            return Err("Write the name of a file.".to_owned());
+        }
+        let path = paths::ending_in(path, format.ending);
+        if path.is_dir() {
+            return Err("Write the name of a file.".to_owned());
+        }
+        if !path.parent().is_some_and(Path::is_dir) {
+            return Err(format!(
+                "There is no folder {}. Write one that is there.",
+                paths::shown(path.parent().unwrap_or(Path::new("/")))
+            ));
+        }
+        let mut order = ExportOrder {
+            format: format.name.to_owned(),
+            ..ExportOrder::to(&path.display().to_string())
+        };
+        match format.name {
+            "png" => (order.bits, order.profile) = (self.bits, self.profile.to_owned()),
+            "stl" => {
+                let base_mm = number("Base", &self.base_mm)?;
+                order.exaggeration = number("Heights", &self.exaggeration)?;
+                order.base_m = base_mm * 1e-3;
+                if base_mm <= 0.0 || order.exaggeration <= 0.0 {
+                    return Err(
+                        "Base and heights: write numbers above 0; 2 mm and 1 are usual.".to_owned(),
+                    );
+                }
+            }
+            _ => {}
+        }
+        Ok(Command::Export { order })
+    }
+
+    /// Follows the ending that was typed.
+    fn follow(&mut self) {
+        let ending = paths::ending(&self.browser.path());
+        if FORMATS[self.format].ending != ending
+            && let Some(format) = FORMATS.iter().position(|format| format.ending == ending)
+        {
+            self.format = format;
+        }
+    }
+
+    /// Shows the dialog.
+    pub(crate) fn show(&mut self, context: &Context, busy: bool) -> (Answer, Option<Command>) {
+        let mut taken = None;
+        let answer = dialog::show(context, "Export", |ui| {
+            taken = self.browser.show(ui, "File");
+            self.follow();
+            ui.add_space(6.0);
+            let entered = self.options(ui);
+            let path = paths::ending_in(&self.browser.path(), FORMATS[self.format].ending);
+            if self.browser.lists(ui.ctx(), &path) {
+                ui.weak(format!("{} will be replaced.", paths::name(&path)));
+            }
+            Foot {
+                go: "Export",
+                wrong: self.wrong.clone(),
+                entered: taken.is_some() || entered,
+                busy: busy.then_some("Beginning …"),
+            }
+        });
+        let asked = (answer == Answer::Go).then(|| {
+            let path = taken.unwrap_or_else(|| self.browser.path());
+            self.command(&path)
+        });
+        dialog::decided(answer, asked, &mut self.wrong)
+    }
+
+    fn options(&mut self, ui: &mut Ui) -> bool {
+        let mut entered = false;
+        let grid = Grid::new("export").num_columns(2).spacing([12.0, 8.0]);
+        grid.show(ui, |ui| {
+            let format = ui.label("Format");
+            let before = self.format;
+            let combo = ComboBox::from_id_salt("format")
+                .width(300.0)
+                .selected_text(FORMATS[self.format].words);
+            let combo = combo.show_ui(ui, |ui| {
+                for (place, format) in FORMATS.iter().enumerate() {
+                    ui.selectable_value(&mut self.format, place, format.words);
+                }
+            });
+            combo.response.labelled_by(format.id);
+            if before != self.format {
+                let path = self
+                    .browser
+                    .path()
+                    .with_extension(FORMATS[self.format].ending);
+                self.browser.set(paths::shown(&path));
+            }
+            ui.end_row();
+            match FORMATS[self.format].name {
+                "png" => {
+                    choice(ui, "Depth", &DEPTHS, &mut self.bits);
+                    choice(ui, "Colours", &PROFILES, &mut self.profile);
+                }
+                "stl" => {
+                    ui.label("Solid");
+                    ui.horizontal(|ui| {
+                        entered |= line(ui, "Base", &mut self.base_mm, false, 48.0);
+                        ui.label("mm");
+                        ui.add_space(8.0);
+                        entered |= line(ui, "Heights", &mut self.exaggeration, false, 48.0);
+                        ui.label("times");
+                    });
+                    ui.end_row();
+                }
+                _ => {}
+            }
+        });
+        entered
+    }
+}
+
+fn choice<T: Copy + PartialEq>(ui: &mut Ui, label: &str, all: &[(T, &str)], chosen: &mut T) {
+    let name = ui.label(label);
+    let shown = all.iter().find(|(value, _)| value == chosen);
+    let combo = ComboBox::from_id_salt(label)
+        .width(140.0)
+        .selected_text(shown.map_or("", |(_, words)| words));
+    let combo = combo.show_ui(ui, |ui| {
+        for (value, words) in all {
+            ui.selectable_value(chosen, *value, *words);
+        }
+    });
+    combo.response.labelled_by(name.id);
+    ui.end_row();
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,72 @@
+//! How far an export is, when it ends, and its end before that.
+
+use std::path::Path;
+
+use eframe::egui::{Align2, Area, Context, Frame, Id, Order, ProgressBar};
+use maulstick_types::command::Command;
+use maulstick_types::paint::ExportStatus;
+
+use crate::dialogs::paths;
+use crate::widgets::context::PanelContext;
+
+/// An export that lasts no longer than this is not worth a word, ns.
+const SHORT_NS: u64 = 500_000_000;
+/// Below this share nobody knows when it ends.
+const KNOWN: f32 = 0.02;
+
+/// How long it will still take, in words; empty where nobody knows.
+fn left(export: &ExportStatus) -> String {
+    if !(KNOWN..=1.0).contains(&export.share) {
+        return String::new();
+    }
+    let seconds = export.since_ns as f64 * 1e-9;
+    let left = (seconds * f64::from((1.0 - export.share) / export.share)).ceil();
+    match left {
+        left if left < 60.0 => format!("{left:.0} s left"),
+        left => format!("{:.0} min left", (left / 60.0).ceil()),
+    }
+}
+
+/// Shows it at the lower edge.
+pub(crate) fn show(context: &Context, work: &mut PanelContext<'_>) {
+    let status = work.rig.paint.as_ref().map(|node| &node.status);
+    let export = status.and_then(|status| status.export.clone());
+    let Some(export) = export.filter(|export| export.since_ns >= SHORT_NS) else {
+        return;
+    };
+    Area::new(Id::unique("exporting"))
+        .order(Order::Foreground)
+        .anchor(Align2::CENTER_BOTTOM, [0.0, -48.0])
+        .show(context, |ui| {
+            Frame::popup(ui.style()).show(ui, |ui| {
+                ui.horizontal(|ui| {
+                    let name = paths::name(Path::new(&export.path));
+                    ui.label(format!("Exporting {name}"));
+                    let bar = ProgressBar::new(export.share).desired_width(140.0);
+                    ui.add(bar.show_percentage());
+                    ui.label(left(&export));
+                    if ui.button("Stop").clicked() {
+                        work.requests.paint(Command::StopExport);
+                    }
+                });
+            });
+        });
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_time_left_is_that_of_the_rest() {
+        let export = |share: f32, seconds: u64| ExportStatus {
+            path: "/a.png".to_owned(),
+            share,
+            since_ns: seconds * 1_000_000_000,
+        };
+        assert_eq!(left(&export(0.25, 10)), "30 s left");
+        assert_eq!(left(&export(0.5, 100)), "2 min left");
+        assert_eq!(left(&export(0.0, 10)), "");
+        assert_eq!(left(&export(f32::NAN, 10)), "");
+    }
+}

@@ -1,0 +1,391 @@
+//! Files in the window: new, open, save, save as, export, what is dropped. Nothing is ever asked twice, and
+//! the desk goes on while an answer is waited for.
+//!
+//! | module | holds |
+//! | --- | --- |
+//! | `dialog`, `browser`, `folder`, `paths` | parts of dialogs: frame, file chooser, listing of a folder, paths |
+//! | `new`, `open`, `recent`, `save_as`, `export`, `picture` | one dialog each |
+//! | `discard_prompt` | asks before an unsaved painting is closed |
+//! | `dropped` | files dropped on the window |
+//! | `save_status`, `exporting` | line at the lower edge; progress of an export |
+
+mod browser;
+mod dialog;
+mod discard_prompt;
+mod dropped;
+mod export;
+mod exporting;
+mod folder;
+mod new;
+mod open;
+pub(crate) mod paths;
+mod picture;
+mod recent;
+mod save_as;
+mod save_status;
+
+use std::path::{Path, PathBuf};
+use std::task::Poll;
+
+use eframe::egui::Context;
+use maulstick_types::command::Command;
+
+use crate::background_task::BackgroundTask;
+use crate::input::keys::Action;
+use crate::reference::Reference;
+use crate::rig::dispatcher::Outcome;
+use crate::rig::requests::{PAINT, Request};
+use crate::widgets::context::PanelContext;
+use dialog::{Answer, in_words};
+use discard_prompt::Unkept;
+use dropped::Dropped;
+use export::ExportPicture;
+use new::NewPainting;
+use open::OpenPainting;
+use picture::ChoosePicture;
+use recent::RecentList;
+use save_as::SaveAs;
+
+/// The launcher, as a node.
+pub(crate) const RIG: &str = "rig";
+
+/// A dialog that is open.
+#[derive(Debug)]
+enum Dialog {
+    New(NewPainting),
+    Open(OpenPainting),
+    SaveAs(SaveAs),
+    Export(ExportPicture),
+    Picture(ChoosePicture),
+}
+
+/// Files in the window.
+#[derive(Debug, Default)]
+pub(crate) struct Files {
+    dialog: Option<Dialog>,
+    /// What the open dialog asked for and is not answered yet.
+    waiting: Option<Request>,
+    /// What was dropped and is being looked at.
+    dropping: Option<BackgroundTask<Dropped>>,
+    /// The painting that was last seen to be open.
+    open: Option<PathBuf>,
+}
+
+impl Files {
+    /// Whether a dialog has the keyboard.
+    #[must_use]
+    pub(crate) fn is_open(&self) -> bool {
+        self.dialog.is_some()
+    }
+
+    /// Does what a key asks for; `false` where it is about no file.
+    pub(crate) fn follow(
+        &mut self,
+        context: &Context,
+        act: Action,
+        work: &mut PanelContext<'_>,
+    ) -> bool {
+        match act {
+            Action::New => {
+                let unkept = Unkept::of(work.rig);
+                let new = NewPainting::new(&folder(work), unkept);
+                self.begin(Dialog::New(new));
+            }
+            Action::Open => {
+                let open = self.choose(context, work);
+                self.begin(Dialog::Open(open));
+            }
+            Action::Save => self.save(work),
+            Action::SaveAs => self.save_as(work),
+            Action::Export => {
+                let export = ExportPicture::new(&folder(work), &stem(work));
+                self.begin(Dialog::Export(export));
+            }
+            Action::Reference => self.choose_picture(work),
+            _ => return false,
+        }
+        true
+    }
+
+    fn begin(&mut self, dialog: Dialog) {
+        self.dialog = Some(dialog);
+        self.waiting = None;
+    }
+
+    fn choose(&self, context: &Context, work: &PanelContext<'_>) -> OpenPainting {
+        let open = self.open.as_deref().unwrap_or(Path::new(""));
+        let recent = RecentList::new(context, &work.preferences.recent, open);
+        OpenPainting::new(&folder(work), recent, Unkept::of(work.rig))
+    }
+
+    /// Asks for a picture to pin beside the canvas.
+    fn choose_picture(&mut self, work: &PanelContext<'_>) {
+        let known = work
+            .preferences
+            .reference
+            .path
+            .as_deref()
+            .and_then(Path::parent);
+        let folder = known.map_or_else(paths::pictures, Path::to_owned);
+        self.begin(Dialog::Picture(ChoosePicture::new(&folder)));
+    }
+
+    fn save(&mut self, work: &mut PanelContext<'_>) {
+        let Some(node) = &work.rig.paint else {
+            work.notifications.fault(
+                "nothing is known of the painting yet",
+                "wait for the paint node: it comes back by itself",
+            );
+            return;
+        };
+        match (node.status.path.as_str(), node.status.all_committed) {
+            ("", _) => self.save_as(work),
+            (path, all) => {
+                let file = paths::shown(Path::new(path));
+                work.notifications.note(match all {
+                    true => format!("All is saved in {file}"),
+                    false => format!("Being saved in {file}, as always by itself"),
+                });
+            }
+        }
+    }
+
+    fn save_as(&mut self, work: &PanelContext<'_>) {
+        let save_as = SaveAs::new(&folder(work), &stem(work));
+        self.begin(Dialog::SaveAs(save_as));
+    }
+
+    /// Shows what is open, and follows what is dropped.
+    pub(crate) fn show(
+        &mut self,
+        context: &Context,
+        reference: &mut Reference,
+        work: &mut PanelContext<'_>,
+    ) {
+        self.remember(work);
+        self.take_dropped(context, reference, work);
+        dropped::hint(context);
+        if let Some(act) = save_status::show(context, work) {
+            self.follow(context, act, work);
+        }
+        exporting::show(context, work);
+        self.show_dialog(context, reference, work);
+    }
+
+    fn show_dialog(
+        &mut self,
+        context: &Context,
+        reference: &mut Reference,
+        work: &mut PanelContext<'_>,
+    ) {
+        let busy = self.waiting.is_some();
+        let Some(dialog) = &mut self.dialog else {
+            return;
+        };
+        let (answer, command) = match dialog {
+            Dialog::New(new) => new.show(context, busy),
+            Dialog::Open(open) => open.show(context, busy),
+            Dialog::SaveAs(save_as) => save_as.show(context, busy),
+            Dialog::Export(export) => export.show(context, busy),
+            Dialog::Picture(picture) => {
+                let (answer, path) = picture.show(context);
+                if let Some(path) = path {
+                    reference.pin(context, &path, work.preferences);
+                    self.dialog = None;
+                    return;
+                }
+                (answer, None)
+            }
+        };
+        match (answer, command) {
+            (Answer::Leave, _) => (self.dialog, self.waiting) = (None, None),
+            (_, Some(command)) => {
+                // An export goes on by itself, and how far it is is shown.
+                let is_export = matches!(command, Command::Export { .. });
+                let order = ask(command, work);
+                match is_export {
+                    true => self.dialog = None,
+                    false => self.waiting = Some(order),
+                }
+            }
+            _ => {}
+        }
+    }
+
+    /// Hears what became of an order; `false` where it was about no file.
+    pub(crate) fn hear(&mut self, outcome: &Outcome, work: &mut PanelContext<'_>) -> bool {
+        let Request::Command { command, .. } = &outcome.request else {
+            return false;
+        };
+        let Some(done) = done(command) else {
+            return false;
+        };
+        let is_waited_for = self.waiting.as_ref() == Some(&outcome.request);
+        if switches(command) {
+            work.rig.switching = false;
+        }
+        match &outcome.result {
+            Ok(detail) => {
+                // Some say nothing but the path, which is told already.
+                let is_told = done.contains(&paths::shown(Path::new(detail)));
+                let sentence = if is_told {
+                    String::new()
+                } else {
+                    in_words(detail, "")
+                };
+                work.notifications
+                    .note(format!("{done} {sentence}").trim().to_owned());
+                if is_waited_for {
+                    (self.dialog, self.waiting) = (None, None);
+                }
+            }
+            Err(fault) if is_waited_for => {
+                let words = in_words(&fault.what, fault.help.as_deref().unwrap_or_default());
+                self.waiting = None;
+                match &mut self.dialog {
+                    Some(Dialog::New(new)) => new.refused(words),
+                    Some(Dialog::Open(open)) => open.refused(words),
+                    Some(Dialog::SaveAs(save_as)) => save_as.refused(words),
+                    Some(Dialog::Export(_) | Dialog::Picture(_)) | None => {
+                        work.notifications.of(fault)
+                    }
+                }
+            }
+            Err(fault) => work.notifications.of(fault),
+        }
+        true
+    }
+
+    /// Remembers which paintings were open.
+    fn remember(&mut self, work: &mut PanelContext<'_>) {
+        let Some(node) = &work.rig.paint else {
+            return;
+        };
+        // Empty for one in memory: the one before is no longer open then.
+        let path = PathBuf::from(&node.status.path);
+        if self.open.as_ref() != Some(&path) {
+            if !path.as_os_str().is_empty() {
+                work.preferences.opened(&path);
+            }
+            self.open = Some(path);
+        }
+    }
+
+    fn take_dropped(
+        &mut self,
+        context: &Context,
+        reference: &mut Reference,
+        work: &mut PanelContext<'_>,
+    ) {
+        let files = context.input(|input| input.raw.dropped_files.clone());
+        if let Some(first) = files.first() {
+            if files.len() > 1 {
+                let what = format!("{} files were dropped", files.len());
+                work.notifications.fault(what, "drop one at a time");
+            } else {
+                let path = first.path().to_owned();
+                let look = move || dropped::found(&path);
+                self.dropping = Some(BackgroundTask::start(context, "dropped", look));
+            }
+        }
+        let Some(task) = &self.dropping else {
+            return;
+        };
+        let found = match task.poll() {
+            Poll::Pending => return,
+            Poll::Ready(found) => found,
+        };
+        self.dropping = None;
+        match found {
+            Some(Dropped::Painting(path)) => self.open_dropped(context, &path, work),
+            Some(Dropped::Picture(path)) => reference.pin(context, &path, work.preferences),
+            Some(Dropped::Brush(file)) => work.take_up(*file),
+            Some(Dropped::Nothing { what, help }) => work.notifications.fault(what, help),
+            None => work
+                .notifications
+                .fault("the dropped file cannot be read", dropped::KINDS),
+        }
+    }
+
+    fn open_dropped(&mut self, context: &Context, path: &Path, work: &mut PanelContext<'_>) {
+        if let Err(words) = Unkept::of(work.rig).check() {
+            let mut open = self.choose(context, work);
+            open.propose(path);
+            open.refused(words);
+            self.begin(Dialog::Open(open));
+            return;
+        }
+        work.notifications
+            .note(format!("Opening {} …", paths::name(path)));
+        ask(
+            Command::Open {
+                path: path.display().to_string(),
+                forget: false,
+            },
+            work,
+        );
+    }
+}
+
+/// Sends a command about files to who does it.
+fn ask(command: Command, work: &mut PanelContext<'_>) -> Request {
+    let node = match &command {
+        Command::Export { .. } | Command::StopExport => PAINT,
+        _ => RIG,
+    };
+    work.rig.switching |= switches(&command);
+    work.requests.node(node, command.clone());
+    Request::Command {
+        node: node.to_owned(),
+        command,
+    }
+}
+
+/// Whether a command puts another painting on the easel, for which nodes are started anew.
+fn switches(command: &Command) -> bool {
+    matches!(
+        command,
+        Command::Open { .. } | Command::New { .. } | Command::SaveAs { .. }
+    )
+}
+
+/// What a command about files did, in words; none of another command.
+fn done(command: &Command) -> Option<String> {
+    let file = |path: &str| paths::shown(Path::new(path));
+    match command {
+        Command::Open { path, .. } => Some(format!("Opened {}.", file(path))),
+        Command::New { path, .. } => Some(match path {
+            Some(path) => format!("A new painting, kept in {}.", file(path)),
+            None => "A new painting, in no file.".to_owned(),
+        }),
+        Command::SaveAs { path, .. } => Some(format!("The painting is in {} now.", file(path))),
+        Command::Export { order } => Some(format!("Written: {}.", file(&order.path))),
+        Command::StopExport => Some("The export has ended without a file.".to_owned()),
+        _ => None,
+    }
+}
+
+/// The folder in which a dialog begins: that of the painting, or of the one before.
+fn folder(work: &PanelContext<'_>) -> PathBuf {
+    let status = work.rig.paint.as_ref().map(|node| &node.status);
+    let open = status.filter(|status| !status.path.is_empty());
+    let open = open.map(|status| PathBuf::from(&status.path));
+    let known = open.as_ref().or(work.preferences.recent.first());
+    let folder = known.and_then(|path| path.parent());
+    folder
+        .filter(|folder| folder.is_dir())
+        .map_or_else(paths::pictures, Path::to_owned)
+}
+
+/// What the painting is called.
+fn stem(work: &PanelContext<'_>) -> String {
+    let status = work.rig.paint.as_ref().map(|node| &node.status);
+    let stem = status.and_then(|status| Path::new(&status.path).file_stem());
+    stem.map_or_else(
+        || "Painting".to_owned(),
+        |stem| stem.to_string_lossy().into_owned(),
+    )
+}
+
+#[cfg(test)]
+mod tests;

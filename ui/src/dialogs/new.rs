@@ -1,0 +1,297 @@
+//! A new painting is asked for: how large, how fine, on what, and where it is kept.
+
+use std::path::Path;
+
+use eframe::egui::{ComboBox, Context, Grid, Key, TextEdit, Ui};
+use maulstick_paint::tooth::Tooth;
+use maulstick_types::command::{Command, NewCanvas};
+use maulstick_types::scene::default_stain_m;
+
+use crate::dialogs::dialog::{self, Answer, Foot, in_words, line, number};
+use crate::dialogs::discard_prompt::Unkept;
+use crate::dialogs::paths;
+
+/// Sizes that are chosen with a click: name, width and height, cm.
+const SIZES: [(&str, &str, &str); 5] = [
+    ("A5", "21", "14.8"),
+    ("A4", "29.7", "21"),
+    ("A3", "42", "29.7"),
+    ("20 × 20", "20", "20"),
+    ("30 × 40", "30", "40"),
+];
+/// Grounds by name; the last is a file.
+const GROUNDS: [(&str, &str); 4] = [
+    ("gesso", "Gesso, white"),
+    ("grey", "Grey"),
+    ("black", "Black"),
+    (FILE, "A file …"),
+];
+const FILE: &str = "";
+/// Bytes that a cell takes when it is painted with three paints: their counts, its colour and height as
+/// they are shown, and the same in the window.
+const CELL_BYTES: f64 = 3.0 * 4.0 + 14.0 + 16.0;
+
+/// A new painting that is being asked for.
+#[derive(Debug)]
+pub(crate) struct NewPainting {
+    width: String,
+    height: String,
+    fine: String,
+    ground: &'static str,
+    ground_file: String,
+    tooth: String,
+    in_memory: bool,
+    path: String,
+    unkept: Unkept,
+    wrong: Option<String>,
+}
+
+impl NewPainting {
+    /// One that is kept in `folder`.
+    #[must_use]
+    pub(crate) fn new(folder: &Path, unkept: Unkept) -> Self {
+        let free = paths::free(folder, "Painting", paths::PAINTING);
+        Self::kept_in(paths::shown(&free), unkept)
+    }
+
+    fn kept_in(path: String, unkept: Unkept) -> Self {
+        Self {
+            width: "29.7".to_owned(),
+            height: "21".to_owned(),
+            fine: "4".to_owned(),
+            ground: GROUNDS[0].0,
+            ground_file: String::new(),
+            tooth: "linen".to_owned(),
+            in_memory: false,
+            path,
+            unkept,
+            wrong: None,
+        }
+    }
+
+    /// What the rig said against it.
+    pub(crate) fn refused(&mut self, words: String) {
+        self.wrong = Some(words);
+    }
+
+    /// What it is painted on.
+    ///
+    /// # Errors
+    /// What is wrong and what to do, in words.
+    fn canvas(&self) -> Result<NewCanvas, String> {
+        let width = number("Width", &self.width)?;
+        let height = number("Height", &self.height)?;
+        let fine = number("Cells per mm", &self.fine)?;
+        if fine <= 0.0 {
+            return Err("Cells per mm: write a number above 0; 4 is usual.".to_owned());
+        }
+        let ground = match self.ground {
+            FILE if self.ground_file.trim().is_empty() => {
+                return Err(
+                    "Ground: write the path of a picture, or of a CSV file of nm,reflectance."
+                        .to_owned(),
+                );
+            }
+            FILE => paths::whole(&self.ground_file).display().to_string(),
+            name => name.to_owned(),
+        };
+        let canvas = NewCanvas {
+            width_m: width * 1e-2,
+            height_m: height * 1e-2,
+            cell_m: 1e-3 / fine,
+            ground,
+            tooth: self.tooth.clone(),
+            tooth_seed: 1,
+            stain_m: default_stain_m(),
+        };
+        canvas.check().map_err(|line| {
+            let (what, help) = maulstick_types::advice::parted(&line);
+            in_words(what, help.unwrap_or_default())
+        })?;
+        Ok(canvas)
+    }
+
+    /// The command.
+    ///
+    /// # Errors
+    /// As [`canvas`](Self::canvas), and where it cannot be kept there.
+    fn command(&self) -> Result<Command, String> {
+        let canvas = self.canvas()?;
+        self.unkept.check()?;
+        let path = match self.in_memory {
+            true => None,
+            false => Some(self.file()?),
+        };
+        Ok(Command::New {
+            path,
+            canvas,
+            forget: self.unkept.let_go(),
+        })
+    }
+
+    /// The whole path of its file.
+    fn file(&self) -> Result<String, String> {
+        if self.path.trim().is_empty() || self.path.trim().ends_with('/') {
+            return Err("Keep in: write the name of a file, or choose to keep nothing.".to_owned());
+        }
+        let path = paths::ending_in(&paths::whole(&self.path), paths::PAINTING);
+        if path.exists() {
+            return Err(format!(
+                "There is a file {} already. Write another name, or open that one (Ctrl+O).",
+                paths::shown(&path)
+            ));
+        }
+        if !path.parent().is_some_and(Path::is_dir) {
+            return Err(format!(
+                "There is no folder {}. Write one that is there.",
+                paths::shown(path.parent().unwrap_or(Path::new("/")))
+            ));
+        }
+        Ok(path.display().to_string())
+    }
+
+    /// Shows the dialog.
+    pub(crate) fn show(&mut self, context: &Context, busy: bool) -> (Answer, Option<Command>) {
+        let answer = dialog::show(context, "New painting", |ui| {
+            let entered = self.fields(ui);
+            let estimate = self.canvas().map(|canvas| estimate(&canvas));
+            ui.add_space(6.0);
+            let wrong = match estimate {
+                Ok(words) => {
+                    ui.weak(words);
+                    self.wrong.clone()
+                }
+                Err(words) => Some(words),
+            };
+            self.unkept.show(ui);
+            Foot {
+                go: "Begin",
+                wrong,
+                entered,
+                busy: busy.then_some("Laying out the canvas …"),
+            }
+        });
+        let asked = (answer == Answer::Go).then(|| self.command());
+        dialog::decided(answer, asked, &mut self.wrong)
+    }
+
+    fn fields(&mut self, ui: &mut Ui) -> bool {
+        let mut entered = false;
+        let mut changed = false;
+        ui.horizontal(|ui| {
+            for (name, width, height) in SIZES {
+                if ui
+                    .button(name)
+                    .on_hover_text(format!("{width} × {height} cm"))
+                    .clicked()
+                {
+                    (self.width, self.height) = (width.to_owned(), height.to_owned());
+                    changed = true;
+                }
+            }
+            let turn = ui.button("Turn").on_hover_text("Upright, or lying");
+            if turn.clicked() {
+                std::mem::swap(&mut self.width, &mut self.height);
+            }
+        });
+        ui.add_space(4.0);
+        let grid = Grid::new("new painting")
+            .num_columns(2)
+            .spacing([12.0, 8.0]);
+        grid.show(ui, |ui| {
+            ui.label("Size");
+            ui.horizontal(|ui| {
+                entered |= line(ui, "Width", &mut self.width, true, 56.0);
+                ui.label("cm");
+                ui.add_space(8.0);
+                entered |= line(ui, "Height", &mut self.height, false, 56.0);
+                ui.label("cm");
+            });
+            ui.end_row();
+            ui.label("Detail");
+            ui.horizontal(|ui| {
+                entered |= line(ui, "Cells per mm", &mut self.fine, false, 56.0);
+                ui.weak("4 for most, 8 for miniatures");
+            });
+            ui.end_row();
+            let ground = ui.label("Ground");
+            ui.horizontal(|ui| {
+                let name = |known: &str| GROUNDS.iter().find(|(name, _)| *name == known);
+                let shown = name(self.ground).map_or("", |(_, shown)| shown);
+                let combo = ComboBox::from_id_salt("ground")
+                    .width(120.0)
+                    .selected_text(shown);
+                let combo = combo.show_ui(ui, |ui| {
+                    for (name, shown) in GROUNDS {
+                        ui.selectable_value(&mut self.ground, name, shown);
+                    }
+                });
+                combo.response.labelled_by(ground.id);
+                if self.ground == FILE {
+                    entered |= line(ui, "Path", &mut self.ground_file, false, 120.0);
+                }
+            });
+            ui.end_row();
+            let tooth = ui.label("Tooth");
+            let combo = ComboBox::from_id_salt("tooth")
+                .width(120.0)
+                .selected_text(capital(&self.tooth));
+            let combo = combo.show_ui(ui, |ui| {
+                for name in Tooth::names() {
+                    ui.selectable_value(&mut self.tooth, name.to_owned(), capital(name));
+                }
+            });
+            combo.response.labelled_by(tooth.id);
+            ui.end_row();
+            let keep = ui.label("Keep in");
+            ui.vertical(|ui| {
+                ui.add_enabled_ui(!self.in_memory, |ui| {
+                    let edit = TextEdit::singleline(&mut self.path).desired_width(f32::INFINITY);
+                    let field = ui.add(edit).labelled_by(keep.id);
+                    let enter = ui.input(|input| input.key_pressed(Key::Enter));
+                    entered |= field.lost_focus() && enter;
+                    changed |= field.changed();
+                });
+                ui.checkbox(
+                    &mut self.in_memory,
+                    "No file: a sketch that goes with the rig",
+                );
+            });
+            ui.end_row();
+        });
+        if changed || entered {
+            self.wrong = None;
+        }
+        entered
+    }
+}
+
+fn capital(name: &str) -> String {
+    let mut letters = name.chars();
+    letters.next().map_or_else(String::new, |first| {
+        format!("{}{}", first.to_uppercase(), letters.as_str())
+    })
+}
+
+/// How large it is, in words.
+fn estimate(canvas: &NewCanvas) -> String {
+    let side = |length: f64| (length / canvas.cell_m).round().max(1.0);
+    let [across, up] = [side(canvas.width_m), side(canvas.height_m)];
+    let cells = across * up;
+    let count = match cells {
+        cells if cells < 1e5 => format!("{cells:.0}"),
+        cells => format!("{:.1} million", cells * 1e-6),
+    };
+    let bytes = cells * CELL_BYTES;
+    let room = match bytes {
+        bytes if bytes < 1e6 => "less than 1 MB".to_owned(),
+        bytes if bytes < 1e9 => format!("about {:.0} MB", bytes * 1e-6),
+        bytes => format!("about {:.1} GB", bytes * 1e-9),
+    };
+    format!(
+        "{across:.0} × {up:.0} cells, {count} in all; {room} of memory when all of it is painted."
+    )
+}
+
+#[cfg(test)]
+mod tests;

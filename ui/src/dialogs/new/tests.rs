@@ -1,0 +1,93 @@
+use super::*;
+use crate::test_support::overlay_bench::picture;
+
+fn asked(change: impl FnOnce(&mut NewPainting)) -> Result<Command, String> {
+    let mut new = NewPainting::kept_in("/nowhere/Painting".into(), Unkept::default());
+    new.in_memory = true;
+    change(&mut new);
+    new.command()
+}
+
+#[test]
+fn numbers_out_of_range_are_told_with_what_to_do() {
+    let width = |text: &str| asked(|new| new.width = text.to_owned());
+    assert!(width("20,5").is_ok() && width(" 20.5 ").is_ok());
+    for (text, word) in [
+        ("0", "0×21 cm"),
+        ("1000000", "1638 cm"),
+        ("-5", "-5×21 cm"),
+        ("wide", "“wide” is no number"),
+        ("", "is no number"),
+        ("NaN", "is no number"),
+        ("inf", "is no number"),
+    ] {
+        let words = width(text).expect_err("refused");
+        assert!(words.contains(word) && words.contains('.'), "{words}");
+    }
+    for fine in ["0", "-4", "1e9", "four"] {
+        let words = asked(|new| new.fine = fine.to_owned()).expect_err("refused");
+        assert!(words.contains("ells"), "{words}");
+    }
+    let large =
+        asked(|new| (new.width, new.height, new.fine) = ("600".into(), "600".into(), "10".into()));
+    let words = large.expect_err("refused");
+    assert!(words.contains("million cells"), "{words}");
+}
+
+#[test]
+fn it_is_kept_in_a_file_that_is_not_there_yet() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let at = |name: &str| {
+        let path = folder.path().join(name).display().to_string();
+        asked(|new| (new.in_memory, new.path) = (false, path))
+    };
+    let Ok(Command::New { path, .. }) = at("sea") else {
+        panic!("refused");
+    };
+    assert!(path.is_some_and(|path| path.ends_with("/sea.maul")));
+    std::fs::write(folder.path().join("sea.maul"), "").expect("written");
+    for (name, word) in [
+        ("sea", "already"),
+        ("none/sea", "no folder"),
+        ("", "name of a file"),
+    ] {
+        let words = at(name).expect_err("refused");
+        assert!(words.contains(word), "{words}");
+    }
+    let words = asked(|new| new.ground = FILE).expect_err("no file");
+    assert!(words.starts_with("Ground"), "{words}");
+    let ground = asked(|new| (new.ground, new.ground_file) = (FILE, "/g/oak.png".into()));
+    assert!(matches!(ground, Ok(Command::New { canvas, .. }) if canvas.ground == "/g/oak.png"));
+}
+
+#[test]
+fn how_large_it_is_is_told_in_words() {
+    let of = |width: &str, fine: &str| {
+        let command = asked(|new| (new.width, new.fine) = (width.into(), fine.into()));
+        match command.expect("a canvas") {
+            Command::New { canvas, .. } => estimate(&canvas),
+            other => panic!("{other:?}"),
+        }
+    };
+    assert_eq!(
+        of("21", "4"),
+        "840 × 840 cells, 0.7 million in all; about 30 MB of memory when all of it is painted."
+    );
+    assert!(of("0.5", "4").contains("20 × 840 cells, 16800 in all; less than 1 MB"));
+    assert!(of("210", "12").contains("GB"));
+}
+
+#[test]
+fn it_looks_as_in_its_picture() {
+    let new = || NewPainting::kept_in("/home/ada/Paintings/Birches.maul".into(), Unkept::default());
+    picture(
+        "files_new",
+        [500.0, 400.0],
+        new,
+        |ui, new| {
+            let _ = new.show(ui.ctx(), false);
+        },
+        |_| {},
+        |new| new.width = "0".into(),
+    );
+}

@@ -1,0 +1,103 @@
+//! Another painting is asked for.
+
+use std::path::{Path, PathBuf};
+
+use eframe::egui::Context;
+use maulstick_types::command::Command;
+
+use crate::dialogs::browser::{Browser, Purpose};
+use crate::dialogs::dialog::{self, Answer, Foot};
+use crate::dialogs::discard_prompt::Unkept;
+use crate::dialogs::paths;
+use crate::dialogs::recent::RecentList;
+
+/// What the names of paintings end with.
+pub(super) const PAINTINGS: &[&str] = &[paths::PAINTING];
+
+/// A painting that is being chosen.
+#[derive(Debug)]
+pub(crate) struct OpenPainting {
+    recent: RecentList,
+    browser: Browser,
+    unkept: Unkept,
+    wrong: Option<String>,
+}
+
+impl OpenPainting {
+    /// One of `folder`, or one of the recent ones.
+    #[must_use]
+    pub(crate) fn new(folder: &Path, recent: RecentList, unkept: Unkept) -> Self {
+        let shown = paths::shown(folder);
+        let begin = format!("{}/", shown.trim_end_matches('/'));
+        Self {
+            recent,
+            browser: Browser::at(&begin, Purpose::Read, PAINTINGS),
+            unkept,
+            wrong: None,
+        }
+    }
+
+    /// What the rig said against it.
+    pub(crate) fn refused(&mut self, words: String) {
+        self.wrong = Some(words);
+    }
+
+    /// Writes a path into the field, as if it had been typed.
+    pub(crate) fn propose(&mut self, path: &Path) {
+        self.browser.set(paths::shown(path));
+    }
+
+    /// The same with a folder whose entries are known.
+    #[cfg(test)]
+    pub(crate) fn with(mut self, browser: Browser) -> Self {
+        self.browser = browser;
+        self
+    }
+
+    fn command(&self, path: &Path) -> Result<Command, String> {
+        self.unkept.check()?;
+        if path.is_dir() {
+            return Err("This is a folder. Choose a painting in it.".to_owned());
+        }
+        if !path.exists() {
+            return Err(format!(
+                "There is no file {}. Choose one of the list, or begin a new one (Ctrl+N).",
+                paths::shown(path)
+            ));
+        }
+        Ok(Command::Open {
+            path: path.display().to_string(),
+            forget: self.unkept.let_go(),
+        })
+    }
+
+    /// Shows the dialog.
+    pub(crate) fn show(&mut self, context: &Context, busy: bool) -> (Answer, Option<Command>) {
+        let mut taken: Option<PathBuf> = None;
+        let answer = dialog::show(context, "Open a painting", |ui| {
+            taken = self.recent.show(ui);
+            if taken.is_some() {
+                taken
+                    .iter()
+                    .for_each(|path| self.browser.set(paths::shown(path)));
+            }
+            let typed = self.browser.show(ui, "File");
+            taken = taken.take().or(typed);
+            self.unkept.show(ui);
+            Foot {
+                go: "Open",
+                wrong: self.wrong.clone(),
+                entered: taken.is_some(),
+                busy: busy.then_some("Opening …"),
+            }
+        });
+        let asked = (answer == Answer::Go).then(|| {
+            let path = taken.unwrap_or_else(|| self.browser.path());
+            self.command(&path)
+        });
+        dialog::decided(answer, asked, &mut self.wrong)
+    }
+}
+
+#[cfg(test)]
+mod tests;

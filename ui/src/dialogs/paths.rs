@@ -1,0 +1,172 @@
+//! Where files are: paths as they are typed and as they are shown.
+
+use std::path::{Component, Path, PathBuf};
+use std::time::{Duration, SystemTime};
+
+use directories::{BaseDirs, UserDirs};
+
+/// What the name of a painting ends with.
+pub(crate) const PAINTING: &str = "maul";
+/// What the names of pictures that can be read end with.
+pub(crate) const PICTURES: [&str; 5] = ["png", "jpg", "jpeg", "tif", "tiff"];
+
+/// The folder of the user.
+#[must_use]
+pub(crate) fn home() -> PathBuf {
+    BaseDirs::new().map_or_else(|| PathBuf::from("/"), |dirs| dirs.home_dir().to_owned())
+}
+
+/// Where a painter who has painted nothing yet keeps paintings: the folder of pictures, or the user's own.
+#[must_use]
+pub(crate) fn pictures() -> PathBuf {
+    let own = UserDirs::new().and_then(|dirs| dirs.picture_dir().map(Path::to_owned));
+    own.filter(|folder| folder.is_dir()).unwrap_or_else(home)
+}
+
+/// The whole path of what was typed: `~` is the user's folder, and what does not begin at the root counts
+/// from there.
+#[must_use]
+pub(crate) fn whole(typed: &str) -> PathBuf {
+    let typed = typed.trim();
+    let path = match typed.strip_prefix('~') {
+        Some("") => home(),
+        Some(rest) if rest.starts_with('/') => home().join(rest.trim_start_matches('/')),
+        _ => home().join(typed),
+    };
+    let mut plain = PathBuf::new();
+    for part in path.components() {
+        match part {
+            Component::CurDir => {}
+            Component::ParentDir => {
+                plain.pop();
+            }
+            part => plain.push(part),
+        }
+    }
+    plain
+}
+
+/// A path as a painter reads it: the user's folder is `~`.
+#[must_use]
+pub(crate) fn shown(path: &Path) -> String {
+    let home = home();
+    match path.strip_prefix(&home) {
+        Ok(rest) if home.as_os_str().len() > 1 && rest.as_os_str().is_empty() => "~".to_owned(),
+        Ok(rest) if home.as_os_str().len() > 1 => format!("~/{}", rest.display()),
+        _ => path.display().to_string(),
+    }
+}
+
+/// The last part of a path.
+#[must_use]
+pub(crate) fn name(path: &Path) -> String {
+    path.file_name().map_or_else(
+        || path.display().to_string(),
+        |name| name.to_string_lossy().into_owned(),
+    )
+}
+
+/// What a name ends with, in small letters; empty where it has no ending.
+#[must_use]
+pub(crate) fn ending(path: &Path) -> String {
+    let ending = path.extension().unwrap_or_default().to_ascii_lowercase();
+    ending.to_string_lossy().into_owned()
+}
+
+/// The same path with this ending, unless it has it.
+#[must_use]
+pub(crate) fn ending_in(path: &Path, wanted: &str) -> PathBuf {
+    match ending(path) == wanted {
+        true => path.to_owned(),
+        false => {
+            let mut name = path.file_name().unwrap_or_default().to_os_string();
+            name.push(format!(".{wanted}"));
+            path.with_file_name(name)
+        }
+    }
+}
+
+/// The first of `stem.ending`, `stem 2.ending`, … that is not there.
+#[must_use]
+pub(crate) fn free(folder: &Path, stem: &str, ending: &str) -> PathBuf {
+    let numbered = (2u32..).map(|number| format!("{stem} {number}.{ending}"));
+    let names = std::iter::once(format!("{stem}.{ending}")).chain(numbered);
+    let mut places = names.map(|name| folder.join(name));
+    places
+        .find(|place| !place.exists())
+        .unwrap_or_else(|| folder.join(stem))
+}
+
+/// How long ago something was changed, in words.
+#[must_use]
+pub(crate) fn age(changed: SystemTime, now: SystemTime) -> String {
+    let past = now.duration_since(changed).unwrap_or(Duration::ZERO);
+    let minutes = past.as_secs() / 60;
+    let of = |count: u64, unit: &str| match count {
+        1 => format!("1 {unit} ago"),
+        _ => format!("{count} {unit}s ago"),
+    };
+    match minutes {
+        0 => "just now".to_owned(),
+        1..=59 => of(minutes, "minute"),
+        60..=1439 => of(minutes / 60, "hour"),
+        1440..=43_199 => of(minutes / 1440, "day"),
+        43_200..=525_599 => of(minutes / 43_200, "month"),
+        _ => of(minutes / 525_600, "year"),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_is_typed_is_a_whole_path() {
+        for (typed, path) in [
+            ("~", home()),
+            ("~/sea.maul", home().join("sea.maul")),
+            ("sea.maul", home().join("sea.maul")),
+            (" /a/./b/../c.maul ", PathBuf::from("/a/c.maul")),
+            ("/../..", PathBuf::from("/")),
+            ("~ada", home().join("~ada")),
+        ] {
+            assert_eq!(whole(typed), path, "{typed}");
+        }
+        assert_eq!(whole(&shown(&home().join("a/b"))), home().join("a/b"));
+        assert_eq!(shown(Path::new("/nowhere/a")), "/nowhere/a");
+    }
+
+    #[test]
+    fn endings_are_added_once_and_free_names_are_free() {
+        let path = |text: &str| PathBuf::from(text);
+        assert_eq!(ending_in(&path("/a/sea"), "maul"), path("/a/sea.maul"));
+        assert_eq!(ending_in(&path("/a/sea.MAUL"), "maul"), path("/a/sea.MAUL"));
+        assert_eq!(
+            ending_in(&path("/a/sea 1.5"), "maul"),
+            path("/a/sea 1.5.maul")
+        );
+        let folder = tempfile::tempdir().expect("a folder");
+        let first = free(folder.path(), "Painting", "maul");
+        assert_eq!(name(&first), "Painting.maul");
+        std::fs::write(&first, "").expect("written");
+        assert_eq!(
+            name(&free(folder.path(), "Painting", "maul")),
+            "Painting 2.maul"
+        );
+    }
+
+    #[test]
+    fn ages_are_told_in_words() {
+        let now = SystemTime::UNIX_EPOCH + Duration::from_secs(1 << 31);
+        for (seconds, words) in [
+            (5, "just now"),
+            (60, "1 minute ago"),
+            (7300, "2 hours ago"),
+            (86_400 * 3, "3 days ago"),
+            (86_400 * 400, "1 year ago"),
+        ] {
+            assert_eq!(age(now - Duration::from_secs(seconds), now), words);
+        }
+        assert_eq!(age(now + Duration::from_secs(9), now), "just now");
+    }
+}

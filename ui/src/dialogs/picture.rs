@@ -1,0 +1,54 @@
+//! A picture is chosen, to be pinned beside the canvas.
+
+use std::path::{Path, PathBuf};
+
+use eframe::egui::Context;
+
+use crate::dialogs::browser::{Browser, Purpose};
+use crate::dialogs::dialog::{self, Answer, Foot};
+use crate::dialogs::paths;
+
+/// A picture that is being chosen.
+#[derive(Debug)]
+pub(crate) struct ChoosePicture {
+    browser: Browser,
+    wrong: Option<String>,
+}
+
+impl ChoosePicture {
+    /// One of `folder`.
+    #[must_use]
+    pub(crate) fn new(folder: &Path) -> Self {
+        let begin = format!("{}/", paths::shown(folder).trim_end_matches('/'));
+        Self {
+            browser: Browser::at(&begin, Purpose::Read, &paths::PICTURES),
+            wrong: None,
+        }
+    }
+
+    /// Shows the dialog; the picture that was chosen.
+    pub(crate) fn show(&mut self, context: &Context) -> (Answer, Option<PathBuf>) {
+        let mut taken = None;
+        let answer = dialog::show(context, "Pin a reference picture", |ui| {
+            taken = self.browser.show(ui, "Picture");
+            Foot {
+                go: "Pin",
+                wrong: self.wrong.clone(),
+                entered: taken.is_some(),
+                busy: None,
+            }
+        });
+        if answer != Answer::Go {
+            return (answer, None);
+        }
+        let path = taken.unwrap_or_else(|| self.browser.path());
+        if path.is_file() {
+            return (answer, Some(path));
+        }
+        self.wrong = Some(format!(
+            "{} is no file. Choose a PNG, JPEG or TIFF of the list.",
+            paths::shown(&path)
+        ));
+        (Answer::Stay, None)
+    }
+}

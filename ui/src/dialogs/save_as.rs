@@ -1,0 +1,110 @@
+//! The painting is put into another file, and goes on there.
+
+use std::path::{Path, PathBuf};
+
+use eframe::egui::Context;
+use maulstick_types::command::Command;
+
+use crate::dialogs::browser::{Browser, Purpose};
+use crate::dialogs::dialog::{self, Answer, Foot};
+use crate::dialogs::open::PAINTINGS;
+use crate::dialogs::paths;
+
+/// A file that is being chosen.
+#[derive(Debug)]
+pub(crate) struct SaveAs {
+    browser: Browser,
+    /// The painting that was found in its place, and whether it may go.
+    found: Option<(PathBuf, bool)>,
+    wrong: Option<String>,
+}
+
+impl SaveAs {
+    /// Begins with a name that is free, in `folder`; `stem` is what it begins with.
+    #[must_use]
+    pub(crate) fn new(folder: &Path, stem: &str) -> Self {
+        Self::at(paths::shown(&paths::free(folder, stem, paths::PAINTING)))
+    }
+
+    fn at(path: String) -> Self {
+        Self {
+            browser: Browser::at(&path, Purpose::Write, PAINTINGS),
+            found: None,
+            wrong: None,
+        }
+    }
+
+    /// The same with a folder whose entries are known.
+    #[cfg(test)]
+    pub(crate) fn with(mut self, browser: Browser) -> Self {
+        self.browser = browser;
+        self
+    }
+
+    /// What the rig said against it.
+    pub(crate) fn refused(&mut self, words: String) {
+        self.wrong = Some(words);
+    }
+
+    fn command(&mut self, path: &Path) -> Result<Command, String> {
+        if path.file_name().is_none() {
+            return Err("Write the name of a file.".to_owned());
+        }
+        let path = paths::ending_in(path, paths::PAINTING);
+        if path.is_dir() {
+            return Err("Write the name of a file.".to_owned());
+        }
+        if !path.parent().is_some_and(Path::is_dir) {
+            return Err(format!(
+                "There is no folder {}. Write one that is there.",
+                paths::shown(path.parent().unwrap_or(Path::new("/")))
+            ));
+        }
+        let may_go = |(found, may_go): &(PathBuf, bool)| *found == path && *may_go;
+        let replace = self.found.as_ref().is_some_and(may_go);
+        if path.exists() && !replace {
+            let words = format!(
+                "There is a file {} already. Write another name, or tick that it may go.",
+                paths::shown(&path)
+            );
+            self.found = Some((path, false));
+            return Err(words);
+        }
+        Ok(Command::SaveAs {
+            path: path.display().to_string(),
+            replace,
+        })
+    }
+
+    /// Shows the dialog.
+    pub(crate) fn show(&mut self, context: &Context, busy: bool) -> (Answer, Option<Command>) {
+        let mut taken = None;
+        let answer = dialog::show(context, "Save under another name", |ui| {
+            ui.weak("History and versions go along, and the painting goes on in the new file.");
+            ui.add_space(4.0);
+            taken = self.browser.show(ui, "File");
+            let now = paths::ending_in(&self.browser.path(), paths::PAINTING);
+            if let Some((found, may_go)) = &mut self.found
+                && *found == now
+            {
+                let words = format!("Replace the painting {}", paths::name(found));
+                ui.add_space(6.0);
+                ui.checkbox(may_go, words);
+            }
+            Foot {
+                go: "Save",
+                wrong: self.wrong.clone(),
+                entered: taken.is_some(),
+                busy: busy.then_some("Writing …"),
+            }
+        });
+        let asked = (answer == Answer::Go).then(|| {
+            let path = taken.unwrap_or_else(|| self.browser.path());
+            self.command(&path)
+        });
+        dialog::decided(answer, asked, &mut self.wrong)
+    }
+}
+
+#[cfg(test)]
+mod tests;

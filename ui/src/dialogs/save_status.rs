@@ -1,0 +1,87 @@
+//! The line at the lower edge: which painting this is, and that it is saved. Under it lies all that is done
+//! with files, for those who do not know the keys.
+
+use std::path::Path;
+
+use eframe::egui::containers::menu::MenuButton;
+use eframe::egui::{
+    Align2, Area, Button, Context, Frame, Id, Margin, Order, RichText, TextWrapMode,
+};
+
+use crate::dialogs::paths;
+use crate::input::keys::{Action, BINDINGS};
+use crate::widgets::context::PanelContext;
+
+/// What is not saved for so long is told, ns.
+const LATE_NS: u64 = 2_000_000_000;
+/// What its menu offers.
+const OFFERS: [Action; 6] = [
+    Action::New,
+    Action::Open,
+    Action::Save,
+    Action::SaveAs,
+    Action::Export,
+    Action::Reference,
+];
+
+/// The line; empty where nothing is known of the painting.
+fn words(work: &PanelContext<'_>) -> String {
+    let Some(node) = &work.rig.paint else {
+        return String::new();
+    };
+    let status = &node.status;
+    if status.path.is_empty() {
+        return match status.blank {
+            true => "New painting".to_owned(),
+            false => "In no file · Ctrl+S keeps it".to_owned(),
+        };
+    }
+    let name = paths::name(Path::new(&status.path));
+    let since = work.rig.now_ns.saturating_sub(status.committed_ns);
+    let state = match (status.fault.is_empty(), status.all_committed) {
+        (false, _) => "not saved",
+        (true, false) if since > LATE_NS => "saving …",
+        _ => "saved",
+    };
+    format!("{name} · {state}")
+}
+
+/// Shows the line; what was chosen under it.
+pub(crate) fn show(context: &Context, work: &PanelContext<'_>) -> Option<Action> {
+    let words = words(work);
+    if words.is_empty() {
+        return None;
+    }
+    let (corner, inward) = match work.preferences.left_handed {
+        false => (Align2::RIGHT_BOTTOM, -1.0),
+        true => (Align2::LEFT_BOTTOM, 1.0),
+    };
+    let mut chosen = None;
+    Area::new(Id::unique("saved"))
+        .order(Order::Middle)
+        .anchor(corner, [inward * (crate::app::rack::WIDTH + 8.0), -4.0])
+        .accessible_name("Painting")
+        .show(context, |ui| {
+            ui.style_mut().wrap_mode = Some(TextWrapMode::Extend);
+            let back = ui.visuals().window_fill.gamma_multiply(0.8);
+            let frame = Frame::NONE.fill(back).corner_radius(4.0);
+            frame.inner_margin(Margin::symmetric(4, 0)).show(ui, |ui| {
+                let button = Button::new(RichText::new(words).small())
+                    .frame_when_inactive(false)
+                    .small();
+                MenuButton::from_button(button).ui(ui, |ui| {
+                    for act in OFFERS {
+                        let Some(binding) = BINDINGS.iter().find(|known| known.act == act) else {
+                            continue;
+                        };
+                        let keys = ui.ctx().format_shortcut(&binding.shortcut);
+                        let offer = Button::new(binding.words).shortcut_text(keys);
+                        if ui.add(offer).clicked() {
+                            chosen = Some(act);
+                        }
+                    }
+                });
+            });
+        });
+    chosen
+}

@@ -1,0 +1,274 @@
+//! Which brush is in the hand, and how wide it is: what rack, keys, panel and presets ask for.
+
+use std::ops::RangeInclusive;
+use std::path::Path;
+use std::sync::OnceLock;
+
+use maulstick_brush::file::library::LIBRARY;
+use maulstick_brush::{BrushError, BrushFile};
+use maulstick_rig::Fault;
+use maulstick_types::command::Command;
+
+use crate::rig::dispatcher::Outcome;
+use crate::rig::requests::Request;
+use crate::rig::state::RigBrush;
+use crate::widgets::context::PanelContext;
+
+/// A painter's step from one width to the next: this factor, but at least half a millimetre.
+const STEP: f64 = 0.15;
+/// Widths are whole numbers of these, mm.
+const GRAIN_MM: f64 = 0.5;
+/// Widths that a painter is offered, mm.
+const OFFERED_MM: RangeInclusive<f64> = 0.5..=150.0;
+
+/// The brushes of the library, in their order.
+pub(crate) fn library() -> &'static [BrushFile] {
+    static FILES: OnceLock<Vec<BrushFile>> = OnceLock::new();
+    FILES.get_or_init(|| {
+        let files = LIBRARY.iter().map(|(kind, _)| BrushFile::library(kind));
+        files.filter_map(Result::ok).collect()
+    })
+}
+
+/// The library's brush of a kind.
+#[must_use]
+pub(crate) fn of_library(kind: &str) -> Option<&'static BrushFile> {
+    library().iter().find(|file| file.kind == kind)
+}
+
+/// Whether a brush is as the library has it, but for its width.
+#[must_use]
+pub(crate) fn is_of_library(file: &BrushFile) -> bool {
+    let own = of_library(&file.kind).map(|own| own.scaled_to(file.head.width_mm));
+    own.is_some_and(|own| own.as_ref() == Ok(file))
+}
+
+/// A brush at another width, mm; one of the library from its own numbers, so that they do not drift.
+///
+/// # Errors
+/// As [`BrushFile::scaled_to`].
+pub(crate) fn resized(file: &BrushFile, width_mm: f64) -> Result<BrushFile, BrushError> {
+    match of_library(&file.kind).filter(|_| is_of_library(file)) {
+        Some(own) => own.scaled_to(width_mm),
+        None => file.scaled_to(width_mm),
+    }
+}
+
+/// A kind as a word in a sentence: its first letter large.
+#[must_use]
+pub(crate) fn called(kind: &str) -> String {
+    let mut letters = kind.chars();
+    letters.next().map_or(String::new(), |first| {
+        first.to_uppercase().chain(letters).collect()
+    })
+}
+
+/// A width in words, mm.
+#[must_use]
+pub(crate) fn millimetres(width_mm: f64) -> String {
+    format!("{} mm", (width_mm * 100.0).round() / 100.0)
+}
+
+/// The widths that a brush can have, mm: what of it scales with them stays in its bounds.
+#[must_use]
+pub(crate) fn widths_mm(file: &BrushFile) -> RangeInclusive<f64> {
+    let now = file.head.width_mm;
+    let can = |width_mm: f64| file.scaled_to(width_mm).is_ok();
+    // As far as it can go toward an end, to a hundredth of the way.
+    let farthest = |end: f64| {
+        if can(end) {
+            return end;
+        }
+        let (mut good, mut bad) = (now, end);
+        for _ in 0..7 {
+            let middle = (good * bad).sqrt();
+            match can(middle) {
+                true => good = middle,
+                false => bad = middle,
+            }
+        }
+        good
+    };
+    farthest(OFFERED_MM.start().min(now))..=farthest(OFFERED_MM.end().max(now))
+}
+
+/// The next width up or down, mm.
+#[must_use]
+pub(crate) fn next_width_mm(now_mm: f64, up: bool) -> f64 {
+    let factor = if up { 1.0 + STEP } else { 1.0 - STEP };
+    let wanted = (now_mm * factor / GRAIN_MM).round() * GRAIN_MM;
+    match up {
+        true => wanted.max(((now_mm + 1e-9) / GRAIN_MM).floor() * GRAIN_MM + GRAIN_MM),
+        false => wanted
+            .min(((now_mm - 1e-9) / GRAIN_MM).ceil() * GRAIN_MM - GRAIN_MM)
+            .max(GRAIN_MM),
+    }
+}
+
+/// Reads a brush file of the painter's own: TOML, or a model of it, .glb or .gltf.
+///
+/// # Errors
+/// A [`Fault`] where it cannot be read or is no brush.
+pub(crate) fn read(path: &Path) -> Result<BrushFile, Fault> {
+    let bytes = std::fs::read(path).map_err(|error| Fault::reading(path, &error))?;
+    let extension = path.extension().unwrap_or_default().to_ascii_lowercase();
+    let read = match extension == "glb" || extension == "gltf" {
+        true => maulstick_brush::gltf::read(&bytes).map_err(|error| error.to_string()),
+        false => std::str::from_utf8(&bytes)
+            .map_err(|_| "this is no text".to_owned())
+            .and_then(|text| BrushFile::parse(text).map_err(|error| error.to_string())),
+    };
+    read.map_err(|what| {
+        Fault::failure(what)
+            .at(path.display().to_string())
+            .help("docs/brushes.md says what a brush file holds")
+    })
+}
+
+impl RigBrush {
+    /// What it is made of, or is about to be.
+    #[must_use]
+    pub fn wanted(&self) -> Option<&BrushFile> {
+        let known = self.file.as_ref().map(|(file, _)| file);
+        self.asked.as_ref().or(known)
+    }
+}
+
+impl PanelContext<'_> {
+    /// What the brush in the hand is made of, or is about to be; none until its node has said so.
+    #[must_use]
+    pub fn in_hand(&self) -> Option<&BrushFile> {
+        self.rig.brush()?.wanted()
+    }
+
+    /// Gives the hand another brush; one that the hand has already is not asked for again.
+    pub fn take_up(&mut self, file: BrushFile) {
+        if self.in_hand() == Some(&file) {
+            return;
+        }
+        let toml = match file.check().and_then(|()| file.to_toml()) {
+            Ok(toml) => toml,
+            Err(error) => {
+                let help = "choose another width, or another brush";
+                return self.notifications.fault(error.to_string(), help);
+            }
+        };
+        let brush = self.rig.brush_name().to_owned();
+        let command = Command::Define {
+            brush: brush.clone(),
+            toml,
+        };
+        if let Err(what) = command.check() {
+            return self
+                .notifications
+                .fault(what, "make its skin of fewer faces");
+        }
+        let width_mm = file.head.width_mm;
+        self.preferences
+            .widths_mm
+            .insert(file.kind.clone(), width_mm);
+        let in_hand = self.rig.in_hand;
+        if let Some(own) = self.rig.brushes.get_mut(in_hand) {
+            own.asked = Some(file);
+        }
+        self.requests.brush(&brush, command);
+    }
+
+    /// Hears what became of an order: a brush that refused keeps what it has; one that is as it was
+    /// asked to be takes up what waited for it.
+    pub fn brush_answered(&mut self, outcome: &Outcome) {
+        let Request::Command {
+            command: Command::Define { brush, toml },
+            ..
+        } = &outcome.request
+        else {
+            return;
+        };
+        let mut brushes = self.rig.brushes.iter_mut();
+        let Some(own) = brushes.find(|own| own.name == *brush) else {
+            return;
+        };
+        let newest = own.asked.as_ref().map(BrushFile::to_toml);
+        if newest.is_some_and(|newest| newest.as_ref() != Ok(toml)) {
+            return;
+        }
+        let then = own.then.take();
+        match (&outcome.result, then) {
+            (Ok(_), Some(command)) => self.requests.paint(command),
+            (Ok(_), None) => {}
+            (Err(_), _) => own.asked = None,
+        }
+    }
+
+    /// Has the paint node do something with the brush in the hand once that is what it was asked to be.
+    pub fn then(&mut self, command: Command) {
+        let in_hand = self.rig.in_hand;
+        match self.rig.brushes.get_mut(in_hand) {
+            Some(own) if own.asked.is_some() => own.then = Some(command),
+            _ => self.requests.paint(command),
+        }
+    }
+
+    /// Takes a brush at the width that it was last used at, or at its own.
+    pub fn choose(&mut self, file: &BrushFile) {
+        let width_mm = self.preferences.widths_mm.get(&file.kind);
+        let scaled = width_mm.and_then(|width_mm| file.scaled_to(*width_mm).ok());
+        self.take_up(scaled.unwrap_or_else(|| file.clone()));
+    }
+
+    /// Makes the brush in the hand so wide, as far as it can be, mm.
+    pub fn widen(&mut self, width_mm: f64) {
+        let Some(file) = self.in_hand() else {
+            return;
+        };
+        let range = widths_mm(file);
+        let within = width_mm.clamp(*range.start(), *range.end());
+        if let Ok(file) = resized(file, within) {
+            self.take_up(file);
+        }
+    }
+
+    /// The next wider brush of its kind, or the next narrower one.
+    pub fn step_width(&mut self, up: bool) {
+        let Some(file) = self.in_hand() else {
+            return;
+        };
+        let (now_mm, range) = (file.head.width_mm, widths_mm(file));
+        let next_mm = next_width_mm(now_mm, up);
+        let file = match range.contains(&next_mm) {
+            true => resized(file, next_mm).ok(),
+            false => None,
+        };
+        match file {
+            Some(file) => {
+                self.notifications
+                    .note(format!("{} {}", called(&file.kind), millimetres(next_mm)));
+                self.take_up(file);
+            }
+            None => {
+                let end = if up { "widest" } else { "narrowest" };
+                let kind = called(&file_kind(self));
+                self.notifications
+                    .note(format!("{kind} {} is the {end}", millimetres(now_mm)));
+            }
+        }
+    }
+
+    /// The brush after the one in the hand, of the library.
+    pub fn next_brush(&mut self) {
+        let now = file_kind(self);
+        let place = library().iter().position(|file| file.kind == now);
+        let next = place.map_or(0, |place| (place + 1) % library().len());
+        if let Some(file) = library().get(next) {
+            self.choose(file);
+        }
+    }
+}
+
+fn file_kind(work: &PanelContext<'_>) -> String {
+    work.in_hand()
+        .map_or(String::new(), |file| file.kind.clone())
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,157 @@
+//! What rack, keys and presets ask for.
+
+use maulstick_rig::Fault;
+
+use super::*;
+use crate::rig::requests::PAINT;
+use crate::test_support::context_bench::Bench;
+
+fn defined(bench: &mut Bench) -> Vec<(String, BrushFile)> {
+    let commands = bench.commands().into_iter();
+    let defined = commands.map(|command| match command {
+        Command::Define { brush, toml } => (brush, BrushFile::parse(&toml).expect("a brush")),
+        other => panic!("{other:?}"),
+    });
+    defined.collect()
+}
+
+fn width(bench: &mut Bench) -> f64 {
+    bench.work().in_hand().expect("a brush").head.width_mm
+}
+
+#[test]
+fn steps_are_those_of_a_painter() {
+    let mut width_mm = 1.0;
+    let mut way = Vec::new();
+    for _ in 0..8 {
+        width_mm = next_width_mm(width_mm, true);
+        way.push(width_mm);
+    }
+    assert_eq!(way, [1.5, 2.0, 2.5, 3.0, 3.5, 4.0, 4.5, 5.0]);
+    assert_eq!(next_width_mm(20.0, true), 23.0);
+    assert_eq!(next_width_mm(20.0, false), 17.0);
+    assert_eq!(next_width_mm(2.3, false), 2.0);
+    assert_eq!(next_width_mm(2.3, true), 2.5);
+    assert_eq!(next_width_mm(0.5, false), 0.5);
+}
+
+#[test]
+fn each_brush_can_be_as_wide_as_its_range_says_and_no_wider() {
+    for file in library() {
+        let range = widths_mm(file);
+        for end in [range.start(), range.end()] {
+            assert!(file.scaled_to(*end).is_ok(), "{} {end}", file.kind);
+        }
+        assert!(range.contains(&file.head.width_mm), "{}", file.kind);
+        for size in &file.sizes_mm {
+            assert!(range.contains(size), "{} {size}: {range:?}", file.kind);
+        }
+    }
+    let knife = of_library("knife").expect("knife");
+    assert!(*widths_mm(knife).start() > 1.0, "it would be too thin");
+}
+
+#[test]
+fn two_steps_count_before_the_brush_has_answered() {
+    let mut bench = Bench::new();
+    bench.work().step_width(true);
+    bench.work().step_width(true);
+    let asked = defined(&mut bench);
+    let widths: Vec<f64> = asked.iter().map(|(_, file)| file.head.width_mm).collect();
+    assert_eq!(widths, [11.5, 13.0]);
+    assert!(asked.iter().all(|(brush, _)| brush == "main"));
+    assert!(is_of_library(&asked[1].1), "only its width is another");
+}
+
+#[test]
+fn the_last_width_of_all_is_told() {
+    let mut bench = Bench::new();
+    let widest = *widths_mm(of_library("round").expect("round")).end();
+    bench.work().widen(1e9);
+    assert_eq!(width(&mut bench), widest);
+    bench.work().step_width(true);
+    assert_eq!(defined(&mut bench).len(), 1, "it is as wide as it can be");
+    assert!(bench.told()[0].contains("the widest"), "{:?}", bench.told());
+}
+
+#[test]
+fn a_brush_comes_back_at_the_width_it_was_used_at() {
+    let mut bench = Bench::new();
+    bench.work().step_width(true);
+    bench.work().next_brush();
+    assert_eq!(bench.work().in_hand().expect("flat").kind, "flat");
+    assert_eq!(width(&mut bench), 20.0);
+    let round = of_library("round").expect("round");
+    bench.work().choose(round);
+    assert_eq!(width(&mut bench), 11.5);
+    for _ in library() {
+        bench.work().next_brush();
+    }
+    assert_eq!(bench.work().in_hand().expect("round").kind, "round");
+    bench.commands();
+    bench.work().choose(round);
+    assert!(bench.commands().is_empty(), "it is in the hand already");
+}
+
+#[test]
+fn a_brush_that_refuses_keeps_what_it_has_and_one_that_does_takes_up_its_paint() {
+    let refused = || Err(Fault::failure("the brush is painting"));
+    let load = || Command::Clean {
+        brush: "main".into(),
+    };
+    let mut bench = Bench::new();
+    bench.work().step_width(true);
+    bench.work().then(load());
+    let first = bench.requests.take().remove(0);
+    bench.work().step_width(true);
+    let second = bench.requests.take().remove(0);
+    let answer = |request: &Request, result| Outcome {
+        request: request.clone(),
+        result,
+    };
+    bench.work().brush_answered(&answer(&first, refused()));
+    assert_eq!(width(&mut bench), 13.0, "the newer one was not answered");
+    bench.work().brush_answered(&answer(&second, refused()));
+    assert_eq!(width(&mut bench), 10.0, "as before");
+    assert!(
+        bench.requests.take().is_empty(),
+        "what waited for it is off"
+    );
+    bench.work().step_width(true);
+    bench.work().then(load());
+    let request = bench.requests.take().remove(0);
+    let done = answer(&request, Ok(String::new()));
+    bench.work().brush_answered(&done);
+    let then = Request::Command {
+        node: PAINT.to_owned(),
+        command: load(),
+    };
+    assert_eq!(bench.requests.take(), [then]);
+}
+
+#[test]
+fn files_of_ones_own_are_read_or_told() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = folder.path().join("rake.toml");
+    let error = read(&path).expect_err("none").to_string();
+    assert!(error.contains("rake.toml"), "{error}");
+    let text = BrushFile::library_text("flat").expect("flat");
+    std::fs::write(&path, text).expect("written");
+    assert_eq!(read(&path).expect("a brush").kind, "flat");
+    std::fs::write(&path, text.replace("joints = 3", "joints = 0")).expect("written");
+    let error = read(&path).expect_err("wrong").to_string();
+    assert!(
+        error.contains("spines.joints is 0") && error.contains("rake.toml"),
+        "{error}"
+    );
+    let model = folder.path().join("rake.glb");
+    std::fs::write(&model, text).expect("written");
+    assert!(read(&model).is_err(), "no model");
+    std::fs::write(&path, [0xff, 0xfe]).expect("written");
+    assert!(
+        read(&path)
+            .expect_err("bytes")
+            .to_string()
+            .contains("no text")
+    );
+}

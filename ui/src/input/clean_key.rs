@@ -1,0 +1,114 @@
+//! The cleaning key: tapped it cleans the brush; held it makes the brush lift paint, until it is let go.
+
+use maulstick_types::command::Command;
+use maulstick_types::scene::{BrushHandling, BrushMode};
+
+use crate::rig::requests::Requests;
+
+/// A key that is down for longer is held, s.
+const TAP_S: f64 = 0.25;
+
+/// The key that is down.
+#[derive(Clone, Debug)]
+struct Down {
+    since_s: f64,
+    /// The brush, and how it was used before it began to lift.
+    brush: String,
+    before: Option<BrushHandling>,
+}
+
+/// The cleaning key.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct CleanKey {
+    down: Option<Down>,
+}
+
+impl CleanKey {
+    /// Follows the key at a time of the window, s; `painting` while the brush touches something, `now` is
+    /// how the brush in hand is used.
+    pub(crate) fn follow(
+        &mut self,
+        now_s: f64,
+        is_down: bool,
+        painting: bool,
+        now: &BrushHandling,
+        requests: &mut Requests,
+    ) {
+        if !is_down {
+            match self.down.take() {
+                Some(Down {
+                    before: Some(handling),
+                    ..
+                }) => requests.paint(Command::Handle { handling }),
+                Some(Down { brush, .. }) => requests.paint(Command::Clean { brush }),
+                None => {}
+            }
+            return;
+        }
+        let down = self.down.get_or_insert_with(|| Down {
+            since_s: now_s,
+            brush: now.brush.clone(),
+            before: None,
+        });
+        if down.before.is_none() && (painting || now_s - down.since_s > TAP_S) {
+            down.before = Some(now.clone());
+            requests.paint(Command::Handle {
+                handling: BrushHandling {
+                    mode: BrushMode::Vacuum,
+                    ..now.clone()
+                },
+            });
+        }
+    }
+
+    /// Whether the key is down: it has to be looked at again soon.
+    #[must_use]
+    pub(crate) fn is_down(&self) -> bool {
+        self.down.is_some()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::rig::requests::Request;
+
+    fn asked(steps: &[(f64, bool, bool)]) -> Vec<Command> {
+        let now = BrushHandling {
+            mode: BrushMode::NoPush,
+            ..BrushHandling::normal("main")
+        };
+        let (mut key, mut requests) = (CleanKey::default(), Requests::default());
+        for (at, down, painting) in steps {
+            key.follow(*at, *down, *painting, &now, &mut requests);
+        }
+        let command = |order| match order {
+            Request::Command { command, .. } => command,
+            Request::Force { .. } => panic!("no force"),
+        };
+        requests.take().into_iter().map(command).collect()
+    }
+
+    fn modes(commands: &[Command]) -> Vec<BrushMode> {
+        let mode = |command: &Command| match command {
+            Command::Handle { handling } => handling.mode.clone(),
+            other => panic!("{other:?}"),
+        };
+        commands.iter().map(mode).collect()
+    }
+
+    #[test]
+    fn a_tap_cleans_and_a_held_key_lifts_until_it_is_let_go() {
+        let tap = asked(&[(0.0, true, false), (0.1, true, false), (0.12, false, false)]);
+        let clean = Command::Clean {
+            brush: "main".into(),
+        };
+        assert_eq!(tap, [clean]);
+        let held = [BrushMode::Vacuum, BrushMode::NoPush];
+        let long = asked(&[(0.0, true, false), (0.3, true, false), (0.5, false, false)]);
+        assert_eq!(modes(&long), held);
+        let stroke = asked(&[(0.0, true, true), (0.05, true, true), (0.1, false, true)]);
+        assert_eq!(modes(&stroke), held, "in a stroke at once");
+        assert!(asked(&[(0.0, false, true)]).is_empty());
+    }
+}

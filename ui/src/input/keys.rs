@@ -1,0 +1,315 @@
+//! What the keys do: one table, by which they are heard and explained.
+
+use eframe::egui::{Context, Event, Key, KeyboardShortcut, Modifiers, Plugin, RawInput};
+
+/// What a key asks for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Action {
+    /// A new painting.
+    New,
+    /// Another painting.
+    Open,
+    /// Whether all is saved.
+    Save,
+    /// The painting under another name.
+    SaveAs,
+    /// A picture of it for other programs.
+    Export,
+    /// A picture to paint after, beside the canvas, and away again.
+    Reference,
+    /// The newest step back.
+    Undo,
+    /// The newest undo back.
+    Redo,
+    /// A smaller brush.
+    Smaller,
+    /// A larger brush.
+    Larger,
+    /// The next brush of the rack.
+    NextBrush,
+    /// All wet paint becomes a dry layer.
+    Dry,
+    /// The palette over the canvas, and back.
+    Palette,
+    /// The panels, or none.
+    Panels,
+    /// All of the canvas in the view.
+    Fit,
+    /// A cell of the canvas a pixel.
+    Hundred,
+    /// The keyboard goes to the panels.
+    Focus,
+    /// The whole screen.
+    FullScreen,
+    /// What the keys do.
+    Keys,
+    /// No device gives force any more.
+    ForceOff,
+}
+
+/// A key and what it does.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Binding {
+    /// What it asks for.
+    pub act: Action,
+    /// The key.
+    pub shortcut: KeyboardShortcut,
+    /// What it does, in a painter's words.
+    pub words: &'static str,
+}
+
+const fn key(act: Action, modifiers: Modifiers, key: Key, words: &'static str) -> Binding {
+    Binding {
+        act,
+        shortcut: KeyboardShortcut::new(modifiers, key),
+        words,
+    }
+}
+
+/// All keys that are pressed once. One with more modifiers comes before the same with fewer.
+pub(crate) const BINDINGS: [Binding; 21] = [
+    key(
+        Action::Palette,
+        Modifiers::NONE,
+        Key::Space,
+        "Palette out, and back",
+    ),
+    key(
+        Action::Panels,
+        Modifiers::NONE,
+        Key::Tab,
+        "Show or hide the panels",
+    ),
+    key(
+        Action::Smaller,
+        Modifiers::NONE,
+        Key::OpenBracket,
+        "Smaller brush",
+    ),
+    key(
+        Action::Larger,
+        Modifiers::NONE,
+        Key::CloseBracket,
+        "Larger brush",
+    ),
+    key(Action::NextBrush, Modifiers::NONE, Key::B, "Next brush"),
+    key(Action::Dry, Modifiers::NONE, Key::D, "Dry the canvas"),
+    key(
+        Action::Fit,
+        Modifiers::NONE,
+        Key::Num0,
+        "See the whole canvas",
+    ),
+    key(
+        Action::Hundred,
+        Modifiers::NONE,
+        Key::Num1,
+        "A cell of the canvas a pixel",
+    ),
+    key(
+        Action::Focus,
+        Modifiers::NONE,
+        Key::F6,
+        "The keyboard to the panels; Escape: back",
+    ),
+    key(
+        Action::FullScreen,
+        Modifiers::NONE,
+        Key::F11,
+        "Whole screen, and back",
+    ),
+    key(
+        Action::Redo,
+        Modifiers::COMMAND.plus(Modifiers::SHIFT),
+        Key::Z,
+        "Redo",
+    ),
+    key(Action::Undo, Modifiers::COMMAND, Key::Z, "Undo"),
+    key(Action::New, Modifiers::COMMAND, Key::N, "New painting"),
+    key(Action::Open, Modifiers::COMMAND, Key::O, "Open a painting"),
+    key(
+        Action::SaveAs,
+        Modifiers::COMMAND.plus(Modifiers::SHIFT),
+        Key::S,
+        "Save under another name",
+    ),
+    key(Action::Save, Modifiers::COMMAND, Key::S, "Save"),
+    key(
+        Action::Export,
+        Modifiers::COMMAND,
+        Key::E,
+        "Export a picture",
+    ),
+    key(
+        Action::Reference,
+        Modifiers::COMMAND,
+        Key::R,
+        "Reference picture, and away",
+    ),
+    key(
+        Action::Keys,
+        Modifiers::SHIFT,
+        Key::Questionmark,
+        "Show these keys",
+    ),
+    key(Action::Keys, Modifiers::NONE, Key::F1, "Show these keys"),
+    key(
+        Action::ForceOff,
+        Modifiers::NONE,
+        Key::F9,
+        "Force off, of every device",
+    ),
+];
+
+/// The key that is held to lift paint, or tapped to clean the brush.
+pub(crate) const CLEAN: Key = Key::C;
+
+/// What is held, and what it does.
+pub(crate) const HELD: [(&str, &str); 6] = [
+    ("C", "Clean the brush; held, it lifts paint"),
+    ("Wheel", "Zoom; with a pen: Shift and drag"),
+    (
+        "Middle, or Ctrl and drag",
+        "Move the canvas, or the palette",
+    ),
+    ("… with Shift", "Turn the canvas"),
+    ("… with Alt", "Tilt the canvas"),
+    ("A wave to the palette's side", "Palette out, and back"),
+];
+
+/// A key as it is written: signs as themselves.
+#[must_use]
+pub(crate) fn written(context: &Context, shortcut: &KeyboardShortcut) -> String {
+    match shortcut.logical_key {
+        key @ (Key::OpenBracket | Key::CloseBracket | Key::Questionmark) => {
+            key.symbol_or_name().to_owned()
+        }
+        _ => context.format_shortcut(shortcut),
+    }
+}
+
+/// Keeps Tab from the first control where no control has the keyboard: there it is a key of the desk.
+#[derive(Debug, Default)]
+pub(crate) struct TabKey {
+    pressed: bool,
+    /// Whether it is down: the system repeats it without saying so.
+    down: bool,
+}
+
+impl Plugin for TabKey {
+    fn debug_name(&self) -> &'static str {
+        "tab key"
+    }
+
+    fn input_hook(&mut self, context: &Context, input: &mut RawInput) {
+        if context.memory(|memory| memory.focused().is_some()) {
+            return;
+        }
+        let is_tab = |event: &Event| matches!(event, Event::Key { key: Key::Tab, modifiers, .. } if modifiers.is_none());
+        for event in input.events.iter().filter(|event| is_tab(event)) {
+            let down = matches!(event, Event::Key { pressed: true, .. });
+            self.pressed |= down && !self.down;
+            self.down = down;
+        }
+        input.events.retain(|event| !is_tab(event));
+    }
+}
+
+/// The one key that acts whatever else is open.
+#[must_use]
+pub(crate) fn force_off(context: &Context) -> Vec<Action> {
+    let pressed = context.input_mut(|input| input.consume_key(Modifiers::NONE, Key::F9));
+    pressed.then_some(Action::ForceOff).into_iter().collect()
+}
+
+/// What the keys that were pressed ask for, in order. While a control has the keyboard, keys without
+/// Ctrl are its own.
+#[must_use]
+pub(crate) fn pressed(context: &Context) -> Vec<Action> {
+    let typing = context.memory(|memory| memory.focused().is_some());
+    let tab = context.plugin_or_default::<TabKey>();
+    let tab = std::mem::take(&mut tab.lock().pressed);
+    let mut acts: Vec<Action> = tab.then_some(Action::Panels).into_iter().collect();
+    context.input_mut(|input| {
+        for binding in &BINDINGS {
+            // A key that is held does its work once, but to step back and forth.
+            let repeats = matches!(
+                binding.act,
+                Action::Undo | Action::Redo | Action::Smaller | Action::Larger
+            );
+            let KeyboardShortcut {
+                modifiers: own,
+                logical_key,
+            } = binding.shortcut;
+            if !typing && !repeats {
+                input.events.retain(|event| {
+                    !matches!(event, Event::Key { key, repeat: true, modifiers, .. }
+                        if *key == logical_key && modifiers.matches_logically(own))
+                });
+            }
+            let is_plain = !binding.shortcut.modifiers.command
+                && !matches!(
+                    binding.shortcut.logical_key,
+                    Key::F1 | Key::F6 | Key::F9 | Key::F11
+                );
+            if !(typing && is_plain) && input.consume_shortcut(&binding.shortcut) {
+                acts.push(binding.act);
+            }
+        }
+    });
+    acts
+}
+
+#[cfg(test)]
+mod tests {
+    use std::cell::RefCell;
+
+    use egui_kittest::Harness;
+
+    use super::*;
+
+    #[test]
+    fn each_key_does_what_the_table_says() {
+        for binding in &BINDINGS {
+            let acts = RefCell::new(Vec::new());
+            let mut harness = Harness::new_ui(|ui| acts.borrow_mut().extend(pressed(ui.ctx())));
+            harness.run();
+            let KeyboardShortcut {
+                modifiers,
+                logical_key,
+            } = binding.shortcut;
+            harness.key_press_modifiers(modifiers, logical_key);
+            harness.run();
+            drop(harness);
+            assert_eq!(acts.into_inner(), [binding.act], "{}", binding.words);
+        }
+    }
+
+    #[test]
+    fn signs_are_written_as_themselves() {
+        let context = Context::default();
+        let words = BINDINGS.map(|binding| written(&context, &binding.shortcut));
+        for word in ["[", "]", "?", "Ctrl+Shift+Z", "Space"] {
+            assert!(words.iter().any(|own| own == word), "{word}: {words:?}");
+        }
+    }
+
+    #[test]
+    fn while_a_name_is_typed_no_key_acts() {
+        let acts = RefCell::new(Vec::new());
+        let mut text = String::new();
+        let mut harness = Harness::new_ui(|ui| {
+            let label = ui.label("Name");
+            let edit = ui.text_edit_singleline(&mut text).labelled_by(label.id);
+            if !edit.has_focus() {
+                edit.request_focus();
+            }
+            acts.borrow_mut().extend(pressed(ui.ctx()));
+        });
+        harness.run();
+        harness.key_press(Key::D);
+        harness.run();
+        drop(harness);
+        assert!(acts.into_inner().is_empty());
+    }
+}

@@ -1,0 +1,19 @@
+//! Keys, mouse and gestures, and what they ask for.
+//!
+//! | module | holds |
+//! | --- | --- |
+//! | [`keys`] | key bindings |
+//! | [`mouse_stylus`] | the mouse as a stylus |
+//! | [`navigation`] | wheel, drag and touch: moves the surfaces |
+//! | [`clean_key`] | the key that cleans the brush, or lifts paint while it is held |
+//! | [`palette_gesture`] | the wave of the brush that fetches the palette |
+//! | [`brush_choice`] | the brush in the hand and its width |
+//! | [`palette_wells`] | the mixtures in the wells of the palette |
+
+pub(crate) mod brush_choice;
+pub(crate) mod clean_key;
+pub(crate) mod keys;
+pub(crate) mod mouse_stylus;
+pub(crate) mod navigation;
+pub(crate) mod palette_gesture;
+pub(crate) mod palette_wells;

@@ -1,0 +1,357 @@
+//! The mouse as a stylus of lowest priority.
+//!
+//! A tablet reaches the rig twice, by its daemon and as the pointer: the mouse counts only while no
+//! other stylus has been in range for a second.
+
+use maulstick_brush::model::BRIDGED_NS;
+use maulstick_bus::credit::Stamp;
+use maulstick_bus::typed::{Receiver, Sender};
+use maulstick_bus::{Bus, BusError, Class, CreditSender, Queue, Wake};
+use maulstick_rig::config::MOUSE_PRIORITY;
+use maulstick_types::stylus::{DEFAULT_TILT_RAD, StylusInfo, StylusPose, StylusSample, axes};
+use maulstick_types::topics::Topics;
+use maulstick_types::{Flags, Origin};
+
+/// Another stylus in range silences the mouse for this long, ns.
+const SILENCE_NS: u64 = 1_000_000_000;
+/// A frame takes no longer, ns; a longer time is a pause.
+const FRAME_NS: u64 = 90_000_000;
+/// A frame of a stroke that goes on may take as long as this, ns.
+const LONG_FRAME_NS: u64 = 1_000_000_000;
+/// Pressure of a pressed button.
+const PRESSED: f64 = 0.5;
+
+/// Where the pointer is on the desk, and whether its button is down.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Pointer {
+    /// On the desk, m.
+    pub at: [f64; 3],
+    /// The primary button.
+    pub pressed: bool,
+}
+
+/// The mouse.
+pub(crate) struct Mouse {
+    samples: CreditSender<StylusSample>,
+    others: Receiver<StylusSample>,
+    info: Sender<StylusInfo>,
+    told: StylusInfo,
+    me: Origin,
+    silent_until_ns: u64,
+    sent_ns: u64,
+    was_in_range: bool,
+    /// Where the brush was pressed when the mouse was last told of; none in the air.
+    pressed: Option<[f64; 3]>,
+}
+
+impl Mouse {
+    /// A mouse called `name` that moves `brush`.
+    ///
+    /// # Errors
+    /// [`BusError::Topic`].
+    pub(crate) fn new(
+        bus: &dyn Bus,
+        topics: &Topics,
+        name: &str,
+        brush: &str,
+        me: Origin,
+    ) -> Result<Self, BusError> {
+        let wake = Wake::new();
+        let mut info = Sender::new(bus, &topics.stylus_info(name), Class::Cached, me)?;
+        let now = bus.now_ns();
+        let told = StylusInfo {
+            device: name.to_owned(),
+            driver: "pointer".into(),
+            brush: brush.to_owned(),
+            priority: MOUSE_PRIORITY,
+            senses: axes::POSITION | axes::SWITCHES,
+            drives: 0,
+            rate_hz: 60.0,
+            max_force_n: 0.0,
+            max_stiffness_n_m: 0.0,
+            workspace_m: [-0.5, -0.5, 0.0, 0.5, 0.5, 0.0],
+        };
+        info.send(now, now, &told)?;
+        let others = topics.sample("*");
+        Ok(Self {
+            samples: CreditSender::new(bus, topics, &topics.sample(name), me, &wake)?,
+            others: Receiver::new(bus, &others, Class::RealTime, Queue::Ring(256), &wake)?,
+            info,
+            told,
+            me,
+            silent_until_ns: 0,
+            sent_ns: 0,
+            was_in_range: false,
+            pressed: None,
+        })
+    }
+
+    /// Takes another brush into the hand, or keeps the one that is there.
+    ///
+    /// # Errors
+    /// [`BusError::Topic`].
+    pub(crate) fn take(&mut self, now_ns: u64, brush: &str) -> Result<(), BusError> {
+        if self.told.brush == brush {
+            return Ok(());
+        }
+        // The one that was held is put down first.
+        self.send(now_ns, &[])?;
+        brush.clone_into(&mut self.told.brush);
+        self.info.send(now_ns, now_ns, &self.told)
+    }
+
+    /// Whether another stylus paints, so that the mouse is in the other hand.
+    #[must_use]
+    pub(crate) fn is_free(&self, now_ns: u64) -> bool {
+        now_ns < self.silent_until_ns
+    }
+
+    /// Sends what the pointer did since the last call: its places in order, evenly spread over that
+    /// time; none where it is not over the desk.
+    ///
+    /// # Errors
+    /// [`BusError::Topic`].
+    pub(crate) fn send(&mut self, now_ns: u64, places: &[Pointer]) -> Result<(), BusError> {
+        while let Some(other) = self.others.try_recv() {
+            if other.header.source != self.me.source && other.message.in_range {
+                self.silent_until_ns = now_ns + SILENCE_NS;
+            }
+        }
+        self.samples.forgive();
+        self.samples.serve(now_ns)?;
+        let places = if now_ns < self.silent_until_ns {
+            &[]
+        } else {
+            places
+        };
+        if places.is_empty() {
+            self.pressed = None;
+            if self.was_in_range {
+                self.was_in_range = false;
+                let stamp = Stamp {
+                    now_ns,
+                    event_ns: now_ns,
+                };
+                self.samples
+                    .send(Flags::NONE, stamp, &StylusSample::away())?;
+            }
+            self.sent_ns = now_ns;
+            return Ok(());
+        }
+        self.was_in_range = true;
+        // After a pause the pointer has not crept here. A frame may be long where the processor draws: what
+        // was moved in it took all of it, or the brush would leap and rest by turns.
+        let goes_on = self.pressed.is_some() && places[0].pressed;
+        let longest_ns = if goes_on { LONG_FRAME_NS } else { FRAME_NS };
+        let since_ns = self.sent_ns.max(now_ns.saturating_sub(longest_ns));
+        let places = self.finer(places, now_ns - since_ns);
+        self.pressed = places
+            .last()
+            .filter(|last| last.pressed)
+            .map(|last| last.at);
+        for (number, place) in places.iter().enumerate() {
+            let share = (number + 1) as f64 / places.len() as f64;
+            let event_ns = since_ns + ((now_ns - since_ns) as f64 * share) as u64;
+            let sample = StylusSample {
+                senses: axes::POSITION | axes::SWITCHES,
+                pose: StylusPose::Contact {
+                    point_m: place.at,
+                    tilt_rad: DEFAULT_TILT_RAD,
+                    twist_rad: 0.0,
+                    pressure: if place.pressed { PRESSED } else { 0.0 },
+                },
+                switches: u32::from(place.pressed),
+                in_range: true,
+                ..StylusSample::away()
+            };
+            self.samples
+                .send(Flags::NONE, Stamp { now_ns, event_ns }, &sample)?;
+        }
+        self.sent_ns = now_ns;
+        Ok(())
+    }
+}
+
+impl Mouse {
+    /// Places that took so long, with as many more between those of a pressed button as leave no pause
+    /// that the brush would not cross: it is known that the button was not let go.
+    fn finer(&self, places: &[Pointer], took_ns: u64) -> Vec<Pointer> {
+        let each_ns = took_ns / places.len().max(1) as u64;
+        let parts = each_ns.div_ceil(BRIDGED_NS).max(1);
+        let mut before = self.pressed;
+        let mut all = Vec::new();
+        for place in places {
+            if let (Some(from), true) = (before, place.pressed) {
+                all.extend((1..parts).map(|part| {
+                    let share = part as f64 / parts as f64;
+                    let at = std::array::from_fn(|i| from[i] + share * (place.at[i] - from[i]));
+                    Pointer { at, pressed: true }
+                }));
+            }
+            all.push(*place);
+            before = place.pressed.then_some(place.at);
+        }
+        all
+    }
+}
+
+impl std::fmt::Debug for Mouse {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("Mouse")
+            .field("was_in_range", &self.was_in_range)
+            .finish_non_exhaustive()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use maulstick_bus::{Faults, MemoryNet};
+
+    use super::*;
+
+    const SECOND: u64 = 1_000_000_000;
+    /// The brush touches.
+    const PRESSED: Pointer = Pointer {
+        at: [0.0; 3],
+        pressed: true,
+    };
+
+    /// A mouse, and who hears it.
+    struct Desk {
+        net: MemoryNet,
+        topics: Topics,
+        mouse: Mouse,
+        samples: Receiver<StylusSample>,
+        infos: Receiver<StylusInfo>,
+    }
+
+    impl Desk {
+        fn new() -> Self {
+            let net = MemoryNet::new(1, SECOND, Faults::default());
+            let (bus, topics, wake) = (net.bus(), Topics::new("t"), Wake::new());
+            let me = Origin {
+                source: 1,
+                epoch: 1,
+            };
+            let mouse = Mouse::new(&bus, &topics, "mouse", "main", me).expect("a mouse");
+            let (topic, ring) = (topics.sample("mouse"), Queue::Ring(64));
+            let samples = Receiver::new(&bus, &topic, Class::RealTime, ring, &wake);
+            let (topic, ring) = (topics.stylus_info("mouse"), Queue::Ring(8));
+            let infos = Receiver::new(&bus, &topic, Class::Cached, ring, &wake);
+            Self {
+                mouse,
+                samples: samples.expect("a receiver"),
+                infos: infos.expect("a receiver"),
+                net,
+                topics,
+            }
+        }
+
+        /// The mouse tells where it is; whether it was heard to be in range.
+        fn turn(&mut self) -> Option<bool> {
+            let now_ns = self.net.bus().now_ns();
+            self.mouse.send(now_ns, &[PRESSED]).expect("sent");
+            self.net.advance(SECOND / 10);
+            self.samples.newest().map(|sample| sample.message.in_range)
+        }
+    }
+
+    #[test]
+    fn another_stylus_silences_the_mouse_for_a_second() {
+        let mut desk = Desk::new();
+        let pen = Origin {
+            source: 2,
+            epoch: 1,
+        };
+        let topic = desk.topics.sample("pen");
+        let mut pen = Sender::new(&desk.net.bus(), &topic, Class::RealTime, pen).expect("a pen");
+        assert_eq!(desk.turn(), Some(true));
+        let near = StylusSample {
+            in_range: true,
+            ..StylusSample::away()
+        };
+        pen.send(0, 0, &near).expect("sent");
+        desk.turn();
+        assert_eq!(desk.turn(), Some(false), "it says that it is out of range");
+        for _ in 0..9 {
+            assert_eq!(desk.turn(), None);
+        }
+        assert_eq!(desk.turn(), Some(true));
+    }
+
+    #[test]
+    fn another_brush_is_taken_after_the_first_was_put_down() {
+        let mut desk = Desk::new();
+        desk.mouse.send(SECOND, &[PRESSED]).expect("sent");
+        for brush in ["main", "second", "second"] {
+            desk.mouse.take(SECOND + 1, brush).expect("told");
+        }
+        desk.net.advance(SECOND / 10);
+        let mut told: Vec<String> = std::iter::from_fn(|| desk.infos.try_recv())
+            .map(|info| info.message.brush)
+            .collect();
+        // Who joins late is told once more.
+        told.dedup();
+        assert_eq!(told, ["main", "second"]);
+        let ranges: Vec<bool> = std::iter::from_fn(|| desk.samples.try_recv())
+            .map(|sample| sample.message.in_range)
+            .collect();
+        assert_eq!(ranges, [true, false]);
+    }
+
+    #[test]
+    fn a_stroke_goes_on_over_a_frame_however_long_it_is() {
+        let mut desk = Desk::new();
+        let at = |x: f64| Pointer {
+            at: [x, 0.0, 0.0],
+            pressed: true,
+        };
+        desk.mouse.send(SECOND, &[at(0.0)]).expect("sent");
+        let slow = SECOND + 960_000_000;
+        desk.mouse.send(slow, &[at(0.01), at(0.06)]).expect("sent");
+        desk.net.advance(SECOND / 10);
+        let mut heard = Vec::new();
+        while let Some(sample) = desk.samples.try_recv() {
+            let StylusPose::Contact {
+                point_m, pressure, ..
+            } = sample.message.pose
+            else {
+                panic!("no contact");
+            };
+            assert!(pressure > 0.0);
+            heard.push((sample.header.event_ns, point_m[0]));
+        }
+        assert_eq!((heard.len(), heard[heard.len() - 1]), (5, (slow, 0.06)));
+        for pair in heard.windows(2) {
+            let [(from_ns, from), (to_ns, to)] = [pair[0], pair[1]];
+            assert!(to_ns - from_ns <= BRIDGED_NS && to > from, "{heard:?}");
+        }
+        // In the air it leaps.
+        let lifted = Pointer {
+            pressed: false,
+            ..at(0.0)
+        };
+        desk.mouse.send(slow + 1, &[lifted]).expect("sent");
+        desk.mouse.send(slow + SECOND, &[lifted]).expect("sent");
+        desk.net.advance(SECOND / 10);
+        assert_eq!(std::iter::from_fn(|| desk.samples.try_recv()).count(), 2);
+    }
+
+    #[test]
+    fn what_is_moved_in_a_long_frame_is_spread_over_it() {
+        let mut desk = Desk::new();
+        for frame in 1..=3 {
+            let sent = desk.mouse.send(SECOND + frame * 80_000_000, &[PRESSED; 8]);
+            sent.expect("sent");
+        }
+        desk.net.advance(SECOND / 10);
+        let times: Vec<u64> = std::iter::from_fn(|| desk.samples.try_recv())
+            .map(|sample| sample.header.event_ns)
+            .collect();
+        let steps = times.windows(2).skip(7).map(|pair| pair[1] - pair[0]);
+        assert_eq!(times.len(), 24);
+        for step in steps {
+            assert_eq!(step, 10_000_000);
+        }
+    }
+}

@@ -1,0 +1,55 @@
+//! What lies in the wells of the palette, and what is laid there instead.
+
+use maulstick_brush::palette_place::{mirrored, size_m};
+use maulstick_paint::setup::wells_of;
+use maulstick_types::Mixture;
+use maulstick_types::command::Command;
+use maulstick_types::scene::{Surface, WellKind};
+
+use crate::widgets::context::PanelContext;
+
+/// Paints that a palette holds at most: more would lie in wells too small for a brush.
+pub(crate) const MOST: usize = 24;
+
+/// What the wells of a palette hold, from the top; the cleaner is none of them.
+#[must_use]
+pub(crate) fn mixtures(palette: &Surface) -> Vec<Mixture> {
+    let held = palette.wells.iter().map(|well| match &well.kind {
+        WellKind::Paint { mixture } => Some(mixture.clone()),
+        WellKind::Cleaner => None,
+    });
+    held.flatten().collect()
+}
+
+impl PanelContext<'_> {
+    /// What the wells of the palette hold, from the top; none before there is a palette.
+    #[must_use]
+    pub fn wells(&self) -> Vec<Mixture> {
+        self.rig.palette().map_or_else(Vec::new, mixtures)
+    }
+
+    /// Lays these mixtures in the palette's wells, from the top.
+    pub fn lay_wells(&mut self, mixtures: &[Mixture]) {
+        if mixtures.len() > MOST {
+            return self.notifications.fault(
+                format!("A palette holds at most {MOST} paints."),
+                "Take one off the palette first.",
+            );
+        }
+        let Some(palette) = self.rig.palette() else {
+            return;
+        };
+        let wells = wells_of(mixtures, palette.cells, palette.cell_m);
+        let command = Command::Wells {
+            surface: palette.id,
+            wells: match self.preferences.left_handed {
+                false => wells,
+                true => mirrored(&wells, size_m(palette)),
+            },
+        };
+        match command.check() {
+            Ok(()) => self.requests.paint(command),
+            Err(what) => self.notifications.fault(what, String::new()),
+        }
+    }
+}

@@ -1,0 +1,71 @@
+//! Brush files of the painter's own in the rack.
+
+use std::path::PathBuf;
+
+use eframe::egui::{Button, Key, TextEdit, Ui};
+
+use super::entry;
+use crate::render::brush::icon_cache;
+use crate::widgets::context::PanelContext;
+use crate::widgets::labelled;
+
+/// The rows.
+#[derive(Debug, Default)]
+pub(super) struct OwnBrushes {
+    path: String,
+}
+
+impl OwnBrushes {
+    pub(super) fn show(&mut self, ui: &mut Ui, work: &mut PanelContext<'_>) {
+        ui.label("A brush file (.toml, .glb) joins the rack.");
+        let edit = TextEdit::singleline(&mut self.path)
+            .hint_text("/home/me/brushes/rake.toml")
+            .desired_width(190.0);
+        let shown = labelled::named(ui, "File", "Where the brush file lies.", edit);
+        let enter = shown.lost_focus() && ui.input(|input| input.key_pressed(Key::Enter));
+        let is_given = !self.path.trim().is_empty();
+        let add = ui.add_enabled(is_given, Button::new("Add to the rack"));
+        if is_given
+            && (add.clicked() || enter)
+            && add_file(ui, work, PathBuf::from(self.path.trim()))
+        {
+            self.path.clear();
+        }
+        let mut gone = None;
+        for (place, path) in work.preferences.own_brushes.iter().enumerate() {
+            let name = path.file_name().unwrap_or_default().to_string_lossy();
+            let left = |ui: &mut Ui| {
+                ui.add(eframe::egui::Label::new(&*name).truncate())
+                    .on_hover_text(path.display().to_string());
+            };
+            let right = |ui: &mut Ui| {
+                let button = ui.small_button("Remove");
+                let hover = format!("Takes {name} off the rack; the file stays.");
+                if button.on_hover_text(hover).clicked() {
+                    gone = Some(place);
+                }
+            };
+            entry(ui, left, right);
+        }
+        if let Some(place) = gone {
+            work.preferences.own_brushes.remove(place);
+        }
+    }
+}
+
+/// Puts a brush file into the rack and the brush into the hand; false where it is none, which is told.
+fn add_file(ui: &Ui, work: &mut PanelContext<'_>, path: PathBuf) -> bool {
+    icon_cache::forget(ui.ctx(), &path);
+    match icon_cache::own(ui.ctx(), &path) {
+        Ok(file) => {
+            work.preferences.own_brushes.retain(|known| *known != path);
+            work.preferences.own_brushes.push(path);
+            work.take_up((*file).clone());
+            true
+        }
+        Err(fault) => {
+            work.notifications.of(&fault);
+            false
+        }
+    }
+}

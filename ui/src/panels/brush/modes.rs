@@ -1,0 +1,119 @@
+//! The ways that a brush is used in, as the paint model offers them.
+
+use eframe::egui::{ComboBox, Ui};
+use maulstick_types::command::Command;
+use maulstick_types::scene::{BrushHandling, BrushMode, FLOWS};
+
+use crate::widgets::context::PanelContext;
+use crate::widgets::labelled::{self, PendingValue};
+
+/// Most paint that a painter is offered as a bound, µm.
+const MOST_UM: std::ops::RangeInclusive<f64> = 1.0..=2000.0;
+/// The bound that is proposed where there was none, m.
+const PROPOSED_M: f64 = 60e-6;
+
+/// The ways, and what each does, in a painter's words.
+const WAYS: [(BrushMode, &str, &str); 7] = [
+    (
+        BrushMode::Normal,
+        "Paints",
+        "It pushes paint, leaves some and takes some up.",
+    ),
+    (
+        BrushMode::NoPush,
+        "Glides",
+        "It leaves paint and takes some up, but pushes none aside.",
+    ),
+    (
+        BrushMode::Sponge,
+        "Sponge",
+        "It stays as it is, full or empty, whatever it leaves or takes up.",
+    ),
+    (
+        BrushMode::SpongeNoPush,
+        "Sponge, glides",
+        "As a sponge, and it pushes nothing aside.",
+    ),
+    (
+        BrushMode::Marker,
+        "Marker",
+        "It leaves as much as its flow says, and takes up nothing.",
+    ),
+    (
+        BrushMode::Sampler,
+        "Samples colours",
+        "It takes on the colours that it touches; the surface stays as it is.",
+    ),
+    (
+        BrushMode::Vacuum,
+        "Lifts off",
+        "It lifts off the wet paint that it touches, and is clean.",
+    ),
+];
+
+/// Shows how the brush in the hand is used, and asks for what is changed.
+pub(super) fn show(
+    ui: &mut Ui,
+    work: &mut PanelContext<'_>,
+    asked: &mut PendingValue<BrushHandling>,
+) {
+    let handling = asked.shown(ui, work.rig.handling());
+    let mut wanted = handling.clone();
+    ui.horizontal(|ui| {
+        let hover = "What the brush does with the paint that it touches.";
+        let name = labelled::label(ui, "Way", hover);
+        let mut ways = WAYS.iter();
+        let own = ways.find(|(mode, ..)| *mode == handling.mode);
+        ComboBox::from_id_salt("way")
+            .width(150.0)
+            .selected_text(own.map_or("", |(_, words, _)| words))
+            .show_ui(ui, |ui| {
+                for (mode, words, does) in &WAYS {
+                    let is_own = *mode == handling.mode;
+                    if ui
+                        .selectable_label(is_own, *words)
+                        .on_hover_text(*does)
+                        .clicked()
+                    {
+                        wanted.mode = mode.clone();
+                    }
+                }
+            })
+            .response
+            .labelled_by(name.id)
+            .on_hover_text(own.map_or("", |(.., does)| does));
+    });
+    if handling.mode == BrushMode::Marker {
+        // Micrometres along a millimetre.
+        let mut um = handling.flow * 1e3;
+        let range = FLOWS.start() * 1e3..=FLOWS.end() * 1e3;
+        let slider = labelled::slider(&mut um, range, " µm/mm").max_decimals(3);
+        let hover = "Thickness that the marker leaves along a millimetre of its way.";
+        if labelled::named(ui, "Flow", hover, slider).changed() {
+            wanted.flow = um * 1e-3;
+        }
+    }
+    if !matches!(handling.mode, BrushMode::Sampler | BrushMode::Vacuum) {
+        most(ui, &handling, &mut wanted);
+    }
+    if wanted != handling {
+        asked.ask(ui, wanted.clone());
+        work.requests.paint(Command::Handle { handling: wanted });
+    }
+}
+
+fn most(ui: &mut Ui, handling: &BrushHandling, wanted: &mut BrushHandling) {
+    let hover = "The brush adds no paint where as much lies wet already.";
+    let mut bounded = handling.most_m > 0.0;
+    let check = ui.checkbox(&mut bounded, "No thicker than");
+    if check.on_hover_text(hover).changed() {
+        wanted.most_m = if bounded { PROPOSED_M } else { 0.0 };
+    }
+    if handling.most_m > 0.0 {
+        let mut um = (handling.most_m * 1e9).round() * 1e-3;
+        let slider = labelled::slider(&mut um, MOST_UM, " µm").max_decimals(0);
+        if labelled::named(ui, "Thickness", hover, slider).changed() {
+            wanted.most_m = um * 1e-6;
+        }
+    }
+}

@@ -1,0 +1,255 @@
+//! Canvas panel: size, tooth, ground, sizing and placement.
+//!
+//! | module | holds |
+//! | --- | --- |
+//! | `film` | a film of wet paint over the whole canvas |
+//! | `placement` | tilt, turn and zoom of a surface |
+
+use std::path::Path;
+
+use eframe::egui::{CollapsingHeader, DragValue, Key, TextEdit, Ui};
+use maulstick_paint::assets::{IMAGE, SPECTRUM};
+use maulstick_paint::setup::GROUNDS;
+use maulstick_paint::tooth::Tooth;
+use maulstick_types::command::Command;
+use maulstick_types::scene::{CANVAS, PALETTE, Surface};
+
+use crate::input::keys::Action;
+use crate::panels::Panel;
+use crate::spectrum_file;
+use crate::widgets::context::PanelContext;
+use crate::widgets::pending::Pending;
+use crate::widgets::rows::{Number, Sliders, ask, below, choice, note, row, wrong};
+
+mod film;
+mod placement;
+
+use film::FilmForm;
+use placement::Posture;
+
+const SIZING: Number<'_> = Number {
+    word: "Stain",
+    hover: "How thick a film stays however hard it is wiped: little on a heavily sized canvas, µm",
+    range: 0.0..=50.0,
+    unit: " µm",
+    decimals: 1,
+    factors: false,
+};
+const TILT: Number<'_> = Number {
+    word: "Tilt",
+    hover: "How far its upper edge is raised, as on an easel, degrees",
+    range: 0.0..=60.0,
+    unit: "°",
+    decimals: 0,
+    factors: false,
+};
+const TURN: Number<'_> = Number {
+    word: "Turn",
+    hover: "How far it is turned to the left, degrees",
+    range: -180.0..=180.0,
+    unit: "°",
+    decimals: 0,
+    factors: false,
+};
+const ZOOM: Number<'_> = Number {
+    word: "Zoom",
+    hover: "How large it lies on the desk: 100 % is life size, and the brush stays as it is",
+    range: 10.0..=1000.0,
+    unit: " %",
+    decimals: 0,
+    factors: true,
+};
+
+/// The panel.
+#[derive(Debug, Default)]
+pub(crate) struct CanvasPanel {
+    sliders: Sliders,
+    posture: Pending<Posture>,
+    film: FilmForm,
+    /// Path of a measured ground, and what is wrong with it.
+    file: String,
+    told: String,
+}
+
+impl Panel for CanvasPanel {
+    fn title(&self) -> &'static str {
+        "Canvas"
+    }
+
+    fn show(&mut self, ui: &mut Ui, work: &mut PanelContext<'_>) {
+        let Some(canvas) = work.rig.canvas().cloned() else {
+            return;
+        };
+        size(ui, work, &canvas);
+        self.tooth(ui, work, &canvas);
+        self.ground(ui, work, &canvas);
+        let change = self.sliders.row(ui, &SIZING, canvas.stain_m * 1e6);
+        if let Some(um) = change.settled {
+            let command = Command::Size {
+                surface: CANVAS,
+                stain_m: um * 1e-6,
+            };
+            ask(work, command);
+        }
+        ui.separator();
+        self.place(ui, work, &canvas);
+        ui.separator();
+        preferences(ui, work);
+        CollapsingHeader::new("Lay a film").show(ui, |ui| self.film.show(ui, work));
+    }
+}
+
+/// How large it is; another size is another painting.
+fn size(ui: &mut Ui, work: &mut PanelContext<'_>, canvas: &Surface) {
+    let [width, height] = canvas
+        .cells
+        .map(|cells| f64::from(cells) * canvas.cell_m * 100.0);
+    let per_mm = 1e-3 / canvas.cell_m;
+    ui.horizontal(|ui| {
+        ui.label(format!("{width:.1} × {height:.1} cm"))
+            .on_hover_text(format!("{} × {} cells", canvas.cells[0], canvas.cells[1]));
+        let tidy = (per_mm * 100.0).round() / 100.0;
+        ui.label(format!("{tidy} cells a mm"));
+        let new = ui
+            .button("New…")
+            .on_hover_text("A canvas of another size is a new painting");
+        if new.clicked() {
+            work.requests.act(Action::New);
+        }
+    });
+}
+
+/// What a name of the scene is to a painter.
+fn shown<'a>(name: &'a str, measured: &'a str) -> &'a str {
+    if name.starts_with(IMAGE) {
+        "a picture"
+    } else if name.starts_with(SPECTRUM) {
+        measured
+    } else {
+        name
+    }
+}
+
+/// What is the painter's, whatever is painted.
+fn preferences(ui: &mut Ui, work: &mut PanelContext<'_>) {
+    ui.checkbox(&mut work.preferences.left_handed, "Left-handed")
+        .on_hover_text("The palette lies at the right, brushes and panels at the left");
+    let Some(mut last) = work.rig.palette().map(|palette| palette.piles_last) else {
+        return;
+    };
+    let lasts = ui
+        .checkbox(&mut last, "Paint on the palette lasts")
+        .on_hover_text("Brushes take paint from the palette, and it stays there all the same");
+    if lasts.changed() {
+        let command = Command::Piles {
+            surface: PALETTE,
+            last,
+        };
+        ask(work, command);
+    }
+}
+
+impl CanvasPanel {
+    fn tooth(&mut self, ui: &mut Ui, work: &mut PanelContext<'_>, canvas: &Surface) {
+        let (name, seed) = (&canvas.tooth, canvas.tooth_seed);
+        let command = |tooth: String, seed: u64| Command::Tooth {
+            surface: CANVAS,
+            tooth,
+            seed,
+        };
+        let chosen = choice(ui, "Tooth", shown(name, name), Tooth::names());
+        if let Some(tooth) = chosen {
+            ask(work, command(tooth, seed));
+        }
+        if name.starts_with(IMAGE) {
+            return;
+        }
+        let mut piece = seed;
+        let changed = row(ui, "Piece", |ui| {
+            let number = DragValue::new(&mut piece)
+                .speed(0.1)
+                .update_while_editing(false);
+            ui.add(number)
+                .on_hover_text("Another number is another piece of the same cloth")
+        });
+        if changed.changed() && piece != seed {
+            ask(work, command(name.clone(), piece));
+        }
+    }
+
+    fn ground(&mut self, ui: &mut Ui, work: &mut PanelContext<'_>, canvas: &Surface) {
+        let names = GROUNDS.map(|(name, _)| name);
+        let chosen = choice(ui, "Ground", shown(&canvas.ground, "a measured one"), names);
+        if let Some(ground) = chosen {
+            let command = Command::Ground {
+                surface: CANVAS,
+                ground,
+            };
+            ask(work, command);
+        }
+        row(ui, "From a file", |ui| {
+            let edit = TextEdit::singleline(&mut self.file).hint_text("CSV of nm,reflectance");
+            let edit = ui.add(edit.desired_width(f32::INFINITY));
+            let entered = ui.input(|input| input.key_pressed(Key::Enter));
+            if edit.lost_focus() && entered && !self.file.trim().is_empty() {
+                self.told.clear();
+                match spectrum_file::reflectance(Path::new(self.file.trim())) {
+                    Ok(spectrum) => {
+                        let command = Command::GroundSpectrum {
+                            surface: CANVAS,
+                            spectrum,
+                        };
+                        ask(work, command);
+                    }
+                    Err(fault) => self.told = spectrum_file::told(&fault),
+                }
+            }
+            edit.on_hover_text("The whole path of a measured ground; Enter reads it")
+        });
+        if !self.told.is_empty() {
+            wrong(ui, &self.told);
+            note(ui, "A picture is a ground only of a new painting.");
+        }
+    }
+
+    /// How it lies.
+    fn place(&mut self, ui: &mut Ui, work: &mut PanelContext<'_>, canvas: &Surface) {
+        let now_s = ui.input(|input| input.time);
+        let before = self.posture.shown(now_s, &Posture::of(canvas));
+        let mut posture = before.clone();
+        for (number, value) in [
+            (&TILT, &mut posture.tilt_deg),
+            (&TURN, &mut posture.turn_deg),
+            (&ZOOM, &mut posture.percent),
+        ] {
+            let change = self.sliders.row(ui, number, *value);
+            *value = change.moved.unwrap_or(*value);
+        }
+        below(ui, |ui| {
+            let fit = ui.button("Fit").on_hover_text("See the whole canvas: 0");
+            if fit.clicked() {
+                work.requests.act(Action::Fit);
+            }
+            let cells = ui
+                .button("Cells as pixels")
+                .on_hover_text("A cell of the canvas a pixel of the display: 1");
+            if cells.clicked() {
+                work.requests.act(Action::Hundred);
+            }
+        });
+        if posture != before {
+            let (pose, zoom) = posture.laid(canvas);
+            let command = Command::Place {
+                surface: CANVAS,
+                pose,
+                zoom,
+            };
+            if ask(work, command) {
+                self.posture.hold(now_s, posture);
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests;

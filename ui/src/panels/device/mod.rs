@@ -1,0 +1,331 @@
+//! Device panel: styluses and their force.
+//!
+//! | module | holds |
+//! | --- | --- |
+//! | `health` | timing of the force loop |
+
+mod health;
+
+#[cfg(test)]
+mod tests;
+
+use eframe::egui::{
+    Align2, Button, Color32, FontId, Frame, Grid, Response, RichText, Role, Sense, Slider, Stroke,
+    Ui, WidgetInfo, pos2, vec2,
+};
+use egui_plot::{HLine, Line, LineStyle, Plot, PlotPoints};
+use maulstick_types::advice::parted;
+use maulstick_types::haptics::ForceOrder;
+use maulstick_types::stylus::{StylusInfo, StylusStatus, axes};
+
+use crate::panels::Panel;
+use crate::rig::force_history::{self, KEPT_S, size};
+use crate::rig::state::Device;
+use crate::widgets::context::PanelContext;
+
+/// Of the button that switches force off, and of a trouble.
+const RED: Color32 = Color32::from_rgb(178, 34, 34);
+/// Height of the graph of the force, points.
+const GRAPH: f32 = 84.0;
+/// Side of the dial, points.
+const DIAL: f32 = 64.0;
+/// A changed strength is shown for this long until the device has it, ns.
+const PATIENCE_NS: u64 = 700_000_000;
+
+/// The panel.
+#[derive(Debug, Default)]
+pub(crate) struct DevicePanel {
+    /// Whose strength is being changed, what was asked, percent, and until when it is shown, ns.
+    asked: Option<(String, f64, u64)>,
+}
+
+impl Panel for DevicePanel {
+    fn title(&self) -> &'static str {
+        "Device"
+    }
+
+    fn show(&mut self, ui: &mut Ui, work: &mut PanelContext<'_>) {
+        let painting = force_history::active_device(work.rig).map(|(name, _)| name.to_owned());
+        match &painting {
+            Some(name) => ui.label(RichText::new(format!("{} paints", worded(name))).strong()),
+            None => ui.label("No stylus is near the desk."),
+        };
+        let mut devices: Vec<(&String, &Device)> = work.rig.devices.iter().collect();
+        let priority = |device: &Device| device.info.as_ref().map_or(i32::MIN, |it| it.priority);
+        devices.sort_by_key(|(name, device)| (-i64::from(priority(device)), (*name).clone()));
+        let devices: Vec<(String, Device)> = devices
+            .into_iter()
+            .map(|(name, device)| (name.clone(), device.clone()))
+            .collect();
+        for (name, device) in devices {
+            Frame::group(ui.style()).show(ui, |ui| {
+                ui.set_width(ui.available_width());
+                ui.push_id(&name, |ui| self.device(ui, &name, &device, work));
+            });
+        }
+    }
+}
+
+impl DevicePanel {
+    fn device(&mut self, ui: &mut Ui, name: &str, device: &Device, work: &mut PanelContext<'_>) {
+        ui.label(RichText::new(worded(name)).strong());
+        if let Some(info) = &device.info {
+            ui.label(what(info));
+            if info.senses != 0 {
+                ui.small(format!("Senses {}", senses(info.senses)));
+            }
+        }
+        let Some(status) = &device.status else {
+            return;
+        };
+        if !status.trouble.is_empty() {
+            let (trouble, help) = parted(&status.trouble);
+            ui.colored_label(ui.visuals().warn_fg_color, trouble);
+            if let Some(help) = help {
+                ui.label(sentence(help));
+            }
+        }
+        if let Some(info) = &device.info
+            && info.drives & axes::FORCE != 0
+        {
+            self.force(ui, name, (device, info, status), work);
+        }
+    }
+
+    fn force(
+        &mut self,
+        ui: &mut Ui,
+        name: &str,
+        (device, info, status): (&Device, &StylusInfo, &StylusStatus),
+        work: &mut PanelContext<'_>,
+    ) {
+        if status.is_on {
+            let words = RichText::new("Force off").strong().color(Color32::WHITE);
+            let button = Button::new(words).fill(RED).min_size(vec2(0.0, 32.0));
+            let hint = "The device gives no force any more, at once (F9, for all devices)";
+            if wide(ui, button).on_hover_text(hint).clicked() {
+                work.requests.force(name, ForceOrder::Off);
+            }
+        } else {
+            let button = Button::new("Force on").min_size(vec2(0.0, 32.0));
+            let hint = "The device gives force again, from nothing on";
+            if wide(ui, button).on_hover_text(hint).clicked() {
+                work.requests.force(name, ForceOrder::On);
+            }
+        }
+        self.strength(ui, name, status, work);
+        if !status.faults.is_empty() {
+            ui.colored_label(ui.visuals().error_fg_color, status.faults.join("; "));
+            let hint = "Lift the brush first: force comes back from nothing on";
+            if ui.button("Re-arm").on_hover_text(hint).clicked() {
+                work.requests.force(name, ForceOrder::Rearm);
+            }
+        }
+        let now_ns = work.rig.now_ns;
+        let most_n = match status.cap_n > 0.0 {
+            true => status.cap_n,
+            false => info.max_force_n,
+        };
+        let force_n = device.forces.force_n(now_ns);
+        ui.horizontal(|ui| {
+            dial(ui, force_n.unwrap_or_default(), most_n);
+            ui.vertical(|ui| numbers(ui, force_n, most_n, status));
+        });
+        ui.small("Force over the last 5 s, N");
+        graph(ui, name, device.forces.line(now_ns), most_n);
+        health::show(ui, status);
+    }
+
+    fn strength(
+        &mut self,
+        ui: &mut Ui,
+        name: &str,
+        status: &StylusStatus,
+        work: &mut PanelContext<'_>,
+    ) {
+        let now_ns = work.rig.now_ns;
+        let told = (100.0 * status.strength).round();
+        self.asked = self.asked.take().filter(|(_, _, until)| now_ns < *until);
+        let asked = self.asked.as_ref().filter(|(device, ..)| device == name);
+        let mut percent = asked.map_or(told, |(_, percent, _)| *percent);
+        let slider = Slider::new(&mut percent, 0.0..=100.0)
+            .integer()
+            .suffix(" %")
+            .text("Strength");
+        let hint = "Share of the force that the brush asks for";
+        let response = ui.add(slider).on_hover_text(hint);
+        if response.changed() {
+            let share = (percent / 100.0).clamp(0.0, 1.0);
+            work.requests.force(name, ForceOrder::Strength { share });
+        }
+        if response.changed() || response.dragged() {
+            self.asked = Some((name.to_owned(), percent, now_ns.saturating_add(PATIENCE_NS)));
+        }
+    }
+}
+
+/// Switches off the force of every device that gives one.
+pub(crate) fn force_off(work: &mut PanelContext<'_>) {
+    for (name, device) in &work.rig.devices {
+        let info = device.info.as_ref();
+        if info.is_some_and(|info| info.drives & axes::FORCE != 0) {
+            work.requests.force(name, ForceOrder::Off);
+        }
+    }
+}
+
+/// A button as wide as the panel.
+fn wide(ui: &mut Ui, button: Button<'_>) -> Response {
+    ui.vertical_centered_justified(|ui| ui.add(button)).inner
+}
+
+/// A device as a painter calls it.
+fn worded(name: &str) -> String {
+    match name {
+        "mouse" => "The mouse".to_owned(),
+        "player" => "A take".to_owned(),
+        _ => name.to_owned(),
+    }
+}
+
+fn sentence(words: &str) -> String {
+    let mut letters = words.chars();
+    let first = letters.next().map(char::to_uppercase);
+    first.into_iter().flatten().chain(letters).collect()
+}
+
+/// Driver, brush and rate.
+fn what(info: &StylusInfo) -> String {
+    let rate = match info.rate_hz >= 1.0 {
+        true => format!(", {:.0} Hz", info.rate_hz),
+        false => String::new(),
+    };
+    format!("{}, moves '{}'{rate}", info.driver, info.brush)
+}
+
+/// What a device senses, in words.
+fn senses(bits: u32) -> String {
+    let all = [
+        (axes::POSITION, "position"),
+        (axes::ORIENTATION, "orientation"),
+        (axes::PRESSURE, "pressure"),
+        (axes::TILT, "tilt"),
+        (axes::TWIST, "twist"),
+        (axes::SWITCHES, "switches"),
+        (axes::PROXIMITY, "nearness"),
+        (axes::FORCE, "force"),
+        (axes::VELOCITY, "velocity"),
+        (axes::TORQUE, "torque"),
+    ];
+    let sensed = all.iter().filter(|(bit, _)| bits & bit != 0);
+    let words: Vec<&str> = sensed.map(|(_, word)| *word).collect();
+    words.join(", ")
+}
+
+fn numbers(ui: &mut Ui, force_n: Option<[f64; 3]>, most_n: f64, status: &StylusStatus) {
+    let now = match force_n {
+        Some(force_n) => format!("{:.2} N", size(force_n)),
+        None => "silent".to_owned(),
+    };
+    let stiffness = format!("{:.0} of {:.0} N/m", status.stiffness_n_m, status.asked_n_m);
+    let motors = match status.resting {
+        true => format!("{:.0} % hot, resting", 100.0 * status.motor_temperature),
+        false => format!("{:.0} % hot", 100.0 * status.motor_temperature),
+    };
+    Grid::new("numbers")
+        .num_columns(2)
+        .spacing([8.0, 2.0])
+        .show(ui, |ui| {
+            let rows = [
+                ("Force", now, "On the hand now"),
+                (
+                    "At most",
+                    format!("{most_n:.1} N"),
+                    "As warm as the motors are",
+                ),
+                ("Stiffness", stiffness, "Given, of what the brush asks for"),
+                (
+                    "Motors",
+                    motors,
+                    "The hottest motor; amplifiers rest for want of contact",
+                ),
+            ];
+            for (name, value, hint) in rows {
+                ui.label(name);
+                ui.label(value).on_hover_text(hint);
+                ui.end_row();
+            }
+        });
+}
+
+/// The force as an arrow along the desk, and as a bar out of it.
+fn dial(ui: &mut Ui, force_n: [f64; 3], most_n: f64) {
+    let (area, response) = ui.allocate_exact_size(vec2(DIAL + 12.0, DIAL), Sense::hover());
+    let words = format!(
+        "Force on the hand: {:.2} N right, {:.2} N up, {:.2} N toward you",
+        force_n[0], force_n[1], force_n[2]
+    );
+    response.widget_info(|| WidgetInfo::labeled(Role::Image, true, &words));
+    response.on_hover_text(&words);
+    let (painter, visuals) = (ui.painter(), ui.visuals());
+    let faint = Stroke::new(1.0, visuals.widgets.noninteractive.bg_stroke.color);
+    let strong = Stroke::new(2.5, visuals.hyperlink_color);
+    let radius = 0.5 * DIAL - 2.0;
+    let middle = area.left_center() + vec2(0.5 * DIAL, 0.0);
+    painter.circle_stroke(middle, radius, faint);
+    for across in [vec2(radius, 0.0), vec2(0.0, radius)] {
+        painter.line_segment([middle - across, middle + across], faint);
+    }
+    let share = |n: f64| (n / most_n.max(1e-3)).clamp(-1.0, 1.0) as f32;
+    let along = radius * vec2(share(force_n[0]), -share(force_n[1]));
+    if along.length() > 1.0 {
+        painter.arrow(middle, along, strong);
+    } else {
+        painter.circle_filled(middle, 2.0, strong.color);
+    }
+    let (bar, reach) = (area.right() - 3.0, radius * share(force_n[2]));
+    let level = area.center().y;
+    painter.line_segment(
+        [pos2(bar, level - radius), pos2(bar, level + radius)],
+        faint,
+    );
+    painter.line_segment([pos2(bar - 3.0, level), pos2(bar + 3.0, level)], faint);
+    let thick = Stroke::new(5.0, strong.color);
+    painter.line_segment([pos2(bar, level), pos2(bar, level - reach)], thick);
+    if !force_n.iter().all(|n| n.is_finite()) {
+        let font = FontId::proportional(12.0);
+        painter.text(middle, Align2::CENTER_CENTER, "?", font, RED);
+    }
+}
+
+/// A plot as wide as there is room, which no pointer moves.
+fn still<'a>(ui: &Ui, plot: Plot<'a>) -> Plot<'a> {
+    plot.width(ui.available_width())
+        .show_x(false)
+        .show_y(false)
+        .allow_drag(false)
+        .allow_zoom(false)
+        .allow_scroll(false)
+        .allow_boxed_zoom(false)
+        .allow_double_click_reset(false)
+}
+
+fn graph(ui: &mut Ui, name: &str, line: Vec<[f64; 2]>, most_n: f64) {
+    let (colour, faint) = (
+        ui.visuals().hyperlink_color,
+        ui.visuals().warn_fg_color.gamma_multiply(0.7),
+    );
+    still(ui, Plot::new(("force", name)))
+        .height(GRAPH)
+        .include_x(-KEPT_S)
+        .include_x(0.0)
+        .include_y(0.0)
+        .include_y(1.05 * most_n)
+        .set_margin_fraction(vec2(0.0, 0.0))
+        .show_axes([false, true])
+        .show(ui, |plot| {
+            let most = HLine::new("at most", most_n).color(faint);
+            plot.hline(most.style(LineStyle::dashed_dense()));
+            plot.line(Line::new("force", PlotPoints::from(line)).color(colour));
+        });
+}

@@ -1,0 +1,172 @@
+//! Layers panel: dry layers, and drying.
+//!
+//! | module | holds |
+//! | --- | --- |
+//! | `drying` | controls for drying |
+//! | `eye` | visibility of a layer |
+//! | `region` | a part of the canvas |
+
+use std::collections::BTreeMap;
+
+use eframe::egui::accesskit::Role;
+use eframe::egui::{Button, Key, TextEdit, Ui, WidgetInfo};
+use maulstick_types::command::Command;
+use maulstick_types::scene::Layer;
+
+use crate::panels::Panel;
+use crate::widgets::context::PanelContext;
+use crate::widgets::rows::{Number, Sliders, ask, cell, note};
+
+mod drying;
+mod eye;
+mod region;
+
+/// Widths of a layer's name and of the way of its slider, points.
+const NAME: f32 = 92.0;
+const WAY: f32 = 84.0;
+
+const OPACITY: Number<'_> = Number {
+    word: "Opacity",
+    hover: "How much the layer hides what lies below; its relief stays",
+    range: 0.0..=100.0,
+    unit: " %",
+    decimals: 0,
+    factors: false,
+};
+
+/// The panel.
+#[derive(Debug, Default)]
+pub(crate) struct LayersPanel {
+    sliders: Sliders,
+    /// Opacities of layers before they were hidden.
+    hidden: BTreeMap<u32, f32>,
+    /// The layer that is given a name, and the name as far as it is typed.
+    naming: Option<(u32, String)>,
+    drying: drying::DryingForm,
+}
+
+impl Panel for LayersPanel {
+    fn title(&self) -> &'static str {
+        "Layers"
+    }
+
+    fn show(&mut self, ui: &mut Ui, work: &mut PanelContext<'_>) {
+        let Some(scene) = &work.rig.scene else {
+            return;
+        };
+        let layers = scene.layers.clone();
+        ui.checkbox(&mut work.rig.show_wet, "Tint what is wet")
+            .on_hover_text("Wet paint is shown under a tint, so that it is told from dry paint");
+        self.hidden
+            .retain(|number, _| layers.iter().any(|layer| layer.number == *number));
+        for layer in layers.iter().rev() {
+            self.layer(ui, work, layer);
+        }
+        if layers.is_empty() {
+            note(ui, "Nothing has dried yet: all paint is wet.");
+        }
+        ui.separator();
+        self.drying.show(ui, work, layers.len());
+    }
+}
+
+impl LayersPanel {
+    /// The row of a layer.
+    fn layer(&mut self, ui: &mut Ui, work: &mut PanelContext<'_>, layer: &Layer) {
+        let number = layer.number;
+        ui.push_id(number, |ui| {
+            ui.horizontal(|ui| {
+                if let Some(opacity) = self.eye(ui, layer) {
+                    let command = Command::Opacity {
+                        layer: number,
+                        opacity,
+                    };
+                    ask(work, command);
+                }
+                match &self.naming {
+                    Some((named, _)) if *named == number => self.name(ui, work),
+                    _ => self.title(ui, layer),
+                }
+                ui.spacing_mut().slider_width = WAY;
+                let shown = f64::from(layer.opacity) * 100.0;
+                let (slider, change) =
+                    self.sliders
+                        .bare(ui, &OPACITY, &format!("opacity {number}"), shown);
+                slider.widget_info(|| {
+                    WidgetInfo::slider(true, change.shown, format!("Opacity of {}", layer.name))
+                });
+                // All layers above are computed anew, and an opacity is a step to undo: once is enough.
+                if let Some(percent) = change.settled {
+                    let command = Command::Opacity {
+                        layer: number,
+                        opacity: (percent * 1e-2) as f32,
+                    };
+                    ask(work, command);
+                }
+            });
+        });
+    }
+
+    /// Hides a layer, or shows it as it was; its opacity from now on.
+    fn eye(&mut self, ui: &mut Ui, layer: &Layer) -> Option<f32> {
+        let is_shown = layer.opacity > 0.0;
+        let button = eye::show(ui, is_shown);
+        button.widget_info(|| {
+            WidgetInfo::selected(
+                Role::CheckBox,
+                true,
+                is_shown,
+                format!("Show {}", layer.name),
+            )
+        });
+        let button = button.on_hover_text(match is_shown {
+            true => "Hide this layer; its relief stays",
+            false => "Show this layer again",
+        });
+        if !button.clicked() {
+            return None;
+        }
+        if is_shown {
+            self.hidden.insert(layer.number, layer.opacity);
+            return Some(0.0);
+        }
+        Some(self.hidden.remove(&layer.number).unwrap_or(1.0))
+    }
+
+    /// The name of a layer; a click gives it another one.
+    fn title(&mut self, ui: &mut Ui, layer: &Layer) {
+        let name = cell(ui, NAME, |ui| {
+            let name = ui.add(Button::new(&layer.name).frame(false).truncate());
+            name.on_hover_text("Click to give it another name")
+        });
+        if name.clicked() {
+            self.naming = Some((layer.number, layer.name.clone()));
+        }
+    }
+
+    /// The field of the name that is being given.
+    fn name(&mut self, ui: &mut Ui, work: &mut PanelContext<'_>) {
+        let Some((layer, name)) = &mut self.naming else {
+            return;
+        };
+        let field = ui.add(TextEdit::singleline(name).desired_width(NAME - 8.0));
+        field.widget_info(|| WidgetInfo::labeled(Role::TextInput, true, "Name of the layer"));
+        if field.lost_focus() {
+            let given = !ui.input(|input| input.key_pressed(Key::Escape));
+            let name = name.trim().to_owned();
+            let command = Command::NameLayer {
+                layer: *layer,
+                name,
+            };
+            if given {
+                ask(work, command);
+            }
+            self.naming = None;
+        } else if !field.has_focus() {
+            field.request_focus();
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests;

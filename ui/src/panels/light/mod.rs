@@ -1,0 +1,234 @@
+//! Light panel: direction, strength and spectrum of the lamp; exposure.
+//!
+//! | module | holds |
+//! | --- | --- |
+//! | `pad` | pad on which the lamp is dragged |
+//! | `sphere` | a ball lit by the lamp |
+
+use std::path::Path;
+
+use eframe::egui::{CollapsingHeader, TextEdit, TextureHandle, TextureOptions, Ui};
+use maulstick_optics::cie::ILLUMINANTS;
+use maulstick_paint::light::changes_colour;
+use maulstick_types::command::Command;
+use maulstick_types::scene::{Light, RULES, SAMPLES};
+
+use crate::panels::Panel;
+use crate::spectrum_file;
+use crate::widgets::context::PanelContext;
+use crate::widgets::pending::Pending;
+use crate::widgets::rows::{Number, Sliders, ask, below, choice, note, row, wrong};
+
+mod pad;
+mod sphere;
+
+/// What the CIE's illuminants are like, in their order.
+const LIKE: [&str; ILLUMINANTS.len()] = [
+    "A, light bulb",
+    "D50, warm daylight",
+    "D65, daylight",
+    "FL2, cool white tube",
+    "FL8, broad-band tube",
+    "FL11, three-band tube",
+];
+/// Years of the observers.
+const OBSERVERS: [(&str, u32); 2] = [("1931, 2°", 1931), ("1964, 10°", 1964)];
+
+const STRENGTH: Number<'_> = Number {
+    word: "Strength",
+    hover: "How strong the lamp is; 1 as it was built",
+    range: 0.1..=10.0,
+    unit: "",
+    decimals: 2,
+    factors: true,
+};
+const EXPOSURE: Number<'_> = Number {
+    word: "Exposure",
+    hover: "How much of the light the eye takes",
+    range: 0.1..=10.0,
+    unit: "",
+    decimals: 2,
+    factors: true,
+};
+const RELIEF: Number<'_> = Number {
+    word: "Relief",
+    hover: "How strongly brush marks stand out; 1 as they are, 0 flat",
+    range: 0.0..=5.0,
+    unit: "",
+    decimals: 2,
+    factors: false,
+};
+const SOFTNESS: Number<'_> = Number {
+    word: "Softness",
+    hover: "How large the lamp is: 0 casts sharp shadows, 1 soft ones",
+    range: 0.0..=1.0,
+    unit: "",
+    decimals: 2,
+    factors: false,
+};
+const WAVELENGTHS: Number<'_> = Number {
+    word: "Samples",
+    hover: "Wavelengths that are computed",
+    range: *SAMPLES.start() as f64..=*SAMPLES.end() as f64,
+    unit: "",
+    decimals: 0,
+    factors: false,
+};
+
+/// The panel.
+#[derive(Default)]
+pub(crate) struct LightPanel {
+    asked: Pending<Light>,
+    sliders: Sliders,
+    sphere: Option<(Light, TextureHandle)>,
+    /// Path of a spectrum, and what is wrong with it.
+    file: String,
+    told: String,
+}
+
+impl Panel for LightPanel {
+    fn title(&self) -> &'static str {
+        "Light"
+    }
+
+    fn show(&mut self, ui: &mut Ui, work: &mut PanelContext<'_>) {
+        let Some(actual) = work.rig.scene.as_ref().map(|scene| scene.light.clone()) else {
+            return;
+        };
+        let now_s = ui.input(|input| input.time);
+        let before = self.asked.shown(now_s, &actual);
+        let mut light = before.clone();
+        let mut expose = self.lamp(ui, &mut light);
+        self.spectrum(ui, &mut light);
+        for (number, value) in [
+            (&RELIEF, &mut light.relief),
+            (&SOFTNESS, &mut light.softness),
+        ] {
+            let change = self.sliders.row(ui, number, *value);
+            *value = change.moved.unwrap_or(*value);
+        }
+        CollapsingHeader::new("For researchers").show(ui, |ui| self.research(ui, &mut light));
+        if light == before && !expose {
+            return;
+        }
+        // Another spectrum is as bright as the last one.
+        expose |= changes_colour(&light, &before);
+        let command = Command::Relight {
+            light: light.clone(),
+            expose,
+        };
+        if ask(work, command) && !expose {
+            self.asked.hold(now_s, light);
+        } else {
+            self.asked.release();
+        }
+    }
+}
+
+impl LightPanel {
+    /// Where the lamp stands and how strong it is; `true` where the exposure is to be chosen.
+    fn lamp(&mut self, ui: &mut Ui, light: &mut Light) -> bool {
+        let texture = self.ball(ui, light);
+        ui.vertical_centered(|ui| {
+            if let Some(direction) = pad::show(ui, texture, light.direction) {
+                light.direction = direction;
+            }
+            note(ui, pad::words(light.direction));
+        });
+        let change = self.sliders.row(ui, &STRENGTH, light.intensity);
+        light.intensity = change.moved.unwrap_or(light.intensity);
+        let change = self.sliders.row(ui, &EXPOSURE, light.exposure);
+        light.exposure = change.moved.unwrap_or(light.exposure);
+        below(ui, |ui| {
+            let button = ui.button("Choose exposure");
+            let button = button.on_hover_text("So that the bare canvas is as bright as it can be");
+            button.clicked()
+        })
+    }
+
+    /// The ball under the lamp, drawn anew where the light is another.
+    fn ball(&mut self, ui: &Ui, light: &Light) -> eframe::egui::TextureId {
+        let known = self.sphere.as_ref();
+        if known.is_none_or(|(drawn, _)| drawn != light) {
+            let image = sphere::draw(light);
+            let texture = match self.sphere.take() {
+                Some((_, mut texture)) => {
+                    texture.set(image, TextureOptions::LINEAR);
+                    texture
+                }
+                None => ui.ctx().load_texture("lamp", image, TextureOptions::LINEAR),
+            };
+            self.sphere = Some((light.clone(), texture));
+        }
+        let texture = self.sphere.as_ref().map(|(_, texture)| texture.id());
+        texture.unwrap_or_default()
+    }
+
+    /// What light it is.
+    fn spectrum(&mut self, ui: &mut Ui, light: &mut Light) {
+        let known = ILLUMINANTS
+            .iter()
+            .position(|name| *name == light.illuminant);
+        let known = known.filter(|_| light.spectrum.is_empty());
+        let shown = known.map_or(light.illuminant.as_str(), |place| LIKE[place]);
+        let chosen = choice(ui, "Light", shown, LIKE);
+        if let Some(place) = chosen.and_then(|chosen| LIKE.iter().position(|l| **l == chosen)) {
+            ILLUMINANTS[place].clone_into(&mut light.illuminant);
+            light.spectrum.clear();
+        }
+        row(ui, "From a file", |ui| {
+            let edit = TextEdit::singleline(&mut self.file).hint_text("CSV of nm,power");
+            let edit = ui.add(edit.desired_width(f32::INFINITY));
+            let entered = ui.input(|input| input.key_pressed(eframe::egui::Key::Enter));
+            if edit.lost_focus() && entered && !self.file.trim().is_empty() {
+                self.told.clear();
+                match spectrum_file::light(Path::new(self.file.trim())) {
+                    Ok(found) => {
+                        light.illuminant = found.name;
+                        light.spectrum = found.power.0.to_vec();
+                    }
+                    Err(fault) => self.told = spectrum_file::told(&fault),
+                }
+            }
+            edit.on_hover_text("The whole path of a measured spectrum; Enter reads it")
+        });
+        if !self.told.is_empty() {
+            wrong(ui, &self.told);
+        }
+        ui.checkbox(&mut light.adapted, "The eye is used to this light")
+            .on_hover_text("White looks white; else the light's own colour is seen");
+    }
+
+    /// How its light becomes colour.
+    fn research(&mut self, ui: &mut Ui, light: &mut Light) {
+        let year = OBSERVERS.iter().find(|(_, year)| *year == light.observer);
+        let (shown, _) = year.unwrap_or(&OBSERVERS[0]);
+        let chosen = choice(ui, "Observer", shown, OBSERVERS.map(|(name, _)| name));
+        let year = OBSERVERS
+            .iter()
+            .find(|(name, _)| chosen.as_deref() == Some(name));
+        light.observer = year.map_or(light.observer, |(_, year)| *year);
+        if let Some(rule) = choice(ui, "Rule", &light.rule.clone(), RULES) {
+            light.rule = rule;
+        }
+        if light.rule == "reference" {
+            note(ui, "All 101 wavelengths: slow, and exact.");
+            return;
+        }
+        let change = self.sliders.row(ui, &WAVELENGTHS, f64::from(light.samples));
+        if let Some(samples) = change.settled {
+            light.samples = samples.clamp(0.0, 1e6) as u32;
+        }
+    }
+}
+
+impl std::fmt::Debug for LightPanel {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("LightPanel")
+            .field("asked", &self.asked)
+            .finish_non_exhaustive()
+    }
+}
+
+#[cfg(test)]
+mod tests;

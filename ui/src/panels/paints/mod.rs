@@ -1,0 +1,92 @@
+//! Paints panel: the measured paints, and the wells of the palette.
+//!
+//! | module | holds |
+//! | --- | --- |
+//! | `rows` | a row for each tube |
+//! | `sets` | the painter's own sets of paints |
+//! | `wells` | mixtures on the palette |
+
+mod rows;
+mod sets;
+mod wells;
+
+use eframe::egui::{ComboBox, TextEdit, Ui};
+
+use crate::panels::Panel;
+use crate::widgets::context::PanelContext;
+use crate::widgets::labelled;
+use crate::widgets::swatches::Swatches;
+
+/// A swatch: masstone at its left, tint at its right, points.
+const SWATCH: [f32; 2] = [44.0, 18.0];
+
+/// The panel.
+#[derive(Debug, Default)]
+pub(crate) struct PaintsPanel {
+    swatches: Swatches,
+    /// What is searched for.
+    search: String,
+    /// The set whose tubes are shown; all of them where there is no such set.
+    set: Option<String>,
+    wells: wells::WellRows,
+    sets: sets::SetRows,
+}
+
+/// A paint or a mixture that is being dragged to the palette.
+#[derive(Clone, Debug, PartialEq)]
+struct Carried(String);
+
+impl Panel for PaintsPanel {
+    fn title(&self) -> &'static str {
+        "Tubes"
+    }
+
+    fn show(&mut self, ui: &mut Ui, work: &mut PanelContext<'_>) {
+        let edit = TextEdit::singleline(&mut self.search)
+            .hint_text("Blue, or PB29")
+            .desired_width(190.0);
+        labelled::named(ui, "Search", "By name, or by colour index.", edit);
+        self.choose_set(ui, work);
+        rows::show(self, ui, work);
+        ui.separator();
+        self.wells.show(ui, work, &mut self.swatches);
+        ui.separator();
+        self.sets.show(ui, work, &mut self.set);
+    }
+}
+
+impl PaintsPanel {
+    /// Which of the painter's sets is shown.
+    fn choose_set(&mut self, ui: &mut Ui, work: &PanelContext<'_>) {
+        let sets = &work.preferences.paint_sets;
+        self.set
+            .take_if(|own| sets.iter().all(|set| set.name != *own));
+        if sets.is_empty() {
+            return;
+        }
+        ui.horizontal(|ui| {
+            let name = labelled::label(
+                ui,
+                "Set",
+                "Which tubes are shown: all, or a set of your own.",
+            );
+            let shown = self.set.clone().unwrap_or_else(|| "All tubes".to_owned());
+            ComboBox::from_id_salt("set")
+                .width(150.0)
+                .truncate()
+                .selected_text(shown)
+                .show_ui(ui, |ui| {
+                    ui.selectable_value(&mut self.set, None, "All tubes");
+                    for set in sets {
+                        let value = Some(set.name.clone());
+                        ui.selectable_value(&mut self.set, value, &set.name);
+                    }
+                })
+                .response
+                .labelled_by(name.id);
+        });
+    }
+}
+
+#[cfg(test)]
+mod tests;

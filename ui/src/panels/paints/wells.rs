@@ -1,0 +1,194 @@
+//! What lies on the palette: its wells from the top, to be taken off, replaced and ordered.
+
+use eframe::egui::{
+    Align, Button, Color32, Key, Layout, Rect, Response, Role, Sense, TextEdit, Ui, WidgetInfo,
+    vec2,
+};
+use maulstick_rig::Fault;
+use maulstick_types::Mixture;
+
+use super::{Carried, SWATCH};
+use crate::input::palette_wells::MOST;
+use crate::settings::brush_load::{self, completed, completions, words};
+use crate::widgets::context::PanelContext;
+use crate::widgets::labelled;
+use crate::widgets::swatches::{Swatches, draw};
+
+/// Names that are proposed at most.
+const PROPOSED: usize = 4;
+
+/// The rows.
+#[derive(Debug, Default)]
+pub(super) struct WellRows {
+    /// The well that the next paint goes into.
+    chosen: Option<usize>,
+    text: String,
+    fault: Option<Fault>,
+}
+
+/// What is asked of a well.
+enum Deed {
+    Choose,
+    Up,
+    Down,
+    Remove,
+    Drop(String),
+}
+
+impl WellRows {
+    /// Puts a mixture into the chosen well, or below the others.
+    pub(super) fn put(&mut self, work: &mut PanelContext<'_>, mixture: &Mixture) {
+        let mut wells = work.wells();
+        match self.chosen.take().filter(|place| *place < wells.len()) {
+            Some(place) => wells[place] = mixture.clone(),
+            None => wells.push(mixture.clone()),
+        }
+        work.lay_wells(&wells);
+    }
+
+    pub(super) fn show(
+        &mut self,
+        ui: &mut Ui,
+        work: &mut PanelContext<'_>,
+        swatches: &mut Swatches,
+    ) {
+        ui.strong("On the palette");
+        let mut wells = work.wells();
+        self.chosen.take_if(|place| *place >= wells.len());
+        let mut asked = None;
+        ui.scope(|ui| {
+            ui.spacing_mut().item_spacing.y = 1.0;
+            for (place, mixture) in wells.iter().enumerate() {
+                let colour = swatches.mixture(work.rig, mixture);
+                let colour = colour.unwrap_or(Color32::TRANSPARENT);
+                let end = place + 1 == wells.len();
+                let chosen = self.chosen == Some(place);
+                if let Some(deed) = well(ui, (place, end), mixture, colour, chosen) {
+                    asked = Some((place, deed));
+                }
+            }
+        });
+        match asked {
+            Some((place, Deed::Choose)) => {
+                self.chosen = (self.chosen != Some(place)).then_some(place);
+            }
+            Some((place, Deed::Up)) => {
+                wells.swap(place - 1, place);
+                work.lay_wells(&wells);
+            }
+            Some((place, Deed::Down)) => {
+                wells.swap(place, place + 1);
+                work.lay_wells(&wells);
+            }
+            Some((place, Deed::Remove)) => {
+                wells.remove(place);
+                self.chosen = None;
+                work.lay_wells(&wells);
+            }
+            Some((place, Deed::Drop(text))) => {
+                if let Ok(mixture) = brush_load::read(&text, &work.rig.library) {
+                    wells[place] = mixture;
+                    work.lay_wells(&wells);
+                }
+            }
+            None => {}
+        }
+        if wells.is_empty() {
+            ui.label("No paint lies there. Put some on it with +.");
+        }
+        self.field(ui, work, wells.len());
+    }
+
+    /// A mixture of one's own for a well.
+    fn field(&mut self, ui: &mut Ui, work: &mut PanelContext<'_>, count: usize) {
+        let edit = TextEdit::singleline(&mut self.text)
+            .hint_text("Cobalt Blue=0.7,…")
+            .char_limit(4096)
+            .desired_width(190.0);
+        let hover = "A paint's name, or a mixture such as Cobalt Blue=0.7,Titanium White=0.3";
+        let shown = labelled::named(ui, "Mixture", hover, edit);
+        if shown.changed() {
+            self.fault = None;
+        }
+        let enter = shown.lost_focus() && ui.input(|input| input.key_pressed(Key::Enter));
+        let names = completions(&self.text, &work.rig.library, PROPOSED);
+        if !names.is_empty() {
+            ui.horizontal_wrapped(|ui| {
+                ui.add_space(8.0);
+                for proposed in names {
+                    if ui.small_button(proposed).clicked() {
+                        self.text = completed(&self.text, proposed);
+                        shown.request_focus();
+                    }
+                }
+            });
+        }
+        let words = match self.chosen {
+            Some(place) => format!("Into well {}", place + 1),
+            None => "Onto the palette".to_owned(),
+        };
+        let is_room = self.chosen.is_some() || count < MOST;
+        let button = ui.add_enabled(is_room && !self.text.trim().is_empty(), Button::new(words));
+        if button.clicked() || enter {
+            match brush_load::read(&self.text, &work.rig.library) {
+                Ok(mixture) => {
+                    self.put(work, &mixture);
+                    self.text.clear();
+                }
+                Err(fault) => self.fault = Some(fault),
+            }
+        }
+        if let Some(fault) = &self.fault {
+            labelled::wrong(ui, &fault.what);
+            if let Some(help) = &fault.help {
+                ui.label(help);
+            }
+        }
+    }
+}
+
+/// A well; what is asked of it.
+fn well(
+    ui: &mut Ui,
+    (place, is_last): (usize, bool),
+    mixture: &Mixture,
+    colour: Color32,
+    is_chosen: bool,
+) -> Option<Deed> {
+    let name = words(mixture);
+    let mut deed = None;
+    let row = ui.horizontal(|ui| {
+        ui.spacing_mut().item_spacing.x = 2.0;
+        let size = vec2(0.6 * SWATCH[0], SWATCH[1]);
+        let (area, _) = ui.allocate_exact_size(size, Sense::hover());
+        draw(ui, Rect::from_center_size(area.center(), size), [colour; 2]);
+        ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
+            let mut tool = |ui: &mut Ui, sign: &str, enabled: bool, does: &str, asked: Deed| {
+                let said = format!("{does} {name}");
+                let button = ui.add_enabled(enabled, Button::new(sign).small());
+                button.widget_info(|| WidgetInfo::labeled(Role::Button, enabled, &said));
+                if button.on_hover_text(&said).clicked() {
+                    deed = Some(asked);
+                }
+            };
+            tool(ui, "Off", true, "Take off the palette:", Deed::Remove);
+            tool(ui, "Down", !is_last, "Down:", Deed::Down);
+            tool(ui, "Up", place > 0, "Up:", Deed::Up);
+            ui.with_layout(Layout::left_to_right(Align::Center), |ui| {
+                let button = Button::selectable(is_chosen, &name).truncate();
+                let shown: Response = ui.add(button.min_size(vec2(ui.available_width(), 0.0)));
+                let hover = format!(
+                    "Well {}: {name}\nClick: the next paint goes here instead.",
+                    place + 1
+                );
+                if shown.on_hover_text(hover).clicked() {
+                    deed = Some(Deed::Choose);
+                }
+            });
+        });
+    });
+    if let Some(carried) = row.response.dnd_release_payload::<Carried>() {
+        deed = Some(Deed::Drop(carried.0.clone()));
+    }
+    deed
+}

@@ -1,0 +1,479 @@
+//! A picture to paint after, pinned beside the canvas: it is moved, made larger, looked at closely; a click
+//! on it proposes mixtures of its colour there.
+//!
+//! | module | holds |
+//! | --- | --- |
+//! | `picture` | pictures, read and made small |
+//! | `picker` | the mixtures that come near a colour |
+
+mod picker;
+mod picture;
+
+use std::path::{Path, PathBuf};
+
+use eframe::egui::{
+    self, Color32, Context, CornerRadius, EventFilter, Frame, Id, Key, Modifiers, Pos2, Rect,
+    Response, RichText, Role, Sense, Slider, Stroke, StrokeKind, Ui, Vec2, WidgetInfo, Window,
+    pos2, vec2,
+};
+use maulstick_optics::colour::srgb_encode;
+use maulstick_types::command::Command;
+use serde::{Deserialize, Serialize};
+
+use crate::dialogs::paths;
+use crate::input::keys::Action;
+use crate::settings::preferences::Preferences;
+use crate::widgets::context::PanelContext;
+use picker::{Ask, Match, Matches, Picker, of_palette};
+use picture::{Picture, Pinned};
+
+/// The least size of the frame, points.
+const LEAST: [f32; 2] = [220.0, 180.0];
+/// The picture is magnified at most so far beyond a pixel a point.
+const CLOSEST: f32 = 16.0;
+/// How far an arrow key moves the cross, points.
+const STEP: f32 = 8.0;
+
+/// What is remembered of the reference picture.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(default)]
+pub struct ReferencePreferences {
+    /// Whether it is shown.
+    pub shown: bool,
+    /// The picture.
+    pub path: Option<PathBuf>,
+    /// Where its frame is, points from the window's upper left corner.
+    pub place: [f32; 2],
+    /// Width and height of the frame's inside, points.
+    pub size: [f32; 2],
+    /// How opaque it is, .1 to 1.
+    pub opacity: f32,
+    /// Whether mixtures are sought among all paints, not among those of the palette.
+    pub all_paints: bool,
+}
+
+impl Default for ReferencePreferences {
+    fn default() -> Self {
+        Self {
+            shown: false,
+            path: None,
+            place: [24.0, 24.0],
+            size: [320.0, 320.0],
+            opacity: 1.0,
+            all_paints: false,
+        }
+    }
+}
+
+impl ReferencePreferences {
+    /// The same with numbers that make a frame.
+    fn sound(&self) -> Self {
+        let within = |value: f32, least: f32, most: f32, usual: f32| match value.is_finite() {
+            true => value.clamp(least, most),
+            false => usual,
+        };
+        let usual = Self::default();
+        Self {
+            place: [0, 1].map(|i| within(self.place[i], 0.0, 20_000.0, usual.place[i])),
+            size: [0, 1].map(|i| within(self.size[i], LEAST[i], 20_000.0, usual.size[i])),
+            opacity: within(self.opacity, 0.1, 1.0, usual.opacity),
+            ..self.clone()
+        }
+    }
+}
+
+/// How the picture lies in its frame.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Look {
+    /// Factor on the size at which all of it is seen.
+    zoom: f32,
+    /// The place of the picture in the middle of the frame, 0 to 1 each way.
+    middle: Pos2,
+    /// Where colours are picked from, 0 to 1 each way; none before that.
+    cross: Option<Pos2>,
+}
+
+impl Default for Look {
+    fn default() -> Self {
+        Self {
+            zoom: 1.0,
+            middle: pos2(0.5, 0.5),
+            cross: None,
+        }
+    }
+}
+
+/// The reference picture.
+#[derive(Debug, Default)]
+pub(crate) struct Reference {
+    pinned: Pinned,
+    look: Look,
+    picker: Picker,
+    /// The colour that was picked, linear sRGB.
+    picked: Option<[f64; 3]>,
+}
+
+impl Reference {
+    /// Pins a picture beside the canvas.
+    pub(crate) fn pin(&mut self, context: &Context, path: &Path, preferences: &mut Preferences) {
+        *self = Self {
+            pinned: Pinned::read(context, path),
+            ..Self::default()
+        };
+        preferences.reference.path = Some(path.to_owned());
+        preferences.reference.shown = true;
+    }
+
+    /// Shows the picture that there is, or takes it away; `false` where there is none yet.
+    pub(crate) fn toggle(&mut self, preferences: &mut Preferences) -> bool {
+        let known = preferences.reference.path.is_some();
+        preferences.reference.shown = known && !preferences.reference.shown;
+        known
+    }
+
+    /// Shows it; what its buttons ask for.
+    #[must_use]
+    pub(crate) fn show(
+        &mut self,
+        context: &Context,
+        work: &mut PanelContext<'_>,
+    ) -> Option<Action> {
+        let preferences = work.preferences.reference.sound();
+        let (true, Some(path)) = (preferences.shown, &preferences.path) else {
+            return None;
+        };
+        if self.pinned.path() != Some(path) {
+            self.pinned = Pinned::read(context, path);
+        }
+        self.pinned.take_in(context);
+        let (mut open, mut asked) = (true, None);
+        let fill = context.global_style().visuals.window_fill;
+        let frame = Frame::window(&context.global_style());
+        let shown = Window::new(paths::name(path))
+            .id(Id::unique("reference"))
+            .open(&mut open)
+            .collapsible(false)
+            .frame(frame.fill(fill.gamma_multiply(preferences.opacity)))
+            .default_pos(preferences.place)
+            .default_size(preferences.size)
+            .min_size(LEAST)
+            .resizable(true)
+            .show(context, |ui| {
+                asked = self.header(ui, work);
+                let below = match self.picked {
+                    Some(_) => 142.0,
+                    None => 22.0,
+                };
+                let room = ui.available_size() - vec2(0.0, below);
+                self.picture(ui, room.max(vec2(80.0, 60.0)), preferences.opacity, work);
+                self.proposals(ui, work);
+                ui.min_size()
+            });
+        // While it is dragged nothing is written to the disk.
+        if let Some(shown) = shown
+            && !context.input(|input| input.pointer.any_down())
+        {
+            let whole = |v: f32| v.round();
+            let kept = &mut work.preferences.reference;
+            kept.place = [shown.response.rect.left(), shown.response.rect.top()].map(whole);
+            if let Some(size) = shown.inner {
+                kept.size = [size.x, size.y].map(whole);
+            }
+        }
+        if !open {
+            work.preferences.reference.shown = false;
+        }
+        asked
+    }
+
+    fn header(&mut self, ui: &mut Ui, work: &mut PanelContext<'_>) -> Option<Action> {
+        let mut asked = None;
+        ui.horizontal(|ui| {
+            let another = ui.button("Another …").on_hover_text("Pin another picture");
+            if another.clicked() {
+                asked = Some(Action::Reference);
+            }
+            if ui.button("Fit").on_hover_text("See all of it").clicked() {
+                self.look.zoom = 1.0;
+                self.look.middle = pos2(0.5, 0.5);
+            }
+            ui.spacing_mut().slider_width = 60.0;
+            let mut opacity = work.preferences.reference.sound().opacity;
+            let label = ui.label("Opaque");
+            let slider = Slider::new(&mut opacity, 0.1..=1.0).show_value(false);
+            let slider = ui.add(slider).labelled_by(label.id);
+            if slider.changed() {
+                work.preferences.reference.opacity = (opacity * 100.0).round() * 0.01;
+            }
+        });
+        asked
+    }
+
+    /// The picture itself: it follows the pointer and the keys.
+    fn picture(&mut self, ui: &mut Ui, room: Vec2, opacity: f32, work: &PanelContext<'_>) {
+        let (area, response) = ui.allocate_exact_size(room, Sense::click_and_drag());
+        response.widget_info(|| {
+            let label = match &self.pinned {
+                Pinned::Here(..) => {
+                    "Reference picture. Arrow keys move the cross, Enter picks, + and - zoom"
+                }
+                _ => "Reference picture that is not there yet",
+            };
+            WidgetInfo::labeled(Role::Image, true, label)
+        });
+        let painter = ui.painter_at(area);
+        let (picture, texture) = match &self.pinned {
+            Pinned::Here(_, picture, texture) => (picture.clone(), texture.id()),
+            Pinned::Coming(..) => {
+                ui.put(area, egui::Spinner::new());
+                return;
+            }
+            Pinned::Failed(_, words) => {
+                let colour = ui.visuals().warn_fg_color;
+                let words = RichText::new(format!("This picture cannot be shown. {words}"));
+                ui.put(area, egui::Label::new(words.color(colour)).wrap());
+                return;
+            }
+            Pinned::Nothing => return,
+        };
+        let laid = |look: &Look| laid(area, picture.size, look);
+        self.move_about(ui, &response, area, laid(&self.look), picture.size);
+        let at = laid(&self.look);
+        let whole = Rect::from_min_max(pos2(0.0, 0.0), pos2(1.0, 1.0));
+        painter.image(texture, at, whole, Color32::WHITE.gamma_multiply(opacity));
+        let picks = response
+            .clicked()
+            .then(|| response.interact_pointer_pos())
+            .flatten();
+        if let Some(pointer) = picks {
+            let place = (pointer - at.min) / at.size();
+            if (0.0..1.0).contains(&place.x) && (0.0..1.0).contains(&place.y) {
+                self.look.cross = Some(place.to_pos2());
+                self.pick(&picture, work);
+            }
+        }
+        let enter = |input: &egui::InputState| input.key_pressed(Key::Enter);
+        if response.has_focus() && ui.input(enter) && picks.is_none() {
+            self.look.cross.get_or_insert(self.look.middle);
+            self.pick(&picture, work);
+        }
+        if let Some(cross) = self.look.cross {
+            mark(&painter, at.min + cross.to_vec2() * at.size());
+        }
+        if response.has_focus() {
+            let stroke = ui.visuals().selection.stroke;
+            painter.rect_stroke(area, CornerRadius::ZERO, stroke, StrokeKind::Inside);
+        }
+    }
+
+    /// Zooms by the wheel around the pointer, pans by dragging; by keys the cross is moved.
+    fn move_about(&mut self, ui: &Ui, response: &Response, area: Rect, at: Rect, size: [usize; 2]) {
+        let look = &mut self.look;
+        let least = at.width() / look.zoom;
+        let closest = (CLOSEST * size[0] as f32 / least.max(1.0)).max(1.0);
+        let mut zoom = 1.0;
+        if response.dragged() {
+            look.middle -= response.drag_delta() / at.size();
+        }
+        let mut around = area.center();
+        if let Some(pointer) = response.hover_pos() {
+            let (scroll, pinch) =
+                ui.input(|input| (input.smooth_scroll_delta().y, input.zoom_delta()));
+            zoom *= maulstick_num::exp(f64::from(scroll) * 0.004) as f32 * pinch;
+            around = pointer;
+        }
+        if response.has_focus() {
+            let filter = EventFilter {
+                horizontal_arrows: true,
+                vertical_arrows: true,
+                ..EventFilter::default()
+            };
+            ui.memory_mut(|memory| memory.set_focus_lock_filter(response.id, filter));
+            let pressed = |key: Key| {
+                ui.input_mut(|input| f32::from(u8::from(input.consume_key(Modifiers::NONE, key))))
+            };
+            let step = vec2(
+                pressed(Key::ArrowRight) - pressed(Key::ArrowLeft),
+                pressed(Key::ArrowDown) - pressed(Key::ArrowUp),
+            );
+            if step != Vec2::ZERO {
+                let cross = look.cross.unwrap_or(look.middle) + STEP * step / at.size();
+                look.cross = Some(cross.clamp(Pos2::ZERO, pos2(0.999, 0.999)));
+            }
+            let closer = pressed(Key::Plus) + pressed(Key::Equals) - pressed(Key::Minus);
+            zoom *= match closer {
+                c if c > 0.0 => 1.25,
+                c if c < 0.0 => 0.8,
+                _ => 1.0,
+            };
+        }
+        if zoom != 1.0 && zoom.is_finite() {
+            let next = (look.zoom * zoom).clamp(1.0, closest);
+            // What lies under the pointer stays there.
+            let off = (around - area.center()) / at.size();
+            look.middle += off * (1.0 - look.zoom / next);
+            look.zoom = next;
+        }
+        look.middle = look.middle.clamp(Pos2::ZERO, pos2(1.0, 1.0));
+        if look.zoom <= 1.0 {
+            look.middle = pos2(0.5, 0.5);
+        }
+    }
+
+    /// Asks for mixtures of the colour under the cross.
+    fn pick(&mut self, picture: &Picture, work: &PanelContext<'_>) {
+        let (Some(cross), Some(scene)) = (self.look.cross, &work.rig.scene) else {
+            return;
+        };
+        let pixel = |at: f32, side: usize| ((at * side as f32) as usize).min(side - 1);
+        let linear = picture.mean([
+            pixel(cross.x, picture.size[0]),
+            pixel(cross.y, picture.size[1]),
+        ]);
+        self.picked = Some(linear);
+        let paints = match work.preferences.reference.all_paints {
+            true => None,
+            false => of_palette(work.rig.palette()),
+        };
+        self.picker.ask(Ask {
+            linear,
+            paints,
+            light: scene.light.clone(),
+        });
+    }
+
+    /// What was picked, and the mixtures that come near.
+    fn proposals(&mut self, ui: &mut Ui, work: &mut PanelContext<'_>) {
+        let Some(linear) = self.picked else {
+            ui.weak("Click a colour: mixtures of it. Wheel: closer.");
+            return;
+        };
+        let bytes = linear.map(|channel| (srgb_encode(channel) * 255.0).round() as u8);
+        ui.horizontal(|ui| {
+            swatch(ui, bytes, "Picked");
+            ui.label(RichText::new(hex(bytes)).monospace());
+            let all = &mut work.preferences.reference.all_paints;
+            let choice = ui.checkbox(all, "All paints");
+            let choice = choice.on_hover_text("Not only those on the palette");
+            if choice.changed()
+                && let Pinned::Here(_, picture, _) = &self.pinned
+            {
+                let picture = picture.clone();
+                self.pick(&picture, work);
+            }
+            if ui
+                .button("Done")
+                .on_hover_text("Hide the mixtures")
+                .clicked()
+            {
+                self.picked = None;
+                self.look.cross = None;
+                self.picker.forget();
+            }
+        });
+        let library = std::sync::Arc::clone(&work.rig.library);
+        let found = self.picker.found(ui.ctx(), &library).cloned();
+        matches(ui, found.as_ref(), work);
+    }
+}
+
+fn matches(ui: &mut Ui, found: Option<&Matches>, work: &mut PanelContext<'_>) {
+    match found {
+        None => {
+            ui.horizontal(|ui| {
+                ui.spinner();
+                ui.weak("Mixing …");
+            });
+        }
+        Some(Err(words)) => {
+            ui.label(words);
+        }
+        Some(Ok(all)) => {
+            for found in all {
+                proposal(ui, found, work);
+            }
+        }
+    }
+}
+
+/// A mixture, how near it comes, and what can be done with it.
+fn proposal(ui: &mut Ui, found: &Match, work: &mut PanelContext<'_>) {
+    let words = in_parts(found);
+    ui.horizontal(|ui| {
+        let near = format!("off by ΔE {:.1}", found.delta_e);
+        swatch(ui, found.rgb, &near);
+        ui.label(RichText::new(format!("ΔE {:.1}", found.delta_e)).small())
+            .on_hover_text("How far it is from the colour, ΔE₀₀: 1 is hardly seen");
+        let load = ui.button("Load").on_hover_text("Load the brush with it");
+        load.widget_info(|| WidgetInfo::labeled(Role::Button, true, format!("Load {words}")));
+        if load.clicked() {
+            let brush = work.rig.brush_name().to_owned();
+            let mixture = found.mixture.clone();
+            work.requests.paint(Command::Load { brush, mixture });
+        }
+        let put = ui.button("+").on_hover_text("Put it on the palette");
+        put.widget_info(|| {
+            WidgetInfo::labeled(Role::Button, true, format!("To the palette: {words}"))
+        });
+        if put.clicked() {
+            let mut wells = work.wells();
+            wells.push(found.mixture.clone());
+            work.lay_wells(&wells);
+        }
+        let copy = ui.button("Copy").on_hover_text("Copy it as text");
+        copy.widget_info(|| WidgetInfo::labeled(Role::Button, true, format!("Copy {words}")));
+        if copy.clicked() {
+            ui.ctx().copy_text(found.mixture.to_string());
+        }
+    });
+    ui.add(egui::Label::new(RichText::new(&words).small()).wrap());
+}
+
+/// A mixture in a painter's words.
+fn in_parts(found: &Match) -> String {
+    let part = |part: &maulstick_types::mixture::Part| {
+        let percent = 100.0 * part.share;
+        match percent {
+            percent if percent < 1.0 => format!("{} {percent:.2} %", part.paint),
+            percent => format!("{} {percent:.0} %", part.paint),
+        }
+    };
+    let parts: Vec<String> = found.mixture.parts.iter().map(part).collect();
+    parts.join(", ")
+}
+
+fn hex([r, g, b]: [u8; 3]) -> String {
+    format!("#{r:02x}{g:02x}{b:02x}")
+}
+
+fn swatch(ui: &mut Ui, [r, g, b]: [u8; 3], label: &str) {
+    let (area, response) = ui.allocate_exact_size(vec2(28.0, 18.0), Sense::hover());
+    response.widget_info(|| WidgetInfo::labeled(Role::Image, true, label));
+    let edge = ui.visuals().widgets.noninteractive.bg_stroke;
+    let painter = ui.painter();
+    painter.rect(
+        area,
+        3.0,
+        Color32::from_rgb(r, g, b),
+        edge,
+        StrokeKind::Inside,
+    );
+}
+
+/// Where colours are picked from, to be seen over light and dark.
+fn mark(painter: &egui::Painter, at: Pos2) {
+    for (radius, width, colour) in [(7.0, 3.0, Color32::BLACK), (7.0, 1.5, Color32::WHITE)] {
+        painter.circle_stroke(at, radius, Stroke::new(width, colour));
+    }
+}
+
+/// Where a picture lies in its area.
+fn laid(area: Rect, size: [usize; 2], look: &Look) -> Rect {
+    let size = vec2(size[0].max(1) as f32, size[1].max(1) as f32);
+    let fit = (area.size() / size).min_elem();
+    let size = size * fit * look.zoom;
+    Rect::from_min_size(area.center() - look.middle.to_vec2() * size, size)
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,225 @@
+//! The brushes over the surfaces: shadows, head, ferrule and handle of each.
+
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
+use eframe::egui::{Pos2, Shape};
+use eframe::egui_wgpu::wgpu;
+use glam::{DVec3, Vec2, Vec3};
+use maulstick_brush::desk::{Desk, Plane};
+use maulstick_brush::{Head, HeadPose, Hold};
+use maulstick_num::geometry::Rigid;
+use maulstick_optics::light::Lamp;
+use maulstick_paint::picture::Export;
+use maulstick_types::scene::{CANVAS, PALETTE};
+
+use crate::render::brush::bristles::{Bristles, ribbons, tones};
+use crate::render::brush::cast_shadow::{Board, CastShadow, Chain, On, Projection, ShadowSlot};
+use crate::render::brush::geometry::{
+    Section, casters, head_discs, is_wide, sections, shaded_sections, shadow,
+};
+use crate::render::brush::handle::{Finish, handle};
+use crate::render::brush::paint_colour::PaintColour;
+use crate::render::display_transform::DisplayTransform;
+use crate::render::gpu::Gpu;
+use crate::render::view_light::ViewLight;
+use crate::rig::brushes::BrushPose;
+use crate::view::camera::View;
+
+/// What brushes are drawn over.
+pub struct Below<'a> {
+    /// Where the desk is in the window.
+    pub view: &'a View,
+    /// Pixels a point.
+    pub pixels_per_point: f32,
+    /// The surfaces, on which shadows fall.
+    pub desk: &'a Desk,
+    /// Desk and surfaces as pixels of the view, where they are drawn.
+    pub pixels: Option<&'a wgpu::TextureView>,
+}
+
+/// What is kept of a brush from frame to frame.
+#[derive(Debug, Default)]
+struct Kept {
+    slots: Vec<ShadowSlot>,
+    /// The paint on it, and the same as the display takes it.
+    coat: Option<(Arc<PaintColour>, PaintColour)>,
+}
+
+/// Draws brushes.
+#[derive(Debug)]
+pub struct BrushRenderer {
+    passes: CastShadow,
+    kept: BTreeMap<String, Kept>,
+    pose: HeadPose,
+    tint: DisplayTransform,
+    finish: Finish,
+}
+
+impl BrushRenderer {
+    /// Draws on a device, for the display of `export`.
+    #[must_use]
+    pub fn new(gpu: &Gpu, export: &Export) -> Self {
+        let tint = DisplayTransform::new(export);
+        Self {
+            passes: CastShadow::new(gpu),
+            kept: BTreeMap::new(),
+            pose: HeadPose::default(),
+            finish: Finish::default().tinted(&tint),
+            tint,
+        }
+    }
+
+    /// The shapes of a brush, from the lowest: under `lamp`, in the frame of the surface below it.
+    #[must_use]
+    pub fn shapes(
+        &mut self,
+        gpu: &Gpu,
+        held: &BrushPose<'_>,
+        head: &Head,
+        lamp: &Lamp,
+        below: &Below<'_>,
+    ) -> Vec<Shape> {
+        let hold = Hold {
+            brush: &held.brush,
+            angles: &held.angles,
+            per_m: 1.0,
+            wetness: held.wetness,
+        };
+        head.pose(&hold, &mut self.pose);
+        let sections = sections(&held.brush, held.file);
+        let mut shapes = self.shadows(gpu, held, (head, &sections), lamp, below);
+        let to_window =
+            |local: Vec3| -> Pos2 { below.view.to_window(held.on_desk(local.as_dvec3().into())) };
+        let sight = ViewLight {
+            to_window: &to_window,
+            scale: below.view.scale as f32,
+            up: held.plane.to_desk.inverse().vector(DVec3::Z).as_vec3(),
+            toward: Vec3::from_array(lamp.toward),
+            light: lamp.intensity,
+        };
+        let kept = self.kept.entry(held.name.to_owned()).or_default();
+        let bristles = Bristles {
+            width_m: held.file.strips.width_mm as f32 * 1e-3,
+            taper: held.file.strips.taper as f32,
+            hair: held.file.head.hair,
+            tones: tones(held.file.head.hair).map(|tone| self.tint.seen(tone)),
+            coat: kept
+                .tinted(held.coat.as_ref(), &self.tint, head)
+                .filter(|coat| coat.strips() == head.strips()),
+        };
+        shapes.push(ribbons(&self.pose, head.strips(), &bristles, &sight).into());
+        shapes.push(handle(&sections, &self.finish, &sight).into());
+        shapes
+    }
+
+    /// The shadows of a brush on canvas and palette, which lies above it.
+    fn shadows(
+        &mut self,
+        gpu: &Gpu,
+        held: &BrushPose<'_>,
+        (head, sections): (&Head, &[Section]),
+        lamp: &Lamp,
+        below: &Below<'_>,
+    ) -> Vec<Shape> {
+        let on_desk = |p: DVec3| held.plane.to_desk.point(p);
+        let head = head_discs(&self.pose, head.roots(), is_wide(held.file));
+        let toward = DVec3::from_array(lamp.toward.map(f64::from));
+        let toward = held.plane.to_desk.vector(toward);
+        let board = below
+            .desk
+            .plane(PALETTE)
+            .map(|plane| (plane, board(plane, below)));
+        let kept = self.kept.entry(held.name.to_owned()).or_default();
+        let mut shapes = Vec::new();
+        let mut slots = 0;
+        let mut cast = |plane: &Plane, on: On, shapes: &mut Vec<Shape>| {
+            let to_plane = plane.to_desk.inverse();
+            let there = |p: DVec3| to_plane.point(on_desk(p));
+            let turned = |v: DVec3| to_plane.vector(held.plane.to_desk.vector(v));
+            let sections: Vec<Section> = sections
+                .iter()
+                .map(|section| Section {
+                    at: there(section.at),
+                    half: section.half.map(turned),
+                    ..*section
+                })
+                .collect();
+            let to_window = |p: DVec3| below.view.to_window(plane.to_desk.point(p));
+            let projection = Projection {
+                view: below.view,
+                pixels_per_point: below.pixels_per_point,
+                to_window: &to_window,
+            };
+            for caster in casters(to_plane.vector(toward)) {
+                let mut discs: Vec<(DVec3, f64)> = head
+                    .iter()
+                    .map(|(at, radius)| (there(*at), *radius))
+                    .collect();
+                discs.extend(shaded_sections(&sections, caster.run()));
+                let chain = Chain::of(&shadow(&discs, &caster), &projection, on);
+                let reaches = match on {
+                    On::Board(board) => chain.reaches(&board),
+                    On::All | On::Beside(_) => true,
+                };
+                if !chain.is_visible() || !reaches {
+                    continue;
+                }
+                if kept.slots.len() == slots {
+                    kept.slots.push(self.passes.slot(gpu));
+                }
+                let slot = &mut kept.slots[slots];
+                slots += 1;
+                let drawn = self
+                    .passes
+                    .cast(gpu, slot, below.pixels, (&chain, discs.len()));
+                shapes.push(drawn.shape(below.view));
+            }
+        };
+        if let Some(canvas) = below.desk.plane(CANVAS) {
+            let on = board.map_or(On::All, |(_, board)| On::Beside(board));
+            cast(canvas, on, &mut shapes);
+        }
+        if let Some((palette, board)) = board {
+            cast(palette, On::Board(board), &mut shapes);
+        }
+        shapes
+    }
+}
+
+impl Kept {
+    /// The paint on the brush as the display takes it.
+    fn tinted(
+        &mut self,
+        coat: Option<&Arc<PaintColour>>,
+        tint: &DisplayTransform,
+        head: &Head,
+    ) -> Option<&PaintColour> {
+        let coat = coat?;
+        if !self
+            .coat
+            .as_ref()
+            .is_some_and(|(of, _)| Arc::ptr_eq(of, coat))
+        {
+            self.coat = Some((Arc::clone(coat), coat.tinted(tint).on(head)));
+        }
+        self.coat.as_ref().map(|(_, tinted)| tinted)
+    }
+}
+
+/// Where a palette lies in the view.
+fn board(plane: &Plane, below: &Below<'_>) -> Board {
+    let [width, height] = plane.size_m.map(|side| side * plane.zoom);
+    let to_desk: &Rigid = &plane.to_desk;
+    let corner = |x: f64, y: f64| {
+        let at = below.view.to_window(to_desk.point(DVec3::new(x, y, 0.0)));
+        let off = (at - below.view.area.min) * below.pixels_per_point;
+        Vec2::new(off.x, off.y)
+    };
+    Board {
+        corners: [corner(0.0, 0.0), corner(width, 0.0), corner(0.0, height)],
+    }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,366 @@
+//! The threads that pull frames: for each surface one query in flight, asked again as soon as it is
+//! answered.
+
+use std::collections::BTreeSet;
+use std::sync::{Arc, Mutex, PoisonError};
+use std::time::{Duration, Instant};
+
+use half::f16;
+use maulstick_bus::bus::Answer;
+use maulstick_bus::{Bus, BusError, Class, Payload, Wake};
+use maulstick_paint::planes::TILE_CELLS;
+use maulstick_rig::Stop;
+use maulstick_types::paint::{FrameHolds, FrameRequest};
+use maulstick_types::{DecodeError, Flags, FrameView, Origin, encode};
+
+use crate::render::tile_planner::{Asked, AtlasState, Part, TilePlanner};
+use crate::view::visible_tiles::Wanted;
+
+/// A frame that does not come within this time is asked for again.
+const LIMIT: Duration = Duration::from_millis(500);
+/// Between two questions that nobody answers.
+const PAUSE: Duration = Duration::from_millis(50);
+/// How long the paint node may wait for something to change, ms.
+const WAIT_MS: u32 = 200;
+/// So many frames in a row that came only through the socket: shared memory does not work.
+const STRIKES: u32 = 3;
+/// Bytes of a plane of half floats.
+const HALVES: usize = 2 * TILE_CELLS;
+/// Where the wetness begins in a tile's planes: behind red, green, blue and gloss.
+const WETNESS: usize = 4 * HALVES;
+/// Colour of the tint of wet paint, linear, and how strong it is.
+const WET: [f32; 3] = [0.0, 0.35, 1.0];
+const WET_SHARE: f32 = 0.6;
+/// Where the heights begin in a tile's planes: behind red, green, blue, gloss and wetness.
+const HEIGHTS: usize = 5 * HALVES;
+
+/// A tile as the textures take it: rows upward from the lowest, 64×64 texels.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ShownTile {
+    /// Column.
+    pub x: u32,
+    /// Row, 0 at the bottom.
+    pub y: u32,
+    /// Linear red, green, blue, and gloss: four half floats a texel.
+    pub colour: Vec<u8>,
+    /// m, a float a texel.
+    pub height: Vec<u8>,
+}
+
+/// What a reply brought.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Shown {
+    /// Which of the surface's sheets the tiles are of.
+    pub part: Part,
+    /// That sheet with these tiles.
+    pub atlas: AtlasState,
+    /// Cells of the surface at the sheet's level.
+    pub cells: [u32; 2],
+    /// Changed tiles.
+    pub tiles: Vec<ShownTile>,
+    /// The journal entries below this index are in the detail; 0 where this reply does not tell.
+    pub journal: u64,
+    /// The brush states that are in the detail; none where this reply does not tell.
+    pub holds: Vec<FrameHolds>,
+}
+
+impl Shown {
+    /// What the picture holds, once all tiles are in it.
+    #[must_use]
+    pub fn holding(&self) -> crate::render::frame_reports::Holding {
+        crate::render::frame_reports::Holding {
+            journal: self.journal,
+            holds: self.holds.clone(),
+        }
+    }
+}
+
+/// Replies that the window has not yet taken, and what it wants.
+#[derive(Clone, Debug, Default)]
+pub struct FrameInbox {
+    replies: Arc<Mutex<Vec<Shown>>>,
+    wanted: Arc<Mutex<Option<Wanted>>>,
+    fault: Arc<Mutex<Option<DecodeError>>>,
+    asking: Wake,
+}
+
+fn locked<T>(of: &Mutex<T>) -> std::sync::MutexGuard<'_, T> {
+    of.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+impl FrameInbox {
+    /// Takes what has come.
+    #[must_use]
+    pub fn take(&self) -> Vec<Shown> {
+        std::mem::take(&mut *locked(&self.replies))
+    }
+
+    /// Asks for this from the next frame on; nothing is asked before.
+    pub fn want(&self, wanted: Wanted) {
+        if locked(&self.wanted).replace(wanted) != Some(wanted) {
+            self.asking.ring();
+        }
+    }
+
+    /// Why the replies of the paint node cannot be read, for as long as they cannot.
+    #[must_use]
+    pub fn fault(&self) -> Option<DecodeError> {
+        locked(&self.fault).clone()
+    }
+
+    fn wanted(&self) -> Option<Wanted> {
+        *locked(&self.wanted)
+    }
+}
+
+/// Where frames come from.
+#[derive(Clone)]
+pub struct FrameSource {
+    /// The bus.
+    pub bus: Arc<dyn Bus>,
+    /// The query.
+    pub topic: String,
+    /// Who asks.
+    pub me: Origin,
+    /// The surface.
+    pub surface: u32,
+}
+
+/// Pulls frames until `stop` says so; rings `wake` when one has come.
+pub fn pull(source: &FrameSource, inbox: &FrameInbox, wake: &Wake, stop: &Stop) {
+    let mut puller = Puller {
+        source,
+        inbox,
+        stop,
+        plan: TilePlanner::default(),
+        strikes: 0,
+        told: BTreeSet::new(),
+        newest: (0, Vec::new()),
+    };
+    while !stop.requested() {
+        match inbox.wanted() {
+            Some(wanted) => {
+                if let Some(shown) = puller.turn(&wanted) {
+                    locked(&inbox.replies).push(shown);
+                    wake.ring();
+                }
+            }
+            None => {
+                inbox.asking.wait(PAUSE);
+            }
+        }
+    }
+}
+
+struct Puller<'a> {
+    source: &'a FrameSource,
+    inbox: &'a FrameInbox,
+    stop: &'a Stop,
+    plan: TilePlanner,
+    strikes: u32,
+    told: BTreeSet<String>,
+    /// What the window was told of the journal.
+    newest: (u64, Vec<FrameHolds>),
+}
+
+/// What became of a question.
+enum Told {
+    Answer(Payload),
+    Nothing,
+    /// The view wants something else by now.
+    Late,
+}
+
+impl Puller<'_> {
+    /// One question, and what its answer brings.
+    fn turn(&mut self, wanted: &Wanted) -> Option<Shown> {
+        let asked = self.plan.next(wanted);
+        let answer = match self.ask(&asked) {
+            Ok(answer) => answer?,
+            Err(error) => {
+                self.tell(error.to_string());
+                self.pause(LIMIT);
+                return None;
+            }
+        };
+        match FrameView::of(&answer) {
+            Ok((_, reply)) => {
+                *locked(&self.inbox.fault) = None;
+                self.shown(&asked, &reply)
+            }
+            Err(error) => {
+                self.tell(error.to_string());
+                *locked(&self.inbox.fault) = Some(error);
+                self.pause(LIMIT);
+                None
+            }
+        }
+    }
+
+    fn tell(&mut self, what: String) {
+        if self.told.insert(what.clone()) {
+            tracing::warn!("{}: {what}", self.source.topic);
+        }
+    }
+
+    /// Waits, but not where it is time to stop.
+    fn pause(&self, limit: Duration) {
+        let until = Instant::now() + limit;
+        while !self.stop.requested() && Instant::now() < until {
+            self.inbox.asking.wait(PAUSE);
+        }
+    }
+
+    /// Asks with shared memory first, then without: what is lost on the one way comes on the other.
+    fn ask(&mut self, asked: &Asked) -> Result<Option<Payload>, BusError> {
+        if self.strikes < STRIKES {
+            match self.ask_once(asked, true)? {
+                Told::Answer(answer) => {
+                    self.strikes = 0;
+                    return Ok(Some(answer));
+                }
+                Told::Late => return Ok(None),
+                Told::Nothing if self.stop.requested() => return Ok(None),
+                Told::Nothing => {}
+            }
+        }
+        match self.ask_once(asked, false)? {
+            Told::Answer(answer) => {
+                self.strikes += 1;
+                if self.strikes == STRIKES {
+                    tracing::info!(
+                        "pictures of the painting do not come through shared memory; from now on \
+                         they go through the socket, which takes longer"
+                    );
+                }
+                Ok(Some(answer))
+            }
+            Told::Nothing => {
+                // The paint node is starting: the picture stays, and is asked for again.
+                self.pause(PAUSE);
+                Ok(None)
+            }
+            Told::Late => Ok(None),
+        }
+    }
+
+    fn ask_once(&self, asked: &Asked, shared: bool) -> Result<Told, BusError> {
+        let FrameSource {
+            bus,
+            topic,
+            me,
+            surface,
+        } = self.source;
+        let (epoch, look) = self.plan.of();
+        let request = FrameRequest {
+            surface: *surface,
+            since: asked.since,
+            epoch,
+            tiles: asked.tiles.to_request(),
+            level: asked.level,
+            wait_ms: if asked.part == Part::Base { 0 } else { WAIT_MS },
+            look,
+            shared,
+        };
+        let now_ns = bus.now_ns();
+        let bytes = encode(me, Flags::NONE, 0, now_ns, now_ns, &request).map_err(|source| {
+            BusError::Message {
+                topic: topic.clone(),
+                source,
+            }
+        })?;
+        let asking = &self.inbox.asking;
+        let pending = bus.ask(topic, Class::Data, bytes, LIMIT, asking)?;
+        let give_up = Instant::now() + LIMIT + PAUSE;
+        while !self.stop.requested() {
+            match pending.try_recv() {
+                Some(Answer::Bytes(answer)) => return Ok(Told::Answer(answer)),
+                Some(Answer::Ended) => break,
+                None => {}
+            }
+            let wanted = self.inbox.wanted();
+            if wanted.is_some_and(|wanted| self.plan.is_late(asked, &wanted)) {
+                return Ok(Told::Late);
+            }
+            if Instant::now() > give_up {
+                break;
+            }
+            asking.wait(PAUSE);
+        }
+        Ok(Told::Nothing)
+    }
+
+    /// What a reply brings to the window, if anything.
+    fn shown(&mut self, asked: &Asked, reply: &FrameView<'_>) -> Option<Shown> {
+        let before = self.plan.atlas(asked.part);
+        if !self.plan.take(asked, reply) {
+            self.pause(PAUSE);
+            return None;
+        }
+        let atlas = self.plan.atlas(asked.part);
+        let tells = asked.part == Part::Detail && !reply.more && atlas.held == asked.tiles;
+        let newest = (reply.journal, reply.holds.clone());
+        let events = tells && self.newest != newest;
+        if reply.tiles.is_empty() && before == atlas && !events {
+            return None;
+        }
+        if tells {
+            self.newest = newest;
+        }
+        let tiles = reply.tiles.iter().filter_map(|tile| {
+            let (mut colour, height) = texels(tile.planes)?;
+            if atlas.wet {
+                tint_wet(&mut colour, tile.planes);
+            }
+            Some(ShownTile {
+                x: tile.x,
+                y: tile.y,
+                colour,
+                height,
+            })
+        });
+        Some(Shown {
+            part: asked.part,
+            atlas,
+            cells: reply.cells,
+            tiles: tiles.collect(),
+            journal: if tells { reply.journal } else { 0 },
+            holds: if tells {
+                reply.holds.clone()
+            } else {
+                Vec::new()
+            },
+        })
+    }
+}
+
+/// The planes of a tile as texels of colour and gloss, and of height; none where the length is
+/// wrong. See [`DisplayTile::to_bytes`](maulstick_paint::display::DisplayTile::to_bytes).
+#[must_use]
+pub fn texels(planes: &[u8]) -> Option<(Vec<u8>, Vec<u8>)> {
+    if planes.len() != HEIGHTS + 4 * TILE_CELLS {
+        return None;
+    }
+    let mut colour = Vec::with_capacity(4 * HALVES);
+    for cell in 0..TILE_CELLS {
+        for plane in 0..4 {
+            colour.extend_from_slice(&planes[plane * HALVES + 2 * cell..][..2]);
+        }
+    }
+    Some((colour, planes[HEIGHTS..].to_vec()))
+}
+
+/// Tints the colours of [`texels`] where the paint of the same planes is wet.
+fn tint_wet(colour: &mut [u8], planes: &[u8]) {
+    let half = |bytes: &[u8]| f16::from_le_bytes([bytes[0], bytes[1]]).to_f32();
+    for (cell, texel) in colour.chunks_exact_mut(8).enumerate() {
+        let share = WET_SHARE * half(&planes[WETNESS + 2 * cell..]).clamp(0.0, 1.0);
+        for (value, tint) in texel.chunks_exact_mut(2).zip(WET) {
+            let own = half(value);
+            value.copy_from_slice(&f16::from_f32(own + share * (tint - own)).to_le_bytes());
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,209 @@
+use half::f16;
+use maulstick_paint::display::DisplayTile;
+
+use maulstick_bus::typed::Reader;
+use maulstick_bus::{Faults, MemoryNet, Request, Server};
+use maulstick_types::paint::{FrameReply, FrameTile};
+
+use super::*;
+use crate::view::visible_tiles::TileRect;
+
+const PAINT: Origin = Origin {
+    source: 1,
+    epoch: 5,
+};
+
+/// A puller on a bus of its own, and the node that it asks.
+struct Pulled {
+    net: MemoryNet,
+    server: Server,
+    inbox: FrameInbox,
+    stop: Stop,
+    thread: Option<std::thread::JoinHandle<()>>,
+}
+
+impl Pulled {
+    fn new() -> Self {
+        let net = MemoryNet::new(1, 0, Faults::default());
+        let bus: Arc<dyn Bus> = Arc::new(net.bus());
+        let server = bus.serve("frame", 16, &Wake::new()).expect("served");
+        let (inbox, wake) = (FrameInbox::default(), Wake::new());
+        let stop = Stop::on_signals(&wake).expect("handlers");
+        let source = FrameSource {
+            bus,
+            topic: "frame".into(),
+            me: PAINT,
+            surface: 0,
+        };
+        inbox.want(Wanted {
+            tiles: TileRect::up_to([2, 1]),
+            room: [2, 1],
+            ..Wanted::default()
+        });
+        let (its, stops) = (inbox.clone(), stop.clone());
+        let thread = std::thread::spawn(move || pull(&source, &its, &wake, &stops));
+        Self {
+            net,
+            server,
+            inbox,
+            stop,
+            thread: Some(thread),
+        }
+    }
+
+    /// The next question, as time goes on.
+    fn asked(&self) -> (Request, FrameRequest) {
+        let give_up = Instant::now() + Duration::from_secs(60);
+        loop {
+            self.net.advance(1_000_000);
+            if let Some(request) = self.server.try_recv() {
+                let read = Reader::default().read("frame", &request.bytes);
+                let (_, asked) = read.expect("a question");
+                return (request, asked);
+            }
+            assert!(Instant::now() < give_up, "it asks nothing");
+            std::thread::yield_now();
+        }
+    }
+
+    fn answer(&self, request: Request, reply: &FrameReply) {
+        let bytes = encode(&PAINT, Flags::NONE, 0, 0, 0, reply).expect("encoded");
+        request.answer(bytes).expect("answered");
+    }
+}
+
+impl Drop for Pulled {
+    fn drop(&mut self) {
+        self.stop.request();
+        if let Some(thread) = self.thread.take() {
+            thread.join().expect("it ends");
+        }
+    }
+}
+
+fn reply(version: u64, tiles: &[u32]) -> FrameReply {
+    let tile = |x: &u32| FrameTile {
+        x: *x,
+        y: 0,
+        planes: vec![0; HEIGHTS + 4 * TILE_CELLS].into(),
+    };
+    FrameReply {
+        surface: 0,
+        epoch: PAINT.epoch,
+        version,
+        level: 0,
+        cells: [128, 64],
+        journal: version,
+        holds: vec![FrameHolds {
+            brush: 1,
+            epoch: 1,
+            next: 10 * version,
+        }],
+        more: false,
+        tiles: tiles.iter().map(tile).collect(),
+        look: 1,
+    }
+}
+
+#[test]
+fn what_is_lost_in_shared_memory_comes_through_the_socket() {
+    let pulled = Pulled::new();
+    let mut asked_shared = Vec::new();
+    for version in 1..8 {
+        let (mut request, mut asked) = pulled.asked();
+        asked_shared.push(asked.shared);
+        if asked.shared {
+            // The answer is lost.
+            drop(request);
+            (request, asked) = pulled.asked();
+            assert!(!asked.shared, "it is asked for once more without");
+        }
+        assert_eq!(asked.since, version - 1, "nothing is skipped");
+        pulled.answer(request, &reply(version, &[0, 1]));
+    }
+    let (lost, rest) = asked_shared.split_at(STRIKES as usize);
+    assert!(lost.iter().all(|shared| *shared), "{asked_shared:?}");
+    assert!(rest.iter().all(|shared| !*shared), "{asked_shared:?}");
+}
+
+#[test]
+fn the_window_is_told_what_the_picture_holds_even_where_no_tile_changed() {
+    let pulled = Pulled::new();
+    for (version, tiles) in [(1, &[0, 1][..]), (2, &[]), (2, &[]), (3, &[1])] {
+        let (request, _) = pulled.asked();
+        pulled.answer(request, &reply(version, tiles));
+    }
+    drop(pulled.asked());
+    let told: Vec<_> = pulled
+        .inbox
+        .take()
+        .into_iter()
+        .map(|shown| (shown.journal, shown.holds[0].next, shown.tiles.len()))
+        .collect();
+    assert_eq!(told, [(1, 10, 2), (2, 20, 0), (3, 30, 1)]);
+}
+
+#[test]
+fn a_paint_node_of_another_version_is_a_fault_until_it_is_gone() {
+    let pulled = Pulled::new();
+    let (request, _) = pulled.asked();
+    let mut bytes = encode(&PAINT, Flags::NONE, 0, 0, 0, &reply(1, &[0])).expect("encoded");
+    bytes[4] ^= 1;
+    request.answer(bytes).expect("answered");
+    let (request, _) = pulled.asked();
+    assert!(
+        matches!(
+            pulled.inbox.fault(),
+            Some(DecodeError::UnknownSchema { .. })
+        ),
+        "{:?}",
+        pulled.inbox.fault()
+    );
+    pulled.answer(request, &reply(1, &[0, 1]));
+    drop(pulled.asked());
+    assert_eq!(pulled.inbox.fault(), None);
+    assert_eq!(pulled.inbox.take().len(), 1);
+}
+
+#[test]
+fn texels_are_the_planes_of_a_tile() {
+    let plane = |from: f32| (0..TILE_CELLS).map(|i| from + i as f32 / 8192.0).collect();
+    let tile = DisplayTile {
+        rgb: [plane(0.0), plane(1.0), plane(2.0)],
+        gloss: plane(0.5),
+        wetness: plane(7.0),
+        height: plane(0.25),
+    };
+    let (colour, height) = texels(&tile.to_bytes()).expect("whole");
+    let half = |place: usize| f16::from_le_bytes([colour[2 * place], colour[2 * place + 1]]);
+    for cell in [0, 1, 64, 4095] {
+        let texel = [0, 1, 2, 3].map(|channel| half(4 * cell + channel).to_f32());
+        let planes = [&tile.rgb[0], &tile.rgb[1], &tile.rgb[2], &tile.gloss];
+        for (got, plane) in texel.iter().zip(planes) {
+            assert!((got - plane[cell]).abs() < 2e-3, "{cell}: {texel:?}");
+        }
+        assert_eq!(height[4 * cell..][..4], tile.height[cell].to_le_bytes());
+    }
+    assert_eq!(texels(&tile.to_bytes()[1..]), None);
+}
+
+#[test]
+fn wet_paint_is_tinted_and_dry_paint_is_not() {
+    let plane = |value: f32| vec![value; TILE_CELLS];
+    let mut tile = DisplayTile {
+        rgb: [plane(0.5), plane(0.5), plane(0.5)],
+        gloss: plane(0.25),
+        wetness: plane(0.0),
+        height: plane(0.0),
+    };
+    tile.wetness[7] = 1.0;
+    let planes = tile.to_bytes();
+    let (mut colour, _) = texels(&planes).expect("whole");
+    let dry = colour.clone();
+    tint_wet(&mut colour, &planes);
+    let texel = |colour: &[u8], cell: usize| colour[8 * cell..8 * (cell + 1)].to_vec();
+    assert_eq!(texel(&colour, 6), texel(&dry, 6));
+    let half = |at: usize| f16::from_le_bytes([colour[at], colour[at + 1]]).to_f32();
+    let wet = [0, 1, 2, 3].map(|channel| half(56 + 2 * channel));
+    assert!(wet[0] < 0.3 && wet[2] > 0.7 && wet[3] == 0.25, "{wet:?}");
+}

@@ -1,0 +1,463 @@
+//! Sends what the painter asks for, a thread a process, so that nobody waits for another and the window
+//! for nobody.
+
+use std::collections::{BTreeMap, VecDeque};
+use std::sync::{Arc, Condvar, Mutex, PoisonError};
+use std::thread::JoinHandle;
+use std::time::{Duration, Instant};
+
+use maulstick_bus::typed::{ask, random_epoch};
+use maulstick_bus::{Bus, Class, Wake};
+use maulstick_rig::Fault;
+use maulstick_rig::commander::Commander;
+use maulstick_types::command::Command;
+use maulstick_types::haptics::{ForceOrder, ForceReply, ForceRequest};
+use maulstick_types::topics::Topics;
+use maulstick_types::{Origin, name_hash};
+
+use crate::rig::requests::Request;
+use crate::rig::stroke_barrier::Ready;
+
+/// How long a node may take for a command.
+const PATIENCE: Duration = Duration::from_secs(10);
+/// How long the rig may take until another painting is open.
+const OPENING: Duration = Duration::from_secs(180);
+/// How long an export may take.
+const EXPORTING: Duration = Duration::from_secs(3600);
+/// How long a daemon may take for an order to its force.
+const ANSWER: Duration = Duration::from_secs(3);
+/// A command is asked again after this; so long at most the window's end waits.
+const ASK: Duration = Duration::from_millis(300);
+
+/// What the lines of orders to switch off a force are called.
+const OFF: &str = "off";
+/// What the lines of exports are called.
+const EXPORT: &str = "export";
+
+/// What became of an order.
+#[derive(Clone, Debug)]
+pub struct Outcome {
+    /// The order.
+    pub request: Request,
+    /// What the process said.
+    pub result: Result<String, Fault>,
+}
+
+/// Orders for one process.
+#[derive(Debug, Default)]
+struct Queue {
+    state: Mutex<QueueState>,
+    changed: Condvar,
+}
+
+#[derive(Debug, Default)]
+struct QueueState {
+    waiting: VecDeque<Ready>,
+    /// Since when one is on its way.
+    since: Option<Instant>,
+    /// Whether the painter waits for it no longer.
+    given_up: bool,
+    ended: bool,
+}
+
+/// The courier of a window.
+pub(crate) struct CommandDispatcher {
+    bus: Arc<dyn Bus>,
+    topics: Topics,
+    wake: Wake,
+    outcomes: Arc<Mutex<Vec<Outcome>>>,
+    queues: BTreeMap<String, (Arc<Queue>, Option<JoinHandle<()>>)>,
+}
+
+impl CommandDispatcher {
+    /// A courier that rings `wake` when something was answered.
+    #[must_use]
+    pub(crate) fn new(bus: Arc<dyn Bus>, topics: &Topics, wake: &Wake) -> Self {
+        Self {
+            bus,
+            topics: topics.clone(),
+            wake: wake.clone(),
+            outcomes: Arc::default(),
+            queues: BTreeMap::new(),
+        }
+    }
+
+    /// Sends an order after those that went to the same process. One that still waits gives way to a newer
+    /// one that sets the same, as the place of a surface.
+    pub(crate) fn send(&mut self, ready: Ready) {
+        let (bus, topics, wake, outcomes) = (&self.bus, &self.topics, &self.wake, &self.outcomes);
+        let (queue_of, _) = self
+            .queues
+            .entry(address(&ready.request))
+            .or_insert_with(|| {
+                let queue_of = Arc::new(Queue::default());
+                let mut carrier = Worker {
+                    bus: Arc::clone(bus),
+                    topics: topics.clone(),
+                    commander: None,
+                    queue_of: Arc::clone(&queue_of),
+                    outcomes: Arc::clone(outcomes),
+                    wake: wake.clone(),
+                };
+                let thread = std::thread::Builder::new().name("courier".into());
+                let thread = thread.spawn(move || carrier.run());
+                let thread = thread
+                    .inspect_err(|error| tracing::error!("no thread for commands: {error}"))
+                    .ok();
+                (queue_of, thread)
+            });
+        let mut queue = queue_of
+            .state
+            .lock()
+            .unwrap_or_else(PoisonError::into_inner);
+        push(&mut queue.waiting, ready);
+        queue_of.changed.notify_one();
+    }
+
+    /// What was answered since the last call.
+    #[must_use]
+    pub(crate) fn outcomes(&self) -> Vec<Outcome> {
+        std::mem::take(&mut *self.outcomes.lock().unwrap_or_else(PoisonError::into_inner))
+    }
+}
+
+/// From this time on a wait is told.
+const LONG: Duration = Duration::from_millis(500);
+
+impl CommandDispatcher {
+    /// Who has not answered for half a second: `node` or `force`, and the name.
+    #[must_use]
+    pub(crate) fn waits(&self) -> Vec<String> {
+        let waits = |queue_of: &Queue| {
+            let queue = queue_of
+                .state
+                .lock()
+                .unwrap_or_else(PoisonError::into_inner);
+            queue.since.is_some_and(|since| since.elapsed() > LONG)
+        };
+        // An export tells how far it is by itself.
+        let asked = |name: &str| !name.starts_with(EXPORT) && !name.starts_with(OFF);
+        let queues = self.queues.iter();
+        let queues = queues.filter(|(name, (queue_of, _))| asked(name) && waits(queue_of));
+        queues.map(|(name, _)| name.clone()).collect()
+    }
+
+    /// Waits no longer: what is on its way is not asked again, and what waits is not sent.
+    /// Each order is told as not done.
+    pub(crate) fn give_up(&self) {
+        let late = self.waits();
+        let mut outcomes = self.outcomes.lock().unwrap_or_else(PoisonError::into_inner);
+        for (queue_of, _) in late.iter().filter_map(|name| self.queues.get(name)) {
+            let mut queue = queue_of
+                .state
+                .lock()
+                .unwrap_or_else(PoisonError::into_inner);
+            queue.given_up = queue.since.is_some();
+            outcomes.extend(queue.waiting.drain(..).map(|ready| Outcome {
+                request: ready.request,
+                result: Err(Fault::failure("it was not sent")),
+            }));
+        }
+        drop(outcomes);
+        self.wake.ring();
+    }
+}
+
+/// Who an order is for.
+fn address(request: &Request) -> String {
+    match request {
+        // It takes long, and other commands to the node do not wait for its end.
+        Request::Command {
+            node,
+            command: Command::Export { .. },
+        } => format!("{EXPORT} {node}"),
+        Request::Command { node, .. } => format!("node {node}"),
+        // It waits for no answer to what was asked before.
+        Request::Force {
+            device,
+            order: ForceOrder::Off,
+        } => format!("{OFF} {device}"),
+        Request::Force { device, .. } => format!("force {device}"),
+    }
+}
+
+/// How long it may take.
+fn patience(command: &Command) -> Duration {
+    match command {
+        Command::Open { .. } | Command::New { .. } | Command::SaveAs { .. } => OPENING,
+        Command::Export { .. } => EXPORTING,
+        _ => PATIENCE,
+    }
+}
+
+/// Whether of two orders, one right after the other, the first need not be carried out.
+fn replaces(newer: &Request, older: &Request) -> bool {
+    // An exposure that was to be chosen anew is chosen by the light that it was asked with.
+    let chooses = matches!(
+        older,
+        Request::Command {
+            command: Command::Relight { expose: true, .. },
+            ..
+        }
+    );
+    let set = newer.sets();
+    set.is_some() && set == older.sets() && !chooses
+}
+
+/// Puts an order at the end; the last of those that wait gives way if this one makes it needless.
+fn push(waiting: &mut VecDeque<Ready>, ready: Ready) {
+    let last = waiting.back();
+    if last.is_some_and(|last| replaces(&ready.request, &last.request)) {
+        waiting.pop_back();
+    }
+    waiting.push_back(ready);
+}
+
+/// Serves one line.
+struct Worker {
+    bus: Arc<dyn Bus>,
+    topics: Topics,
+    commander: Option<Commander>,
+    queue_of: Arc<Queue>,
+    outcomes: Arc<Mutex<Vec<Outcome>>>,
+    wake: Wake,
+}
+
+impl Worker {
+    fn run(&mut self) {
+        while let Some(ready) = self.next() {
+            let result = self.deliver(&ready);
+            let outcome = Outcome {
+                request: ready.request,
+                result,
+            };
+            self.outcomes
+                .lock()
+                .unwrap_or_else(PoisonError::into_inner)
+                .push(outcome);
+            self.wake.ring();
+        }
+    }
+
+    fn next(&self) -> Option<Ready> {
+        let mut queue = self.queue();
+        (queue.since, queue.given_up) = (None, false);
+        loop {
+            if queue.ended {
+                return None;
+            }
+            if let Some(ready) = queue.waiting.pop_front() {
+                queue.since = Some(Instant::now());
+                return Some(ready);
+            }
+            queue = self
+                .queue_of
+                .changed
+                .wait(queue)
+                .unwrap_or_else(PoisonError::into_inner);
+        }
+    }
+
+    fn queue(&self) -> std::sync::MutexGuard<'_, QueueState> {
+        self.queue_of
+            .state
+            .lock()
+            .unwrap_or_else(PoisonError::into_inner)
+    }
+
+    fn deliver(&mut self, ready: &Ready) -> Result<String, Fault> {
+        match &ready.request {
+            Request::Command { node, command } => {
+                let queue_of = Arc::clone(&self.queue_of);
+                let ended = move || {
+                    let queue = queue_of
+                        .state
+                        .lock()
+                        .unwrap_or_else(PoisonError::into_inner);
+                    queue.ended || queue.given_up
+                };
+                let (bus, topics) = (&self.bus, &self.topics);
+                let commander = self.commander.get_or_insert_with(|| {
+                    Commander::of(Arc::clone(bus), topics, node).asking(ASK)
+                });
+                commander.send(
+                    command.clone(),
+                    ready.after.clone(),
+                    patience(command),
+                    &ended,
+                )
+            }
+            Request::Force { device, order } => {
+                let me = Origin {
+                    source: name_hash("ui"),
+                    epoch: random_epoch(),
+                };
+                let topic = self.topics.force(device);
+                let request = ForceRequest {
+                    order: order.clone(),
+                };
+                let reply: ForceReply =
+                    ask(&*self.bus, &topic, Class::Control, me, &request, ANSWER)?;
+                match reply.fault.is_empty() {
+                    true => Ok(String::new()),
+                    false => Err(Fault::failure(reply.fault).at(device.clone())),
+                }
+            }
+        }
+    }
+}
+
+impl Drop for CommandDispatcher {
+    fn drop(&mut self) {
+        for (queue_of, _) in self.queues.values() {
+            let mut queue = queue_of
+                .state
+                .lock()
+                .unwrap_or_else(PoisonError::into_inner);
+            queue.ended = true;
+            queue_of.changed.notify_all();
+        }
+        for (_, thread) in self.queues.values_mut() {
+            if let Some(thread) = thread.take() {
+                thread.join().ok();
+            }
+        }
+    }
+}
+
+impl std::fmt::Debug for CommandDispatcher {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("Courier")
+            .field("lines", &self.queues.keys())
+            .finish_non_exhaustive()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use maulstick_types::Pose;
+    use maulstick_types::scene::{Light, Tuning};
+
+    use super::*;
+
+    fn request(command: Command) -> Request {
+        Request::Command {
+            node: "paint".into(),
+            command,
+        }
+    }
+
+    fn state(waiting: &VecDeque<Ready>) -> Vec<Request> {
+        waiting.iter().map(|ready| ready.request.clone()).collect()
+    }
+
+    fn place(surface: u32, zoom: f64) -> Request {
+        request(Command::Place {
+            surface,
+            pose: Pose::IDENTITY,
+            zoom,
+        })
+    }
+
+    #[test]
+    fn nothing_waits_for_the_end_of_an_export() {
+        let export = Command::Export {
+            order: maulstick_types::command::ExportOrder::to("/a.png"),
+        };
+        assert!(patience(&export) > patience(&Command::Mark));
+        let (undo, stop) = (Command::Undo { brush: None }, Command::StopExport);
+        assert_eq!(address(&request(undo)), address(&request(stop.clone())));
+        assert_ne!(address(&request(export)), address(&request(stop)));
+    }
+
+    #[test]
+    fn of_what_a_slider_asks_for_the_newest_is_sent() {
+        let tune = |brush: &str, stiffness: f64| {
+            let brush = brush.to_owned();
+            let wetness = 0.0;
+            request(Command::Tune {
+                tuning: Tuning {
+                    brush,
+                    stiffness,
+                    wetness,
+                },
+            })
+        };
+        let mut waiting = VecDeque::new();
+        for request in [
+            tune("a", 1.0),
+            tune("a", 2.0),
+            place(0, 1.0),
+            tune("a", 3.0),
+            tune("b", 4.0),
+        ] {
+            push(&mut waiting, request.into());
+        }
+        let expected = [
+            tune("a", 2.0),
+            place(0, 1.0),
+            tune("a", 3.0),
+            tune("b", 4.0),
+        ];
+        assert_eq!(state(&waiting), expected);
+    }
+
+    #[test]
+    fn of_places_that_wait_the_newest_is_sent_and_nothing_overtakes() {
+        let undo = || request(Command::Undo { brush: None });
+        let mut waiting = VecDeque::new();
+        for request in [
+            place(0, 1.0),
+            place(0, 2.0),
+            place(1, 1.0),
+            undo(),
+            place(1, 3.0),
+            undo(),
+        ] {
+            push(&mut waiting, request.into());
+        }
+        let expected = [place(0, 2.0), place(1, 1.0), undo(), place(1, 3.0), undo()];
+        assert_eq!(state(&waiting), expected);
+    }
+
+    #[test]
+    fn of_lights_that_wait_the_newest_is_sent_and_each_choice_of_an_exposure() {
+        let relight = |intensity: f64, expose: bool| {
+            let light = Light {
+                intensity,
+                ..Light::default()
+            };
+            request(Command::Relight { light, expose })
+        };
+        let mut waiting = VecDeque::new();
+        for request in [
+            relight(1.0, false),
+            relight(2.0, true),
+            relight(3.0, false),
+            relight(4.0, false),
+        ] {
+            push(&mut waiting, request.into());
+        }
+        assert_eq!(state(&waiting), [relight(2.0, true), relight(4.0, false)]);
+    }
+
+    #[test]
+    fn of_strengths_that_wait_the_newest_is_sent_and_force_off_stays() {
+        let force = |order: ForceOrder| Request::Force {
+            device: "arm".into(),
+            order,
+        };
+        let strength = |share: f64| force(ForceOrder::Strength { share });
+        let mut waiting = VecDeque::new();
+        for request in [
+            strength(0.1),
+            strength(0.2),
+            force(ForceOrder::Off),
+            strength(0.3),
+        ] {
+            push(&mut waiting, request.into());
+        }
+        let expected = [strength(0.2), force(ForceOrder::Off), strength(0.3)];
+        assert_eq!(state(&waiting), expected);
+    }
+}

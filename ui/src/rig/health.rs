@@ -1,0 +1,368 @@
+//! Watches over the other processes of the rig and tells what became of them: each thing once, and what
+//! to do about it.
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use maulstick_bus::typed::{Reason, Refusal};
+use maulstick_types::DecodeError;
+use maulstick_types::advice::parted;
+use maulstick_types::topics::Topics;
+
+use crate::rig::state::RigState;
+use crate::widgets::notifications::Notifications;
+
+/// The node of the painting.
+const PAINT: &str = "paint";
+/// What the names of brush nodes begin with.
+const BRUSH: &str = "brush-";
+/// The device that ends with its take.
+const PLAYER: &str = "player";
+/// That a node has left.
+fn stopped(who: &str) -> String {
+    format!("{who} stopped; it is being started again.")
+}
+
+/// What the decision begins with that the processor takes over what the graphics card computed.
+const FALL: &str = "backend cpu: ";
+
+/// Something heard that changes nothing of what is known of the rig.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum RigEvent {
+    /// A message that this window does not understand.
+    Refused(Refusal),
+    /// The paint node has decided something, in its words.
+    Decided(String),
+}
+
+/// What was told so far.
+#[derive(Debug, Default)]
+pub(crate) struct HealthMonitor {
+    /// Nodes that were there, and those of them that are gone.
+    known: BTreeSet<String>,
+    gone: BTreeSet<String>,
+    /// Those that left for another painting.
+    expected: BTreeSet<String>,
+    /// What each device said was wrong.
+    troubles: BTreeMap<String, String>,
+    /// Nodes of another version.
+    strange: BTreeSet<String>,
+    /// Whether the painting cannot be saved.
+    unsaved: bool,
+}
+
+impl HealthMonitor {
+    /// Tells what has changed since the last look.
+    pub(crate) fn look(
+        &mut self,
+        state: &mut RigState,
+        topics: &Topics,
+        notifications: &mut Notifications,
+    ) {
+        for events in std::mem::take(&mut state.events) {
+            match events {
+                RigEvent::Refused(refusal) => self.refused(topics, &refusal, notifications),
+                RigEvent::Decided(what) => decided(&what, notifications),
+            }
+        }
+        self.nodes(state, notifications);
+        self.devices(state, notifications);
+        self.saving(state, notifications);
+    }
+
+    fn nodes(&mut self, state: &RigState, notifications: &mut Notifications) {
+        let present: BTreeSet<String> = state.nodes.iter().cloned().collect();
+        for node in self.known.difference(&present) {
+            if !self.gone.insert(node.clone()) {
+                continue;
+            }
+            if state.switching {
+                self.expected.insert(node.clone());
+            } else if let Some((who, help)) = who(node, state) {
+                notifications.fault(stopped(&who), help);
+            }
+        }
+        for node in &present {
+            if self.gone.remove(node)
+                && !self.expected.remove(node)
+                && let Some((who, _)) = who(node, state)
+            {
+                notifications.over(&stopped(&who));
+                notifications.note(format!("{who} is back."));
+            }
+        }
+        self.known.extend(present);
+    }
+
+    fn devices(&mut self, state: &RigState, notifications: &mut Notifications) {
+        for (name, device) in &state.devices {
+            let Some(status) = &device.status else {
+                continue;
+            };
+            let trouble = match status.faults.is_empty() {
+                true => status.trouble.clone(),
+                false => status.faults.join("; "),
+            };
+            let told = self.troubles.entry(name.clone()).or_default();
+            if *told == trouble {
+                continue;
+            }
+            if trouble.is_empty() {
+                notifications.note(format!("The device '{name}' is in order again."));
+            } else if status.faults.is_empty() {
+                let (what, help) = parted(&trouble);
+                notifications.fault(
+                    format!("The device '{name}': {what}"),
+                    help.unwrap_or_default(),
+                );
+            } else {
+                notifications.fault(
+                    format!("The device '{name}' gives no force: {trouble}"),
+                    "Lift the brush, then press Re-arm in the panel Device (Tab).",
+                );
+            }
+            *told = trouble;
+        }
+    }
+
+    /// That the painting cannot be saved stands on the window for as long as it is so; here its end is told.
+    fn saving(&mut self, state: &RigState, notifications: &mut Notifications) {
+        let Some(paint) = &state.paint else {
+            return;
+        };
+        let unsaved = !paint.status.fault.is_empty();
+        if std::mem::replace(&mut self.unsaved, unsaved) && !unsaved {
+            notifications.note("The painting is being saved again.");
+        }
+    }
+
+    fn refused(&mut self, topics: &Topics, refusal: &Refusal, notifications: &mut Notifications) {
+        let relative = topics.relative(&refusal.topic).unwrap_or(&refusal.topic);
+        let who = match relative.split('/').collect::<Vec<_>>()[..] {
+            ["stylus" | "control" | "haptics", device, ..] => format!("The device '{device}'"),
+            ["brush", brush, ..] => format!("The node of the brush '{brush}'"),
+            ["paint", ..] | ["scene"] => "The paint node".to_owned(),
+            _ => format!("Who sends {relative}"),
+        };
+        if !self.strange.insert(who.clone()) {
+            return;
+        }
+        match &refusal.reason {
+            Reason::Unread(DecodeError::UnknownSchema { .. }) => notifications.fault(
+                format!("{who} is of another version of Maulstick than this window."),
+                "End the rig, and start it again with all of its programs of one version.",
+            ),
+            Reason::Rival | Reason::Leap => notifications.fault(
+                format!("{who} is there twice: the one that started last is followed."),
+                "End the other program, or give it another name.",
+            ),
+            error => notifications.fault(
+                format!("{who} sends what is not understood: {error}"),
+                "Start it again; if it is a program of your own, see docs/devices.md.",
+            ),
+        }
+    }
+}
+
+/// A node in words, and what to do while it is away; none for one that comes and goes.
+fn who(node: &str, state: &RigState) -> Option<(String, &'static str)> {
+    if node == PAINT {
+        let help = "The canvas stays as it is shown, and goes on when it is back.";
+        return Some(("The paint node".to_owned(), help));
+    }
+    if let Some(brush) = node.strip_prefix(BRUSH) {
+        let help = "Lift the stylus; the brush follows again when it is back.";
+        return Some((format!("The node of the brush '{brush}'"), help));
+    }
+    let is_device = node != PLAYER && state.devices.contains_key(node);
+    let help = "Any other stylus and the mouse go on painting.";
+    is_device.then(|| (format!("The driver of '{node}'"), help))
+}
+
+/// Tells of a decision that the painter ought to know.
+fn decided(what: &str, notifications: &mut Notifications) {
+    if let Some(why) = what.strip_prefix(FALL) {
+        notifications.fault(
+            format!("The paint is computed by the processor from now on: {why}"),
+            "Nothing is missing, but large brushes may lag. Starting the rig again tries the \
+             graphics card anew.",
+        );
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::sync::Arc;
+
+    use maulstick_optics::PaintLibrary;
+    use maulstick_types::stylus::StylusStatus;
+
+    use super::*;
+    use crate::rig::state::PaintNode;
+    use crate::test_support::panel_bench::status;
+    use crate::widgets::notifications::Weight;
+
+    struct Rig {
+        watch: HealthMonitor,
+        state: RigState,
+    }
+
+    impl Rig {
+        fn new() -> Self {
+            let library = Arc::new(PaintLibrary::measured().expect("paints"));
+            let mut state = RigState::new("t", &["main".to_owned()], library);
+            state.nodes = ["paint", "brush-main", "arm", "player", "ui"]
+                .map(str::to_owned)
+                .to_vec();
+            for device in ["arm", "player"] {
+                let device = state.devices.entry(device.to_owned()).or_default();
+                device.status = Some(StylusStatus::fresh(0));
+            }
+            state.paint = Some(PaintNode {
+                status: status(),
+                heard_ns: 0,
+            });
+            let mut rig = Self {
+                watch: HealthMonitor::default(),
+                state,
+            };
+            assert_eq!(rig.look(), [], "all is well");
+            rig
+        }
+
+        /// What is told by a look, and that ten more tell nothing.
+        fn look(&mut self) -> Vec<(Weight, String)> {
+            let topics = Topics::new("t");
+            let told = |notifications: &Notifications| {
+                let told = notifications.told().iter();
+                told.map(|toast| (toast.weight, toast.what.clone()))
+                    .collect::<Vec<_>>()
+            };
+            let mut notifications = Notifications::default();
+            self.watch
+                .look(&mut self.state, &topics, &mut notifications);
+            let first = told(&notifications);
+            let mut again = Notifications::default();
+            for _ in 0..10 {
+                self.watch.look(&mut self.state, &topics, &mut again);
+            }
+            assert_eq!(told(&again), [], "once is enough");
+            first
+        }
+
+        fn arm(&mut self) -> &mut StylusStatus {
+            let arm = self.state.devices.get_mut("arm").expect("an arm");
+            arm.status.as_mut().expect("a status")
+        }
+
+        fn saving(&mut self) -> &mut String {
+            &mut self.state.paint.as_mut().expect("paint").status.fault
+        }
+    }
+
+    fn fault(what: &str) -> Vec<(Weight, String)> {
+        vec![(Weight::Fault, what.to_owned())]
+    }
+
+    fn note(what: &str) -> Vec<(Weight, String)> {
+        vec![(Weight::Note, what.to_owned())]
+    }
+
+    #[test]
+    fn a_node_that_goes_and_comes_is_told_once_each_time() {
+        for (node, who) in [
+            ("paint", "The paint node"),
+            ("brush-main", "The node of the brush 'main'"),
+            ("arm", "The driver of 'arm'"),
+        ] {
+            let mut rig = Rig::new();
+            for _ in 0..2 {
+                rig.state.nodes.retain(|other| other != node);
+                let told = fault(&format!("{who} stopped; it is being started again."));
+                assert_eq!(rig.look(), told);
+                rig.state.nodes.push(node.to_owned());
+                assert_eq!(rig.look(), note(&format!("{who} is back.")));
+            }
+        }
+        let mut rig = Rig::new();
+        rig.state.nodes.retain(|other| other != "player");
+        assert_eq!(rig.look(), [], "its take is over");
+    }
+
+    #[test]
+    fn nodes_that_another_painting_starts_anew_are_not_told() {
+        let mut rig = Rig::new();
+        rig.state.switching = true;
+        rig.state.nodes.retain(|node| node != "arm");
+        assert_eq!(rig.look(), []);
+        // The answer may come before the last of them is back.
+        rig.state.switching = false;
+        rig.state.nodes.push("arm".to_owned());
+        assert_eq!(rig.look(), []);
+        rig.state.nodes.retain(|node| node != "arm");
+        assert_eq!(rig.look().len(), 1, "it is told where nothing is switched");
+    }
+
+    #[test]
+    fn a_devices_trouble_and_its_end_are_told() {
+        let mut rig = Rig::new();
+        rig.arm().trouble = "no arm (/dev/ttyACM0); plug it in".into();
+        assert_eq!(rig.look(), fault("The device 'arm': no arm (/dev/ttyACM0)"));
+        rig.arm().trouble = String::new();
+        assert_eq!(rig.look(), note("The device 'arm' is in order again."));
+        rig.arm().faults = vec!["it shakes".into()];
+        let told = fault("The device 'arm' gives no force: it shakes");
+        assert_eq!(rig.look(), told);
+    }
+
+    #[test]
+    fn a_painting_that_is_saved_again_is_told() {
+        let mut rig = Rig::new();
+        *rig.saving() = "no room: free some space".into();
+        assert_eq!(rig.look(), [], "it stands on the window");
+        rig.saving().clear();
+        assert_eq!(rig.look(), note("The painting is being saved again."));
+    }
+
+    #[test]
+    fn who_is_of_another_version_is_named_once() {
+        let mut rig = Rig::new();
+        let topics = Topics::new("t");
+        let refused = |topic: String| {
+            let error = DecodeError::UnknownSchema {
+                name: "PaintStatus",
+                wanted: 1,
+                got: 2,
+                version: 9,
+            };
+            RigEvent::Refused(Refusal {
+                topic,
+                reason: error.into(),
+            })
+        };
+        rig.state.events = vec![refused(topics.paint_status()), refused(topics.scene())];
+        let strange = |who: &str| {
+            fault(&format!(
+                "{who} is of another version of Maulstick than this window."
+            ))
+        };
+        assert_eq!(rig.look(), strange("The paint node"));
+        rig.state.events = vec![refused(topics.paint_status())];
+        assert_eq!(rig.look(), []);
+        rig.state.events = vec![refused(topics.stylus_info("arm"))];
+        assert_eq!(rig.look(), strange("The device 'arm'"));
+        rig.state.events = vec![refused(topics.brush_def("main"))];
+        assert_eq!(rig.look(), strange("The node of the brush 'main'"));
+    }
+
+    #[test]
+    fn that_the_processor_has_taken_over_is_told_and_a_choice_at_the_start_is_not() {
+        let mut rig = Rig::new();
+        rig.state.events = ["backend cpu", "backend gpu A: B", "goes on"]
+            .map(|what| RigEvent::Decided(what.to_owned()))
+            .to_vec();
+        assert_eq!(rig.look(), []);
+        rig.state.events = vec![RigEvent::Decided("backend cpu: the device is lost".into())];
+        let told = fault("The paint is computed by the processor from now on: the device is lost");
+        assert_eq!(rig.look(), told);
+    }
+}

@@ -1,0 +1,178 @@
+//! What the window knows of the rig: plain data, filled by [`hearing`](crate::rig::listener).
+
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
+use maulstick_brush::BrushFile;
+use maulstick_brush::desk::Desk;
+use maulstick_optics::PaintLibrary;
+use maulstick_paint::picture::Export;
+use maulstick_types::command::Command;
+use maulstick_types::paint::PaintStatus;
+use maulstick_types::scene::{BrushHandling, CANVAS, PALETTE, Scene, Surface, Tuning};
+use maulstick_types::stylus::{StylusInfo, StylusStatus};
+
+use crate::render::display_transform::DisplayTransform;
+use crate::rig::force_history::ForceHistory;
+use crate::rig::health::RigEvent;
+use crate::rig::thumbnails::Thumbnails;
+
+/// A brush of the rig.
+#[derive(Clone, Debug, Default)]
+pub struct RigBrush {
+    /// Name as in `rig.toml`.
+    pub name: String,
+    /// What it is made of, and that as text; none until its node has said so.
+    pub file: Option<(BrushFile, String)>,
+    /// What it was asked to be made of; none once its node has answered.
+    pub asked: Option<BrushFile>,
+    /// What the paint node is asked for once it is made so.
+    pub then: Option<Command>,
+}
+
+/// An input device of the rig.
+#[derive(Clone, Debug, Default)]
+pub struct Device {
+    /// What it is; none until it has said so.
+    pub info: Option<StylusInfo>,
+    /// How it fares; none until it has said so.
+    pub status: Option<StylusStatus>,
+    /// When it was last heard, rig clock, ns.
+    pub heard_ns: u64,
+    /// Its newest samples.
+    pub forces: ForceHistory,
+}
+
+/// A paint node as it was last heard.
+#[derive(Clone, Debug)]
+pub struct PaintNode {
+    /// What it says of itself.
+    pub status: PaintStatus,
+    /// When it was last heard, rig clock, ns.
+    pub heard_ns: u64,
+}
+
+/// The rig as the window knows it.
+#[derive(Clone, Debug)]
+pub struct RigState {
+    /// Name of the rig.
+    pub rig: String,
+    /// The time of the rig, ns.
+    pub now_ns: u64,
+    /// What lies on the desk; none until the paint node has said so.
+    pub scene: Option<Scene>,
+    /// The same as brushes see it.
+    pub desk: Option<Desk>,
+    /// The paint node; none until it has been heard.
+    pub paint: Option<PaintNode>,
+    /// The brushes of the rig, in the order of `rig.toml`.
+    pub brushes: Vec<RigBrush>,
+    /// Which of them the window's mouse moves and its panels are about.
+    pub in_hand: usize,
+    /// Devices by name.
+    pub devices: BTreeMap<String, Device>,
+    /// How often the paint node has been seen to start: what was remembered of its painting is over.
+    pub starts: u64,
+    /// Whether another painting is put on the easel, for which nodes are started anew.
+    pub switching: bool,
+    /// The nodes that are alive, by name.
+    pub nodes: Vec<String>,
+    /// The paints of the rig.
+    pub library: Arc<PaintLibrary>,
+    /// Whether the wet paint of the canvas is told from the dry one by a tint.
+    pub show_wet: bool,
+    /// Small pictures of the versions.
+    pub thumbnails: Thumbnails,
+    /// Colours of the window's own things as its display has to be sent them.
+    pub tint: Arc<DisplayTransform>,
+    /// What was heard and is to be told.
+    pub events: Vec<RigEvent>,
+}
+
+impl RigState {
+    /// A rig of which nothing has been heard yet.
+    #[must_use]
+    pub fn new(rig: &str, brushes: &[String], library: Arc<PaintLibrary>) -> Self {
+        let brush = |name: &String| RigBrush {
+            name: name.clone(),
+            ..RigBrush::default()
+        };
+        Self {
+            rig: rig.to_owned(),
+            now_ns: 0,
+            scene: None,
+            desk: None,
+            paint: None,
+            brushes: brushes.iter().map(brush).collect(),
+            in_hand: 0,
+            devices: BTreeMap::new(),
+            starts: 0,
+            switching: false,
+            nodes: Vec::new(),
+            library,
+            show_wet: false,
+            thumbnails: Thumbnails::default(),
+            tint: Arc::new(DisplayTransform::new(&Export::default())),
+            events: Vec::new(),
+        }
+    }
+
+    /// Puts a scene on the desk.
+    pub fn lay(&mut self, scene: Scene) {
+        self.desk = Some(Desk::of(&scene));
+        self.scene = Some(scene);
+    }
+
+    /// A surface of the scene.
+    #[must_use]
+    pub fn surface(&self, id: u32) -> Option<&Surface> {
+        let mut surfaces = self.scene.as_ref()?.surfaces.iter();
+        surfaces.find(|surface| surface.id == id)
+    }
+
+    /// The canvas.
+    #[must_use]
+    pub fn canvas(&self) -> Option<&Surface> {
+        self.surface(CANVAS)
+    }
+
+    /// The palette.
+    #[must_use]
+    pub fn palette(&self) -> Option<&Surface> {
+        self.surface(PALETTE)
+    }
+
+    /// The brush that the panels are about.
+    #[must_use]
+    pub fn brush(&self) -> Option<&RigBrush> {
+        self.brushes.get(self.in_hand)
+    }
+
+    /// Its name; "main" where the rig names none.
+    #[must_use]
+    pub fn brush_name(&self) -> &str {
+        self.brush().map_or("main", |brush| brush.name.as_str())
+    }
+
+    /// How that brush is used.
+    #[must_use]
+    pub fn handling(&self) -> BrushHandling {
+        let name = self.brush_name();
+        let mut handlings = self.scene.iter().flat_map(|scene| &scene.handlings);
+        let own = handlings.find(|handling| handling.brush == name);
+        own.cloned().unwrap_or_else(|| BrushHandling::normal(name))
+    }
+
+    /// How that brush was made stiffer or wetter.
+    #[must_use]
+    pub fn tuning(&self) -> Tuning {
+        let name = self.brush_name();
+        let mut tunings = self.scene.iter().flat_map(|scene| &scene.tunings);
+        let own = tunings.find(|tuning| tuning.brush == name);
+        own.cloned().unwrap_or_else(|| Tuning {
+            brush: name.to_owned(),
+            stiffness: 1.0,
+            wetness: 0.0,
+        })
+    }
+}

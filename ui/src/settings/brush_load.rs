@@ -1,0 +1,205 @@
+//! What a brush is loaded with: a paint or a mixture, another one beside it, and thinner in both.
+
+use maulstick_optics::{PaintLibrary, THINNER};
+use maulstick_rig::Fault;
+use maulstick_types::Mixture;
+use maulstick_types::command::Command;
+use maulstick_types::mixture::Part;
+use serde::{Deserialize, Serialize};
+
+/// Most thinner that a load may be asked to have, as a share; pure thinner is a paint by itself.
+pub(crate) const MOST_THINNER: f64 = 0.95;
+
+/// What a brush takes up.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(default)]
+pub struct BrushLoad {
+    /// A mixture such as "Cobalt Blue=0.7,Titanium White=0.3", or a paint.
+    pub paint: String,
+    /// What the other half of the brush takes up; as the first where there is none.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub beside: Option<String>,
+    /// Share of thinner in both, 0 to [`MOST_THINNER`].
+    pub thinner: f64,
+}
+
+impl BrushLoad {
+    /// A mixture of it, thinned.
+    fn mixture(&self, text: &str, library: &PaintLibrary) -> Result<Mixture, Fault> {
+        let mixture = read(text, library)?;
+        let thinner = match self.thinner.is_finite() {
+            true => self.thinner.clamp(0.0, MOST_THINNER),
+            false => 0.0,
+        };
+        Ok(thinned(&mixture, thinner))
+    }
+
+    /// The command that loads a brush so.
+    ///
+    /// # Errors
+    /// A [`Fault`] that quotes what is no mixture of the paints.
+    pub fn command(&self, brush: &str, library: &PaintLibrary) -> Result<Command, Fault> {
+        let brush = brush.to_owned();
+        let mixture = self.mixture(&self.paint, library)?;
+        Ok(match &self.beside {
+            None => Command::Load { brush, mixture },
+            Some(other) => Command::LoadBeside {
+                brush,
+                left: mixture,
+                right: self.mixture(other, library)?,
+            },
+        })
+    }
+}
+
+/// A mixture as a painter writes it, of the paints of a library.
+///
+/// # Errors
+/// A [`Fault`] that says what is wrong with it.
+pub(crate) fn read(text: &str, library: &PaintLibrary) -> Result<Mixture, Fault> {
+    let help = "a paint's name, or a mixture such as \"Cobalt Blue=0.7,Titanium White=0.3\"";
+    let mixture = text.trim().parse::<Mixture>();
+    let mixture = mixture.map_err(|error| Fault::usage(error.to_string()).help(help))?;
+    library
+        .check(&mixture)
+        .map_err(|error| Fault::usage(error.to_string()).help(help))
+}
+
+/// A mixture with a share of its volume of thinner beside what it has already.
+#[must_use]
+pub(crate) fn thinned(mixture: &Mixture, share: f64) -> Mixture {
+    if share <= 0.0 {
+        return mixture.clone();
+    }
+    let mut parts: Vec<Part> = Vec::new();
+    let mut thinner = share;
+    for part in &mixture.parts {
+        let left = part.share * (1.0 - share);
+        match part.paint == THINNER {
+            true => thinner += left,
+            false => parts.push(Part {
+                paint: part.paint.clone(),
+                share: left,
+            }),
+        }
+    }
+    parts.push(Part {
+        paint: THINNER.to_owned(),
+        share: thinner,
+    });
+    Mixture { parts }
+}
+
+/// A mixture as a painter reads it: its paints, with per cent where they are several.
+#[must_use]
+pub(crate) fn words(mixture: &Mixture) -> String {
+    if let [part] = &mixture.parts[..] {
+        return part.paint.clone();
+    }
+    let parts = mixture.parts.iter();
+    let words = parts.map(|part| format!("{} {} %", part.paint, (part.share * 100.0).round()));
+    words.collect::<Vec<_>>().join(", ")
+}
+
+/// Names of paints that go on with what is being typed after the last comma; none where that is whole,
+/// or nothing.
+#[must_use]
+pub(crate) fn completions<'a>(text: &str, library: &'a PaintLibrary, most: usize) -> Vec<&'a str> {
+    let typed = last_name(text).trim();
+    let paints = library.paints().iter();
+    let thinner = library.find(THINNER).into_iter();
+    let all: Vec<_> = paints.chain(thinner).collect();
+    let is_whole = |name: &str| name.eq_ignore_ascii_case(typed);
+    if typed.is_empty() || typed.contains('=') || all.iter().any(|paint| is_whole(&paint.name)) {
+        return Vec::new();
+    }
+    let found = all
+        .iter()
+        .filter(|paint| crate::widgets::swatches::matches(paint, typed));
+    found.map(|paint| paint.name.as_str()).take(most).collect()
+}
+
+/// The text with the name that is being typed made whole.
+#[must_use]
+pub(crate) fn completed(text: &str, name: &str) -> String {
+    let typed = last_name(text);
+    let space = &typed[..typed.len() - typed.trim_start().len()];
+    format!("{}{space}{name}", &text[..text.len() - typed.len()])
+}
+
+fn last_name(text: &str) -> &str {
+    text.rsplit(',').next().unwrap_or(text)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn library() -> PaintLibrary {
+        PaintLibrary::measured().expect("whole")
+    }
+
+    fn loading(paint: &str, beside: Option<&str>, thinner: f64) -> BrushLoad {
+        BrushLoad {
+            paint: paint.into(),
+            beside: beside.map(str::to_owned),
+            thinner,
+        }
+    }
+
+    #[test]
+    fn a_load_is_one_mixture_or_two_and_thinned() {
+        let command = |loading: BrushLoad| loading.command("main", &library());
+        let pure = command(loading("cobalt blue", None, 0.0)).expect("a paint");
+        assert_eq!(
+            pure,
+            Command::Load {
+                brush: "main".into(),
+                mixture: Mixture::pure("Cobalt Blue")
+            }
+        );
+        let two = command(loading(
+            "Cobalt Blue=0.5,Thinner=0.5",
+            Some("Bone Black"),
+            0.5,
+        ));
+        let Command::LoadBeside { left, right, .. } = two.expect("two") else {
+            panic!("two halves")
+        };
+        assert_eq!(left.to_string(), "Cobalt Blue=0.25,Thinner=0.75");
+        assert_eq!(right.to_string(), "Bone Black=0.5,Thinner=0.5");
+        assert_eq!(left.check(), Ok(()));
+        let unthinned = thinned(&right, 0.0);
+        assert_eq!(unthinned, right);
+        assert_ne!(thinned(&right, 0.5), right, "a fault would pass");
+    }
+
+    #[test]
+    fn what_is_no_mixture_is_told_with_help() {
+        let error = |paint: &str| {
+            let fault = loading(paint, None, 0.0).command("main", &library());
+            fault.expect_err(paint).to_string()
+        };
+        assert!(error("Colbat Blue").contains("'Cobalt Blue'"));
+        assert!(error("Cobalt Blue=2").contains("not a number above 0"));
+        assert!(error("").contains("at least one paint"));
+        let beside = loading("Cobalt Blue", Some("x=1"), f64::NAN);
+        assert!(beside.command("main", &library()).is_err());
+    }
+
+    #[test]
+    fn a_name_is_completed_where_it_is_typed() {
+        let library = library();
+        let names = |text: &str| completions(text, &library, 3);
+        assert!(names("ultra").contains(&"Ultramarine Blue"));
+        assert!(names("Cobalt Blue=0.5, PW6").contains(&"Titanium White"));
+        assert!(names("thin").contains(&THINNER));
+        for whole in ["", "Cobalt Blue", "Cobalt Blue=0.5", "Cobalt Blue, "] {
+            assert!(names(whole).is_empty(), "{whole}");
+        }
+        assert_eq!(names("b").len(), 3);
+        let text = completed("Cobalt Blue=0.5, tit", "Titanium White");
+        assert_eq!(text, "Cobalt Blue=0.5, Titanium White");
+        assert_eq!(completed("ul", "Ultramarine Blue"), "Ultramarine Blue");
+    }
+}

@@ -1,0 +1,42 @@
+//! Sets of paints of the painter's own, and what lies in the palette's wells.
+
+use maulstick_optics::PaintLibrary;
+use maulstick_rig::Fault;
+use maulstick_types::Mixture;
+use serde::{Deserialize, Serialize};
+
+use crate::settings::brush_load;
+
+/// Paints that are laid on the palette together.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(default)]
+pub struct PaintSet {
+    /// What the painter calls it.
+    pub name: String,
+    /// Paints and mixtures, from the top of the palette.
+    pub paints: Vec<String>,
+}
+
+impl PaintSet {
+    /// A set of these mixtures.
+    #[must_use]
+    pub fn of(name: &str, mixtures: &[Mixture]) -> Self {
+        let text = |mixture: &Mixture| match &mixture.parts[..] {
+            [part] => part.paint.clone(),
+            _ => mixture.to_string(),
+        };
+        Self {
+            name: name.to_owned(),
+            paints: mixtures.iter().map(text).collect(),
+        }
+    }
+
+    /// Its mixtures.
+    ///
+    /// # Errors
+    /// A [`Fault`] for a paint that the rig does not have.
+    pub fn mixtures(&self, library: &PaintLibrary) -> Result<Vec<Mixture>, Fault> {
+        let read = |text: &String| brush_load::read(text, library);
+        self.paints.iter().map(read).collect()
+    }
+}

@@ -1,0 +1,174 @@
+//! What the window remembers from one day to the next: a file of the painter's, beside no painting.
+
+use std::collections::BTreeMap;
+use std::io::Write as _;
+use std::path::{Path, PathBuf};
+
+use serde::{Deserialize, Serialize};
+
+use maulstick_rig::Fault;
+use maulstick_rig::files::{Kind, write_whole};
+
+use crate::reference::ReferencePreferences;
+use crate::settings::brush_load::BrushLoad;
+use crate::settings::paint_sets::PaintSet;
+use crate::settings::presets::Preset;
+
+/// Recent paintings that are remembered.
+const RECENT: usize = 12;
+
+/// What is remembered.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(default)]
+pub struct Preferences {
+    /// Whether the panels are shown.
+    pub panels: bool,
+    /// Titles of the panels that are unfolded.
+    pub open: Vec<String>,
+    /// Whether the painter's brush hand is the left one: palette at the right, rack at the left.
+    pub left_handed: bool,
+    /// Whether somebody has painted here before: the first line of help is no longer wanted.
+    pub has_painted: bool,
+    /// Width and height of the window, points.
+    pub size: [f32; 2],
+    /// Paintings that were open, the newest first.
+    pub recent: Vec<PathBuf>,
+    /// The picture that is pinned beside the canvas.
+    pub reference: ReferencePreferences,
+    /// Brush files of the painter's own, in the order of the rack.
+    pub own_brushes: Vec<PathBuf>,
+    /// What a brush is loaded with when it is next asked for.
+    pub loading: BrushLoad,
+    /// Widths at which brushes were last used, by their kind, mm.
+    pub widths_mm: BTreeMap<String, f64>,
+    /// Brushes that are ready with their paint.
+    pub presets: Vec<Preset>,
+    /// Paints that are laid on the palette together.
+    pub paint_sets: Vec<PaintSet>,
+}
+
+impl Default for Preferences {
+    fn default() -> Self {
+        Self {
+            panels: false,
+            open: vec!["Brush".to_owned(), "Tubes".to_owned()],
+            left_handed: false,
+            has_painted: false,
+            size: [1280.0, 800.0],
+            recent: Vec::new(),
+            reference: ReferencePreferences::default(),
+            own_brushes: Vec::new(),
+            loading: BrushLoad::default(),
+            widths_mm: BTreeMap::new(),
+            presets: Vec::new(),
+            paint_sets: Vec::new(),
+        }
+    }
+}
+
+impl Preferences {
+    /// Where they are kept for this user; none where the system has no such place.
+    #[must_use]
+    pub fn place() -> Option<PathBuf> {
+        let folders = directories::ProjectDirs::from("", "", "maulstick")?;
+        Some(folders.config_dir().join("window.toml"))
+    }
+
+    /// Reads them; those of a new painter where there are none.
+    ///
+    /// # Errors
+    /// A [`Fault`] where the file cannot be read or understood; then they are those of a new painter, and
+    /// the file is replaced when they are kept.
+    pub fn read(path: &Path) -> Result<Self, Fault> {
+        let text = match std::fs::read_to_string(path) {
+            Ok(text) => text,
+            Err(error) if error.kind() == std::io::ErrorKind::NotFound => {
+                return Ok(Self::default());
+            }
+            Err(error) => return Err(Fault::reading(path, &error)),
+        };
+        let mut preferences: Self = toml::from_str(&text).map_err(|error| {
+            Fault::failure("the window's habits cannot be read; it begins with new ones")
+                .at(format!("{}: {}", path.display(), error.message()))
+        })?;
+        let sane = |side: f32| side.is_finite() && (200.0..=20_000.0).contains(&side);
+        if !preferences.size.iter().all(|side| sane(*side)) {
+            preferences.size = Self::default().size;
+        }
+        Ok(preferences)
+    }
+
+    /// Keeps them.
+    ///
+    /// # Errors
+    /// A [`Fault`] where the file cannot be written.
+    pub fn keep(&self, path: &Path) -> Result<(), Fault> {
+        let failed = |error: std::io::Error| Fault::writing(path, &error);
+        let text = toml::to_string(self)
+            .map_err(|error| Fault::failure(format!("habits that are no TOML: {error}")))?;
+        if let Some(folder) = path.parent() {
+            std::fs::create_dir_all(folder).map_err(failed)?;
+        }
+        write_whole(path, Kind::Own, |file| file.write_all(text.as_bytes())).map_err(failed)
+    }
+
+    /// Remembers that a painting was open.
+    pub fn opened(&mut self, painting: &Path) {
+        self.recent.retain(|known| known != painting);
+        self.recent.insert(0, painting.to_owned());
+        self.recent.truncate(RECENT);
+    }
+
+    /// Whether a panel is unfolded.
+    #[must_use]
+    pub fn is_open(&self, panel: &str) -> bool {
+        self.open.iter().any(|open| open == panel)
+    }
+
+    /// Unfolds a panel, or folds it.
+    pub fn unfold(&mut self, panel: &str, open: bool) {
+        self.open.retain(|known| known != panel);
+        if open {
+            self.open.push(panel.to_owned());
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_is_kept_is_read_again() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let path = folder.path().join("deep/window.toml");
+        assert_eq!(
+            Preferences::read(&path).expect("none"),
+            Preferences::default()
+        );
+        let mut preferences = Preferences {
+            left_handed: true,
+            ..Preferences::default()
+        };
+        preferences.unfold("Light", true);
+        for number in 0..20 {
+            preferences.opened(Path::new(&format!("/{}.maul", number % 15)));
+        }
+        assert_eq!(preferences.recent.len(), RECENT);
+        assert_eq!(preferences.recent[0], Path::new("/4.maul"));
+        preferences.keep(&path).expect("kept");
+        assert_eq!(Preferences::read(&path).expect("read"), preferences);
+    }
+
+    #[test]
+    fn a_file_that_is_none_is_told_with_its_place() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let path = folder.path().join("window.toml");
+        std::fs::write(&path, "panels = 7").expect("written");
+        let fault = Preferences::read(&path).expect_err("no truth value");
+        assert!(fault.to_string().contains("window.toml"), "{fault}");
+        std::fs::write(&path, "size = [nan, 1e9]\nunknown = 1").expect("written");
+        let preferences = Preferences::read(&path).expect("of a newer window");
+        assert_eq!(preferences.size, Preferences::default().size);
+    }
+}

@@ -1,0 +1,179 @@
+//! Brushes that are ready with their paint: kept by name, taken up at once.
+
+use maulstick_brush::BrushFile;
+use maulstick_rig::Fault;
+use maulstick_types::command::Command;
+use maulstick_types::scene::{BrushHandling, BrushMode, MARKER_FLOW, Tuning};
+use serde::{Deserialize, Serialize};
+
+use crate::input::brush_choice::{is_of_library, of_library};
+use crate::settings::brush_load::BrushLoad;
+use crate::widgets::context::PanelContext;
+
+/// The name of a preset, or of a set of paints, has at most so many letters.
+pub(crate) const NAME_MAX: usize = 40;
+
+/// A brush with its paint.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(default)]
+pub struct Preset {
+    /// What the painter calls it.
+    pub name: String,
+    /// Kind of the brush.
+    pub kind: String,
+    /// Its width, mm.
+    pub width_mm: f64,
+    /// Its file, TOML, where it is none of the library's.
+    #[serde(skip_serializing_if = "String::is_empty")]
+    pub file: String,
+    /// Factor on its stiffness.
+    pub stiffness: f64,
+    /// How soaked it is, 0 to 1.
+    pub wetness: f64,
+    /// Name of the way that it is used in, as in [`BrushMode::NAMES`].
+    pub mode: String,
+    /// Flow of the marker, m/m.
+    pub flow: f64,
+    /// It adds no paint where as much is wet, m; 0 for no such bound.
+    pub most_m: f64,
+    /// What it takes up; nothing where no paint is named.
+    pub loading: BrushLoad,
+}
+
+impl Default for Preset {
+    fn default() -> Self {
+        Self {
+            name: String::new(),
+            kind: "round".to_owned(),
+            width_mm: 10.0,
+            file: String::new(),
+            stiffness: 1.0,
+            wetness: 0.0,
+            mode: "normal".to_owned(),
+            flow: MARKER_FLOW,
+            most_m: 0.0,
+            loading: BrushLoad::default(),
+        }
+    }
+}
+
+impl Preset {
+    /// The brush in the hand as it is used now; none until it is known.
+    #[must_use]
+    pub fn of(name: &str, work: &PanelContext<'_>) -> Option<Self> {
+        let file = work.in_hand()?;
+        let (tuning, handling) = (work.rig.tuning(), work.rig.handling());
+        let text = match is_of_library(file) {
+            true => String::new(),
+            false => file.to_toml().ok()?,
+        };
+        let mut modes = BrushMode::NAMES.iter();
+        let mode = modes.find(|(_, mode)| *mode == handling.mode);
+        Some(Self {
+            name: name.to_owned(),
+            kind: file.kind.clone(),
+            width_mm: file.head.width_mm,
+            file: text,
+            stiffness: tuning.stiffness,
+            wetness: tuning.wetness,
+            mode: mode.map_or("normal", |(name, _)| name).to_owned(),
+            flow: handling.flow,
+            most_m: handling.most_m,
+            loading: work.preferences.loading.clone(),
+        })
+    }
+
+    /// The brush.
+    ///
+    /// # Errors
+    /// A [`Fault`] where it is none, as in a file that was changed by hand.
+    pub fn brush(&self) -> Result<BrushFile, Fault> {
+        let wrong = |what: String| {
+            Fault::failure(format!("the preset '{}': {what}", self.name)).help("save it anew")
+        };
+        if !self.file.is_empty() {
+            return BrushFile::parse(&self.file).map_err(|error| wrong(error.to_string()));
+        }
+        let file = of_library(&self.kind)
+            .ok_or_else(|| wrong(format!("there is no brush called '{}'", self.kind)))?;
+        file.scaled_to(self.width_mm)
+            .map_err(|error| wrong(error.to_string()))
+    }
+
+    /// Takes it up: the brush, how it is used, and then its paint.
+    ///
+    /// # Errors
+    /// A [`Fault`] where something of it is wrong; then nothing is changed.
+    pub fn apply(&self, work: &mut PanelContext<'_>) -> Result<(), Fault> {
+        let file = self.brush()?;
+        let brush = work.rig.brush_name().to_owned();
+        let mode = BrushMode::called(&self.mode).map_err(Fault::told)?;
+        let tuning = Tuning {
+            brush: brush.clone(),
+            stiffness: self.stiffness,
+            wetness: self.wetness,
+        };
+        let handling = BrushHandling {
+            mode,
+            flow: self.flow,
+            most_m: self.most_m,
+            ..BrushHandling::normal(&brush)
+        };
+        let commands = [Command::Tune { tuning }, Command::Handle { handling }];
+        for command in &commands {
+            command.check().map_err(Fault::told)?;
+        }
+        let load = match self.loading.paint.is_empty() {
+            true => None,
+            false => Some(self.loading.command(&brush, &work.rig.library)?),
+        };
+        work.take_up(file);
+        for command in commands {
+            work.requests.paint(command);
+        }
+        if let Some(load) = load {
+            work.preferences.loading = self.loading.clone();
+            work.then(load);
+        }
+        Ok(())
+    }
+
+    /// What it is, in few words.
+    #[must_use]
+    pub fn words(&self) -> String {
+        let kind = crate::input::brush_choice::called(&self.kind);
+        let width = crate::input::brush_choice::millimetres(self.width_mm);
+        let mut words = format!("{kind}, {width}");
+        if !self.loading.paint.is_empty() {
+            words += &format!("\n{}", self.loading.paint);
+            if let Some(other) = &self.loading.beside {
+                words += &format!(" beside {other}");
+            }
+            if self.loading.thinner > 0.0 {
+                words += &format!(", {:.0} % thinner", 100.0 * self.loading.thinner);
+            }
+        }
+        words
+    }
+}
+
+/// Whether something may be kept by this name beside others.
+///
+/// # Errors
+/// What is wrong and what to do, in words.
+pub(crate) fn check_name<'a>(
+    name: &str,
+    mut others: impl Iterator<Item = &'a str>,
+) -> Result<(), String> {
+    let length = name.chars().count();
+    if length == 0 {
+        return Err("Give it a name first.".to_owned());
+    }
+    if length > NAME_MAX || name.contains(char::is_control) {
+        return Err(format!("Choose a name of at most {NAME_MAX} letters."));
+    }
+    match others.any(|other| other == name) {
+        true => Err(format!("There is a '{name}' already; choose another name.")),
+        false => Ok(()),
+    }
+}

@@ -1,0 +1,102 @@
+//! Spectra that a painter gives as files.
+
+use std::io::Read as _;
+use std::path::Path;
+
+use maulstick_optics::{Illuminant, Reflectance};
+use maulstick_rig::Fault;
+use maulstick_types::command::SPECTRUM_MAX;
+
+/// The text of a table; a folder, a device or a huge file is none.
+fn text(path: &Path, row: &str) -> Result<String, Fault> {
+    let failed = |error: std::io::Error| Fault::reading(path, &error);
+    let place = || path.display().to_string();
+    if !std::fs::metadata(path).map_err(failed)?.is_file() {
+        return Err(Fault::usage("this is no file")
+            .at(place())
+            .help(format!("name a CSV file: {row}")));
+    }
+    let file = std::fs::File::open(path).map_err(failed)?;
+    let mut text = String::new();
+    let most = SPECTRUM_MAX as u64;
+    file.take(most + 1)
+        .read_to_string(&mut text)
+        .map_err(failed)?;
+    if text.len() > SPECTRUM_MAX {
+        return Err(Fault::usage("a file of this size is no spectrum")
+            .at(place())
+            .help(format!("give a row a wavelength: {row}")));
+    }
+    Ok(text.trim_start_matches('\u{feff}').to_owned())
+}
+
+/// The light of a CSV file of nm,power, called as the file.
+///
+/// # Errors
+/// A [`Fault`] with file and line.
+pub(crate) fn light(path: &Path) -> Result<Illuminant, Fault> {
+    let text = text(path, "nm,power")?;
+    let stem = path.file_stem().unwrap_or_default().to_string_lossy();
+    Illuminant::parse(&stem, &text).map_err(|error| {
+        Fault::usage(error.what)
+            .at(format!("{}:{}", path.display(), error.line))
+            .help("a row a wavelength: nm,power, rising")
+    })
+}
+
+/// The text of a CSV file of nm,reflectance.
+///
+/// # Errors
+/// A [`Fault`] with file and line.
+pub(crate) fn reflectance(path: &Path) -> Result<String, Fault> {
+    let text = text(path, "nm,reflectance")?;
+    Reflectance::parse(&text).map_err(|error| {
+        Fault::usage(error.what)
+            .at(format!("{}:{}", path.display(), error.line))
+            .help("a row a wavelength: nm,reflectance, rising, 0 to 1")
+    })?;
+    Ok(text)
+}
+
+/// A fault in one line: where, what, what to do.
+#[must_use]
+pub(crate) fn told(fault: &Fault) -> String {
+    let place = fault.place.iter().map(|place| format!("{place}: "));
+    let help = fault.help.iter().map(|help| format!("; {help}"));
+    place
+        .chain(std::iter::once(fault.what.clone()))
+        .chain(help)
+        .collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn tables_are_read_or_refused_with_their_line() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let path = folder.path().join("candle.csv");
+        let write = |text: &str| std::fs::write(&path, text).expect("written");
+        write("\u{feff}nm,power\n380,0.1\n780,1\n");
+        assert_eq!(light(&path).expect("a light").name, "candle");
+        assert!(reflectance(&path).expect("a ground").starts_with("nm,"));
+        write("380,0.1\n780,1.5\n");
+        assert!(light(&path).is_ok());
+        let line = told(&reflectance(&path).expect_err("more than all"));
+        assert!(
+            line.contains("candle.csv:2") && line.contains("0 to 1"),
+            "{line}"
+        );
+        write(&"380,1\n".repeat(50_000));
+        let line = told(&light(&path).expect_err("too large"));
+        assert!(line.contains("size") && line.contains("row"), "{line}");
+        for (path, word) in [
+            (folder.path(), "no file"),
+            (Path::new("/none"), "check the path"),
+        ] {
+            let line = told(&light(path).expect_err("no file"));
+            assert!(line.contains(word), "{line}");
+        }
+    }
+}

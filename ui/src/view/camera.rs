@@ -1,0 +1,310 @@
+//! The desk from straight above: where its points are in the window, and the way back.
+
+use eframe::egui::{Color32, Pos2, Rect, Vec2, vec2};
+use glam::{DVec2, DVec3};
+use maulstick_brush::palette_place::{GAP_M, Side, corner_radii, is_on, size_m};
+use maulstick_brush::placement::SurfacePlacement;
+use maulstick_num::geometry::Rigid;
+use maulstick_types::scene::Surface;
+
+/// What lies around the surfaces.
+pub const DESK_COLOUR: Color32 = Color32::from_gray(60);
+/// Kept free above and below the surfaces, and at the side without a palette, points.
+const MARGIN: f32 = 12.0;
+/// So much of the palette is always seen: its wells and the cleaner, m.
+const SLIVER_M: f64 = 0.052;
+
+/// An orthographic view of the desk.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct View {
+    /// The part of the window that shows the desk, points.
+    pub area: Rect,
+    /// The point of the desk in its middle, m.
+    pub middle: DVec2,
+    /// Points a metre.
+    pub scale: f64,
+    /// Width and height that a canvas may fill about the desk's origin, m.
+    pub room: DVec2,
+}
+
+/// The corners of a surface on the desk, m: lower left, lower right, upper left, upper right.
+#[must_use]
+pub fn corners(surface: &Surface) -> [DVec3; 4] {
+    let pose = Rigid::from(&surface.pose);
+    let [width, height] = (size_m(surface) * surface.zoom).to_array();
+    [[0.0, 0.0], [width, 0.0], [0.0, height], [width, height]]
+        .map(|[x, y]| pose.point(DVec3::new(x, y, 0.0)))
+}
+
+impl View {
+    /// The view in `area` of a canvas that lies at rest: it fills the view, the palette beside it looks
+    /// in as far as there is room, but with its wells, and `rack` points on the other side are left free.
+    /// None where a surface has no size.
+    #[must_use]
+    pub fn of(
+        area: Rect,
+        canvas: &Surface,
+        palette: Option<&Surface>,
+        side: Side,
+        rack: f32,
+    ) -> Option<Self> {
+        let size = size_m(canvas);
+        let board = palette.map_or(DVec2::ZERO, |palette| size_m(palette) * palette.zoom);
+        if !(size.min_element() > 0.0 && size.is_finite() && board.is_finite()) {
+            return None;
+        }
+        let gap = if palette.is_some() { GAP_M } else { 0.0 };
+        let sliver = board.x.min(SLIVER_M);
+        let room = [area.width() - rack - MARGIN, area.height() - 2.0 * MARGIN];
+        let room = room.map(|points| f64::from(points.max(1.0)));
+        let high = size.y.max(board.y);
+        let scale = (room[0] / (size.x + gap + sliver)).min(room[1] / high);
+        // What is left of the width shows more of the palette, then lies on both sides alike.
+        let left = room[0] / scale - (size.x + gap + sliver);
+        let more = left
+            .min(board.x - sliver + f64::from(MARGIN) / scale)
+            .max(0.0);
+        let aside = sliver + more + gap + 0.5 * (left - more).max(0.0);
+        // From the middle of the area to that of the canvas, m.
+        let half = 0.5 * f64::from(area.width()) / scale;
+        let off = aside + 0.5 * size.x - half;
+        let middle = match side {
+            Side::Left => DVec2::new(-off, 0.0),
+            Side::Right => DVec2::new(off, 0.0),
+        };
+        Some(Self {
+            area,
+            middle,
+            scale,
+            room: DVec2::new(size.x + left - more, room[1] / scale),
+        })
+    }
+
+    /// The largest view of a single surface in the middle of `area`.
+    #[cfg(test)]
+    pub(crate) fn fit(area: Rect, surfaces: &[Surface]) -> Option<Self> {
+        let [low, _, _, high] = corners(surfaces.first()?).map(DVec3::truncate);
+        let room = area.shrink(16.0).size().max(Vec2::splat(1.0));
+        let size = (high - low).abs();
+        let scale = (f64::from(room.x) / size.x).min(f64::from(room.y) / size.y);
+        Some(Self {
+            area,
+            middle: 0.5 * (low + high),
+            scale,
+            room: size,
+        })
+    }
+
+    /// The canvas as large as the view has room for it, upright and flat.
+    #[must_use]
+    pub fn fitted(&self, canvas: &Surface) -> SurfacePlacement {
+        let size = size_m(canvas);
+        let zoom = (self.room / size).min_element();
+        SurfacePlacement {
+            pose: Rigid {
+                translation: (-0.5 * zoom * size).extend(0.0),
+                ..Rigid::IDENTITY
+            },
+            zoom,
+        }
+    }
+
+    /// The canvas with a cell a pixel, about the middle of the desk.
+    #[must_use]
+    pub fn hundred(&self, canvas: &Surface, pixels_per_point: f32) -> SurfacePlacement {
+        let pixel_m = 1.0 / (self.scale * f64::from(pixels_per_point));
+        let lie = SurfacePlacement::from(canvas);
+        lie.zoomed(DVec3::ZERO, pixel_m / canvas.cell_m / lie.zoom)
+    }
+
+    /// A way of the window as one along the desk, m.
+    #[must_use]
+    pub fn along(&self, way: Vec2) -> DVec3 {
+        DVec3::new(f64::from(way.x), -f64::from(way.y), 0.0) / self.scale
+    }
+
+    /// The point of the plane z = 0 under a point of the window, m.
+    #[must_use]
+    pub fn on_desk(&self, at: Pos2) -> DVec3 {
+        self.middle.extend(0.0) + self.along(at - self.area.center())
+    }
+
+    /// Pixels of the view, as the window rounds them.
+    #[must_use]
+    pub fn pixels(&self, pixels_per_point: f32) -> [u32; 2] {
+        let round = |at: f32| (at * pixels_per_point).round();
+        let (from, to) = (self.area.min, self.area.max);
+        [(from.x, to.x), (from.y, to.y)].map(|(from, to)| (round(to) - round(from)).max(0.0) as u32)
+    }
+
+    /// Where a point of the desk is in the window.
+    #[must_use]
+    pub fn to_window(&self, desk: DVec3) -> Pos2 {
+        let off = (desk.truncate() - self.middle) * self.scale;
+        self.area.center() + vec2(off.x as f32, -off.y as f32)
+    }
+
+    /// Whether a surface lies under a point of the window.
+    #[must_use]
+    pub fn is_over(&self, at: Pos2, surface: &Surface) -> bool {
+        hit(self.on_desk(at).truncate(), surface).is_some_and(|(_, inside)| inside)
+    }
+
+    /// The point of the desk under a point of the window, m: on the surface that lies there, the
+    /// palette before the canvas, and beside all on the plane of the canvas, which goes on.
+    #[must_use]
+    pub fn to_desk(&self, at: Pos2, surfaces: &[Surface]) -> DVec3 {
+        let below = self.on_desk(at).truncate();
+        let mut uppermost: Vec<&Surface> = surfaces.iter().collect();
+        uppermost.sort_by_key(|surface| std::cmp::Reverse(surface.id));
+        let hits: Vec<(DVec3, bool)> = uppermost
+            .iter()
+            .filter_map(|surface| hit(below, surface))
+            .collect();
+        let on = hits.iter().find(|(_, inside)| *inside);
+        on.or(hits.last())
+            .map_or(below.extend(0.0), |(point, _)| *point)
+    }
+}
+
+/// Where the vertical through `below` meets the plane of a surface, and whether inside its edges.
+fn hit(below: DVec2, surface: &Surface) -> Option<(DVec3, bool)> {
+    let to_desk = Rigid::from(&surface.pose);
+    let back = to_desk.inverse();
+    let (from, along) = (back.point(below.extend(0.0)), back.vector(DVec3::Z));
+    if along.z.abs() < 1e-3 {
+        return None;
+    }
+    let local = from - along * (from.z / along.z);
+    let own = local.truncate() / surface.zoom;
+    let inside = is_on(size_m(surface), corner_radii(surface), own);
+    Some((to_desk.point(local), inside))
+}
+
+/// The level of detail for `cells` shown over `pixels`: the finest that has at least as many.
+#[must_use]
+pub fn level(cells: u32, pixels: f32) -> u32 {
+    let ratio = cells as f32 / pixels.max(1.0);
+    if ratio > 1.0 {
+        ratio.log2().floor() as u32
+    } else {
+        0
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use eframe::egui::pos2;
+    use maulstick_brush::palette_place::beside;
+    use maulstick_brush::placement::placed;
+    use maulstick_num::geometry::rotation;
+    use maulstick_paint::PaintingSetup;
+    use maulstick_types::Pose;
+
+    fn surfaces() -> Vec<Surface> {
+        PaintingSetup::default().scene().surfaces
+    }
+
+    fn area() -> Rect {
+        Rect::from_min_size(pos2(10.0, 20.0), vec2(1280.0, 720.0))
+    }
+
+    fn view(surfaces: &[Surface]) -> View {
+        View::of(area(), &surfaces[0], surfaces.get(1), Side::Left, 72.0).expect("surfaces")
+    }
+
+    fn bounds(view: &View, surface: &Surface) -> Rect {
+        Rect::from_points(&corners(surface).map(|corner| view.to_window(corner)))
+    }
+
+    #[test]
+    fn the_canvas_fills_the_view_and_the_palette_looks_in() {
+        let surfaces = surfaces();
+        let (canvas, palette) = (&surfaces[0], &surfaces[1]);
+        let own = view(&surfaces);
+        let shown = bounds(&own, canvas);
+        let free = shown.height() - own.area.height() + 2.0 * MARGIN;
+        assert!(free.abs() < 1e-2, "{shown:?}");
+        assert!(shown.right() < own.area.right() - 72.0, "beside the rack");
+        let board = bounds(&own, palette);
+        assert!(board.right() < shown.left() && board.left() > own.area.left());
+        // Where there is less room the wells are still there.
+        let narrow = Rect::from_min_size(pos2(0.0, 0.0), vec2(900.0, 900.0));
+        let tight = View::of(narrow, canvas, Some(palette), Side::Left, 72.0).expect("a view");
+        let board = bounds(&tight, palette);
+        let seen = f64::from(board.right() - narrow.left()) / tight.scale;
+        let is_cut = board.left() < narrow.left();
+        assert!((seen - SLIVER_M).abs() < 1e-4 && is_cut, "{seen}");
+        assert!(bounds(&tight, canvas).right() < 900.0 - 72.0);
+    }
+
+    #[test]
+    fn for_the_left_hand_it_is_the_other_way_round() {
+        let mut surfaces = surfaces();
+        let shown = |surfaces: &[Surface], side| {
+            let view = View::of(area(), &surfaces[0], Some(&surfaces[1]), side, 72.0);
+            let view = view.expect("a view");
+            [bounds(&view, &surfaces[0]), bounds(&view, &surfaces[1])]
+        };
+        let right = shown(&surfaces, Side::Left);
+        surfaces[1].pose = beside(&surfaces[0], &surfaces[1], Side::Right);
+        let left = shown(&surfaces, Side::Right);
+        let middle = area().center().x;
+        for (a, b) in right.iter().zip(&left) {
+            let off = a.left() - middle + b.right() - middle;
+            assert!(off.abs() < 1e-2, "{a:?} {b:?}");
+        }
+    }
+
+    #[test]
+    fn fitted_it_fills_its_room_and_at_a_hundred_a_cell_is_a_pixel() {
+        let mut surfaces = surfaces();
+        surfaces[0].cells = [400, 200];
+        let view = view(&surfaces);
+        let fitted = placed(&surfaces[0], &view.fitted(&surfaces[0]));
+        let shown = bounds(&view, &fitted);
+        let room = view.room * view.scale;
+        assert!(
+            (f64::from(shown.width()) - room.x).abs() < 1e-2,
+            "{shown:?} {room}"
+        );
+        assert!(shown.right() < view.area.right() - 72.0 && shown.left() > view.area.left());
+        let hundred = placed(&surfaces[0], &view.hundred(&fitted, 2.0));
+        let shown = bounds(&view, &hundred);
+        assert!(
+            (shown.width() - 200.0).abs() < 1e-2,
+            "400 cells at two pixels a point"
+        );
+    }
+
+    #[test]
+    fn the_window_and_the_desk_are_the_same_place() {
+        let mut surfaces = surfaces();
+        let tilt = rotation(DVec3::X, 0.3);
+        surfaces[1].pose = Pose {
+            orientation: tilt.to_array(),
+            ..surfaces[1].pose
+        };
+        let view = view(&surfaces);
+        let round = |desk: DVec3| view.to_desk(view.to_window(desk), &surfaces);
+        let canvas = DVec3::new(0.03, -0.05, 0.0);
+        assert!((round(canvas) - canvas).length() < 1e-6);
+        assert!(
+            (round(canvas) - canvas * 1.01).length() > 1e-6,
+            "a fault would pass"
+        );
+        let palette = Rigid::from(&surfaces[1].pose).point(DVec3::new(0.05, 0.1, 0.0));
+        assert!(palette.z > 0.02 && (round(palette) - palette).length() < 1e-6);
+        let beside = DVec3::new(0.2, 0.1, 0.0);
+        assert!((round(beside) - beside).length() < 1e-6);
+    }
+
+    #[test]
+    fn a_small_picture_takes_a_coarser_level() {
+        assert_eq!(level(1024, 1024.0), 0);
+        assert_eq!(level(1024, 500.0), 1);
+        assert_eq!(level(1024, 1000.0), 0);
+        assert_eq!(level(4096, 500.0), 3);
+    }
+}

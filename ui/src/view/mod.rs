@@ -1,0 +1,13 @@
+//! The desk seen from above.
+//!
+//! | module | holds |
+//! | --- | --- |
+//! | [`camera`] | desk points to window points and back |
+//! | [`visible_tiles`] | the tiles of a surface that are in view |
+//! | [`palette_slide`] | animation of the palette |
+//! | [`well_labels`] | labels of the wells |
+
+pub mod camera;
+pub(crate) mod palette_slide;
+pub mod visible_tiles;
+pub(crate) mod well_labels;

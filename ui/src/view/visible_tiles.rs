@@ -1,0 +1,405 @@
+//! What of a surface is in the view: the tiles that its pictures have to hold.
+
+use eframe::egui::{Pos2, Vec2};
+use maulstick_types::paint::TILE;
+use maulstick_types::scene::Surface;
+
+use crate::render::light_surface::CellRect;
+use crate::view::camera::{View, corners, level};
+
+/// Tiles beyond the visible ones, each way: what a pan brings into the view is there.
+const MARGIN: u32 = 1;
+/// A sheet has at most this many cells a pixel, each way.
+const CELLS_A_PIXEL: f32 = 2.0;
+/// What a view takes grows until the next coarser level takes over; there may not be room for so much.
+const GROWTHS: [f32; 3] = [f32::INFINITY, 1.2, 1.0];
+/// Cells of the longer side of a base, at most.
+const BASE_CELLS: u32 = 512;
+
+/// A rectangle of tiles.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct TileRect {
+    /// Least column and row.
+    pub from: [u32; 2],
+    /// One past the greatest.
+    pub to: [u32; 2],
+}
+
+impl TileRect {
+    /// No tile.
+    pub const NONE: Self = Self {
+        from: [0; 2],
+        to: [0; 2],
+    };
+
+    /// The tiles from the lowest to, not with, `to`.
+    #[must_use]
+    pub const fn up_to(to: [u32; 2]) -> Self {
+        Self { from: [0; 2], to }
+    }
+
+    /// Whether there is no tile in it.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        (0..2).any(|i| self.from[i] >= self.to[i])
+    }
+
+    /// Columns and rows.
+    #[must_use]
+    pub fn size(&self) -> [u32; 2] {
+        [0, 1].map(|i| self.to[i].saturating_sub(self.from[i]))
+    }
+
+    /// What lies in both; [`NONE`](Self::NONE) where nothing does.
+    #[must_use]
+    pub fn within(&self, other: &Self) -> Self {
+        let both = Self {
+            from: [0, 1].map(|i| self.from[i].max(other.from[i])),
+            to: [0, 1].map(|i| self.to[i].min(other.to[i])),
+        };
+        if both.is_empty() { Self::NONE } else { both }
+    }
+
+    /// Whether all of `other` lies in it.
+    #[must_use]
+    pub fn holds(&self, other: &Self) -> bool {
+        other.is_empty() || self.within(other) == *other
+    }
+
+    /// What of it does not lie in `other`, in parts that do not overlap.
+    #[must_use]
+    pub fn without(&self, other: &Self) -> Vec<Self> {
+        let both = self.within(other);
+        if both.is_empty() {
+            return vec![*self];
+        }
+        let (mut rest, mut parts) = (*self, Vec::new());
+        for i in 0..2 {
+            for (from, to) in [(rest.from[i], both.from[i]), (both.to[i], rest.to[i])] {
+                let mut part = rest;
+                (part.from[i], part.to[i]) = (from, to);
+                parts.push(part);
+            }
+            (rest.from[i], rest.to[i]) = (both.from[i], both.to[i]);
+        }
+        parts.retain(|part| !part.is_empty());
+        parts
+    }
+
+    /// Its cells, on a surface of `cells`.
+    #[must_use]
+    pub fn cells(&self, cells: [u32; 2]) -> CellRect {
+        let side = TILE as u32;
+        let at = |tile: u32, i: usize| tile.saturating_mul(side).min(cells[i]);
+        CellRect {
+            from: [0, 1].map(|i| at(self.from[i], i)),
+            size: [0, 1].map(|i| at(self.to[i], i).saturating_sub(at(self.from[i], i))),
+        }
+    }
+
+    /// As a request has it.
+    #[must_use]
+    pub fn to_request(&self) -> [u32; 4] {
+        [self.from[0], self.from[1], self.to[0], self.to[1]]
+    }
+}
+
+/// What a view wants of a surface.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Wanted {
+    /// The level that the pixels ask for.
+    pub level: u32,
+    /// Its tiles that are visible, with a margin.
+    pub tiles: TileRect,
+    /// Tiles that there must be room for, whatever the view shows of the surface at this scale.
+    pub room: [u32; 2],
+    /// The level of a picture of the whole surface; none where `tiles` are all.
+    pub base: Option<u32>,
+    /// Tiles of the whole surface at that level.
+    pub base_tiles: [u32; 2],
+    /// Whether wet paint is told from dry paint by a tint.
+    pub wet: bool,
+}
+
+/// Tiles of a surface of `cells` at a level.
+fn grid(cells: [u32; 2], level: u32) -> [u32; 2] {
+    let tiles = cells.map(|cells| cells.div_ceil(TILE as u32).max(1));
+    tiles.map(|tiles| tiles.div_ceil(1 << level.min(31)).max(1))
+}
+
+/// The level at which one tile shows all of a surface.
+fn coarsest(cells: [u32; 2]) -> u32 {
+    let [across, up] = grid(cells, 0);
+    across.max(up).next_power_of_two().trailing_zeros()
+}
+
+/// The part of a surface that lies in a view.
+struct Part {
+    /// In shares of its sides, from the lower left corner: least and greatest.
+    shares: [[f32; 2]; 2],
+    /// How much of it a view takes wherever it lies, in shares of its sides.
+    reach: [f32; 2],
+    /// Pixels of its sides.
+    pixels: [f32; 2],
+}
+
+impl Part {
+    /// None where the surface is seen from its edge.
+    fn of(surface: &Surface, view: &View, pixels_per_point: f32) -> Option<Self> {
+        let at: [Pos2; 4] = corners(surface).map(|corner| view.to_window(corner));
+        let (right, up) = (at[1] - at[0], at[2] - at[0]);
+        let area = right.x * up.y - right.y * up.x;
+        let pixels = [right, up].map(|side| side.length() * pixels_per_point);
+        if area.abs() < 1e-3 * right.length() * up.length() || !area.is_finite() || area == 0.0 {
+            return None;
+        }
+        let shares = |v: Vec2| {
+            [
+                (v.x * up.y - v.y * up.x) / area,
+                (right.x * v.y - right.y * v.x) / area,
+            ]
+        };
+        let seen = view.area;
+        let ends = [
+            seen.left_top(),
+            seen.right_top(),
+            seen.left_bottom(),
+            seen.right_bottom(),
+        ]
+        .map(|corner| shares(corner - at[0]));
+        let least = [0, 1].map(|i| ends.iter().map(|e| e[i]).fold(f32::INFINITY, f32::min));
+        let most = [0, 1].map(|i| ends.iter().map(|e| e[i]).fold(f32::NEG_INFINITY, f32::max));
+        Some(Self {
+            shares: [least, most],
+            reach: [0, 1].map(|i| most[i] - least[i]),
+            pixels,
+        })
+    }
+}
+
+impl Wanted {
+    /// What a view wants of a surface. The tiles take no more cells than twice the pixels of the view
+    /// each way, and a margin: where they would, the level is a coarser one.
+    #[must_use]
+    pub fn of(surface: &Surface, view: &View, pixels_per_point: f32) -> Self {
+        let cells = surface.cells;
+        let last = coarsest(cells);
+        let part = Part::of(surface, view, pixels_per_point);
+        let finest = part.as_ref().map_or(last, |part| {
+            let levels = [0, 1].map(|i| level(cells[i], part.pixels[i]));
+            levels[0].min(levels[1]).min(last)
+        });
+        let most = view.pixels(pixels_per_point).map(|side| room(side as f32));
+        let most = u64::from(most[0]) * u64::from(most[1]);
+        let fits = |wanted: &Self| u64::from(wanted.room[0]) * u64::from(wanted.room[1]) <= most;
+        (finest..=last)
+            .flat_map(|level| GROWTHS.map(|growth| Self::at(cells, level, part.as_ref(), growth)))
+            .find(fits)
+            .unwrap_or_else(|| Self::whole(last, grid(cells, last)))
+    }
+
+    /// With room for what a view takes when it takes `growth` times as many cells, but no more than
+    /// it may at this level.
+    fn at(cells: [u32; 2], level: u32, part: Option<&Part>, growth: f32) -> Self {
+        let all = grid(cells, level);
+        let Some(part) = part else {
+            return Self::whole(level, all);
+        };
+        let side = (TILE as u32) << level.min(16);
+        let extent = [0, 1].map(|i| cells[i] as f32 / side as f32);
+        let density = [0, 1].map(|i| extent[i] * TILE as f32 / part.pixels[i].max(1.0));
+        let most = CELLS_A_PIXEL / density[0].max(density[1]).max(1e-6);
+        let growth = growth.min(most).max(1.0);
+        let room = [0, 1].map(|i| {
+            let tiles = part.reach[i] * extent[i] * growth;
+            room(tiles * TILE as f32 / CELLS_A_PIXEL).min(all[i])
+        });
+        if (0..2).all(|i| all[i] <= room[i]) {
+            return Self::whole(level, all);
+        }
+        let visible = TileRect {
+            from: [0, 1].map(|i| (part.shares[0][i] * extent[i]).floor().max(0.0) as u32),
+            to: [0, 1].map(|i| (part.shares[1][i] * extent[i]).ceil().max(0.0) as u32),
+        };
+        // A surface beside the view keeps what lies nearest.
+        let from = [0, 1].map(|i| visible.from[i].saturating_sub(MARGIN).min(all[i] - 1));
+        let tiles = TileRect {
+            from,
+            to: [0, 1].map(|i| {
+                let to = visible.to[i].saturating_add(MARGIN).min(from[i] + room[i]);
+                to.clamp(from[i] + 1, all[i])
+            }),
+        };
+        let base = (level..)
+            .find(|level| cells.iter().all(|cells| cells >> level <= BASE_CELLS))
+            .unwrap_or(level);
+        Self {
+            level,
+            tiles,
+            room,
+            base: Some(base),
+            base_tiles: grid(cells, base),
+            wet: false,
+        }
+    }
+
+    fn whole(level: u32, all: [u32; 2]) -> Self {
+        Self {
+            level,
+            tiles: TileRect::up_to(all),
+            room: all,
+            base: None,
+            base_tiles: [0; 2],
+            wet: false,
+        }
+    }
+}
+
+/// Tiles that `pixels` may touch, with margins.
+fn room(pixels: f32) -> u32 {
+    (pixels * CELLS_A_PIXEL / TILE as f32).ceil() as u32 + 1 + 2 * MARGIN
+}
+
+#[cfg(test)]
+mod tests {
+    use eframe::egui::{Rect, pos2, vec2};
+    use glam::{DVec2, DVec3};
+    use maulstick_num::geometry::rotation;
+    use maulstick_paint::PaintingSetup;
+    use maulstick_types::Pose;
+
+    use super::*;
+
+    const VIEW: [f32; 2] = [1280.0, 720.0];
+
+    fn surface(cells: u32) -> Surface {
+        let mut surface = PaintingSetup::default().scene().surfaces[0].clone();
+        surface.cells = [cells; 2];
+        let half = -0.5 * f64::from(cells) * surface.cell_m;
+        surface.pose.position_m = [half, half, 0.0];
+        surface
+    }
+
+    /// A view of `scale` pixels a cell around a cell.
+    fn view(surface: &Surface, scale: f64, around: [f64; 2]) -> View {
+        let area = Rect::from_min_size(pos2(0.0, 0.0), vec2(VIEW[0], VIEW[1]));
+        let fit = View::fit(area, std::slice::from_ref(surface)).expect("a view");
+        View {
+            middle: DVec2::from(
+                around.map(|cell| (cell - 0.5 * f64::from(surface.cells[0])) * surface.cell_m),
+            ),
+            scale: scale / surface.cell_m,
+            ..fit
+        }
+    }
+
+    #[test]
+    fn parts_of_a_rectangle_hold_each_tile_once() {
+        let rect = |from, to| TileRect { from, to };
+        let one = rect([2, 3], [9, 8]);
+        for other in [
+            rect([0, 0], [1, 1]),
+            rect([4, 4], [6, 6]),
+            rect([0, 0], [5, 5]),
+            rect([2, 3], [9, 8]),
+            rect([0, 5], [20, 6]),
+        ] {
+            let parts = one.without(&other);
+            for y in 0..10 {
+                for x in 0..10 {
+                    let tile = rect([x, y], [x + 1, y + 1]);
+                    let count = parts.iter().filter(|part| part.holds(&tile)).count();
+                    let expected = one.holds(&tile) && !other.holds(&tile);
+                    assert_eq!(count, usize::from(expected), "{other:?} {x} {y}");
+                }
+            }
+        }
+        assert!(one.holds(&TileRect::NONE) && !TileRect::NONE.holds(&one));
+        let cells = rect([1, 0], [3, 2]).cells([150, 100]);
+        assert_eq!((cells.from, cells.size), ([64, 0], [86, 100]));
+    }
+
+    #[test]
+    fn a_small_surface_is_wanted_whole_and_a_large_one_around_the_view() {
+        let small = surface(1024);
+        let wanted = Wanted::of(&small, &view(&small, 4.0, [100.0, 100.0]), 1.0);
+        assert_eq!(wanted, Wanted::whole(0, [16, 16]));
+        let large = surface(4096);
+        let wanted = Wanted::of(&large, &view(&large, 1.0, [2048.0, 2048.0]), 1.0);
+        assert_eq!(
+            (wanted.level, wanted.base, wanted.base_tiles),
+            (0, Some(3), [8, 8])
+        );
+        // Cells 1408 to 2688 and 1688 to 2408, with a tile more on each side.
+        assert_eq!(wanted.tiles.from, [21, 25]);
+        assert_eq!(wanted.tiles.to, [43, 39]);
+        let fit = Wanted::of(&large, &view(&large, 0.17, [2048.0, 2048.0]), 1.0);
+        assert_eq!(fit, Wanted::whole(2, [16, 16]));
+    }
+
+    #[test]
+    fn all_that_is_visible_is_wanted_and_room_is_bounded_by_the_window() {
+        let most = 43 * 26;
+        for cells in [1024, 4096, 16384] {
+            for turn in [0.0, 0.3, 0.785, 1.57, 3.0] {
+                for tilt in [0.0, 0.9] {
+                    let mut surface = surface(cells);
+                    let pose = rotation(DVec3::Z, turn) * rotation(DVec3::X, tilt);
+                    surface.pose.orientation = pose.to_array();
+                    surface.pose = Pose {
+                        position_m: (pose * DVec3::from(surface.pose.position_m)).to_array(),
+                        ..surface.pose
+                    };
+                    for scale in [0.02, 0.26, 0.51, 0.99, 1.0, 3.0, 40.0] {
+                        let view = view(&surface, scale, [0.5 * f64::from(cells); 2]);
+                        let wanted = Wanted::of(&surface, &view, 1.0);
+                        let what = format!("{cells} {turn} {tilt} {scale} {wanted:?}");
+                        let [across, up] = wanted.room;
+                        assert!(across * up <= most, "{what}");
+                        let size = wanted.tiles.size();
+                        let texel = scale * f64::from(1 << wanted.level);
+                        assert!(wanted.level == 0 || texel <= 2.0, "{what}: too coarse");
+                        assert!(size[0] <= across && size[1] <= up, "{what}");
+                        // Each cell under a pixel, where the pixel is on the surface.
+                        for y in 0..=12 {
+                            for x in 0..=12 {
+                                let at = [x as f32 / 12.0 * VIEW[0], y as f32 / 12.0 * VIEW[1]];
+                                let Some(cell) = under(&surface, &view, at) else {
+                                    continue;
+                                };
+                                let side = f64::from(64u32 << wanted.level);
+                                let tile = cell.map(|cell| (cell / side) as u32);
+                                let tile = TileRect {
+                                    from: tile,
+                                    to: tile.map(|tile| tile + 1),
+                                };
+                                assert!(wanted.tiles.holds(&tile), "{what} {at:?} {tile:?}");
+                            }
+                        }
+                    }
+                }
+            }
+        }
+    }
+
+    fn under(surface: &Surface, view: &View, at: [f32; 2]) -> Option<[f64; 2]> {
+        let desk = view.to_desk(pos2(at[0], at[1]), std::slice::from_ref(surface));
+        let local = maulstick_num::geometry::Rigid::from(&surface.pose)
+            .inverse()
+            .point(desk);
+        let cell = [local.x, local.y].map(|m| m / (surface.cell_m * surface.zoom));
+        let inside = (0..2).all(|i| (0.0..f64::from(surface.cells[i])).contains(&cell[i]));
+        inside.then_some(cell)
+    }
+
+    #[test]
+    fn a_surface_beside_the_view_or_seen_from_its_edge_wants_little() {
+        let large = surface(4096);
+        let beside = Wanted::of(&large, &view(&large, 1.0, [-9000.0, 2048.0]), 1.0);
+        assert_eq!(beside.tiles.size()[0], 1);
+        let mut edge = large;
+        edge.pose.orientation = rotation(DVec3::X, std::f64::consts::FRAC_PI_2).to_array();
+        let wanted = Wanted::of(&edge, &view(&edge, 1.0, [2048.0, 2048.0]), 1.0);
+        assert_eq!(wanted, Wanted::whole(6, [1, 1]));
+    }
+}

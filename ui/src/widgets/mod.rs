@@ -1,0 +1,18 @@
+//! Parts that panels and dialogs are made of.
+//!
+//! | module | holds |
+//! | --- | --- |
+//! | [`context`] | state that a panel reads and changes |
+//! | [`rows`], [`labelled`] | rows of a panel: a word and a control |
+//! | [`pending`] | a value that the rig has not confirmed yet |
+//! | [`notifications`] | messages to the painter |
+//! | [`progress`] | progress of long work |
+//! | [`swatches`] | colour patches of paints |
+
+pub(crate) mod context;
+pub(crate) mod labelled;
+pub(crate) mod notifications;
+pub(crate) mod pending;
+pub(crate) mod progress;
+pub(crate) mod rows;
+pub(crate) mod swatches;

@@ -1,0 +1,173 @@
+//! Short tellings over the desk: what went wrong elsewhere, and what to do. A click takes a fault away; notes
+//! are no hindrance to a stroke.
+
+use eframe::egui::{self, Align2, Area, Color32, Context, Frame, Id, Order, RichText};
+use maulstick_rig::Fault;
+
+/// What is told at most at once; the oldest goes.
+const MOST: usize = 4;
+/// How long a note and a fault stay, s.
+const NOTE_S: f64 = 3.0;
+const FAULT_S: f64 = 12.0;
+/// Width of the text, points.
+const WIDTH: f32 = 360.0;
+
+/// How much it matters.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Weight {
+    /// Something was done.
+    Note,
+    /// Something was not done.
+    Fault,
+}
+
+/// Something told.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Notification {
+    /// How much it matters.
+    pub weight: Weight,
+    /// What there is to say.
+    pub what: String,
+    /// What to do about it; empty where there is nothing to do.
+    pub help: String,
+    /// When it goes, by the window's clock, s; none before it was first shown.
+    until_s: Option<f64>,
+}
+
+/// What is told at present.
+#[derive(Debug, Default)]
+pub struct Notifications {
+    told: Vec<Notification>,
+}
+
+impl Notifications {
+    /// Tells that something was done.
+    pub fn note(&mut self, what: impl Into<String>) {
+        self.tell(Weight::Note, what.into(), String::new());
+    }
+
+    /// Tells that something was not done, and what to do.
+    pub fn fault(&mut self, what: impl Into<String>, help: impl Into<String>) {
+        self.tell(Weight::Fault, what.into(), help.into());
+    }
+
+    /// Tells of a fault of the rig.
+    pub fn of(&mut self, fault: &Fault) {
+        self.fault(fault.what.clone(), fault.help.clone().unwrap_or_default());
+    }
+
+    /// What was told is over.
+    pub fn over(&mut self, what: &str) {
+        self.told.retain(|toast| toast.what != what);
+    }
+
+    /// What is told, the oldest first.
+    pub fn told(&self) -> &[Notification] {
+        &self.told
+    }
+
+    /// The same thing again begins its time anew, and is not told twice.
+    fn tell(&mut self, weight: Weight, what: String, help: String) {
+        self.told.retain(|toast| toast.what != what);
+        if self.told.len() >= MOST {
+            self.told.remove(0);
+        }
+        self.told.push(Notification {
+            weight,
+            what,
+            help,
+            until_s: None,
+        });
+    }
+
+    /// Shows what is told at the upper edge; a click takes it away.
+    pub fn show(&mut self, context: &Context) {
+        let now = context.input(|input| input.time);
+        for toast in &mut self.told {
+            let stays = match toast.weight {
+                Weight::Note => NOTE_S,
+                Weight::Fault => FAULT_S,
+            };
+            toast.until_s.get_or_insert(now + stays);
+        }
+        self.told
+            .retain(|toast| toast.until_s.is_none_or(|until| now < until));
+        let Some(first) = self
+            .told
+            .iter()
+            .filter_map(|toast| toast.until_s)
+            .reduce(f64::min)
+        else {
+            return;
+        };
+        context.request_repaint_after_secs((first - now) as f32);
+        let mut gone = None;
+        let faults = self.told.iter().any(|toast| toast.weight == Weight::Fault);
+        Area::new(Id::unique("toasts"))
+            .order(Order::Foreground)
+            .interactable(faults)
+            .anchor(Align2::CENTER_TOP, [0.0, 12.0])
+            .show(context, |ui| {
+                for (place, toast) in self.told.iter().enumerate() {
+                    let sign = match toast.weight {
+                        Weight::Note => ui.visuals().widgets.noninteractive.bg_stroke.color,
+                        Weight::Fault => Color32::from_rgb(214, 112, 48),
+                    };
+                    let frame = Frame::popup(ui.style()).stroke(egui::Stroke::new(1.5, sign));
+                    let shown = frame.show(ui, |ui| {
+                        ui.set_max_width(WIDTH);
+                        ui.label(RichText::new(&toast.what).strong());
+                        if !toast.help.is_empty() {
+                            ui.label(&toast.help);
+                        }
+                    });
+                    if shown.response.interact(egui::Sense::click()).clicked() {
+                        gone = Some(place);
+                    }
+                    ui.add_space(6.0);
+                }
+            });
+        if let Some(place) = gone {
+            self.told.remove(place);
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use egui_kittest::Harness;
+    use egui_kittest::kittest::Queryable as _;
+
+    use super::*;
+
+    #[test]
+    fn the_same_thing_is_told_once_and_the_oldest_goes() {
+        let mut notifications = Notifications::default();
+        for what in ["a", "b", "c", "a", "d", "e"] {
+            notifications.note(what);
+        }
+        let told: Vec<&str> = notifications
+            .told()
+            .iter()
+            .map(|t| t.what.as_str())
+            .collect();
+        assert_eq!(told, ["c", "a", "d", "e"]);
+    }
+
+    #[test]
+    fn a_fault_says_what_to_do_and_goes_by_itself() {
+        let mut notifications = Notifications::default();
+        notifications.fault("the arm is gone", "plug it in");
+        let show =
+            |ui: &mut egui::Ui, notifications: &mut Notifications| notifications.show(ui.ctx());
+        let mut harness = Harness::builder()
+            .with_step_dt(1.0)
+            .build_ui_state(show, notifications);
+        harness.step();
+        harness.get_by_label("the arm is gone");
+        harness.get_by_label("plug it in");
+        harness.run_steps(FAULT_S as usize + 2);
+        assert!(harness.query_by_label("the arm is gone").is_none());
+        assert!(harness.state().told().is_empty());
+    }
+}

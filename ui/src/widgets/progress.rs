@@ -1,0 +1,399 @@
+//! How far long work is: a bar over the desk with the time left and a way to end it, for all that takes
+//! more than half a second; and, for as long as it is so, that the painting cannot be saved or falls behind.
+
+use std::collections::BTreeMap;
+
+use eframe::egui::{Align2, Area, Context, Frame, Id, Order, ProgressBar, Ui};
+use maulstick_types::command::Command;
+use maulstick_types::paint::PaintStatus;
+use maulstick_types::scene::{CANVAS, Light};
+
+use crate::rig::state::RigState;
+use crate::widgets::context::PanelContext;
+
+/// Work that takes less is not told, ns.
+const SHORT_NS: u64 = 500_000_000;
+/// A light that lasts so long is one that was wanted, ns.
+const STOOD_NS: u64 = 1_000_000_000;
+/// Width of a bar, points.
+const BAR: f32 = 160.0;
+
+/// What takes its time; one of each at most.
+#[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
+enum Kind {
+    /// Dry layers are computed for another light.
+    Relighting,
+    /// Wet paint dries in time.
+    Drying,
+    /// A process does not answer, by its name as the courier has it.
+    Waiting(String),
+}
+
+/// What ends a work.
+#[derive(Clone, Debug, PartialEq)]
+enum Cancel {
+    /// A command to the paint node.
+    Paint(Box<Command>),
+    /// The orders that wait are given up.
+    GiveUp,
+}
+
+/// A work that goes on.
+#[derive(Clone, Debug, PartialEq)]
+struct Job {
+    kind: Kind,
+    words: String,
+    /// How far it is, 0 to 1; none where nobody knows.
+    share: Option<f64>,
+    cancel: Option<Cancel>,
+    /// What ending it means.
+    hint: &'static str,
+}
+
+/// What goes on, and since when.
+#[derive(Debug, Default)]
+pub(crate) struct Progress {
+    since_ns: BTreeMap<Kind, u64>,
+    /// The light now, and the one that was wanted before.
+    lights: [Option<Light>; 2],
+    /// Since when the light has been as it is, rig clock, ns.
+    stood_ns: u64,
+    /// The start of the paint node that they are of.
+    starts: u64,
+}
+
+impl Progress {
+    /// Shows it at the lower edge; `waits` names the processes that an order has waited for so long that
+    /// it is to be told. `true` where the painter waits no longer.
+    pub(crate) fn show(
+        &mut self,
+        context: &Context,
+        work: &mut PanelContext<'_>,
+        waits: &[String],
+    ) -> bool {
+        let status = work.rig.paint.as_ref().map(|paint| &paint.status);
+        let lines: Vec<String> = status.into_iter().flat_map(lines).collect();
+        let jobs = self.jobs(work.rig, waits);
+        if jobs.is_empty() && lines.is_empty() {
+            return false;
+        }
+        let mut cancelled = None;
+        Area::new(Id::unique("progress"))
+            .order(Order::Foreground)
+            .anchor(Align2::CENTER_BOTTOM, [0.0, -12.0])
+            .show(context, |ui| {
+                Frame::popup(ui.style()).show(ui, |ui| {
+                    for line in &lines {
+                        ui.label(line);
+                    }
+                    for (job, begun_ns) in &jobs {
+                        let elapsed_s = elapsed_s(work.rig.now_ns, *begun_ns);
+                        if bar(ui, job, elapsed_s) {
+                            cancelled.clone_from(&job.cancel);
+                        }
+                    }
+                });
+            });
+        match cancelled {
+            Some(Cancel::Paint(command)) => work.requests.paint(*command),
+            Some(Cancel::GiveUp) => return true,
+            None => {}
+        }
+        false
+    }
+
+    /// What has gone on for long enough to be told, with its begin, rig clock, ns.
+    fn jobs(&mut self, rig: &RigState, waits: &[String]) -> Vec<(Job, u64)> {
+        let mut jobs: Vec<Job> = waits.iter().map(|name| waiting(name)).collect();
+        let waited = jobs.len();
+        jobs.extend(self.relighting(rig));
+        jobs.extend(drying(rig));
+        let now_ns = rig.now_ns;
+        self.since_ns
+            .retain(|kind, _| jobs.iter().any(|job| job.kind == *kind));
+        let begun = jobs.into_iter().enumerate().filter_map(|(place, job)| {
+            let begun_ns = *self.since_ns.entry(job.kind.clone()).or_insert(now_ns);
+            // Who waits has waited for long already.
+            let is_long = place < waited || now_ns >= begun_ns.saturating_add(SHORT_NS);
+            is_long.then_some((job, begun_ns))
+        });
+        begun.collect()
+    }
+
+    fn relighting(&mut self, rig: &RigState) -> Option<Job> {
+        let light = rig.scene.as_ref().map(|scene| &scene.light);
+        if self.starts != rig.starts {
+            // Another painting has another light.
+            (self.starts, self.lights) = (rig.starts, [None, None]);
+        }
+        let status = &rig.paint.as_ref()?.status;
+        let [now, before] = &mut self.lights;
+        if light != now.as_ref() {
+            // Of a lamp that is dragged, what counts is where it stood.
+            if rig.now_ns >= self.stood_ns.saturating_add(STOOD_NS) {
+                before.clone_from(now);
+            }
+            (*now, self.stood_ns) = (light.cloned(), rig.now_ns);
+        }
+        let share = f64::from(status.baked) / f64::from(status.baking.max(1));
+        let back = |light: &Light| {
+            let light = light.clone();
+            Cancel::Paint(Box::new(Command::Relight {
+                light,
+                expose: false,
+            }))
+        };
+        (status.baked < status.baking).then(|| Job {
+            kind: Kind::Relighting,
+            words: "Relighting dry layers".into(),
+            share: Some(share),
+            cancel: before.as_ref().map(back),
+            hint: "Go back to the light before",
+        })
+    }
+}
+
+/// What the painter should know of the painting and can do nothing about here.
+fn lines(status: &PaintStatus) -> impl Iterator<Item = String> {
+    let PaintStatus { fault, longer, .. } = status;
+    let unsaved = (!fault.is_empty()).then(|| format!("A fault of the painting's file: {fault}"));
+    let late = (*longer > 1).then(|| {
+        format!(
+            "Painting falls behind: until the brush lifts, its steps are {longer} times as long"
+        )
+    });
+    unsaved.into_iter().chain(late)
+}
+
+fn drying(rig: &RigState) -> Option<Job> {
+    let drying = rig.paint.as_ref()?.status.drying.as_ref()?;
+    let stop = Command::StopDrying { surface: CANVAS };
+    Some(Job {
+        kind: Kind::Drying,
+        words: match drying.layer.is_empty() {
+            true => "Drying".to_owned(),
+            false => format!("Drying “{}”", drying.layer),
+        },
+        share: Some(f64::from(drying.share)),
+        cancel: Some(Cancel::Paint(Box::new(stop))),
+        hint: "What is wet still stays wet",
+    })
+}
+
+fn waiting(name: &str) -> Job {
+    let who = match name.split_once(' ') {
+        Some(("node", "paint")) => "the paint node".to_owned(),
+        Some(("node", "rig")) => "the rig, which opens the painting".to_owned(),
+        Some(("node", brush)) => format!("the brush '{brush}'"),
+        Some((_, device)) => format!("the device '{device}'"),
+        None => name.to_owned(),
+    };
+    Job {
+        kind: Kind::Waiting(name.to_owned()),
+        words: format!("Waiting for {who} …"),
+        share: None,
+        cancel: Some(Cancel::GiveUp),
+        hint: "Wait no longer; what waits is not sent any more",
+    }
+}
+
+fn elapsed_s(now_ns: u64, begun_ns: u64) -> f64 {
+    now_ns.saturating_sub(begun_ns) as f64 * 1e-9
+}
+
+/// A work with its bar; `true` where it is to end.
+fn bar(ui: &mut Ui, job: &Job, elapsed_s: f64) -> bool {
+    ui.horizontal(|ui| {
+        ui.label(&job.words);
+        match job.share {
+            Some(share) => {
+                let percent = format!("{:.0} %", 100.0 * share);
+                let bar = ProgressBar::new(share as f32).desired_width(BAR);
+                ui.add(bar.text(percent));
+                if share > 0.0 {
+                    ui.label(left(elapsed_s * (1.0 - share) / share));
+                }
+            }
+            None => {
+                ui.spinner();
+            }
+        }
+        job.cancel.is_some() && ui.button("Cancel").on_hover_text(job.hint).clicked()
+    })
+    .inner
+}
+
+/// A time that is left, in words that do not change with every frame.
+#[must_use]
+pub(crate) fn left(seconds: f64) -> String {
+    let near = |value: f64, step: f64| (value / step).round() * step;
+    match seconds {
+        s if s < 8.0 => "a few seconds left".to_owned(),
+        s if s < 28.0 => format!("about {} s left", near(s, 5.0)),
+        s if s < 55.0 => format!("about {} s left", near(s, 10.0)),
+        s if s < 3570.0 => format!("about {} min left", (s / 60.0).round().max(1.0)),
+        s if s < 86_400.0 => format!("about {} h left", (s / 3600.0).round()),
+        s if s.is_finite() => format!("about {} days left", (s / 86_400.0).round()),
+        _ => String::new(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use eframe::egui;
+    use egui_kittest::Harness;
+    use egui_kittest::kittest::Queryable as _;
+
+    use super::*;
+    use crate::rig::requests::{Request as Asked, Requests};
+    use crate::rig::state::PaintNode;
+    use crate::settings::preferences::Preferences;
+    use crate::test_support::panel_bench::{rig, status};
+    use crate::widgets::notifications::Notifications;
+
+    struct Desk {
+        progress: Progress,
+        rig: RigState,
+        requests: Requests,
+        waits: Vec<String>,
+        given_up: bool,
+    }
+
+    impl Desk {
+        fn baked(&mut self, seconds: f64, baked: u32) {
+            self.rig.now_ns = (1e9 * seconds) as u64;
+            let status = maulstick_types::paint::PaintStatus {
+                baking: 100,
+                baked,
+                ..status()
+            };
+            self.rig.paint = Some(PaintNode {
+                status,
+                heard_ns: self.rig.now_ns,
+            });
+        }
+    }
+
+    fn harness() -> Harness<'static, Desk> {
+        let show = |ui: &mut egui::Ui, desk: &mut Desk| {
+            let (mut preferences, mut notifications) =
+                (Preferences::default(), Notifications::default());
+            let mut work = PanelContext {
+                rig: &mut desk.rig,
+                requests: &mut desk.requests,
+                preferences: &mut preferences,
+                notifications: &mut notifications,
+            };
+            desk.given_up |= desk.progress.show(ui.ctx(), &mut work, &desk.waits);
+        };
+        let desk = Desk {
+            progress: Progress::default(),
+            rig: rig(),
+            requests: Requests::default(),
+            waits: Vec::new(),
+            given_up: false,
+        };
+        // A spinner never rests.
+        Harness::builder()
+            .with_max_steps(4)
+            .build_ui_state(show, desk)
+    }
+
+    #[test]
+    fn relighting_is_told_after_half_a_second_with_the_time_left_and_can_be_ended() {
+        let mut harness = harness();
+        harness.step();
+        let scene = harness.state().rig.scene.clone().expect("a scene");
+        let mut other = scene.clone();
+        other.light.intensity = 2.0;
+        harness.state_mut().rig.lay(other);
+        harness.state_mut().baked(10.0, 0);
+        harness.step();
+        let words = "Relighting dry layers";
+        assert!(harness.query_by_label(words).is_none(), "it may be short");
+        harness.state_mut().baked(20.0, 25);
+        harness.run_steps(2);
+        harness.get_by_label(words);
+        harness.get_by_label("about 30 s left");
+        harness.get_by_label("Cancel").click();
+        harness.run_steps(2);
+        let asked = harness.state_mut().requests.take();
+        let back = Asked::Command {
+            node: "paint".into(),
+            command: Command::Relight {
+                light: scene.light,
+                expose: false,
+            },
+        };
+        assert_eq!(asked, [back]);
+        harness.state_mut().baked(40.0, 100);
+        harness.step();
+        assert!(harness.query_by_label(words).is_none(), "it is done");
+    }
+
+    #[test]
+    fn who_is_waited_for_is_named_and_the_wait_can_be_given_up() {
+        for (name, words) in [
+            ("node paint", "Waiting for the paint node …"),
+            ("node main", "Waiting for the brush 'main' …"),
+            ("force arm", "Waiting for the device 'arm' …"),
+        ] {
+            let mut harness = harness();
+            harness.state_mut().waits = vec![name.to_owned()];
+            harness.run_steps(2);
+            harness.get_by_label(words);
+            harness.get_by_label("Cancel").click();
+            harness.run_steps(2);
+            assert!(harness.state().given_up, "{name}");
+        }
+    }
+
+    #[test]
+    fn that_painting_falls_behind_is_told_while_it_does() {
+        let mut harness = harness();
+        harness.state_mut().baked(1.0, 100);
+        let words = "Painting falls behind: until the brush lifts, its steps are 4 times as long";
+        for longer in [1, 4, 1] {
+            let paint = harness.state_mut().rig.paint.as_mut();
+            paint.expect("paint").status.longer = longer;
+            harness.run_steps(2);
+            assert_eq!(harness.query_by_label(words).is_some(), longer > 1);
+        }
+    }
+
+    #[test]
+    fn that_nothing_is_saved_stays_on_the_window_for_as_long_as_it_is_so() {
+        let mut harness = harness();
+        harness.state_mut().baked(1.0, 100);
+        let fault = |desk: &mut Desk, what: &str| {
+            let paint = desk.rig.paint.as_mut().expect("paint");
+            what.clone_into(&mut paint.status.fault);
+        };
+        let words = "A fault of the painting's file: no room: free some space";
+        fault(harness.state_mut(), "no room: free some space");
+        for _ in 0..3 {
+            harness.state_mut().rig.now_ns += 100_000_000_000;
+            harness.run_steps(2);
+            harness.get_by_label(words);
+        }
+        fault(harness.state_mut(), "");
+        harness.step();
+        assert!(harness.query_by_label(words).is_none());
+    }
+
+    #[test]
+    fn times_are_told_roughly() {
+        for (seconds, words) in [
+            (0.2, "a few seconds left"),
+            (18.0, "about 20 s left"),
+            (41.0, "about 40 s left"),
+            (58.0, "about 1 min left"),
+            (200.0, "about 3 min left"),
+            (7000.0, "about 2 h left"),
+            (3e5, "about 3 days left"),
+            (f64::INFINITY, ""),
+        ] {
+            assert_eq!(left(seconds), words);
+        }
+    }
+}

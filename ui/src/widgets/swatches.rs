@@ -1,0 +1,271 @@
+//! Paints as they look under the light of the rig: thick, and as a tint with white.
+
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
+use eframe::egui::{Color32, CornerRadius, Rect, Stroke, StrokeKind, Ui, pos2};
+use maulstick_optics::{
+    Blend, Coat, Layer, Paint, PaintLibrary, RuleKind, StudioSettings, Viewing,
+};
+use maulstick_paint::light::{changes_colour, studio_settings};
+use maulstick_types::Mixture;
+use maulstick_types::scene::Light;
+
+use crate::render::display_transform::DisplayTransform;
+use crate::rig::state::RigState;
+
+/// Parts of white to one part of paint in a tint.
+const TINT: f64 = 10.0;
+/// Thickness of the film that tells how a paint covers, m.
+const FILM_M: f64 = 50e-6;
+/// Mixtures that are kept; beyond, all are computed anew.
+const KEPT: usize = 256;
+/// What nothing but thinner looks like, linear.
+const CLEAR: [f32; 3] = [0.75, 0.75, 0.72];
+
+/// Paints as they look.
+#[derive(Debug, Default)]
+pub(crate) struct Swatches {
+    made: Option<Made>,
+}
+
+/// For what the colours hold.
+#[derive(Debug)]
+struct Made {
+    library: Arc<PaintLibrary>,
+    light: Light,
+    tint: Arc<DisplayTransform>,
+    viewing: Viewing,
+    white: Option<Blend>,
+    paints: BTreeMap<String, [Color32; 2]>,
+    mixtures: BTreeMap<String, Color32>,
+}
+
+impl Swatches {
+    /// Masstone and tint of a paint.
+    pub(crate) fn paint(&mut self, rig: &RigState, paint: &Paint) -> [Color32; 2] {
+        let made = self.made_for(rig);
+        if let Some(colours) = made.paints.get(&paint.name) {
+            return *colours;
+        }
+        let own = Blend::new(&[(paint, 1.0)]);
+        let tinted = made.white.as_ref().map_or_else(
+            || own.clone(),
+            |white| own.toward(white, TINT / (TINT + 1.0)),
+        );
+        let colours = [made.colour(&own), made.colour(&tinted)];
+        made.paints.insert(paint.name.clone(), colours);
+        colours
+    }
+
+    /// A mixture as it looks when it lies thick; none of paints that the rig does not have.
+    pub(crate) fn mixture(&mut self, rig: &RigState, mixture: &Mixture) -> Option<Color32> {
+        let made = self.made_for(rig);
+        let text = mixture.to_string();
+        if let Some(colour) = made.mixtures.get(&text) {
+            return Some(*colour);
+        }
+        let colour = made.colour(&Blend::of(&made.library, mixture).ok()?);
+        if made.mixtures.len() >= KEPT {
+            made.mixtures.clear();
+        }
+        made.mixtures.insert(text, colour);
+        Some(colour)
+    }
+
+    fn made_for(&mut self, rig: &RigState) -> &mut Made {
+        let light = rig.scene.as_ref().map(|scene| &scene.light);
+        let light = light.cloned().unwrap_or_default();
+        let holds = |made: &Made| {
+            Arc::ptr_eq(&made.library, &rig.library)
+                && Arc::ptr_eq(&made.tint, &rig.tint)
+                && !changes_colour(&made.light, &light)
+        };
+        if !self.made.as_ref().is_some_and(holds) {
+            self.made = None;
+        }
+        self.made.get_or_insert_with(|| Made::new(rig, light))
+    }
+}
+
+impl Made {
+    fn new(rig: &RigState, light: Light) -> Self {
+        // A light that is none was refused where it was made.
+        let settings = studio_settings(&light).unwrap_or_default();
+        let settings = StudioSettings {
+            rule: RuleKind::Reference,
+            ..settings
+        };
+        let viewing = Viewing::new(&settings, rig.library.paints());
+        Self {
+            white: whitest(&rig.library, &viewing),
+            library: Arc::clone(&rig.library),
+            tint: Arc::clone(&rig.tint),
+            light,
+            viewing,
+            paints: BTreeMap::new(),
+            mixtures: BTreeMap::new(),
+        }
+    }
+
+    fn colour(&self, blend: &Blend) -> Color32 {
+        let is_clear = blend.k.0.iter().chain(&blend.s.0).all(|v| *v == 0.0);
+        let linear = match is_clear {
+            true => CLEAR,
+            false => {
+                let seen = self.viewing.coat(blend, &Coat::masstone());
+                seen.linear.map(|channel| channel as f32)
+            }
+        };
+        self.tint.colour(linear)
+    }
+}
+
+/// The lightest paint of a library: what tints are made with.
+fn whitest(library: &PaintLibrary, viewing: &Viewing) -> Option<Blend> {
+    let paints = library.paints().iter();
+    let seen = paints.map(|paint| {
+        let blend = Blend::new(&[(paint, 1.0)]);
+        (viewing.coat(&blend, &Coat::masstone()).xyz[1], blend)
+    });
+    let lightest = seen.max_by(|one, other| one.0.total_cmp(&other.0));
+    lightest.map(|(_, blend)| blend)
+}
+
+/// How well a thin film of a paint covers black and white, 0 to 1, in the middle of the spectrum.
+#[must_use]
+pub(crate) fn covers(paint: &Paint) -> f64 {
+    let blend = Blend::new(&[(paint, 1.0)]);
+    let over = |ground: f64| {
+        let coat = Coat {
+            layer: Layer::Film {
+                thickness_m: FILM_M,
+                thinner: 0.0,
+                ground,
+            },
+            surface: None,
+        };
+        let nm = [500.0, 550.0, 600.0];
+        nm.map(|nm| blend.reflectance_at(nm, &coat))
+            .iter()
+            .sum::<f64>()
+    };
+    (over(0.0) / over(1.0).max(1e-9)).clamp(0.0, 1.0)
+}
+
+/// What a painter wants to know of a paint.
+#[must_use]
+pub(crate) fn words(paint: &Paint) -> String {
+    if paint.is_thinner() {
+        return format!("{}\nA clear medium: it thins the paint.", paint.name);
+    }
+    let cover = match (100.0 * covers(paint)).round() {
+        percent if percent >= 80.0 => format!("opaque ({percent} %)"),
+        percent if percent >= 65.0 => format!("half opaque ({percent} %)"),
+        percent => format!("transparent ({percent} %)"),
+    };
+    let index = match paint.colour_index.is_empty() {
+        true => "unknown",
+        false => &paint.colour_index,
+    };
+    format!(
+        "{}\nPigment: {index}\nIn a film of 50 µm it is {cover}.\nMeasured by: {}",
+        paint.name, paint.source
+    )
+}
+
+/// Whether a paint is called so, or has this colour index, as far as typed.
+#[must_use]
+pub(crate) fn matches(paint: &Paint, typed: &str) -> bool {
+    let plain = |text: &str| text.to_lowercase().replace(' ', "");
+    let typed = plain(typed);
+    plain(&paint.name).contains(&typed) || plain(&paint.colour_index).contains(&typed)
+}
+
+/// Draws masstone and tint side by side.
+pub(crate) fn draw(ui: &Ui, area: Rect, colours: [Color32; 2]) {
+    let middle = area.center().x;
+    let left = Rect::from_min_max(area.min, pos2(middle, area.max.y));
+    let right = Rect::from_min_max(pos2(middle, area.min.y), area.max);
+    let [west, east] = [
+        CornerRadius {
+            nw: 4,
+            sw: 4,
+            ne: 0,
+            se: 0,
+        },
+        CornerRadius {
+            nw: 0,
+            sw: 0,
+            ne: 4,
+            se: 4,
+        },
+    ];
+    ui.painter().rect_filled(left, west, colours[0]);
+    ui.painter().rect_filled(right, east, colours[1]);
+    let edge = Stroke::new(1.0, ui.visuals().widgets.noninteractive.bg_stroke.color);
+    ui.painter()
+        .rect_stroke(area, 4.0, edge, StrokeKind::Inside);
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn rig() -> RigState {
+        let library = Arc::new(PaintLibrary::measured().expect("whole"));
+        RigState::new("test", &["main".to_owned()], library)
+    }
+
+    #[test]
+    fn a_paint_looks_as_it_was_measured_and_lighter_with_white() {
+        let rig = rig();
+        let mut swatches = Swatches::default();
+        let mut look = |name: &str| {
+            let paint = rig.library.find(name).expect("known");
+            swatches.paint(&rig, paint)
+        };
+        let [blue, tint] = look("Ultramarine Blue");
+        assert!(
+            blue.b() > 2 * blue.g() && tint.b() > 200,
+            "{blue:?} {tint:?}"
+        );
+        assert!(tint.r() > blue.r() + 60, "a tint is lighter");
+        let [white, tinted] = look("Titanium White");
+        assert_eq!(white, tinted, "white in white is white");
+        let [clear, _] = look("Thinner");
+        assert!(clear.r() > 150, "{clear:?}");
+    }
+
+    #[test]
+    fn another_light_gives_other_swatches() {
+        let mut rig = rig();
+        let mut swatches = Swatches::default();
+        let mixture = Mixture::pure("Cobalt Blue");
+        let day = swatches.mixture(&rig, &mixture).expect("known");
+        let mut scene = maulstick_paint::PaintingSetup::default().scene();
+        rig.lay(scene.clone());
+        assert_eq!(swatches.mixture(&rig, &mixture), Some(day));
+        scene.light.illuminant = "A".to_owned();
+        rig.lay(scene);
+        let lamp = swatches.mixture(&rig, &mixture).expect("known");
+        assert_ne!(lamp, day, "a fault would pass");
+        assert_eq!(swatches.mixture(&rig, &Mixture::pure("x")), None);
+    }
+
+    #[test]
+    fn a_paint_is_found_by_name_and_index_and_told_in_words() {
+        let rig = rig();
+        let find = |name: &str| rig.library.find(name).expect("known");
+        let white = find("Titanium White");
+        for typed in ["titan", "pw6", "PW 6", "um wh", ""] {
+            assert!(matches(white, typed), "{typed}");
+        }
+        assert!(!matches(white, "blue"));
+        let cover = words(white);
+        assert!(cover.contains("is opaque ("), "{cover}");
+        let quinacridone = words(find("Quinacridone Magenta"));
+        assert!(quinacridone.contains("transparent"), "{quinacridone}");
+        assert!(words(find("Thinner")).contains("thins"));
+    }
+}
