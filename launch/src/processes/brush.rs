@@ -13,7 +13,7 @@ use nix::sys::signal::Signal;
 use super::{MOUSE, NodeOptions, PLAYER, brush_node_name};
 use crate::performance::brush_file;
 
-/// Follows a stylus with a brush
+/// Options of a brush node.
 #[derive(clap::Args, Debug)]
 pub(crate) struct BrushOptions {
     #[command(flatten)]

@@ -9,7 +9,7 @@ use nix::sys::signal::Signal;
 
 use super::{NodeOptions, device_named};
 
-/// Drives a force-feedback stylus
+/// Options of the daemon of a force-feedback stylus.
 #[derive(clap::Args, Debug)]
 pub(crate) struct HapticOptions {
     #[command(flatten)]

@@ -13,7 +13,7 @@ use crate::outputs::{UsedFile, check_outputs, named_by};
 /// Suffix of the name of a device's recorder.
 const RECORDER: &str = "-recorder";
 
-/// Reads a pen tablet or a 6-DOF mouse
+/// Options of the daemon of a pen tablet or a 6-DOF mouse.
 #[derive(clap::Args, Debug)]
 pub(crate) struct HidOptions {
     #[command(flatten)]
@@ -21,10 +21,10 @@ pub(crate) struct HidOptions {
     /// The device of rig.toml
     #[arg(long, value_name = "DEVICE")]
     device: String,
-    /// A recording to play in the device's place
+    /// Play this recording in place of the device
     #[arg(long, value_name = "FILE")]
     replay: Option<PathBuf>,
-    /// Where to write what the device says, as a recording
+    /// Record what the device sends
     #[arg(long, value_name = "FILE")]
     record: Option<PathBuf>,
 }

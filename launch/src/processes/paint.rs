@@ -25,7 +25,7 @@ use crate::performance::{library_from, painting_setup, refused};
 /// A paint node that is to stop takes at most so many turns more: it is waited for.
 const LAST_TURNS: u32 = 8;
 
-/// Paints what the brushes do
+/// Options of the paint node.
 #[derive(clap::Args, Debug)]
 pub(crate) struct PaintOptions {
     #[command(flatten)]

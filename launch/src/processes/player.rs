@@ -12,7 +12,7 @@ use nix::sys::signal::Signal;
 use super::{NodeOptions, PLAYER};
 use crate::performance::refused;
 
-/// Plays a take as a device
+/// Options of the player.
 #[derive(clap::Args, Debug)]
 pub(crate) struct PlayerOptions {
     #[command(flatten)]
@@ -20,13 +20,13 @@ pub(crate) struct PlayerOptions {
     /// The take
     #[arg(long, value_name = "TAKE")]
     take: PathBuf,
-    /// Seconds of the take a second, or 'max'
+    /// Playback speed (1 = real time), or 'max'
     #[arg(long, default_value = "1")]
     rate: Rate,
-    /// The brush that it moves
+    /// Brush that the take moves
     #[arg(long, default_value = "main")]
     brush: String,
-    /// What each stroke loads, in turn
+    /// Mixture that each stroke loads, in turn
     #[arg(long, value_name = "MIX")]
     load: Vec<String>,
     /// Take time, ns, up to which it plays as fast as it can

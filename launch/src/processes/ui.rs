@@ -7,7 +7,7 @@ use super::{MOUSE, NodeOptions};
 use crate::destination::{VIEW, export};
 use crate::performance::library_from;
 
-/// Shows the painting and lends the mouse as a stylus
+/// Options of the window.
 #[derive(clap::Args, Debug)]
 pub(crate) struct UiOptions {
     #[command(flatten)]
