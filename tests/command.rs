@@ -399,7 +399,7 @@ fn a_faulty_command_is_told_before_a_rig_is_asked() {
     let place = Place::new();
     let name = "b".repeat(65);
     for args in [
-        &["tune", "--brush", &name, "2"][..],
+        &["tune", "--brush", &name, "--stiffness", "2"][..],
         &["load", "--brush", &name, "Bone Black"],
         &["clean", "--brush", &name],
     ] {

@@ -353,8 +353,7 @@ fn tiles(database: &Database, shelves: &Shelves) -> Result<Tiles, DocumentError>
 
 /// The steps, where neighbours share the tiles that one left to the other.
 fn steps(database: &Database, shelves: &Shelves) -> Result<Vec<Step>, DocumentError> {
-    let query =
-        "SELECT id, what, brush, operations, done, effects, tiles, sum FROM step ORDER BY id";
+    let query = "SELECT id, what, brush, operations, done, deed, tiles, sum FROM step ORDER BY id";
     let mut statement = database.connection.prepare(query)?;
     let mut rows = statement.query(params![])?;
     let mut steps = Vec::new();
