@@ -12,7 +12,7 @@ const OWN: f32 = 0.35;
 /// Chance of patches as wide as this share of half the head, and of single bristles: at most so much of the mean.
 const PATCH: f32 = 0.16;
 const PATCHES: f32 = 1.0;
-const SINGLE: f32 = 1.2;
+const SINGLE: f32 = 1.5;
 /// The least that a bristle takes of the mean.
 const LEAST: f32 = 0.08;
 
