@@ -23,6 +23,25 @@
 //! | [`studio`] | all of the above for the paints, ground and light of one painting |
 //! | [`upsampling`] | reflectances that have a given colour |
 //! | [`backend`] | a studio's films for many tiles at once, on whatever computes them |
+//!
+//! A film of blue and white paint, 100 µm of each, over black, and the same paint half as thick:
+//!
+//! ```
+//! use maulstick_optics::PaintLibrary;
+//! use maulstick_optics::studio::Studio;
+//!
+//! # fn main() -> Result<(), maulstick_optics::PaintError> {
+//! let library = PaintLibrary::measured()?;
+//! let mut studio = Studio::daylight();
+//! let blue = studio.add(library.find("Cobalt Blue")?);
+//! let white = studio.add(library.find("Titanium White")?);
+//! let black = vec![0.0; studio.wavelengths()];
+//! let thick = studio.lab(&[(blue, 1e-4), (white, 1e-4)], &black);
+//! let thin = studio.lab(&[(blue, 5e-5), (white, 5e-5)], &black);
+//! assert!(thick[0] > thin[0] && thick[2] < -20.0, "lighter where it hides the black, and blue");
+//! # Ok(())
+//! # }
+//! ```
 
 pub mod backend;
 pub mod cie;

@@ -5,6 +5,39 @@
 //! | [`offline`] | samples in, a painting out: the same bytes as a rig that heard them |
 //! | [`autosave`] | a painting kept in its document as it grows |
 //! | [`ticker`] | ticks of a clock |
+//!
+//! A stroke of a loaded flat, 40 mm long; the books of the painting are even to the quantum:
+//!
+//! ```
+//! use maulstick_brush::BrushFile;
+//! use maulstick_optics::PaintLibrary;
+//! use maulstick_paint::{Painting, PaintingSetup};
+//! use maulstick_session::Offline;
+//! use maulstick_types::stylus::{StylusPose, StylusSample, axes};
+//!
+//! # fn main() -> Result<(), Box<dyn std::error::Error>> {
+//! let painting = Painting::new(&PaintingSetup::default(), PaintLibrary::measured()?)?;
+//! let loads = vec!["Cobalt Blue=0.7,Titanium White=0.3".parse()?];
+//! let mut offline = Offline::new(painting, "main", BrushFile::library("flat")?, 0.5, loads)?;
+//! for millimetre in 0..=41 {
+//!     let sample = StylusSample {
+//!         senses: axes::POSITION | axes::PRESSURE,
+//!         in_range: true,
+//!         pose: StylusPose::Contact {
+//!             point_m: [1e-3 * f64::from(millimetre) - 0.02, 0.0, 0.0],
+//!             tilt_rad: [0.4, 0.0],
+//!             twist_rad: 0.0,
+//!             pressure: if millimetre == 41 { 0.0 } else { 0.5 },
+//!         },
+//!         ..StylusSample::away()
+//!     };
+//!     offline.sample(u64::from(millimetre) * 10_000_000, &sample)?;
+//! }
+//! let report = offline.painting_mut().report();
+//! assert_eq!(report.quanta_missing, 0);
+//! # Ok(())
+//! # }
+//! ```
 
 pub mod autosave;
 pub mod offline;
