@@ -8,11 +8,11 @@ use maulstick_brush::Head;
 use maulstick_brush::head::disorder::{noise, unit};
 
 /// Share of a bristle's own unevenness that is left beside the chance of a load.
-const OWN: f32 = 0.35;
+const OWN: f32 = 0.6;
 /// Chance of patches as wide as this share of half the head, and of single bristles: at most so much of the mean.
 const PATCH: f32 = 0.16;
 const PATCHES: f32 = 1.0;
-const SINGLE: f32 = 1.5;
+const SINGLE: f32 = 1.2;
 /// The least that a bristle takes of the mean.
 const LEAST: f32 = 0.08;
 
