@@ -1,5 +1,5 @@
-//! How a painting looks under its light: the studio, the opacity of its dry layers, and those layers
-//! baked into the reflectances of what the wet paint lies on (Baxter 2004, § 7.8).
+//! Appearance of a painting under its light: the studio, the opacity of its dry layers, and those layers baked into the
+//! reflectances of the ground under the wet paint (Baxter 2004, § 7.8).
 
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -42,8 +42,7 @@ impl Appearance {
         }
     }
 
-    /// What it is, as a number: two looks of the same number show the same paint alike, today and
-    /// tomorrow.
+    /// Content hash: looks with equal hashes show the same paint alike, in every process.
     #[must_use]
     pub fn print(&self) -> i64 {
         self.print
@@ -177,7 +176,7 @@ pub struct Bakery {
 }
 
 impl Bakery {
-    /// Whether a tile of a surface need not be baked.
+    /// True if a tile of a surface need not be baked.
     #[must_use]
     pub fn holds(
         &self,

@@ -65,8 +65,7 @@ pub fn in_order<T: Send, E>(
     })
 }
 
-/// What neighbouring bands have in common: made by the first that asks, forgotten when the work is
-/// past it.
+/// Data that neighbouring bands share: made by the first that asks, dropped once the work is past it.
 #[derive(Debug)]
 pub struct Shelf<T>(Mutex<BTreeMap<usize, Arc<OnceLock<Arc<T>>>>>);
 
@@ -77,7 +76,7 @@ impl<T> Default for Shelf<T> {
 }
 
 impl<T> Shelf<T> {
-    /// What belongs to a band.
+    /// Data of a band.
     pub fn get(&self, band: usize, make: impl FnOnce() -> T) -> Arc<T> {
         let mut kept = self.0.lock().unwrap_or_else(PoisonError::into_inner);
         kept.retain(|other, _| other.abs_diff(band) <= KEPT);

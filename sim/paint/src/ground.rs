@@ -1,4 +1,4 @@
-//! What a surface is primed with: one reflectance everywhere, or a picture that is printed on it.
+//! Ground of a surface: one reflectance everywhere, or a picture that is printed on it.
 
 use std::collections::{BTreeMap, HashMap};
 use std::fmt;

@@ -1,4 +1,4 @@
-//! The head of a brush on a surface: where it is, and how far it goes.
+//! The head of a brush on a surface: its position and its extent.
 
 use maulstick_brush::head::STATIONS;
 use maulstick_brush::{Head, HeadPose, Hold};
@@ -180,8 +180,8 @@ pub fn low_bounds(
     })
 }
 
-/// How many cells a ribbon reaches beyond its middle line at the end of a step: where it was in the middle of
-/// it, its edge as wide as it is soft, seen across at most √2 times as far.
+/// Cells that a ribbon reaches beyond its middle line at the end of a step: its position in the middle of the step,
+/// plus its soft edge, seen across at most √2 times as far.
 #[must_use]
 pub fn border(traits: &BrushTraits) -> i64 {
     let half = 0.5 * traits.step_cells;

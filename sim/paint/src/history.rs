@@ -28,7 +28,7 @@ pub type TilePlace = (u32, TileId);
 /// A tile; none where nothing was painted.
 pub type TileRef = Option<Arc<Tile>>;
 
-/// Whether both are the same pages.
+/// True if both are the same pages.
 #[must_use]
 pub fn same(one: &TileRef, other: &TileRef) -> bool {
     match (one, other) {
@@ -40,7 +40,7 @@ pub fn same(one: &TileRef, other: &TileRef) -> bool {
     }
 }
 
-/// What a step made of a tile.
+/// Change of a tile by a step.
 #[derive(Clone, Debug)]
 pub struct Change {
     /// The tile before it.
@@ -60,7 +60,7 @@ impl Change {
     }
 }
 
-/// What a painting's surface is made of, as far as a step can change it.
+/// Materials of a surface, as far as a step can change them.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct SurfaceMaterial {
     /// The surface.
@@ -73,10 +73,10 @@ pub struct SurfaceMaterial {
     pub tooth_seed: u64,
 }
 
-/// What a painting is besides its tiles, as far as a step can change it.
+/// State of a painting besides its tiles, as far as a step can change it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct NonTileState {
-    /// What the brushes carry, by name.
+    /// Loads of the brushes, by name.
     pub loads: BTreeMap<String, Page<BrushLoad>>,
     /// The books.
     pub ledger: Ledger,
@@ -88,12 +88,12 @@ pub struct NonTileState {
     pub tops: BTreeMap<u32, f32>,
 }
 
-/// What a step did besides tiles.
+/// Changes of a step besides tiles.
 #[derive(Clone, Debug, Default)]
 pub struct StepEffects {
-    /// What brushes carried before and after it, where it changed that.
+    /// Loads of the brushes before and after it, where it changed them.
     pub loads: BTreeMap<String, [Page<BrushLoad>; 2]>,
-    /// What it booked.
+    /// Paint that it booked.
     pub booked: Booked,
     /// The dry layers before and after it, if it changed them.
     pub layers: Option<[Vec<Layer>; 2]>,
@@ -104,7 +104,7 @@ pub struct StepEffects {
 }
 
 impl StepEffects {
-    /// What leads from one state to another, with what was booked on the way.
+    /// The changes that lead from one state to another, with the paint booked in between.
     #[must_use]
     pub fn between(before: &NonTileState, after: &NonTileState, booked: Booked) -> Self {
         let changed = after.loads.iter().filter_map(|(name, page)| {
@@ -150,22 +150,22 @@ fn joined<T: Clone>(first: Option<[T; 2]>, second: Option<&[T; 2]>) -> Option<[T
 pub struct Step {
     /// Its number; steps that ended later have higher ones.
     pub id: u64,
-    /// What it was, in words.
+    /// Description in words.
     pub what: String,
-    /// Whose brush made it, if a brush did.
+    /// Name of the brush that made it, if one did.
     pub brush: Option<String>,
-    /// How many operations it is.
+    /// Number of operations.
     pub operations: u64,
-    /// Whether it is done; if not, it was undone.
+    /// True if it is done; false if it was undone.
     pub done: bool,
-    /// What it changed.
+    /// Changes of tiles.
     pub tiles: Arc<BTreeMap<TilePlace, Change>>,
-    /// What it did besides.
+    /// Its other changes.
     pub effects: Arc<StepEffects>,
 }
 
 impl Step {
-    /// Whether it changed anything that another one changed.
+    /// True if it changed anything that the other one changed.
     fn lies_on(&self, other: &Self) -> bool {
         let changes = |change: &Change| !same(&change.before, &change.after);
         let (few, many) = match self.tiles.len() < other.tiles.len() {
@@ -219,7 +219,7 @@ pub struct OpenStep {
     pub tiles: BTreeMap<TilePlace, TileRef>,
     /// The rest before it.
     pub before: NonTileState,
-    /// What it booked so far.
+    /// Paint booked so far.
     pub booked: Booked,
     /// The tiles that it may have changed.
     pub reached: BTreeSet<TilePlace>,
@@ -373,7 +373,7 @@ impl History {
         }
     }
 
-    /// How many steps can be undone and redone.
+    /// Numbers of steps that can be undone and redone.
     #[must_use]
     pub fn depth(&self) -> (usize, usize) {
         let done = self.steps.len() - self.undone.len();

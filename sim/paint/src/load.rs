@@ -1,4 +1,4 @@
-//! What a brush carries: a texture over its strips, a film on their surface and paint inside.
+//! Load of a brush: a texture over its strips, a film on their surface and paint inside.
 
 use maulstick_brush::Head;
 use maulstick_types::Mixture;
@@ -21,11 +21,11 @@ pub struct PaintOnBrush<'a> {
     pub slot: usize,
     /// Its films.
     pub film: &'a mut [u32],
-    /// What it has inside.
+    /// Paint inside.
     pub inside: &'a mut [u32],
 }
 
-/// Which bristles take paint up.
+/// The bristles that take paint up.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Half {
     /// All of them.
@@ -289,7 +289,7 @@ impl BrushLoad {
         self.steps += 1;
     }
 
-    /// Whether any of a paint may be there.
+    /// True if the load may have any of a paint.
     #[must_use]
     pub fn has(&self, slot: usize) -> bool {
         self.held[slot].is_some()
@@ -317,7 +317,7 @@ impl BrushLoad {
         (&mut self.films, paints)
     }
 
-    /// What a paint has inside each texel.
+    /// Amount of a paint inside each texel.
     #[must_use]
     pub fn inside(&self, slot: usize) -> Option<&[u32]> {
         self.held[slot].as_ref().map(|held| held.inside.as_slice())

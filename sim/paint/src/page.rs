@@ -17,7 +17,7 @@ pub(crate) trait Evict: Send + Sync {
     fn evict(&self) -> Option<usize>;
 }
 
-/// How much paging was done.
+/// Counts of paging.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct PageCounts {
     /// Bytes of pages in memory.
@@ -116,7 +116,7 @@ impl Pager {
         self.next.load(Relaxed)
     }
 
-    /// How much paging was done.
+    /// Counts of paging so far.
     #[must_use]
     pub fn counts(&self) -> PageCounts {
         PageCounts {
@@ -136,7 +136,7 @@ impl Pager {
         locked(&self.dead).push(id);
     }
 
-    /// What was wrong with the first page that could not be read.
+    /// Error of the first page that could not be read.
     #[must_use]
     pub fn fault(&self) -> Option<&str> {
         self.fault.get().map(String::as_str)
@@ -153,7 +153,7 @@ impl Pager {
         while ring.front().is_some_and(|what| what.strong_count() == 0) {
             ring.pop_front();
         }
-        // Where none could leave, none is asked again until the document has another one, or many came.
+        // If no page could leave, none is asked again until the document has another one, or many came.
         let rest = self.rest.load(Relaxed);
         if rest > 0 {
             self.rest.store(rest - 1, Relaxed);
@@ -262,7 +262,7 @@ impl<T: Content> Page<T> {
     /// A new page; `base` is the one of which it is a later state.
     #[must_use]
     pub fn new(pager: &Arc<Pager>, content: Arc<T>, base: Option<&Self>) -> Self {
-        // What is not stored may never be: then it is a later state of what came before that.
+        // A page that is not stored may never be: then it is a later state of the one before.
         let base = base.map_or_else(Weak::new, |base| match base.stored_bytes() {
             0 => base.0.base.clone(),
             _ => Arc::downgrade(&base.0),
@@ -296,7 +296,7 @@ impl<T: Content> Page<T> {
         &self.0.pager
     }
 
-    /// Whether both are the same page.
+    /// True if both are the same page.
     #[must_use]
     pub fn is(&self, other: &Self) -> bool {
         Arc::ptr_eq(&self.0, &other.0)
@@ -331,7 +331,7 @@ impl<T: Content> Page<T> {
             .map_or(0, |content| content.bytes())
     }
 
-    /// What it holds, if it is in memory.
+    /// Its content, if it is in memory.
     #[must_use]
     pub fn peek(&self) -> Option<Arc<T>> {
         locked(&self.0.content).clone()
@@ -347,8 +347,8 @@ impl<T: Content> Page<T> {
         self.0.pager.rest.store(0, Relaxed);
     }
 
-    /// What it holds, from the document if it is not in memory. A page that cannot be read holds
-    /// nothing, and [`Pager::fault`] says why.
+    /// Its content, from the document if it is not in memory. A page that cannot be read is empty, and [`Pager::fault`]
+    /// says why.
     #[must_use]
     pub fn get(&self) -> Arc<T> {
         self.0.used.store(true, Relaxed);

@@ -1,7 +1,7 @@
 //! Motion cut into steps of one length.
 //!
-//! Poses come as the brush is solved; steps are cut from the way between them, each as long as the last,
-//! whatever the rate of samples. What is left of a way waits for more of it, or for the end of the contact.
+//! Poses come as the brush is solved; steps are cut from the path between them, each as long as the last, whatever the
+//! rate of samples. The rest of a path waits for more of it, or for the end of the contact.
 
 use maulstick_brush::{Head, HeadPose};
 
@@ -27,7 +27,7 @@ const ROUNDING: f64 = 1e-6;
 pub struct PathStepper {
     at: Waypoint,
     stepped: HeadPose,
-    /// Where it has come to since, less than a step on.
+    /// Its position since then, less than a step on.
     ahead: Option<Waypoint>,
     scale: Scale,
     doublings: u32,
@@ -57,13 +57,13 @@ impl PathStepper {
         }
     }
 
-    /// Where it stepped last, and where it has come to since.
+    /// Position of the last step, and the position since.
     #[must_use]
     pub fn places(&self) -> (&Waypoint, Option<&Waypoint>) {
         (&self.at, self.ahead.as_ref())
     }
 
-    /// How the brush's lengths are seen.
+    /// Scale of the brush's lengths on the surface.
     #[must_use]
     pub fn scale(&self) -> Scale {
         self.scale

@@ -23,7 +23,7 @@ use dispatch::elsewhere;
 /// within seconds; of more clients than these the one that was answered longest ago is forgotten.
 const CLIENTS: usize = 256;
 
-/// What a command asks of the outside world; done by whoever runs the sequencer, at once.
+/// Effect of a command on the outside world; carried out at once by the caller of the sequencer.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Effect {
     /// Write the picture and, if asked, the ledger.
@@ -38,13 +38,13 @@ pub enum Effect {
 /// A reply to the command `number` of `client`.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Replied {
-    /// Who asked.
+    /// Client that sent it.
     pub client: u64,
     /// The command's number.
     pub number: u64,
-    /// What became of it.
+    /// Outcome.
     pub outcome: Outcome,
-    /// What is still to be done for it; the outcome holds if that succeeds.
+    /// Effect still to be carried out; the outcome holds if that succeeds.
     pub effect: Option<Effect>,
 }
 
@@ -64,7 +64,7 @@ pub struct Sequencer {
     answers: u64,
     ignored: u64,
     serial: u64,
-    /// What was accepted, if somebody keeps it.
+    /// Accepted records, if they are saved.
     records: Option<Vec<Record>>,
 }
 
@@ -122,13 +122,13 @@ impl Sequencer {
         std::mem::take(&mut self.journal)
     }
 
-    /// What is consumed of a brush's states: all below this number.
+    /// First of a brush's states that is not consumed.
     #[must_use]
     pub fn consumed(&self, brush: Origin) -> u64 {
         self.consumed.get(&brush).copied().unwrap_or(0)
     }
 
-    /// What is consumed of every brush's states.
+    /// First state of each brush that is not consumed.
     #[must_use]
     pub fn consumed_all(&self) -> Vec<(Origin, u64)> {
         self.consumed
@@ -202,7 +202,7 @@ impl Sequencer {
         self.pass(header);
     }
 
-    /// Whether a state is of the announced take, or live while no take has its brush.
+    /// True if a state is of the announced take, or live while no take has its brush.
     fn may_paint(&self, brush: &str, header: &Header, state: &BrushState) -> bool {
         let take = self.announced.get(brush);
         if header.flags.has(Flags::REPLAY) {
@@ -457,7 +457,7 @@ impl Sequencer {
         }
         self.painting.take(brush, loads)?;
         let step = self.painting.newest_step();
-        // What may have to be taken back is not merged with what came before.
+        // A step that may have to be taken back is not merged with earlier ones.
         self.painting.part_history(step);
         let take = TakeSnapshot {
             device,

@@ -16,7 +16,7 @@ pub struct TileId {
     pub x: u32,
 }
 
-/// What lies on a tile: wet paint over what has dried.
+/// Paint of a tile: wet over dried.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Tile {
     wet: Option<Page<Planes>>,
@@ -74,19 +74,19 @@ impl Tile {
         self.wet.iter().chain(dry)
     }
 
-    /// What has dried.
+    /// Dried paint.
     #[must_use]
     pub fn dry(&self) -> Option<&Arc<DryStack>> {
         self.dry.as_ref()
     }
 
-    /// Whether nothing lies on it.
+    /// True if it has no paint.
     #[must_use]
     pub fn is_bare(&self) -> bool {
         self.wet.is_none() && self.dry.is_none()
     }
 
-    /// Whether both are made of the same pages.
+    /// True if both are made of the same pages.
     #[must_use]
     pub fn is(&self, other: &Self) -> bool {
         let wet = match (&self.wet, &other.wet) {

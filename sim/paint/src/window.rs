@@ -21,7 +21,7 @@ pub struct Area {
 }
 
 impl Area {
-    /// Whether it holds no cell.
+    /// True if it has no cell.
     #[must_use]
     pub fn is_empty(&self) -> bool {
         self.size.contains(&0)
@@ -66,7 +66,7 @@ pub struct Window {
     base: Vec<f32>,
     ride: Vec<f32>,
     ride_below: f32,
-    /// What has dried on each tile.
+    /// Dried paint of each tile.
     dry: Vec<Option<Arc<DryStack>>>,
     top: f32,
     dirty: Vec<bool>,
@@ -159,8 +159,7 @@ impl Window {
         &self.ride
     }
 
-    /// How far the ride is below 0 at most anywhere on the surface, cells: what a step looks at must not
-    /// depend on what else its window holds.
+    /// Lowest ride anywhere on the surface, cells below 0: a step must not depend on what else its window holds.
     #[must_use]
     pub fn ride_below(&self) -> f32 {
         self.ride_below
@@ -284,7 +283,7 @@ impl Window {
         }
     }
 
-    /// Whether any of a paint may be there.
+    /// True if the window may have any of a paint.
     #[must_use]
     pub fn has(&self, slot: usize) -> bool {
         self.wet[slot].is_some()

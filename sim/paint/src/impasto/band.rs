@@ -27,17 +27,17 @@ struct Point {
     along: f32,
 }
 
-/// What of a ribbon is the same along it.
+/// Values that are constant along a ribbon.
 #[derive(Clone, Copy, Debug)]
 struct Ribbon {
     strip: usize,
-    /// How far it keeps off what it lies on, cells.
+    /// Clearance over what it lies on, cells.
     bottom: f32,
     /// Among strips of the same depth it counts as higher by this much, cells.
     rank: f32,
     /// Half its width, cells.
     half: f32,
-    /// Whether what touches of it begins here, and whether it ends here.
+    /// True where its touching part begins here, and where it ends here.
     ends: [bool; 2],
 }
 
@@ -157,7 +157,7 @@ impl Band {
         self.drawing.draw::<L>(&piece, columns);
     }
 
-    /// Which of the covered cells are touched.
+    /// Finds the covered cells that are touched.
     pub(super) fn touch(&mut self, step: &Step<'_>, lying: &[f32], sink: f32) {
         let window = &*step.window;
         let to_cells = step.traits.cells_per_quantum;
@@ -203,7 +203,7 @@ impl Band {
     }
 }
 
-/// Where in the middle of a step is what goes on to `after` from `before`.
+/// Value in the middle of a step from `before` to `after`.
 #[must_use]
 pub fn middle(after: f32, before: f32) -> f32 {
     after - 0.5 * (after - before)

@@ -1,4 +1,4 @@
-//! What a painting hands to its document, and how it comes back from there.
+//! Checkpoints of a painting for its document, and its restoration from them.
 
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -28,14 +28,14 @@ use crate::store::TileStore;
 use crate::tile::{TileId, Version};
 use crate::traits::TEXELS_PER_STRIP;
 
-/// What changed since the document last heard of it; a moment of the painting, whole.
+/// Changes since the previous checkpoint; one moment of the painting, whole.
 #[derive(Clone, Debug)]
 pub struct Checkpoint {
     /// The painting besides its tiles.
     pub kept: PaintingSnapshot,
     /// Tiles that changed.
     pub tiles: Vec<(TilePlace, Version)>,
-    /// What the brushes carry, by name.
+    /// Loads of the brushes, by name.
     pub loads: BTreeMap<String, Page<BrushLoad>>,
     /// Steps that came or changed; those that are not finished are among them.
     pub steps: Vec<Step>,
@@ -56,7 +56,7 @@ pub struct Restored {
     pub kept: PaintingSnapshot,
     /// Its tiles.
     pub tiles: Vec<(TilePlace, Version)>,
-    /// What the brushes carry, by name.
+    /// Loads of the brushes, by name.
     pub loads: BTreeMap<String, Page<BrushLoad>>,
     /// The steps of its history.
     pub steps: Vec<Step>,
@@ -67,7 +67,7 @@ pub struct Restored {
 }
 
 impl Painting {
-    /// What changed since the last call, where the newest tile version was `since`.
+    /// Changes since the last call, where the newest tile version was `since`.
     pub fn checkpoint(&mut self, since: u64) -> Checkpoint {
         self.commit();
         let loads = self.rest().loads;

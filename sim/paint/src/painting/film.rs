@@ -1,4 +1,4 @@
-//! Paint that is laid over tiles, without a brush.
+//! Films of paint over tiles, without a brush.
 
 use std::collections::HashMap;
 use std::sync::Arc;
@@ -19,14 +19,14 @@ use crate::tile::{Tile, TileId};
 #[derive(Clone)]
 struct Laid {
     page: Page<Planes>,
-    /// What was laid.
+    /// Paint that was applied.
     given: Counts,
     /// Most quanta of a cell.
     top: f32,
 }
 
-/// What an even film became on tiles that were alike: they share their pages, so that a vast canvas
-/// takes no more room than a tile.
+/// Results of an even film on tiles that were alike: they share their pages, so that a vast canvas takes no more room
+/// than a tile.
 #[derive(Default)]
 pub(super) struct Films {
     /// By the page of what was wet; 0 where nothing was.

@@ -1,4 +1,4 @@
-//! Drying, and what becomes of dry layers.
+//! Drying, and edits of dry layers.
 
 use std::sync::Arc;
 
@@ -22,7 +22,7 @@ pub(super) struct Part {
 /// Tiles after some of their paint dried, or became wet.
 pub(super) type Changed = Vec<(TileId, Arc<Tile>)>;
 
-/// Why nothing dries.
+/// The error that nothing is wet.
 pub(super) fn nothing_wet(region: Option<&Region>) -> EditError {
     let place = region.map_or(String::new(), |region| format!(" in {region}"));
     EditError::new(format!("nothing is wet{place}"), "paint something first")
@@ -133,7 +133,7 @@ impl Painting {
         Some(stays)
     }
 
-    /// Whether any paint of a part is wet.
+    /// True if any paint of a part is wet.
     pub(super) fn is_wet(&self, part: &Part) -> bool {
         let mut tiles = self.sheets[part.sheet].store.iter();
         tiles.any(|(id, version)| {

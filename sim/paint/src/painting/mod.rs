@@ -1,4 +1,4 @@
-//! The painting: surfaces, brushes, books. It does what it is told, in the order that it is told.
+//! The painting: surfaces, brushes, ledger. It carries out commands in the order in which they are called.
 
 mod accounting;
 mod backend;
@@ -84,15 +84,15 @@ struct PaintingBrush {
     stroke: Option<(u32, u64)>,
     path: Option<(usize, PathStepper)>,
     window: Option<(usize, Window)>,
-    /// What its strokes take in turn.
+    /// Loads that its strokes take in turn.
     loads: Vec<Mixture>,
     /// Strokes since its take began.
     strokes: usize,
     /// Seed of how its bristles lie.
     seed: u64,
-    /// What lay under it at its newest step.
+    /// Surface under it at its newest step.
     under: UnderBrush,
-    /// How far steps are deferred.
+    /// Progress of its deferred steps.
     deferral: Deferral,
 }
 
@@ -230,7 +230,7 @@ impl Painting {
         &self.library
     }
 
-    /// How its paint becomes colour.
+    /// Appearance of its paint.
     #[must_use]
     pub fn look(&self) -> &Arc<Appearance> {
         &self.look
@@ -328,13 +328,13 @@ impl Painting {
             .map(String::as_str)
     }
 
-    /// Whether a brush is known.
+    /// True if a brush is known.
     #[must_use]
     pub fn knows_brush(&self, name: &str) -> bool {
         self.brushes.contains_key(name)
     }
 
-    /// How full the brush with this hash of its name is, 0 to 1.
+    /// Fullness of the brush with this hash of its name, 0 to 1.
     #[must_use]
     pub fn fullness(&self, source: u32) -> f32 {
         let mut brushes = self.brushes.iter();

@@ -176,7 +176,7 @@ impl Painting {
         let traits = BrushTraits::of(&track.thinned, scale.cell_m, scale.zoom).doubled(doublings);
         let deferred = self.model.defers() && !self.has_wells(sheet);
         let height = if deferred {
-            // How high paint stands is not known here.
+            // The height of the paint is not known here.
             f32::INFINITY
         } else {
             let wet = self.sheets[sheet].top * (QUANTUM_M / scale.cell_m) as f32;
@@ -235,7 +235,7 @@ impl Painting {
             self.model.step_now(&mut step)
         };
         self.sheets[sheet].top = self.sheets[sheet].top.max(window.top());
-        // What is told of deferred steps is told of all that were not settled.
+        // The report of deferred steps covers all that were not settled.
         let unsettled = if deferred {
             track.deferral.unsettled_steps()
         } else {

@@ -1,4 +1,4 @@
-//! Paint that is laid cell by cell: an underpainting after a picture.
+//! Paint applied cell by cell: an underpainting after a picture.
 
 use maulstick_types::Mixture;
 use maulstick_types::mixture::Part;
@@ -10,7 +10,7 @@ use crate::ledger::Ledger;
 use crate::quantum::SLOTS;
 use crate::tile::TileId;
 
-/// What becomes of paint after it was laid.
+/// State of the paint after it was applied.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Wetness {
     /// It stays wet.
@@ -25,7 +25,7 @@ pub enum Wetness {
 /// Paint for a tile.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct LaidTile {
-    /// Which.
+    /// Which tile.
     pub id: TileId,
     /// Number of a paint, and its quanta in each of the [`TILE_CELLS`](crate::planes::TILE_CELLS) cells,
     /// row after row from the bottom.
@@ -67,7 +67,7 @@ impl Painting {
         let [across, up] = grid.unwrap_or_default();
         self.begin_step("underpaint", None);
         if matches!(wetness, Wetness::Dry { .. }) {
-            // What is wet dries first, apart: nothing dries on top of wet paint.
+            // Wet paint dries first, as a step of its own: nothing dries on top of wet paint.
             self.dry_in_step(surface, 1.0, "").ok();
         }
         for tile in tiles {

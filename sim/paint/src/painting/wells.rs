@@ -1,7 +1,7 @@
 //! The wells of a palette: paint that never runs out, and the cleaner.
 //!
-//! Under the brush a well's cells hold its mixture, fresh: what was pushed into them goes to the
-//! cleaner, what was taken comes from the tubes. A brush that touches the cleaner is clean.
+//! Under the brush a well's cells hold its mixture, fresh: paint that was pushed into them goes to the cleaner, paint
+//! that was taken comes from the tubes. A brush that touches the cleaner is clean.
 
 use std::sync::Arc;
 
@@ -50,7 +50,7 @@ fn cells_within<'a>(
         .map(move |(x, y)| y as usize * width + x as usize)
 }
 
-/// Whether a strip is down on the surface within a well.
+/// True if a strip is down on the surface within a well.
 fn is_in((pose, traits): (&HeadPose, &BrushTraits), well: &Well, cell_m: f64) -> bool {
     let low = traits.half_thickness + traits.sink + DIPS;
     let [x, y] = well.center_m.map(|m| (m / cell_m) as f32);

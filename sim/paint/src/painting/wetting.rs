@@ -1,4 +1,4 @@
-//! Dry layers that are made wet again.
+//! Rewetting of dry layers.
 
 use std::collections::BTreeSet;
 use std::sync::Arc;

@@ -1,4 +1,4 @@
-//! What is drawn of a surface, and how: light first, then gamut and encoding.
+//! Drawing of a surface into pixels: light first, then gamut and encoding.
 
 use std::fmt;
 
@@ -14,7 +14,7 @@ use crate::lamp::lamp_over;
 use crate::painting::Painting;
 use crate::tile::TileId;
 
-/// What becomes of a point.
+/// Light of a point.
 pub(super) type Light = Box<dyn Fn(&Spot) -> [f32; 3] + Sync>;
 
 /// A surface under light, for a destination.

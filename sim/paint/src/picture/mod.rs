@@ -17,12 +17,12 @@ use maulstick_optics::icc::Profile;
 use crate::bands::in_order;
 use crate::painting::Painting;
 
-/// How a picture leaves the working space.
+/// Conversion of a picture from the working space.
 #[derive(Clone, Debug)]
 pub struct Export {
-    /// Where it goes.
+    /// Target profile.
     pub profile: Arc<Profile>,
-    /// How its colours come into the gamut there.
+    /// Gamut mapping into that profile.
     pub gamut: GamutMapping,
 }
 

@@ -34,7 +34,7 @@ impl Sequencer {
     }
 }
 
-/// Why a command that changes no painting is none of its sequencer's.
+/// The refusal of a command that changes no painting and is not the sequencer's.
 pub(super) fn elsewhere(command: &Command) -> EditError {
     let (what, help) = match command {
         Command::Define { brush, .. } => (

@@ -1,4 +1,4 @@
-//! What a document keeps of the journal: the accepted things themselves, to be accepted again.
+//! Journal records as a document saves them: accepted commands and states, to be accepted again.
 
 use maulstick_brush::BrushFile;
 use maulstick_types::brush::BrushState;
@@ -76,13 +76,13 @@ impl Sequencer {
         self.records = None;
     }
 
-    /// How many things were accepted.
+    /// Number of accepted records.
     #[must_use]
     pub fn serial(&self) -> u64 {
         self.serial
     }
 
-    /// What was accepted since the last call.
+    /// Records accepted since the last call.
     pub fn take_records(&mut self) -> Vec<Record> {
         self.records
             .as_mut()
@@ -139,7 +139,7 @@ impl Sequencer {
         self.gone.extend(players);
     }
 
-    /// Whether a take is being played: its brush is held by it.
+    /// True while a take is being played: its brush belongs to it.
     #[must_use]
     pub fn is_taking(&self) -> bool {
         let mut takes = self.announced.values();
@@ -222,7 +222,7 @@ impl Sequencer {
     fn replay_state(&mut self, header: &Header, state: &BrushState) {
         let brush = self.painting.brush_of(header.source).map(str::to_owned);
         if let Some(brush) = brush.filter(|_| state.fault().is_none()) {
-            // What was refused then is refused now.
+            // A state that was refused then is refused now.
             self.paint(&brush, header, state).ok();
             self.consume(&brush, header);
         }
