@@ -14,7 +14,7 @@ use crate::spine_root::SpineRoot;
 /// The core, and how the segments of all spines lie beside its own.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Core {
-    /// Where it stands and what it is made of.
+    /// Root and material of the core.
     pub root: SpineRoot,
     /// For each spine and segment: the core's segment beside it, and its own direction at rest in
     /// that segment's frame.

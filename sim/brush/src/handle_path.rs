@@ -27,7 +27,7 @@ pub struct Sampled {
 pub struct HandlePath {
     from: Rigid,
     to: Rigid,
-    /// What bends it: the second difference of place and quaternion.
+    /// Curvature: the second difference of position and quaternion.
     bend: (DVec3, DQuat),
     /// Length up to each of the chords' ends, m.
     lengths: [f64; CHORDS + 1],
@@ -145,8 +145,7 @@ pub struct PathSegment<'a> {
     pub start_ns: u64,
     /// And when it ends.
     pub end_ns: u64,
-    /// How far the brush goes from the solve before to its end, m: where no sample lay between, as
-    /// long as the piece.
+    /// Path length from the previous solve to its end, m: the length of the piece unless a sample was in between.
     pub length_m: f64,
 }
 

@@ -1,10 +1,9 @@
-//! How a pen is led, so that the mark lies under its point.
+//! Lead of a pen: an offset of the handle that brings the mark under the pen's point.
 //!
-//! A pen or a mouse gives a point of the surface, and the painter looks there; but a head that is
-//! pressed down bends, and touches beside where the handle's axis meets the surface. So the handle is
-//! held beside the point, as a hand holds it that looks at the mark: at the first touch by as much as
-//! the mark lies beside it, then as [`Beside`](crate::mark::Beside) says for how it is held, and what
-//! is left, for example of the drag, is taken back along the way.
+//! A pen or a mouse gives a point of the surface, and the painter looks there; but a head that is pressed down bends,
+//! and touches beside the point where the handle's axis meets the surface. So the handle stands beside the point, as in
+//! a hand that watches the mark: at the first touch by the mark's offset, then as [`Beside`](crate::mark::Beside) gives
+//! it for the pose, and the rest, for example of the drag, is taken back along the path.
 
 use glam::DVec2;
 use maulstick_num::exp;
@@ -14,7 +13,7 @@ const BACK_M: f64 = 1e-3;
 /// The handle is led along a way by at most so many times its length.
 const FASTEST: f64 = 4.0;
 
-/// How far the handle of a pen is held beside its point, m.
+/// Offset of a pen's handle from its point, m.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Lead {
     /// In all.

@@ -54,7 +54,7 @@ pub struct BrushModel {
     last_contact_ns: u64,
     /// Factor on the stiffness of the file.
     tuned: f64,
-    /// How soaked it is, 0 to 1.
+    /// Wetness, 0 to 1.
     wetness: f64,
 }
 
@@ -65,13 +65,13 @@ struct TrackedBrush {
     /// Its zoom: on a canvas that is larger the brush bends otherwise.
     zoom: f64,
     head: SolvedHead,
-    /// Where the device holds it.
+    /// Newest sample of the device.
     newest: Sampled,
-    /// Whether a pen holds it, which is led so that the mark lies under its point.
+    /// True for a pen, which is led so that the mark is under its point.
     is_pen: bool,
-    /// How far it is held beside that.
+    /// Lead of the handle.
     lead: Lead,
-    /// Where the head is bent to along the surface.
+    /// Bend of the head along the surface.
     bent: DVec2,
     /// The normal force of all contacts there, N.
     force_n: f64,
@@ -145,7 +145,7 @@ impl BrushModel {
         self.tuft.bond = made + (soaked - made) * self.wetness;
     }
 
-    /// Whether there is a scene.
+    /// True if there is a scene.
     #[must_use]
     pub fn has_scene(&self) -> bool {
         self.desk.is_some()
@@ -271,7 +271,7 @@ impl BrushModel {
         solve
     }
 
-    /// Where a brush is held at a sample.
+    /// Pose of a brush at a sample.
     fn placed(&self, tracked: &TrackedBrush, at: &Sampled) -> Rigid {
         let mut brush = at.pose;
         brush.translation += tracked.lead.shift.extend(0.0);
@@ -359,7 +359,7 @@ impl BrushModel {
         }
     }
 
-    /// How far the mark lies beside the point of a pen that is set down as it is held now, m.
+    /// Offset of the mark from the point of a pen that is set down in the current pose, from the table, m.
     fn tabled(&self, tracked: &TrackedBrush, at: &Sampled) -> DVec2 {
         let of = |table: &Beside| table.at(&at.pose, tracked.bent, self.file.length_m());
         self.beside.as_ref().map_or(DVec2::ZERO, of)

@@ -1,4 +1,4 @@
-//! Where the palette lies: beside the canvas, or slid over it; and how its board is rounded.
+//! Placement of the palette, beside the canvas or slid over it, and the rounded corners of its board.
 
 use glam::{DVec2, DVec3};
 use maulstick_num::geometry::{Rigid, shortest_arc};
@@ -63,7 +63,7 @@ pub fn over(canvas: &Surface, palette: &Surface) -> Pose {
     .to_pose()
 }
 
-/// Whether two poses differ by rounding alone.
+/// True if two poses differ by rounding alone.
 #[must_use]
 pub fn is_same(a: &Pose, b: &Pose) -> bool {
     let near = |a: &[f64], b: &[f64]| a.iter().zip(b).all(|(a, b)| (a - b).abs() < SAME);
@@ -97,7 +97,7 @@ fn is_paint(well: &Well) -> bool {
     matches!(well.kind, WellKind::Paint { .. })
 }
 
-/// Whether a point of a surface, in its own lengths, lies on it and not beyond a rounded corner.
+/// True if a point of a surface, in its own lengths, is on it and not beyond a rounded corner.
 #[must_use]
 pub fn is_on(size: DVec2, radii: [f64; 4], at: DVec2) -> bool {
     if at.cmplt(DVec2::ZERO).any() || at.cmpge(size).any() {
@@ -134,7 +134,7 @@ pub fn canvas_at_rest(canvas: &Surface) -> Surface {
     }
 }
 
-/// Whether the palette is nearer to its place over the canvas than to the one beside it.
+/// True if the palette is nearer to its place over the canvas than to the one beside it.
 #[must_use]
 pub fn is_out(canvas: &Surface, palette: &Surface, side: Side) -> bool {
     let at = |pose: &Pose| DVec3::from_array(pose.position_m);

@@ -8,7 +8,7 @@ use maulstick_types::scene::Surface;
 
 /// Zooms that a painter can use.
 pub const ZOOMS: [f64; 2] = [0.1, 20.0];
-/// How far the canvas goes from the middle of the desk, m, before its zoom.
+/// Farthest distance of the canvas from the middle of the desk, m, before its zoom.
 pub const FARTHEST_M: f64 = 1.0;
 /// A surface is tilted by this much at most, rad.
 pub const TILT_MOST: f64 = 1.05;

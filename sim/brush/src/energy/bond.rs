@@ -1,4 +1,4 @@
-//! What holds the spines of a head together.
+//! Bond between the spines of a head.
 
 use glam::DVec3;
 

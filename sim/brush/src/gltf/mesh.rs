@@ -99,7 +99,7 @@ impl Placed {
         coordinates.find(|mm| !(-most..=most).contains(mm))
     }
 
-    /// How far along a direction the vertices reach that follow a joint by half or more, mm.
+    /// Reach along a direction of the vertices that follow a joint by half or more, mm.
     pub(super) fn reach(&self, joint: usize, from: DVec3, along: DVec3) -> f64 {
         let follows = |weights: &[(usize, f64)]| {
             let own = weights.iter().filter(|(other, _)| *other == joint);

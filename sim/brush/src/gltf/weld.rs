@@ -1,4 +1,4 @@
-//! Undoes what an exporter does to a mesh: vertices split at seams, quadrilaterals cut in two.
+//! Undoes the changes that an exporter makes to a mesh: vertices split at seams, quadrilaterals cut in two.
 
 use std::collections::BTreeMap;
 

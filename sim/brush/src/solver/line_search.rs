@@ -1,4 +1,4 @@
-//! How far to go along a step.
+//! Step length along a direction.
 
 use super::{ContactConstraint, Energy, Problem, Solver};
 use crate::spine::SpineShape;
@@ -8,7 +8,7 @@ const LONGEST_TURN: f64 = 0.7;
 /// Times that a step is halved at most.
 const HALVINGS: usize = 30;
 
-/// How deep all joints together lie within their walls, m.
+/// Sum of the depths of all joints within their half spaces, m.
 fn sunk(gaps: &[f64]) -> f64 {
     gaps.iter().map(|gap| (-gap).max(0.0)).sum()
 }

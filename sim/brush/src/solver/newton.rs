@@ -208,7 +208,7 @@ impl QuadraticProgram {
             .solve(&self.dual, &self.rhs, floor, &mut self.lambda);
     }
 
-    /// What keeps the dual solvable where constraints depend on each other.
+    /// Diagonal term that keeps the dual solvable where constraints depend on each other.
     pub(super) fn floor(&self) -> f64 {
         let n = self.lambda.len();
         1e-12 * (0..n).map(|i| self.dual[i * n + i]).fold(0.0, f64::max)
