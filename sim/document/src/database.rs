@@ -14,7 +14,7 @@ use crate::schema::{self, Table};
 use crate::sum::Sum;
 use crate::{loads, planes};
 
-/// What a file is opened for.
+/// Purpose for which a file is opened.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Access {
     /// To paint in it; it is begun where there is none.
@@ -49,7 +49,7 @@ pub(crate) fn beside(path: &Path, suffix: &str) -> PathBuf {
     name.into()
 }
 
-/// Where a file really is: what a link leads to, and SQLite keeps its journal beside.
+/// Real path of a file: the target of a link, beside which SQLite puts its journal.
 pub(crate) fn resolved(path: &Path) -> PathBuf {
     std::fs::canonicalize(path).unwrap_or_else(|_| path.to_owned())
 }
@@ -65,7 +65,7 @@ pub(crate) fn folded(path: &Path) -> Result<(), DocumentError> {
     }
 }
 
-/// Whether a painting is there that can go on; false where one is to be begun.
+/// True if there is a painting to continue; false if one is to be created.
 ///
 /// # Errors
 /// Any [`DocumentError`], and nothing is changed.
@@ -91,7 +91,7 @@ fn length(path: &Path) -> Option<u64> {
     std::fs::metadata(path).ok().map(|about| about.len())
 }
 
-/// Whether a painting is to be begun there.
+/// True if a painting is to be created there.
 pub(crate) fn is_new(path: &Path) -> Result<bool, DocumentError> {
     let Some(length_found) = length(path) else {
         if is_companion(path) {
@@ -134,12 +134,12 @@ pub(crate) fn is_new(path: &Path) -> Result<bool, DocumentError> {
     }
 }
 
-/// Where a SQLite file says how it is written.
+/// Offset of the write version in a SQLite file.
 const WRITE_VERSION: usize = 18;
-/// What stands there where no write-ahead log was ever asked for, as every painting does first.
+/// Its value if no write-ahead log was ever requested, as in every new painting.
 const ROLLBACK: u8 = 1;
 
-/// Whether these are a painting's first bytes with a few of them wrong.
+/// True if these are a painting's first bytes with a few of them wrong.
 fn damaged_head(head: &[u8]) -> bool {
     head.iter()
         .zip(MAGIC)
@@ -289,7 +289,7 @@ impl Database {
                 self.connection
                     .query_row("PRAGMA wal_checkpoint(TRUNCATE)", params![], |_| Ok(()));
             match folded.map_err(DocumentError::from) {
-                // What is in the journal is safe there, and folded in when there is room.
+                // Data in the journal are safe there, and are merged in when there is room.
                 Err(DocumentError::Full) => {}
                 folded => folded?,
             }
@@ -359,7 +359,7 @@ impl Database {
         planes::decode(slots as u32, &data, base.as_ref()).map_err(|what| damaged(&what))
     }
 
-    /// What a brush carried.
+    /// Load of a brush.
     ///
     /// # Errors
     /// As [`planes`](Self::planes).

@@ -1,4 +1,4 @@
-//! Accepted things as bytes: messages as on the bus, each with its index and its length before it.
+//! Accepted records as bytes: messages as on the bus, each preceded by its index and its length.
 
 use std::io::Read as _;
 
@@ -17,7 +17,7 @@ use crate::sum::Sum;
 
 /// A row's data has at most this many bytes.
 const MOST: usize = 1 << 28;
-/// Who writes what no brush has sent.
+/// Origin of records that no brush has sent.
 const ME: Origin = Origin {
     source: 0,
     epoch: 0,

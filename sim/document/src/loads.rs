@@ -1,7 +1,7 @@
-//! What a brush carries as bytes: little-endian numbers of 32 bits, compressed.
+//! Load of a brush as bytes: little-endian numbers of 32 bits, compressed.
 //!
-//! Number of texels, number of slots, steps (two numbers, the low one first); the films of all paints;
-//! then for each slot its number, its films and what it has inside.
+//! Number of texels, number of slots, steps (two numbers, the low one first); the films of all paints; then for each
+//! slot its number, its films and its paint inside.
 
 use maulstick_paint::load::BrushLoad;
 use maulstick_paint::quantum::SLOTS;

@@ -39,7 +39,7 @@ use pictures::Pictures;
 use steps::{Now, Steps, makes};
 use stock::Stock;
 
-/// What was taken out of a damaged painting, and what is missing.
+/// Content recovered from a damaged painting, and its losses.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Salvage {
     /// Tiles with paint that are as they were.
@@ -72,7 +72,7 @@ pub struct Salvage {
     pub rows: u64,
     /// Pages of the file that are gone, with all rows on them.
     pub pages: u64,
-    /// Whether the state of the painting besides its tiles is an older one.
+    /// True if the state of the painting besides its tiles is an older one.
     pub is_old: bool,
     /// The format that the file names, if it is none that this program knows: of a newer one there may
     /// be more than what was found.
@@ -80,7 +80,7 @@ pub struct Salvage {
 }
 
 impl Salvage {
-    /// Whether nothing was damaged.
+    /// True if nothing was damaged.
     #[must_use]
     pub fn is_whole(&self) -> bool {
         let whole = Self {
@@ -94,7 +94,7 @@ impl Salvage {
     }
 }
 
-/// What is written before the new painting has its name; it goes where it does not get it.
+/// Temporary file of the new painting until it gets its name; removed if it does not get it.
 struct Part(PathBuf);
 
 impl Part {
@@ -166,7 +166,7 @@ pub fn recover(
     Ok(salvage)
 }
 
-/// Where a painting is made before it gets its name; its journal lies beside it.
+/// Path at which a painting is made before it gets its name; its journal is beside it.
 #[must_use]
 pub fn part_of(to: &Path) -> PathBuf {
     beside(to, &format!(".part-{}", std::process::id()))
@@ -228,7 +228,7 @@ fn write(
     rest::versions(&gathered, &mut kept, shelves, &mut salvage, database)?;
     rest::journal(&gathered, &mut sequencer, base, &mut salvage, database)?;
     kept.next_page = kept.next_page.max(stock.next);
-    // What is lost is not missed again.
+    // Lost rows are not reported as missing again.
     kept.rows = None;
     for (key, state) in [
         ("painting", serde_json::to_string(&kept)?),

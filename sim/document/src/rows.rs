@@ -1,4 +1,4 @@
-//! How tiles, steps and versions stand in rows.
+//! Tiles, steps and versions as rows.
 
 use std::collections::BTreeMap;
 
@@ -60,7 +60,7 @@ pub fn unpacked<const N: usize>(bytes: &[u8]) -> Option<Vec<[i64; N]>> {
     })
 }
 
-/// What a step did besides tiles: the numbers of loads before and after it, what it booked, layers and
+/// Changes of a step besides tiles: the numbers of loads before and after it, the paint it booked, and layers and
 /// surfaces before and after it where it changed them.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct KeptDeed {
@@ -76,7 +76,7 @@ pub struct KeptDeed {
     pub tops: [BTreeMap<u32, f32>; 2],
 }
 
-/// What a painting was in a version besides tiles.
+/// State of a painting in a version besides tiles.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct KeptRest {
     /// Loads by brush.

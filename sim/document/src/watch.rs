@@ -1,5 +1,5 @@
-//! Whether the files of an open painting are still where they were: SQLite goes on writing into files that
-//! have no name any more, and what is committed there is gone with the process.
+//! Checks that the files of an open painting are still at their paths: SQLite keeps writing into files that no longer
+//! have a name, and what is committed there is lost with the process.
 
 use std::os::unix::fs::MetadataExt as _;
 use std::path::{Path, PathBuf};
@@ -18,7 +18,7 @@ pub(crate) struct Watch {
     journal: Option<FileId>,
 }
 
-/// What became of the files of an open painting.
+/// State of the files of an open painting.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) enum Found {
     /// They are where they were.

@@ -53,20 +53,19 @@ pub struct ShownTile {
     pub place: i64,
     /// The tile version that it shows.
     pub version: u64,
-    /// What it is shown under.
+    /// Look under which it is shown.
     pub look: i64,
     /// Its planes.
     pub bytes: Vec<u8>,
 }
 
-/// What is added to the keys of the second copy of the state: without it a single wrong bit would cost
-/// all.
+/// Suffix of the keys of the second copy of the state: without that copy a single wrong bit would cost all.
 pub(crate) const COPY: &str = " copy";
 
-/// What is done between two pages: somebody may wait for one.
+/// Called between two pages: a reader may wait for one.
 pub(crate) type Breath<'a> = &'a mut dyn FnMut(&Database);
 
-/// What was written, to be noted once it is committed.
+/// Rows that were written, to be noted once they are committed.
 #[derive(Debug, Default)]
 pub(crate) struct Stored {
     planes: Vec<(Page<Planes>, usize)>,

@@ -1,4 +1,4 @@
-//! Rows as a scan finds them, told apart and checked.
+//! Rows as a scan finds them, sorted by kind and checked.
 
 use rusqlite::types::{ToSqlOutput, Value as Stored, ValueRef};
 
@@ -16,7 +16,7 @@ pub(super) struct Found {
     pub(super) values: Vec<Value>,
 }
 
-/// What a row is.
+/// Kind of a row.
 #[derive(Debug)]
 pub(super) enum Read {
     Whole(Found),

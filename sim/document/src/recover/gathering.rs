@@ -1,5 +1,5 @@
-//! All rows of a damaged painting that are whole: pages, loads and files go into the new one at once,
-//! the others are few and stay in memory.
+//! All intact rows of a damaged painting: pages, loads and files go into the new one at once, the others are few and
+//! stay in memory.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs::File;
@@ -17,7 +17,7 @@ use crate::writing::COPY;
 /// Rows that are written in one transaction.
 const BATCH: u64 = 512;
 
-/// Where a row stood.
+/// Standing of the copy that a row comes from.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Standing {
     /// Where SQLite reads.
@@ -36,7 +36,7 @@ pub(super) struct TileRows {
     pub(super) older: Vec<TileRow>,
 }
 
-/// What was found.
+/// Rows found.
 #[derive(Debug, Default)]
 pub(super) struct Gathered {
     pub(super) painting: Option<(PaintingSnapshot, Standing)>,
@@ -54,7 +54,7 @@ pub(super) struct Gathered {
     pub(super) torn: u64,
     /// Pages of tables that are gone, with all rows that they had.
     pub(super) pages_lost: u64,
-    /// Whether rows on free pages are known to be such.
+    /// True if rows on free pages are known to be such.
     pub(super) knows_free: bool,
     /// Steps whose current row is torn.
     pub(super) torn_steps: BTreeSet<i64>,

@@ -1,4 +1,4 @@
-//! Which pages, loads and dry layers are whole, and how much paint they hold.
+//! Intact pages, loads and dry layers, and the amount of their paint.
 
 use std::collections::{BTreeMap, BTreeSet, HashMap};
 
@@ -13,7 +13,7 @@ use crate::planes;
 use crate::scan::Value;
 use crate::schema::Table;
 
-/// What is whole, with its paint.
+/// Intact rows, with their paint.
 #[derive(Debug, Default)]
 pub(super) struct Stock {
     pages: HashMap<i64, Counts>,
@@ -30,7 +30,7 @@ pub(super) struct Stock {
     pub(super) next: u64,
 }
 
-/// What lies on a tile: its page and its newest dry layer.
+/// Content of a tile: its page and its newest dry layer.
 pub(super) type Numbers = [i64; 2];
 
 impl Stock {
@@ -158,7 +158,7 @@ impl Stock {
         [of(&self.pages, page), of(&self.stacks, dry)]
     }
 
-    /// Whether a dry layer, or one below it, lost paint.
+    /// True if a dry layer, or one below it, lost paint.
     pub(super) fn is_thin(&self, dry: i64) -> bool {
         self.thin.contains(&dry)
     }
@@ -176,7 +176,7 @@ fn ids(database: &Database, table: Table) -> Result<Vec<i64>, DocumentError> {
     Ok(rows.collect::<Result<_, _>>()?)
 }
 
-/// What was read, or nothing where it is damaged.
+/// The value read; `None` if it is damaged.
 fn whole<T>(read: Result<T, DocumentError>) -> Result<Option<T>, DocumentError> {
     match read {
         Ok(read) => Ok(Some(read)),

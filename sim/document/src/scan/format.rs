@@ -23,7 +23,7 @@ const LEAST_USABLE: usize = 480;
 pub struct PageSize {
     /// Bytes of a page: a power of two from 512 to 65536.
     pub bytes: usize,
-    /// How it became known.
+    /// Source of the size.
     pub from: PageSizeFrom,
 }
 
@@ -59,23 +59,23 @@ impl PageSize {
     }
 }
 
-/// How a page size became known.
+/// Source of a page size.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum PageSizeFrom {
     /// The main file's header says so.
     Header,
-    /// That header is damaged or lies; the WAL's, which has a checksum, says so.
+    /// That header is damaged or wrong; the WAL's, which has a checksum, gives the size.
     Wal,
     /// It is the one with which most pages parse.
     Guess,
 }
 
-/// Whether a page can have so many bytes.
+/// True if a page can have so many bytes.
 pub(super) fn is_page_size(bytes: usize) -> bool {
     SIZES.contains(&bytes)
 }
 
-/// Whether the fields of a database's header that never change are as they must be.
+/// True if the constant fields of a database's header are valid.
 pub(super) fn header_stands(header: &[u8]) -> bool {
     header.starts_with(b"SQLite format 3\0") && header.get(21..24) == Some(&[64, 32, 32])
 }
@@ -118,7 +118,7 @@ pub(super) fn usable<F: Read + Seek>(
     if without > with { page_size } else { usable }
 }
 
-/// How well leaf pages parse with each page size.
+/// Number of leaf pages that parse with each page size.
 struct Scores([u64; SIZES.len()]);
 
 impl Scores {

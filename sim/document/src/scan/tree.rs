@@ -1,5 +1,5 @@
-//! What the trees of the tables and the list of free pages say of the pages: "B-tree Pages" and "The
-//! Freelist", SQLite file format, sections 1.6 and 1.5.
+//! Pages according to the trees of the tables and the list of free pages: "B-tree Pages" and "The Freelist", SQLite
+//! file format, sections 1.6 and 1.5.
 
 use std::collections::BTreeSet;
 use std::io::{Read, Seek};
@@ -62,7 +62,7 @@ pub(super) fn children(page: &[u8], number: u32) -> Option<Vec<u32>> {
     Some(children)
 }
 
-/// Whether a page of a table stands there, a leaf or an interior one.
+/// True if the page belongs to a table, as a leaf or an interior page.
 pub(super) fn is_of_table(page: &[u8], number: u32) -> bool {
     let header = if number == 1 { DATABASE_HEADER } else { 0 };
     matches!(page.get(header), Some(&(TABLE_LEAF | TABLE_INTERIOR)))

@@ -1,5 +1,4 @@
-//! The file of an open painting, where somebody removes it, puts another in its place, or gives it a second
-//! name.
+//! The file of an open painting when it is removed, replaced, or given a second name.
 
 use std::path::Path;
 use std::time::Instant;
@@ -10,7 +9,7 @@ use crate::error::DocumentError;
 use crate::moving;
 use crate::watch::{Found, Watch};
 
-/// What to do about a second name of the file.
+/// Advice about a second name of the file.
 const LINKED: &str = "remove that name: opened by it after a crash the painting would lack its journal, and be damaged";
 
 impl Thread {
