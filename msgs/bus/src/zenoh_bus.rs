@@ -24,7 +24,7 @@ use crate::inbox::{Inbox, Queue, Wake};
 use crate::payload::Payload;
 use crate::pool::Pool;
 
-/// How a process joins the rig's sockets.
+/// Settings with which a process joins the rig's sockets.
 #[derive(Clone, Debug)]
 pub struct Dial {
     /// Name shown to others.
@@ -144,7 +144,7 @@ impl ZenohBus {
     }
 }
 
-/// Where a session's large answers lie.
+/// Memory of a session's large answers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Memory {
     Own,

@@ -17,7 +17,7 @@ use crate::bus::{Answer, Bus, BusError, Class, Subscription};
 use crate::inbox::{Queue, Wake};
 use crate::typed::{Reader, Reason, Received};
 
-/// What a receiver has seen.
+/// Counts of a receiver.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct ReceiverCounts {
     /// Messages handed on.
@@ -49,7 +49,7 @@ pub struct CreditReceiver<M> {
 /// so two devices may have the same one, and a stray sender does not take a topic over.
 type StreamKey = (String, u32);
 
-/// How a message came.
+/// Path of a message.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Way {
     /// As it was sent.
@@ -143,13 +143,13 @@ impl<M: Message> CreditReceiver<M> {
         std::mem::take(&mut self.again)
     }
 
-    /// What has been seen so far.
+    /// Counts so far.
     #[must_use]
     pub fn counts(&self) -> ReceiverCounts {
         self.counts
     }
 
-    /// How many senders are remembered.
+    /// Number of senders that are remembered.
     #[cfg(test)]
     pub(super) fn senders(&self) -> usize {
         self.streams.len()
