@@ -66,7 +66,7 @@ impl Commander {
         patience: Duration,
         stop: &dyn Fn() -> bool,
     ) -> Result<String, Fault> {
-        // What fails at the end of a take, or as a file is written, is no wrong usage.
+        // A failure at the end of a take, or of a write, is no wrong usage.
         let refusal: fn(String) -> Fault = match &command {
             Command::Snapshot { .. } | Command::Mark => Fault::failure,
             _ => Fault::usage,

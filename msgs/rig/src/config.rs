@@ -25,7 +25,7 @@ pub const MODELS: [&str; 1] = ["impasto"];
 pub const BACKENDS: [&str; 3] = ["auto", "cpu", "gpu"];
 /// Colour spaces that the window and pictures know without a file.
 pub const SPACES: [&str; 2] = ["srgb", "display-p3"];
-/// How colours come into the gamut of the display.
+/// Mappings of colours into the gamut of the display.
 pub const GAMUTS: [&str; 2] = ["soft", "clamp"];
 /// Priority of the mouse over the window.
 pub const MOUSE_PRIORITY: i32 = -100;
@@ -34,7 +34,7 @@ pub const FOREIGN_PRIORITY: i32 = 0;
 /// Names in a rig that are no device's: the launcher's and the nodes' sockets, the mouse, a take.
 /// Those of brush nodes begin with [`BRUSH_NODE`].
 pub const RESERVED: [&str; 5] = ["hub", "paint", "ui", "player", "mouse"];
-/// What the names of brush nodes begin with.
+/// Prefix of the names of brush nodes.
 pub const BRUSH_NODE: &str = "brush-";
 /// Priority of a played take.
 pub const PLAYER_PRIORITY: i32 = i32::MAX;
@@ -364,7 +364,7 @@ impl RigConfig {
     }
 }
 
-/// Whether a setting that may be a name is a path.
+/// True if a setting that may be a name is a path.
 #[must_use]
 pub fn is_path(text: &str) -> bool {
     let path = Path::new(text);

@@ -10,14 +10,14 @@ pub const EXIT_USAGE: i32 = 2;
 /// Exit code for failures.
 pub const EXIT_FAILURE: i32 = 1;
 
-/// What went wrong, where, and what to do about it.
+/// An error with its place and advice.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Fault {
-    /// What.
+    /// The error.
     pub what: String,
     /// A file with its line, or a topic.
     pub place: Option<String>,
-    /// What to do.
+    /// Advice.
     pub help: Option<String>,
     /// [`EXIT_USAGE`] or [`EXIT_FAILURE`].
     pub code: i32,

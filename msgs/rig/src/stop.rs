@@ -1,4 +1,4 @@
-//! When to stop: a signal, or the launcher's end.
+//! Stop flag of a process: a signal, or the launcher's end.
 
 use std::io::Read as _;
 use std::sync::Arc;
@@ -9,7 +9,7 @@ use maulstick_bus::Wake;
 use signal_hook::consts::{SIGINT, SIGTERM};
 use signal_hook::iterator::Signals;
 
-/// Whether this process shall stop.
+/// Stop flag of this process.
 #[derive(Clone, Debug, Default)]
 pub struct Stop {
     flag: Arc<AtomicBool>,
@@ -67,13 +67,13 @@ impl Stop {
         self.flag.store(true, Ordering::SeqCst);
     }
 
-    /// Whether to stop.
+    /// True once the process is to stop.
     #[must_use]
     pub fn requested(&self) -> bool {
         self.flag.load(Ordering::SeqCst)
     }
 
-    /// Whether a signal asked for it.
+    /// True if a signal requested the stop.
     #[must_use]
     pub fn by_signal(&self) -> bool {
         self.signal.load(Ordering::SeqCst) != 0
