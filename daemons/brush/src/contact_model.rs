@@ -33,7 +33,7 @@ pub fn drag(credit: &BrushCredit) -> f64 {
     let [film, viscosity, contact] = [credit.film_m, credit.viscosity_m2_s, credit.contact_m];
     let wet = f64::from(film) / (f64::from(film) + HALF_FILM_M);
     let drag = DENSITY_KG_M3 * f64::from(viscosity) * f64::from(contact) * wet;
-    // What comes over the bus may be anything.
+    // A message from the bus may hold any number.
     if drag.is_finite() {
         drag.clamp(0.0, DRAG_MOST)
     } else {
@@ -41,7 +41,7 @@ pub fn drag(credit: &BrushCredit) -> f64 {
     }
 }
 
-/// Which law of force a hand feels.
+/// Force law of a device.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum ForceKind {
     /// Two straight pieces, k₁ that of the solved head (Baxter 2004, eq. 8.1).
@@ -141,7 +141,7 @@ pub fn grain(scene: &Scene) -> Grain {
     felt.unwrap_or(NO_GRAIN)
 }
 
-/// What is felt of a contact.
+/// Surface properties that enter the contact model.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SurfaceFeel {
     /// Normal force by depth.
@@ -152,7 +152,7 @@ pub struct SurfaceFeel {
     pub grain: Grain,
 }
 
-/// What the hand feels of a surface through a brush.
+/// Contact model of a surface under a brush.
 #[must_use]
 pub fn contact_model(
     device: Origin,

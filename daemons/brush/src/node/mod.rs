@@ -47,7 +47,7 @@ const OLDEST_NS: u64 = 50_000_000;
 /// The paint node's name.
 const PAINT: &str = "paint";
 
-/// Whether the paint node is there: where it is not, nothing is painted and nothing is felt.
+/// Presence of the paint node: without it nothing is painted and there is no force.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Painter {
     /// It is, or was never heard of.
@@ -70,7 +70,7 @@ pub struct BrushNode {
     scene_ns: u64,
     infos: Receiver<StylusInfo>,
     consumed: Sender<BrushConsumed>,
-    /// What each device says that it is.
+    /// Claims of each device about itself.
     devices: Recent<DeviceClaims>,
     models: Recent<(Sender<ContactModel>, u64)>,
     arbiter: Arbiter,
@@ -82,7 +82,7 @@ pub struct BrushNode {
     take: Option<Take>,
     /// Devices that are gone: their takes have ended.
     gone: Recent<()>,
-    /// Whether the paint node is there, as far as it is known.
+    /// Presence of the paint node, as far as it is known.
     painter: Painter,
     tokens: Subscription,
     touching: bool,
@@ -167,7 +167,7 @@ impl BrushNode {
         })
     }
 
-    /// How many states were sent.
+    /// Number of states sent.
     #[must_use]
     pub fn sent(&self) -> u64 {
         self.states.next_seq()
@@ -341,8 +341,8 @@ impl BrushNode {
         self.feel(&device, origin, now_ns)
     }
 
-    /// Whether a sample puts the brush clear of the surface: a pen without pressure hovers, a head
-    /// that is higher than it is long does not reach.
+    /// Placement of the brush by a sample: a pen without pressure hovers, a head that is higher than it is long does
+    /// not reach.
     fn place(&self, sample: &StylusSample) -> Place {
         let clear = !sample.in_range
             || match &sample.pose {

@@ -1,21 +1,21 @@
-//! How far a brush has consumed its devices, and what they were told of it.
+//! Samples that a brush has consumed of its devices, and the last report of them.
 
 use maulstick_bus::typed::Sender;
 use maulstick_bus::{BusError, Recent};
 use maulstick_types::Origin;
 use maulstick_types::brush::BrushConsumed;
 
-/// What is consumed of each device, by name.
+/// Consumed samples of each device, by name.
 #[derive(Debug, Default)]
 pub(super) struct Progress {
     devices: Recent<Consumed>,
 }
 
-/// What is consumed of a device.
+/// Consumed samples of a device.
 #[derive(Debug)]
 struct Consumed {
     newest: BrushConsumed,
-    /// What it was told last.
+    /// The last number reported to it.
     told: Option<u64>,
 }
 
@@ -57,7 +57,7 @@ impl Progress {
         }
     }
 
-    /// Whether it has followed a device.
+    /// True if it has followed a device.
     pub(super) fn follows(&self, device: &str) -> bool {
         self.devices.has(device)
     }
