@@ -9,7 +9,7 @@
 use glam::{DQuat, DVec3};
 use maulstick_num::geometry::canonical;
 
-/// How a session's axes lie in Haply's frame.
+/// Axes of a session in Haply's frame.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Basis {
     /// Haply's axis of each of the session's.

@@ -24,7 +24,7 @@ const BUFFER: usize = 16 << 10;
 /// Waits so often for the service to close its side.
 const FAREWELLS: usize = 10;
 
-/// Why nothing more comes.
+/// The reason why the connection ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum End {
     /// It was told to stop.
@@ -33,7 +33,7 @@ pub enum End {
     Closed,
     /// No message came in time.
     Silent,
-    /// What came is no WebSocket's, or larger than any message of the service.
+    /// The data are no WebSocket's, or larger than any message of the service.
     Foreign,
 }
 
@@ -146,7 +146,7 @@ impl Connection {
     }
 }
 
-/// Whether to go on after an error: where it only says that nothing has come yet.
+/// Tolerates an error that only means that nothing has arrived yet.
 fn bear(error: &Error) -> Result<(), End> {
     use std::io::ErrorKind::{Interrupted, TimedOut, WouldBlock};
     match error {

@@ -1,9 +1,9 @@
 //! The thread that talks to Haply's Inverse service, so that the servo never waits for it.
 //!
-//! The service answers each message by one state, so a round trip is a force out and a state in. The
-//! newest state goes to the servo and its newest force comes back through triple buffers. A force that
-//! the servo has not renewed for 20 ms is none: it may have stopped. So is one that the service has not
-//! answered for as long: it is told so before its answer is there.
+//! The service answers each message by one state, so a round trip is a force out and a state in. The newest state goes
+//! to the servo and its newest force comes back through triple buffers. A force that the servo has not renewed for 20
+//! ms is replaced by 0: the servo may have stopped. So is one that the service has not answered for as long: a force of
+//! 0 is sent before its answer is there.
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicU8, Ordering};
@@ -31,7 +31,7 @@ const PRIORITY: u8 = 70;
 /// The newest state.
 #[derive(Clone, Copy, Debug)]
 pub struct ReceivedState {
-    /// How the device is held.
+    /// Pose of the device.
     pub pose: Pose,
     /// When it came, `CLOCK_MONOTONIC`, ns.
     pub at_ns: u64,
@@ -48,7 +48,7 @@ pub struct RequestedForce {
     pub at_ns: u64,
 }
 
-/// Why there is nothing more.
+/// The reason why the link ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Loss {
     Closed,
@@ -221,7 +221,7 @@ impl Drop for Ending {
     }
 }
 
-/// What runs on the thread.
+/// State of the thread.
 struct Exchange {
     connection: Connection,
     tracker: DeviceTracker,
@@ -230,7 +230,7 @@ struct Exchange {
     wanted: triple_buffer::Output<RequestedForce>,
     stop: Arc<AtomicBool>,
     number: u64,
-    /// Whether a message that asked for no force before its time may yet be answered.
+    /// True if a message that requested no force ahead of time may yet be answered.
     is_owed: bool,
 }
 
@@ -319,9 +319,9 @@ impl Exchange {
     }
 }
 
-/// Why a round trip brought nothing.
+/// The reason why a round trip brought nothing.
 enum Missed {
-    /// What came cannot be read.
+    /// The message cannot be read.
     Unread,
     /// Nothing came, and nothing will.
     Ended(End),

@@ -1,6 +1,6 @@
 //! The messages of Haply's Inverse service (docs.haply.co, inverseSDK/service/realtime/websocket-protocol).
 //!
-//! What we do not use is not read, what is missing or null is as if it was not sent: versions differ.
+//! Unused fields are not read, a missing or null field counts as not sent: versions differ.
 
 use glam::{DQuat, DVec3};
 use serde::{Deserialize, Serialize};
@@ -27,9 +27,9 @@ pub struct Device {
     #[serde(default)]
     pub device_id: String,
     config: Option<Config>,
-    /// How it moves.
+    /// Its motion.
     pub state: Option<State>,
-    /// Whether it can be used.
+    /// Its readiness.
     pub status: Option<Status>,
 }
 
@@ -38,7 +38,7 @@ struct Config {
     #[serde(rename = "type")]
     kind: Option<String>,
     basis: Option<Permutation>,
-    /// What `basis` was called before 3.5.
+    /// Name of `basis` before 3.5.
     coordinate_system: Option<Permutation>,
 }
 
@@ -47,7 +47,7 @@ struct Permutation {
     permutation: Option<String>,
 }
 
-/// How an Inverse3 moves, in the session's axes.
+/// Motion of an Inverse3, in the session's axes.
 #[derive(Clone, Copy, Debug, Default, Deserialize)]
 pub struct State {
     /// m.
@@ -74,17 +74,17 @@ impl Vector {
     }
 }
 
-/// Whether an Inverse3 can be used; what is not told is not so.
+/// Readiness of an Inverse3; a missing flag is false.
 #[derive(Clone, Copy, Debug, Default, Deserialize)]
 pub struct Status {
     calibrated: Option<bool>,
-    /// Whether a session uses it: in the first message one that is not ours.
+    /// True if a session uses it: in the first message one that is not ours.
     in_use: Option<bool>,
     power_supply: Option<bool>,
     ready: Option<bool>,
 }
 
-/// What keeps a device from being used.
+/// Obstacle to the use of a device.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Hindrance {
     /// Its motors have no power.
@@ -98,7 +98,7 @@ pub enum Hindrance {
 }
 
 impl Hindrance {
-    /// What is wrong, of "the Inverse3 …".
+    /// The error, to follow "the Inverse3 …".
     #[must_use]
     pub fn what(self) -> &'static str {
         match self {
@@ -109,7 +109,7 @@ impl Hindrance {
         }
     }
 
-    /// What to do.
+    /// Advice.
     #[must_use]
     pub fn help(self) -> &'static str {
         match self {
@@ -122,7 +122,7 @@ impl Hindrance {
 }
 
 impl Status {
-    /// What keeps the device from being used, if anything is told to.
+    /// Obstacle to the use of the device, if one is reported.
     #[must_use]
     pub fn hindrance(&self) -> Option<Hindrance> {
         [
@@ -151,13 +151,13 @@ impl Device {
             .transpose()
     }
 
-    /// What it is, such as "inverse3" or "minverse", where it tells it.
+    /// Kind, such as "inverse3" or "minverse", if it is reported.
     #[must_use]
     pub fn kind(&self) -> Option<&str> {
         self.config.as_ref()?.kind.as_deref()
     }
 
-    /// Whether a session uses it.
+    /// True if a session uses it.
     #[must_use]
     pub fn is_in_use(&self) -> bool {
         self.status
@@ -176,11 +176,11 @@ pub struct Grip {
     /// Its id, such as "61548".
     #[serde(default)]
     pub device_id: String,
-    /// How it is held.
+    /// Its pose.
     pub state: Option<GripState>,
 }
 
-/// How a grip is held.
+/// Pose of a grip.
 #[derive(Clone, Copy, Debug, Default, Deserialize)]
 pub struct GripState {
     /// In the session's axes.
@@ -271,8 +271,7 @@ impl Update {
             .find(|grip| id.is_none_or(|id| grip.device_id == id))
     }
 
-    /// How the service that sent this, its first message, wants to be spoken to: from 3.5 it numbers
-    /// sessions and has a `basis`.
+    /// Dialect of the service that sent this, its first message: from 3.5 it numbers sessions and has a `basis`.
     #[must_use]
     pub fn dialect(&self) -> Dialect {
         match self.session_id.is_some() || self.devices().iter().any(Device::tells_basis) {
@@ -282,7 +281,7 @@ impl Update {
     }
 }
 
-/// How a service calls the parts of a force.
+/// Names of the components of a force in the service's messages.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Dialect {
     /// `vector`, from 3.5.

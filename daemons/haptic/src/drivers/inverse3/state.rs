@@ -1,4 +1,4 @@
-//! What is known of an Inverse3 from the service's messages so far.
+//! State of an Inverse3 from the service's messages so far.
 
 use glam::{DQuat, DVec3};
 
@@ -15,7 +15,7 @@ pub const LET_GO_NS: u64 = 100_000_000;
 /// Time without a word of the grip after which nobody knows how the brush is held, ns.
 pub const AWAY_NS: u64 = 1_000_000_000;
 
-/// How a device and its grip are held, in the device frame; all numbers are finite.
+/// Pose of a device and its grip, in the device frame; all numbers are finite.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Pose {
     /// The cursor, m, each part within [`FARTHEST_M`].
@@ -26,14 +26,14 @@ pub struct Pose {
     pub orientation: DQuat,
     /// A bit a pressed button.
     pub switches: u32,
-    /// Whether the grip, if there ever was one, still says how it is held.
+    /// True while the grip, if there ever was one, reports its pose.
     pub in_range: bool,
 }
 
-/// What a message says of a device.
+/// Content of a message about a device.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Seen {
-    /// How it is held.
+    /// Its pose.
     Pose(Pose),
     /// Nothing.
     Nothing,

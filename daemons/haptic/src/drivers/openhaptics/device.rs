@@ -31,14 +31,14 @@ const UNREADABLE: DeviceError = DeviceError {
     help: "calibrate it by the vendor's setup program",
 };
 
-/// Whether the model answers a question that not all do.
+/// Support of the model for a query that not all answer.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Answers {
-    /// It was not asked yet.
+    /// Not asked yet.
     Unknown,
-    /// It does.
+    /// Supported.
     Yes,
-    /// It does not.
+    /// Not supported.
     No,
 }
 
@@ -51,10 +51,10 @@ pub struct Device {
     inkwell: Answers,
     safety: Answers,
     temperature: Answers,
-    /// What the amplifiers are to be from the next frame on.
+    /// State of the amplifiers from the next frame on.
     amplifiers: Option<Switch>,
     unread: u32,
-    /// What the motors give.
+    /// Force of the motors.
     given: Wrench,
 }
 
@@ -100,7 +100,7 @@ impl Device {
             frame.point_away();
         }
         if self.inkwell == Answers::Unknown {
-            // What went wrong so far is not put down to the questions that follow.
+            // Earlier errors are not attributed to the queries that follow.
             session.take_error();
         }
         frame.inkwell = asked(session, &mut self.inkwell, frame.inkwell, || {

@@ -33,7 +33,7 @@ pub struct Frame {
     pub velocity: [f64; 3],
     /// A bit a button.
     pub buttons: i32,
-    /// Whether the stylus is in its inkwell: not 0.
+    /// Not 0 while the stylus is in its inkwell.
     pub inkwell: u8,
     /// The safety switch: not 0 is on.
     pub safety: u8,

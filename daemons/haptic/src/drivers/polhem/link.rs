@@ -1,17 +1,16 @@
 //! The dialogue with a WoodenHaptics or Polhem stylus: one line, one answer, paced by us.
 //!
-//! Nothing waits here. Time is what the servo says has passed, so the dialogue runs on any clock. An
-//! answer that does not come is given up: a probe asks whether the device is there, its motors have no
-//! current meanwhile, and the dialogue is taken up again when the line has been quiet, so that no late
-//! answer is taken for the next one. The device's own watchdog ends the force 100 ms after the last
-//! command.
+//! Nothing waits here. Time is the time that the servo reports, so the dialogue runs on any clock. An answer that does
+//! not come is given up: a probe asks whether the device is there, its motors have no current meanwhile, and the
+//! dialogue is resumed when the line has been quiet, so that no late answer is taken for the next one. The device's own
+//! watchdog ends the force 100 ms after the last command.
 
 use nix::errno::Errno;
 
 use super::frame::{Answer, Lines, PROBE, ParsedLine};
 use crate::device::driver::DeviceError;
 
-/// What carries bytes to a device and back, without waiting.
+/// Byte transport to a device and back, without waiting.
 pub trait Wire: Send {
     /// Takes what has come into `bytes`; returns how much, 0 where the other end is gone.
     ///
@@ -36,7 +35,7 @@ pub const GONE_S: f64 = 1.0;
 /// Pieces taken in at a time, so that a device that babbles does not hold up the servo.
 const PIECES: usize = 4;
 
-/// Where the dialogue stands.
+/// State of the dialogue.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Dialogue {
     /// Nothing is on its way.
@@ -78,7 +77,7 @@ impl<W: Wire> Link<W> {
         }
     }
 
-    /// Whether a line may be sent.
+    /// True if a line may be sent.
     #[must_use]
     pub fn is_free(&self) -> bool {
         self.dialogue == Dialogue::Free
@@ -215,12 +214,12 @@ impl<W: Wire> Link<W> {
     }
 }
 
-/// Whether a byte came.
+/// Result of a read: a byte, or nothing.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Noise {
-    /// Nothing did.
+    /// Nothing arrived.
     None,
-    /// Something did.
+    /// A byte arrived.
     Some,
 }
 
