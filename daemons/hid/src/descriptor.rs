@@ -47,8 +47,8 @@ pub fn pair(usage: &Usage) -> (u16, u16) {
     (usage.usage_page.into(), usage.usage_id.into())
 }
 
-/// What is known of globals and locals, as far as it bears on what a descriptor may cost. Of the
-/// specification Push keeps globals alone; `hidreport` keeps and takes back the locals too.
+/// Globals and locals, as far as they bear on the cost of a descriptor. By the specification Push saves globals alone;
+/// `hidreport` saves and restores the locals too.
 #[derive(Clone, Copy, Default)]
 struct Known {
     has_page: bool,
@@ -163,7 +163,7 @@ fn check(bytes: &[u8]) -> Result<(), String> {
     Ok(())
 }
 
-/// What a descriptor says that its device is, in words: `a mouse and a keyboard`.
+/// Description of a device by its descriptor: `a mouse and a keyboard`.
 #[must_use]
 pub fn describe(descriptor: &ReportDescriptor) -> String {
     let mut found: Vec<&str> = Vec::new();
@@ -200,7 +200,7 @@ fn word(usage: (u16, u16)) -> &'static str {
     }
 }
 
-/// Whether a field lies, at any depth, in a collection of one of these usages.
+/// True if a field is, at any depth, in a collection of one of these usages.
 #[must_use]
 pub fn lies_in(field: &Field, wanted: impl Fn((u16, u16)) -> bool) -> bool {
     let collections = field.collections().iter();

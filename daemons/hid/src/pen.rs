@@ -1,14 +1,14 @@
-//! What a pen says, and the order in which it may say it.
+//! State of a pen, and the order of its changes.
 //!
-//! A pen is away, hovers or touches, with its tip or its eraser (usage tables of HID, page 0x0D, as Windows
-//! and Linux read them: Invert while the eraser hovers, Eraser while it touches). [`Pen`] puts in what
-//! a tablet leaves out: a pen that touched is lifted before it goes, and one that was turned round has
-//! been away. A tablet that says nothing says that nothing has changed.
+//! A pen is away, hovers or touches, with its tip or its eraser (usage tables of HID, page 0x0D, as Windows and Linux
+//! read them: Invert while the eraser hovers, Eraser while it touches). [`Pen`] adds the changes that a tablet leaves
+//! out: a pen that touched is lifted before it goes, and one that was turned round has been away. A silent tablet means
+//! that nothing has changed.
 
 /// Pressure of a tip that touches without any, a step of the finest pens: pressure 0 is a pen in the air.
 pub const LIGHTEST: f64 = 1.0 / 8192.0;
 
-/// Where a pen is.
+/// Presence of a pen.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Presence {
     /// Nowhere near.
@@ -19,7 +19,7 @@ pub enum Presence {
     Touching,
 }
 
-/// Which end of a pen is down.
+/// The end of a pen that is down.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum End {
     /// The tip.
@@ -28,17 +28,17 @@ pub enum End {
     Eraser,
 }
 
-/// What a pen says at a time, in the tablet's frame: origin at the lower left corner of its active area, x
-/// right, y up (away from the hand), z out of it.
+/// Reading of a pen at a time, in the tablet's frame: origin at the lower left corner of its active area, x right, y up
+/// (away from the hand), z out of it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Reading {
-    /// Where it is.
+    /// Presence.
     pub presence: Presence,
-    /// Which end is down.
+    /// The end that is down.
     pub end: End,
     /// The point under it, m.
     pub point_m: [f64; 2],
-    /// How high it hovers, m; 0 where the tablet does not say, and while it touches.
+    /// Hover height, m; 0 if the tablet does not say, and while it touches.
     pub height_m: f64,
     /// 0 to 1; while it touches at least [`LIGHTEST`], else 0.
     pub pressure: f64,
@@ -80,7 +80,7 @@ impl Default for Pen {
 }
 
 impl Pen {
-    /// Where the pen was last.
+    /// The newest reading.
     #[must_use]
     pub fn newest(&self) -> &Reading {
         &self.newest

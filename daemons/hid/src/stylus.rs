@@ -34,7 +34,7 @@ const RATE_HZ: f64 = 200.0;
 /// A pen, from its reports to its samples.
 pub struct Stylus {
     pen: Pen,
-    /// How reports are read, and where they lie on the desk; none while there is no tablet.
+    /// Decoder of the reports and the tablet on the desk; `None` while there is no tablet.
     tablet: Option<(Decoder, Tablet)>,
     samples: CreditSender<StylusSample>,
     info: Sender<StylusInfo>,
@@ -111,7 +111,7 @@ impl Stylus {
         let Some(said) = decoder.and_then(|decoder| decoder.decode(report)) else {
             return Ok(());
         };
-        // What comes at the very time needs no filling.
+        // A report at the same time needs no fill-in.
         self.silent(event_ns.saturating_sub(1), now_ns)?;
         self.heard_ns = event_ns;
         let mut readings = Vec::with_capacity(3);
