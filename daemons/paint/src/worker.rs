@@ -32,10 +32,10 @@ impl Worker {
         })
     }
 
-    /// Whether it still works, or has ended as it was asked to.
+    /// Checks that it still works, or has ended as it was asked to.
     ///
     /// # Errors
-    /// [`WorkerPanicked`] where it panicked.
+    /// [`WorkerPanicked`] if it panicked.
     pub fn check(&mut self) -> Result<(), WorkerPanicked> {
         match self.handle.take_if(|handle| handle.is_finished()) {
             Some(handle) => handle

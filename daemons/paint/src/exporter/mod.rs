@@ -116,7 +116,7 @@ impl Exporter {
         Some((asker, outcome))
     }
 
-    /// How far the export is.
+    /// Progress of the export.
     #[must_use]
     pub fn status(&self, now_ns: u64) -> Option<ExportStatus> {
         self.0.as_ref().map(|running| ExportStatus {
@@ -158,7 +158,7 @@ pub(crate) fn unwritable(path: &Path, error: &Error) -> EditError {
     EditError::new(format!("cannot write {}: {error}", path.display()), help)
 }
 
-/// What is asked for, with all that the order leaves open.
+/// The requested export, with defaults for everything left open.
 fn order(asked: &ExportOrder, usual: &Export) -> Result<Order, EditError> {
     let path = Path::new(&asked.path);
     let format = match asked.format.as_str() {

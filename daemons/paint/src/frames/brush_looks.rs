@@ -1,4 +1,4 @@
-//! How the paint on brushes looks, for whoever shows them.
+//! Colours of the paint on brushes, for the windows that show them.
 
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -23,7 +23,7 @@ pub(super) struct BrushLooks {
     hair: Vec<(Hair, Vec<f32>)>,
 }
 
-/// What was told of a brush.
+/// State last sent of a brush.
 struct Told {
     sender: Sender<BrushLook>,
     of: Option<Carried>,

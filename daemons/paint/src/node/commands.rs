@@ -1,4 +1,4 @@
-//! Commands to the paint node: most are the sequencer's, some go on beside the painting.
+//! Commands to the paint node: most are the sequencer's, some run in the background.
 
 use std::path::Path;
 

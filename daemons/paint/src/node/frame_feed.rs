@@ -1,4 +1,4 @@
-//! What the paint node hands over to the frames: versions of tiles, the look, what is bare.
+//! State that the paint node hands over to the frames: versions of tiles, the look, bare surfaces.
 
 use std::collections::BTreeMap;
 use std::sync::Arc;

@@ -42,7 +42,7 @@ fn refused(path: &Path, error: &DocumentError) -> EditError {
     EditError::new(format!("{}: {error}", path.display()), help)
 }
 
-/// Whether two names lead to the same file.
+/// True if two names lead to the same file.
 fn is_same(one: &Path, other: &Path) -> bool {
     let real = |path: &Path| std::fs::canonicalize(path).ok();
     one == other || real(one).is_some_and(|path| real(other) == Some(path))
@@ -107,7 +107,7 @@ impl PaintNode {
             Stage::Written => {
                 let fault = autosave.document().fault();
                 if let Some((what, help)) = fault.filter(|_| autosave.document().take_back()) {
-                    // What was in memory alone stays there, and nothing of it anywhere else.
+                    // A painting in memory stays there, and leaves no part of it elsewhere.
                     let what = format!("{}: {what}", saving.to.display());
                     let refusal = EditError::new(what, help);
                     self.give_document_up();
