@@ -1,4 +1,4 @@
-//! What computes the steps of the paint: as `[paint] backend` or `--backend` say.
+//! Backend of the paint's steps: as `[paint] backend` or `--backend` say.
 
 use maulstick_gpu::{Choice, Device, GpuImpasto};
 use maulstick_paint::Sequencer;

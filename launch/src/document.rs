@@ -12,7 +12,7 @@ use maulstick_types::scene::{CANVAS, Scene};
 
 use crate::performance::{PaintingOptions, library_from, painting_setup, refused};
 
-/// What is wrong with a document, as the user sees it.
+/// Error of a document, as the user sees it.
 #[must_use]
 pub fn wrong(path: &Path, error: &DocumentError) -> Fault {
     let fault = Fault::usage(error.to_string())
@@ -85,7 +85,7 @@ pub fn go_on(config: &RigConfig, path: &Path) -> Result<(Document, Sequencer, u6
     Ok((document, sequencer, since))
 }
 
-/// What stands where a painting is to be.
+/// File at the path of a painting.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Presence {
     /// Nothing: it is to be begun there.

@@ -32,7 +32,7 @@ pub fn ticks_in(text: &str) -> Result<u32, String> {
     }
 }
 
-/// How long so many ticks are, ns.
+/// Duration of so many ticks, ns.
 #[must_use]
 pub fn time_ns(ticks: u32) -> u64 {
     u64::from(ticks) * 1_000_000_000 / u64::from(TICKS_A_SECOND)

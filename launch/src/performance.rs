@@ -1,4 +1,4 @@
-//! What `render` and `up --play` share: the take, the brush, the loads, the canvas.
+//! Setup that `render` and `up --play` share: the take, the brush, the loads, the canvas.
 
 use std::path::{Path, PathBuf};
 
@@ -76,7 +76,7 @@ pub fn brush_file(section: &BrushSection) -> Result<BrushFile, Fault> {
     maulstick_device::brush_file(section).map_err(of_a_brush)
 }
 
-/// What is wrong with a brush file: help for settings of a rig is none for it.
+/// Error of a brush file, without the advice for settings of a rig, which does not apply.
 #[must_use]
 pub fn of_a_brush(fault: Fault) -> Fault {
     let is_of_settings = |help: &String| help.contains("--print-config");
@@ -272,8 +272,8 @@ fn light(section: &LightSection) -> Result<Light, Fault> {
     Ok(light)
 }
 
-/// What the wells hold: as the settings say. Paints of one's own, with nothing said of wells, lie in
-/// them in the order of their file.
+/// Paints of the wells: as the settings say. Without wells in the settings, the painter's own paints lie in them in the
+/// order of their file.
 fn wells(config: &RigConfig, library: &PaintLibrary) -> Vec<String> {
     let default = RigConfig::default().palette.wells;
     let wells = &config.palette.wells;

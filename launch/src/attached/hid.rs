@@ -1,5 +1,5 @@
-//! HID devices. Their report descriptors and names lie in sysfs, where everybody may read them: so a
-//! pen is known by what it says that it is, and is listed too where its node may not be opened.
+//! HID devices. Their report descriptors and names are in sysfs, where everybody may read them: so a pen is known by
+//! its own description, and is listed too if its node may not be opened.
 
 use std::path::{Path, PathBuf};
 
@@ -47,7 +47,7 @@ fn missing(driver: &str, permission: Permission) -> Option<String> {
     Some(what.to_owned())
 }
 
-/// What the kernel tells of a HID device.
+/// Entry of the kernel for a HID device.
 struct Told {
     name: String,
     vendor: u16,

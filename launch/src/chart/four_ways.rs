@@ -33,7 +33,7 @@ pub fn shares() -> Vec<(f64, String)> {
     shares
 }
 
-/// What a way of mixing is called; `rule` is the rule's name.
+/// Title of a way of mixing; `rule` is the rule's name.
 #[must_use]
 pub fn title(way: Way, rule: &str) -> String {
     match way {

@@ -1,4 +1,4 @@
-//! `maulstick force off`, `on`, `strength` and `rearm`: orders to the devices of a running rig.
+//! `maulstick force off`, `on`, `strength` and `rearm`: requests to the devices of a running rig.
 
 use std::time::{Duration, Instant};
 
@@ -42,9 +42,9 @@ pub struct Whose {
     target: Target,
 }
 
-/// How long the devices of a rig have to show themselves.
+/// Longest wait for the devices of a rig to show themselves.
 const PATIENCE: Duration = Duration::from_secs(3);
-/// How long a device's daemon has to answer.
+/// Longest wait for the answer of a device's daemon.
 const ANSWER: Duration = Duration::from_secs(3);
 /// After the first, others come this soon.
 const TOGETHER: Duration = Duration::from_millis(300);

@@ -56,7 +56,7 @@ pub struct LightOptions {
 }
 
 impl LightOptions {
-    /// What is asked for.
+    /// The requested change.
     fn change(&self) -> LightChange {
         LightChange {
             illuminant: self.illuminant.clone(),
@@ -105,7 +105,7 @@ fn three(text: &str) -> Result<[f64; 3], String> {
 /// # Errors
 /// A [`Fault`] for a light that is none, or where no rig runs.
 pub fn run(options: &LightOptions) -> Result<i32, Fault> {
-    // What is wrong in itself is told also where no rig runs.
+    // An invalid change is refused even if no rig runs.
     let change = options.change();
     change.on(&Light::default())?;
     let session = Session::open(&options.target)?;

@@ -10,7 +10,7 @@ use maulstick_types::command::Command;
 use crate::commands::say;
 use crate::commands::session::{RIG, Session, Target};
 
-/// How long a painting may take to be there: what was accepted last may have to be done again.
+/// Longest wait for a painting to be open: its last journal records may have to be done again.
 pub(super) const LONGEST: Duration = Duration::from_secs(3600);
 
 /// Options of `maulstick open`.

@@ -207,7 +207,7 @@ pub fn run(options: &RenderOptions) -> Result<i32, Fault> {
         _ => Ok(()),
     };
     if let Err(fault) = painted {
-        // What was painted before it is kept.
+        // The strokes painted before it are saved.
         close(&mut offline)?;
         return Err(fault);
     }

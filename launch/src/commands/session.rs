@@ -24,9 +24,9 @@ pub struct Target {
 
 /// The node that does what concerns the painting.
 pub const PAINT: &str = "paint";
-/// Who does what concerns the rig as a whole: the launcher.
+/// Name of the launcher, which carries out commands to the rig as a whole.
 pub const RIG: &str = "rig";
-/// How long a node has to answer.
+/// Longest wait for the answer of a node.
 const PATIENCE: Duration = Duration::from_secs(10);
 
 /// A connection to a rig, closed in the end.

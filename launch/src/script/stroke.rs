@@ -16,7 +16,7 @@ const LOOK_MM: f64 = 1.5;
 /// Points nearer to each other than this are one, mm.
 const NEAR_MM: f64 = 1e-3;
 
-/// How a brush is turned about its axis.
+/// Turn of a brush about its axis.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Turn {
     /// By so many degrees from where its broad side lies across the way.
@@ -32,9 +32,9 @@ pub struct Stroke {
     pub points: Vec<[f64; 3]>,
     /// Lean of the handle from upright, degrees.
     pub lean_deg: f64,
-    /// Where the handle's end leans to, degrees from the right, counter-clockwise; along the way if none.
+    /// Direction to which the handle's end leans, degrees from the right, counter-clockwise; along the path if absent.
     pub toward_deg: Option<f64>,
-    /// How the brush is turned.
+    /// Turn of the brush.
     pub turn: Turn,
     /// Speed along the way, mm/s.
     pub speed_mm_s: f64,

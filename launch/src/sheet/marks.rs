@@ -1,4 +1,4 @@
-//! The marks of a brush: what a painter tries in the shop.
+//! The marks of a brush: the strokes that a painter tries in the shop.
 
 use maulstick_brush::BrushFile;
 

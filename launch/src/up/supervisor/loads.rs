@@ -1,4 +1,4 @@
-//! What the brushes carry when a painting begins.
+//! Loads of the brushes when a painting begins.
 
 use std::sync::Arc;
 use std::time::Duration;
@@ -8,7 +8,7 @@ use maulstick_types::command::Command;
 
 use super::Supervisor;
 
-/// How long the paint node may take to load a brush.
+/// Longest wait until the paint node has loaded a brush.
 const LOAD_TIME: Duration = Duration::from_secs(10);
 
 impl Supervisor {
