@@ -86,8 +86,8 @@ impl Appearance {
         }
     }
 
-    /// Internal reflectances over `under` with one more dry layer. Where the backend cannot, which is
-    /// a fault of the program, the layer is left out.
+    /// Internal reflectances over `under` with one more dry layer. If the backend fails, which is a fault of the
+    /// program, the layer is left out.
     fn with_layer(
         &self,
         layer: &DryLayer,
@@ -166,7 +166,7 @@ struct Baked {
     used: u64,
 }
 
-/// Baked tiles of one look, kept for the next time that they are looked at.
+/// Baked tiles of one look, cached until they are next looked at.
 #[derive(Debug, Default)]
 pub struct Bakery {
     kept: BTreeMap<(u32, TileId), Baked>,

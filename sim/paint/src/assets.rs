@@ -134,7 +134,7 @@ impl Assets {
     /// The reflectances of a spectrum.
     ///
     /// # Errors
-    /// [`EditError`] where there is none of this hash, or it is a picture's.
+    /// [`EditError`] if no file has this hash, or it is a picture's.
     pub fn reflectance(&self, hash: &str) -> Result<Reflectance, EditError> {
         spectrum(&self.entry(hash)?.bytes)
     }
@@ -195,7 +195,7 @@ impl Assets {
     /// The pixels of a picture of colours.
     ///
     /// # Errors
-    /// [`EditError`] where there is none of this hash, or it is one of heights.
+    /// [`EditError`] if no file has this hash, or it is one of heights.
     pub fn colours(&self, hash: &str) -> Result<Arc<Colours>, EditError> {
         match self.decoded(hash)? {
             Decoded::Colours(colours) => Ok(colours),
@@ -209,7 +209,7 @@ impl Assets {
     /// The pixels of a picture of heights.
     ///
     /// # Errors
-    /// [`EditError`] where there is none of this hash, or it is one of colours.
+    /// [`EditError`] if no file has this hash, or it is one of colours.
     pub fn heights(&self, hash: &str) -> Result<Arc<Heights>, EditError> {
         match self.decoded(hash)? {
             Decoded::Heights(heights) => Ok(heights),

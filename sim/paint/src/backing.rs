@@ -8,7 +8,7 @@ pub trait Backing: Send + Sync {
     /// The counts of a page.
     ///
     /// # Errors
-    /// What is wrong with it, in words.
+    /// The defect, in words.
     fn planes(&self, id: u64) -> Result<Planes, String>;
     /// Load of a brush.
     ///

@@ -35,7 +35,7 @@ pub const CLEANER_RGB: [f32; 3] = [0.30, 0.37, 0.40];
 pub struct BlankSurface {
     /// Ground that it is primed with.
     pub ground: Ground,
-    /// Heights of what lies under the paint.
+    /// Heights of the ground under the paint.
     pub relief: Arc<Relief>,
     /// Its wells.
     pub wells: Vec<WellLook>,

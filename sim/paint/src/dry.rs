@@ -19,7 +19,7 @@ pub struct DryLayer {
     pub planes: Page<Planes>,
 }
 
-/// A layer and what lies under it.
+/// A layer and those under it.
 #[derive(Debug)]
 pub struct DryStack {
     id: u64,
@@ -30,7 +30,7 @@ pub struct DryStack {
     stored: AtomicBool,
 }
 
-/// Quanta of a layer and all below it, a cell: summed when somebody asks.
+/// Quanta of a layer and all below it, a cell: summed on demand.
 #[derive(Debug)]
 struct Height {
     pager: Arc<Pager>,

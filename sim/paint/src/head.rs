@@ -23,8 +23,7 @@ pub struct Waypoint {
     wetness: f32,
 }
 
-/// A [`Waypoint`] as it is kept: rotation x, y, z, w and translation of the brush, joint angles, how
-/// full the brush is.
+/// A saved [`Waypoint`]: rotation x, y, z, w and translation of the brush, joint angles, wetness of the brush.
 pub type WaypointSnapshot = ([f64; 4], [f64; 3], Vec<[f32; 2]>, f32);
 
 impl From<&Waypoint> for WaypointSnapshot {
@@ -135,8 +134,8 @@ wide! {
     }
 }
 
-/// The cells that strips lower than `height` cells cover in a step that ends at `pose`, from the first up to
-/// but not with the second; none where all strips are higher.
+/// The cells that strips lower than `height` cells cover in a step that ends at `pose`, from the first up to but not
+/// with the second; `None` if all strips are higher.
 #[must_use]
 pub fn low_bounds(
     head: &Head,

@@ -25,7 +25,7 @@ const APART: usize = 16;
 /// A surface's number and a tile of it.
 pub type TilePlace = (u32, TileId);
 
-/// A tile; none where nothing was painted.
+/// A tile; `None` where nothing was painted.
 pub type TileRef = Option<Arc<Tile>>;
 
 /// True if both are the same pages.
@@ -236,14 +236,14 @@ pub struct History {
     steps: BTreeMap<u64, Step>,
     /// Steps that were undone, the last one at the end.
     undone: Vec<u64>,
-    /// Steps that changed, came or went since they were last asked for.
+    /// Steps that changed, came or went since the last query.
     touched: BTreeSet<u64>,
     /// See [`part_at`](Self::part_at).
     part: u64,
 }
 
 impl History {
-    /// The history of a painting that was kept, with the steps that go on.
+    /// A saved history, with the steps still open.
     #[must_use]
     pub fn restored(next: u64, steps: Vec<Step>, undone: Vec<u64>, open: Vec<OpenStep>) -> Self {
         let steps = steps.into_iter().map(|step| (step.id, step));
@@ -257,7 +257,7 @@ impl History {
         }
     }
 
-    /// Begins a step; what this brush, or nobody's brush, undid is gone.
+    /// Begins a step; steps undone by this brush, or by none, are dropped.
     pub fn begin(&mut self, what: &str, brush: Option<&str>, before: NonTileState) {
         let own = |step: &Step| match (&step.brush, brush) {
             (Some(one), Some(other)) => one == other,
@@ -306,8 +306,8 @@ impl History {
         taken
     }
 
-    /// Adds a step that has just ended. It comes after all that ended before it, whenever it began:
-    /// it may lie over them, they never over it.
+    /// Adds a step that has just ended. It comes after all that ended before it, whenever it began: it may overlap them
+    /// from above, they never it.
     pub fn push(&mut self, mut step: Step) {
         self.touched.insert(step.id);
         self.next += 1;
@@ -473,8 +473,8 @@ impl History {
         });
     }
 
-    /// Forgets undone steps, and those that were undone before them and lie on the same tiles: they
-    /// could be redone only on top of them.
+    /// Drops undone steps, and those that were undone before them and share tiles with them: they could be redone only
+    /// on top of them.
     fn drop_undone(&mut self, mut gone: BTreeSet<u64>) {
         let mut lost: BTreeSet<TilePlace> = BTreeSet::new();
         for id in self.undone.iter().rev() {

@@ -19,7 +19,7 @@ pub struct Sweep<'a> {
 /// Transfer between brush and canvas (Baxter 2004, § 6.8).
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum Transfer {
-    /// Paint goes both ways and is counted.
+    /// Paint is transferred both ways and is counted.
     #[default]
     Paint,
     /// The brush stays as it is: a full one never runs out, an empty one never fills.

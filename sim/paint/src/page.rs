@@ -13,7 +13,7 @@ use crate::backing::{Backing, Content};
 
 /// Something that can leave memory.
 pub(crate) trait Evict: Send + Sync {
-    /// Leaves, if it may, and returns how many bytes that were; none where it has to stay for now.
+    /// Leaves memory, if it may, and returns how many bytes that were; `None` if it has to stay for now.
     fn evict(&self) -> Option<usize>;
 }
 
@@ -31,7 +31,7 @@ pub struct PageCounts {
 }
 
 impl PageCounts {
-    /// Bytes that the painting takes where it is kept: in its document, or in memory.
+    /// Bytes that the painting takes where it is stored: in its document, or in memory.
     #[must_use]
     pub fn held(&self) -> u64 {
         match self.stored {
@@ -127,7 +127,7 @@ impl Pager {
         }
     }
 
-    /// Stored pages and dry layers that nobody remembers any more, since the last call.
+    /// Stored pages and dry layers without references that were dropped since the last call.
     pub fn take_dead(&self) -> Vec<u64> {
         std::mem::take(&mut locked(&self.dead))
     }
@@ -302,7 +302,7 @@ impl<T: Content> Page<T> {
         Arc::ptr_eq(&self.0, &other.0)
     }
 
-    /// The page of which it is a later state, if somebody still remembers that.
+    /// The page of which it is a later state, if that is still referenced.
     #[must_use]
     pub fn base(&self) -> Option<Self> {
         self.0.base.upgrade().map(Self)
@@ -314,7 +314,7 @@ impl<T: Content> Page<T> {
         self.0.stored.load(Relaxed)
     }
 
-    /// Bytes that it takes where it is kept: in the document, or in memory.
+    /// Bytes that it takes where it is stored: in the document, or in memory.
     #[must_use]
     pub fn held_bytes(&self) -> usize {
         match self.stored_bytes() {

@@ -9,13 +9,13 @@ use crate::head::{Waypoint, motion};
 use crate::model::Sweep;
 use crate::scale::Scale;
 
-/// A shorter motion is none, cells.
+/// Motion that counts as rest, cells.
 const STILL: f64 = 0.02;
-/// A longer motion is no motion of a hand: nothing is painted on its way, m of the brush.
+/// Longest motion of a hand, m of the brush: nothing is painted along a longer one.
 const LEAP_M: f64 = 2.0;
 /// A motion so many times as long as a step is painted as one that is doubled.
 const DOUBLED_FROM: f64 = 1.5;
-/// A long step passes over no way so much longer than itself, cells.
+/// Largest excess of a path over the long step across it, cells.
 const DETOUR: f64 = 0.25;
 /// Doublings of a step at most.
 const MOST_DOUBLINGS: u32 = 2;
@@ -48,7 +48,7 @@ impl PathStepper {
         }
     }
 
-    /// A path that was kept: where it stepped last, and where it had come to since.
+    /// A saved path: position of its last step, and the position since.
     #[must_use]
     pub fn going_on(head: &Head, (at, ahead): (Waypoint, Option<Waypoint>), scale: Scale) -> Self {
         Self {
@@ -76,7 +76,7 @@ impl PathStepper {
     }
 
     /// Moves on to `to` in steps that are doubled so many times, those of a blade never, and calls `step` for each,
-    /// with its doublings: they follow from its length, so that a path that was kept ends as it would have.
+    /// with its doublings: they follow from its length, so that a saved path ends as it would have.
     pub fn advance(
         &mut self,
         head: &Head,
@@ -111,7 +111,7 @@ impl PathStepper {
         }
     }
 
-    /// Steps to where the brush turns within a long step: the way there and back would be lost.
+    /// Steps to the point where the brush turns within a long step: the path there and back would be lost.
     fn turn(&mut self, head: &Head, next: &HeadPose, step: &mut impl FnMut(Sweep<'_>, u32)) {
         let Some(ahead) = self.ahead.take() else {
             return;

@@ -8,7 +8,7 @@ use crate::tile::TileId;
 use crate::tooth::Tooth;
 use crate::tooth_picture::PictureTooth;
 
-/// Heights that are kept; beyond that they are computed anew.
+/// Largest number of cached heights; beyond that they are computed anew.
 const KEPT: usize = 1024;
 
 /// Source of the heights.

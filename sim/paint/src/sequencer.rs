@@ -19,8 +19,8 @@ use crate::painting::Painting;
 use crate::snapshot::{ReplySnapshot, TakeSnapshot};
 use dispatch::elsewhere;
 
-/// Clients whose last reply is kept, so that a repeated command is done once. A client repeats
-/// within seconds; of more clients than these the one that was answered longest ago is forgotten.
+/// Clients whose last reply is cached, so that a repeated command is done once. A client repeats within seconds; beyond
+/// this number the client answered longest ago is forgotten.
 const CLIENTS: usize = 256;
 
 /// Effect of a command on the outside world; carried out at once by the caller of the sequencer.
@@ -111,7 +111,7 @@ impl Sequencer {
         self.next
     }
 
-    /// States that were dropped: of takes that nobody announced, or live ones during a take.
+    /// States that were dropped: of unannounced takes, or live ones during a take.
     #[must_use]
     pub fn ignored(&self) -> u64 {
         self.ignored
@@ -137,12 +137,11 @@ impl Sequencer {
             .collect()
     }
 
-    /// Accepts a state, which must come in order, and then the commands that waited for it; returns
-    /// what became of these and of it. A state that does not fit is refused, and consumed all the
-    /// same.
+    /// Accepts a state, which must come in order, and then the commands that waited for it; returns the outcomes of
+    /// these and of it. A state that does not fit is refused, and consumed all the same.
     ///
-    /// A state of a replayed take that nobody announced paints nothing, nor does a live one from
-    /// the announcement of a take to its last state: a take paints the same whoever else moves.
+    /// A state of an unannounced replayed take paints nothing, nor does a live one from the announcement of a take to
+    /// its last state: a take paints the same whatever else moves.
     #[must_use = "effects of the commands are still to be done"]
     pub fn state(
         &mut self,

@@ -58,7 +58,7 @@ pub struct PaintingSetup {
     pub wells: Vec<Mixture>,
     /// The light.
     pub light: Light,
-    /// Factor of the eye that looks at it; none: such that the bare canvas does not clip.
+    /// Exposure factor; `None` for the one at which the bare canvas does not clip.
     pub exposure: Option<f64>,
     /// The pictures that its ground and its tooth may be made of.
     pub embedded: Assets,

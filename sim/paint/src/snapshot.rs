@@ -27,7 +27,7 @@ pub struct BrushSnapshot {
     pub loads: Vec<Mixture>,
     /// See `loads`.
     pub strokes: usize,
-    /// Seed of how its bristles lie.
+    /// Seed of the disorder of its bristles.
     pub seed: u64,
 }
 

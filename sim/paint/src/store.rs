@@ -128,8 +128,7 @@ impl TileStore {
             })
     }
 
-    /// The tiles that touch the rectangle of cells `from`..`to`, cut to the surface; none where it
-    /// lies beside.
+    /// The tiles that touch the rectangle of cells `from`..`to`, cut to the surface; `None` if it is outside.
     #[must_use]
     pub fn around(&self, from: [i64; 2], to: [i64; 2]) -> Option<TileRect> {
         let mut rect = TileRect {

@@ -72,7 +72,7 @@ impl Tooth {
         KINDS.iter().map(|kind| kind.name)
     }
 
-    /// The tooth called `name` on cells of `cell_m`; none if there is no such tooth.
+    /// The tooth called `name` on cells of `cell_m`; `None` if there is no such tooth.
     #[must_use]
     pub fn new(name: &str, seed: u64, cell_m: f64) -> Option<Self> {
         let kind = *KINDS.iter().find(|kind| kind.name == name)?;

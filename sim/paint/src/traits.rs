@@ -158,8 +158,8 @@ const PEAK_M: f64 = 0.125e-3;
 pub const FILM_OVER: f64 = 2.0;
 /// As [`FILM_OVER`]: what a blade scrapes off gathers on it.
 pub const BLADE_OVER: f64 = 3.0;
-/// Share of the motion of bristles that paint follows: it sticks to them about as to the canvas (a half
-/// in Baxter 2004, § 6.4.2). What lies before a blade goes with it.
+/// Share of the motion of bristles that paint follows: it sticks to them about as to the canvas (a half in Baxter 2004,
+/// § 6.4.2). Paint in front of a blade goes with it.
 pub const FOLLOWS: f32 = 0.4;
 /// As [`FOLLOWS`].
 pub const BLADE_FOLLOWS: f32 = 1.0;

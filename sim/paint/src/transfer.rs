@@ -38,7 +38,7 @@ impl Exchanging {
         swap: 0.3,
         ..Self::BRISTLES
     };
-    /// A blade: it scrapes off what stands above its edge, and fills what lies below; ln(1 − .6).
+    /// A blade: it scrapes off paint above its edge, and fills hollows below it; ln(1 − .6).
     pub const BLADE: Self = Self {
         ln_kept: -0.916_290_7,
         evens: 0.0,
@@ -84,8 +84,8 @@ impl Exchanging {
         fill + if difference > 0.0 { amount } else { -amount }
     }
 
-    /// Paint that goes both ways at once where brush and canvas are wet, units: their films mix as the
-    /// bristles go through them, but no deeper than a film, however high the paint lies.
+    /// Paint that is swapped where brush and canvas are wet, units: their films mix as the bristles go through them,
+    /// but no deeper than a film, however high the paint is.
     #[must_use]
     #[inline(always)]
     pub fn swapped(&self, on_brush: f32, on_canvas: f32, share: f32) -> f32 {

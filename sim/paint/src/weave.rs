@@ -14,7 +14,7 @@ const UNEVEN: f64 = 0.26;
 const WANDER: f64 = 0.3;
 /// Extra width of a thread at its slub.
 const SLUB_WIDTH: f64 = 0.34;
-/// Length of a slub with the thin way to the next, in distances of threads.
+/// Length of a slub with the thin stretch to the next, in thread spacings.
 const SLUB_LENGTH: f64 = 5.0;
 /// Height of the gesso in the valleys, of the depth of the relief, and its variation.
 const GESSO: [f64; 2] = [0.24, 0.1];
@@ -69,7 +69,7 @@ impl Weave {
         smooth_max(top + 0.05 * grain, level + 0.03 * grain, MENISCUS)
     }
 
-    /// The thread of an axis that lies at `across`, at `along` its way.
+    /// The thread of an axis at `across`, at `along` its length.
     fn thread(&self, axis: u64, across: f64, along: f64) -> Thread {
         let mut number = across.floor() as i64;
         let slub = |number: i64| self.slub(axis, number, along);

@@ -73,8 +73,8 @@ pub struct Window {
 }
 
 impl Window {
-    /// Leases `rect` and copies its tiles; none where it is leased already. `relief` gives the
-    /// heights of what catches paint, m.
+    /// Leases `rect` and copies its tiles; `None` if it is leased already. `relief` gives the heights that catch paint,
+    /// m.
     pub fn open(store: &mut TileStore, rect: TileRect, relief: &Relief) -> Option<Self> {
         if !store.lease(&rect) {
             return None;
@@ -141,7 +141,7 @@ impl Window {
         }
     }
 
-    /// Columns and rows, from the lower left corner, that lie on the surface.
+    /// Columns and rows, from the lower left corner, that are on the surface.
     #[must_use]
     pub fn limit(&self) -> [usize; 2] {
         self.limit
@@ -153,7 +153,7 @@ impl Window {
         &self.base
     }
 
-    /// Height at which a pressed bristle lies on what catches paint ([`ride`]), cells.
+    /// Height of a pressed bristle on the relief ([`ride`]), cells.
     #[must_use]
     pub fn ride(&self) -> &[f32] {
         &self.ride
@@ -247,7 +247,7 @@ impl Window {
         self.wet.iter().flatten().map(|plane| plane[cell]).sum()
     }
 
-    /// The cells `from`..`to` of the surface, as far as they lie in the window and on the surface.
+    /// The cells `from`..`to` of the surface, as far as they are in the window and on the surface.
     #[must_use]
     pub fn area(&self, from: [i64; 2], to: [i64; 2]) -> Area {
         let origin = self.origin();

@@ -185,7 +185,7 @@ wide! {
 }
 
 wide! {
-    /// One paint, both ways: `change` is what comes onto each texel.
+    /// One paint, both ways: `change` is the amount added to each texel.
     fn swap_paint(half: &mut Half, gives: &[f32], plane: Cells<'_>) {
         let asked = half.wants[0].iter().zip(&half.shares);
         let ways = half.cells.iter().zip(&half.places);

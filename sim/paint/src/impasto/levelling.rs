@@ -149,12 +149,12 @@ impl Blocks {
 pub const HALO: usize = 2;
 
 impl Levelling {
-    /// Adds what flows in so many rounds to the velocities through the right and upper faces of an area's
-    /// cells: the share of a donor's paint that goes through. Nothing leaves the area; beyond the window it is
-    /// as at its edge. Returns the most that flowed in a round.
+    /// Adds the flow of so many rounds to the velocities through the right and upper faces of an area's cells: the
+    /// share of a donor's paint that goes through. Nothing leaves the area; beyond the window it is as at its edge.
+    /// Returns the largest flow of a round.
     ///
-    /// Heights alone go through the rounds: paint follows once, by their sum. Where less than `rests` flowed in
-    /// the last round, and all around, nothing does in the next.
+    /// Heights alone go through the rounds: paint follows once, by their sum. Where less than `rests` flowed in the
+    /// last round, and all around, nothing flows in the next.
     pub fn add(
         &mut self,
         window: &Window,

@@ -60,7 +60,7 @@ pub(super) struct Line {
     pub(super) cosine: f32,
     /// Half the width, cells.
     pub(super) half: f32,
-    /// Cells over which an edge is soft: a cell, or the way across.
+    /// Cells over which an edge is soft: a cell, or the width across.
     pub(super) soft: f32,
     /// The most of a cell that it covers.
     pub(super) most: f32,
@@ -69,9 +69,9 @@ pub(super) struct Line {
 }
 
 impl Line {
-    /// The middle line of a ribbon that goes `way` in the step, in the middle of which it begins at `start` and
-    /// goes by `d`, half of it `half` wide, cells; and the columns from which up to which it covers any. `ends`
-    /// say whether nothing goes on before its beginning and after its end: there it is soft by its way along.
+    /// The middle line of a ribbon that moves by `way` in the step, in the middle of which it begins at `start` and
+    /// goes by `d`, half of it `half` wide, cells; and the range of columns that it covers. `ends` is true where
+    /// nothing continues it, before its beginning and after its end: there it is soft by its motion along the line.
     #[inline(always)]
     pub(super) fn swept(
         start: [f32; 2],
@@ -165,8 +165,8 @@ pub(super) struct Over<'a> {
 impl Over<'_> {
     /// Height of the lower side where the bristle, at rest on `ride`, may sink in by `sink`, cells.
     ///
-    /// What is pressed down has its solved height at 0: it follows the ride into the valleys of the tooth,
-    /// and is lifted by what stands higher.
+    /// A pressed bristle has its solved height at 0: it follows the ride into the valleys of the tooth, and is lifted
+    /// by higher parts.
     pub(super) fn bottom(&self, ride: f32, sink: f32) -> f32 {
         let z = self.piece.z[0] + self.t * self.piece.z[1];
         let rests = (z + ride.min(0.0)).max(ride);
@@ -196,8 +196,8 @@ pub(super) struct Drawing {
     score: Vec<f32>,
     /// The lowest piece; whole numbers.
     number: Vec<f32>,
-    /// Share of each cell that all pieces leave open. They lie anyhow beside and over each other: what
-    /// each covers, it covers of what the others leave open.
+    /// Share of each cell that all pieces leave open. They overlap at random: each covers its share of the area that
+    /// the others leave open.
     open: Vec<f32>,
     pieces: Vec<Piece>,
 }

@@ -9,8 +9,8 @@ use crate::error::EditError;
 use crate::model::{PaintModel, StepReport};
 use crate::traits::BrushTraits;
 
-/// Deferred steps are settled after so many at the latest. How full the brush is, is seen just then:
-/// when somebody looks at the painting must not matter.
+/// Largest number of deferred steps. The fullness of the brush is read just when they are settled: the time at which a
+/// caller looks at the painting must not matter.
 const SETTLE_EVERY: u32 = 256;
 
 /// Progress of the deferred steps of a brush.
@@ -138,7 +138,7 @@ impl Painting {
         }
     }
 
-    /// Whether a sheet has wells: those are tended on the CPU, step by step.
+    /// True if a surface has wells: those are tended on the CPU, step by step.
     pub(super) fn has_wells(&self, sheet: usize) -> bool {
         let id = self.sheets[sheet].id;
         let mut surfaces = self.scene.surfaces.iter();

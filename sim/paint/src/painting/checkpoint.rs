@@ -45,7 +45,7 @@ pub struct Checkpoint {
     pub named: Vec<Named>,
     /// Versions that went.
     pub gone_named: Vec<String>,
-    /// Pages and dry layers that nobody remembers.
+    /// Pages and dry layers without references.
     pub dead: Vec<u64>,
 }
 
@@ -144,7 +144,7 @@ impl Painting {
         }
     }
 
-    /// The next checkpoint holds the whole history and all versions: its document knows none of them.
+    /// Makes the next checkpoint hold the whole history and all versions: its document has none of them.
     pub fn tell_all_again(&mut self) {
         self.history.touch_all();
         self.named_touched.extend(self.named.keys().cloned());
@@ -174,10 +174,10 @@ impl Painting {
         brushes.collect()
     }
 
-    /// A painting as its document has it.
+    /// A painting from its document.
     ///
     /// # Errors
-    /// [`EditError`] where what was kept does not hold together.
+    /// [`EditError`] if the stored parts do not fit together.
     pub fn restore(
         restored: Restored,
         library: PaintLibrary,
@@ -289,7 +289,7 @@ impl Painting {
         Ok(painting)
     }
 
-    /// Forgets where the brushes are, and when: the next states begin their ways, and a time, anew.
+    /// Forgets positions and times of the brushes: the next states begin new paths.
     pub fn lift_brushes(&mut self) {
         self.close_windows();
         self.span_ns = None;

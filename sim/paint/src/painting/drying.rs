@@ -19,7 +19,7 @@ const TILES_A_TICK: usize = 32;
 /// A brush counts as painting for so many ticks after it was last in contact, .2 s: contacts less than
 /// 150 ms apart are one stroke.
 const LIFTED_TICKS: u32 = 12;
-/// One that stays in contact and of which nothing is heard counts as painting for so many.
+/// Ticks for which a brush in contact counts as painting although no state arrives.
 const STILL_TICKS: u32 = 120;
 /// Name of its steps.
 const STEP: &str = "drying";

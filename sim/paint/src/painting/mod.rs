@@ -54,7 +54,7 @@ use crate::traits::BrushTraits;
 use crate::window::Window;
 use backend::{BackendFallback, Deferral};
 
-/// A surface: its tiles and what lies under them.
+/// A surface: its tiles and the ground under them.
 #[derive(Debug)]
 struct SurfaceState {
     id: u32,
@@ -75,10 +75,10 @@ struct PaintingBrush {
     thinned: BrushFile,
     /// Its head as its file has it.
     tidy: Arc<Head>,
-    /// The same with its bristles as they lie since the newest stroke began.
+    /// The same with the disorder of its bristles since the newest stroke began.
     head: Arc<Head>,
     load: Arc<BrushLoad>,
-    /// The load that was last kept, and its page.
+    /// The load that was last saved, and its page.
     kept: Option<(Arc<BrushLoad>, Page<BrushLoad>)>,
     /// Epoch of the brush and number of the newest stroke.
     stroke: Option<(u32, u64)>,
@@ -88,7 +88,7 @@ struct PaintingBrush {
     loads: Vec<Mixture>,
     /// Strokes since its take began.
     strokes: usize,
-    /// Seed of how its bristles lie.
+    /// Seed of the disorder of its bristles.
     seed: u64,
     /// Surface under it at its newest step.
     under: UnderBrush,
@@ -97,7 +97,7 @@ struct PaintingBrush {
 }
 
 impl PaintingBrush {
-    /// Seed of how its bristles lie in its next stroke, and of a load before that.
+    /// Seed of the disorder of its bristles in its next stroke, and of a load before that.
     fn next_seed(&self) -> u64 {
         (self.strokes as u64 + 1).wrapping_mul(0x9e37_79b1) & SEEDS
     }
@@ -118,7 +118,7 @@ impl PaintingBrush {
         self.head = self.disordered();
     }
 
-    /// The head with its bristles as they lie by its seed.
+    /// The head with its bristles disordered by its seed.
     fn disordered(&self) -> Arc<Head> {
         Arc::new(self.tidy.disordered(self.seed))
     }
@@ -143,7 +143,7 @@ pub struct Painting {
     /// Most bytes of the history.
     quota: u64,
     named: BTreeMap<String, Named>,
-    /// Versions that came, changed or went since the document heard of them.
+    /// Versions that came, changed or went since the last checkpoint.
     named_touched: BTreeSet<String>,
     /// The version from which the painter goes on.
     line: Option<String>,

@@ -24,7 +24,7 @@ const AT_ONCE: u32 = 16;
 const RESTS: f32 = 1e-3;
 
 impl Painting {
-    /// Lets what a brush's stroke has reached on a sheet level.
+    /// Levels the paint that a brush's stroke has reached on a surface.
     pub(super) fn relax(&mut self, name: &str, sheet: usize) {
         if self.has_wells(sheet) {
             return;

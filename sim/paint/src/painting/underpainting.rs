@@ -25,7 +25,7 @@ pub enum Wetness {
 /// Paint for a tile.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct LaidTile {
-    /// Which tile.
+    /// Tile number.
     pub id: TileId,
     /// Number of a paint, and its quanta in each of the [`TILE_CELLS`](crate::planes::TILE_CELLS) cells,
     /// row after row from the bottom.
@@ -47,13 +47,12 @@ impl Painting {
         &self.embedded
     }
 
-    /// Lays paint on a surface, cell by cell, from the tubes of `paints`: one step that can be undone.
-    /// Cells beyond the surface's edge and in wells get none, and none more than it can hold. Where it is
-    /// to dry, what is wet dries before it, as a layer of its own. Returns the name of its layer, if it
-    /// dried.
+    /// Applies paint to a surface, cell by cell, from the tubes of `paints`: one step that can be undone. Cells beyond
+    /// the surface's edge and in wells get none, and none more than it can hold. If it is to dry, wet paint dries
+    /// before it, as a layer of its own. Returns the name of its layer, if it dried.
     ///
     /// # Errors
-    /// [`EditError`] for an unknown surface or paint, or a 17th paint; then nothing is laid.
+    /// [`EditError`] for an unknown surface or paint, or a 17th paint; then nothing is applied.
     pub fn underpaint(
         &mut self,
         surface: u32,

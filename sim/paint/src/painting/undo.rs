@@ -113,7 +113,7 @@ impl Painting {
         }
     }
 
-    /// Ends the step that is nobody's brush's.
+    /// Ends the open step that belongs to no brush.
     pub(super) fn end_own_step(&mut self) {
         self.end_step(|step| step.brush.is_none());
     }
@@ -164,11 +164,10 @@ impl Painting {
         self.sheet(surface)?.store.version(id).tile.clone()
     }
 
-    /// Takes the newest step back, of a brush or of all, and says what it was.
+    /// Undoes the newest step, of a brush or of all, and returns its description.
     ///
     /// # Errors
-    /// [`EditError`] where there is none, or where something was painted over it since: then
-    /// nothing has changed.
+    /// [`EditError`] if there is no step, or something was painted over it since: then nothing has changed.
     pub fn undo(&mut self, brush: Option<&str>) -> Result<String, EditError> {
         if let Some(brush) = brush {
             self.brush(brush)?;

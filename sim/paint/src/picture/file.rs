@@ -49,10 +49,10 @@ impl<'a> Pixels<'a> {
     }
 }
 
-/// Writes a PNG: `fill` writes all its pixels, from the top row. How it cuts them up changes no byte.
+/// Writes a PNG: `fill` writes all its pixels, from the top row. The size of its writes changes no byte.
 ///
 /// # Errors
-/// What `to` or `fill` says.
+/// The error of `to` or `fill`.
 pub fn write_png<E: From<Error>>(
     to: impl Write,
     info: png::Info<'_>,

@@ -18,7 +18,7 @@ const OWN: u64 = 0;
 /// joined to what they do next.
 const GOES_ON: &str = "the painting goes on";
 
-/// The zoom of a solve of which only the scene says at what zoom it was painted: an older program kept it.
+/// Zoom of a solve that an older program saved without it: the scene has the zoom.
 pub const NO_ZOOM: f64 = 0.0;
 
 /// Something that was accepted.
@@ -126,8 +126,8 @@ impl Sequencer {
         }
     }
 
-    /// Goes on after the program ended: the next states of brushes begin their ways anew, and no take
-    /// holds a brush until its player is there again.
+    /// Resumes after the program ended: the next states of brushes begin new paths, and no take has a brush until its
+    /// player is there again.
     pub fn go_on(&mut self) {
         self.let_go();
         self.decide(GOES_ON);
@@ -158,8 +158,7 @@ impl Sequencer {
         }
     }
 
-    /// Accepts again what a document has kept. What was done then is done now; what was asked of the
-    /// outside world is not asked again.
+    /// Accepts a saved record again. Its effect on the painting is repeated; its effect on the outside world is not.
     pub fn replay(&mut self, record: Record) {
         let recording = self.records.take();
         let next = record.next();
@@ -244,7 +243,7 @@ impl Sequencer {
         }
     }
 
-    /// A sequencer that goes on where it was kept.
+    /// A sequencer restored from its snapshot.
     #[must_use]
     pub fn restored(mut painting: Painting, kept: SequencerSnapshot) -> Self {
         let answers = kept.answers.values().map(|answer| answer.age).max();
