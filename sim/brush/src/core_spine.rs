@@ -11,7 +11,7 @@ use crate::energy::bond::Bond;
 use crate::spine::{Spine, SpineShape};
 use crate::spine_root::SpineRoot;
 
-/// The core, and how the segments of all spines lie beside its own.
+/// The core, and the pose of the segments of all spines relative to its own.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Core {
     /// Root and material of the core.
@@ -105,7 +105,7 @@ impl Core {
     }
 }
 
-/// The frames of a spine's segments, each turned from the one before by the shortest way.
+/// The frames of a spine's segments, each rotated from the one before by the shortest arc.
 pub fn frames(shape: &SpineShape, into: &mut Vec<DQuat>) {
     into.clear();
     let (mut rotation, mut before) = (shape.frame, shape.base());

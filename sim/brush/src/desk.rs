@@ -100,7 +100,7 @@ impl Obstacle {
         self.face_toward(p).gap(p) < radius
     }
 
-    /// A plane as seen from another: the canvas is all that lies under it, a palette a board.
+    /// A plane as seen from another: the canvas is the half space under it, a palette a board.
     fn of(plane: &Plane, seen_from: &Plane) -> Self {
         let place = seen_from.to_desk.inverse().after(&plane.to_desk);
         let face = |normal: DVec3, through: DVec3| {
@@ -129,7 +129,7 @@ pub struct Desk {
 }
 
 impl Desk {
-    /// The desk of a scene; the palette lies over the canvas.
+    /// The desk of a scene; the palette is above the canvas.
     #[must_use]
     pub fn of(scene: &Scene) -> Self {
         let mut planes: Vec<Plane> = scene.surfaces.iter().map(Plane::of).collect();
@@ -165,8 +165,7 @@ impl Desk {
         self.planes.iter().find(|plane| plane.id == id)
     }
 
-    /// The surface that lies under a point: the palette before the canvas, and beside all the
-    /// canvas, whose plane goes on.
+    /// The surface under a point: the palette before the canvas, and elsewhere the canvas, whose plane continues.
     #[must_use]
     pub fn under(&self, in_desk: DVec3) -> Option<&Plane> {
         self.planes
@@ -198,9 +197,9 @@ pub fn aim(sample: &StylusSample, head_length_m: f64) -> DVec3 {
     }
 }
 
-/// Brush frame to desk frame for a sample. For a pen the ferrule is at contact point + axis · head
-/// length · (1 − depth_share · pressure), and [`HOVER_M`] higher without pressure; the contact point
-/// is where it lies on `surface` (desk frame), for a pen knows of no other height than its tablet's.
+/// Brush frame to desk frame for a sample. For a pen the ferrule is at contact point + axis · head length · (1 −
+/// depth_share · pressure), and [`HOVER_M`] higher without pressure; the contact point is taken on `surface` (desk
+/// frame), for a pen knows of no other height than its tablet's.
 #[must_use]
 pub fn ferrule(
     sample: &StylusSample,

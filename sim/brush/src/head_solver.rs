@@ -201,8 +201,8 @@ impl SolvedHead {
         converged
     }
 
-    /// Bends the core of a head that has moved to `brush`. An upright one gives way to where the handle
-    /// comes from.
+    /// Bends the core of a head that has moved to `brush`. An upright one gives way in the direction from which the
+    /// handle comes.
     fn bend_core(
         &mut self,
         room: &mut HeadSolver,

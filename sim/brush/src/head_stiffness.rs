@@ -13,7 +13,7 @@ use crate::spine_root::SpineRoot;
 
 /// A head less pressed in than this share of its length feels as at rest.
 const LEAST_DEPTH: f64 = 0.04;
-/// A head that is laid flat counts as this share of its length along the normal.
+/// Least extent of a head along the normal, as a share of its length: for a head pressed flat.
 const LEAST_ALONG: f64 = 0.2;
 /// A bent head feels at most this many times as stiff, or as soft, as at rest.
 const MOST: f64 = 4.0;
@@ -27,8 +27,8 @@ pub struct HeadStiffness {
 }
 
 impl HeadStiffness {
-    /// A head that touches nothing: half of the loads, summed, under which its spines begin to give
-    /// way (1/ΣK⁻¹ by the length), for a head is rarely held upright.
+    /// A head that touches nothing: half of the loads, summed, under which its spines begin to buckle (1/ΣK⁻¹ by the
+    /// length), for a head is rarely upright.
     #[must_use]
     pub fn at_rest(tuft: &SpineLayout, length_m: f64) -> Self {
         let load = |root: &SpineRoot| {
@@ -40,7 +40,7 @@ impl HeadStiffness {
         }
     }
 
-    /// A head that is held at `brush` over the surface z = 0 and presses with `force_n`.
+    /// A head at pose `brush` over the surface z = 0 that presses with `force_n`.
     #[must_use]
     pub fn bent(tuft: &SpineLayout, length_m: f64, brush: &Rigid, force_n: f64) -> Self {
         let rest = Self::at_rest(tuft, length_m);

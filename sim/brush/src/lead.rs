@@ -10,7 +10,7 @@ use maulstick_num::exp;
 
 /// Way along which the share 1 − 1/e of what is left is taken back, m.
 const BACK_M: f64 = 1e-3;
-/// The handle is led along a way by at most so many times its length.
+/// Largest change of the lead along a path, in lengths of the path.
 const FASTEST: f64 = 4.0;
 
 /// Offset of a pen's handle from its point, m.
@@ -23,7 +23,7 @@ pub struct Lead {
 }
 
 impl Lead {
-    /// Of a pen that is set down, whose mark lies `beside` its point, where the table says `tabled`.
+    /// Lead of a pen that is set down, whose mark is `beside` its point, where the table gives `tabled`.
     #[must_use]
     pub fn landed(beside: DVec2, tabled: DVec2) -> Self {
         Self {
@@ -32,8 +32,8 @@ impl Lead {
         }
     }
 
-    /// Goes on along a way at the end of which the mark lies `beside` the point although the handle is
-    /// led; `tabled` as in [`landed`](Self::landed).
+    /// Continues along a path at the end of which the mark is `beside` the point although the handle is led; `tabled`
+    /// as in [`landed`](Self::landed).
     pub fn go(&mut self, beside: DVec2, tabled: DVec2, way_m: f64, length_m: f64) {
         self.rest += beside * (exp(-way_m / BACK_M) - 1.0);
         self.rest = self.rest.clamp_length_max(0.5 * length_m);

@@ -59,8 +59,8 @@ impl Mark {
         }
     }
 
-    /// The middle of what a head touches that is held at `brush` over the surface z = 0 and bent by
-    /// `angles`, m; none where it touches nothing.
+    /// The middle of the contact of a head at pose `brush` over the surface z = 0, bent by `angles`, m; `None` if it
+    /// touches nothing.
     pub fn middle(&mut self, brush: &Rigid, angles: &[[f32; 2]]) -> Option<DVec2> {
         let hold = Hold {
             brush,
@@ -177,8 +177,8 @@ impl Beside {
         Self { turns, table }
     }
 
-    /// The middle of the mark beside the point of `handle`, held over the surface z = 0 with a head of
-    /// `length_m` that is `bent` to one side; the handle counts as lowered onto the surface. All m.
+    /// The middle of the mark relative to the point of `handle`, over the surface z = 0 with a head of `length_m` that
+    /// is `bent` to one side; the handle counts as lowered onto the surface. All m.
     #[must_use]
     pub fn at(&self, handle: &Rigid, bent: DVec2, length_m: f64) -> DVec2 {
         let axis = handle.vector(DVec3::Z);

@@ -9,8 +9,8 @@ use maulstick_types::scene::{PALETTE, Surface, Well, WellKind};
 pub const BOARD_M: f64 = 4e-3;
 /// Gap between the palette at rest and the canvas, m.
 pub const GAP_M: f64 = 0.01;
-/// Height of the palette's face above the canvas that it is slid over, m: its board is 4 mm thick, and
-/// paint lies under it.
+/// Height of the palette's face above the canvas that it is slid over, m: its board is 4 mm thick, and there is paint
+/// under it.
 const OVER_M: f64 = 0.01;
 /// Poses that differ by less are the same, m and parts of a quaternion.
 const SAME: f64 = 1e-9;
@@ -34,7 +34,7 @@ pub fn size_m(surface: &Surface) -> DVec2 {
     DVec2::new(across, up) * surface.cell_m
 }
 
-/// The palette beside the canvas as that lies at the beginning, in the middle of the desk.
+/// The palette beside the canvas at its initial place, in the middle of the desk.
 #[must_use]
 pub fn beside(canvas: &Surface, palette: &Surface, side: Side) -> Pose {
     let (wide, own) = (size_m(canvas).x, size_m(palette) * palette.zoom);
@@ -48,7 +48,7 @@ pub fn beside(canvas: &Surface, palette: &Surface, side: Side) -> Pose {
     }
 }
 
-/// The palette in the middle of the desk, over the canvas however that lies.
+/// The palette in the middle of the desk, over the canvas whatever its placement.
 #[must_use]
 pub fn over(canvas: &Surface, palette: &Surface) -> Pose {
     let plane = Rigid::from(&canvas.pose);
@@ -85,7 +85,7 @@ pub fn corner_radii(surface: &Surface) -> [f64; 4] {
     }
 }
 
-/// The side on which most paints lie.
+/// The side with most of the paints.
 fn side_of_wells(palette: &Surface) -> Side {
     let middle = 0.5 * size_m(palette).x;
     let paints = palette.wells.iter().filter(|well| is_paint(well));
@@ -120,7 +120,7 @@ pub fn mirrored(wells: &[Well], size: DVec2) -> Vec<Well> {
     wells.iter().map(mirror).collect()
 }
 
-/// The canvas as it lies at the beginning: unzoomed, its middle in the desk's origin.
+/// The canvas at its initial place: unzoomed, its middle at the desk's origin.
 #[must_use]
 pub fn canvas_at_rest(canvas: &Surface) -> Surface {
     let size = size_m(canvas);

@@ -55,8 +55,8 @@ impl SurfacePlacement {
         }
     }
 
-    /// Larger by a factor about a point of the desk. A zoom that was told otherwise, beyond those of a
-    /// painter, goes no farther; it does not leap to the bound.
+    /// Larger by a factor about a point of the desk. A zoom set otherwise, beyond those of a painter, goes no farther;
+    /// it does not leap to the bound.
     #[must_use]
     pub fn zoomed(&self, about: DVec3, factor: f64) -> Self {
         let [least, most] = [ZOOMS[0].min(self.zoom), ZOOMS[1].max(self.zoom)];
@@ -99,7 +99,7 @@ impl SurfacePlacement {
     }
 }
 
-/// A surface that lies so.
+/// A surface with this placement.
 #[must_use]
 pub fn placed(surface: &Surface, placement: &SurfacePlacement) -> Surface {
     Surface {

@@ -171,7 +171,7 @@ impl Skin {
     }
 }
 
-/// The frames of a spine's segments, each turned from the one before by the shortest way.
+/// The frames of a spine's segments, each rotated from the one before by the shortest arc.
 fn frames(spine: &Spine, shape: &SpineShape) -> Vec<Rigid> {
     let mut rotation: DQuat = shape.frame;
     let mut before = shape.base();

@@ -26,9 +26,9 @@ pub struct Spine {
 }
 
 impl Spine {
-    /// A spine of `joints` equal segments with bending stiffness `ei` (N·m²): K = EI/l, doubled at
-    /// the clamp, between which and the first joint only half a segment lies. With the doubling the
-    /// chain converges to the beam with second order in its segments; without, with first.
+    /// A spine of `joints` equal segments with bending stiffness `ei` (N·m²): K = EI/l, doubled at the clamp, between
+    /// which and the first joint there is only half a segment. With the doubling the chain converges to the beam with
+    /// second order in its segments; without, with first.
     #[must_use]
     pub fn uniform(length_m: f64, joints: usize, ei: f64) -> Self {
         let segment = length_m / joints as f64;

@@ -11,7 +11,7 @@ use crate::solver::Neighbour;
 use crate::spine::Spine;
 use crate::spine_root::SpineRoot;
 
-/// The ferrule is held off the surface by at least this share of the head's length.
+/// Least height of the ferrule over the surface, as a share of the head's length.
 const LEAST_HEIGHT: f64 = 0.05;
 
 /// The spines of a head.
@@ -98,7 +98,7 @@ impl SpineLayout {
         roots.map(|root| root.origin.truncate() / half).collect()
     }
 
-    /// Height of the lowest root of a brush that is held at `brush`, m.
+    /// Height of the lowest root of a brush at pose `brush`, m.
     #[must_use]
     pub fn lowest_root(&self, brush: &Rigid) -> f64 {
         let roots = self.roots.iter().map(|root| brush.point(root.origin).z);

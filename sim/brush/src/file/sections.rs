@@ -129,8 +129,7 @@ pub struct Spines {
     /// against a force across it.
     #[serde(default)]
     pub volume: f64,
-    /// Stiffness with which spines are held to the bend of the whole head, by that of their joints: as
-    /// the brush is made, and soaked.
+    /// Stiffness of the bond between spines and the bend of the whole head, by that of their joints: dry, and soaked.
     #[serde(default = "bond")]
     pub bond: [f64; 2],
     /// The spines of the layout `chains`.
@@ -190,7 +189,7 @@ pub struct Strips {
     pub open: f64,
     /// By which share of the mean the strips differ in how much they carry.
     pub unevenness: f64,
-    /// Number of clumps in which they stick together; none if 0.
+    /// Number of clumps in which they stick together; 0 for no clumps.
     #[serde(default)]
     pub clumps: usize,
     /// Convergence of the points of a clump on a clean brush and on a full one, 0 to 1.
@@ -206,7 +205,7 @@ const fn itself() -> f64 {
     1.0
 }
 
-/// The skin: a closed surface around the strips, which paints where they lie close.
+/// The skin: a closed surface around the strips, which paints where they are close together.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Surface {

@@ -33,7 +33,7 @@ pub(super) struct Bones {
     ways: Vec<DVec3>,
     /// The joints of each spine, from the ferrule to the point.
     spines: Vec<Vec<usize>>,
-    /// Of each joint its number counted through all spines; none for a root that carries them.
+    /// Number of each joint, counted through all spines; `None` for a root that carries them.
     numbers: Vec<Option<usize>>,
 }
 

@@ -49,7 +49,7 @@ pub enum GltfError {
     NoTree {
         /// The node.
         node: String,
-        /// In which way.
+        /// The reason.
         why: &'static str,
     },
     /// Nothing to paint with.
@@ -101,7 +101,7 @@ pub enum GltfError {
         /// Largest number.
         most: usize,
     },
-    /// A bone that ends where it begins, or of which no end can be told.
+    /// A bone that ends where it begins, or whose end is unknown.
     #[error("bone '{bone}' has no length: {why}")]
     NoLength {
         /// The bone.
@@ -129,7 +129,7 @@ pub enum GltfError {
         /// Position of the first one, brush frame, mm.
         at_mm: [f64; 3],
     },
-    /// The bristles point another way, or the head is elsewhere.
+    /// The bristles point in another direction, or the head is elsewhere.
     #[error(
         "{what} does not hang along -Z of Blender; the origin is where head and ferrule meet, \
          and the bristles go down from it (in the exporter, +Y Up stays on)"

@@ -23,7 +23,7 @@ pub(super) struct Measured {
     pub(super) outline: Outline,
 }
 
-/// Measures the part of a mesh from z = 0 down to −`length_mm`; none if the mesh is elsewhere.
+/// Measures the part of a mesh from z = 0 down to −`length_mm`; `None` if the mesh is elsewhere.
 pub(super) fn measure(
     vertices: &[DVec3],
     faces: &[Vec<usize>],

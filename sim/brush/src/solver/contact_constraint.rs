@@ -92,8 +92,8 @@ impl ContactConstraint {
         *self = Self::new(self.joint, self.half_space);
     }
 
-    /// Notes which way its segment points: the unit projection onto the wall of the way from the end
-    /// of the segment to its root.
+    /// Notes the preferred direction of its segment: the unit projection onto the half space's plane of the vector from
+    /// the end of the segment to its root.
     pub fn update_preferred(&mut self, spine: &Spine, shape: &SpineShape) {
         let back = -shape.directions[self.joint];
         let lies = self.half_space.along(back);

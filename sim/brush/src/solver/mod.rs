@@ -90,7 +90,7 @@ impl Settings {
 pub struct Energy {
     /// Of the springs.
     pub spring: f64,
-    /// Work against friction with the walls.
+    /// Work against friction with the half spaces.
     pub friction: f64,
     /// Work against friction in the joints.
     pub damping: f64,
@@ -117,7 +117,7 @@ pub struct Solution {
     pub iterations: usize,
     /// ‖∇L‖∞, N·m.
     pub residual: f64,
-    /// Deepest joint within a wall, m.
+    /// Deepest joint within a half space, m.
     pub penetration_m: f64,
     /// The energy.
     pub energy: Energy,
@@ -216,7 +216,7 @@ struct QuadraticProgram {
     factor: BlockFactor,
     /// The model with springs.
     stiff: Vec<DMat2>,
-    /// The step if nothing were in the way.
+    /// The unconstrained step.
     newton: Vec<DVec2>,
     /// By how much the step moves the ends, m.
     moves: Vec<DVec3>,
@@ -250,15 +250,14 @@ struct Problem<'a> {
 }
 
 impl Solver {
-    /// Bends `shape` to the least energy outside the walls of all `stops`, starting from how it is
-    /// bent, and writes the normal forces into them.
+    /// Bends `shape` to the least energy outside the half spaces of all `stops`, starting from its present bend, and
+    /// writes the normal forces into them.
     ///
-    /// Friction has the normal force of the solve before, and the solve is done again with the one that
-    /// it found until the two agree: a contact that lifts has no friction after all, and one that breaks
-    /// loose has that of sliding. One that is new has none in this pose: it has not slipped yet.
-    /// Where a leap of the handle leaves the head so twisted that no minimum is found from there, it
-    /// is sought from the relaxed head, without friction; where that fails too, the head keeps its
-    /// shape.
+    /// Friction has the normal force of the previous solve, and the solve is repeated with the one that it found until
+    /// the two agree: a contact that lifts has no friction after all, and one that breaks loose has that of sliding. A
+    /// new contact has no friction in this pose: it has not slipped yet. Where a leap of the handle leaves the head so
+    /// twisted that no minimum is found from there, it is sought from the relaxed head, without friction; where that
+    /// fails too, the head keeps its shape.
     pub fn solve(
         &mut self,
         spine: &Spine,
@@ -481,8 +480,8 @@ fn is_within_reach(spine: &Spine, shape: &SpineShape, constraints: &[ContactCons
     })
 }
 
-/// A straight spine pressed along its own axis has no way to bend that is better than another, and
-/// no gradient: turn it a little.
+/// A straight spine pressed along its own axis has no preferred direction of bending, and no gradient: turns it a
+/// little.
 fn break_symmetry(spine: &Spine, shape: &mut SpineShape, yields: DVec2) {
     let upright = spine.rest.is_empty()
         && shape
