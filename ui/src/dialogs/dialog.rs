@@ -127,7 +127,7 @@ fn below(ui: &mut Ui, foot: &Foot) -> Answer {
     answer
 }
 
-/// A line of text with its label; the first of a dialog has the keyboard when it opens. Whether Enter was
+/// A line of text with its label; the first of a dialog has the keyboard when it opens. Returns true if Enter was
 /// pressed in it.
 pub(crate) fn line(
     ui: &mut Ui,
@@ -148,7 +148,7 @@ pub(crate) fn line(
 /// The number of a field, with a point or a comma.
 ///
 /// # Errors
-/// What is wrong and what to do, in words.
+/// Error and advice in words.
 pub(crate) fn number(what: &str, text: &str) -> Result<f64, String> {
     let plain = text.trim().replace(',', ".");
     let number: Option<f64> = plain.parse().ok();

@@ -247,7 +247,7 @@ mod tests {
             }
         }
 
-        /// The mouse tells where it is; whether it was heard to be in range.
+        /// The mouse sends its position; returns the range state that was received.
         fn turn(&mut self) -> Option<bool> {
             let now_ns = self.net.bus().now_ns();
             self.mouse.send(now_ns, &[PRESSED]).expect("sent");

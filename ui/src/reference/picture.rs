@@ -32,7 +32,7 @@ impl Picture {
     /// Reads a file.
     ///
     /// # Errors
-    /// What is wrong and what to do, in words.
+    /// Error and advice in words.
     pub(crate) fn read(path: &Path) -> Result<Self, String> {
         let image = Image::open_within(path, MOST_BYTES).map_err(|error| match error {
             ImportError::File(error) => {

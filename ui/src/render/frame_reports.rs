@@ -38,7 +38,7 @@ impl Completion {
     }
 }
 
-/// Follows frames to their completion and tells of them.
+/// Follows frames to their completion and reports them.
 pub(crate) struct Presenter {
     bus: Arc<dyn Bus>,
     line: Arc<Line>,

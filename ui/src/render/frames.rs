@@ -57,7 +57,7 @@ pub struct Shown {
     pub cells: [u32; 2],
     /// Changed tiles.
     pub tiles: Vec<ShownTile>,
-    /// The journal entries below this index are in the detail; 0 where this reply does not tell.
+    /// The journal entries below this index are in the detail; 0 if this reply does not say.
     pub journal: u64,
     /// The brush states that are in the detail; empty if this reply does not say.
     pub holds: Vec<FrameHolds>,

@@ -93,7 +93,7 @@ pub struct BrushTracker {
     looks: Receiver<BrushLook>,
     coats: BTreeMap<String, Option<Arc<PaintColour>>>,
     depth_shares: BTreeMap<String, f64>,
-    /// The source that is only heard when it moves.
+    /// The source that sends only while it moves.
     quiet: u32,
     newest: BTreeMap<u32, Heard>,
     /// The newest samples of all devices by source and time, the newest first.
@@ -239,7 +239,7 @@ impl BrushTracker {
         sample.in_range.then(|| (aim(sample, length), !touches))
     }
 
-    /// The newest sample of each device that was heard within the last second.
+    /// The newest sample of each device received within the last second.
     pub fn newest(&self, now_ns: u64) -> impl Iterator<Item = SampleNumber> {
         let is_new = move |heard: &Heard| now_ns < heard.arrived_ns.saturating_add(SILENCE_NS);
         let newest = self.newest.iter().filter(move |(_, heard)| is_new(heard));

@@ -11,7 +11,7 @@ pub(crate) const KEPT_S: f64 = 5.0;
 /// Length of a span, ns, and how many there are at most.
 const SPAN_NS: u64 = 20_000_000;
 const SPANS: usize = 250;
-/// A device that is silent for this long is away, ns; the window's own mouse tells its moves alone.
+/// Silence after which a device counts as away, ns; the window's own mouse sends only its moves.
 const SILENCE_NS: u64 = 500_000_000;
 /// The mouse as a device.
 const POINTER: &str = "pointer";

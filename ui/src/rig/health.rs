@@ -24,7 +24,7 @@ fn stopped(who: &str) -> String {
 /// Prefix of the decision that the processor takes over from the graphics card.
 const FALL: &str = "backend cpu: ";
 
-/// Something heard that changes nothing of what is known of the rig.
+/// An event that changes nothing in the state of the rig.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum RigEvent {
     /// A message that this window does not understand.

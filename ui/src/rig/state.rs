@@ -37,18 +37,18 @@ pub struct Device {
     pub info: Option<StylusInfo>,
     /// Status of the stylus; `None` until it was received.
     pub status: Option<StylusStatus>,
-    /// When it was last heard, rig clock, ns.
+    /// Time of its last message, rig clock, ns.
     pub heard_ns: u64,
     /// Its newest samples.
     pub forces: ForceHistory,
 }
 
-/// A paint node as it was last heard.
+/// Last known state of a paint node.
 #[derive(Clone, Debug)]
 pub struct PaintNode {
     /// Its status.
     pub status: PaintStatus,
-    /// When it was last heard, rig clock, ns.
+    /// Time of its last message, rig clock, ns.
     pub heard_ns: u64,
 }
 
@@ -90,7 +90,7 @@ pub struct RigState {
 }
 
 impl RigState {
-    /// A rig of which nothing has been heard yet.
+    /// A rig without any message so far.
     #[must_use]
     pub fn new(rig: &str, brushes: &[String], library: Arc<PaintLibrary>) -> Self {
         let brush = |name: &String| RigBrush {

@@ -66,7 +66,7 @@ impl Bench {
         self.with(|overlay, work| overlay.hear(&told, work));
     }
 
-    /// Words of all tellings.
+    /// Words of all notifications.
     pub(crate) fn told(&self) -> String {
         let words = self.notifications.told().iter();
         let words = words.map(|toast| format!("{} {}", toast.what, toast.help));

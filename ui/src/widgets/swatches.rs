@@ -16,7 +16,7 @@ use crate::rig::state::RigState;
 
 /// Parts of white to one part of paint in a tint.
 const TINT: f64 = 10.0;
-/// Thickness of the film that tells how a paint covers, m.
+/// Thickness of the film by which hiding power is judged, m.
 const FILM_M: f64 = 50e-6;
 /// Largest number of cached mixtures; beyond, all are computed anew.
 const KEPT: usize = 256;

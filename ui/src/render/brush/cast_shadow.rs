@@ -19,8 +19,7 @@ pub(crate) const SHADES: [usize; 2] = [
 /// Softness that keeps an edge from being jagged, pixels.
 const EDGE: f32 = 0.7;
 
-/// A board that lies above the desk: its lower left corner, lower right and upper left one in the view,
-/// pixels.
+/// A board above the desk: its lower left corner, lower right and upper left one in the view, pixels.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Board {
     /// The corners.

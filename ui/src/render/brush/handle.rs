@@ -47,10 +47,10 @@ impl Finish {
         }
     }
 
-    /// The light that comes from a material with the normal `n` to the viewer.
+    /// The light that a material with the normal `n` sends to the viewer.
     ///
-    /// Across a tube all is lit by what lies beside it: lamp and window are long, so their streak goes
-    /// along it however it leans.
+    /// Across a tube all is lit by its surroundings: lamp and window are long, so their streak goes along it however it
+    /// leans.
     fn seen(&self, material: Material, n: Vec3, across: &Across) -> Vec3 {
         let (streak, lit) = (n.dot(across.half), n.dot(across.toward).max(0.0));
         let rim = (1.0 - n.dot(across.up).max(0.0)).powi(3);

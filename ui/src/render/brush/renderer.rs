@@ -113,7 +113,7 @@ impl BrushRenderer {
         shapes
     }
 
-    /// The shadows of a brush on canvas and palette, which lies above it.
+    /// The shadows of a brush on canvas and palette, which is above it.
     fn shadows(
         &mut self,
         gpu: &Gpu,
