@@ -18,7 +18,7 @@ pub struct Announcer<M> {
     sent_ns: u64,
     /// Values sent so far.
     sent: u64,
-    /// When another sender was last heard, ns.
+    /// Time of the last message of another sender, ns.
     contradicted_ns: Option<u64>,
     /// True once it was reported.
     told: bool,

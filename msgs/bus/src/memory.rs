@@ -25,7 +25,7 @@ pub struct Faults {
     pub delay_ns: u64,
 }
 
-/// Something on its way.
+/// A message in flight.
 enum Parcel {
     Message {
         key: String,

@@ -5,8 +5,7 @@ use std::ops::Deref;
 
 use zenoh::shm::ZShm;
 
-/// Bytes to be read. What is shared stays where it is until this is dropped, and its sender does not
-/// change it.
+/// Bytes to read. Shared bytes stay where they are until this is dropped, and their sender does not change them.
 #[derive(Clone)]
 pub enum Payload {
     /// Copied.

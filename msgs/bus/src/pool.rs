@@ -92,7 +92,7 @@ impl Pool {
         }
     }
 
-    /// A piece of `length` bytes; none where there is no room or no pool.
+    /// A piece of `length` bytes; `None` without room or without a pool.
     pub(crate) fn room(&self, length: usize) -> Option<ZShmMut> {
         let mut state = self.state.lock().unwrap_or_else(PoisonError::into_inner);
         if matches!(*state, State::Untried) {

@@ -68,8 +68,8 @@ fn make_private(path: &Path) -> Result<(), BusError> {
     check_private(path)
 }
 
-/// Sees that a path is a folder that nobody else may use or has made. A link is none: in a folder that all
-/// share, such as /tmp, it may be another user's.
+/// Checks that a path is a folder that nobody else may use or has made. A link is refused: in a folder that all share,
+/// such as /tmp, it may be another user's.
 fn check_private(path: &Path) -> Result<(), BusError> {
     let meta = fs::symlink_metadata(path).map_err(|error| {
         folder_error(

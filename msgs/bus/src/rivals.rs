@@ -9,8 +9,8 @@ use std::collections::BTreeSet;
 
 use maulstick_types::{Flags, Header};
 
-/// A sender that says nothing for this long is silent, and one that is heard for this long without a pause is
-/// no stray message, ns.
+/// Time without a message after which a sender is silent, and time of messages without a pause after which it is no
+/// stray, ns.
 pub const SILENCE_NS: u64 = 500_000_000;
 /// So many senders that are set aside are remembered for each stream.
 const REMEMBERED: usize = 8;
@@ -23,9 +23,9 @@ struct Sender {
     began_ns: u64,
     /// When its newest message was sent, ns.
     sent_ns: u64,
-    /// Since when it is heard without a pause, ns.
+    /// Start of its messages without a pause, ns.
     since_ns: u64,
-    /// When it was last heard, ns.
+    /// Time of its last message, ns.
     heard_ns: u64,
     /// Number of its next message, if it was followed.
     next: Option<u64>,
@@ -95,7 +95,7 @@ impl Rivals {
         }
     }
 
-    /// When the sender that is followed was last heard, ns.
+    /// Time of the last message of the followed sender, ns.
     #[must_use]
     pub fn heard_ns(&self) -> u64 {
         self.followed.heard_ns

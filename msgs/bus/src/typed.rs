@@ -48,10 +48,10 @@ impl<M: Message> Sender<M> {
         })
     }
 
-    /// Sends a message; `event_ns` is when what it tells was so.
+    /// Sends a message; `event_ns` is the time at which its content was true.
     ///
     /// # Errors
-    /// [`BusError::Message`] where it exceeds its limit, [`BusError::Topic`].
+    /// [`BusError::Message`] if it exceeds its limit, [`BusError::Topic`].
     pub fn send(&mut self, now_ns: u64, event_ns: u64, message: &M) -> Result<(), BusError> {
         let flags = if self.next == 0 {
             Flags::FIRST
@@ -129,7 +129,7 @@ impl Reader {
         }
     }
 
-    /// Counts a refusal and tells it, once for each topic and reason.
+    /// Counts a refusal and reports it, once for each topic and reason.
     pub fn refuse(&mut self, topic: &str, reason: Reason) {
         self.refused += 1;
         let kind = match &reason {

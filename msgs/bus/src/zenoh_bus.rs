@@ -75,8 +75,8 @@ impl ZenohBus {
         Self::open_as(dial, clock, Memory::Own)
     }
 
-    /// Opens a session whose large answers lie in memory that it shares with the asker, where the
-    /// machine and the asker's session allow it.
+    /// Opens a session whose large answers are in memory that it shares with the asker, where the machine and the
+    /// asker's session allow it.
     ///
     /// # Errors
     /// As [`ZenohBus::open`].
@@ -223,7 +223,7 @@ fn config(dial: &Dial, memory: Memory) -> zenoh::Result<zenoh::Config> {
     Ok(config)
 }
 
-/// The protocols of the locators that are asked for: those of a rig are unix sockets.
+/// The protocols of the requested locators: those of a rig are unix sockets.
 fn protocols(dial: &Dial) -> BTreeSet<&str> {
     let locators = dial.listen.iter().chain(&dial.connect);
     locators

@@ -115,8 +115,8 @@ impl<M: Message> CreditReceiver<M> {
         self.pop_where(|_| true)
     }
 
-    /// The next message that may go: of the first in order of each sender the one that came in
-    /// order first. What may not go holds up its own sender alone.
+    /// The next message that may be handed on: among the first in order of each sender the one that came in order
+    /// first. A message that may not delays its own sender alone.
     pub fn pop_where(
         &mut self,
         mut may_go: impl FnMut(&Received<M>) -> bool,
@@ -138,7 +138,7 @@ impl<M: Message> CreditReceiver<M> {
             .filter_map(|stream| stream.ready.front().map(|(_, head)| head))
     }
 
-    /// Topics whose newest message came once more: their senders have not heard of its consumption.
+    /// Topics whose newest message came once more: their senders have no report of its consumption.
     pub fn unheard(&mut self) -> Vec<String> {
         std::mem::take(&mut self.again)
     }

@@ -15,7 +15,7 @@ use crate::typed::Reader;
 /// An answer to a question for a gap has at most so many bytes, or one message.
 const ANSWER_BYTES: usize = 1 << 20;
 
-/// When a message is sent and when what it tells was so, rig clock, ns.
+/// Time of sending a message and time of its content, rig clock, ns.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Stamp {
     /// Now.

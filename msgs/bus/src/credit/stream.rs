@@ -9,7 +9,7 @@ use crate::bus::Pending;
 use crate::rivals::{Rivals, Verdict};
 use crate::typed::Received;
 
-/// A stream keeps at most this many messages that nobody takes; its sender's ring has the rest.
+/// Messages that a stream keeps at most until they are taken; its sender's ring has the rest.
 const KEPT: usize = 2 * RING;
 
 /// Messages from the first up to, but not with, the second number are missing.
@@ -36,7 +36,7 @@ pub(super) enum Taken {
 pub(super) struct Stream<M> {
     pub rivals: Rivals,
     pub epoch: u32,
-    /// Number of the next message to hand on; none while the beginning of a replay is sought.
+    /// Number of the next message to hand on; `None` while the beginning of a replay is sought.
     next: Option<u64>,
     /// When the newest message in order was sent, by its header, ns.
     sent_ns: u64,
@@ -96,7 +96,7 @@ impl<M> Stream<M> {
         self.put(received, ordered)
     }
 
-    /// Takes in a message that was asked for.
+    /// Takes in a message that was requested again.
     pub(super) fn fill(&mut self, received: Received<M>, ordered: &mut u64) -> Taken {
         if received.header.epoch != self.epoch || !self.fits(&received.header) {
             return Taken::SetAside;
@@ -133,8 +133,8 @@ impl<M> Stream<M> {
         }
     }
 
-    /// Follows another sender. What is left of the one before means nothing now; a take that was followed
-    /// before goes on where it was.
+    /// Follows another sender. The rest of the previous stream is dropped; a take that was followed before continues
+    /// where it was.
     fn hand_over(&mut self, header: &Header, before: Option<u64>) {
         let from = match header.epoch == self.epoch {
             true => before.or(self.next),
@@ -171,7 +171,7 @@ impl<M> Stream<M> {
         self.replay || behind.is_some_and(|(_, held)| held.header.flags.has(Flags::REPLAY))
     }
 
-    /// Messages missing before the first one held.
+    /// Messages missing before the first one in the buffer.
     pub(super) fn gap(&mut self, ordered: &mut u64) -> Option<Gap> {
         let (&seen, _) = self.held.first_key_value()?;
         let from = self.next.unwrap_or(seen.saturating_sub(WINDOW));
