@@ -54,11 +54,10 @@ impl Commander {
         self
     }
 
-    /// Sends a command and waits until it is done or refused, at most for `patience`; gives up
-    /// early where `stop` says so.
+    /// Sends a command and waits until it is done or refused, at most for `patience`; gives up early on `stop`.
     ///
     /// # Errors
-    /// A [`Fault`] with the node's own words where it is refused, or where nobody answers.
+    /// A [`Fault`] with the node's own words if it is refused, or if nobody answers.
     pub fn send(
         &mut self,
         command: Command,

@@ -140,10 +140,10 @@ pub struct PaintSection {
 }
 
 impl PaintSection {
-    /// Most bytes of tiles in memory, and of the history if that is said.
+    /// Most bytes of tiles in memory, and of the history if that is set.
     ///
     /// # Errors
-    /// What is wrong, in words.
+    /// The error, in words.
     pub fn bytes(&self) -> Result<(u64, Option<u64>), String> {
         let memory = parse_bytes(&self.memory)?;
         if memory < MEMORY_MIN {
@@ -200,7 +200,7 @@ impl ViewSection {
     /// Checks the names; a profile that is no known space has to look like a file.
     ///
     /// # Errors
-    /// What is wrong, and what to do.
+    /// The error, and advice.
     pub fn check(&self) -> Result<(), (String, String)> {
         if !is_path(&self.profile) {
             check::choose("colour space", &self.profile, &SPACES).map_err(|(what, help)| {
@@ -291,7 +291,7 @@ impl RigConfig {
         Ok(config)
     }
 
-    /// Takes the paths of settings from the folder in which these lie.
+    /// Resolves the paths of settings relative to the folder of the settings.
     fn resolve(&mut self, folder: &Path) {
         let whole = |path: &mut PathBuf| *path = folder.join(&*path);
         self.paint.paints.iter_mut().for_each(whole);

@@ -35,8 +35,7 @@ impl Fault {
         }
     }
 
-    /// Bad usage, of a line that says what is wrong and what to do, as
-    /// [`parted`](maulstick_types::advice::parted) tells them apart.
+    /// Bad usage, from a line with error and advice, split by [`parted`](maulstick_types::advice::parted).
     #[must_use]
     pub fn told(line: impl AsRef<str>) -> Self {
         let (what, help) = maulstick_types::advice::parted(line.as_ref());
@@ -102,7 +101,7 @@ impl Fault {
         self.at(path.display().to_string()).help(help)
     }
 
-    /// A name that is none of `names`: the nearest is proposed.
+    /// A name that is not among `names`: the nearest is proposed.
     #[must_use]
     pub fn unknown<'a>(
         what: impl Into<String>,

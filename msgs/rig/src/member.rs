@@ -112,11 +112,10 @@ impl Member {
         Ok(())
     }
 
-    /// Calls `turn` whenever there is something to do, or after the time that it returned, until
-    /// it is time to stop.
+    /// Calls `turn` whenever there is something to do, or after the time that it returned, until the stop flag is set.
     ///
     /// # Errors
-    /// What `turn` returns.
+    /// The error of `turn`.
     pub fn run(&self, mut turn: impl FnMut() -> Result<Duration, Fault>) -> Result<(), Fault> {
         while !self.stop.requested() {
             let wait = turn()?;

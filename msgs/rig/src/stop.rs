@@ -13,7 +13,7 @@ use signal_hook::iterator::Signals;
 #[derive(Clone, Debug, Default)]
 pub struct Stop {
     flag: Arc<AtomicBool>,
-    /// The signal that asked for it, 0 if none did.
+    /// The signal that requested it, 0 without one.
     signal: Arc<AtomicI32>,
 }
 
@@ -21,7 +21,7 @@ impl Stop {
     /// Watches for SIGTERM and SIGINT, and rings `wake` when they come.
     ///
     /// # Errors
-    /// What the system says where signals cannot be watched.
+    /// The system's error if signals cannot be watched.
     pub fn on_signals(wake: &Wake) -> std::io::Result<Self> {
         let stop = Self::default();
         let mut signals = Signals::new([SIGTERM, SIGINT])?;
@@ -42,11 +42,11 @@ impl Stop {
         Ok(stop)
     }
 
-    /// Also stops when the standard input ends, which the launcher holds open: so a node follows
-    /// its launcher even if that was killed. Should the node not stop in time, it is ended.
+    /// Also stops when the standard input ends, which the launcher holds open: so a node follows its launcher even if
+    /// that was killed. Should the node not stop in time, it is ended.
     ///
     /// # Errors
-    /// What the system says where no thread can be started.
+    /// The system's error if no thread can be started.
     pub fn on_launcher_end(&self, wake: &Wake) -> std::io::Result<()> {
         let (flag, wake) = (Arc::clone(&self.flag), wake.clone());
         std::thread::Builder::new()
