@@ -17,7 +17,7 @@ use crate::{loads, planes};
 /// Purpose for which a file is opened.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Access {
-    /// To paint in it; it is begun where there is none.
+    /// To paint in it; it is created if it does not exist.
     Paint,
     /// To read it; nothing is changed.
     Read,
@@ -149,8 +149,7 @@ fn damaged_head(head: &[u8]) -> bool {
 }
 
 impl Database {
-    /// Opens a painting; `vfs` is the name of SQLite's way to the file, if not the usual one. True
-    /// where it was begun.
+    /// Opens a painting; `vfs` is the name of the SQLite VFS, if not the usual one. True if it was created.
     ///
     /// # Errors
     /// Any [`DocumentError`].
@@ -239,7 +238,7 @@ impl Database {
         Ok(())
     }
 
-    /// Opens a painting that nobody can write to, if no journal lies beside it.
+    /// Opens a painting that nobody can write to, if there is no journal beside it.
     fn open_frozen(path: &Path) -> Result<Self, DocumentError> {
         if length(&beside(path, "-wal")).is_some_and(|length| length > 0) {
             return Err(DocumentError::ReadOnly(
@@ -268,10 +267,10 @@ impl Database {
         })
     }
 
-    /// Closes it with the journal that was there when it was opened, as it is; one of its own it folds in.
+    /// Closes it with the journal that was there when it was opened, unchanged; a journal of its own is merged.
     ///
     /// # Errors
-    /// What SQLite says.
+    /// The error of SQLite.
     pub fn leave(self) -> Result<(), DocumentError> {
         match self.unclosed {
             true => self.connection.close().map_err(|(_, error)| error.into()),
@@ -279,10 +278,10 @@ impl Database {
         }
     }
 
-    /// Folds the journal into the file and closes it.
+    /// Merges the journal into the file and closes it.
     ///
     /// # Errors
-    /// What SQLite says.
+    /// The error of SQLite.
     pub fn close(self) -> Result<(), DocumentError> {
         if !self.connection.is_readonly("main")? {
             let folded =
@@ -315,10 +314,10 @@ impl Database {
         }
     }
 
-    /// Writes all that it holds, with its journal, to a new file.
+    /// Writes all its content, with its journal, to a new file.
     ///
     /// # Errors
-    /// What SQLite says.
+    /// The error of SQLite.
     pub(crate) fn copy_to(&self, to: &Path) -> Result<(), DocumentError> {
         let to = to
             .to_str()
@@ -378,7 +377,7 @@ impl Database {
         loads::decode(&data).map_err(|what| damaged(&what))
     }
 
-    /// A tile as it was shown; none where there is none, or it is damaged.
+    /// A tile as it was shown; `None` if it is absent or damaged.
     #[must_use]
     pub fn shown(&self, place: i64, version: i64, look: i64) -> Option<Vec<u8>> {
         let query = "SELECT data, sum FROM shown WHERE place = ?1 AND version = ?2 AND look = ?3";

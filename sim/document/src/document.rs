@@ -26,7 +26,7 @@ pub struct DocumentSettings {
     pub access: Access,
     /// Most bytes of pages in memory.
     pub memory: usize,
-    /// Name of SQLite's way to the file, if not the usual one.
+    /// Name of the SQLite VFS, if not the usual one.
     pub vfs: Option<String>,
 }
 
@@ -125,8 +125,8 @@ impl Document {
             .back(Arc::new(Pages(Arc::clone(&self.shared))), memory);
     }
 
-    /// Has the painting go on in another file, with all that was handed over until then; painting goes
-    /// on meanwhile. [`arrived`](Self::arrived) tells when it is there.
+    /// Moves the painting to another file, with everything handed over until then; painting goes on meanwhile.
+    /// [`arrived`](Self::arrived) returns the result.
     pub fn move_to(&self, to: &Path, left: Left, replace: bool) -> Moving {
         let (answer, outcome) = mpsc::channel();
         let mut queues = self.shared.lock();

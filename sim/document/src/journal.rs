@@ -59,7 +59,7 @@ fn message(record: &Record) -> Result<Vec<u8>, DocumentError> {
 /// Records, in order, as bytes.
 ///
 /// # Errors
-/// What the codec or the compressor says.
+/// The error of the codec or the compressor.
 pub fn write(records: &[Record]) -> Result<Vec<u8>, DocumentError> {
     let mut bytes = Vec::new();
     for record in records {

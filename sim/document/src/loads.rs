@@ -12,7 +12,7 @@ const TEXELS_MAX: usize = 1 << 20;
 /// A load as bytes.
 ///
 /// # Errors
-/// What the compressor says.
+/// The error of the compressor.
 pub fn encode(load: &BrushLoad, level: i32) -> std::io::Result<Vec<u8>> {
     let slots: Vec<usize> = (0..SLOTS).filter(|slot| load.has(*slot)).collect();
     let steps = load.steps();
@@ -35,7 +35,7 @@ pub fn encode(load: &BrushLoad, level: i32) -> std::io::Result<Vec<u8>> {
 /// Reads a load.
 ///
 /// # Errors
-/// What is wrong with the bytes, in words.
+/// The defect of the bytes, in words.
 pub fn decode(bytes: &[u8]) -> Result<BrushLoad, String> {
     let most = 4 * (4 + (2 * SLOTS + 1) * (TEXELS_MAX + 1));
     let bytes = zstd::bulk::decompress(bytes, most).map_err(|error| error.to_string())?;

@@ -28,7 +28,7 @@ pub(crate) struct Move {
     pub(crate) answer: mpsc::Sender<Result<(), DocumentError>>,
 }
 
-/// A painting on its way to another file.
+/// A move of a painting to another file in progress.
 #[derive(Debug)]
 pub struct Moving {
     pub(crate) to: PathBuf,
@@ -120,7 +120,7 @@ pub(crate) fn rescue(database: &Database, to: &Path, replace: bool) -> Result<()
     sync_folder(to)
 }
 
-/// A name beside a painting that is nobody's: `sea.maul` goes on in `sea-kept.maul`, or `sea-kept-2.maul`.
+/// A free name beside a painting: `sea.maul` goes on in `sea-kept.maul`, or `sea-kept-2.maul`.
 pub(crate) fn name_beside(path: &Path) -> PathBuf {
     let stem = path.file_stem().unwrap_or_default().to_string_lossy();
     let ending = path.extension().unwrap_or_default().to_string_lossy();

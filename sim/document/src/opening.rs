@@ -32,7 +32,7 @@ use crate::writing::COPY;
 /// means another tile, though the newest of them are in no file.
 const SKIP: u64 = 1 << 32;
 
-/// A painting that was kept.
+/// A saved painting.
 #[derive(Debug)]
 pub struct Opened {
     restored: Restored,
@@ -104,10 +104,10 @@ impl Opened {
         Ok(())
     }
 
-    /// The painting where it was: as it was kept, and then what was accepted since done again.
+    /// The painting restored: its last checkpoint, and then the records accepted since, done again.
     ///
     /// # Errors
-    /// [`EditError`] where what was kept does not hold together.
+    /// [`EditError`] if the stored parts do not fit together.
     pub fn sequencer(self) -> Result<Sequencer, EditError> {
         let painting = Painting::restore(self.restored, self.library, self.pager)?;
         let mut sequencer = Sequencer::restored(painting, self.sequencer);

@@ -112,8 +112,8 @@ impl Row {
         })?)
     }
 
-    /// Its data and sum where they get smaller. What is compressed is the same at every level, so no page
-    /// that it is a difference to is read.
+    /// Its data and sum if they get smaller. The input of the compression is the same at every level, so no page that
+    /// it is a difference to is read.
     fn smaller(&self) -> Result<Option<(Vec<u8>, i64)>, DocumentError> {
         let damaged = |what: &str| DocumentError::Damaged(format!("page {} {what}", self.id));
         if page_sum(self.id, self.ints, &self.data) != self.sum {

@@ -1,4 +1,4 @@
-//! What is whole of a damaged painting, as a new one.
+//! Recovery of the intact part of a damaged painting into a new one.
 //!
 //! Rows are read without SQLite, told apart by their tags and checked by their sums. Those that are
 //! whole go into a new file, which is then opened, brought up to the journal and written as any other.
@@ -12,7 +12,7 @@
 //! - a brush of which it is not known what it carried is clean;
 //! - the journal is done again up to its first gap.
 //!
-//! The books are made to balance: paint that is gone counts as taken by the cleaner, paint that came
+//! The ledger is made to balance: paint that is gone counts as taken by the cleaner, paint that came
 //! back with an older tile as given by the tubes.
 
 mod found;
@@ -74,8 +74,7 @@ pub struct Salvage {
     pub pages: u64,
     /// True if the state of the painting besides its tiles is an older one.
     pub is_old: bool,
-    /// The format that the file names, if it is none that this program knows: of a newer one there may
-    /// be more than what was found.
+    /// The format that the file names, if this program does not know it: a newer one may hold more than was found.
     pub format: Option<i32>,
 }
 
@@ -121,13 +120,13 @@ impl Drop for Part {
     }
 }
 
-/// Takes out of a damaged painting what is whole, and makes a new one of it. The damaged one is only
-/// read. `tell` is told how much is done, of how much.
+/// Recovers the intact part of a damaged painting into a new one. The damaged one is only read. `tell` receives the
+/// progress: done, of total.
 ///
 /// # Errors
-/// [`DocumentError::Taken`] where something is at `to`, [`DocumentError::Lost`] where what is left does
-/// not make a painting, [`DocumentError::InUse`] where a program has the damaged one open, or what the
-/// system says. There is nothing at `to` then.
+/// [`DocumentError::Taken`] if something is at `to`, [`DocumentError::Lost`] if the rest does not make a painting,
+/// [`DocumentError::InUse`] if a program has the damaged one open, or the system's error. There is nothing at `to`
+/// then.
 pub fn recover(
     damaged: &Path,
     to: &Path,
@@ -183,7 +182,7 @@ fn unknown_format(damaged: &Path) -> Result<Option<i32>, DocumentError> {
     Ok(unknown.then_some(version))
 }
 
-/// Parts of the work that are told of.
+/// Number of progress reports.
 const PARTS: u64 = 1000;
 
 /// Writes what is whole.

@@ -31,7 +31,7 @@ pub fn shown_number(surface: u32, level: u32, id: TileId) -> i64 {
     i64::from(surface) << 56 | i64::from(level) << 48 | i64::from(id.y) << 24 | i64::from(id.x)
 }
 
-/// The numbers of a tile's page and of its newest dry layer; 0 where there is none.
+/// The numbers of a tile's page and of its newest dry layer; 0 if absent.
 #[must_use]
 pub fn numbers(held: &TileRef) -> [i64; 2] {
     let tile: Option<&Tile> = held.as_deref();
@@ -46,7 +46,7 @@ pub fn packed(numbers: impl IntoIterator<Item = i64>) -> Vec<u8> {
     numbers.into_iter().flat_map(i64::to_le_bytes).collect()
 }
 
-/// Reads [`packed`] in groups of `N`; none where something is left over.
+/// Reads [`packed`] in groups of `N`; `None` if bytes are left over.
 #[must_use]
 pub fn unpacked<const N: usize>(bytes: &[u8]) -> Option<Vec<[i64; N]>> {
     let (numbers, rest) = bytes.as_chunks::<8>();

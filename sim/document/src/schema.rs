@@ -1,4 +1,4 @@
-//! The tables of a painting. `docs/document.md` tells them to other programs.
+//! The tables of a painting. `docs/document.md` describes them for other programs.
 
 use std::path::Path;
 
@@ -11,8 +11,8 @@ pub const APPLICATION_ID: i32 = 0x4D61_756C;
 /// The schema that this program writes.
 pub const VERSION: i32 = 1;
 
-/// Every row begins with its table's number, so that rows can be told apart where the schema is lost,
-/// and ends with a checksum of its other columns.
+/// Every row begins with its table's number, so that rows can be sorted even if the schema is lost, and ends with a
+/// checksum of its other columns.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(i64)]
 pub enum Table {

@@ -109,10 +109,10 @@ impl Thread {
         }
     }
 
-    /// Goes on in another file.
+    /// Continues in another file.
     ///
     /// # Errors
-    /// Where the painting can go on in neither file.
+    /// If the painting can go on in neither file.
     fn moved(mut self, order: Move) -> Result<Self, DocumentError> {
         self.committed_for_move = false;
         let open = |path: &Path| match is_new(path)? {

@@ -12,7 +12,7 @@ use crate::database::{beside, resolved};
 #[derive(Debug)]
 pub(crate) struct Watch {
     path: PathBuf,
-    /// None where the painting is in no file of the system, as under another way to the file.
+    /// `None` if the painting is in no file of the system, as with another VFS.
     file: Option<FileId>,
     /// None until SQLite has made it.
     journal: Option<FileId>,
@@ -60,8 +60,8 @@ impl Watch {
         }
     }
 
-    /// Removes the journal of a painting that went on elsewhere, if it is still this one's: nobody could
-    /// begin another painting beside it.
+    /// Removes the journal of a painting that was moved, if it is still this one's: no other painting could be created
+    /// beside it.
     pub(crate) fn remove_journal(&self) {
         let journal = beside(&self.path, "-wal");
         if self.journal.is_some() && FileId::of(&journal).ok() == self.journal {

@@ -107,9 +107,8 @@ impl<'a, 'b> Writer<'a, 'b> {
         }
     }
 
-    /// Writes a moment; what it makes superfluous goes. Where its pages
-    /// take longer than `until` only some of these are written, which nothing refers to yet, and false
-    /// is returned.
+    /// Writes a checkpoint and deletes what it replaces. If its pages take longer than `until` only some of these are
+    /// written, still unreferenced, and false is returned.
     pub(crate) fn moment(
         mut self,
         moment: &Moment,
@@ -227,8 +226,7 @@ impl<'a, 'b> Writer<'a, 'b> {
         Ok(())
     }
 
-    /// Number, depth and planes of the page that another one is a difference to; none where the chain
-    /// is long enough.
+    /// Number, depth and planes of the page that another one is a difference to; `None` if the chain is long enough.
     fn base_of(&self, base: &Page<Planes>) -> Result<Option<Base>, DocumentError> {
         let id = base.id() as i64;
         let depth: Option<i64> = self
@@ -433,8 +431,7 @@ impl<'a, 'b> Writer<'a, 'b> {
         Ok(())
     }
 
-    /// Deletes pages and layers that nobody remembers. Pages that are differences to one of them are
-    /// written anew.
+    /// Deletes pages and layers without references. Pages that are differences to one of them are written anew.
     fn bury(&mut self, dead: &[u64]) -> Result<(), DocumentError> {
         let connection = &self.database.connection;
         let gone: BTreeSet<u64> = dead.iter().copied().collect();

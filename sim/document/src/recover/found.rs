@@ -81,7 +81,7 @@ impl Found {
     /// Writes it, with its checksum, in the place of one with its key.
     ///
     /// # Errors
-    /// What SQLite says.
+    /// The error of SQLite.
     pub(super) fn write(&self, database: &Database) -> Result<(), DocumentError> {
         let places: Vec<String> = (1..=self.values.len() + 2)
             .map(|at| format!("?{at}"))

@@ -66,7 +66,7 @@ impl Gathered {
     /// Reads all rows; those of pages, loads and files go into `into`.
     ///
     /// # Errors
-    /// What SQLite says of the new painting. Damage is none.
+    /// The error of SQLite on the new painting. Damage is no error.
     pub(super) fn read(
         scan: &mut Scan<File>,
         into: &Database,
@@ -175,7 +175,7 @@ impl Gathered {
     }
 }
 
-/// Puts a state in the place of an older one; none is in that of a current one but a current one.
+/// Replaces an older state by this one; a current one is replaced only by a current one.
 fn newest<T: serde::de::DeserializeOwned>(
     place: &mut Option<(T, Standing)>,
     json: &str,
@@ -208,7 +208,7 @@ fn put_page(found: &Found, into: &Database) -> Result<u64, DocumentError> {
     Ok(u64::from(is_newer))
 }
 
-/// Writes a row if there is none with its key, and says whether.
+/// Writes a row unless there is one with its key; returns the number written.
 fn put_new(found: &Found, into: &Database) -> Result<u64, DocumentError> {
     let connection = &into.connection;
     let is_there = match found.table {

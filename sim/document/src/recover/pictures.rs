@@ -18,7 +18,7 @@ impl Pictures {
     /// Those in the new painting.
     ///
     /// # Errors
-    /// What SQLite says.
+    /// The error of SQLite.
     pub(super) fn read(database: &Database) -> Result<Self, DocumentError> {
         let query = "SELECT hash FROM file WHERE kind IN ('picture', 'spectrum')";
         let mut statement = database.connection.prepare(query)?;

@@ -63,7 +63,7 @@ pub(super) fn makes(scene: &Scene) -> Vec<SurfaceMaterial> {
 }
 
 impl Steps {
-    /// The steps that were found, of a painting that was kept so.
+    /// The steps that were found, of a painting saved with them.
     pub(super) fn of(
         gathered: &mut Gathered,
         kept: &PaintingSnapshot,
@@ -122,11 +122,11 @@ impl Steps {
         states
     }
 
-    /// Writes the steps that still lead back from `now`, each by itself from the newest on; one that
-    /// does not goes with all older ones.
+    /// Writes the steps that still lead back from `now`, each by itself from the newest on; one that does not goes with
+    /// all older ones.
     ///
     /// # Errors
-    /// What SQLite says.
+    /// The error of SQLite.
     pub(super) fn write(
         self,
         mut now: Now,

@@ -20,7 +20,7 @@ pub(super) struct Stock {
     loads: HashMap<i64, Counts>,
     /// Dry layers, with the paint of all layers below.
     stacks: HashMap<i64, Counts>,
-    /// Dry layers that lost paint, or lie over such.
+    /// Dry layers that lost paint, or are over such.
     thin: BTreeSet<i64>,
     /// Dry layers whose own page is not whole: they stay, without paint.
     pub(super) hollow: u64,
@@ -34,11 +34,11 @@ pub(super) struct Stock {
 pub(super) type Numbers = [i64; 2];
 
 impl Stock {
-    /// Reads every page and load of the new painting; those that are not whole are deleted from it.
-    /// Pages are numbered from `next` on, or from what is free.
+    /// Reads every page and load of the new painting; damaged ones are deleted from it. Pages are numbered from `next`
+    /// on, or from the first free number.
     ///
     /// # Errors
-    /// What SQLite says.
+    /// The error of SQLite.
     pub(super) fn read(
         database: &Database,
         next: u64,
@@ -141,7 +141,7 @@ impl Stock {
         self.loads.insert(id, [0; SLOTS]);
     }
 
-    /// The paint of a tile; none where its page or its newest dry layer is gone.
+    /// The paint of a tile; `None` if its page or its newest dry layer is gone.
     pub(super) fn held(&self, numbers: Numbers) -> Option<Counts> {
         let [page, dry] = self.parts(numbers);
         let (mut counts, dry) = (page?, dry?);
@@ -149,7 +149,7 @@ impl Stock {
         Some(counts)
     }
 
-    /// The paint that is wet and that is dry on a tile; none of it where it is gone.
+    /// The wet and the dry paint of a tile; `None` for a part that is gone.
     pub(super) fn parts(&self, [page, dry]: Numbers) -> [Option<Counts>; 2] {
         let of = |shelf: &HashMap<i64, Counts>, id: i64| match id {
             0 => Some([0; SLOTS]),
@@ -163,7 +163,7 @@ impl Stock {
         self.thin.contains(&dry)
     }
 
-    /// The paint of a load; none where it is gone.
+    /// The paint of a load; `None` if it is gone.
     pub(super) fn load(&self, id: u64) -> Option<Counts> {
         self.loads.get(&(id as i64)).copied()
     }

@@ -39,11 +39,11 @@ fn is_inside(kept: &PaintingSnapshot, place: i64) -> bool {
         })
 }
 
-/// Writes all tiles; returns what lies on them, by place number. `states` is what the history knows of
-/// them, the newest first.
+/// Writes all tiles; returns their contents, by place number. `states` are those that the history has of them, the
+/// newest first.
 ///
 /// # Errors
-/// What SQLite says.
+/// The error of SQLite.
 pub(super) fn write(
     gathered: &Gathered,
     states: &HashMap<i64, Vec<Numbers>>,

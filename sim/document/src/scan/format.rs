@@ -5,7 +5,7 @@ use std::io::{Read, Seek};
 use super::leaf::{Leaf, be16};
 use super::store::read_at;
 
-/// SQLite's default page size, bytes: what a file with nothing to tell by is taken to have.
+/// SQLite's default page size, bytes: the assumption for a file without any evidence.
 const DEFAULT: usize = 4096;
 /// All page sizes, bytes.
 const SIZES: [usize; 8] = [512, 1024, 2048, 4096, 8192, 16_384, 32_768, LARGEST];
@@ -89,8 +89,7 @@ fn of_header(header: &[u8]) -> Option<usize> {
     (header_stands(header) && is_page_size(bytes)).then_some(bytes)
 }
 
-/// Bytes at the end of each page that a database's header keeps from rows; none where the header
-/// is damaged.
+/// Bytes at the end of each page that a database's header keeps from rows; 0 if the header is damaged.
 pub(super) fn reserved(header: &[u8]) -> usize {
     match header.get(20) {
         Some(&bytes) if header_stands(header) => usize::from(bytes),
@@ -98,8 +97,8 @@ pub(super) fn reserved(header: &[u8]) -> usize {
     }
 }
 
-/// Bytes of a page that rows may use, if the header says that `reserved` are kept from them. It is
-/// not believed where leaf pages parse better with none.
+/// Bytes of a page that rows may use, if the header says that `reserved` are kept from them. The header is ignored if
+/// leaf pages parse better with 0.
 pub(super) fn usable<F: Read + Seek>(
     file: &mut F,
     length: u64,

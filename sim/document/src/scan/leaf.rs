@@ -60,7 +60,7 @@ impl<B: AsRef<[u8]>> Leaf<B> {
         self.bytes.as_ref().get(range)
     }
 
-    /// Cell `number` of a page with `usable` bytes; nothing where it does not lie on the page.
+    /// Cell `number` of a page with `usable` bytes; `None` if it is not on the page.
     pub(super) fn cell(&self, number: usize, usable: usize) -> Option<Cell> {
         let bytes = self.bytes.as_ref();
         let pointers = self.header + HEADER;

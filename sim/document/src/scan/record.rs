@@ -17,7 +17,7 @@ pub(super) fn varint(bytes: &[u8]) -> Option<(u64, usize)> {
     Some((value << 8 | u64::from(*bytes.get(8)?), 9))
 }
 
-/// Bytes of a value in the body of a record; none for the reserved types 10 and 11.
+/// Bytes of a value in the body of a record; `None` for the reserved types 10 and 11.
 fn width(serial: u64) -> Option<u64> {
     match serial {
         0 | 8 | 9 => Some(0),

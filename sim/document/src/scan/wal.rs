@@ -54,7 +54,7 @@ pub(super) struct Frames {
     pub(super) good: BTreeMap<u32, u64>,
     /// Frames behind a damaged one.
     pub(super) past_damage: BTreeMap<u32, u64>,
-    /// Pages that the database has since the latest good commit; 0 where there is none.
+    /// Pages that the database has since the latest good commit; 0 without one.
     pub(super) database_pages: u32,
     /// State of the WAL.
     pub(super) state: WalState,

@@ -71,7 +71,7 @@ impl Thread {
         Ok(())
     }
 
-    /// Takes back what was told of the file before.
+    /// Withdraws the notice about the previous file.
     pub(super) fn settled(&self) {
         let mut queues = self.shared.lock();
         (queues.notice, queues.went_to) = (None, None);
