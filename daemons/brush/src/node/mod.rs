@@ -50,7 +50,7 @@ const PAINT: &str = "paint";
 /// Presence of the paint node: without it nothing is painted and there is no force.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Painter {
-    /// It is, or was never heard of.
+    /// It is there, or never sent anything.
     There,
     /// It has gone.
     Gone,
@@ -200,8 +200,8 @@ impl BrushNode {
         Ok(Duration::from_millis(20))
     }
 
-    /// Follows the desk. What a hand did before belongs on the desk as it was: a canvas that is moved under
-    /// a stroke does not take along what waits to be solved.
+    /// Follows the desk. Samples belong to the desk as it was when they were taken: moving the canvas does not move
+    /// samples that wait to be solved.
     fn follow_scene(&mut self, now_ns: u64) -> Result<(), BusError> {
         while let Some(scene) = self.scene.try_recv() {
             // Only a late scene is passed over: another painting counts its own anew.
@@ -258,9 +258,9 @@ impl BrushNode {
         }
     }
 
-    /// The next sample that may be consumed: a replayed one waits for credit, and all wait for a
-    /// scene. None waits for another device's. A take that is played anew does not wait for what
-    /// the one before is owed. Where a time is given, only what a live hand did before it.
+    /// The next sample that may be consumed: a replayed one waits for credit, and all wait for a scene. No device waits
+    /// for another's. A take that is played anew does not wait for samples owed to the one before. With a time given,
+    /// only samples of a live hand before it.
     fn next_sample(&mut self, before_ns: Option<u64>) -> Option<Received<StylusSample>> {
         let (topics, settings, devices) = (&self.topics, &self.settings, &self.devices);
         let mine = |next: &Received<StylusSample>| {

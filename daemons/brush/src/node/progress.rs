@@ -62,14 +62,14 @@ impl Progress {
         self.devices.has(device)
     }
 
-    /// A device may not have heard what it was told.
+    /// The last report may not have reached a device: forgets it.
     pub(super) fn forget_told(&mut self, device: &str) {
         if let Some(known) = self.devices.get_mut(device) {
             known.told = None;
         }
     }
 
-    /// Tells devices what is consumed; those whose samples wait to be solved are told then.
+    /// Reports the consumed samples to devices; those whose samples wait to be solved get their report then.
     pub(super) fn tell(
         &mut self,
         now_ns: u64,
