@@ -94,7 +94,7 @@ enum SwitchEvent {
 /// Does what the switches of one device ask for.
 pub struct Actor {
     actions: Actions,
-    /// Switches as they have been told.
+    /// Switches as last reported.
     told: u32,
     events: Option<SyncSender<SwitchEvent>>,
     stop: Arc<AtomicBool>,

@@ -55,7 +55,7 @@ pub fn pushes(control: &ControlSample) -> bool {
     control.push != [0.0; 3] || control.turn[2] != 0.0
 }
 
-/// Sends the commands from a thread of its own: nobody who reads a device waits for an answer.
+/// Sends the commands from a thread of its own: reading a device never waits for an answer.
 pub struct CanvasMover {
     controls: Option<SyncSender<ControlSample>>,
     stop: Arc<AtomicBool>,
@@ -119,7 +119,7 @@ impl std::fmt::Debug for CanvasMover {
     }
 }
 
-/// Follows the hand until nobody can push any more; `shown` is where the canvas has newly been seen.
+/// Follows the hand until the device's reader has ended; `shown` is the newest placement of the canvas in the scene.
 fn follow(
     heard: &Samples<ControlSample>,
     mut shown: impl FnMut() -> Option<SurfacePlacement>,
@@ -176,7 +176,7 @@ mod tests {
         }
     }
 
-    /// The place on the surface that lies in the middle of the desk, m.
+    /// The point of the surface at the middle of the desk, m.
     fn middle(lie: &SurfacePlacement) -> DVec3 {
         lie.pose.inverse().point(DVec3::ZERO) / lie.zoom
     }

@@ -14,7 +14,7 @@ pub enum Touch {
     Down,
     /// It does not.
     Up,
-    /// The device cannot tell: keeping still says so.
+    /// The device does not sense it: keeping still counts as a touch.
     Unknown,
 }
 
@@ -177,7 +177,7 @@ impl CornerCalibration {
         }
     }
 
-    /// The corner that is asked for; none once all are found.
+    /// The corner to show next; `None` once all are found.
     #[must_use]
     pub fn wanted(&self) -> Option<Corner> {
         Corner::ALL.get(self.count).copied()

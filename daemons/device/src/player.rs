@@ -220,7 +220,7 @@ impl<'a> Player<'a> {
         Ok(wait)
     }
 
-    /// When the sample of a take time is due; none where it goes as soon as it can.
+    /// Time at which the sample of a take time is due; `None` if it is sent as soon as possible.
     fn due_ns(&mut self, time_ns: u64, now_ns: u64) -> Option<u64> {
         let Rate::Times(rate) = self.settings.rate else {
             return None;

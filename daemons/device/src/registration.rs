@@ -76,7 +76,7 @@ pub struct CornerFit {
     pub ratio: f64,
     /// Angle at the lower left corner, rad: a right one where they fit.
     pub angle_rad: f64,
-    /// Farthest from its corner that a place comes to lie, m of the desk.
+    /// Farthest distance of a point from its corner, m of the desk.
     pub off_m: f64,
 }
 

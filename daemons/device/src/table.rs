@@ -106,7 +106,7 @@ type Places = [Option<usize>; COLUMNS.len()];
 /// A sample as it stands in the table.
 struct Row {
     line: usize,
-    /// In the order of [`COLUMNS`]; NaN where there is none.
+    /// In the order of [`COLUMNS`]; NaN if absent.
     values: [f64; COLUMNS.len()],
 }
 
@@ -323,7 +323,7 @@ fn header(cells: &[&str], place: &str) -> Result<Places, Fault> {
     Ok(places)
 }
 
-/// The numbers of a row in the order of [`COLUMNS`]; what is missing and not needed is NaN.
+/// The numbers of a row in the order of [`COLUMNS`]; a missing optional one is NaN.
 fn numbers(cells: &[&str], places: &Places, place: &str) -> Result<[f64; 7], Fault> {
     let mut values = [f64::NAN; COLUMNS.len()];
     for (column, value) in values.iter_mut().enumerate() {

@@ -22,7 +22,7 @@ use maulstick_rig::commander::Commander;
 const PATIENCE: Duration = Duration::from_secs(2);
 /// A command is asked again after this.
 const ASK: Duration = Duration::from_millis(300);
-/// A way of using the brush that is still to be restored is asked for again after this.
+/// Interval at which the restoring of a handling is requested again.
 const AGAIN: Duration = Duration::from_secs(1);
 /// Longest wait until the scene shows the result.
 const SHOWN: Duration = Duration::from_secs(1);
@@ -110,7 +110,7 @@ impl Worker {
         })
     }
 
-    /// Does what comes, one after the other, until nobody can press a switch any more.
+    /// Handles the edges one after the other, until no further switch can be pressed.
     pub(super) fn run(&mut self, edges: &Edges<SwitchEvent>) {
         loop {
             let next = match self.owes() {
@@ -158,10 +158,10 @@ impl Worker {
         }
     }
 
-    /// Uses the brush as what is held says, or as before.
+    /// Sets the temporary mode of the pressed switches, or restores the former handling.
     ///
-    /// How it was before is kept until the node has answered that it is so again: a command that
-    /// nobody answers may have been done.
+    /// The former handling is kept until the node has answered that it is restored: a command that nobody answers may
+    /// have been done.
     fn follow(&mut self) {
         let Some(mode) = self.held.mode() else {
             let Some(before) = self.before.clone() else {
@@ -251,7 +251,7 @@ impl Worker {
         }
     }
 
-    /// The newest scene, once it is as `wanted`; none where it is not in time.
+    /// The newest scene, once it is as `wanted`; `None` if it is not in time.
     fn look(&mut self, patience: Duration, wanted: impl Fn(&Scene) -> bool) -> Option<&Scene> {
         let give_up = Instant::now() + patience;
         loop {
@@ -268,7 +268,7 @@ impl Worker {
         }
     }
 
-    /// Sends a command. What is not done is told.
+    /// Sends a command. A failure is reported.
     fn send(&mut self, command: Command) -> Told {
         let stop = Arc::clone(&self.stop);
         let stopped = || stop.load(Ordering::SeqCst);
