@@ -22,7 +22,7 @@ impl Address {
     /// Reads an `address`.
     ///
     /// # Errors
-    /// A [`Fault`] where it is none.
+    /// A [`Fault`] if it is invalid.
     pub fn read(address: Option<&str>) -> Result<Self, Fault> {
         let text = address.unwrap_or_default();
         let wrong = || {

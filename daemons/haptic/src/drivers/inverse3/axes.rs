@@ -24,7 +24,7 @@ impl Basis {
         signs: [1.0; 3],
     };
 
-    /// Reads a permutation; None where it is none.
+    /// Reads a permutation; `None` if it is invalid.
     #[must_use]
     pub fn read(permutation: &str) -> Option<Self> {
         let mut letters = permutation.bytes();

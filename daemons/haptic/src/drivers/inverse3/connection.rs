@@ -27,7 +27,7 @@ const FAREWELLS: usize = 10;
 /// The reason why the connection ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum End {
-    /// It was told to stop.
+    /// The stop flag was set.
     Stopped,
     /// The connection is closed or broken.
     Closed,
@@ -47,7 +47,7 @@ impl Connection {
     /// Connects to the service of an address.
     ///
     /// # Errors
-    /// A [`Fault`] where there is none.
+    /// A [`Fault`] if there is no service.
     pub fn open(address: &Address) -> Result<Self, Fault> {
         let stream = reach(address)?;
         let config = WebSocketConfig::default()
@@ -81,7 +81,7 @@ impl Connection {
     /// The next message, unless `stop` is set before it comes, or it takes longer than `patience`.
     ///
     /// # Errors
-    /// Why there is none.
+    /// The reason why none came.
     pub fn receive(&mut self, stop: &AtomicBool, patience: Duration) -> Result<Bytes, End> {
         let since = Instant::now();
         loop {
@@ -124,7 +124,7 @@ impl Connection {
     /// Sends a message.
     ///
     /// # Errors
-    /// Where it cannot.
+    /// If it cannot be sent.
     pub fn send(&mut self, text: String) -> Result<(), End> {
         self.socket
             .send(Message::text(text))

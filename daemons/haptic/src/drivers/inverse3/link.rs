@@ -21,7 +21,7 @@ use super::state::{DeviceTracker, Pose, Seen};
 use crate::device::driver::DeviceError;
 use crate::servo::clock::monotonic_ns;
 
-/// Age beyond which a state or a force is none, ns.
+/// Age beyond which a state or a force is discarded, ns.
 pub const FRESH_NS: u64 = 20_000_000;
 /// A round trip begins no sooner after the one before: four states a tick are enough.
 const TRIP: Duration = Duration::from_micros(250);
@@ -44,7 +44,7 @@ pub struct ReceivedState {
 pub struct RequestedForce {
     /// N, device frame.
     pub force: DVec3,
-    /// When it was asked for, `CLOCK_MONOTONIC`, ns.
+    /// Time of its request, `CLOCK_MONOTONIC`, ns.
     pub at_ns: u64,
 }
 
@@ -123,7 +123,7 @@ impl Link {
     /// Starts the thread over a connection.
     ///
     /// # Errors
-    /// What the system says where no thread can be started.
+    /// The system's error if no thread can be started.
     pub fn start(
         connection: Connection,
         tracker: DeviceTracker,
@@ -235,7 +235,7 @@ struct Exchange {
 }
 
 impl Exchange {
-    /// Goes to and fro until it is told to stop, or loses the device.
+    /// Exchanges messages until the stop flag is set, or the device is lost.
     fn run(&mut self) -> Option<Loss> {
         let mut seen = Instant::now();
         let mut why = Loss::Silent;

@@ -93,7 +93,7 @@ pub enum Hindrance {
     NotCalibrated,
     /// It says no more than that it is not ready.
     NotReady,
-    /// It speaks in axes that cannot be read, and a guess would push the wrong way.
+    /// Its axes cannot be read, and a guess would push in the wrong direction.
     UnknownAxes,
 }
 
@@ -136,10 +136,10 @@ impl Status {
 }
 
 impl Device {
-    /// The axes that it speaks in, where it tells them.
+    /// The axes of the session, if they are reported.
     ///
     /// # Errors
-    /// Where it tells what are none.
+    /// If the reported axes are invalid.
     pub fn basis(&self) -> Result<Option<Basis>, Hindrance> {
         let told = self.config.as_ref().and_then(|config| {
             [&config.basis, &config.coordinate_system]
@@ -217,7 +217,7 @@ struct Buttons {
 }
 
 impl GripState {
-    /// A bit a pressed button, the lowest for a; None where none is told of.
+    /// One bit per pressed button, the lowest for a; `None` if no button is reported.
     #[must_use]
     pub fn switches(&self) -> Option<u32> {
         let told = match (self.buttons, self.button) {
@@ -235,7 +235,7 @@ impl Update {
     /// Reads a message.
     ///
     /// # Errors
-    /// Where it is none: not JSON, of other types, a number beyond every f64.
+    /// If it is invalid: not JSON, of other types, a number beyond every f64.
     pub fn read(bytes: &[u8]) -> Result<Self, serde_json::Error> {
         serde_json::from_slice(bytes)
     }
@@ -261,7 +261,7 @@ impl Update {
             .map(|grip| grip.device_id.as_str())
     }
 
-    /// The grip of that id; the first wireless one, then the first at a wire, where none is asked for.
+    /// The grip of that id; without an id the first wireless one, then the first at a wire.
     #[must_use]
     pub fn grip(&self, id: Option<&str>) -> Option<&Grip> {
         [&self.wireless_verse_grip, &self.verse_grip]

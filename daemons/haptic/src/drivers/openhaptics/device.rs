@@ -20,9 +20,8 @@ use crate::device::driver::{Abilities, DeviceError, Driver, Reading, Wrench};
 /// Frames in a row that say nothing of use, after which the device is lost: a second's.
 const MOST_UNREAD: u32 = 1000;
 
-/// Over frames that say nothing of use the force is held for so long, as with a device of which nothing
-/// new has come; the servo takes a longer one for a stand-still. Dropped and given again it would be a
-/// blow, s.
+/// Time for which the force is held over unusable frames, as with a device that sends nothing new; the servo takes a
+/// longer one for a stand-still. A force dropped and given again would be a blow, s.
 const HELD_S: f64 = 0.005;
 
 const UNREADABLE: DeviceError = DeviceError {

@@ -92,7 +92,7 @@ impl Library {
     /// The library in the file `asked`, or by its usual names where the system looks for libraries.
     ///
     /// # Errors
-    /// A [`Fault`]: there is none, it cannot be loaded, or it is not OpenHaptics'.
+    /// A [`Fault`]: it is missing, it cannot be loaded, or it is not OpenHaptics'.
     pub fn find(asked: Option<&Path>) -> Result<&'static Self, Fault> {
         if let Some(path) = asked {
             if path.components().count() > 1 && !path.exists() {
@@ -135,10 +135,10 @@ impl Library {
         Ok(library)
     }
 
-    /// Initiates a device; the default one where it has no name.
+    /// Initiates a device; without a name the default one.
     ///
     /// # Errors
-    /// What the library says; nothing is left behind.
+    /// The library's error; nothing is left behind.
     pub fn init_device(&self, name: Option<&CStr>) -> Result<Handle, ErrorInfo> {
         self.forget_errors();
         let name = name.map_or(std::ptr::null(), CStr::as_ptr);
@@ -314,7 +314,7 @@ pub const MOST_ERRORS: usize = 64;
 
 /// The reason why a library cannot be used.
 enum Unusable {
-    /// There is none of this name.
+    /// No library of this name.
     Missing,
     /// It needs another one that is not there.
     Needs(String),

@@ -13,7 +13,7 @@ const PRODUCTS: std::ops::RangeInclusive<u16> = 0x0483..=0x048F;
 /// The serial ports of this machine.
 ///
 /// # Errors
-/// A [`Fault`] where the system does not tell them.
+/// A [`Fault`] if the system does not list them.
 pub fn ports() -> Result<Vec<SerialPortInfo>, Fault> {
     // On a system without any terminals serialport panics.
     if cfg!(target_os = "linux") && !Path::new("/sys/class/tty").is_dir() {

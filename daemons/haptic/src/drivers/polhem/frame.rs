@@ -24,8 +24,8 @@ pub const FARTHEST_MM: f64 = 1000.0;
 /// No gimbal turns farther, rad: two turns.
 pub const FARTHEST_RAD: f64 = 4.0 * std::f64::consts::PI;
 
-/// The line that asks for an answer and nothing else: it is no command, so motors get no current in
-/// this tick, and the device's watchdog is not held off.
+/// The line that requests an answer and nothing else: it is no command, so motors get no current in this tick, and the
+/// device's watchdog is not reset.
 pub const PROBE: &[u8] = b"\n";
 
 /// Length of a command line.
@@ -56,9 +56,8 @@ pub struct Line {
 }
 
 impl Line {
-    /// Asks for a force, N, in the device's own axes (x toward the user, y right, z up), and for where
-    /// the stylus is. A force beyond the device's is cut to it along its own direction, one that is no
-    /// number is none.
+    /// Requests a force, N, in the device's own axes (x toward the user, y right, z up), and the pose of the stylus. A
+    /// force beyond the device's is cut to it along its own direction, NaN counts as 0.
     #[must_use]
     pub fn force(force: DVec3, length: Length) -> Self {
         let force = match force.is_finite() {

@@ -28,7 +28,7 @@ pub enum HandshakeError {
     Silent,
     /// It says what no such device says; how that begins.
     Foreign(String),
-    /// It tells encoders, but no positions.
+    /// It sends encoders, but no positions.
     NoPoses,
     /// The wire is broken.
     Broken(Errno),

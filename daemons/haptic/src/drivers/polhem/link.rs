@@ -38,11 +38,11 @@ const PIECES: usize = 4;
 /// State of the dialogue.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Dialogue {
-    /// Nothing is on its way.
+    /// Nothing is in flight.
     Free,
-    /// A line is on its way.
+    /// A line is in flight.
     Asked { since_s: f64 },
-    /// An answer was lost, and a probe is on its way.
+    /// An answer was lost, and a probe is in flight.
     Lost {
         probed_s: f64,
         noise_s: f64,
@@ -64,7 +64,7 @@ pub struct Link<W> {
 }
 
 impl<W: Wire> Link<W> {
-    /// A dialogue in which nothing is on its way.
+    /// A dialogue with nothing in flight.
     pub fn new(wire: W) -> Self {
         Self {
             wire,
@@ -89,11 +89,10 @@ impl<W: Wire> Link<W> {
         self.lost
     }
 
-    /// Takes in what has come in the `step_s` s since the time before: the newest answer, if it is
-    /// one to our last line.
+    /// Takes in the input of the last `step_s` s: the newest answer, if it is one to our last line.
     ///
     /// # Errors
-    /// Where the device is unplugged, says nothing for a second, or nothing that can be read.
+    /// If the device is unplugged, or sends nothing readable for a second.
     pub fn poll(&mut self, step_s: f64) -> Result<Option<Answer>, DeviceError> {
         self.now_s += step_s;
         let now_s = self.now_s;
@@ -130,10 +129,10 @@ impl<W: Wire> Link<W> {
         Ok(answer)
     }
 
-    /// Sends a line, if nothing is on its way. A wire that is full takes it another time.
+    /// Sends a line, if nothing is in flight. A wire that is full takes it another time.
     ///
     /// # Errors
-    /// Where the device is unplugged.
+    /// If the device is unplugged.
     pub fn send(&mut self, line: &[u8]) -> Result<(), DeviceError> {
         if !self.is_free() {
             return Ok(());
@@ -152,8 +151,7 @@ impl<W: Wire> Link<W> {
         }
     }
 
-    /// Sends a last line, whatever is on its way. A newline goes first: a line that was cut off would
-    /// make another of this one.
+    /// Sends a last line, whatever is in flight. A newline goes first: a line that was cut off would corrupt this one.
     pub fn part(&mut self, line: &[u8]) {
         self.wire.write(PROBE).ok();
         self.wire.write(line).ok();

@@ -105,7 +105,7 @@ pub struct Polhem<W: Wire> {
     since_pose_s: f64,
     /// State of the handle at that reading.
     last: Option<HandleState>,
-    /// Time since the button was asked for, s.
+    /// Time since the button was last queried, s.
     unasked_s: f64,
     pressed: bool,
 }

@@ -28,7 +28,7 @@ impl Port {
     /// Opens a port by its path.
     ///
     /// # Errors
-    /// A [`Fault`]: there is none, it is somebody else's, it is in use, it is no serial port.
+    /// A [`Fault`]: it is missing, it is another user's, it is in use, it is no serial port.
     pub fn open(path: &str) -> Result<Self, Fault> {
         let port = serialport::new(path, BAUD)
             .open_native()
