@@ -33,7 +33,7 @@ const SIDES_M: [f64; 2] = [0.01, 2.0];
 const LONGER_M: f64 = 0.25;
 /// Hover height at the end of a range without units, m.
 const HIGHEST_M: f64 = 0.01;
-/// Pressure of a touch where there is none.
+/// Pressure of a touch without a pressure field.
 const PRESSED: f64 = 0.5;
 /// No tilt is farther from upright, rad: 85°.
 pub const STEEPEST_RAD: f64 = 85.0 * PI / 180.0;
@@ -209,7 +209,7 @@ struct PenReport {
 }
 
 impl Layout {
-    /// Finds the pen of a descriptor; none where it has none.
+    /// Finds the pen of a descriptor; `None` if it has no pen.
     #[must_use]
     pub fn of(descriptor: &ReportDescriptor) -> Option<Self> {
         let reports = descriptor.input_reports().iter();

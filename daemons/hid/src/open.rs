@@ -20,7 +20,7 @@ pub enum Kind {
 }
 
 impl Kind {
-    /// The kind of a driver of `rig.toml`; none where it is another daemon's.
+    /// The kind of a driver of `rig.toml`; `None` if it is another daemon's.
     #[must_use]
     pub fn of(driver: &str) -> Option<Self> {
         match driver {

@@ -65,7 +65,7 @@ impl Reading {
     };
 }
 
-/// Puts what a tablet says into an order that a pen could have moved in.
+/// Completes a tablet's readings to a sequence that a pen can have moved in.
 #[derive(Clone, Debug)]
 pub struct Pen {
     newest: Reading,
@@ -86,7 +86,7 @@ impl Pen {
         &self.newest
     }
 
-    /// Takes in what the tablet says; what the pen did for it goes to `tell`, one to three readings.
+    /// Takes in a reading of the tablet; the pen's resulting readings go to `tell`, one to three.
     pub fn follow(&mut self, said: Reading, tell: &mut impl FnMut(Reading)) {
         if said.presence == Presence::Away {
             self.leave(tell);
@@ -107,8 +107,7 @@ impl Pen {
         self.tell(followed, tell);
     }
 
-    /// The pen is gone, or its tablet: it is lifted where it was, and leaves. Of one that is away already
-    /// nothing is told.
+    /// The pen is gone, or its tablet: it is lifted where it was, and leaves. A pen that is away already sends nothing.
     pub fn leave(&mut self, tell: &mut impl FnMut(Reading)) {
         if self.newest.presence == Presence::Touching {
             let lifted = Reading {

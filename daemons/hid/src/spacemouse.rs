@@ -15,7 +15,7 @@ pub const VENDORS: [u16; 2] = [0x046D, 0x256F];
 pub const LIGHT: [u8; 2] = [0x04, 0x01];
 /// Deflection at the stops.
 const STOP: f64 = 350.0;
-/// Share of the way to a stop that is none: a hand that rests on the cap.
+/// Dead zone, as a share of the travel to a stop: a hand that rests on the cap.
 const DEAD_ZONE: f64 = 0.03;
 /// Validity of a deflection without a report, ns.
 pub const SILENCE_NS: u64 = 200_000_000;
@@ -139,7 +139,7 @@ impl SpaceMouse {
     }
 }
 
-/// Share of the way to a stop, −1 to 1, which begins at 0 where the dead zone ends.
+/// Share of the travel to a stop, −1 to 1, which begins at 0 where the dead zone ends.
 fn deflection(count: i16) -> f64 {
     let share = (f64::from(count) / STOP).clamp(-1.0, 1.0);
     let beyond = (share.abs() - DEAD_ZONE).max(0.0) / (1.0 - DEAD_ZONE);
