@@ -29,9 +29,9 @@ pub struct Snapshots {
 /// A picture of the canvas and, if asked, the ledger, to be written.
 #[derive(Debug)]
 pub struct Snapshot {
-    /// Whoever asked for it.
+    /// The client that requested it.
     pub asker: Asker,
-    /// The painting, which nobody changes any more.
+    /// The painting, which is not changed any more.
     pub still: Painting,
     /// Path of the picture.
     pub path: PathBuf,

@@ -14,7 +14,7 @@ use maulstick_types::{Flags, Origin, encode};
 
 /// Pixels of the longer side.
 const SIDES: std::ops::RangeInclusive<u32> = 1..=512;
-/// Pictures that are kept.
+/// Number of cached pictures.
 const KEPT: usize = 64;
 /// Views that wait, at most: who asks too often is answered later.
 const WAITING: usize = 256;

@@ -20,7 +20,7 @@ impl Worker {
     /// Starts `work` on a thread of its own.
     ///
     /// # Errors
-    /// What the system says where it gives no thread.
+    /// The system's error if it gives no thread.
     pub fn start(
         name: &'static str,
         work: impl FnOnce() + Send + 'static,

@@ -1,4 +1,4 @@
-//! An export beside the painting: on a thread of its own, of the painting as it was when it was asked for.
+//! An export in the background: on a thread of its own, of the painting as it was when it was requested.
 
 use std::fs::File;
 use std::io::{BufWriter, Error, ErrorKind, Seek, SeekFrom, Write};
@@ -19,7 +19,7 @@ use maulstick_paint::picture::{Depth, Export};
 use maulstick_types::command::{ExportOrder, Outcome};
 use maulstick_types::paint::ExportStatus;
 
-/// Whoever asked for it: a client, and the number of its command.
+/// The client that requested it, and the number of its command.
 pub type Asker = (u64, u64);
 
 /// Exports, one at a time.
