@@ -38,11 +38,11 @@ struct Running {
 }
 
 impl Exporter {
-    /// Begins an export of a painting that nobody changes any more; `usual` is how pictures leave the
-    /// working space where the order says nothing.
+    /// Begins an export of a painting that is not changed any more; `usual` holds the defaults for everything that the
+    /// request leaves open.
     ///
     /// # Errors
-    /// [`EditError`] for an unknown format, profile or gamut, and while another export goes on.
+    /// [`EditError`] for an unknown format, profile or gamut, and while another export runs.
     pub fn begin(
         &mut self,
         asker: Asker,

@@ -18,7 +18,7 @@ use super::FrameState;
 pub(super) struct BrushLooks {
     topics: Topics,
     told: BTreeMap<String, Told>,
-    /// The look that all is told for, and reflectances of hair under it.
+    /// The look in which all colours were sent, and reflectances of hair under it.
     look: Option<Arc<Appearance>>,
     hair: Vec<(Hair, Vec<f32>)>,
 }

@@ -259,7 +259,7 @@ impl FrameServer {
         Ok(())
     }
 
-    /// Bakes dry layers that nobody has looked at yet, for a short while; true where there are more.
+    /// Bakes dry layers ahead of any view, for a short while; true if there are more.
     fn bake_ahead(&mut self, fed: &FrameState) -> bool {
         let progress = self.pyramid.bake_ahead(fed, AHEAD);
         let mut shared = self.feed.lock();

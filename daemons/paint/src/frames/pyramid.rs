@@ -16,7 +16,7 @@ use maulstick_paint::tile::{Tile, TileId};
 use super::films::SteadyFilms;
 use super::{FedSurface, FrameState, Progress};
 
-/// Display tiles that are kept for the next request.
+/// Number of cached display tiles.
 const KEPT_TILES: usize = 1024;
 
 /// From this level on, eight cells to a point and coarser, a bare ground looks even.
@@ -40,7 +40,7 @@ pub(super) fn grid(surface: &FedSurface, level: u32) -> [u32; 2] {
     surface.grid.map(|tiles| tiles.div_ceil(1 << level))
 }
 
-/// Versions of bare tiles lie below this, those of painted ones above: a surface has no more tiles.
+/// Versions of bare tiles are below this, those of painted ones above: a surface has no more tiles.
 pub(super) const BARE_VERSIONS: u64 = 1 << 32;
 
 /// Display tiles by level and place, with the version that they show.
@@ -64,7 +64,7 @@ pub(super) struct Pyramid {
 }
 
 impl Pyramid {
-    /// Version of a tile of a level: the newest of what lies in it; 0 where nothing was painted.
+    /// Version of a tile of a level: the newest of its tiles of full detail; 0 where nothing was painted.
     fn painted(surface: &FedSurface, level: u32, id: TileId) -> u64 {
         let [across, up] = grid(surface, level);
         if id.x >= across || id.y >= up {
@@ -98,8 +98,8 @@ impl Pyramid {
         }
     }
 
-    /// Bakes what has dried for the present look, a tile after the other, for as long as `limit`.
-    /// What dries later is baked when it is looked at.
+    /// Bakes dry layers for the present look, a tile after the other, for as long as `limit`. Layers that dry later are
+    /// baked on demand.
     pub(super) fn bake_ahead(&mut self, fed: &FrameState, limit: Duration) -> Progress {
         let Some(look) = &fed.look else {
             return Progress::default();
@@ -135,7 +135,7 @@ impl Pyramid {
         }
     }
 
-    /// The tiles of full detail of a rectangle of a level that are not kept or have changed.
+    /// The tiles of full detail of a rectangle of a level that are not cached or have changed.
     pub(super) fn stale(
         &self,
         number: u32,

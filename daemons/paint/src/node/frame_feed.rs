@@ -18,8 +18,8 @@ const CARRIED_PERIOD_NS: u64 = 66_000_000;
 const WATCHED_NS: u64 = 2_000_000_000;
 
 impl PaintNode {
-    /// Hands over what brushes carry, while somebody looks: as far as steps are settled, for the model
-    /// waits for no view.
+    /// Hands over the brushes' loads while a view wants them: as far as steps are settled, for the model waits for no
+    /// view.
     pub(super) fn hand_over_brushes(&mut self, now_ns: u64) {
         if now_ns < self.fed_brushes_ns + CARRIED_PERIOD_NS {
             return;

@@ -171,7 +171,7 @@ impl PaintNode {
         Ok(node)
     }
 
-    /// Has snapshots leave the working space in this way.
+    /// Sets the conversion of snapshots from the working space.
     #[must_use]
     pub fn exporting(mut self, export: Export) -> Self {
         self.export = export;
@@ -206,10 +206,10 @@ impl PaintNode {
         self.sequencer.painting().pager().fault()
     }
 
-    /// Writes what is to be kept and closes the document, under its own name where it is on its way there.
+    /// Writes everything pending and closes the document, under its new name if a move is in progress.
     ///
     /// # Errors
-    /// Why something could not be written, or not under that name.
+    /// The reason why something could not be written, or not under that name.
     pub fn close(mut self) -> Result<(), DocumentError> {
         // Snapshots may show pages that only the document has.
         drop(std::mem::take(&mut self.snapshots));

@@ -15,7 +15,7 @@ use super::PaintNode;
 use crate::exporter::Asker;
 use maulstick_session::Autosave;
 
-/// A painting on its way to another file.
+/// A move of a painting to another file in progress.
 #[derive(Debug)]
 pub(super) struct Saving {
     asker: Asker,
@@ -49,10 +49,10 @@ fn is_same(one: &Path, other: &Path) -> bool {
 }
 
 impl PaintNode {
-    /// Begins to have the painting go on in another file.
+    /// Begins to move the painting to another file.
     ///
     /// # Errors
-    /// [`EditError`] where it cannot be begun there, or is on its way already.
+    /// [`EditError`] if it cannot be created there, or a move is in progress.
     pub(super) fn save_as(
         &mut self,
         asker: Asker,
@@ -148,10 +148,10 @@ impl PaintNode {
         self.replies.keep(client, number, outcome);
     }
 
-    /// Waits until the painting has its name, where it is on its way to its first one.
+    /// Waits until the painting has its name, if it is moving to its first one.
     ///
     /// # Errors
-    /// Why it does not get that; where anything of it was written, it is kept beside that name.
+    /// The reason why it does not get that; if anything of it was written, it is kept beside that name.
     pub(super) fn arrive(&mut self) -> Result<(), DocumentError> {
         let Some(autosave) = self.autosave.as_mut().filter(|_| self.unnamed) else {
             return Ok(());
