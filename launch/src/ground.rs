@@ -57,10 +57,10 @@ impl GroundFile {
         Ok(Self::Spectrum(text))
     }
 
-    /// A picture as surfaces of so many cells hold it, a PNG; none where it is no picture.
+    /// A picture as surfaces of so many cells hold it, a PNG; `None` if it is no picture.
     ///
     /// # Errors
-    /// A [`Fault`] where the surface is too large for it.
+    /// A [`Fault`] if the surface is too large for it.
     pub fn picture(&self, cells: [u32; 2]) -> Result<Option<Arc<[u8]>>, Fault> {
         let Self::Picture(image, name) = self else {
             return Ok(None);
@@ -72,7 +72,7 @@ impl GroundFile {
     /// Makes it the ground of a new painting.
     ///
     /// # Errors
-    /// A [`Fault`] where it is none.
+    /// A [`Fault`] if it is invalid.
     pub fn prime(&self, setup: &mut PaintingSetup) -> Result<(), Fault> {
         setup.ground = match self {
             Self::Named(name) => name.clone(),

@@ -32,10 +32,10 @@ pub struct LightChange {
 }
 
 impl LightChange {
-    /// The light after it.
+    /// The light after the change.
     ///
     /// # Errors
-    /// A [`Fault`] for a spectrum that there is not, or a light that is none.
+    /// A [`Fault`] for an unknown spectrum, or an invalid light.
     pub fn on(&self, light: &Light) -> Result<Light, Fault> {
         let mut light = light.clone();
         if let Some(name) = &self.illuminant {

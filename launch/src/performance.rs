@@ -71,7 +71,7 @@ pub struct PaintingOptions {
 /// The brush file of a section, at its size, as [`maulstick_device::brush_file`] has it.
 ///
 /// # Errors
-/// A [`Fault`] for an unknown kind or a bad file, with what tells how one is written.
+/// A [`Fault`] for an unknown kind or a bad file, with advice on its format.
 pub fn brush_file(section: &BrushSection) -> Result<BrushFile, Fault> {
     maulstick_device::brush_file(section).map_err(of_a_brush)
 }
@@ -91,7 +91,7 @@ pub fn of_a_brush(fault: Fault) -> Fault {
 /// Reads `WxH`.
 ///
 /// # Errors
-/// What is wrong, in words.
+/// The error, in words.
 pub fn parse_size(text: &str) -> Result<[u32; 2], String> {
     let wrong = || format!("'{text}' is not a size such as 1024x768");
     let (width, height) = text.split_once(['x', 'X', '×']).ok_or_else(wrong)?;
@@ -195,7 +195,7 @@ impl PaintingOptions {
     /// As [`KitOptions::apply`], with memory, history and backend.
     ///
     /// # Errors
-    /// As there, and for sizes that are none.
+    /// As there, and for invalid sizes.
     pub fn apply(&self, config: &mut RigConfig) -> Result<BrushSection, Fault> {
         if let Some(memory) = &self.memory {
             config.paint.memory.clone_from(memory);
@@ -288,7 +288,7 @@ fn wells(config: &RigConfig, library: &PaintLibrary) -> Vec<String> {
 /// The painting that the rig's settings ask for.
 ///
 /// # Errors
-/// A [`Fault`] for a well that is no mixture, or a light that is none.
+/// A [`Fault`] for a well that is no mixture, or an invalid light.
 pub fn painting_setup(config: &RigConfig, library: &PaintLibrary) -> Result<PaintingSetup, Fault> {
     let canvas = &config.canvas;
     let wells = wells(config, library);

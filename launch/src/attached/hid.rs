@@ -56,7 +56,7 @@ struct Told {
 }
 
 impl Told {
-    /// Of the device's folder; none where it does not say which device it is.
+    /// Entry of the device's folder; `None` if it does not identify the device.
     fn read(folder: &Path) -> Option<Self> {
         let text = std::fs::read(folder.join("uevent")).ok()?;
         let text = String::from_utf8_lossy(&text);

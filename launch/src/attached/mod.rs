@@ -82,7 +82,7 @@ impl Places<'static> {
 }
 
 impl Places<'_> {
-    /// The entries of a class of devices, by name; none where there is no such class.
+    /// The entries of a class of devices, by name; empty if there is no such class.
     fn class(&self, class: &str) -> Vec<(String, PathBuf)> {
         let entries = std::fs::read_dir(self.sys.join("class").join(class));
         let named = |entry: std::fs::DirEntry| {

@@ -6,8 +6,8 @@ use maulstick_rig::Fault;
 
 use crate::page::Page;
 
-/// Parts of the second paint in 64 of the first, then the other way round: strong paints and weak
-/// ones both show their whole way.
+/// Parts of the second paint in 64 of the first, then the reverse: strong paints and weak ones both show their whole
+/// range.
 const DOUBLINGS: i32 = 6;
 /// Size of a patch, gap between rows, margin, pixels.
 const PATCH: [usize; 2] = [56, 64];

@@ -161,7 +161,7 @@ fn watch_ferrule(
         .map_err(|error| Fault::failure(error.to_string()).help(error.help))
 }
 
-/// A hand on its way around the canvas.
+/// A calibration in progress, corner by corner.
 struct Showing {
     corners: CornerCalibration,
     /// Gesture that marks a corner.

@@ -42,7 +42,7 @@ struct Findings {
     serial: Vec<Attached>,
     openhaptics: Library,
     inverse_service: Service,
-    /// The devices of the rig; none where it does not run.
+    /// The devices of the rig; `None` if it does not run.
     rig: Option<Vec<Used>>,
 }
 

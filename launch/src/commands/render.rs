@@ -96,7 +96,7 @@ impl RenderOptions {
     }
 }
 
-/// Reads a take; who gives a script in its place is told how.
+/// Reads a take; a script in its place is refused with advice.
 fn read_take(path: &Path) -> Result<Take, Fault> {
     Take::read(path).map_err(|fault| match path.extension() {
         Some(extension) if extension == "toml" && path.exists() => fault.help(format!(

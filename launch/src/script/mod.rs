@@ -54,7 +54,7 @@ pub enum Act {
     Load(Mixture, Option<Mixture>),
     /// Takes all paint off the brush.
     Clean,
-    /// Uses the brush in another way: mode, flow of the marker, most paint, m.
+    /// Sets the handling of the brush: mode, flow of the marker, most paint, m.
     Handle(BrushMode, f64, f64),
     /// Lays a film of what the brush carries over the canvas, m.
     FillWith(f64),

@@ -160,7 +160,7 @@ impl Node {
         again
     }
 
-    /// Asks the process to end, to be started afresh; false where there is none.
+    /// Asks the process to end, to be started afresh; false if there is none.
     pub fn renew(&mut self) -> bool {
         let runs = self.pid().is_some();
         if runs {

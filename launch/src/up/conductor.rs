@@ -53,7 +53,7 @@ pub struct Conductor {
     writing: Option<Writing>,
 }
 
-/// The picture being written: its outcome, and whether nobody waits for it any more.
+/// The picture being written: its outcome, and a flag for an abandoned wait.
 #[derive(Debug)]
 struct Writing {
     outcome: mpsc::Receiver<Result<(), Fault>>,

@@ -215,8 +215,8 @@ pub fn run(options: &UpOptions) -> Result<i32, Fault> {
     supervisor.run()
 }
 
-/// A path that holds wherever it is read: nodes may be started by hand from another folder, and the
-/// paint node writes what it is told by name.
+/// An absolute path: nodes may be started by hand from another folder, and the paint node writes to the name it is
+/// given.
 fn absolute(path: &std::path::Path) -> Result<PathBuf, Fault> {
     std::path::absolute(path).map_err(|error| Fault::reading(path, &error))
 }

@@ -28,7 +28,7 @@ use orders::Orders;
 use silence::Silence;
 use switch::Switch;
 
-/// All nodes end within this time when asked; paint that is on its way to a file has that of the switch.
+/// Time in which all nodes end when asked; paint that is being written to a file has that of the switch.
 const GRACE: Duration = Duration::from_millis(1200);
 /// Interval at which children are checked.
 const TICK: Duration = Duration::from_millis(20);
@@ -56,7 +56,7 @@ pub struct Supervisor {
     /// Paint starts with clean brushes: the painter's are to be loaded.
     unloaded: bool,
     orders: Orders,
-    /// Another painting on its way.
+    /// A switch to another painting in progress.
     switch: Option<Switch>,
     /// The paint node says nothing.
     silence: Option<Silence>,

@@ -7,7 +7,7 @@ use super::Supervisor;
 /// Interval of the check.
 const PERIOD: Duration = Duration::from_secs(1);
 
-/// When the folder was looked for, and whether it was told that it is gone.
+/// Time of the last check, and true once the loss was reported.
 #[derive(Debug, Default)]
 pub(super) struct FolderWatch {
     looked: Option<Instant>,

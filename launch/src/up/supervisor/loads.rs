@@ -23,7 +23,7 @@ impl Supervisor {
         }
     }
 
-    /// Gives the painter loaded brushes. The commands go their own way: nothing waits for them.
+    /// Gives the painter loaded brushes. The commands run by themselves: nothing waits for them.
     fn load_brushes(&self) {
         let (bus, topics) = (Arc::clone(&self.bus), self.topics.clone());
         let brushes: Vec<String> = self.config.brush.iter().map(|b| b.name.clone()).collect();

@@ -31,8 +31,8 @@ pub(super) struct Orders {
     leaving: Leaving,
 }
 
-/// A painting is left by what the paint node says of it after so many statuses: the first may have been
-/// on its way when it was asked.
+/// Number of the paint node's statuses after which a painting is left: the first may have been in flight when the
+/// request was made.
 const STATUSES: u64 = 2;
 
 /// Clients that want to leave the painting, with the number of statuses received when they first asked.
@@ -47,7 +47,7 @@ impl Leaving {
 }
 
 impl Orders {
-    /// ReplyCache for the rig.
+    /// Server of the commands to the rig.
     ///
     /// # Errors
     /// [`BusError::Topic`].
@@ -96,7 +96,7 @@ impl Orders {
     }
 }
 
-/// A fault as a client is told of it.
+/// A fault as the refusal that a client receives.
 pub(super) fn refusal(fault: Fault) -> Outcome {
     let what = match &fault.place {
         Some(place) => format!("{place}: {}", fault.what),

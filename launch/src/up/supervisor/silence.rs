@@ -54,7 +54,7 @@ fn work_of(pid: u32) -> Duration {
 }
 
 impl Supervisor {
-    /// The paint node has said how it fares.
+    /// Notes that the paint node has sent its status.
     pub(super) fn has_spoken(&mut self) {
         self.silence = None;
     }

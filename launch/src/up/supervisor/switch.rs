@@ -42,7 +42,7 @@ pub(super) enum Ask {
     SaveAs(PathBuf, bool),
 }
 
-/// Another painting on its way.
+/// A switch to another painting in progress.
 #[derive(Debug)]
 pub(super) struct Switch {
     asker: (u64, u64),
