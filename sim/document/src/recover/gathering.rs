@@ -20,7 +20,7 @@ const BATCH: u64 = 512;
 /// Standing of the copy that a row comes from.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Standing {
-    /// Where SQLite reads.
+    /// In the copy that SQLite reads.
     Current,
     /// On a page that was free, or in an older copy of one.
     Older,
