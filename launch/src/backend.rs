@@ -1,14 +1,14 @@
-//! What computes the steps of the paint: as `[paint] backend` or `--backend` say.
+//! Backend of the paint's steps: as `[paint] backend` or `--backend` say.
 
 use maulstick_gpu::{Choice, Device, GpuImpasto};
 use maulstick_paint::Sequencer;
 use maulstick_rig::Fault;
 
-/// Has a painting's steps computed by the GPU from now on, and journals that, where the settings want it
-/// and there is one: `auto` takes a graphics processor of its own, `gpu` any.
+/// Has a painting's steps computed by the GPU from now on, and journals that, if the settings want it and there is one:
+/// `auto` takes a graphics processor of its own, `gpu` any.
 ///
 /// # Errors
-/// A [`Fault`] where it must be a GPU and there is none.
+/// A [`Fault`] if it must be a GPU and there is none.
 pub fn choose_backend(sequencer: &mut Sequencer, backend: &str) -> Result<(), Fault> {
     let choice = match backend {
         "cpu" => return Ok(()),

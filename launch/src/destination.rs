@@ -1,4 +1,4 @@
-//! How the window and pictures show colour: names and files of `[view]` and of the command line.
+//! Colour output of the window and of pictures: names and files of `[view]` and of the command line.
 
 use std::path::Path;
 use std::sync::Arc;
@@ -10,12 +10,12 @@ use maulstick_paint::picture::Export;
 use maulstick_rig::Fault;
 use maulstick_rig::config::ViewSection;
 
-/// What faults of rig.toml call it.
+/// Name of the section in faults of rig.toml.
 pub const VIEW: &str = "[view] of rig.toml";
 /// A profile has at most this many bytes; those of printers take a few million.
 const PROFILE_MAX: u64 = 64 << 20;
 
-/// What a section asks for; `place` is how faults call it.
+/// Export settings of a section; `place` is its name in faults.
 ///
 /// # Errors
 /// A [`Fault`] for an unknown name, or a file that is no RGB profile.

@@ -12,7 +12,7 @@ use maulstick_types::scene::{CANVAS, Scene};
 
 use crate::performance::{PaintingOptions, library_from, painting_setup, refused};
 
-/// What is wrong with a document, as the user sees it.
+/// Error of a document, as the user sees it.
 #[must_use]
 pub fn wrong(path: &Path, error: &DocumentError) -> Fault {
     let fault = Fault::usage(error.to_string())
@@ -37,7 +37,7 @@ pub fn wrong(path: &Path, error: &DocumentError) -> Fault {
 /// A painting that is read: nothing is written.
 ///
 /// # Errors
-/// A [`Fault`] where there is none, or it cannot be read.
+/// A [`Fault`] if it does not exist, or cannot be read.
 pub fn read(path: &Path) -> Result<(Document, Opened), Fault> {
     let settings = DocumentSettings::new(path, Access::Read);
     let (document, opened) = Document::open(&settings).map_err(|error| wrong(path, &error))?;
@@ -85,7 +85,7 @@ pub fn go_on(config: &RigConfig, path: &Path) -> Result<(Document, Sequencer, u6
     Ok((document, sequencer, since))
 }
 
-/// What stands where a painting is to be.
+/// File at the path of a painting.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Presence {
     /// Nothing: it is to be begun there.
@@ -115,10 +115,10 @@ pub fn presence(path: &Path, options: &PaintingOptions) -> Result<Presence, Faul
     }
 }
 
-/// Sees that a painting is there, where none is to be begun.
+/// Checks that a painting exists, where none is to be created.
 ///
 /// # Errors
-/// A [`Fault`] where there is none.
+/// A [`Fault`] if it does not exist.
 pub fn there(path: &Path) -> Result<(), Fault> {
     let found = match path.exists() {
         true => glance(path),

@@ -16,7 +16,7 @@ const UNITS: [(&str, f64); 6] = [
 /// Reads a time such as `90s`, `20min`, `2h`, in ticks of 1/60 s: one at least, a year at most.
 ///
 /// # Errors
-/// What is wrong, in words.
+/// The error, in words.
 pub fn ticks_in(text: &str) -> Result<u32, String> {
     let wrong = || format!("'{text}' is no time; give one such as 90s, 20min or 2h, up to 365d");
     let digits = text.trim_end_matches(|c: char| c.is_ascii_alphabetic());
@@ -32,7 +32,7 @@ pub fn ticks_in(text: &str) -> Result<u32, String> {
     }
 }
 
-/// How long so many ticks are, ns.
+/// Duration of so many ticks, ns.
 #[must_use]
 pub fn time_ns(ticks: u32) -> u64 {
     u64::from(ticks) * 1_000_000_000 / u64::from(TICKS_A_SECOND)

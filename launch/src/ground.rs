@@ -1,4 +1,4 @@
-//! Grounds by name, and of files: measured reflectances and pictures.
+//! Grounds by name, and from files: measured reflectances and pictures.
 
 use std::path::Path;
 use std::sync::Arc;
@@ -14,10 +14,10 @@ use crate::performance::refused;
 
 /// A spectrum has at most this many bytes.
 const SPECTRUM_MAX: usize = maulstick_types::command::SPECTRUM_MAX;
-/// What the names of pictures end with.
+/// File endings of pictures.
 const PICTURES: [&str; 5] = ["png", "jpg", "jpeg", "tif", "tiff"];
 
-/// What a ground is named by.
+/// Source of a ground.
 #[derive(Clone, Debug)]
 pub enum GroundFile {
     /// A name.
@@ -57,10 +57,10 @@ impl GroundFile {
         Ok(Self::Spectrum(text))
     }
 
-    /// A picture as surfaces of so many cells hold it, a PNG; none where it is no picture.
+    /// A picture as surfaces of so many cells hold it, a PNG; `None` if it is no picture.
     ///
     /// # Errors
-    /// A [`Fault`] where the surface is too large for it.
+    /// A [`Fault`] if the surface is too large for it.
     pub fn picture(&self, cells: [u32; 2]) -> Result<Option<Arc<[u8]>>, Fault> {
         let Self::Picture(image, name) = self else {
             return Ok(None);
@@ -72,7 +72,7 @@ impl GroundFile {
     /// Makes it the ground of a new painting.
     ///
     /// # Errors
-    /// A [`Fault`] where it is none.
+    /// A [`Fault`] if it is invalid.
     pub fn prime(&self, setup: &mut PaintingSetup) -> Result<(), Fault> {
         setup.ground = match self {
             Self::Named(name) => name.clone(),
@@ -90,14 +90,14 @@ impl GroundFile {
     }
 }
 
-/// Whether a file is called as pictures are.
+/// True if a file has the ending of a picture.
 #[must_use]
 pub fn is_picture(path: &Path) -> bool {
     let extension = path.extension().unwrap_or_default().to_ascii_lowercase();
     PICTURES.iter().any(|known| extension == *known)
 }
 
-/// Why a file is no picture, as the user sees it.
+/// The error that a file is no picture, as the user sees it.
 #[must_use]
 pub fn no_picture(name: &str, error: &ImportError) -> Fault {
     match error {

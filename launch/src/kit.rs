@@ -1,4 +1,4 @@
-//! What a take is painted with: put into it, and taken from it.
+//! Setup of a take: embedded into it, and extracted from it.
 
 use std::path::Path;
 

@@ -1,4 +1,4 @@
-//! What is changed of the light over a painting.
+//! Changes of the light over a painting.
 
 use maulstick_optics::Illuminant;
 use maulstick_rig::Fault;
@@ -6,7 +6,7 @@ use maulstick_types::scene::Light;
 
 use crate::viewing::illuminant;
 
-/// What is changed of a light; what is not given stays as it is. The names are those of [`Light`].
+/// Changes of a light; an absent field stays as it is. The names are those of [`Light`].
 #[derive(Clone, Debug, Default)]
 pub struct LightChange {
     /// A name, or a CSV file of nm,power.
@@ -27,15 +27,15 @@ pub struct LightChange {
     pub rule: Option<String>,
     /// Wavelengths of the rule, 4 to 16.
     pub samples: Option<u32>,
-    /// Whether the eye is adapted to the light's white.
+    /// True if the eye is adapted to the light's white.
     pub adapted: Option<bool>,
 }
 
 impl LightChange {
-    /// The light after it.
+    /// The light after the change.
     ///
     /// # Errors
-    /// A [`Fault`] for a spectrum that there is not, or a light that is none.
+    /// A [`Fault`] for an unknown spectrum, or an invalid light.
     pub fn on(&self, light: &Light) -> Result<Light, Fault> {
         let mut light = light.clone();
         if let Some(name) = &self.illuminant {

@@ -13,19 +13,19 @@
 //! | [`swatch`] | colours in the terminal |
 //! | [`chart`] | the mixing chart, and one mixture by four ways of mixing |
 //! | [`sheet`] | the sheet of brushes and their marks |
-//! | [`attached`] | devices that are attached, as the system tells of them |
-//! | [`backend`] | what computes the steps of the paint |
+//! | [`attached`] | attached devices, as the system lists them |
+//! | [`backend`] | backend of the paint's steps |
 //! | [`cells`] | the side of the cells that pictures are painted with |
 //! | [`document`] | paintings in files |
 //! | [`easel`] | a painting at which a script is followed |
 //! | [`duration`], [`ground`], [`tooth`] | times, grounds and teeth as a painter names them |
-//! | [`kit`] | what a take is painted with: put into it, and taken from it |
-//! | [`lamp`] | what is changed of the light |
-//! | [`memory`] | memory that a command takes at once |
-//! | [`outputs`] | files that are written, none in the place of one that is read |
+//! | [`kit`] | setup of a take: embedded into it, and extracted from it |
+//! | [`lamp`] | changes of the light |
+//! | [`memory`] | memory that a command allocates at once |
+//! | [`outputs`] | files that are written; none replaces one that is read |
 //! | [`script`] | a day at the easel, a step after the other |
-//! | [`paintings`] | the paintings that come along |
-//! | [`performance`] | what `render` and `up --play` share: take, brush, loads, canvas |
+//! | [`paintings`] | the bundled paintings |
+//! | [`performance`] | setup that `render` and `up --play` share: take, brush, loads, canvas |
 
 pub mod attached;
 pub mod backend;

@@ -1,5 +1,5 @@
-//! Memory that a command takes at once: what there is not enough of is refused before the work begins, for
-//! an allocation that fails ends the process.
+//! Memory that a command allocates at once: a request for too much is refused before the work begins, for an allocation
+//! that fails ends the process.
 
 use std::path::Path;
 

@@ -1,4 +1,4 @@
-//! Files that a command writes: none takes the place of one that it reads, nor of another that it writes.
+//! Files that a command writes: none replaces one that it reads, nor another that it writes.
 
 use std::path::{Path, PathBuf};
 
@@ -12,11 +12,11 @@ use crate::commands::open::whole;
 /// A file that a command reads or writes.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct UsedFile {
-    /// What it is to the command, with its article.
+    /// Its role in the command, with its article.
     pub what: String,
     /// As the user named it.
     pub path: PathBuf,
-    /// What may stand there already, where it is written.
+    /// Kind of file that may exist there already, if it is written.
     pub kind: Kind,
 }
 
@@ -46,7 +46,7 @@ impl UsedFile {
         path.map(|path| Self::new(what, path))
     }
 
-    /// What a name of a library or of a file means: nothing where it is no file's.
+    /// The file that a name of a library or of a file refers to; `None` if it is no file's.
     #[must_use]
     pub fn named(what: &str, name: &str) -> Option<Self> {
         is_path(name).then(|| Self::new(what, name))
@@ -170,7 +170,7 @@ pub fn check_apart(outputs: &[UsedFile], inputs: &[UsedFile]) -> Result<(), Faul
     Ok(())
 }
 
-/// Whether two names lead to one file, be it there or not.
+/// True if two names lead to one file, whether or not it exists.
 fn is_same(one: &Path, other: &Path) -> bool {
     match [one, other].map(FileId::of) {
         [Ok(one), Ok(other)] => one == other,

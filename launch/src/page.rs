@@ -1,4 +1,4 @@
-//! A page: pictures and words put together.
+//! A page composed of pictures and words.
 
 use ab_glyph::{Font as _, FontRef, PxScale, ScaleFont as _};
 use maulstick_paint::picture::Picture;

@@ -1,4 +1,4 @@
-//! The paintings that come along: each a script of strokes, painted at any size of cell.
+//! The bundled paintings: each a script of strokes, painted at any size of cell.
 
 use std::path::Path;
 

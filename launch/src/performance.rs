@@ -1,4 +1,4 @@
-//! What `render` and `up --play` share: the take, the brush, the loads, the canvas.
+//! Setup that `render` and `up --play` share: the take, the brush, the loads, the canvas.
 
 use std::path::{Path, PathBuf};
 
@@ -71,12 +71,12 @@ pub struct PaintingOptions {
 /// The brush file of a section, at its size, as [`maulstick_device::brush_file`] has it.
 ///
 /// # Errors
-/// A [`Fault`] for an unknown kind or a bad file, with what tells how one is written.
+/// A [`Fault`] for an unknown kind or a bad file, with advice on its format.
 pub fn brush_file(section: &BrushSection) -> Result<BrushFile, Fault> {
     maulstick_device::brush_file(section).map_err(of_a_brush)
 }
 
-/// What is wrong with a brush file: help for settings of a rig is none for it.
+/// Error of a brush file, without the advice for settings of a rig, which does not apply.
 #[must_use]
 pub fn of_a_brush(fault: Fault) -> Fault {
     let is_of_settings = |help: &String| help.contains("--print-config");
@@ -91,7 +91,7 @@ pub fn of_a_brush(fault: Fault) -> Fault {
 /// Reads `WxH`.
 ///
 /// # Errors
-/// What is wrong, in words.
+/// The error, in words.
 pub fn parse_size(text: &str) -> Result<[u32; 2], String> {
     let wrong = || format!("'{text}' is not a size such as 1024x768");
     let (width, height) = text.split_once(['x', 'X', '×']).ok_or_else(wrong)?;
@@ -195,7 +195,7 @@ impl PaintingOptions {
     /// As [`KitOptions::apply`], with memory, history and backend.
     ///
     /// # Errors
-    /// As there, and for sizes that are none.
+    /// As there, and for invalid sizes.
     pub fn apply(&self, config: &mut RigConfig) -> Result<BrushSection, Fault> {
         if let Some(memory) = &self.memory {
             config.paint.memory.clone_from(memory);
@@ -272,8 +272,8 @@ fn light(section: &LightSection) -> Result<Light, Fault> {
     Ok(light)
 }
 
-/// What the wells hold: as the settings say. Paints of one's own, with nothing said of wells, lie in
-/// them in the order of their file.
+/// Paints of the wells: as the settings say. Without wells in the settings, the painter's own paints lie in them in the
+/// order of their file.
 fn wells(config: &RigConfig, library: &PaintLibrary) -> Vec<String> {
     let default = RigConfig::default().palette.wells;
     let wells = &config.palette.wells;
@@ -288,7 +288,7 @@ fn wells(config: &RigConfig, library: &PaintLibrary) -> Vec<String> {
 /// The painting that the rig's settings ask for.
 ///
 /// # Errors
-/// A [`Fault`] for a well that is no mixture, or a light that is none.
+/// A [`Fault`] for a well that is no mixture, or an invalid light.
 pub fn painting_setup(config: &RigConfig, library: &PaintLibrary) -> Result<PaintingSetup, Fault> {
     let canvas = &config.canvas;
     let wells = wells(config, library);

@@ -25,7 +25,7 @@ const MARGIN: [usize; 4] = [92, 64, 110, 66];
 /// A panel within its margins, pixels.
 const PANEL: [usize; 2] = [560, 420];
 
-/// What an axis shows.
+/// Label and range of an axis.
 #[derive(Clone, Debug)]
 pub struct Axis {
     /// Its name with its unit.
@@ -37,7 +37,7 @@ pub struct Axis {
 /// A curve.
 #[derive(Clone, Debug)]
 pub struct Curve {
-    /// What it is, for the legend.
+    /// Name for the legend.
     pub name: String,
     /// Its points, in the units of the axes.
     pub points: Vec<[f64; 2]>,
@@ -46,7 +46,7 @@ pub struct Curve {
 /// One pair of axes with its curves.
 #[derive(Clone, Debug)]
 pub struct Panel {
-    /// What is shown.
+    /// Title.
     pub title: String,
     /// To the right.
     pub x: Axis,

@@ -4,7 +4,7 @@ use std::io::IsTerminal as _;
 
 use maulstick_optics::{Seen, Spectrum};
 
-/// Whether the standard output shows colours.
+/// Colour support of the standard output.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Terminal {
     /// 24 bits of colour.
@@ -14,7 +14,7 @@ pub enum Terminal {
 }
 
 impl Terminal {
-    /// That of the standard output.
+    /// Colour support of the standard output of this process.
     #[must_use]
     pub fn of_stdout() -> Self {
         match std::io::stdout().is_terminal() {

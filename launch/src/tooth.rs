@@ -1,4 +1,4 @@
-//! Teeth of pictures.
+//! Canvas textures from image files.
 
 use std::path::Path;
 use std::sync::Arc;

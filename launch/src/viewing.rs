@@ -70,7 +70,7 @@ impl ViewingOptions {
         }
     }
 
-    /// What these options ask for.
+    /// Viewing conditions of these options.
     ///
     /// # Errors
     /// A [`Fault`] for an unknown light, with the nearest name, or a bad file, with its line.

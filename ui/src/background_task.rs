@@ -1,11 +1,11 @@
-//! Work beside the window: a thread, and what it finds. The window asks for it and never waits.
+//! Work on a thread, which the window polls and never waits for.
 
 use std::sync::mpsc::{Receiver, TryRecvError, channel};
 use std::task::Poll;
 
 use eframe::egui::Context;
 
-/// Work that goes on. Who drops it no longer wants what it finds.
+/// Work in progress. Its result is dropped with it.
 #[derive(Debug)]
 pub(crate) struct BackgroundTask<T> {
     found: Receiver<T>,
@@ -22,7 +22,7 @@ impl<T: Send + 'static> BackgroundTask<T> {
         let (to_window, found) = channel();
         let context = context.clone();
         let run = move || {
-            // Nobody listens where the window wants it no longer.
+            // The window may have dropped the task already.
             to_window.send(work()).ok();
             context.request_repaint();
         };
@@ -33,7 +33,7 @@ impl<T: Send + 'static> BackgroundTask<T> {
         Self { found }
     }
 
-    /// What was found, once; none of it where the thread fell.
+    /// The result, returned once; `None` inside if the thread panicked.
     pub(crate) fn poll(&self) -> Poll<Option<T>> {
         match self.found.try_recv() {
             Ok(found) => Poll::Ready(Some(found)),

@@ -81,7 +81,7 @@ pub fn run(
     }
 }
 
-/// Why there is no window, and what to do; another attempt would end the same way.
+/// The reason why no window could be opened, with advice; another attempt would end the same way.
 fn unopened(error: &eframe::Error) -> Fault {
     match error {
         eframe::Error::Wgpu(error) => {

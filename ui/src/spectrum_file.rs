@@ -1,4 +1,4 @@
-//! Spectra that a painter gives as files.
+//! Spectra from CSV files.
 
 use std::io::Read as _;
 use std::path::Path;
@@ -7,7 +7,7 @@ use maulstick_optics::{Illuminant, Reflectance};
 use maulstick_rig::Fault;
 use maulstick_types::command::SPECTRUM_MAX;
 
-/// The text of a table; a folder, a device or a huge file is none.
+/// The text of a table; a folder, a device or a huge file is rejected.
 fn text(path: &Path, row: &str) -> Result<String, Fault> {
     let failed = |error: std::io::Error| Fault::reading(path, &error);
     let place = || path.display().to_string();

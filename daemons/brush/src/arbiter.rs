@@ -1,12 +1,12 @@
-//! Which of several devices moves the brush: of those in range the one of highest priority, and
-//! another one only between strokes.
+//! Choice among several devices that move one brush: of those in range the one of highest priority, and another one
+//! only between strokes.
 
 use std::collections::BTreeMap;
 
 /// A device that is silent for this long is out of range, ns.
 const SILENCE_NS: u64 = 500_000_000;
 
-/// Whether a stylus is near enough to count.
+/// Distance of a stylus: in range or not.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Range {
     /// It is.
@@ -15,7 +15,7 @@ pub enum Range {
     Away,
 }
 
-/// What the brush does.
+/// State of the brush's stroke.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Stroke {
     /// It is in the air.

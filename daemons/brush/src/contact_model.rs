@@ -21,7 +21,7 @@ const RECOVERY_NS: u64 = 15_000_000;
 
 /// Density of paint, kg/m³.
 const DENSITY_KG_M3: f64 = 1e3;
-/// Half of the drag is felt in a film of this thickness, m: bristles in a thinner one slide.
+/// Film thickness at which half of the drag acts, m: bristles in a thinner one slide.
 const HALF_FILM_M: f64 = 25e-6;
 /// Drag at most, N·s/m: the servo samples it.
 const DRAG_MOST: f64 = 0.5;
@@ -33,7 +33,7 @@ pub fn drag(credit: &BrushCredit) -> f64 {
     let [film, viscosity, contact] = [credit.film_m, credit.viscosity_m2_s, credit.contact_m];
     let wet = f64::from(film) / (f64::from(film) + HALF_FILM_M);
     let drag = DENSITY_KG_M3 * f64::from(viscosity) * f64::from(contact) * wet;
-    // What comes over the bus may be anything.
+    // A message from the bus may hold any number.
     if drag.is_finite() {
         drag.clamp(0.0, DRAG_MOST)
     } else {
@@ -41,7 +41,7 @@ pub fn drag(credit: &BrushCredit) -> f64 {
     }
 }
 
-/// Which law of force a hand feels.
+/// Force law of a device.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum ForceKind {
     /// Two straight pieces, k₁ that of the solved head (Baxter 2004, eq. 8.1).
@@ -116,14 +116,14 @@ pub const NO_GRAIN: Grain = Grain {
     wavelength_m: 1e-3,
     seed: 0,
 };
-/// Of the slope of the tooth, by the part that a tuft feels: it lies on many threads.
+/// Share of the slope of the tooth that acts on a tuft: it rests on many threads.
 const FELT_OF_SLOPE: f64 = 0.1;
 
-/// Finer waves are not felt, m: twice what a device refuses.
+/// Shortest wave that acts on the hand, m: twice what a device refuses.
 const FINEST_M: f64 = 4e-4;
 
-/// The grain of the canvas: amplitude π·depth/λ, the steepest slope of a wave as deep as the tooth,
-/// by the share of it that is felt.
+/// The grain of the canvas: amplitude π·depth/λ, the steepest slope of a wave as deep as the tooth, by the share of it
+/// that acts on a tuft.
 #[must_use]
 pub fn grain(scene: &Scene) -> Grain {
     let canvas = scene.surfaces.iter().find(|surface| surface.id == CANVAS);
@@ -141,7 +141,7 @@ pub fn grain(scene: &Scene) -> Grain {
     felt.unwrap_or(NO_GRAIN)
 }
 
-/// What is felt of a contact.
+/// Surface properties that enter the contact model.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SurfaceFeel {
     /// Normal force by depth.
@@ -152,7 +152,7 @@ pub struct SurfaceFeel {
     pub grain: Grain,
 }
 
-/// What the hand feels of a surface through a brush.
+/// Contact model of a surface under a brush.
 #[must_use]
 pub fn contact_model(
     device: Origin,

@@ -1,4 +1,4 @@
-//! States that are solved and wait for credit, cut into messages that fit.
+//! Solved states that wait for credit, cut into messages that fit.
 
 use std::collections::VecDeque;
 
@@ -37,7 +37,7 @@ impl Outbox {
         self.waiting.pop_front()
     }
 
-    /// Whether nothing waits.
+    /// True if it is empty.
     #[must_use]
     pub fn is_empty(&self) -> bool {
         self.waiting.is_empty()

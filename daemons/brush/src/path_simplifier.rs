@@ -1,5 +1,5 @@
-//! What a live brush does while it may not send: it keeps the path. Samples that lie within half a
-//! cell of the chord between their neighbours are joined; in the air the newest one is enough.
+//! Path of a live brush that may not send: samples that are within half a cell of the chord between their neighbours
+//! are joined; in the air the newest one is enough.
 
 use glam::DVec3;
 use maulstick_num::geometry::Rigid;
@@ -17,11 +17,11 @@ pub struct Waiting {
     pub event_ns: u64,
     /// Itself.
     pub sample: StylusSample,
-    /// Whether the brush is clear of every surface.
+    /// Clearance of the brush over the surfaces.
     pub place: Place,
 }
 
-/// Where a sample puts the brush.
+/// Clearance of the brush at a sample.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Place {
     /// Clear of the surface: it paints nothing.
@@ -84,7 +84,7 @@ fn off_chord(p: [f64; 3], a: [f64; 3], b: [f64; 3]) -> f64 {
     dot(off, off)
 }
 
-/// Whether `middle` lies on the way from `start` to `end`, within half a cell.
+/// True if `middle` is on the path from `start` to `end`, within half a cell.
 fn on_the_way(middle: &Points, start: &Points, end: &Points) -> bool {
     (0..2).all(|i| off_chord(middle[i], start[i], end[i]) <= TOLERANCE_M * TOLERANCE_M)
 }
@@ -146,13 +146,13 @@ impl PathSimplifier {
         std::mem::take(&mut self.kept)
     }
 
-    /// Whether nothing waits.
+    /// True if it is empty.
     #[must_use]
     pub fn is_empty(&self) -> bool {
         self.kept.is_empty()
     }
 
-    /// Whether a sample of a device waits.
+    /// True if a sample of a device waits.
     #[must_use]
     pub fn holds(&self, device: Origin) -> bool {
         self.kept.iter().any(|waiting| waiting.origin == device)

@@ -1,8 +1,7 @@
 //! Actions of a stylus's switches and its eraser end.
 //!
-//! The device's own thread only tells edges; a thread beside it asks the paint node for what they mean,
-//! one after the other, however long that takes. The clutch is no command: the device itself lets go of
-//! the desk by it.
+//! The device's own thread only reports edges; another thread asks the paint node for their actions, one after the
+//! other, however long that takes. The clutch is no command: it decouples the device itself from the desk.
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -77,7 +76,7 @@ impl Actions {
     }
 }
 
-/// Which way a switch has gone.
+/// Direction of an edge.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Edge {
     Pressed,
@@ -95,12 +94,12 @@ enum SwitchEvent {
 /// Does what the switches of one device ask for.
 pub struct Actor {
     actions: Actions,
-    /// Switches as they have been told.
+    /// Switches as last reported.
     told: u32,
     events: Option<SyncSender<SwitchEvent>>,
     stop: Arc<AtomicBool>,
     thread: Option<JoinHandle<()>>,
-    /// Whether it was said that the paint node does not keep up.
+    /// True once it was reported that the paint node does not keep up.
     warned: bool,
 }
 
@@ -190,7 +189,7 @@ impl Actor {
     }
 }
 
-/// What was begun by a switch that is still held is ended.
+/// Ends the actions of switches that are still pressed.
 impl Drop for Actor {
     fn drop(&mut self) {
         self.stop.store(true, Ordering::SeqCst);

@@ -1,8 +1,8 @@
-//! The free hand moves the canvas: what a 6-DOF mouse says becomes [`Command::Place`].
+//! Motion of the canvas by the free hand: samples of a 6-DOF mouse become [`Command::Place`].
 //!
-//! Pushing right and up pans, pushing away from the desk zooms in, turning about the axis out of the
-//! desk turns the canvas; all about the middle of the desk, where the painter looks. The commands go
-//! into the journal, so a replay knows where the canvas lay.
+//! Pushing right and up pans, pushing away from the desk zooms in, turning about the axis out of the desk turns the
+//! canvas; all about the middle of the desk, where the painter looks. The commands go into the journal, so a replay
+//! repeats the placements of the canvas.
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -33,12 +33,12 @@ const TURN_S: f64 = 1.5;
 const PERIOD: Duration = Duration::from_millis(33);
 /// A push counts for so long at most, however late it is followed.
 const LONGEST: Duration = Duration::from_millis(100);
-/// How long a command waits for its answer.
+/// Longest wait of a command for its answer.
 const PATIENCE: Duration = Duration::from_secs(2);
 /// A command is asked again after this; so long at most a daemon's end waits for it.
 const ASK: Duration = Duration::from_millis(300);
 
-/// Where a surface lies after a push of `dt` s.
+/// Placement of a surface after a push of `dt` s.
 #[must_use]
 pub fn pushed(lie: &SurfacePlacement, control: &ControlSample, dt: f64) -> SurfacePlacement {
     // Slow where the push is light: the third power leaves the stops where they are.
@@ -49,13 +49,13 @@ pub fn pushed(lie: &SurfacePlacement, control: &ControlSample, dt: f64) -> Surfa
         .moved(DVec3::new(x, y, 0.0) * (PAN_M_S * dt))
 }
 
-/// Whether a hand pushes or turns what moves the canvas.
+/// True if the mouse is pushed or turned along an axis that moves the canvas.
 #[must_use]
 pub fn pushes(control: &ControlSample) -> bool {
     control.push != [0.0; 3] || control.turn[2] != 0.0
 }
 
-/// Sends the commands from a thread of its own: nobody who reads a device waits for an answer.
+/// Sends the commands from a thread of its own: reading a device never waits for an answer.
 pub struct CanvasMover {
     controls: Option<SyncSender<ControlSample>>,
     stop: Arc<AtomicBool>,
@@ -119,7 +119,7 @@ impl std::fmt::Debug for CanvasMover {
     }
 }
 
-/// Follows the hand until nobody can push any more; `shown` is where the canvas has newly been seen.
+/// Follows the hand until the device's reader has ended; `shown` is the newest placement of the canvas in the scene.
 fn follow(
     heard: &Samples<ControlSample>,
     mut shown: impl FnMut() -> Option<SurfacePlacement>,
@@ -127,7 +127,7 @@ fn follow(
 ) {
     let mut lie: Option<SurfacePlacement> = None;
     while let Ok(mut control) = heard.recv() {
-        // Where it lies is the scene's until the hand pushes, and our own while it does.
+        // The placement is the scene's until the hand pushes, and our own while it does.
         lie = shown().or(lie);
         let mut moved = Instant::now();
         while pushes(&control) {
@@ -176,7 +176,7 @@ mod tests {
         }
     }
 
-    /// The place on the surface that lies in the middle of the desk, m.
+    /// The point of the surface at the middle of the desk, m.
     fn middle(lie: &SurfacePlacement) -> DVec3 {
         lie.pose.inverse().point(DVec3::ZERO) / lie.zoom
     }

@@ -14,18 +14,18 @@ pub enum Touch {
     Down,
     /// It does not.
     Up,
-    /// The device cannot tell: keeping still says so.
+    /// The device does not sense it: keeping still counts as a touch.
     Unknown,
 }
 
 /// A sample of the hand.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct HandSample {
-    /// Where it is, device frame, m.
+    /// Position, device frame, m.
     pub point: DVec3,
-    /// Where its handle points, away from the canvas, device frame; none where that is not sensed.
+    /// Direction of the handle, away from the canvas, device frame; `None` if that is not sensed.
     pub handle: Option<DVec3>,
-    /// Whether it says that it is at a corner.
+    /// Touch signal of the device.
     pub touch: Touch,
     /// When, s.
     pub time_s: f64,
@@ -151,7 +151,7 @@ pub struct CornerCalibration {
     count: usize,
     touch: Touch,
     stay: Option<Stay>,
-    /// Where the hand was when the corner was asked for; none once it has moved away.
+    /// Position of the hand when the corner was requested; `None` once it has moved away.
     start: Option<DVec3>,
     begun: bool,
 }
@@ -177,7 +177,7 @@ impl CornerCalibration {
         }
     }
 
-    /// The corner that is asked for; none once all are found.
+    /// The corner to show next; `None` once all are found.
     #[must_use]
     pub fn wanted(&self) -> Option<Corner> {
         Corner::ALL.get(self.count).copied()
@@ -189,7 +189,7 @@ impl CornerCalibration {
         (self.count == 3).then_some(self.found)
     }
 
-    /// Where the handle pointed at the corners, of any length; 0 where that is not sensed.
+    /// Direction of the handle at the corners, of any length; 0 if that is not sensed.
     #[must_use]
     pub fn handle(&self) -> DVec3 {
         self.handle

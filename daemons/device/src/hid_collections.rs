@@ -1,5 +1,5 @@
-//! What a HID device says that it is: the application collections of its report descriptor
-//! (Device Class Definition for HID 1.11, § 6.2.2). Fields and reports are another's to read.
+//! Kind of a HID device by its own description: the application collections of its report descriptor (Device Class
+//! Definition for HID 1.11, § 6.2.2). Fields and reports are read elsewhere.
 
 /// An application collection: a pen, a keyboard, a multi-axis controller.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -21,13 +21,13 @@ const SIX_AXES: Collection = Collection {
 };
 
 impl Collection {
-    /// Whether it is a pen's.
+    /// True for a pen's collection.
     #[must_use]
     pub fn is_pen(&self) -> bool {
         DIGITIZERS.contains(&self.page) && PENS.contains(&self.usage)
     }
 
-    /// Whether it is that of a 6-DOF mouse.
+    /// True for a 6-DOF mouse's collection.
     #[must_use]
     pub fn has_six_axes(&self) -> bool {
         *self == SIX_AXES
@@ -76,7 +76,7 @@ pub fn collections(descriptor: &[u8]) -> Vec<Collection> {
             }),
             _ => {}
         }
-        // What is local holds until the next main item.
+        // Local items hold until the next main item.
         if prefix & 0x0c == 0 {
             usage = None;
         }

@@ -1,4 +1,4 @@
-//! A sheet of marks that shows what brush and paint can do, side by side.
+//! A sheet of marks that shows the effects of brush and paint side by side.
 
 use std::f64::consts::TAU;
 

@@ -1,8 +1,8 @@
 //! The player: a device that plays a take.
 //!
-//! It announces the take, sends its samples with the replay flag at their time or as fast as credit
-//! allows, and tells where the take stands. `event_ns` is start + take time at every rate, so what
-//! is painted does not depend on it.
+//! It announces the take, sends its samples with the replay flag at their time or as fast as credit allows, and reports
+//! the progress of the take. `event_ns` is start + take time at every rate, so the painting does not depend on the
+//! rate.
 
 use std::time::Duration;
 
@@ -18,7 +18,7 @@ use maulstick_types::{Flags, Mixture, Origin, name_hash};
 use crate::take::Take;
 use maulstick_rig::commander::Commander;
 
-/// How fast a take is played.
+/// Playback rate of a take.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Rate {
     /// This many seconds of the take a second.
@@ -50,28 +50,28 @@ impl std::fmt::Display for Rate {
     }
 }
 
-/// What a player is told.
+/// Settings of a player.
 #[derive(Clone, Debug)]
 pub struct PlayerSettings {
     /// The take.
     pub take: Take,
-    /// How fast.
+    /// Playback rate.
     pub rate: Rate,
     /// Take time up to which it plays as fast as it can, ns: where a rig that died had been.
     pub resume_ns: u64,
     /// The brush that it moves.
     pub brush: String,
-    /// What each stroke loads, in turn.
+    /// Loads of the strokes, in turn.
     pub loads: Vec<Mixture>,
-    /// Whether to stay after the end, telling it, until stopped.
+    /// True to stay after the end and report it, until stopped.
     pub stay: bool,
-    /// Whether what was painted of it before a crash is undone first.
+    /// True to undo first the strokes of it that were painted before a crash.
     pub again: bool,
 }
 
 /// Time between two statuses, ns.
 const STATUS_PERIOD_NS: u64 = 100_000_000;
-/// How long to wait for a paint node that accepts the take.
+/// Longest wait for a paint node that accepts the take.
 const ANNOUNCE: Duration = Duration::from_secs(20);
 
 /// Plays a take in the rig of `member`.
@@ -220,7 +220,7 @@ impl<'a> Player<'a> {
         Ok(wait)
     }
 
-    /// When the sample of a take time is due; none where it goes as soon as it can.
+    /// Time at which the sample of a take time is due; `None` if it is sent as soon as possible.
     fn due_ns(&mut self, time_ns: u64, now_ns: u64) -> Option<u64> {
         let Rate::Times(rate) = self.settings.rate else {
             return None;

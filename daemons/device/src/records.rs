@@ -19,19 +19,19 @@ const FIRST_PRIVATE: u8 = 0x80;
 const WINDOW_LOG: u32 = 23;
 /// Most bytes that a byte of a chunk may become. Samples at rest become 30.
 const MOST_EXPANSION: usize = 256;
-/// What a chunk of any size may become, bytes.
+/// Allocation that a chunk of any size may need, bytes.
 const LEAST_ROOM: usize = 1 << 20;
 
 /// A record of a file or chunk, or damaged bytes that begin where one was expected.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Found<'a> {
-    /// Where it begins, bytes.
+    /// Offset of its beginning, bytes.
     pub(crate) at: usize,
     /// Its kind; see [`mcap::records::op`].
     pub(crate) opcode: u8,
     /// Its content. Of a damaged one all up to the next record.
     pub(crate) body: &'a [u8],
-    /// Whether it has a length that its kind may have, and ends where another record begins.
+    /// True if its length is one that its kind may have, and another record begins at its end.
     pub(crate) whole: bool,
 }
 
@@ -71,12 +71,12 @@ impl<'a> Iterator for Records<'a> {
     }
 }
 
-/// Whether a record, the closing magic or the end is at `at`.
+/// True if a record, the closing magic or the end is at `at`.
 fn begins(bytes: &[u8], at: usize) -> bool {
     at == bytes.len() || bytes[at..].starts_with(MAGIC) || end_of(bytes, at).is_some()
 }
 
-/// Where the record at `at` ends, if it can be one.
+/// End of the record at `at`, if it can be one.
 fn end_of(bytes: &[u8], at: usize) -> Option<usize> {
     let opcode = *bytes.get(at)?;
     let length = usize::try_from(u64_at(bytes, at + 1)?).ok()?;
@@ -92,7 +92,7 @@ fn end_of(bytes: &[u8], at: usize) -> Option<usize> {
     fits.then_some(end)
 }
 
-/// Whether the content of a record has a length that its kind may have.
+/// True if the content of a record has a length that its kind may have.
 fn fits(opcode: u8, body: &[u8]) -> bool {
     let length = body.len();
     match opcode {
@@ -115,7 +115,7 @@ fn fits(opcode: u8, body: &[u8]) -> bool {
     }
 }
 
-/// Whether an attachment's data and checksum end with it. [`mcap::parse_record`] panics on some that do not.
+/// True if an attachment's data and checksum end with it. [`mcap::parse_record`] panics on some that do not.
 fn attachment_fits(body: &[u8]) -> bool {
     let stated = || {
         let at = after_texts(body, 16, 2)?;
@@ -125,7 +125,7 @@ fn attachment_fits(body: &[u8]) -> bool {
     stated() == Some(body.len())
 }
 
-/// Where `count` texts that begin at `at` end: each a u32 length and its bytes. Arrays look the same.
+/// End of the `count` texts that begin at `at`: each a u32 length and its bytes. Arrays look the same.
 fn after_texts(body: &[u8], at: usize, count: usize) -> Option<usize> {
     (0..count).try_fold(at, |at, _| {
         let length = u32::from_le_bytes(*body.get(at..)?.first_chunk()?);
@@ -136,8 +136,8 @@ fn after_texts(body: &[u8], at: usize, count: usize) -> Option<usize> {
     })
 }
 
-/// Whether a map that begins at `at` ends with the record, and its texts with it: [`mcap::parse_record`]
-/// allocates what they state.
+/// True if a map that begins at `at` ends with the record, and its texts with it: [`mcap::parse_record`] allocates the
+/// lengths that they state.
 fn map_fits(body: &[u8], at: Option<usize>) -> bool {
     let Some(at) = at.filter(|at| after_texts(body, *at, 1) == Some(body.len())) else {
         return false;
@@ -167,7 +167,7 @@ fn chunk_data(body: &[u8]) -> Option<(&str, u64, &[u8])> {
 pub(crate) struct Unpacked<'a> {
     /// As far as they can be had.
     pub(crate) bytes: Cow<'a, [u8]>,
-    /// Why they are not all there, or not what they were.
+    /// The damage, if some are missing or changed.
     pub(crate) damage: Option<String>,
 }
 

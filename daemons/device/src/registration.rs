@@ -1,7 +1,7 @@
-//! How the frame of a 6-DOF device lies on the desk: by its place, turn and scale, or such that three
-//! places of it become the corners of the canvas.
+//! Registration of a 6-DOF device on the desk: by position, rotation and scale, or such that three of its points become
+//! the corners of the canvas.
 //!
-//! The canvas lies in the desk's z = 0, its middle in the desk's origin.
+//! The canvas is in the desk's z = 0, its middle at the desk's origin.
 
 use std::f64::consts::FRAC_PI_2;
 
@@ -50,7 +50,7 @@ impl Similarity {
         self.rigid.vector(v * self.scale)
     }
 
-    /// What is turned into `image`, of its length.
+    /// Vector that is rotated into `image`, of its length.
     #[must_use]
     pub fn turn_back(&self, image: DVec3) -> DVec3 {
         self.rigid.rotation.conjugate() * image
@@ -76,12 +76,12 @@ pub struct CornerFit {
     pub ratio: f64,
     /// Angle at the lower left corner, rad: a right one where they fit.
     pub angle_rad: f64,
-    /// Farthest from its corner that a place comes to lie, m of the desk.
+    /// Farthest distance of a point from its corner, m of the desk.
     pub off_m: f64,
 }
 
 impl CornerFit {
-    /// Whether they fit within [`TOLERANCE`].
+    /// True if they fit within [`TOLERANCE`].
     #[must_use]
     pub fn is_good(&self) -> bool {
         let least = 1.0 - TOLERANCE;
@@ -108,7 +108,7 @@ pub struct Registration {
     pub to_desk: Similarity,
     /// From the point that it senses to where head and ferrule meet, brush frame, m of the device.
     pub ferrule_m: DVec3,
-    /// How well its corners fit the canvas, where it has any.
+    /// Fit of its corners to the canvas, if it has any.
     pub corners: Option<CornerFit>,
 }
 
@@ -159,7 +159,7 @@ impl Registration {
         })
     }
 
-    /// What is wrong with the corners, if they do not fit the canvas.
+    /// Warning about the corners, if they do not fit the canvas.
     #[must_use]
     pub fn warning(&self) -> Option<String> {
         let bad = self.corners.filter(|fit| !fit.is_good())?;

@@ -1,8 +1,8 @@
-//! What a take holds, whole or damaged.
+//! Content of a take, intact or damaged.
 //!
-//! Damage is told, and passed over: reading goes on with the next record that is whole. Checksums cover
-//! the chunks and all before the summary, so a take without damage is the one that was written. In a chunk
-//! whose checksum is wrong a sample counts whose message is in order by itself.
+//! Damage is reported, and skipped: reading continues with the next intact record. Checksums cover the chunks and all
+//! before the summary, so a take without damage is the one that was written. In a chunk whose checksum is wrong a
+//! sample counts if its message is valid by itself.
 
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -20,12 +20,12 @@ use crate::take_setup::TakeSetup;
 /// Name of a device whose channel record is lost.
 const UNNAMED: &str = "recovered";
 
-/// What a take still holds.
+/// Content of a take that could be read.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Salvage {
     /// The samples that can be read.
     pub take: Take,
-    /// What is wrong, if anything.
+    /// The damage, if any.
     pub damage: Option<String>,
 }
 
@@ -58,7 +58,7 @@ pub fn salvage(path: &Path) -> Result<Salvage, Fault> {
     })
 }
 
-/// Why nothing can be had of a file.
+/// The reason why a file gives nothing.
 #[derive(Debug, PartialEq)]
 pub(crate) enum Refusal {
     Foreign,
@@ -99,7 +99,7 @@ pub(crate) fn from_bytes(bytes: &[u8]) -> Result<Salvage, Refusal> {
     reading.finish(setup)
 }
 
-/// What has been read so far.
+/// Content read so far.
 #[derive(Default)]
 struct Reading {
     /// Topics by the numbers of their channels.

@@ -23,7 +23,7 @@ const STEEPEST: f64 = 85.0;
 /// times a second.
 const PEN_PERIODS_S: std::ops::RangeInclusive<f64> = 0.002..=0.1;
 
-/// How a table lies on the desk.
+/// Layout of a table on the desk.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TableLayout {
     /// Length of a table unit, mm.
@@ -96,17 +96,17 @@ impl std::str::FromStr for TimeUnit {
 pub struct Imported {
     /// The take.
     pub take: Take,
-    /// What was guessed, and what of the table paints nothing: a sentence each.
+    /// Guesses, and parts of the table that paint nothing: a sentence each.
     pub notes: Vec<String>,
 }
 
-/// Where a column stands, by its number in [`COLUMNS`].
+/// Position of a column, by its number in [`COLUMNS`].
 type Places = [Option<usize>; COLUMNS.len()];
 
 /// A sample as it stands in the table.
 struct Row {
     line: usize,
-    /// In the order of [`COLUMNS`]; NaN where there is none.
+    /// In the order of [`COLUMNS`]; NaN if absent.
     values: [f64; COLUMNS.len()],
 }
 
@@ -249,7 +249,7 @@ fn time_unit(
     .help("give the unit of t by --time-unit ms, us or ns, or sample the strokes at 10 Hz or more"))
 }
 
-/// Why a point is out of reach.
+/// The error that a point is out of reach.
 fn too_far(row: &Row, rows: &[Row], name: &str, layout: TableLayout) -> Fault {
     let most = |column: usize| {
         rows.iter()
@@ -270,7 +270,7 @@ fn too_far(row: &Row, rows: &[Row], name: &str, layout: TableLayout) -> Fault {
     ))
 }
 
-/// What of a table paints nothing.
+/// Parts of a table that paint nothing.
 fn unpainted(rows: &[Row], samples: &[TakeSample], layout: TableLayout) -> Vec<String> {
     let mut notes = Vec::new();
     let outside = |row: &&Row| {
@@ -323,7 +323,7 @@ fn header(cells: &[&str], place: &str) -> Result<Places, Fault> {
     Ok(places)
 }
 
-/// The numbers of a row in the order of [`COLUMNS`]; what is missing and not needed is NaN.
+/// The numbers of a row in the order of [`COLUMNS`]; a missing optional one is NaN.
 fn numbers(cells: &[&str], places: &Places, place: &str) -> Result<[f64; 7], Fault> {
     let mut values = [f64::NAN; COLUMNS.len()];
     for (column, value) in values.iter_mut().enumerate() {

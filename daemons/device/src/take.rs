@@ -38,7 +38,7 @@ pub struct Take {
     pub device: String,
     /// At least one.
     pub samples: Vec<TakeSample>,
-    /// What it is painted with, where it embeds that.
+    /// Embedded setup, if any.
     pub setup: Option<TakeSetup>,
 }
 

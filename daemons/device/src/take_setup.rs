@@ -49,10 +49,10 @@ impl TakeSetup {
         name
     }
 
-    /// Reads that of a take from its records; absent where it has none.
+    /// Reads that of a take from its records; `None` if it has none.
     ///
     /// # Errors
-    /// What is wrong with it, in words.
+    /// The error, in words.
     pub(crate) fn read(records: &[Found<'_>]) -> Result<Option<Self>, String> {
         let mut setup = Self::default();
         let mut stated = None;

@@ -106,7 +106,7 @@ pub struct Daemon {
     output: Output,
     /// The device's reports, while it is open.
     stream: Option<ReportStream>,
-    /// Time of the next attempt to open the device, ns; none while a recording takes its place.
+    /// Time of the next attempt to open the device, ns; `None` while a recording takes its place.
     attempt_ns: Option<u64>,
     status: Sender<StylusStatus>,
     told: StylusStatus,

@@ -8,8 +8,8 @@ use hidreport::{Field, Report as _, ReportDescriptor, Usage};
 
 /// A descriptor is no longer than this, bytes: the kernel gives no more.
 pub const LONGEST: usize = 4096;
-/// All main items together have no more fields. Each has a copy of the usages of the collections that it
-/// lies in, [`DEPTH`] times [`COLLECTION_USAGES`] at most.
+/// Most fields of all main items together. Each has a copy of the usages of its collections, [`DEPTH`] times
+/// [`COLLECTION_USAGES`] at most.
 const FIELDS: usize = 8192;
 /// Bits of one main item.
 const BITS: usize = 1 << 16;
@@ -17,7 +17,7 @@ const BITS: usize = 1 << 16;
 const USAGES: u64 = 1 << 17;
 /// Usages of one collection.
 const COLLECTION_USAGES: u64 = 16;
-/// Collections, or globals that are kept, inside one another.
+/// Largest nesting of collections, or of saved globals.
 const DEPTH: usize = 12;
 
 /// Usage pages.
@@ -35,7 +35,7 @@ pub mod page {
 /// Reads a descriptor.
 ///
 /// # Errors
-/// What is wrong with it, in words.
+/// The error, in words.
 pub fn read(bytes: &[u8]) -> Result<ReportDescriptor, String> {
     check(bytes)?;
     ReportDescriptor::try_from(bytes).map_err(|error| error.to_string())
@@ -47,8 +47,8 @@ pub fn pair(usage: &Usage) -> (u16, u16) {
     (usage.usage_page.into(), usage.usage_id.into())
 }
 
-/// What is known of globals and locals, as far as it bears on what a descriptor may cost. Of the
-/// specification Push keeps globals alone; `hidreport` keeps and takes back the locals too.
+/// Globals and locals, as far as they bear on the cost of a descriptor. By the specification Push saves globals alone;
+/// `hidreport` saves and restores the locals too.
 #[derive(Clone, Copy, Default)]
 struct Known {
     has_page: bool,
@@ -84,8 +84,8 @@ fn item(bytes: &[u8], at: usize) -> Option<(u8, u64, usize)> {
     Some((head & 0xFC, value, end))
 }
 
-/// Bytes of the input report of a number, which is one of them; none where there is no such report. What is
-/// wrong with a descriptor ends it.
+/// Bytes of the input report of a number, including the number; `None` if there is no such report. An error in a
+/// descriptor ends it.
 #[must_use]
 pub fn input_bytes(bytes: &[u8], number: u8) -> Option<u64> {
     let (mut at, mut bits) = (0, 0_u64);
@@ -163,7 +163,7 @@ fn check(bytes: &[u8]) -> Result<(), String> {
     Ok(())
 }
 
-/// What a descriptor says that its device is, in words: `a mouse and a keyboard`.
+/// Description of a device by its descriptor: `a mouse and a keyboard`.
 #[must_use]
 pub fn describe(descriptor: &ReportDescriptor) -> String {
     let mut found: Vec<&str> = Vec::new();
@@ -200,7 +200,7 @@ fn word(usage: (u16, u16)) -> &'static str {
     }
 }
 
-/// Whether a field lies, at any depth, in a collection of one of these usages.
+/// True if a field is, at any depth, in a collection of one of these usages.
 #[must_use]
 pub fn lies_in(field: &Field, wanted: impl Fn((u16, u16)) -> bool) -> bool {
     let collections = field.collections().iter();

@@ -96,7 +96,7 @@ impl Ports for Hidraw {
     }
 }
 
-/// Why a device does not open, and what to do.
+/// The reason why a device does not open, with advice.
 #[must_use]
 pub fn closed(device: &Identity, error: &std::io::Error) -> Fault {
     let name = device.to_string();

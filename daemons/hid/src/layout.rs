@@ -31,14 +31,14 @@ const COUNTS_M: f64 = 200_000.0;
 const SIDES_M: [f64; 2] = [0.01, 2.0];
 /// Longer side of a tablet whose descriptor is wrong, m.
 const LONGER_M: f64 = 0.25;
-/// How high a pen hovers at the end of a range without units, m.
+/// Hover height at the end of a range without units, m.
 const HIGHEST_M: f64 = 0.01;
-/// Pressure of a touch where there is none.
+/// Pressure of a touch without a pressure field.
 const PRESSED: f64 = 0.5;
 /// No tilt is farther from upright, rad: 85°.
 pub const STEEPEST_RAD: f64 = 85.0 * PI / 180.0;
 
-/// What a field of a report is of a pen.
+/// Role of a report's field for a pen.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 enum Role {
     X,
@@ -95,7 +95,7 @@ struct Number {
     field: VariableField,
     least: f64,
     most: f64,
-    /// What a count is, where the descriptor says: m or rad.
+    /// Value of a count, if the descriptor gives a unit: m or rad.
     metres: Option<f64>,
     radians: Option<f64>,
     /// Of the least count, in the unit of the physical range.
@@ -209,7 +209,7 @@ struct PenReport {
 }
 
 impl Layout {
-    /// Finds the pen of a descriptor; none where it has none.
+    /// Finds the pen of a descriptor; `None` if it has no pen.
     #[must_use]
     pub fn of(descriptor: &ReportDescriptor) -> Option<Self> {
         let reports = descriptor.input_reports().iter();
@@ -245,13 +245,13 @@ impl Layout {
         self.area_m
     }
 
-    /// What the pen senses, see [`axes`].
+    /// Axes that the pen senses, see [`axes`].
     #[must_use]
     pub fn senses(&self) -> u32 {
         self.senses
     }
 
-    /// Whether the reports say that the pen is away.
+    /// True if the reports signal that the pen is away.
     #[must_use]
     pub fn tells_range(&self) -> bool {
         self.tells_range
@@ -330,7 +330,7 @@ impl PenReport {
         counts.map(|(count, _)| (count / longer * LONGER_M).max(least))
     }
 
-    /// Whether a switch is on; none where there is no such switch.
+    /// State of a switch; `None` if there is no such switch.
     fn is_on(&self, report: &[u8], role: Role) -> Option<bool> {
         let mut all = self.numbers.iter().filter(|(known, _)| *known == role);
         let first = all.next()?.1.count(report) > 0.0;

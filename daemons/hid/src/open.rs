@@ -1,4 +1,4 @@
-//! The device that a section of `rig.toml` asks for, and how it is read.
+//! The device that a section of `rig.toml` asks for, and the decoder of its reports.
 
 use maulstick_device::hid_collections::Collection;
 use maulstick_rig::Fault;
@@ -10,7 +10,7 @@ use crate::pen::Reading;
 use crate::spacemouse::{LIGHT, SpaceMouse, VENDORS};
 use crate::wacom::Wacom;
 
-/// What `maulstick-hid` drives.
+/// Kinds of devices that `maulstick-hid` drives.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Kind {
     /// A tablet with a pen.
@@ -20,7 +20,7 @@ pub enum Kind {
 }
 
 impl Kind {
-    /// The kind of a driver of `rig.toml`; none where it is another daemon's.
+    /// The kind of a driver of `rig.toml`; `None` if it is another daemon's.
     #[must_use]
     pub fn of(driver: &str) -> Option<Self> {
         match driver {
@@ -37,7 +37,7 @@ impl Kind {
         }
     }
 
-    /// Whether a device is of this kind by what anyone may know of it.
+    /// True if a device is of this kind by its public data.
     fn suits(self, found: &Found) -> bool {
         let Identity {
             vendor, product, ..
@@ -55,7 +55,7 @@ impl Kind {
     }
 }
 
-/// Which device.
+/// Address of a device.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Address {
     /// The first that suits.
@@ -101,7 +101,7 @@ impl Address {
     }
 }
 
-/// How a pen's reports are read.
+/// Decoder of a pen's reports.
 #[derive(Clone, Debug)]
 pub enum Decoder {
     /// By the descriptor.
@@ -120,7 +120,7 @@ impl Decoder {
         }
     }
 
-    /// What the pen senses, see [`maulstick_types::stylus::axes`].
+    /// Axes that the pen senses, see [`maulstick_types::stylus::axes`].
     #[must_use]
     pub fn senses(&self) -> u32 {
         match self {
@@ -129,7 +129,7 @@ impl Decoder {
         }
     }
 
-    /// Whether the reports say that the pen is away.
+    /// True if the reports signal that the pen is away.
     #[must_use]
     pub fn tells_range(&self) -> bool {
         match self {
@@ -147,7 +147,7 @@ impl Decoder {
     }
 }
 
-/// How a device is read.
+/// Means of reading a device.
 #[derive(Clone, Debug)]
 pub enum Means {
     /// A pen.
@@ -156,7 +156,7 @@ pub enum Means {
     SpaceMouse,
 }
 
-/// How a device is read, by its numbers and its descriptor.
+/// Means of reading a device, by its numbers and its descriptor.
 ///
 /// # Errors
 /// A [`Fault`] that says what the device is instead.
@@ -206,7 +206,7 @@ fn has_six_axes((page, usage): (u16, u16)) -> bool {
     Collection { page, usage }.has_six_axes()
 }
 
-/// Whether a device reports anything in a collection of such a usage.
+/// True if a device reports anything in a collection of such a usage.
 fn lies_anywhere(
     descriptor: &hidreport::ReportDescriptor,
     wanted: impl Fn((u16, u16)) -> bool,
@@ -218,16 +218,16 @@ fn lies_anywhere(
         .any(|field| descriptor::lies_in(field, &wanted))
 }
 
-/// What some tablets are told before they report: XP-Pen's Deco L (from OpenTabletDriver).
+/// Initialisation that some tablets need before they report: XP-Pen's Deco L (from OpenTabletDriver).
 const BEGINNINGS: [(u16, u16, &[u8]); 1] = [(0x28BD, 0x0935, &[0x02, 0xB0, 0x04])];
 
 /// A device that is open.
 pub struct Opened {
     /// It.
     pub source: Box<dyn HidSource>,
-    /// What it is.
+    /// Its identity.
     pub identity: Identity,
-    /// How it is read; a device that was asked for by its address and cannot be read may still be recorded.
+    /// Means of reading it; a device that was asked for by its address and cannot be read may still be recorded.
     pub means: Result<Means, Fault>,
 }
 
@@ -303,7 +303,7 @@ fn missing(kind: Kind, address: &Address, all: &[Found]) -> Fault {
     Fault::failure(what).help(format!("plug it in; {there}"))
 }
 
-/// What a device is in words, as the log tells it.
+/// Description of a device for the log.
 #[must_use]
 pub fn description(identity: &Identity, means: &Means) -> String {
     match means {

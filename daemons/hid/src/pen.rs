@@ -1,14 +1,14 @@
-//! What a pen says, and the order in which it may say it.
+//! State of a pen, and the order of its changes.
 //!
-//! A pen is away, hovers or touches, with its tip or its eraser (usage tables of HID, page 0x0D, as Windows
-//! and Linux read them: Invert while the eraser hovers, Eraser while it touches). [`Pen`] puts in what
-//! a tablet leaves out: a pen that touched is lifted before it goes, and one that was turned round has
-//! been away. A tablet that says nothing says that nothing has changed.
+//! A pen is away, hovers or touches, with its tip or its eraser (usage tables of HID, page 0x0D, as Windows and Linux
+//! read them: Invert while the eraser hovers, Eraser while it touches). [`Pen`] adds the changes that a tablet leaves
+//! out: a pen that touched is lifted before it goes, and one that was turned round has been away. A silent tablet means
+//! that nothing has changed.
 
 /// Pressure of a tip that touches without any, a step of the finest pens: pressure 0 is a pen in the air.
 pub const LIGHTEST: f64 = 1.0 / 8192.0;
 
-/// Where a pen is.
+/// Presence of a pen.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Presence {
     /// Nowhere near.
@@ -19,7 +19,7 @@ pub enum Presence {
     Touching,
 }
 
-/// Which end of a pen is down.
+/// The end of a pen that is down.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum End {
     /// The tip.
@@ -28,17 +28,17 @@ pub enum End {
     Eraser,
 }
 
-/// What a pen says at a time, in the tablet's frame: origin at the lower left corner of its active area, x
-/// right, y up (away from the hand), z out of it.
+/// Reading of a pen at a time, in the tablet's frame: origin at the lower left corner of its active area, x right, y up
+/// (away from the hand), z out of it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Reading {
-    /// Where it is.
+    /// Presence.
     pub presence: Presence,
-    /// Which end is down.
+    /// The end that is down.
     pub end: End,
     /// The point under it, m.
     pub point_m: [f64; 2],
-    /// How high it hovers, m; 0 where the tablet does not say, and while it touches.
+    /// Hover height, m; 0 if the tablet does not say, and while it touches.
     pub height_m: f64,
     /// 0 to 1; while it touches at least [`LIGHTEST`], else 0.
     pub pressure: f64,
@@ -65,7 +65,7 @@ impl Reading {
     };
 }
 
-/// Puts what a tablet says into an order that a pen could have moved in.
+/// Completes a tablet's readings to a sequence that a pen can have moved in.
 #[derive(Clone, Debug)]
 pub struct Pen {
     newest: Reading,
@@ -80,13 +80,13 @@ impl Default for Pen {
 }
 
 impl Pen {
-    /// Where the pen was last.
+    /// The newest reading.
     #[must_use]
     pub fn newest(&self) -> &Reading {
         &self.newest
     }
 
-    /// Takes in what the tablet says; what the pen did for it goes to `tell`, one to three readings.
+    /// Takes in a reading of the tablet; the pen's resulting readings go to `tell`, one to three.
     pub fn follow(&mut self, said: Reading, tell: &mut impl FnMut(Reading)) {
         if said.presence == Presence::Away {
             self.leave(tell);
@@ -107,8 +107,7 @@ impl Pen {
         self.tell(followed, tell);
     }
 
-    /// The pen is gone, or its tablet: it is lifted where it was, and leaves. Of one that is away already
-    /// nothing is told.
+    /// The pen is gone, or its tablet: it is lifted where it was, and leaves. A pen that is away already sends nothing.
     pub fn leave(&mut self, tell: &mut impl FnMut(Reading)) {
         if self.newest.presence == Presence::Touching {
             let lifted = Reading {

@@ -1,4 +1,4 @@
-//! Writes what a device says as a recording, on a thread that nobody waits for until it ends.
+//! Writes a device's reports as a recording, on a thread that nobody waits for until it ends.
 
 use std::io::Write as _;
 use std::path::{Path, PathBuf};

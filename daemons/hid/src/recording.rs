@@ -22,7 +22,7 @@ use crate::open::{self, Kind};
 pub const LONGEST_REPORT: usize = 16_384;
 /// A recording spans no more time than this, s.
 const LONGEST_S: u64 = 100_000;
-/// What to do about a line that is none of a recording.
+/// Advice about a line that does not belong to a recording.
 const HELP: &str = "record anew with `maulstick node hid --record` or with `hid-recorder`";
 
 /// A report, and when it came.
@@ -37,11 +37,11 @@ pub struct Event {
 /// A device of a recording.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Recorded {
-    /// What it is.
+    /// Its identity.
     pub identity: Identity,
     /// Its report descriptor.
     pub descriptor: Vec<u8>,
-    /// What it reported, in order of time.
+    /// Its reports, in order of time.
     pub events: Vec<Event>,
 }
 
@@ -206,7 +206,7 @@ impl Identity {
     }
 }
 
-/// What a wrong line is quoted by.
+/// Quotation of a wrong line.
 fn start(text: &str) -> String {
     text.chars().take(24).collect()
 }

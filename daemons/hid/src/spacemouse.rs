@@ -11,19 +11,18 @@ use maulstick_types::control::ControlSample;
 
 /// Numbers of makers: Logitech, which sold the first of them, and 3Dconnexion.
 pub const VENDORS: [u16; 2] = [0x046D, 0x256F];
-/// What switches the light on.
+/// Report that switches the light on.
 pub const LIGHT: [u8; 2] = [0x04, 0x01];
 /// Deflection at the stops.
 const STOP: f64 = 350.0;
-/// Share of the way to a stop that is none: a hand that rests on the cap.
+/// Dead zone, as a share of the travel to a stop: a hand that rests on the cap.
 const DEAD_ZONE: f64 = 0.03;
-/// How long a deflection holds without a report, ns.
+/// Validity of a deflection without a report, ns.
 pub const SILENCE_NS: u64 = 200_000_000;
-/// How long it then takes to come to rest, ns.
+/// Duration of its decay to rest after that, ns.
 pub const DECAY_NS: u64 = 100_000_000;
 
-/// How a product's axes lie: for each of right, up along the desk and out of it which of its axes it is, and
-/// its sign.
+/// Axes of a product: for each of right, up along the desk and out of it the index of its axis, and its sign.
 type Axes = [(usize, f64); 3];
 
 /// The frame of all that are known.
@@ -51,7 +50,7 @@ const PRODUCTS: [(u16, u16, &str, Axes); 14] = [
 #[derive(Clone, Debug)]
 pub struct SpaceMouse {
     axes: Axes,
-    /// How it lies on the desk.
+    /// Rotation to the desk.
     to_desk: DQuat,
     /// Counts, pushes and then turns, device frame.
     counts: [i16; 6],
@@ -76,7 +75,7 @@ impl SpaceMouse {
         }
     }
 
-    /// What a product is called, if it is known.
+    /// Name of a product, if it is known.
     #[must_use]
     pub fn called(vendor: u16, product: u16) -> Option<&'static str> {
         let found = PRODUCTS
@@ -107,7 +106,7 @@ impl SpaceMouse {
         true
     }
 
-    /// Whether it is pushed or turned.
+    /// True while it is pushed or turned.
     #[must_use]
     pub fn is_deflected(&self) -> bool {
         self.counts != [0; 6]
@@ -118,7 +117,7 @@ impl SpaceMouse {
         (self.counts, self.switches) = ([0; 6], 0);
     }
 
-    /// What the hand does at a time, ns, in the desk's axes; a deflection that is too old is forgotten.
+    /// Motion of the hand at a time, ns, in the desk's axes; a deflection that is too old is dropped.
     pub fn sample(&mut self, now_ns: u64) -> ControlSample {
         let silent_ns = now_ns
             .saturating_sub(self.moved_ns)
@@ -140,7 +139,7 @@ impl SpaceMouse {
     }
 }
 
-/// Share of the way to a stop, −1 to 1, which begins at 0 where the dead zone ends.
+/// Share of the travel to a stop, −1 to 1, which begins at 0 where the dead zone ends.
 fn deflection(count: i16) -> f64 {
     let share = (f64::from(count) / STOP).clamp(-1.0, 1.0);
     let beyond = (share.abs() - DEAD_ZONE).max(0.0) / (1.0 - DEAD_ZONE);

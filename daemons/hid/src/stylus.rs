@@ -1,8 +1,8 @@
 //! A pen on the bus: its samples, in order of time.
 //!
-//! A brush takes a leap of more than a tenth of a second for a new beginning, and many tablets say nothing
-//! while nothing changes. So a pen that is near and silent is told of again, and a stroke that rests
-//! goes on. Of a tablet that never says that its pen is away, one that hovers in silence for a second is.
+//! A brush takes a leap of more than a tenth of a second for a new beginning, and many tablets are silent while nothing
+//! changes. So the sample of a near and silent pen is repeated, and a resting stroke continues. On a tablet that never
+//! reports its pen as away, one that hovers in silence for a second counts as away.
 
 use std::sync::Arc;
 
@@ -20,7 +20,7 @@ use crate::open::Decoder;
 use crate::pen::{Pen, Presence, Reading};
 use crate::tablet::Tablet;
 
-/// A silent pen is told of again after this time, ns.
+/// Interval at which the sample of a silent pen is repeated, ns.
 pub const REPEAT_NS: u64 = 50_000_000;
 /// A pen that hovers in silence for so long is away, where the tablet would not say so, ns.
 pub const GONE_NS: u64 = 1_000_000_000;
@@ -34,7 +34,7 @@ const RATE_HZ: f64 = 200.0;
 /// A pen, from its reports to its samples.
 pub struct Stylus {
     pen: Pen,
-    /// How reports are read, and where they lie on the desk; none while there is no tablet.
+    /// Decoder of the reports and the tablet on the desk; `None` while there is no tablet.
     tablet: Option<(Decoder, Tablet)>,
     samples: CreditSender<StylusSample>,
     info: Sender<StylusInfo>,
@@ -111,7 +111,7 @@ impl Stylus {
         let Some(said) = decoder.and_then(|decoder| decoder.decode(report)) else {
             return Ok(());
         };
-        // What comes at the very time needs no filling.
+        // A report at the same time needs no fill-in.
         self.silent(event_ns.saturating_sub(1), now_ns)?;
         self.heard_ns = event_ns;
         let mut readings = Vec::with_capacity(3);
@@ -138,7 +138,7 @@ impl Stylus {
         }
     }
 
-    /// When a pen that hovers is taken for one that is away, ns; never where the tablet tells.
+    /// Time at which a hovering pen counts as away, ns; `None` if the tablet reports it.
     fn gone_ns(&self) -> Option<u64> {
         let (decoder, _) = self.tablet.as_ref()?;
         let hovers = self.pen.newest().presence == Presence::Hovering;
@@ -170,7 +170,7 @@ impl Stylus {
         self.samples.serve(now_ns)
     }
 
-    /// When to tell of a silent pen again, ns.
+    /// Time at which the sample of a silent pen is due again, ns.
     #[must_use]
     pub fn due_ns(&self) -> Option<u64> {
         self.newest.in_range.then_some(self.event_ns + REPEAT_NS)

@@ -23,7 +23,7 @@ pub struct Tablet {
     linear: DMat2,
     translation: DVec2,
     lifted_m: f64,
-    /// How tilts and twist turn, rad.
+    /// Rotation of tilts and twist, rad.
     turn: f64,
     area_m: [f64; 2],
     curve: Vec<[f64; 2]>,
@@ -60,7 +60,7 @@ impl Tablet {
         })
     }
 
-    /// Where a point of the tablet is on the desk, m.
+    /// Desk point of a tablet point, m.
     #[must_use]
     pub fn place(&self, point_m: [f64; 2]) -> [f64; 2] {
         let on_desk = self.linear * DVec2::from_array(point_m) + self.translation;

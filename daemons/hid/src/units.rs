@@ -1,6 +1,6 @@
 //! Units of report descriptors (HID 1.11, section 6.2.2.7): a code of nibbles, and an exponent of ten.
 
-/// What one physical unit is, m, where the unit is one of length.
+/// Size of one physical unit, m, if the unit is one of length.
 #[must_use]
 pub fn metres(unit: u32, exponent: i32) -> Option<f64> {
     let base = match unit {
@@ -11,7 +11,7 @@ pub fn metres(unit: u32, exponent: i32) -> Option<f64> {
     Some(base * ten_to(exponent)?)
 }
 
-/// What one physical unit is, rad, where the unit is one of angle.
+/// Size of one physical unit, rad, if the unit is one of angle.
 #[must_use]
 pub fn radians(unit: u32, exponent: i32) -> Option<f64> {
     let base = match unit {

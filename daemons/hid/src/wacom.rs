@@ -15,7 +15,7 @@ const COUNTS_M: f64 = 200_000.0;
 /// Numbers of Wacom.
 pub const VENDOR: u16 = 0x056A;
 
-/// How a report is laid out.
+/// Layout of a report.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Format {
     /// Report 2 of ten bytes, big endian, 2047 of pressure.
@@ -66,8 +66,8 @@ impl Wacom {
             })
     }
 
-    /// Whether an interface is the pen's, by its descriptor; such a tablet may have another for touch, whose
-    /// report 2 has 64 bytes.
+    /// True if an interface is the pen's, by its descriptor; such a tablet may have another for touch, whose report 2
+    /// has 64 bytes.
     #[must_use]
     pub fn fits(&self, descriptor: &[u8]) -> bool {
         match self.format {
@@ -84,7 +84,7 @@ impl Wacom {
         self.counts.map(|count| f64::from(count) / COUNTS_M)
     }
 
-    /// What the pen senses, see [`axes`].
+    /// Axes that the pen senses, see [`axes`].
     #[must_use]
     pub fn senses(&self) -> u32 {
         axes::POSITION | axes::PROXIMITY | axes::PRESSURE | axes::TILT | axes::SWITCHES

@@ -1,5 +1,5 @@
-//! Snapshots beside the painting: on a thread of their own, one after the other, of the painting as it was
-//! when each was asked for. A disk that is slow holds up no brush.
+//! Snapshots as files: on a thread of their own, one after the other, of the painting as it was when each was
+//! requested. A slow disk delays no brush.
 
 use std::collections::VecDeque;
 use std::path::{Path, PathBuf};
@@ -29,15 +29,15 @@ pub struct Snapshots {
 /// A picture of the canvas and, if asked, the ledger, to be written.
 #[derive(Debug)]
 pub struct Snapshot {
-    /// Whoever asked for it.
+    /// The client that requested it.
     pub asker: Asker,
-    /// The painting, which nobody changes any more.
+    /// The painting, which is not changed any more.
     pub still: Painting,
-    /// Where the picture goes.
+    /// Path of the picture.
     pub path: PathBuf,
     /// The ledger, and where it goes.
     pub ledger: Option<(PathBuf, LedgerReport)>,
-    /// How the picture leaves the working space.
+    /// Conversion of the picture from the working space.
     pub export: Export,
 }
 
@@ -57,7 +57,7 @@ impl Snapshots {
         Ok(())
     }
 
-    /// Whether the snapshot that this client asked for is not there yet.
+    /// True while the snapshot that this client requested is pending.
     #[must_use]
     pub fn has(&self, asker: Asker) -> bool {
         let waits = self.waiting.iter().map(|snapshot| snapshot.asker);
@@ -108,7 +108,7 @@ impl Snapshots {
 
 impl Drop for Snapshots {
     fn drop(&mut self) {
-        // What is asked for is written before the node ends.
+        // Requested snapshots are written before the node ends.
         if let Some((_, thread)) = self.writing.take() {
             thread.join().ok();
         }

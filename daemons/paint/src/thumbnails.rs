@@ -14,12 +14,12 @@ use maulstick_types::{Flags, Origin, encode};
 
 /// Pixels of the longer side.
 const SIDES: std::ops::RangeInclusive<u32> = 1..=512;
-/// Pictures that are kept.
+/// Number of cached pictures.
 const KEPT: usize = 64;
 /// Views that wait, at most: who asks too often is answered later.
 const WAITING: usize = 256;
 
-/// What a picture shows: it holds as long as this is the same.
+/// Content of a picture: the picture is valid as long as this is the same.
 #[derive(Clone, Debug)]
 struct Shows {
     version: String,
@@ -37,7 +37,7 @@ enum State {
 }
 
 impl Shows {
-    /// What is asked for; none where there is no such version.
+    /// Content of the requested picture; `None` if there is no such version.
     fn of(painting: &Painting, asked: &ThumbnailRequest) -> Option<Self> {
         let state = match asked.version.as_str() {
             "" => State::Now([painting.versions(), painting.look().generation()]),
@@ -162,8 +162,8 @@ impl Thumbnails {
         }
     }
 
-    /// Who waits for the painting as it is gets it as it was just now: while somebody paints, no picture
-    /// would ever be the newest.
+    /// Answers requests for the current painting with its newest picture: while somebody paints, no picture would ever
+    /// be the latest.
     fn answer_all_of_now(&mut self, bus: &dyn Bus, shows: &Shows, reply: &ThumbnailReply) {
         let of_it = |asked: &ThumbnailRequest| {
             let side = asked.side.clamp(*SIDES.start(), *SIDES.end());

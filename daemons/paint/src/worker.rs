@@ -20,7 +20,7 @@ impl Worker {
     /// Starts `work` on a thread of its own.
     ///
     /// # Errors
-    /// What the system says where it gives no thread.
+    /// The system's error if it gives no thread.
     pub fn start(
         name: &'static str,
         work: impl FnOnce() + Send + 'static,
@@ -32,10 +32,10 @@ impl Worker {
         })
     }
 
-    /// Whether it still works, or has ended as it was asked to.
+    /// Checks that it still works, or has ended as it was asked to.
     ///
     /// # Errors
-    /// [`WorkerPanicked`] where it panicked.
+    /// [`WorkerPanicked`] if it panicked.
     pub fn check(&mut self) -> Result<(), WorkerPanicked> {
         match self.handle.take_if(|handle| handle.is_finished()) {
             Some(handle) => handle

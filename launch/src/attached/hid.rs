@@ -1,5 +1,5 @@
-//! HID devices. Their report descriptors and names lie in sysfs, where everybody may read them: so a
-//! pen is known by what it says that it is, and is listed too where its node may not be opened.
+//! HID devices. Their report descriptors and names are in sysfs, where everybody may read them: so a pen is known by
+//! its own description, and is listed too if its node may not be opened.
 
 use std::path::{Path, PathBuf};
 
@@ -47,7 +47,7 @@ fn missing(driver: &str, permission: Permission) -> Option<String> {
     Some(what.to_owned())
 }
 
-/// What the kernel tells of a HID device.
+/// Entry of the kernel for a HID device.
 struct Told {
     name: String,
     vendor: u16,
@@ -56,7 +56,7 @@ struct Told {
 }
 
 impl Told {
-    /// Of the device's folder; none where it does not say which device it is.
+    /// Entry of the device's folder; `None` if it does not identify the device.
     fn read(folder: &Path) -> Option<Self> {
         let text = std::fs::read(folder.join("uevent")).ok()?;
         let text = String::from_utf8_lossy(&text);

@@ -23,7 +23,7 @@ pub const UDEV_RULES: &str = include_str!("../../../tools/udev/70-maulstick.rule
 /// A device at a node below `/dev`.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct Attached {
-    /// What it calls itself.
+    /// Name that it reports.
     pub name: String,
     /// Vendor and product, in hexadecimal: as `address` of `[[device]]`.
     pub id: String,
@@ -31,13 +31,13 @@ pub struct Attached {
     pub path: PathBuf,
     /// The driver that fits, if one does.
     pub driver: Option<&'static str>,
-    /// Whether this user may use the node.
+    /// Permission of this user for the node.
     pub permission: Permission,
-    /// What is missing before the driver can use it, and what to do; none where nothing is.
+    /// Missing requirement of the driver, with advice; `None` if it is complete.
     pub missing: Option<String>,
 }
 
-/// Whether a node may be used.
+/// Permission for a node.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Permission {
@@ -49,7 +49,7 @@ pub enum Permission {
     Absent,
 }
 
-/// What this user may do with a node.
+/// Permission of this user for a node.
 #[must_use]
 pub fn permission(node: &Path) -> Permission {
     match access(node, AccessFlags::R_OK | AccessFlags::W_OK) {
@@ -59,13 +59,13 @@ pub fn permission(node: &Path) -> Permission {
     }
 }
 
-/// Where devices are looked for, and how it is found out whether they may be used.
+/// Places where devices are looked for, and the check of permissions.
 pub struct Places<'a> {
     /// `/sys`, or what stands for it.
     pub sys: &'a Path,
     /// `/dev`, or what stands for it.
     pub dev: &'a Path,
-    /// What the user may do with a node.
+    /// Permission of the user for a node.
     pub permission: &'a dyn Fn(&Path) -> Permission,
 }
 
@@ -82,7 +82,7 @@ impl Places<'static> {
 }
 
 impl Places<'_> {
-    /// The entries of a class of devices, by name; none where there is no such class.
+    /// The entries of a class of devices, by name; empty if there is no such class.
     fn class(&self, class: &str) -> Vec<(String, PathBuf)> {
         let entries = std::fs::read_dir(self.sys.join("class").join(class));
         let named = |entry: std::fs::DirEntry| {
@@ -97,7 +97,7 @@ impl Places<'_> {
     }
 }
 
-/// Whether the rule is about a HID device of these numbers, as `VVVV:PPPP`.
+/// True if the rule is about a HID device of these numbers, as `VVVV:PPPP`.
 fn is_ruled(id: &str) -> bool {
     let mut beginnings = UDEV_RULES.lines().filter_map(|line| {
         let (_, after) = line.split_once("KERNELS==\"*:")?;

@@ -1,4 +1,4 @@
-//! Serial ports of USB devices; a port of the machine itself says nothing of what hangs on it.
+//! Serial ports of USB devices; a port of the machine itself does not identify the device on it.
 
 use std::path::{Path, PathBuf};
 

@@ -1,4 +1,4 @@
-//! What vendors put between a device and a program: OpenHaptics' library, Haply's service.
+//! Software of vendors between a device and a program: OpenHaptics' library, Haply's service.
 
 use std::net::{TcpStream, ToSocketAddrs as _};
 use std::path::{Path, PathBuf};
@@ -14,9 +14,9 @@ const FOLDERS: [&str; 5] = [
     "/usr/local/lib",
     "/usr/local/lib64",
 ];
-/// Where Haply's Inverse Service listens.
+/// Address of Haply's Inverse Service.
 pub const INVERSE_SERVICE: &str = "localhost:10001";
-/// How long a service of this machine has to take a connection.
+/// Longest wait for a connection to a service of this machine.
 const PATIENCE: Duration = Duration::from_millis(300);
 
 /// The folders in which OpenHaptics' library is looked for.
@@ -38,7 +38,7 @@ pub fn open_haptics(folders: &[impl AsRef<Path>]) -> Option<PathBuf> {
     folders.iter().find_map(|folder| in_folder(folder.as_ref()))
 }
 
-/// Whether something listens at an address.
+/// True if something listens at an address.
 #[must_use]
 pub fn listens(address: &str) -> bool {
     let addresses = address.to_socket_addrs().into_iter().flatten();

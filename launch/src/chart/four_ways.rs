@@ -6,8 +6,8 @@ use maulstick_rig::Fault;
 
 use crate::page::Page;
 
-/// Parts of the second paint in 64 of the first, then the other way round: strong paints and weak
-/// ones both show their whole way.
+/// Parts of the second paint in 64 of the first, then the reverse: strong paints and weak ones both show their whole
+/// range.
 const DOUBLINGS: i32 = 6;
 /// Size of a patch, gap between rows, margin, pixels.
 const PATCH: [usize; 2] = [56, 64];
@@ -33,7 +33,7 @@ pub fn shares() -> Vec<(f64, String)> {
     shares
 }
 
-/// What a way of mixing is called; `rule` is the rule's name.
+/// Title of a way of mixing; `rule` is the rule's name.
 #[must_use]
 pub fn title(way: Way, rule: &str) -> String {
     match way {

@@ -51,10 +51,10 @@ fn parse_cm(text: &str) -> Result<[f64; 2], String> {
     Ok([parse(width)?, parse(height)?])
 }
 
-/// Begins a painting and goes on in it.
+/// Creates a painting and opens it.
 ///
 /// # Errors
-/// A [`Fault`] for a size that is none, where a file of its name is there, or where no rig runs.
+/// A [`Fault`] for an invalid size, if a file of its name exists, or if no rig runs.
 pub fn run(options: &NewOptions) -> Result<i32, Fault> {
     let usual = CanvasSection::default();
     let usual_cm = [usual.width_mm, usual.height_mm].map(|mm| mm * 0.1);

@@ -1,5 +1,4 @@
-//! `maulstick calibrate`: the corners of the canvas, as a hand shows them with its device, written into
-//! `rig.toml`.
+//! `maulstick calibrate`: the corners of the canvas, as a hand shows them with its device, written into `rig.toml`.
 
 use std::io::Write as _;
 use std::ops::ControlFlow;
@@ -107,7 +106,7 @@ fn fit_tablet(
     corners: &[DVec3; 3],
 ) -> Result<(), Fault> {
     device.corners_m = Some(corners.map(|corner| corner.to_array()));
-    // Where the corners say it, neither its area nor what it senses has a part.
+    // With corners, neither the tablet's area nor its senses matter.
     Tablet::fit([1.0; 2], 0, &device, &config.canvas)?;
     let size = canvas_m(&config.canvas);
     let [width, height] = [1, 2].map(|to| corners[to].distance(corners[0]));
@@ -162,10 +161,10 @@ fn watch_ferrule(
         .map_err(|error| Fault::failure(error.to_string()).help(error.help))
 }
 
-/// A hand on its way around the canvas.
+/// A calibration in progress, corner by corner.
 struct Showing {
     corners: CornerCalibration,
-    /// How it says that it is at a corner.
+    /// Gesture that marks a corner.
     how: &'static str,
 }
 
@@ -213,7 +212,7 @@ impl Showing {
 
 /// Writes the corners of a device into the settings, and nothing else of them.
 fn write(path: &Path, device: &str, corners: &[DVec3; 3]) -> Result<(), Fault> {
-    // What was changed in the file meanwhile stays.
+    // Changes made to the file meanwhile stay.
     let text = std::fs::read_to_string(path).map_err(|error| Fault::reading(path, &error))?;
     let place = path.display().to_string();
     let text = with_corners(&text, device, corners).map_err(|what| {

@@ -137,10 +137,10 @@ pub fn clean(options: &CleanOptions) -> Result<i32, Fault> {
     Ok(0)
 }
 
-/// Takes the newest step back.
+/// Undoes the newest step.
 ///
 /// # Errors
-/// A [`Fault`] where there is none, or where no rig runs.
+/// A [`Fault`] if there is none, or if no rig runs.
 pub fn undo(options: &HistoryOptions) -> Result<i32, Fault> {
     let brush = options.brush.clone();
     let what = Session::command(&options.target, PAINT, Command::Undo { brush })?;
@@ -148,10 +148,10 @@ pub fn undo(options: &HistoryOptions) -> Result<i32, Fault> {
     Ok(0)
 }
 
-/// Does the newest undone step again.
+/// Redoes the newest undone step.
 ///
 /// # Errors
-/// A [`Fault`] where there is none, or where no rig runs.
+/// A [`Fault`] if there is none, or if no rig runs.
 pub fn redo(options: &HistoryOptions) -> Result<i32, Fault> {
     let brush = options.brush.clone();
     let what = Session::command(&options.target, PAINT, Command::Redo { brush })?;

@@ -1,4 +1,4 @@
-//! `maulstick devices`: what is attached, which driver fits, and what is missing before it works.
+//! `maulstick devices`: attached devices, the drivers that fit, and their missing requirements.
 
 use std::time::{Duration, Instant};
 
@@ -30,7 +30,7 @@ pub struct DevicesOptions {
     target: Target,
 }
 
-/// How long the devices of a rig have to show themselves.
+/// Longest wait for the devices of a rig to show themselves.
 const PATIENCE: Duration = Duration::from_secs(1);
 /// After the first, others come this soon; a status comes each tenth of a second.
 const TOGETHER: Duration = Duration::from_millis(300);
@@ -42,7 +42,7 @@ struct Findings {
     serial: Vec<Attached>,
     openhaptics: Library,
     inverse_service: Service,
-    /// The devices of the rig; none where it does not run.
+    /// The devices of the rig; `None` if it does not run.
     rig: Option<Vec<Used>>,
 }
 
@@ -64,14 +64,14 @@ struct Service {
 #[derive(Clone, Debug, Serialize)]
 struct Used {
     name: String,
-    /// What it says of itself once it is there.
+    /// Its description of itself once it is there.
     #[serde(flatten)]
     told: Option<Told>,
-    /// Why it gives nothing now; empty where it does.
+    /// The reason why it gives nothing now; empty if it does.
     trouble: String,
 }
 
-/// What a device of a rig says of itself.
+/// Description of a device of a rig by itself.
 #[derive(Clone, Debug, Serialize)]
 struct Told {
     driver: String,
@@ -158,10 +158,10 @@ fn used(target: &Target) -> Option<Vec<Used>> {
     Some(found)
 }
 
-/// What is told of a device.
+/// Row of a device.
 type Row = [String; 5];
 
-/// What is found, for people.
+/// Table of the findings, for people.
 fn table(findings: &Findings) -> String {
     let mut rows: Vec<Row> = Vec::new();
     let all = || findings.hid.iter().chain(&findings.serial);
@@ -243,7 +243,7 @@ fn aligned(rows: &[Row]) -> String {
     rows.iter().map(line).collect()
 }
 
-/// What is said where there is nothing to paint with.
+/// Message if there is nothing to paint with.
 fn nothing(findings: &Findings) -> String {
     let folders: Vec<String> = findings
         .openhaptics
@@ -262,7 +262,7 @@ fn nothing(findings: &Findings) -> String {
     )
 }
 
-/// How a device is used.
+/// Advice on the use of a device.
 fn advice(device: &Attached) -> String {
     let driver = device.driver.unwrap_or_default();
     // A serial port is asked for by its node, a HID device by what it is, wherever it is plugged in.

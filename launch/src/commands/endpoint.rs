@@ -1,4 +1,4 @@
-//! `maulstick endpoint`: how a program in any language joins a running rig.
+//! `maulstick endpoint`: data for a program in any language to join a running rig.
 
 use clap::Args;
 use maulstick_bus::RigFolder;

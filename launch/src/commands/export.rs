@@ -69,7 +69,7 @@ pub fn run(options: &ExportOptions) -> Result<i32, Fault> {
         .into_iter()
         .chain(document.map(|path| UsedFile::painting(path)))
         .collect();
-    // What is exported as nothing the node refuses.
+    // A name without a known format is refused by the node.
     let format = match &options.format {
         Some(name) => Format::named(name),
         None => Format::of(file),

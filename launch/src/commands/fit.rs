@@ -1,4 +1,4 @@
-//! `maulstick fit`: paints of one's own from measured reflectances.
+//! `maulstick fit`: the painter's own paints from measured reflectances.
 
 use std::fmt::Write as _;
 use std::io::{ErrorKind, Write as _};

@@ -90,11 +90,11 @@ struct List(Vec<f64>);
 
 /// Step of a range of depths, mm.
 const STEP_MM: f64 = 0.5;
-/// Stiffness of a wall for which nothing is said, N/m.
+/// Default stiffness of a wall, N/m.
 const WALL_N_M: f64 = 500.0;
 /// Depths of any brush, mm.
 const DEEPEST_MM: f64 = 1000.0;
-/// The head of a brush that is held flatter is solved nowhere, degrees.
+/// Flattest pose of a brush for which its head is solved, degrees.
 const FLATTEST_SOLVED: f64 = 80.0;
 
 fn numbers(text: &str, within: impl Fn(f64) -> bool, what: &str) -> Result<List, String> {

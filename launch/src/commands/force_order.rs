@@ -1,4 +1,4 @@
-//! `maulstick force off`, `on`, `strength` and `rearm`: orders to the devices of a running rig.
+//! `maulstick force off`, `on`, `strength` and `rearm`: requests to the devices of a running rig.
 
 use std::time::{Duration, Instant};
 
@@ -42,9 +42,9 @@ pub struct Whose {
     target: Target,
 }
 
-/// How long the devices of a rig have to show themselves.
+/// Longest wait for the devices of a rig to show themselves.
 const PATIENCE: Duration = Duration::from_secs(3);
-/// How long a device's daemon has to answer.
+/// Longest wait for the answer of a device's daemon.
 const ANSWER: Duration = Duration::from_secs(3);
 /// After the first, others come this soon.
 const TOGETHER: Duration = Duration::from_millis(300);
@@ -59,10 +59,10 @@ fn share(text: &str) -> Result<f64, String> {
     good.ok_or_else(|| format!("'{text}' is not a share from 0 to 100 %, such as 60% or 0.6"))
 }
 
-/// Gives an order to devices and says how they are then.
+/// Sends a request to devices and prints their resulting state.
 ///
 /// # Errors
-/// A [`Fault`] where no rig runs, or no device of it gives force or answers.
+/// A [`Fault`] if no rig runs, or no device of it gives force or answers.
 pub fn give(order: &Order) -> Result<i32, Fault> {
     let (whose, order) = match order {
         Order::Off(whose) => (whose, ForceOrder::Off),
@@ -117,8 +117,7 @@ fn chosen(known: &[DeviceSection], name: &str, session: &Session) -> Result<Stri
     }
 }
 
-/// All devices that give force: those of rig.toml, be they there or not, and what else tells that it
-/// does.
+/// All devices that give force: those of rig.toml, present or not, and others that report that they do.
 fn all(known: &[DeviceSection], session: &Session) -> Result<Vec<String>, Fault> {
     let own = known.iter().filter(|device| !device.is_hid());
     let mut found: Vec<String> = own.map(|device| device.name.clone()).collect();
@@ -155,7 +154,7 @@ fn told(device: &str, reply: &ForceReply) -> String {
     }
 }
 
-/// The devices that tell that they give force.
+/// The devices that report that they give force.
 fn told_of(session: &Session, mut until: Instant) -> Result<Vec<String>, Fault> {
     let mut infos: session::Feed<StylusInfo> =
         session.follow(&session.topics().stylus_info("*"), Class::Cached)?;

@@ -56,7 +56,7 @@ pub struct LightOptions {
 }
 
 impl LightOptions {
-    /// What is asked for.
+    /// The requested change.
     fn change(&self) -> LightChange {
         LightChange {
             illuminant: self.illuminant.clone(),
@@ -100,12 +100,12 @@ fn three(text: &str) -> Result<[f64; 3], String> {
         .ok_or_else(|| format!("'{text}' is not three numbers such as -0.5,0.5,0.7"))
 }
 
-/// Changes the light and waits until what has dried is computed anew; without changes it only tells.
+/// Changes the light and waits until the dry layers are computed anew; without changes it only prints the light.
 ///
 /// # Errors
-/// A [`Fault`] for a light that is none, or where no rig runs.
+/// A [`Fault`] for an invalid light, or if no rig runs.
 pub fn run(options: &LightOptions) -> Result<i32, Fault> {
-    // What is wrong in itself is told also where no rig runs.
+    // An invalid change is refused even if no rig runs.
     let change = options.change();
     change.on(&Light::default())?;
     let session = Session::open(&options.target)?;

@@ -1,4 +1,4 @@
-//! `maulstick match`: which mixtures come nearest to a colour.
+//! `maulstick match`: the mixtures that come nearest to a colour.
 
 use std::path::PathBuf;
 
@@ -41,7 +41,7 @@ pub struct MatchOptions {
     json: bool,
 }
 
-/// How many mixtures of each kind are shown.
+/// Number of mixtures of each kind that are shown.
 const SHOWN: usize = 5;
 /// Beyond this the eye sees at once that it is another colour, ΔE₀₀.
 const ANOTHER: f64 = 2.0;

@@ -1,4 +1,4 @@
-//! `maulstick mix`: what a mixture looks like.
+//! `maulstick mix`: the colour of a mixture.
 
 use std::path::{Path, PathBuf};
 

@@ -1,4 +1,4 @@
-//! `maulstick brush mode`, `size` and `piles`: how brushes are used and surfaces are prepared.
+//! `maulstick brush mode`, `size` and `piles`: handling of brushes and preparation of surfaces.
 
 use clap::Args;
 use maulstick_rig::Fault;
@@ -46,11 +46,11 @@ pub struct PilesOptions {
     target: Target,
 }
 
-/// How a brush is used, as a painter says it: flow in µm/mm, most paint in µm.
+/// Handling of a brush in a painter's units: flow in µm/mm, most paint in µm.
 ///
 /// # Errors
-/// A [`Fault`] for an unknown mode, with the nearest, for numbers out of range, or for one that does nothing
-/// with this mode.
+/// A [`Fault`] for an unknown mode, with the nearest, for numbers out of range, or for one that does nothing with this
+/// mode.
 pub fn handling(
     brush: &str,
     mode: &str,
@@ -83,7 +83,7 @@ pub fn handling(
     Ok(handling)
 }
 
-/// What piles on the palette do.
+/// Command for the piles on the palette.
 ///
 /// # Errors
 /// A [`Fault`] for anything but [`PILES`].

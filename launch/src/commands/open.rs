@@ -10,7 +10,7 @@ use maulstick_types::command::Command;
 use crate::commands::say;
 use crate::commands::session::{RIG, Session, Target};
 
-/// How long a painting may take to be there: what was accepted last may have to be done again.
+/// Longest wait for a painting to be open: its last journal records may have to be done again.
 pub(super) const LONGEST: Duration = Duration::from_secs(3600);
 
 /// Options of `maulstick open`.
@@ -25,10 +25,10 @@ pub struct OpenOptions {
     target: Target,
 }
 
-/// A path that holds wherever it is read.
+/// An absolute path, independent of the current folder.
 ///
 /// # Errors
-/// A [`Fault`] where it is none, or where it is not UTF-8, as messages are.
+/// A [`Fault`] if there is none, or if it is not UTF-8, as messages are.
 pub(crate) fn whole(path: &Path) -> Result<String, Fault> {
     let whole = std::path::absolute(path).map_err(|error| Fault::reading(path, &error))?;
     whole.into_os_string().into_string().map_err(|name| {

@@ -96,7 +96,7 @@ impl RenderOptions {
     }
 }
 
-/// Reads a take; who gives a script in its place is told how.
+/// Reads a take; a script in its place is refused with advice.
 fn read_take(path: &Path) -> Result<Take, Fault> {
     Take::read(path).map_err(|fault| match path.extension() {
         Some(extension) if extension == "toml" && path.exists() => fault.help(format!(
@@ -207,7 +207,7 @@ pub fn run(options: &RenderOptions) -> Result<i32, Fault> {
         _ => Ok(()),
     };
     if let Err(fault) = painted {
-        // What was painted before it is kept.
+        // The strokes painted before it are saved.
         close(&mut offline)?;
         return Err(fault);
     }

@@ -24,9 +24,9 @@ pub struct Target {
 
 /// The node that does what concerns the painting.
 pub const PAINT: &str = "paint";
-/// Who does what concerns the rig as a whole: the launcher.
+/// Name of the launcher, which carries out commands to the rig as a whole.
 pub const RIG: &str = "rig";
-/// How long a node has to answer.
+/// Longest wait for the answer of a node.
 const PATIENCE: Duration = Duration::from_secs(10);
 
 /// A connection to a rig, closed in the end.
@@ -109,10 +109,10 @@ impl Session {
         Commander::of(bus, &self.topics, node).send(command, None, limit, &is_gone)
     }
 
-    /// Asks a node a question of its own.
+    /// Sends a node a query of its own.
     ///
     /// # Errors
-    /// A [`Fault`] where nobody answers.
+    /// A [`Fault`] if nobody answers.
     pub fn ask<Q: Message, A: Message>(&self, topic: &str, question: &Q) -> Result<A, Fault> {
         self.ask_within(topic, question, PATIENCE)
     }
@@ -120,7 +120,7 @@ impl Session {
     /// The same of a node that has to answer within `limit`.
     ///
     /// # Errors
-    /// A [`Fault`] where nobody answers.
+    /// A [`Fault`] if nobody answers.
     pub fn ask_within<Q: Message, A: Message>(
         &self,
         topic: &str,

@@ -87,7 +87,7 @@ pub fn fill(options: &FillOptions) -> Result<i32, Fault> {
 /// Gives the canvas another ground.
 ///
 /// # Errors
-/// A [`Fault`] for an unknown ground or a file that is none, or where no rig runs.
+/// A [`Fault`] for an unknown ground or an invalid file, or if no rig runs.
 pub fn ground(options: &GroundOptions) -> Result<i32, Fault> {
     let surface = CANVAS;
     let command = match GroundFile::read(&options.ground)? {

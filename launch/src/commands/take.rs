@@ -1,4 +1,4 @@
-//! `maulstick take`: what a take holds, what it is painted with, and what of a damaged one is whole.
+//! `maulstick take`: contents of a take, its setup, and the intact part of a damaged one.
 
 use std::path::PathBuf;
 
@@ -85,7 +85,7 @@ fn embed(options: &EmbedOptions) -> Result<i32, Fault> {
     Ok(0)
 }
 
-/// What a take embeds, in words; nothing where it embeds nothing.
+/// Setup embedded in a take, in words; empty if there is none.
 fn kit_in_words(kit: &TakeSetup) -> String {
     let bytes: usize = kit.files.values().map(Vec::len).sum();
     let loads = match kit.loads.is_empty() {

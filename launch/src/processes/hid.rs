@@ -37,7 +37,7 @@ pub(super) fn run(options: &HidOptions) -> Result<i32, Fault> {
         true => format!("{}{RECORDER}", options.device),
         false => options.device.clone(),
     };
-    // What is recorded gets its name at the end, so it is asked, not killed.
+    // A recording gets its name at the end, so the process is asked to stop, not killed.
     let mut member = options.node.join(&name, Signal::SIGTERM)?;
     let mut device = device_named(&member.config, &options.device)?;
     if beside {

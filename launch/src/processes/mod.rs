@@ -69,7 +69,7 @@ impl NodeCommand {
     }
 }
 
-/// What a process of a rig runs as.
+/// Program that a process of a rig runs.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Program {
     /// A brush node.

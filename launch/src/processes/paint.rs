@@ -1,4 +1,4 @@
-//! The process of the paint.
+//! The process of the paint node.
 
 use std::path::Path;
 use std::sync::Arc;
@@ -111,7 +111,7 @@ fn painting(config: &RigConfig) -> Result<(Option<Document>, Sequencer, u64), Fa
     Ok((None, sequencer, 0))
 }
 
-/// What computes the colours of frames, as rig.toml says: `auto` takes a real GPU, `gpu` any.
+/// Backend of the colours of frames, as rig.toml says: `auto` takes a real GPU, `gpu` any.
 fn film_backend(name: &str) -> Box<dyn FilmBackend> {
     let choice = match name {
         "cpu" => return Box::new(CpuFilms::new()),

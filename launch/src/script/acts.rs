@@ -1,4 +1,4 @@
-//! What each step does.
+//! Effect of each step.
 
 use std::path::Path;
 
@@ -294,7 +294,7 @@ pub(super) fn opacity(step: &Step<'_>, _: &PaintLibrary) -> Result<Act, Fault> {
     command(Command::LayerOpacity { layer, opacity })
 }
 
-/// Whether a name means something that a painting holds: only the painting can tell.
+/// True if a name refers to something stored in a painting: only the painting can tell.
 fn is_held(name: &str) -> bool {
     name.starts_with(IMAGE) || name.starts_with(SPECTRUM)
 }

@@ -1,5 +1,5 @@
-//! The keys of a script and what they hold, each with its line: who wrote something else than is due is told
-//! the key, what it takes and what was given.
+//! The keys of a script and their values, each with its line: a wrong value is reported with the key, the expected form
+//! and the value given.
 
 use std::path::Path;
 
@@ -8,7 +8,7 @@ use maulstick_rig::config::is_path;
 use toml::Spanned;
 use toml::de::{DeArray, DeInteger, DeTable, DeValue};
 
-/// What a script looks like.
+/// Example of a script.
 const EXAMPLE: &str = "a script is `step = [ { load = \"Bone Black\" }, … ]`";
 
 /// The key of a new canvas's size.
@@ -17,10 +17,10 @@ const CANVAS_MM: &str = "canvas_mm";
 /// Longer texts are cut where they are quoted.
 const SHORT: usize = 40;
 
-/// Where a script is from.
+/// Source of a script.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Source<'a> {
-    /// Where its lines end, bytes.
+    /// Ends of its lines, bytes.
     pub(super) line_ends: &'a [usize],
     /// Its file, as the user named it.
     pub(super) name: &'a str,
@@ -61,7 +61,7 @@ impl<'a> Source<'a> {
         size.transpose()
     }
 
-    /// What a script's key `step` lists: tables, each with its first byte.
+    /// Entries of a script's key `step`: tables, each with its first byte.
     pub(super) fn listed(
         &self,
         file: &'a DeTable<'a>,
@@ -104,7 +104,7 @@ impl<'a> Source<'a> {
 pub(super) struct Entries<'a> {
     pub(super) source: Source<'a>,
     pub(super) table: &'a DeTable<'a>,
-    /// How they may be written, for help.
+    /// Example of their form, for help.
     pub(super) example: &'static str,
 }
 
@@ -278,7 +278,7 @@ impl<'a> Entries<'a> {
         }
     }
 
-    /// What became of what a key names, perhaps a file: what is wrong with it is told with both places.
+    /// Result for the value of a key, perhaps a file: an error is reported with both places.
     pub(super) fn named<T>(
         &self,
         key: &str,

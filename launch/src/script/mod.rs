@@ -45,7 +45,7 @@ use crate::lamp::LightChange;
 use crate::outputs::UsedFile;
 use crate::tooth::ToothPicture;
 
-/// What is done in a step.
+/// Action of a step.
 #[derive(Clone, Debug)]
 pub enum Act {
     /// Takes up a brush: its name, its file, the share of its head that full pressure presses in.
@@ -54,7 +54,7 @@ pub enum Act {
     Load(Mixture, Option<Mixture>),
     /// Takes all paint off the brush.
     Clean,
-    /// Uses the brush in another way: mode, flow of the marker, most paint, m.
+    /// Sets the handling of the brush: mode, flow of the marker, most paint, m.
     Handle(BrushMode, f64, f64),
     /// Lays a film of what the brush carries over the canvas, m.
     FillWith(f64),
@@ -87,7 +87,7 @@ pub struct Script {
     pub files: Vec<UsedFile>,
 }
 
-/// What the painting advises of a running rig, and the step that does the same.
+/// Advice of the painting for a running rig, and the step that does the same.
 const ADVICE: [(&str, &str); 3] = [
     ("`maulstick dry --stop`", "{ stop_drying = true }"),
     (

@@ -1,4 +1,4 @@
-//! Which steps there are, and what keys each has.
+//! The kinds of steps, and the keys of each.
 
 use maulstick_optics::PaintLibrary;
 use maulstick_rig::Fault;
@@ -25,7 +25,7 @@ pub(super) struct Kind {
     pub(super) does: &'static str,
     /// The keys that say how.
     with: &'static [&'static str],
-    /// How it may be written.
+    /// Example of its form.
     pub(super) example: &'static str,
     act: fn(&Step<'_>, &PaintLibrary) -> Result<Act, Fault>,
 }
@@ -242,7 +242,7 @@ impl<'a> Step<'a> {
         self.keys.place(self.kind.does)
     }
 
-    /// What must be there: it is what makes the step one of its kind, or told to be missing.
+    /// Value of a required key: it makes the step one of its kind, or is reported as missing.
     pub(super) fn due<T>(&self, value: Option<T>) -> Result<T, Fault> {
         value.ok_or_else(|| Fault::usage(format!("'{}' lacks a key", self.kind.does)))
     }
@@ -287,7 +287,7 @@ pub(super) fn listed<'a>(
         .collect()
 }
 
-/// What a step does. What is wrong has its place, and help.
+/// Action of a step. An error has its place, and advice.
 pub(super) fn act(step: &Step<'_>, library: &PaintLibrary) -> Result<Act, Fault> {
     (step.kind.act)(step, library).map_err(|mut fault| {
         fault.place.get_or_insert_with(|| step.place());

@@ -11,17 +11,17 @@ const RATE_HZ: f64 = 250.0;
 const DAB_S: f64 = 0.3;
 /// Pieces of the curve between two points.
 const PIECES: usize = 16;
-/// The way is taken as turned as it is over so much of it to either side, mm.
+/// Length to either side over which the direction of the path is averaged, mm.
 const LOOK_MM: f64 = 1.5;
 /// Points nearer to each other than this are one, mm.
 const NEAR_MM: f64 = 1e-3;
 
-/// How a brush is turned about its axis.
+/// Turn of a brush about its axis.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Turn {
-    /// By so many degrees from where its broad side lies across the way.
+    /// By so many degrees from its broad side across the path.
     Way(f64),
-    /// By so many degrees from where its broad side lies from left to right.
+    /// By so many degrees from its broad side from left to right.
     Canvas(f64),
 }
 
@@ -32,11 +32,11 @@ pub struct Stroke {
     pub points: Vec<[f64; 3]>,
     /// Lean of the handle from upright, degrees.
     pub lean_deg: f64,
-    /// Where the handle's end leans to, degrees from the right, counter-clockwise; along the way if none.
+    /// Direction to which the handle's end leans, degrees from the right, counter-clockwise; along the path if absent.
     pub toward_deg: Option<f64>,
-    /// How the brush is turned.
+    /// Turn of the brush.
     pub turn: Turn,
-    /// Speed along the way, mm/s.
+    /// Speed along the path, mm/s.
     pub speed_mm_s: f64,
 }
 
@@ -77,7 +77,7 @@ fn spline(points: [[f64; 3]; 4], share: f64) -> [f64; 3] {
 }
 
 impl Stroke {
-    /// The curve through the points, and the way to each point of it, mm.
+    /// The curve through the points, and the path length to each point of it, mm.
     fn curve(&self) -> (Vec<[f64; 3]>, Vec<f64>) {
         let mut points = self.points.clone();
         points.dedup_by(|next, before| distance(*before, *next) < NEAR_MM);

@@ -1,4 +1,4 @@
-//! The seven effects of Baxter 2004, fig. 6.2, and thinned paint: what the paint model is for.
+//! The seven effects of Baxter 2004, fig. 6.2, and thinned paint.
 
 use maulstick_brush::BrushFile;
 use maulstick_optics::PaintLibrary;
@@ -198,7 +198,7 @@ fn loading(library: PaintLibrary, cell_mm: f64) -> Result<Panel, Fault> {
 
 fn drying(library: PaintLibrary, cell_mm: f64) -> Result<Panel, Fault> {
     let mut panel = Panel::of("flat", 8.0, (library, cell_mm))?;
-    // What was painted first dries most often: .75⁴ = .32 of it stays wet.
+    // The stripe painted first dries most often: .75⁴ = .32 of it stays wet.
     for stripe in 0..5 {
         if stripe > 0 {
             panel.dry(0.25)?;

@@ -1,4 +1,4 @@
-//! Gestures of a hand: a path of the point, how hard, how tilted and how turned, in time.
+//! Gestures of a hand: a path of the point with pressure, tilt and turn over time.
 
 use std::f64::consts::PI;
 
@@ -11,10 +11,10 @@ const RATE_HZ: f64 = 250.0;
 /// Between two gestures, s: longer than what joins strokes.
 const PAUSE_S: f64 = 0.3;
 
-/// How the hand is at a moment.
+/// State of the hand at a moment.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Moment {
-    /// Where it points, mm from the lower left corner of the sheet.
+    /// Its point, mm from the lower left corner of the sheet.
     pub at: [f64; 2],
     /// 0 to 1.
     pub pressure: f64,
@@ -26,7 +26,7 @@ pub struct Moment {
 
 /// A gesture: a moment for each share of its time, 0 to 1.
 pub struct Gesture {
-    /// How long it takes, s.
+    /// Duration, s.
     pub seconds: f64,
     /// The hand.
     pub hand: Box<dyn Fn(f64) -> Moment>,

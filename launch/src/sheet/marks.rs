@@ -1,10 +1,10 @@
-//! The marks of a brush: what a painter tries in the shop.
+//! The marks of a brush: the strokes that a painter tries in the shop.
 
 use maulstick_brush::BrushFile;
 
 use super::gesture::{Gesture, Moment, along, ease, swell};
 
-/// A mark and the mixture that the brush takes up for it; none goes on with what it has.
+/// A mark and the mixture that the brush takes up for it; `None` continues with its load.
 pub struct Mark {
     /// The gesture.
     pub gesture: Gesture,

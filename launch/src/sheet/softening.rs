@@ -1,4 +1,4 @@
-//! What a blender does: the edge between two wet colours, as it was laid and softened.
+//! Softening by a blender: the edge between two wet colours, as applied and softened.
 
 use super::gesture::{Gesture, Moment, ease, swell};
 use super::marks::stroke;

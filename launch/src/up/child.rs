@@ -21,7 +21,7 @@ const FAILURES: usize = 3;
 /// See [`FAILURES`].
 const WINDOW: Duration = Duration::from_secs(10);
 
-/// How a node fares.
+/// State of a node.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum State {
     /// Started, its token not yet seen.
@@ -53,11 +53,11 @@ impl State {
 /// A node and its process.
 #[derive(Debug)]
 pub struct Node {
-    /// What it is.
+    /// Its specification.
     pub spec: NodeSpec,
-    /// How it fares.
+    /// Its state.
     pub state: State,
-    /// How often it was started again.
+    /// Number of restarts.
     pub restarts: u32,
     /// Since when its token is missed.
     pub missed: Option<Instant>,
@@ -80,7 +80,7 @@ impl Failures {
     }
 }
 
-/// How a process ended.
+/// End of a process.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Ended {
     /// With success.
@@ -140,7 +140,7 @@ impl Node {
         self.process.as_ref().map(|(child, _)| child.id())
     }
 
-    /// Whether the process has ended, and how.
+    /// The end of the process, once it has ended.
     pub fn ended(&mut self) -> Option<Ended> {
         let (child, _) = self.process.as_mut()?;
         let status = child.try_wait().ok()??;
@@ -160,7 +160,7 @@ impl Node {
         again
     }
 
-    /// Asks the process to end, to be started afresh; false where there is none.
+    /// Asks the process to end, to be started afresh; false if there is none.
     pub fn renew(&mut self) -> bool {
         let runs = self.pid().is_some();
         if runs {

@@ -1,4 +1,4 @@
-//! A take that is played from its start to its picture, whoever dies on the way.
+//! A take that is played from its start to its picture, whichever process dies meanwhile.
 
 use std::path::PathBuf;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -19,16 +19,16 @@ use crate::outputs::Relayed;
 use crate::processes::{PLAYER, Program};
 use crate::up::plan::{NodeSpec, Role, node};
 
-/// What is played, and what becomes of it.
+/// A take to play, and its output.
 #[derive(Clone, Debug)]
 pub struct Performance {
     /// The take.
     pub take: PathBuf,
-    /// How fast.
+    /// Playback rate.
     pub rate: Rate,
     /// The brush that follows it.
     pub brush: String,
-    /// What each stroke loads, in turn.
+    /// Loads of the strokes, in turn.
     pub loads: Vec<String>,
     /// The picture to write at its end.
     pub snapshot: Option<Relayed>,
@@ -41,26 +41,26 @@ pub struct Performance {
 /// Follows a take being played.
 #[derive(Debug)]
 pub struct Conductor {
-    /// What is played.
+    /// The performance.
     pub performance: Performance,
     statuses: Receiver<TakeStatus>,
     epoch: Option<u32>,
     forgotten: Option<u32>,
-    /// Whether what was painted of it is to be undone first.
+    /// True if the strokes of it that were painted are to be undone first.
     again: bool,
     position_ns: u64,
     end: Option<TakeEnd>,
     writing: Option<Writing>,
 }
 
-/// The picture being written: its outcome, and whether nobody waits for it any more.
+/// The picture being written: its outcome, and a flag for an abandoned wait.
 #[derive(Debug)]
 struct Writing {
     outcome: mpsc::Receiver<Result<(), Fault>>,
     given_up: Arc<AtomicBool>,
 }
 
-/// How long the picture may take to be written.
+/// Longest wait until the picture is written.
 const SNAPSHOT: Duration = Duration::from_secs(300);
 
 impl Conductor {

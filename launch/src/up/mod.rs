@@ -36,12 +36,12 @@ use crate::up::conductor::Performance;
 use crate::up::plan::{Hands, Window};
 use crate::up::supervisor::Supervisor;
 
-/// Where, in the rig's folder, lies what the played take embeds.
+/// Folder of the files embedded in the played take, in the rig's folder.
 const KIT: &str = "kit";
-/// What the brush carries at the start, where nothing else is asked for.
+/// Load of the brush at the start, unless another is requested.
 const FIRST_LOAD: &str = "Ultramarine Blue";
 
-/// What the brush carries at the start: of paints of one's own that lack it the first.
+/// Load of the brush at the start: if the painter's own paints lack it, the first of them.
 fn first_load(library: &PaintLibrary) -> Mixture {
     let first = library
         .paints()
@@ -86,7 +86,7 @@ pub struct UpOptions {
 }
 
 impl UpOptions {
-    /// What is written at the end of the take is none of the files that the rig uses.
+    /// Checks that the file written at the end of the take is none that the rig uses.
     fn check_files(&self, take: &Path, config: &RigConfig) -> Result<(), Fault> {
         let outputs: Vec<_> = UsedFile::written("the picture", self.snapshot.as_ref(), Kind::Png)
             .into_iter()
@@ -215,8 +215,8 @@ pub fn run(options: &UpOptions) -> Result<i32, Fault> {
     supervisor.run()
 }
 
-/// A path that holds wherever it is read: nodes may be started by hand from another folder, and the
-/// paint node writes what it is told by name.
+/// An absolute path: nodes may be started by hand from another folder, and the paint node writes to the name it is
+/// given.
 fn absolute(path: &std::path::Path) -> Result<PathBuf, Fault> {
     std::path::absolute(path).map_err(|error| Fault::reading(path, &error))
 }

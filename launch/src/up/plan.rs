@@ -1,10 +1,10 @@
-//! Which processes a rig has.
+//! The processes of a rig.
 
 use maulstick_rig::config::{Restart, RigConfig};
 
 use crate::processes::{Program, brush_node_name};
 
-/// What a process is to the rig.
+/// Role of a process in the rig.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Role {
     /// The paint node.
@@ -24,9 +24,9 @@ pub enum Role {
 pub struct NodeSpec {
     /// Name of its token.
     pub name: String,
-    /// What it is.
+    /// Its role.
     pub role: Role,
-    /// What the process runs as.
+    /// Program that the process runs.
     pub program: Program,
     /// Its arguments, besides those that every node gets.
     pub args: Vec<String>,
@@ -56,7 +56,7 @@ pub fn node(
     }
 }
 
-/// Whether a rig has a window.
+/// Presence of a window.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Window {
     /// One that shows the painting.
@@ -65,7 +65,7 @@ pub enum Window {
     Headless,
 }
 
-/// Who moves the brushes of a rig.
+/// Source of the brushes' motion.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Hands {
     /// Its devices.

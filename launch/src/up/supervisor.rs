@@ -28,9 +28,9 @@ use orders::Orders;
 use silence::Silence;
 use switch::Switch;
 
-/// All nodes end within this time when asked; paint that is on its way to a file has that of the switch.
+/// Time in which all nodes end when asked; paint that is being written to a file has that of the switch.
 const GRACE: Duration = Duration::from_millis(1200);
-/// How often children are looked at.
+/// Interval at which children are checked.
 const TICK: Duration = Duration::from_millis(20);
 /// Pause before a node is started again.
 const RESTART_PAUSE: Duration = Duration::from_millis(200);
@@ -56,7 +56,7 @@ pub struct Supervisor {
     /// Paint starts with clean brushes: the painter's are to be loaded.
     unloaded: bool,
     orders: Orders,
-    /// Another painting on its way.
+    /// A switch to another painting in progress.
     switch: Option<Switch>,
     /// The paint node says nothing.
     silence: Option<Silence>,
@@ -66,7 +66,7 @@ pub struct Supervisor {
 /// A node whose token is gone for so long is taken for frozen.
 const FROZEN: Duration = Duration::from_secs(5);
 
-/// Why the rig ends.
+/// Reason for the end of the rig.
 enum End {
     /// With this exit code.
     Code(i32),
@@ -270,7 +270,7 @@ impl Supervisor {
         Ok(None)
     }
 
-    /// Whether the rig can do without a node that ended with success.
+    /// True if the rig can do without a node that ended with success.
     fn may_end(&self, role: Role) -> bool {
         match role {
             Role::Paint | Role::Brush => false,
@@ -355,7 +355,7 @@ impl Supervisor {
         }
     }
 
-    /// Whether no node is still to come; a device that failed for good holds nothing up.
+    /// True if no node is still starting; a device that failed for good delays nothing.
     fn ready(&self) -> bool {
         self.nodes
             .iter()

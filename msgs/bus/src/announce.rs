@@ -1,4 +1,4 @@
-//! Cached values that stay those of their sender though somebody else sends on their topic.
+//! Cached values that stay those of their sender though another process sends on their topic.
 
 use maulstick_types::{Header, Message, Origin};
 
@@ -18,9 +18,9 @@ pub struct Announcer<M> {
     sent_ns: u64,
     /// Values sent so far.
     sent: u64,
-    /// When another sender was last heard, ns.
+    /// Time of the last message of another sender, ns.
     contradicted_ns: Option<u64>,
-    /// Whether it was told of.
+    /// True once it was reported.
     told: bool,
 }
 
@@ -32,7 +32,7 @@ impl<M: Message + Clone> Announcer<M> {
     pub fn new(bus: &dyn Bus, topic: &str, origin: Origin, wake: &Wake) -> Result<Self, BusError> {
         Ok(Self {
             sender: Sender::new(bus, topic, Class::Cached, origin)?,
-            // What was said before is no contradiction: not as a cached topic.
+            // Earlier messages are no contradiction: the topic is not cached here.
             heard: bus.subscribe(topic, Class::Control, Queue::Ring(16), wake)?,
             topic: topic.to_owned(),
             origin,
@@ -55,7 +55,7 @@ impl<M: Message + Clone> Announcer<M> {
         Ok(())
     }
 
-    /// Whether a message was sent from here: nobody else's has the origin, a number and a time of one that was.
+    /// True if a message was sent from here: no other has the origin, number and time of one of ours.
     fn is_own(&self, header: &Header) -> bool {
         header.origin() == self.origin && header.seq < self.sent && header.sent_ns <= self.sent_ns
     }

@@ -1,4 +1,4 @@
-//! What a node sees of the transport.
+//! Interface of the transport to a node.
 
 use std::any::Any;
 use std::fmt;
@@ -7,15 +7,15 @@ use std::time::Duration;
 use crate::inbox::{Counts, Inbox, Queue, Wake};
 use crate::payload::Payload;
 
-/// Why the bus refuses.
+/// Errors of the bus.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum BusError {
     /// The session could not be opened.
     #[error("cannot open the bus at {at}: {reason}")]
     Open {
-        /// Where.
+        /// Address.
         at: String,
-        /// What the transport says.
+        /// Error of the transport.
         reason: String,
     },
     /// A declaration or a send failed.
@@ -23,7 +23,7 @@ pub enum BusError {
     Topic {
         /// The topic.
         topic: String,
-        /// What the transport says.
+        /// Error of the transport.
         reason: String,
     },
     /// Nobody answered in time.
@@ -31,7 +31,7 @@ pub enum BusError {
     NoAnswer {
         /// The topic.
         topic: String,
-        /// How long was waited, ms.
+        /// Waiting time, ms.
         limit_ms: u64,
     },
     /// The message does not fit its limit, or the answer does not decode.
@@ -39,20 +39,20 @@ pub enum BusError {
     Message {
         /// The topic.
         topic: String,
-        /// What is wrong with it.
+        /// The error.
         source: maulstick_types::DecodeError,
     },
     /// The rig's folder cannot be used.
     #[error("{reason}")]
     Folder {
-        /// What is wrong, and where.
+        /// The error, and its place.
         reason: String,
-        /// What to do.
+        /// Advice.
         help: String,
     },
 }
 
-/// How a topic travels. Every class may drop: nothing is ever held back by a slow receiver.
+/// Class of a topic. Every class may drop: a slow receiver never delays a sender.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Class {
     /// Samples, states and contact models.
@@ -89,7 +89,7 @@ pub trait Publish: Send {
     fn put(&self, bytes: Vec<u8>) -> Result<(), BusError>;
 }
 
-/// What arrives on a key expression, until dropped.
+/// Messages that arrive on a key expression, until dropped.
 pub struct Subscription {
     /// The queue.
     pub inbox: Inbox<Arrival>,
@@ -103,7 +103,7 @@ impl Subscription {
         self.inbox.try_recv()
     }
 
-    /// What has gone through.
+    /// Messages received and dropped so far.
     #[must_use]
     pub fn counts(&self) -> Counts {
         self.inbox.counts()
@@ -125,12 +125,12 @@ type Answerer = Box<dyn FnOnce(Answering<'_>) -> Result<(), BusError> + Send>;
 pub struct Request {
     /// The topic that was asked.
     pub key: String,
-    /// What was asked: header and body.
+    /// The query: header and body.
     pub bytes: Vec<u8>,
     pub(crate) answer: Answerer,
 }
 
-/// What is answered.
+/// The answer.
 pub(crate) enum Answering<'a> {
     /// These bytes.
     Bytes(Vec<u8>),
@@ -209,7 +209,7 @@ impl fmt::Debug for Server {
     }
 }
 
-/// What became of a query.
+/// Outcome of a query.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Answer {
     /// An answer.

@@ -33,7 +33,7 @@ impl RigClock {
         Self { offset_ns }
     }
 
-    /// What is added to `CLOCK_MONOTONIC`, ns.
+    /// Offset from `CLOCK_MONOTONIC`, ns.
     #[must_use]
     pub fn offset_ns(self) -> u64 {
         self.offset_ns

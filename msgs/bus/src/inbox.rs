@@ -8,7 +8,7 @@ use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Arc, Condvar, Mutex, PoisonError};
 use std::time::Duration;
 
-/// What a subscription keeps while its thread is busy.
+/// Messages that a subscription keeps while its thread is busy.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Queue {
     /// The newest alone.
@@ -19,7 +19,7 @@ pub enum Queue {
     Bounded(usize),
 }
 
-/// What went through an inbox.
+/// Counts of an inbox.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Counts {
     /// Items that arrived.
@@ -133,7 +133,7 @@ impl<T> Inbox<T> {
             .pop_front()
     }
 
-    /// Whether nothing waits.
+    /// True if it is empty.
     #[must_use]
     pub fn is_empty(&self) -> bool {
         self.inner
@@ -143,7 +143,7 @@ impl<T> Inbox<T> {
             .is_empty()
     }
 
-    /// What has gone through.
+    /// Messages received and dropped so far.
     #[must_use]
     pub fn counts(&self) -> Counts {
         Counts {

@@ -16,7 +16,7 @@ use crate::bus::{
 };
 use crate::inbox::{Inbox, Queue, Wake};
 
-/// What goes wrong on the way.
+/// Faults of the transport.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Faults {
     /// Chance that a message that is not cached, a query or an answer is lost.
@@ -25,7 +25,7 @@ pub struct Faults {
     pub delay_ns: u64,
 }
 
-/// Something on its way.
+/// A message in flight.
 enum Parcel {
     Message {
         key: String,
@@ -53,7 +53,7 @@ struct Listener {
     to: Kind,
 }
 
-/// What a message or a listener is about.
+/// Kind of a message or a listener.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Kind {
     Topics,
@@ -100,7 +100,7 @@ fn lock(net: &Mutex<Net>) -> MutexGuard<'_, Net> {
     net.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-/// Whether a key matches an expression: `*` stands for one chunk, `**` for any number.
+/// True if a key matches an expression: `*` stands for one chunk, `**` for any number.
 fn matches(expression: &str, key: &str) -> bool {
     fn chunks(expression: &[&str], key: &[&str]) -> bool {
         match (expression, key) {

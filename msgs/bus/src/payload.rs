@@ -1,17 +1,16 @@
-//! The bytes of an answer: one's own, or in memory that two processes share.
+//! The bytes of an answer: owned, or in memory that two processes share.
 
 use std::fmt;
 use std::ops::Deref;
 
 use zenoh::shm::ZShm;
 
-/// Bytes to be read. What is shared stays where it is until this is dropped, and its sender does not
-/// change it.
+/// Bytes to read. Shared bytes stay where they are until this is dropped, and their sender does not change them.
 #[derive(Clone)]
 pub enum Payload {
     /// Copied.
     Own(Vec<u8>),
-    /// Where its sender wrote it.
+    /// In its sender's memory.
     Shared(Lent),
 }
 
@@ -20,7 +19,7 @@ pub enum Payload {
 pub struct Lent(ZShm);
 
 impl Payload {
-    /// What has come: in place where its sender shares it.
+    /// Bytes received: in place if its sender shares them.
     pub(crate) fn of(bytes: &zenoh::bytes::ZBytes) -> Self {
         match bytes.as_shm() {
             Some(shared) => Self::Shared(Lent(shared.to_owned())),
@@ -28,7 +27,7 @@ impl Payload {
         }
     }
 
-    /// Whether it lies in shared memory.
+    /// True if it is in shared memory.
     #[must_use]
     pub fn is_shared(&self) -> bool {
         matches!(self, Self::Shared(_))

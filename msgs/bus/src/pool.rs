@@ -14,7 +14,7 @@ use zenoh::shm::{PosixShmProviderBackend, ShmProvider, ShmProviderBuilder, ZShmM
 const SIZES: [usize; 2] = [16 << 20, 4 << 20];
 /// Room for zenoh's own tables, bytes.
 const TABLES: usize = 3 << 20;
-/// What a pool needs beside what it lends, bytes.
+/// Overhead of a pool, bytes.
 const SLACK: usize = 64 << 10;
 /// A pool that has had no room for this long lost what it lent to a process that has died.
 const CLOGGED: Duration = Duration::from_secs(2);
@@ -92,7 +92,7 @@ impl Pool {
         }
     }
 
-    /// A piece of `length` bytes; none where there is no room or no pool.
+    /// A piece of `length` bytes; `None` without room or without a pool.
     pub(crate) fn room(&self, length: usize) -> Option<ZShmMut> {
         let mut state = self.state.lock().unwrap_or_else(PoisonError::into_inner);
         if matches!(*state, State::Untried) {
@@ -109,7 +109,7 @@ impl Pool {
         if length + SLACK > *bytes {
             return None;
         }
-        // What has been read is taken back at once: the same cells stay in the processor's cache.
+        // Memory that has been read is taken back at once: the same cells stay in the processor's cache.
         provider.garbage_collect();
         let found = provider.alloc(length).wait().ok();
         *full_since = match found {

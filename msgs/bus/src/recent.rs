@@ -1,4 +1,4 @@
-//! A map of bounded size by name, for what is known of senders that anyone may be.
+//! A map of bounded size by name, for records of senders whose number is not limited.
 
 use std::collections::BTreeMap;
 
@@ -45,7 +45,7 @@ impl<V> Recent<V> {
         self.values.get_mut(name).map(|(_, value)| value)
     }
 
-    /// Whether a name has a value.
+    /// True if a name has a value.
     #[must_use]
     pub fn has(&self, name: &str) -> bool {
         self.values.contains_key(name)

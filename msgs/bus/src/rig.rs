@@ -1,4 +1,4 @@
-//! The rig's folder: sockets, the lock that keeps a name to one rig, and what others need to join.
+//! The rig's folder: sockets, the lock that reserves a name for one rig, and the data that others need to join.
 
 use std::fs::{self, DirBuilder, File, OpenOptions};
 use std::io::Write as _;
@@ -16,14 +16,14 @@ use crate::clock::RigClock;
 /// Sockets have at most 107 bytes of path on Linux.
 const SOCKET_PATH_MAX: usize = 107;
 
-/// What a program needs to join a rig; `rig.json` in its folder.
+/// Data that a program needs to join a rig; `rig.json` in its folder.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct RigInfo {
     /// Name of the rig.
     pub rig: String,
     /// zenoh locator to connect to, in mode `client` or `peer`.
     pub endpoint: String,
-    /// What every topic begins with.
+    /// Prefix of every topic.
     pub prefix: String,
     /// Rig clock = `CLOCK_MONOTONIC` + this, ns.
     pub clock_offset_ns: u64,
@@ -46,7 +46,7 @@ fn folder_error(reason: String, help: &str) -> BusError {
     }
 }
 
-/// Where the folders of all rigs lie: the user's run-time folder, else one in the temporary folder.
+/// Parent folder of all rigs: the user's run-time folder, else one in the temporary folder.
 fn base() -> PathBuf {
     match std::env::var_os("XDG_RUNTIME_DIR") {
         Some(dir) if Path::new(&dir).is_dir() => PathBuf::from(dir).join("maulstick"),
@@ -68,8 +68,8 @@ fn make_private(path: &Path) -> Result<(), BusError> {
     check_private(path)
 }
 
-/// Sees that a path is a folder that nobody else may use or has made. A link is none: in a folder that all
-/// share, such as /tmp, it may be another user's.
+/// Checks that a path is a folder that nobody else may use or has made. A link is refused: in a folder that all share,
+/// such as /tmp, it may be another user's.
 fn check_private(path: &Path) -> Result<(), BusError> {
     let meta = fs::symlink_metadata(path).map_err(|error| {
         folder_error(
@@ -219,7 +219,7 @@ impl RigFolder {
         ))
     }
 
-    /// Whether the lock that this program holds is still where others look for it.
+    /// True if the lock file of this program is still at its path.
     #[must_use]
     pub fn is_whole(&self) -> bool {
         let own = self.lock.as_ref().and_then(|lock| lock.metadata().ok());

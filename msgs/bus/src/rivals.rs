@@ -1,16 +1,16 @@
-//! Which of several senders on one stream is followed.
+//! Choice among several senders on one stream.
 //!
-//! A stream is one sender's, but nothing keeps a second one away: another copy of a program, a stray message,
-//! a program that counts wrongly. Of senders that differ in their epoch the one that started last is followed;
-//! any other is set aside, and followed again once the newer one is silent. Within one epoch, where numbers
-//! leap, the stream that is followed stays until it is silent.
+//! A stream is one sender's, but nothing keeps a second one away: another copy of a program, a stray message, a program
+//! that counts wrongly. Of senders that differ in their epoch the one that started last is followed; any other is set
+//! aside, and followed again once the newer one is silent. Within one epoch, where numbers leap, the stream that is
+//! followed stays until it is silent.
 
 use std::collections::BTreeSet;
 
 use maulstick_types::{Flags, Header};
 
-/// A sender that says nothing for this long is silent, and one that is heard for this long without a pause is
-/// no stray message, ns.
+/// Time without a message after which a sender is silent, and time of messages without a pause after which it is no
+/// stray, ns.
 pub const SILENCE_NS: u64 = 500_000_000;
 /// So many senders that are set aside are remembered for each stream.
 const REMEMBERED: usize = 8;
@@ -23,15 +23,15 @@ struct Sender {
     began_ns: u64,
     /// When its newest message was sent, ns.
     sent_ns: u64,
-    /// Since when it is heard without a pause, ns.
+    /// Start of its messages without a pause, ns.
     since_ns: u64,
-    /// When it was last heard, ns.
+    /// Time of its last message, ns.
     heard_ns: u64,
     /// Number of its next message, if it was followed.
     next: Option<u64>,
 }
 
-/// What becomes of a message.
+/// Decision about a message.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Verdict {
     /// Its sender is followed.
@@ -79,7 +79,7 @@ impl Sender {
         now_ns >= self.heard_ns.saturating_add(SILENCE_NS)
     }
 
-    /// Whether it was heard for long enough to be no stray message.
+    /// True if it was heard for long enough to be no stray message.
     fn lasts(&self) -> bool {
         self.heard_ns >= self.since_ns.saturating_add(SILENCE_NS)
     }
@@ -95,7 +95,7 @@ impl Rivals {
         }
     }
 
-    /// When the sender that is followed was last heard, ns.
+    /// Time of the last message of the followed sender, ns.
     #[must_use]
     pub fn heard_ns(&self) -> u64 {
         self.followed.heard_ns
@@ -121,7 +121,7 @@ impl Rivals {
         let takes_over = if !same && other.began_ns > followed.began_ns {
             silent || other.lasts() || header.flags.has(Flags::FIRST)
         } else {
-            // What was sent before the newest message of the stream that is followed is merely late.
+            // A message sent before the newest one of the followed stream is merely late.
             silent && (sent_ns(header, arrived_ns) >= followed.sent_ns || other.lasts())
         };
         if !takes_over {
@@ -133,7 +133,7 @@ impl Rivals {
         Verdict::TakesOver(before)
     }
 
-    /// Where among the others the sender of a message is; the one that was silent for longest makes room.
+    /// Index of a message's sender among the others; the one that was silent for longest makes room.
     fn place(&mut self, header: &Header, arrived_ns: u64) -> usize {
         let known = |other: &Sender| other.epoch == header.epoch;
         if let Some(place) = self.others.iter().position(known) {
@@ -148,19 +148,19 @@ impl Rivals {
         self.others.len() - 1
     }
 
-    /// Whether a message shows that there are two senders: a late one of a sender that has ended does not.
+    /// True if a message shows that there are two senders: a late one of a sender that has ended does not.
     #[must_use]
     pub fn is_rival(&self, header: &Header, arrived_ns: u64) -> bool {
         sent_ns(header, arrived_ns) >= self.followed.began_ns
     }
 }
 
-/// What was said once is not said again; of more than 256 things none is said.
+/// Remarks already reported; each is reported once, and no more than 256 in all.
 #[derive(Clone, Debug, Default)]
 pub struct Once(BTreeSet<String>);
 
 impl Once {
-    /// Whether this is to be said: it was not said yet.
+    /// True if this is to be reported: it was not yet.
     pub fn say(&mut self, what: &str) -> bool {
         self.0.len() < 256 && self.0.insert(what.to_owned())
     }

@@ -48,10 +48,10 @@ impl<M: Message> Sender<M> {
         })
     }
 
-    /// Sends a message; `event_ns` is when what it tells was so.
+    /// Sends a message; `event_ns` is the time at which its content was true.
     ///
     /// # Errors
-    /// [`BusError::Message`] where it exceeds its limit, [`BusError::Topic`].
+    /// [`BusError::Message`] if it exceeds its limit, [`BusError::Topic`].
     pub fn send(&mut self, now_ns: u64, event_ns: u64, message: &M) -> Result<(), BusError> {
         let flags = if self.next == 0 {
             Flags::FIRST
@@ -90,11 +90,11 @@ pub struct Reader {
 pub struct Refusal {
     /// Its topic.
     pub topic: String,
-    /// Why.
+    /// The reason.
     pub reason: Reason,
 }
 
-/// Why a message was dropped.
+/// Reason for dropping a message.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum Reason {
     /// It does not decode.
@@ -129,7 +129,7 @@ impl Reader {
         }
     }
 
-    /// Counts a refusal and tells it, once for each topic and reason.
+    /// Counts a refusal and reports it, once for each topic and reason.
     pub fn refuse(&mut self, topic: &str, reason: Reason) {
         self.refused += 1;
         let kind = match &reason {
@@ -145,7 +145,7 @@ impl Reader {
         }
     }
 
-    /// What was told since the last call: each topic and reason comes once.
+    /// Refusals since the last call: each topic and reason comes once.
     pub fn refusals(&mut self) -> Vec<Refusal> {
         std::mem::take(&mut self.news)
     }
@@ -167,7 +167,7 @@ pub struct Receiver<M> {
     class: Class,
     /// By topic and source.
     streams: BTreeMap<(String, u32), Rivals>,
-    /// What is wrong with a message that decodes, if anything.
+    /// Error of a message that decodes, if any.
     fault: fn(&M) -> Option<&'static str>,
 }
 
@@ -200,7 +200,7 @@ impl<M: Message> Receiver<M> {
         self
     }
 
-    /// Whether the sender of a message is followed.
+    /// True if the sender of a message is followed.
     fn follows(&mut self, header: &Header, key: &str, arrived_ns: u64) -> bool {
         let stream = (key.to_owned(), header.source);
         if !self.streams.contains_key(&stream) && self.streams.len() == STREAMS {
@@ -254,7 +254,7 @@ impl<M: Message> Receiver<M> {
         self.reader.refused()
     }
 
-    /// What was refused since the last call: each topic and reason comes once.
+    /// Refusals since the last call: each topic and reason comes once.
     pub fn refusals(&mut self) -> Vec<Refusal> {
         self.reader.refusals()
     }

@@ -24,7 +24,7 @@ use crate::inbox::{Inbox, Queue, Wake};
 use crate::payload::Payload;
 use crate::pool::Pool;
 
-/// How a process joins the rig's sockets.
+/// Settings with which a process joins the rig's sockets.
 #[derive(Clone, Debug)]
 pub struct Dial {
     /// Name shown to others.
@@ -75,8 +75,8 @@ impl ZenohBus {
         Self::open_as(dial, clock, Memory::Own)
     }
 
-    /// Opens a session whose large answers lie in memory that it shares with the asker, where the
-    /// machine and the asker's session allow it.
+    /// Opens a session whose large answers are in memory that it shares with the asker, where the machine and the
+    /// asker's session allow it.
     ///
     /// # Errors
     /// As [`ZenohBus::open`].
@@ -144,7 +144,7 @@ impl ZenohBus {
     }
 }
 
-/// Where a session's large answers lie.
+/// Memory of a session's large answers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Memory {
     Own,
@@ -223,7 +223,7 @@ fn config(dial: &Dial, memory: Memory) -> zenoh::Result<zenoh::Config> {
     Ok(config)
 }
 
-/// The protocols of the locators that are asked for: those of a rig are unix sockets.
+/// The protocols of the requested locators: those of a rig are unix sockets.
 fn protocols(dial: &Dial) -> BTreeSet<&str> {
     let locators = dial.listen.iter().chain(&dial.connect);
     locators

@@ -54,11 +54,10 @@ impl Commander {
         self
     }
 
-    /// Sends a command and waits until it is done or refused, at most for `patience`; gives up
-    /// early where `stop` says so.
+    /// Sends a command and waits until it is done or refused, at most for `patience`; gives up early on `stop`.
     ///
     /// # Errors
-    /// A [`Fault`] with the node's own words where it is refused, or where nobody answers.
+    /// A [`Fault`] with the node's own words if it is refused, or if nobody answers.
     pub fn send(
         &mut self,
         command: Command,
@@ -66,7 +65,7 @@ impl Commander {
         patience: Duration,
         stop: &dyn Fn() -> bool,
     ) -> Result<String, Fault> {
-        // What fails at the end of a take, or as a file is written, is no wrong usage.
+        // A failure at the end of a take, or of a write, is no wrong usage.
         let refusal: fn(String) -> Fault = match &command {
             Command::Snapshot { .. } | Command::Mark => Fault::failure,
             _ => Fault::usage,

@@ -25,7 +25,7 @@ pub const MODELS: [&str; 1] = ["impasto"];
 pub const BACKENDS: [&str; 3] = ["auto", "cpu", "gpu"];
 /// Colour spaces that the window and pictures know without a file.
 pub const SPACES: [&str; 2] = ["srgb", "display-p3"];
-/// How colours come into the gamut of the display.
+/// Mappings of colours into the gamut of the display.
 pub const GAMUTS: [&str; 2] = ["soft", "clamp"];
 /// Priority of the mouse over the window.
 pub const MOUSE_PRIORITY: i32 = -100;
@@ -34,7 +34,7 @@ pub const FOREIGN_PRIORITY: i32 = 0;
 /// Names in a rig that are no device's: the launcher's and the nodes' sockets, the mouse, a take.
 /// Those of brush nodes begin with [`BRUSH_NODE`].
 pub const RESERVED: [&str; 5] = ["hub", "paint", "ui", "player", "mouse"];
-/// What the names of brush nodes begin with.
+/// Prefix of the names of brush nodes.
 pub const BRUSH_NODE: &str = "brush-";
 /// Priority of a played take.
 pub const PLAYER_PRIORITY: i32 = i32::MAX;
@@ -140,10 +140,10 @@ pub struct PaintSection {
 }
 
 impl PaintSection {
-    /// Most bytes of tiles in memory, and of the history if that is said.
+    /// Most bytes of tiles in memory, and of the history if that is set.
     ///
     /// # Errors
-    /// What is wrong, in words.
+    /// The error, in words.
     pub fn bytes(&self) -> Result<(u64, Option<u64>), String> {
         let memory = parse_bytes(&self.memory)?;
         if memory < MEMORY_MIN {
@@ -200,7 +200,7 @@ impl ViewSection {
     /// Checks the names; a profile that is no known space has to look like a file.
     ///
     /// # Errors
-    /// What is wrong, and what to do.
+    /// The error, and advice.
     pub fn check(&self) -> Result<(), (String, String)> {
         if !is_path(&self.profile) {
             check::choose("colour space", &self.profile, &SPACES).map_err(|(what, help)| {
@@ -291,7 +291,7 @@ impl RigConfig {
         Ok(config)
     }
 
-    /// Takes the paths of settings from the folder in which these lie.
+    /// Resolves the paths of settings relative to the folder of the settings.
     fn resolve(&mut self, folder: &Path) {
         let whole = |path: &mut PathBuf| *path = folder.join(&*path);
         self.paint.paints.iter_mut().for_each(whole);
@@ -364,7 +364,7 @@ impl RigConfig {
     }
 }
 
-/// Whether a setting that may be a name is a path.
+/// True if a setting that may be a name is a path.
 #[must_use]
 pub fn is_path(text: &str) -> bool {
     let path = Path::new(text);

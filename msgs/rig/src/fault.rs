@@ -10,14 +10,14 @@ pub const EXIT_USAGE: i32 = 2;
 /// Exit code for failures.
 pub const EXIT_FAILURE: i32 = 1;
 
-/// What went wrong, where, and what to do about it.
+/// An error with its place and advice.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Fault {
-    /// What.
+    /// The error.
     pub what: String,
     /// A file with its line, or a topic.
     pub place: Option<String>,
-    /// What to do.
+    /// Advice.
     pub help: Option<String>,
     /// [`EXIT_USAGE`] or [`EXIT_FAILURE`].
     pub code: i32,
@@ -35,8 +35,7 @@ impl Fault {
         }
     }
 
-    /// Bad usage, of a line that says what is wrong and what to do, as
-    /// [`parted`](maulstick_types::advice::parted) tells them apart.
+    /// Bad usage, from a line with error and advice, split by [`parted`](maulstick_types::advice::parted).
     #[must_use]
     pub fn told(line: impl AsRef<str>) -> Self {
         let (what, help) = maulstick_types::advice::parted(line.as_ref());
@@ -102,7 +101,7 @@ impl Fault {
         self.at(path.display().to_string()).help(help)
     }
 
-    /// A name that is none of `names`: the nearest is proposed.
+    /// A name that is not among `names`: the nearest is proposed.
     #[must_use]
     pub fn unknown<'a>(
         what: impl Into<String>,

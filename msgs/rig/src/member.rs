@@ -46,9 +46,9 @@ pub struct Member {
     pub config: RigConfig,
     /// The rig's clock.
     pub clock: RigClock,
-    /// What rings when there is something to do.
+    /// Signalled when there is something to do.
     pub wake: Wake,
-    /// Whether to stop.
+    /// Stop flag.
     pub stop: Stop,
     session: Arc<ZenohBus>,
     token: Option<Token>,
@@ -94,7 +94,7 @@ impl Member {
         })
     }
 
-    /// Who this process is when it sends as `name`.
+    /// Origin of this process when it sends as `name`.
     #[must_use]
     pub fn origin(&self, name: &str) -> Origin {
         Origin {
@@ -112,11 +112,10 @@ impl Member {
         Ok(())
     }
 
-    /// Calls `turn` whenever there is something to do, or after the time that it returned, until
-    /// it is time to stop.
+    /// Calls `turn` whenever there is something to do, or after the time that it returned, until the stop flag is set.
     ///
     /// # Errors
-    /// What `turn` returns.
+    /// The error of `turn`.
     pub fn run(&self, mut turn: impl FnMut() -> Result<Duration, Fault>) -> Result<(), Fault> {
         while !self.stop.requested() {
             let wait = turn()?;

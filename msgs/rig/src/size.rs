@@ -3,7 +3,7 @@
 /// Reads a size: a number with K, M, G or T (powers of 1024), or plain bytes.
 ///
 /// # Errors
-/// What is wrong, in words.
+/// The error, in words.
 pub fn parse_bytes(text: &str) -> Result<u64, String> {
     let wrong = || format!("'{text}' is not a size such as 512M or 2G");
     let trimmed = text

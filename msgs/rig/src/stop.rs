@@ -1,4 +1,4 @@
-//! When to stop: a signal, or the launcher's end.
+//! Stop flag of a process: a signal, or the launcher's end.
 
 use std::io::Read as _;
 use std::sync::Arc;
@@ -9,11 +9,11 @@ use maulstick_bus::Wake;
 use signal_hook::consts::{SIGINT, SIGTERM};
 use signal_hook::iterator::Signals;
 
-/// Whether this process shall stop.
+/// Stop flag of this process.
 #[derive(Clone, Debug, Default)]
 pub struct Stop {
     flag: Arc<AtomicBool>,
-    /// The signal that asked for it, 0 if none did.
+    /// The signal that requested it, 0 without one.
     signal: Arc<AtomicI32>,
 }
 
@@ -21,7 +21,7 @@ impl Stop {
     /// Watches for SIGTERM and SIGINT, and rings `wake` when they come.
     ///
     /// # Errors
-    /// What the system says where signals cannot be watched.
+    /// The system's error if signals cannot be watched.
     pub fn on_signals(wake: &Wake) -> std::io::Result<Self> {
         let stop = Self::default();
         let mut signals = Signals::new([SIGTERM, SIGINT])?;
@@ -42,11 +42,11 @@ impl Stop {
         Ok(stop)
     }
 
-    /// Also stops when the standard input ends, which the launcher holds open: so a node follows
-    /// its launcher even if that was killed. Should the node not stop in time, it is ended.
+    /// Also stops when the standard input ends, which the launcher holds open: so a node follows its launcher even if
+    /// that was killed. Should the node not stop in time, it is ended.
     ///
     /// # Errors
-    /// What the system says where no thread can be started.
+    /// The system's error if no thread can be started.
     pub fn on_launcher_end(&self, wake: &Wake) -> std::io::Result<()> {
         let (flag, wake) = (Arc::clone(&self.flag), wake.clone());
         std::thread::Builder::new()
@@ -67,13 +67,13 @@ impl Stop {
         self.flag.store(true, Ordering::SeqCst);
     }
 
-    /// Whether to stop.
+    /// True once the process is to stop.
     #[must_use]
     pub fn requested(&self) -> bool {
         self.flag.load(Ordering::SeqCst)
     }
 
-    /// Whether a signal asked for it.
+    /// True if a signal requested the stop.
     #[must_use]
     pub fn by_signal(&self) -> bool {
         self.signal.load(Ordering::SeqCst) != 0

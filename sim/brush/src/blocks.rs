@@ -61,7 +61,7 @@ impl BlockFactor {
     }
 }
 
-/// The inverse of a symmetric block; none where it is not positive definite.
+/// The inverse of a symmetric block; `None` if it is not positive definite.
 fn invert(block: DMat2) -> Option<DMat2> {
     let (a, b, c) = (block.x_axis.x, block.y_axis.x, block.y_axis.y);
     let determinant = a * c - b * b;

@@ -11,10 +11,10 @@ use crate::energy::bond::Bond;
 use crate::spine::{Spine, SpineShape};
 use crate::spine_root::SpineRoot;
 
-/// The core, and how the segments of all spines lie beside its own.
+/// The core, and the pose of the segments of all spines relative to its own.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Core {
-    /// Where it stands and what it is made of.
+    /// Root and material of the core.
     pub root: SpineRoot,
     /// For each spine and segment: the core's segment beside it, and its own direction at rest in
     /// that segment's frame.
@@ -105,7 +105,7 @@ impl Core {
     }
 }
 
-/// The frames of a spine's segments, each turned from the one before by the shortest way.
+/// The frames of a spine's segments, each rotated from the one before by the shortest arc.
 pub fn frames(shape: &SpineShape, into: &mut Vec<DQuat>) {
     into.clear();
     let (mut rotation, mut before) = (shape.frame, shape.base());

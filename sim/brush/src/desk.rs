@@ -1,4 +1,4 @@
-//! Surfaces on the desk, and where a stylus holds the ferrule.
+//! Surfaces on the desk, and the ferrule's pose by a stylus.
 
 use glam::{DVec2, DVec3};
 use maulstick_num::geometry::{Rigid, rotation, shortest_arc};
@@ -50,7 +50,7 @@ impl Plane {
         self.to_desk.vector(DVec3::Z)
     }
 
-    /// What lies under it, desk frame.
+    /// Half space under it, desk frame.
     #[must_use]
     pub fn half_space(&self) -> HalfSpace {
         let normal = self.normal();
@@ -60,15 +60,15 @@ impl Plane {
         }
     }
 
-    /// Whether a point lies over the surface.
+    /// True if a point is over the surface.
     fn holds(&self, in_desk: DVec3) -> bool {
         let p = self.to_desk.inverse().point(in_desk) / self.zoom;
         is_on(DVec2::from_array(self.size_m), self.radii_m, p.truncate())
     }
 }
 
-/// What a brush may not enter, as seen from a surface: convex, so that a joint is outside of at
-/// least one of its faces. Lengths are the desk's, axes those of the surface.
+/// Obstacle to a brush, as seen from a surface: convex, so that a joint is outside of at least one of its faces.
+/// Lengths are the desk's, axes those of the surface.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Obstacle {
     faces: Vec<HalfSpace>,
@@ -95,12 +95,12 @@ impl Obstacle {
         best
     }
 
-    /// Whether a ball reaches it.
+    /// True if a ball reaches it.
     fn is_near(&self, p: DVec3, radius: f64) -> bool {
         self.face_toward(p).gap(p) < radius
     }
 
-    /// A plane as seen from another: the canvas is all that lies under it, a palette a board.
+    /// A plane as seen from another: the canvas is the half space under it, a palette a board.
     fn of(plane: &Plane, seen_from: &Plane) -> Self {
         let place = seen_from.to_desk.inverse().after(&plane.to_desk);
         let face = |normal: DVec3, through: DVec3| {
@@ -129,7 +129,7 @@ pub struct Desk {
 }
 
 impl Desk {
-    /// The desk of a scene; the palette lies over the canvas.
+    /// The desk of a scene; the palette is above the canvas.
     #[must_use]
     pub fn of(scene: &Scene) -> Self {
         let mut planes: Vec<Plane> = scene.surfaces.iter().map(Plane::of).collect();
@@ -137,8 +137,8 @@ impl Desk {
         Self { planes }
     }
 
-    /// What a brush with a head of `head_m` and its ferrule at `ferrule` may not enter, in the frame
-    /// of `surface`: that first, then the others that it might reach.
+    /// Obstacles to a brush with a head of `head_m` and its ferrule at `ferrule`, in the frame of `surface`: that
+    /// first, then the others that it might reach.
     ///
     /// Surfaces in one plane are one: none has an edge there.
     #[must_use]
@@ -165,8 +165,7 @@ impl Desk {
         self.planes.iter().find(|plane| plane.id == id)
     }
 
-    /// The surface that lies under a point: the palette before the canvas, and beside all the
-    /// canvas, whose plane goes on.
+    /// The surface under a point: the palette before the canvas, and elsewhere the canvas, whose plane continues.
     #[must_use]
     pub fn under(&self, in_desk: DVec3) -> Option<&Plane> {
         self.planes
@@ -187,8 +186,7 @@ pub fn pen_orientation(tilt_rad: [f64; 2], twist_rad: f64) -> glam::DQuat {
     shortest_arc(DVec3::Z, axis) * rotation(DVec3::Z, twist_rad)
 }
 
-/// Where a stylus points: the ferrule of a 6-DOF device, the contact point of a pen. By it the
-/// surface is chosen.
+/// Point by which the surface is chosen: the ferrule of a 6-DOF device, the contact point of a pen.
 #[must_use]
 pub fn aim(sample: &StylusSample, head_length_m: f64) -> DVec3 {
     match &sample.pose {
@@ -199,9 +197,9 @@ pub fn aim(sample: &StylusSample, head_length_m: f64) -> DVec3 {
     }
 }
 
-/// Brush frame to desk frame for a sample. For a pen the ferrule is at contact point + axis · head
-/// length · (1 − depth_share · pressure), and [`HOVER_M`] higher without pressure; the contact point
-/// is where it lies on `surface` (desk frame), for a pen knows of no other height than its tablet's.
+/// Brush frame to desk frame for a sample. For a pen the ferrule is at contact point + axis · head length · (1 −
+/// depth_share · pressure), and [`HOVER_M`] higher without pressure; the contact point is taken on `surface` (desk
+/// frame), for a pen knows of no other height than its tablet's.
 #[must_use]
 pub fn ferrule(
     sample: &StylusSample,

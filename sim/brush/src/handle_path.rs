@@ -7,10 +7,10 @@
 use glam::{DQuat, DVec3, DVec4};
 use maulstick_num::geometry::{Rigid, canonical};
 
-/// Chords by which the length of the way is measured.
+/// Chords by which the length of the path is measured.
 const CHORDS: usize = 8;
-/// A pause that is longer than the interval before it by more than this factor: there the pace of that
-/// interval is no measure of the whole way.
+/// Ratio of an interval to the one before it from which it counts as a pause: the speed before it is no measure of the
+/// whole path then.
 const PAUSE: f64 = 4.0;
 
 /// A sampled pose and its time.
@@ -27,17 +27,16 @@ pub struct Sampled {
 pub struct HandlePath {
     from: Rigid,
     to: Rigid,
-    /// What bends it: the second difference of place and quaternion.
+    /// Curvature: the second difference of position and quaternion.
     bend: (DVec3, DQuat),
     /// Length up to each of the chords' ends, m.
     lengths: [f64; CHORDS + 1],
 }
 
 impl HandlePath {
-    /// The way from `from` to `to` of a hand that came from `before`; straight without it. Across a
-    /// pause it bends by at most what lets it go nowhere backward: a hand that was fast before may have
-    /// stopped in it. Its length is that of the farther of the ferrule and the point of a head of
-    /// `head_m`.
+    /// The path from `from` to `to` of a hand that came from `before`; straight without it. Across a pause its bend is
+    /// limited so that it goes nowhere backward: a hand that was fast before may have stopped in it. Its length is that
+    /// of the farther of the ferrule and the point of a head of `head_m`.
     #[must_use]
     pub fn new(before: Option<&Sampled>, from: &Sampled, to: &Sampled, head_m: f64) -> Self {
         let near = |of: DQuat, q: DQuat| if of.dot(q) < 0.0 { -q } else { q };
@@ -104,7 +103,7 @@ impl HandlePath {
         }
     }
 
-    /// The parameter where the way is `length` long, m.
+    /// The parameter at which the path is `length` long, m.
     #[must_use]
     pub fn after(&self, length: f64) -> f64 {
         let chord = (1..CHORDS)
@@ -120,7 +119,7 @@ impl HandlePath {
     }
 }
 
-/// The bend of a way with which neither its part along the surface nor its height turns back.
+/// The bend of a path with which neither its part along the surface nor its height turns back.
 fn limited(bend: DVec3, path: DVec3) -> DVec3 {
     let along = bend.truncate().clamp_length_max(path.truncate().length());
     along.extend(bend.z.clamp(-path.z.abs(), path.z.abs()))
@@ -135,18 +134,17 @@ fn limited_turn(bend: DQuat, turn: DQuat) -> DQuat {
 /// A segment of the path between two samples.
 #[derive(Clone, Copy, Debug)]
 pub struct PathSegment<'a> {
-    /// The way.
+    /// The path.
     pub path: &'a HandlePath,
     /// Its parameter where the piece begins.
     pub from: f64,
     /// And where it ends.
     pub to: f64,
-    /// When the way begins, rig clock, ns.
+    /// Start of the path, rig clock, ns.
     pub start_ns: u64,
     /// And when it ends.
     pub end_ns: u64,
-    /// How far the brush goes from the solve before to its end, m: where no sample lay between, as
-    /// long as the piece.
+    /// Path length from the previous solve to its end, m: the length of the piece unless a sample was in between.
     pub length_m: f64,
 }
 

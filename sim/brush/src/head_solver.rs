@@ -88,7 +88,7 @@ impl SolvedHead {
         }
     }
 
-    /// Whether a joint touches the surface.
+    /// True if a joint touches the surface.
     #[must_use]
     pub fn touches(&self) -> bool {
         self.on_surface()
@@ -103,7 +103,7 @@ impl SolvedHead {
             .sum()
     }
 
-    /// What touches the surface.
+    /// Contacts with the surface.
     #[must_use]
     pub fn contacts(&self) -> Vec<Contact> {
         self.on_surface()
@@ -201,8 +201,8 @@ impl SolvedHead {
         converged
     }
 
-    /// Bends the core of a head that has moved to `brush`. An upright one gives way to where the handle
-    /// comes from.
+    /// Bends the core of a head that has moved to `brush`. An upright one gives way in the direction from which the
+    /// handle comes.
     fn bend_core(
         &mut self,
         room: &mut HeadSolver,
@@ -250,7 +250,7 @@ fn face(constraints: &mut Vec<ContactConstraint>, ends: &[DVec3], obstacles: &[O
     }
 }
 
-/// What the solver is asked for by a brush file with this tuft.
+/// Solver settings for a brush file with this tuft.
 #[must_use]
 pub fn settings_of(file: &BrushFile, tuft: &SpineLayout) -> Settings {
     let contact = &file.contact;

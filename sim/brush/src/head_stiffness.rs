@@ -1,4 +1,4 @@
-//! Stiffness of the head, as the hand feels it: k₁ of Baxter 2004, eq. 8.1, from the solved spines, the tuples of
+//! Stiffness of the head, for the force on the hand: k₁ of Baxter 2004, eq. 8.1, from the solved spines, the tuples of
 //! fig. 8.2 from the brush file, and the solved head itself as it is pressed down.
 
 use glam::DVec3;
@@ -13,7 +13,7 @@ use crate::spine_root::SpineRoot;
 
 /// A head less pressed in than this share of its length feels as at rest.
 const LEAST_DEPTH: f64 = 0.04;
-/// A head that is laid flat counts as this share of its length along the normal.
+/// Least extent of a head along the normal, as a share of its length: for a head pressed flat.
 const LEAST_ALONG: f64 = 0.2;
 /// A bent head feels at most this many times as stiff, or as soft, as at rest.
 const MOST: f64 = 4.0;
@@ -27,8 +27,8 @@ pub struct HeadStiffness {
 }
 
 impl HeadStiffness {
-    /// A head that touches nothing: half of the loads, summed, under which its spines begin to give
-    /// way (1/ΣK⁻¹ by the length), for a head is rarely held upright.
+    /// A head that touches nothing: half of the loads, summed, under which its spines begin to buckle (1/ΣK⁻¹ by the
+    /// length), for a head is rarely upright.
     #[must_use]
     pub fn at_rest(tuft: &SpineLayout, length_m: f64) -> Self {
         let load = |root: &SpineRoot| {
@@ -40,7 +40,7 @@ impl HeadStiffness {
         }
     }
 
-    /// A head that is held at `brush` over the surface z = 0 and presses with `force_n`.
+    /// A head at pose `brush` over the surface z = 0 that presses with `force_n`.
     #[must_use]
     pub fn bent(tuft: &SpineLayout, length_m: f64, brush: &Rigid, force_n: f64) -> Self {
         let rest = Self::at_rest(tuft, length_m);
@@ -50,7 +50,7 @@ impl HeadStiffness {
         if depth < LEAST_DEPTH || force_n <= 0.0 {
             return rest;
         }
-        // What is solved takes over from what is at rest as the head is pressed in.
+        // The solved force replaces the force at rest as the head is pressed in.
         let share = (depth / LEAST_DEPTH - 1.0).min(1.0);
         let bent = force_n * along / (depth * length_m);
         let bent = bent.clamp(rest.k1_n / MOST, MOST * rest.k1_n);
@@ -109,7 +109,7 @@ pub fn tuned(tuples: &[HermiteKnot], factor: f64) -> Vec<HermiteKnot> {
 /// A head that is pressed onto a surface, solved.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Press {
-    /// Where the brush is held, surface frame, m.
+    /// Pose of the brush, surface frame, m.
     pub pose: Rigid,
     /// The normal force of all contacts, N.
     pub force_n: f64,
@@ -117,8 +117,8 @@ pub struct Press {
     pub stiffness_n_m: f64,
 }
 
-/// How far a head is pressed at once, m, and further for the derivative: over a much shorter way its
-/// joints stick, and it is ten times as stiff as the hand that goes on will feel it.
+/// Step of depth for the force, m, and the larger one for its derivative: over a much shorter distance the joints
+/// stick, and the head is ten times as stiff as in a continued press.
 pub(crate) const AT_ONCE_M: f64 = 5e-4;
 
 /// Lowers a brush, leaning by `theta`, onto the surface z = 0 and solves it where its undeformed
@@ -209,8 +209,8 @@ mod tests {
         }
     }
 
-    /// Where a head is pressed in by half its length the tuples of its file are those of the solved
-    /// head, between upright and 45°, or not much beside.
+    /// True if the tuples of a file agree with the solved head pressed in by half its length, between upright and 45°,
+    /// to a tolerance.
     fn agrees(file: &BrushFile, tuples: &[HermiteKnot]) -> bool {
         let forces = [0.0, FRAC_PI_4].map(|theta| {
             let projected = file.length_m() * maulstick_num::cos(theta);

@@ -1,20 +1,19 @@
-//! How a pen is led, so that the mark lies under its point.
+//! Lead of a pen: an offset of the handle that brings the mark under the pen's point.
 //!
-//! A pen or a mouse gives a point of the surface, and the painter looks there; but a head that is
-//! pressed down bends, and touches beside where the handle's axis meets the surface. So the handle is
-//! held beside the point, as a hand holds it that looks at the mark: at the first touch by as much as
-//! the mark lies beside it, then as [`Beside`](crate::mark::Beside) says for how it is held, and what
-//! is left, for example of the drag, is taken back along the way.
+//! A pen or a mouse gives a point of the surface, and the painter looks there; but a head that is pressed down bends,
+//! and touches beside the point where the handle's axis meets the surface. So the handle stands beside the point, as in
+//! a hand that watches the mark: at the first touch by the mark's offset, then as [`Beside`](crate::mark::Beside) gives
+//! it for the pose, and the rest, for example of the drag, is taken back along the path.
 
 use glam::DVec2;
 use maulstick_num::exp;
 
 /// Way along which the share 1 − 1/e of what is left is taken back, m.
 const BACK_M: f64 = 1e-3;
-/// The handle is led along a way by at most so many times its length.
+/// Largest change of the lead along a path, in lengths of the path.
 const FASTEST: f64 = 4.0;
 
-/// How far the handle of a pen is held beside its point, m.
+/// Offset of a pen's handle from its point, m.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Lead {
     /// In all.
@@ -24,7 +23,7 @@ pub struct Lead {
 }
 
 impl Lead {
-    /// Of a pen that is set down, whose mark lies `beside` its point, where the table says `tabled`.
+    /// Lead of a pen that is set down, whose mark is `beside` its point, where the table gives `tabled`.
     #[must_use]
     pub fn landed(beside: DVec2, tabled: DVec2) -> Self {
         Self {
@@ -33,8 +32,8 @@ impl Lead {
         }
     }
 
-    /// Goes on along a way at the end of which the mark lies `beside` the point although the handle is
-    /// led; `tabled` as in [`landed`](Self::landed).
+    /// Continues along a path at the end of which the mark is `beside` the point although the handle is led; `tabled`
+    /// as in [`landed`](Self::landed).
     pub fn go(&mut self, beside: DVec2, tabled: DVec2, way_m: f64, length_m: f64) {
         self.rest += beside * (exp(-way_m / BACK_M) - 1.0);
         self.rest = self.rest.clamp_length_max(0.5 * length_m);

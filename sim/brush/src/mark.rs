@@ -1,4 +1,4 @@
-//! The mark under a head: its middle, and how far beside a pen's point the handle is held for it.
+//! The mark under a head: its middle, and the offset of the handle from a pen's point that it needs.
 
 use glam::{DVec2, DVec3};
 use maulstick_num::geometry::{Rigid, rotation};
@@ -22,7 +22,7 @@ const CELLS: f64 = 20.0;
 /// Film of a brush that has painted a little: a full one reaches farther only at first, µm.
 const FILM_UM: f64 = 420.0;
 
-/// How much deeper than into the tooth a fully pressed head comes to lie among its own bristles, mm.
+/// Additional depth, beyond the tooth, to which a fully pressed head sinks among its own bristles, mm.
 const GIVES_MM: f64 = 0.09;
 
 /// Measures the mark of a head.
@@ -59,8 +59,8 @@ impl Mark {
         }
     }
 
-    /// The middle of what a head touches that is held at `brush` over the surface z = 0 and bent by
-    /// `angles`, m; none where it touches nothing.
+    /// The middle of the contact of a head at pose `brush` over the surface z = 0, bent by `angles`, m; `None` if it
+    /// touches nothing.
     pub fn middle(&mut self, brush: &Rigid, angles: &[[f32; 2]]) -> Option<DVec2> {
         let hold = Hold {
             brush,
@@ -114,7 +114,7 @@ impl Mark {
     }
 }
 
-/// Where the axis of a handle meets the surface z = 0: the point of a pen, m.
+/// Point where the axis of a handle meets the surface z = 0: the point of a pen, m.
 #[must_use]
 pub fn point_of(handle: &Rigid) -> DVec2 {
     let axis = handle.vector(DVec3::Z);
@@ -131,8 +131,7 @@ const TURNS: usize = 12;
 /// A handle leans by its head's bend where it leans less than about so much itself, rad.
 const UPRIGHT: f64 = 0.05;
 
-/// How far the middle of a head's mark lies beside the point of its handle when it is set down: a
-/// table, solved.
+/// Offset of the middle of a head's mark from the point of its handle when it is set down: a table, solved.
 #[derive(Clone, Debug)]
 pub struct Beside {
     turns: usize,
@@ -178,8 +177,8 @@ impl Beside {
         Self { turns, table }
     }
 
-    /// The middle of the mark beside the point of `handle`, held over the surface z = 0 with a head of
-    /// `length_m` that is `bent` to one side; the handle counts as lowered onto the surface. All m.
+    /// The middle of the mark relative to the point of `handle`, over the surface z = 0 with a head of `length_m` that
+    /// is `bent` to one side; the handle counts as lowered onto the surface. All m.
     #[must_use]
     pub fn at(&self, handle: &Rigid, bent: DVec2, length_m: f64) -> DVec2 {
         let axis = handle.vector(DVec3::Z);

@@ -30,10 +30,10 @@ const FARTHEST_M: f64 = 0.25e-3;
 const MOST_SOLVES: f64 = 64.0;
 /// The time for which that many are enough, ns: a pause that is bridged may have more.
 const MOST_SOLVES_NS: f64 = 1e8;
-/// Times that a pen is set down in thought, to find where its mark lies: an upright head may bend to
-/// another side where its handle is held beside the point.
+/// Trial landings of a pen that find its mark: an upright head may bend to another side once its handle stands beside
+/// the point.
 const LANDINGS: usize = 2;
-/// Times that a piece of the way is halved at most.
+/// Largest number of times that a piece of the path is halved.
 const SPLITS: u32 = 2;
 
 /// A brush in the hand.
@@ -54,7 +54,7 @@ pub struct BrushModel {
     last_contact_ns: u64,
     /// Factor on the stiffness of the file.
     tuned: f64,
-    /// How soaked it is, 0 to 1.
+    /// Wetness, 0 to 1.
     wetness: f64,
 }
 
@@ -65,13 +65,13 @@ struct TrackedBrush {
     /// Its zoom: on a canvas that is larger the brush bends otherwise.
     zoom: f64,
     head: SolvedHead,
-    /// Where the device holds it.
+    /// Newest sample of the device.
     newest: Sampled,
-    /// Whether a pen holds it, which is led so that the mark lies under its point.
+    /// True for a pen, which is led so that the mark is under its point.
     is_pen: bool,
-    /// How far it is held beside that.
+    /// Lead of the handle.
     lead: Lead,
-    /// Where the head is bent to along the surface.
+    /// Bend of the head along the surface.
     bent: DVec2,
     /// The normal force of all contacts there, N.
     force_n: f64,
@@ -145,7 +145,7 @@ impl BrushModel {
         self.tuft.bond = made + (soaked - made) * self.wetness;
     }
 
-    /// Whether there is a scene.
+    /// True if there is a scene.
     #[must_use]
     pub fn has_scene(&self) -> bool {
         self.desk.is_some()
@@ -167,15 +167,14 @@ impl BrushModel {
         self.desk.as_ref()
     }
 
-    /// Follows one sample of the device `origin`: none while there is no scene, else the solves on
-    /// the way to it, the last at the sample itself.
+    /// Follows one sample of the device `origin`: empty while there is no scene, else the solves on the path to it, the
+    /// last at the sample itself.
     ///
-    /// A touching brush is solved each time it has moved by about a step, counted on across samples,
-    /// so that its path does not depend on how often it is sampled; between two of these a sample gives
-    /// a preview. A pen lands and lifts at its sample. A pause of up to [`BRIDGED_NS`] in contact is
-    /// crossed like any way between two samples. A longer one, another device, time that does not
-    /// advance and a zoom restart the solver at the new pose: the solve says so, and nothing is painted
-    /// from the one before to it. After a pause alone the head stays bent as it was.
+    /// A touching brush is solved each time it has moved by about a step, counted on across samples, so that its path
+    /// does not depend on how often it is sampled; between two of these a sample gives a preview. A pen lands and lifts
+    /// at its sample. A pause of up to [`BRIDGED_NS`] in contact is crossed like any path between two samples. A longer
+    /// one, another device, time that does not advance and a zoom restart the solver at the new pose: the solve says
+    /// so, and nothing is painted from the one before to it. After a pause alone the head stays bent as it was.
     pub fn follow(&mut self, origin: Origin, event_ns: u64, sample: &StylusSample) -> Vec<Solve> {
         if self.follows != Some(origin) {
             self.follows = Some(origin);
@@ -244,8 +243,7 @@ impl BrushModel {
         solve
     }
 
-    /// Solves a brush that touched nothing at a sample. A pen is held so that its mark lies where it
-    /// points.
+    /// Solves a brush that touched nothing at a sample. A pen is posed so that its mark is at its point.
     fn land(
         &mut self,
         tracked: &mut TrackedBrush,
@@ -271,7 +269,7 @@ impl BrushModel {
         solve
     }
 
-    /// Where a brush is held at a sample.
+    /// Pose of a brush at a sample.
     fn placed(&self, tracked: &TrackedBrush, at: &Sampled) -> Rigid {
         let mut brush = at.pose;
         brush.translation += tracked.lead.shift.extend(0.0);
@@ -279,7 +277,7 @@ impl BrushModel {
         brush
     }
 
-    /// Solves a touching brush at each step of its way to a sample, and gives a preview of it there.
+    /// Solves a touching brush at each step of its path to a sample, and gives a preview of it there.
     fn go(&mut self, tracked: &mut TrackedBrush, here: Sampled, plane: &Plane) -> Vec<Solve> {
         let start_ns = tracked.newest.event_ns;
         let path = HandlePath::new(
@@ -317,8 +315,8 @@ impl BrushModel {
         solves
     }
 
-    /// Solves the end of a piece of the way, and first its middle where a joint in contact would move
-    /// more than a cell.
+    /// Solves the end of a piece of the path, and first its middle where a joint in contact would move more than a
+    /// cell.
     fn walk(
         &mut self,
         tracked: &mut TrackedBrush,
@@ -345,7 +343,7 @@ impl BrushModel {
         solves.push(solve);
     }
 
-    /// Leads a pen after a way, so that the mark comes to lie where it points.
+    /// Leads a pen after a path, so that the mark comes to its point.
     fn lead(&mut self, tracked: &mut TrackedBrush, end: &Sampled, way_m: f64) {
         if !tracked.is_pen {
             return;
@@ -359,13 +357,13 @@ impl BrushModel {
         }
     }
 
-    /// How far the mark lies beside the point of a pen that is set down as it is held now, m.
+    /// Offset of the mark from the point of a pen that is set down in the current pose, from the table, m.
     fn tabled(&self, tracked: &TrackedBrush, at: &Sampled) -> DVec2 {
         let of = |table: &Beside| table.at(&at.pose, tracked.bent, self.file.length_m());
         self.beside.as_ref().map_or(DVec2::ZERO, of)
     }
 
-    /// Solves where marks lie, unless that is known.
+    /// Solves the table of marks, unless it is known.
     fn solve_table(&mut self) {
         if self.beside.is_none() {
             let (layout, length) = (self.file.spines.layout, self.file.length_m());
@@ -416,7 +414,7 @@ impl BrushModel {
         }
     }
 
-    /// Bends all spines of a brush that is held at `brush`; whether all of them converged.
+    /// Bends all spines of a brush at pose `brush`; true if all of them converged.
     fn bend(&mut self, tracked: &mut TrackedBrush, brush: &Rigid, plane: &Plane) -> bool {
         let length = self.file.length_m();
         let obstacles = match &self.desk {
@@ -446,7 +444,7 @@ impl BrushModel {
         })
     }
 
-    /// Contact lasts from one solve of a way to the next, however long the pause between its samples.
+    /// Contact lasts from one solve of a path to the next, however long the pause between its samples.
     fn stay(&mut self, tracked: &TrackedBrush, until_ns: u64) {
         if tracked.head.touches() {
             self.last_contact_ns = until_ns;

@@ -1,4 +1,4 @@
-//! Where the palette lies: beside the canvas, or slid over it; and how its board is rounded.
+//! Placement of the palette, beside the canvas or slid over it, and the rounded corners of its board.
 
 use glam::{DVec2, DVec3};
 use maulstick_num::geometry::{Rigid, shortest_arc};
@@ -9,8 +9,8 @@ use maulstick_types::scene::{PALETTE, Surface, Well, WellKind};
 pub const BOARD_M: f64 = 4e-3;
 /// Gap between the palette at rest and the canvas, m.
 pub const GAP_M: f64 = 0.01;
-/// Height of the palette's face above the canvas that it is slid over, m: its board is 4 mm thick, and
-/// paint lies under it.
+/// Height of the palette's face above the canvas that it is slid over, m: its board is 4 mm thick, and there is paint
+/// under it.
 const OVER_M: f64 = 0.01;
 /// Poses that differ by less are the same, m and parts of a quaternion.
 const SAME: f64 = 1e-9;
@@ -34,7 +34,7 @@ pub fn size_m(surface: &Surface) -> DVec2 {
     DVec2::new(across, up) * surface.cell_m
 }
 
-/// The palette beside the canvas as that lies at the beginning, in the middle of the desk.
+/// The palette beside the canvas at its initial place, in the middle of the desk.
 #[must_use]
 pub fn beside(canvas: &Surface, palette: &Surface, side: Side) -> Pose {
     let (wide, own) = (size_m(canvas).x, size_m(palette) * palette.zoom);
@@ -48,7 +48,7 @@ pub fn beside(canvas: &Surface, palette: &Surface, side: Side) -> Pose {
     }
 }
 
-/// The palette in the middle of the desk, over the canvas however that lies.
+/// The palette in the middle of the desk, over the canvas whatever its placement.
 #[must_use]
 pub fn over(canvas: &Surface, palette: &Surface) -> Pose {
     let plane = Rigid::from(&canvas.pose);
@@ -63,7 +63,7 @@ pub fn over(canvas: &Surface, palette: &Surface) -> Pose {
     .to_pose()
 }
 
-/// Whether two poses differ by rounding alone.
+/// True if two poses differ by rounding alone.
 #[must_use]
 pub fn is_same(a: &Pose, b: &Pose) -> bool {
     let near = |a: &[f64], b: &[f64]| a.iter().zip(b).all(|(a, b)| (a - b).abs() < SAME);
@@ -85,7 +85,7 @@ pub fn corner_radii(surface: &Surface) -> [f64; 4] {
     }
 }
 
-/// The side on which most paints lie.
+/// The side with most of the paints.
 fn side_of_wells(palette: &Surface) -> Side {
     let middle = 0.5 * size_m(palette).x;
     let paints = palette.wells.iter().filter(|well| is_paint(well));
@@ -97,7 +97,7 @@ fn is_paint(well: &Well) -> bool {
     matches!(well.kind, WellKind::Paint { .. })
 }
 
-/// Whether a point of a surface, in its own lengths, lies on it and not beyond a rounded corner.
+/// True if a point of a surface, in its own lengths, is on it and not beyond a rounded corner.
 #[must_use]
 pub fn is_on(size: DVec2, radii: [f64; 4], at: DVec2) -> bool {
     if at.cmplt(DVec2::ZERO).any() || at.cmpge(size).any() {
@@ -120,7 +120,7 @@ pub fn mirrored(wells: &[Well], size: DVec2) -> Vec<Well> {
     wells.iter().map(mirror).collect()
 }
 
-/// The canvas as it lies at the beginning: unzoomed, its middle in the desk's origin.
+/// The canvas at its initial place: unzoomed, its middle at the desk's origin.
 #[must_use]
 pub fn canvas_at_rest(canvas: &Surface) -> Surface {
     let size = size_m(canvas);
@@ -134,7 +134,7 @@ pub fn canvas_at_rest(canvas: &Surface) -> Surface {
     }
 }
 
-/// Whether the palette is nearer to its place over the canvas than to the one beside it.
+/// True if the palette is nearer to its place over the canvas than to the one beside it.
 #[must_use]
 pub fn is_out(canvas: &Surface, palette: &Surface, side: Side) -> bool {
     let at = |pose: &Pose| DVec3::from_array(pose.position_m);

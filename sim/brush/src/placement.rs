@@ -8,7 +8,7 @@ use maulstick_types::scene::Surface;
 
 /// Zooms that a painter can use.
 pub const ZOOMS: [f64; 2] = [0.1, 20.0];
-/// How far the canvas goes from the middle of the desk, m, before its zoom.
+/// Farthest distance of the canvas from the middle of the desk, m, before its zoom.
 pub const FARTHEST_M: f64 = 1.0;
 /// A surface is tilted by this much at most, rad.
 pub const TILT_MOST: f64 = 1.05;
@@ -55,8 +55,8 @@ impl SurfacePlacement {
         }
     }
 
-    /// Larger by a factor about a point of the desk. A zoom that was told otherwise, beyond those of a
-    /// painter, goes no farther; it does not leap to the bound.
+    /// Larger by a factor about a point of the desk. A zoom set otherwise, beyond those of a painter, goes no farther;
+    /// it does not leap to the bound.
     #[must_use]
     pub fn zoomed(&self, about: DVec3, factor: f64) -> Self {
         let [least, most] = [ZOOMS[0].min(self.zoom), ZOOMS[1].max(self.zoom)];
@@ -99,7 +99,7 @@ impl SurfacePlacement {
     }
 }
 
-/// A surface that lies so.
+/// A surface with this placement.
 #[must_use]
 pub fn placed(surface: &Surface, placement: &SurfacePlacement) -> Surface {
     Surface {

@@ -184,7 +184,7 @@ fn one_each(field: &str, number: usize, joints: usize) -> Result<(), BrushError>
     })
 }
 
-/// Where the ferrule is held at a time.
+/// Pose of the ferrule at a time.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TrialPose {
     /// s.
@@ -194,15 +194,15 @@ pub struct TrialPose {
     pub brush: Rigid,
 }
 
-/// What is wrong with a list of poses.
+/// Error in a list of poses.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[error("{what}")]
 pub struct PoseError {
     /// Line in the text, from 1.
     pub line: usize,
-    /// What.
+    /// The error.
     pub what: String,
-    /// What to do.
+    /// Advice.
     pub help: &'static str,
 }
 
@@ -312,7 +312,7 @@ pub struct TrialRow {
     pub residual: f64,
     /// Newton steps.
     pub iterations: usize,
-    /// Whether the solver reached its tolerance; if not, the spine kept its shape.
+    /// True if the solver reached its tolerance; if not, the spine kept its shape.
     pub converged: bool,
 }
 

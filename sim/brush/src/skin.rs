@@ -25,7 +25,7 @@ const WITHIN: f64 = 0.955_341_801_261_479_5;
 /// A control vertex.
 #[derive(Clone, Debug)]
 struct Vertex {
-    /// Where it is at rest, brush frame, m.
+    /// Position at rest, brush frame, m.
     at: DVec3,
     /// Joints, counted through all spines, whose segments move it, with their weights.
     weights: Vec<(usize, f64)>,
@@ -35,7 +35,7 @@ struct Vertex {
 #[derive(Clone, Debug)]
 pub struct Skin {
     control: Vec<Vertex>,
-    /// Where segments begin at rest, and their frames, undone.
+    /// Inverse frames of the segments at rest, each at its beginning.
     rest: Vec<Rigid>,
     /// Shares of control vertices, those of vertex i from `starts[i]` to `starts[i + 1]`.
     starts: Vec<usize>,
@@ -171,7 +171,7 @@ impl Skin {
     }
 }
 
-/// The frames of a spine's segments, each turned from the one before by the shortest way.
+/// The frames of a spine's segments, each rotated from the one before by the shortest arc.
 fn frames(spine: &Spine, shape: &SpineShape) -> Vec<Rigid> {
     let mut rotation: DQuat = shape.frame;
     let mut before = shape.base();

@@ -11,7 +11,7 @@ use maulstick_num::{acos, atan2, sin_cos};
 
 use crate::energy::spring::rest_after;
 
-/// What a spine is made of.
+/// Lengths, stiffness and friction of a spine.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Spine {
     /// Lengths of the segments, m, from the ferrule to the point.
@@ -20,15 +20,15 @@ pub struct Spine {
     pub stiffness: Vec<f64>,
     /// Inner friction D of each joint (Baxter 2004, eq. 3.4), N·m.
     pub damping: Vec<f64>,
-    /// Where each segment rests if the one before goes along −z of the spine's frame, unit vectors;
-    /// empty for a spine that is straight at rest.
+    /// Direction of each segment at rest if the one before goes along −z of the spine's frame, unit vectors; empty for
+    /// a spine that is straight at rest.
     pub rest: Vec<DVec3>,
 }
 
 impl Spine {
-    /// A spine of `joints` equal segments with bending stiffness `ei` (N·m²): K = EI/l, doubled at
-    /// the clamp, between which and the first joint only half a segment lies. With the doubling the
-    /// chain converges to the beam with second order in its segments; without, with first.
+    /// A spine of `joints` equal segments with bending stiffness `ei` (N·m²): K = EI/l, doubled at the clamp, between
+    /// which and the first joint there is only half a segment. With the doubling the chain converges to the beam with
+    /// second order in its segments; without, with first.
     #[must_use]
     pub fn uniform(length_m: f64, joints: usize, ei: f64) -> Self {
         let segment = length_m / joints as f64;
@@ -84,7 +84,7 @@ impl Spine {
 /// A spine in space.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SpineShape {
-    /// Where it begins.
+    /// Root point.
     pub root: DVec3,
     /// Its frame: unbent it would go along −z.
     pub frame: DQuat,

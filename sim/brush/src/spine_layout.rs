@@ -1,4 +1,4 @@
-//! The tuft: where the spines of a head stand in the ferrule.
+//! The tuft: positions of the spines of a head in the ferrule.
 
 use glam::{DVec2, DVec3};
 use maulstick_num::geometry::{Rigid, shortest_arc};
@@ -11,7 +11,7 @@ use crate::solver::Neighbour;
 use crate::spine::Spine;
 use crate::spine_root::SpineRoot;
 
-/// The ferrule is held off the surface by at least this share of the head's length.
+/// Least height of the ferrule over the surface, as a share of the head's length.
 const LEAST_HEIGHT: f64 = 0.05;
 
 /// The spines of a head.
@@ -25,7 +25,7 @@ pub struct SpineLayout {
     pub rooms: Vec<Vec<Room>>,
     /// Stiffness of that room, N/m.
     pub repulsion_n_m: f64,
-    /// What the spines are bound to.
+    /// Core to which the spines are bound.
     pub core: Core,
     /// Stiffness of their bonds by that of their joints.
     pub bond: f64,
@@ -38,7 +38,7 @@ pub struct Room {
     pub other: usize,
     /// The joint of both.
     pub joint: usize,
-    /// How far apart they are at rest, m.
+    /// Distance at rest, m.
     pub at_rest_m: f64,
 }
 
@@ -90,7 +90,7 @@ impl SpineLayout {
         }
     }
 
-    /// Where the spines stand, in shares of half the ferrule's width and thickness.
+    /// Positions of the spines, in shares of half the ferrule's width and thickness.
     #[must_use]
     pub fn places(&self, file: &BrushFile) -> Vec<DVec2> {
         let half = DVec2::new(file.radius_m(0.0), file.half_thickness_m(0.0));
@@ -98,7 +98,7 @@ impl SpineLayout {
         roots.map(|root| root.origin.truncate() / half).collect()
     }
 
-    /// Height of the lowest root of a brush that is held at `brush`, m.
+    /// Height of the lowest root of a brush at pose `brush`, m.
     #[must_use]
     pub fn lowest_root(&self, brush: &Rigid) -> f64 {
         let roots = self.roots.iter().map(|root| brush.point(root.origin).z);
@@ -127,7 +127,7 @@ impl SpineLayout {
         self.roots.iter().map(|root| root.spine.joints()).sum()
     }
 
-    /// What pushes spine `number` aside, given where the ends of all segments are.
+    /// Neighbours that repel spine `number`, given the ends of all segments.
     pub fn neighbours(&self, number: usize, ends: &[Vec<DVec3>], into: &mut Vec<Neighbour>) {
         into.clear();
         if self.repulsion_n_m > 0.0 {

@@ -8,7 +8,7 @@ use crate::spine::{Spine, SpineShape};
 /// A spine and where it begins.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SpineRoot {
-    /// Where it leaves the ferrule, brush frame, m.
+    /// Origin in the ferrule, brush frame, m.
     pub origin: DVec3,
     /// Turns the brush frame so that its −z is the spine's direction where it leaves the ferrule.
     pub lean: DQuat,

@@ -1,4 +1,4 @@
-//! What a painting's file holds, and whether all of it is whole.
+//! Contents of a painting's file, and a check that all of it is intact.
 
 use std::path::Path;
 
@@ -8,7 +8,7 @@ use crate::database::{Access, Database};
 use crate::error::DocumentError;
 use crate::schema::VERSION;
 
-/// What a file holds.
+/// Contents of a file.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Contents {
     /// Version of its schema.

@@ -14,10 +14,10 @@ use crate::schema::{self, Table};
 use crate::sum::Sum;
 use crate::{loads, planes};
 
-/// What a file is opened for.
+/// Purpose for which a file is opened.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Access {
-    /// To paint in it; it is begun where there is none.
+    /// To paint in it; it is created if it does not exist.
     Paint,
     /// To read it; nothing is changed.
     Read,
@@ -49,7 +49,7 @@ pub(crate) fn beside(path: &Path, suffix: &str) -> PathBuf {
     name.into()
 }
 
-/// Where a file really is: what a link leads to, and SQLite keeps its journal beside.
+/// Real path of a file: the target of a link, beside which SQLite puts its journal.
 pub(crate) fn resolved(path: &Path) -> PathBuf {
     std::fs::canonicalize(path).unwrap_or_else(|_| path.to_owned())
 }
@@ -65,7 +65,7 @@ pub(crate) fn folded(path: &Path) -> Result<(), DocumentError> {
     }
 }
 
-/// Whether a painting is there that can go on; false where one is to be begun.
+/// True if there is a painting to continue; false if one is to be created.
 ///
 /// # Errors
 /// Any [`DocumentError`], and nothing is changed.
@@ -91,7 +91,7 @@ fn length(path: &Path) -> Option<u64> {
     std::fs::metadata(path).ok().map(|about| about.len())
 }
 
-/// Whether a painting is to be begun there.
+/// True if a painting is to be created there.
 pub(crate) fn is_new(path: &Path) -> Result<bool, DocumentError> {
     let Some(length_found) = length(path) else {
         if is_companion(path) {
@@ -134,12 +134,12 @@ pub(crate) fn is_new(path: &Path) -> Result<bool, DocumentError> {
     }
 }
 
-/// Where a SQLite file says how it is written.
+/// Offset of the write version in a SQLite file.
 const WRITE_VERSION: usize = 18;
-/// What stands there where no write-ahead log was ever asked for, as every painting does first.
+/// Its value if no write-ahead log was ever requested, as in every new painting.
 const ROLLBACK: u8 = 1;
 
-/// Whether these are a painting's first bytes with a few of them wrong.
+/// True if these are a painting's first bytes with a few of them wrong.
 fn damaged_head(head: &[u8]) -> bool {
     head.iter()
         .zip(MAGIC)
@@ -149,8 +149,7 @@ fn damaged_head(head: &[u8]) -> bool {
 }
 
 impl Database {
-    /// Opens a painting; `vfs` is the name of SQLite's way to the file, if not the usual one. True
-    /// where it was begun.
+    /// Opens a painting; `vfs` is the name of the SQLite VFS, if not the usual one. True if it was created.
     ///
     /// # Errors
     /// Any [`DocumentError`].
@@ -239,7 +238,7 @@ impl Database {
         Ok(())
     }
 
-    /// Opens a painting that nobody can write to, if no journal lies beside it.
+    /// Opens a painting that nobody can write to, if there is no journal beside it.
     fn open_frozen(path: &Path) -> Result<Self, DocumentError> {
         if length(&beside(path, "-wal")).is_some_and(|length| length > 0) {
             return Err(DocumentError::ReadOnly(
@@ -268,10 +267,10 @@ impl Database {
         })
     }
 
-    /// Closes it with the journal that was there when it was opened, as it is; one of its own it folds in.
+    /// Closes it with the journal that was there when it was opened, unchanged; a journal of its own is merged.
     ///
     /// # Errors
-    /// What SQLite says.
+    /// The error of SQLite.
     pub fn leave(self) -> Result<(), DocumentError> {
         match self.unclosed {
             true => self.connection.close().map_err(|(_, error)| error.into()),
@@ -279,17 +278,17 @@ impl Database {
         }
     }
 
-    /// Folds the journal into the file and closes it.
+    /// Merges the journal into the file and closes it.
     ///
     /// # Errors
-    /// What SQLite says.
+    /// The error of SQLite.
     pub fn close(self) -> Result<(), DocumentError> {
         if !self.connection.is_readonly("main")? {
             let folded =
                 self.connection
                     .query_row("PRAGMA wal_checkpoint(TRUNCATE)", params![], |_| Ok(()));
             match folded.map_err(DocumentError::from) {
-                // What is in the journal is safe there, and folded in when there is room.
+                // Data in the journal are safe there, and are merged in when there is room.
                 Err(DocumentError::Full) => {}
                 folded => folded?,
             }
@@ -315,10 +314,10 @@ impl Database {
         }
     }
 
-    /// Writes all that it holds, with its journal, to a new file.
+    /// Writes all its content, with its journal, to a new file.
     ///
     /// # Errors
-    /// What SQLite says.
+    /// The error of SQLite.
     pub(crate) fn copy_to(&self, to: &Path) -> Result<(), DocumentError> {
         let to = to
             .to_str()
@@ -359,7 +358,7 @@ impl Database {
         planes::decode(slots as u32, &data, base.as_ref()).map_err(|what| damaged(&what))
     }
 
-    /// What a brush carried.
+    /// Load of a brush.
     ///
     /// # Errors
     /// As [`planes`](Self::planes).
@@ -378,7 +377,7 @@ impl Database {
         loads::decode(&data).map_err(|what| damaged(&what))
     }
 
-    /// A tile as it was shown; none where there is none, or it is damaged.
+    /// A tile as it was shown; `None` if it is absent or damaged.
     #[must_use]
     pub fn shown(&self, place: i64, version: i64, look: i64) -> Option<Vec<u8>> {
         let query = "SELECT data, sum FROM shown WHERE place = ?1 AND version = ?2 AND look = ?3";

@@ -1,4 +1,4 @@
-//! An open painting: the painter's thread only hands over what was accepted, and moments of the painting.
+//! An open painting: the painter's thread only hands over accepted records and checkpoints.
 
 use std::path::{Path, PathBuf};
 use std::sync::atomic::Ordering::SeqCst;
@@ -17,16 +17,16 @@ use crate::queues::{Life, Pages, Shared, Shelf};
 use crate::thread::Thread;
 use crate::writing::Moment;
 
-/// How a document is opened.
+/// Settings for opening a document.
 #[derive(Clone, Debug)]
 pub struct DocumentSettings {
     /// The file.
     pub path: PathBuf,
-    /// What for.
+    /// Purpose.
     pub access: Access,
     /// Most bytes of pages in memory.
     pub memory: usize,
-    /// Name of SQLite's way to the file, if not the usual one.
+    /// Name of the SQLite VFS, if not the usual one.
     pub vfs: Option<String>,
 }
 
@@ -125,8 +125,8 @@ impl Document {
             .back(Arc::new(Pages(Arc::clone(&self.shared))), memory);
     }
 
-    /// Has the painting go on in another file, with all that was handed over until then; painting goes
-    /// on meanwhile. [`arrived`](Self::arrived) tells when it is there.
+    /// Moves the painting to another file, with everything handed over until then; painting goes on meanwhile.
+    /// [`arrived`](Self::arrived) returns the result.
     pub fn move_to(&self, to: &Path, left: Left, replace: bool) -> Moving {
         let (answer, outcome) = mpsc::channel();
         let mut queues = self.shared.lock();
@@ -146,7 +146,7 @@ impl Document {
         }
     }
 
-    /// What became of a move; none while it goes on. Where it failed, the painting is where it was.
+    /// Result of a move; `None` while it runs. If it failed, the painting is still at its old path.
     pub fn arrived(&mut self, moving: &Moving) -> Option<Result<(), DocumentError>> {
         match moving.outcome.try_recv() {
             Ok(outcome) => Some(self.come_to(moving, outcome)),
@@ -207,14 +207,14 @@ impl Document {
         }
     }
 
-    /// Whether the last moment is written, so that the next one can be handed over.
+    /// True if the last checkpoint is written, so that the next one can be handed over.
     #[must_use]
     pub fn is_ready(&self) -> bool {
         let queues = self.shared.lock();
         queues.moment.is_none() && !queues.writing
     }
 
-    /// Whether nothing that was handed over waits to be written.
+    /// True if everything that was handed over is written.
     #[must_use]
     pub fn has_all(&self) -> bool {
         let queues = self.shared.lock();
@@ -241,8 +241,7 @@ impl Document {
         Duration::from_nanos(self.shared.page_in_ns.load(SeqCst))
     }
 
-    /// Why nothing is written at present, or what became of the file, and what to do about it; none where
-    /// all is well.
+    /// The reason why nothing is written at present, or the state of the file, with advice; `None` if all is well.
     #[must_use]
     pub fn fault(&self) -> Option<(String, &'static str)> {
         let queues = self.shared.lock();

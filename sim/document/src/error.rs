@@ -1,10 +1,10 @@
-//! What can go wrong with a document.
+//! Errors of a document.
 
 use std::path::PathBuf;
 
 use rusqlite::ffi;
 
-/// Why a document cannot be opened, read or written.
+/// The reason why a document cannot be opened, read or written.
 #[derive(Debug, thiserror::Error)]
 pub enum DocumentError {
     /// Something else than a painting.
@@ -24,7 +24,7 @@ pub enum DocumentError {
     /// Another program has it open.
     #[error("the painting is open in another program{}", holder.map_or(String::new(), |pid| format!(" (process {pid})")))]
     InUse {
-        /// Which, if the system says so.
+        /// Its process, if the system says so.
         holder: Option<i32>,
     },
     /// This program itself has it open, maybe by another name.
@@ -45,13 +45,13 @@ pub enum DocumentError {
     /// Bytes that do not hold together.
     #[error("the painting is damaged: {0}")]
     Damaged(String),
-    /// What was painted last could not be written.
+    /// The latest strokes could not be written.
     #[error("what was painted last is not in the file: {0}")]
     Unwritten(String),
     /// The file of an open painting is gone, and no other could be made.
     #[error("{0}")]
     Vanished(String),
-    /// What is left of a damaged painting makes none any more.
+    /// The rest of a damaged painting is not enough for a painting.
     #[error("the painting cannot be recovered: it has lost {0}")]
     Lost(String),
     /// A file is where a new one is to be written.
@@ -63,7 +63,7 @@ pub enum DocumentError {
 }
 
 impl DocumentError {
-    /// What to do about it.
+    /// Advice.
     #[must_use]
     pub fn help(&self) -> &'static str {
         match self {

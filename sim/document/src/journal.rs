@@ -1,4 +1,4 @@
-//! Accepted things as bytes: messages as on the bus, each with its index and its length before it.
+//! Accepted records as bytes: messages as on the bus, each preceded by its index and its length.
 
 use std::io::Read as _;
 
@@ -17,7 +17,7 @@ use crate::sum::Sum;
 
 /// A row's data has at most this many bytes.
 const MOST: usize = 1 << 28;
-/// Who writes what no brush has sent.
+/// Origin of records that no brush has sent.
 const ME: Origin = Origin {
     source: 0,
     epoch: 0,
@@ -59,7 +59,7 @@ fn message(record: &Record) -> Result<Vec<u8>, DocumentError> {
 /// Records, in order, as bytes.
 ///
 /// # Errors
-/// What the codec or the compressor says.
+/// The error of the codec or the compressor.
 pub fn write(records: &[Record]) -> Result<Vec<u8>, DocumentError> {
     let mut bytes = Vec::new();
     for record in records {

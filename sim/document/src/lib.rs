@@ -1,21 +1,21 @@
 //! The painting as a file.
 //!
 //! A painting is one SQLite database (`.maul`), open in one program at a time. It holds the tiles with
-//! their history, what was accepted since (the journal), named versions, the tiles as they are shown,
+//! their history, the records accepted since then (the journal), named versions, the tiles as they are shown,
 //! and the files that the painting is made with. `docs/document.md` describes the tables.
 //!
 //! | module | holds |
 //! | --- | --- |
-//! | [`document`], `thread`, `queues` | an open painting, the thread that owns its file, and where both meet |
+//! | [`document`], `thread`, `queues` | an open painting, the thread that owns its file, and the queues between them |
 //! | [`database`] | the file: locks, pages read one by one |
-//! | [`writing`], [`opening`] | a moment of a painting, written as one transaction and read back |
-//! | [`moving`], `watch` | its file under another name, or gone |
-//! | [`journal`] | what was accepted, as bytes |
-//! | [`contents`], [`pack`] | what a file holds; making it small |
+//! | [`writing`], [`opening`] | a checkpoint of a painting, written as one transaction and read back |
+//! | [`moving`], `watch` | its file under another name, or removed |
+//! | [`journal`] | accepted records as bytes |
+//! | [`contents`], [`pack`] | contents of a file; making it small |
 //! | [`planes`], [`loads`] | paint as bytes |
 //! | [`rows`], [`schema`], [`sum`] | tables, migrations, checksums |
-//! | [`scan`], [`recover`] | rows out of damaged files; a new painting of what is whole |
-//! | [`error`] | what can go wrong, and what to do |
+//! | [`scan`], [`recover`] | rows out of damaged files; a new painting of the intact ones |
+//! | [`error`] | errors, each with advice |
 
 pub mod contents;
 pub mod database;

@@ -1,7 +1,7 @@
-//! What a brush carries as bytes: little-endian numbers of 32 bits, compressed.
+//! Load of a brush as bytes: little-endian numbers of 32 bits, compressed.
 //!
-//! Number of texels, number of slots, steps (two numbers, the low one first); the films of all paints;
-//! then for each slot its number, its films and what it has inside.
+//! Number of texels, number of slots, steps (two numbers, the low one first); the films of all paints; then for each
+//! slot its number, its films and its paint inside.
 
 use maulstick_paint::load::BrushLoad;
 use maulstick_paint::quantum::SLOTS;
@@ -12,7 +12,7 @@ const TEXELS_MAX: usize = 1 << 20;
 /// A load as bytes.
 ///
 /// # Errors
-/// What the compressor says.
+/// The error of the compressor.
 pub fn encode(load: &BrushLoad, level: i32) -> std::io::Result<Vec<u8>> {
     let slots: Vec<usize> = (0..SLOTS).filter(|slot| load.has(*slot)).collect();
     let steps = load.steps();
@@ -35,7 +35,7 @@ pub fn encode(load: &BrushLoad, level: i32) -> std::io::Result<Vec<u8>> {
 /// Reads a load.
 ///
 /// # Errors
-/// What is wrong with the bytes, in words.
+/// The defect of the bytes, in words.
 pub fn decode(bytes: &[u8]) -> Result<BrushLoad, String> {
     let most = 4 * (4 + (2 * SLOTS + 1) * (TEXELS_MAX + 1));
     let bytes = zstd::bulk::decompress(bytes, most).map_err(|error| error.to_string())?;

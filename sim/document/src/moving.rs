@@ -9,7 +9,7 @@ use crate::database::{Access, Database, beside, folded, is_new, resolved};
 use crate::error::DocumentError;
 use maulstick_files::FileId;
 
-/// What becomes of the file that a painting leaves.
+/// Fate of the file that a painting leaves.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Left {
     /// It stays as it is at that moment.
@@ -18,17 +18,17 @@ pub enum Left {
     Goes,
 }
 
-/// Where a painting goes on.
+/// Move of a painting to another file.
 #[derive(Clone, Debug)]
 pub(crate) struct Move {
     pub(crate) to: PathBuf,
     pub(crate) left: Left,
-    /// Whether a painting that is there already may go.
+    /// True if an existing painting may be replaced.
     pub(crate) replace: bool,
     pub(crate) answer: mpsc::Sender<Result<(), DocumentError>>,
 }
 
-/// A painting on its way to another file.
+/// A move of a painting to another file in progress.
 #[derive(Debug)]
 pub struct Moving {
     pub(crate) to: PathBuf,
@@ -75,7 +75,7 @@ pub(crate) fn put(from: &Path, order: &Move) -> Result<(), DocumentError> {
     }
     make_room(&order.to, order.replace)?;
     let to = &resolved(&order.to);
-    // What was found there may go, but nothing that comes meanwhile.
+    // An existing file may be replaced, but not one that appears meanwhile.
     let replace = to.symlink_metadata().is_ok();
     let part = unfinished(to);
     let copied = || {
@@ -120,7 +120,7 @@ pub(crate) fn rescue(database: &Database, to: &Path, replace: bool) -> Result<()
     sync_folder(to)
 }
 
-/// A name beside a painting that is nobody's: `sea.maul` goes on in `sea-kept.maul`, or `sea-kept-2.maul`.
+/// A free name beside a painting: `sea.maul` goes on in `sea-kept.maul`, or `sea-kept-2.maul`.
 pub(crate) fn name_beside(path: &Path) -> PathBuf {
     let stem = path.file_stem().unwrap_or_default().to_string_lossy();
     let ending = path.extension().unwrap_or_default().to_string_lossy();

@@ -1,4 +1,4 @@
-//! A painting as its file has it.
+//! Reading of a painting from its file.
 
 use std::collections::{BTreeMap, HashMap};
 use std::sync::Arc;
@@ -32,7 +32,7 @@ use crate::writing::COPY;
 /// means another tile, though the newest of them are in no file.
 const SKIP: u64 = 1 << 32;
 
-/// A painting that was kept.
+/// A saved painting.
 #[derive(Debug)]
 pub struct Opened {
     restored: Restored,
@@ -49,8 +49,8 @@ impl Opened {
         last.unwrap_or(0).max(self.sequencer.next)
     }
 
-    /// How much is to be done again that the painting does not hold yet: a second's worth at most,
-    /// where it was not closed.
+    /// Number of journal records that the painting does not include yet: a second's worth at most, if it was not
+    /// closed.
     #[must_use]
     pub fn pending(&self) -> usize {
         self.records.len()
@@ -62,7 +62,7 @@ impl Opened {
         &self.library
     }
 
-    /// What it is besides its tiles.
+    /// Its state besides tiles.
     #[must_use]
     pub fn kept(&self) -> &PaintingSnapshot {
         &self.restored.kept
@@ -104,10 +104,10 @@ impl Opened {
         Ok(())
     }
 
-    /// The painting where it was: as it was kept, and then what was accepted since done again.
+    /// The painting restored: its last checkpoint, and then the records accepted since, done again.
     ///
     /// # Errors
-    /// [`EditError`] where what was kept does not hold together.
+    /// [`EditError`] if the stored parts do not fit together.
     pub fn sequencer(self) -> Result<Sequencer, EditError> {
         let painting = Painting::restore(self.restored, self.library, self.pager)?;
         let mut sequencer = Sequencer::restored(painting, self.sequencer);
@@ -126,7 +126,7 @@ fn damaged(what: impl ToString) -> DocumentError {
     DocumentError::Damaged(what.to_string())
 }
 
-/// Whether a moment of the painting was ever written.
+/// True if a checkpoint was ever written.
 pub(crate) fn has_state(database: &Database) -> Result<bool, DocumentError> {
     let found: Option<i64> = database
         .connection
@@ -225,7 +225,7 @@ pub(crate) fn text(database: &Database, hash: &str) -> Result<String, DocumentEr
     String::from_utf8(file(database, hash)?).map_err(damaged)
 }
 
-/// What was accepted since the painting was kept.
+/// Records accepted since the last checkpoint.
 fn records(database: &Database, from: u64) -> Result<Vec<Record>, DocumentError> {
     let query = "SELECT id, last, data, sum FROM journal ORDER BY id";
     let mut statement = database.connection.prepare(query)?;
@@ -476,7 +476,7 @@ pub(crate) fn opened(database: &Database, pager: &Arc<Pager>) -> Result<Opened, 
         embedded: pictures(database)?,
         kept,
     };
-    // What nothing refers to goes with the next moment: the shelves were the last to remember it.
+    // Unreferenced rows go with the next checkpoint: the shelves were their last reference.
     drop(shelves);
     Ok(Opened {
         restored,

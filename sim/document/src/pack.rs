@@ -1,4 +1,4 @@
-//! A painting's file made as small as it gets.
+//! A painting's file made as small as possible.
 
 use std::path::Path;
 use std::sync::atomic::{AtomicUsize, Ordering::Relaxed};
@@ -11,7 +11,7 @@ use crate::error::DocumentError;
 use crate::planes;
 use crate::writing::Moment;
 
-/// What becomes of a packed painting's history.
+/// Fate of a packed painting's history.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum History {
     /// It stays.
@@ -83,7 +83,7 @@ pub(crate) fn settle(path: &Path, history: History) -> Result<(), DocumentError>
     if !document.is_ready() {
         return document.close();
     }
-    // What was forgotten goes with the next moment.
+    // Dropped steps go with the next checkpoint.
     let versions = sequencer.painting().versions();
     document.keep(Moment::of(&mut sequencer, versions));
     document.close()
@@ -112,8 +112,8 @@ impl Row {
         })?)
     }
 
-    /// Its data and sum where they get smaller. What is compressed is the same at every level, so no page
-    /// that it is a difference to is read.
+    /// Its data and sum if they get smaller. The input of the compression is the same at every level, so no page that
+    /// it is a difference to is read.
     fn smaller(&self) -> Result<Option<(Vec<u8>, i64)>, DocumentError> {
         let damaged = |what: &str| DocumentError::Damaged(format!("page {} {what}", self.id));
         if page_sum(self.id, self.ints, &self.data) != self.sum {

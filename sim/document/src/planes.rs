@@ -51,7 +51,7 @@ pub fn mask(planes: &Planes) -> u32 {
 /// Planes as bytes, as a difference to `base` if there is one.
 ///
 /// # Errors
-/// What the compressor says.
+/// The error of the compressor.
 pub fn encode(planes: &Planes, base: Option<&Planes>, level: i32) -> std::io::Result<Vec<u8>> {
     let mut shuffled = vec![0u8; planes.len() * TILE_CELLS * 4];
     for ((slot, plane), bytes) in planes.iter().zip(shuffled.chunks_exact_mut(TILE_CELLS * 4)) {
@@ -74,7 +74,7 @@ pub fn encode(planes: &Planes, base: Option<&Planes>, level: i32) -> std::io::Re
 /// The same planes, of the slots of `mask`, at another level of zstd.
 ///
 /// # Errors
-/// What is wrong with the bytes, in words.
+/// The defect of the bytes, in words.
 pub fn repack(mask: u32, bytes: &[u8], level: i32) -> Result<Vec<u8>, String> {
     let length = (mask & ((1 << SLOTS) - 1)).count_ones() as usize * TILE_CELLS * 4;
     let shuffled = zstd::bulk::decompress(bytes, length).map_err(|error| error.to_string())?;
@@ -87,7 +87,7 @@ pub fn repack(mask: u32, bytes: &[u8], level: i32) -> Result<Vec<u8>, String> {
 /// Reads planes of the slots of `mask`.
 ///
 /// # Errors
-/// What is wrong with the bytes, in words.
+/// The defect of the bytes, in words.
 pub fn decode(mask: u32, bytes: &[u8], base: Option<&Planes>) -> Result<Planes, String> {
     if mask >> SLOTS != 0 {
         return Err("it names slots that there are not".to_owned());

@@ -1,5 +1,5 @@
-//! Where the painter's threads and the document's meet: what was handed over and waits to be written,
-//! and who waits for a page.
+//! Queues between the painter's threads and the document's: data that wait to be written, and readers that wait for a
+//! page.
 
 use std::collections::BTreeMap;
 use std::path::PathBuf;
@@ -24,7 +24,7 @@ pub(crate) enum Fetch {
     Shown([i64; 3], mpsc::Sender<Option<Vec<u8>>>),
 }
 
-/// Whether the document's thread goes on.
+/// State of the document's thread.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(crate) enum Life {
     /// It does.
@@ -44,22 +44,22 @@ pub(crate) struct Queues {
     pub(crate) shown: BTreeMap<i64, ShownTile>,
     /// A moment is being written: if that fails it is to be written again, before any later one.
     pub(crate) writing: bool,
-    /// Who waits until all that was handed over is written, or could not be.
+    /// Threads that wait until everything handed over is written, or could not be.
     pub(crate) flushes: Vec<mpsc::Sender<()>>,
-    /// Where the painting is to go on, once all that was handed over is written.
+    /// Files to move the painting to, once everything handed over is written.
     pub(crate) moves: Vec<Move>,
     pub(crate) life: Life,
     /// A page could not be read: what was painted since may rest on its absence.
     pub(crate) broken: bool,
     pub(crate) fault: String,
     pub(crate) help: &'static str,
-    /// What the painter has to know of the file, though all is written, and what to do.
+    /// Notice about the file although all is written, with advice.
     pub(crate) notice: Option<(String, &'static str)>,
-    /// Where the painting went on when its file was gone.
+    /// File in which the painting continued when its own was gone.
     pub(crate) went_to: Option<PathBuf>,
 }
 
-/// Where the painter's threads and the document's meet.
+/// State shared by the painter's threads and the document's.
 #[derive(Default)]
 pub(crate) struct Shared {
     pub(crate) queues: Mutex<Queues>,

@@ -1,4 +1,4 @@
-//! What is whole of a damaged painting, as a new one.
+//! Recovery of the intact part of a damaged painting into a new one.
 //!
 //! Rows are read without SQLite, told apart by their tags and checked by their sums. Those that are
 //! whole go into a new file, which is then opened, brought up to the journal and written as any other.
@@ -12,7 +12,7 @@
 //! - a brush of which it is not known what it carried is clean;
 //! - the journal is done again up to its first gap.
 //!
-//! The books are made to balance: paint that is gone counts as taken by the cleaner, paint that came
+//! The ledger is made to balance: paint that is gone counts as taken by the cleaner, paint that came
 //! back with an older tile as given by the tubes.
 
 mod found;
@@ -39,7 +39,7 @@ use pictures::Pictures;
 use steps::{Now, Steps, makes};
 use stock::Stock;
 
-/// What was taken out of a damaged painting, and what is missing.
+/// Content recovered from a damaged painting, and its losses.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Salvage {
     /// Tiles with paint that are as they were.
@@ -72,15 +72,14 @@ pub struct Salvage {
     pub rows: u64,
     /// Pages of the file that are gone, with all rows on them.
     pub pages: u64,
-    /// Whether the state of the painting besides its tiles is an older one.
+    /// True if the state of the painting besides its tiles is an older one.
     pub is_old: bool,
-    /// The format that the file names, if it is none that this program knows: of a newer one there may
-    /// be more than what was found.
+    /// The format that the file names, if this program does not know it: a newer one may hold more than was found.
     pub format: Option<i32>,
 }
 
 impl Salvage {
-    /// Whether nothing was damaged.
+    /// True if nothing was damaged.
     #[must_use]
     pub fn is_whole(&self) -> bool {
         let whole = Self {
@@ -94,7 +93,7 @@ impl Salvage {
     }
 }
 
-/// What is written before the new painting has its name; it goes where it does not get it.
+/// Temporary file of the new painting until it gets its name; removed if it does not get it.
 struct Part(PathBuf);
 
 impl Part {
@@ -121,13 +120,13 @@ impl Drop for Part {
     }
 }
 
-/// Takes out of a damaged painting what is whole, and makes a new one of it. The damaged one is only
-/// read. `tell` is told how much is done, of how much.
+/// Recovers the intact part of a damaged painting into a new one. The damaged one is only read. `tell` receives the
+/// progress: done, of total.
 ///
 /// # Errors
-/// [`DocumentError::Taken`] where something is at `to`, [`DocumentError::Lost`] where what is left does
-/// not make a painting, [`DocumentError::InUse`] where a program has the damaged one open, or what the
-/// system says. There is nothing at `to` then.
+/// [`DocumentError::Taken`] if something is at `to`, [`DocumentError::Lost`] if the rest does not make a painting,
+/// [`DocumentError::InUse`] if a program has the damaged one open, or the system's error. There is nothing at `to`
+/// then.
 pub fn recover(
     damaged: &Path,
     to: &Path,
@@ -166,7 +165,7 @@ pub fn recover(
     Ok(salvage)
 }
 
-/// Where a painting is made before it gets its name; its journal lies beside it.
+/// Path at which a painting is made before it gets its name; its journal is beside it.
 #[must_use]
 pub fn part_of(to: &Path) -> PathBuf {
     beside(to, &format!(".part-{}", std::process::id()))
@@ -183,7 +182,7 @@ fn unknown_format(damaged: &Path) -> Result<Option<i32>, DocumentError> {
     Ok(unknown.then_some(version))
 }
 
-/// Parts of the work that are told of.
+/// Number of progress reports.
 const PARTS: u64 = 1000;
 
 /// Writes what is whole.
@@ -228,7 +227,7 @@ fn write(
     rest::versions(&gathered, &mut kept, shelves, &mut salvage, database)?;
     rest::journal(&gathered, &mut sequencer, base, &mut salvage, database)?;
     kept.next_page = kept.next_page.max(stock.next);
-    // What is lost is not missed again.
+    // Lost rows are not reported as missing again.
     kept.rows = None;
     for (key, state) in [
         ("painting", serde_json::to_string(&kept)?),

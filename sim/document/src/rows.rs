@@ -1,4 +1,4 @@
-//! How tiles, steps and versions stand in rows.
+//! Tiles, steps and versions as rows.
 
 use std::collections::BTreeMap;
 
@@ -31,7 +31,7 @@ pub fn shown_number(surface: u32, level: u32, id: TileId) -> i64 {
     i64::from(surface) << 56 | i64::from(level) << 48 | i64::from(id.y) << 24 | i64::from(id.x)
 }
 
-/// The numbers of a tile's page and of its newest dry layer; 0 where there is none.
+/// The numbers of a tile's page and of its newest dry layer; 0 if absent.
 #[must_use]
 pub fn numbers(held: &TileRef) -> [i64; 2] {
     let tile: Option<&Tile> = held.as_deref();
@@ -46,7 +46,7 @@ pub fn packed(numbers: impl IntoIterator<Item = i64>) -> Vec<u8> {
     numbers.into_iter().flat_map(i64::to_le_bytes).collect()
 }
 
-/// Reads [`packed`] in groups of `N`; none where something is left over.
+/// Reads [`packed`] in groups of `N`; `None` if bytes are left over.
 #[must_use]
 pub fn unpacked<const N: usize>(bytes: &[u8]) -> Option<Vec<[i64; N]>> {
     let (numbers, rest) = bytes.as_chunks::<8>();
@@ -60,7 +60,7 @@ pub fn unpacked<const N: usize>(bytes: &[u8]) -> Option<Vec<[i64; N]>> {
     })
 }
 
-/// What a step did besides tiles: the numbers of loads before and after it, what it booked, layers and
+/// Changes of a step besides tiles: the numbers of loads before and after it, the paint it booked, and layers and
 /// surfaces before and after it where it changed them.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct KeptDeed {
@@ -76,7 +76,7 @@ pub struct KeptDeed {
     pub tops: [BTreeMap<u32, f32>; 2],
 }
 
-/// What a painting was in a version besides tiles.
+/// State of a painting in a version besides tiles.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct KeptRest {
     /// Loads by brush.

@@ -45,7 +45,7 @@ pub enum Value {
     Blob(Vec<u8>),
 }
 
-/// Which copy of a page a row was read from.
+/// Copy of a page that a row was read from.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Origin {
     /// The main file.
@@ -66,15 +66,14 @@ pub struct Row {
     pub values: Vec<Value>,
     /// The page it stands on, counted from 1.
     pub page: u32,
-    /// Which copy of that page.
+    /// Copy of that page.
     pub origin: Origin,
-    /// Whether SQLite would read this copy of the page too: the frame of the WAL where the page has
-    /// a good one, otherwise the main file; and the page is not free, as far as that is known
-    /// ([`Scan::knows_free`]).
+    /// True if SQLite would read this copy of the page too: the frame of the WAL where the page has a good one,
+    /// otherwise the main file; and the page is not free, as far as that is known ([`Scan::knows_free`]).
     pub current: bool,
 }
 
-/// What a walk over the pages met.
+/// Counts of a walk over the pages.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub struct Tally {
     /// Copies of pages looked at.
@@ -90,15 +89,15 @@ pub struct Tally {
     pub reads_failed: u64,
 }
 
-/// What became of the WAL.
+/// State of the WAL.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub struct WalState {
     /// Committed frames before any damage: those SQLite would read.
     pub frames_good: u64,
     /// Committed frames with a right checksum behind a damaged one.
     pub frames_past_damage: u64,
-    /// Whether bytes of this WAL's own are damaged, as far as that can be seen: a power cut in the
-    /// middle of a commit looks the same, and a damaged end looks like an unfinished commit.
+    /// True if bytes of this WAL's own are damaged, as far as that can be seen: a power cut in the middle of a commit
+    /// looks the same, and a damaged end looks like an unfinished commit.
     pub damaged: bool,
 }
 
@@ -149,8 +148,7 @@ impl<F: Read + Seek> Scan<F> {
         })
     }
 
-    /// Whether the list of free pages is whole. Where it is not, rows that the database had deleted
-    /// may pass for current ones.
+    /// True if the list of free pages is intact. If not, rows that the database had deleted may pass for current ones.
     pub fn knows_free(&self) -> bool {
         self.free.is_some()
     }
@@ -160,8 +158,8 @@ impl<F: Read + Seek> Scan<F> {
         self.store.main_pages()
     }
 
-    /// How many pages the trees of the tables lead to that are no pages of a table any more. What
-    /// rows they had, if any, is not known.
+    /// Number of pages that the trees of the tables lead to but that are no longer pages of a table. Their rows, if
+    /// any, are not known.
     pub fn lost_pages(&mut self) -> u64 {
         let roots = self.rows().filter(|row| row.current).filter_map(root);
         let mut wanted: BTreeSet<u32> = roots.collect();
@@ -187,7 +185,7 @@ impl<F: Read + Seek> Scan<F> {
         self.store.is_beyond(page) || self.free.as_ref().is_some_and(|free| free.contains(&page))
     }
 
-    /// Whether the file begins as a database does.
+    /// True if the file begins as a database does.
     pub fn has_header(&self) -> bool {
         matches!(self.page_size().from, PageSizeFrom::Header)
     }
@@ -197,12 +195,12 @@ impl<F: Read + Seek> Scan<F> {
         self.store.page_size()
     }
 
-    /// What became of the WAL; nothing but zeros where there is none.
+    /// State of the WAL; all zeros without one.
     pub fn wal(&self) -> WalState {
         self.store.wal_state()
     }
 
-    /// What the latest [`rows`](Self::rows) has met so far.
+    /// Counts of the latest [`rows`](Self::rows) so far.
     pub fn tally(&self) -> Tally {
         Tally {
             reads_failed: self.store.reads_failed(),

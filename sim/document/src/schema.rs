@@ -1,4 +1,4 @@
-//! The tables of a painting. `docs/document.md` tells them to other programs.
+//! The tables of a painting. `docs/document.md` describes them for other programs.
 
 use std::path::Path;
 
@@ -11,8 +11,8 @@ pub const APPLICATION_ID: i32 = 0x4D61_756C;
 /// The schema that this program writes.
 pub const VERSION: i32 = 1;
 
-/// Every row begins with its table's number, so that rows can be told apart where the schema is lost,
-/// and ends with a checksum of its other columns.
+/// Every row begins with its table's number, so that rows can be sorted even if the schema is lost, and ends with a
+/// checksum of its other columns.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(i64)]
 pub enum Table {
@@ -24,15 +24,15 @@ pub enum Table {
     Page = 3,
     /// Dry layers of tiles.
     Dry = 4,
-    /// What brushes carried.
+    /// Loads of brushes.
     Load = 5,
-    /// What lies on which tile.
+    /// Contents of tiles.
     Tile = 6,
     /// Steps of the history.
     Step = 7,
     /// Named versions.
     Version = 8,
-    /// What was accepted since the state.
+    /// Records accepted since the state.
     Journal = 9,
     /// Tiles as they are shown.
     Shown = 10,
@@ -118,10 +118,10 @@ pub fn create(connection: &Connection) -> Result<(), DocumentError> {
     Ok(())
 }
 
-/// Whether there is nothing in a database, not even the mark of a program.
+/// True if a database is empty, without even the mark of a program.
 ///
 /// # Errors
-/// What SQLite says.
+/// The error of SQLite.
 pub fn is_blank(connection: &Connection) -> Result<bool, DocumentError> {
     let number = |query: &str| connection.query_row(query, params![], |row| row.get::<_, i64>(0));
     Ok(number("PRAGMA application_id")? == 0
@@ -129,10 +129,10 @@ pub fn is_blank(connection: &Connection) -> Result<bool, DocumentError> {
         && number("SELECT count(*) FROM sqlite_schema")? == 0)
 }
 
-/// Whether a file is another program's database. It is only read.
+/// True if a file is another program's database. It is only read.
 ///
 /// # Errors
-/// What SQLite says.
+/// The error of SQLite.
 pub fn is_foreign(path: &Path) -> Result<bool, DocumentError> {
     let flags = OpenFlags::SQLITE_OPEN_READ_ONLY | OpenFlags::SQLITE_OPEN_NO_MUTEX;
     let connection = Connection::open_with_flags(path, flags)?;
@@ -141,7 +141,7 @@ pub fn is_foreign(path: &Path) -> Result<bool, DocumentError> {
     Ok(application != APPLICATION_ID && !is_blank(&connection)?)
 }
 
-/// What leads from each older schema to the next; the first, to 2, will be the first here.
+/// Steps from each older schema to the next; the first, to 2, will be the first here.
 const MIGRATIONS: [&str; (VERSION - 1) as usize] = [];
 
 /// Brings an older painting up to the schema of this program, or refuses one of a newer program.

@@ -1,5 +1,5 @@
-//! The thread that owns a painting's file: it writes what was handed over and reads pages that left
-//! memory. Who waits for a page comes first.
+//! The thread that owns a painting's file: it writes the data handed over and reads pages that left memory. Readers
+//! that wait for a page come first.
 
 mod file;
 
@@ -22,7 +22,7 @@ use crate::writing::{Moment, ShownTile, Writer};
 const COMMIT: Duration = Duration::from_millis(100);
 /// The first moment of a painting that was in memory alone is one transaction, if it does not take longer.
 const FIRST: Duration = Duration::from_secs(3600);
-/// What could not be written is tried again after this long.
+/// Delay before a failed write is tried again.
 const AGAIN: Duration = Duration::from_secs(1);
 /// Tiles as they are shown that are written in one transaction, at most.
 const SHOWN: usize = 128;
@@ -38,7 +38,7 @@ pub(crate) struct Thread {
     writes: bool,
     /// Nothing of the painting is in the file yet: its first moment goes there whole, or not at all.
     first: bool,
-    /// What had been accepted when a move was asked for is in the file.
+    /// True once the records accepted before a move was requested are in the file.
     committed_for_move: bool,
     watch: Watch,
     /// Number of the newest tile version of the moment that the file has.
@@ -49,7 +49,7 @@ pub(crate) struct Thread {
     file: Tries,
 }
 
-/// How writing goes.
+/// State of failed writes.
 #[derive(Default)]
 struct Tries {
     failed: Option<Instant>,
@@ -64,7 +64,7 @@ impl Tries {
     }
 }
 
-/// What the thread does next.
+/// Next work of the thread.
 enum Work {
     Fetch,
     Keep(Box<Moment>),
@@ -109,10 +109,10 @@ impl Thread {
         }
     }
 
-    /// Goes on in another file.
+    /// Continues in another file.
     ///
     /// # Errors
-    /// Where the painting can go on in neither file.
+    /// If the painting can go on in neither file.
     fn moved(mut self, order: Move) -> Result<Self, DocumentError> {
         self.committed_for_move = false;
         let open = |path: &Path| match is_new(path)? {
@@ -188,8 +188,7 @@ impl Thread {
             return Err(DocumentError::Unwritten(fault));
         }
         if broken || !self.writes {
-            // Who only reads changes nothing, and a damaged one's journal may hold what is to be
-            // recovered.
+            // A reader changes nothing, and the journal of a damaged file may hold rows to recover.
             self.database.leave()?;
             let what = fault.trim_start_matches("the painting is damaged: ");
             return match left {
@@ -238,7 +237,7 @@ impl Thread {
                 return Work::Commit(std::mem::take(&mut queues.records));
             }
             if may_write && self.moment.failed.is_none() {
-                // What shows a later moment waits for that.
+                // Tiles shown for a later checkpoint wait for that.
                 let kept = self.kept_versions;
                 let ready = queues.shown.extract_if(.., |_, tile| tile.version <= kept);
                 let tiles: Vec<ShownTile> = ready.take(SHOWN).map(|(_, tile)| tile).collect();
@@ -246,10 +245,10 @@ impl Thread {
                     return Work::Show(tiles);
                 }
             }
-            // Who only reads goes nowhere else.
+            // A reader is never moved.
             queues.moves.clear();
             for waits in queues.flushes.drain(..) {
-                // Who waited may have given up.
+                // The waiting thread may have given up.
                 waits.send(()).ok();
             }
             if closing {
@@ -312,7 +311,7 @@ impl Thread {
                 Writer::new(database, &mut breathe).moment(&moment, until)
             });
             match written {
-                // What is accepted meanwhile does not wait for the rest.
+                // Records accepted meanwhile do not wait for the rest.
                 Ok((stored, false)) => {
                     stored.note();
                     let records = std::mem::take(&mut self.shared.lock().records);
@@ -389,7 +388,7 @@ impl Thread {
         }
         (queues.fault, queues.help) = (error.to_string(), error.help());
         let closing = queues.life == Life::Closing;
-        // Who waits would wait for ever.
+        // The waiting threads would wait for ever.
         queues.flushes.clear();
         let moves = std::mem::take(&mut queues.moves);
         drop(queues);
@@ -413,7 +412,7 @@ impl Thread {
     }
 }
 
-/// What is written.
+/// Part that is written.
 #[derive(Clone, Copy)]
 enum Part {
     Moment,

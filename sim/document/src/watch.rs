@@ -1,5 +1,5 @@
-//! Whether the files of an open painting are still where they were: SQLite goes on writing into files that
-//! have no name any more, and what is committed there is gone with the process.
+//! Checks that the files of an open painting are still at their paths: SQLite keeps writing into files that no longer
+//! have a name, and what is committed there is lost with the process.
 
 use std::os::unix::fs::MetadataExt as _;
 use std::path::{Path, PathBuf};
@@ -12,13 +12,13 @@ use crate::database::{beside, resolved};
 #[derive(Debug)]
 pub(crate) struct Watch {
     path: PathBuf,
-    /// None where the painting is in no file of the system, as under another way to the file.
+    /// `None` if the painting is in no file of the system, as with another VFS.
     file: Option<FileId>,
     /// None until SQLite has made it.
     journal: Option<FileId>,
 }
 
-/// What became of the files of an open painting.
+/// State of the files of an open painting.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) enum Found {
     /// They are where they were.
@@ -60,8 +60,8 @@ impl Watch {
         }
     }
 
-    /// Removes the journal of a painting that went on elsewhere, if it is still this one's: nobody could
-    /// begin another painting beside it.
+    /// Removes the journal of a painting that was moved, if it is still this one's: no other painting could be created
+    /// beside it.
     pub(crate) fn remove_journal(&self) {
         let journal = beside(&self.path, "-wal");
         if self.journal.is_some() && FileId::of(&journal).ok() == self.journal {

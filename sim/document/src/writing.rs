@@ -53,20 +53,19 @@ pub struct ShownTile {
     pub place: i64,
     /// The tile version that it shows.
     pub version: u64,
-    /// What it is shown under.
+    /// Look under which it is shown.
     pub look: i64,
     /// Its planes.
     pub bytes: Vec<u8>,
 }
 
-/// What is added to the keys of the second copy of the state: without it a single wrong bit would cost
-/// all.
+/// Suffix of the keys of the second copy of the state: without that copy a single wrong bit would cost all.
 pub(crate) const COPY: &str = " copy";
 
-/// What is done between two pages: somebody may wait for one.
+/// Called between two pages: a reader may wait for one.
 pub(crate) type Breath<'a> = &'a mut dyn FnMut(&Database);
 
-/// What was written, to be noted once it is committed.
+/// Rows that were written, to be noted once they are committed.
 #[derive(Debug, Default)]
 pub(crate) struct Stored {
     planes: Vec<(Page<Planes>, usize)>,
@@ -108,9 +107,8 @@ impl<'a, 'b> Writer<'a, 'b> {
         }
     }
 
-    /// Writes a moment; what it makes superfluous goes. Where its pages
-    /// take longer than `until` only some of these are written, which nothing refers to yet, and false
-    /// is returned.
+    /// Writes a checkpoint and deletes what it replaces. If its pages take longer than `until` only some of these are
+    /// written, still unreferenced, and false is returned.
     pub(crate) fn moment(
         mut self,
         moment: &Moment,
@@ -228,8 +226,7 @@ impl<'a, 'b> Writer<'a, 'b> {
         Ok(())
     }
 
-    /// Number, depth and planes of the page that another one is a difference to; none where the chain
-    /// is long enough.
+    /// Number, depth and planes of the page that another one is a difference to; `None` if the chain is long enough.
     fn base_of(&self, base: &Page<Planes>) -> Result<Option<Base>, DocumentError> {
         let id = base.id() as i64;
         let depth: Option<i64> = self
@@ -434,8 +431,7 @@ impl<'a, 'b> Writer<'a, 'b> {
         Ok(())
     }
 
-    /// Deletes pages and layers that nobody remembers. Pages that are differences to one of them are
-    /// written anew.
+    /// Deletes pages and layers without references. Pages that are differences to one of them are written anew.
     fn bury(&mut self, dead: &[u64]) -> Result<(), DocumentError> {
         let connection = &self.database.connection;
         let gone: BTreeSet<u64> = dead.iter().copied().collect();

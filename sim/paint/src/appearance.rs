@@ -1,5 +1,5 @@
-//! How a painting looks under its light: the studio, the opacity of its dry layers, and those layers
-//! baked into the reflectances of what the wet paint lies on (Baxter 2004, § 7.8).
+//! Appearance of a painting under its light: the studio, the opacity of its dry layers, and those layers baked into the
+//! reflectances of the ground under the wet paint (Baxter 2004, § 7.8).
 
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -42,8 +42,7 @@ impl Appearance {
         }
     }
 
-    /// What it is, as a number: two looks of the same number show the same paint alike, today and
-    /// tomorrow.
+    /// Content hash: looks with equal hashes show the same paint alike, in every process.
     #[must_use]
     pub fn print(&self) -> i64 {
         self.print
@@ -87,8 +86,8 @@ impl Appearance {
         }
     }
 
-    /// Internal reflectances over `under` with one more dry layer. Where the backend cannot, which is
-    /// a fault of the program, the layer is left out.
+    /// Internal reflectances over `under` with one more dry layer. If the backend fails, which is a fault of the
+    /// program, the layer is left out.
     fn with_layer(
         &self,
         layer: &DryLayer,
@@ -167,7 +166,7 @@ struct Baked {
     used: u64,
 }
 
-/// Baked tiles of one look, kept for the next time that they are looked at.
+/// Baked tiles of one look, cached until they are next looked at.
 #[derive(Debug, Default)]
 pub struct Bakery {
     kept: BTreeMap<(u32, TileId), Baked>,
@@ -177,7 +176,7 @@ pub struct Bakery {
 }
 
 impl Bakery {
-    /// Whether a tile of a surface need not be baked.
+    /// True if a tile of a surface need not be baked.
     #[must_use]
     pub fn holds(
         &self,

@@ -17,11 +17,11 @@ use sha2::{Digest as _, Sha256};
 
 use crate::error::EditError;
 
-/// What the name of a ground or a tooth begins with that is made of a picture; its hash follows.
+/// Prefix of the name of a ground or a tooth that is made from a picture; its hash follows.
 pub const IMAGE: &str = "image:";
-/// What the name of a ground begins with that is made of a spectrum; its hash follows.
+/// Prefix of the name of a ground that is made from a spectrum; its hash follows.
 pub const SPECTRUM: &str = "spectrum:";
-/// What a PNG begins with.
+/// Signature of a PNG.
 const PNG: &[u8] = b"\x89PNG";
 /// Most pixels of a picture: 8192×8192.
 pub const MOST_PIXELS: u64 = 1 << 26;
@@ -44,7 +44,7 @@ pub type Colours = Pixels<[u8; 3]>;
 /// Heights, 0 the lowest.
 pub type Heights = Pixels<u16>;
 
-/// What a picture is.
+/// Content of a picture.
 #[derive(Clone, Debug)]
 enum Decoded {
     Colours(Arc<Colours>),
@@ -78,7 +78,7 @@ pub fn hash_of(bytes: &[u8]) -> String {
     digest.iter().map(|byte| format!("{byte:02x}")).collect()
 }
 
-/// What documents call a file of these bytes.
+/// Kind of a file of these bytes, as documents name it.
 #[must_use]
 pub fn kind_of(bytes: &[u8]) -> &'static str {
     match bytes.starts_with(PNG) {
@@ -134,7 +134,7 @@ impl Assets {
     /// The reflectances of a spectrum.
     ///
     /// # Errors
-    /// [`EditError`] where there is none of this hash, or it is a picture's.
+    /// [`EditError`] if no file has this hash, or it is a picture's.
     pub fn reflectance(&self, hash: &str) -> Result<Reflectance, EditError> {
         spectrum(&self.entry(hash)?.bytes)
     }
@@ -145,7 +145,7 @@ impl Assets {
         self.0.entry(hash).or_insert(Entry { bytes, lent });
     }
 
-    /// Whether there is a picture of this hash.
+    /// True if there is a picture of this hash.
     #[must_use]
     pub fn holds(&self, hash: &str) -> bool {
         self.0.contains_key(hash)
@@ -195,7 +195,7 @@ impl Assets {
     /// The pixels of a picture of colours.
     ///
     /// # Errors
-    /// [`EditError`] where there is none of this hash, or it is one of heights.
+    /// [`EditError`] if no file has this hash, or it is one of heights.
     pub fn colours(&self, hash: &str) -> Result<Arc<Colours>, EditError> {
         match self.decoded(hash)? {
             Decoded::Colours(colours) => Ok(colours),
@@ -209,7 +209,7 @@ impl Assets {
     /// The pixels of a picture of heights.
     ///
     /// # Errors
-    /// [`EditError`] where there is none of this hash, or it is one of colours.
+    /// [`EditError`] if no file has this hash, or it is one of colours.
     pub fn heights(&self, hash: &str) -> Result<Arc<Heights>, EditError> {
         match self.decoded(hash)? {
             Decoded::Heights(heights) => Ok(heights),

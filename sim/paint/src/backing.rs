@@ -3,21 +3,21 @@
 use crate::load::BrushLoad;
 use crate::planes::{Planes, TILE_CELLS};
 
-/// Where pages are that are not in memory.
+/// Storage of pages that are not in memory.
 pub trait Backing: Send + Sync {
     /// The counts of a page.
     ///
     /// # Errors
-    /// What is wrong with it, in words.
+    /// The defect, in words.
     fn planes(&self, id: u64) -> Result<Planes, String>;
-    /// What a brush carried.
+    /// Load of a brush.
     ///
     /// # Errors
-    /// What is wrong with it, in words.
+    /// The defect, in words.
     fn load(&self, id: u64) -> Result<BrushLoad, String>;
 }
 
-/// What a page can hold.
+/// Content of a page.
 pub trait Content: Send + Sync + Sized + 'static {
     /// Bytes in memory.
     fn bytes(&self) -> usize;
@@ -26,7 +26,7 @@ pub trait Content: Send + Sync + Sized + 'static {
     /// # Errors
     /// As [`Backing`]'s.
     fn fetch(backing: &dyn Backing, id: u64) -> Result<Self, String>;
-    /// What stands in for a page that cannot be read.
+    /// Stand-in for a page that cannot be read.
     fn nothing() -> Self;
 }
 

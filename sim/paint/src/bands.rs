@@ -26,8 +26,7 @@ use crate::tile::{Tile, TileId};
 const THREADS: usize = 2;
 /// Rows beyond a band that its shadows, its occlusion and its slopes reach.
 const BEYOND: usize = REACH as usize;
-/// Bands that a [`Shelf`] keeps either side of the one that was asked for: more than the threads are
-/// apart.
+/// Bands that a [`Shelf`] caches either side of the requested one: more than the threads are apart.
 const KEPT: usize = 6;
 
 /// Does `jobs` jobs on two threads and hands what they make to `take`, on this thread and in order,
@@ -65,8 +64,7 @@ pub fn in_order<T: Send, E>(
     })
 }
 
-/// What neighbouring bands have in common: made by the first that asks, forgotten when the work is
-/// past it.
+/// Data that neighbouring bands share: made by the first that asks, dropped once the work is past it.
 #[derive(Debug)]
 pub struct Shelf<T>(Mutex<BTreeMap<usize, Arc<OnceLock<Arc<T>>>>>);
 
@@ -77,7 +75,7 @@ impl<T> Default for Shelf<T> {
 }
 
 impl<T> Shelf<T> {
-    /// What belongs to a band.
+    /// Data of a band.
     pub fn get(&self, band: usize, make: impl FnOnce() -> T) -> Arc<T> {
         let mut kept = self.0.lock().unwrap_or_else(PoisonError::into_inner);
         kept.retain(|other, _| other.abs_diff(band) <= KEPT);
@@ -120,8 +118,7 @@ pub struct Banded<'a> {
 }
 
 impl<'a> Banded<'a> {
-    /// A surface of a painting, after all that brushes still hold open is on it; none if there is no
-    /// such surface.
+    /// A surface of a painting, once all open strokes are on it; `None` if there is no such surface.
     pub fn of(painting: &'a mut Painting, surface: u32) -> Option<Self> {
         painting.commit();
         let mut surfaces = painting.scene().surfaces.iter();
@@ -182,7 +179,7 @@ impl<'a> Banded<'a> {
         lowest..(lowest + TILE).min(self.cells()[1])
     }
 
-    /// The tiles of a band from the left, each with what lies on it.
+    /// The tiles of a band from the left, each with its paint.
     pub fn tiles(&self, band: usize) -> impl Iterator<Item = (TileId, Option<&'a Tile>)> + use<'a> {
         let [across, up] = self.store.grid();
         let (store, y) = (self.store, up - 1 - band as u32);
@@ -246,8 +243,8 @@ impl<'a> Banded<'a> {
         }
     }
 
-    /// A tile of it before light, with `tile` on it, by this thread alone. What was baked is left in
-    /// `bakery`, for the next that lies on the same dry layers.
+    /// A tile of it before light, with `tile` on it, by this thread alone. Baked layers are left in `bakery`, for the
+    /// next tile over the same dry layers.
     #[must_use]
     pub fn shown(&self, id: TileId, tile: Option<&Tile>, bakery: &mut Bakery) -> DisplayTile {
         let ground = self.bare.ground.tile(id);

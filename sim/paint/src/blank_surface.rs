@@ -23,7 +23,7 @@ pub struct WellLook {
     pub radius: f64,
     /// Its unlit colour, linear sRGB.
     pub rgb: [f32; 3],
-    /// How high what it holds stands, m.
+    /// Height of its paint, m.
     pub height_m: f32,
 }
 
@@ -33,9 +33,9 @@ pub const CLEANER_RGB: [f32; 3] = [0.30, 0.37, 0.40];
 /// A surface without what was painted on it.
 #[derive(Clone, Debug)]
 pub struct BlankSurface {
-    /// What it is primed with.
+    /// Ground that it is primed with.
     pub ground: Ground,
-    /// Heights of what lies under the paint.
+    /// Heights of the ground under the paint.
     pub relief: Arc<Relief>,
     /// Its wells.
     pub wells: Vec<WellLook>,

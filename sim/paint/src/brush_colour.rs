@@ -1,4 +1,4 @@
-//! The paint on a brush as it looks: films over hair, in colour.
+//! Colour of the paint on a brush: films over hair.
 
 use std::sync::Arc;
 
@@ -17,12 +17,12 @@ pub const SAMPLES: usize = 8;
 /// Texels of a sample.
 const TEXELS: usize = TEXELS_PER_STRIP / SAMPLES;
 
-/// What a brush carries, and what is to be known of the brush to show it. It shares the load.
+/// A brush's load, and the properties of the brush that its picture needs. It shares the load.
 #[derive(Clone, Debug)]
 pub struct Carried {
     /// The paint.
     pub load: Arc<BrushLoad>,
-    /// What the bristles are made of.
+    /// Material of the bristles.
     pub hair: Hair,
     /// Thickness of a texel's film by its count, m.
     pub film_m: f64,
@@ -31,14 +31,13 @@ pub struct Carried {
 }
 
 impl Carried {
-    /// Whether it is the same as another was, for as long as that is kept: what changes a load gives it
-    /// another place.
+    /// True if it is the same as the other, as long as that exists: a changed load is another allocation.
     #[must_use]
     pub fn is(&self, other: &Self) -> bool {
         Arc::ptr_eq(&self.load, &other.load) && self.hair == other.hair
     }
 
-    /// How it looks in a studio, over hair of the internal reflectances [`hair`].
+    /// Its colours in a studio, over hair of the internal reflectances [`hair`].
     #[must_use]
     pub fn look(&self, studio: &Studio, hair: &[f32]) -> BrushLook {
         let count = self.load.texels() / TEXELS;

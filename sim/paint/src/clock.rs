@@ -16,15 +16,15 @@ pub struct Drying {
     pub surface: u32,
     /// The part of it; all if absent.
     pub region: Option<Region>,
-    /// What its layer is to be called; by its number if empty.
+    /// Name for its layer; its number if empty.
     pub name: String,
     /// Number of its layer, once something has dried into it.
     pub layer: Option<u32>,
-    /// How long it takes, ticks.
+    /// Duration, ticks.
     pub ticks: u32,
-    /// How many of them went by.
+    /// Ticks elapsed.
     pub elapsed: u32,
-    /// How many had when its newest round began.
+    /// Ticks elapsed when its newest round began.
     pub reached: u32,
     /// The round that is not done.
     pub round: Option<Round>,
@@ -38,7 +38,7 @@ pub struct Round {
     pub from: u32,
     /// Ticks.
     pub to: u32,
-    /// Which tile is next, row after row from the bottom.
+    /// Index of the next tile, row after row from the bottom.
     pub next: u32,
 }
 
@@ -64,7 +64,7 @@ impl Drying {
     }
 }
 
-/// How far dryings are; what a document keeps of them.
+/// Progress of the dryings, as a document saves it.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Clock {
     /// Ticks since the painting began.

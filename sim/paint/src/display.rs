@@ -23,7 +23,7 @@ pub struct DisplayTile {
     pub gloss: Vec<f32>,
     /// 1 where paint is wet.
     pub wetness: Vec<f32>,
-    /// Height of what lies there, tooth and paint, above the surface's highest bare peaks, m.
+    /// Height of the surface there, tooth and paint, above its highest bare peaks, m.
     pub height: Vec<f32>,
 }
 
@@ -32,7 +32,7 @@ pub struct DisplayTile {
 pub struct WetFilms(Vec<(usize, Vec<f32>)>);
 
 impl WetFilms {
-    /// The wet films of a tile; none where nothing was painted.
+    /// The wet films of a tile; empty where nothing was painted.
     #[must_use]
     pub fn of(tile: Option<&Tile>) -> Self {
         Self(tile.map(|tile| thickness(&tile.wet())).unwrap_or_default())
@@ -45,7 +45,7 @@ impl WetFilms {
         films.map(|(slot, film)| (*slot, film.as_slice())).collect()
     }
 
-    /// Their colours over what lies under them: linear red, green, blue.
+    /// Their colours over the ground under them: linear red, green, blue.
     #[must_use]
     pub fn shade(&self, studio: &Studio, under: Under<'_>) -> [Vec<f32>; 3] {
         let mut rgb = [const { Vec::new() }; 3];
@@ -143,8 +143,8 @@ impl DisplayTile {
         heights
     }
 
-    /// The display of a tile of a surface; `tile` is none where nothing was painted. `rgb` are the
-    /// colours of its wet `films` over what lies under them.
+    /// The display of a tile of a surface; `tile` is `None` where nothing was painted. `rgb` are the colours of its wet
+    /// `films` over the ground under them.
     #[must_use]
     pub fn on(
         bare: &BlankSurface,
@@ -187,9 +187,9 @@ impl DisplayTile {
         }
     }
 
-    /// The tile of the next level from its four children, of cells of side `cell_m`: lower left, lower
-    /// right, upper left, upper right; absent ones lie beyond the edge and count as `outside`. Slopes that
-    /// its cells do not show any more dull its gloss (Toksvig 2005).
+    /// The tile of the next level from its four children, of cells of side `cell_m`: lower left, lower right, upper
+    /// left, upper right; absent ones are beyond the edge and count as `outside`. Slopes that its cells no longer show
+    /// dull its gloss (Toksvig 2005).
     #[must_use]
     pub fn coarser(children: [Option<&Self>; 4], outside: &Self, cell_m: f32) -> Self {
         let children = children.map(|child| child.unwrap_or(outside));
@@ -266,7 +266,7 @@ impl DisplayTile {
         bytes
     }
 
-    /// Reads [`to_bytes`](Self::to_bytes); none where the length is wrong.
+    /// Reads [`to_bytes`](Self::to_bytes); `None` if the length is wrong.
     #[must_use]
     pub fn from_bytes(bytes: &[u8]) -> Option<Self> {
         if bytes.len() != TILE_CELLS * 14 {

@@ -1,7 +1,7 @@
-//! What has dried on a tile: layers one over the other, as many as there are.
+//! Dried paint of a tile: layers one over the other, as many as there are.
 //!
-//! A stack is a list from the newest layer down, and shares what lies below with every older version
-//! of the tile: drying a tile adds a link, whatever lies under it.
+//! A stack is a list from the newest layer down, and shares its lower layers with every older version of the tile:
+//! drying a tile adds a link, whatever lies under it.
 
 use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
 use std::sync::{Arc, Mutex, PoisonError, Weak};
@@ -19,7 +19,7 @@ pub struct DryLayer {
     pub planes: Page<Planes>,
 }
 
-/// A layer and what lies under it.
+/// A layer and those under it.
 #[derive(Debug)]
 pub struct DryStack {
     id: u64,
@@ -30,7 +30,7 @@ pub struct DryStack {
     stored: AtomicBool,
 }
 
-/// Quanta of a layer and all below it, a cell: summed when somebody asks.
+/// Quanta of a layer and all below it, a cell: summed on demand.
 #[derive(Debug)]
 struct Height {
     pager: Arc<Pager>,
@@ -99,7 +99,7 @@ impl DryStack {
         self.id
     }
 
-    /// Whether the document has it.
+    /// True if it is stored in the document.
     #[must_use]
     pub fn is_stored(&self) -> bool {
         self.stored.load(Relaxed)
@@ -116,7 +116,7 @@ impl DryStack {
         &self.layer
     }
 
-    /// What lies under it.
+    /// The layers under it.
     #[must_use]
     pub fn below(&self) -> Option<&Arc<Self>> {
         self.below.as_ref()

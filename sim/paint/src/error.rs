@@ -6,9 +6,9 @@ use maulstick_optics::PaintError;
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("{what}")]
 pub struct EditError {
-    /// What is wrong.
+    /// The error.
     pub what: String,
-    /// What to do.
+    /// Advice.
     pub help: String,
 }
 

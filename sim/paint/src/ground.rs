@@ -1,4 +1,4 @@
-//! What a surface is primed with: one reflectance everywhere, or a picture that is printed on it.
+//! Ground of a surface: one reflectance everywhere, or a picture that is printed on it.
 
 use std::collections::{BTreeMap, HashMap};
 use std::fmt;
@@ -14,9 +14,9 @@ use crate::planes::TILE_CELLS;
 use crate::setup::ground_reflectance;
 use crate::tile::TileId;
 
-/// Reflectances of tiles that are kept, bytes; a tile at sixteen wavelengths takes 256 KiB.
+/// Limit of the cached tile reflectances, bytes; a tile at sixteen wavelengths takes 256 KiB.
 const KEPT_BYTES: usize = 64 << 20;
-/// Colours whose reflectance is kept.
+/// Limit of the colours with cached reflectance.
 const KEPT_COLOURS: usize = 1 << 20;
 
 /// The ground of a surface, at the wavelengths of one studio.
@@ -49,12 +49,12 @@ impl GroundTile<'_> {
 }
 
 impl Ground {
-    /// The ground called `name` of a surface of `cells`: one of [`GROUNDS`](crate::setup::GROUNDS), or
-    /// `image:` and the hash of a picture, which covers the surface, or `spectrum:` and the hash of a
-    /// measured reflectance, which it has everywhere.
+    /// The ground called `name` of a surface of `cells`: one of [`GROUNDS`](crate::setup::GROUNDS), or `image:` and the
+    /// hash of a picture, which covers the surface, or `spectrum:` and the hash of a measured reflectance, which it has
+    /// everywhere.
     ///
     /// # Errors
-    /// [`EditError`] where there is none of this name.
+    /// [`EditError`] for an unknown name.
     pub fn called(
         name: &str,
         cells: [u32; 2],

@@ -1,4 +1,4 @@
-//! The head of a brush on a surface: where it is, and how far it goes.
+//! The head of a brush on a surface: its position and its extent.
 
 use maulstick_brush::head::STATIONS;
 use maulstick_brush::{Head, HeadPose, Hold};
@@ -23,8 +23,7 @@ pub struct Waypoint {
     wetness: f32,
 }
 
-/// A [`Waypoint`] as it is kept: rotation x, y, z, w and translation of the brush, joint angles, how
-/// full the brush is.
+/// A saved [`Waypoint`]: rotation x, y, z, w and translation of the brush, joint angles, wetness of the brush.
 pub type WaypointSnapshot = ([f64; 4], [f64; 3], Vec<[f32; 2]>, f32);
 
 impl From<&Waypoint> for WaypointSnapshot {
@@ -135,8 +134,8 @@ wide! {
     }
 }
 
-/// The cells that strips lower than `height` cells cover in a step that ends at `pose`, from the first up to
-/// but not with the second; none where all strips are higher.
+/// The cells that strips lower than `height` cells cover in a step that ends at `pose`, from the first up to but not
+/// with the second; `None` if all strips are higher.
 #[must_use]
 pub fn low_bounds(
     head: &Head,
@@ -180,8 +179,8 @@ pub fn low_bounds(
     })
 }
 
-/// How many cells a ribbon reaches beyond its middle line at the end of a step: where it was in the middle of
-/// it, its edge as wide as it is soft, seen across at most √2 times as far.
+/// Cells that a ribbon reaches beyond its middle line at the end of a step: its position in the middle of the step,
+/// plus its soft edge, seen across at most √2 times as far.
 #[must_use]
 pub fn border(traits: &BrushTraits) -> i64 {
     let half = 0.5 * traits.step_cells;

@@ -25,10 +25,10 @@ const APART: usize = 16;
 /// A surface's number and a tile of it.
 pub type TilePlace = (u32, TileId);
 
-/// A tile; none where nothing was painted.
+/// A tile; `None` where nothing was painted.
 pub type TileRef = Option<Arc<Tile>>;
 
-/// Whether both are the same pages.
+/// True if both are the same pages.
 #[must_use]
 pub fn same(one: &TileRef, other: &TileRef) -> bool {
     match (one, other) {
@@ -40,7 +40,7 @@ pub fn same(one: &TileRef, other: &TileRef) -> bool {
     }
 }
 
-/// What a step made of a tile.
+/// Change of a tile by a step.
 #[derive(Clone, Debug)]
 pub struct Change {
     /// The tile before it.
@@ -60,7 +60,7 @@ impl Change {
     }
 }
 
-/// What a painting's surface is made of, as far as a step can change it.
+/// Materials of a surface, as far as a step can change them.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct SurfaceMaterial {
     /// The surface.
@@ -73,10 +73,10 @@ pub struct SurfaceMaterial {
     pub tooth_seed: u64,
 }
 
-/// What a painting is besides its tiles, as far as a step can change it.
+/// State of a painting besides its tiles, as far as a step can change it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct NonTileState {
-    /// What the brushes carry, by name.
+    /// Loads of the brushes, by name.
     pub loads: BTreeMap<String, Page<BrushLoad>>,
     /// The books.
     pub ledger: Ledger,
@@ -88,12 +88,12 @@ pub struct NonTileState {
     pub tops: BTreeMap<u32, f32>,
 }
 
-/// What a step did besides tiles.
+/// Changes of a step besides tiles.
 #[derive(Clone, Debug, Default)]
 pub struct StepEffects {
-    /// What brushes carried before and after it, where it changed that.
+    /// Loads of the brushes before and after it, where it changed them.
     pub loads: BTreeMap<String, [Page<BrushLoad>; 2]>,
-    /// What it booked.
+    /// Paint that it booked.
     pub booked: Booked,
     /// The dry layers before and after it, if it changed them.
     pub layers: Option<[Vec<Layer>; 2]>,
@@ -104,7 +104,7 @@ pub struct StepEffects {
 }
 
 impl StepEffects {
-    /// What leads from one state to another, with what was booked on the way.
+    /// The changes that lead from one state to another, with the paint booked in between.
     #[must_use]
     pub fn between(before: &NonTileState, after: &NonTileState, booked: Booked) -> Self {
         let changed = after.loads.iter().filter_map(|(name, page)| {
@@ -150,22 +150,22 @@ fn joined<T: Clone>(first: Option<[T; 2]>, second: Option<&[T; 2]>) -> Option<[T
 pub struct Step {
     /// Its number; steps that ended later have higher ones.
     pub id: u64,
-    /// What it was, in words.
+    /// Description in words.
     pub what: String,
-    /// Whose brush made it, if a brush did.
+    /// Name of the brush that made it, if one did.
     pub brush: Option<String>,
-    /// How many operations it is.
+    /// Number of operations.
     pub operations: u64,
-    /// Whether it is done; if not, it was undone.
+    /// True if it is done; false if it was undone.
     pub done: bool,
-    /// What it changed.
+    /// Changes of tiles.
     pub tiles: Arc<BTreeMap<TilePlace, Change>>,
-    /// What it did besides.
+    /// Its other changes.
     pub effects: Arc<StepEffects>,
 }
 
 impl Step {
-    /// Whether it changed anything that another one changed.
+    /// True if it changed anything that the other one changed.
     fn lies_on(&self, other: &Self) -> bool {
         let changes = |change: &Change| !same(&change.before, &change.after);
         let (few, many) = match self.tiles.len() < other.tiles.len() {
@@ -219,7 +219,7 @@ pub struct OpenStep {
     pub tiles: BTreeMap<TilePlace, TileRef>,
     /// The rest before it.
     pub before: NonTileState,
-    /// What it booked so far.
+    /// Paint booked so far.
     pub booked: Booked,
     /// The tiles that it may have changed.
     pub reached: BTreeSet<TilePlace>,
@@ -236,14 +236,14 @@ pub struct History {
     steps: BTreeMap<u64, Step>,
     /// Steps that were undone, the last one at the end.
     undone: Vec<u64>,
-    /// Steps that changed, came or went since they were last asked for.
+    /// Steps that changed, came or went since the last query.
     touched: BTreeSet<u64>,
     /// See [`part_at`](Self::part_at).
     part: u64,
 }
 
 impl History {
-    /// The history of a painting that was kept, with the steps that go on.
+    /// A saved history, with the steps still open.
     #[must_use]
     pub fn restored(next: u64, steps: Vec<Step>, undone: Vec<u64>, open: Vec<OpenStep>) -> Self {
         let steps = steps.into_iter().map(|step| (step.id, step));
@@ -257,7 +257,7 @@ impl History {
         }
     }
 
-    /// Begins a step; what this brush, or nobody's brush, undid is gone.
+    /// Begins a step; steps undone by this brush, or by none, are dropped.
     pub fn begin(&mut self, what: &str, brush: Option<&str>, before: NonTileState) {
         let own = |step: &Step| match (&step.brush, brush) {
             (Some(one), Some(other)) => one == other,
@@ -306,8 +306,8 @@ impl History {
         taken
     }
 
-    /// Adds a step that has just ended. It comes after all that ended before it, whenever it began:
-    /// it may lie over them, they never over it.
+    /// Adds a step that has just ended. It comes after all that ended before it, whenever it began: it may overlap them
+    /// from above, they never it.
     pub fn push(&mut self, mut step: Step) {
         self.touched.insert(step.id);
         self.next += 1;
@@ -373,7 +373,7 @@ impl History {
         }
     }
 
-    /// How many steps can be undone and redone.
+    /// Numbers of steps that can be undone and redone.
     #[must_use]
     pub fn depth(&self) -> (usize, usize) {
         let done = self.steps.len() - self.undone.len();
@@ -473,8 +473,8 @@ impl History {
         });
     }
 
-    /// Forgets undone steps, and those that were undone before them and lie on the same tiles: they
-    /// could be redone only on top of them.
+    /// Drops undone steps, and those that were undone before them and share tiles with them: they could be redone only
+    /// on top of them.
     fn drop_undone(&mut self, mut gone: BTreeSet<u64>) {
         let mut lost: BTreeSet<TilePlace> = BTreeSet::new();
         for id in self.undone.iter().rev() {

@@ -7,8 +7,8 @@ use maulstick_types::scene::{CANVAS, Scene};
 
 use crate::light::cast;
 
-/// The lamp in the frame of `surface`: the scene gives its direction in the canvas's. A surface that
-/// is not in the scene is taken to lie like the canvas.
+/// The lamp in the frame of `surface`: the scene gives its direction in the canvas's. A surface that is not in the
+/// scene is taken to be parallel to the canvas.
 #[must_use]
 pub fn lamp_over(scene: &Scene, surface: u32) -> Lamp {
     let pose = |id: u32| {

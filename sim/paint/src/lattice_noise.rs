@@ -3,7 +3,7 @@
 /// Value noise on lattices of side 1; each channel is one of its own.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct LatticeNoise {
-    /// What all of it depends on.
+    /// Seed of all values.
     pub(crate) seed: u64,
 }
 

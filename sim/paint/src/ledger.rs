@@ -1,7 +1,8 @@
-//! The ledger: where all paint came from and where it is.
+//! The ledger: origin and whereabouts of all paint.
 //!
-//! Tube, cleaner and the brush modes that give or take paint are booked at every transfer; brush,
-//! canvas and palette are counted afresh from what lies there. What tubes and modes gave must be found in the others to the quantum.
+//! Tube, cleaner and the brush modes that give or take paint are booked at every transfer; brush, canvas and palette
+//! are counted afresh from their planes. The paint that tubes and modes gave must be found in the others to the
+//! quantum.
 
 use std::collections::BTreeMap;
 
@@ -9,12 +10,12 @@ use serde::Serialize;
 
 use crate::quantum::{Counts, SLOTS, add};
 
-/// What was booked.
+/// Booked paint.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, serde::Deserialize)]
 pub struct Ledger {
     tube: Counts,
     cleaner: Counts,
-    /// What modes gave less what they took.
+    /// Paint given by modes less paint taken by them.
     #[serde(default)]
     mode: [i64; SLOTS],
 }
@@ -36,7 +37,7 @@ impl Ledger {
         add(&mut self.tube, counts);
     }
 
-    /// What was booked since `before`; less than nothing where it was taken back.
+    /// Paint booked since `before`; negative where it was taken back.
     #[must_use]
     pub fn since(&self, before: &Self) -> Booked {
         let less = |own: &Counts, before: &Counts| {
@@ -49,7 +50,7 @@ impl Ledger {
         }
     }
 
-    /// Whether [`book`](Self::book) leaves no account below nothing.
+    /// True if [`book`](Self::book) leaves no account negative.
     #[must_use]
     pub fn can_book(&self, booked: &Booked, times: i64) -> bool {
         let covers = |own: &Counts, booked: &[i64; SLOTS]| {
@@ -86,7 +87,7 @@ impl Ledger {
     }
 }
 
-/// What was booked in a while, by slot.
+/// Paint booked over a period, by slot.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, serde::Deserialize)]
 pub struct Booked {
     tube: [i64; SLOTS],
@@ -119,7 +120,7 @@ impl Booked {
     }
 }
 
-/// What was counted.
+/// Counted paint.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Stocks {
     /// On all brushes.
@@ -140,7 +141,7 @@ pub struct LedgerReport {
     pub accounts_m3: BTreeMap<&'static str, f64>,
     /// Volume by paint and account, m³.
     pub paints_m3: BTreeMap<String, BTreeMap<&'static str, f64>>,
-    /// What tubes and modes gave less what was found, quanta; 0, or paint was created or destroyed.
+    /// Paint given by tubes and modes less paint found, quanta; 0, or paint was created or destroyed.
     pub quanta_missing: i64,
     /// Steps of the paint model.
     pub steps: u64,
@@ -152,7 +153,7 @@ pub struct LedgerReport {
     pub seconds: f64,
 }
 
-/// What else a report holds.
+/// The other figures of a report.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Tallies {
     /// As [`LedgerReport::steps`].
@@ -184,7 +185,7 @@ pub fn balance(
     let volume = |count: u64| count as f64 * quantum_m3;
     let sum = |counts: &Counts| counts.iter().sum::<u64>();
     let negative = |count: u64| if count == 0 { 0.0 } else { -volume(count) };
-    // What a mode gave is negative, as what a tube gave is.
+    // Paint given by a mode is negative, like that of a tube.
     let from_mode = |count: i64| match count {
         0 => 0.0,
         count => -(count as f64) * quantum_m3,

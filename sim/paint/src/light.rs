@@ -1,4 +1,4 @@
-//! The scene's light as the optics take it.
+//! The scene's light as input of the optics.
 
 use maulstick_optics::colour::apply;
 use maulstick_optics::{Illuminant, Observer, RuleKind, Spectrum, StudioSettings};
@@ -7,7 +7,7 @@ use maulstick_types::scene::Light;
 
 use crate::error::EditError;
 
-/// What the optics need to know of the light; where it comes from and how strong it is they do not.
+/// Optical settings of the light; its direction and strength are not among them.
 ///
 /// # Errors
 /// [`EditError`] for a light out of bounds, or a name of no illuminant.
@@ -69,7 +69,7 @@ pub fn cast(light: &Light) -> [f64; 3] {
     })
 }
 
-/// Whether two lights differ in what the optics need, so that all colours are to be computed anew.
+/// True if two lights differ in their optical settings, so that all colours are to be computed anew.
 #[must_use]
 pub fn changes_colour(one: &Light, other: &Light) -> bool {
     let spectral = |light: &Light| {

@@ -1,4 +1,4 @@
-//! What a brush carries: a texture over its strips, a film on their surface and paint inside.
+//! Load of a brush: a texture over its strips, a film on their surface and paint inside.
 
 use maulstick_brush::Head;
 use maulstick_types::Mixture;
@@ -21,11 +21,11 @@ pub struct PaintOnBrush<'a> {
     pub slot: usize,
     /// Its films.
     pub film: &'a mut [u32],
-    /// What it has inside.
+    /// Paint inside.
     pub inside: &'a mut [u32],
 }
 
-/// Which bristles take paint up.
+/// The bristles that take paint up.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Half {
     /// All of them.
@@ -79,8 +79,8 @@ impl BrushLoad {
         planes * self.texels * size_of::<u32>()
     }
 
-    /// A load as it was kept: steps with contact, all paints' films as last counted, and for each
-    /// paint its films and what it has inside, by texel. None where the planes do not fit.
+    /// A saved load: steps with contact, all paints' films as last counted, and for each paint its films and its paint
+    /// inside, by texel. `None` if the planes do not fit.
     #[must_use]
     pub fn of_planes(
         steps: u64,
@@ -99,13 +99,13 @@ impl BrushLoad {
         Some(load)
     }
 
-    /// Seed of how its bristles lie: another one after each load and at each stroke.
+    /// Seed of the disorder of its bristles: a new one after each load and at each stroke.
     #[must_use]
     pub fn seed(&self) -> u64 {
         self.steps >> SEED_SHIFT
     }
 
-    /// Has the bristles lie as chance has it for another seed.
+    /// Draws the disorder of the bristles from another seed.
     pub fn disorder(&mut self, seed: u64) {
         self.steps = seed << SEED_SHIFT | self.steps & ((1 << SEED_SHIFT) - 1);
     }
@@ -289,7 +289,7 @@ impl BrushLoad {
         self.steps += 1;
     }
 
-    /// Whether any of a paint may be there.
+    /// True if the load may have any of a paint.
     #[must_use]
     pub fn has(&self, slot: usize) -> bool {
         self.held[slot].is_some()
@@ -317,7 +317,7 @@ impl BrushLoad {
         (&mut self.films, paints)
     }
 
-    /// What a paint has inside each texel.
+    /// Amount of a paint inside each texel.
     #[must_use]
     pub fn inside(&self, slot: usize) -> Option<&[u32]> {
         self.held[slot].as_ref().map(|held| held.inside.as_slice())
@@ -340,7 +340,7 @@ impl BrushLoad {
         *count = count.saturating_add_signed(change);
     }
 
-    /// Makes a texel hold so much of a paint, in its film and inside; what it held before.
+    /// Sets the amount of a paint in a texel, in its film and inside; returns the former amounts.
     pub fn set_texel(&mut self, slot: usize, texel: usize, holds: [u32; 2]) -> [u32; 2] {
         if holds == [0; 2] && !self.has(slot) {
             return [0; 2];

@@ -10,16 +10,16 @@ use crate::window::Window;
 /// The motion of a head in one step, in cells of the surface.
 #[derive(Clone, Copy, Debug)]
 pub struct Sweep<'a> {
-    /// Where it was at the step before.
+    /// Pose at the previous step.
     pub from: &'a HeadPose,
-    /// Where it is now.
+    /// Pose now.
     pub to: &'a HeadPose,
 }
 
-/// What goes over between brush and canvas (Baxter 2004, § 6.8).
+/// Transfer between brush and canvas (Baxter 2004, § 6.8).
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum Transfer {
-    /// Paint goes both ways and is counted.
+    /// Paint is transferred both ways and is counted.
     #[default]
     Paint,
     /// The brush stays as it is: a full one never runs out, an empty one never fills.
@@ -31,16 +31,16 @@ pub enum Transfer {
     },
     /// The brush takes on the colours that it touches; the canvas stays as it is.
     Sampler,
-    /// What the brush touches is lifted off, and the brush is clean.
+    /// Lifts the paint that the brush touches, and leaves the brush clean.
     Vacuum,
 }
 
-/// How a brush is used.
+/// Handling of a brush.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Handling {
-    /// Whether it pushes paint.
+    /// True if it pushes paint.
     pub push: bool,
-    /// What goes over.
+    /// Its transfer.
     pub transfer: Transfer,
     /// It adds no paint to a cell with more wet paint than this, quanta.
     pub most: f32,
@@ -63,25 +63,25 @@ pub struct Step<'a> {
     pub window: &'a mut Window,
     /// The head.
     pub head: &'a Head,
-    /// What it does in this step.
+    /// Motion in this step.
     pub sweep: Sweep<'a>,
     /// The cells of the surface that it may reach, from the first up to but not with the second.
     pub bounds: ([i64; 2], [i64; 2]),
-    /// What the brush carries.
+    /// Load of the brush.
     pub load: &'a mut BrushLoad,
     /// Its traits.
     pub traits: BrushTraits,
-    /// How it is used.
+    /// Handling of the brush.
     pub handling: Handling,
     /// Quanta that stay on a cell however hard it is brushed (Baxter 2004, § 6.4.1, size).
     pub stain: f32,
-    /// Whether paint that the brush takes up stays on the surface all the same (Baxter 2004, § 6.7).
+    /// True if paint that the brush takes up stays on the surface all the same (Baxter 2004, § 6.7).
     pub lasting: bool,
     /// The slot of the thinner, if the painting has one.
     pub thinner: Option<usize>,
 }
 
-/// What a step did.
+/// Result of a step.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct StepReport {
     /// Cells that the head touched.
@@ -114,12 +114,12 @@ pub trait PaintModel: Send {
     fn name(&self) -> &'static str;
     /// Moves the paint of one step.
     fn step(&mut self, step: &mut Step<'_>) -> StepReport;
-    /// What computes its steps: `cpu`, or `gpu` and the adapter's name.
+    /// Backend of its steps: `cpu`, or `gpu` and the adapter's name.
     fn backend(&self) -> String {
         "cpu".to_owned()
     }
-    /// Whether steps leave what they did elsewhere until they are [settled](Self::settle). Until then
-    /// nobody else may change window and load, and all steps are of the same two.
+    /// True if the results of steps stay on another device until they are [settled](Self::settle). Until then nobody
+    /// else may change window and load, and all steps are of the same two.
     fn defers(&self) -> bool {
         false
     }
@@ -132,7 +132,7 @@ pub trait PaintModel: Send {
     fn settle(&mut self, _window: &mut Window, _load: &mut BrushLoad) -> StepReport {
         StepReport::default()
     }
-    /// Why it computes elsewhere than before, once. No paint is lost by it.
+    /// The reason why the backend changed, returned once. No paint is lost by it.
     fn take_fall(&mut self) -> Option<String> {
         None
     }

@@ -13,11 +13,11 @@ use crate::backing::{Backing, Content};
 
 /// Something that can leave memory.
 pub(crate) trait Evict: Send + Sync {
-    /// Leaves, if it may, and returns how many bytes that were; none where it has to stay for now.
+    /// Leaves memory, if it may, and returns how many bytes that were; `None` if it has to stay for now.
     fn evict(&self) -> Option<usize>;
 }
 
-/// How much paging was done.
+/// Counts of paging.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct PageCounts {
     /// Bytes of pages in memory.
@@ -31,7 +31,7 @@ pub struct PageCounts {
 }
 
 impl PageCounts {
-    /// Bytes that the painting takes where it is kept: in its document, or in memory.
+    /// Bytes that the painting takes where it is stored: in its document, or in memory.
     #[must_use]
     pub fn held(&self) -> u64 {
         match self.stored {
@@ -116,7 +116,7 @@ impl Pager {
         self.next.load(Relaxed)
     }
 
-    /// How much paging was done.
+    /// Counts of paging so far.
     #[must_use]
     pub fn counts(&self) -> PageCounts {
         PageCounts {
@@ -127,7 +127,7 @@ impl Pager {
         }
     }
 
-    /// Stored pages and dry layers that nobody remembers any more, since the last call.
+    /// Stored pages and dry layers without references that were dropped since the last call.
     pub fn take_dead(&self) -> Vec<u64> {
         std::mem::take(&mut locked(&self.dead))
     }
@@ -136,7 +136,7 @@ impl Pager {
         locked(&self.dead).push(id);
     }
 
-    /// What was wrong with the first page that could not be read.
+    /// Error of the first page that could not be read.
     #[must_use]
     pub fn fault(&self) -> Option<&str> {
         self.fault.get().map(String::as_str)
@@ -153,7 +153,7 @@ impl Pager {
         while ring.front().is_some_and(|what| what.strong_count() == 0) {
             ring.pop_front();
         }
-        // Where none could leave, none is asked again until the document has another one, or many came.
+        // If no page could leave, none is asked again until the document has another one, or many came.
         let rest = self.rest.load(Relaxed);
         if rest > 0 {
             self.rest.store(rest - 1, Relaxed);
@@ -262,7 +262,7 @@ impl<T: Content> Page<T> {
     /// A new page; `base` is the one of which it is a later state.
     #[must_use]
     pub fn new(pager: &Arc<Pager>, content: Arc<T>, base: Option<&Self>) -> Self {
-        // What is not stored may never be: then it is a later state of what came before that.
+        // A page that is not stored may never be: then it is a later state of the one before.
         let base = base.map_or_else(Weak::new, |base| match base.stored_bytes() {
             0 => base.0.base.clone(),
             _ => Arc::downgrade(&base.0),
@@ -296,13 +296,13 @@ impl<T: Content> Page<T> {
         &self.0.pager
     }
 
-    /// Whether both are the same page.
+    /// True if both are the same page.
     #[must_use]
     pub fn is(&self, other: &Self) -> bool {
         Arc::ptr_eq(&self.0, &other.0)
     }
 
-    /// The page of which it is a later state, if somebody still remembers that.
+    /// The page of which it is a later state, if that is still referenced.
     #[must_use]
     pub fn base(&self) -> Option<Self> {
         self.0.base.upgrade().map(Self)
@@ -314,7 +314,7 @@ impl<T: Content> Page<T> {
         self.0.stored.load(Relaxed)
     }
 
-    /// Bytes that it takes where it is kept: in the document, or in memory.
+    /// Bytes that it takes where it is stored: in the document, or in memory.
     #[must_use]
     pub fn held_bytes(&self) -> usize {
         match self.stored_bytes() {
@@ -331,7 +331,7 @@ impl<T: Content> Page<T> {
             .map_or(0, |content| content.bytes())
     }
 
-    /// What it holds, if it is in memory.
+    /// Its content, if it is in memory.
     #[must_use]
     pub fn peek(&self) -> Option<Arc<T>> {
         locked(&self.0.content).clone()
@@ -347,8 +347,8 @@ impl<T: Content> Page<T> {
         self.0.pager.rest.store(0, Relaxed);
     }
 
-    /// What it holds, from the document if it is not in memory. A page that cannot be read holds
-    /// nothing, and [`Pager::fault`] says why.
+    /// Its content, from the document if it is not in memory. A page that cannot be read is empty, and [`Pager::fault`]
+    /// says why.
     #[must_use]
     pub fn get(&self) -> Arc<T> {
         self.0.used.store(true, Relaxed);

@@ -1,7 +1,7 @@
 //! Motion cut into steps of one length.
 //!
-//! Poses come as the brush is solved; steps are cut from the way between them, each as long as the last,
-//! whatever the rate of samples. What is left of a way waits for more of it, or for the end of the contact.
+//! Poses come as the brush is solved; steps are cut from the path between them, each as long as the last, whatever the
+//! rate of samples. The rest of a path waits for more of it, or for the end of the contact.
 
 use maulstick_brush::{Head, HeadPose};
 
@@ -9,13 +9,13 @@ use crate::head::{Waypoint, motion};
 use crate::model::Sweep;
 use crate::scale::Scale;
 
-/// A shorter motion is none, cells.
+/// Motion that counts as rest, cells.
 const STILL: f64 = 0.02;
-/// A longer motion is no motion of a hand: nothing is painted on its way, m of the brush.
+/// Longest motion of a hand, m of the brush: nothing is painted along a longer one.
 const LEAP_M: f64 = 2.0;
 /// A motion so many times as long as a step is painted as one that is doubled.
 const DOUBLED_FROM: f64 = 1.5;
-/// A long step passes over no way so much longer than itself, cells.
+/// Largest excess of a path over the long step across it, cells.
 const DETOUR: f64 = 0.25;
 /// Doublings of a step at most.
 const MOST_DOUBLINGS: u32 = 2;
@@ -27,7 +27,7 @@ const ROUNDING: f64 = 1e-6;
 pub struct PathStepper {
     at: Waypoint,
     stepped: HeadPose,
-    /// Where it has come to since, less than a step on.
+    /// Its position since then, less than a step on.
     ahead: Option<Waypoint>,
     scale: Scale,
     doublings: u32,
@@ -48,7 +48,7 @@ impl PathStepper {
         }
     }
 
-    /// A path that was kept: where it stepped last, and where it had come to since.
+    /// A saved path: position of its last step, and the position since.
     #[must_use]
     pub fn going_on(head: &Head, (at, ahead): (Waypoint, Option<Waypoint>), scale: Scale) -> Self {
         Self {
@@ -57,13 +57,13 @@ impl PathStepper {
         }
     }
 
-    /// Where it stepped last, and where it has come to since.
+    /// Position of the last step, and the position since.
     #[must_use]
     pub fn places(&self) -> (&Waypoint, Option<&Waypoint>) {
         (&self.at, self.ahead.as_ref())
     }
 
-    /// How the brush's lengths are seen.
+    /// Scale of the brush's lengths on the surface.
     #[must_use]
     pub fn scale(&self) -> Scale {
         self.scale
@@ -76,7 +76,7 @@ impl PathStepper {
     }
 
     /// Moves on to `to` in steps that are doubled so many times, those of a blade never, and calls `step` for each,
-    /// with its doublings: they follow from its length, so that a path that was kept ends as it would have.
+    /// with its doublings: they follow from its length, so that a saved path ends as it would have.
     pub fn advance(
         &mut self,
         head: &Head,
@@ -111,7 +111,7 @@ impl PathStepper {
         }
     }
 
-    /// Steps to where the brush turns within a long step: the way there and back would be lost.
+    /// Steps to the point where the brush turns within a long step: the path there and back would be lost.
     fn turn(&mut self, head: &Head, next: &HeadPose, step: &mut impl FnMut(Sweep<'_>, u32)) {
         let Some(ahead) = self.ahead.take() else {
             return;

@@ -8,10 +8,10 @@ use crate::tile::TileId;
 use crate::tooth::Tooth;
 use crate::tooth_picture::PictureTooth;
 
-/// Heights that are kept; beyond that they are computed anew.
+/// Largest number of cached heights; beyond that they are computed anew.
 const KEPT: usize = 1024;
 
-/// Where heights come from.
+/// Source of the heights.
 #[derive(Debug)]
 enum Shape {
     Flat,
@@ -19,7 +19,7 @@ enum Shape {
     Picture(PictureTooth),
 }
 
-/// What catches paint on a surface.
+/// The relief of a surface, which catches paint.
 #[derive(Debug)]
 pub struct Relief {
     shape: Shape,

@@ -21,7 +21,7 @@ pub struct Rewet {
 struct Wet {
     planes: Vec<Option<Vec<f32>>>,
     room: Vec<u64>,
-    /// Cells in which what comes next lies uppermost.
+    /// Cells in which the next layer is uppermost.
     open: Vec<bool>,
     full_cells: usize,
 }
@@ -42,9 +42,8 @@ impl Wet {
         wet
     }
 
-    /// Takes a layer up, from the newest down, and returns what is left of it; none where it stays as
-    /// it is. A cell without room for all of it takes an even share of its paints, and nothing of what
-    /// lies under it.
+    /// Takes a layer up, from the newest down, and returns the rest of it; `None` if it is unchanged. A cell without
+    /// room for all of it takes an even share of its paints, and nothing of the layers under it.
     fn take(&mut self, layer: &Planes) -> Option<Planes> {
         let mut rest: Vec<(usize, Vec<f32>)> = layer
             .iter()

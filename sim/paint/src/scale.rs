@@ -1,6 +1,6 @@
 //! Lengths of a brush in cells of a surface.
 
-/// How a brush's lengths are seen on a surface.
+/// Scale of a brush's lengths on a surface.
 #[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Scale {
     /// Side of a cell in the surface's own lengths, m.

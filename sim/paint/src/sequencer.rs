@@ -19,11 +19,11 @@ use crate::painting::Painting;
 use crate::snapshot::{ReplySnapshot, TakeSnapshot};
 use dispatch::elsewhere;
 
-/// Clients whose last reply is kept, so that a repeated command is done once. A client repeats
-/// within seconds; of more clients than these the one that was answered longest ago is forgotten.
+/// Clients whose last reply is cached, so that a repeated command is done once. A client repeats within seconds; beyond
+/// this number the client answered longest ago is forgotten.
 const CLIENTS: usize = 256;
 
-/// What a command asks of the outside world; done by whoever runs the sequencer, at once.
+/// Effect of a command on the outside world; carried out at once by the caller of the sequencer.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Effect {
     /// Write the picture and, if asked, the ledger.
@@ -38,13 +38,13 @@ pub enum Effect {
 /// A reply to the command `number` of `client`.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Replied {
-    /// Who asked.
+    /// Client that sent it.
     pub client: u64,
     /// The command's number.
     pub number: u64,
-    /// What became of it.
+    /// Outcome.
     pub outcome: Outcome,
-    /// What is still to be done for it; the outcome holds if that succeeds.
+    /// Effect still to be carried out; the outcome holds if that succeeds.
     pub effect: Option<Effect>,
 }
 
@@ -64,7 +64,7 @@ pub struct Sequencer {
     answers: u64,
     ignored: u64,
     serial: u64,
-    /// What was accepted, if somebody keeps it.
+    /// Accepted records, if they are saved.
     records: Option<Vec<Record>>,
 }
 
@@ -111,7 +111,7 @@ impl Sequencer {
         self.next
     }
 
-    /// States that were dropped: of takes that nobody announced, or live ones during a take.
+    /// States that were dropped: of unannounced takes, or live ones during a take.
     #[must_use]
     pub fn ignored(&self) -> u64 {
         self.ignored
@@ -122,13 +122,13 @@ impl Sequencer {
         std::mem::take(&mut self.journal)
     }
 
-    /// What is consumed of a brush's states: all below this number.
+    /// First of a brush's states that is not consumed.
     #[must_use]
     pub fn consumed(&self, brush: Origin) -> u64 {
         self.consumed.get(&brush).copied().unwrap_or(0)
     }
 
-    /// What is consumed of every brush's states.
+    /// First state of each brush that is not consumed.
     #[must_use]
     pub fn consumed_all(&self) -> Vec<(Origin, u64)> {
         self.consumed
@@ -137,12 +137,11 @@ impl Sequencer {
             .collect()
     }
 
-    /// Accepts a state, which must come in order, and then the commands that waited for it; returns
-    /// what became of these and of it. A state that does not fit is refused, and consumed all the
-    /// same.
+    /// Accepts a state, which must come in order, and then the commands that waited for it; returns the outcomes of
+    /// these and of it. A state that does not fit is refused, and consumed all the same.
     ///
-    /// A state of a replayed take that nobody announced paints nothing, nor does a live one from
-    /// the announcement of a take to its last state: a take paints the same whoever else moves.
+    /// A state of an unannounced replayed take paints nothing, nor does a live one from the announcement of a take to
+    /// its last state: a take paints the same whatever else moves.
     #[must_use = "effects of the commands are still to be done"]
     pub fn state(
         &mut self,
@@ -202,7 +201,7 @@ impl Sequencer {
         self.pass(header);
     }
 
-    /// Whether a state is of the announced take, or live while no take has its brush.
+    /// True if a state is of the announced take, or live while no take has its brush.
     fn may_paint(&self, brush: &str, header: &Header, state: &BrushState) -> bool {
         let take = self.announced.get(brush);
         if header.flags.has(Flags::REPLAY) {
@@ -457,7 +456,7 @@ impl Sequencer {
         }
         self.painting.take(brush, loads)?;
         let step = self.painting.newest_step();
-        // What may have to be taken back is not merged with what came before.
+        // A step that may have to be taken back is not merged with earlier ones.
         self.painting.part_history(step);
         let take = TakeSnapshot {
             device,

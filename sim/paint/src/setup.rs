@@ -36,7 +36,7 @@ const PALETTE_M: [f64; 2] = [0.128, 0.256];
 /// Radius of its wells, m.
 const WELL_RADIUS_M: f64 = 9e-3;
 
-/// What a new painting is made with.
+/// Settings of a new painting.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PaintingSetup {
     /// Cells of the canvas, across and up.
@@ -52,13 +52,13 @@ pub struct PaintingSetup {
     pub tooth_seed: u64,
     /// Thickness of paint that stays on the canvas however hard it is brushed, m.
     pub stain_m: f64,
-    /// Whether paint on the palette lasts, however much of it brushes take up.
+    /// True if paint on the palette lasts, however much of it brushes take up.
     pub piles_last: bool,
-    /// What the palette's wells hold, from the top.
+    /// Mixtures of the palette's wells, from the top.
     pub wells: Vec<Mixture>,
     /// The light.
     pub light: Light,
-    /// Factor of the eye that looks at it; none: such that the bare canvas does not clip.
+    /// Exposure factor; `None` for the one at which the bare canvas does not clip.
     pub exposure: Option<f64>,
     /// The pictures that its ground and its tooth may be made of.
     pub embedded: Assets,
@@ -303,7 +303,7 @@ mod tests {
                 assert!((a - b).abs() < 1e-9, "{cell_m} m: {a} {b}");
             }
         }
-        // Where cells are coarse it is as near as these allow, and never empty.
+        // On coarse cells it is as near as these allow, and never empty.
         assert_eq!(board(1e-2).cells, [13, 26]);
     }
 

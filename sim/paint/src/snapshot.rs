@@ -1,4 +1,4 @@
-//! Snapshots: a painting and its sequencer as a document keeps them, without tiles, history and versions.
+//! Snapshots: a painting and its sequencer as a document saves them, without tiles, history and versions.
 
 use std::collections::BTreeMap;
 
@@ -23,11 +23,11 @@ pub struct BrushSnapshot {
     pub stroke: Option<(u32, u64)>,
     /// While it paints, on which surface, where it stepped last, and where it has come to since.
     pub path: Option<(u32, Scale, WaypointSnapshot, Option<WaypointSnapshot>)>,
-    /// What its strokes take in turn, and how many it made since its take began.
+    /// Loads that its strokes take in turn, and the number of strokes since its take began.
     pub loads: Vec<Mixture>,
     /// See `loads`.
     pub strokes: usize,
-    /// Seed of how its bristles lie.
+    /// Seed of the disorder of its bristles.
     pub seed: u64,
 }
 
@@ -76,15 +76,15 @@ pub struct PaintingSnapshot {
     /// Most bytes of the history.
     #[serde(default = "quota")]
     pub quota: u64,
-    /// How far time went, and what dries.
+    /// Time elapsed, and dryings in progress.
     #[serde(default)]
     pub clock: Clock,
-    /// How many rows the document has of it; none in paintings of before they were counted.
+    /// Rows that the document has of it; `None` in paintings from before rows were counted.
     #[serde(default)]
     pub rows: Option<RowCounts>,
 }
 
-/// How many rows a document has of what the painter made.
+/// Numbers of rows that a document has of the painter's work.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct RowCounts {
     /// Tiles that were ever painted on.
@@ -106,7 +106,7 @@ pub struct TakeSnapshot {
     pub device: u32,
     /// Epoch of its playing.
     pub epoch: u32,
-    /// Whether its last state has come.
+    /// True once its last state has arrived.
     pub ended: bool,
     /// The newest step when it began.
     pub step: u64,
@@ -117,7 +117,7 @@ pub struct TakeSnapshot {
 pub struct ReplySnapshot {
     /// The command's number.
     pub number: u64,
-    /// What became of it.
+    /// Outcome.
     pub outcome: Outcome,
     /// Its place among all replies.
     pub age: u64,
@@ -128,13 +128,13 @@ pub struct ReplySnapshot {
 pub struct SequencerSnapshot {
     /// Index of the next journal entry.
     pub next: u64,
-    /// How many things were accepted.
+    /// Number of accepted records.
     pub serial: u64,
     /// Takes that may paint, by brush.
     pub takes: BTreeMap<String, TakeSnapshot>,
     /// Players that are gone.
     pub gone: Vec<u32>,
-    /// How far the states of brushes are consumed: source, epoch, next.
+    /// Consumed states of brushes: source, epoch, next.
     pub consumed: Vec<(u32, u32, u64)>,
     /// Replies, by client.
     pub answers: BTreeMap<u64, ReplySnapshot>,

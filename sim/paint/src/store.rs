@@ -19,13 +19,13 @@ pub struct TileRect {
 }
 
 impl TileRect {
-    /// Whether all of `other` lies inside.
+    /// True if all of `other` lies inside.
     #[must_use]
     pub fn holds(&self, other: &Self) -> bool {
         (0..2).all(|i| self.from[i] <= other.from[i] && other.to[i] <= self.to[i])
     }
 
-    /// Whether a tile lies inside.
+    /// True if a tile lies inside.
     #[must_use]
     pub fn contains(&self, id: TileId) -> bool {
         let within = |i: usize, at: u32| (self.from[i]..self.to[i]).contains(&at);
@@ -128,8 +128,7 @@ impl TileStore {
             })
     }
 
-    /// The tiles that touch the rectangle of cells `from`..`to`, cut to the surface; none where it
-    /// lies beside.
+    /// The tiles that touch the rectangle of cells `from`..`to`, cut to the surface; `None` if it is outside.
     #[must_use]
     pub fn around(&self, from: [i64; 2], to: [i64; 2]) -> Option<TileRect> {
         let mut rect = TileRect {

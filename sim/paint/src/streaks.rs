@@ -1,8 +1,8 @@
-//! Streaks: how much paint each bristle takes up at a load, so that no two loads paint the same stroke.
+//! Streaks: variation of the paint that bristles take up at a load, so that no two loads paint the same stroke.
 //!
-//! What a bristle takes is part its own (its place and kind, from the brush file), part chance of the load:
-//! patches where the heap was touched well or not, and single bristles. The seed is the painting's number of
-//! steps, which the journal has.
+//! A bristle's share is part its own (its place and kind, from the brush file), part chance of the load: patches where
+//! the heap was touched well or not, and single bristles. The seed is the painting's number of steps, which the journal
+//! has.
 
 use maulstick_brush::Head;
 use maulstick_brush::head::disorder::{noise, unit};
@@ -16,7 +16,7 @@ const SINGLE: f32 = 1.2;
 /// The least that a bristle takes of the mean.
 const LEAST: f32 = 0.08;
 
-/// What each strip takes up by the mean of all, for the load with this seed: the head as a whole takes the same.
+/// Share of each strip over the mean of all, for the load with this seed: the head as a whole takes the same.
 #[must_use]
 pub fn streaks(head: &Head, seed: u64) -> Vec<f32> {
     let strips = head.roots().iter().zip(head.capacity());

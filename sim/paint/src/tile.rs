@@ -16,7 +16,7 @@ pub struct TileId {
     pub x: u32,
 }
 
-/// What lies on a tile: wet paint over what has dried.
+/// Paint of a tile: wet over dried.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Tile {
     wet: Option<Page<Planes>>,
@@ -74,19 +74,19 @@ impl Tile {
         self.wet.iter().chain(dry)
     }
 
-    /// What has dried.
+    /// Dried paint.
     #[must_use]
     pub fn dry(&self) -> Option<&Arc<DryStack>> {
         self.dry.as_ref()
     }
 
-    /// Whether nothing lies on it.
+    /// True if it has no paint.
     #[must_use]
     pub fn is_bare(&self) -> bool {
         self.wet.is_none() && self.dry.is_none()
     }
 
-    /// Whether both are made of the same pages.
+    /// True if both are made of the same pages.
     #[must_use]
     pub fn is(&self, other: &Self) -> bool {
         let wet = match (&self.wet, &other.wet) {
@@ -106,12 +106,12 @@ impl Tile {
         plane_counts(&self.wet())
     }
 
-    /// The tile with the lower `share` of its wet film dried as layer `number`, but for the cells of
-    /// `stays`; none where nothing dries. All of it dries by reference, unread.
+    /// The tile with the lower `share` of its wet film dried as layer `number`, but for the cells of `stays`; `None` if
+    /// nothing dries. All of it dries by reference, unread.
     ///
-    /// Where the newest link of what has dried is of this layer, and nothing was painted since it dried,
-    /// it grows: film under film of the same mixture has the colour of one film. Else there is a new
-    /// link, for two mixtures one over the other do not look like both mixed.
+    /// If the newest dry link is of this layer, and nothing was painted since it dried, it grows: film under film of
+    /// the same mixture has the colour of one film. Else there is a new link, for two mixtures one over the other do
+    /// not look like both mixed.
     #[must_use]
     pub fn dried(&self, number: u32, share: f32, stays: &[usize]) -> Option<Self> {
         let page = self.wet.as_ref()?;
@@ -169,7 +169,7 @@ impl Tile {
     }
 }
 
-/// Counts of both; none where a cell would have more of a paint than is exact.
+/// Counts of both; `None` if a cell would have more of a paint than is exact.
 fn sum(one: &Planes, other: &Planes) -> Option<Planes> {
     let mut planes = one.clone();
     for (slot, more) in other {
@@ -189,7 +189,7 @@ fn sum(one: &Planes, other: &Planes) -> Option<Planes> {
     Some(planes)
 }
 
-/// A stored tile and the number of its version; none where nothing was ever painted.
+/// A stored tile and the number of its version; no tile where nothing was ever painted.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Version {
     /// Grows with every change of any tile of the painting.

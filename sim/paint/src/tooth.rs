@@ -1,8 +1,8 @@
-//! The tooth of a surface: what its bare ground is like under the fingertip.
+//! The tooth of a surface: the fine relief of its bare ground.
 //!
-//! Heights are at most 0, the level of the highest peaks, on which a brush rests. Woven grounds are
-//! a primed plain weave (`weave.rs`); primed panels and papers are noise of several octaves. All of it
-//! is a function of place and seed.
+//! Heights are at most 0, the level of the highest peaks, on which a brush rests. Woven grounds are a primed plain
+//! weave (`weave.rs`); primed panels and papers are noise of several octaves. All of it is a function of place and
+//! seed.
 
 use maulstick_types::paint::TILE;
 
@@ -11,7 +11,7 @@ use crate::planes::TILE_CELLS;
 use crate::tile::TileId;
 use crate::weave::Weave;
 
-/// How a ground is made.
+/// Construction of a ground.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Make {
     /// Threads by this distance, m, and the share of their length that is slubs.
@@ -72,7 +72,7 @@ impl Tooth {
         KINDS.iter().map(|kind| kind.name)
     }
 
-    /// The tooth called `name` on cells of `cell_m`; none if there is no such tooth.
+    /// The tooth called `name` on cells of `cell_m`; `None` if there is no such tooth.
     #[must_use]
     pub fn new(name: &str, seed: u64, cell_m: f64) -> Option<Self> {
         let kind = *KINDS.iter().find(|kind| kind.name == name)?;

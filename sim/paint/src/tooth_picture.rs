@@ -1,7 +1,7 @@
-//! A tooth that is made of a picture: white is as high as the highest peaks, black lies its depth below.
+//! A tooth made from a picture: white is at the height of the highest peaks, black at the given depth below.
 //!
-//! Its name says how large it is and how deep: `image:<hash>@120mm,80um` is a picture 120 mm wide, from
-//! its lower left corner on the surface's, which repeats beyond its edges, 80 µm deep.
+//! Its name gives its width and depth: `image:<hash>@120mm,80um` is a picture 120 mm wide, from its lower left corner
+//! on the surface's, which repeats beyond its edges, 80 µm deep.
 
 use std::fmt;
 use std::sync::Arc;

@@ -12,7 +12,7 @@ use crate::transfer::Exchanging;
 /// Texels along a strip.
 pub const TEXELS_PER_STRIP: usize = 16;
 
-/// What a paint model needs to know of a brush, in cells of a surface and in quanta.
+/// Properties of a brush that a paint model needs, in cells of a surface and in quanta.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BrushTraits {
     /// Way of a step, cells.
@@ -23,13 +23,13 @@ pub struct BrushTraits {
     pub half_width: f32,
     /// Share of that width which a strip loses up to its point.
     pub taper: f32,
-    /// How far the skin draws back where the strips show, cells.
+    /// Distance by which the skin draws back where the strips show, cells.
     pub recede: f32,
     /// Half the thickness of a strip, cells: by twice as much its edges are higher than its middle.
     pub half_thickness: f32,
-    /// How far the most unruly strip keeps off the surface while the head is hardly pressed, cells.
+    /// Height of the most unruly strip over the surface while the head is hardly pressed, cells.
     pub lift: f32,
-    /// How much deeper the pressed head reaches into the tooth, cells.
+    /// Additional depth that the pressed head reaches into the tooth, cells.
     pub sink: f32,
     /// Quanta of a texel's full film.
     pub film_full: f64,
@@ -47,7 +47,7 @@ pub struct BrushTraits {
     pub units_per_cell: f32,
     /// Side of a cell by that of the reference cell.
     pub cell_per_reference: f32,
-    /// Whether it floats on its paint in one plane, as a blade does.
+    /// True if it floats on its paint in one plane, as a blade does.
     pub floats: bool,
     /// Share of its motion that paint follows.
     pub follows: f32,
@@ -57,11 +57,11 @@ pub struct BrushTraits {
     pub refill: f64,
     /// Share of the difference between texels that evens out in as many.
     pub creep: f64,
-    /// How films even out in as many.
+    /// Seepage of paint between the films.
     pub seep: Seep,
 }
 
-/// How paint seeps between the films of texels beside each other.
+/// Seepage of paint between the films of neighbouring texels.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Seep {
     /// Share of their difference that evens out between strips, beyond what the yield stress holds.
@@ -158,8 +158,8 @@ const PEAK_M: f64 = 0.125e-3;
 pub const FILM_OVER: f64 = 2.0;
 /// As [`FILM_OVER`]: what a blade scrapes off gathers on it.
 pub const BLADE_OVER: f64 = 3.0;
-/// Share of the motion of bristles that paint follows: it sticks to them about as to the canvas (a half
-/// in Baxter 2004, § 6.4.2). What lies before a blade goes with it.
+/// Share of the motion of bristles that paint follows: it sticks to them about as to the canvas (a half in Baxter 2004,
+/// § 6.4.2). Paint in front of a blade goes with it.
 pub const FOLLOWS: f32 = 0.4;
 /// As [`FOLLOWS`].
 pub const BLADE_FOLLOWS: f32 = 1.0;
@@ -167,8 +167,8 @@ pub const BLADE_FOLLOWS: f32 = 1.0;
 const UNEVEN: f32 = 0.1;
 
 impl BrushTraits {
-    /// How far the most unruly strip keeps off what it lies on under a press of 0 to 1, cells. A blade floats
-    /// on its paint, the less the harder it is pressed.
+    /// Height of the most unruly strip over the surface under a press of 0 to 1, cells. A blade floats on its paint,
+    /// the less the harder it is pressed.
     #[must_use]
     pub fn loose(&self, press: f32) -> f32 {
         let off = 1.0 - press;

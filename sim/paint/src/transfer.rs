@@ -1,9 +1,8 @@
-//! How much paint goes between brush and canvas (Baxter 2004, Algorithm 3), by path length.
+//! Amount of paint transferred between brush and canvas (Baxter 2004, Algorithm 3), by path length.
 //!
-//! The constants of the text hold for a step of one cell. Here the transfer is a function of the
-//! travel s in reference cells of .25 mm: a share 1 − (1 − .1)^s of the paint, at most .001·s units.
-//! No travel, no transfer; this takes the place of the text's speed cut-off, and the result does not
-//! depend on how a motion is cut into steps.
+//! The constants of the text hold for a step of one cell. Here the transfer is a function of the travel s in reference
+//! cells of .25 mm: a share 1 − (1 − .1)^s of the paint, at most .001·s units. No travel, no transfer; this takes the
+//! place of the text's speed cut-off, and the result does not depend on how a motion is cut into steps.
 
 use maulstick_num::exp_f32;
 
@@ -39,7 +38,7 @@ impl Exchanging {
         swap: 0.3,
         ..Self::BRISTLES
     };
-    /// A blade: it scrapes off what stands above its edge, and fills what lies below; ln(1 − .6).
+    /// A blade: it scrapes off paint above its edge, and fills hollows below it; ln(1 − .6).
     pub const BLADE: Self = Self {
         ln_kept: -0.916_290_7,
         evens: 0.0,
@@ -85,8 +84,8 @@ impl Exchanging {
         fill + if difference > 0.0 { amount } else { -amount }
     }
 
-    /// Paint that goes both ways at once where brush and canvas are wet, units: their films mix as the
-    /// bristles go through them, but no deeper than a film, however high the paint lies.
+    /// Paint that is swapped where brush and canvas are wet, units: their films mix as the bristles go through them,
+    /// but no deeper than a film, however high the paint is.
     #[must_use]
     #[inline(always)]
     pub fn swapped(&self, on_brush: f32, on_canvas: f32, share: f32) -> f32 {
@@ -103,7 +102,7 @@ fn filled(share: f32) -> f32 {
     1.0 - kept * kept
 }
 
-/// How deep the films reach that change places, units: 100 µm.
+/// Depth of the films that are swapped, units: 100 µm.
 pub const SWAP_FILM: f32 = 0.004;
 
 #[cfg(test)]

@@ -8,15 +8,15 @@
 
 use crate::lattice_noise::{LatticeNoise, ease};
 
-/// How uneven the width of a thread is, in distances of threads.
+/// Variation of the width of a thread, in thread spacings.
 const UNEVEN: f64 = 0.26;
-/// How far all threads wander together.
+/// Wander that all threads share.
 const WANDER: f64 = 0.3;
-/// How much wider than others a thread is at its slub.
+/// Extra width of a thread at its slub.
 const SLUB_WIDTH: f64 = 0.34;
-/// Length of a slub with the thin way to the next, in distances of threads.
+/// Length of a slub with the thin stretch to the next, in thread spacings.
 const SLUB_LENGTH: f64 = 5.0;
-/// How high the gesso lies in the valleys, of the depth of the relief, and how much that varies.
+/// Height of the gesso in the valleys, of the depth of the relief, and its variation.
 const GESSO: [f64; 2] = [0.24, 0.1];
 /// Over what heights it goes up the flank of a thread.
 const MENISCUS: f64 = 0.24;
@@ -30,7 +30,7 @@ pub(crate) struct Weave {
     pub slubs: f64,
 }
 
-/// Where a place lies in a thread.
+/// Position in a thread.
 #[derive(Clone, Copy, Debug)]
 struct Thread {
     number: i64,
@@ -69,7 +69,7 @@ impl Weave {
         smooth_max(top + 0.05 * grain, level + 0.03 * grain, MENISCUS)
     }
 
-    /// The thread of an axis that lies at `across`, at `along` its way.
+    /// The thread of an axis at `across`, at `along` its length.
     fn thread(&self, axis: u64, across: f64, along: f64) -> Thread {
         let mut number = across.floor() as i64;
         let slub = |number: i64| self.slub(axis, number, along);
@@ -97,7 +97,7 @@ impl Weave {
         }
     }
 
-    /// How thick a thread is spun there, beyond its own: 0 to 1, at the middle of a slub.
+    /// Extra thickness of a thread there: 0 to 1, at the middle of a slub.
     fn slub(&self, axis: u64, number: i64, along: f64) -> f64 {
         let noise = self.noise.along(axis + 16, number, along / SLUB_LENGTH);
         let least = 1.0 - self.slubs;

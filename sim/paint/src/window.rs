@@ -21,7 +21,7 @@ pub struct Area {
 }
 
 impl Area {
-    /// Whether it holds no cell.
+    /// True if it has no cell.
     #[must_use]
     pub fn is_empty(&self) -> bool {
         self.size.contains(&0)
@@ -66,15 +66,15 @@ pub struct Window {
     base: Vec<f32>,
     ride: Vec<f32>,
     ride_below: f32,
-    /// What has dried on each tile.
+    /// Dried paint of each tile.
     dry: Vec<Option<Arc<DryStack>>>,
     top: f32,
     dirty: Vec<bool>,
 }
 
 impl Window {
-    /// Leases `rect` and copies its tiles; none where it is leased already. `relief` gives the
-    /// heights of what catches paint, m.
+    /// Leases `rect` and copies its tiles; `None` if it is leased already. `relief` gives the heights that catch paint,
+    /// m.
     pub fn open(store: &mut TileStore, rect: TileRect, relief: &Relief) -> Option<Self> {
         if !store.lease(&rect) {
             return None;
@@ -141,7 +141,7 @@ impl Window {
         }
     }
 
-    /// Columns and rows, from the lower left corner, that lie on the surface.
+    /// Columns and rows, from the lower left corner, that are on the surface.
     #[must_use]
     pub fn limit(&self) -> [usize; 2] {
         self.limit
@@ -153,14 +153,13 @@ impl Window {
         &self.base
     }
 
-    /// Height at which a pressed bristle lies on what catches paint ([`ride`]), cells.
+    /// Height of a pressed bristle on the relief ([`ride`]), cells.
     #[must_use]
     pub fn ride(&self) -> &[f32] {
         &self.ride
     }
 
-    /// How far the ride is below 0 at most anywhere on the surface, cells: what a step looks at must not
-    /// depend on what else its window holds.
+    /// Lowest ride anywhere on the surface, cells below 0: a step must not depend on what else its window holds.
     #[must_use]
     pub fn ride_below(&self) -> f32 {
         self.ride_below
@@ -248,7 +247,7 @@ impl Window {
         self.wet.iter().flatten().map(|plane| plane[cell]).sum()
     }
 
-    /// The cells `from`..`to` of the surface, as far as they lie in the window and on the surface.
+    /// The cells `from`..`to` of the surface, as far as they are in the window and on the surface.
     #[must_use]
     pub fn area(&self, from: [i64; 2], to: [i64; 2]) -> Area {
         let origin = self.origin();
@@ -284,7 +283,7 @@ impl Window {
         }
     }
 
-    /// Whether any of a paint may be there.
+    /// True if the window may have any of a paint.
     #[must_use]
     pub fn has(&self, slot: usize) -> bool {
         self.wet[slot].is_some()

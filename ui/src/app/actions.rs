@@ -1,4 +1,4 @@
-//! What pointer, other hand and keys do on the desk.
+//! Actions of pointer and keys on the desk.
 
 use eframe::egui::{self, Color32, Context, Event, PointerButton, Stroke};
 use glam::{DVec2, DVec3};
@@ -20,7 +20,7 @@ const ARROW_M_N: f64 = 0.02;
 const ARROW: Color32 = Color32::from_rgb(230, 120, 40);
 
 impl App {
-    /// Where the pointer went since the last frame, on the desk.
+    /// Path of the pointer over the desk since the last frame.
     pub(super) fn pointer(&mut self, context: &Context) -> Vec<Pointer> {
         let (Some(scene), Some(view)) = (&self.rig.scene, &self.view) else {
             return Vec::new();
@@ -101,7 +101,7 @@ impl App {
         });
     }
 
-    /// What the other hand, the cleaning key and a wave ask for.
+    /// Carries out navigation, the cleaning key and the palette gesture.
     pub(super) fn follow(&mut self, context: &Context, now_ns: u64) {
         let Some(view) = &self.view else {
             return;
@@ -174,7 +174,7 @@ impl App {
         let to = from + DVec3::from_array(force_n) * ARROW_M_N;
         let [from, to] = [from, to].map(|at| view.to_window(at));
         painter.arrow(from, to - from, Stroke::new(2.5, ARROW));
-        // What pushes straight up is seen as a ring.
+        // A force straight up is drawn as a ring.
         let ring = (force_n[2].max(0.0) * ARROW_M_N * view.scale) as f32;
         painter.circle_stroke(from, ring, Stroke::new(1.5, ARROW));
     }
@@ -206,7 +206,7 @@ impl App {
     }
 }
 
-/// Whether the pointer is over something that lies on the desk.
+/// True while the pointer is over a panel or another control.
 fn over_panel(context: &Context) -> bool {
     let at = context.input(|input| input.pointer.latest_pos());
     at.and_then(|at| context.layer_id_at(at))
@@ -229,7 +229,7 @@ fn gone(context: &Context, view: &View) -> Option<DVec2> {
         gone.then_some((at?, input.pointer.velocity()))
     })?;
     let sideways = speed.x.abs() > speed.y.abs();
-    // Where it would be in a twentieth of a second.
+    // Its position a twentieth of a second ahead.
     let share = (at + 0.05 * speed - view.area.center()) / view.area.width();
     (sideways && share.x.abs() > 0.5).then(|| DVec2::new(share.x.into(), (-share.y).into()))
 }

@@ -1,5 +1,5 @@
-//! The line of help of a painter who has never painted here: it goes with the first paint that is deposited,
-//! and comes back for a moment when this painter begins another painting.
+//! A line of help for a new painter. It disappears with the first paint that is deposited, and returns
+//! briefly when this painter begins another painting.
 
 use std::time::Duration;
 
@@ -8,16 +8,16 @@ use eframe::egui::{Align2, Area, Color32, Context, Frame, Id, Margin, Order, Ric
 use crate::rig::state::RigState;
 use crate::settings::preferences::Preferences;
 
-/// What it says.
+/// The line of help.
 pub(super) const HELP: &str = "Drag the brush through a paint of the palette, then over the canvas.  \
                         Space: palette   Tab: panels   ?: keys";
-/// How long it is over another painting, s.
+/// Duration of the line over another painting, s.
 const AGAIN_S: f64 = 10.0;
 
-/// What is known of a painter's first day.
+/// State of the line of help.
 #[derive(Debug, Default)]
 pub(super) struct FirstRun {
-    /// Whether the painter was new when the window opened; none before it was first shown.
+    /// True for a new painter; `None` before the window was first shown.
     is_new: Option<bool>,
     /// The painting that was last seen blank, and since when by the window's clock, s.
     blank: Option<(String, f64)>,

@@ -57,10 +57,10 @@ pub mod rack;
 /// Longer side of a version's small picture, pixels, and how long one may take.
 const THUMBNAIL: u32 = 128;
 const FETCH: Duration = Duration::from_secs(1);
-/// A pressed pointer that stands still is told this often: a longer silence would lift the brush.
+/// Interval at which a pressed pointer that stands still is sent: a longer silence would lift the brush.
 const STILL: Duration = Duration::from_millis(30);
 
-/// An order that waits for its stroke is looked at again after this, whatever comes.
+/// Interval at which a request that waits for its stroke is checked again.
 const BARRIER_LOOK: Duration = Duration::from_millis(50);
 
 /// The painter's view.
@@ -93,7 +93,7 @@ pub struct App {
     fetcher: ThumbnailFetcher,
     notifications: Notifications,
     preferences: Preferences,
-    /// Habits as they were last kept, and where.
+    /// Preferences as they were last saved, and their file.
     kept: (Preferences, Option<PathBuf>),
     member: Option<Member>,
 }
@@ -179,7 +179,7 @@ impl App {
         self.preferences.size
     }
 
-    /// What watches over the graphics device.
+    /// Monitor of the graphics device.
     #[must_use]
     pub fn lost(&self) -> DeviceLoss {
         self.lost.clone()
@@ -228,7 +228,7 @@ impl App {
         }
     }
 
-    /// Sends what is asked for, as soon as the strokes before it have landed.
+    /// Sends the requests whose preceding strokes are painted.
     fn send(&mut self, context: &Context) {
         let now_ns = self.bus.now_ns();
         for request in self.requests.take() {
@@ -243,7 +243,7 @@ impl App {
         }
     }
 
-    /// Remembers how large the window is, once nobody drags at it.
+    /// Remembers the size of the window once nobody drags it.
     fn remember_size(&mut self, context: &Context) {
         let size = context.input(|input| {
             let whole = input.viewport().fullscreen.unwrap_or(false);
@@ -298,7 +298,7 @@ impl eframe::App for App {
         if let Err(error) = taken.and_then(|()| self.mouse.send(now_ns, &places)) {
             tracing::warn!("the mouse: {error}");
         }
-        // After the mouse has told where it is: its brush is drawn there.
+        // After the mouse has sent its position: its brush is drawn there.
         self.take_in(now_ns);
         self.barrier.take_in();
         self.send(context);

@@ -1,4 +1,4 @@
-//! What lies over the desk: rack, panels, tellings, the line of help; and what the keys do there.
+//! Everything over the desk: rack, panels, dialogs, notifications, the line of help; and the keys for them.
 
 use eframe::egui::{
     self, Align2, Area, CollapsingHeader, Context, Frame, Id, Order, RichText, ScrollArea, Ui,
@@ -20,11 +20,11 @@ const COLUMN: f32 = 300.0;
 /// Its distance from the window's edges, points.
 const MARGIN: f32 = 8.0;
 
-/// What is over the desk.
+/// Rack, panels, dialogs and notifications over the desk.
 pub(crate) struct Overlay {
     panels: Vec<Box<dyn Panel>>,
     keys: bool,
-    /// Whether the panels are to have the keyboard.
+    /// True if the panels are to get the keyboard.
     to_panels: bool,
     files: Files,
     reference: Reference,
@@ -79,7 +79,7 @@ impl Overlay {
         rest
     }
 
-    /// Hears what became of an order: what was not done is told.
+    /// Takes in the outcome of a request; a failure becomes a notification.
     pub(crate) fn hear(&mut self, outcome: &Outcome, work: &mut PanelContext<'_>) {
         if self.files.hear(outcome, work) {
             return;

@@ -1,5 +1,5 @@
-//! The brush rack at the window's edge: the library's brushes and the painter's own as they look; a click
-//! takes one into the hand.
+//! The brush rack at the window's edge: a thumbnail of each brush of the library and of the painter's own; a
+//! click takes one into the hand.
 
 use std::path::Path;
 
@@ -24,7 +24,7 @@ const NAME: f32 = 15.0;
 
 /// A place of the rack.
 struct Place<'a> {
-    /// What it is called there.
+    /// Its name in the rack.
     name: String,
     /// Two brushes of the same key look alike.
     key: String,
@@ -67,7 +67,7 @@ pub(crate) fn show(context: &Context, work: &mut PanelContext<'_>) -> Rect {
     shown.response.rect
 }
 
-/// Which of the rig's brushes the hand holds, where there are several.
+/// Choice of the brush in the hand, where the rig has several.
 fn switch(ui: &mut Ui, work: &mut PanelContext<'_>) {
     if work.rig.brushes.len() < 2 {
         return;
@@ -137,7 +137,7 @@ fn brushes(ui: &mut Ui, work: &mut PanelContext<'_>) {
             }
         }
     }
-    // What was changed by hand is none of the others.
+    // A brush that was changed by hand matches no entry.
     if let Some(hand) = hand.filter(|_| !is_shown) {
         let place = Place {
             name: called(&hand.kind),

@@ -1,5 +1,5 @@
-//! A file is chosen: a path is typed, and what lies there and begins so is listed below it. ↓ and ↑ go
-//! through the list, → completes, Enter goes into a folder or takes the file.
+//! File chooser: a path is typed, and the matching files are listed below it. ↓ and ↑ go through the list,
+//! → completes, Enter opens a folder or takes the file.
 
 use std::path::{Path, PathBuf};
 
@@ -17,7 +17,7 @@ use crate::dialogs::paths;
 /// Height of the list, points.
 const HEIGHT: f32 = 176.0;
 
-/// Whether the file is to be there.
+/// Purpose of the path: an existing file to read, or a file to write.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Purpose {
     /// One that is there is read.
@@ -32,7 +32,7 @@ pub(crate) struct Browser {
     purpose: Purpose,
     text: String,
     folder: Folder,
-    /// Which of those that fit is marked.
+    /// Index of the marked entry among those that match.
     marked: Option<usize>,
     /// The one that was marked when the list was last drawn: a newly marked one is brought into sight.
     seen: Option<usize>,
@@ -58,7 +58,7 @@ impl Browser {
         self
     }
 
-    /// What was typed.
+    /// The text as typed.
     #[cfg(test)]
     pub(crate) fn text(&self) -> &str {
         &self.text
@@ -77,7 +77,7 @@ impl Browser {
         paths::whole(&self.text)
     }
 
-    /// Whether a file of this path is listed.
+    /// True if a file of this path is listed.
     pub(crate) fn lists(&mut self, context: &Context, path: &Path) -> bool {
         if path.parent() != Some(self.folder.path.as_path()) {
             return false;
@@ -118,7 +118,7 @@ impl Browser {
         }
     }
 
-    /// The entries that begin as what was typed; to write, all where none does.
+    /// The entries that begin as typed; to write, all entries if none does.
     fn fitting(&mut self, context: &Context) -> Vec<Entry> {
         let typed = split(&self.text).1.to_lowercase();
         let Some(Ok(entries)) = self.folder.entries(context) else {
@@ -225,7 +225,7 @@ impl Browser {
     }
 }
 
-/// What the keys do to the list while the field has the keyboard.
+/// Effect of the keys on the list while the field has the keyboard.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Keys {
     Nothing,

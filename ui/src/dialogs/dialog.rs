@@ -1,5 +1,4 @@
-//! The frame that all dialogs share: a title, what is asked, what is wrong, two buttons. Enter goes, Escape
-//! leaves.
+//! The frame of a dialog: title, questions, errors, two buttons. Enter confirms, Escape cancels.
 
 use eframe::egui::text_edit::TextEditState;
 use eframe::egui::{
@@ -9,20 +8,20 @@ use eframe::egui::{
 /// Width of a dialog, points.
 pub(crate) const WIDTH: f32 = 420.0;
 
-/// What a dialog shows below what it asks.
+/// The lower part of a dialog: error, buttons, pending request.
 #[derive(Debug, Default)]
 pub(crate) struct Foot {
-    /// What its button does.
+    /// Label of the confirming button.
     pub go: &'static str,
-    /// What is wrong, and what to do about it.
+    /// The error, with advice.
     pub wrong: Option<String>,
-    /// Whether Enter was pressed where it means to go.
+    /// True if Enter was pressed to confirm.
     pub entered: bool,
-    /// What is waited for: it cannot go twice.
+    /// The pending work; it cannot be started twice.
     pub busy: Option<&'static str>,
 }
 
-/// What the painter decided.
+/// Decision of the painter.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Answer {
     /// Nothing yet.
@@ -72,13 +71,13 @@ pub(crate) fn show(
     // A dialog without the keyboard could not be left by it.
     if context.memory(|memory| memory.focused().is_none()) {
         context.memory_mut(|memory| memory.request_focus(first()));
-        // What is typed goes behind what is there, wherever the cursor was in another dialog.
+        // Typed text is appended, wherever the cursor was in another dialog.
         TextEditState::default().store(context, first());
     }
     answer
 }
 
-/// What is asked for, where the painter goes: what is wrong with it is kept to be shown, and the dialog stays.
+/// The request, once the painter confirms; on an error the dialog stays and shows it.
 pub(crate) fn decided<T>(
     answer: Answer,
     asked: Option<Result<T, String>>,
@@ -128,7 +127,7 @@ fn below(ui: &mut Ui, foot: &Foot) -> Answer {
     answer
 }
 
-/// A line of text with its label; the first of a dialog has the keyboard when it opens. Whether Enter was
+/// A line of text with its label; the first of a dialog has the keyboard when it opens. Returns true if Enter was
 /// pressed in it.
 pub(crate) fn line(
     ui: &mut Ui,
@@ -149,7 +148,7 @@ pub(crate) fn line(
 /// The number of a field, with a point or a comma.
 ///
 /// # Errors
-/// What is wrong and what to do, in words.
+/// Error and advice in words.
 pub(crate) fn number(what: &str, text: &str) -> Result<f64, String> {
     let plain = text.trim().replace(',', ".");
     let number: Option<f64> = plain.parse().ok();
@@ -161,7 +160,7 @@ pub(crate) fn number(what: &str, text: &str) -> Result<f64, String> {
     })
 }
 
-/// What is wrong and what to do, as the node says it, as a painter reads it.
+/// Error and advice of a node in a painter's words.
 #[must_use]
 pub(crate) fn in_words(what: &str, help: &str) -> String {
     let sentence = |text: &str| {

@@ -1,13 +1,13 @@
-//! A painting that is in memory alone goes when another one is opened: then the painter says so first.
+//! Asks before a painting that is only in memory is closed.
 
 use eframe::egui::Ui;
 
 use crate::rig::state::RigState;
 
-/// What is known of the painting that would go.
+/// State of the painting that would be closed.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(crate) struct Unkept {
-    /// Whether it is in memory alone and something is painted.
+    /// True if the painting is only in memory and has paint on it.
     would_go: bool,
     let_go: bool,
 }
@@ -23,7 +23,7 @@ impl Unkept {
         }
     }
 
-    /// Whether the painter lets it go.
+    /// True if the painter agrees to discard it.
     #[must_use]
     pub(crate) fn let_go(self) -> bool {
         self.would_go && self.let_go
@@ -40,10 +40,10 @@ impl Unkept {
         }
     }
 
-    /// Whether another painting may take its place.
+    /// Checks that another painting may replace it.
     ///
     /// # Errors
-    /// What to do first, in words.
+    /// Advice in words.
     pub(crate) fn check(self) -> Result<(), String> {
         match self.would_go && !self.let_go {
             true => Err(

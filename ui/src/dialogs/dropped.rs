@@ -1,4 +1,4 @@
-//! Files that are dropped on the window: what each is, and what becomes of it.
+//! Files dropped on the window, by kind.
 
 use std::fs::File;
 use std::io::Read as _;
@@ -10,7 +10,7 @@ use maulstick_types::command::BRUSH_FILE_MAX;
 
 use crate::dialogs::paths;
 
-/// What is to be dropped.
+/// The kinds of files that may be dropped.
 pub(crate) const KINDS: &str =
     "Drop a painting (.maul), a picture to look at (PNG, JPEG, TIFF) or a brush (.toml).";
 
@@ -25,14 +25,14 @@ pub(crate) enum Dropped {
     Brush(Box<BrushFile>),
     /// Something else.
     Nothing {
-        /// What it is.
+        /// Description of the file.
         what: String,
-        /// What to do.
+        /// Advice.
         help: String,
     },
 }
 
-/// What a file is, by its name and its first bytes.
+/// Kind of a file, by its name and its first bytes.
 #[must_use]
 pub(crate) fn found(path: &Path) -> Dropped {
     let name = paths::name(path);
@@ -100,7 +100,7 @@ fn brush(path: &Path, name: &str) -> Dropped {
     }
 }
 
-/// Says what would become of the file that is held over the window.
+/// Shows what dropping the file over the window would do.
 pub(crate) fn hint(context: &Context) {
     let hovered = context.input(|input| {
         let first = input.raw.hovered_files.first();

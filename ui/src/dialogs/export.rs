@@ -1,4 +1,4 @@
-//! A file for other programs is asked for.
+//! Dialog for an export.
 
 use std::path::Path;
 
@@ -9,7 +9,7 @@ use crate::dialogs::browser::{Browser, Purpose};
 use crate::dialogs::dialog::{self, Answer, Foot, line, number};
 use crate::dialogs::paths;
 
-/// A format: its name in the order, what its files end with, what it is.
+/// A file format: its name in the command, its file ending, its description.
 struct Format {
     name: &'static str,
     ending: &'static str,
@@ -43,7 +43,7 @@ const FORMATS: [Format; 5] = [
         words: "Relief to print (STL)",
     },
 ];
-/// What the names of exports end with.
+/// File endings of exports.
 const ENDINGS: &[&str] = &["png", "ora", "exr", "stl"];
 const DEPTHS: [(u32, &str); 2] = [(8, "8 bits a channel"), (16, "16 bits a channel")];
 const PROFILES: [(&str, &str); 3] = [
@@ -52,7 +52,7 @@ const PROFILES: [(&str, &str); 3] = [
     ("display-p3", "Display P3"),
 ];
 
-/// An export that is being asked for.
+/// Form for an export.
 #[derive(Debug)]
 pub(crate) struct ExportPicture {
     browser: Browser,
@@ -90,10 +90,10 @@ impl ExportPicture {
         self
     }
 
-    /// The order.
+    /// The command.
     ///
     /// # Errors
-    /// What is wrong and what to do, in words.
+    /// Error and advice in words.
     fn command(&self, path: &Path) -> Result<Command, String> {
         let ending = paths::ending(path);
         let format = &FORMATS[self.format];

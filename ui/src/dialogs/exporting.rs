@@ -1,4 +1,4 @@
-//! How far an export is, when it ends, and its end before that.
+//! Progress and end of an export.
 
 use std::path::Path;
 
@@ -11,10 +11,10 @@ use crate::widgets::context::PanelContext;
 
 /// An export that lasts no longer than this is not worth a word, ns.
 const SHORT_NS: u64 = 500_000_000;
-/// Below this share nobody knows when it ends.
+/// Progress below which the time left cannot be estimated.
 const KNOWN: f32 = 0.02;
 
-/// How long it will still take, in words; empty where nobody knows.
+/// Time left, in words; empty while it cannot be estimated.
 fn left(export: &ExportStatus) -> String {
     if !(KNOWN..=1.0).contains(&export.share) {
         return String::new();

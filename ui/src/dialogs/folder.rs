@@ -1,4 +1,4 @@
-//! What lies in a folder, read on a thread of its own: a folder may be far away.
+//! Listing of a folder, read on a thread: the folder may be on a network.
 
 use std::path::{Path, PathBuf};
 use std::task::Poll;
@@ -17,13 +17,13 @@ const MOST: usize = 5_000;
 pub(crate) struct Entry {
     /// Its name.
     pub name: String,
-    /// Whether it is a folder.
+    /// True for a folder.
     pub is_folder: bool,
     /// When it was last changed, in words; empty for a folder.
     pub age: String,
 }
 
-/// What a folder holds.
+/// Content of a folder.
 #[derive(Debug)]
 enum Content {
     Coming(BackgroundTask<Result<Vec<Entry>, String>>),
@@ -33,7 +33,7 @@ enum Content {
 /// A folder that is being looked at.
 #[derive(Debug)]
 pub(crate) struct Folder {
-    /// Where it is.
+    /// Path of the folder.
     pub path: PathBuf,
     kinds: &'static [&'static str],
     content: Option<Content>,
@@ -68,10 +68,10 @@ impl Folder {
         }
     }
 
-    /// What is there; none until it has been read.
+    /// The entries; `None` until they have been read.
     ///
     /// # Errors
-    /// What the system says, in words.
+    /// The system's error in words.
     pub(crate) fn entries(&mut self, context: &Context) -> Option<Result<&[Entry], &str>> {
         let content = self.content.get_or_insert_with(|| {
             let (path, kinds) = (self.path.clone(), self.kinds);
@@ -103,7 +103,7 @@ fn read(path: &Path, kinds: &[&str]) -> Result<Vec<Entry>, String> {
     let mut entries = Vec::new();
     for entry in found.flatten().take(MOST) {
         let name = entry.file_name().to_string_lossy().into_owned();
-        // What a link leads to counts.
+        // A link is followed to its target.
         let Ok(about) = std::fs::metadata(entry.path()) else {
             continue;
         };

@@ -1,5 +1,5 @@
-//! Files in the window: new, open, save, save as, export, what is dropped. Nothing is ever asked twice, and
-//! the desk goes on while an answer is waited for.
+//! Files in the window: new, open, save, save as, export, dropped files. Nothing is sent twice, and the desk
+//! goes on while an answer is pending.
 //!
 //! | module | holds |
 //! | --- | --- |
@@ -63,16 +63,16 @@ enum Dialog {
 #[derive(Debug, Default)]
 pub(crate) struct Files {
     dialog: Option<Dialog>,
-    /// What the open dialog asked for and is not answered yet.
+    /// The open dialog's request, until it is answered.
     waiting: Option<Request>,
-    /// What was dropped and is being looked at.
+    /// A dropped file that is being examined.
     dropping: Option<BackgroundTask<Dropped>>,
     /// The painting that was last seen to be open.
     open: Option<PathBuf>,
 }
 
 impl Files {
-    /// Whether a dialog has the keyboard.
+    /// True while a dialog has the keyboard.
     #[must_use]
     pub(crate) fn is_open(&self) -> bool {
         self.dialog.is_some()
@@ -118,7 +118,7 @@ impl Files {
         OpenPainting::new(&folder(work), recent, Unkept::of(work.rig))
     }
 
-    /// Asks for a picture to pin beside the canvas.
+    /// Opens the dialog that picks a reference picture.
     fn choose_picture(&mut self, work: &PanelContext<'_>) {
         let known = work
             .preferences
@@ -200,7 +200,7 @@ impl Files {
         match (answer, command) {
             (Answer::Leave, _) => (self.dialog, self.waiting) = (None, None),
             (_, Some(command)) => {
-                // An export goes on by itself, and how far it is is shown.
+                // An export runs in the background and shows its progress.
                 let is_export = matches!(command, Command::Export { .. });
                 let order = ask(command, work);
                 match is_export {
@@ -212,7 +212,7 @@ impl Files {
         }
     }
 
-    /// Hears what became of an order; `false` where it was about no file.
+    /// Takes in the outcome of a request; `false` if it was about no file.
     pub(crate) fn hear(&mut self, outcome: &Outcome, work: &mut PanelContext<'_>) -> bool {
         let Request::Command { command, .. } = &outcome.request else {
             return false;
@@ -226,7 +226,7 @@ impl Files {
         }
         match &outcome.result {
             Ok(detail) => {
-                // Some say nothing but the path, which is told already.
+                // Some answers hold nothing but the path, which is shown already.
                 let is_told = done.contains(&paths::shown(Path::new(detail)));
                 let sentence = if is_told {
                     String::new()
@@ -341,7 +341,7 @@ fn ask(command: Command, work: &mut PanelContext<'_>) -> Request {
     }
 }
 
-/// Whether a command puts another painting on the easel, for which nodes are started anew.
+/// True for a command that opens another painting, for which nodes are restarted.
 fn switches(command: &Command) -> bool {
     matches!(
         command,
@@ -349,7 +349,7 @@ fn switches(command: &Command) -> bool {
     )
 }
 
-/// What a command about files did, in words; none of another command.
+/// Result of a file command in words; `None` for any other command.
 fn done(command: &Command) -> Option<String> {
     let file = |path: &str| paths::shown(Path::new(path));
     match command {
@@ -377,7 +377,7 @@ fn folder(work: &PanelContext<'_>) -> PathBuf {
         .map_or_else(paths::pictures, Path::to_owned)
 }
 
-/// What the painting is called.
+/// File stem of the painting.
 fn stem(work: &PanelContext<'_>) -> String {
     let status = work.rig.paint.as_ref().map(|node| &node.status);
     let stem = status.and_then(|status| Path::new(&status.path).file_stem());

@@ -1,4 +1,4 @@
-//! A new painting is asked for: how large, how fine, on what, and where it is kept.
+//! Dialog for a new painting: size, resolution, ground, and file.
 
 use std::path::Path;
 
@@ -31,7 +31,7 @@ const FILE: &str = "";
 /// they are shown, and the same in the window.
 const CELL_BYTES: f64 = 3.0 * 4.0 + 14.0 + 16.0;
 
-/// A new painting that is being asked for.
+/// Form for a new painting.
 #[derive(Debug)]
 pub(crate) struct NewPainting {
     width: String,
@@ -47,7 +47,7 @@ pub(crate) struct NewPainting {
 }
 
 impl NewPainting {
-    /// One that is kept in `folder`.
+    /// A form for a painting in `folder`.
     #[must_use]
     pub(crate) fn new(folder: &Path, unkept: Unkept) -> Self {
         let free = paths::free(folder, "Painting", paths::PAINTING);
@@ -69,15 +69,15 @@ impl NewPainting {
         }
     }
 
-    /// What the rig said against it.
+    /// Takes in the rig's refusal.
     pub(crate) fn refused(&mut self, words: String) {
         self.wrong = Some(words);
     }
 
-    /// What it is painted on.
+    /// The canvas.
     ///
     /// # Errors
-    /// What is wrong and what to do, in words.
+    /// Error and advice in words.
     fn canvas(&self) -> Result<NewCanvas, String> {
         let width = number("Width", &self.width)?;
         let height = number("Height", &self.height)?;
@@ -114,7 +114,7 @@ impl NewPainting {
     /// The command.
     ///
     /// # Errors
-    /// As [`canvas`](Self::canvas), and where it cannot be kept there.
+    /// As [`canvas`](Self::canvas), and if the file cannot be created there.
     fn command(&self) -> Result<Command, String> {
         let canvas = self.canvas()?;
         self.unkept.check()?;
@@ -273,7 +273,7 @@ fn capital(name: &str) -> String {
     })
 }
 
-/// How large it is, in words.
+/// Estimate of size and memory, in words.
 fn estimate(canvas: &NewCanvas) -> String {
     let side = |length: f64| (length / canvas.cell_m).round().max(1.0);
     let [across, up] = [side(canvas.width_m), side(canvas.height_m)];

@@ -1,4 +1,4 @@
-//! Another painting is asked for.
+//! Dialog that opens another painting.
 
 use std::path::{Path, PathBuf};
 
@@ -11,7 +11,7 @@ use crate::dialogs::discard_prompt::Unkept;
 use crate::dialogs::paths;
 use crate::dialogs::recent::RecentList;
 
-/// What the names of paintings end with.
+/// File endings of paintings.
 pub(super) const PAINTINGS: &[&str] = &[paths::PAINTING];
 
 /// A painting that is being chosen.
@@ -37,7 +37,7 @@ impl OpenPainting {
         }
     }
 
-    /// What the rig said against it.
+    /// Takes in the rig's refusal.
     pub(crate) fn refused(&mut self, words: String) {
         self.wrong = Some(words);
     }

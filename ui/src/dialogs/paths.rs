@@ -1,13 +1,13 @@
-//! Where files are: paths as they are typed and as they are shown.
+//! File paths, as they are typed and as they are shown.
 
 use std::path::{Component, Path, PathBuf};
 use std::time::{Duration, SystemTime};
 
 use directories::{BaseDirs, UserDirs};
 
-/// What the name of a painting ends with.
+/// File ending of a painting.
 pub(crate) const PAINTING: &str = "maul";
-/// What the names of pictures that can be read end with.
+/// File endings of the pictures that can be read.
 pub(crate) const PICTURES: [&str; 5] = ["png", "jpg", "jpeg", "tif", "tiff"];
 
 /// The folder of the user.
@@ -16,7 +16,7 @@ pub(crate) fn home() -> PathBuf {
     BaseDirs::new().map_or_else(|| PathBuf::from("/"), |dirs| dirs.home_dir().to_owned())
 }
 
-/// Where a painter who has painted nothing yet keeps paintings: the folder of pictures, or the user's own.
+/// Default folder for paintings: the folder of pictures, or the home folder.
 #[must_use]
 pub(crate) fn pictures() -> PathBuf {
     let own = UserDirs::new().and_then(|dirs| dirs.picture_dir().map(Path::to_owned));
@@ -66,7 +66,7 @@ pub(crate) fn name(path: &Path) -> String {
     )
 }
 
-/// What a name ends with, in small letters; empty where it has no ending.
+/// File ending in lower case; empty if there is none.
 #[must_use]
 pub(crate) fn ending(path: &Path) -> String {
     let ending = path.extension().unwrap_or_default().to_ascii_lowercase();
@@ -97,7 +97,7 @@ pub(crate) fn free(folder: &Path, stem: &str, ending: &str) -> PathBuf {
         .unwrap_or_else(|| folder.join(stem))
 }
 
-/// How long ago something was changed, in words.
+/// Time since the last change, in words.
 #[must_use]
 pub(crate) fn age(changed: SystemTime, now: SystemTime) -> String {
     let past = now.duration_since(changed).unwrap_or(Duration::ZERO);

@@ -1,4 +1,4 @@
-//! A picture is chosen, to be pinned beside the canvas.
+//! Dialog for a reference picture.
 
 use std::path::{Path, PathBuf};
 

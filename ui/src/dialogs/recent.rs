@@ -1,4 +1,4 @@
-//! Paintings that were open before, the newest first.
+//! Recent paintings, the newest first.
 
 use std::path::{Path, PathBuf};
 use std::task::Poll;
@@ -17,7 +17,7 @@ const MOST: usize = 5;
 pub(crate) struct Recent {
     /// Its file.
     pub path: PathBuf,
-    /// When it was last painted in, in words; none where it is gone.
+    /// Time since it was last changed, in words; `None` if the file is gone.
     pub age: Option<String>,
 }
 

@@ -1,4 +1,4 @@
-//! The painting is put into another file, and goes on there.
+//! Dialog that moves the painting to another file and goes on there.
 
 use std::path::{Path, PathBuf};
 
@@ -41,7 +41,7 @@ impl SaveAs {
         self
     }
 
-    /// What the rig said against it.
+    /// Takes in the rig's refusal.
     pub(crate) fn refused(&mut self, words: String) {
         self.wrong = Some(words);
     }

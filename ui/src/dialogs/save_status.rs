@@ -1,5 +1,5 @@
-//! The line at the lower edge: which painting this is, and that it is saved. Under it lies all that is done
-//! with files, for those who do not know the keys.
+//! The line at the lower edge: name of the painting, and whether it is saved. It opens a menu of all file
+//! actions, for painters who do not know the keys.
 
 use std::path::Path;
 
@@ -12,9 +12,9 @@ use crate::dialogs::paths;
 use crate::input::keys::{Action, BINDINGS};
 use crate::widgets::context::PanelContext;
 
-/// What is not saved for so long is told, ns.
+/// Unsaved time from which it is shown, ns.
 const LATE_NS: u64 = 2_000_000_000;
-/// What its menu offers.
+/// Entries of the menu.
 const OFFERS: [Action; 6] = [
     Action::New,
     Action::Open,

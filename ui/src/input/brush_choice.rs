@@ -1,4 +1,4 @@
-//! Which brush is in the hand, and how wide it is: what rack, keys, panel and presets ask for.
+//! The brush in the hand and its width, as rack, keys, panel and presets change them.
 
 use std::ops::RangeInclusive;
 use std::path::Path;
@@ -36,7 +36,7 @@ pub(crate) fn of_library(kind: &str) -> Option<&'static BrushFile> {
     library().iter().find(|file| file.kind == kind)
 }
 
-/// Whether a brush is as the library has it, but for its width.
+/// True if a brush differs from the library's only in its width.
 #[must_use]
 pub(crate) fn is_of_library(file: &BrushFile) -> bool {
     let own = of_library(&file.kind).map(|own| own.scaled_to(file.head.width_mm));
@@ -126,7 +126,7 @@ pub(crate) fn read(path: &Path) -> Result<BrushFile, Fault> {
 }
 
 impl RigBrush {
-    /// What it is made of, or is about to be.
+    /// Its brush file, or the one that it is about to get.
     #[must_use]
     pub fn wanted(&self) -> Option<&BrushFile> {
         let known = self.file.as_ref().map(|(file, _)| file);
@@ -135,13 +135,13 @@ impl RigBrush {
 }
 
 impl PanelContext<'_> {
-    /// What the brush in the hand is made of, or is about to be; none until its node has said so.
+    /// Brush file of the brush in the hand, or the one it is about to get; `None` until its node has sent it.
     #[must_use]
     pub fn in_hand(&self) -> Option<&BrushFile> {
         self.rig.brush()?.wanted()
     }
 
-    /// Gives the hand another brush; one that the hand has already is not asked for again.
+    /// Gives the hand another brush; the brush already in the hand is not requested again.
     pub fn take_up(&mut self, file: BrushFile) {
         if self.in_hand() == Some(&file) {
             return;
@@ -174,8 +174,8 @@ impl PanelContext<'_> {
         self.requests.brush(&brush, command);
     }
 
-    /// Hears what became of an order: a brush that refused keeps what it has; one that is as it was
-    /// asked to be takes up what waited for it.
+    /// Takes in the outcome of a request: a brush that refused keeps its file; one that has the requested file runs the
+    /// command that waited for it.
     pub fn brush_answered(&mut self, outcome: &Outcome) {
         let Request::Command {
             command: Command::Define { brush, toml },
@@ -200,7 +200,7 @@ impl PanelContext<'_> {
         }
     }
 
-    /// Has the paint node do something with the brush in the hand once that is what it was asked to be.
+    /// Sends a command to the paint node once the brush in the hand has its requested file.
     pub fn then(&mut self, command: Command) {
         let in_hand = self.rig.in_hand;
         match self.rig.brushes.get_mut(in_hand) {

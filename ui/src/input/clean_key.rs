@@ -1,11 +1,11 @@
-//! The cleaning key: tapped it cleans the brush; held it makes the brush lift paint, until it is let go.
+//! The cleaning key: a tap cleans the brush; while it is held the brush lifts paint.
 
 use maulstick_types::command::Command;
 use maulstick_types::scene::{BrushHandling, BrushMode};
 
 use crate::rig::requests::Requests;
 
-/// A key that is down for longer is held, s.
+/// Longest press that counts as a tap, s.
 const TAP_S: f64 = 0.25;
 
 /// The key that is down.
@@ -61,7 +61,7 @@ impl CleanKey {
         }
     }
 
-    /// Whether the key is down: it has to be looked at again soon.
+    /// True while the key is down: it has to be checked again soon.
     #[must_use]
     pub(crate) fn is_down(&self) -> bool {
         self.down.is_some()

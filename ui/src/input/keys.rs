@@ -1,21 +1,21 @@
-//! What the keys do: one table, by which they are heard and explained.
+//! Key bindings, one table for input and for help.
 
 use eframe::egui::{Context, Event, Key, KeyboardShortcut, Modifiers, Plugin, RawInput};
 
-/// What a key asks for.
+/// Action of a key.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Action {
     /// A new painting.
     New,
     /// Another painting.
     Open,
-    /// Whether all is saved.
+    /// Save, and confirm that all is saved.
     Save,
     /// The painting under another name.
     SaveAs,
     /// A picture of it for other programs.
     Export,
-    /// A picture to paint after, beside the canvas, and away again.
+    /// Show or hide the reference picture beside the canvas.
     Reference,
     /// The newest step back.
     Undo,
@@ -31,7 +31,7 @@ pub enum Action {
     Dry,
     /// The palette over the canvas, and back.
     Palette,
-    /// The panels, or none.
+    /// Show or hide the panels.
     Panels,
     /// All of the canvas in the view.
     Fit,
@@ -41,7 +41,7 @@ pub enum Action {
     Focus,
     /// The whole screen.
     FullScreen,
-    /// What the keys do.
+    /// Show the keys.
     Keys,
     /// No device gives force any more.
     ForceOff,
@@ -50,11 +50,11 @@ pub enum Action {
 /// A key and what it does.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Binding {
-    /// What it asks for.
+    /// Its action.
     pub act: Action,
     /// The key.
     pub shortcut: KeyboardShortcut,
-    /// What it does, in a painter's words.
+    /// Its description in a painter's words.
     pub words: &'static str,
 }
 
@@ -66,7 +66,7 @@ const fn key(act: Action, modifiers: Modifiers, key: Key, words: &'static str) -
     }
 }
 
-/// All keys that are pressed once. One with more modifiers comes before the same with fewer.
+/// Bindings of keys that act once per press. One with more modifiers comes before the same with fewer.
 pub(crate) const BINDINGS: [Binding; 21] = [
     key(
         Action::Palette,
@@ -161,10 +161,10 @@ pub(crate) const BINDINGS: [Binding; 21] = [
     ),
 ];
 
-/// The key that is held to lift paint, or tapped to clean the brush.
+/// The key that lifts paint while it is held, and cleans the brush at a tap.
 pub(crate) const CLEAN: Key = Key::C;
 
-/// What is held, and what it does.
+/// Actions that last while something is held, and their descriptions.
 pub(crate) const HELD: [(&str, &str); 6] = [
     ("C", "Clean the brush; held, it lifts paint"),
     ("Wheel", "Zoom; with a pen: Shift and drag"),
@@ -192,7 +192,7 @@ pub(crate) fn written(context: &Context, shortcut: &KeyboardShortcut) -> String 
 #[derive(Debug, Default)]
 pub(crate) struct TabKey {
     pressed: bool,
-    /// Whether it is down: the system repeats it without saying so.
+    /// True while it is down: key repeats are not flagged by every system.
     down: bool,
 }
 
@@ -222,8 +222,7 @@ pub(crate) fn force_off(context: &Context) -> Vec<Action> {
     pressed.then_some(Action::ForceOff).into_iter().collect()
 }
 
-/// What the keys that were pressed ask for, in order. While a control has the keyboard, keys without
-/// Ctrl are its own.
+/// Actions of the keys that were pressed, in order. While a control has the keyboard, keys without Ctrl are its own.
 #[must_use]
 pub(crate) fn pressed(context: &Context) -> Vec<Action> {
     let typing = context.memory(|memory| memory.focused().is_some());
@@ -232,7 +231,7 @@ pub(crate) fn pressed(context: &Context) -> Vec<Action> {
     let mut acts: Vec<Action> = tab.then_some(Action::Panels).into_iter().collect();
     context.input_mut(|input| {
         for binding in &BINDINGS {
-            // A key that is held does its work once, but to step back and forth.
+            // A held key acts once, except undo and redo.
             let repeats = matches!(
                 binding.act,
                 Action::Undo | Action::Redo | Action::Smaller | Action::Larger

@@ -16,12 +16,12 @@ use maulstick_types::{Flags, Origin};
 const SILENCE_NS: u64 = 1_000_000_000;
 /// A frame takes no longer, ns; a longer time is a pause.
 const FRAME_NS: u64 = 90_000_000;
-/// A frame of a stroke that goes on may take as long as this, ns.
+/// Longest frame of a stroke that continues, ns.
 const LONG_FRAME_NS: u64 = 1_000_000_000;
 /// Pressure of a pressed button.
 const PRESSED: f64 = 0.5;
 
-/// Where the pointer is on the desk, and whether its button is down.
+/// Position of the pointer on the desk, and its button.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Pointer {
     /// On the desk, m.
@@ -40,7 +40,7 @@ pub(crate) struct Mouse {
     silent_until_ns: u64,
     sent_ns: u64,
     was_in_range: bool,
-    /// Where the brush was pressed when the mouse was last told of; none in the air.
+    /// Position of the brush when the mouse last sent a pressed sample; `None` in the air.
     pressed: Option<[f64; 3]>,
 }
 
@@ -94,20 +94,20 @@ impl Mouse {
         if self.told.brush == brush {
             return Ok(());
         }
-        // The one that was held is put down first.
+        // The brush that was in the hand is lifted first.
         self.send(now_ns, &[])?;
         brush.clone_into(&mut self.told.brush);
         self.info.send(now_ns, now_ns, &self.told)
     }
 
-    /// Whether another stylus paints, so that the mouse is in the other hand.
+    /// True while no other stylus paints; otherwise the mouse is in the other hand.
     #[must_use]
     pub(crate) fn is_free(&self, now_ns: u64) -> bool {
         now_ns < self.silent_until_ns
     }
 
-    /// Sends what the pointer did since the last call: its places in order, evenly spread over that
-    /// time; none where it is not over the desk.
+    /// Sends the movement of the pointer since the last call: its positions in order, evenly spread over that time;
+    /// none while it is not over the desk.
     ///
     /// # Errors
     /// [`BusError::Topic`].
@@ -247,7 +247,7 @@ mod tests {
             }
         }
 
-        /// The mouse tells where it is; whether it was heard to be in range.
+        /// The mouse sends its position; returns the range state that was received.
         fn turn(&mut self) -> Option<bool> {
             let now_ns = self.net.bus().now_ns();
             self.mouse.send(now_ns, &[PRESSED]).expect("sent");
@@ -290,7 +290,7 @@ mod tests {
         let mut told: Vec<String> = std::iter::from_fn(|| desk.infos.try_recv())
             .map(|info| info.message.brush)
             .collect();
-        // Who joins late is told once more.
+        // Late joiners get the last message once more.
         told.dedup();
         assert_eq!(told, ["main", "second"]);
         let ranges: Vec<bool> = std::iter::from_fn(|| desk.samples.try_recv())

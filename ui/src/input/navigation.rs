@@ -1,5 +1,4 @@
-//! The other hand: wheel, middle button, modifiers and touch move the surfaces. What it does are
-//! commands, so a replay knows them.
+//! Navigation by wheel, middle button, modifiers and touch. It sends commands, so a replay repeats it.
 
 use eframe::egui::{Event, InputState, Modifiers, MouseWheelUnit, PointerButton, Pos2};
 use glam::DVec3;
@@ -19,7 +18,7 @@ const TILT: f64 = 1.5;
 /// A drag over the height of the view zooms by e to this power.
 const DRAG_ZOOM: f64 = 2.0;
 
-/// What a drag does.
+/// Effect of a drag.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum DragMode {
     Pan,
@@ -28,27 +27,27 @@ enum DragMode {
     Zoom,
 }
 
-/// A drag that goes on.
+/// A drag in progress.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Drag {
     drag_mode: DragMode,
     button: PointerButton,
     surface: u32,
-    /// Where the surface lies by this hand; the scene follows.
+    /// Placement of the surface by this drag; the scene follows.
     lie: SurfacePlacement,
     at: Pos2,
 }
 
-/// What the window knows of where the pointer counts.
+/// Surroundings of the pointer.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Around<'a> {
     /// The view.
     pub view: &'a View,
-    /// The surfaces as they lie.
+    /// The surfaces with their placements.
     pub surfaces: &'a [Surface],
-    /// Whether another stylus paints, so that the mouse is in the other hand.
+    /// True while no other stylus paints; otherwise the mouse is in the other hand.
     pub free: bool,
-    /// Whether the pointer is over a panel.
+    /// True while the pointer is over a panel.
     pub over_panel: bool,
 }
 
@@ -56,7 +55,7 @@ pub(crate) struct Around<'a> {
 #[derive(Debug, Default)]
 pub(crate) struct Navigation {
     drag: Option<Drag>,
-    /// Where a surface was sent last, and when: the scene follows.
+    /// The surface that was last sent, its placement, and the time; the scene follows.
     sent: Option<(u32, SurfacePlacement, f64)>,
 }
 
@@ -64,7 +63,7 @@ pub(crate) struct Navigation {
 const FOLLOWED_S: f64 = 0.3;
 
 impl Navigation {
-    /// Whether it holds a surface: the pointer is no brush then.
+    /// True while a surface is dragged: the pointer is no brush then.
     #[must_use]
     pub(crate) fn holds(&self) -> bool {
         self.drag.is_some()
@@ -123,7 +122,7 @@ impl Navigation {
         self.sent = None;
     }
 
-    /// Takes hold of what lies under the pointer: the palette can only be moved.
+    /// Begins to drag the surface under the pointer: the palette can only be moved.
     fn grasp(
         &self,
         now: f64,
@@ -172,7 +171,7 @@ impl Navigation {
         }
     }
 
-    /// Where a surface lies: as this hand has sent it newly, or as the scene has it.
+    /// Placement of a surface: the one just sent, otherwise that of the scene.
     fn newest(&self, now: f64, surface: &Surface) -> SurfacePlacement {
         match self.sent {
             Some((id, lie, at)) if id == surface.id && now - at < FOLLOWED_S => lie,
@@ -236,7 +235,7 @@ impl Navigation {
     }
 }
 
-/// What a button does with the modifiers that are held; none where it is the brush's.
+/// Drag mode of a button with the modifiers that are down; `None` if it belongs to the brush.
 fn drag_mode(button: PointerButton, modifiers: Modifiers, free: bool) -> Option<DragMode> {
     let grasps = match button {
         PointerButton::Middle => true,
@@ -270,7 +269,7 @@ mod tests {
     use super::*;
     use crate::rig::requests::Request;
 
-    /// What events make of the scene's surfaces, as orders of places.
+    /// Placement commands that result from events on the scene's surfaces.
     fn placed(free: bool, events: impl IntoIterator<Item = Event>) -> Vec<(u32, SurfacePlacement)> {
         let surfaces = PaintingSetup::default().scene().surfaces;
         let (hand, requests) = (

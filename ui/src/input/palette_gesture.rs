@@ -1,15 +1,16 @@
-//! Waving the brush off the side where the palette rests calls the palette, as the space bar does.
+//! The palette gesture: a wave of the brush beyond the side where the palette rests fetches it, as the space
+//! bar does.
 
 use glam::DVec2;
 use maulstick_brush::palette_place::Side;
 
-/// A brush is off the view here, as a share of its width from the middle: where the window fills a screen
-/// the pointer comes to its edge and no farther.
+/// Distance from the middle beyond which a brush is off the view, as a share of the width: in a full-screen window the
+/// pointer stops at the edge.
 const OFF: f64 = 0.498;
 /// A brush that waves goes at least this fast, m/s.
 const FAST_M_S: f64 = 0.15;
 
-/// Whether the brush waved, seen from one place to the next.
+/// Detects the gesture from successive positions of the brush.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct PaletteGesture {
     last: Option<(DVec2, f64)>,
@@ -18,8 +19,8 @@ pub(crate) struct PaletteGesture {
 }
 
 impl PaletteGesture {
-    /// Follows the brush: `at` in the view's shares of its width and height from the middle (−½ to ½ is in
-    /// view), none where there is no brush; `wide_m` the view's width; `in_air` whether it touches nothing.
+    /// Follows the brush: `at` in the view's shares of its width and height from the middle (−½ to ½ is in view),
+    /// `None` without a brush; `wide_m` the view's width; `in_air` if it touches nothing.
     pub(crate) fn follow(
         &mut self,
         now_s: f64,

@@ -1,4 +1,4 @@
-//! What lies in the wells of the palette, and what is laid there instead.
+//! Mixtures in the wells of the palette.
 
 use maulstick_brush::palette_place::{mirrored, size_m};
 use maulstick_paint::setup::wells_of;
@@ -8,10 +8,10 @@ use maulstick_types::scene::{Surface, WellKind};
 
 use crate::widgets::context::PanelContext;
 
-/// Paints that a palette holds at most: more would lie in wells too small for a brush.
+/// Largest number of paints on a palette: more would make the wells too small for a brush.
 pub(crate) const MOST: usize = 24;
 
-/// What the wells of a palette hold, from the top; the cleaner is none of them.
+/// Mixtures in the wells of a palette, from the top; without the cleaner.
 #[must_use]
 pub(crate) fn mixtures(palette: &Surface) -> Vec<Mixture> {
     let held = palette.wells.iter().map(|well| match &well.kind {
@@ -22,7 +22,7 @@ pub(crate) fn mixtures(palette: &Surface) -> Vec<Mixture> {
 }
 
 impl PanelContext<'_> {
-    /// What the wells of the palette hold, from the top; none before there is a palette.
+    /// Mixtures in the wells of the palette, from the top; empty before there is a palette.
     #[must_use]
     pub fn wells(&self) -> Vec<Mixture> {
         self.rig.palette().map_or_else(Vec::new, mixtures)

@@ -16,7 +16,7 @@ use crate::widgets::context::PanelContext;
 
 /// A panel.
 pub(crate) trait Panel {
-    /// What it is called.
+    /// Title of the panel.
     fn title(&self) -> &'static str;
 
     /// Shows it in a column of the window.

@@ -1,5 +1,5 @@
-//! A picture to paint after, pinned beside the canvas: it is moved, made larger, looked at closely; a click
-//! on it proposes mixtures of its colour there.
+//! A reference picture, pinned beside the canvas: it can be moved, resized and magnified; a click proposes
+//! mixtures of its colour there.
 //!
 //! | module | holds |
 //! | --- | --- |
@@ -31,24 +31,24 @@ use picture::{Picture, Pinned};
 const LEAST: [f32; 2] = [220.0, 180.0];
 /// The picture is magnified at most so far beyond a pixel a point.
 const CLOSEST: f32 = 16.0;
-/// How far an arrow key moves the cross, points.
+/// Step of the cross per press of an arrow key, points.
 const STEP: f32 = 8.0;
 
-/// What is remembered of the reference picture.
+/// Settings of the reference picture that are remembered.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct ReferencePreferences {
-    /// Whether it is shown.
+    /// True while it is shown.
     pub shown: bool,
     /// The picture.
     pub path: Option<PathBuf>,
-    /// Where its frame is, points from the window's upper left corner.
+    /// Position of its frame, points from the window's upper left corner.
     pub place: [f32; 2],
     /// Width and height of the frame's inside, points.
     pub size: [f32; 2],
-    /// How opaque it is, .1 to 1.
+    /// Opacity, .1 to 1.
     pub opacity: f32,
-    /// Whether mixtures are sought among all paints, not among those of the palette.
+    /// True to search among all paints, false among those of the palette.
     pub all_paints: bool,
 }
 
@@ -82,14 +82,14 @@ impl ReferencePreferences {
     }
 }
 
-/// How the picture lies in its frame.
+/// Pan and zoom of the picture in its frame.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Look {
     /// Factor on the size at which all of it is seen.
     zoom: f32,
-    /// The place of the picture in the middle of the frame, 0 to 1 each way.
+    /// The point of the picture in the middle of the frame, 0 to 1 each way.
     middle: Pos2,
-    /// Where colours are picked from, 0 to 1 each way; none before that.
+    /// The point where colours are picked, 0 to 1 each way; `None` before the first pick.
     cross: Option<Pos2>,
 }
 
@@ -124,7 +124,7 @@ impl Reference {
         preferences.reference.shown = true;
     }
 
-    /// Shows the picture that there is, or takes it away; `false` where there is none yet.
+    /// Shows or hides the picture; `false` if there is none yet.
     pub(crate) fn toggle(&mut self, preferences: &mut Preferences) -> bool {
         let known = preferences.reference.path.is_some();
         preferences.reference.shown = known && !preferences.reference.shown;
@@ -309,7 +309,7 @@ impl Reference {
         }
         if zoom != 1.0 && zoom.is_finite() {
             let next = (look.zoom * zoom).clamp(1.0, closest);
-            // What lies under the pointer stays there.
+            // The point under the pointer stays there.
             let off = (around - area.center()) / at.size();
             look.middle += off * (1.0 - look.zoom / next);
             look.zoom = next;
@@ -342,7 +342,7 @@ impl Reference {
         });
     }
 
-    /// What was picked, and the mixtures that come near.
+    /// The picked colour, and the mixtures that come near it.
     fn proposals(&mut self, ui: &mut Ui, work: &mut PanelContext<'_>) {
         let Some(linear) = self.picked else {
             ui.weak("Click a colour: mixtures of it. Wheel: closer.");
@@ -396,7 +396,7 @@ fn matches(ui: &mut Ui, found: Option<&Matches>, work: &mut PanelContext<'_>) {
     }
 }
 
-/// A mixture, how near it comes, and what can be done with it.
+/// A mixture, its colour difference, and its actions.
 fn proposal(ui: &mut Ui, found: &Match, work: &mut PanelContext<'_>) {
     let words = in_parts(found);
     ui.horizontal(|ui| {
@@ -460,14 +460,14 @@ fn swatch(ui: &mut Ui, [r, g, b]: [u8; 3], label: &str) {
     );
 }
 
-/// Where colours are picked from, to be seen over light and dark.
+/// The mark where colours are picked, visible over light and dark.
 fn mark(painter: &egui::Painter, at: Pos2) {
     for (radius, width, colour) in [(7.0, 3.0, Color32::BLACK), (7.0, 1.5, Color32::WHITE)] {
         painter.circle_stroke(at, radius, Stroke::new(width, colour));
     }
 }
 
-/// Where a picture lies in its area.
+/// Rectangle of a picture in its area.
 fn laid(area: Rect, size: [usize; 2], look: &Look) -> Rect {
     let size = vec2(size[0].max(1) as f32, size[1].max(1) as f32);
     let fit = (area.size() / size).min_elem();

@@ -1,5 +1,5 @@
-//! From a colour of the picture to mixtures that look like it on the canvas: searched on a thread, for
-//! among many paints it takes seconds. The newest pick counts; one that it overtakes is not told.
+//! Search for mixtures that match a colour of the picture on the canvas. It runs on a thread, since it takes
+//! seconds among many paints. Only the newest pick is answered.
 
 use std::sync::Arc;
 use std::task::Poll;
@@ -13,37 +13,37 @@ use maulstick_types::scene::{Light, Surface, WellKind};
 
 use crate::background_task::BackgroundTask;
 
-/// How many mixtures are proposed.
+/// Number of mixtures proposed.
 const PROPOSED: usize = 3;
 /// Light that is weaker than this shows no colour.
 const DARK: f64 = 1e-3;
 
-/// Which paints may be used.
+/// A search: the colour and the allowed paints.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Ask {
     /// The colour as a display shows it, linear sRGB.
     pub linear: [f64; 3],
-    /// The paints by name; none for all.
+    /// The paints by name; `None` for all.
     pub paints: Option<Vec<String>>,
     /// The light over the canvas.
     pub light: Light,
 }
 
-/// A mixture that comes near.
+/// A mixture near the colour.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Match {
-    /// What is mixed.
+    /// The mixture.
     pub mixture: Mixture,
-    /// How far it is from the colour, ΔE₀₀.
+    /// Its difference from the colour, ΔE₀₀.
     pub delta_e: f64,
-    /// How it looks on the canvas, encoded sRGB.
+    /// Its colour on the canvas, encoded sRGB.
     pub rgb: [u8; 3],
 }
 
-/// What was found for a pick.
+/// Result of a search.
 pub(crate) type Matches = Result<Vec<Match>, String>;
 
-/// The paints of the wells of a palette, each once; none of a palette without any.
+/// The paints of the wells of a palette, each once; `None` for a palette without any.
 #[must_use]
 pub(crate) fn of_palette(palette: Option<&Surface>) -> Option<Vec<String>> {
     let wells = palette.into_iter().flat_map(|palette| &palette.wells);
@@ -101,7 +101,7 @@ pub(crate) fn search(ask: &Ask, library: &PaintLibrary) -> Matches {
     Ok(all.into_iter().map(shown).collect())
 }
 
-/// Searches that were asked for.
+/// The searches requested.
 #[derive(Debug, Default)]
 pub(crate) struct Picker {
     asked: Option<Ask>,
@@ -110,19 +110,19 @@ pub(crate) struct Picker {
 }
 
 impl Picker {
-    /// Asks for a colour, unless it is the one that was asked for last.
+    /// Requests a search, unless it repeats the last one.
     pub(crate) fn ask(&mut self, ask: Ask) {
         if self.asked.as_ref() != Some(&ask) {
             (self.asked, self.found) = (Some(ask), None);
         }
     }
 
-    /// Forgets what was asked.
+    /// Forgets the request.
     pub(crate) fn forget(&mut self) {
         (self.asked, self.found) = (None, None);
     }
 
-    /// What was found for the newest pick; none while it is searched.
+    /// Result for the newest pick; `None` while the search runs.
     pub(crate) fn found(
         &mut self,
         context: &Context,

@@ -1,5 +1,5 @@
-//! A picture to look at: read and made small on a thread of its own, so that a huge one neither stops the
-//! window nor fills its memory.
+//! Reference pictures, read and reduced on a thread, so that a huge one neither blocks the window nor fills
+//! its memory.
 
 use std::fmt;
 use std::path::{Path, PathBuf};
@@ -12,17 +12,17 @@ use maulstick_optics::colour::srgb_decode;
 
 use crate::background_task::BackgroundTask;
 
-/// Most pixels of the longer side that are kept: every display takes such a texture.
+/// Most pixels of the longer side after reduction: every display takes such a texture.
 const MOST_SIDE: usize = 2048;
 /// Most bytes that a picture may take while it is read: 130 million pixels of a camera.
 const MOST_BYTES: u64 = 400 << 20;
-/// Pixels around the one that was picked, either way: the mean of 5 × 5 is taken.
+/// Pixels around the picked one, either way: the mean of 5 × 5 is taken.
 const AROUND: usize = 2;
 
 /// A picture in memory.
 #[derive(Clone)]
 pub(crate) struct Picture {
-    /// Pixels across and down, as they are kept.
+    /// Pixels across and down, after reduction.
     pub size: [usize; 2],
     /// Encoded sRGB, row after row from the top.
     rgb: Arc<[[u8; 3]]>,
@@ -32,7 +32,7 @@ impl Picture {
     /// Reads a file.
     ///
     /// # Errors
-    /// What is wrong and what to do, in words.
+    /// Error and advice in words.
     pub(crate) fn read(path: &Path) -> Result<Self, String> {
         let image = Image::open_within(path, MOST_BYTES).map_err(|error| match error {
             ImportError::File(error) => {
@@ -102,10 +102,10 @@ impl fmt::Debug for Picture {
     }
 }
 
-/// A picture as it comes.
+/// A pinned picture while it loads.
 #[derive(Default)]
 pub(crate) enum Pinned {
-    /// None.
+    /// No picture.
     #[default]
     Nothing,
     /// It is being read.
@@ -151,7 +151,7 @@ impl Pinned {
         };
     }
 
-    /// The file; none where nothing is pinned.
+    /// The file; `None` if nothing is pinned.
     #[must_use]
     pub(crate) fn path(&self) -> Option<&Path> {
         match self {

@@ -1,8 +1,7 @@
-//! What lies still under the brushes: desk and surfaces as pixels of the window, drawn anew only
-//! where they have changed.
+//! Desk and surfaces as pixels of the window, redrawn only where they have changed.
 //!
-//! A brush moves with every frame, the painting only under it; where the processor draws, that is
-//! time which the paint needs.
+//! A brush moves in every frame, the painting only under it. Without a graphics card the saved time goes to the
+//! paint.
 
 use eframe::egui::{PaintCallbackInfo, Shape};
 use eframe::egui_wgpu::{self, CallbackResources, CallbackTrait, wgpu};
@@ -104,7 +103,7 @@ impl Backdrop {
         u64::from(extent[0]) * u64::from(extent[1])
     }
 
-    /// As a shape of the window that fills the view; none before there is a surface.
+    /// A shape of the window that fills the view; `None` before there is a surface.
     #[must_use]
     pub fn shape(&self, view: &View) -> Option<Shape> {
         let copy = Copy {
@@ -114,7 +113,7 @@ impl Backdrop {
         Some(egui_wgpu::Callback::new_paint_callback(view.area, copy).into())
     }
 
-    /// What it holds, for what reads the ground that it draws on; none before there is a surface.
+    /// Its pixels, for passes that read the ground they draw on; `None` before there is a surface.
     #[must_use]
     pub fn pixels(&self) -> Option<&wgpu::TextureView> {
         self.drawn.as_ref().map(|drawn| &drawn.view)

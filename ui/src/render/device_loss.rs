@@ -1,6 +1,6 @@
-//! A graphics device that is lost: the window ends, the rig opens it again, and then it says why.
+//! Loss of the graphics device: the window ends, the launcher opens it again, and the new window says why.
 //!
-//! Nothing can be drawn without the device, and the toolkit keeps the one that it began with.
+//! Nothing can be drawn without the device, and eframe cannot replace the one it began with.
 
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex, PoisonError};
@@ -9,9 +9,9 @@ use eframe::egui::Context;
 use eframe::egui_wgpu::wgpu;
 use maulstick_rig::Fault;
 
-/// Where the window that ends leaves word for the next one, in the rig's folder.
+/// File in the rig's folder in which the closing window leaves the reason for the next one.
 const WORD: &str = "window-lost";
-/// More of what a driver says is not told, bytes.
+/// Longest driver message that is shown, bytes.
 const LONGEST: usize = 300;
 
 /// Watches over a graphics device; clones share it.
@@ -56,7 +56,7 @@ impl DeviceLoss {
         *self.why.lock().unwrap_or_else(PoisonError::into_inner) = Some(why);
     }
 
-    /// Whether the device is lost.
+    /// True once the device is lost.
     #[must_use]
     pub fn is_lost(&self) -> bool {
         self.why().is_some()
@@ -81,7 +81,7 @@ impl DeviceLoss {
         }
     }
 
-    /// Why the window before this one ended, once.
+    /// The reason why the previous window closed, returned once.
     #[must_use]
     pub fn word(&self) -> Option<String> {
         let why = std::fs::read_to_string(&self.word).ok()?;

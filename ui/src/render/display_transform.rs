@@ -1,4 +1,4 @@
-//! Colours of the window's own things as the display has to be sent them.
+//! sRGB to the colours of the display, for everything that the window draws itself.
 
 use std::sync::{Arc, LazyLock};
 

@@ -1,4 +1,4 @@
-//! Tells the rig of each frame that the graphics device has completed: what it holds, and what it took.
+//! Reports each frame that the graphics device has completed: the brush states it shows, and its duration.
 
 use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
 use std::thread::JoinHandle;
@@ -13,10 +13,10 @@ use maulstick_types::paint::FrameHolds;
 use maulstick_types::topics::Topics;
 use maulstick_types::window::Presented;
 
-/// A device tells that it is done when it is asked: so often it is while a frame is on its way.
+/// Polling interval while a frame is in flight: a device reports completion only when polled.
 const ASK: Duration = Duration::from_millis(1);
 
-/// What a picture of a surface holds.
+/// Brush states that a picture of a surface shows.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Holding {
     /// The journal entries below this index.
@@ -25,7 +25,7 @@ pub struct Holding {
     pub holds: Vec<FrameHolds>,
 }
 
-/// How far the graphics device is with the frames that it was given; clones share it.
+/// Progress of the graphics device through its frames; clones share it.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Completion(Arc<Line>);
 
@@ -38,7 +38,7 @@ impl Completion {
     }
 }
 
-/// Follows frames to their completion and tells of them.
+/// Follows frames to their completion and reports them.
 pub(crate) struct Presenter {
     bus: Arc<dyn Bus>,
     line: Arc<Line>,
@@ -46,7 +46,7 @@ pub(crate) struct Presenter {
     thread: Option<JoinHandle<()>>,
 }
 
-/// Frames on their way.
+/// Frames in flight.
 #[derive(Debug, Default)]
 struct Line {
     state: Mutex<State>,
@@ -56,7 +56,7 @@ struct Line {
 #[derive(Debug, Default)]
 struct State {
     under_way: usize,
-    /// Completed frames that are not told yet, with the time of their completion, ns.
+    /// Completed frames that are not reported yet, with the time of their completion, ns.
     completed: Vec<(u64, Presented)>,
     ended: bool,
 }
@@ -101,14 +101,14 @@ impl Presenter {
         })
     }
 
-    /// How far the device is.
+    /// Progress of the device.
     #[must_use]
     pub(crate) fn completion(&self) -> Completion {
         Completion(Arc::clone(&self.line))
     }
 
-    /// What tells of the frame that was begun at `begun_ns` and holds `holding`: a shape of the window that
-    /// draws nothing; its `area` has to be in the window.
+    /// Reporter of the frame that was begun at `begun_ns` and shows `holding`: a shape of the window that draws
+    /// nothing; its `area` has to be in the window.
     pub(crate) fn shape(&mut self, area: Rect, begun_ns: u64, holding: Holding) -> Shape {
         let Holding { journal, holds } = holding;
         let presented = Presented {
@@ -183,7 +183,7 @@ impl CallbackTrait for Follow {
     }
 }
 
-/// A frame's way through the device; one that is given up counts as gone too.
+/// A frame in flight; one that is dropped counts as completed too.
 struct Way(Arc<Line>);
 
 impl Way {
@@ -205,7 +205,7 @@ impl Drop for Way {
     }
 }
 
-/// Sends what is completed; calls `ask` while frames are on their way.
+/// Sends reports of completed frames; calls `ask` while frames are in flight.
 fn tell(line: &Line, mut sender: Sender<Presented>, bus: &dyn Bus, ask: &dyn Fn()) {
     let mut state = line.state();
     while !state.ended {

@@ -1,5 +1,4 @@
-//! The threads that pull frames: for each surface one query in flight, asked again as soon as it is
-//! answered.
+//! Threads that pull frames: one query in flight for each surface, repeated as soon as it is answered.
 
 use std::collections::BTreeSet;
 use std::sync::{Arc, Mutex, PoisonError};
@@ -16,22 +15,22 @@ use maulstick_types::{DecodeError, Flags, FrameView, Origin, encode};
 use crate::render::tile_planner::{Asked, AtlasState, Part, TilePlanner};
 use crate::view::visible_tiles::Wanted;
 
-/// A frame that does not come within this time is asked for again.
+/// A frame that does not arrive within this time is requested again.
 const LIMIT: Duration = Duration::from_millis(500);
-/// Between two questions that nobody answers.
+/// Pause between two queries that nobody answers.
 const PAUSE: Duration = Duration::from_millis(50);
-/// How long the paint node may wait for something to change, ms.
+/// Longest time the paint node may wait for a change, ms.
 const WAIT_MS: u32 = 200;
 /// So many frames in a row that came only through the socket: shared memory does not work.
 const STRIKES: u32 = 3;
 /// Bytes of a plane of half floats.
 const HALVES: usize = 2 * TILE_CELLS;
-/// Where the wetness begins in a tile's planes: behind red, green, blue and gloss.
+/// Start of the wetness in a tile's planes: after red, green, blue and gloss.
 const WETNESS: usize = 4 * HALVES;
 /// Colour of the tint of wet paint, linear, and how strong it is.
 const WET: [f32; 3] = [0.0, 0.35, 1.0];
 const WET_SHARE: f32 = 0.6;
-/// Where the heights begin in a tile's planes: behind red, green, blue, gloss and wetness.
+/// Start of the heights in a tile's planes: after red, green, blue, gloss and wetness.
 const HEIGHTS: usize = 5 * HALVES;
 
 /// A tile as the textures take it: rows upward from the lowest, 64×64 texels.
@@ -47,25 +46,25 @@ pub struct ShownTile {
     pub height: Vec<u8>,
 }
 
-/// What a reply brought.
+/// Content of a reply.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Shown {
-    /// Which of the surface's sheets the tiles are of.
+    /// The atlas that the tiles belong to.
     pub part: Part,
-    /// That sheet with these tiles.
+    /// That atlas with these tiles.
     pub atlas: AtlasState,
-    /// Cells of the surface at the sheet's level.
+    /// Cells of the surface at the atlas's level.
     pub cells: [u32; 2],
     /// Changed tiles.
     pub tiles: Vec<ShownTile>,
-    /// The journal entries below this index are in the detail; 0 where this reply does not tell.
+    /// The journal entries below this index are in the detail; 0 if this reply does not say.
     pub journal: u64,
-    /// The brush states that are in the detail; none where this reply does not tell.
+    /// The brush states that are in the detail; empty if this reply does not say.
     pub holds: Vec<FrameHolds>,
 }
 
 impl Shown {
-    /// What the picture holds, once all tiles are in it.
+    /// The brush states in the picture, once all tiles are in it.
     #[must_use]
     pub fn holding(&self) -> crate::render::frame_reports::Holding {
         crate::render::frame_reports::Holding {
@@ -95,14 +94,14 @@ impl FrameInbox {
         std::mem::take(&mut *locked(&self.replies))
     }
 
-    /// Asks for this from the next frame on; nothing is asked before.
+    /// Requests this from the next frame on; nothing is requested before.
     pub fn want(&self, wanted: Wanted) {
         if locked(&self.wanted).replace(wanted) != Some(wanted) {
             self.asking.ring();
         }
     }
 
-    /// Why the replies of the paint node cannot be read, for as long as they cannot.
+    /// The error, while the replies of the paint node cannot be read.
     #[must_use]
     pub fn fault(&self) -> Option<DecodeError> {
         locked(&self.fault).clone()
@@ -113,14 +112,14 @@ impl FrameInbox {
     }
 }
 
-/// Where frames come from.
+/// Source of frames.
 #[derive(Clone)]
 pub struct FrameSource {
     /// The bus.
     pub bus: Arc<dyn Bus>,
     /// The query.
     pub topic: String,
-    /// Who asks.
+    /// Origin of the queries.
     pub me: Origin,
     /// The surface.
     pub surface: u32,
@@ -159,11 +158,11 @@ struct Puller<'a> {
     plan: TilePlanner,
     strikes: u32,
     told: BTreeSet<String>,
-    /// What the window was told of the journal.
+    /// The journal state last passed to the window.
     newest: (u64, Vec<FrameHolds>),
 }
 
-/// What became of a question.
+/// Outcome of a query.
 enum Told {
     Answer(Payload),
     Nothing,
@@ -211,7 +210,7 @@ impl Puller<'_> {
         }
     }
 
-    /// Asks with shared memory first, then without: what is lost on the one way comes on the other.
+    /// Queries with shared memory first, then without: a reply that is lost on one path arrives on the other.
     fn ask(&mut self, asked: &Asked) -> Result<Option<Payload>, BusError> {
         if self.strikes < STRIKES {
             match self.ask_once(asked, true)? {
@@ -236,7 +235,7 @@ impl Puller<'_> {
                 Ok(Some(answer))
             }
             Told::Nothing => {
-                // The paint node is starting: the picture stays, and is asked for again.
+                // The paint node is starting: the picture stays, and is requested again.
                 self.pause(PAUSE);
                 Ok(None)
             }
@@ -290,7 +289,7 @@ impl Puller<'_> {
         Ok(Told::Nothing)
     }
 
-    /// What a reply brings to the window, if anything.
+    /// Content of a reply for the window, if any.
     fn shown(&mut self, asked: &Asked, reply: &FrameView<'_>) -> Option<Shown> {
         let before = self.plan.atlas(asked.part);
         if !self.plan.take(asked, reply) {
@@ -334,8 +333,8 @@ impl Puller<'_> {
     }
 }
 
-/// The planes of a tile as texels of colour and gloss, and of height; none where the length is
-/// wrong. See [`DisplayTile::to_bytes`](maulstick_paint::display::DisplayTile::to_bytes).
+/// The planes of a tile as texels of colour and gloss, and of height; `None` if the length is wrong. See
+/// [`DisplayTile::to_bytes`](maulstick_paint::display::DisplayTile::to_bytes).
 #[must_use]
 pub fn texels(planes: &[u8]) -> Option<(Vec<u8>, Vec<u8>)> {
     if planes.len() != HEIGHTS + 4 * TILE_CELLS {

@@ -1,4 +1,4 @@
-//! The graphics device, and what all passes share.
+//! The graphics device, and the parts that all passes share.
 
 use eframe::egui_wgpu::wgpu;
 use wgpu::util::DeviceExt as _;
@@ -8,9 +8,9 @@ use wgpu::util::DeviceExt as _;
 pub struct Gpu {
     /// Makes things.
     pub device: wgpu::Device,
-    /// Takes work, in order.
+    /// Queue of the device.
     pub queue: wgpu::Queue,
-    /// What the window's pixels are.
+    /// Format of the window's pixels.
     pub target: wgpu::TextureFormat,
 }
 
@@ -154,7 +154,7 @@ impl Gpu {
     }
 }
 
-/// What a pipeline is made of.
+/// Description of a pipeline.
 #[derive(Clone, Copy, Debug)]
 pub struct Pass<'a> {
     /// For messages of the driver.
@@ -169,9 +169,9 @@ pub struct Pass<'a> {
     pub fragment: &'a str,
     /// Its overridable constants.
     pub constants: &'a [(&'a str, f64)],
-    /// What it draws into.
+    /// Format of its target.
     pub target: wgpu::TextureFormat,
-    /// How it mixes with what is there.
+    /// Blending with the target.
     pub blend: Option<wgpu::BlendState>,
 }
 
@@ -201,7 +201,7 @@ pub(crate) const CUBE: wgpu::BindingType = wgpu::BindingType::Texture {
     multisampled: false,
 };
 
-/// Whether a texture is read through a sampler.
+/// Sampling of a texture: through a sampler or by texel.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Filterable {
     /// Through a sampler.

@@ -1,5 +1,5 @@
-//! Lights a sheet of a surface: unlit colour, gloss and height into linear light of the display's gamut,
-//! in cells of its own.
+//! Pass that lights an atlas: unlit colour, gloss and height into linear light of the display's gamut, in the
+//! cells of the atlas.
 
 use bytemuck::{Pod, Zeroable};
 use eframe::egui_wgpu::wgpu;
@@ -88,7 +88,7 @@ impl LampUniform {
     }
 }
 
-/// Which cells of a surface a sheet holds, as the shader takes it.
+/// Cells of a surface that an atlas holds, as the shader takes them.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Pod, Zeroable)]
 #[repr(C)]
 pub(crate) struct WindowUniform {
@@ -145,8 +145,8 @@ pub struct CellRect {
 }
 
 impl CellRect {
-    /// This rectangle and the cells around it that its slopes, shadows and occlusion change, within
-    /// those of `held`: they reach `shade` cells to the lower and to the higher sides.
+    /// This rectangle and the cells around it that its slopes, shadows and occlusion change, within `held`: they reach
+    /// `shade` cells to the lower and to the higher sides.
     #[must_use]
     pub fn with_border(&self, shade: [[u32; 2]; 2], held: &Self) -> Self {
         let [low, high] = shade.map(|side| side.map(|reach| reach.max(1)));
@@ -158,8 +158,7 @@ impl CellRect {
         Self { from, size }
     }
 
-    /// Where it lies in textures of `size` texels that go on from their other side: no larger than
-    /// they are, it is at most four rectangles.
+    /// Its rectangles in toroidal textures of `size` texels: at most four, as long as it is no larger than they are.
     #[must_use]
     pub fn on_torus(&self, size: [u32; 2]) -> Vec<Self> {
         let parts = |i: usize| {
@@ -259,7 +258,7 @@ impl LightSurface {
         }
     }
 
-    /// Binds a [`LampUniform`] and a [`WindowUniform`], the colours and the heights of a sheet.
+    /// Binds a [`LampUniform`] and a [`WindowUniform`], the colours and the heights of an atlas.
     #[must_use]
     pub(crate) fn bind(
         &self,

@@ -134,7 +134,7 @@ impl Offscreen {
             .map_err(|error| format!("the graphics device is lost: {error}"))
     }
 
-    /// What it is drawn into.
+    /// Target texture.
     #[must_use]
     pub fn target(&self) -> &wgpu::Texture {
         &self.target

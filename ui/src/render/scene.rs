@@ -1,5 +1,4 @@
-//! The desk in the window: frames of the surfaces as they come, the brushes over them, and how all of it
-//! is drawn.
+//! The desk in the window: frames of the surfaces, and the brushes over them.
 
 use std::sync::Arc;
 use std::thread::JoinHandle;
@@ -45,7 +44,7 @@ struct SurfaceLayer {
     view: SurfaceView,
 }
 
-/// What draws.
+/// Graphics device and passes.
 #[derive(Debug)]
 struct Painter {
     gpu: Gpu,
@@ -54,7 +53,7 @@ struct Painter {
     brushes: BrushRenderer,
 }
 
-/// Where frames come from, and who is told of them.
+/// Source of frames, and receiver of their reports.
 pub(crate) struct Source {
     /// The bus.
     pub bus: Arc<dyn Bus>,
@@ -64,7 +63,7 @@ pub(crate) struct Source {
     pub wake: Wake,
     /// When to end.
     pub stop: Stop,
-    /// How far the device is with the window's frames.
+    /// Progress of the device through the window's frames.
     pub completion: Completion,
 }
 
@@ -74,9 +73,9 @@ pub(crate) struct SceneRenderer {
     surfaces: [SurfaceLayer; SURFACES.len()],
     painter: Option<Painter>,
     threads: Vec<JoinHandle<()>>,
-    /// What the picture of the canvas holds.
+    /// Brush states in the picture of the canvas.
     holding: Holding,
-    /// Where frames are asked for.
+    /// Topic on which frames are requested.
     topic: String,
 }
 
@@ -207,13 +206,13 @@ impl SceneRenderer {
         shapes
     }
 
-    /// What the picture of the canvas holds.
+    /// Brush states in the picture of the canvas.
     #[must_use]
     pub(crate) fn holding(&self) -> Holding {
         self.holding.clone()
     }
 
-    /// Waits for the threads, which end when they are told to stop.
+    /// Waits for the threads, which end when they are asked to stop.
     pub(crate) fn end(&mut self) {
         for thread in self.threads.drain(..) {
             thread.join().ok();
@@ -221,9 +220,9 @@ impl SceneRenderer {
     }
 }
 
-/// Draws the window anew when something has come, but not too often: whatever comes, nothing is begun
-/// for `rest` after a frame was, nor before the device has drawn it, or frames would wait for each other.
-/// The pause is the pace of the window, no wait for something: what comes meanwhile is in the next frame.
+/// Redraws the window when something has arrived, but not too often: no frame is begun within `rest` of the one before,
+/// nor before the device has drawn it, or frames would wait for each other. The pause sets the pace of the window:
+/// whatever arrives meanwhile is in the next frame.
 fn repaint(wake: &Wake, context: &Context, stop: &Stop, completion: &Completion, rest: Duration) {
     while !stop.requested() {
         if wake.wait(Duration::from_millis(200)) {

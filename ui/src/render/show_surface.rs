@@ -1,4 +1,4 @@
-//! Shows the desk, and lit surfaces where they lie on it.
+//! Pass that draws the desk and the lit surfaces on it.
 
 use bytemuck::{Pod, Zeroable};
 use eframe::egui::{Pos2, Vec2};
@@ -14,11 +14,11 @@ use crate::render::gpu::{CUBE, Filterable, Gpu, Pass, UNIFORM, texture_binding};
 use crate::render::light_surface::CellRect;
 use crate::view::camera::{DESK_COLOUR, View, corners};
 
-/// How far the shadow of the palette's board reaches, points, and how dark it is.
+/// Reach of the shadow of the palette's board, points, and its darkness.
 const SHADE: f32 = 14.0;
 const SHADED: f32 = 0.45;
 
-/// Where a surface is in the view, as the shader takes it: pixels, from the view's upper left.
+/// Placement of a surface in the view, as the shader takes it: pixels, from the view's upper left.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
 #[repr(C)]
 pub struct Place {
@@ -33,7 +33,7 @@ pub struct Place {
     base: Region,
 }
 
-/// What a sheet shows of a surface, in cells of its level.
+/// Region of a surface that an atlas shows, in cells of its level.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
 #[repr(C)]
 pub struct Region {
@@ -41,7 +41,7 @@ pub struct Region {
     pub extent: [f32; 2],
     /// The same in whole cells, as many as show all of the surface.
     pub texels: [f32; 2],
-    /// Texels of the sheet, a torus.
+    /// Texels of the atlas, a torus.
     pub size: [f32; 2],
     /// The least cells that may be shown.
     pub low: [f32; 2],
@@ -86,8 +86,8 @@ impl Place {
         }
     }
 
-    /// The pixels of the view that cells of a sheet touch, with those that their filtered edges reach;
-    /// `extent` is the surface's at the sheet's level.
+    /// The pixels of the view that cells of an atlas touch, with those that their filtered edges reach; `extent` is the
+    /// surface's at the atlas's level.
     #[must_use]
     pub fn covered(&self, area: &CellRect, extent: [f32; 2]) -> PixelRect {
         const REACH: f32 = 3.0;
@@ -146,7 +146,7 @@ impl PixelRect {
         }
     }
 
-    /// What of it lies in a picture of `size`: corner and size; none if nothing does.
+    /// Its part in a picture of `size`: corner and size; `None` if that is empty.
     #[must_use]
     pub fn within(&self, size: [u32; 2]) -> Option<([u32; 2], [u32; 2])> {
         let to = [0, 1].map(|i| self.to[i].min(size[i]));

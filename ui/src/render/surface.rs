@@ -1,4 +1,4 @@
-//! A surface on the graphics device: tiles go up as they come, are lit, and are shown.
+//! A surface on the graphics device: its tiles are uploaded as they arrive, lit, and drawn.
 
 use eframe::egui_wgpu::wgpu;
 use maulstick_optics::gamut::Gamut;
@@ -34,7 +34,7 @@ impl Passes {
     }
 }
 
-/// A sheet as it is shown, and the one that will take its place once it has come whole.
+/// An atlas as it is shown, and the one that replaces it once it is complete.
 #[derive(Debug, Default)]
 struct Slot {
     shown: Option<TileAtlas>,
@@ -71,7 +71,7 @@ impl Slot {
     }
 }
 
-/// How a surface was laid before.
+/// The previous placement of a surface.
 #[derive(Debug)]
 struct Placed {
     /// Numbers of the sheets.
@@ -90,7 +90,7 @@ pub struct SurfaceView {
 }
 
 impl SurfaceView {
-    /// Takes in tiles. Those of another sheet begin a new picture, which is shown when it is whole.
+    /// Takes in tiles. Those of another atlas begin a new picture, which is shown when it is complete.
     pub fn update(&mut self, gpu: &Gpu, passes: &Passes, shown: &Shown) {
         let slot = match shown.part {
             Part::Detail => &mut self.detail,
@@ -115,7 +115,7 @@ impl SurfaceView {
         }
     }
 
-    /// Lays the surface into the view; none until there is a picture.
+    /// Places the surface in the view; `None` until there is a picture.
     #[must_use]
     pub fn lay(
         &mut self,
@@ -183,7 +183,7 @@ impl SurfaceView {
 pub struct Laid {
     /// For [`ShowSurface::draw`].
     pub bound: wgpu::BindGroup,
-    /// Where it is other than when it was laid before.
+    /// Pixels that differ from those of the previous placement.
     pub changed: PixelRect,
 }
 

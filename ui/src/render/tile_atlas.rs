@@ -1,7 +1,7 @@
-//! A picture of a part of a surface at one level of detail, on the graphics device.
+//! Part of a surface at one level of detail, on the graphics device.
 //!
-//! Its textures are a torus: tile (x, y) has its place at (x, y) modulo their size, so that the part may
-//! move without anything being copied. Row 0 is the lowest.
+//! The textures are a torus: tile (x, y) lies at (x, y) modulo their size, so the part may move without a copy.
+//! Row 0 is the lowest.
 
 use eframe::egui_wgpu::wgpu;
 use maulstick_optics::light::shadow::REACH;
@@ -17,7 +17,7 @@ use crate::render::show_surface::Region;
 use crate::render::tile_planner::AtlasState;
 use crate::view::visible_tiles::TileRect;
 
-/// From this many changed areas on, the whole sheet is lit in one go.
+/// Number of changed areas from which the whole atlas is lit at once.
 const MANY: usize = 64;
 /// Cells at an edge beyond which there are no heights yet: their slopes and shadows are not whole.
 const RIM: u32 = REACH + 1;
@@ -25,7 +25,7 @@ const RIM: u32 = REACH + 1;
 const UNLIT_BYTES: u64 = 8 + 4;
 const LIT_BYTES: u64 = 8;
 
-/// What is lit.
+/// Input of the lighting pass.
 #[derive(Debug)]
 struct Unlit {
     colour: wgpu::Texture,
@@ -58,7 +58,7 @@ fn view(texture: &wgpu::Texture) -> wgpu::TextureView {
 }
 
 impl TileAtlas {
-    /// An empty sheet as a reply tells of it; none where a device cannot have one so large.
+    /// An empty atlas as a reply describes it; `None` if the device cannot have one so large.
     #[must_use]
     pub(crate) fn of(gpu: &Gpu, pass: &LightSurface, shown: &Shown) -> Option<Self> {
         let most = gpu.device.limits().max_texture_dimension_2d;
@@ -108,7 +108,7 @@ impl TileAtlas {
         &self.state
     }
 
-    /// Whether a reply is about this sheet.
+    /// True if a reply is about this atlas.
     #[must_use]
     pub(crate) fn is_of(&self, shown: &Shown) -> bool {
         (self.state.number, self.cells) == (shown.atlas.number, shown.cells)
@@ -121,7 +121,7 @@ impl TileAtlas {
         u64::from(self.size[0]) * u64::from(self.size[1]) * texel
     }
 
-    /// Keeps what is lit and gives the rest back: another sheet will take its place.
+    /// Keeps the lit picture and frees the rest: another atlas will replace it.
     pub(crate) fn freeze(&mut self) {
         self.unlit = None;
         self.stale.clear();
@@ -227,7 +227,7 @@ impl TileAtlas {
         self.fresh.extend(areas);
     }
 
-    /// What was lit since this was asked before, in cells.
+    /// Cells lit since the last call.
     pub(crate) fn fresh(&mut self) -> Vec<CellRect> {
         std::mem::take(&mut self.fresh)
     }

@@ -1,8 +1,7 @@
-//! What is asked of the paint node next, so that the sheets of a surface hold what the view wants.
+//! Plans the next request to the paint node, so that the atlases of a surface hold the tiles in view.
 //!
-//! A *sheet* is a picture of one level. The *detail* holds the tiles that are in the view and moves with
-//! it, strip by strip; the *base*, of a coarse level, holds the whole surface, and is shown where the
-//! detail does not reach.
+//! An *atlas* shows one level. The *detail* holds the tiles in view and moves with it, strip by strip; the
+//! *base*, of a coarse level, holds the whole surface, and is shown where the detail does not reach.
 
 use maulstick_types::FrameView;
 
@@ -16,12 +15,12 @@ const BASE_EACH: u32 = 16;
 pub enum Part {
     /// The whole surface, coarse.
     Base,
-    /// What the view shows, as fine as its pixels.
+    /// The visible tiles, as fine as the view's pixels.
     #[default]
     Detail,
 }
 
-/// A sheet, as far as it has come.
+/// An atlas, as far as it is filled.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct AtlasState {
     /// Its number: another one is another picture.
@@ -32,14 +31,14 @@ pub struct AtlasState {
     pub room: [u32; 2],
     /// The tiles that have come whole.
     pub held: TileRect,
-    /// Whether its wet paint is tinted.
+    /// True if its wet paint is tinted.
     pub wet: bool,
 }
 
-/// What to ask.
+/// A query.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Asked {
-    /// For which sheet.
+    /// The atlas it is for.
     pub part: Part,
     /// Its level.
     pub level: u32,
@@ -47,23 +46,23 @@ pub struct Asked {
     pub tiles: TileRect,
     /// Newer than this.
     pub since: u64,
-    /// Whether it waits for news: what else is wanted need not wait for it.
+    /// True if it waits for changes: other queries need not wait for it.
     pub waits: bool,
 }
 
 #[derive(Clone, Copy, Debug, Default)]
 struct TileAtlas {
     state: AtlasState,
-    /// What is held is as new as this.
+    /// Journal state of the tiles in the atlas.
     since: u64,
-    /// What is on its way, and how much of it has come.
+    /// The tiles in flight, and how many of them have arrived.
     coming: Option<(TileRect, u64)>,
-    /// Whether more of what is held waits.
+    /// True if more changes of the tiles in the atlas are pending.
     more: bool,
 }
 
 impl TileAtlas {
-    /// Whether it is of a level, has room for so many tiles, and shows wet paint as it is wanted.
+    /// True if it has this level, room for so many tiles, and the wanted tint of wet paint.
     fn takes(&self, level: u32, size: [u32; 2], wet: bool) -> bool {
         let AtlasState { room, .. } = self.state;
         let fits = (0..2).all(|i| size[i] <= room[i]);
@@ -98,7 +97,7 @@ impl TileAtlas {
     }
 }
 
-/// A strip beside `held`, as long as its side, that makes it more like `wanted`.
+/// A strip next to `held`, as long as its side, that brings it closer to `wanted`.
 fn missing(held: &TileRect, wanted: &TileRect) -> Option<TileRect> {
     if held.is_empty() {
         return (!wanted.is_empty()).then_some(*wanted);
@@ -134,7 +133,7 @@ pub struct TilePlanner {
     numbers: u64,
     epoch: u32,
     look: u64,
-    /// Replies for the detail since the base was asked for.
+    /// Replies for the detail since the last query for the base.
     behind: u32,
     last: Part,
 }
@@ -146,7 +145,7 @@ impl TilePlanner {
         (self.epoch, self.look)
     }
 
-    /// A sheet as it is.
+    /// State of an atlas.
     #[must_use]
     pub fn atlas(&self, part: Part) -> AtlasState {
         self.atlases[part as usize].state
@@ -166,7 +165,7 @@ impl TilePlanner {
         };
     }
 
-    /// What to ask for a view that wants this.
+    /// The next query for a view that wants this.
     pub fn next(&mut self, wanted: &Wanted) -> Asked {
         if !self.atlases[1].takes(wanted.level, wanted.tiles.size(), wanted.wet) {
             self.begin(Part::Detail, wanted.level, wanted.room, wanted.wet);
@@ -197,7 +196,7 @@ impl TilePlanner {
         asked
     }
 
-    /// Whether a question that waits for news keeps what the view wants by now waiting.
+    /// True if a query that waits for changes delays what the view wants by now.
     #[must_use]
     pub fn is_late(&self, asked: &Asked, wanted: &Wanted) -> bool {
         let detail = &self.atlases[1];
@@ -209,7 +208,7 @@ impl TilePlanner {
         asked.waits && !(same && base)
     }
 
-    /// Takes in a reply; false where it is of no use and all is asked for anew.
+    /// Takes in a reply; false if it is of no use and everything is requested anew.
     pub fn take(&mut self, asked: &Asked, reply: &FrameView<'_>) -> bool {
         if reply.cells.contains(&0) {
             (self.epoch, self.look) = (reply.epoch, reply.look);

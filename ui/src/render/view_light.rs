@@ -1,4 +1,4 @@
-//! How a brush is seen: from straight above the desk, in the light of the scene's lamp.
+//! Viewer straight above the desk, and light of the scene's lamp, for drawing a brush.
 
 use std::sync::LazyLock;
 
@@ -9,8 +9,7 @@ use maulstick_optics::colour::SrgbTable;
 /// Linear light to bytes.
 static BYTES: LazyLock<SrgbTable> = LazyLock::new(SrgbTable::default);
 
-/// Who looks at a brush, and what light is on it. Lengths are desk lengths in the frame of the surface
-/// below, m.
+/// Viewer and light for drawing a brush. Lengths are desk lengths in the frame of the surface below, m.
 pub(crate) struct ViewLight<'a> {
     /// From that frame to the window, points.
     pub to_window: &'a dyn Fn(Vec3) -> Pos2,

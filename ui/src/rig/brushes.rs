@@ -1,8 +1,7 @@
-//! The brushes as they are now: where the newest sample of its stylus holds each, bent as in its
-//! newest state.
+//! Current pose and bend of each brush.
 //!
-//! A state follows its sample by the time of a solve; the hand sees the difference, so the pose comes
-//! from the sample, by the same functions as in the brush node, and only the bend from the state.
+//! A state follows its sample by the time of a solve, which the painter would see. So the pose comes from the
+//! newest sample, by the same functions as in the brush node, and only the bend from the newest state.
 
 use std::collections::{BTreeMap, VecDeque};
 use std::sync::Arc;
@@ -55,11 +54,11 @@ struct TrackedBrush {
     /// The device that it follows.
     device: Option<u32>,
     angles: Vec<[f32; 2]>,
-    /// Where the newest state held it, and the sample that it followed.
+    /// Solve of the newest state, and the sample that it followed.
     led: Option<(Solve, StylusSample)>,
     /// The surface that it touches.
     touches: Option<u32>,
-    /// How full it is, 0 to 1.
+    /// Wetness, 0 to 1.
     wetness: f32,
     /// The paint on it, if that is known.
     coat: Option<Arc<PaintColour>>,
@@ -78,7 +77,7 @@ pub struct BrushPose<'a> {
     pub brush: Rigid,
     /// Its joints, as its newest state has them; straight before the first.
     pub angles: Vec<[f32; 2]>,
-    /// How full it is, 0 to 1: wet bristles clump.
+    /// Wetness, 0 to 1: wet bristles clump.
     pub wetness: f32,
     /// The paint on it, if that is known.
     pub coat: Option<Arc<PaintColour>>,
@@ -94,7 +93,7 @@ pub struct BrushTracker {
     looks: Receiver<BrushLook>,
     coats: BTreeMap<String, Option<Arc<PaintColour>>>,
     depth_shares: BTreeMap<String, f64>,
-    /// The source that is only heard when it moves.
+    /// The source that sends only while it moves.
     quiet: u32,
     newest: BTreeMap<u32, Heard>,
     /// The newest samples of all devices by source and time, the newest first.
@@ -165,7 +164,7 @@ impl BrushTracker {
         }
         while let Some(look) = self.looks.try_recv() {
             let name = self.topics.middle(&look.key).unwrap_or_default();
-            // Its file may be on its way still.
+            // Its file may still be in flight.
             self.coats.insert(
                 name.to_owned(),
                 PaintColour::of(&look.message).map(Arc::new),
@@ -217,7 +216,7 @@ impl BrushTracker {
         }
     }
 
-    /// The brushes that are held over a desk, by name.
+    /// The brushes over a desk, by name.
     pub fn held<'a>(&'a self, desk: &'a Desk) -> impl Iterator<Item = BrushPose<'a>> {
         self.known.iter().filter_map(|(name, known)| {
             let heard = self.newest.get(&known.device?)?;
@@ -229,7 +228,7 @@ impl BrushTracker {
         })
     }
 
-    /// Where the stylus of a brush points on the desk, m, and whether it touches nothing; none while none
+    /// Point on the desk at which the stylus of a brush points, m, and true if it touches nothing; `None` if no stylus
     /// is in range.
     #[must_use]
     pub fn aim(&self, name: &str) -> Option<(DVec3, bool)> {
@@ -240,7 +239,7 @@ impl BrushTracker {
         sample.in_range.then(|| (aim(sample, length), !touches))
     }
 
-    /// The newest sample of each device that was heard within the last second.
+    /// The newest sample of each device received within the last second.
     pub fn newest(&self, now_ns: u64) -> impl Iterator<Item = SampleNumber> {
         let is_new = move |heard: &Heard| now_ns < heard.arrived_ns.saturating_add(SILENCE_NS);
         let newest = self.newest.iter().filter(move |(_, heard)| is_new(heard));
@@ -275,7 +274,7 @@ impl TrackedBrush {
             plane.to_desk.inverse().after(&on_desk)
         };
         let mut brush = place(sample);
-        // A pen's brush is held beside its point, as far as in its newest state.
+        // A pen's brush stands beside its point, as far as in its newest state.
         if let Some((solve, then)) = &self.led
             && solve.surface == plane.id
             && !then.in_air()

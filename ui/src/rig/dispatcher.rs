@@ -1,5 +1,5 @@
-//! Sends what the painter asks for, a thread a process, so that nobody waits for another and the window
-//! for nobody.
+//! Sends requests, with a queue and a thread for each node, so that no node waits for another and the window
+//! for none.
 
 use std::collections::{BTreeMap, VecDeque};
 use std::sync::{Arc, Condvar, Mutex, PoisonError};
@@ -18,32 +18,32 @@ use maulstick_types::{Origin, name_hash};
 use crate::rig::requests::Request;
 use crate::rig::stroke_barrier::Ready;
 
-/// How long a node may take for a command.
+/// Longest wait for a node's answer to a command.
 const PATIENCE: Duration = Duration::from_secs(10);
-/// How long the rig may take until another painting is open.
+/// Longest wait until another painting is open.
 const OPENING: Duration = Duration::from_secs(180);
-/// How long an export may take.
+/// Longest export.
 const EXPORTING: Duration = Duration::from_secs(3600);
-/// How long a daemon may take for an order to its force.
+/// Longest wait for a daemon's answer to a force request.
 const ANSWER: Duration = Duration::from_secs(3);
-/// A command is asked again after this; so long at most the window's end waits.
+/// Interval after which a command is sent again; the window waits at most so long when it ends.
 const ASK: Duration = Duration::from_millis(300);
 
-/// What the lines of orders to switch off a force are called.
+/// Name of the queues of requests that switch off a force.
 const OFF: &str = "off";
-/// What the lines of exports are called.
+/// Name of the queues of exports.
 const EXPORT: &str = "export";
 
-/// What became of an order.
+/// Outcome of a request.
 #[derive(Clone, Debug)]
 pub struct Outcome {
-    /// The order.
+    /// The request.
     pub request: Request,
-    /// What the process said.
+    /// Answer of the process.
     pub result: Result<String, Fault>,
 }
 
-/// Orders for one process.
+/// Requests for one process.
 #[derive(Debug, Default)]
 struct Queue {
     state: Mutex<QueueState>,
@@ -53,14 +53,14 @@ struct Queue {
 #[derive(Debug, Default)]
 struct QueueState {
     waiting: VecDeque<Ready>,
-    /// Since when one is on its way.
+    /// Time at which the request in flight was sent.
     since: Option<Instant>,
-    /// Whether the painter waits for it no longer.
+    /// True if the painter no longer waits for it.
     given_up: bool,
     ended: bool,
 }
 
-/// The courier of a window.
+/// The dispatcher of a window.
 pub(crate) struct CommandDispatcher {
     bus: Arc<dyn Bus>,
     topics: Topics,
@@ -70,7 +70,7 @@ pub(crate) struct CommandDispatcher {
 }
 
 impl CommandDispatcher {
-    /// A courier that rings `wake` when something was answered.
+    /// A dispatcher that signals `wake` at each answer.
     #[must_use]
     pub(crate) fn new(bus: Arc<dyn Bus>, topics: &Topics, wake: &Wake) -> Self {
         Self {
@@ -82,8 +82,8 @@ impl CommandDispatcher {
         }
     }
 
-    /// Sends an order after those that went to the same process. One that still waits gives way to a newer
-    /// one that sets the same, as the place of a surface.
+    /// Sends a request after those for the same process. One still in the queue is replaced by a newer one that sets
+    /// the same value, such as the placement of a surface.
     pub(crate) fn send(&mut self, ready: Ready) {
         let (bus, topics, wake, outcomes) = (&self.bus, &self.topics, &self.wake, &self.outcomes);
         let (queue_of, _) = self
@@ -114,18 +114,18 @@ impl CommandDispatcher {
         queue_of.changed.notify_one();
     }
 
-    /// What was answered since the last call.
+    /// Outcomes since the last call.
     #[must_use]
     pub(crate) fn outcomes(&self) -> Vec<Outcome> {
         std::mem::take(&mut *self.outcomes.lock().unwrap_or_else(PoisonError::into_inner))
     }
 }
 
-/// From this time on a wait is told.
+/// Wait from which it is shown.
 const LONG: Duration = Duration::from_millis(500);
 
 impl CommandDispatcher {
-    /// Who has not answered for half a second: `node` or `force`, and the name.
+    /// Processes that have not answered for half a second: `node` or `force`, and the name.
     #[must_use]
     pub(crate) fn waits(&self) -> Vec<String> {
         let waits = |queue_of: &Queue| {
@@ -142,8 +142,8 @@ impl CommandDispatcher {
         queues.map(|(name, _)| name.clone()).collect()
     }
 
-    /// Waits no longer: what is on its way is not asked again, and what waits is not sent.
-    /// Each order is told as not done.
+    /// Gives up: the request in flight is not repeated, and the queue is not sent. Each request is reported as not
+    /// done.
     pub(crate) fn give_up(&self) {
         let late = self.waits();
         let mut outcomes = self.outcomes.lock().unwrap_or_else(PoisonError::into_inner);
@@ -163,7 +163,7 @@ impl CommandDispatcher {
     }
 }
 
-/// Who an order is for.
+/// Process that a request is for.
 fn address(request: &Request) -> String {
     match request {
         // It takes long, and other commands to the node do not wait for its end.
@@ -172,7 +172,7 @@ fn address(request: &Request) -> String {
             command: Command::Export { .. },
         } => format!("{EXPORT} {node}"),
         Request::Command { node, .. } => format!("node {node}"),
-        // It waits for no answer to what was asked before.
+        // Switching off waits for no earlier answer.
         Request::Force {
             device,
             order: ForceOrder::Off,
@@ -181,7 +181,7 @@ fn address(request: &Request) -> String {
     }
 }
 
-/// How long it may take.
+/// Longest wait for a command.
 fn patience(command: &Command) -> Duration {
     match command {
         Command::Open { .. } | Command::New { .. } | Command::SaveAs { .. } => OPENING,
@@ -190,9 +190,9 @@ fn patience(command: &Command) -> Duration {
     }
 }
 
-/// Whether of two orders, one right after the other, the first need not be carried out.
+/// True if the first of two successive requests need not be carried out.
 fn replaces(newer: &Request, older: &Request) -> bool {
-    // An exposure that was to be chosen anew is chosen by the light that it was asked with.
+    // An exposure that was to be chosen anew is chosen by the light that it was requested with.
     let chooses = matches!(
         older,
         Request::Command {
@@ -204,7 +204,7 @@ fn replaces(newer: &Request, older: &Request) -> bool {
     set.is_some() && set == older.sets() && !chooses
 }
 
-/// Puts an order at the end; the last of those that wait gives way if this one makes it needless.
+/// Appends a request; the last one in the queue is dropped if this one makes it needless.
 fn push(waiting: &mut VecDeque<Ready>, ready: Ready) {
     let last = waiting.back();
     if last.is_some_and(|last| replaces(&ready.request, &last.request)) {

@@ -1,5 +1,4 @@
-//! What the newest samples of a device say: whether it is near, and the force on its hand over the last
-//! seconds, in bounded memory at whatever rate it sends.
+//! Force on the hand over the last seconds, in bounded memory at any sample rate; and the device that paints.
 
 use std::collections::VecDeque;
 
@@ -7,16 +6,16 @@ use maulstick_types::stylus::{StylusPose, StylusSample, axes};
 
 use crate::rig::state::{Device, RigState};
 
-/// Seconds that are kept.
+/// Length of the history, s.
 pub(crate) const KEPT_S: f64 = 5.0;
 /// Length of a span, ns, and how many there are at most.
 const SPAN_NS: u64 = 20_000_000;
 const SPANS: usize = 250;
-/// A device that is silent for this long is away, ns; the window's own mouse tells its moves alone.
+/// Silence after which a device counts as away, ns; the window's own mouse sends only its moves.
 const SILENCE_NS: u64 = 500_000_000;
 /// The mouse as a device.
 const POINTER: &str = "pointer";
-/// A smaller force is none that is shown, N.
+/// Smallest force that is shown, N.
 const LEAST_N: f64 = 0.02;
 
 /// Least and greatest force of a fiftieth of a second, N.
@@ -36,7 +35,7 @@ struct Newest {
     force_n: [f64; 3],
 }
 
-/// What was felt of a device.
+/// Force history of a device.
 #[derive(Clone, Debug, Default)]
 pub struct ForceHistory {
     spans: VecDeque<Span>,
@@ -93,7 +92,7 @@ impl ForceHistory {
         line
     }
 
-    /// The force on the hand now, N; none where the device is silent.
+    /// The force on the hand now, N; `None` while the device is silent.
     #[must_use]
     pub fn force_n(&self, now_ns: u64) -> Option<[f64; 3]> {
         let newest = self.newest.as_ref()?;
@@ -128,8 +127,8 @@ pub(crate) fn active_device(rig: &RigState) -> Option<(&str, &Device)> {
     Some((first.1, first.2))
 }
 
-/// Where the force of the device that paints acts on the desk, m, and that force, N; none where there is
-/// none to speak of.
+/// Point on the desk where the force of the active device acts, m, and that force, N; `None` if it is too small to
+/// show.
 #[must_use]
 pub(crate) fn force_arrow(rig: &RigState) -> Option<([f64; 3], [f64; 3])> {
     let (_, device) = active_device(rig)?;

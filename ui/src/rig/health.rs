@@ -1,5 +1,4 @@
-//! Watches over the other processes of the rig and tells what became of them: each thing once, and what
-//! to do about it.
+//! Monitors the other processes of the rig, and notifies the painter of each event once, with advice.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -13,19 +12,19 @@ use crate::widgets::notifications::Notifications;
 
 /// The node of the painting.
 const PAINT: &str = "paint";
-/// What the names of brush nodes begin with.
+/// Prefix of the names of brush nodes.
 const BRUSH: &str = "brush-";
 /// The device that ends with its take.
 const PLAYER: &str = "player";
-/// That a node has left.
+/// Message that a node has left.
 fn stopped(who: &str) -> String {
     format!("{who} stopped; it is being started again.")
 }
 
-/// What the decision begins with that the processor takes over what the graphics card computed.
+/// Prefix of the decision that the processor takes over from the graphics card.
 const FALL: &str = "backend cpu: ";
 
-/// Something heard that changes nothing of what is known of the rig.
+/// An event that changes nothing in the state of the rig.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum RigEvent {
     /// A message that this window does not understand.
@@ -34,7 +33,7 @@ pub enum RigEvent {
     Decided(String),
 }
 
-/// What was told so far.
+/// Events notified so far.
 #[derive(Debug, Default)]
 pub(crate) struct HealthMonitor {
     /// Nodes that were there, and those of them that are gone.
@@ -42,11 +41,11 @@ pub(crate) struct HealthMonitor {
     gone: BTreeSet<String>,
     /// Those that left for another painting.
     expected: BTreeSet<String>,
-    /// What each device said was wrong.
+    /// Fault that each device reported.
     troubles: BTreeMap<String, String>,
     /// Nodes of another version.
     strange: BTreeSet<String>,
-    /// Whether the painting cannot be saved.
+    /// True while the painting cannot be saved.
     unsaved: bool,
 }
 
@@ -124,7 +123,7 @@ impl HealthMonitor {
         }
     }
 
-    /// That the painting cannot be saved stands on the window for as long as it is so; here its end is told.
+    /// Notifies that saving works again; that it fails stays in the progress lines meanwhile.
     fn saving(&mut self, state: &RigState, notifications: &mut Notifications) {
         let Some(paint) = &state.paint else {
             return;
@@ -163,7 +162,7 @@ impl HealthMonitor {
     }
 }
 
-/// A node in words, and what to do while it is away; none for one that comes and goes.
+/// Description of a node, and advice while it is away; `None` for a process that comes and goes.
 fn who(node: &str, state: &RigState) -> Option<(String, &'static str)> {
     if node == PAINT {
         let help = "The canvas stays as it is shown, and goes on when it is back.";
@@ -229,7 +228,7 @@ mod tests {
             rig
         }
 
-        /// What is told by a look, and that ten more tell nothing.
+        /// Notifications of one look; ten more looks add none.
         fn look(&mut self) -> Vec<(Weight, String)> {
             let topics = Topics::new("t");
             let told = |notifications: &Notifications| {

@@ -1,4 +1,4 @@
-//! Fills the [`RigState`] with what comes over the bus.
+//! Subscribers that fill the [`RigState`].
 
 use maulstick_brush::BrushFile;
 use maulstick_bus::typed::Receiver;
@@ -14,7 +14,7 @@ use crate::rig::requests::PAINT;
 use crate::rig::state::{PaintNode, RigState};
 use crate::rig::thumbnails::Thumbnails;
 
-/// What the window listens to besides samples and brush states.
+/// Subscribers of the window besides samples and brush states.
 pub(crate) struct RigListener {
     topics: Topics,
     scenes: Receiver<Scene>,
@@ -59,7 +59,7 @@ impl RigListener {
                 Queue::Ring(32),
                 wake,
             )?,
-            // Who follows the brushes rings for samples.
+            // The tracker of the brushes signals samples.
             samples: Receiver::new(
                 bus,
                 &topics.sample("*"),
@@ -97,7 +97,7 @@ impl RigListener {
         }
         while let Some(def) = self.defs.try_recv() {
             let BrushDef { brush, toml, .. } = def.message;
-            // Who draws the brush tells of a file that cannot be read.
+            // The renderer of the brush reports a file that cannot be read.
             let Ok(file) = BrushFile::parse(&toml) else {
                 continue;
             };

@@ -1,5 +1,5 @@
-//! What the painter asks of the rig: collected while the window is drawn, sent by the
-//! [`courier`](crate::rig::dispatcher).
+//! Requests to the rig: collected while the window is drawn, sent by the
+//! [`dispatcher`](crate::rig::dispatcher).
 
 use maulstick_types::command::Command;
 use maulstick_types::haptics::ForceOrder;
@@ -9,27 +9,27 @@ use crate::input::keys::Action;
 /// The node of the painting.
 pub(crate) const PAINT: &str = "paint";
 
-/// Something asked of a process of the rig.
+/// A request to a process of the rig.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Request {
     /// A command to a node.
     Command {
         /// The node.
         node: String,
-        /// What it is to do.
+        /// The command.
         command: Command,
     },
-    /// An order to the force of a device.
+    /// A request to the force of a device.
     Force {
         /// The device.
         device: String,
-        /// What is asked of it.
+        /// The request.
         order: ForceOrder,
     },
 }
 
 impl Request {
-    /// What it sets, where the newest of its kind alone counts.
+    /// Key of the value it sets, if only the newest of its kind counts.
     #[must_use]
     pub fn sets(&self) -> Option<(&'static str, String)> {
         let command = match self {
@@ -52,7 +52,7 @@ impl Request {
     }
 }
 
-/// Orders that wait to be sent.
+/// Requests that wait to be sent.
 #[derive(Debug, Default)]
 pub struct Requests {
     waiting: Vec<Request>,
@@ -78,7 +78,7 @@ impl Requests {
         });
     }
 
-    /// Orders the force of a device.
+    /// Requests a change of the force of a device.
     pub fn force(&mut self, device: &str, order: ForceOrder) {
         self.waiting.push(Request::Force {
             device: device.to_owned(),

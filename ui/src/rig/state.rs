@@ -1,4 +1,4 @@
-//! What the window knows of the rig: plain data, filled by [`hearing`](crate::rig::listener).
+//! State of the rig as the window knows it: plain data, filled by the [`listener`](crate::rig::listener).
 
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -22,33 +22,33 @@ use crate::rig::thumbnails::Thumbnails;
 pub struct RigBrush {
     /// Name as in `rig.toml`.
     pub name: String,
-    /// What it is made of, and that as text; none until its node has said so.
+    /// Its brush file, parsed and as text; `None` until its node has sent it.
     pub file: Option<(BrushFile, String)>,
-    /// What it was asked to be made of; none once its node has answered.
+    /// The brush file requested for it; `None` once its node has answered.
     pub asked: Option<BrushFile>,
-    /// What the paint node is asked for once it is made so.
+    /// Command for the paint node once the brush has that file.
     pub then: Option<Command>,
 }
 
 /// An input device of the rig.
 #[derive(Clone, Debug, Default)]
 pub struct Device {
-    /// What it is; none until it has said so.
+    /// Description of the stylus; `None` until it was received.
     pub info: Option<StylusInfo>,
-    /// How it fares; none until it has said so.
+    /// Status of the stylus; `None` until it was received.
     pub status: Option<StylusStatus>,
-    /// When it was last heard, rig clock, ns.
+    /// Time of its last message, rig clock, ns.
     pub heard_ns: u64,
     /// Its newest samples.
     pub forces: ForceHistory,
 }
 
-/// A paint node as it was last heard.
+/// Last known state of a paint node.
 #[derive(Clone, Debug)]
 pub struct PaintNode {
-    /// What it says of itself.
+    /// Its status.
     pub status: PaintStatus,
-    /// When it was last heard, rig clock, ns.
+    /// Time of its last message, rig clock, ns.
     pub heard_ns: u64,
 }
 
@@ -59,38 +59,38 @@ pub struct RigState {
     pub rig: String,
     /// The time of the rig, ns.
     pub now_ns: u64,
-    /// What lies on the desk; none until the paint node has said so.
+    /// The scene on the desk; `None` until the paint node has sent it.
     pub scene: Option<Scene>,
     /// The same as brushes see it.
     pub desk: Option<Desk>,
-    /// The paint node; none until it has been heard.
+    /// The paint node; `None` until its status was received.
     pub paint: Option<PaintNode>,
     /// The brushes of the rig, in the order of `rig.toml`.
     pub brushes: Vec<RigBrush>,
-    /// Which of them the window's mouse moves and its panels are about.
+    /// Index of the brush that the window's mouse moves and its panels show.
     pub in_hand: usize,
     /// Devices by name.
     pub devices: BTreeMap<String, Device>,
-    /// How often the paint node has been seen to start: what was remembered of its painting is over.
+    /// Number of starts of the paint node: each invalidates what was remembered of its painting.
     pub starts: u64,
-    /// Whether another painting is put on the easel, for which nodes are started anew.
+    /// True while another painting is opened, for which nodes are restarted.
     pub switching: bool,
     /// The nodes that are alive, by name.
     pub nodes: Vec<String>,
     /// The paints of the rig.
     pub library: Arc<PaintLibrary>,
-    /// Whether the wet paint of the canvas is told from the dry one by a tint.
+    /// True if the wet paint of the canvas is tinted.
     pub show_wet: bool,
     /// Small pictures of the versions.
     pub thumbnails: Thumbnails,
     /// Colours of the window's own things as its display has to be sent them.
     pub tint: Arc<DisplayTransform>,
-    /// What was heard and is to be told.
+    /// Events received and not yet notified.
     pub events: Vec<RigEvent>,
 }
 
 impl RigState {
-    /// A rig of which nothing has been heard yet.
+    /// A rig without any message so far.
     #[must_use]
     pub fn new(rig: &str, brushes: &[String], library: Arc<PaintLibrary>) -> Self {
         let brush = |name: &String| RigBrush {
@@ -148,13 +148,13 @@ impl RigState {
         self.brushes.get(self.in_hand)
     }
 
-    /// Its name; "main" where the rig names none.
+    /// Its name; "main" if the rig names none.
     #[must_use]
     pub fn brush_name(&self) -> &str {
         self.brush().map_or("main", |brush| brush.name.as_str())
     }
 
-    /// How that brush is used.
+    /// Handling of that brush.
     #[must_use]
     pub fn handling(&self) -> BrushHandling {
         let name = self.brush_name();
@@ -163,7 +163,7 @@ impl RigState {
         own.cloned().unwrap_or_else(|| BrushHandling::normal(name))
     }
 
-    /// How that brush was made stiffer or wetter.
+    /// Stiffness and wetness settings of that brush.
     #[must_use]
     pub fn tuning(&self) -> Tuning {
         let name = self.brush_name();

@@ -1,5 +1,5 @@
-//! What is asked after a stroke waits until the stroke has landed: a key is pressed sooner than the newest
-//! samples of a stylus have become paint, and what it undoes or dries is the whole stroke.
+//! Delays a command until the stroke that preceded it is painted. A key is pressed before the newest samples
+//! of a stylus have become paint, and what it undoes or dries is the whole stroke.
 
 use std::collections::{BTreeMap, VecDeque};
 
@@ -14,10 +14,10 @@ use maulstick_types::topics::Topics;
 use crate::rig::brushes::SampleNumber;
 use crate::rig::requests::{PAINT, Request};
 
-/// Nobody waits longer, ns: a brush may have ended in its stroke.
+/// Longest wait, ns: a brush node may have ended in its stroke.
 const LONGEST_NS: u64 = 1_000_000_000;
 
-/// How far a sample has come on its way to the painting.
+/// Progress of a sample toward the painting.
 #[derive(Clone, Copy, Debug)]
 enum SampleStage {
     /// It is to become a state of a brush.
@@ -26,7 +26,7 @@ enum SampleStage {
     State(u32, u32, u64),
 }
 
-/// An order, and what it waits for.
+/// A request, and the samples it waits for.
 #[derive(Debug)]
 struct Waiting {
     request: Request,
@@ -34,23 +34,23 @@ struct Waiting {
     until_ns: u64,
 }
 
-/// An order that is sent.
+/// A request that may be sent.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Ready {
-    /// The order.
+    /// The request.
     pub request: Request,
     /// The state of a brush behind which the painting carries it out; at once if absent.
     pub after: Option<After>,
 }
 
-/// Orders that wait for a stroke.
+/// Requests that wait for a stroke.
 pub(crate) struct StrokeBarrier {
     topics: Topics,
     consumed: Receiver<BrushConsumed>,
     painted: Receiver<PaintConsumed>,
-    /// What each brush has consumed of each device: by the sources of both.
+    /// Samples of each device that each brush has consumed: by the sources of both.
     brushes: BTreeMap<(u32, u32), BrushConsumed>,
-    /// What the painting has consumed of each brush.
+    /// States of each brush that the painting has consumed.
     credits: BTreeMap<u32, BrushCredit>,
     waiting: VecDeque<Waiting>,
 }
@@ -86,7 +86,7 @@ impl StrokeBarrier {
         }
     }
 
-    /// Takes an order that was given when these samples were the newest.
+    /// Takes a request made when these samples were the newest.
     pub(crate) fn push(
         &mut self,
         now_ns: u64,
@@ -106,7 +106,7 @@ impl StrokeBarrier {
         });
     }
 
-    /// The next order that need not wait; call it until there is none.
+    /// The next request that need not wait; call it until there is none.
     pub(crate) fn next_ready(&mut self, now_ns: u64) -> Option<Ready> {
         for waiting in &mut self.waiting {
             waiting
@@ -121,7 +121,7 @@ impl StrokeBarrier {
         })?;
         let waiting = self.waiting.remove(place)?;
         if !waiting.is_ready() {
-            // Who has not followed these devices for so long is not waited for again.
+            // A brush that has not followed these devices for so long is not waited for again.
             for stage in &waiting.samples {
                 if let SampleStage::Sample(sample) = stage {
                     self.brushes
@@ -135,7 +135,7 @@ impl StrokeBarrier {
         })
     }
 
-    /// Whether an order waits.
+    /// True while a request waits.
     #[must_use]
     pub(crate) fn is_waiting(&self) -> bool {
         !self.waiting.is_empty()
@@ -152,7 +152,7 @@ impl From<Request> for Ready {
 }
 
 impl Waiting {
-    /// Whether it may be sent: the painting knows what the one state is that it still waits for.
+    /// True if it may be sent: the painting has consumed the state that it still waits for.
     fn is_ready(&self) -> bool {
         self.samples.is_empty() || self.after().is_some()
     }
@@ -170,7 +170,7 @@ impl Waiting {
         }
     }
 
-    /// Whether another order is for the same process: none overtakes.
+    /// True if another request is for the same process: none overtakes.
     fn shares(&self, other: &Request) -> bool {
         match (&self.request, other) {
             (Request::Command { node: one, .. }, Request::Command { node: other, .. }) => {
@@ -181,7 +181,7 @@ impl Waiting {
     }
 }
 
-/// Whether an order means what has been painted.
+/// True for a request that depends on the strokes painted before it.
 fn follows(request: &Request) -> bool {
     match request {
         Request::Command {

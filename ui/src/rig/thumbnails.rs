@@ -1,4 +1,4 @@
-//! Small pictures of versions: what is wanted, what has come, and the thread that asks for them.
+//! Thumbnails of versions, and the thread that fetches them.
 
 use std::collections::BTreeMap;
 use std::sync::mpsc::{Receiver, Sender, channel};
@@ -7,7 +7,7 @@ use std::thread::JoinHandle;
 
 use maulstick_bus::Wake;
 
-/// A picture that could not be had is asked for again after this, ns.
+/// Delay before a picture that could not be fetched is requested again, ns.
 const AGAIN_NS: u64 = 5_000_000_000;
 
 /// A small picture: sRGB, three bytes a pixel, rows from the top.
@@ -20,7 +20,7 @@ pub struct Picture {
 }
 
 impl Picture {
-    /// A picture; none where the bytes are not as many as its pixels take.
+    /// A picture; `None` if the number of bytes does not match its pixels.
     #[must_use]
     pub fn new(size: [usize; 2], rgb: Vec<u8>) -> Option<Self> {
         let bytes = size[0].checked_mul(size[1])?.checked_mul(3)?;
@@ -28,16 +28,16 @@ impl Picture {
     }
 }
 
-/// What is known of one picture.
+/// State of one picture.
 #[derive(Clone, Debug)]
 enum Known {
-    /// It is to be asked for.
+    /// To be requested.
     Wanted,
-    /// It was asked for.
+    /// Requested.
     Asked,
     /// It is here.
     Here(Arc<Picture>),
-    /// It could not be had; it is not asked for before this time, rig clock, ns.
+    /// Could not be fetched; not requested again before this time, rig clock, ns.
     Missing(u64),
 }
 
@@ -48,7 +48,7 @@ pub struct Thumbnails {
 }
 
 impl Thumbnails {
-    /// The picture of a version; where it is not here yet, it is asked for.
+    /// The picture of a version; a missing one is requested.
     pub fn of(&mut self, version: &str, now_ns: u64) -> Option<Arc<Picture>> {
         match self.known.get(version) {
             Some(Known::Here(picture)) => return Some(Arc::clone(picture)),
@@ -67,7 +67,7 @@ impl Thumbnails {
             .retain(|name, _| versions.contains(&name.as_str()));
     }
 
-    /// Takes the names that are to be asked for.
+    /// Takes the names to request.
     fn wanted(&mut self) -> Vec<String> {
         let mut names = Vec::new();
         for (name, known) in &mut self.known {
@@ -81,7 +81,7 @@ impl Thumbnails {
 
     /// Takes in what came of a question.
     pub fn came(&mut self, version: &str, picture: Option<Picture>, now_ns: u64) {
-        // Nobody wants the picture of a version that was forgotten meanwhile.
+        // The version may have been deleted meanwhile.
         if let Some(known) = self.known.get_mut(version) {
             *known = match picture {
                 Some(picture) => Known::Here(Arc::new(picture)),

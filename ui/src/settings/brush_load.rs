@@ -1,4 +1,4 @@
-//! What a brush is loaded with: a paint or a mixture, another one beside it, and thinner in both.
+//! Load of a brush: a paint or mixture, another one beside it, and thinner in both.
 
 use maulstick_optics::{PaintLibrary, THINNER};
 use maulstick_rig::Fault;
@@ -7,16 +7,16 @@ use maulstick_types::command::Command;
 use maulstick_types::mixture::Part;
 use serde::{Deserialize, Serialize};
 
-/// Most thinner that a load may be asked to have, as a share; pure thinner is a paint by itself.
+/// Largest share of thinner in a load; pure thinner is a paint by itself.
 pub(crate) const MOST_THINNER: f64 = 0.95;
 
-/// What a brush takes up.
+/// Load of a brush.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct BrushLoad {
     /// A mixture such as "Cobalt Blue=0.7,Titanium White=0.3", or a paint.
     pub paint: String,
-    /// What the other half of the brush takes up; as the first where there is none.
+    /// Load of the other half of the brush; `None` if it is the same.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub beside: Option<String>,
     /// Share of thinner in both, 0 to [`MOST_THINNER`].
@@ -65,7 +65,7 @@ pub(crate) fn read(text: &str, library: &PaintLibrary) -> Result<Mixture, Fault>
         .map_err(|error| Fault::usage(error.to_string()).help(help))
 }
 
-/// A mixture with a share of its volume of thinner beside what it has already.
+/// A mixture with a share of its volume of thinner added to its own.
 #[must_use]
 pub(crate) fn thinned(mixture: &Mixture, share: f64) -> Mixture {
     if share <= 0.0 {
@@ -101,8 +101,7 @@ pub(crate) fn words(mixture: &Mixture) -> String {
     words.collect::<Vec<_>>().join(", ")
 }
 
-/// Names of paints that go on with what is being typed after the last comma; none where that is whole,
-/// or nothing.
+/// Names of paints that complete the text after the last comma; empty if that is complete or empty.
 #[must_use]
 pub(crate) fn completions<'a>(text: &str, library: &'a PaintLibrary, most: usize) -> Vec<&'a str> {
     let typed = last_name(text).trim();

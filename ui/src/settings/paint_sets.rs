@@ -1,4 +1,4 @@
-//! Sets of paints of the painter's own, and what lies in the palette's wells.
+//! The painter's own sets of paints for the palette.
 
 use maulstick_optics::PaintLibrary;
 use maulstick_rig::Fault;
@@ -7,11 +7,11 @@ use serde::{Deserialize, Serialize};
 
 use crate::settings::brush_load;
 
-/// Paints that are laid on the palette together.
+/// A set of paints for the palette.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct PaintSet {
-    /// What the painter calls it.
+    /// Name given by the painter.
     pub name: String,
     /// Paints and mixtures, from the top of the palette.
     pub paints: Vec<String>,

@@ -1,4 +1,4 @@
-//! What the window remembers from one day to the next: a file of the painter's, beside no painting.
+//! Settings that the window remembers, in a file of the user, apart from any painting.
 
 use std::collections::BTreeMap;
 use std::io::Write as _;
@@ -17,33 +17,33 @@ use crate::settings::presets::Preset;
 /// Recent paintings that are remembered.
 const RECENT: usize = 12;
 
-/// What is remembered.
+/// Settings of the window.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct Preferences {
-    /// Whether the panels are shown.
+    /// True while the panels are shown.
     pub panels: bool,
     /// Titles of the panels that are unfolded.
     pub open: Vec<String>,
-    /// Whether the painter's brush hand is the left one: palette at the right, rack at the left.
+    /// True for a left-handed painter: palette at the right, rack at the left.
     pub left_handed: bool,
-    /// Whether somebody has painted here before: the first line of help is no longer wanted.
+    /// True once the painter has painted here: the first line of help is no longer needed.
     pub has_painted: bool,
     /// Width and height of the window, points.
     pub size: [f32; 2],
     /// Paintings that were open, the newest first.
     pub recent: Vec<PathBuf>,
-    /// The picture that is pinned beside the canvas.
+    /// The reference picture.
     pub reference: ReferencePreferences,
-    /// Brush files of the painter's own, in the order of the rack.
+    /// The painter's own brush files, in the order of the rack.
     pub own_brushes: Vec<PathBuf>,
-    /// What a brush is loaded with when it is next asked for.
+    /// Load for the next dip of the brush.
     pub loading: BrushLoad,
     /// Widths at which brushes were last used, by their kind, mm.
     pub widths_mm: BTreeMap<String, f64>,
     /// Brushes that are ready with their paint.
     pub presets: Vec<Preset>,
-    /// Paints that are laid on the palette together.
+    /// The painter's sets of paints.
     pub paint_sets: Vec<PaintSet>,
 }
 
@@ -67,18 +67,18 @@ impl Default for Preferences {
 }
 
 impl Preferences {
-    /// Where they are kept for this user; none where the system has no such place.
+    /// File for this user; `None` if the system has no such folder.
     #[must_use]
     pub fn place() -> Option<PathBuf> {
         let folders = directories::ProjectDirs::from("", "", "maulstick")?;
         Some(folders.config_dir().join("window.toml"))
     }
 
-    /// Reads them; those of a new painter where there are none.
+    /// Reads the file; defaults if there is none.
     ///
     /// # Errors
-    /// A [`Fault`] where the file cannot be read or understood; then they are those of a new painter, and
-    /// the file is replaced when they are kept.
+    /// A [`Fault`] if the file cannot be read or understood; the defaults are used then, and the next save replaces the
+    /// file.
     pub fn read(path: &Path) -> Result<Self, Fault> {
         let text = match std::fs::read_to_string(path) {
             Ok(text) => text,
@@ -119,7 +119,7 @@ impl Preferences {
         self.recent.truncate(RECENT);
     }
 
-    /// Whether a panel is unfolded.
+    /// True if a panel is unfolded.
     #[must_use]
     pub fn is_open(&self, panel: &str) -> bool {
         self.open.iter().any(|open| open == panel)

@@ -1,4 +1,4 @@
-//! Brushes that are ready with their paint: kept by name, taken up at once.
+//! Presets: brushes with their paint, by name.
 
 use maulstick_brush::BrushFile;
 use maulstick_rig::Fault;
@@ -17,26 +17,26 @@ pub(crate) const NAME_MAX: usize = 40;
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct Preset {
-    /// What the painter calls it.
+    /// Name given by the painter.
     pub name: String,
     /// Kind of the brush.
     pub kind: String,
     /// Its width, mm.
     pub width_mm: f64,
-    /// Its file, TOML, where it is none of the library's.
+    /// Its file, TOML, unless it is one of the library's.
     #[serde(skip_serializing_if = "String::is_empty")]
     pub file: String,
     /// Factor on its stiffness.
     pub stiffness: f64,
-    /// How soaked it is, 0 to 1.
+    /// Wetness, 0 to 1.
     pub wetness: f64,
-    /// Name of the way that it is used in, as in [`BrushMode::NAMES`].
+    /// Name of its mode, as in [`BrushMode::NAMES`].
     pub mode: String,
     /// Flow of the marker, m/m.
     pub flow: f64,
     /// It adds no paint where as much is wet, m; 0 for no such bound.
     pub most_m: f64,
-    /// What it takes up; nothing where no paint is named.
+    /// Its load; nothing if no paint is named.
     pub loading: BrushLoad,
 }
 
@@ -58,7 +58,7 @@ impl Default for Preset {
 }
 
 impl Preset {
-    /// The brush in the hand as it is used now; none until it is known.
+    /// The brush in the hand as it is used now; `None` until it is known.
     #[must_use]
     pub fn of(name: &str, work: &PanelContext<'_>) -> Option<Self> {
         let file = work.in_hand()?;
@@ -86,7 +86,7 @@ impl Preset {
     /// The brush.
     ///
     /// # Errors
-    /// A [`Fault`] where it is none, as in a file that was changed by hand.
+    /// A [`Fault`] if the file is invalid, as after an edit by hand.
     pub fn brush(&self) -> Result<BrushFile, Fault> {
         let wrong = |what: String| {
             Fault::failure(format!("the preset '{}': {what}", self.name)).help("save it anew")
@@ -138,7 +138,7 @@ impl Preset {
         Ok(())
     }
 
-    /// What it is, in few words.
+    /// Short description.
     #[must_use]
     pub fn words(&self) -> String {
         let kind = crate::input::brush_choice::called(&self.kind);
@@ -157,10 +157,10 @@ impl Preset {
     }
 }
 
-/// Whether something may be kept by this name beside others.
+/// Checks a name against the existing ones.
 ///
 /// # Errors
-/// What is wrong and what to do, in words.
+/// Error and advice in words.
 pub(crate) fn check_name<'a>(
     name: &str,
     mut others: impl Iterator<Item = &'a str>,

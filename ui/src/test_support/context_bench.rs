@@ -1,4 +1,4 @@
-//! What the tests of rack and panels share: a rig in memory, and a window that shows one of them.
+//! A rig in memory, and a window that shows the rack or a panel.
 
 use std::sync::Arc;
 
@@ -33,7 +33,7 @@ pub(crate) fn rig() -> RigState {
 /// Pixels of a picture that another adapter may draw otherwise.
 const FAILED: usize = 40;
 
-/// What a panel works with.
+/// Context of a panel.
 #[derive(Debug)]
 pub(crate) struct Bench {
     pub(crate) rig: RigState,
@@ -71,7 +71,7 @@ impl Bench {
         requests.filter_map(command).collect()
     }
 
-    /// What is told.
+    /// The notifications.
     pub(crate) fn told(&self) -> Vec<&str> {
         let notifications = self.notifications.told().iter();
         notifications.map(|toast| toast.what.as_str()).collect()
@@ -103,7 +103,7 @@ pub(crate) fn harness<'a>(mut panel: impl Panel + 'a, bench: Bench) -> Harness<'
     })
 }
 
-/// Where pictures lie, and by how much other adapters may differ.
+/// Folder of the pictures, and the tolerance for other adapters.
 pub(crate) fn pictures() -> SnapshotOptions {
     SnapshotOptions::new()
         .threshold(1.0)
@@ -111,7 +111,7 @@ pub(crate) fn pictures() -> SnapshotOptions {
         .output_path("tests/snapshots")
 }
 
-/// Whether two windows look different, beyond what pictures allow.
+/// True if two windows differ beyond the tolerance of the pictures.
 pub(crate) fn differ(one: &mut Harness<'_, Bench>, other: &mut Harness<'_, Bench>) -> bool {
     let (one, other) = (one.render(), other.render());
     let [one, other] = [one, other].map(|drawn| drawn.expect("a picture"));

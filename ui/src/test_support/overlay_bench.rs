@@ -1,4 +1,4 @@
-//! What lies over the desk, without a desk: keys and clicks go in, orders come out; and pictures of it.
+//! The overlay without a desk: keys and clicks in, requests out; and snapshots of it.
 
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -19,7 +19,7 @@ use crate::test_support::panel_bench::rig;
 use crate::widgets::context::PanelContext;
 use crate::widgets::notifications::Notifications;
 
-/// How long work beside the window may take before a test gives up.
+/// Longest wait for background work before a test fails.
 const PATIENCE: Duration = Duration::from_secs(60);
 /// Pixels that may look otherwise on another adapter.
 const MOST_FAILED: usize = 60;
@@ -66,7 +66,7 @@ impl Bench {
         self.with(|overlay, work| overlay.hear(&told, work));
     }
 
-    /// Words of all tellings.
+    /// Words of all notifications.
     pub(crate) fn told(&self) -> String {
         let words = self.notifications.told().iter();
         let words = words.map(|toast| format!("{} {}", toast.what, toast.help));

@@ -1,4 +1,4 @@
-//! What tests of panels share.
+//! A panel in a column of the window, and its snapshot.
 
 use std::path::Path;
 use std::sync::Arc;

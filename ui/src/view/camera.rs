@@ -1,4 +1,4 @@
-//! The desk from straight above: where its points are in the window, and the way back.
+//! The view of the desk from straight above: desk points to window points and back.
 
 use eframe::egui::{Color32, Pos2, Rect, Vec2, vec2};
 use glam::{DVec2, DVec3};
@@ -7,9 +7,9 @@ use maulstick_brush::placement::SurfacePlacement;
 use maulstick_num::geometry::Rigid;
 use maulstick_types::scene::Surface;
 
-/// What lies around the surfaces.
+/// Colour of the desk around the surfaces.
 pub const DESK_COLOUR: Color32 = Color32::from_gray(60);
-/// Kept free above and below the surfaces, and at the side without a palette, points.
+/// Margin above and below the surfaces, and at the side without a palette, points.
 const MARGIN: f32 = 12.0;
 /// So much of the palette is always seen: its wells and the cleaner, m.
 const SLIVER_M: f64 = 0.052;
@@ -37,9 +37,9 @@ pub fn corners(surface: &Surface) -> [DVec3; 4] {
 }
 
 impl View {
-    /// The view in `area` of a canvas that lies at rest: it fills the view, the palette beside it looks
-    /// in as far as there is room, but with its wells, and `rack` points on the other side are left free.
-    /// None where a surface has no size.
+    /// The view in `area` of a canvas at rest: the canvas fills the view, the palette beside it shows as far as there
+    /// is room, but at least its wells, and `rack` points on the other side are left free. `None` if a surface has no
+    /// size.
     #[must_use]
     pub fn of(
         area: Rect,
@@ -117,7 +117,7 @@ impl View {
         lie.zoomed(DVec3::ZERO, pixel_m / canvas.cell_m / lie.zoom)
     }
 
-    /// A way of the window as one along the desk, m.
+    /// A vector of the window as one along the desk, m.
     #[must_use]
     pub fn along(&self, way: Vec2) -> DVec3 {
         DVec3::new(f64::from(way.x), -f64::from(way.y), 0.0) / self.scale
@@ -137,21 +137,21 @@ impl View {
         [(from.x, to.x), (from.y, to.y)].map(|(from, to)| (round(to) - round(from)).max(0.0) as u32)
     }
 
-    /// Where a point of the desk is in the window.
+    /// Window point of a desk point.
     #[must_use]
     pub fn to_window(&self, desk: DVec3) -> Pos2 {
         let off = (desk.truncate() - self.middle) * self.scale;
         self.area.center() + vec2(off.x as f32, -off.y as f32)
     }
 
-    /// Whether a surface lies under a point of the window.
+    /// True if a surface is under a point of the window.
     #[must_use]
     pub fn is_over(&self, at: Pos2, surface: &Surface) -> bool {
         hit(self.on_desk(at).truncate(), surface).is_some_and(|(_, inside)| inside)
     }
 
-    /// The point of the desk under a point of the window, m: on the surface that lies there, the
-    /// palette before the canvas, and beside all on the plane of the canvas, which goes on.
+    /// The desk point under a point of the window, m: on the surface there, the palette before the canvas, otherwise on
+    /// the extended plane of the canvas.
     #[must_use]
     pub fn to_desk(&self, at: Pos2, surfaces: &[Surface]) -> DVec3 {
         let below = self.on_desk(at).truncate();
@@ -167,7 +167,7 @@ impl View {
     }
 }
 
-/// Where the vertical through `below` meets the plane of a surface, and whether inside its edges.
+/// Point where the vertical through `below` meets the plane of a surface, and true if inside its edges.
 fn hit(below: DVec2, surface: &Surface) -> Option<(DVec3, bool)> {
     let to_desk = Rigid::from(&surface.pose);
     let back = to_desk.inverse();
@@ -229,7 +229,7 @@ mod tests {
         assert!(shown.right() < own.area.right() - 72.0, "beside the rack");
         let board = bounds(&own, palette);
         assert!(board.right() < shown.left() && board.left() > own.area.left());
-        // Where there is less room the wells are still there.
+        // In a narrow window the wells are still visible.
         let narrow = Rect::from_min_size(pos2(0.0, 0.0), vec2(900.0, 900.0));
         let tight = View::of(narrow, canvas, Some(palette), Side::Left, 72.0).expect("a view");
         let board = bounds(&tight, palette);

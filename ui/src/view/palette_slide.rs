@@ -1,23 +1,23 @@
-//! The palette slides: where it is seen on its way from one place to the other. The brush knows only where
-//! it lies.
+//! Animation of the palette between two places. Only the picture slides: for the brush the palette lies at its
+//! end.
 
 use glam::DVec3;
 use maulstick_num::geometry::Rigid;
 use maulstick_types::scene::{PALETTE, Surface};
 
-/// How long a slide takes, s.
+/// Duration of a slide, s.
 const SLIDE_S: f64 = 0.15;
-/// A shorter way is no slide: a hand moves the palette, m.
+/// Shortest move that slides; a shorter one is a drag by hand, m.
 const LEAP_M: f64 = 0.03;
 
-/// A slide that goes on.
+/// A slide in progress.
 #[derive(Clone, Copy, Debug)]
 struct Slide {
     from: DVec3,
     began_s: f64,
 }
 
-/// Where the palette is seen.
+/// Displayed position of the palette.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct PaletteSlide {
     last: Option<DVec3>,

@@ -1,4 +1,4 @@
-//! What of a surface is in the view: the tiles that its pictures have to hold.
+//! Tiles of a surface that are in view.
 
 use eframe::egui::{Pos2, Vec2};
 use maulstick_types::paint::TILE;
@@ -7,11 +7,11 @@ use maulstick_types::scene::Surface;
 use crate::render::light_surface::CellRect;
 use crate::view::camera::{View, corners, level};
 
-/// Tiles beyond the visible ones, each way: what a pan brings into the view is there.
+/// Tiles beyond the visible ones, each way: a pan finds them loaded.
 const MARGIN: u32 = 1;
-/// A sheet has at most this many cells a pixel, each way.
+/// Largest number of cells of an atlas per pixel, each way.
 const CELLS_A_PIXEL: f32 = 2.0;
-/// What a view takes grows until the next coarser level takes over; there may not be room for so much.
+/// The cells that a view takes grow until the next coarser level takes over; the device may lack room for them.
 const GROWTHS: [f32; 3] = [f32::INFINITY, 1.2, 1.0];
 /// Cells of the longer side of a base, at most.
 const BASE_CELLS: u32 = 512;
@@ -38,7 +38,7 @@ impl TileRect {
         Self { from: [0; 2], to }
     }
 
-    /// Whether there is no tile in it.
+    /// True if it holds no tile.
     #[must_use]
     pub fn is_empty(&self) -> bool {
         (0..2).any(|i| self.from[i] >= self.to[i])
@@ -50,7 +50,7 @@ impl TileRect {
         [0, 1].map(|i| self.to[i].saturating_sub(self.from[i]))
     }
 
-    /// What lies in both; [`NONE`](Self::NONE) where nothing does.
+    /// The intersection; [`NONE`](Self::NONE) if it is empty.
     #[must_use]
     pub fn within(&self, other: &Self) -> Self {
         let both = Self {
@@ -60,13 +60,13 @@ impl TileRect {
         if both.is_empty() { Self::NONE } else { both }
     }
 
-    /// Whether all of `other` lies in it.
+    /// True if it contains all of `other`.
     #[must_use]
     pub fn holds(&self, other: &Self) -> bool {
         other.is_empty() || self.within(other) == *other
     }
 
-    /// What of it does not lie in `other`, in parts that do not overlap.
+    /// Its difference from `other`, in parts that do not overlap.
     #[must_use]
     pub fn without(&self, other: &Self) -> Vec<Self> {
         let both = self.within(other);
@@ -104,7 +104,7 @@ impl TileRect {
     }
 }
 
-/// What a view wants of a surface.
+/// Tiles that a view wants of a surface.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Wanted {
     /// The level that the pixels ask for.
@@ -113,11 +113,11 @@ pub struct Wanted {
     pub tiles: TileRect,
     /// Tiles that there must be room for, whatever the view shows of the surface at this scale.
     pub room: [u32; 2],
-    /// The level of a picture of the whole surface; none where `tiles` are all.
+    /// The level of a picture of the whole surface; `None` if `tiles` are all.
     pub base: Option<u32>,
     /// Tiles of the whole surface at that level.
     pub base_tiles: [u32; 2],
-    /// Whether wet paint is told from dry paint by a tint.
+    /// True if wet paint is tinted.
     pub wet: bool,
 }
 
@@ -133,18 +133,18 @@ fn coarsest(cells: [u32; 2]) -> u32 {
     across.max(up).next_power_of_two().trailing_zeros()
 }
 
-/// The part of a surface that lies in a view.
+/// The part of a surface that is in a view.
 struct Part {
     /// In shares of its sides, from the lower left corner: least and greatest.
     shares: [[f32; 2]; 2],
-    /// How much of it a view takes wherever it lies, in shares of its sides.
+    /// Share of each side that a view takes.
     reach: [f32; 2],
     /// Pixels of its sides.
     pixels: [f32; 2],
 }
 
 impl Part {
-    /// None where the surface is seen from its edge.
+    /// `None` if the surface is seen from its edge.
     fn of(surface: &Surface, view: &View, pixels_per_point: f32) -> Option<Self> {
         let at: [Pos2; 4] = corners(surface).map(|corner| view.to_window(corner));
         let (right, up) = (at[1] - at[0], at[2] - at[0]);
@@ -178,8 +178,8 @@ impl Part {
 }
 
 impl Wanted {
-    /// What a view wants of a surface. The tiles take no more cells than twice the pixels of the view
-    /// each way, and a margin: where they would, the level is a coarser one.
+    /// Tiles that a view wants of a surface. They take no more cells than twice the pixels of the view each way, and a
+    /// margin; otherwise the level is a coarser one.
     #[must_use]
     pub fn of(surface: &Surface, view: &View, pixels_per_point: f32) -> Self {
         let cells = surface.cells;
@@ -221,7 +221,7 @@ impl Wanted {
             from: [0, 1].map(|i| (part.shares[0][i] * extent[i]).floor().max(0.0) as u32),
             to: [0, 1].map(|i| (part.shares[1][i] * extent[i]).ceil().max(0.0) as u32),
         };
-        // A surface beside the view keeps what lies nearest.
+        // A surface outside the view keeps its nearest tiles.
         let from = [0, 1].map(|i| visible.from[i].saturating_sub(MARGIN).min(all[i] - 1));
         let tiles = TileRect {
             from,

@@ -1,5 +1,5 @@
-//! The names of the paints beside their wells: all of them while the palette is out, otherwise that of the
-//! well under the brush.
+//! Names of the paints beside their wells: all while the palette is out, otherwise that of the well under the
+//! brush.
 
 use eframe::egui::{Align2, Color32, FontId, Painter, vec2};
 use glam::{DVec2, DVec3};
@@ -13,16 +13,16 @@ const SIZE: f32 = 11.0;
 /// From a well to its name, points.
 const GAP: f32 = 6.0;
 
-/// Which names are shown.
+/// Names that are shown.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Shown {
     /// All.
     All,
-    /// That of the well under a point of the desk, m.
+    /// The name of the well under a point of the desk, m.
     Under(DVec3),
 }
 
-/// What a well is called.
+/// Name of a well.
 #[must_use]
 pub(crate) fn name(well: &Well) -> String {
     match &well.kind {
@@ -47,7 +47,7 @@ pub(crate) fn named(palette: &Surface, shown: Shown) -> Vec<&Well> {
     palette.wells.iter().filter(under).collect()
 }
 
-/// Whether another well lies beside one, where its name would be.
+/// True if another well is where the name would be.
 fn crowded(palette: &Surface, well: &Well, inward: f64) -> bool {
     palette.wells.iter().any(|other| {
         let [x, y] = [0, 1].map(|i| other.center_m[i] - well.center_m[i]);
@@ -66,7 +66,7 @@ pub(crate) fn draw(painter: &Painter, view: &View, palette: &Surface, shown: Sho
             true => (-1.0, Align2::RIGHT_CENTER),
             false => (1.0, Align2::LEFT_CENTER),
         };
-        // Where another well is in the way, the name goes over its own.
+        // Next to another well the name goes over its own.
         let (align, edge, gap) = match crowded(palette, well, inward) {
             false => (
                 align,

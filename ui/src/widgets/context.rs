@@ -1,4 +1,4 @@
-//! What a panel works with.
+//! State that a panel reads and changes.
 
 use crate::rig::requests::Requests;
 use crate::rig::state::RigState;
@@ -8,12 +8,12 @@ use crate::widgets::notifications::Notifications;
 /// The rig as it is, and what the painter makes of it.
 #[derive(Debug)]
 pub struct PanelContext<'a> {
-    /// What is known of the rig.
+    /// State of the rig.
     pub rig: &'a mut RigState,
-    /// What is asked of it.
+    /// Requests to it.
     pub requests: &'a mut Requests,
-    /// What is remembered.
+    /// Settings that are remembered.
     pub preferences: &'a mut Preferences,
-    /// What is told.
+    /// Notifications to the painter.
     pub notifications: &'a mut Notifications,
 }

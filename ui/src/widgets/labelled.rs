@@ -1,5 +1,4 @@
-//! Rows of a panel: a name, and the control that it names; and values that were asked for and are not
-//! there yet.
+//! Rows of a panel: a name on the left, and the control it names; and values that the rig has not confirmed.
 
 use std::ops::RangeInclusive;
 
@@ -7,7 +6,7 @@ use eframe::egui::{Align, Layout, Response, RichText, Slider, SliderClamping, Ui
 
 /// Width of the column of names, points.
 const NAMES: f32 = 74.0;
-/// So long what was asked for is shown although the rig says otherwise, s.
+/// Time for which a requested value is shown although the rig says otherwise, s.
 const ANSWER_S: f64 = 1.5;
 
 /// A row: a name in the left column, and the control that it names.
@@ -54,20 +53,20 @@ pub(crate) fn slider<'a>(
         .suffix(unit)
 }
 
-/// Whether a slider of [`slider`] was moved, and did not only round what it shows.
+/// True if a [`slider`] was moved, and did not only round its value.
 #[must_use]
 pub(crate) fn is_moved(from: f64, to: f64) -> bool {
     const ROUNDED: f64 = 0.5001e-2;
     (to - from).abs() > ROUNDED
 }
 
-/// What is wrong with what a painter typed, below it.
+/// Error in the typed text, shown below it.
 pub(crate) fn wrong(ui: &mut Ui, what: &str) {
     ui.label(RichText::new(what).color(ui.visuals().warn_fg_color));
 }
 
-/// A value of the rig that a control changes: what was asked for is shown until the rig has it, so that
-/// what is dragged does not jump back.
+/// A value of the rig that a control changes: the requested value is shown until the rig has it, so that a dragged
+/// control does not jump back.
 #[derive(Clone, Debug)]
 pub(crate) struct PendingValue<T> {
     asked: Option<(T, f64)>,
@@ -96,7 +95,7 @@ impl<T: Clone + PartialEq> PendingValue<T> {
         }
     }
 
-    /// Notes that a value was asked for.
+    /// Notes that a value was requested.
     pub(crate) fn ask(&mut self, ui: &Ui, value: T) {
         self.asked = Some((value, ui.input(|input| input.time)));
     }

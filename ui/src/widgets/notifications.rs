@@ -1,18 +1,18 @@
-//! Short tellings over the desk: what went wrong elsewhere, and what to do. A click takes a fault away; notes
-//! are no hindrance to a stroke.
+//! Notifications over the desk: errors with advice, and notes. A click dismisses an error; notes let the pointer
+//! through.
 
 use eframe::egui::{self, Align2, Area, Color32, Context, Frame, Id, Order, RichText};
 use maulstick_rig::Fault;
 
-/// What is told at most at once; the oldest goes.
+/// Most notifications at once; the oldest is dropped.
 const MOST: usize = 4;
-/// How long a note and a fault stay, s.
+/// Display times of a note and an error, s.
 const NOTE_S: f64 = 3.0;
 const FAULT_S: f64 = 12.0;
 /// Width of the text, points.
 const WIDTH: f32 = 360.0;
 
-/// How much it matters.
+/// Severity.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Weight {
     /// Something was done.
@@ -21,20 +21,20 @@ pub enum Weight {
     Fault,
 }
 
-/// Something told.
+/// A notification.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Notification {
-    /// How much it matters.
+    /// Severity.
     pub weight: Weight,
-    /// What there is to say.
+    /// The message.
     pub what: String,
-    /// What to do about it; empty where there is nothing to do.
+    /// Advice; empty if there is none.
     pub help: String,
-    /// When it goes, by the window's clock, s; none before it was first shown.
+    /// Time of its end by the window's clock, s; `None` before it was first shown.
     until_s: Option<f64>,
 }
 
-/// What is told at present.
+/// The current notifications.
 #[derive(Debug, Default)]
 pub struct Notifications {
     told: Vec<Notification>,
@@ -56,17 +56,17 @@ impl Notifications {
         self.fault(fault.what.clone(), fault.help.clone().unwrap_or_default());
     }
 
-    /// What was told is over.
+    /// Removes a notification whose cause is over.
     pub fn over(&mut self, what: &str) {
         self.told.retain(|toast| toast.what != what);
     }
 
-    /// What is told, the oldest first.
+    /// The notifications, the oldest first.
     pub fn told(&self) -> &[Notification] {
         &self.told
     }
 
-    /// The same thing again begins its time anew, and is not told twice.
+    /// A repeated notification restarts its time, and is not shown twice.
     fn tell(&mut self, weight: Weight, what: String, help: String) {
         self.told.retain(|toast| toast.what != what);
         if self.told.len() >= MOST {
@@ -80,7 +80,7 @@ impl Notifications {
         });
     }
 
-    /// Shows what is told at the upper edge; a click takes it away.
+    /// Shows the notifications at the upper edge; a click removes one.
     pub fn show(&mut self, context: &Context) {
         let now = context.input(|input| input.time);
         for toast in &mut self.told {

@@ -1,6 +1,6 @@
-//! A value in the painter's hand: what was asked for is shown until the rig has answered.
+//! A value that the rig has not confirmed yet.
 
-/// How long an answer is waited for, s; then the rig is right.
+/// Longest wait for an answer, s; then the rig's value is shown.
 const WAITED_S: f64 = 2.0;
 
 /// A value that may be in the hand.
@@ -16,7 +16,7 @@ impl<T> Default for Pending<T> {
 }
 
 impl<T: Clone + PartialEq> Pending<T> {
-    /// What is shown at `now_s` of the window's clock where the rig's own value is `actual`.
+    /// The value shown at `now_s` of the window's clock if the rig's own value is `actual`.
     pub(crate) fn shown(&mut self, now_s: f64, actual: &T) -> T {
         let waits = |(asked, until_s): &(T, f64)| asked != actual && now_s < *until_s;
         self.asked = self.asked.take().filter(waits);
@@ -25,7 +25,7 @@ impl<T: Clone + PartialEq> Pending<T> {
             .map_or_else(|| actual.clone(), |(asked, _)| asked.clone())
     }
 
-    /// Holds a value that was asked for at `now_s`, or that is being dragged then.
+    /// Holds a value that was requested at `now_s`, or that is being dragged then.
     pub(crate) fn hold(&mut self, now_s: f64, value: T) {
         self.asked = Some((value, now_s + WAITED_S));
     }

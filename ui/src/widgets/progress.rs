@@ -1,5 +1,5 @@
-//! How far long work is: a bar over the desk with the time left and a way to end it, for all that takes
-//! more than half a second; and, for as long as it is so, that the painting cannot be saved or falls behind.
+//! Progress of long work: a bar over the desk with the time left and a button that ends it, for all that takes
+//! more than half a second. Warnings while the painting cannot be saved or falls behind.
 
 use std::collections::BTreeMap;
 
@@ -11,46 +11,46 @@ use maulstick_types::scene::{CANVAS, Light};
 use crate::rig::state::RigState;
 use crate::widgets::context::PanelContext;
 
-/// Work that takes less is not told, ns.
+/// Duration up to which work is not shown, ns.
 const SHORT_NS: u64 = 500_000_000;
 /// A light that lasts so long is one that was wanted, ns.
 const STOOD_NS: u64 = 1_000_000_000;
 /// Width of a bar, points.
 const BAR: f32 = 160.0;
 
-/// What takes its time; one of each at most.
+/// Kind of long work; at most one of each.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
 enum Kind {
     /// Dry layers are computed for another light.
     Relighting,
     /// Wet paint dries in time.
     Drying,
-    /// A process does not answer, by its name as the courier has it.
+    /// A process does not answer, by its name in the dispatcher.
     Waiting(String),
 }
 
-/// What ends a work.
+/// The action that ends a job.
 #[derive(Clone, Debug, PartialEq)]
 enum Cancel {
     /// A command to the paint node.
     Paint(Box<Command>),
-    /// The orders that wait are given up.
+    /// The waiting requests are given up.
     GiveUp,
 }
 
-/// A work that goes on.
+/// A job in progress.
 #[derive(Clone, Debug, PartialEq)]
 struct Job {
     kind: Kind,
     words: String,
-    /// How far it is, 0 to 1; none where nobody knows.
+    /// Progress, 0 to 1; `None` if it is unknown.
     share: Option<f64>,
     cancel: Option<Cancel>,
-    /// What ending it means.
+    /// Description of cancelling it.
     hint: &'static str,
 }
 
-/// What goes on, and since when.
+/// Jobs in progress, and their start times.
 #[derive(Debug, Default)]
 pub(crate) struct Progress {
     since_ns: BTreeMap<Kind, u64>,
@@ -63,8 +63,8 @@ pub(crate) struct Progress {
 }
 
 impl Progress {
-    /// Shows it at the lower edge; `waits` names the processes that an order has waited for so long that
-    /// it is to be told. `true` where the painter waits no longer.
+    /// Shows the jobs at the lower edge; `waits` names the processes whose answer is overdue. `true` if the painter
+    /// cancels the wait.
     pub(crate) fn show(
         &mut self,
         context: &Context,
@@ -102,7 +102,7 @@ impl Progress {
         false
     }
 
-    /// What has gone on for long enough to be told, with its begin, rig clock, ns.
+    /// Jobs that have run for long enough to be shown, with their start, rig clock, ns.
     fn jobs(&mut self, rig: &RigState, waits: &[String]) -> Vec<(Job, u64)> {
         let mut jobs: Vec<Job> = waits.iter().map(|name| waiting(name)).collect();
         let waited = jobs.len();
@@ -113,7 +113,7 @@ impl Progress {
             .retain(|kind, _| jobs.iter().any(|job| job.kind == *kind));
         let begun = jobs.into_iter().enumerate().filter_map(|(place, job)| {
             let begun_ns = *self.since_ns.entry(job.kind.clone()).or_insert(now_ns);
-            // Who waits has waited for long already.
+            // An overdue answer has taken long already.
             let is_long = place < waited || now_ns >= begun_ns.saturating_add(SHORT_NS);
             is_long.then_some((job, begun_ns))
         });
@@ -153,7 +153,7 @@ impl Progress {
     }
 }
 
-/// What the painter should know of the painting and can do nothing about here.
+/// Warnings about the painting that the painter cannot act on here.
 fn lines(status: &PaintStatus) -> impl Iterator<Item = String> {
     let PaintStatus { fault, longer, .. } = status;
     let unsaved = (!fault.is_empty()).then(|| format!("A fault of the painting's file: {fault}"));

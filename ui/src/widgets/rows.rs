@@ -1,4 +1,4 @@
-//! Rows of a panel: a word at the left, a control at the right, each named for screen readers.
+//! Rows of a panel: a word on the left, a control on the right, each named for screen readers.
 
 use std::collections::BTreeMap;
 use std::ops::RangeInclusive;
@@ -16,7 +16,7 @@ use crate::widgets::pending::Pending;
 /// Width of the words at the left, points.
 const WORDS: f32 = 84.0;
 
-/// Asks the paint node for what it can be asked; anything else is told.
+/// Sends the paint node a valid command; any other is refused with a notification.
 pub(crate) fn ask(work: &mut PanelContext<'_>, command: Command) -> bool {
     match command.check() {
         Ok(()) => {
@@ -69,7 +69,7 @@ pub(crate) fn wrong(ui: &mut Ui, text: impl Into<String>) {
     ui.label(RichText::new(text).color(colour));
 }
 
-/// What a painter chose from names; none where it is the same as before.
+/// The name that the painter chose; `None` if it is the same as before.
 pub(crate) fn choice<'a>(
     ui: &mut Ui,
     word: &str,
@@ -101,26 +101,26 @@ pub(crate) fn choice<'a>(
 pub(crate) struct Number<'a> {
     /// The word at its left.
     pub word: &'a str,
-    /// What it does, in a painter's words, with its unit.
+    /// Description in a painter's words, with its unit.
     pub hover: &'a str,
-    /// What it may be, in the unit in which it is shown.
+    /// Its range, in the displayed unit.
     pub range: RangeInclusive<f64>,
     /// The unit.
     pub unit: &'a str,
     /// Digits after the point at most.
     pub decimals: usize,
-    /// Whether equal ways of the slider are equal factors.
+    /// True for a logarithmic slider.
     pub factors: bool,
 }
 
-/// How a number was changed; none where it was not.
+/// A change of a number; `None` if there was none.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct Change {
     /// It has just become this: it is being dragged, or was typed or stepped.
     pub moved: Option<f64>,
     /// The painter is done with it, and it is not what it was in the rig.
     pub settled: Option<f64>,
-    /// What is shown.
+    /// The displayed value.
     pub shown: f64,
 }
 
@@ -152,7 +152,7 @@ impl Sliders {
     ) -> (Response, Change) {
         let now_s = ui.input(|input| input.time);
         let held = self.held.entry(key.to_owned()).or_default();
-        // As precise as it is shown, so that what was asked is found again in the rig's answer.
+        // Rounded as displayed, so that the request is recognised in the rig's answer.
         let fine = 10f64.powi(number.decimals as i32);
         let rounded = |value: f64| (value * fine).round() / fine;
         let actual = rounded(actual);

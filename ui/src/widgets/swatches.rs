@@ -1,4 +1,4 @@
-//! Paints as they look under the light of the rig: thick, and as a tint with white.
+//! Paints under the light of the scene: masstone, and tint with white.
 
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -16,11 +16,11 @@ use crate::rig::state::RigState;
 
 /// Parts of white to one part of paint in a tint.
 const TINT: f64 = 10.0;
-/// Thickness of the film that tells how a paint covers, m.
+/// Thickness of the film by which hiding power is judged, m.
 const FILM_M: f64 = 50e-6;
-/// Mixtures that are kept; beyond, all are computed anew.
+/// Largest number of cached mixtures; beyond, all are computed anew.
 const KEPT: usize = 256;
-/// What nothing but thinner looks like, linear.
+/// Colour of pure thinner, linear.
 const CLEAR: [f32; 3] = [0.75, 0.75, 0.72];
 
 /// Paints as they look.
@@ -58,7 +58,7 @@ impl Swatches {
         colours
     }
 
-    /// A mixture as it looks when it lies thick; none of paints that the rig does not have.
+    /// Colour of a thick layer of a mixture; `None` for paints that the rig does not have.
     pub(crate) fn mixture(&mut self, rig: &RigState, mixture: &Mixture) -> Option<Color32> {
         let made = self.made_for(rig);
         let text = mixture.to_string();
@@ -90,7 +90,7 @@ impl Swatches {
 
 impl Made {
     fn new(rig: &RigState, light: Light) -> Self {
-        // A light that is none was refused where it was made.
+        // An invalid light was refused at its source.
         let settings = studio_settings(&light).unwrap_or_default();
         let settings = StudioSettings {
             rule: RuleKind::Reference,
@@ -132,7 +132,7 @@ fn whitest(library: &PaintLibrary, viewing: &Viewing) -> Option<Blend> {
     lightest.map(|(_, blend)| blend)
 }
 
-/// How well a thin film of a paint covers black and white, 0 to 1, in the middle of the spectrum.
+/// Hiding power of a thin film of a paint over black and white, 0 to 1, in the middle of the spectrum.
 #[must_use]
 pub(crate) fn covers(paint: &Paint) -> f64 {
     let blend = Blend::new(&[(paint, 1.0)]);
@@ -153,7 +153,7 @@ pub(crate) fn covers(paint: &Paint) -> f64 {
     (over(0.0) / over(1.0).max(1e-9)).clamp(0.0, 1.0)
 }
 
-/// What a painter wants to know of a paint.
+/// Description of a paint for the painter.
 #[must_use]
 pub(crate) fn words(paint: &Paint) -> String {
     if paint.is_thinner() {
@@ -174,7 +174,7 @@ pub(crate) fn words(paint: &Paint) -> String {
     )
 }
 
-/// Whether a paint is called so, or has this colour index, as far as typed.
+/// True if the typed text matches a paint's name or colour index.
 #[must_use]
 pub(crate) fn matches(paint: &Paint, typed: &str) -> bool {
     let plain = |text: &str| text.to_lowercase().replace(' ', "");

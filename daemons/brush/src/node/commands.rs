@@ -10,7 +10,7 @@ use super::BrushNode;
 use super::pace::Pace;
 use crate::path_simplifier::PathSimplifier;
 
-/// Why a command was not done, and what to do.
+/// The reason why a command was not done, with advice.
 struct Refusal {
     what: String,
     help: &'static str,

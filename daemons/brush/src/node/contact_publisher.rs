@@ -1,4 +1,4 @@
-//! Contact models for the hands that hold the brush.
+//! Publisher of contact models for the devices that move the brush.
 
 use maulstick_bus::typed::Sender;
 use maulstick_bus::{BusError, Class};

@@ -47,10 +47,10 @@ const OLDEST_NS: u64 = 50_000_000;
 /// The paint node's name.
 const PAINT: &str = "paint";
 
-/// Whether the paint node is there: where it is not, nothing is painted and nothing is felt.
+/// Presence of the paint node: without it nothing is painted and there is no force.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Painter {
-    /// It is, or was never heard of.
+    /// It is there, or never sent anything.
     There,
     /// It has gone.
     Gone,
@@ -70,7 +70,7 @@ pub struct BrushNode {
     scene_ns: u64,
     infos: Receiver<StylusInfo>,
     consumed: Sender<BrushConsumed>,
-    /// What each device says that it is.
+    /// Claims of each device about itself.
     devices: Recent<DeviceClaims>,
     models: Recent<(Sender<ContactModel>, u64)>,
     arbiter: Arbiter,
@@ -82,7 +82,7 @@ pub struct BrushNode {
     take: Option<Take>,
     /// Devices that are gone: their takes have ended.
     gone: Recent<()>,
-    /// Whether the paint node is there, as far as it is known.
+    /// Presence of the paint node, as far as it is known.
     painter: Painter,
     tokens: Subscription,
     touching: bool,
@@ -167,7 +167,7 @@ impl BrushNode {
         })
     }
 
-    /// How many states were sent.
+    /// Number of states sent.
     #[must_use]
     pub fn sent(&self) -> u64 {
         self.states.next_seq()
@@ -200,8 +200,8 @@ impl BrushNode {
         Ok(Duration::from_millis(20))
     }
 
-    /// Follows the desk. What a hand did before belongs on the desk as it was: a canvas that is moved under
-    /// a stroke does not take along what waits to be solved.
+    /// Follows the desk. Samples belong to the desk as it was when they were taken: moving the canvas does not move
+    /// samples that wait to be solved.
     fn follow_scene(&mut self, now_ns: u64) -> Result<(), BusError> {
         while let Some(scene) = self.scene.try_recv() {
             // Only a late scene is passed over: another painting counts its own anew.
@@ -258,9 +258,9 @@ impl BrushNode {
         }
     }
 
-    /// The next sample that may be consumed: a replayed one waits for credit, and all wait for a
-    /// scene. None waits for another device's. A take that is played anew does not wait for what
-    /// the one before is owed. Where a time is given, only what a live hand did before it.
+    /// The next sample that may be consumed: a replayed one waits for credit, and all wait for a scene. No device waits
+    /// for another's. A take that is played anew does not wait for samples owed to the one before. With a time given,
+    /// only samples of a live hand before it.
     fn next_sample(&mut self, before_ns: Option<u64>) -> Option<Received<StylusSample>> {
         let (topics, settings, devices) = (&self.topics, &self.settings, &self.devices);
         let mine = |next: &Received<StylusSample>| {
@@ -341,8 +341,8 @@ impl BrushNode {
         self.feel(&device, origin, now_ns)
     }
 
-    /// Whether a sample puts the brush clear of the surface: a pen without pressure hovers, a head
-    /// that is higher than it is long does not reach.
+    /// Placement of the brush by a sample: a pen without pressure hovers, a head that is higher than it is long does
+    /// not reach.
     fn place(&self, sample: &StylusSample) -> Place {
         let clear = !sample.in_range
             || match &sample.pose {

@@ -1,21 +1,21 @@
-//! How far a brush has consumed its devices, and what they were told of it.
+//! Samples that a brush has consumed of its devices, and the last report of them.
 
 use maulstick_bus::typed::Sender;
 use maulstick_bus::{BusError, Recent};
 use maulstick_types::Origin;
 use maulstick_types::brush::BrushConsumed;
 
-/// What is consumed of each device, by name.
+/// Consumed samples of each device, by name.
 #[derive(Debug, Default)]
 pub(super) struct Progress {
     devices: Recent<Consumed>,
 }
 
-/// What is consumed of a device.
+/// Consumed samples of a device.
 #[derive(Debug)]
 struct Consumed {
     newest: BrushConsumed,
-    /// What it was told last.
+    /// The last number reported to it.
     told: Option<u64>,
 }
 
@@ -57,19 +57,19 @@ impl Progress {
         }
     }
 
-    /// Whether it has followed a device.
+    /// True if it has followed a device.
     pub(super) fn follows(&self, device: &str) -> bool {
         self.devices.has(device)
     }
 
-    /// A device may not have heard what it was told.
+    /// The last report may not have reached a device: forgets it.
     pub(super) fn forget_told(&mut self, device: &str) {
         if let Some(known) = self.devices.get_mut(device) {
             known.told = None;
         }
     }
 
-    /// Tells devices what is consumed; those whose samples wait to be solved are told then.
+    /// Reports the consumed samples to devices; those whose samples wait to be solved get their report then.
     pub(super) fn tell(
         &mut self,
         now_ns: u64,

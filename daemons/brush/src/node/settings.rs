@@ -1,4 +1,4 @@
-//! What a brush node is told at its start, and by its devices.
+//! Settings of a brush node at its start, and claims of its devices.
 
 use std::collections::BTreeMap;
 
@@ -8,7 +8,7 @@ use maulstick_types::stylus::{StylusInfo, axes};
 
 use crate::contact_model::ForceKind;
 
-/// What a brush node is told at its start.
+/// Settings of a brush node at its start.
 #[derive(Clone, Debug)]
 pub struct BrushSettings {
     /// Name of the brush.
@@ -19,7 +19,7 @@ pub struct BrushSettings {
     pub depth_share: f64,
     /// The devices that move it, by name, with their priority.
     pub devices: BTreeMap<String, i32>,
-    /// How the brush pushes back on devices, by name; two straight pieces where none is said.
+    /// Force law of each device, by name; two straight pieces by default.
     pub laws: BTreeMap<String, ForceKind>,
     /// Devices that move other brushes.
     pub others: Vec<String>,
@@ -41,12 +41,12 @@ impl BrushSettings {
     }
 }
 
-/// What a device says that it is.
+/// Claims of a device about itself.
 #[derive(Clone, Debug)]
 pub(super) struct DeviceClaims {
     /// The brush that it moves; any if empty.
     brush: String,
-    /// Whether it drives a force.
+    /// True if it drives a force.
     pub(super) drives_force: bool,
 }
 

@@ -18,7 +18,7 @@ pub(super) struct Take {
 }
 
 impl BrushNode {
-    /// Whether a take has exclusive use of this brush.
+    /// True if a take has exclusive use of this brush.
     pub(super) fn is_held(&self) -> bool {
         let there = |take: &Take| !self.gone.has(&take.device);
         self.take.as_ref().is_some_and(there)

@@ -1,4 +1,4 @@
-//! The thread that asks the paint node for what switches mean.
+//! The thread that asks the paint node for the actions of switches.
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -18,16 +18,16 @@ use maulstick_types::topics::Topics;
 use super::{Action, Edge, SwitchEvent};
 use maulstick_rig::commander::Commander;
 
-/// How long a command may take.
+/// Longest wait for a command.
 const PATIENCE: Duration = Duration::from_secs(2);
 /// A command is asked again after this.
 const ASK: Duration = Duration::from_millis(300);
-/// A way of using the brush that is still to be restored is asked for again after this.
+/// Interval at which the restoring of a handling is requested again.
 const AGAIN: Duration = Duration::from_secs(1);
-/// How long the scene may take to show what was done.
+/// Longest wait until the scene shows the result.
 const SHOWN: Duration = Duration::from_secs(1);
 
-/// What uses the brush in another way for as long as it lasts.
+/// Temporary brush modes, while a switch is pressed.
 #[derive(Clone, Copy, Debug, Default)]
 struct HeldModes {
     picks: bool,
@@ -44,7 +44,7 @@ impl HeldModes {
     }
 }
 
-/// What became of a command.
+/// Outcome of a command.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Told {
     Done,
@@ -54,7 +54,7 @@ enum Told {
     Unknown,
 }
 
-/// What was held, as the brush was used by it, and what is so again since.
+/// Handling of the brush during a temporary mode, and the one restored since.
 #[derive(Clone, Debug)]
 struct Restored {
     held: BrushHandling,
@@ -69,15 +69,15 @@ pub(super) struct Worker {
     scene: Option<Scene>,
     brush: String,
     held: HeldModes,
-    /// How the brush was used before something was held, until it is so again.
+    /// Handling of the brush before the temporary mode, until it is restored.
     before: Option<BrushHandling>,
-    /// What this has asked for last while something was held.
+    /// Handling last requested by a temporary mode.
     asked: Option<BrushHandling>,
     /// The newest restoring: the scene may not show it yet.
     restored: Option<Restored>,
-    /// Where the palette was before it was slid over the canvas.
+    /// Placement of the palette before it was slid over the canvas.
     rest: Option<Pose>,
-    /// Whether it was told that nobody answers.
+    /// True once it was reported that nobody answers.
     unheard: bool,
     stop: Arc<AtomicBool>,
 }
@@ -110,14 +110,14 @@ impl Worker {
         })
     }
 
-    /// Does what comes, one after the other, until nobody can press a switch any more.
+    /// Handles the edges one after the other, until no further switch can be pressed.
     pub(super) fn run(&mut self, edges: &Edges<SwitchEvent>) {
         loop {
             let next = match self.owes() {
                 true => edges.recv_timeout(AGAIN),
                 false => edges.recv().map_err(RecvTimeoutError::from),
             };
-            // What was pressed long ago and is still to do at the end is no longer wanted.
+            // A press of long ago that is still pending at the end is dropped.
             if self.stop.load(Ordering::SeqCst) {
                 break;
             }
@@ -131,7 +131,7 @@ impl Worker {
         self.follow();
     }
 
-    /// Whether the brush is still to be used as before.
+    /// True while the former handling is to be restored.
     fn owes(&self) -> bool {
         self.before.is_some() && self.held.mode().is_none()
     }
@@ -158,10 +158,10 @@ impl Worker {
         }
     }
 
-    /// Uses the brush as what is held says, or as before.
+    /// Sets the temporary mode of the pressed switches, or restores the former handling.
     ///
-    /// How it was before is kept until the node has answered that it is so again: a command that
-    /// nobody answers may have been done.
+    /// The former handling is kept until the node has answered that it is restored: a command that nobody answers may
+    /// have been done.
     fn follow(&mut self) {
         let Some(mode) = self.held.mode() else {
             let Some(before) = self.before.clone() else {
@@ -193,7 +193,7 @@ impl Worker {
         }
     }
 
-    /// How the brush is used while nothing is held.
+    /// Handling of the brush without temporary modes.
     fn now(&mut self) -> BrushHandling {
         let brush = self.brush.clone();
         let scene = self.look(SHOWN, |_| true);
@@ -251,7 +251,7 @@ impl Worker {
         }
     }
 
-    /// The newest scene, once it is as `wanted`; none where it is not in time.
+    /// The newest scene, once it is as `wanted`; `None` if it is not in time.
     fn look(&mut self, patience: Duration, wanted: impl Fn(&Scene) -> bool) -> Option<&Scene> {
         let give_up = Instant::now() + patience;
         loop {
@@ -268,7 +268,7 @@ impl Worker {
         }
     }
 
-    /// Sends a command. What is not done is told.
+    /// Sends a command. A failure is reported.
     fn send(&mut self, command: Command) -> Told {
         let stop = Arc::clone(&self.stop);
         let stopped = || stop.load(Ordering::SeqCst);
@@ -294,7 +294,7 @@ impl Worker {
     }
 }
 
-/// How a brush is used in a scene.
+/// Handling of a brush in a scene.
 fn handling(scene: &Scene, brush: &str) -> BrushHandling {
     let mut handlings = scene.handlings.iter();
     handlings

@@ -1,5 +1,5 @@
-//! A device and a hand, simulated: the hand follows a take and feels the force; without a take it
-//! rests beside the desk, out of range.
+//! A simulated device and hand: the hand follows a take and reacts to the force; without a take it rests beside the
+//! desk, out of range.
 
 use glam::{DQuat, DVec3};
 use maulstick_brush::desk::{ferrule, pen_orientation};
@@ -12,7 +12,7 @@ use maulstick_types::stylus::{DEFAULT_TILT_RAD, axes};
 
 use crate::device::driver::{Abilities, DeviceError, Driver, Reading, Wrench};
 
-/// Where the hand rests, device frame, m.
+/// Rest position of the hand, device frame, m.
 const REST: DVec3 = DVec3::new(0.2, -0.2, 0.1);
 
 /// Force that its warm motors bear, N: an Omni's.
@@ -22,7 +22,7 @@ const STEADY: f64 = 0.6;
 /// Time in which they warm, s.
 const WARMING_S: f64 = 60.0;
 
-/// Where the hand wants to be at a time.
+/// Target position of the hand at a time.
 #[derive(Clone, Copy, Debug)]
 struct Target {
     time_s: f64,

@@ -30,7 +30,7 @@ pub struct TickRecord {
     pub rearms: u64,
 }
 
-/// A contact model on its way to the servo.
+/// A contact model for the servo.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Delivery {
     /// The model.

@@ -1,4 +1,4 @@
-//! The painter's settings of a device's force, on their way to the servo.
+//! The painter's settings of a device's force, for the servo.
 
 use maulstick_haptics::{Servo, Switch};
 

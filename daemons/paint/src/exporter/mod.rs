@@ -1,4 +1,4 @@
-//! An export beside the painting: on a thread of its own, of the painting as it was when it was asked for.
+//! An export in the background: on a thread of its own, of the painting as it was when it was requested.
 
 use std::fs::File;
 use std::io::{BufWriter, Error, ErrorKind, Seek, SeekFrom, Write};
@@ -19,7 +19,7 @@ use maulstick_paint::picture::{Depth, Export};
 use maulstick_types::command::{ExportOrder, Outcome};
 use maulstick_types::paint::ExportStatus;
 
-/// Whoever asked for it: a client, and the number of its command.
+/// The client that requested it, and the number of its command.
 pub type Asker = (u64, u64);
 
 /// Exports, one at a time.
@@ -38,11 +38,11 @@ struct Running {
 }
 
 impl Exporter {
-    /// Begins an export of a painting that nobody changes any more; `usual` is how pictures leave the
-    /// working space where the order says nothing.
+    /// Begins an export of a painting that is not changed any more; `usual` holds the defaults for everything that the
+    /// request leaves open.
     ///
     /// # Errors
-    /// [`EditError`] for an unknown format, profile or gamut, and while another export goes on.
+    /// [`EditError`] for an unknown format, profile or gamut, and while another export runs.
     pub fn begin(
         &mut self,
         asker: Asker,
@@ -116,7 +116,7 @@ impl Exporter {
         Some((asker, outcome))
     }
 
-    /// How far the export is.
+    /// Progress of the export.
     #[must_use]
     pub fn status(&self, now_ns: u64) -> Option<ExportStatus> {
         self.0.as_ref().map(|running| ExportStatus {
@@ -158,7 +158,7 @@ pub(crate) fn unwritable(path: &Path, error: &Error) -> EditError {
     EditError::new(format!("cannot write {}: {error}", path.display()), help)
 }
 
-/// What is asked for, with all that the order leaves open.
+/// The requested export, with defaults for everything left open.
 fn order(asked: &ExportOrder, usual: &Export) -> Result<Order, EditError> {
     let path = Path::new(&asked.path);
     let format = match asked.format.as_str() {

@@ -1,4 +1,4 @@
-//! How the paint on brushes looks, for whoever shows them.
+//! Colours of the paint on brushes, for the windows that show them.
 
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -18,12 +18,12 @@ use super::FrameState;
 pub(super) struct BrushLooks {
     topics: Topics,
     told: BTreeMap<String, Told>,
-    /// The look that all is told for, and reflectances of hair under it.
+    /// The look in which all colours were sent, and reflectances of hair under it.
     look: Option<Arc<Appearance>>,
     hair: Vec<(Hair, Vec<f32>)>,
 }
 
-/// What was told of a brush.
+/// State last sent of a brush.
 struct Told {
     sender: Sender<BrushLook>,
     of: Option<Carried>,

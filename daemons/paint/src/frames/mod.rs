@@ -1,7 +1,7 @@
-//! Pictures of what changed, for whoever asks: a thread of its own between the paint and its views.
+//! Frames of changed tiles for each view: a thread of its own between the paint and its views.
 //!
-//! The stepper hands over versions of tiles, which are shared and never copied; colour is computed
-//! here, only for tiles that someone looks at.
+//! The stepper hands over versions of tiles, which are shared and never copied; colour is computed here, only for tiles
+//! that a view shows.
 
 mod brush_looks;
 mod films;
@@ -37,7 +37,7 @@ const BATCH: usize = 16;
 const MOST_TILES: usize = 64;
 /// A view waits this long for tiles that take their time; the rest comes with the next reply.
 const REPLY_WORK: Duration = Duration::from_millis(100);
-/// What has dried is baked ahead for this long between two looks at what is asked.
+/// Time for baking dry layers ahead between two looks at the requests.
 const AHEAD: Duration = Duration::from_millis(10);
 
 /// A surface as its views see it.
@@ -47,14 +47,14 @@ pub struct FedSurface {
     pub cells: [u32; 2],
     /// Tiles across and up.
     pub grid: [u32; 2],
-    /// What it shows where nothing was painted.
+    /// Its appearance where nothing was painted.
     pub bare: Arc<BlankSurface>,
     /// Tiles on which something was painted, with the number of their version.
     pub tiles: BTreeMap<TileId, (u64, Option<Arc<Tile>>)>,
 }
 
 impl FedSurface {
-    /// What has dried on a tile.
+    /// Dry layers of a tile.
     #[must_use]
     pub fn dry_on(&self, id: TileId) -> Option<&Arc<DryStack>> {
         self.tiles.get(&id)?.1.as_deref()?.dry()
@@ -68,12 +68,12 @@ impl FedSurface {
     }
 }
 
-/// What the stepper has handed over.
+/// State handed over by the stepper.
 #[derive(Clone, Debug, Default)]
 pub struct FrameState {
     /// Surfaces by number.
     pub surfaces: BTreeMap<u32, FedSurface>,
-    /// How paint becomes colour.
+    /// Appearance of the paint.
     pub look: Option<Arc<Appearance>>,
     /// The newest version.
     pub version: u64,
@@ -81,17 +81,17 @@ pub struct FrameState {
     pub journal: u64,
     /// Brush states that are in it.
     pub holds: Vec<FrameHolds>,
-    /// Whether a view waits for news.
+    /// True while a view waits for changes.
     pub wanted: bool,
     /// Tiles with dry layers that are to be baked for this look, and those that are.
     pub baking: Progress,
-    /// What brushes carry, by their names.
+    /// Loads of the brushes, by their names.
     pub carried: BTreeMap<String, Carried>,
     /// When a view last asked, rig clock, ns.
     pub watched_ns: u64,
 }
 
-/// How far a long work is.
+/// Progress of long work.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Progress {
     /// Tiles in all.
@@ -100,7 +100,7 @@ pub struct Progress {
     pub done: u32,
 }
 
-/// Where stepper and frame thread meet.
+/// State shared by stepper and frame thread.
 #[derive(Clone, Debug, Default)]
 pub struct Feed {
     fed: Arc<Mutex<FrameState>>,
@@ -114,7 +114,7 @@ impl Feed {
         Self::default()
     }
 
-    /// What was handed over, for as long as the guard lives.
+    /// The shared state, for as long as the guard lives.
     pub fn lock(&self) -> MutexGuard<'_, FrameState> {
         self.fed.lock().unwrap_or_else(PoisonError::into_inner)
     }
@@ -259,7 +259,7 @@ impl FrameServer {
         Ok(())
     }
 
-    /// Bakes dry layers that nobody has looked at yet, for a short while; true where there are more.
+    /// Bakes dry layers ahead of any view, for a short while; true if there are more.
     fn bake_ahead(&mut self, fed: &FrameState) -> bool {
         let progress = self.pyramid.bake_ahead(fed, AHEAD);
         let mut shared = self.feed.lock();
@@ -320,7 +320,7 @@ impl FrameServer {
             if place % BATCH == 0 {
                 let part = &changed[place..(place + BATCH).min(changed.len())];
                 let pyramid = &mut self.pyramid;
-                // What was shown before need not be computed.
+                // A tile that was shown before need not be computed.
                 let new = part
                     .iter()
                     .filter(|(_, id)| !pyramid.recall(look, asked.surface, surface, level, *id));

@@ -1,4 +1,4 @@
-//! Display tiles at every level of detail, made of those below and kept for the next request.
+//! Display tiles at every level of detail, made from those below and kept for the next request.
 
 use std::collections::{BTreeMap, VecDeque};
 use std::sync::Arc;
@@ -16,7 +16,7 @@ use maulstick_paint::tile::{Tile, TileId};
 use super::films::SteadyFilms;
 use super::{FedSurface, FrameState, Progress};
 
-/// Display tiles that are kept for the next request.
+/// Number of cached display tiles.
 const KEPT_TILES: usize = 1024;
 
 /// From this level on, eight cells to a point and coarser, a bare ground looks even.
@@ -24,7 +24,7 @@ const PLAIN_LEVEL: u32 = 3;
 /// Surfaces of more tiles than this are not drawn tile by tile where they are bare.
 const PLAIN_TILES: u32 = 1024;
 
-/// Whether a surface is so vast that what is bare of it is drawn as if it were even.
+/// True if a surface is so vast that its bare parts are drawn as if they were even.
 fn is_plain(surface: &FedSurface) -> bool {
     surface.grid[0] * surface.grid[1] > PLAIN_TILES && surface.bare.wells.is_empty()
 }
@@ -40,14 +40,14 @@ pub(super) fn grid(surface: &FedSurface, level: u32) -> [u32; 2] {
     surface.grid.map(|tiles| tiles.div_ceil(1 << level))
 }
 
-/// Versions of bare tiles lie below this, those of painted ones above: a surface has no more tiles.
+/// Versions of bare tiles are below this, those of painted ones above: a surface has no more tiles.
 pub(super) const BARE_VERSIONS: u64 = 1 << 32;
 
 /// Display tiles by level and place, with the version that they show.
 #[derive(Debug, Default)]
 pub(super) struct Pyramid {
     kept: BTreeMap<(u32, u32, TileId), (u64, Arc<DisplayTile>)>,
-    /// What lies beyond the edge of a surface.
+    /// Tiles beyond the edge of a surface.
     outside: BTreeMap<u32, Arc<DisplayTile>>,
     /// A bare tile of a vast surface, from afar.
     plain: BTreeMap<u32, Arc<DisplayTile>>,
@@ -57,14 +57,14 @@ pub(super) struct Pyramid {
     pub(super) shelf: Option<Shelf>,
     /// Generation of the look that all this shows.
     generation: Option<u64>,
-    /// What is still to be baked for it, as far as nobody looks at it first.
+    /// Dry layers still to be baked for it, unless a view needs them first.
     ahead: VecDeque<(u32, TileId, Arc<DryStack>)>,
     /// For which generation that is, and how many they were.
     ahead_of: (Option<u64>, u32),
 }
 
 impl Pyramid {
-    /// Version of a tile of a level: the newest of what lies in it; 0 where nothing was painted.
+    /// Version of a tile of a level: the newest of its tiles of full detail; 0 where nothing was painted.
     fn painted(surface: &FedSurface, level: u32, id: TileId) -> u64 {
         let [across, up] = grid(surface, level);
         if id.x >= across || id.y >= up {
@@ -98,8 +98,8 @@ impl Pyramid {
         }
     }
 
-    /// Bakes what has dried for the present look, a tile after the other, for as long as `limit`.
-    /// What dries later is baked when it is looked at.
+    /// Bakes dry layers for the present look, a tile after the other, for as long as `limit`. Layers that dry later are
+    /// baked on demand.
     pub(super) fn bake_ahead(&mut self, fed: &FrameState, limit: Duration) -> Progress {
         let Some(look) = &fed.look else {
             return Progress::default();
@@ -117,7 +117,7 @@ impl Pyramid {
         while begun.elapsed() < limit
             && let Some((number, id, stack)) = self.ahead.pop_front()
         {
-            // What has dried since was, or will be, baked by whoever looks at it.
+            // Paint that has dried since was, or will be, baked when a view needs it.
             if let Some(surface) = fed.surfaces.get(&number)
                 && surface
                     .dry_on(id)
@@ -135,7 +135,7 @@ impl Pyramid {
         }
     }
 
-    /// The tiles of full detail of a rectangle of a level that are not kept or have changed.
+    /// The tiles of full detail of a rectangle of a level that are not cached or have changed.
     pub(super) fn stale(
         &self,
         number: u32,
@@ -209,7 +209,7 @@ impl Pyramid {
         }
     }
 
-    /// What lies beyond the edge of a surface, as if it went on.
+    /// Tile beyond the edge of a surface, as if it continued.
     fn outside(
         &mut self,
         look: &Appearance,
@@ -237,7 +237,7 @@ impl Pyramid {
         DisplayTile::from_bytes(&bytes).map(Arc::new)
     }
 
-    /// Whether a tile is kept, in memory or, as it was shown before, in the document.
+    /// True if a tile is available, in memory or, as it was shown before, in the document.
     pub(super) fn recall(
         &mut self,
         look: &Appearance,
@@ -296,7 +296,7 @@ impl Pyramid {
 
     fn keep(&mut self, place: (u32, u32, TileId), version: u64, tile: Arc<DisplayTile>) {
         if self.kept.len() >= KEPT_TILES {
-            // What is coarse is made of many: it is kept as long as there is room.
+            // A coarse tile is made of many: it is kept as long as there is room.
             self.kept.retain(|(_, level, _), _| *level > 0);
             if self.kept.len() >= KEPT_TILES {
                 self.kept.clear();

@@ -1,4 +1,4 @@
-//! Commands to the paint node: most are the sequencer's, some go on beside the painting.
+//! Commands to the paint node: most are the sequencer's, some run in the background.
 
 use std::path::Path;
 
@@ -33,7 +33,7 @@ impl PaintNode {
         }
     }
 
-    /// ReplyCache a command. Nothing that a client sends may end the node: what cannot be told in
+    /// Answers a command. Nothing that a client sends may end the node: what cannot be told in
     /// full is told in short.
     pub(super) fn answer(&self, request: Request, now_ns: u64, reply: CommandReply) {
         let write = |reply: &CommandReply| {
@@ -56,7 +56,7 @@ impl PaintNode {
         }
     }
 
-    /// Does a command that changes no painting; none where it is the sequencer's.
+    /// Carries out a command that changes no painting; `None` if it is the sequencer's.
     fn beside(&mut self, asked: &CommandRequest, now_ns: u64) -> Option<Outcome> {
         let is_beside = matches!(
             asked.command,
@@ -107,7 +107,7 @@ impl PaintNode {
         }
     }
 
-    /// Looks how what goes on beside the painting fares.
+    /// Checks the progress of background work.
     pub(super) fn go_on_beside(&mut self, now_ns: u64) {
         if let Some(((client, number), outcome)) = self.exporter.ended() {
             self.replies.keep(client, number, outcome);

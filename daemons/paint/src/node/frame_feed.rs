@@ -1,4 +1,4 @@
-//! What the paint node hands over to the frames: versions of tiles, the look, what is bare.
+//! State that the paint node hands over to the frames: versions of tiles, the look, bare surfaces.
 
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -18,8 +18,8 @@ const CARRIED_PERIOD_NS: u64 = 66_000_000;
 const WATCHED_NS: u64 = 2_000_000_000;
 
 impl PaintNode {
-    /// Hands over what brushes carry, while somebody looks: as far as steps are settled, for the model
-    /// waits for no view.
+    /// Hands over the brushes' loads while a view wants them: as far as steps are settled, for the model waits for no
+    /// view.
     pub(super) fn hand_over_brushes(&mut self, now_ns: u64) {
         if now_ns < self.fed_brushes_ns + CARRIED_PERIOD_NS {
             return;

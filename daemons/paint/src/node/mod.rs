@@ -82,7 +82,7 @@ pub struct PaintNode {
     autosave: Option<Autosave>,
     /// Most bytes of pages in memory, where the painting has a document.
     memory: usize,
-    /// What was committed when the newest commit was seen, and when that was, ns.
+    /// Commit counter at the newest commit seen, and its time, ns.
     committed: (u64, u64),
     ticker: Ticker,
 }
@@ -171,7 +171,7 @@ impl PaintNode {
         Ok(node)
     }
 
-    /// Has snapshots leave the working space in this way.
+    /// Sets the conversion of snapshots from the working space.
     #[must_use]
     pub fn exporting(mut self, export: Export) -> Self {
         self.export = export;
@@ -200,16 +200,16 @@ impl PaintNode {
             .map(|autosave| autosave.document().path())
     }
 
-    /// Why the painting cannot go on: a page of its document could not be read.
+    /// The error that stops the painting: a page of its document could not be read.
     #[must_use]
     pub fn fault(&self) -> Option<&str> {
         self.sequencer.painting().pager().fault()
     }
 
-    /// Writes what is to be kept and closes the document, under its own name where it is on its way there.
+    /// Writes everything pending and closes the document, under its new name if a move is in progress.
     ///
     /// # Errors
-    /// Why something could not be written, or not under that name.
+    /// The reason why something could not be written, or not under that name.
     pub fn close(mut self) -> Result<(), DocumentError> {
         // Snapshots may show pages that only the document has.
         drop(std::mem::take(&mut self.snapshots));
@@ -221,7 +221,7 @@ impl PaintNode {
         arrived.and(closed)
     }
 
-    /// Where the frames take their pictures from.
+    /// Feed of the frames.
     #[must_use]
     pub fn feed(&self) -> Feed {
         self.feed.clone()
@@ -232,13 +232,13 @@ impl PaintNode {
         self.sequencer.painting_mut()
     }
 
-    /// Whether a brush's file has come: before, its states wait and commands to it are refused.
+    /// True once a brush's file has arrived: before, its states wait and commands to it are refused.
     #[must_use]
     pub fn knows_brush(&self, brush: &str) -> bool {
         self.sequencer.painting().knows_brush(brush)
     }
 
-    /// How many of a brush's states are painted.
+    /// Number of a brush's states that are painted.
     #[must_use]
     pub fn consumed(&self, brush: Origin) -> u64 {
         self.sequencer.consumed(brush)

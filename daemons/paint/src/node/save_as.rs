@@ -15,7 +15,7 @@ use super::PaintNode;
 use crate::exporter::Asker;
 use maulstick_session::Autosave;
 
-/// A painting on its way to another file.
+/// A move of a painting to another file in progress.
 #[derive(Debug)]
 pub(super) struct Saving {
     asker: Asker,
@@ -42,17 +42,17 @@ fn refused(path: &Path, error: &DocumentError) -> EditError {
     EditError::new(format!("{}: {error}", path.display()), help)
 }
 
-/// Whether two names lead to the same file.
+/// True if two names lead to the same file.
 fn is_same(one: &Path, other: &Path) -> bool {
     let real = |path: &Path| std::fs::canonicalize(path).ok();
     one == other || real(one).is_some_and(|path| real(other) == Some(path))
 }
 
 impl PaintNode {
-    /// Begins to have the painting go on in another file.
+    /// Begins to move the painting to another file.
     ///
     /// # Errors
-    /// [`EditError`] where it cannot be begun there, or is on its way already.
+    /// [`EditError`] if it cannot be created there, or a move is in progress.
     pub(super) fn save_as(
         &mut self,
         asker: Asker,
@@ -107,7 +107,7 @@ impl PaintNode {
             Stage::Written => {
                 let fault = autosave.document().fault();
                 if let Some((what, help)) = fault.filter(|_| autosave.document().take_back()) {
-                    // What was in memory alone stays there, and nothing of it anywhere else.
+                    // A painting in memory stays there, and leaves no part of it elsewhere.
                     let what = format!("{}: {what}", saving.to.display());
                     let refusal = EditError::new(what, help);
                     self.give_document_up();
@@ -148,10 +148,10 @@ impl PaintNode {
         self.replies.keep(client, number, outcome);
     }
 
-    /// Waits until the painting has its name, where it is on its way to its first one.
+    /// Waits until the painting has its name, if it is moving to its first one.
     ///
     /// # Errors
-    /// Why it does not get that; where anything of it was written, it is kept beside that name.
+    /// The reason why it does not get that; if anything of it was written, it is kept beside that name.
     pub(super) fn arrive(&mut self) -> Result<(), DocumentError> {
         let Some(autosave) = self.autosave.as_mut().filter(|_| self.unnamed) else {
             return Ok(());

@@ -1,4 +1,4 @@
-//! How the paint node fares, as it tells the rig.
+//! Status of the paint node, as the rig receives it.
 
 use maulstick_bus::BusError;
 use maulstick_document::Document;

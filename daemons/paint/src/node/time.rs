@@ -1,4 +1,4 @@
-//! Time goes by while paint dries.
+//! Advance of time while paint dries.
 
 use super::PaintNode;
 

@@ -1,4 +1,4 @@
-//! Two versions of a painting side by side, and where they differ.
+//! Two versions of a painting side by side, and their difference.
 
 use std::path::Path;
 
@@ -101,7 +101,7 @@ fn seen(sequencer: &mut Sequencer, version: &str) -> Result<Picture, Fault> {
     Ok(seen)
 }
 
-/// How far two pixels are apart, ΔE₀₀.
+/// Difference of two pixels, ΔE₀₀.
 fn difference([one, other]: [[u8; 3]; 2]) -> f64 {
     if one == other {
         return 0.0;

@@ -156,7 +156,7 @@ impl ImportOptions {
     }
 }
 
-/// The paints in use; in a new painting those that lie on its palette.
+/// The paints in use; in a new painting those of its palette.
 fn paints_at_hand(painting: &Painting) -> Vec<String> {
     let scene = painting.scene();
     let mut names: Vec<String> = scene.paints.iter().map(|slot| slot.name.clone()).collect();

@@ -1,4 +1,4 @@
-//! `maulstick painting info`: what a painting holds.
+//! `maulstick painting info`: contents of a painting.
 
 use std::path::PathBuf;
 

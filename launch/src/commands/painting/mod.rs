@@ -55,7 +55,7 @@ fn bar(what: &'static str) -> ProgressBar {
     bar
 }
 
-/// What tells a bar how far the work is.
+/// Callback that shows progress on a bar.
 fn tell(bar: &ProgressBar) -> impl FnMut(u64, u64) {
     |done, all| {
         bar.set_length(all);

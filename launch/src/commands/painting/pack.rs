@@ -1,4 +1,4 @@
-//! `maulstick painting pack`: a painting's file as small as it gets.
+//! `maulstick painting pack`: a painting's file made as small as possible.
 
 use std::path::PathBuf;
 

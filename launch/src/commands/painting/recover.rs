@@ -1,4 +1,4 @@
-//! `maulstick painting recover`: what is whole of a damaged painting, as a new one.
+//! `maulstick painting recover`: the intact part of a damaged painting, as a new one.
 
 use std::path::PathBuf;
 

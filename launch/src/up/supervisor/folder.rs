@@ -1,13 +1,13 @@
-//! The rig's folder, where somebody removes it under the rig: its processes go on, but nobody finds them.
+//! Check for the rig's folder: if somebody removes it, the processes go on, but nobody finds them.
 
 use std::time::{Duration, Instant};
 
 use super::Supervisor;
 
-/// How often it is looked for.
+/// Interval of the check.
 const PERIOD: Duration = Duration::from_secs(1);
 
-/// When the folder was looked for, and whether it was told that it is gone.
+/// Time of the last check, and true once the loss was reported.
 #[derive(Debug, Default)]
 pub(super) struct FolderWatch {
     looked: Option<Instant>,

@@ -1,4 +1,4 @@
-//! What the brushes carry when a painting begins.
+//! Loads of the brushes when a painting begins.
 
 use std::sync::Arc;
 use std::time::Duration;
@@ -8,7 +8,7 @@ use maulstick_types::command::Command;
 
 use super::Supervisor;
 
-/// How long the paint node may take to load a brush.
+/// Longest wait until the paint node has loaded a brush.
 const LOAD_TIME: Duration = Duration::from_secs(10);
 
 impl Supervisor {
@@ -23,7 +23,7 @@ impl Supervisor {
         }
     }
 
-    /// Gives the painter loaded brushes. The commands go their own way: nothing waits for them.
+    /// Gives the painter loaded brushes. The commands run by themselves: nothing waits for them.
     fn load_brushes(&self) {
         let (bus, topics) = (Arc::clone(&self.bus), self.topics.clone());
         let brushes: Vec<String> = self.config.brush.iter().map(|b| b.name.clone()).collect();

@@ -1,4 +1,4 @@
-//! What is asked of the rig as a whole: another painting, another file.
+//! Requests to the rig as a whole: another painting, another file.
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -18,7 +18,7 @@ use super::Supervisor;
 use super::switch::{Ask, Switch};
 use crate::commands::session::RIG;
 
-/// What is asked of the rig, and what was answered.
+/// Requests to the rig, and its replies.
 pub(super) struct Orders {
     server: Server,
     reader: Reader,
@@ -31,23 +31,23 @@ pub(super) struct Orders {
     leaving: Leaving,
 }
 
-/// A painting is left by what the paint node says of it after so many statuses: the first may have been
-/// on its way when it was asked.
+/// Number of the paint node's statuses after which a painting is left: the first may have been in flight when the
+/// request was made.
 const STATUSES: u64 = 2;
 
-/// Who wants to leave the painting, and how many statuses had been heard when they asked first.
+/// Clients that want to leave the painting, with the number of statuses received when they first asked.
 #[derive(Debug, Default)]
 struct Leaving(BTreeMap<(u64, u64), u64>);
 
 impl Leaving {
-    /// Whether enough of `heard` statuses came since an asker was there first.
+    /// True if enough of `heard` statuses have arrived since an asker was first there.
     fn has_heard(&mut self, asker: (u64, u64), heard: u64) -> bool {
         heard >= *self.0.entry(asker).or_insert(heard) + STATUSES
     }
 }
 
 impl Orders {
-    /// ReplyCache for the rig.
+    /// Server of the commands to the rig.
     ///
     /// # Errors
     /// [`BusError::Topic`].
@@ -80,7 +80,7 @@ impl Orders {
         }
     }
 
-    /// Whether the paint node has told how it fares since this was asked first, where that matters.
+    /// True if the paint node has reported its status since this was first requested, where that matters.
     fn has_heard(&mut self, asked: &CommandRequest) -> bool {
         if !matches!(asked.command, Command::Open { .. } | Command::New { .. }) {
             return true;
@@ -96,7 +96,7 @@ impl Orders {
     }
 }
 
-/// A fault as a client is told of it.
+/// A fault as the refusal that a client receives.
 pub(super) fn refusal(fault: Fault) -> Outcome {
     let what = match &fault.place {
         Some(place) => format!("{place}: {}", fault.what),
@@ -108,7 +108,7 @@ pub(super) fn refusal(fault: Fault) -> Outcome {
     }
 }
 
-/// Whether two names lead to the same file.
+/// True if two names lead to the same file.
 pub(super) fn is_same(one: &Path, other: &Path) -> bool {
     let real = |path: &Path| std::fs::canonicalize(path).ok();
     one == other || real(one).is_some_and(|path| real(other) == Some(path))

@@ -1,4 +1,4 @@
-//! A paint node that hangs: its token stands and its process lives, but no status comes.
+//! Detection of a paint node that hangs: its token stands and its process lives, but no status arrives.
 
 use std::time::{Duration, Instant};
 
@@ -8,12 +8,12 @@ use crate::up::plan::Role;
 
 /// A paint node without a status for so long, and without work, hangs.
 const HANGS: Duration = Duration::from_secs(20);
-/// What counts as work in that time, of the processor: a vast canvas is filled by a step that takes long.
+/// Processor time that counts as work in that period: a vast canvas is filled by a step that takes long.
 const WORK: Duration = Duration::from_secs(1);
 /// One that works has as long: as a start that has the same to do.
 const WORKS: Duration = Duration::from_secs(600);
 
-/// How long the paint node has said nothing.
+/// Duration of the paint node's silence.
 #[derive(Debug)]
 pub(super) struct Silence {
     since: Instant,
@@ -29,7 +29,7 @@ impl Silence {
         }
     }
 
-    /// Whether it hangs: `work` is the time of the processor that its stepper has had.
+    /// True if it hangs: `work` is the time of the processor that its stepper has had.
     fn is_hanging(&mut self, now: Instant, work: Duration) -> bool {
         let (looked, before) = self.looked;
         if now.duration_since(looked) < HANGS {
@@ -54,7 +54,7 @@ fn work_of(pid: u32) -> Duration {
 }
 
 impl Supervisor {
-    /// The paint node has said how it fares.
+    /// Notes that the paint node has sent its status.
     pub(super) fn has_spoken(&mut self) {
         self.silence = None;
     }

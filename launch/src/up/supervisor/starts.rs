@@ -1,4 +1,4 @@
-//! How long nodes may take to start.
+//! Time limits for the start of nodes.
 
 use std::time::{Duration, Instant};
 
@@ -12,7 +12,7 @@ use crate::up::plan::Role;
 const START_TIME: Duration = Duration::from_secs(30);
 /// The same for the paint node of a document: a fill of a vast canvas may have to be done again.
 const START_TIME_DOCUMENT: Duration = Duration::from_secs(600);
-/// How long a node may take to show its token.
+/// Longest wait for a node's token.
 pub(super) fn start_time(role: Role, config: &RigConfig) -> Duration {
     match (role, &config.paint.document) {
         (Role::Paint, Some(_)) => START_TIME_DOCUMENT,

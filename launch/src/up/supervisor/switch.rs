@@ -1,5 +1,5 @@
-//! Another painting in a running rig: what is asked is checked, the paint node keeps what was painted and
-//! ends, and starts with the other painting. Where that does not come up, the one before is opened again.
+//! Another painting in a running rig: the request is checked, the paint node saves the painting and ends, and starts
+//! with the other one. If that does not come up, the one before is opened again.
 
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -31,7 +31,7 @@ const CLOSE_TIME: Duration = Duration::from_secs(60);
 /// A painting is in another file within this time.
 const SAVE_TIME: Duration = Duration::from_secs(3600);
 
-/// What is asked for.
+/// The request.
 #[derive(Clone, Debug)]
 pub(super) enum Ask {
     /// A painting that there is, and whether what is in memory alone may go.
@@ -42,7 +42,7 @@ pub(super) enum Ask {
     SaveAs(PathBuf, bool),
 }
 
-/// Another painting on its way.
+/// A switch to another painting in progress.
 #[derive(Debug)]
 pub(super) struct Switch {
     asker: (u64, u64),
@@ -51,8 +51,7 @@ pub(super) struct Switch {
 
 #[derive(Debug)]
 enum Stage {
-    /// Whether it can be opened or begun is seen on another thread; and whether what is in memory alone
-    /// may go.
+    /// Another thread checks that it can be opened or created; the flag: the painting in memory may be discarded.
     Checking(mpsc::Receiver<Result<Plan, Fault>>, bool),
     /// The paint node keeps what was painted, and ends.
     Closing(Box<Plan>, Instant),
@@ -72,12 +71,12 @@ enum Stage {
 #[derive(Debug)]
 struct Plan {
     config: RigConfig,
-    /// What the brushes carry, where it begins.
+    /// Load of the brushes, if the painting is new.
     load: Option<Mixture>,
 }
 
 impl Plan {
-    /// What the painting is called.
+    /// Name of the painting.
     fn name(&self) -> String {
         match &self.config.paint.document {
             Some(path) => path.display().to_string(),
@@ -209,7 +208,7 @@ fn begun(
 }
 
 impl Supervisor {
-    /// Whether a node of this role starts with another painting.
+    /// True if a node of this role starts with another painting.
     pub(super) fn is_opening(&self, role: Role) -> bool {
         let stage = self.switch.as_ref().map(|switch| &switch.stage);
         role == Role::Paint && matches!(stage, Some(Stage::Opening(..)))
@@ -295,7 +294,7 @@ impl Supervisor {
         }
     }
 
-    /// How long the paint node may take to end with the rig.
+    /// Longest wait for the paint node to end with the rig.
     pub(super) fn closing_time(&self) -> Duration {
         match self.switch.as_ref().map(|switch| &switch.stage) {
             Some(Stage::Saving(..)) => CLOSE_TIME,
@@ -399,7 +398,7 @@ impl Supervisor {
     /// Starts the paint node with the painting that there was.
     fn go_back(&mut self, place: usize, plan: &Plan, before: RigConfig) -> Result<Stage, Fault> {
         self.config = before;
-        // That needs no room on the disk.
+        // Renaming needs no room on the disk.
         let [path, former] = self.settings();
         let written = std::fs::rename(&former, &path).or_else(|_| {
             let written = self.write_config();

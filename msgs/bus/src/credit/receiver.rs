@@ -17,7 +17,7 @@ use crate::bus::{Answer, Bus, BusError, Class, Subscription};
 use crate::inbox::{Queue, Wake};
 use crate::typed::{Reader, Reason, Received};
 
-/// What a receiver has seen.
+/// Counts of a receiver.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct ReceiverCounts {
     /// Messages handed on.
@@ -49,7 +49,7 @@ pub struct CreditReceiver<M> {
 /// so two devices may have the same one, and a stray sender does not take a topic over.
 type StreamKey = (String, u32);
 
-/// How a message came.
+/// Path of a message.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Way {
     /// As it was sent.
@@ -115,8 +115,8 @@ impl<M: Message> CreditReceiver<M> {
         self.pop_where(|_| true)
     }
 
-    /// The next message that may go: of the first in order of each sender the one that came in
-    /// order first. What may not go holds up its own sender alone.
+    /// The next message that may be handed on: among the first in order of each sender the one that came in order
+    /// first. A message that may not delays its own sender alone.
     pub fn pop_where(
         &mut self,
         mut may_go: impl FnMut(&Received<M>) -> bool,
@@ -138,18 +138,18 @@ impl<M: Message> CreditReceiver<M> {
             .filter_map(|stream| stream.ready.front().map(|(_, head)| head))
     }
 
-    /// Topics whose newest message came once more: their senders have not heard of its consumption.
+    /// Topics whose newest message came once more: their senders have no report of its consumption.
     pub fn unheard(&mut self) -> Vec<String> {
         std::mem::take(&mut self.again)
     }
 
-    /// What has been seen so far.
+    /// Counts so far.
     #[must_use]
     pub fn counts(&self) -> ReceiverCounts {
         self.counts
     }
 
-    /// How many senders are remembered.
+    /// Number of senders that are remembered.
     #[cfg(test)]
     pub(super) fn senders(&self) -> usize {
         self.streams.len()

@@ -15,7 +15,7 @@ use crate::typed::Reader;
 /// An answer to a question for a gap has at most so many bytes, or one message.
 const ANSWER_BYTES: usize = 1 << 20;
 
-/// When a message is sent and when what it tells was so, rig clock, ns.
+/// Time of sending a message and time of its content, rig clock, ns.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Stamp {
     /// Now.
@@ -139,7 +139,7 @@ impl<M: Message> CreditSender<M> {
         self.consumed = self.next;
     }
 
-    /// Who sends.
+    /// Origin of the messages.
     #[must_use]
     pub fn origin(&self) -> Origin {
         self.origin
@@ -157,7 +157,7 @@ impl<M: Message> CreditSender<M> {
         self.next - self.consumed
     }
 
-    /// Whether another message may go: fewer than 64 are outstanding.
+    /// True if another message may be sent: fewer than 64 are outstanding.
     #[must_use]
     pub fn has_credit(&self) -> bool {
         self.outstanding() < WINDOW
@@ -190,7 +190,7 @@ impl<M: Message> CreditSender<M> {
             let mut bytes = Vec::new();
             let missing = |kept: &&Kept| (gap.from..=gap.to).contains(&kept.seq);
             for kept in self.ring.iter().filter(missing) {
-                // What has no room in this answer is asked for again.
+                // Messages without room in this answer are asked for again.
                 if !bytes.is_empty() && bytes.len() + kept.bytes.len() > ANSWER_BYTES {
                     break;
                 }

@@ -1,4 +1,4 @@
-//! One sender's messages on their way into order.
+//! Reordering of one sender's messages.
 
 use std::collections::{BTreeMap, VecDeque};
 
@@ -9,7 +9,7 @@ use crate::bus::Pending;
 use crate::rivals::{Rivals, Verdict};
 use crate::typed::Received;
 
-/// A stream keeps at most this many messages that nobody takes; its sender's ring has the rest.
+/// Messages that a stream keeps at most until they are taken; its sender's ring has the rest.
 const KEPT: usize = 2 * RING;
 
 /// Messages from the first up to, but not with, the second number are missing.
@@ -19,7 +19,7 @@ pub(super) struct Gap {
     pub seen: u64,
 }
 
-/// What became of a message.
+/// Result for a message.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Taken {
     /// It is new.
@@ -36,7 +36,7 @@ pub(super) enum Taken {
 pub(super) struct Stream<M> {
     pub rivals: Rivals,
     pub epoch: u32,
-    /// Number of the next message to hand on; none while the beginning of a replay is sought.
+    /// Number of the next message to hand on; `None` while the beginning of a replay is sought.
     next: Option<u64>,
     /// When the newest message in order was sent, by its header, ns.
     sent_ns: u64,
@@ -48,7 +48,7 @@ pub(super) struct Stream<M> {
     pub asked_ns: u64,
     /// Questions for the gap that begins at `next`.
     pub askings: u32,
-    /// Whether the newest message in order is played from a take.
+    /// True if the newest message in order is played from a take.
     replay: bool,
     /// Messages given up as another sender was followed.
     pub lost: u64,
@@ -96,7 +96,7 @@ impl<M> Stream<M> {
         self.put(received, ordered)
     }
 
-    /// Takes in a message that was asked for.
+    /// Takes in a message that was requested again.
     pub(super) fn fill(&mut self, received: Received<M>, ordered: &mut u64) -> Taken {
         if received.header.epoch != self.epoch || !self.fits(&received.header) {
             return Taken::SetAside;
@@ -123,8 +123,8 @@ impl<M> Stream<M> {
         taken
     }
 
-    /// Whether a message may be of the sender that is followed: its number is no leap, and one that was numbered
-    /// before the newest in order was sent before it.
+    /// True if a message may be of the sender that is followed: its number is no leap, and one that was numbered before
+    /// the newest in order was sent before it.
     fn fits(&self, header: &Header) -> bool {
         match self.next {
             None => true,
@@ -133,8 +133,8 @@ impl<M> Stream<M> {
         }
     }
 
-    /// Follows another sender. What is left of the one before means nothing now; a take that was followed
-    /// before goes on where it was.
+    /// Follows another sender. The rest of the previous stream is dropped; a take that was followed before continues
+    /// where it was.
     fn hand_over(&mut self, header: &Header, before: Option<u64>) {
         let from = match header.epoch == self.epoch {
             true => before.or(self.next),
@@ -165,14 +165,13 @@ impl<M> Stream<M> {
         }
     }
 
-    /// Whether a take is played on either side of the gap: live and played messages of a brush are
-    /// one stream.
+    /// True if a take is played on either side of the gap: live and played messages of a brush are one stream.
     pub(super) fn is_replayed(&self) -> bool {
         let behind = self.held.first_key_value();
         self.replay || behind.is_some_and(|(_, held)| held.header.flags.has(Flags::REPLAY))
     }
 
-    /// What is missing before the first message held.
+    /// Messages missing before the first one in the buffer.
     pub(super) fn gap(&mut self, ordered: &mut u64) -> Option<Gap> {
         let (&seen, _) = self.held.first_key_value()?;
         let from = self.next.unwrap_or(seen.saturating_sub(WINDOW));
@@ -193,7 +192,7 @@ impl<M> Stream<M> {
         gap.seen - gap.from
     }
 
-    /// Whether nothing is lost where it is forgotten: nothing waits in it, and it is no take that pauses.
+    /// True if nothing is lost by forgetting it: it is empty, and it is no take that pauses.
     pub(super) fn is_idle(&self) -> bool {
         self.ready.is_empty() && self.held.is_empty() && !self.replay
     }

@@ -1,4 +1,4 @@
-//! What values the settings of a rig may have.
+//! Allowed values of the settings of a rig.
 
 use maulstick_types::advice::choice;
 use maulstick_types::topics::check_name;
@@ -107,7 +107,7 @@ impl RigConfig {
         Ok(())
     }
 
-    /// What a device may be: its motors follow these numbers.
+    /// Checks a device: its motors follow these numbers.
     fn check_device(&self, device: &DeviceSection) -> Result<(), Wrong> {
         let name = &device.name;
         if RESERVED.contains(&name.as_str()) || name.starts_with(BRUSH_NODE) {
@@ -226,7 +226,7 @@ fn check_driver(device: &DeviceSection) -> Result<(), Wrong> {
 /// Desk lengths per device length.
 const SCALES: [f64; 2] = [0.05, 20.0];
 
-/// Whether three places span a plane: sides of 5 mm to 10 m, at least 10 degrees apart.
+/// True if three points span a plane: sides of 5 mm to 10 m, at least 10 degrees apart.
 fn are_corners(corners: &[[f64; 3]; 3]) -> bool {
     let side = |to: usize| [0, 1, 2].map(|i| corners[to][i] - corners[0][i]);
     let (a, b) = (side(1), side(2));
@@ -238,7 +238,7 @@ fn are_corners(corners: &[[f64; 3]; 3]) -> bool {
     sides && dot(&a, &b).abs() < 0.985 * long * wide
 }
 
-/// Whether points rise from (0, 0) to (1, 1).
+/// True if points rise from (0, 0) to (1, 1).
 fn is_curve(points: &[[f64; 2]]) -> bool {
     let rises = |pair: &[[f64; 2]]| pair[0][0] < pair[1][0] && pair[0][1] <= pair[1][1];
     (2..=32).contains(&points.len())

@@ -1,4 +1,4 @@
-//! `[[device]]`: what is in a hand, and how it is fitted to the desk.
+//! `[[device]]`: a stylus or mouse, and its registration on the desk.
 
 use std::path::PathBuf;
 
@@ -15,9 +15,9 @@ pub const DRIVERS: [&str; 6] = [
 ];
 /// Those of them that `maulstick-hid` serves; the others are `maulstick-haptic`'s.
 pub const HID_DRIVERS: [&str; 2] = ["pen", "spacemouse"];
-/// How a brush pushes back.
+/// Force laws of a brush.
 pub const FORCES: [&str; 5] = ["linear", "hermite", "local", "rigid", "none"];
-/// What a switch on a stylus may do.
+/// Actions of a switch on a stylus.
 pub const ACTIONS: [&str; 6] = ["none", "clutch", "pick", "palette", "undo", "clean"];
 
 /// `[[device]]`.
@@ -28,9 +28,9 @@ pub struct DeviceSection {
     pub name: String,
     /// One of [`DRIVERS`].
     pub driver: String,
-    /// Which of several: the name that OpenHaptics gives it; a serial port; a WebSocket's URL with
-    /// `#device+grip`; `vendor:product` of a HID device in hexadecimal, or its path below /dev. The first
-    /// that fits if absent.
+    /// Address among several devices: the name that OpenHaptics gives it; a serial port; a WebSocket's URL with
+    /// `#device+grip`; `vendor:product` of a HID device in hexadecimal, or its path below /dev. The first that fits if
+    /// absent.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub address: Option<String>,
     /// The vendor's library of `openhaptics`, where it is not in the system's folders.
@@ -53,8 +53,8 @@ pub struct DeviceSection {
     /// Desk lengths per device length. If absent 1; for a pen such that its tablet covers the canvas.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub scale: Option<f64>,
-    /// Where the canvas's lower left, lower right and upper left corners are in the device frame, m,
-    /// as `maulstick calibrate` finds them; then position, orientation and scale follow from these.
+    /// Canvas's lower left, lower right and upper left corners in the device frame, m, as `maulstick calibrate` finds
+    /// them; then position, orientation and scale follow from these.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub corners_m: Option<[[f64; 3]; 3]>,
     /// From the point that a 6-DOF device senses to where head and ferrule meet, brush frame, m.
@@ -102,13 +102,13 @@ impl DeviceSection {
         }
     }
 
-    /// Whether `maulstick-hid` serves it.
+    /// True if `maulstick-hid` serves it.
     #[must_use]
     pub fn is_hid(&self) -> bool {
         HID_DRIVERS.contains(&self.driver.as_str())
     }
 
-    /// What each switch does, the first one first.
+    /// Action of each switch, the first one first.
     #[must_use]
     pub fn actions(&self) -> Vec<&str> {
         match (&self.switches, self.driver.as_str()) {

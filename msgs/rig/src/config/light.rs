@@ -13,7 +13,7 @@ pub struct LightSection {
     pub illuminant: String,
     /// Year of the CIE observer: 1931 or 1964.
     pub observer: u32,
-    /// Whether the eye is adapted to the light's white.
+    /// True if the eye is adapted to the light's white.
     pub adapt: bool,
     /// `fitted`, `gauss` or `reference`.
     pub rule: String,

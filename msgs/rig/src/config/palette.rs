@@ -1,4 +1,4 @@
-//! What lies on the palette.
+//! Paints of the palette.
 
 use serde::{Deserialize, Serialize};
 
@@ -23,7 +23,7 @@ impl Default for PaletteSection {
     }
 }
 
-/// What piles of paint on the palette may do.
+/// Behaviours of the piles of paint on the palette.
 pub const PILES: [&str; 2] = ["deplete", "last"];
 
 fn default_piles() -> String {

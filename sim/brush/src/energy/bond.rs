@@ -1,4 +1,4 @@
-//! What holds the spines of a head together.
+//! Bond between the spines of a head.
 
 use glam::DVec3;
 
@@ -15,7 +15,7 @@ pub struct Bond {
 }
 
 impl Bond {
-    /// E = k·(1 − d·g), d the segment's direction and g the one that it is held to, J.
+    /// E = k·(1 − d·g), d the segment's direction and g the one that it is bound to, J.
     #[must_use]
     pub fn value(&self, direction: DVec3) -> f64 {
         // 1 − d·g loses its digits where the two are near each other.

@@ -17,9 +17,8 @@ pub struct Anisotropy {
     pub preferred: DVec3,
 }
 
-/// Friction at a contact (Baxter 2004, eq. 3.3 and 3.13) with the apex of the cone rounded off:
-/// E = w·(1 − η)·(r − ε), r = √(|u|² + ε²), w = μ·|F_n|, u the slip along the wall;
-/// η = C·max(0, d_p·u/r)^k.
+/// Friction at a contact (Baxter 2004, eq. 3.3 and 3.13) with the apex of the cone rounded off: E = w·(1 − η)·(r − ε),
+/// r = √(|u|² + ε²), w = μ·|F_n|, u the slip along the surface; η = C·max(0, d_p·u/r)^k.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Friction {
     /// E, J.
@@ -30,8 +29,8 @@ pub struct Friction {
     pub hessian: DMat3,
 }
 
-/// Evaluates [`Friction`] for weight `w` (N), slip `u` (m) along a wall with unit `normal` and
-/// rounding `epsilon` (m).
+/// Evaluates [`Friction`] for weight `w` (N), slip `u` (m) along a surface with unit `normal` and rounding `epsilon`
+/// (m).
 #[must_use]
 pub fn friction(
     w: f64,

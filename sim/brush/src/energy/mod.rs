@@ -3,10 +3,10 @@
 //! | module | energy |
 //! | --- | --- |
 //! | [`spring`] | of joints, straight or bent at rest |
-//! | [`friction`] | with a wall, anisotropic |
+//! | [`friction`] | with a half space, anisotropic |
 //! | [`damping`] | within a joint |
 //! | [`neighbour_repulsion`] | of joints pushed into each other's room |
-//! | [`bond`] | of segments held to the core of the head |
+//! | [`bond`] | of segments bound to the core of the head |
 
 use glam::{DMat3, DVec3};
 

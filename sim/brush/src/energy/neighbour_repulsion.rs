@@ -11,14 +11,14 @@ use super::outer;
 pub struct Repulsion {
     /// E, J.
     pub value: f64,
-    /// dE/dx: along the way from the neighbour, N.
+    /// dE/dx: along the vector from the neighbour, N.
     pub force: DVec3,
     /// d²E/dx², N/m.
     pub hessian: DMat3,
 }
 
-/// Evaluates [`Repulsion`] for stiffness `k` (N/m), the way `x` from the neighbour to the joint (m) and
-/// the distance at rest (m); none where they are far enough apart.
+/// Evaluates [`Repulsion`] for stiffness `k` (N/m), the vector `x` from the neighbour to the joint (m) and the distance
+/// at rest (m); `None` if they are far enough apart.
 #[must_use]
 pub fn neighbour_repulsion(k: f64, x: DVec3, at_rest: f64) -> Option<Repulsion> {
     let square = at_rest * at_rest;

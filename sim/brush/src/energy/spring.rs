@@ -55,7 +55,7 @@ pub struct Bend {
     pub rest: DVec3,
     /// Derivative of the cosine by d.
     pub by_before: DVec3,
-    /// What a spine that is bent at rest adds.
+    /// Additional terms of a spine that is bent at rest.
     pub bent: Option<Bent>,
 }
 
@@ -79,7 +79,7 @@ pub fn straight(d: DVec3, e: DVec3) -> Bend {
     }
 }
 
-/// Where a segment rests after the segment `d`: A(d)·r for the base `b`.
+/// Rest direction of a segment after the segment `d`: A(d)·r for the base `b`.
 #[must_use]
 pub fn rest_after(b: DVec3, r: DVec3, d: DVec3) -> DVec3 {
     let s = b + d;

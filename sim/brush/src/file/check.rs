@@ -1,4 +1,4 @@
-//! What the numbers of a brush file may be.
+//! Bounds of the numbers of a brush file.
 
 use std::ops::RangeInclusive;
 
@@ -136,7 +136,7 @@ fn tuples(tuples: &[[f64; 3]]) -> Result<(), BrushError> {
             format!("at least {y0}"),
         )?;
         let most = 3.0 * (y1 - y0) / (x1 - x0);
-        // What is written with a few digits may be over by its rounding.
+        // A number with few digits may exceed the bound by its rounding.
         let within = |slope: f64| slope <= most * (1.0 + 1e-9);
         let range = format!("at most {most:.3} for the force to rise from depth {x0} to {x1}");
         rising("force.hermite (slope)", m0, within(m0), range.clone())?;

@@ -50,13 +50,13 @@ const FEWEST: usize = 24;
 /// A width beyond by less than this share is not beyond.
 const ROUNDING: f64 = 1e-6;
 
-/// Why a brush cannot be had.
+/// The reason why a brush cannot be loaded.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum BrushError {
     /// No such brush; the nearest name is proposed.
     #[error("there is no brush called '{name}'{}", meant(.nearest.as_deref()))]
     Unknown {
-        /// What was asked for.
+        /// Requested name.
         name: String,
         /// The nearest name, if one is near.
         nearest: Option<String>,
@@ -71,7 +71,7 @@ pub enum BrushError {
         field: String,
         /// Its value.
         value: f64,
-        /// What it may be.
+        /// Allowed range.
         range: String,
     },
 }
@@ -84,9 +84,9 @@ fn meant(nearest: Option<&str>) -> String {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct BrushFile {
-    /// What kind of brush it is.
+    /// Kind of brush.
     pub kind: String,
-    /// What it is for, in a sentence.
+    /// Purpose, in a sentence.
     #[serde(default, skip_serializing_if = "String::is_empty")]
     pub about: String,
     /// The widths that it is made in, mm.
@@ -103,9 +103,9 @@ pub struct BrushFile {
     pub surface: Option<Surface>,
     /// Contact with the surface painted on.
     pub contact: Contact,
-    /// What the head carries.
+    /// Load of the head.
     pub load: Load,
-    /// What the hand feels; by the head's stiffness if absent.
+    /// Force on the hand; by the head's stiffness if absent.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub force: Option<Force>,
 }
@@ -180,7 +180,7 @@ impl BrushFile {
         Ok(brush)
     }
 
-    /// Whether its strips stand in a line: its ferrule is thinner than so many strips are wide.
+    /// True if its strips stand in a line: its ferrule is thinner than so many strips are wide.
     #[must_use]
     pub fn is_line(&self) -> bool {
         2e3 * self.half_thickness_m(0.0) < THIN * self.strips.width_mm

@@ -13,7 +13,7 @@ pub enum Outline {
     Flat,
 }
 
-/// What bristles are of: how they look, and how paint goes over from them.
+/// Material of the bristles: their appearance, and the transfer of paint from them.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Hair {
@@ -48,7 +48,7 @@ pub struct Head {
     /// The outline of the ferrule.
     #[serde(default)]
     pub outline: Outline,
-    /// What its bristles look like.
+    /// Appearance of its bristles.
     #[serde(default)]
     pub hair: Hair,
     /// Widest, mm.
@@ -69,7 +69,7 @@ pub struct Head {
     pub tip: Vec<[f64; 2]>,
 }
 
-/// How spines stand in the ferrule.
+/// Arrangement of the spines in the ferrule.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Layout {
@@ -86,7 +86,7 @@ pub enum Layout {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Chain {
-    /// Where it begins in the brush frame, mm.
+    /// Root in the brush frame, mm.
     pub root_mm: [f64; 3],
     /// Its segments at rest, from the ferrule to the point: each goes on by this much, mm.
     pub segments_mm: Vec<[f64; 3]>,
@@ -100,13 +100,13 @@ pub struct Chain {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Spines {
-    /// How they stand.
+    /// Arrangement.
     #[serde(default)]
     pub layout: Layout,
     /// Number of spines in the ring (beside the middle one) or the row.
     #[serde(default)]
     pub count: usize,
-    /// Where the outer ones stand, as a share of half the head's width and thickness.
+    /// Position of the outer ones, as a share of half the head's width and thickness.
     #[serde(default = "half")]
     pub share: f64,
     /// Number of joints of each.
@@ -129,8 +129,7 @@ pub struct Spines {
     /// against a force across it.
     #[serde(default)]
     pub volume: f64,
-    /// Stiffness with which spines are held to the bend of the whole head, by that of their joints: as
-    /// the brush is made, and soaked.
+    /// Stiffness of the bond between spines and the bend of the whole head, by that of their joints: dry, and soaked.
     #[serde(default = "bond")]
     pub bond: [f64; 2],
     /// The spines of the layout `chains`.
@@ -171,7 +170,7 @@ impl Spines {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Strips {
-    /// How many.
+    /// Number of strips.
     pub count: usize,
     /// Seed of their places and of how unruly each is.
     pub seed: u64,
@@ -182,18 +181,18 @@ pub struct Strips {
     /// Share of the width that is lost up to the point.
     #[serde(default)]
     pub taper: f64,
-    /// How far the most unruly one keeps off the surface while the head is hardly pressed, mm.
+    /// Height of the most unruly one over the surface while the head is hardly pressed, mm.
     pub lift_mm: f64,
-    /// How much deeper the fully pressed head reaches into the tooth, mm.
+    /// Additional depth of the fully pressed head in the tooth, mm.
     pub sink_mm: f64,
     /// Width of the fully pressed point by that of the head.
     pub open: f64,
     /// By which share of the mean the strips differ in how much they carry.
     pub unevenness: f64,
-    /// Number of clumps in which they stick together; none if 0.
+    /// Number of clumps in which they stick together; 0 for no clumps.
     #[serde(default)]
     pub clumps: usize,
-    /// How far the points of a clump come together on a clean brush and on a full one, 0 to 1.
+    /// Convergence of the points of a clump on a clean brush and on a full one, 0 to 1.
     #[serde(default)]
     pub clumping: [f64; 2],
     /// Strips of the file that each stands for, where the head is [thinned](super::BrushFile::thinned): no part
@@ -206,13 +205,13 @@ const fn itself() -> f64 {
     1.0
 }
 
-/// The skin: a closed surface around the strips, which paints where they lie close.
+/// The skin: a closed surface around the strips, which paints where they are close together.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Surface {
     /// Times that its control mesh is subdivided (Catmull and Clark 1978).
     pub levels: usize,
-    /// How far the skin draws back within the strips as the head is pressed open, mm.
+    /// Distance by which the skin draws back within the strips as the head is pressed open, mm.
     pub recede_mm: f64,
     /// The control mesh; the head's own shape if empty.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
@@ -220,7 +219,7 @@ pub struct Surface {
     /// Its faces: three or more vertices each, counterclockwise from outside.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub faces: Vec<Vec<usize>>,
-    /// What moves each vertex: joints, counted through all spines from the first, with their weights.
+    /// Joints that move each vertex, counted through all spines from the first, with their weights.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub weights: Vec<Vec<(usize, f64)>>,
 }
@@ -246,7 +245,7 @@ fn two() -> f64 {
     2.0
 }
 
-/// What the head carries.
+/// Load of the head.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Load {
@@ -256,7 +255,7 @@ pub struct Load {
     pub inside_um: f64,
 }
 
-/// What the hand feels.
+/// Force on the hand.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Force {

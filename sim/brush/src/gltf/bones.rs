@@ -1,4 +1,4 @@
-//! The bones: which ones make a spine, where they stand, and what bends them.
+//! The bones: the chains that make spines, their positions, and their stiffness.
 
 use std::collections::BTreeMap;
 
@@ -27,13 +27,13 @@ const POSED: f64 = 1e-3;
 pub(super) struct Bones {
     names: Vec<String>,
     properties: Vec<Properties>,
-    /// Where each begins, brush frame, mm.
+    /// Beginning of each, brush frame, mm.
     heads: Vec<DVec3>,
     /// Unit y axis of each in the brush frame: where a bone of Blender points.
     ways: Vec<DVec3>,
     /// The joints of each spine, from the ferrule to the point.
     spines: Vec<Vec<usize>>,
-    /// Of each joint its number counted through all spines; none for a root that carries them.
+    /// Number of each joint, counted through all spines; `None` for a root that carries them.
     numbers: Vec<Option<usize>>,
 }
 
@@ -45,7 +45,7 @@ pub(super) struct Line {
 }
 
 impl Line {
-    /// How deep below the ferrule it ends, mm.
+    /// Depth of its end below the ferrule, mm.
     pub(super) fn depth_mm(&self) -> f64 {
         -(self.root + self.segments.iter().sum::<DVec3>()).z
     }
@@ -178,8 +178,8 @@ impl Bones {
             .collect()
     }
 
-    /// What carries a vertex at `at` instead of the joints of the skin: joints counted through all
-    /// spines. A root bone that is no spine itself hands its share to the nearest spine.
+    /// Weights of a vertex at `at` on joints counted through all spines, instead of the joints of the skin. A root bone
+    /// that is no spine itself hands its share to the nearest spine.
     pub(super) fn carriers(&self, at: DVec3, weights: &[(usize, f64)]) -> Vec<(usize, f64)> {
         let from = |spine: &Vec<usize>| (self.heads[spine[0]] - at).length_squared();
         let nearest = self
@@ -196,7 +196,7 @@ impl Bones {
         carriers.into_iter().collect()
     }
 
-    /// Whether Blender's exporter made this joint to hold what has no weights.
+    /// True if Blender's exporter made this joint for vertices without weights.
     pub(super) fn is_neutral(&self, joint: usize) -> bool {
         self.names[joint] == "neutral_bone"
     }

@@ -131,18 +131,18 @@ impl Document {
     }
 }
 
-/// What a list of numbers is, for the errors of reading it.
+/// Description of a list of numbers, for the errors of reading it.
 pub(super) struct List {
     /// Its name, for example `POSITION`.
     pub(super) what: &'static str,
     /// The node it belongs to.
     pub(super) node: String,
-    /// What it is a list of.
+    /// Type of its elements.
     pub(super) shape: Dimensions,
 }
 
 impl List {
-    /// That it cannot be read.
+    /// The error that it cannot be read.
     pub(super) fn fault(&self, why: String) -> GltfError {
         GltfError::Data {
             what: self.what,

@@ -1,8 +1,8 @@
-//! What a model can lack, each with what to do in Blender.
+//! Errors of a model, each with advice for Blender.
 
 use crate::file::BrushError;
 
-/// Why a glTF file gives no brush.
+/// The reason why a glTF file gives no brush.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum GltfError {
     /// The bytes are no glTF 2.0, or break its rules.
@@ -11,7 +11,7 @@ pub enum GltfError {
     /// The file ends too early.
     #[error("the file is cut short: {what} has {has} of {wants} bytes; export or copy it again")]
     Truncated {
-        /// What ends too early.
+        /// The part that ends too early.
         what: String,
         /// Bytes that are there.
         has: usize,
@@ -23,7 +23,7 @@ pub enum GltfError {
         "the data are in another file, '{uri}'; export as glTF Binary (.glb), which is one file"
     )]
     External {
-        /// Where the data are.
+        /// Location of the data.
         uri: String,
     },
     /// A list of numbers cannot be read.
@@ -33,7 +33,7 @@ pub enum GltfError {
         what: &'static str,
         /// The node it belongs to.
         node: String,
-        /// What is wrong with it.
+        /// The error.
         why: String,
     },
     /// NaN or infinity.
@@ -49,7 +49,7 @@ pub enum GltfError {
     NoTree {
         /// The node.
         node: String,
-        /// In which way.
+        /// The reason.
         why: &'static str,
     },
     /// Nothing to paint with.
@@ -74,7 +74,7 @@ pub enum GltfError {
         "bone '{bone}' branches to '{one}' and '{other}'; only one root bone may carry several spines"
     )]
     Branching {
-        /// Where it branches.
+        /// Bone at which it branches.
         bone: String,
         /// One child.
         one: String,
@@ -86,9 +86,9 @@ pub enum GltfError {
     TooManyJoints {
         /// Its first bone.
         bone: String,
-        /// How many there are.
+        /// Number of joints.
         joints: usize,
-        /// How many there may be.
+        /// Largest number of joints.
         most: usize,
     },
     /// Too much of something else.
@@ -96,17 +96,17 @@ pub enum GltfError {
     TooMany {
         /// Of what.
         what: &'static str,
-        /// How many there are.
+        /// Their number.
         count: usize,
-        /// How many there may be.
+        /// Largest number.
         most: usize,
     },
-    /// A bone that ends where it begins, or of which no end can be told.
+    /// A bone that ends where it begins, or whose end is unknown.
     #[error("bone '{bone}' has no length: {why}")]
     NoLength {
         /// The bone.
         bone: String,
-        /// What to do.
+        /// Advice.
         why: &'static str,
     },
     /// The model was exported bent.
@@ -124,12 +124,12 @@ pub enum GltfError {
     Unweighted {
         /// The mesh object.
         node: String,
-        /// How many there are.
+        /// Their number.
         count: usize,
-        /// Where the first one is, brush frame, mm.
+        /// Position of the first one, brush frame, mm.
         at_mm: [f64; 3],
     },
-    /// The bristles point another way, or the head is elsewhere.
+    /// The bristles point in another direction, or the head is elsewhere.
     #[error(
         "{what} does not hang along -Z of Blender; the origin is where head and ferrule meet, \
          and the bristles go down from it (in the exporter, +Y Up stays on)"
@@ -147,7 +147,7 @@ pub enum GltfError {
         what: &'static str,
         /// The size, mm.
         mm: f64,
-        /// What it may be, mm.
+        /// Allowed range, mm.
         range: String,
     },
     /// A custom property of the wrong kind or out of its range.
@@ -159,7 +159,7 @@ pub enum GltfError {
         key: String,
         /// Its value.
         value: String,
-        /// What it may be.
+        /// Allowed range.
         range: String,
     },
     /// A custom property that is nearly one of ours.
@@ -171,7 +171,7 @@ pub enum GltfError {
         key: String,
         /// The nearest one.
         nearest: &'static str,
-        /// Where that one belongs, if elsewhere.
+        /// Place where that one belongs, if elsewhere.
         place: &'static str,
     },
     /// The whole is no brush that can be simulated.

@@ -46,7 +46,7 @@ const OF_OBJECTS: [Number; 8] = [
 /// The one property that is a text.
 const KIND: &str = "kind";
 
-/// What a node is, which says which properties it has.
+/// Kind of a node, which determines its properties.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Owner {
     /// A joint of the skin.
@@ -162,8 +162,8 @@ fn known(node: &str, owner: Owner, key: &str) -> Result<(), GltfError> {
     }
 }
 
-/// Whether a key is a property but for case, a unit behind it, or a slip or two: one in a name of
-/// four letters, two from six letters on.
+/// True if a key is a property but for case, a unit after it, or a slip or two: one in a name of four letters, two from
+/// six letters on.
 fn near(own: &str, key: &str) -> bool {
     let key = key.to_lowercase();
     let longer = |long: &str, short: &str| {

@@ -11,7 +11,7 @@ const PLACES: usize = 9;
 /// ellipse is at 1 all around.
 const CORNERED: f64 = 1.5;
 
-/// What a mesh measures.
+/// Measurements of a mesh.
 pub(super) struct Measured {
     /// Of the subdivided surface, which is what paints, mm: twice its greatest distance from the
     /// middle along x and y.
@@ -19,11 +19,11 @@ pub(super) struct Measured {
     /// Place along the head and half the width there by half the widest, along x and y, of the
     /// control mesh: subdivision would draw in its ends.
     pub(super) profiles: [Vec<[f64; 2]>; 2],
-    /// Whether its widest cut has corners.
+    /// Outline of its widest cut, with or without corners.
     pub(super) outline: Outline,
 }
 
-/// Measures the part of a mesh from z = 0 down to −`length_mm`; none if the mesh is elsewhere.
+/// Measures the part of a mesh from z = 0 down to −`length_mm`; `None` if the mesh is elsewhere.
 pub(super) fn measure(
     vertices: &[DVec3],
     faces: &[Vec<usize>],
@@ -68,7 +68,7 @@ fn place(i: usize) -> f64 {
     i as f64 / (PLACES - 1) as f64
 }
 
-/// Where the sides of the faces meet the plane of a height.
+/// Points where the sides of the faces meet the plane of a height.
 fn cut(vertices: &[DVec3], faces: &[Vec<usize>], z: f64) -> Vec<DVec3> {
     let sides = faces
         .iter()

@@ -28,7 +28,7 @@ pub(super) struct Bound {
 pub(super) struct Placed {
     /// mm.
     pub(super) positions: Vec<DVec3>,
-    /// Joints of the skin and their weights, of which the sum is 1; none for a vertex without weights.
+    /// Joints of the skin and their weights, of which the sum is 1; empty for a vertex without weights.
     pub(super) weights: Vec<Vec<(usize, f64)>>,
     /// Counterclockwise from outside.
     pub(super) triangles: Vec<[usize; 3]>,
@@ -99,7 +99,7 @@ impl Placed {
         coordinates.find(|mm| !(-most..=most).contains(mm))
     }
 
-    /// How far along a direction the vertices reach that follow a joint by half or more, mm.
+    /// Reach along a direction of the vertices that follow a joint by half or more, mm.
     pub(super) fn reach(&self, joint: usize, from: DVec3, along: DVec3) -> f64 {
         let follows = |weights: &[(usize, f64)]| {
             let own = weights.iter().filter(|(other, _)| *other == joint);
@@ -113,7 +113,7 @@ impl Placed {
     }
 }
 
-/// Weights of which the sum is 1; none if there is none.
+/// Weights of which the sum is 1; empty without weights.
 fn normalised(weights: &[(usize, f64)]) -> Vec<(usize, f64)> {
     let sum: f64 = weights.iter().map(|(_, weight)| weight).sum();
     match sum > 1e-6 {

@@ -1,4 +1,4 @@
-//! The nodes as a tree: who is whose parent, and where each stands.
+//! The nodes as a tree: parent and frame of each.
 
 use glam::{DMat4, DQuat, DVec3, DVec4};
 use gltf::Node;

@@ -1,4 +1,4 @@
-//! Undoes what an exporter does to a mesh: vertices split at seams, quadrilaterals cut in two.
+//! Undoes the changes that an exporter makes to a mesh: vertices split at seams, quadrilaterals cut in two.
 
 use std::collections::BTreeMap;
 
@@ -6,7 +6,7 @@ use glam::DVec3;
 
 /// Vertices nearer than this share of the mesh's size are one.
 const SAME: f64 = 1e-6;
-/// Two triangles of a quadrilateral look the same way but for 30°: the cosine of that.
+/// Cosine of the angle, 30°, up to which two triangles of a quadrilateral face the same direction.
 const FLAT: f64 = 0.866;
 /// The least quality of a quadrilateral: 1 − |cos| of its most skewed corner, here about 32°.
 const SQUARE: f64 = 0.15;

@@ -1,13 +1,13 @@
-//! Disorder of the bristles: each time a brush is loaded they come to lie otherwise, so that no two of its
-//! strokes have the same streaks, nor the same ends.
+//! Disorder of the bristles: it changes each time a brush is loaded, so that no two of its strokes have the same
+//! streaks, nor the same ends.
 
 use super::{Head, STATIONS, place_along, smoothstep};
 
 /// Width of a tress of bristles that stray together, by half the head's width.
 const TRESS: f32 = 0.16;
-/// How far a tress strays, by half the head's width and thickness there.
+/// Offset of a tress at most, by half the head's width and thickness there.
 const STRAY: f32 = 0.04;
-/// How much shorter the shortest bristle is, by the head's length.
+/// Shortening of the shortest bristle, by the head's length.
 const RAGGED: f32 = 0.01;
 /// Numbers of the planes of noise: across the width, across the thickness, along.
 const PLANES: [u64; 3] = [11, 12, 13];

@@ -1,4 +1,4 @@
-//! Where the strips of a station lie, all at once.
+//! Positions of the strips of a station, all at once.
 
 use maulstick_num::wide;
 

@@ -43,12 +43,11 @@ pub struct Head {
     strips: usize,
     /// Weights, a plane a spine.
     weights: Vec<Vec<f32>>,
-    /// What the profile adds to the spines' sum, brush frame, m: planes of x, y and z,
-    /// `station · strips + strip`.
+    /// Offsets of the profile from the spines' sum, brush frame, m: planes of x, y and z, `station · strips + strip`.
     closed: [Vec<f32>; 3],
-    /// What is added to that when pressed open: x and y.
+    /// Offsets added to that when pressed open: x and y.
     opening: [Vec<f32>; 2],
-    /// What is added to that when clumped as on a clean brush and as on a full one.
+    /// Clumping added to that on a clean brush and on a full one.
     clumping: [f32; 2],
     clumped: Option<[Vec<f32>; 3]>,
     /// Roots in shares of half the ferrule's width and thickness.
@@ -65,7 +64,7 @@ pub struct Head {
     rest: Curve,
     skin: Option<Skin>,
     length_m: f64,
-    /// Whether it is a blade, whose strips never lie otherwise.
+    /// True for a blade, whose strips never shift.
     rigid: bool,
     /// Half the width and thickness at each station, m.
     half_m: [[f32; 2]; STATIONS],
@@ -80,19 +79,17 @@ pub struct HeadPose {
     pub y: Vec<f32>,
     /// Above the surface: never below it.
     pub z: Vec<f32>,
-    /// How far the head is pressed open, 0 to 1.
+    /// Opening of the head under pressure, 0 to 1.
     pub press: f32,
-    /// How much of the strips shows beside the skin, 0 to 1: all of them where the head is open or has
-    /// run dry.
+    /// Share of the strips that shows beside the skin, 0 to 1: all of them where the head is open or has run dry.
     pub splay: f32,
-    /// Where the point is bent to by the head's length, in the ferrule's cross-section: x and y of
-    /// the brush frame.
+    /// Bend of the point by the head's length, in the ferrule's cross-section: x and y of the brush frame.
     pub bend: [f32; 2],
     /// The skin, if the head has one.
     pub skin: SkinPose,
 }
 
-/// How a head is held.
+/// Pose and state of a head.
 #[derive(Clone, Copy, Debug)]
 pub struct Hold<'a> {
     /// Brush frame to surface frame.
@@ -101,7 +98,7 @@ pub struct Hold<'a> {
     pub angles: &'a [[f32; 2]],
     /// Units of the pose a metre.
     pub per_m: f64,
-    /// How full the brush is, 0 to 1: wet bristles clump.
+    /// Wetness of the brush, 0 to 1: wet bristles clump.
     pub wetness: f32,
 }
 
@@ -244,19 +241,19 @@ impl Head {
         &self.beside
     }
 
-    /// How far each strip keeps off the surface while the head is hardly pressed, 0 to 1.
+    /// Height of each strip over the surface while the head is hardly pressed, 0 to 1.
     #[must_use]
     pub fn lift(&self) -> &[f32] {
         &self.lift
     }
 
-    /// How much paint each strip takes by the mean of all.
+    /// Paint capacity of each strip by the mean of all.
     #[must_use]
     pub fn capacity(&self) -> &[f32] {
         &self.capacity
     }
 
-    /// Whether it is a blade, or has a skin that comes to a point.
+    /// True for a blade, or for a skin that comes to a point.
     #[must_use]
     pub fn is_fine(&self) -> bool {
         self.rigid || self.skin.is_some()
@@ -268,7 +265,7 @@ impl Head {
         self.skin.as_ref()
     }
 
-    /// Whether a state with this many joint angles belongs to this head.
+    /// True if a state with this many joint angles belongs to this head.
     #[must_use]
     pub fn fits(&self, angles: usize) -> bool {
         angles == self.joints
@@ -382,7 +379,7 @@ fn place_along(station: usize) -> f64 {
     station as f64 / (STATIONS - 1) as f64
 }
 
-/// Where the strip with a root is at a station when nothing bends it, brush frame, m.
+/// Rest position at a station of the strip with a root, brush frame, m.
 fn rest_point(file: &BrushFile, root: DVec2, station: usize) -> DVec3 {
     let at = place_along(station) * file.length_share(root.to_array());
     DVec3::new(

@@ -1,5 +1,5 @@
-//! Where strips stand in the ferrule (Baxter 2004, § 3.5.2): at random along a line, or in the
-//! triangles of Delaunay between the spines and the ferrule's edge.
+//! Positions of the strips in the ferrule (Baxter 2004, § 3.5.2): at random along a line, or in the triangles of
+//! Delaunay between the spines and the ferrule's edge.
 
 use delaunator::{Point, triangulate};
 use glam::DVec2;

@@ -1,4 +1,4 @@
-//! The force of the head on the hand, and how it goes with depth.
+//! The force of the head on the hand as a function of depth.
 
 use maulstick_types::haptics::HermiteKnot;
 
@@ -6,7 +6,7 @@ use super::BrushModel;
 use crate::head_stiffness::{AT_ONCE_M, HeadStiffness, Press, tuned, tuples};
 
 impl BrushModel {
-    /// What the hand feels of the head as it is bent now.
+    /// Force on the hand from the head as it is bent now.
     #[must_use]
     pub fn feel(&self) -> HeadStiffness {
         let length = self.file.length_m();

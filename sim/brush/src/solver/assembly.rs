@@ -47,7 +47,7 @@ impl Solver {
             .iter()
             .map(|constraint| constraint.half_space.gap(ends[constraint.joint]));
         point.gaps.extend(gaps);
-        // What acts on the end of a segment acts on all segments above it too.
+        // A force on the end of a segment acts on all segments above it too.
         let mut force = DVec3::ZERO;
         let segments = point.slopes.iter_mut().zip(&point.pulls);
         for ((slope, pull), length) in segments.zip(&spine.lengths_m).rev() {
@@ -100,7 +100,7 @@ impl Solver {
         value
     }
 
-    /// What acts on the ends of segments: friction and neighbours.
+    /// Forces on the ends of segments: friction and neighbours.
     fn look_outside(
         &mut self,
         problem: Problem<'_>,
@@ -236,7 +236,7 @@ impl Solver {
         }
     }
 
-    /// What acts on the end of a segment couples all segments above it.
+    /// A force on the end of a segment couples all segments above it.
     fn assemble_pulls(&mut self, spine: &Spine) {
         let mut stiffness = DMat3::ZERO;
         let mut acts = false;

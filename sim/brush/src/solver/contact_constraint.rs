@@ -51,9 +51,9 @@ pub struct ContactConstraint {
     pub half_space: HalfSpace,
     /// Normal force, N: the multiplier of the constraint, 0 in the air.
     pub force_n: f64,
-    /// Where it touched, or where it began to stick; none if it was in the air.
+    /// Point where it touched, or where it began to stick; `None` if it was in the air.
     pub anchor: Option<DVec3>,
-    /// Whether it sticks: the coefficient of friction is then the static one.
+    /// True if it sticks: the coefficient of friction is then the static one.
     pub sticks: bool,
     /// d_p of Baxter 2004, eq. 3.14.
     preferred: DVec3,
@@ -81,7 +81,7 @@ impl ContactConstraint {
             .collect()
     }
 
-    /// Whether it touches.
+    /// True if it touches.
     #[must_use]
     pub fn touches(&self) -> bool {
         self.force_n > 0.0
@@ -92,8 +92,8 @@ impl ContactConstraint {
         *self = Self::new(self.joint, self.half_space);
     }
 
-    /// Notes which way its segment points: the unit projection onto the wall of the way from the end
-    /// of the segment to its root.
+    /// Notes the preferred direction of its segment: the unit projection onto the half space's plane of the vector from
+    /// the end of the segment to its root.
     pub fn update_preferred(&mut self, spine: &Spine, shape: &SpineShape) {
         let back = -shape.directions[self.joint];
         let lies = self.half_space.along(back);

@@ -1,4 +1,4 @@
-//! How far to go along a step.
+//! Step length along a direction.
 
 use super::{ContactConstraint, Energy, Problem, Solver};
 use crate::spine::SpineShape;
@@ -8,14 +8,14 @@ const LONGEST_TURN: f64 = 0.7;
 /// Times that a step is halved at most.
 const HALVINGS: usize = 30;
 
-/// How deep all joints together lie within their walls, m.
+/// Sum of the depths of all joints within their half spaces, m.
 fn sunk(gaps: &[f64]) -> f64 {
     gaps.iter().map(|gap| (-gap).max(0.0)).sum()
 }
 
 impl Solver {
-    /// Goes along the step as far as energy and penetration together fall, and returns the energy
-    /// there; none where they do not, with everything as it was.
+    /// Goes along the step as far as energy and penetration together fall, and returns the energy there; `None` if they
+    /// do not, with everything as it was.
     pub(super) fn line_search(
         &mut self,
         problem: Problem<'_>,
@@ -61,7 +61,7 @@ impl Solver {
         None
     }
 
-    /// The shape at the end of the way that is tried.
+    /// The shape at the end of a trial step.
     fn turn(&self, shape: &mut SpineShape) {
         let ways = self.search.way.iter().zip(&self.model.tangents);
         let segments = shape.directions.iter_mut().zip(&self.search.from);
@@ -70,8 +70,8 @@ impl Solver {
         }
     }
 
-    /// Second-order correction: the walls are curved in the directions, so a straight step leaves the
-    /// binding constraints; put the trial back onto them along their columns. False where none binds.
+    /// Second-order correction: the half spaces are curved in the directions, so a straight step leaves the binding
+    /// constraints; puts the trial back onto them along their columns. False if no constraint binds.
     fn correct(&mut self, shape: &mut SpineShape) -> bool {
         let program = &mut self.program;
         let (candidates, gaps) = (&self.candidates, &self.point.gaps);

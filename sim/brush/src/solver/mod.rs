@@ -22,9 +22,9 @@ use crate::spine::{Spine, SpineShape};
 pub struct Neighbour {
     /// The joint of this spine that it pushes.
     pub joint: usize,
-    /// Where it is, m.
+    /// Position, m.
     pub at: DVec3,
-    /// How far apart the two are at rest, m.
+    /// Distance of the two at rest, m.
     pub at_rest_m: f64,
 }
 
@@ -52,7 +52,7 @@ pub struct Settings {
     pub epsilon_m: f64,
     /// Stiffness against neighbours that come nearer than at rest, N/m.
     pub repulsion_n_m: f64,
-    /// Where along the surface an upright spine gives way to, a unit vector.
+    /// Direction along the surface in which an upright spine gives way, a unit vector.
     pub yields: DVec2,
     /// Newton steps at most.
     pub max_iterations: usize,
@@ -90,7 +90,7 @@ impl Settings {
 pub struct Energy {
     /// Of the springs.
     pub spring: f64,
-    /// Work against friction with the walls.
+    /// Work against friction with the half spaces.
     pub friction: f64,
     /// Work against friction in the joints.
     pub damping: f64,
@@ -111,13 +111,13 @@ impl Energy {
 /// Result of a solve.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Solution {
-    /// Whether the tolerance was reached; if not, the shape is the last good one.
+    /// True if the tolerance was reached; if not, the shape is the last good one.
     pub converged: bool,
     /// Newton steps taken.
     pub iterations: usize,
     /// ‖∇L‖∞, N·m.
     pub residual: f64,
-    /// Deepest joint within a wall, m.
+    /// Deepest joint within a half space, m.
     pub penetration_m: f64,
     /// The energy.
     pub energy: Energy,
@@ -130,7 +130,7 @@ impl Solution {
         self
     }
 
-    /// Whether the shape may be used: converged, or so nearly that nobody could see the difference.
+    /// True if the shape may be used: converged, or so nearly that nobody could see the difference.
     fn usable(&self, spine: &Spine) -> bool {
         self.converged
             || (self.residual <= 1e-4 * spine.stiffest()
@@ -144,7 +144,7 @@ pub struct Solver {
     before: Vec<DVec3>,
     /// The chord of each joint when the step began.
     chords: Vec<DVec3>,
-    /// Where each segment rests if the one before goes along the base; empty if that is straight.
+    /// Rest direction of each segment if the one before goes along the base; empty if that is straight.
     rest: Vec<DVec3>,
     damped: bool,
     last_constraints: Vec<ContactConstraint>,
@@ -216,7 +216,7 @@ struct QuadraticProgram {
     factor: BlockFactor,
     /// The model with springs.
     stiff: Vec<DMat2>,
-    /// The step if nothing were in the way.
+    /// The unconstrained step.
     newton: Vec<DVec2>,
     /// By how much the step moves the ends, m.
     moves: Vec<DVec3>,
@@ -239,7 +239,7 @@ struct Search {
     way: Vec<DVec2>,
 }
 
-/// What a spine is solved among.
+/// Surroundings in which a spine is solved.
 #[derive(Clone, Copy, Debug)]
 struct Problem<'a> {
     spine: &'a Spine,
@@ -250,15 +250,14 @@ struct Problem<'a> {
 }
 
 impl Solver {
-    /// Bends `shape` to the least energy outside the walls of all `stops`, starting from how it is
-    /// bent, and writes the normal forces into them.
+    /// Bends `shape` to the least energy outside the half spaces of all `stops`, starting from its present bend, and
+    /// writes the normal forces into them.
     ///
-    /// Friction has the normal force of the solve before, and the solve is done again with the one that
-    /// it found until the two agree: a contact that lifts has no friction after all, and one that breaks
-    /// loose has that of sliding. One that is new has none in this pose: it has not slipped yet.
-    /// Where a leap of the handle leaves the head so twisted that no minimum is found from there, it
-    /// is sought from the relaxed head, without friction; where that fails too, the head keeps its
-    /// shape.
+    /// Friction has the normal force of the previous solve, and the solve is repeated with the one that it found until
+    /// the two agree: a contact that lifts has no friction after all, and one that breaks loose has that of sliding. A
+    /// new contact has no friction in this pose: it has not slipped yet. Where a leap of the handle leaves the head so
+    /// twisted that no minimum is found from there, it is sought from the relaxed head, without friction; where that
+    /// fails too, the head keeps its shape.
     pub fn solve(
         &mut self,
         spine: &Spine,
@@ -314,7 +313,7 @@ impl Solver {
         solution
     }
 
-    /// What may be said of a shape that was kept because none better was found.
+    /// Report of a shape that is reused because no better one was found.
     fn kept_shape(
         &mut self,
         problem: Problem<'_>,
@@ -440,7 +439,7 @@ impl Solver {
         solution
     }
 
-    /// Whether the conditions of a minimum hold with the multipliers at hand.
+    /// Checks the conditions of a minimum with the multipliers at hand.
     fn measure(
         &mut self,
         problem: Problem<'_>,
@@ -472,7 +471,7 @@ impl Solver {
     }
 }
 
-/// Whether every joint could come out of its wall at all.
+/// True if every joint could leave its half space at all.
 fn is_within_reach(spine: &Spine, shape: &SpineShape, constraints: &[ContactConstraint]) -> bool {
     constraints.iter().all(|constraint| {
         let root = constraint.half_space.gap(shape.root);
@@ -481,8 +480,8 @@ fn is_within_reach(spine: &Spine, shape: &SpineShape, constraints: &[ContactCons
     })
 }
 
-/// A straight spine pressed along its own axis has no way to bend that is better than another, and
-/// no gradient: turn it a little.
+/// A straight spine pressed along its own axis has no preferred direction of bending, and no gradient: turns it a
+/// little.
 fn break_symmetry(spine: &Spine, shape: &mut SpineShape, yields: DVec2) {
     let upright = spine.rest.is_empty()
         && shape

@@ -12,7 +12,7 @@ use crate::spine::Spine;
 /// Stiffness of the springs that stand for constraints where the model is not convex, by that of the
 /// stiffest joint over the square of the length.
 const CONSTRAINT_STIFFNESS: f64 = 100.0;
-/// A step may leave a joint so deep in a wall without its constraint, by the length.
+/// Depth of a joint in a half space that a step may leave without its constraint, by the length.
 const SLACK: f64 = 1e-12;
 
 impl Solver {
@@ -208,7 +208,7 @@ impl QuadraticProgram {
             .solve(&self.dual, &self.rhs, floor, &mut self.lambda);
     }
 
-    /// What keeps the dual solvable where constraints depend on each other.
+    /// Diagonal term that keeps the dual solvable where constraints depend on each other.
     pub(super) fn floor(&self) -> f64 {
         let n = self.lambda.len();
         1e-12 * (0..n).map(|i| self.dual[i * n + i]).fold(0.0, f64::max)

@@ -1,4 +1,4 @@
-//! Rows as a scan finds them, told apart and checked.
+//! Rows as a scan finds them, sorted by kind and checked.
 
 use rusqlite::types::{ToSqlOutput, Value as Stored, ValueRef};
 
@@ -16,7 +16,7 @@ pub(super) struct Found {
     pub(super) values: Vec<Value>,
 }
 
-/// What a row is.
+/// Kind of a row.
 #[derive(Debug)]
 pub(super) enum Read {
     Whole(Found),
@@ -81,7 +81,7 @@ impl Found {
     /// Writes it, with its checksum, in the place of one with its key.
     ///
     /// # Errors
-    /// What SQLite says.
+    /// The error of SQLite.
     pub(super) fn write(&self, database: &Database) -> Result<(), DocumentError> {
         let places: Vec<String> = (1..=self.values.len() + 2)
             .map(|at| format!("?{at}"))

@@ -1,5 +1,5 @@
-//! All rows of a damaged painting that are whole: pages, loads and files go into the new one at once,
-//! the others are few and stay in memory.
+//! All intact rows of a damaged painting: pages, loads and files go into the new one at once, the others are few and
+//! stay in memory.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs::File;
@@ -17,10 +17,10 @@ use crate::writing::COPY;
 /// Rows that are written in one transaction.
 const BATCH: u64 = 512;
 
-/// Where a row stood.
+/// Standing of the copy that a row comes from.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Standing {
-    /// Where SQLite reads.
+    /// In the copy that SQLite reads.
     Current,
     /// On a page that was free, or in an older copy of one.
     Older,
@@ -36,7 +36,7 @@ pub(super) struct TileRows {
     pub(super) older: Vec<TileRow>,
 }
 
-/// What was found.
+/// Rows found.
 #[derive(Debug, Default)]
 pub(super) struct Gathered {
     pub(super) painting: Option<(PaintingSnapshot, Standing)>,
@@ -54,7 +54,7 @@ pub(super) struct Gathered {
     pub(super) torn: u64,
     /// Pages of tables that are gone, with all rows that they had.
     pub(super) pages_lost: u64,
-    /// Whether rows on free pages are known to be such.
+    /// True if rows on free pages are known to be such.
     pub(super) knows_free: bool,
     /// Steps whose current row is torn.
     pub(super) torn_steps: BTreeSet<i64>,
@@ -66,7 +66,7 @@ impl Gathered {
     /// Reads all rows; those of pages, loads and files go into `into`.
     ///
     /// # Errors
-    /// What SQLite says of the new painting. Damage is none.
+    /// The error of SQLite on the new painting. Damage is no error.
     pub(super) fn read(
         scan: &mut Scan<File>,
         into: &Database,
@@ -175,7 +175,7 @@ impl Gathered {
     }
 }
 
-/// Puts a state in the place of an older one; none is in that of a current one but a current one.
+/// Replaces an older state by this one; a current one is replaced only by a current one.
 fn newest<T: serde::de::DeserializeOwned>(
     place: &mut Option<(T, Standing)>,
     json: &str,
@@ -208,7 +208,7 @@ fn put_page(found: &Found, into: &Database) -> Result<u64, DocumentError> {
     Ok(u64::from(is_newer))
 }
 
-/// Writes a row if there is none with its key, and says whether.
+/// Writes a row unless there is one with its key; returns the number written.
 fn put_new(found: &Found, into: &Database) -> Result<u64, DocumentError> {
     let connection = &into.connection;
     let is_there = match found.table {

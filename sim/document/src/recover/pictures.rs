@@ -1,4 +1,4 @@
-//! Grounds and teeth that are made of pictures and spectra: of one that is lost there is the plain one.
+//! Grounds and teeth that are made from pictures and spectra: a lost one is replaced by the plain one.
 
 use std::collections::BTreeSet;
 
@@ -18,7 +18,7 @@ impl Pictures {
     /// Those in the new painting.
     ///
     /// # Errors
-    /// What SQLite says.
+    /// The error of SQLite.
     pub(super) fn read(database: &Database) -> Result<Self, DocumentError> {
         let query = "SELECT hash FROM file WHERE kind IN ('picture', 'spectrum')";
         let mut statement = database.connection.prepare(query)?;
@@ -26,7 +26,7 @@ impl Pictures {
         Ok(Self(hashes.collect::<Result<_, _>>()?))
     }
 
-    /// Whether what a ground or a tooth of this name is made of is there.
+    /// True if the source of a ground or a tooth of this name is there.
     fn has(&self, name: &str) -> bool {
         let file = name
             .strip_prefix(IMAGE)
@@ -37,7 +37,7 @@ impl Pictures {
         }
     }
 
-    /// Whether all is there that surfaces are made of.
+    /// True if the sources of all these surfaces are there.
     pub(super) fn has_all(&self, makes: &[SurfaceMaterial]) -> bool {
         let mut names = makes.iter().flat_map(|make| [&make.ground, &make.tooth]);
         names.all(|name| self.has(name))

@@ -24,7 +24,7 @@ use crate::scan::Value;
 use crate::schema::Table;
 use crate::{journal, loads};
 
-/// Whether a library has all paints of a painting.
+/// True if a library has all paints of a painting.
 fn knows_all(library: &PaintLibrary, kept: &PaintingSnapshot) -> bool {
     let scene = &kept.scene;
     let mut slots = scene.paints.iter();
@@ -102,10 +102,10 @@ fn clean_load(stock: &mut Stock, database: &Database) -> Result<i64, DocumentErr
     Ok(id)
 }
 
-/// Makes brushes clean of which it is not known what they carried.
+/// Makes brushes clean whose load is not known.
 ///
 /// # Errors
-/// What SQLite says.
+/// The error of SQLite.
 pub(super) fn brushes(
     kept: &mut PaintingSnapshot,
     stock: &mut Stock,
@@ -213,7 +213,7 @@ pub(super) fn versions(
     Ok(())
 }
 
-/// The rest of a version, with its books made to balance; none where a tile of it is gone.
+/// The rest of a version, with its ledger made to balance; `None` if a tile of it is gone.
 fn version(
     found: &Found,
     stock: &mut Stock,

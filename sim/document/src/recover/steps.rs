@@ -1,4 +1,4 @@
-//! Which steps of the history still lead from what is on the tiles now to what was before.
+//! Steps of the history that still lead from the current tiles to the earlier ones.
 
 use std::collections::{BTreeMap, HashMap};
 
@@ -32,7 +32,7 @@ pub(super) struct Steps {
     knows_free: bool,
 }
 
-/// What became of the history.
+/// Result for the history.
 #[derive(Debug, Default)]
 pub(super) struct Walked {
     pub(super) kept: u64,
@@ -43,7 +43,7 @@ pub(super) struct Walked {
     pub(super) undone: Vec<u64>,
 }
 
-/// What a painting is while its steps are taken back in thought.
+/// State of a painting while its steps are undone in memory.
 pub(super) struct Now {
     pub(super) tiles: HashMap<i64, Numbers>,
     pub(super) loads: BTreeMap<String, Counts>,
@@ -51,7 +51,7 @@ pub(super) struct Now {
     pub(super) makes: Vec<SurfaceMaterial>,
 }
 
-/// What the surfaces of a scene are made of.
+/// Materials of the surfaces of a scene.
 pub(super) fn makes(scene: &Scene) -> Vec<SurfaceMaterial> {
     let made = scene.surfaces.iter().map(|surface| SurfaceMaterial {
         surface: surface.id,
@@ -63,7 +63,7 @@ pub(super) fn makes(scene: &Scene) -> Vec<SurfaceMaterial> {
 }
 
 impl Steps {
-    /// The steps that were found, of a painting that was kept so.
+    /// The steps that were found, of a painting saved with them.
     pub(super) fn of(
         gathered: &mut Gathered,
         kept: &PaintingSnapshot,
@@ -106,7 +106,7 @@ impl Steps {
         steps
     }
 
-    /// What was on a tile, the newest first.
+    /// Contents of the tiles, the newest first.
     pub(super) fn states(&self) -> HashMap<i64, Vec<Numbers>> {
         let mut states: HashMap<i64, Vec<Numbers>> = HashMap::new();
         for known in self.done.values().rev().flatten() {
@@ -122,11 +122,11 @@ impl Steps {
         states
     }
 
-    /// Writes the steps that still lead back from `now`, each by itself from the newest on; one that
-    /// does not goes with all older ones.
+    /// Writes the steps that still lead back from `now`, each by itself from the newest on; one that does not goes with
+    /// all older ones.
     ///
     /// # Errors
-    /// What SQLite says.
+    /// The error of SQLite.
     pub(super) fn write(
         self,
         mut now: Now,
@@ -189,7 +189,7 @@ impl Known {
         makes.all(|makes| pictures.has_all(makes))
     }
 
-    /// Whether all paint is there that it names, and it books just the paint that it brings.
+    /// True if all paint that it names is there, and it books just the paint that it brings.
     fn balances(&self, stock: &Stock) -> bool {
         let mut brought = [0i64; SLOTS];
         let mut bring = |ends: [Option<Counts>; 2]| {
@@ -208,7 +208,7 @@ impl Known {
             && brought == self.deed.booked.due()
     }
 
-    /// Whether it can be undone where the painting is as `now`.
+    /// True if it can be undone in the state `now`.
     fn leads_from(&self, now: &Now, stock: &Stock) -> bool {
         let there = |place: &i64| now.tiles.get(place).copied().unwrap_or_default();
         let mut tiles = self.tiles.iter();

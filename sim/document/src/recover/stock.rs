@@ -1,4 +1,4 @@
-//! Which pages, loads and dry layers are whole, and how much paint they hold.
+//! Intact pages, loads and dry layers, and the amount of their paint.
 
 use std::collections::{BTreeMap, BTreeSet, HashMap};
 
@@ -13,14 +13,14 @@ use crate::planes;
 use crate::scan::Value;
 use crate::schema::Table;
 
-/// What is whole, with its paint.
+/// Intact rows, with their paint.
 #[derive(Debug, Default)]
 pub(super) struct Stock {
     pages: HashMap<i64, Counts>,
     loads: HashMap<i64, Counts>,
     /// Dry layers, with the paint of all layers below.
     stacks: HashMap<i64, Counts>,
-    /// Dry layers that lost paint, or lie over such.
+    /// Dry layers that lost paint, or are over such.
     thin: BTreeSet<i64>,
     /// Dry layers whose own page is not whole: they stay, without paint.
     pub(super) hollow: u64,
@@ -30,15 +30,15 @@ pub(super) struct Stock {
     pub(super) next: u64,
 }
 
-/// What lies on a tile: its page and its newest dry layer.
+/// Content of a tile: its page and its newest dry layer.
 pub(super) type Numbers = [i64; 2];
 
 impl Stock {
-    /// Reads every page and load of the new painting; those that are not whole are deleted from it.
-    /// Pages are numbered from `next` on, or from what is free.
+    /// Reads every page and load of the new painting; damaged ones are deleted from it. Pages are numbered from `next`
+    /// on, or from the first free number.
     ///
     /// # Errors
-    /// What SQLite says.
+    /// The error of SQLite.
     pub(super) fn read(
         database: &Database,
         next: u64,
@@ -141,7 +141,7 @@ impl Stock {
         self.loads.insert(id, [0; SLOTS]);
     }
 
-    /// The paint of a tile; none where its page or its newest dry layer is gone.
+    /// The paint of a tile; `None` if its page or its newest dry layer is gone.
     pub(super) fn held(&self, numbers: Numbers) -> Option<Counts> {
         let [page, dry] = self.parts(numbers);
         let (mut counts, dry) = (page?, dry?);
@@ -149,7 +149,7 @@ impl Stock {
         Some(counts)
     }
 
-    /// The paint that is wet and that is dry on a tile; none of it where it is gone.
+    /// The wet and the dry paint of a tile; `None` for a part that is gone.
     pub(super) fn parts(&self, [page, dry]: Numbers) -> [Option<Counts>; 2] {
         let of = |shelf: &HashMap<i64, Counts>, id: i64| match id {
             0 => Some([0; SLOTS]),
@@ -158,12 +158,12 @@ impl Stock {
         [of(&self.pages, page), of(&self.stacks, dry)]
     }
 
-    /// Whether a dry layer, or one below it, lost paint.
+    /// True if a dry layer, or one below it, lost paint.
     pub(super) fn is_thin(&self, dry: i64) -> bool {
         self.thin.contains(&dry)
     }
 
-    /// The paint of a load; none where it is gone.
+    /// The paint of a load; `None` if it is gone.
     pub(super) fn load(&self, id: u64) -> Option<Counts> {
         self.loads.get(&(id as i64)).copied()
     }
@@ -176,7 +176,7 @@ fn ids(database: &Database, table: Table) -> Result<Vec<i64>, DocumentError> {
     Ok(rows.collect::<Result<_, _>>()?)
 }
 
-/// What was read, or nothing where it is damaged.
+/// The value read; `None` if it is damaged.
 fn whole<T>(read: Result<T, DocumentError>) -> Result<Option<T>, DocumentError> {
     match read {
         Ok(read) => Ok(Some(read)),

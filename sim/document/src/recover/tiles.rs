@@ -1,4 +1,4 @@
-//! What lies on each tile: as it was, or the newest older state that is whole.
+//! Content of each tile: as it was, or the newest older state that is intact.
 
 use std::collections::{BTreeSet, HashMap};
 
@@ -17,7 +17,7 @@ use crate::schema::Table;
 
 const BARE: Numbers = [0, 0];
 
-/// What becomes of a tile.
+/// Result for a tile.
 enum Fate {
     Whole(Numbers),
     /// The newest older state that is whole.
@@ -27,7 +27,7 @@ enum Fate {
     Missing,
 }
 
-/// Whether a place is on one of the painting's surfaces.
+/// True if a place is on one of the painting's surfaces.
 fn is_inside(kept: &PaintingSnapshot, place: i64) -> bool {
     let (id, tile) = place_of(place);
     let mut surfaces = kept.scene.surfaces.iter();
@@ -39,11 +39,11 @@ fn is_inside(kept: &PaintingSnapshot, place: i64) -> bool {
         })
 }
 
-/// Writes all tiles; returns what lies on them, by place number. `states` is what the history knows of
-/// them, the newest first.
+/// Writes all tiles; returns their contents, by place number. `states` are those that the history has of them, the
+/// newest first.
 ///
 /// # Errors
-/// What SQLite says.
+/// The error of SQLite.
 pub(super) fn write(
     gathered: &Gathered,
     states: &HashMap<i64, Vec<Numbers>>,
@@ -105,7 +105,7 @@ fn fate(current: Option<TileRow>, mut older: impl Iterator<Item = Numbers>, stoc
     if let Some(numbers) = current.filter(is_whole) {
         return Fate::Whole(numbers);
     }
-    // What is left of the newest state, unless an older one loses nothing that had dried.
+    // The rest of the newest state, unless an older one loses no dry paint.
     let mut last = current;
     let mut found = None;
     while found.is_none()

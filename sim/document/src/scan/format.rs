@@ -5,7 +5,7 @@ use std::io::{Read, Seek};
 use super::leaf::{Leaf, be16};
 use super::store::read_at;
 
-/// SQLite's default page size, bytes: what a file with nothing to tell by is taken to have.
+/// SQLite's default page size, bytes: the assumption for a file without any evidence.
 const DEFAULT: usize = 4096;
 /// All page sizes, bytes.
 const SIZES: [usize; 8] = [512, 1024, 2048, 4096, 8192, 16_384, 32_768, LARGEST];
@@ -23,7 +23,7 @@ const LEAST_USABLE: usize = 480;
 pub struct PageSize {
     /// Bytes of a page: a power of two from 512 to 65536.
     pub bytes: usize,
-    /// How it became known.
+    /// Source of the size.
     pub from: PageSizeFrom,
 }
 
@@ -59,23 +59,23 @@ impl PageSize {
     }
 }
 
-/// How a page size became known.
+/// Source of a page size.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum PageSizeFrom {
     /// The main file's header says so.
     Header,
-    /// That header is damaged or lies; the WAL's, which has a checksum, says so.
+    /// That header is damaged or wrong; the WAL's, which has a checksum, gives the size.
     Wal,
     /// It is the one with which most pages parse.
     Guess,
 }
 
-/// Whether a page can have so many bytes.
+/// True if a page can have so many bytes.
 pub(super) fn is_page_size(bytes: usize) -> bool {
     SIZES.contains(&bytes)
 }
 
-/// Whether the fields of a database's header that never change are as they must be.
+/// True if the constant fields of a database's header are valid.
 pub(super) fn header_stands(header: &[u8]) -> bool {
     header.starts_with(b"SQLite format 3\0") && header.get(21..24) == Some(&[64, 32, 32])
 }
@@ -89,8 +89,7 @@ fn of_header(header: &[u8]) -> Option<usize> {
     (header_stands(header) && is_page_size(bytes)).then_some(bytes)
 }
 
-/// Bytes at the end of each page that a database's header keeps from rows; none where the header
-/// is damaged.
+/// Bytes at the end of each page that a database's header keeps from rows; 0 if the header is damaged.
 pub(super) fn reserved(header: &[u8]) -> usize {
     match header.get(20) {
         Some(&bytes) if header_stands(header) => usize::from(bytes),
@@ -98,8 +97,8 @@ pub(super) fn reserved(header: &[u8]) -> usize {
     }
 }
 
-/// Bytes of a page that rows may use, if the header says that `reserved` are kept from them. It is
-/// not believed where leaf pages parse better with none.
+/// Bytes of a page that rows may use, if the header says that `reserved` are kept from them. The header is ignored if
+/// leaf pages parse better with 0.
 pub(super) fn usable<F: Read + Seek>(
     file: &mut F,
     length: u64,
@@ -118,7 +117,7 @@ pub(super) fn usable<F: Read + Seek>(
     if without > with { page_size } else { usable }
 }
 
-/// How well leaf pages parse with each page size.
+/// Number of leaf pages that parse with each page size.
 struct Scores([u64; SIZES.len()]);
 
 impl Scores {

@@ -18,7 +18,7 @@ pub(super) struct Leaf<B> {
     cells: usize,
 }
 
-/// Where a row stands.
+/// Position of a row.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(super) struct Cell {
     /// The row's key.
@@ -60,7 +60,7 @@ impl<B: AsRef<[u8]>> Leaf<B> {
         self.bytes.as_ref().get(range)
     }
 
-    /// Cell `number` of a page with `usable` bytes; nothing where it does not lie on the page.
+    /// Cell `number` of a page with `usable` bytes; `None` if it is not on the page.
     pub(super) fn cell(&self, number: usize, usable: usize) -> Option<Cell> {
         let bytes = self.bytes.as_ref();
         let pointers = self.header + HEADER;
@@ -85,9 +85,8 @@ impl<B: AsRef<[u8]>> Leaf<B> {
         (end <= bytes.len().min(usable)).then_some(cell)
     }
 
-    /// How well the page's bytes speak for its having just `usable` bytes: 0 where a cell does not
-    /// stand, 2 where all do, 3 where they also reach to the end, as the first cell written to a
-    /// page does.
+    /// Evidence in the page that it has just `usable` bytes: 0 if a cell is invalid, 2 if all are valid, 3 if they also
+    /// reach to the end, as the first cell written to a page does.
     pub(super) fn score(&self, usable: usize) -> u64 {
         let mut reach = 0;
         for number in 0..self.cells {

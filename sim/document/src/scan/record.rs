@@ -17,7 +17,7 @@ pub(super) fn varint(bytes: &[u8]) -> Option<(u64, usize)> {
     Some((value << 8 | u64::from(*bytes.get(8)?), 9))
 }
 
-/// Bytes of a value in the body of a record; none for the reserved types 10 and 11.
+/// Bytes of a value in the body of a record; `None` for the reserved types 10 and 11.
 fn width(serial: u64) -> Option<u64> {
     match serial {
         0 | 8 | 9 => Some(0),
@@ -56,8 +56,8 @@ fn header_size(payload: u64, local: &[u8]) -> Option<(usize, usize)> {
     Some((length, usize::try_from(header).ok()?.checked_sub(length)?))
 }
 
-/// Whether a record of `payload` bytes that starts with `local` may stand; what of it is not local
-/// is not looked at.
+/// True if a record of `payload` bytes that starts with `local` may be valid; its part that is not local is not
+/// examined.
 pub(super) fn plausible(payload: u64, local: &[u8]) -> bool {
     let Some((length, rest)) = header_size(payload, local) else {
         return false;

@@ -91,13 +91,13 @@ impl<F: Read + Seek> Store<F> {
         u32::try_from(pages).unwrap_or(u32::MAX)
     }
 
-    /// Whether a page lies beyond the end that the latest commit gave the database.
+    /// True if a page is beyond the end that the latest commit gave the database.
     pub(super) fn is_beyond(&self, page: u32) -> bool {
         let pages = self.frames.database_pages;
         pages > 0 && page > pages
     }
 
-    /// Which copy of a page SQLite would read.
+    /// Copy of a page that SQLite would read.
     pub(super) fn current_origin(&self, page: u32) -> Origin {
         if self.frames.good.contains_key(&page) {
             Origin::Wal

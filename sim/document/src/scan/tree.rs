@@ -1,5 +1,5 @@
-//! What the trees of the tables and the list of free pages say of the pages: "B-tree Pages" and "The
-//! Freelist", SQLite file format, sections 1.6 and 1.5.
+//! Pages according to the trees of the tables and the list of free pages: "B-tree Pages" and "The Freelist", SQLite
+//! file format, sections 1.6 and 1.5.
 
 use std::collections::BTreeSet;
 use std::io::{Read, Seek};
@@ -16,8 +16,7 @@ const HEADER: usize = 12;
 /// Bytes of the database's header, which precedes the b-tree's on page 1.
 const DATABASE_HEADER: usize = 100;
 
-/// The pages that hold nothing any more; none where the header or the list is damaged: a list that is
-/// wrong would hide rows.
+/// The free pages; empty if the header or the list is damaged: a wrong list would hide rows.
 pub(super) fn free_pages<F: Read + Seek>(store: &mut Store<F>) -> Option<BTreeSet<u32>> {
     let header = store.page(1, Origin::Wal)?;
     if !header_stands(&header) {
@@ -46,7 +45,7 @@ pub(super) fn free_pages<F: Read + Seek>(store: &mut Store<F>) -> Option<BTreeSe
     (free.len() == count).then_some(free)
 }
 
-/// The pages that an interior page of a table leads to; none where it is no such page.
+/// The pages that an interior page of a table leads to; `None` if it is no such page.
 pub(super) fn children(page: &[u8], number: u32) -> Option<Vec<u32>> {
     let header = if number == 1 { DATABASE_HEADER } else { 0 };
     if *page.get(header)? != TABLE_INTERIOR {
@@ -62,7 +61,7 @@ pub(super) fn children(page: &[u8], number: u32) -> Option<Vec<u32>> {
     Some(children)
 }
 
-/// Whether a page of a table stands there, a leaf or an interior one.
+/// True if the page belongs to a table, as a leaf or an interior page.
 pub(super) fn is_of_table(page: &[u8], number: u32) -> bool {
     let header = if number == 1 { DATABASE_HEADER } else { 0 };
     matches!(page.get(header), Some(&(TABLE_LEAF | TABLE_INTERIOR)))

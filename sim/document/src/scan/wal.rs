@@ -47,16 +47,16 @@ impl Header {
     }
 }
 
-/// Where in a WAL each page stands: offsets of a page's bytes, of its latest committed frame.
+/// Positions of the pages in a WAL: offsets of a page's bytes, of its latest committed frame.
 #[derive(Debug, Default)]
 pub(super) struct Frames {
     /// Frames with nothing damaged before them.
     pub(super) good: BTreeMap<u32, u64>,
     /// Frames behind a damaged one.
     pub(super) past_damage: BTreeMap<u32, u64>,
-    /// Pages that the database has since the latest good commit; 0 where there is none.
+    /// Pages that the database has since the latest good commit; 0 without one.
     pub(super) database_pages: u32,
-    /// What became of the WAL.
+    /// State of the WAL.
     pub(super) state: WalState,
 }
 
@@ -142,7 +142,7 @@ impl Frame {
         })
     }
 
-    /// Whether the frame with `bytes` is whole, by the salts and the checksum stored before it.
+    /// True if the frame with `bytes` is intact, by the salts and the checksum stored before it.
     fn follows(&self, before: Option<(Salts, Checksum)>, bytes: &[u8], big_endian: bool) -> bool {
         let Some((salts, checksum)) = before else {
             return false;

@@ -1,5 +1,4 @@
-//! The file of an open painting, where somebody removes it, puts another in its place, or gives it a second
-//! name.
+//! The file of an open painting when it is removed, replaced, or given a second name.
 
 use std::path::Path;
 use std::time::Instant;
@@ -10,7 +9,7 @@ use crate::error::DocumentError;
 use crate::moving;
 use crate::watch::{Found, Watch};
 
-/// What to do about a second name of the file.
+/// Advice about a second name of the file.
 const LINKED: &str = "remove that name: opened by it after a crash the painting would lack its journal, and be damaged";
 
 impl Thread {
@@ -72,7 +71,7 @@ impl Thread {
         Ok(())
     }
 
-    /// Takes back what was told of the file before.
+    /// Withdraws the notice about the previous file.
     pub(super) fn settled(&self) {
         let mut queues = self.shared.lock();
         (queues.notice, queues.went_to) = (None, None);

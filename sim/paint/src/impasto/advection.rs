@@ -1,10 +1,9 @@
 //! Stage 3: conservative advection (Baxter 2004, § 6.4.1), counted in quanta.
 //!
-//! Each paint is moved along one axis and then along the other. What goes through a face is what
-//! stands over the way of that face in a second-order reconstruction with van Leer's limiter (van
-//! Leer 1974), truncated to quanta, taken from the one cell and given to the other, so nothing is
-//! lost or created, and no cell gives more than it has. Where velocities diverge or meet, paint thins
-//! or piles up.
+//! Each paint is moved along one axis and then along the other. The flux through a face is the paint upstream of that
+//! face within one step's travel, in a second-order reconstruction with van Leer's limiter (van Leer 1974), truncated
+//! to quanta, taken from the one cell and given to the other, so nothing is lost or created, and no cell gives more
+//! than it has. Where velocities diverge or meet, paint thins or piles up.
 
 use std::ops::Range;
 
@@ -16,12 +15,12 @@ use super::velocity::Faces;
 use crate::quantum::CELL_MAX;
 use crate::window::{Area, Window};
 
-/// What stays on a cell however hard it is brushed, unless the painter says otherwise, quanta: 3 µm of
-/// stain (§ 6.4.1, size).
+/// Paint that stays on a cell however hard it is brushed, unless the painter says otherwise, quanta: 3 µm of stain (§
+/// 6.4.1, size).
 pub const STAIN: f32 = 2013.0;
 /// Kept free on a cell, quanta: more than what is truncated.
 const SPARE: f32 = 64.0;
-/// Where no cell holds more than this share of the most that one can, all that comes has room.
+/// Share of the capacity of a cell up to which all inflow has room.
 const HALF_EMPTY: f32 = 0.1;
 
 /// Room for a step.
@@ -45,7 +44,7 @@ struct Mover {
     sent: [Vec<f32>; 2],
 }
 
-/// What moves all paints along an axis.
+/// Fluxes of all paints along an axis.
 #[derive(Clone, Copy, Debug)]
 struct Flux<'a> {
     /// Of the window.
@@ -54,7 +53,7 @@ struct Flux<'a> {
     width: usize,
     /// Through the face of each cell towards the next.
     velocity: &'a [f32],
-    /// How far apart cells are along the axis.
+    /// Distance between neighbouring cells along the axis, in the arrays.
     next: usize,
     /// See [`Advection`].
     loose: &'a [f32],
@@ -62,7 +61,7 @@ struct Flux<'a> {
     room: &'a [f32],
 }
 
-/// Which axis paint is moved along.
+/// Axis along which paint is moved.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Axis {
     /// To the right and left.
@@ -200,7 +199,7 @@ impl Mover {
         }
     }
 
-    /// What of one paint leaves each cell.
+    /// Outflow of one paint from each cell.
     #[inline(always)]
     fn send(&mut self, flux: &Flux<'_>) {
         let (next, width) = (flux.next, flux.area.size[0]);
@@ -226,7 +225,7 @@ impl Mover {
         }
     }
 
-    /// What leaves cells that have a neighbour on both sides.
+    /// Outflow of cells that have a neighbour on both sides.
     #[inline(always)]
     fn send_run(&mut self, flux: &Flux<'_>, run: Range<usize>) {
         let (velocity, next) = (flux.velocity, flux.next);
@@ -255,7 +254,7 @@ impl Mover {
         }
     }
 
-    /// What leaves a cell at the edge of the surface, beyond which it goes on as it is.
+    /// Outflow of a cell at the edge of the surface, beyond which it continues unchanged.
     fn send_at_edge(&mut self, flux: &Flux<'_>, place: usize) {
         let (velocity, next) = (flux.velocity, flux.next);
         let room = |place: usize| flux.room.get(place).copied().unwrap_or(1.0);

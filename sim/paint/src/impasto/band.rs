@@ -13,8 +13,8 @@ use crate::model::Step;
 use crate::traits::TEXELS_PER_STRIP;
 use crate::window::Area;
 
-/// Strips of the same depth lie over each other in the order of their roots along the way that the
-/// head is bent (Baxter 2004, § 3.5.2), the last this much higher, cells.
+/// Range of the ranks of strips of the same depth, cells: they overlap in the order of their roots along the direction
+/// in which the head is bent (Baxter 2004, § 3.5.2), the last this much higher.
 const RANKS: f32 = 0.02;
 /// A head that is bent by this share of its length has that order in full.
 const BENT: f32 = 0.2;
@@ -27,17 +27,17 @@ struct Point {
     along: f32,
 }
 
-/// What of a ribbon is the same along it.
+/// Values that are constant along a ribbon.
 #[derive(Clone, Copy, Debug)]
 struct Ribbon {
     strip: usize,
-    /// How far it keeps off what it lies on, cells.
+    /// Clearance over what it lies on, cells.
     bottom: f32,
     /// Among strips of the same depth it counts as higher by this much, cells.
     rank: f32,
     /// Half its width, cells.
     half: f32,
-    /// Whether what touches of it begins here, and whether it ends here.
+    /// True where its touching part begins here, and where it ends here.
     ends: [bool; 2],
 }
 
@@ -77,7 +77,7 @@ pub(super) struct Band {
     pub(super) contacts: Vec<Contact>,
     /// Wet quanta of all paints on each contact, before the step.
     pub(super) wet: Vec<f32>,
-    /// The columns and rows of the grid in which the contacts lie: from, up to but not with.
+    /// Columns and rows of the grid that hold the contacts: from, up to but not with.
     pub(super) reach: ([usize; 2], [usize; 2]),
     /// The whole footprint's cells.
     pub(super) grid: Area,
@@ -129,9 +129,8 @@ impl Band {
         }
     }
 
-    /// Draws a ribbon from `a` to `b` as it goes over the cells in the step: of each column of cells, or each
-    /// row where it goes rather up than across, those that it covers, each by the share of its area and of the
-    /// way.
+    /// Draws a ribbon from `a` to `b` as it goes over the cells in the step: of each column of cells, or each row where
+    /// it goes rather up than across, those that it covers, each by the share of its area and of the path.
     #[inline(always)]
     fn draw<L: Lanes>(&mut self, step: &Step<'_>, ribbon: &Ribbon, a: &Point, b: &Point) {
         let start = [a.at[0] - self.offset[0], a.at[1] - self.offset[1]];
@@ -157,7 +156,7 @@ impl Band {
         self.drawing.draw::<L>(&piece, columns);
     }
 
-    /// Which of the covered cells are touched.
+    /// Finds the covered cells that are touched.
     pub(super) fn touch(&mut self, step: &Step<'_>, lying: &[f32], sink: f32) {
         let window = &*step.window;
         let to_cells = step.traits.cells_per_quantum;
@@ -203,14 +202,14 @@ impl Band {
     }
 }
 
-/// Where in the middle of a step is what goes on to `after` from `before`.
+/// Value in the middle of a step from `before` to `after`.
 #[must_use]
 pub fn middle(after: f32, before: f32) -> f32 {
     after - 0.5 * (after - before)
 }
 
-/// By how much a strip counts as higher among those of the same depth, cells: of a head that lies to
-/// one side, the bristles rooted on that side lie on the others.
+/// Added height of a strip among those of the same depth, cells: of a head bent to one side, the bristles rooted on
+/// that side are above the others.
 #[must_use]
 pub fn rank(head: &Head, pose: &HeadPose, strip: usize) -> f32 {
     let ([x, y], [to_x, to_y]) = (head.roots()[strip], pose.bend);
@@ -219,7 +218,7 @@ pub fn rank(head: &Head, pose: &HeadPose, strip: usize) -> f32 {
     RANKS * (0.5 + 0.25 * (inner + head.lift()[strip]))
 }
 
-/// The part of a ribbon that lies below `height`.
+/// The part of a ribbon below `height`.
 fn below(a: &Point, b: &Point, height: f32) -> (Point, Point) {
     let (za, zb) = (a.at[2], b.at[2]);
     if za > height {

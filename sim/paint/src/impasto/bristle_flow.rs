@@ -1,8 +1,8 @@
-//! Paint within the head: what is inside a strip comes to its surface as the film there is used up,
-//! what the film takes up beyond its fill goes inside, and inside it creeps along the strip.
+//! Paint within the head: paint inside a strip rises to its surface as the film there is used up, the film's excess
+//! over its fill goes inside, and inside it creeps along the strip.
 //!
-//! It does so in every strip, also in one that is the lowest of no cell just now: how many are depends
-//! on the size of cells.
+//! It does so in every strip, also in one that is the lowest of no cell just now: how many are depends on the size of
+//! cells.
 
 use maulstick_num::select::larger;
 use maulstick_num::wide;
@@ -68,7 +68,7 @@ fn of_strip(strip: usize, plane: &[u32]) -> &[u32; TEXELS_PER_STRIP] {
     &plane.as_chunks().0[strip]
 }
 
-/// What all paints have inside a strip.
+/// Sum of all paints inside a strip.
 #[inline(always)]
 fn all_inside(strip: usize, paints: &[PaintOnBrush<'_>]) -> [u32; TEXELS_PER_STRIP] {
     let mut all = [0; TEXELS_PER_STRIP];
@@ -90,7 +90,7 @@ fn thinner_in(strip: usize, thinner: &PaintOnBrush<'_>, all: f64) -> f64 {
     if all > 0.0 { thin / all } else { 0.0 }
 }
 
-/// Whether not a quantum would move: so of most strips of a brush.
+/// True if not a quantum would move, as in most strips of a brush.
 #[inline(always)]
 fn is_at_rest(
     film: &[u32; TEXELS_PER_STRIP],
@@ -168,7 +168,7 @@ fn move_paint(strip: usize, paint: &mut PaintOnBrush<'_>, shares: &Shares) {
     let film: &mut [u32; TEXELS_PER_STRIP] = &mut paint.film.as_chunks_mut().0[strip];
     let inside: &mut [u32; TEXELS_PER_STRIP] = &mut paint.inside.as_chunks_mut().0[strip];
     let before = *inside;
-    // What goes over the end of a strip is none.
+    // Nothing flows over the end of a strip.
     let mut onward = [0; TEXELS_PER_STRIP + 1];
     let mut back = [0; TEXELS_PER_STRIP + 1];
     for k in 0..TEXELS_PER_STRIP {

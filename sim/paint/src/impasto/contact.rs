@@ -11,12 +11,12 @@ pub struct Contact {
     pub texel: u32,
     /// Share of the cell that is covered, 0 to 1.
     pub cover: f32,
-    /// How far the strip went since the step before, cells.
+    /// Travel of the strip since the previous step, cells.
     pub moved: [f32; 2],
-    /// How deep it reaches below the top of the wet paint, cells; at most its thickness.
+    /// Depth below the top of the wet paint, cells; at most its thickness.
     pub depth: f32,
     /// `depth` by the thickness of the wet paint, 0 to 1.
     pub fraction: f32,
-    /// How far it stays above the top of the wet paint, bridged by its film, cells.
+    /// Gap above the top of the wet paint, bridged by its film, cells.
     pub gap: f32,
 }

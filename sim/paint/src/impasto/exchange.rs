@@ -1,9 +1,9 @@
 //! Stages 4 and 5: paint goes from brush to canvas or from canvas to brush (Baxter 2004, § 6.5).
 //!
-//! Algorithm 3 decides for each cell, once for both sides, how much goes over. Where both carry
-//! paint, their films also change places: so a brush that is full, or that carries as much as lies
-//! there, still takes on the colour that it meets. Cells that draw on one brush texel have their
-//! demands summed, scaled together where they exceed what it holds, and truncated once.
+//! Algorithm 3 decides for each cell, once for both sides, how much is transferred. Where both carry paint, their films
+//! are also swapped: so a brush that is full, or that carries as much as the canvas, still takes on the colour that it
+//! meets. Cells that draw on one brush texel have their demands summed, scaled together where they exceed what it
+//! holds, and truncated once.
 
 use maulstick_num::fork_join::{Balance, both_if};
 use maulstick_num::select::{larger, smaller};
@@ -36,7 +36,7 @@ pub struct Exchange {
     held: Vec<f32>,
 }
 
-/// What each texel that touches gives and takes.
+/// Paint that each touching texel gives and takes.
 #[derive(Clone, Debug, Default)]
 struct Granted {
     /// Quanta wanted of it, and offered to it; then what it gives by quantum in its film.
@@ -107,11 +107,10 @@ impl Meetings {
 
 /// The place of a texel that does not touch.
 const ABSENT: u32 = u32::MAX;
-/// What is shared out of a film that is all used up: so much less that rounding never takes more
-/// than there is.
+/// Share of a film that is used up entirely: reduced so that rounding never takes more than there is.
 const SAFE_SHARE: f32 = 1.0 - 1.0 / 1_048_576.0;
 
-/// What is known of a contact before the exchange.
+/// State of a contact before the exchange.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Meeting {
     /// Way of the brush, reference cells.
@@ -124,11 +123,11 @@ pub struct Meeting {
     pub lying: f32,
     /// Share of it that the brush reaches.
     pub fraction: f32,
-    /// How far the brush is above it, units.
+    /// Gap between brush and paint, units.
     pub gap: f32,
 }
 
-/// What a contact wants: quanta from the brush, and to it.
+/// Demand of a contact: quanta from the brush, and to it.
 #[must_use]
 #[inline(always)]
 pub fn wanted(meeting: &Meeting, rule: &Exchanging, handling: &Handling) -> [f32; 2] {
@@ -146,7 +145,7 @@ pub fn wanted(meeting: &Meeting, rule: &Exchanging, handling: &Handling) -> [f32
     };
     let most = smaller(handling.most, CELL_MAX as f32);
     let room = larger(most - meeting.lying, 0.0);
-    // What changes places has room on both sides, or stays on both.
+    // Swapped paint has room on both sides, or stays on both.
     let swap = smaller(swap * quanta, room);
     let given = smaller(larger(net, 0.0) * quanta + swap, room);
     let taken = smaller(larger(-net, 0.0) * quanta + swap, meeting.lying);
@@ -154,7 +153,7 @@ pub fn wanted(meeting: &Meeting, rule: &Exchanging, handling: &Handling) -> [f32
 }
 
 wide! {
-    /// What all contacts want: quanta from the brush, and to it.
+    /// Demands of all contacts: quanta from the brush, and to it.
     fn want(
         meetings: &Meetings,
         rule: &Exchanging,
@@ -186,7 +185,7 @@ wide! {
 }
 
 wide! {
-    /// One paint, both ways: `change` is what comes onto each texel.
+    /// One paint, both ways: `change` is the amount added to each texel.
     fn swap_paint(half: &mut Half, gives: &[f32], plane: Cells<'_>) {
         let asked = half.wants[0].iter().zip(&half.shares);
         let ways = half.cells.iter().zip(&half.places);
@@ -342,7 +341,7 @@ impl Exchange {
 }
 
 impl Half {
-    /// What each contact wants of its texel and offers to it.
+    /// Demand of each contact on its texel, and its offer to it.
     fn demand(&mut self, contacts: &[Contact], step: &Step<'_>) {
         self.cells.clear();
         self.cells
@@ -367,10 +366,9 @@ impl Half {
         }
     }
 
-    /// What of the paint on each contact's cell goes to the brush.
+    /// Paint of each contact's cell that goes to the brush.
     ///
-    /// Of paint that lasts only so much leaves a cell as comes there: it takes on the brush's colour,
-    /// but never becomes less.
+    /// Paint that lasts loses only as much as it gains: it takes on the brush's colour, but never becomes less.
     fn share(&mut self, granted: &Granted, lasting: bool) {
         self.shares.clear();
         let offers = self.wants[1].iter().zip(&self.places);

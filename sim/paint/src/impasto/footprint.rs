@@ -1,8 +1,8 @@
-//! Stage 1: the cells that the head touches, what touches them and how deep it reaches.
+//! Stage 1: the cells that the head touches, with the touching strip and its depth.
 //!
-//! Strips are ribbons that turn their flat side to the surface (Baxter 2004, § 3.5.2). In each cell
-//! the deepest one counts. It touches where it, with the film of paint that it carries, reaches the
-//! top of what lies there: tooth, dry relief and wet paint. All lengths are in cells.
+//! Strips are ribbons that turn their flat side to the surface (Baxter 2004, § 3.5.2). In each cell the deepest one
+//! counts. It touches where it, with the film of paint that it carries, reaches the top of the surface there: tooth,
+//! dry relief and wet paint. All lengths are in cells.
 
 use maulstick_num::fork_join::{Balance, both_if};
 
@@ -42,7 +42,7 @@ impl Footprint {
         // Of the cells around the brush alone: what else the window holds must not matter.
         let top = self.weigh(self.grid, step);
         let loose = traits.loose(step.sweep.to.press);
-        // What is pressed down lies lower than it was solved by as much as the ride does.
+        // The pressed head lies lower than it was solved by as much as the ride does.
         let low = top + sink + step.window.ride_below();
         let film = step.load.thickest() as f32 * traits.film_cells_per_quantum;
         let recede = traits.recede * step.sweep.to.splay;
@@ -127,7 +127,7 @@ impl Footprint {
         }
     }
 
-    /// How much wet paint lies under the brush before the step.
+    /// Amount of wet paint under the brush before the step.
     #[must_use]
     pub fn report(&self, step: &Step<'_>) -> StepReport {
         let wet = self.wet.iter().map(|quanta| *quanta as u64);

@@ -26,7 +26,7 @@ pub const STABLE: f64 = 1.0 / 40.0;
 /// Slope at which an edge of wet paint advances onto bare ground; without a yield stress it wets all.
 pub const ADVANCES: f32 = 1.0;
 
-/// How paint resists flowing.
+/// Rheology of a paint.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Body {
     /// Yield stress, Pa.
@@ -60,7 +60,7 @@ pub fn thinned(thinner: f32) -> [f32; 2] {
 /// ln of how much thinner alone is more fluid than paint.
 pub const THINS: f32 = 7.0;
 
-/// What the flow of one round is scaled by: everything in cells of `cell_m`, for `seconds`.
+/// Scaling of the flow of one round: everything in cells of `cell_m`, for `seconds`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Round {
     /// Gradient by difference of curvature between two cells, in yields of paint one cell thick.
@@ -108,7 +108,7 @@ pub struct Levelling {
     curve: Vec<f32>,
     /// Yield stress and fluidity by those of paint from the tube.
     body: [Vec<f32>; 2],
-    /// What flows through the right and the upper face of each cell in a round, and in all, cells.
+    /// Flow through the right and the upper face of each cell in a round, and in all, cells.
     flows: [Vec<f32>; 2],
     sums: [Vec<f32>; 2],
     /// Height of the wet paint before.
@@ -123,7 +123,7 @@ const BLOCK: usize = 16;
 struct Blocks {
     /// The most that flowed in each in the last round; empty before the first.
     flowed: Vec<f32>,
-    /// Which may flow.
+    /// Cells that may flow.
     active: Vec<bool>,
 }
 
@@ -149,12 +149,12 @@ impl Blocks {
 pub const HALO: usize = 2;
 
 impl Levelling {
-    /// Adds what flows in so many rounds to the velocities through the right and upper faces of an area's
-    /// cells: the share of a donor's paint that goes through. Nothing leaves the area; beyond the window it is
-    /// as at its edge. Returns the most that flowed in a round.
+    /// Adds the flow of so many rounds to the velocities through the right and upper faces of an area's cells: the
+    /// share of a donor's paint that goes through. Nothing leaves the area; beyond the window it is as at its edge.
+    /// Returns the largest flow of a round.
     ///
-    /// Heights alone go through the rounds: paint follows once, by their sum. Where less than `rests` flowed in
-    /// the last round, and all around, nothing does in the next.
+    /// Heights alone go through the rounds: paint follows once, by their sum. Where less than `rests` flowed in the
+    /// last round, and all around, nothing flows in the next.
     pub fn add(
         &mut self,
         window: &Window,
@@ -236,7 +236,7 @@ impl Levelling {
         }
     }
 
-    /// How thinner changes the paint's body.
+    /// Changes the paint's rheology by its thinner.
     fn soften(&mut self, window: &Window, area: &Area, to_cells: f32, thinner: Option<usize>) {
         for plane in &mut self.body {
             plane.clear();
@@ -257,7 +257,7 @@ impl Levelling {
     }
 }
 
-/// What levelling has looked at, of cells side by side in a row.
+/// Values that levelling has read, of cells side by side in a row.
 struct Run<'a> {
     wet: &'a [f32; BLOCK],
     surface: &'a [f32; BLOCK],

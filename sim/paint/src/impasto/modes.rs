@@ -1,5 +1,5 @@
-//! Brush modes that are no painting (Baxter 2004, § 6.8): the sampler, and the key that clears the
-//! brush, held while it moves, which lifts paint like a vacuum cleaner.
+//! Brush modes that do not paint (Baxter 2004, § 6.8): the sampler, and the cleaning key, which lifts paint like a
+//! vacuum cleaner while it is held and the brush moves.
 
 use super::footprint::Footprint;
 use crate::model::Step;

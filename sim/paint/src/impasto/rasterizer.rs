@@ -16,7 +16,7 @@ const EDGE_PENALTY: f32 = 0.9;
 const NOTHING: f32 = -1.0;
 /// An end is soft over so many cells at least.
 const SHARP: f32 = 0.25;
-/// How far a strip goes on past its tip, cells.
+/// Length by which a strip extends past its tip, cells.
 const TIP: f32 = 0.5;
 /// Cells drawn at a time; rows are padded so that such a run never ends in the next one.
 const LANES: usize = 8;
@@ -33,15 +33,15 @@ pub(super) struct Piece {
     pub(super) along: [f32; 2],
     /// Height of the middle line, cells.
     pub(super) z: [f32; 2],
-    /// How far it keeps off what it lies on, cells.
+    /// Clearance over what it lies on, cells.
     pub(super) bottom: f32,
     /// By how much its edges are higher than its middle, cells: a bristle is round below.
     pub(super) round: f32,
     /// By how much it counts as higher, cells.
     pub(super) rank: f32,
-    /// How far it went since the step before, cells.
+    /// Travel since the previous step, cells.
     pub(super) moved: [[f32; 2]; 2],
-    /// Where on the grid it lies.
+    /// Its line on the grid.
     pub(super) line: Line,
 }
 
@@ -60,7 +60,7 @@ pub(super) struct Line {
     pub(super) cosine: f32,
     /// Half the width, cells.
     pub(super) half: f32,
-    /// Cells over which an edge is soft: a cell, or the way across.
+    /// Cells over which an edge is soft: a cell, or the width across.
     pub(super) soft: f32,
     /// The most of a cell that it covers.
     pub(super) most: f32,
@@ -69,9 +69,9 @@ pub(super) struct Line {
 }
 
 impl Line {
-    /// The middle line of a ribbon that goes `way` in the step, in the middle of which it begins at `start` and
-    /// goes by `d`, half of it `half` wide, cells; and the columns from which up to which it covers any. `ends`
-    /// say whether nothing goes on before its beginning and after its end: there it is soft by its way along.
+    /// The middle line of a ribbon that moves by `way` in the step, in the middle of which it begins at `start` and
+    /// goes by `d`, half of it `half` wide, cells; and the range of columns that it covers. `ends` is true where
+    /// nothing continues it, before its beginning and after its end: there it is soft by its motion along the line.
     #[inline(always)]
     pub(super) fn swept(
         start: [f32; 2],
@@ -138,7 +138,7 @@ impl Line {
         [t, (off / self.half).min(1.0)]
     }
 
-    /// How far from its middle it covers anything.
+    /// Largest distance from its middle that it covers.
     fn reach(&self) -> f32 {
         self.half + 0.5 * self.soft
     }
@@ -151,7 +151,7 @@ impl Piece {
     }
 }
 
-/// What of the head is over a cell.
+/// The part of the head over a cell.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Over<'a> {
     piece: &'a Piece,
@@ -165,8 +165,8 @@ pub(super) struct Over<'a> {
 impl Over<'_> {
     /// Height of the lower side where the bristle, at rest on `ride`, may sink in by `sink`, cells.
     ///
-    /// What is pressed down has its solved height at 0: it follows the ride into the valleys of the tooth,
-    /// and is lifted by what stands higher.
+    /// A pressed bristle has its solved height at 0: it follows the ride into the valleys of the tooth, and is lifted
+    /// by higher parts.
     pub(super) fn bottom(&self, ride: f32, sink: f32) -> f32 {
         let z = self.piece.z[0] + self.t * self.piece.z[1];
         let rests = (z + ride.min(0.0)).max(ride);
@@ -179,7 +179,7 @@ impl Over<'_> {
         self.piece.texel + along.min(TEXELS_PER_STRIP - 1) as u32
     }
 
-    /// How far it went since the step before, cells.
+    /// Travel since the previous step, cells.
     pub(super) fn moved(&self) -> [f32; 2] {
         let [from, change] = self.piece.moved;
         [0, 1].map(|i| from[i] + self.t * change[i])
@@ -196,8 +196,8 @@ pub(super) struct Drawing {
     score: Vec<f32>,
     /// The lowest piece; whole numbers.
     number: Vec<f32>,
-    /// Share of each cell that all pieces leave open. They lie anyhow beside and over each other: what
-    /// each covers, it covers of what the others leave open.
+    /// Share of each cell that all pieces leave open. They overlap at random: each covers its share of the area that
+    /// the others leave open.
     open: Vec<f32>,
     pieces: Vec<Piece>,
 }
@@ -223,7 +223,7 @@ impl Drawing {
         self.rows.clone()
     }
 
-    /// What is over a cell of these rows.
+    /// The part of the head over a cell of these rows.
     pub(super) fn over(&self, x: usize, y: usize) -> Option<Over<'_>> {
         let at = (y - self.rows.start) * self.stride + x;
         let number = self.number[at];
@@ -288,7 +288,7 @@ impl Drawing {
         let to = (first.max(last) + across + 1.0).clamp(0.0, edge) as usize;
         let (_, origin) = line.at(0.0);
         let (low, high) = (columns.start as f32, columns.end as f32);
-        // Where it hardly rises, a row has all of its columns.
+        // On a flat line a row has all of its columns.
         let steep = line.slope.abs() * (high - low) > across;
         let per_row = if steep { 1.0 / line.slope } else { 0.0 };
         let [start, aside] = line.start.map(L::splat);

@@ -1,9 +1,9 @@
-//! Stage 2: where the paint under the brush goes (Baxter 2004, § 6.4.2).
+//! Stage 2: velocity of the paint under the brush (Baxter 2004, § 6.4.2).
 //!
-//! Paint sticks to brush and canvas, so on the whole it goes about half as far as the bristle above it,
-//! whose motion holds the turning of the brush. What the bristles press aside flows down the
-//! gradient of the penetration: −c·∇p. Both are found for the faces between cells, where paint goes
-//! over: so the squish from a cell into the next is told by these two alone.
+//! Paint sticks to brush and canvas, so on the whole it goes about half as far as the bristle above it, whose motion
+//! includes the rotation of the brush. Paint that the bristles press aside flows down the gradient of the penetration:
+//! −c·∇p. Both are found at the faces between cells, where paint crosses: so the squish from a cell into the next
+//! depends on these two alone.
 //!
 //! Thinned paint slips under the bristles and gives way sooner.
 
@@ -40,8 +40,8 @@ pub fn follows(follows: f32, thinner: f32) -> f32 {
     follows * (1.0 - SLIP * thinner)
 }
 
-/// What the contacts do to the paint, and how much of a cell goes through its faces in one step, on
-/// the cells [around](Footprint::around) the footprint.
+/// Effect of the contacts on the paint, and the share of a cell that goes through its faces in one step, on the cells
+/// [around](Footprint::around) the footprint.
 #[derive(Clone, Debug, Default)]
 pub struct Faces {
     /// Through the right face of each cell, cells; what goes left is negative.
@@ -54,7 +54,7 @@ pub struct Faces {
     depth: Vec<f32>,
     /// c; 0 where nothing touches.
     squish: Vec<f32>,
-    /// What would leave a cell along either axis, at least 1.
+    /// Outflow of a cell along either axis, at least 1.
     leaves: [Vec<f32>; 2],
 }
 
@@ -93,7 +93,7 @@ impl Faces {
                 true => contact.depth / contact.fraction,
                 false => 0.0,
             };
-            // What lies in gaps below the bristles stays there.
+            // Paint in gaps below the bristles stays there.
             let follows = follows(step.traits.follows, thinner) * contact.cover * contact.fraction
                 / step.traits.parts as f32;
             self.push[0][place] = follows * contact.moved[0];

@@ -1,4 +1,4 @@
-//! The painting's books.
+//! The painting's ledger.
 
 use std::sync::Arc;
 

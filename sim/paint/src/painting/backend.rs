@@ -1,5 +1,5 @@
-//! The paint model and what computes it. Where steps are deferred, planes and load have what they did
-//! once they are settled: before anything else looks at them.
+//! The paint model and its backend. Deferred steps reach planes and load once they are settled: before anything else
+//! looks at them.
 
 use std::sync::Arc;
 
@@ -9,18 +9,18 @@ use crate::error::EditError;
 use crate::model::{PaintModel, StepReport};
 use crate::traits::BrushTraits;
 
-/// Deferred steps are settled after so many at the latest. How full the brush is, is seen just then:
-/// when somebody looks at the painting must not matter.
+/// Largest number of deferred steps. The fullness of the brush is read just when they are settled: the time at which a
+/// caller looks at the painting must not matter.
 const SETTLE_EVERY: u32 = 256;
 
-/// How far the steps of a brush are deferred.
+/// Progress of the deferred steps of a brush.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Deferral {
     /// Deferred steps since its stroke began.
     steps: u32,
     /// Those of them that are not settled.
     unsettled: u32,
-    /// How full the brush was when that was last seen.
+    /// Fullness of the brush when it was last read.
     fullness: Option<f32>,
 }
 
@@ -31,7 +31,7 @@ impl Deferral {
     }
 }
 
-/// Why the model computes elsewhere than before. It is told where a stroke ends.
+/// The reason why the model changed its backend. It is reported where a stroke ends.
 #[derive(Debug, Default)]
 pub(super) struct BackendFallback {
     found: Option<String>,
@@ -52,14 +52,13 @@ impl Painting {
         self.model = model;
     }
 
-    /// What computes its steps: `cpu`, or `gpu` and the adapter's name.
+    /// Backend of its steps: `cpu`, or `gpu` and the adapter's name.
     #[must_use]
     pub fn backend(&self) -> String {
         self.model.backend()
     }
 
-    /// Why its steps are computed by something else than before, once, after the stroke in which it
-    /// changed.
+    /// The reason why its backend changed, returned once, after the stroke in which it changed.
     pub fn take_fall(&mut self) -> Option<String> {
         if !self.fall.due {
             return None;
@@ -68,7 +67,7 @@ impl Painting {
         self.fall.found.take()
     }
 
-    /// How full a brush is, as far as its stroke may know.
+    /// Fullness of a brush, as far as its stroke may know.
     pub(super) fn seen_fullness(
         &mut self,
         name: &str,
@@ -139,7 +138,7 @@ impl Painting {
         }
     }
 
-    /// Whether a sheet has wells: those are tended on the CPU, step by step.
+    /// True if a surface has wells: those are tended on the CPU, step by step.
     pub(super) fn has_wells(&self, sheet: usize) -> bool {
         let id = self.sheets[sheet].id;
         let mut surfaces = self.scene.surfaces.iter();

@@ -1,4 +1,4 @@
-//! How brushes are used and surfaces are prepared: modes, size, piles (Baxter 2004, § 6.4.1, 6.7, 6.8).
+//! Handling of brushes and preparation of surfaces: modes, size, piles (Baxter 2004, § 6.4.1, 6.7, 6.8).
 
 use maulstick_optics::THINNER;
 use maulstick_types::scene::{BrushHandling, BrushMode, PALETTE, Surface};
@@ -15,7 +15,7 @@ use crate::traits::BrushTraits;
 /// that paint flows in a brush on the palette, on reference cells: there it is filled through and
 /// through.
 const DIP: f64 = 0.6;
-/// Where a brush is filled, its way counts as so many times as long: it is stirred and turned.
+/// Factor on the path length where a brush is filled: it is stirred and turned.
 const STIRRED: f32 = 4.0;
 /// Kinematic viscosity of oil paint as it comes from the tube, m²/s (Baxter 2004, § 5.2).
 const VISCOSITY_M2_S: f64 = 1e-2;
@@ -34,7 +34,7 @@ pub struct UnderBrush {
 }
 
 impl UnderBrush {
-    /// What a step found.
+    /// Findings of a step.
     pub(super) fn of(report: &StepReport, cell_m: f64) -> Self {
         if report.wet == 0 || report.footprint_cells == 0 {
             return Self::default();
@@ -48,14 +48,14 @@ impl UnderBrush {
     }
 }
 
-/// What a surface is like for a step.
+/// Preparation of a surface for a step.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Prepared {
     /// Quanta that stay on a cell.
     pub(super) stain: f32,
-    /// Whether what is taken up stays there all the same.
+    /// True if paint that is taken up stays there all the same.
     pub(super) lasting: bool,
-    /// Whether brushes are filled on it.
+    /// True if brushes are filled on it.
     fills: bool,
 }
 
@@ -85,7 +85,7 @@ impl Prepared {
     }
 }
 
-/// How a brush is used, as a step is told.
+/// Handling of a brush, as a step takes it.
 pub(super) fn handling_of(handling: Option<&BrushHandling>) -> Handling {
     let Some(handling) = handling else {
         return Handling::default();
@@ -191,7 +191,7 @@ impl Painting {
         self.lay_from(surface, &mixture, thickness_m, Ledger::from_mode_counts)
     }
 
-    /// What lies under the brush with this hash of its name.
+    /// Surface under the brush with this hash of its name.
     #[must_use]
     pub fn under_brush(&self, source: u32) -> UnderBrush {
         let mut brushes = self.brushes.iter();

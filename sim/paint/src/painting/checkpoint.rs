@@ -1,4 +1,4 @@
-//! What a painting hands to its document, and how it comes back from there.
+//! Checkpoints of a painting for its document, and its restoration from them.
 
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -28,14 +28,14 @@ use crate::store::TileStore;
 use crate::tile::{TileId, Version};
 use crate::traits::TEXELS_PER_STRIP;
 
-/// What changed since the document last heard of it; a moment of the painting, whole.
+/// Changes since the previous checkpoint; one moment of the painting, whole.
 #[derive(Clone, Debug)]
 pub struct Checkpoint {
     /// The painting besides its tiles.
     pub kept: PaintingSnapshot,
     /// Tiles that changed.
     pub tiles: Vec<(TilePlace, Version)>,
-    /// What the brushes carry, by name.
+    /// Loads of the brushes, by name.
     pub loads: BTreeMap<String, Page<BrushLoad>>,
     /// Steps that came or changed; those that are not finished are among them.
     pub steps: Vec<Step>,
@@ -45,7 +45,7 @@ pub struct Checkpoint {
     pub named: Vec<Named>,
     /// Versions that went.
     pub gone_named: Vec<String>,
-    /// Pages and dry layers that nobody remembers.
+    /// Pages and dry layers without references.
     pub dead: Vec<u64>,
 }
 
@@ -56,7 +56,7 @@ pub struct Restored {
     pub kept: PaintingSnapshot,
     /// Its tiles.
     pub tiles: Vec<(TilePlace, Version)>,
-    /// What the brushes carry, by name.
+    /// Loads of the brushes, by name.
     pub loads: BTreeMap<String, Page<BrushLoad>>,
     /// The steps of its history.
     pub steps: Vec<Step>,
@@ -67,7 +67,7 @@ pub struct Restored {
 }
 
 impl Painting {
-    /// What changed since the last call, where the newest tile version was `since`.
+    /// Changes since the last call, where the newest tile version was `since`.
     pub fn checkpoint(&mut self, since: u64) -> Checkpoint {
         self.commit();
         let loads = self.rest().loads;
@@ -144,7 +144,7 @@ impl Painting {
         }
     }
 
-    /// The next checkpoint holds the whole history and all versions: its document knows none of them.
+    /// Makes the next checkpoint hold the whole history and all versions: its document has none of them.
     pub fn tell_all_again(&mut self) {
         self.history.touch_all();
         self.named_touched.extend(self.named.keys().cloned());
@@ -174,10 +174,10 @@ impl Painting {
         brushes.collect()
     }
 
-    /// A painting as its document has it.
+    /// A painting from its document.
     ///
     /// # Errors
-    /// [`EditError`] where what was kept does not hold together.
+    /// [`EditError`] if the stored parts do not fit together.
     pub fn restore(
         restored: Restored,
         library: PaintLibrary,
@@ -289,7 +289,7 @@ impl Painting {
         Ok(painting)
     }
 
-    /// Forgets where the brushes are, and when: the next states begin their ways, and a time, anew.
+    /// Forgets positions and times of the brushes: the next states begin new paths.
     pub fn lift_brushes(&mut self) {
         self.close_windows();
         self.span_ns = None;

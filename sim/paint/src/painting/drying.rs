@@ -1,10 +1,9 @@
-//! Paint that dries while time goes by.
+//! Paint that dries over time.
 //!
-//! Time is the journal's ticks of 1/60 s. A drying goes over its tiles in rounds, of which there are 32
-//! at most, half a second or more apart: in a round each tile's film dries by the share of the time left
-//! that went by since the round before, so that what was laid meanwhile dries in what is left. A tick
-//! sees to 32 tiles at most, and to none while a brush paints: time goes on, and what is
-//! due is done when the brush is lifted.
+//! Time is the journal's ticks of 1/60 s. A drying goes over its tiles in rounds, of which there are 32 at most, half a
+//! second or more apart: in a round each tile's film dries by the share of the remaining time that has elapsed since
+//! the round before, so that paint applied meanwhile dries in the rest. A tick dries 32 tiles at most, and none while a
+//! brush paints: time goes on, and due tiles are dried when the brush is lifted.
 
 use std::sync::Arc;
 
@@ -20,9 +19,9 @@ const TILES_A_TICK: usize = 32;
 /// A brush counts as painting for so many ticks after it was last in contact, .2 s: contacts less than
 /// 150 ms apart are one stroke.
 const LIFTED_TICKS: u32 = 12;
-/// One that stays in contact and of which nothing is heard counts as painting for so many.
+/// Ticks for which a brush in contact counts as painting although no state arrives.
 const STILL_TICKS: u32 = 120;
-/// What its steps are called.
+/// Name of its steps.
 const STEP: &str = "drying";
 
 impl Painting {
@@ -85,7 +84,7 @@ impl Painting {
         self.clock.dryings.retain(stays);
     }
 
-    /// Whether time is to go by: something dries.
+    /// True while time is to advance: something dries.
     #[must_use]
     pub fn is_drying(&self) -> bool {
         !self.clock.dryings.is_empty()
@@ -105,7 +104,7 @@ impl Painting {
         }
     }
 
-    /// Whether a brush paints: then no tile dries under it, and no stroke is parted.
+    /// True while a brush paints: then no tile dries under it, and no stroke is split.
     fn is_painted_on(&self) -> bool {
         let in_contact = self.brushes.values().any(|track| track.path.is_some());
         let patience = if in_contact {

@@ -1,4 +1,4 @@
-//! Paint that is laid over tiles, without a brush.
+//! Films of paint over tiles, without a brush.
 
 use std::collections::HashMap;
 use std::sync::Arc;
@@ -15,18 +15,18 @@ use crate::planes::{Planes, TILE_CELLS};
 use crate::quantum::{CELL_MAX, Counts, QUANTUM_M, SLOTS};
 use crate::tile::{Tile, TileId};
 
-/// Wet paint of a tile with more laid on it.
+/// Wet paint of a tile with more applied to it.
 #[derive(Clone)]
 struct Laid {
     page: Page<Planes>,
-    /// What was laid.
+    /// Paint that was applied.
     given: Counts,
     /// Most quanta of a cell.
     top: f32,
 }
 
-/// What an even film became on tiles that were alike: they share their pages, so that a vast canvas
-/// takes no more room than a tile.
+/// Results of an even film on tiles that were alike: they share their pages, so that a vast canvas takes no more room
+/// than a tile.
 #[derive(Default)]
 pub(super) struct Films {
     /// By the page of what was wet; 0 where nothing was.
@@ -128,7 +128,7 @@ impl Painting {
         }
     }
 
-    /// Most quanta that each cell of a tile takes, and whether it is all cells, none of them a well's.
+    /// Most quanta that each cell of a tile takes, and true if all cells take paint, none of them a well's.
     fn room(&self, (surface, id): TilePlace) -> (Vec<f32>, bool) {
         let mut room = vec![CELL_MAX as f32; TILE_CELLS];
         let Some(sheet) = self.sheets.iter().find(|sheet| sheet.id == surface) else {
@@ -150,7 +150,7 @@ impl Painting {
         (room, is_whole)
     }
 
-    /// Paint laid on what is wet; none where none finds room.
+    /// Wet paint with more applied to it; `None` if there is no room.
     fn laid(
         &self,
         wet: Option<&Page<Planes>>,

@@ -1,4 +1,4 @@
-//! Drying, and what becomes of dry layers.
+//! Drying, and edits of dry layers.
 
 use std::sync::Arc;
 
@@ -13,7 +13,7 @@ use crate::tile::{Tile, TileId};
 
 /// A part of a surface.
 pub(super) struct Part {
-    /// Place of its sheet.
+    /// Index of its surface.
     pub(super) sheet: usize,
     /// Its cells: the first column and row, and one past the last.
     cells: [[u32; 2]; 2],
@@ -22,7 +22,7 @@ pub(super) struct Part {
 /// Tiles after some of their paint dried, or became wet.
 pub(super) type Changed = Vec<(TileId, Arc<Tile>)>;
 
-/// Why nothing dries.
+/// The error that nothing is wet.
 pub(super) fn nothing_wet(region: Option<&Region>) -> EditError {
     let place = region.map_or(String::new(), |region| format!(" in {region}"));
     EditError::new(format!("nothing is wet{place}"), "paint something first")
@@ -38,10 +38,10 @@ impl Painting {
         self.dry_part(surface, share, name, None)
     }
 
-    /// As [`dry`](Self::dry), but only the cells whose middle lies in `region`, if there is one.
+    /// As [`dry`](Self::dry), but only the cells whose middle is in `region`, if there is one.
     ///
     /// # Errors
-    /// As [`dry`](Self::dry), and for a region beside the surface.
+    /// As [`dry`](Self::dry), and for a region outside the surface.
     pub fn dry_part(
         &mut self,
         surface: u32,
@@ -108,8 +108,8 @@ impl Painting {
         })
     }
 
-    /// The cells of a tile that are no part, or lie in a well, for what lies there is as fresh as what
-    /// comes from the tube; none where the whole tile is no part.
+    /// The cells of a tile outside a part or in a well, whose paint is always fresh from the tube; `None` if the whole
+    /// tile is outside.
     pub(super) fn staying(&self, part: &Part, id: TileId) -> Option<Vec<usize>> {
         let side = TILE as u32;
         let [from, to] = part.cells;
@@ -133,7 +133,7 @@ impl Painting {
         Some(stays)
     }
 
-    /// Whether any paint of a part is wet.
+    /// True if any paint of a part is wet.
     pub(super) fn is_wet(&self, part: &Part) -> bool {
         let mut tiles = self.sheets[part.sheet].store.iter();
         tiles.any(|(id, version)| {

@@ -13,11 +13,11 @@ use crate::light::{changes_colour, studio_settings};
 const OPAQUE_M: f64 = 0.01;
 
 impl Painting {
-    /// Changes the light. Where its spectrum, or how it becomes colour, is another, what has dried is
-    /// baked anew by whoever looks at it, tile by tile.
+    /// Changes the light. If its spectrum, or its conversion to colour, changes, dry layers are baked anew on demand,
+    /// tile by tile.
     ///
     /// # Errors
-    /// [`EditError`] for a light that is none.
+    /// [`EditError`] for an invalid light.
     pub fn relight(&mut self, light: &Light) -> Result<(), EditError> {
         let settings = studio_settings(light)?;
         if changes_colour(light, &self.scene.light) {

@@ -1,4 +1,4 @@
-//! What brushes take up and lose: slots of paints, loads, cleaning, the loads of a take.
+//! Loads of the brushes: slots of paints, loading, cleaning, the loads of a take.
 
 use std::sync::Arc;
 
@@ -178,7 +178,7 @@ impl Painting {
         Ok(())
     }
 
-    /// What each brush carries, by its name: as far as the steps are settled.
+    /// Load of each brush, by its name: as far as the steps are settled.
     pub fn carried(&self) -> impl Iterator<Item = (&str, Carried)> {
         let cell_m = self.sheets[0].cell_m;
         self.brushes.iter().map(move |(name, track)| {

@@ -1,4 +1,4 @@
-//! What surfaces are made of.
+//! Materials of the surfaces.
 
 use std::sync::Arc;
 
@@ -93,7 +93,7 @@ impl Painting {
                 continue;
             };
             let relief = (!tooth).then(|| Arc::clone(&sheet.bare.relief));
-            // What a step brings back was checked when it was made.
+            // A material that a step brings back was checked when it was made.
             let makers = (&self.library, &self.embedded);
             if let Ok(bare) = bare(surface, &self.look.studio, makers, relief) {
                 sheet.bare = Arc::new(bare);

@@ -1,4 +1,4 @@
-//! The painting: surfaces, brushes, books. It does what it is told, in the order that it is told.
+//! The painting: surfaces, brushes, ledger. It carries out commands in the order in which they are called.
 
 mod accounting;
 mod backend;
@@ -54,7 +54,7 @@ use crate::traits::BrushTraits;
 use crate::window::Window;
 use backend::{BackendFallback, Deferral};
 
-/// A surface: its tiles and what lies under them.
+/// A surface: its tiles and the ground under them.
 #[derive(Debug)]
 struct SurfaceState {
     id: u32,
@@ -75,29 +75,29 @@ struct PaintingBrush {
     thinned: BrushFile,
     /// Its head as its file has it.
     tidy: Arc<Head>,
-    /// The same with its bristles as they lie since the newest stroke began.
+    /// The same with the disorder of its bristles since the newest stroke began.
     head: Arc<Head>,
     load: Arc<BrushLoad>,
-    /// The load that was last kept, and its page.
+    /// The load that was last saved, and its page.
     kept: Option<(Arc<BrushLoad>, Page<BrushLoad>)>,
     /// Epoch of the brush and number of the newest stroke.
     stroke: Option<(u32, u64)>,
     path: Option<(usize, PathStepper)>,
     window: Option<(usize, Window)>,
-    /// What its strokes take in turn.
+    /// Loads that its strokes take in turn.
     loads: Vec<Mixture>,
     /// Strokes since its take began.
     strokes: usize,
-    /// Seed of how its bristles lie.
+    /// Seed of the disorder of its bristles.
     seed: u64,
-    /// What lay under it at its newest step.
+    /// Surface under it at its newest step.
     under: UnderBrush,
-    /// How far steps are deferred.
+    /// Progress of its deferred steps.
     deferral: Deferral,
 }
 
 impl PaintingBrush {
-    /// Seed of how its bristles lie in its next stroke, and of a load before that.
+    /// Seed of the disorder of its bristles in its next stroke, and of a load before that.
     fn next_seed(&self) -> u64 {
         (self.strokes as u64 + 1).wrapping_mul(0x9e37_79b1) & SEEDS
     }
@@ -118,7 +118,7 @@ impl PaintingBrush {
         self.head = self.disordered();
     }
 
-    /// The head with its bristles as they lie by its seed.
+    /// The head with its bristles disordered by its seed.
     fn disordered(&self) -> Arc<Head> {
         Arc::new(self.tidy.disordered(self.seed))
     }
@@ -143,7 +143,7 @@ pub struct Painting {
     /// Most bytes of the history.
     quota: u64,
     named: BTreeMap<String, Named>,
-    /// Versions that came, changed or went since the document heard of them.
+    /// Versions that came, changed or went since the last checkpoint.
     named_touched: BTreeSet<String>,
     /// The version from which the painter goes on.
     line: Option<String>,
@@ -230,7 +230,7 @@ impl Painting {
         &self.library
     }
 
-    /// How its paint becomes colour.
+    /// Appearance of its paint.
     #[must_use]
     pub fn look(&self) -> &Arc<Appearance> {
         &self.look
@@ -328,13 +328,13 @@ impl Painting {
             .map(String::as_str)
     }
 
-    /// Whether a brush is known.
+    /// True if a brush is known.
     #[must_use]
     pub fn knows_brush(&self, name: &str) -> bool {
         self.brushes.contains_key(name)
     }
 
-    /// How full the brush with this hash of its name is, 0 to 1.
+    /// Fullness of the brush with this hash of its name, 0 to 1.
     #[must_use]
     pub fn fullness(&self, source: u32) -> f32 {
         let mut brushes = self.brushes.iter();

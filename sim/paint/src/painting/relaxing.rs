@@ -1,8 +1,8 @@
-//! What a stroke leaves relaxes: once the brush is lifted its paint levels for a second, as far as its yield
-//! stress lets it.
+//! Levelling after a stroke: once the brush is lifted the paint levels for a second, as far as its yield stress lets
+//! it.
 //!
-//! It is a part of the stroke, so undo takes both back, and it follows from what is in the journal alone: the
-//! same bytes live and offline. Palettes are left out, for their wells are heaps that stand.
+//! It is a part of the stroke, so undo takes both back, and it follows from the journal alone: the same bytes live and
+//! offline. Palettes are left out, for their wells are heaps that stand.
 
 use maulstick_types::paint::TILE;
 
@@ -14,17 +14,17 @@ use crate::impasto::velocity::Faces;
 use crate::quantum::QUANTUM_M;
 use crate::window::Area;
 
-/// How long a stroke levels once the brush is lifted, s.
+/// Duration of the levelling once the brush is lifted, s.
 const SECONDS: f64 = 1.0;
 /// Rounds in which it does: of ripples six cells long a fifth is left after them.
 const ROUNDS: u32 = 64;
 /// Of them heights alone go through so many, before their paint follows at once.
 const AT_ONCE: u32 = 16;
-/// Where less than this share of a cell would flow, all rests.
+/// Flow per round below which all rests, as a share of a cell.
 const RESTS: f32 = 1e-3;
 
 impl Painting {
-    /// Lets what a brush's stroke has reached on a sheet level.
+    /// Levels the paint that a brush's stroke has reached on a surface.
     pub(super) fn relax(&mut self, name: &str, sheet: usize) {
         if self.has_wells(sheet) {
             return;

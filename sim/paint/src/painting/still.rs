@@ -68,7 +68,7 @@ impl Painting {
         Ok(())
     }
 
-    /// Whether no paint was ever laid on it, and no version kept: what brushes carry is no paint on it.
+    /// True if no paint was ever applied to it, and no version saved: loads of brushes do not count.
     #[must_use]
     pub fn is_blank(&self) -> bool {
         let untouched = self.history.steps().all(|step| step.tiles.is_empty());

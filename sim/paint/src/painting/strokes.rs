@@ -105,7 +105,7 @@ impl Painting {
     }
 
     /// Thins a brush that comes down on the canvas to the strips that its cells can tell apart. On a palette it stays
-    /// as it is: its load would be merged and parted at each dip.
+    /// as it is: its load would be merged and split at each dip.
     fn thin(&mut self, name: &str, sheet: usize, scale: Scale) -> Result<(), EditError> {
         if self.sheets[sheet].id == CANVAS {
             self.settle();
@@ -122,7 +122,7 @@ impl Painting {
         Ok(())
     }
 
-    /// Steps what is left of a brush's way; on which sheet, if it was in contact.
+    /// Steps the rest of a brush's path; returns the index of the surface, if it was in contact.
     fn end_path(&mut self, name: &str) -> Result<Option<usize>, EditError> {
         let track = self.brush(name)?;
         let Some((sheet, mut path)) = track.path.take() else {
@@ -135,8 +135,8 @@ impl Painting {
         Ok(Some(sheet))
     }
 
-    /// Has the bristles of a brush lie otherwise: as chance has it for the strokes since its take began, so
-    /// that a take is the same however often it is played.
+    /// Disorders the bristles of a brush by the number of strokes since its take began, so that a take is the same
+    /// however often it is played.
     fn disorder(&mut self, name: &str) -> Result<(), EditError> {
         self.settle();
         let track = self.brush(name)?;
@@ -176,7 +176,7 @@ impl Painting {
         let traits = BrushTraits::of(&track.thinned, scale.cell_m, scale.zoom).doubled(doublings);
         let deferred = self.model.defers() && !self.has_wells(sheet);
         let height = if deferred {
-            // How high paint stands is not known here.
+            // The height of the paint is not known here.
             f32::INFINITY
         } else {
             let wet = self.sheets[sheet].top * (QUANTUM_M / scale.cell_m) as f32;
@@ -235,7 +235,7 @@ impl Painting {
             self.model.step_now(&mut step)
         };
         self.sheets[sheet].top = self.sheets[sheet].top.max(window.top());
-        // What is told of deferred steps is told of all that were not settled.
+        // The report of deferred steps covers all that were not settled.
         let unsettled = if deferred {
             track.deferral.unsettled_steps()
         } else {
@@ -247,8 +247,7 @@ impl Painting {
         }
     }
 
-    /// Makes sure that the brush's window holds the cells `from`..`to`; false where they all lie
-    /// beside the surface.
+    /// Makes sure that the brush's window holds the cells `from`..`to`; false if they are all outside the surface.
     pub(super) fn reach(&mut self, name: &str, sheet: usize, from: [i64; 2], to: [i64; 2]) -> bool {
         let Some(needed) = self.sheets[sheet].store.around(from, to) else {
             return false;

@@ -1,4 +1,4 @@
-//! Paint that is laid cell by cell: an underpainting after a picture.
+//! Paint applied cell by cell: an underpainting after a picture.
 
 use maulstick_types::Mixture;
 use maulstick_types::mixture::Part;
@@ -10,7 +10,7 @@ use crate::ledger::Ledger;
 use crate::quantum::SLOTS;
 use crate::tile::TileId;
 
-/// What becomes of paint after it was laid.
+/// State of the paint after it was applied.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Wetness {
     /// It stays wet.
@@ -25,7 +25,7 @@ pub enum Wetness {
 /// Paint for a tile.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct LaidTile {
-    /// Which.
+    /// Tile number.
     pub id: TileId,
     /// Number of a paint, and its quanta in each of the [`TILE_CELLS`](crate::planes::TILE_CELLS) cells,
     /// row after row from the bottom.
@@ -47,13 +47,12 @@ impl Painting {
         &self.embedded
     }
 
-    /// Lays paint on a surface, cell by cell, from the tubes of `paints`: one step that can be undone.
-    /// Cells beyond the surface's edge and in wells get none, and none more than it can hold. Where it is
-    /// to dry, what is wet dries before it, as a layer of its own. Returns the name of its layer, if it
-    /// dried.
+    /// Applies paint to a surface, cell by cell, from the tubes of `paints`: one step that can be undone. Cells beyond
+    /// the surface's edge and in wells get none, and none more than it can hold. If it is to dry, wet paint dries
+    /// before it, as a layer of its own. Returns the name of its layer, if it dried.
     ///
     /// # Errors
-    /// [`EditError`] for an unknown surface or paint, or a 17th paint; then nothing is laid.
+    /// [`EditError`] for an unknown surface or paint, or a 17th paint; then nothing is applied.
     pub fn underpaint(
         &mut self,
         surface: u32,
@@ -67,7 +66,7 @@ impl Painting {
         let [across, up] = grid.unwrap_or_default();
         self.begin_step("underpaint", None);
         if matches!(wetness, Wetness::Dry { .. }) {
-            // What is wet dries first, apart: nothing dries on top of wet paint.
+            // Wet paint dries first, as a step of its own: nothing dries on top of wet paint.
             self.dry_in_step(surface, 1.0, "").ok();
         }
         for tile in tiles {

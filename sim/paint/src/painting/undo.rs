@@ -17,7 +17,7 @@ use crate::page::Page;
 use crate::tile::Version;
 use crate::traits::TEXELS_PER_STRIP;
 
-/// Which way a step is taken.
+/// Direction of a step: undo or redo.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Way {
     Back,
@@ -33,7 +33,7 @@ impl Way {
         }
     }
 
-    /// How often what it booked is booked.
+    /// Factor on its bookings.
     fn times(self) -> i64 {
         match self {
             Self::Back => -1,
@@ -42,7 +42,7 @@ impl Way {
     }
 }
 
-/// What the surfaces of a scene are made of.
+/// Materials of the surfaces of a scene.
 pub(super) fn makes(scene: &Scene) -> Vec<SurfaceMaterial> {
     let surfaces = scene.surfaces.iter();
     surfaces
@@ -113,7 +113,7 @@ impl Painting {
         }
     }
 
-    /// Ends the step that is nobody's brush's.
+    /// Ends the open step that belongs to no brush.
     pub(super) fn end_own_step(&mut self) {
         self.end_step(|step| step.brush.is_none());
     }
@@ -159,16 +159,15 @@ impl Painting {
         open.map(|open| self.finished(open, &after)).collect()
     }
 
-    /// What lies on a tile now.
+    /// Current content of a tile.
     pub(super) fn held(&self, (surface, id): TilePlace) -> TileRef {
         self.sheet(surface)?.store.version(id).tile.clone()
     }
 
-    /// Takes the newest step back, of a brush or of all, and says what it was.
+    /// Undoes the newest step, of a brush or of all, and returns its description.
     ///
     /// # Errors
-    /// [`EditError`] where there is none, or where something was painted over it since: then
-    /// nothing has changed.
+    /// [`EditError`] if there is no step, or something was painted over it since: then nothing has changed.
     pub fn undo(&mut self, brush: Option<&str>) -> Result<String, EditError> {
         if let Some(brush) = brush {
             self.brush(brush)?;
@@ -249,7 +248,7 @@ impl Painting {
         let other_rest = layers.is_some_and(|ends| ends[from] != self.scene.layers)
             || made.is_some_and(|ends| ends[from] != makes(&self.scene));
         let other_books = !self.ledger.can_book(&effects.booked, way.times());
-        // What came later may have led back to what this one left, as a return to a version does.
+        // A later step may have led back to what this one left, as a return to a version does.
         let later = match way {
             Way::Back => self.history.later_on(step),
             Way::Forth => None,
@@ -289,8 +288,8 @@ impl Painting {
         step.what.clone()
     }
 
-    /// How high paint stands is as it was, where nothing else was painted meanwhile: then the same
-    /// motion paints the same again.
+    /// Restores the height of the paint where nothing else was painted meanwhile: then the same motion paints the same
+    /// again.
     fn turn_tops(&mut self, step: &Step, way: Way) {
         let newest = self.history.last_done(None).map_or(0, |newest| newest.id);
         let [before, after] = &step.effects.tops;
@@ -308,7 +307,7 @@ impl Painting {
         }
     }
 
-    /// Whether a brush carries what is on a page; of a brush that is gone nobody minds.
+    /// True if a brush carries the load of a page; always true for a brush that is gone.
     fn carries(&self, name: &str, page: &Page<BrushLoad>) -> bool {
         self.brushes.get(name).is_none_or(|track| {
             let kept = track.kept.as_ref();
@@ -366,7 +365,7 @@ impl Painting {
         }
     }
 
-    /// How many steps can be undone and redone.
+    /// Numbers of steps that can be undone and redone.
     #[must_use]
     pub fn history_depth(&self) -> (usize, usize) {
         self.history.depth()
@@ -384,7 +383,7 @@ impl Painting {
         self.history.forget();
     }
 
-    /// How many bytes the history may take; beyond that its oldest steps are merged.
+    /// Limit of the history, bytes; beyond that its oldest steps are merged.
     pub fn set_quota(&mut self, bytes: u64) {
         self.quota = bytes;
         self.keep_to_quota();

@@ -1,4 +1,4 @@
-//! Named versions: the whole painting as it was at a moment.
+//! Named versions: snapshots of the whole painting.
 
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -20,11 +20,11 @@ pub struct Named {
     pub parent: Option<String>,
     /// Its tiles, where something was painted.
     pub tiles: Arc<BTreeMap<TilePlace, TileRef>>,
-    /// What it was besides.
+    /// Its state besides tiles.
     pub rest: NonTileState,
 }
 
-/// What the painting as it is is called among its versions.
+/// Name of the current painting among its versions.
 pub const NOW: &str = "now";
 
 impl Painting {

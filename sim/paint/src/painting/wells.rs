@@ -1,7 +1,7 @@
 //! The wells of a palette: paint that never runs out, and the cleaner.
 //!
-//! Under the brush a well's cells hold its mixture, fresh: what was pushed into them goes to the
-//! cleaner, what was taken comes from the tubes. A brush that touches the cleaner is clean.
+//! Under the brush a well's cells hold its mixture, fresh: paint that was pushed into them goes to the cleaner, paint
+//! that was taken comes from the tubes. A brush that touches the cleaner is clean.
 
 use std::sync::Arc;
 
@@ -22,7 +22,7 @@ const EDGE_M: f64 = 1e-6;
 /// A strip is down within this of the surface, cells.
 const DIPS: f32 = 1.0;
 
-/// The cells of a window that lie in a well and in a rectangle.
+/// The cells of a window that are in a well and in a rectangle.
 fn cells_within<'a>(
     window: &'a Window,
     well: &Well,
@@ -50,7 +50,7 @@ fn cells_within<'a>(
         .map(move |(x, y)| y as usize * width + x as usize)
 }
 
-/// Whether a strip is down on the surface within a well.
+/// True if a strip is down on the surface within a well.
 fn is_in((pose, traits): (&HeadPose, &BrushTraits), well: &Well, cell_m: f64) -> bool {
     let low = traits.half_thickness + traits.sink + DIPS;
     let [x, y] = well.center_m.map(|m| (m / cell_m) as f32);
@@ -63,10 +63,10 @@ fn is_in((pose, traits): (&HeadPose, &BrushTraits), well: &Well, cell_m: f64) ->
 }
 
 impl Painting {
-    /// Gives a surface other wells. What brushes have stirred in those that go stays there, wet.
+    /// Gives a surface other wells. Paint stirred in those that go stays there, wet.
     ///
     /// # Errors
-    /// [`EditError`] for an unknown surface or paint, or a well that does not lie on the surface.
+    /// [`EditError`] for an unknown surface or paint, or a well outside the surface.
     pub fn set_wells(&mut self, surface: u32, wells: &[Well]) -> Result<(), EditError> {
         let mut changed = self.surface(surface)?.clone();
         let size = changed.cells.map(|cells| f64::from(cells) * changed.cell_m);
@@ -104,7 +104,7 @@ impl Painting {
         Ok(())
     }
 
-    /// Sees to the wells that lie in the cells `from`..`to` of a sheet before a brush steps there.
+    /// Tends the wells in the cells `from`..`to` of a surface before a brush steps there.
     pub(super) fn tend_wells(
         &mut self,
         name: &str,

@@ -1,4 +1,4 @@
-//! Dry layers that are made wet again.
+//! Rewetting of dry layers.
 
 use std::collections::BTreeSet;
 use std::sync::Arc;
@@ -12,15 +12,14 @@ use crate::planes::TILE_CELLS;
 use crate::tile::{Tile, TileId};
 
 impl Painting {
-    /// Makes the newest `layers` dry layers of a part wet paint again where they lie; 0 means all. Says
-    /// which.
+    /// Rewets the newest `layers` dry layers of a part in place; 0 means all. Returns which, in words.
     ///
-    /// A cell takes no more than it can hold: what has no room, and all that lies under it there, stays
-    /// dry. A layer of which nothing is left is gone from the scene.
+    /// A cell takes no more than it can hold: paint without room, and all under it there, stays dry. A layer that is
+    /// empty afterwards is removed from the scene.
     ///
     /// # Errors
-    /// [`EditError`] for an unknown surface or a part beside it, where nothing has dried or has room,
-    /// and for a layer whose opacity is not 1, for wet paint has none. Then nothing has changed.
+    /// [`EditError`] for an unknown surface or a part outside it, where nothing has dried or has room, and for a layer
+    /// whose opacity is not 1, for wet paint has no opacity. Then nothing has changed.
     pub fn wet(
         &mut self,
         surface: u32,
@@ -119,7 +118,7 @@ impl Painting {
         found
     }
 
-    /// Takes those of `numbers` from the scene of which nothing lies on any surface.
+    /// Removes those of `numbers` from the scene that are empty on every surface.
     fn drop_empty_layers(&mut self, numbers: &BTreeSet<u32>) {
         let mut gone = numbers.clone();
         for (_, version) in self.sheets.iter().flat_map(|sheet| sheet.store.iter()) {

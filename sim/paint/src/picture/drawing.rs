@@ -1,4 +1,4 @@
-//! What is drawn of a surface, and how: light first, then gamut and encoding.
+//! Drawing of a surface into pixels: light first, then gamut and encoding.
 
 use std::fmt;
 
@@ -14,7 +14,7 @@ use crate::lamp::lamp_over;
 use crate::painting::Painting;
 use crate::tile::TileId;
 
-/// What becomes of a point.
+/// Light of a point.
 pub(super) type Light = Box<dyn Fn(&Spot) -> [f32; 3] + Sync>;
 
 /// A surface under light, for a destination.
@@ -41,7 +41,7 @@ pub(super) fn flat(spot: &Spot, lamp: [f32; 3]) -> [f32; 3] {
 }
 
 impl<'a> Drawing<'a> {
-    /// A surface under the scene's lamp; none if there is no such surface.
+    /// A surface under the scene's lamp; `None` if there is no such surface.
     pub fn lit(painting: &'a mut Painting, surface: u32, export: &'a Export) -> Option<Self> {
         let lamp = lamp_over(painting.scene(), surface);
         let banded = Banded::of(painting, surface)?;
@@ -50,7 +50,7 @@ impl<'a> Drawing<'a> {
         Some(Self::new(banded, light, Some(surroundings), export))
     }
 
-    /// A surface as if it were flat: its colours alone; none if there is no such surface.
+    /// A surface as if it were flat: its colours alone; `None` if there is no such surface.
     pub fn flat(painting: &'a mut Painting, surface: u32, export: &'a Export) -> Option<Self> {
         let lamp = lamp_over(painting.scene(), surface).colour;
         let banded = Banded::of(painting, surface)?;

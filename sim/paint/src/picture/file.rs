@@ -13,7 +13,7 @@ pub fn density(cell_m: f64) -> u32 {
     (1.0 / cell_m).round().clamp(0.0, f64::from(u32::MAX)) as u32
 }
 
-/// What the pixels of a file are.
+/// Layout of the pixels of a file.
 #[derive(Clone, Copy, Debug)]
 pub struct Pixels<'a> {
     /// Across and down.
@@ -24,7 +24,7 @@ pub struct Pixels<'a> {
     pub depth: Depth,
     /// The ICC profile that says what they mean.
     pub icc: Option<&'a [u8]>,
-    /// How many a metre holds.
+    /// Pixels per metre.
     pub pixels_per_m: Option<u32>,
 }
 
@@ -49,10 +49,10 @@ impl<'a> Pixels<'a> {
     }
 }
 
-/// Writes a PNG: `fill` writes all its pixels, from the top row. How it cuts them up changes no byte.
+/// Writes a PNG: `fill` writes all its pixels, from the top row. The size of its writes changes no byte.
 ///
 /// # Errors
-/// What `to` or `fill` says.
+/// The error of `to` or `fill`.
 pub fn write_png<E: From<Error>>(
     to: impl Write,
     info: png::Info<'_>,

@@ -17,12 +17,12 @@ use maulstick_optics::icc::Profile;
 use crate::bands::in_order;
 use crate::painting::Painting;
 
-/// How a picture leaves the working space.
+/// Conversion of a picture from the working space.
 #[derive(Clone, Debug)]
 pub struct Export {
-    /// Where it goes.
+    /// Target profile.
     pub profile: Arc<Profile>,
-    /// How its colours come into the gamut there.
+    /// Gamut mapping into that profile.
     pub gamut: GamutMapping,
 }
 
@@ -95,7 +95,7 @@ pub fn unlit_picture(painting: &mut Painting, surface: u32) -> Picture {
     whole(Drawing::flat(painting, surface, &Export::default()))
 }
 
-/// All bands of a drawing; nothing where there is none.
+/// All bands of a drawing; empty without one.
 fn whole(drawing: Option<Drawing<'_>>) -> Picture {
     let Some(drawing) = drawing else {
         return Picture::srgb(0, 0, Vec::new());
@@ -133,10 +133,10 @@ impl Picture {
         }
     }
 
-    /// Writes a PNG: 8 bits a channel, with its profile and how large a pixel is.
+    /// Writes a PNG: 8 bits a channel, with its profile and the size of a pixel.
     ///
     /// # Errors
-    /// What `to` says.
+    /// The error of `to`.
     pub fn encode_png(&self, to: impl Write) -> Result<(), Error> {
         let pixels = Pixels {
             size: [self.width, self.height],

@@ -1,5 +1,5 @@
-//! The commands about how brushes are used, how surfaces lie and are prepared, and those that are not the
-//! painting's.
+//! Dispatch of the commands about handling of brushes, placement and preparation of surfaces, and of those that are not
+//! the painting's.
 
 use maulstick_types::command::Command;
 
@@ -7,7 +7,7 @@ use super::Sequencer;
 use crate::error::EditError;
 
 impl Sequencer {
-    /// Does a command about ways of painting; any other asks nothing of the painting.
+    /// Carries out a command about brush handling; any other has no effect on the painting.
     pub(super) fn ways(&mut self, command: &Command) -> Result<String, EditError> {
         let painting = &mut self.painting;
         let done = match command {
@@ -34,7 +34,7 @@ impl Sequencer {
     }
 }
 
-/// Why a command that changes no painting is none of its sequencer's.
+/// The refusal of a command that changes no painting and is not the sequencer's.
 pub(super) fn elsewhere(command: &Command) -> EditError {
     let (what, help) = match command {
         Command::Define { brush, .. } => (

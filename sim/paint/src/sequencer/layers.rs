@@ -1,4 +1,4 @@
-//! Time, and the commands about what dries.
+//! Time, and the commands about drying.
 
 use maulstick_types::command::Command;
 use maulstick_types::paint::Entry;

@@ -1,4 +1,4 @@
-//! What a document keeps of the journal: the accepted things themselves, to be accepted again.
+//! Journal records as a document saves them: accepted commands and states, to be accepted again.
 
 use maulstick_brush::BrushFile;
 use maulstick_types::brush::BrushState;
@@ -18,7 +18,7 @@ const OWN: u64 = 0;
 /// joined to what they do next.
 const GOES_ON: &str = "the painting goes on";
 
-/// The zoom of a solve of which only the scene says at what zoom it was painted: an older program kept it.
+/// Zoom of a solve that an older program saved without it: the scene has the zoom.
 pub const NO_ZOOM: f64 = 0.0;
 
 /// Something that was accepted.
@@ -76,13 +76,13 @@ impl Sequencer {
         self.records = None;
     }
 
-    /// How many things were accepted.
+    /// Number of accepted records.
     #[must_use]
     pub fn serial(&self) -> u64 {
         self.serial
     }
 
-    /// What was accepted since the last call.
+    /// Records accepted since the last call.
     pub fn take_records(&mut self) -> Vec<Record> {
         self.records
             .as_mut()
@@ -126,8 +126,8 @@ impl Sequencer {
         }
     }
 
-    /// Goes on after the program ended: the next states of brushes begin their ways anew, and no take
-    /// holds a brush until its player is there again.
+    /// Resumes after the program ended: the next states of brushes begin new paths, and no take has a brush until its
+    /// player is there again.
     pub fn go_on(&mut self) {
         self.let_go();
         self.decide(GOES_ON);
@@ -139,7 +139,7 @@ impl Sequencer {
         self.gone.extend(players);
     }
 
-    /// Whether a take is being played: its brush is held by it.
+    /// True while a take is being played: its brush belongs to it.
     #[must_use]
     pub fn is_taking(&self) -> bool {
         let mut takes = self.announced.values();
@@ -158,8 +158,7 @@ impl Sequencer {
         }
     }
 
-    /// Accepts again what a document has kept. What was done then is done now; what was asked of the
-    /// outside world is not asked again.
+    /// Accepts a saved record again. Its effect on the painting is repeated; its effect on the outside world is not.
     pub fn replay(&mut self, record: Record) {
         let recording = self.records.take();
         let next = record.next();
@@ -222,7 +221,7 @@ impl Sequencer {
     fn replay_state(&mut self, header: &Header, state: &BrushState) {
         let brush = self.painting.brush_of(header.source).map(str::to_owned);
         if let Some(brush) = brush.filter(|_| state.fault().is_none()) {
-            // What was refused then is refused now.
+            // A state that was refused then is refused now.
             self.paint(&brush, header, state).ok();
             self.consume(&brush, header);
         }
@@ -244,7 +243,7 @@ impl Sequencer {
         }
     }
 
-    /// A sequencer that goes on where it was kept.
+    /// A sequencer restored from its snapshot.
     #[must_use]
     pub fn restored(mut painting: Painting, kept: SequencerSnapshot) -> Self {
         let answers = kept.answers.values().map(|answer| answer.age).max();

@@ -1,4 +1,4 @@
-//! The rack: what it shows, and what a click asks for.
+//! The rack: its brushes, and the requests of a click.
 
 use std::cell::Cell;
 

@@ -1,4 +1,4 @@
-//! What rack, keys and presets ask for.
+//! Requests of rack, keys and presets.
 
 use maulstick_rig::Fault;
 

@@ -1,4 +1,4 @@
-//! What of the brush's own file a painter may change: how much it carries, how its bristles are.
+//! Settings of the brush file that a painter may change: capacity and bristles.
 
 use eframe::egui::{Slider, SliderClamping, Ui};
 use maulstick_brush::BrushFile;
@@ -85,7 +85,7 @@ pub(super) fn show(
             *value = shown;
         }
     }
-    // What sticks holds at least as well as what slides.
+    // Static friction is at least kinetic friction.
     if let Some(sticking) = &mut wanted.contact.friction_static {
         *sticking = sticking.max(wanted.contact.friction);
     }

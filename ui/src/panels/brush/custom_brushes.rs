@@ -1,4 +1,4 @@
-//! Brush files of the painter's own in the rack.
+//! The painter's own brush files in the rack.
 
 use std::path::PathBuf;
 
@@ -53,7 +53,7 @@ impl OwnBrushes {
     }
 }
 
-/// Puts a brush file into the rack and the brush into the hand; false where it is none, which is told.
+/// Puts a brush file into the rack and the brush into the hand; false if the file is invalid, with a notification.
 fn add_file(ui: &Ui, work: &mut PanelContext<'_>, path: PathBuf) -> bool {
     icon_cache::forget(ui.ctx(), &path);
     match icon_cache::own(ui.ctx(), &path) {

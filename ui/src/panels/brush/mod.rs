@@ -33,7 +33,7 @@ const PORTRAIT: [f32; 2] = [44.0, 64.0];
 /// The panel.
 #[derive(Debug, Default)]
 pub(crate) struct BrushPanel {
-    /// The brush as it is being dragged, before it is asked for.
+    /// The brush while a control is dragged, before it is requested.
     dragged: Option<BrushFile>,
     /// For which brush the widths hold that it can have, mm.
     widths: Option<(BrushFile, RangeInclusive<f64>)>,
@@ -70,7 +70,7 @@ impl Panel for BrushPanel {
         });
         is_held |= bristles.body_returned.unwrap_or(false);
         ui.collapsing("Own brush files", |ui| self.own.show(ui, work));
-        // What was dragged is asked for once it is let go.
+        // The change is requested when the control is released.
         if !is_held && let Some(file) = self.dragged.take() {
             work.take_up(file);
         }
@@ -132,7 +132,7 @@ impl BrushPanel {
         range
     }
 
-    /// Whether the width is being dragged.
+    /// Width slider; true while it is dragged.
     fn width(&mut self, ui: &mut Ui, work: &mut PanelContext<'_>, file: &BrushFile) -> bool {
         let mut width_mm = file.head.width_mm;
         let hover =

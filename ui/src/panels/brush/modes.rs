@@ -1,4 +1,4 @@
-//! The ways that a brush is used in, as the paint model offers them.
+//! Brush modes that the paint model offers.
 
 use eframe::egui::{ComboBox, Ui};
 use maulstick_types::command::Command;
@@ -9,10 +9,10 @@ use crate::widgets::labelled::{self, PendingValue};
 
 /// Most paint that a painter is offered as a bound, µm.
 const MOST_UM: std::ops::RangeInclusive<f64> = 1.0..=2000.0;
-/// The bound that is proposed where there was none, m.
+/// Proposed film limit where there was none, m.
 const PROPOSED_M: f64 = 60e-6;
 
-/// The ways, and what each does, in a painter's words.
+/// Modes with labels and descriptions in a painter's words.
 const WAYS: [(BrushMode, &str, &str); 7] = [
     (
         BrushMode::Normal,

@@ -1,4 +1,4 @@
-//! Loading the brush in the hand, and cleaning it.
+//! Controls that load and clean the brush in the hand.
 
 use eframe::egui::{Button, TextEdit, Ui};
 use maulstick_rig::Fault;

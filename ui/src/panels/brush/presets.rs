@@ -1,4 +1,4 @@
-//! Presets: brushes that are ready with their paint.
+//! Presets: brushes with their paint.
 
 use eframe::egui::{Button, Key, TextEdit, Ui, vec2};
 
@@ -19,7 +19,7 @@ pub(super) struct PresetRows {
     deleted: Option<(usize, Preset)>,
 }
 
-/// What is asked of a preset.
+/// Action on a preset.
 enum Deed {
     Apply,
     Rename,

@@ -1,4 +1,4 @@
-//! The brush panel: what its controls ask for, and how it looks.
+//! Brush panel: requests of its controls, and its snapshot.
 
 use eframe::egui::{Key, Modifiers, Role};
 use egui_kittest::Harness;

@@ -20,7 +20,7 @@ const THICKNESS: Number<'_> = Number {
     factors: true,
 };
 
-/// What is asked for with the next film.
+/// Form for the next film.
 #[derive(Clone, Debug)]
 pub(super) struct FilmForm {
     sliders: Sliders,

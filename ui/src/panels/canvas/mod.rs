@@ -99,7 +99,7 @@ impl Panel for CanvasPanel {
     }
 }
 
-/// How large it is; another size is another painting.
+/// Size of the canvas; another size means another painting.
 fn size(ui: &mut Ui, work: &mut PanelContext<'_>, canvas: &Surface) {
     let [width, height] = canvas
         .cells
@@ -119,7 +119,7 @@ fn size(ui: &mut Ui, work: &mut PanelContext<'_>, canvas: &Surface) {
     });
 }
 
-/// What a name of the scene is to a painter.
+/// Display name of an entry of the scene.
 fn shown<'a>(name: &'a str, measured: &'a str) -> &'a str {
     if name.starts_with(IMAGE) {
         "a picture"
@@ -130,7 +130,7 @@ fn shown<'a>(name: &'a str, measured: &'a str) -> &'a str {
     }
 }
 
-/// What is the painter's, whatever is painted.
+/// Preferences of the painter, the same for every painting.
 fn preferences(ui: &mut Ui, work: &mut PanelContext<'_>) {
     ui.checkbox(&mut work.preferences.left_handed, "Left-handed")
         .on_hover_text("The palette lies at the right, brushes and panels at the left");
@@ -212,7 +212,7 @@ impl CanvasPanel {
         }
     }
 
-    /// How it lies.
+    /// Placement of the canvas.
     fn place(&mut self, ui: &mut Ui, work: &mut PanelContext<'_>, canvas: &Surface) {
         let now_s = ui.input(|input| input.time);
         let before = self.posture.shown(now_s, &Posture::of(canvas));

@@ -1,4 +1,4 @@
-//! How a surface lies: raised at its upper edge, turned, zoomed, all about its middle.
+//! Tilt, turn and zoom of a surface about its middle.
 
 use glam::{DQuat, DVec3};
 use maulstick_num::atan2;
@@ -6,24 +6,24 @@ use maulstick_num::geometry::{Rigid, canonical, rotation};
 use maulstick_types::Pose;
 use maulstick_types::scene::Surface;
 
-/// How a surface lies on the desk.
+/// Placement of a surface on the desk.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Posture {
-    /// How far its upper side is raised, degrees.
+    /// Tilt of its upper side, degrees.
     pub(super) tilt_deg: f64,
-    /// How far it is turned in its own plane, counter-clockwise, degrees.
+    /// Turn in its own plane, counter-clockwise, degrees.
     pub(super) turn_deg: f64,
     /// Desk lengths per surface length, per cent.
     pub(super) percent: f64,
 }
 
-/// Thousandths: what was asked for is found again in the scene.
+/// Rounds to thousandths, so that a requested value is recognised in the scene.
 fn tidy(value: f64) -> f64 {
     (value * 1e3).round() * 1e-3 + 0.0
 }
 
 impl Posture {
-    /// As a surface lies; where it also leans aside, that is left out.
+    /// Placement of a surface; a sideways lean is left out.
     #[must_use]
     pub(super) fn of(surface: &Surface) -> Self {
         let turned = Rigid::from(&surface.pose).rotation;
@@ -37,7 +37,7 @@ impl Posture {
         }
     }
 
-    /// Pose and zoom of the surface when it lies like this, its middle where it is.
+    /// Pose and zoom of the surface with this placement, its middle unmoved.
     #[must_use]
     pub(super) fn laid(&self, surface: &Surface) -> (Pose, f64) {
         let zoom = self.percent * 1e-2;

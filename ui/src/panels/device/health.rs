@@ -1,4 +1,4 @@
-//! How well the loop of a device's force runs: how late it wakes, and how long a tick takes.
+//! Timing of the force loop: wake-up latency and duration of a tick.
 
 use eframe::egui::{CollapsingHeader, Ui, vec2};
 use egui_plot::{Bar, BarChart, Plot};
@@ -47,7 +47,7 @@ pub(super) fn show(ui: &mut Ui, status: &StylusStatus) {
         });
 }
 
-/// The bin in which a share of all counts ends; none where nothing is counted.
+/// The bin that holds the given quantile; `None` if nothing is counted.
 fn quantile(counts: &[u64], share: f64) -> Option<usize> {
     let all = counts
         .iter()

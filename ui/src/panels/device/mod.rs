@@ -35,7 +35,7 @@ const PATIENCE_NS: u64 = 700_000_000;
 /// The panel.
 #[derive(Debug, Default)]
 pub(crate) struct DevicePanel {
-    /// Whose strength is being changed, what was asked, percent, and until when it is shown, ns.
+    /// The device whose strength is being changed, the requested percentage, and the time until which it is shown, ns.
     asked: Option<(String, f64, u64)>,
 }
 
@@ -203,7 +203,7 @@ fn what(info: &StylusInfo) -> String {
     format!("{}, moves '{}'{rate}", info.driver, info.brush)
 }
 
-/// What a device senses, in words.
+/// Sensors of a device, in words.
 fn senses(bits: u32) -> String {
     let all = [
         (axes::POSITION, "position"),

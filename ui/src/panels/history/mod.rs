@@ -24,7 +24,7 @@ mod tree;
 
 /// Width and height of a small picture, points.
 const PICTURE: [f32; 2] = [60.0, 48.0];
-/// How far a version is moved in from the one that it was painted from, points; and at most.
+/// Indent of a version below its parent, points; and the largest indent.
 const INWARD: f32 = 12.0;
 const MOST_INWARD: usize = 5;
 
@@ -35,7 +35,7 @@ pub(crate) struct HistoryPanel {
     name: String,
     /// The version from which another one begins, and its name.
     branching: Option<(String, String)>,
-    /// The version that is asked about.
+    /// The version whose deletion is to be confirmed.
     forgetting: Option<String>,
     textures: BTreeMap<String, (Arc<Picture>, TextureHandle)>,
 }

@@ -1,8 +1,8 @@
-//! Versions as a tree: each after the one that it was painted from.
+//! Versions as a tree: each below the one it was painted from.
 
 use maulstick_types::scene::NamedVersion;
 
-/// The versions from the top, with how deep each lies. One whose parent was forgotten begins anew.
+/// The versions from the top, with the depth of each. One whose parent was deleted begins a new tree.
 #[must_use]
 pub(super) fn in_order(versions: &[NamedVersion]) -> Vec<(usize, &NamedVersion)> {
     let mut order: Vec<(usize, &NamedVersion)> = Vec::new();
@@ -10,7 +10,7 @@ pub(super) fn in_order(versions: &[NamedVersion]) -> Vec<(usize, &NamedVersion)>
     for root in versions.iter().filter(|version| !known(&version.parent)) {
         below(versions, root, &mut order);
     }
-    // None is left out, whatever its parents say.
+    // No version is left out, whatever its parents say.
     for version in versions {
         below(versions, version, &mut order);
     }

@@ -1,4 +1,4 @@
-//! How to dry what is wet: how much of it, where, at once or in time.
+//! Controls for drying: share, region, at once or over time.
 
 use eframe::egui::{DragValue, ProgressBar, TextEdit, Ui};
 use maulstick_paint::clock::TICKS_A_SECOND;
@@ -11,7 +11,7 @@ use super::region;
 use crate::widgets::context::PanelContext;
 use crate::widgets::rows::{Number, Sliders, ask, choice, row};
 
-/// Where it dries.
+/// Choice of region.
 const PLACES: [&str; 2] = ["All of it", "A part"];
 
 const SHARE: Number<'_> = Number {
@@ -23,18 +23,18 @@ const SHARE: Number<'_> = Number {
     factors: false,
 };
 
-/// A drying that goes on.
+/// A drying in progress.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Drying {
     /// Share of its time that went by, 0 to 1.
     pub share: f32,
-    /// How long it still goes on, s.
+    /// Time left, s.
     pub left_s: f64,
     /// Name of its layer; empty where it is called by its number.
     pub layer: String,
 }
 
-/// What dries on the canvas as the paint node says.
+/// Drying of the canvas as the paint node reports it.
 fn drying(status: &PaintStatus) -> Option<Drying> {
     let drying = status.drying.as_ref()?;
     Some(Drying {
@@ -44,15 +44,15 @@ fn drying(status: &PaintStatus) -> Option<Drying> {
     })
 }
 
-/// What is asked for with the next drying.
+/// Form for the next drying.
 #[derive(Clone, Debug)]
 pub(super) struct DryingForm {
     sliders: Sliders,
     percent: f64,
     name: String,
-    /// The part; none for all of it.
+    /// The region; `None` for all of it.
     part: Option<Region>,
-    /// How long a drying in time takes, s.
+    /// Duration of a drying over time, s.
     time_s: f64,
 }
 

@@ -1,4 +1,4 @@
-//! The eye of a layer: open where the layer is shown, else struck out.
+//! Visibility switch of a layer: an eye, struck out while the layer is hidden.
 
 use eframe::egui::{Pos2, Response, Sense, Shape, Stroke, Ui, vec2};
 

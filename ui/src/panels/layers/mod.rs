@@ -21,7 +21,7 @@ mod drying;
 mod eye;
 mod region;
 
-/// Widths of a layer's name and of the way of its slider, points.
+/// Widths of a layer's name and of its slider, points.
 const NAME: f32 = 92.0;
 const WAY: f32 = 84.0;
 

@@ -1,4 +1,4 @@
-//! A part of the canvas: drawn on a small map, or given in cm.
+//! A region of the canvas, drawn on a small map or given in cm.
 
 use eframe::egui::accesskit::Role;
 use eframe::egui::{
@@ -80,7 +80,7 @@ fn map(ui: &mut Ui, region: &mut Region, size_m: [f64; 2]) {
     response.on_hover_text("Drag over the part of the canvas that is meant");
 }
 
-/// The part between two points of the map; none where it is too narrow.
+/// The region between two points of the map; `None` if it is too narrow.
 fn between(place: Rect, size_m: [f64; 2], from: Pos2, to: Pos2) -> Option<Region> {
     let share = |at: Pos2| {
         let x = f64::from((at.x - place.left()) / place.width());

@@ -22,7 +22,7 @@ use crate::widgets::rows::{Number, Sliders, ask, below, choice, note, row, wrong
 mod pad;
 mod sphere;
 
-/// What the CIE's illuminants are like, in their order.
+/// Descriptions of the CIE's illuminants, in their order.
 const LIKE: [&str; ILLUMINANTS.len()] = [
     "A, light bulb",
     "D50, warm daylight",
@@ -126,7 +126,7 @@ impl Panel for LightPanel {
 }
 
 impl LightPanel {
-    /// Where the lamp stands and how strong it is; `true` where the exposure is to be chosen.
+    /// Direction and strength of the lamp; `true` if the exposure is to be chosen anew.
     fn lamp(&mut self, ui: &mut Ui, light: &mut Light) -> bool {
         let texture = self.ball(ui, light);
         ui.vertical_centered(|ui| {
@@ -164,7 +164,7 @@ impl LightPanel {
         texture.unwrap_or_default()
     }
 
-    /// What light it is.
+    /// Spectrum of the lamp.
     fn spectrum(&mut self, ui: &mut Ui, light: &mut Light) {
         let known = ILLUMINANTS
             .iter()
@@ -199,7 +199,7 @@ impl LightPanel {
             .on_hover_text("White looks white; else the light's own colour is seen");
     }
 
-    /// How its light becomes colour.
+    /// Conversion of its light to colour.
     fn research(&mut self, ui: &mut Ui, light: &mut Light) {
         let year = OBSERVERS.iter().find(|(_, year)| *year == light.observer);
         let (shown, _) = year.unwrap_or(&OBSERVERS[0]);

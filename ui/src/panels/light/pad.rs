@@ -1,4 +1,4 @@
-//! The pad on which the lamp is dragged: the sky over the canvas, seen from above.
+//! Pad for the direction of the lamp: the sky over the canvas, seen from above.
 
 use eframe::egui::accesskit::Role;
 use eframe::egui::{
@@ -9,7 +9,7 @@ use maulstick_optics::light::LOWEST;
 
 /// Side of the pad, points.
 const SIDE: f32 = 132.0;
-/// The way of the lamp for one press of an arrow, of the pad's radius.
+/// Step of the lamp per press of an arrow key, as a share of the pad's radius.
 const STEP: f64 = 0.05;
 
 /// Shows the pad with the picture of a ball on it; where the lamp was dragged to.
@@ -88,7 +88,7 @@ fn to_pad(place: Rect, direction: [f64; 3]) -> Pos2 {
     place.center() + 0.5 * SIDE * vec2(x as f32, -y as f32)
 }
 
-/// Where the light comes from, in words.
+/// Direction of the light, in words.
 #[must_use]
 pub(super) fn words(direction: [f64; 3]) -> String {
     let [x, y] = on_disc(direction);

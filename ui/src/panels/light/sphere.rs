@@ -1,4 +1,4 @@
-//! A ball under the lamp, as it looks from above: the light at a glance.
+//! A ball lit by the lamp, seen from above.
 
 use eframe::egui::{Color32, ColorImage, Rgba};
 use maulstick_optics::light::{AMBIENT, Lamp, LampSetup};
@@ -38,7 +38,7 @@ pub(super) fn draw(light: &Light) -> ColorImage {
     ColorImage::new([SIDE, SIDE], (0..SIDE * SIDE).map(pixel).collect())
 }
 
-/// What a place of the ball with this normal sends to the eye, linear.
+/// Light that a point of the ball with this normal sends to the eye, linear.
 fn lit(lamp: &Lamp, normal: [f32; 3]) -> [f32; 3] {
     let dot = |other: &[f32; 3]| (0..3).map(|i| normal[i] * other[i]).sum::<f32>();
     // A large lamp is not gone where its middle sets.

@@ -24,7 +24,7 @@ const SWATCH: [f32; 2] = [44.0, 18.0];
 #[derive(Debug, Default)]
 pub(crate) struct PaintsPanel {
     swatches: Swatches,
-    /// What is searched for.
+    /// The search text.
     search: String,
     /// The set whose tubes are shown; all of them where there is no such set.
     set: Option<String>,
@@ -56,7 +56,7 @@ impl Panel for PaintsPanel {
 }
 
 impl PaintsPanel {
-    /// Which of the painter's sets is shown.
+    /// Choice of the painter's set to show.
     fn choose_set(&mut self, ui: &mut Ui, work: &PanelContext<'_>) {
         let sets = &work.preferences.paint_sets;
         self.set

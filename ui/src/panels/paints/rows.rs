@@ -1,4 +1,4 @@
-//! The tubes: a swatch, a name and a colour index each.
+//! Rows of the paints: swatch, name and colour index.
 
 use eframe::egui::{
     Align2, Button, Color32, FontId, Rect, Response, Role, ScrollArea, Sense, Stroke, StrokeKind,
@@ -25,13 +25,13 @@ struct Tube {
     name: String,
     index: String,
     about: String,
-    /// What a brush is loaded with.
+    /// Text of the brush load.
     text: String,
     mixture: Mixture,
     colours: [Color32; 2],
 }
 
-/// What is asked of a tube.
+/// Action on a paint.
 enum Deed {
     Load,
     ToPalette,

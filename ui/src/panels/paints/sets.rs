@@ -1,4 +1,4 @@
-//! Sets of paints of the painter's own.
+//! The painter's own sets of paints.
 
 use eframe::egui::{Key, TextEdit, Ui};
 

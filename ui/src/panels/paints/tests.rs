@@ -1,4 +1,4 @@
-//! The tubes panel: what its controls ask for, and how it looks.
+//! Paints panel: requests of its controls, and its snapshot.
 
 use eframe::egui::Key;
 use egui_kittest::Harness;

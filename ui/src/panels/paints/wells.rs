@@ -1,4 +1,4 @@
-//! What lies on the palette: its wells from the top, to be taken off, replaced and ordered.
+//! Wells of the palette from the top: remove, replace, reorder.
 
 use eframe::egui::{
     Align, Button, Color32, Key, Layout, Rect, Response, Role, Sense, TextEdit, Ui, WidgetInfo,
@@ -26,7 +26,7 @@ pub(super) struct WellRows {
     fault: Option<Fault>,
 }
 
-/// What is asked of a well.
+/// Action on a well.
 enum Deed {
     Choose,
     Up,
@@ -147,7 +147,7 @@ impl WellRows {
     }
 }
 
-/// A well; what is asked of it.
+/// A well; returns the action on it.
 fn well(
     ui: &mut Ui,
     (place, is_last): (usize, bool),

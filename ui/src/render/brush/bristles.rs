@@ -1,5 +1,4 @@
-//! Draws the bristles of a head: thin ribbons, the lower ones first, each lit as hair is and coloured
-//! by the paint on it.
+//! Bristles of a head: thin ribbons, the lower ones first, each lit as hair and coloured by its paint.
 
 use eframe::egui::{Mesh, Pos2, Vec2, vec2};
 use glam::Vec3;
@@ -38,14 +37,14 @@ const POINT: f32 = 0.55;
 /// The share of a full film from which paint hides the play of light in the hair.
 const HIDES: f32 = 0.3;
 
-/// What the bristles of a head look like.
+/// Appearance of the bristles of a head.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Bristles<'a> {
     /// Width of a strip at its root, m, and the share of it that is lost up to the point.
     pub width_m: f32,
     /// See `width_m`.
     pub taper: f32,
-    /// What they are made of.
+    /// Their material.
     pub hair: Hair,
     /// Linear light of bristles in the light and in the depth of the tuft, as the display takes it.
     pub tones: [Vec3; 2],
@@ -171,15 +170,15 @@ impl<'a> Tuft<'a> {
         self.middles[i].up.dot(self.at(strip, i))
     }
 
-    /// How many strips stand for all at this size.
+    /// Number of strips that stand for all at this size.
     fn some(&self, sight: &ViewLight<'_>) -> usize {
         let widest = self.middles.iter().map(|m| m.radius).fold(0.0, f32::max);
         let enough = (2.0 * widest * sight.scale * DENSITY) as usize;
         enough.max(FEWEST).min(self.strips)
     }
 
-    /// The strips that are drawn: of an even sequence every so-many-th is an even sequence, and of a
-    /// tuft that stands free the underside is not seen.
+    /// The strips that are drawn: every n-th of an even sequence is an even sequence too, and the underside of a tuft
+    /// that touches nothing is not seen.
     fn kept(&self, some: usize, sight: &ViewLight<'_>) -> Vec<usize> {
         let below = |i: usize, strip: usize| {
             let off = self.at(strip, i) - self.middles[i].at;
@@ -191,7 +190,7 @@ impl<'a> Tuft<'a> {
             .collect()
     }
 
-    /// The light that comes from a strip at a station.
+    /// Light that a strip sends from a station.
     fn colour(
         &self,
         strip: usize,
@@ -228,7 +227,7 @@ impl<'a> Tuft<'a> {
         // A thin film tints the hair, a thick one has the tuft's relief and no hair of its own.
         let tinted = hair * paint / bright.max(Vec3::splat(0.01));
         let coated = paint * (0.34 + 0.74 * tone(0.35 * own));
-        // Hair shines across its own way (Kajiya and Kay 1989); wet paint more, and sharper.
+        // Hair shines across its own direction (Kajiya and Kay 1989); wet paint more, and sharper.
         let half = sight.half();
         let square = (1.0 - way.dot(half) * way.dot(half)).max(0.0);
         let facing = n.dot(half).max(0.0);

@@ -1,4 +1,4 @@
-//! Casts the shadows of a brush on what lies still under it.
+//! Pass that casts the shadow of a brush on the backdrop.
 
 use bytemuck::{Pod, Zeroable};
 use eframe::egui::{PaintCallbackInfo, Pos2, Shape};
@@ -19,22 +19,21 @@ pub(crate) const SHADES: [usize; 2] = [
 /// Softness that keeps an edge from being jagged, pixels.
 const EDGE: f32 = 0.7;
 
-/// A board that lies above the desk: its lower left corner, lower right and upper left one in the view,
-/// pixels.
+/// A board above the desk: its lower left corner, lower right and upper left one in the view, pixels.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Board {
     /// The corners.
     pub corners: [Vec2; 3],
 }
 
-/// What of the desk a shadow falls on.
+/// Part of the desk on which a shadow falls.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum On {
     /// All of it.
     All,
     /// The board alone.
     Board(Board),
-    /// What lies beside the board.
+    /// Outside the board.
     Beside(Board),
 }
 
@@ -98,8 +97,8 @@ impl Chain {
         }
     }
 
-    /// Gives the chain the box that holds its discs, along the way from its first node to its last: a
-    /// slanting one would fill little of an upright box.
+    /// Gives the chain the box that holds its discs, along the line from its first node to its last: a slanting chain
+    /// would fill little of an upright box.
     fn bounded(mut self) -> Self {
         let place = |disc: &[f32; 4]| Vec2::new(disc[0], disc[1]);
         let (first, last) = (place(&self.nodes[0]), place(&self.nodes[NODES - 1]));
@@ -144,14 +143,14 @@ impl Chain {
         ]
     }
 
-    /// Whether any of its box may be in the view.
+    /// True if any of its box may be in the view.
     #[must_use]
     pub(crate) fn is_visible(&self) -> bool {
         let [low, high] = self.upright();
         (0..2).all(|i| low[i] < self.view[i] && high[i] > 0.0)
     }
 
-    /// Whether it may fall on a board.
+    /// True if it may fall on a board.
     #[must_use]
     pub(crate) fn reaches(&self, board: &Board) -> bool {
         let [low, high] = self.upright();
@@ -207,8 +206,7 @@ impl CastShadow {
         }
     }
 
-    /// Makes ready to draw a chain of so many discs on what lies still (`desk`; the bare desk where
-    /// there is none).
+    /// Prepares a chain of so many discs to be drawn on the backdrop (`desk`; the bare desk without one).
     #[must_use]
     pub(crate) fn cast(
         &self,
@@ -249,7 +247,7 @@ fn bare_desk(gpu: &Gpu) -> wgpu::TextureView {
     texture.create_view(&wgpu::TextureViewDescriptor::default())
 }
 
-/// Where a shadow lies on the device, and the desk that it is bound to.
+/// Buffers of a shadow on the device, and the desk that it is bound to.
 #[derive(Debug)]
 pub(crate) struct ShadowSlot {
     chain: wgpu::Buffer,

@@ -1,5 +1,4 @@
-//! The shape of a brush over a surface: ferrule and handle as elliptical sections, the discs of its
-//! shadows.
+//! Shape of a brush over a surface: ferrule and handle as elliptical sections, and its shadow discs.
 //!
 //! Lengths are desk lengths in the frame of the surface below, m; z is the height above it.
 
@@ -21,23 +20,23 @@ const LAMP_SIZE: f64 = 0.09;
 const OTHER_SIZE: f64 = 0.14;
 /// Softness of a shadow by the radius of what casts it, for a tuft lets light through at its edge.
 const LOOSE: f64 = 0.32;
-/// How dark a shadow is, and how much darker under what touches.
+/// Darkness of a shadow, and its increase under contact.
 const SHADOW: f64 = 0.3;
 const TOUCH: f64 = 0.14;
 /// Darkness of the others' shadows by that of the lamp's.
 const OTHER: f64 = 0.4;
-/// How far the others stand round the desk from the lamp, rad, and how steeply their light falls: z of
-/// the unit vector toward them.
+/// Direction of the other lights: around the desk from the lamp, rad, and the steepness of their light, as z of the
+/// unit vector toward them.
 const AROUND: f64 = 2.0;
 const OTHER_Z: f64 = 0.75;
-/// A lamp beside the desk is taken to be at least so high.
+/// Lowest assumed height of a lamp beside the desk.
 const LOWEST_Z: f64 = 0.2;
 /// Height at which the darkness of touching has halved, m.
 const NEAR_M: f64 = 1.5e-3;
 /// Height at which a shadow has faded to half, m.
 const FAR_M: f64 = 0.12;
 
-/// What a part is made of.
+/// Material of a part.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Material {
     /// The ferrule.
@@ -55,7 +54,7 @@ pub(crate) struct Section {
     pub at: DVec3,
     /// Its half axes, along x and y of the brush, m.
     pub half: [DVec3; 2],
-    /// What begins here.
+    /// The material that begins here.
     pub material: Material,
 }
 
@@ -145,7 +144,7 @@ pub(crate) const HEAD_DISCS: usize = 5;
 pub(crate) const HEAD_DISCS_WIDE: usize = 12;
 /// Stations of a narrow head's discs, from the point.
 const OF_ALL: [usize; HEAD_DISCS] = [STATIONS - 1, 6, 4, 2, 0];
-/// How much wider than a part its discs are, so that no light falls between two.
+/// Width of a part's discs over its own, so that no light falls between two.
 const JOINED: f64 = 1.25;
 /// Stations of such a part.
 const OF_A_PART: [usize; 4] = [0, 3, 6, STATIONS - 1];
@@ -158,9 +157,8 @@ pub(crate) fn handle_width_m(file: &BrushFile) -> f64 {
     (1e-3 * file.head.width_mm).min(3.0 * root)
 }
 
-/// Discs that cover a head, in a chain that ends at the ferrule: the middle of the strips at each
-/// station and their radius across the way that they go along the surface. A wide head is three such
-/// chains, joined.
+/// Discs that cover a head, in a chain that ends at the ferrule: the middle of the strips at each station and their
+/// radius across their direction along the surface. A wide head is three such chains, joined.
 #[must_use]
 pub(crate) fn head_discs(pose: &HeadPose, roots: &[[f32; 2]], wide: bool) -> Vec<(DVec3, f64)> {
     let part = |from: f32, to: f32| -> Vec<usize> {
@@ -182,7 +180,7 @@ pub(crate) fn head_discs(pose: &HeadPose, roots: &[[f32; 2]], wide: bool) -> Vec
         .collect()
 }
 
-/// Whether the head of a brush file is wide.
+/// True if the head of a brush file is wide.
 #[must_use]
 pub(crate) fn is_wide(file: &BrushFile) -> bool {
     file.radius_m(0.5) > WIDE * file.half_thickness_m(0.5)
@@ -223,9 +221,9 @@ fn part_discs(
 pub(crate) struct Caster {
     /// Unit vector toward it.
     pub toward: DVec3,
-    /// How dark its shadows are by those of the lamp.
+    /// Darkness of its shadows relative to the lamp's.
     pub strength: f64,
-    /// How large it is seen, as a slope.
+    /// Apparent size, as a slope.
     pub size: f64,
 }
 
@@ -251,8 +249,7 @@ pub(crate) fn casters(toward: DVec3) -> [Caster; 3] {
     [lamp, beside(AROUND), beside(-AROUND)]
 }
 
-/// The discs of ferrule and handle whose shadow is cast along `run`, the way that it goes a metre of
-/// height.
+/// The discs of ferrule and handle whose shadow is cast along `run`, the distance that it covers per metre of height.
 pub(crate) fn shaded_sections(
     sections: &[Section],
     run: DVec2,
@@ -291,7 +288,7 @@ pub(crate) fn shadow(discs: &[(DVec3, f64)], caster: &Caster) -> Vec<Shade> {
 }
 
 impl Caster {
-    /// How far its light goes along the surface a metre of height.
+    /// Distance that its light covers along the surface per metre of height.
     #[must_use]
     pub(crate) fn run(&self) -> DVec2 {
         self.toward.truncate() / self.toward.z.max(LOWEST_Z)

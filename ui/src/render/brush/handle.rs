@@ -1,4 +1,4 @@
-//! Draws ferrule and handle: the half of each elliptical tube that faces the viewer, with soft edges.
+//! Ferrule and handle: the half of each elliptical tube that faces the viewer, with soft edges.
 
 use eframe::egui::{Mesh, Pos2, Vec2};
 use glam::{DVec3, Vec3};
@@ -14,7 +14,7 @@ const SOFT: f32 = 1.0;
 /// of it above, m.
 const FADES_M: [f64; 2] = [0.06, 0.16];
 const FADED: f32 = 0.35;
-/// Where the sheet of the ferrule is soldered, from +x counterclockwise, and half the seam's width, rad.
+/// Angle of the soldered seam of the ferrule, from +x counterclockwise, and half the seam's width, rad.
 const SEAM: f64 = 2.2;
 const SEAM_WIDTH: f64 = 0.035;
 
@@ -47,10 +47,10 @@ impl Finish {
         }
     }
 
-    /// The light that comes from a material with the normal `n` to the viewer.
+    /// The light that a material with the normal `n` sends to the viewer.
     ///
-    /// Across a tube all is lit by what lies beside it: lamp and window are long, so their streak goes
-    /// along it however it leans.
+    /// Across a tube all is lit by its surroundings: lamp and window are long, so their streak goes along it however it
+    /// leans.
     fn seen(&self, material: Material, n: Vec3, across: &Across) -> Vec3 {
         let (streak, lit) = (n.dot(across.half), n.dot(across.toward).max(0.0));
         let rim = (1.0 - n.dot(across.up).max(0.0)).powi(3);
@@ -106,7 +106,7 @@ impl Across {
     }
 }
 
-/// How opaque what is at a height is.
+/// Opacity at a height.
 fn opacity(height_m: f64) -> f32 {
     let fade = (height_m - FADES_M[0]) / (FADES_M[1] - FADES_M[0]);
     1.0 - (1.0 - FADED) * fade.clamp(0.0, 1.0) as f32
@@ -182,7 +182,7 @@ impl Tube<'_> {
         (turn + 1) % self.turns.len()
     }
 
-    /// Whether the face of a part between a turn and the next one looks at the viewer.
+    /// True if the face of a part between a turn and the next one looks at the viewer.
     fn faces(&self, part: usize, turn: usize, up: Vec3) -> bool {
         let (low, high) = (&self.rings[part].at, &self.rings[part + 1].at);
         let next = self.next(turn);

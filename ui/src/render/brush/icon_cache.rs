@@ -1,4 +1,4 @@
-//! Brushes as they look, as textures of the window: drawn once each.
+//! Brush thumbnails as textures of the window, each drawn once.
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -15,12 +15,12 @@ use crate::input::brush_choice::read;
 use crate::render::brush::thumbnail::brush_thumbnail;
 use crate::render::display_transform::DisplayTransform;
 
-/// Textures that are kept; beyond, all are drawn anew.
+/// Largest number of cached textures; beyond, all are drawn anew.
 const KEPT: usize = 128;
 /// Share of a picture's height that the head takes at most, and of its width.
 const HEAD: [f64; 2] = [0.9, 0.5];
 
-/// What is kept of a window's brushes.
+/// Cache of a window's brushes.
 #[derive(Clone, Default)]
 struct Gallery(Arc<Mutex<Kept>>);
 
@@ -90,7 +90,7 @@ pub(crate) fn own(context: &Context, path: &Path) -> Result<Arc<BrushFile>, Faul
     found.or_insert_with(|| read(path).map(Arc::new)).clone()
 }
 
-/// Reads a brush file of the painter's own again when it is next asked for.
+/// Drops the thumbnail of the painter's own brush file, so that it is read again.
 pub(crate) fn forget(context: &Context, path: &Path) {
     let gallery = kept(context);
     let mut kept = gallery.0.lock().unwrap_or_else(PoisonError::into_inner);

@@ -1,4 +1,4 @@
-//! The paint on a brush as the window shows it: colours and films along each bristle.
+//! Paint on a brush as the window shows it: colours and films along each bristle.
 
 use glam::Vec3;
 use half::f16;
@@ -16,7 +16,7 @@ pub struct PaintColour {
 }
 
 impl PaintColour {
-    /// Of a message; none where its lengths do not fit or a number is none.
+    /// Colours of a message; `None` if its lengths do not fit or a number is not finite.
     #[must_use]
     pub fn of(look: &BrushLook) -> Option<Self> {
         let (strips, along) = (look.strips as usize, look.along as usize);
@@ -62,13 +62,13 @@ impl PaintColour {
         }
     }
 
-    /// Colour and film at a place along a strip, 0 at the ferrule to 1; none for one that there is not.
+    /// Colour and film at a position along a strip, 0 at the ferrule to 1; `None` if there is no such strip.
     #[must_use]
     pub fn at(&self, strip: usize, along: f32) -> Option<(Vec3, f32)> {
         let own = self
             .samples
             .get(strip * self.along..(strip + 1) * self.along)?;
-        // Each sample is the mean of its part, which it stands in the middle of.
+        // Each sample is the mean of its part, at whose middle it stands.
         let place = (along * self.along as f32 - 0.5).clamp(0.0, (self.along - 1) as f32);
         let below = place as usize;
         let above = (below + 1).min(self.along - 1);

@@ -1,4 +1,4 @@
-//! The brushes over the surfaces: shadows, head, ferrule and handle of each.
+//! Brushes over the surfaces: shadows, head, ferrule and handle.
 
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -26,9 +26,9 @@ use crate::render::view_light::ViewLight;
 use crate::rig::brushes::BrushPose;
 use crate::view::camera::View;
 
-/// What brushes are drawn over.
+/// Surfaces and view under the brushes.
 pub struct Below<'a> {
-    /// Where the desk is in the window.
+    /// View of the desk in the window.
     pub view: &'a View,
     /// Pixels a point.
     pub pixels_per_point: f32,
@@ -38,7 +38,7 @@ pub struct Below<'a> {
     pub pixels: Option<&'a wgpu::TextureView>,
 }
 
-/// What is kept of a brush from frame to frame.
+/// Buffers of a brush that last from frame to frame.
 #[derive(Debug, Default)]
 struct Kept {
     slots: Vec<ShadowSlot>,
@@ -113,7 +113,7 @@ impl BrushRenderer {
         shapes
     }
 
-    /// The shadows of a brush on canvas and palette, which lies above it.
+    /// The shadows of a brush on canvas and palette, which is above it.
     fn shadows(
         &mut self,
         gpu: &Gpu,
@@ -206,7 +206,7 @@ impl Kept {
     }
 }
 
-/// Where a palette lies in the view.
+/// Board of a palette in the view.
 fn board(plane: &Plane, below: &Below<'_>) -> Board {
     let [width, height] = plane.size_m.map(|side| side * plane.zoom);
     let to_desk: &Rigid = &plane.to_desk;

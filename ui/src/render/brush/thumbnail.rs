@@ -29,8 +29,8 @@ pub struct BrushThumbnail {
     pub rgba: Vec<u8>,
 }
 
-/// Draws a brush, point downward, as it lies with its broad side up: `scale` pixels a metre, in a
-/// picture of this size whose middle is above the middle of the head.
+/// Draws a brush, point downward, broad side up: `scale` pixels a metre, in a picture of this size whose middle is
+/// above the middle of the head.
 #[must_use]
 pub fn brush_thumbnail(
     file: &BrushFile,
@@ -90,7 +90,7 @@ pub fn brush_thumbnail(
     canvas.reduce()
 }
 
-/// Turns the brush frame so that its axis lies along y and its broad side looks up.
+/// Turns the brush frame so that its axis is along y and its broad side looks up.
 fn lying() -> DQuat {
     rotation(DVec3::X, -std::f64::consts::FRAC_PI_2)
 }

@@ -1,4 +1,4 @@
-//! A surface that is panned and zoomed shows what one whole sheet of it would.
+//! A surface that is panned and zoomed looks as one whole atlas would show it.
 
 use eframe::egui::{Rect, pos2, vec2};
 use glam::{DVec2, DVec3};

@@ -1,11 +1,11 @@
-//! Which Inverse3: `ws://host:port#device+grip`, each part of which may be left out.
+//! Address of an Inverse3: `ws://host:port#device+grip`, each part of which may be left out.
 
 use maulstick_rig::Fault;
 
-/// Where the service listens, of version 3.1 and later.
+/// Default URL of the service, of version 3.1 and later.
 pub const DEFAULT_URL: &str = "ws://localhost:10001";
 
-/// What a section's `address` says.
+/// Parsed `address` of a section.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Address {
     /// The service's URL.
@@ -22,7 +22,7 @@ impl Address {
     /// Reads an `address`.
     ///
     /// # Errors
-    /// A [`Fault`] where it is none.
+    /// A [`Fault`] if it is invalid.
     pub fn read(address: Option<&str>) -> Result<Self, Fault> {
         let text = address.unwrap_or_default();
         let wrong = || {

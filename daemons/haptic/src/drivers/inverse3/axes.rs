@@ -9,7 +9,7 @@
 use glam::{DQuat, DVec3};
 use maulstick_num::geometry::canonical;
 
-/// How a session's axes lie in Haply's frame.
+/// Axes of a session in Haply's frame.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Basis {
     /// Haply's axis of each of the session's.
@@ -24,7 +24,7 @@ impl Basis {
         signs: [1.0; 3],
     };
 
-    /// Reads a permutation; None where it is none.
+    /// Reads a permutation; `None` if it is invalid.
     #[must_use]
     pub fn read(permutation: &str) -> Option<Self> {
         let mut letters = permutation.bytes();

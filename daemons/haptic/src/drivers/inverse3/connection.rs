@@ -24,16 +24,16 @@ const BUFFER: usize = 16 << 10;
 /// Waits so often for the service to close its side.
 const FAREWELLS: usize = 10;
 
-/// Why nothing more comes.
+/// The reason why the connection ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum End {
-    /// It was told to stop.
+    /// The stop flag was set.
     Stopped,
     /// The connection is closed or broken.
     Closed,
     /// No message came in time.
     Silent,
-    /// What came is no WebSocket's, or larger than any message of the service.
+    /// The data are no WebSocket's, or larger than any message of the service.
     Foreign,
 }
 
@@ -47,7 +47,7 @@ impl Connection {
     /// Connects to the service of an address.
     ///
     /// # Errors
-    /// A [`Fault`] where there is none.
+    /// A [`Fault`] if there is no service.
     pub fn open(address: &Address) -> Result<Self, Fault> {
         let stream = reach(address)?;
         let config = WebSocketConfig::default()
@@ -81,7 +81,7 @@ impl Connection {
     /// The next message, unless `stop` is set before it comes, or it takes longer than `patience`.
     ///
     /// # Errors
-    /// Why there is none.
+    /// The reason why none came.
     pub fn receive(&mut self, stop: &AtomicBool, patience: Duration) -> Result<Bytes, End> {
         let since = Instant::now();
         loop {
@@ -124,7 +124,7 @@ impl Connection {
     /// Sends a message.
     ///
     /// # Errors
-    /// Where it cannot.
+    /// If it cannot be sent.
     pub fn send(&mut self, text: String) -> Result<(), End> {
         self.socket
             .send(Message::text(text))
@@ -146,7 +146,7 @@ impl Connection {
     }
 }
 
-/// Whether to go on after an error: where it only says that nothing has come yet.
+/// Tolerates an error that only means that nothing has arrived yet.
 fn bear(error: &Error) -> Result<(), End> {
     use std::io::ErrorKind::{Interrupted, TimedOut, WouldBlock};
     match error {

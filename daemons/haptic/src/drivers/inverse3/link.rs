@@ -1,9 +1,9 @@
 //! The thread that talks to Haply's Inverse service, so that the servo never waits for it.
 //!
-//! The service answers each message by one state, so a round trip is a force out and a state in. The
-//! newest state goes to the servo and its newest force comes back through triple buffers. A force that
-//! the servo has not renewed for 20 ms is none: it may have stopped. So is one that the service has not
-//! answered for as long: it is told so before its answer is there.
+//! The service answers each message by one state, so a round trip is a force out and a state in. The newest state goes
+//! to the servo and its newest force comes back through triple buffers. A force that the servo has not renewed for 20
+//! ms is replaced by 0: the servo may have stopped. So is one that the service has not answered for as long: a force of
+//! 0 is sent before its answer is there.
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicU8, Ordering};
@@ -21,7 +21,7 @@ use super::state::{DeviceTracker, Pose, Seen};
 use crate::device::driver::DeviceError;
 use crate::servo::clock::monotonic_ns;
 
-/// Age beyond which a state or a force is none, ns.
+/// Age beyond which a state or a force is discarded, ns.
 pub const FRESH_NS: u64 = 20_000_000;
 /// A round trip begins no sooner after the one before: four states a tick are enough.
 const TRIP: Duration = Duration::from_micros(250);
@@ -31,7 +31,7 @@ const PRIORITY: u8 = 70;
 /// The newest state.
 #[derive(Clone, Copy, Debug)]
 pub struct ReceivedState {
-    /// How the device is held.
+    /// Pose of the device.
     pub pose: Pose,
     /// When it came, `CLOCK_MONOTONIC`, ns.
     pub at_ns: u64,
@@ -44,11 +44,11 @@ pub struct ReceivedState {
 pub struct RequestedForce {
     /// N, device frame.
     pub force: DVec3,
-    /// When it was asked for, `CLOCK_MONOTONIC`, ns.
+    /// Time of its request, `CLOCK_MONOTONIC`, ns.
     pub at_ns: u64,
 }
 
-/// Why there is nothing more.
+/// The reason why the link ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Loss {
     Closed,
@@ -123,7 +123,7 @@ impl Link {
     /// Starts the thread over a connection.
     ///
     /// # Errors
-    /// What the system says where no thread can be started.
+    /// The system's error if no thread can be started.
     pub fn start(
         connection: Connection,
         tracker: DeviceTracker,
@@ -221,7 +221,7 @@ impl Drop for Ending {
     }
 }
 
-/// What runs on the thread.
+/// State of the thread.
 struct Exchange {
     connection: Connection,
     tracker: DeviceTracker,
@@ -230,12 +230,12 @@ struct Exchange {
     wanted: triple_buffer::Output<RequestedForce>,
     stop: Arc<AtomicBool>,
     number: u64,
-    /// Whether a message that asked for no force before its time may yet be answered.
+    /// True if a message that requested no force ahead of time may yet be answered.
     is_owed: bool,
 }
 
 impl Exchange {
-    /// Goes to and fro until it is told to stop, or loses the device.
+    /// Exchanges messages until the stop flag is set, or the device is lost.
     fn run(&mut self) -> Option<Loss> {
         let mut seen = Instant::now();
         let mut why = Loss::Silent;
@@ -319,9 +319,9 @@ impl Exchange {
     }
 }
 
-/// Why a round trip brought nothing.
+/// The reason why a round trip brought nothing.
 enum Missed {
-    /// What came cannot be read.
+    /// The message cannot be read.
     Unread,
     /// Nothing came, and nothing will.
     Ended(End),

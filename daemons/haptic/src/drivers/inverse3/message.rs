@@ -1,6 +1,6 @@
 //! The messages of Haply's Inverse service (docs.haply.co, inverseSDK/service/realtime/websocket-protocol).
 //!
-//! What we do not use is not read, what is missing or null is as if it was not sent: versions differ.
+//! Unused fields are not read, a missing or null field counts as not sent: versions differ.
 
 use glam::{DQuat, DVec3};
 use serde::{Deserialize, Serialize};
@@ -27,9 +27,9 @@ pub struct Device {
     #[serde(default)]
     pub device_id: String,
     config: Option<Config>,
-    /// How it moves.
+    /// Its motion.
     pub state: Option<State>,
-    /// Whether it can be used.
+    /// Its readiness.
     pub status: Option<Status>,
 }
 
@@ -38,7 +38,7 @@ struct Config {
     #[serde(rename = "type")]
     kind: Option<String>,
     basis: Option<Permutation>,
-    /// What `basis` was called before 3.5.
+    /// Name of `basis` before 3.5.
     coordinate_system: Option<Permutation>,
 }
 
@@ -47,7 +47,7 @@ struct Permutation {
     permutation: Option<String>,
 }
 
-/// How an Inverse3 moves, in the session's axes.
+/// Motion of an Inverse3, in the session's axes.
 #[derive(Clone, Copy, Debug, Default, Deserialize)]
 pub struct State {
     /// m.
@@ -74,17 +74,17 @@ impl Vector {
     }
 }
 
-/// Whether an Inverse3 can be used; what is not told is not so.
+/// Readiness of an Inverse3; a missing flag is false.
 #[derive(Clone, Copy, Debug, Default, Deserialize)]
 pub struct Status {
     calibrated: Option<bool>,
-    /// Whether a session uses it: in the first message one that is not ours.
+    /// True if a session uses it: in the first message one that is not ours.
     in_use: Option<bool>,
     power_supply: Option<bool>,
     ready: Option<bool>,
 }
 
-/// What keeps a device from being used.
+/// Obstacle to the use of a device.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Hindrance {
     /// Its motors have no power.
@@ -93,12 +93,12 @@ pub enum Hindrance {
     NotCalibrated,
     /// It says no more than that it is not ready.
     NotReady,
-    /// It speaks in axes that cannot be read, and a guess would push the wrong way.
+    /// Its axes cannot be read, and a guess would push in the wrong direction.
     UnknownAxes,
 }
 
 impl Hindrance {
-    /// What is wrong, of "the Inverse3 …".
+    /// The error, to follow "the Inverse3 …".
     #[must_use]
     pub fn what(self) -> &'static str {
         match self {
@@ -109,7 +109,7 @@ impl Hindrance {
         }
     }
 
-    /// What to do.
+    /// Advice.
     #[must_use]
     pub fn help(self) -> &'static str {
         match self {
@@ -122,7 +122,7 @@ impl Hindrance {
 }
 
 impl Status {
-    /// What keeps the device from being used, if anything is told to.
+    /// Obstacle to the use of the device, if one is reported.
     #[must_use]
     pub fn hindrance(&self) -> Option<Hindrance> {
         [
@@ -136,10 +136,10 @@ impl Status {
 }
 
 impl Device {
-    /// The axes that it speaks in, where it tells them.
+    /// The axes of the session, if they are reported.
     ///
     /// # Errors
-    /// Where it tells what are none.
+    /// If the reported axes are invalid.
     pub fn basis(&self) -> Result<Option<Basis>, Hindrance> {
         let told = self.config.as_ref().and_then(|config| {
             [&config.basis, &config.coordinate_system]
@@ -151,13 +151,13 @@ impl Device {
             .transpose()
     }
 
-    /// What it is, such as "inverse3" or "minverse", where it tells it.
+    /// Kind, such as "inverse3" or "minverse", if it is reported.
     #[must_use]
     pub fn kind(&self) -> Option<&str> {
         self.config.as_ref()?.kind.as_deref()
     }
 
-    /// Whether a session uses it.
+    /// True if a session uses it.
     #[must_use]
     pub fn is_in_use(&self) -> bool {
         self.status
@@ -176,11 +176,11 @@ pub struct Grip {
     /// Its id, such as "61548".
     #[serde(default)]
     pub device_id: String,
-    /// How it is held.
+    /// Its pose.
     pub state: Option<GripState>,
 }
 
-/// How a grip is held.
+/// Pose of a grip.
 #[derive(Clone, Copy, Debug, Default, Deserialize)]
 pub struct GripState {
     /// In the session's axes.
@@ -217,7 +217,7 @@ struct Buttons {
 }
 
 impl GripState {
-    /// A bit a pressed button, the lowest for a; None where none is told of.
+    /// One bit per pressed button, the lowest for a; `None` if no button is reported.
     #[must_use]
     pub fn switches(&self) -> Option<u32> {
         let told = match (self.buttons, self.button) {
@@ -235,7 +235,7 @@ impl Update {
     /// Reads a message.
     ///
     /// # Errors
-    /// Where it is none: not JSON, of other types, a number beyond every f64.
+    /// If it is invalid: not JSON, of other types, a number beyond every f64.
     pub fn read(bytes: &[u8]) -> Result<Self, serde_json::Error> {
         serde_json::from_slice(bytes)
     }
@@ -261,7 +261,7 @@ impl Update {
             .map(|grip| grip.device_id.as_str())
     }
 
-    /// The grip of that id; the first wireless one, then the first at a wire, where none is asked for.
+    /// The grip of that id; without an id the first wireless one, then the first at a wire.
     #[must_use]
     pub fn grip(&self, id: Option<&str>) -> Option<&Grip> {
         [&self.wireless_verse_grip, &self.verse_grip]
@@ -271,8 +271,7 @@ impl Update {
             .find(|grip| id.is_none_or(|id| grip.device_id == id))
     }
 
-    /// How the service that sent this, its first message, wants to be spoken to: from 3.5 it numbers
-    /// sessions and has a `basis`.
+    /// Dialect of the service that sent this, its first message: from 3.5 it numbers sessions and has a `basis`.
     #[must_use]
     pub fn dialect(&self) -> Dialect {
         match self.session_id.is_some() || self.devices().iter().any(Device::tells_basis) {
@@ -282,7 +281,7 @@ impl Update {
     }
 }
 
-/// How a service calls the parts of a force.
+/// Names of the components of a force in the service's messages.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Dialect {
     /// `vector`, from 3.5.

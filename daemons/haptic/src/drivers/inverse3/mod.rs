@@ -129,7 +129,7 @@ impl Inverse3 {
         })
     }
 
-    /// Asks for a force; resting amplifiers are asked for none, which must be said as well.
+    /// Requests a force; resting amplifiers get a force of 0, which must be sent as well.
     fn ask(&mut self, force: DVec3) {
         self.link.ask(RequestedForce {
             force: match self.amplifiers {

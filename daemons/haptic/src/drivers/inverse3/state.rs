@@ -1,4 +1,4 @@
-//! What is known of an Inverse3 from the service's messages so far.
+//! State of an Inverse3 from the service's messages so far.
 
 use glam::{DQuat, DVec3};
 
@@ -10,30 +10,30 @@ pub const FARTHEST_M: f64 = 1.0;
 /// No hand moves a cursor faster along an axis, m/s.
 pub const FASTEST_M_S: f64 = 20.0;
 
-/// Time without a word of the grip after which its buttons are not held, ns.
+/// Time without a message about the grip after which its buttons count as released, ns.
 pub const LET_GO_NS: u64 = 100_000_000;
-/// Time without a word of the grip after which nobody knows how the brush is held, ns.
+/// Time without a message about the grip after which the brush's orientation is unknown, ns.
 pub const AWAY_NS: u64 = 1_000_000_000;
 
-/// How a device and its grip are held, in the device frame; all numbers are finite.
+/// Pose of a device and its grip, in the device frame; all numbers are finite.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Pose {
     /// The cursor, m, each part within [`FARTHEST_M`].
     pub position: DVec3,
-    /// m/s, each part within [`FASTEST_M_S`]; None where the service does not tell it.
+    /// m/s, each part within [`FASTEST_M_S`]; `None` if the service does not report it.
     pub velocity: Option<DVec3>,
-    /// Of the brush, which is held as the grip is; without a grip it points away from the user.
+    /// Orientation of the brush, which is that of the grip; without a grip it points away from the user.
     pub orientation: DQuat,
     /// A bit a pressed button.
     pub switches: u32,
-    /// Whether the grip, if there ever was one, still says how it is held.
+    /// True while the grip, if there ever was one, reports its pose.
     pub in_range: bool,
 }
 
-/// What a message says of a device.
+/// Content of a message about a device.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Seen {
-    /// How it is held.
+    /// Its pose.
     Pose(Pose),
     /// Nothing.
     Nothing,
@@ -43,13 +43,13 @@ pub enum Seen {
     Hindered(Hindrance),
 }
 
-/// Follows a device and the grip that is held with it.
+/// Follows a device and its grip.
 #[derive(Clone, Debug)]
 pub struct DeviceTracker {
     device: String,
-    /// The first that was there, where none is asked for.
+    /// The first that was there, if no id was given.
     grip: Option<String>,
-    /// When the grip was last told of, `CLOCK_MONOTONIC`, ns.
+    /// Time of the last message about the grip, `CLOCK_MONOTONIC`, ns.
     gripped_ns: Option<u64>,
     basis: Basis,
     /// In the session's axes: messages may leave out what has not changed.
@@ -129,7 +129,7 @@ impl DeviceTracker {
         })
     }
 
-    /// Takes in what is told of the grip, if it is.
+    /// Takes in the state of the grip, if it is reported.
     fn grasp(&mut self, update: &Update, now_ns: u64) {
         let grip = update.grip(self.grip.as_deref());
         if let Some((id, grip)) = grip.and_then(|grip| Some((&grip.device_id, grip.state?))) {

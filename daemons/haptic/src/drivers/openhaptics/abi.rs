@@ -35,7 +35,7 @@ pub struct Boolean(pub u32);
 /// A parameter that is a text.
 #[derive(Clone, Copy, Debug)]
 pub struct Text(pub u32);
-/// What `hdEnable` switches on.
+/// Capability for `hdEnable`.
 #[derive(Clone, Copy, Debug)]
 pub struct Capability(pub u32);
 
@@ -44,9 +44,9 @@ pub const MOST_DOUBLES: usize = 16;
 
 /// Buttons of the stylus, a bit each.
 pub const CURRENT_BUTTONS: Integer = Integer(0x2000);
-/// Whether the stylus is held where it conducts, on the models that sense it.
+/// True while the stylus is held where it conducts, on the models that sense it.
 pub const CURRENT_SAFETY_SWITCH: Boolean = Boolean(0x2001);
-/// Whether the stylus is in its inkwell.
+/// True while the stylus is in its inkwell.
 pub const CURRENT_INKWELL_SWITCH: Boolean = Boolean(0x2002);
 /// Velocity, mm/s, smoothed by the driver.
 pub const CURRENT_VELOCITY: Doubles<3> = Doubles(0x2051);
@@ -58,7 +58,7 @@ pub const DEVICE_MODEL_TYPE: Text = Text(0x2501);
 pub const DEVICE_DRIVER_VERSION: Text = Text(0x2502);
 /// Serial number.
 pub const DEVICE_SERIAL_NUMBER: Text = Text(0x2504);
-/// Where all directions of force are to be had: least x, y, z, then greatest, mm.
+/// Workspace in which all directions of force are available: least x, y, z, then greatest, mm.
 pub const USABLE_WORKSPACE_DIMENSIONS: Doubles<6> = Doubles(0x2551);
 /// Degrees of freedom that are sensed.
 pub const INPUT_DOF: Integer = Integer(0x2553);
@@ -150,7 +150,7 @@ pub mod error {
     pub const INVALID_LICENSE: u32 = 0x0600;
 }
 
-/// What a callback returns.
+/// Return values of a callback.
 pub mod next {
     /// Not to be called again.
     pub const DONE: u32 = 0;

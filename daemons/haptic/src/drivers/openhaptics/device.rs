@@ -20,9 +20,8 @@ use crate::device::driver::{Abilities, DeviceError, Driver, Reading, Wrench};
 /// Frames in a row that say nothing of use, after which the device is lost: a second's.
 const MOST_UNREAD: u32 = 1000;
 
-/// Over frames that say nothing of use the force is held for so long, as with a device of which nothing
-/// new has come; the servo takes a longer one for a stand-still. Dropped and given again it would be a
-/// blow, s.
+/// Time for which the force is held over unusable frames, as with a device that sends nothing new; the servo takes a
+/// longer one for a stand-still. A force dropped and given again would be a blow, s.
 const HELD_S: f64 = 0.005;
 
 const UNREADABLE: DeviceError = DeviceError {
@@ -31,14 +30,14 @@ const UNREADABLE: DeviceError = DeviceError {
     help: "calibrate it by the vendor's setup program",
 };
 
-/// Whether the model answers a question that not all do.
+/// Support of the model for a query that not all answer.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Answers {
-    /// It was not asked yet.
+    /// Not asked yet.
     Unknown,
-    /// It does.
+    /// Supported.
     Yes,
-    /// It does not.
+    /// Not supported.
     No,
 }
 
@@ -51,10 +50,10 @@ pub struct Device {
     inkwell: Answers,
     safety: Answers,
     temperature: Answers,
-    /// What the amplifiers are to be from the next frame on.
+    /// State of the amplifiers from the next frame on.
     amplifiers: Option<Switch>,
     unread: u32,
-    /// What the motors give.
+    /// Force of the motors.
     given: Wrench,
 }
 
@@ -100,7 +99,7 @@ impl Device {
             frame.point_away();
         }
         if self.inkwell == Answers::Unknown {
-            // What went wrong so far is not put down to the questions that follow.
+            // Earlier errors are not attributed to the queries that follow.
             session.take_error();
         }
         frame.inkwell = asked(session, &mut self.inkwell, frame.inkwell, || {

@@ -1,16 +1,15 @@
-//! What the library's errors mean: which end the device, which are told and gone on from.
+//! Meaning of the library's errors: those that end the device, and those that are only reported.
 //!
-//! The vendor's `hduIsSchedulerError` lists what ends it, `hduIsForceError` what does not; the latter
-//! leaves out 0x202, a force that changes too fast, which the device bears by itself like its sisters:
-//! it cuts the amplifiers and lets the force come up anew. Whatever is not known ends the device: a
-//! hand is at the other end.
+//! The vendor's `hduIsSchedulerError` lists the errors that end it, `hduIsForceError` those that do not; the latter
+//! leaves out 0x202, a force that changes too fast, which the device bears by itself like its sisters: it cuts the
+//! amplifiers and lets the force come up anew. Any unknown error ends the device: a hand is at the other end.
 
 use maulstick_rig::Fault;
 
 use super::abi::{ErrorInfo, error};
 use crate::device::driver::DeviceError;
 
-/// What is told and gone on from.
+/// Error that is only reported.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Notice {
     /// 0x200.
@@ -44,7 +43,7 @@ impl Notice {
         1 << self as u32
     }
 
-    /// What the user is told.
+    /// Message to the user.
     #[must_use]
     pub fn words(self) -> &'static str {
         match self {
@@ -70,7 +69,7 @@ impl Notice {
     }
 }
 
-/// What an error does.
+/// Effect of an error.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Class {
     /// The servo goes on.
@@ -92,13 +91,13 @@ pub fn class(code: u32) -> Class {
     }
 }
 
-/// Whether a call was wrong, rather than the device: how a model says that it lacks something.
+/// True if a call was wrong, rather than the device: the reply of a model that lacks a feature.
 #[must_use]
 pub fn is_wrong_call(code: u32) -> bool {
     (error::INVALID_ENUM..=error::INVALID_INPUT_TYPE).contains(&code)
 }
 
-/// What a code that ends the device means.
+/// Meaning of a code that ends the device.
 #[must_use]
 pub fn device_error(code: u32) -> DeviceError {
     let (what, help) = match code {

@@ -1,10 +1,10 @@
-//! What a frame says, read into ours.
+//! Values of a frame, converted to our frames and units.
 //!
 //! HD's base frame is right-handed: x right, y up, z toward the user; it is our device frame as it is,
 //! and for a device before an upright canvas the desk frame too. The stylus's own z axis points from
 //! its tip to the far end of the hand, and a brush has its bristles along −z: so the stylus's axes are
 //! the brush frame as they are, and its x axis, which turns with the fingers, is the brush's.
-//! The point that is sensed is where the axes of the gimbal meet.
+//! The sensed point is the intersection of the gimbal's axes.
 
 use glam::{DMat3, DQuat, DVec3};
 use maulstick_haptics::contact::HandleState;
@@ -33,7 +33,7 @@ pub struct Frame {
     pub velocity: [f64; 3],
     /// A bit a button.
     pub buttons: i32,
-    /// Whether the stylus is in its inkwell: not 0.
+    /// Not 0 while the stylus is in its inkwell.
     pub inkwell: u8,
     /// The safety switch: not 0 is on.
     pub safety: u8,

@@ -17,7 +17,7 @@ use super::abi::{
     Boolean, Capability, Doubles, ErrorInfo, Handle, Integer, MOST_DOUBLES, Text, error,
 };
 
-/// What is called back.
+/// Function that the scheduler calls.
 pub type Callback = unsafe extern "C" fn(*mut c_void) -> u32;
 
 /// A callback that has been scheduled.
@@ -27,7 +27,7 @@ pub struct Scheduled(c_ulong);
 /// Names by which the system may have it.
 pub const NAMES: [&str; 3] = ["libHD.so", "libHD.so.3.4", "libHD.so.3.0"];
 
-/// Where to get it.
+/// Advice on its installation.
 const INSTALL: &str = "install OpenHaptics and the driver of the device, or say where libHD.so is by `library` in rig.toml";
 
 macro_rules! functions {
@@ -85,14 +85,14 @@ impl std::fmt::Debug for Library {
     }
 }
 
-/// What has been opened so far.
+/// Libraries opened so far.
 static OPENED: Mutex<Vec<&'static Library>> = Mutex::new(Vec::new());
 
 impl Library {
     /// The library in the file `asked`, or by its usual names where the system looks for libraries.
     ///
     /// # Errors
-    /// A [`Fault`]: there is none, it cannot be loaded, or it is not OpenHaptics'.
+    /// A [`Fault`]: it is missing, it cannot be loaded, or it is not OpenHaptics'.
     pub fn find(asked: Option<&Path>) -> Result<&'static Self, Fault> {
         if let Some(path) = asked {
             if path.components().count() > 1 && !path.exists() {
@@ -135,10 +135,10 @@ impl Library {
         Ok(library)
     }
 
-    /// Initiates a device; the default one where it has no name.
+    /// Initiates a device; without a name the default one.
     ///
     /// # Errors
-    /// What the library says; nothing is left behind.
+    /// The library's error; nothing is left behind.
     pub fn init_device(&self, name: Option<&CStr>) -> Result<Handle, ErrorInfo> {
         self.forget_errors();
         let name = name.map_or(std::ptr::null(), CStr::as_ptr);
@@ -168,7 +168,7 @@ impl Library {
         self.forget_errors();
     }
 
-    /// What is asked from now on is asked of this device.
+    /// Makes this the device of the following calls.
     pub fn make_current(&self, device: Handle) {
         // SAFETY: a number.
         unsafe { (self.functions.make_current)(device) };
@@ -200,7 +200,7 @@ impl Library {
         (0..MOST_ERRORS).map_while(|_| self.next_error()).last()
     }
 
-    /// What the library says of a code.
+    /// The library's text for a code.
     #[must_use]
     pub fn error_words(&self, code: u32) -> String {
         // SAFETY: it takes any number and returns a text of its own.
@@ -312,9 +312,9 @@ pub type SafeCallback = extern "C" fn(*mut c_void) -> u32;
 /// Errors that are looked at at a time.
 pub const MOST_ERRORS: usize = 64;
 
-/// Why a library cannot be used.
+/// The reason why a library cannot be used.
 enum Unusable {
-    /// There is none of this name.
+    /// No library of this name.
     Missing,
     /// It needs another one that is not there.
     Needs(String),
@@ -322,7 +322,7 @@ enum Unusable {
     Foreign(String),
     /// It has no function of this name.
     Lacks(&'static str),
-    /// What the system says.
+    /// Error of the system.
     Other(String),
 }
 
@@ -371,7 +371,7 @@ impl Unusable {
     }
 }
 
-/// What the system's loader says.
+/// Text of the system loader's error.
 fn said(error: &libloading::Error) -> String {
     std::error::Error::source(error).map_or_else(|| error.to_string(), ToString::to_string)
 }

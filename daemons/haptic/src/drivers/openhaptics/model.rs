@@ -1,9 +1,9 @@
-//! What is known of a Phantom by its model's name, beyond what the library says.
+//! Data of a Phantom by its model's name, beyond the library's answers.
 //!
-//! Largest forces and stiffnesses are those that CHAI3D's driver takes for safe, model by model; the
-//! library's own nominal values bound them further. Continuous forces are from the data sheets.
+//! Largest forces and stiffnesses are those that CHAI3D's driver takes for safe, model by model; the library's own
+//! nominal values bound them further. Continuous forces are from the data sheets.
 
-/// What a model bears.
+/// Limits of a model.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Model {
     /// Largest force, N.
@@ -18,12 +18,12 @@ pub struct Model {
     pub dead_man: DeadMan,
 }
 
-/// Whether the safety switch of a model tells anything.
+/// Reliability of a model's safety switch.
 ///
-/// The library answers for every model; those without such a switch give a constant, and which one is
-/// not said. On the Touch X and the Desktop, the same device by its earlier name, it is on while the
-/// conductive part of the stylus is held. A constant that is off would forbid all force for ever, so
-/// only these two are believed; for the others the servo's own guards and the inkwell have to do.
+/// The library answers for every model; those without such a switch give a constant, and which one is not documented.
+/// On the Touch X and the Desktop, the same device by its earlier name, it is on while the conductive part of the
+/// stylus is held. A constant that is off would forbid all force for ever, so only these two are believed; for the
+/// others the servo's own guards and the inkwell have to do.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum DeadMan {
     /// On while the stylus is held.

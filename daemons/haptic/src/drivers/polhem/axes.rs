@@ -20,17 +20,17 @@ pub fn to_theirs(device: DVec3) -> DVec3 {
     DVec3::new(device.z, device.x, device.y)
 }
 
-/// Where the stylus' tip is, device frame, m.
+/// Position of the stylus' tip, device frame, m.
 #[must_use]
 pub fn position(pose: &Pose) -> DVec3 {
     to_device(DVec3::from_array(pose.position_mm)) * 1e-3
 }
 
-/// How the stylus is turned: brush frame to device frame.
+/// Orientation of the stylus: brush frame to device frame.
 ///
-/// Theirs is R = R_z(t_A)·R_y(−λ)·R_x(t_D)·R_y(t_E)·R_x(t_F), where x runs along the stylus to its far
-/// end; t_F, the roll, comes over a radio of its own and is 0 here. Named by the device frame's axes the
-/// far end lies along z, and the bristles along −z, as in the brush frame.
+/// Theirs is R = R_z(t_A)·R_y(−λ)·R_x(t_D)·R_y(t_E)·R_x(t_F), where x runs along the stylus to its far end; t_F, the
+/// roll, comes over a radio of its own and is 0 here. Named by the device frame's axes the far end is along z, and the
+/// bristles along −z, as in the brush frame.
 #[must_use]
 pub fn orientation(pose: &Pose) -> DQuat {
     let [t_a, lambda, t_d, t_e] = pose.angles_rad;

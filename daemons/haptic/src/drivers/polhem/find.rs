@@ -1,4 +1,4 @@
-//! Which serial port a stylus is at.
+//! Search for the serial port of a stylus.
 
 use std::path::Path;
 
@@ -13,9 +13,9 @@ const PRODUCTS: std::ops::RangeInclusive<u16> = 0x0483..=0x048F;
 /// The serial ports of this machine.
 ///
 /// # Errors
-/// A [`Fault`] where the system does not tell them.
+/// A [`Fault`] if the system does not list them.
 pub fn ports() -> Result<Vec<SerialPortInfo>, Fault> {
-    // Where the system has no terminals at all, serialport panics.
+    // On a system without any terminals serialport panics.
     if cfg!(target_os = "linux") && !Path::new("/sys/class/tty").is_dir() {
         return Ok(Vec::new());
     }
@@ -58,7 +58,7 @@ fn fits(port: &SerialPortInfo) -> bool {
     matches!(&port.port_type, SerialPortType::UsbPort(usb) if is_board(usb.vid, usb.pid))
 }
 
-/// Whether USB's numbers of a vendor and a product are those of a board that a stylus may be built around.
+/// True for the USB vendor and product numbers of a board that a stylus may be built around.
 #[must_use]
 pub fn is_board(vendor: u16, product: u16) -> bool {
     vendor == VENDOR && PRODUCTS.contains(&product)

@@ -24,11 +24,11 @@ pub const FARTHEST_MM: f64 = 1000.0;
 /// No gimbal turns farther, rad: two turns.
 pub const FARTHEST_RAD: f64 = 4.0 * std::f64::consts::PI;
 
-/// The line that asks for an answer and nothing else: it is no command, so motors get no current in
-/// this tick, and the device's watchdog is not held off.
+/// The line that requests an answer and nothing else: it is no command, so motors get no current in this tick, and the
+/// device's watchdog is not reset.
 pub const PROBE: &[u8] = b"\n";
 
-/// How long a command line is.
+/// Length of a command line.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Length {
     /// 63 bytes, as hosts of 2020 send. The published firmware ends a line at its newline.
@@ -56,9 +56,8 @@ pub struct Line {
 }
 
 impl Line {
-    /// Asks for a force, N, in the device's own axes (x toward the user, y right, z up), and for where
-    /// the stylus is. A force beyond the device's is cut to it along its own direction, one that is no
-    /// number is none.
+    /// Requests a force, N, in the device's own axes (x toward the user, y right, z up), and the pose of the stylus. A
+    /// force beyond the device's is cut to it along its own direction, NaN counts as 0.
     #[must_use]
     pub fn force(force: DVec3, length: Length) -> Self {
         let force = match force.is_finite() {
@@ -86,14 +85,14 @@ impl Line {
         Self { bytes, length }
     }
 
-    /// What goes over the wire.
+    /// Bytes on the wire.
     #[must_use]
     pub fn as_bytes(&self) -> &[u8] {
         &self.bytes[..self.length.bytes()]
     }
 }
 
-/// Where the stylus is, in the device's own axes.
+/// Pose of the stylus, in the device's own axes.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Pose {
     /// x toward the user, y right, z up, mm, each within [`FARTHEST_MM`].
@@ -114,23 +113,23 @@ pub struct Encoders {
 }
 
 impl Encoders {
-    /// Whether the stylus' button is pressed: units that have one add 10 000 counts to encoder d.
+    /// True while the stylus' button is pressed: units that have one add 10 000 counts to encoder d.
     #[must_use]
     pub fn is_pressed(&self) -> bool {
         self.counts[3] > 5000
     }
 }
 
-/// What a device answers.
+/// Answer of a device.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Answer {
-    /// Where the stylus is.
+    /// Pose of the stylus.
     Pose(Pose),
     /// Its encoders.
     Encoders(Encoders),
 }
 
-/// What a line from the device is.
+/// Kind of a line from the device.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum ParsedLine {
     /// An answer.
@@ -218,7 +217,7 @@ impl Lines {
             .map_or(Some(ParsedLine::Garbage), read)
     }
 
-    /// What has come of a line that has not ended.
+    /// Received part of a line that has not ended.
     #[must_use]
     pub fn unfinished(&self) -> &[u8] {
         &self.line[..self.length.min(LONGEST_ANSWER)]

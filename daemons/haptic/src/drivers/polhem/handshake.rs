@@ -1,9 +1,8 @@
-//! The first words with a WoodenHaptics or Polhem stylus: whether it is one, and what lines it takes.
+//! Handshake with a WoodenHaptics or Polhem stylus: it confirms the device, and finds the length of its lines.
 //!
-//! A lone newline is no command to the firmware and is answered all the same, so it is a safe
-//! question; the devices' own host repeats it each 100 ms, and so do we. Then a command of no force
-//! must be answered by a pose: lines of 63 bytes first, which is what both firmwares that are published
-//! take, then lines of 64 bytes.
+//! A lone newline is no command to the firmware and is answered all the same, so it is a safe question; the devices'
+//! own host repeats it each 100 ms, and so do we. Then a command of no force must be answered by a pose: lines of 63
+//! bytes first, which both published firmwares take, then lines of 64 bytes.
 
 use glam::DVec3;
 use nix::errno::Errno;
@@ -13,23 +12,23 @@ use super::link::Wire;
 
 /// Waits for an answer, ms.
 const PATIENCE_MS: u32 = 100;
-/// How often the device is probed.
+/// Number of probes.
 const PROBES: usize = 5;
-/// How often a line of either length is tried.
+/// Tries of a line of either length.
 const TRIES: usize = 3;
 /// Time without a byte after which the line is quiet, ms.
 const QUIET_MS: u32 = 5;
-/// How much is kept of what cannot be read, bytes.
+/// Bytes of unreadable input that are kept.
 const KEPT: usize = 40;
 
-/// Why what is at the other end cannot be used.
+/// The reason why the device at the other end cannot be used.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum HandshakeError {
     /// It says nothing.
     Silent,
     /// It says what no such device says; how that begins.
     Foreign(String),
-    /// It tells encoders, but no positions.
+    /// It sends encoders, but no positions.
     NoPoses,
     /// The wire is broken.
     Broken(Errno),
@@ -70,11 +69,11 @@ pub fn handshake(wire: &mut dyn Wire, wait: &mut dyn FnMut()) -> Result<Length, 
     Err(HandshakeError::NoPoses)
 }
 
-/// What is heard.
+/// Input of the handshake.
 #[derive(Default)]
 struct Listener {
     lines: Lines,
-    /// How what cannot be read begins.
+    /// Beginning of the unreadable input.
     foreign: Vec<u8>,
 }
 

@@ -1,17 +1,16 @@
 //! The dialogue with a WoodenHaptics or Polhem stylus: one line, one answer, paced by us.
 //!
-//! Nothing waits here. Time is what the servo says has passed, so the dialogue runs on any clock. An
-//! answer that does not come is given up: a probe asks whether the device is there, its motors have no
-//! current meanwhile, and the dialogue is taken up again when the line has been quiet, so that no late
-//! answer is taken for the next one. The device's own watchdog ends the force 100 ms after the last
-//! command.
+//! Nothing waits here. Time is the time that the servo reports, so the dialogue runs on any clock. An answer that does
+//! not come is given up: a probe asks whether the device is there, its motors have no current meanwhile, and the
+//! dialogue is resumed when the line has been quiet, so that no late answer is taken for the next one. The device's own
+//! watchdog ends the force 100 ms after the last command.
 
 use nix::errno::Errno;
 
 use super::frame::{Answer, Lines, PROBE, ParsedLine};
 use crate::device::driver::DeviceError;
 
-/// What carries bytes to a device and back, without waiting.
+/// Byte transport to a device and back, without waiting.
 pub trait Wire: Send {
     /// Takes what has come into `bytes`; returns how much, 0 where the other end is gone.
     ///
@@ -36,14 +35,14 @@ pub const GONE_S: f64 = 1.0;
 /// Pieces taken in at a time, so that a device that babbles does not hold up the servo.
 const PIECES: usize = 4;
 
-/// Where the dialogue stands.
+/// State of the dialogue.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Dialogue {
-    /// Nothing is on its way.
+    /// Nothing is in flight.
     Free,
-    /// A line is on its way.
+    /// A line is in flight.
     Asked { since_s: f64 },
-    /// An answer was lost, and a probe is on its way.
+    /// An answer was lost, and a probe is in flight.
     Lost {
         probed_s: f64,
         noise_s: f64,
@@ -65,7 +64,7 @@ pub struct Link<W> {
 }
 
 impl<W: Wire> Link<W> {
-    /// A dialogue in which nothing is on its way.
+    /// A dialogue with nothing in flight.
     pub fn new(wire: W) -> Self {
         Self {
             wire,
@@ -78,7 +77,7 @@ impl<W: Wire> Link<W> {
         }
     }
 
-    /// Whether a line may be sent.
+    /// True if a line may be sent.
     #[must_use]
     pub fn is_free(&self) -> bool {
         self.dialogue == Dialogue::Free
@@ -90,11 +89,10 @@ impl<W: Wire> Link<W> {
         self.lost
     }
 
-    /// Takes in what has come in the `step_s` s since the time before: the newest answer, if it is
-    /// one to our last line.
+    /// Takes in the input of the last `step_s` s: the newest answer, if it is one to our last line.
     ///
     /// # Errors
-    /// Where the device is unplugged, says nothing for a second, or nothing that can be read.
+    /// If the device is unplugged, or sends nothing readable for a second.
     pub fn poll(&mut self, step_s: f64) -> Result<Option<Answer>, DeviceError> {
         self.now_s += step_s;
         let now_s = self.now_s;
@@ -131,10 +129,10 @@ impl<W: Wire> Link<W> {
         Ok(answer)
     }
 
-    /// Sends a line, if nothing is on its way. A wire that is full takes it another time.
+    /// Sends a line, if nothing is in flight. A wire that is full takes it another time.
     ///
     /// # Errors
-    /// Where the device is unplugged.
+    /// If the device is unplugged.
     pub fn send(&mut self, line: &[u8]) -> Result<(), DeviceError> {
         if !self.is_free() {
             return Ok(());
@@ -153,8 +151,7 @@ impl<W: Wire> Link<W> {
         }
     }
 
-    /// Sends a last line, whatever is on its way. A newline goes first: a line that was cut off would
-    /// make another of this one.
+    /// Sends a last line, whatever is in flight. A newline goes first: a line that was cut off would corrupt this one.
     pub fn part(&mut self, line: &[u8]) {
         self.wire.write(PROBE).ok();
         self.wire.write(line).ok();
@@ -215,12 +212,12 @@ impl<W: Wire> Link<W> {
     }
 }
 
-/// Whether a byte came.
+/// Result of a read: a byte, or nothing.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Noise {
-    /// Nothing did.
+    /// Nothing arrived.
     None,
-    /// Something did.
+    /// A byte arrived.
     Some,
 }
 

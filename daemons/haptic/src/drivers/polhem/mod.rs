@@ -99,13 +99,13 @@ pub struct Polhem<W: Wire> {
     length: Length,
     amplifiers: Switch,
     velocity: Velocity,
-    /// What has passed of the time since the last reading, s.
+    /// Time elapsed since the last reading, s.
     waited_s: f64,
     /// Time since the last pose, s.
     since_pose_s: f64,
-    /// How it was held then.
+    /// State of the handle at that reading.
     last: Option<HandleState>,
-    /// Time since the button was asked for, s.
+    /// Time since the button was last queried, s.
     unasked_s: f64,
     pressed: bool,
 }

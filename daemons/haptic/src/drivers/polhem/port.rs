@@ -15,7 +15,7 @@ use serialport::{ClearBuffer, ErrorKind, SerialPort, TTYPort};
 
 use super::link::Wire;
 
-/// What the devices' own host sets; USB does not care.
+/// Baud rate of the devices' own host; USB ignores it.
 const BAUD: u32 = 115_200;
 
 /// An open serial port that nobody else may open.
@@ -28,7 +28,7 @@ impl Port {
     /// Opens a port by its path.
     ///
     /// # Errors
-    /// A [`Fault`]: there is none, it is somebody else's, it is in use, it is no serial port.
+    /// A [`Fault`]: it is missing, it is another user's, it is in use, it is no serial port.
     pub fn open(path: &str) -> Result<Self, Fault> {
         let port = serialport::new(path, BAUD)
             .open_native()
@@ -38,7 +38,7 @@ impl Port {
             Fault::failure(format!("{path} cannot be read without waiting: {errno}"))
                 .help("name a serial port as the device's `address`")
         })?;
-        // What was sent to whoever had it before; where it cannot be thrown away it is no answer of ours.
+        // Bytes for the port's former user; if they cannot be discarded, they are no answer of ours.
         port.port.clear(ClearBuffer::All).ok();
         port.lower_latency();
         port.close_at_once();
