@@ -3,17 +3,17 @@
 //! | module | holds |
 //! | --- | --- |
 //! | [`app`] | the window, its actions, and the overlay: rack, panels, dialogs, help |
-//! | [`input`] | keys, mouse and gestures |
+//! | `input` | keys, mouse and gestures |
 //! | [`rig`] | state of the rig, and requests to it |
 //! | [`view`] | the desk seen from above |
 //! | [`render`] | drawing of desk, surfaces and brushes |
-//! | [`panels`] | the panels, a folder each |
-//! | [`dialogs`] | files in the window: new, open, save, export, dropped files |
-//! | [`reference`] | a picture to paint after, and the mixtures of its colours |
-//! | [`widgets`] | parts that panels and dialogs are made of |
+//! | `panels` | the panels, a folder each |
+//! | `dialogs` | files in the window: new, open, save, export, dropped files |
+//! | `reference` | a picture to paint after, and the mixtures of its colours |
+//! | `widgets` | parts that panels and dialogs are made of |
 //! | [`settings`] | settings that outlive the window |
-//! | [`background_task`] | work on a thread beside the window |
-//! | [`spectrum_file`] | spectra from CSV files |
+//! | `background_task` | work on a thread beside the window |
+//! | `spectrum_file` | spectra from CSV files |
 
 pub mod app;
 mod background_task;

@@ -42,7 +42,7 @@ pub struct TakeSetup {
 }
 
 impl TakeSetup {
-    /// Takes a file in; its name, which is returned, ends in one of [`KINDS`].
+    /// Takes a file in; its name, which is returned, ends in one of `KINDS`.
     pub fn add(&mut self, bytes: Vec<u8>, extension: &str) -> String {
         let name = name_of(&bytes, extension);
         self.files.insert(name.clone(), bytes);

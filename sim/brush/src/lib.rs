@@ -5,7 +5,7 @@
 //!
 //! | module | holds |
 //! | --- | --- |
-//! | [`file`] | the brush file and the library of brushes |
+//! | [`mod@file`] | the brush file and the library of brushes |
 //! | [`gltf`] | a brush modelled in Blender |
 //! | [`spine`] | a chain of segments: directions, joint angles, joints |
 //! | [`spine_layout`] | places of the spines in the ferrule |

@@ -14,7 +14,7 @@
 //! | [`contents`], [`pack`] | contents of a file; making it small |
 //! | [`planes`], [`loads`] | paint as bytes |
 //! | [`rows`], [`schema`], [`sum`] | tables, migrations, checksums |
-//! | [`scan`], [`recover`] | rows out of damaged files; a new painting of the intact ones |
+//! | [`scan`], [`mod@recover`] | rows out of damaged files; a new painting of the intact ones |
 //! | [`error`] | errors, each with advice |
 
 pub mod contents;

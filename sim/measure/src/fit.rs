@@ -5,7 +5,7 @@
 //!
 //! A mistake in a sample's shares or thickness shows at all wavelengths, and least squares would bend
 //! every paint in it. So samples are trusted after Huber (1964, *Robust estimation of a location
-//! parameter*): one whose residual, root mean square over the spectrum, is more than [`STANDS_OUT`]
+//! parameter*): one whose residual, root mean square over the spectrum, is more than `STANDS_OUT`
 //! times the median's and the noise counts as much less.
 
 use maulstick_num::{exp, ln};

@@ -2,19 +2,19 @@
 //!
 //! | module | holds |
 //! | --- | --- |
-//! | [`gpu`] | the graphics device |
-//! | [`device_loss`] | recovery from a lost graphics device |
-//! | [`scene`] | the desk in the window |
+//! | `gpu` | the graphics device |
+//! | `device_loss` | recovery from a lost graphics device |
+//! | `scene` | the desk in the window |
 //! | [`frames`] | threads that pull frames from the paint node |
 //! | [`tile_planner`] | the tiles to ask for next |
-//! | [`tile_atlas`] | the tiles of a surface as a toroidal texture atlas |
+//! | `tile_atlas` | the tiles of a surface as a toroidal texture atlas |
 //! | [`surface`] | a surface on the graphics device |
-//! | [`light_surface`], [`show_surface`] | its passes: lighting, and drawing into the view |
+//! | `light_surface`, [`show_surface`] | its passes: lighting, and drawing into the view |
 //! | [`backdrop`] | desk and surfaces as pixels of the window |
 //! | [`brush`] | the brushes over them |
-//! | [`view_light`] | viewer and lamp |
-//! | [`display_transform`] | sRGB to the colours of the display |
-//! | [`frame_reports`] | completed frames, and the brush states they show |
+//! | `view_light` | viewer and lamp |
+//! | `display_transform` | sRGB to the colours of the display |
+//! | `frame_reports` | completed frames, and the brush states they show |
 //! | [`offscreen`] | the desk without a window |
 
 pub mod backdrop;

@@ -2,15 +2,15 @@
 //!
 //! | module | holds |
 //! | --- | --- |
-//! | [`state`] | what is known of the rig; plain data |
-//! | [`listener`] | subscribers that fill it |
+//! | `state` | what is known of the rig; plain data |
+//! | `listener` | subscribers that fill it |
 //! | [`brushes`] | newest sample and bend of each brush |
-//! | [`force_history`] | force trace of each device, and the device that paints |
-//! | [`health`] | events of the other processes |
-//! | [`thumbnails`] | pictures of versions |
-//! | [`requests`] | commands that wait to be sent |
-//! | [`stroke_barrier`] | delays a command until the strokes before it are painted |
-//! | [`dispatcher`] | a queue and a thread for each node |
+//! | `force_history` | force trace of each device, and the device that paints |
+//! | `health` | events of the other processes |
+//! | `thumbnails` | pictures of versions |
+//! | `requests` | commands that wait to be sent |
+//! | `stroke_barrier` | delays a command until the strokes before it are painted |
+//! | `dispatcher` | a queue and a thread for each node |
 
 pub mod brushes;
 pub(crate) mod dispatcher;

@@ -3,9 +3,9 @@
 //! | module | holds |
 //! | --- | --- |
 //! | [`preferences`] | the file of them |
-//! | [`presets`] | brushes with their paint, by name |
-//! | [`paint_sets`] | sets of paints for the palette |
-//! | [`brush_load`] | the mixtures that a brush takes up |
+//! | `presets` | brushes with their paint, by name |
+//! | `paint_sets` | sets of paints for the palette |
+//! | `brush_load` | the mixtures that a brush takes up |
 
 pub(crate) mod brush_load;
 pub(crate) mod paint_sets;

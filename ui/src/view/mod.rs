@@ -4,8 +4,8 @@
 //! | --- | --- |
 //! | [`camera`] | desk points to window points and back |
 //! | [`visible_tiles`] | the tiles of a surface that are in view |
-//! | [`palette_slide`] | animation of the palette |
-//! | [`well_labels`] | labels of the wells |
+//! | `palette_slide` | animation of the palette |
+//! | `well_labels` | labels of the wells |
 
 pub mod camera;
 pub(crate) mod palette_slide;

@@ -199,7 +199,7 @@ impl BrushFile {
     }
 
     /// The brush with as many strips as cells of `cell_m` can tell apart: halved as long as they are narrower than
-    /// [`MOST_CELLS_WIDE`] cells even so.
+    /// `MOST_CELLS_WIDE` cells even so.
     #[must_use]
     pub fn thinned(&self, cell_m: f64) -> Self {
         let most = MOST_CELLS_WIDE * cell_m * (1.0 + ROUNDING);

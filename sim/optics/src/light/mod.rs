@@ -19,7 +19,7 @@
 //! from all around; v is how much of that a place receives, and B what it receives with the light that
 //! its surroundings, of its own colour c, throw back ([`sky`]): hollows of white paint are bright, those
 //! of red paint glow, and no shadow is black. Its gloss shows what it mirrors: a dim room, the dimmer the
-//! farther down it looks, and the lamp through microfacets ([`gloss`]) whose slopes include those that a
+//! farther down it looks, and the lamp through microfacets ([`mod@gloss`]) whose slopes include those that a
 //! cell does not resolve. P₀ is what a level surface of the same roughness mirrors of the lamp. The
 //! highlights have the colour w of the light, white to an adapted eye (Baxter 2004, § 7.8.2).
 //!

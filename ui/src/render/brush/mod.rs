@@ -2,14 +2,14 @@
 //!
 //! | module | holds |
 //! | --- | --- |
-//! | [`geometry`] | ferrule, handle and shadow discs |
-//! | [`bristles`] | the head |
-//! | [`handle`] | ferrule and handle |
-//! | [`cast_shadow`] | the shadow pass |
-//! | [`paint_colour`] | colours of the paint on the head |
+//! | `geometry` | ferrule, handle and shadow discs |
+//! | `bristles` | the head |
+//! | `handle` | ferrule and handle |
+//! | `cast_shadow` | the shadow pass |
+//! | `paint_colour` | colours of the paint on the head |
 //! | [`renderer`] | a brush from shadow to handle |
 //! | [`thumbnail`] | a brush as a picture |
-//! | [`icon_cache`] | thumbnails as textures of the window |
+//! | `icon_cache` | thumbnails as textures of the window |
 
 pub(crate) mod bristles;
 pub(crate) mod cast_shadow;

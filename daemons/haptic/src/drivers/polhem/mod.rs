@@ -6,7 +6,7 @@
 //! | [`frame`] | the lines of both sides |
 //! | [`axes`] | from the device's axes to the device frame |
 //! | [`link`] | the dialogue: one line, one answer |
-//! | [`handshake`] | the first words |
+//! | [`mod@handshake`] | the first words |
 //! | [`port`] | a serial port |
 //! | [`find`] | which serial port it is |
 
