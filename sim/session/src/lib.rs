@@ -19,7 +19,7 @@
 //! let painting = Painting::new(&PaintingSetup::default(), PaintLibrary::measured()?)?;
 //! let loads = vec!["Cobalt Blue=0.7,Titanium White=0.3".parse()?];
 //! let mut offline = Offline::new(painting, "main", BrushFile::library("flat")?, 0.5, loads)?;
-//! for millimetre in 0..=41 {
+//! for millimetre in 0..=41u32 {
 //!     let sample = StylusSample {
 //!         senses: axes::POSITION | axes::PRESSURE,
 //!         in_range: true,
