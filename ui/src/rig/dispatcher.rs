@@ -327,7 +327,7 @@ impl Drop for CommandDispatcher {
 
 impl std::fmt::Debug for CommandDispatcher {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.debug_struct("Courier")
+        f.debug_struct("CommandDispatcher")
             .field("lines", &self.queues.keys())
             .finish_non_exhaustive()
     }

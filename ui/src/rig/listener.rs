@@ -159,6 +159,6 @@ impl RigListener {
 
 impl std::fmt::Debug for RigListener {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.debug_struct("Hearing").finish_non_exhaustive()
+        f.debug_struct("RigListener").finish_non_exhaustive()
     }
 }

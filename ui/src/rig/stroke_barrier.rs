@@ -219,7 +219,7 @@ fn is_painted(
 
 impl std::fmt::Debug for StrokeBarrier {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.debug_struct("Landing")
+        f.debug_struct("StrokeBarrier")
             .field("waiting", &self.waiting)
             .finish_non_exhaustive()
     }
