@@ -1,6 +1,6 @@
 //! Times as a painter writes them.
 
-use maulstick_paint::clock::TICKS_A_SECOND;
+use maulstick_painting::clock::TICKS_A_SECOND;
 use maulstick_types::command::DRYING_TICKS;
 
 /// Units and how many seconds they have.

@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use clap::Args;
 use maulstick_optics::PaintError;
-use maulstick_paint::EditError;
+use maulstick_painting::paint_error;
 use maulstick_rig::Fault;
 use maulstick_rig::files::Kind;
 use maulstick_types::Mixture;
@@ -103,7 +103,7 @@ pub fn load(options: &LoadOptions) -> Result<i32, Fault> {
 /// A mixture; whether there are such paints the rig knows.
 fn mixture_of(text: &str) -> Result<Mixture, Fault> {
     text.parse()
-        .map_err(|error| refused(EditError::paint(PaintError::Mixture(error))))
+        .map_err(|error| refused(paint_error(PaintError::Mixture(error))))
 }
 
 /// Makes a brush stiffer or softer.

@@ -2,7 +2,7 @@
 
 use std::io::Read as _;
 
-use maulstick_paint::sequencer::{Accepted, NO_ZOOM, Record};
+use maulstick_painting::sequencer::{Accepted, NO_ZOOM, Record};
 use maulstick_types::brush::{BrushDef, BrushState};
 use maulstick_types::older::BrushStateV1;
 use maulstick_types::paint::JournalEntry;

@@ -3,9 +3,9 @@
 use std::path::Path;
 
 use maulstick_bus::Request;
-use maulstick_paint::EditError;
-use maulstick_paint::Effect;
-use maulstick_paint::sequencer::Replied;
+use maulstick_canvas::EditError;
+use maulstick_painting::Effect;
+use maulstick_painting::sequencer::Replied;
 use maulstick_types::advice::parted;
 use maulstick_types::command::{Command, CommandReply, CommandRequest, Outcome};
 use maulstick_types::{Flags, encode};

@@ -5,10 +5,10 @@
 
 use std::path::{Path, PathBuf};
 
+use maulstick_canvas::EditError;
 use maulstick_document::{
     Access, Document, DocumentError, DocumentSettings, Left, Moving, make_room, unfinished,
 };
-use maulstick_paint::EditError;
 use maulstick_types::command::Outcome;
 
 use super::PaintNode;

@@ -8,8 +8,8 @@
 use std::path::Path;
 
 use eframe::egui::{CollapsingHeader, TextEdit, TextureHandle, TextureOptions, Ui};
+use maulstick_appearance::light::changes_colour;
 use maulstick_optics::cie::ILLUMINANTS;
-use maulstick_paint::light::changes_colour;
 use maulstick_types::command::Command;
 use maulstick_types::scene::{Light, RULES, SAMPLES};
 
