@@ -27,7 +27,7 @@ impl Ledger {
     }
 
     /// A mode gave.
-    pub(crate) fn from_mode_counts(&mut self, counts: &Counts) {
+    pub fn from_mode_counts(&mut self, counts: &Counts) {
         self.from_mode(&counts.map(|count| count as i64));
     }
 
