@@ -19,7 +19,7 @@
 //! use maulstick_canvas::assets::Assets;
 //! use maulstick_canvas::planes::TILE_CELLS;
 //! use maulstick_canvas::quantum::QUANTUM_M;
-//! use maulstick_canvas::tile::Tile;
+//! use maulstick_canvas::tile::{Tile, TileId};
 //! use maulstick_optics::{PaintLibrary, Studio};
 //!
 //! # fn main() -> Result<(), Box<dyn std::error::Error>> {
@@ -27,12 +27,12 @@
 //! let blue = studio.add(PaintLibrary::measured()?.find("Ultramarine Blue")?);
 //! let counts = (40e-6 / QUANTUM_M).round() as f32;
 //! let tile = Tile::new([(blue, vec![counts; TILE_CELLS].into())].into_iter(), None);
-//! let shown = |ground: &str| -> Result<f32, Box<dyn std::error::Error>> {
-//!     let ground = Ground::called(ground, [64, 64], &studio, &Assets::default())?;
-//!     let [_red, _green, blue] = WetFilms::of(Some(&tile)).shade(&studio, ground.tile(Default::default()).under());
-//!     Ok(blue[0])
-//! };
-//! assert!(shown("grey")? < shown("gesso")?);
+//! let films = WetFilms::of(Some(&tile));
+//! let [gesso, grey] = ["gesso", "grey"]
+//!     .map(|name| Ground::called(name, [64, 64], &studio, &Assets::default()));
+//! let [over_gesso, over_grey] = [gesso?, grey?]
+//!     .map(|ground| films.shade(&studio, ground.tile(TileId { x: 0, y: 0 }).under()));
+//! assert!(over_grey[2][0] < over_gesso[2][0]);
 //! # Ok(())
 //! # }
 //! ```

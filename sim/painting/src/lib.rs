@@ -28,7 +28,7 @@
 //! painting.lay(CANVAS, &"Cobalt Blue=0.7,Titanium White=0.3".parse()?, 40e-6)?;
 //! let report = painting.report();
 //! assert_eq!((report.covered_cells, report.quanta_missing), (128 * 96, 0));
-//! painting.undo(1)?;
+//! painting.undo(None)?;
 //! let report = painting.report();
 //! assert_eq!((report.covered_cells, report.quanta_missing), (0, 0));
 //! # Ok(())
