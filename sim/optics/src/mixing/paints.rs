@@ -130,7 +130,7 @@ pub struct PaintLibrary {
 }
 
 /// The paints that come with the crate: 28 acrylic artists' paints (Berns 2016, Okumura 2005).
-pub const MEASURED: &str = include_str!("../data/paints.csv");
+pub const MEASURED: &str = include_str!("../../data/paints.csv");
 
 impl PaintLibrary {
     /// The 28 measured paints.

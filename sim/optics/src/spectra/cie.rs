@@ -46,12 +46,12 @@ fn columns<const N: usize>(text: &str) -> [Vec<f64>; N] {
 
 fn observers() -> &'static [Vec<f64>; 7] {
     static TABLE: OnceLock<[Vec<f64>; 7]> = OnceLock::new();
-    TABLE.get_or_init(|| columns(include_str!("../data/observers.csv")))
+    TABLE.get_or_init(|| columns(include_str!("../../data/observers.csv")))
 }
 
 fn illuminants() -> &'static [Vec<f64>; 7] {
     static TABLE: OnceLock<[Vec<f64>; 7]> = OnceLock::new();
-    TABLE.get_or_init(|| columns(include_str!("../data/illuminants.csv")))
+    TABLE.get_or_init(|| columns(include_str!("../../data/illuminants.csv")))
 }
 
 impl Observer {

@@ -8,7 +8,7 @@ use super::*;
 use crate::file::library::LIBRARY;
 use crate::spine::SpineShape;
 
-#[path = "../../tests/desk/mod.rs"]
+#[path = "../../../tests/desk/mod.rs"]
 mod desk;
 use desk::scene;
 
