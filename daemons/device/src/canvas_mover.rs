@@ -113,12 +113,6 @@ impl Drop for CanvasMover {
     }
 }
 
-impl std::fmt::Debug for CanvasMover {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.debug_struct("CanvasMover").finish_non_exhaustive()
-    }
-}
-
 /// Follows the hand until the device's reader has ended; `shown` is the newest placement of the canvas in the scene.
 fn follow(
     heard: &Samples<ControlSample>,

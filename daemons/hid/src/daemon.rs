@@ -371,11 +371,3 @@ impl Daemon {
         Ok(())
     }
 }
-
-impl std::fmt::Debug for Daemon {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.debug_struct("Daemon")
-            .field("output", &self.output)
-            .finish_non_exhaustive()
-    }
-}

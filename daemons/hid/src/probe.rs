@@ -135,11 +135,3 @@ fn hand_reading(reading: &Reading, time_s: f64) -> HandReading {
         time_s,
     })
 }
-
-impl std::fmt::Debug for ProbedPen {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.debug_struct("ProbedPen")
-            .field("what", &self.what)
-            .finish_non_exhaustive()
-    }
-}

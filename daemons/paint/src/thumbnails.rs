@@ -219,11 +219,3 @@ impl Thumbnails {
         }
     }
 }
-
-impl std::fmt::Debug for Thumbnails {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.debug_struct("Thumbnails")
-            .field("waiting", &self.waiting.len())
-            .finish_non_exhaustive()
-    }
-}

@@ -460,11 +460,3 @@ impl Supervisor {
         is_kept
     }
 }
-
-impl std::fmt::Debug for Supervisor {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.debug_struct("Supervisor")
-            .field("nodes", &self.nodes)
-            .finish_non_exhaustive()
-    }
-}

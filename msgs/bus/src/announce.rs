@@ -88,11 +88,3 @@ impl<M: Message + Clone> Announcer<M> {
         }
     }
 }
-
-impl<M> std::fmt::Debug for Announcer<M> {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.debug_struct("Announcer")
-            .field("topic", &self.topic)
-            .finish_non_exhaustive()
-    }
-}

@@ -181,14 +181,6 @@ impl Request {
     }
 }
 
-impl fmt::Debug for Request {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.debug_struct("Request")
-            .field("key", &self.key)
-            .finish_non_exhaustive()
-    }
-}
-
 /// Queries on a key expression, until dropped.
 pub struct Server {
     pub(crate) inbox: Inbox<Request>,
@@ -200,12 +192,6 @@ impl Server {
     #[must_use]
     pub fn try_recv(&self) -> Option<Request> {
         self.inbox.try_recv()
-    }
-}
-
-impl fmt::Debug for Server {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.debug_struct("Server").finish_non_exhaustive()
     }
 }
 
@@ -261,12 +247,6 @@ impl Pending {
 /// Kept for as long as a node lives; dropped, or with its process, it disappears for all.
 pub struct Token {
     pub(crate) _keep: Box<dyn Any + Send>,
-}
-
-impl fmt::Debug for Token {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.debug_struct("Token").finish_non_exhaustive()
-    }
 }
 
 /// A transport with the rig's clock.

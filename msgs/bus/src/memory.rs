@@ -84,18 +84,6 @@ pub struct MemoryBus {
     net: Arc<Mutex<Net>>,
 }
 
-impl std::fmt::Debug for MemoryNet {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.debug_struct("MemoryNet").finish_non_exhaustive()
-    }
-}
-
-impl std::fmt::Debug for MemoryBus {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.debug_struct("MemoryBus").finish_non_exhaustive()
-    }
-}
-
 fn lock(net: &Mutex<Net>) -> MutexGuard<'_, Net> {
     net.lock().unwrap_or_else(PoisonError::into_inner)
 }

@@ -69,14 +69,6 @@ impl<M: Message> Sender<M> {
     }
 }
 
-impl<M> std::fmt::Debug for Sender<M> {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.debug_struct("Sender")
-            .field("topic", &self.topic)
-            .finish_non_exhaustive()
-    }
-}
-
 /// Decodes what arrives; says once for each topic and reason what is dropped, and counts it.
 #[derive(Debug, Default)]
 pub struct Reader {

@@ -117,11 +117,3 @@ impl Commander {
         }
     }
 }
-
-impl std::fmt::Debug for Commander {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.debug_struct("Commander")
-            .field("topic", &self.topic)
-            .finish_non_exhaustive()
-    }
-}

@@ -130,11 +130,3 @@ impl Member {
         self.session.close();
     }
 }
-
-impl std::fmt::Debug for Member {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.debug_struct("Member")
-            .field("node", &self.node)
-            .finish_non_exhaustive()
-    }
-}

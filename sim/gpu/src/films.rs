@@ -27,14 +27,6 @@ pub struct GpuFilms {
     bake: Pipelines,
 }
 
-impl std::fmt::Debug for GpuFilms {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.debug_struct("GpuFilms")
-            .field("adapter", &self.device().name())
-            .finish_non_exhaustive()
-    }
-}
-
 impl GpuFilms {
     /// Films on a device.
     ///

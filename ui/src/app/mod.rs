@@ -386,12 +386,3 @@ impl eframe::App for App {
         }
     }
 }
-
-impl std::fmt::Debug for App {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.debug_struct("App")
-            .field("view", &self.view)
-            .field("follower", &self.tracker)
-            .finish_non_exhaustive()
-    }
-}

@@ -194,10 +194,3 @@ impl Overlay {
         self.keys = open;
     }
 }
-
-impl std::fmt::Debug for Overlay {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        let titles: Vec<_> = self.panels.iter().map(|panel| panel.title()).collect();
-        f.debug_struct("Overlay").field("panels", &titles).finish()
-    }
-}

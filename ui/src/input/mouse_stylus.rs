@@ -195,14 +195,6 @@ impl Mouse {
     }
 }
 
-impl std::fmt::Debug for Mouse {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.debug_struct("Mouse")
-            .field("was_in_range", &self.was_in_range)
-            .finish_non_exhaustive()
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use maulstick_bus::{Faults, MemoryNet};

@@ -128,14 +128,6 @@ impl Presenter {
     }
 }
 
-impl std::fmt::Debug for Presenter {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.debug_struct("Presenter")
-            .field("frames", &self.frames)
-            .finish_non_exhaustive()
-    }
-}
-
 impl Drop for Presenter {
     fn drop(&mut self) {
         self.line.state().ended = true;

@@ -140,12 +140,3 @@ impl Offscreen {
         &self.target
     }
 }
-
-impl std::fmt::Debug for Offscreen {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.debug_struct("Offscreen")
-            .field("adapter", &self.adapter)
-            .field("size", &self.size)
-            .finish_non_exhaustive()
-    }
-}

@@ -305,13 +305,5 @@ impl BrushPose<'_> {
     }
 }
 
-impl std::fmt::Debug for BrushTracker {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.debug_struct("BrushTracker")
-            .field("known", &self.known.keys())
-            .finish_non_exhaustive()
-    }
-}
-
 #[cfg(test)]
 mod tests;

@@ -325,14 +325,6 @@ impl Drop for CommandDispatcher {
     }
 }
 
-impl std::fmt::Debug for CommandDispatcher {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.debug_struct("CommandDispatcher")
-            .field("lines", &self.queues.keys())
-            .finish_non_exhaustive()
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use maulstick_types::Pose;

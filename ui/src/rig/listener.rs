@@ -156,9 +156,3 @@ impl RigListener {
         is_new
     }
 }
-
-impl std::fmt::Debug for RigListener {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.debug_struct("RigListener").finish_non_exhaustive()
-    }
-}

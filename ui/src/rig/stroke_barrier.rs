@@ -217,14 +217,6 @@ fn is_painted(
     credit.is_some_and(|credit| credit.epoch == epoch && credit.next > state)
 }
 
-impl std::fmt::Debug for StrokeBarrier {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.debug_struct("StrokeBarrier")
-            .field("waiting", &self.waiting)
-            .finish_non_exhaustive()
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use maulstick_bus::typed::Sender;

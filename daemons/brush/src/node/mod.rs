@@ -438,11 +438,3 @@ impl BrushNode {
         Ok(())
     }
 }
-
-impl std::fmt::Debug for BrushNode {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.debug_struct("BrushNode")
-            .field("states", &self.states)
-            .finish_non_exhaustive()
-    }
-}

@@ -167,14 +167,6 @@ impl Drop for ServoThread {
     }
 }
 
-impl std::fmt::Debug for ServoThread {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.debug_struct("ServoThread")
-            .field("warnings", &self.warnings)
-            .finish_non_exhaustive()
-    }
-}
-
 /// Asks the system for wake-ups without delay, for as long as the file is open: a processor that sleeps
 /// deeply wakes late (the kernel's `pm_qos_interface`). It takes root, and works without.
 fn awake() -> Option<File> {

@@ -350,13 +350,5 @@ impl FrameServer {
     }
 }
 
-impl std::fmt::Debug for FrameServer {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.debug_struct("FrameServer")
-            .field("waiting", &self.waiting.len())
-            .finish_non_exhaustive()
-    }
-}
-
 #[cfg(test)]
 mod tests;

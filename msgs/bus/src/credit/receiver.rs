@@ -287,11 +287,3 @@ impl<M: Message> CreditReceiver<M> {
         Ok(())
     }
 }
-
-impl<M> std::fmt::Debug for CreditReceiver<M> {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.debug_struct("CreditReceiver")
-            .field("counts", &self.counts)
-            .finish_non_exhaustive()
-    }
-}

@@ -208,16 +208,6 @@ impl<M: Message> CreditSender<M> {
     }
 }
 
-impl<M> std::fmt::Debug for CreditSender<M> {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.debug_struct("CreditSender")
-            .field("topic", &self.topic)
-            .field("next", &self.next)
-            .field("consumed", &self.consumed)
-            .finish_non_exhaustive()
-    }
-}
-
 /// Splits the answer to a gap into whole messages.
 pub(super) fn split_messages(mut bytes: &[u8]) -> Vec<&[u8]> {
     let mut messages = Vec::new();

@@ -1,7 +1,5 @@
 //! Drawing of a surface into pixels: light first, then gamut and encoding.
 
-use std::fmt;
-
 use maulstick_canvas::tile::TileId;
 use maulstick_optics::gamut::Gamut;
 use maulstick_optics::light::{Facet, Lamp, SURFACE, Spot, Surroundings, lit};
@@ -22,15 +20,6 @@ pub struct Drawing<'a> {
     surroundings: Option<Surroundings>,
     gamut: Gamut,
     export: &'a Export,
-}
-
-impl fmt::Debug for Drawing<'_> {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.debug_struct("Drawing")
-            .field("banded", &self.banded)
-            .field("surroundings", &self.surroundings)
-            .finish_non_exhaustive()
-    }
 }
 
 /// A point as if the surface were flat there, under a lamp of strength 1 and of this colour.

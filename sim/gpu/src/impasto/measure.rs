@@ -157,9 +157,3 @@ fn stats_of_square(side: u32) -> [u32; 24] {
     stats[4 + 11..4 + 15].copy_from_slice(&[65536, 65536, side, side]);
     stats
 }
-
-impl std::fmt::Debug for Measured {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.debug_struct("Measured").finish_non_exhaustive()
-    }
-}

@@ -65,14 +65,6 @@ pub struct GpuImpasto {
     fall: Option<String>,
 }
 
-impl std::fmt::Debug for GpuImpasto {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.debug_struct("GpuImpasto")
-            .field("adapter", &self.name)
-            .finish_non_exhaustive()
-    }
-}
-
 impl GpuImpasto {
     /// The model on a device.
     ///

@@ -99,9 +99,3 @@ impl Prober {
         }))
     }
 }
-
-impl std::fmt::Debug for Prober {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.debug_struct("Prober").finish_non_exhaustive()
-    }
-}

@@ -244,14 +244,5 @@ fn small(ui: &mut Ui, word: &str, label: &str, hover: &str) -> Response {
     button.on_hover_text(hover)
 }
 
-impl std::fmt::Debug for HistoryPanel {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.debug_struct("HistoryPanel")
-            .field("branching", &self.branching)
-            .field("forgetting", &self.forgetting)
-            .finish_non_exhaustive()
-    }
-}
-
 #[cfg(test)]
 mod tests;

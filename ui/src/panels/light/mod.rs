@@ -222,13 +222,5 @@ impl LightPanel {
     }
 }
 
-impl std::fmt::Debug for LightPanel {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.debug_struct("LightPanel")
-            .field("asked", &self.asked)
-            .finish_non_exhaustive()
-    }
-}
-
 #[cfg(test)]
 mod tests;
