@@ -1,7 +1,7 @@
 //! Whatever is done to a painting in whatever order, the tubes gave just what is found.
 
 use maulstick_brush::BrushFile;
-use maulstick_num::fork_join::with_help;
+use maulstick_num::fork_join::with_threads;
 use maulstick_optics::PaintLibrary;
 use maulstick_paint::quantum::CELL_MAX;
 use maulstick_paint::{Painting, PaintingSetup};
@@ -283,7 +283,7 @@ fn a_hundred_thousand_steps_lose_nothing() {
         let store = painting.store(CANVAS).expect("a canvas");
         (report.paints_m3, store.counts(), acts)
     };
-    assert_eq!(with_help(run), run(), "on two cores and on one");
+    assert_eq!(with_threads(2, run), run(), "on two cores and on one");
 }
 
 const LOW: Place = Place {

@@ -5,7 +5,7 @@
 use std::sync::mpsc;
 
 use maulstick_brush::{BrushFile, BrushModel};
-use maulstick_num::fork_join::with_help_beyond;
+use maulstick_num::fork_join::with_cores_beyond;
 use maulstick_paint::clock::TICKS_A_SECOND;
 use maulstick_paint::{EditError, Painting, Sequencer};
 use maulstick_types::brush::BrushState;
@@ -223,7 +223,7 @@ impl Offline {
                 }
             });
             // The brush takes one core already.
-            with_help_beyond(2, || states.into_iter().try_for_each(&mut paint))
+            with_cores_beyond(1, || states.into_iter().try_for_each(&mut paint))
         })
     }
 
