@@ -6,7 +6,7 @@ use std::time::Duration;
 
 use maulstick_document::{Document, DocumentError};
 use maulstick_gpu::{Choice, Device, GpuFilms};
-use maulstick_num::fork_join::with_help_beyond;
+use maulstick_num::fork_join::with_cores_beyond;
 use maulstick_optics::backend::{CpuFilms, FilmBackend};
 use maulstick_paint_node::frames::FrameServer;
 use maulstick_paint_node::worker::WorkerPanicked;
@@ -72,8 +72,8 @@ pub(super) fn run(options: &PaintOptions) -> Result<i32, Fault> {
             .and_then(|()| member.run(|| turn(&mut node)))
             .and_then(|()| paint_what_has_come(&mut node, &mut turn))
     };
-    // The brush, the window and the frames have work for two cores.
-    let result = with_help_beyond(2, run);
+    // The brush takes one core already; the window and the frames find room between steps.
+    let result = with_cores_beyond(1, run);
     member.stop.request();
     feed.ring();
     let ended = thread.join().map_err(fallen);

@@ -207,7 +207,7 @@ impl<'a> Banded<'a> {
 
     /// Heights of a band and of what is near it.
     #[must_use]
-    pub(crate) fn heights_around(&self, band: usize) -> BandHeights {
+    pub fn heights_around(&self, band: usize) -> BandHeights {
         let (width, rows) = (self.cells()[0], self.rows(band));
         let own = self.heights(band);
         let mut heights = Vec::with_capacity((rows.len() + 2 * BEYOND) * width);

@@ -27,16 +27,14 @@ impl Area {
         self.size.contains(&0)
     }
 
-    /// Its lower and its upper rows, half of them each.
-    #[must_use]
-    pub fn halves(&self) -> [Self; 2] {
-        let lower = self.size[1] / 2;
-        let upper = Self {
-            from: [self.from[0], self.from[1] + lower],
-            size: [self.size[0], self.size[1] - lower],
-        };
-        let size = [self.size[0], lower];
-        [Self { size, ..*self }, upper]
+    /// Its rows from the lowest on, in so many parts.
+    pub fn parts(&self, count: usize) -> impl Iterator<Item = Self> + use<> {
+        let area = *self;
+        let row = move |part| area.size[1] * part / count;
+        (0..count).map(move |part| Self {
+            from: [area.from[0], area.from[1] + row(part)],
+            size: [area.size[0], row(part + 1) - row(part)],
+        })
     }
 
     /// Number of its cells.
@@ -228,17 +226,16 @@ impl Window {
             .filter_map(|(slot, plane)| Some((slot, plane.as_mut()?)))
     }
 
-    /// The planes in two parts, each with as many that are in use, or one more.
-    pub fn planes_halved(&mut self) -> [&mut [Option<Vec<f32>>]; 2] {
-        let used = self.wet.iter().flatten().count();
-        let mut left = used.div_ceil(2);
-        let first = self.wet.iter().position(|plane| {
-            let over = left == 0;
-            left -= usize::from(plane.is_some() && !over);
-            over
-        });
-        let (one, other) = self.wet.split_at_mut(first.unwrap_or(SLOTS));
-        [one, other]
+    /// The planes in use in at most so many parts, none of which has two more than another.
+    pub fn planes_in_parts(&mut self, count: usize) -> Vec<Vec<&mut Vec<f32>>> {
+        let mut parts = Vec::new();
+        for (place, plane) in self.wet.iter_mut().flatten().enumerate() {
+            if place < count {
+                parts.push(Vec::new());
+            }
+            parts[place % count].push(plane);
+        }
+        parts
     }
 
     /// Counts of all paints in a cell.

@@ -1,18 +1,19 @@
-//! Work that two cores share.
+//! Work that cores share.
 //!
-//! Which core does what never matters to what comes out: jobs that run beside each other write to
-//! different places, and what they find is put together in the same order.
+//! How many share it, and which does what, never matters to what comes out: shares that are done beside each other
+//! write to different places, and what they find is put together in the same order.
 //!
-//! The jobs are tens of microseconds long and follow each other as closely, so the helper waits for
-//! the next awake. Pools of threads that sleep in between (rayon) take longer to wake than the jobs
+//! The shares are tens of microseconds long and follow each other as closely, so helpers wait for
+//! the next awake. Pools of threads that sleep in between (rayon) take longer to wake than the shares
 //! take.
 
 use std::any::Any;
 use std::cell::{RefCell, UnsafeCell};
+use std::ops::Range;
 use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};
 use std::ptr::NonNull;
 use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, AtomicU32, AtomicU64, Ordering};
+use std::sync::atomic::{AtomicBool, AtomicU32, Ordering};
 use std::thread::{Builder, Thread, available_parallelism, park, scope, yield_now};
 use std::time::Instant;
 
@@ -20,6 +21,9 @@ use std::time::Instant;
 const SPIN_LIMIT: u32 = 2_000;
 /// Iterations, spinning and yielding, before sleeping.
 const AWAKE: u32 = SPIN_LIMIT + 200;
+/// Threads that [`with_cores_beyond`] uses at most: what one core does alone in a step takes longer than a share of
+/// more.
+const MOST_THREADS: usize = 16;
 
 /// Nothing to do.
 const EMPTY: u32 = 0;
@@ -34,8 +38,9 @@ const CLOSED: u32 = 4;
 
 type Job<'a> = dyn FnMut() + Send + 'a;
 
-/// Where one thread leaves a job for the other.
+/// Where a thread leaves a job for one of its helpers, on cache lines of its own.
 #[derive(Default)]
+#[repr(align(128))]
 struct JobSlot {
     state: AtomicU32,
     sleeping: AtomicBool,
@@ -57,12 +62,18 @@ unsafe impl Sync for JobSlot {}
 // SAFETY: the job is `Send`, and its pointer is used as told above alone.
 unsafe impl Send for JobSlot {}
 
+/// A thread that waits for jobs.
+struct Helper {
+    slot: Arc<JobSlot>,
+    thread: Thread,
+}
+
 thread_local! {
-    static HELP: RefCell<Option<(Arc<JobSlot>, Thread)>> = const { RefCell::new(None) };
+    static HELPERS: RefCell<Arc<[Helper]>> = RefCell::new(Arc::new([]));
 }
 
 impl JobSlot {
-    /// Does what is offered until the desk is closed.
+    /// Does what is offered until the slot is closed.
     fn serve(&self) {
         let mut looks = 0;
         loop {
@@ -176,144 +187,165 @@ impl Drop for Offer<'_> {
     }
 }
 
-/// Ends the helper, however the work ends.
-struct Closing<'a>(&'a JobSlot);
+/// Ends the helpers, however the work ends.
+struct Closing;
 
-impl Drop for Closing<'_> {
+impl Drop for Closing {
     fn drop(&mut self) {
-        self.0.state.store(CLOSED, Ordering::SeqCst);
-        if let Some((_, helper)) = HELP.take() {
-            helper.unpark();
+        for helper in &*HELPERS.replace(Arc::new([])) {
+            helper.slot.state.store(CLOSED, Ordering::SeqCst);
+            helper.thread.unpark();
         }
     }
 }
 
-/// Does the work with a second thread beside it, so that [`both`] has help for as long as it takes.
-/// Where there is one core alone, or no thread to be had, it is done without.
-pub fn with_help<T>(work: impl FnOnce() -> T) -> T {
-    let cores = available_parallelism().map_or(1, usize::from);
-    if cores < 2 || has_help() {
+/// Does the work with so many threads, this one among them, so that [`each`] has them for as long as it takes.
+/// Where this thread has helpers already, or no thread is to be had, it does with those that are there.
+pub fn with_threads<T>(threads: usize, work: impl FnOnce() -> T) -> T {
+    if threads < 2 || self::threads() > 1 {
         return work();
     }
-    let slot = Arc::new(JobSlot::default());
+    let slots: Vec<Arc<JobSlot>> = (1..threads).map(|_| Arc::default()).collect();
     scope(|scope| {
-        let serve = || slot.serve();
-        let Ok(helper) = Builder::new()
-            .name("help".into())
-            .spawn_scoped(scope, serve)
-        else {
-            return work();
+        let helper = |slot: &'_ Arc<JobSlot>| {
+            let own = Arc::clone(slot);
+            let builder = Builder::new().name("help".into());
+            let thread = builder.spawn_scoped(scope, move || own.serve()).ok()?;
+            Some(Helper {
+                slot: Arc::clone(slot),
+                thread: thread.thread().clone(),
+            })
         };
-        HELP.set(Some((Arc::clone(&slot), helper.thread().clone())));
-        let _closing = Closing(&slot);
+        HELPERS.set(slots.iter().map_while(helper).collect());
+        let _closing = Closing;
         work()
     })
 }
 
-/// As [`with_help`] on machines with more than `busy` cores, and otherwise without.
-pub fn with_help_beyond<T>(busy: usize, work: impl FnOnce() -> T) -> T {
-    match available_parallelism().map_or(1, usize::from) > busy {
-        true => with_help(work),
-        false => work(),
+/// As [`with_threads`], as many as the machine has cores but for so many busy ones.
+pub fn with_cores_beyond<T>(busy: usize, work: impl FnOnce() -> T) -> T {
+    let cores = available_parallelism().map_or(1, usize::from);
+    with_threads(cores.saturating_sub(busy).min(MOST_THREADS), work)
+}
+
+/// Threads that this one may share work among, itself included.
+#[must_use]
+pub fn threads() -> usize {
+    HELPERS.with_borrow(|helpers| helpers.len()) + 1
+}
+
+/// Does the work on each share, at the same time where there are [helpers](with_threads) that are free.
+///
+/// # Panics
+/// As the work on a share does, once no helper is at work any more.
+pub fn each<S: Send>(shares: &mut [S], work: impl Fn(&mut S) + Sync) {
+    match shares {
+        [] => {}
+        [one] => work(one),
+        _ => spread(&HELPERS.with_borrow(Arc::clone), shares, &work),
     }
 }
 
-/// Whether this thread has help.
-#[must_use]
-pub fn has_help() -> bool {
-    HELP.with_borrow(Option::is_some)
-}
-
-/// Does both jobs, at the same time where there is [help](with_help) that is free.
-pub fn both<A, B: Send>(one: impl FnOnce() -> A, other: impl FnOnce() -> B + Send) -> (A, B) {
-    let help = HELP.with_borrow(Clone::clone);
-    let free = help.filter(|(slot, _)| slot.state.load(Ordering::Relaxed) == EMPTY);
-    let Some((slot, helper)) = free else {
-        return (one(), other());
+/// Offers the last of the shares to the first helper that is free, spreads the others, and awaits what it offered.
+fn spread<S: Send>(helpers: &[Helper], shares: &mut [S], work: &(impl Fn(&mut S) + Sync)) {
+    let (Some((helper, others)), 2..) = (helpers.split_first(), shares.len()) else {
+        return shares.iter_mut().for_each(work);
     };
-    let (mut other, mut result) = (Some(other), None);
-    let mut job = || result = other.take().map(|other| other());
-    let mut offer = slot.offer(&mut job, &helper);
-    let first = one();
+    if helper.slot.state.load(Ordering::Relaxed) != EMPTY {
+        return spread(others, shares, work);
+    }
+    let offered = shares.len() / shares.len().min(helpers.len() + 1);
+    let (own, offered) = shares.split_at_mut(shares.len() - offered);
+    let mut job = || offered.iter_mut().for_each(work);
+    let mut offer = helper.slot.offer(&mut job, &helper.thread);
+    spread(others, own, work);
     let panic = offer.end();
     drop(offer);
-    match (result, panic) {
-        (Some(second), _) => (first, second),
-        (None, Some(panic)) => resume_unwind(panic),
-        (None, None) => unreachable!("the job was done"),
+    if let Some(panic) = panic {
+        resume_unwind(panic);
     }
 }
 
-/// As [`both`] where the jobs are worth it, and otherwise one after the other.
-pub fn both_if<A, B: Send>(
-    worth: bool,
-    one: impl FnOnce() -> A,
-    other: impl FnOnce() -> B + Send,
-) -> (A, B) {
-    if worth {
-        both(one, other)
-    } else {
-        (one(), other())
-    }
-}
-
-/// How work is best cut in two, learnt from how long both parts took. It changes nothing but the time.
-#[derive(Clone, Debug)]
+/// How work is best cut into shares, learnt from how long they took. It changes nothing but the time.
+#[derive(Clone, Debug, Default)]
 pub struct Balance {
-    /// The first part's share.
-    share: f32,
+    /// Where each share but the first begins, by the whole.
+    cuts: Vec<f32>,
 }
 
-/// The least that either part is.
-const LEAST: f32 = 0.2;
 /// Share of what was found wrong by which the next cut is better.
-const LEARNS: f32 = 0.1;
-
-impl Default for Balance {
-    fn default() -> Self {
-        Self { share: 0.5 }
-    }
-}
+const LEARNS: f32 = 0.2;
 
 impl Balance {
-    /// Where to cut so many pieces of work; at their end where there is no [help](with_help).
+    /// So many pieces of work in so many shares.
     #[must_use]
-    pub fn cut(&self, pieces: usize) -> usize {
-        match has_help() {
-            true => (self.share * pieces as f32) as usize,
-            false => pieces,
+    pub fn cut(&mut self, pieces: usize, shares: usize) -> Vec<Range<usize>> {
+        if self.cuts.len() + 1 != shares {
+            let even = |share| share as f32 / shares as f32;
+            self.cuts = (1..shares).map(even).map(|share| self.at(share)).collect();
         }
+        let ends = self.cuts.iter().map(|cut| (cut * pieces as f32) as usize);
+        let mut from = 0;
+        let share = |to| std::mem::replace(&mut from, to)..to;
+        ends.chain([pieces]).map(share).collect()
     }
 
-    /// Does [both] parts, and cuts better the next time.
-    pub fn both<A, B: Send>(
-        &mut self,
-        one: impl FnOnce() -> A,
-        other: impl FnOnce() -> B + Send,
-    ) -> (A, B) {
-        if !has_help() {
-            return (one(), other());
+    /// Begin of the share after so many, which need not be whole, by all of them.
+    fn at(&self, share: f32) -> f32 {
+        let place = share * (self.cuts.len() + 1) as f32;
+        let [low, high] = [0, 1].map(|on| self.edge(place as usize + on));
+        low + (high - low) * place.fract()
+    }
+
+    /// Begin of a share, by the whole.
+    fn edge(&self, share: usize) -> f32 {
+        let before = share.checked_sub(1);
+        before.map_or(0.0, |at| self.cuts.get(at).copied().unwrap_or(1.0))
+    }
+
+    /// As [`each`] with shares that were [cut](Self::cut), and cuts better the next time.
+    pub fn each<S: Send>(&mut self, shares: &mut [S], work: impl Fn(&mut S) + Sync) {
+        if shares.len() < 2 || threads() < 2 {
+            return shares.iter_mut().for_each(work);
         }
-        let (begun, end) = (Instant::now(), AtomicU64::new(0));
-        let done = || begun.elapsed().as_nanos() as u64;
-        let ((one, first), other) = both(
-            || (one(), done()),
-            || {
-                let other = other();
-                end.store(done(), Ordering::Relaxed);
-                other
-            },
-        );
-        let second = end.into_inner();
-        let wrong = (second as f32 - first as f32) / (first.max(second).max(1) as f32);
-        self.share = (self.share * (1.0 + LEARNS * wrong)).clamp(LEAST, 1.0 - LEAST);
-        (one, other)
+        let begun = Instant::now();
+        let mut timed: Vec<(&mut S, f32)> = shares.iter_mut().map(|share| (share, 0.0)).collect();
+        each(&mut timed, |(share, took)| {
+            work(share);
+            *took = begun.elapsed().as_nanos() as f32;
+        });
+        let took: Vec<f32> = timed.iter().map(|(_, took)| took.max(1.0)).collect();
+        self.learn(&took);
+    }
+
+    /// Moves the cuts towards where all shares would have taken as long.
+    fn learn(&mut self, took: &[f32]) {
+        let whole: f32 = took.iter().sum();
+        let even = whole / took.len() as f32;
+        let (mut share, mut done) = (0, 0.0);
+        let better: Vec<f32> = (1..took.len())
+            .map(|number| {
+                let wanted = even * number as f32;
+                while share + 1 < took.len() && done + took[share] < wanted {
+                    done += took[share];
+                    share += 1;
+                }
+                let [low, high] = [self.edge(share), self.edge(share + 1)];
+                low + (high - low) * ((wanted - done) / took[share]).min(1.0)
+            })
+            .collect();
+        let cuts = self.cuts.iter_mut().zip(better);
+        cuts.for_each(|(cut, better)| *cut += LEARNS * (better - *cut));
     }
 }
 
 #[cfg(test)]
 mod tests {
+    use std::sync::Barrier;
+
     use super::*;
+
+    const THREADS: [usize; 6] = [1, 2, 4, 8, 16, 64];
 
     /// Halves of halves, the first of which share the cores.
     fn sum(numbers: &[u64]) -> u64 {
@@ -322,8 +354,9 @@ mod tests {
             [one] => *one,
             _ => {
                 let (low, high) = numbers.split_at(numbers.len() / 2);
-                let (low, high) = both(|| sum(low), || sum(high));
-                low + high
+                let mut halves = [(low, 0), (high, 0)];
+                each(&mut halves, |(numbers, total)| *total = sum(numbers));
+                halves.iter().map(|(_, total)| total).sum()
             }
         }
     }
@@ -331,58 +364,104 @@ mod tests {
     #[test]
     fn help_changes_nothing_but_the_time() {
         let numbers: Vec<u64> = (0..500).collect();
-        assert!(!has_help());
         let expected = 500 * 499 / 2;
-        assert_eq!(sum(&numbers), expected);
-        with_help(|| {
-            let cores = available_parallelism().map_or(1, usize::from);
-            assert_eq!(has_help(), cores > 1);
-            for round in 0..2000 {
-                assert_eq!(sum(&numbers), expected, "{round}");
-                let asleep = || {
-                    HELP.with_borrow(|help| {
-                        help.as_ref()
-                            .is_none_or(|(slot, _)| slot.sleeping.load(Ordering::SeqCst))
-                    })
-                };
-                while round % 500 == 0 && !asleep() {
-                    yield_now();
+        for count in THREADS {
+            assert_eq!(threads(), 1);
+            with_threads(count, || {
+                assert_eq!(threads(), count);
+                for round in 0..200 {
+                    assert_eq!(sum(&numbers), expected, "{count} threads, {round}");
+                    // Every so often the helpers have gone to sleep.
+                    while round % 100 == 0 && !are_asleep() {
+                        yield_now();
+                    }
                 }
-            }
-        });
-        assert!(!has_help());
+            });
+        }
+        assert_eq!(threads(), 1);
+    }
+
+    /// Whether none of the helpers is awake.
+    fn are_asleep() -> bool {
+        let asleep = |helper: &Helper| helper.slot.sleeping.load(Ordering::SeqCst);
+        HELPERS.with_borrow(|helpers| helpers.iter().all(asleep))
     }
 
     #[test]
-    fn both_do_work_at_the_same_time() {
-        let met = std::sync::Barrier::new(2);
-        let cores = available_parallelism().map_or(1, usize::from);
-        if cores > 1 {
-            // Each waits for the other: one after the other they would wait for ever. The helper
-            // takes the job at the latest when it wakes up.
-            with_help(|| both(|| met.wait(), || met.wait()));
+    fn every_share_is_done_once_however_many_there_are() {
+        for count in THREADS {
+            with_threads(count, || {
+                for shares in [0, 1, 2, 3, 5, 8, 63, 64, 65, 200] {
+                    let mut done = vec![0; shares];
+                    each(&mut done, |done| *done += 1);
+                    assert!(done.iter().all(|done| *done == 1), "{count}, {shares}");
+                }
+            });
         }
     }
 
     #[test]
-    fn a_panic_on_either_side_comes_out_and_the_other_side_ends_first() {
-        for side in 0..2 {
-            let ended = AtomicBool::new(false);
-            let caught = catch_unwind(AssertUnwindSafe(|| {
-                with_help(|| {
-                    let job = |number: usize| {
-                        if number == side {
-                            panic!("on purpose");
-                        }
-                        ended.store(true, Ordering::SeqCst);
-                    };
-                    both(|| job(0), || job(1))
-                })
-            }));
-            assert!(caught.is_err());
-            assert!(ended.load(Ordering::SeqCst));
-            assert!(!has_help());
-            assert_eq!(with_help(|| both(|| 1, || 2)), (1, 2), "and goes on");
+    fn shares_are_done_at_the_same_time() {
+        for count in [2, 4, 16] {
+            let met = Barrier::new(count);
+            // Each waits for all: one after the other they would wait for ever. A helper takes its share at the
+            // latest when it wakes up.
+            with_threads(count, || each(&mut vec![(); count], |()| drop(met.wait())));
+        }
+    }
+
+    #[test]
+    fn a_panic_on_any_share_comes_out_once_the_others_are_done() {
+        for count in [2, 4, 16] {
+            for bad in 0..count {
+                let ended: Vec<AtomicBool> = (0..count).map(|_| AtomicBool::default()).collect();
+                let caught = catch_unwind(AssertUnwindSafe(|| {
+                    with_threads(count, || {
+                        let mut shares: Vec<usize> = (0..count).collect();
+                        each(&mut shares, |share| {
+                            assert_ne!(*share, bad, "on purpose");
+                            ended[*share].store(true, Ordering::SeqCst);
+                        });
+                    });
+                }));
+                assert!(caught.is_err());
+                let ended = ended.iter().filter(|ended| ended.load(Ordering::SeqCst));
+                assert_eq!(ended.count(), count - 1);
+                assert_eq!(threads(), 1);
+                let mut again = [1, 2];
+                with_threads(count, || each(&mut again, |share| *share += 1));
+                assert_eq!(again, [2, 3], "and goes on");
+            }
+        }
+    }
+
+    #[test]
+    fn cuts_come_to_where_all_shares_take_as_long() {
+        // The first half of the pieces is three times as much work.
+        let work = |range: &Range<usize>| -> f32 {
+            let piece = |at: usize| if at < 500 { 3.0 } else { 1.0 };
+            range.clone().map(piece).sum()
+        };
+        let mut balance = Balance::default();
+        for shares in [2, 8, 3, 64] {
+            let worst = |balance: &mut Balance| {
+                let took: Vec<f32> = balance.cut(1000, shares).iter().map(work).collect();
+                let worst = took.iter().fold(0.0f32, |most, took| most.max(*took));
+                (took, worst * shares as f32 / 2000.0)
+            };
+            assert!(
+                shares != 2 || worst(&mut balance).1 > 1.4,
+                "even cuts are not even work"
+            );
+            for _ in 0..100 {
+                let (took, _) = worst(&mut balance);
+                balance.learn(&took);
+            }
+            let ranges = balance.cut(1000, shares);
+            assert_eq!((ranges[0].start, ranges[shares - 1].end), (0, 1000));
+            assert!(ranges.windows(2).all(|pair| pair[0].end == pair[1].start));
+            let (_, worst) = worst(&mut balance);
+            assert!(worst < 1.2, "{shares} shares: {worst}");
         }
     }
 }

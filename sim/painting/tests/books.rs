@@ -2,7 +2,7 @@
 
 use maulstick_brush::BrushFile;
 use maulstick_canvas::quantum::CELL_MAX;
-use maulstick_num::fork_join::with_help;
+use maulstick_num::fork_join::with_threads;
 use maulstick_optics::PaintLibrary;
 use maulstick_painting::{Painting, PaintingSetup};
 use maulstick_types::brush::{BrushState, Solve, solve_flags};
@@ -283,7 +283,7 @@ fn a_hundred_thousand_steps_lose_nothing() {
         let store = painting.store(CANVAS).expect("a canvas");
         (report.paints_m3, store.counts(), acts)
     };
-    assert_eq!(with_help(run), run(), "on two cores and on one");
+    assert_eq!(with_threads(2, run), run(), "on two cores and on one");
 }
 
 const LOW: Place = Place {

@@ -6,7 +6,7 @@ use std::sync::mpsc;
 
 use maulstick_brush::{BrushFile, BrushModel};
 use maulstick_canvas::EditError;
-use maulstick_num::fork_join::with_help_beyond;
+use maulstick_num::fork_join::with_cores_beyond;
 use maulstick_painting::clock::TICKS_A_SECOND;
 use maulstick_painting::{Painting, Sequencer};
 use maulstick_types::brush::BrushState;
@@ -224,7 +224,7 @@ impl Offline {
                 }
             });
             // The brush takes one core already.
-            with_help_beyond(2, || states.into_iter().try_for_each(&mut paint))
+            with_cores_beyond(1, || states.into_iter().try_for_each(&mut paint))
         })
     }
 

@@ -15,6 +15,7 @@
 //! | [`paint`] | `paint`: steps of the paint model by themselves, beside a copy |
 //! | [`render`] | `render`: the 30 s recording, offline |
 //! | [`report`] | rows and their table |
+//! | [`tails`] | `render`: work beside the steps, as shares of it |
 //! | [`thread_cpu`] | time of the processor |
 //! | [`view`] | `view`: frames of the whole desk without a window |
 //! | [`window`] | `window`: memory of the window |
@@ -35,6 +36,7 @@ mod peers;
 mod render;
 mod report;
 mod running;
+mod tails;
 mod thread_cpu;
 mod view;
 mod window;

@@ -1,11 +1,12 @@
 //! Steps of the paint model by themselves: states of a brush that were solved before, on wet paint.
 
 use std::sync::Arc;
+use std::thread::available_parallelism;
 use std::time::{Duration, Instant};
 
 use maulstick_brush::BrushFile;
 use maulstick_gpu::{Choice, Device, GpuImpasto, Traffic};
-use maulstick_num::fork_join::with_help;
+use maulstick_num::fork_join::with_threads;
 use maulstick_optics::PaintLibrary;
 use maulstick_painting::{Painting, PaintingSetup, Sequencer};
 use maulstick_rig::Fault;
@@ -35,6 +36,8 @@ const ROUNDS: usize = 7;
 const SIZES: [(usize, usize); 2] = [(26, 64), (88, 256)];
 /// As [`SIZES`], of one that cores are worth sharing.
 const WIDE: (usize, usize) = (352, 1024);
+/// Threads that are compared with one.
+const THREADS: [usize; 3] = [2, 4, 8];
 
 fn fault(error: impl ToString) -> Fault {
     Fault::failure(error.to_string())
@@ -162,10 +165,11 @@ pub(crate) fn run(report: &mut Report, backend: &str) -> Result<(), Fault> {
     if let Some(gpu) = &gpu {
         report.on(gpu.name());
     }
-    with_help(|| rounds(report, gpu.as_ref()))?;
+    let cores = available_parallelism().map_or(1, usize::from);
+    with_threads(cores.min(2), || rounds(report, gpu.as_ref()))?;
     if gpu.is_none() {
         cells(report)?;
-        speed_up(report)?;
+        speed_up(report, cores)?;
     }
     advection::run(report, gpu)
 }
@@ -186,19 +190,26 @@ fn cells(report: &mut Report) -> Result<(), Fault> {
     Ok(())
 }
 
-/// How many times as fast two cores paint with a wide brush as one.
-fn speed_up(report: &mut Report) -> Result<(), Fault> {
+/// How many times as fast several cores paint with a wide brush as one, as far as there are so many.
+fn speed_up(report: &mut Report, cores: usize) -> Result<(), Fault> {
     let (side, strips) = WIDE;
     let mut round = fitted(side, strips, None)?;
     round.paint()?;
-    let mut pairs = Vec::new();
-    for _ in 0..ROUNDS {
-        let ([steps, _], alone) = round.paint()?;
-        let ([again, _], both) = with_help(|| round.paint())?;
-        let rate = |steps: u64, took: Duration| steps as f64 / took.as_secs_f64();
-        pairs.push((rate(again, both), rate(steps, alone)));
+    for threads in THREADS {
+        let name = format!("steps_per_s.{side}.{threads}");
+        if cores < threads {
+            report.unmeasured(&name, format!("{cores} cores: not measured"));
+            continue;
+        }
+        let mut pairs = Vec::new();
+        for _ in 0..ROUNDS {
+            let ([steps, _], alone) = round.paint()?;
+            let ([again, _], shared) = with_threads(threads, || round.paint())?;
+            let rate = |steps: u64, took: Duration| steps as f64 / took.as_secs_f64();
+            pairs.push((rate(again, shared), rate(steps, alone)));
+        }
+        report.paired(&name, "steps/s", "on one core", &pairs);
     }
-    report.paired("steps_per_s.352", "steps/s", "on one core", &pairs);
     Ok(())
 }
 

@@ -12,9 +12,12 @@ use maulstick_rig::Fault;
 use crate::peers::Libmypaint;
 use crate::report::Report;
 use crate::running::maulstick;
+use crate::tails;
 
 /// Side of the canvas, mm.
 const SIDE_MM: f64 = 256.0;
+/// Side of a usual cell, mm.
+const USUAL_MM: f64 = 0.25;
 /// Runs of which the median is reported.
 const RUNS: usize = 5;
 /// Four loads in turn.
@@ -56,7 +59,7 @@ pub(crate) fn run(report: &mut Report) -> Result<(), Fault> {
     }
     let (mut seconds, mut pairs) = (Vec::new(), Vec::new());
     for _ in 0..RUNS {
-        seconds.push(painted(place, &take, 0.25)?);
+        seconds.push(painted(place, &take, USUAL_MM)?);
         if let Some(peer) = &peer {
             let start = Instant::now();
             peer.paint()?;
@@ -85,7 +88,8 @@ pub(crate) fn run(report: &mut Report) -> Result<(), Fault> {
     ] {
         report.row(name, painted(place, &take, cell_mm)?, "s");
     }
-    Ok(())
+    let cells = (SIDE_MM / USUAL_MM).round() as u32;
+    tails::run(report, &Take::read(&take)?, &LOADS, (cells, USUAL_MM))
 }
 
 /// Paints the take on cells of a side; how long that takes, s.

@@ -11,6 +11,9 @@ pub(crate) struct Row {
     name: String,
     value: f64,
     unit: &'static str,
+    /// Reason why there is no number.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    unmeasured: Option<String>,
     #[serde(skip_serializing_if = "Option::is_none")]
     peer: Option<&'static str>,
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -56,10 +59,19 @@ impl Report {
             name,
             value,
             unit,
+            unmeasured: None,
             peer: None,
             peer_value: None,
             ratio: None,
         });
+    }
+
+    /// A number that cannot be had here, and why.
+    pub(crate) fn unmeasured(&mut self, name: &str, why: String) {
+        self.row(name, f64::NAN, "");
+        if let Some(row) = self.rows.last_mut() {
+            row.unmeasured = Some(why);
+        }
     }
 
     /// The median of numbers.
@@ -79,6 +91,7 @@ impl Report {
             name: name.to_owned(),
             value,
             unit,
+            unmeasured: None,
             peer: Some(peer.0),
             peer_value: Some(peer.1),
             ratio: Some(value / peer.1),
@@ -99,6 +112,7 @@ impl Report {
             name: name.to_owned(),
             value: median(|pair| pair.0),
             unit,
+            unmeasured: None,
             peer: Some(peer),
             peer_value: Some(median(|pair| pair.1)),
             ratio: Some(median(|pair| pair.0 / pair.1)),
@@ -116,6 +130,10 @@ impl Report {
     pub(crate) fn print_table(&self) -> Result<(), Fault> {
         let mut text = format!("{}; {}\n", self.machine, self.adapter);
         for row in &self.rows {
+            if let Some(why) = &row.unmeasured {
+                text += &format!("{:<28} {why}\n", row.name);
+                continue;
+            }
             text += &format!("{:<28} {:>12} {:<8}", row.name, short(row.value), row.unit);
             if let (Some(peer), Some(value), Some(ratio)) = (row.peer, row.peer_value, row.ratio) {
                 text += &format!(" {peer} {value:.4}, ratio {ratio:.3}");

@@ -14,7 +14,7 @@ use maulstick_types::stylus::TakeStatus;
 use maulstick_types::topics::Topics;
 use maulstick_types::window::Presented;
 
-use crate::latency::{joined_as, playing};
+use crate::latency::{USUAL, joined_as, playing};
 use crate::report::{Report, quantile, sorted};
 use crate::running::{Running, display, fault};
 
@@ -38,7 +38,7 @@ pub(crate) fn run(
     let [width, height] = SIZE;
     let text = format!("size = [{width}.0, {height}.0]\nhas_painted = true\n");
     std::fs::write(habits.join("window.toml"), text).map_err(fault)?;
-    let mut command = playing(place, take)?;
+    let mut command = playing(place, take, &USUAL)?;
     command
         .env("DISPLAY", name)
         .env("XDG_CONFIG_HOME", place.join("config"));

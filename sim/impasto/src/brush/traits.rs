@@ -92,7 +92,7 @@ impl BrushTraits {
         let rigid = file.head.hair == Hair::Steel;
         let along_m = file.length_m() / TEXELS_PER_STRIP as f64;
         let texel_cells = file.strips.width_mm * 1e-3 * along_m / (cell_m * cell_m);
-        let quanta = |um: f64| um * 1e-6 / QUANTUM_M * texel_cells;
+        let quanta = |um: f64| (um * 1e-6 / QUANTUM_M * texel_cells).min(TEXEL_MOST);
         let steps = cell_m / REFERENCE_CELL_M;
         let step_cells = Scale { cell_m, zoom }.step_cells(rigid || file.surface.is_some());
         let flow = Self::FLOW_STEPS as f64 * steps * step_cells;
@@ -152,6 +152,9 @@ impl BrushTraits {
     }
 }
 
+/// The most quanta of a full film, and inside a full texel: single bristles take up several times as much, which is
+/// counted in 32 bits. A brush of thousands of cells across carries no more.
+const TEXEL_MOST: f64 = (1u32 << 29) as f64;
 /// Larger cells than these hold less of the peaks of a tooth, into which bristles sink, m.
 const PEAK_M: f64 = 0.125e-3;
 /// A film takes up at most this many times its full thickness.

@@ -9,10 +9,10 @@ use std::ops::Range;
 
 use maulstick_canvas::quantum::CELL_MAX;
 use maulstick_canvas::window::{Area, Window};
-use maulstick_num::fork_join::both_if;
+use maulstick_num::fork_join::each;
 use maulstick_num::wide;
 
-use super::PARALLEL_MIN_CELLS;
+use super::shares_of;
 use super::velocity::Faces;
 
 /// Paint that stays on a cell however hard it is brushed, unless the painter says otherwise, quanta: 3 µm of stain (§
@@ -32,7 +32,8 @@ pub struct Advection {
     loose: Vec<f32>,
     /// Share of what comes that a cell has room for.
     room: Vec<f32>,
-    movers: [Mover; 2],
+    /// One for each core.
+    movers: Vec<Mover>,
 }
 
 /// Room to move one paint.
@@ -72,9 +73,9 @@ pub enum Axis {
 
 wide! {
     /// Moves these paints.
-    fn move_planes(mover: &mut Mover, flux: &Flux<'_>, planes: &mut [Option<Vec<f32>>]) {
+    fn move_planes(mover: &mut Mover, flux: &Flux<'_>, planes: &mut [&mut Vec<f32>]) {
         // A loop, as a closure would not be compiled for wide registers.
-        for plane in planes.iter_mut().flatten() {
+        for plane in planes {
             mover.shift(flux, plane);
         }
     }
@@ -122,23 +123,28 @@ impl Advection {
                 loose: &self.loose,
                 room: &self.room,
             };
-            let ([one, other], [first, rest]) = (&mut self.movers, window.planes_halved());
-            let one = || move_planes(one, &flux, first);
-            let other = || move_planes(other, &flux, rest);
-            both_if(area.cells() >= PARALLEL_MIN_CELLS, one, other);
+            let parts = window.planes_in_parts(shares_of(area.cells()));
+            let movers = self.movers.len().max(parts.len());
+            self.movers.resize_with(movers, Mover::default);
+            let mut shares: Vec<_> = self.movers.iter_mut().zip(parts).collect();
+            each(&mut shares, |(mover, planes)| {
+                move_planes(mover, &flux, planes);
+            });
         }
     }
 
     fn weigh(&mut self, window: &Window, area: &Area, stain: f32) {
         self.totals.resize(area.cells(), 0.0);
         self.loose.resize(area.cells(), 0.0);
-        let [low, high] = area.halves();
-        let cut = low.cells();
-        let (below, above) = self.totals.split_at_mut(cut);
-        let (loose, loose_above) = self.loose.split_at_mut(cut);
-        let one = || weigh(window, &low, stain, below, loose);
-        let other = || weigh(window, &high, stain, above, loose_above);
-        both_if(area.cells() >= PARALLEL_MIN_CELLS, one, other);
+        let (mut totals, mut loose) = (&mut self.totals[..], &mut self.loose[..]);
+        let parts = area.parts(shares_of(area.cells())).map(|part| {
+            let planes = [&mut totals, &mut loose];
+            let own = planes.map(|plane| plane.split_off_mut(..part.cells()).unwrap_or_default());
+            (part, own)
+        });
+        each(&mut parts.collect::<Vec<_>>(), |(part, [totals, loose])| {
+            weigh(window, part, stain, totals, loose);
+        });
     }
 
     /// A cell holds at most one unit: inflow beyond it stays with its donors.

@@ -87,11 +87,19 @@ pub(super) struct Band {
 }
 
 impl Band {
-    /// Nothing on those rows of a grid.
-    pub(super) fn begin(&mut self, grid: Area, offset: [f32; 2], rows: Range<usize>) {
+    /// The reach of none.
+    pub(super) const NOWHERE: ([usize; 2], [usize; 2]) = ([usize::MAX; 2], [0; 2]);
+
+    /// Nothing.
+    pub(super) fn clear(&mut self) {
         self.contacts.clear();
         self.wet.clear();
-        self.reach = ([usize::MAX; 2], [0; 2]);
+        self.reach = Self::NOWHERE;
+    }
+
+    /// Nothing on those rows of a grid.
+    pub(super) fn begin(&mut self, grid: Area, offset: [f32; 2], rows: Range<usize>) {
+        self.clear();
         self.grid = grid;
         self.offset = offset;
         self.drawing.begin(grid.size, rows);

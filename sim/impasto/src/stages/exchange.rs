@@ -6,13 +6,14 @@
 //! holds, and truncated once.
 
 use maulstick_canvas::quantum::{CELL_MAX, QUANTA_PER_UNIT, SLOTS};
-use maulstick_num::fork_join::{Balance, both_if};
+use maulstick_num::fork_join::{Balance, each};
 use maulstick_num::select::{larger, smaller};
 use maulstick_num::wide;
+use std::ops::Range;
 
-use super::PARALLEL_MIN_CELLS;
 use super::contact::Contact;
 use super::footprint::Footprint;
+use super::shares_of;
 use crate::brush::load::BrushLoad;
 use crate::brush::traits::BrushTraits;
 use crate::model::{Handling, Step, Transfer};
@@ -22,8 +23,9 @@ use crate::transfer::Exchanging;
 /// step, so that the others cost nothing.
 #[derive(Clone, Debug, Default)]
 pub struct Exchange {
-    /// The contacts, half of them each.
-    halves: [Half; 2],
+    /// The contacts, parted among the cores; those beyond `used` are of other steps.
+    shares: Vec<Share>,
+    used: usize,
     /// The texels that touch.
     texels: Vec<u32>,
     /// The place of each texel of the brush in `texels`; [`ABSENT`] but for those that touch.
@@ -47,9 +49,9 @@ struct Granted {
     film: Vec<f32>,
 }
 
-/// One core's contacts.
+/// One core's contacts, in order.
 #[derive(Clone, Debug, Default)]
-struct Half {
+struct Share {
     meetings: Meetings,
     /// Quanta that each contact wants from the brush, and that it gives to it.
     wants: [Vec<f32>; 2],
@@ -186,16 +188,16 @@ wide! {
 
 wide! {
     /// One paint, both ways: `change` is the amount added to each texel.
-    fn swap_paint(half: &mut Half, gives: &[f32], plane: Cells<'_>) {
-        let asked = half.wants[0].iter().zip(&half.shares);
-        let ways = half.cells.iter().zip(&half.places);
-        for (((cell, place), (given, share)), leaves) in ways.zip(asked).zip(&half.leaves) {
+    fn swap_paint(own: &mut Share, gives: &[f32], plane: &mut Cells<'_>) {
+        let asked = own.wants[0].iter().zip(&own.shares);
+        let ways = own.cells.iter().zip(&own.places);
+        for (((cell, place), (given, share)), leaves) in ways.zip(asked).zip(&own.leaves) {
             let count = &mut plane.cells[*cell as usize - plane.first];
             let place = *place as usize;
             let given = (given * gives[place]).floor();
             let taken = (*count * share).floor();
             *count += given - (leaves * taken).floor();
-            half.change[place] += (taken - given) as i32;
+            own.change[place] += (taken - given) as i32;
         }
     }
 }
@@ -210,34 +212,24 @@ impl Exchange {
     /// Exchanges the paint of one step; by slot, what came onto the canvas from nowhere.
     pub fn run(&mut self, footprint: &Footprint, step: &mut Step<'_>) -> [i64; SLOTS] {
         let contacts = footprint.contacts.len();
-        let middle = match contacts >= PARALLEL_MIN_CELLS {
-            true => self.balance.cut(contacts),
-            false => contacts,
-        };
-        self.find_texels(footprint, middle, step.load.texels());
-        let (texels, [low, high]) = (self.texels.len(), &mut self.halves);
-        let contacts = footprint.contacts.split_at(middle);
-        let shared = &*step;
-        let mut one = || low.demand(contacts.0, shared);
-        let mut other = || high.demand(contacts.1, shared);
-        match contacts.1.is_empty() {
-            true => (one(), other()),
-            false => self.balance.both(one, other),
-        };
+        let ranges = self.balance.cut(contacts, shares_of(contacts));
+        self.find_texels(footprint, &ranges, step.load.texels());
+        let (texels, used) = (self.texels.len(), &mut self.shares[..self.used]);
+        let (shared, contacts) = (&*step, &footprint.contacts);
+        let mut shares: Vec<_> = used.iter_mut().zip(ranges).collect();
+        self.balance.each(&mut shares, |(share, range)| {
+            share.demand(&contacts[range.clone()], shared);
+        });
         let granted = &mut self.granted;
         granted.asked.clear();
         granted.asked.resize(texels, [0.0; 2]);
-        for half in [&*low, high] {
-            half.ask(&mut granted.asked);
+        for share in &*used {
+            share.ask(&mut granted.asked);
         }
         let sponge = step.handling.transfer == Transfer::Sponge;
         granted.grant(&self.texels, step.load, &step.traits, sponge);
         let (granted, lasting) = (&*granted, step.lasting);
-        both_if(
-            !contacts.1.is_empty(),
-            || low.share(granted, lasting),
-            || high.share(granted, lasting),
-        );
+        each(used, |share| share.share(granted, lasting));
         let mut from_nowhere = [0; SLOTS];
         for slot in 0..SLOTS {
             let change = self.exchange(slot, step);
@@ -250,27 +242,29 @@ impl Exchange {
         from_nowhere
     }
 
-    fn find_texels(&mut self, footprint: &Footprint, middle: usize, texels: usize) {
+    fn find_texels(&mut self, footprint: &Footprint, ranges: &[Range<usize>], texels: usize) {
         for texel in self.texels.drain(..) {
             self.place_of[texel as usize] = ABSENT;
         }
         self.place_of.resize(texels, ABSENT);
-        let (low, high) = footprint.contacts.split_at(middle);
-        for (half, contacts) in self.halves.iter_mut().zip([low, high]) {
-            half.places.clear();
-            for contact in contacts {
+        self.used = ranges.len();
+        let shares = self.shares.len().max(self.used);
+        self.shares.resize_with(shares, Share::default);
+        for (share, range) in self.shares.iter_mut().zip(ranges) {
+            share.places.clear();
+            for contact in &footprint.contacts[range.clone()] {
                 let place = &mut self.place_of[contact.texel as usize];
                 if *place == ABSENT {
                     *place = self.texels.len() as u32;
                     self.texels.push(contact.texel);
                 }
-                half.places.push(*place);
+                share.places.push(*place);
             }
         }
     }
 
     /// One slot, both ways; the quanta that came from nowhere. What the brush gains is noted in the
-    /// halves' `change`.
+    /// shares' `change`.
     fn exchange(&mut self, slot: usize, step: &mut Step<'_>) -> i64 {
         self.held.clear();
         match step.load.film_of(slot) {
@@ -281,12 +275,13 @@ impl Exchange {
             None => self.held.resize(self.texels.len(), 0.0),
         }
         let on_brush = self.held.iter().any(|count| *count > 0.0);
-        for half in &mut self.halves {
-            half.change.clear();
-            half.change.resize(self.texels.len(), 0);
-        }
+        let shares = &mut self.shares[..self.used];
+        shares.iter_mut().for_each(|share| share.change.clear());
         if !on_brush && !step.window.has(slot) {
             return 0;
+        }
+        for share in shares {
+            share.change.resize(self.texels.len(), 0);
         }
         let held = self.held.iter().zip(&self.granted.asked);
         self.gives.clear();
@@ -296,25 +291,22 @@ impl Exchange {
         let sponge = step.handling.transfer == Transfer::Sponge;
         let counted = sponge || step.lasting;
         let before = if counted { self.on_cells(plane) } else { 0 };
-        let (gives, [low, high]) = (&self.gives, &mut self.halves);
-        // Contacts come in the order of their cells.
-        let first = high
-            .cells
-            .first()
-            .map_or(plane.len(), |cell| *cell as usize);
-        let (below, above) = plane.split_at_mut(first);
-        let [below, above] =
-            [(0, below), (first, above)].map(|(first, cells)| Cells { first, cells });
-        both_if(
-            !high.cells.is_empty(),
-            || swap_paint(low, gives, below),
-            || swap_paint(high, gives, above),
-        );
+        let (gives, mut rest) = (&self.gives, &mut plane[..]);
+        // Contacts come in the order of their cells: the last share has the last of them.
+        let shares = self.shares[..self.used].iter_mut().rev();
+        let shares = shares.filter_map(|share| {
+            let first = *share.cells.first()? as usize;
+            let cells = rest.split_off_mut(first..)?;
+            Some((share, Cells { first, cells }))
+        });
+        each(&mut shares.collect::<Vec<_>>(), |(share, cells)| {
+            swap_paint(share, gives, cells);
+        });
         // Otherwise what one side gains the other loses.
         if !counted {
             return 0;
         }
-        let changes = self.halves.iter().flat_map(|half| &half.change);
+        let changes = self.in_use().iter().flat_map(|share| &share.change);
         let onto_brush: i64 = match sponge {
             true => 0,
             false => changes.map(|change| i64::from(*change)).sum(),
@@ -324,23 +316,32 @@ impl Exchange {
 
     /// Quanta of a plane on the contacts.
     fn on_cells(&self, plane: &[f32]) -> i64 {
-        let cells = self.halves.iter().flat_map(|half| &half.cells);
+        let cells = self.in_use().iter().flat_map(|share| &share.cells);
         cells.map(|cell| plane[*cell as usize] as i64).sum()
     }
 
-    fn note_on_brush(&self, slot: usize, load: &mut BrushLoad) {
-        let [low, high] = &self.halves;
-        let changes = low.change.iter().zip(&high.change);
-        for (texel, (low, high)) in self.texels.iter().zip(changes) {
-            let change = low + high;
-            if change != 0 {
-                load.change_film(slot, *texel as usize, change);
+    fn note_on_brush(&mut self, slot: usize, load: &mut BrushLoad) {
+        let Some((sums, others)) = self.shares[..self.used].split_first_mut() else {
+            return;
+        };
+        for other in others {
+            let changes = sums.change.iter_mut().zip(&other.change);
+            changes.for_each(|(sum, change)| *sum += change);
+        }
+        for (texel, change) in self.texels.iter().zip(&sums.change) {
+            if *change != 0 {
+                load.change_film(slot, *texel as usize, *change);
             }
         }
     }
+
+    /// The shares of this step.
+    fn in_use(&self) -> &[Share] {
+        &self.shares[..self.used]
+    }
 }
 
-impl Half {
+impl Share {
     /// Demand of each contact on its texel, and its offer to it.
     fn demand(&mut self, contacts: &[Contact], step: &Step<'_>) {
         self.cells.clear();

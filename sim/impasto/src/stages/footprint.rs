@@ -5,11 +5,11 @@
 //! dry relief and wet paint. All lengths are in cells.
 
 use maulstick_canvas::window::{Area, Window};
-use maulstick_num::fork_join::{Balance, both_if};
+use maulstick_num::fork_join::{Balance, each};
 
-use super::PARALLEL_MIN_CELLS;
 use super::band::{Band, draw_strips};
 use super::contact::Contact;
+use super::shares_of;
 use crate::model::{Step, StepReport};
 
 /// The footprint of one step.
@@ -25,7 +25,8 @@ pub struct Footprint {
     pub wet: Vec<f32>,
     /// The same on the cells of the grid, and afterwards on those around.
     lying: Vec<f32>,
-    bands: [Band; 2],
+    /// One for each core, in order of their rows.
+    bands: Vec<Band>,
     balance: Balance,
 }
 
@@ -57,18 +58,13 @@ impl Footprint {
             draw_strips(band, step, low, loose);
             band.touch(step, lying, sink);
         };
-        let middle = match grid.cells() >= PARALLEL_MIN_CELLS {
-            true => self.balance.cut(height),
-            false => height,
-        };
-        let [lower, upper] = &mut self.bands;
-        if middle == height {
-            find(lower, 0..height);
-            upper.begin(grid, offset, height..height);
-        } else {
-            self.balance
-                .both(|| find(lower, 0..middle), || find(upper, middle..height));
-        }
+        let rows = self.balance.cut(height, shares_of(grid.cells()));
+        let bands = self.bands.len().max(rows.len());
+        self.bands.resize_with(bands, Band::default);
+        self.bands.iter_mut().for_each(Band::clear);
+        let mut shares: Vec<_> = self.bands.iter_mut().zip(rows).collect();
+        self.balance
+            .each(&mut shares, |(band, rows)| find(band, rows.clone()));
         self.gather(step.window);
     }
 
@@ -80,13 +76,15 @@ impl Footprint {
             window.weigh(area, lying);
             highest(lying, area, window, to_cells)
         };
-        let [low, high] = area.halves();
-        let (below, above) = self.lying.split_at_mut(low.cells());
-        let one = || weigh(&low, below);
-        let (below, above) = both_if(area.cells() >= PARALLEL_MIN_CELLS, one, || {
-            weigh(&high, above)
+        let mut lying = &mut self.lying[..];
+        let parts = area.parts(shares_of(area.cells()));
+        let parts = parts.map(|part| {
+            let own = lying.split_off_mut(..part.cells());
+            (part, own.unwrap_or_default(), 0.0f32)
         });
-        let top = below.max(above);
+        let mut parts: Vec<_> = parts.collect();
+        each(&mut parts, |(part, lying, top)| *top = weigh(part, lying));
+        let top = parts.iter().fold(0.0f32, |most, (.., top)| most.max(*top));
         step.window.note_top(top / to_cells);
         top
     }
@@ -101,20 +99,22 @@ impl Footprint {
         self.contacts.clear();
         self.wet.clear();
         self.around = Area::default();
-        let [lower, upper] = &self.bands;
-        if lower.contacts.len() + upper.contacts.len() == 0 {
+        if self.bands.iter().all(|band| band.contacts.is_empty()) {
             return;
         }
-        let (one, other) = (lower.reach, upper.reach);
-        let from = [0, 1].map(|i| one.0[i].min(other.0[i]));
-        let to = [0, 1].map(|i| one.1[i].max(other.1[i]));
+        let (from, to) = self.bands.iter().fold(Band::NOWHERE, |(from, to), band| {
+            let (low, high) = band.reach;
+            let outer = |i: usize| (low[i].min(from[i]), high[i].max(to[i]));
+            let ((left, right), (bottom, top)) = (outer(0), outer(1));
+            ([left, bottom], [right, top])
+        });
         let limit = window.limit();
         let from = [0, 1].map(|i| (self.grid.from[i] + from[i]).saturating_sub(1));
         let size = [0, 1].map(|i| (self.grid.from[i] + to[i] + 1).min(limit[i]) - from[i]);
         self.around = Area { from, size };
         let inset = [0, 1].map(|i| self.grid.from[i] as i64 - from[i] as i64);
         let (width, row) = (self.grid.size[0] as u32, size[0] as i64);
-        for band in [lower, upper] {
+        for band in &self.bands {
             self.wet.extend_from_slice(&band.wet);
             self.contacts.extend(band.contacts.iter().map(|contact| {
                 let (x, y) = (contact.local % width, contact.local / width);

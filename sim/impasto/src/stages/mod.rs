@@ -28,5 +28,18 @@ pub mod velocity;
 
 pub use step::Impasto;
 
+use maulstick_num::fork_join::threads;
+
 /// Smaller footprints run on one core: fork-join would cost more than it saves.
 const PARALLEL_MIN_CELLS: usize = 400;
+/// Cells that are worth a core of their own beside two others: a stage of a step takes some microseconds for them,
+/// several times what it takes to hand them over.
+const CELLS_PER_SHARE: usize = 1000;
+
+/// Shares in which a stage does so many cells, of the [threads] that there are.
+fn shares_of(cells: usize) -> usize {
+    match cells {
+        0..PARALLEL_MIN_CELLS => 1,
+        _ => threads().min((cells / CELLS_PER_SHARE).max(2)),
+    }
+}

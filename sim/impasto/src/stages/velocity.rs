@@ -8,12 +8,12 @@
 //! Thinned paint slips under the bristles and gives way sooner.
 
 use maulstick_canvas::window::Area;
-use maulstick_num::fork_join::both_if;
+use maulstick_num::fork_join::each;
 use maulstick_num::wide;
 
-use super::PARALLEL_MIN_CELLS;
 use super::contact::Contact;
 use super::footprint::Footprint;
+use super::shares_of;
 use crate::model::Step;
 
 /// c of the squish: cells of flow in a step of one cell, per cell of penetration by cell.
@@ -110,9 +110,16 @@ impl Faces {
         };
         let (across, up) = (along(&self.push[0], 1), along(&self.push[1], width));
         let [leaves_x, leaves_y] = &mut self.leaves;
-        let x = || through_faces(&across, &mut self.right, leaves_x);
-        let y = || through_faces(&up, &mut self.above, leaves_y);
-        both_if(width * height >= PARALLEL_MIN_CELLS, x, y);
+        let mut axes = [
+            (across, &mut self.right, leaves_x),
+            (up, &mut self.above, leaves_y),
+        ];
+        let shares = axes.chunks_mut(2 / shares_of(width * height).min(2));
+        each(&mut shares.collect::<Vec<_>>(), |axes| {
+            for (along, faces, leaves) in &mut **axes {
+                through_faces(along, faces, leaves);
+            }
+        });
     }
 }
 

@@ -2,9 +2,11 @@
 //!
 //! | module | holds |
 //! | --- | --- |
+//! | [`convergence`] | one stroke on cells of three sizes: volumes and spectra of its relief |
 //! | [`easel`] | a canvas, a brush, a hand, and the films that they leave |
 //! | [`marks`] | the measurements |
 
+mod convergence;
 mod easel;
 #[cfg(test)]
 mod extremes;
@@ -31,5 +33,5 @@ pub(crate) fn run(report: &mut Report) -> Result<(), Fault> {
             report.row(name, value, unit);
         }
     }
-    Ok(())
+    convergence::run(report)
 }
