@@ -73,6 +73,7 @@ struct Rest {
     rests: f32,
     /// Quanta at which a cell counts as bare.
     bare: f32,
+    cell_m: f64,
 }
 
 impl Rest {
@@ -85,6 +86,7 @@ impl Rest {
             thinner: None,
             rests: 0.0,
             bare: 0.0,
+            cell_m: CELL_M,
         }
     }
 
@@ -98,9 +100,9 @@ impl Rest {
     }
 
     fn level_on(&self, window: &mut Window, area: Area) {
-        let to_cells = (QUANTUM_M / CELL_M) as f32;
+        let to_cells = (QUANTUM_M / self.cell_m) as f32;
         let seconds = self.seconds / self.rounds as f64;
-        let round = Round::new(self.body, CELL_M, seconds, to_cells, self.bare);
+        let round = Round::new(self.body, self.cell_m, seconds, to_cells, self.bare);
         let (mut levelling, mut advection) = (Levelling::default(), Advection::default());
         let mut faces = Faces::still(&area);
         for number in 0..self.rounds / self.at_once {
@@ -155,6 +157,32 @@ fn a_ripple_decays_as_orchard_has_it() {
         let off = (got / want - 1.0).abs();
         assert!(off > 0.05, "{factor} of the viscosity passes: {off}");
     }
+}
+
+/// On fine cells the rounds of a second are too few for long waves: coarser grids carry those.
+#[test]
+fn coarser_grids_level_what_fine_cells_cannot() {
+    let (mean, ripple, cells) = (300e-6, 10e-6, 16);
+    let exponent = 0.5;
+    let left = |cell_m: f64| {
+        let k = 2.0 * PI / (cells as f64 * cell_m);
+        let rate = (TENSION * k.powi(4) + WEIGHT * k * k) * mean * mean * mean / (3.0 * 20.0);
+        let mut window = rippled(mean, ripple, cells);
+        let before = quanta(&window);
+        let rest = Rest {
+            at_once: 16,
+            cell_m,
+            ..Rest::new(OIL, exponent / rate, 64)
+        };
+        rest.level(&mut window);
+        assert_eq!(quanta(&window), before);
+        amplitude(&window, cells) / ripple
+    };
+    let (got, want) = (left(6.25e-5), exp(-exponent));
+    assert!((got / want - 1.0).abs() < 0.1, "{got} {want}");
+    // Twice these cells are larger than the coarsest grid.
+    let alone = left(6.3e-5);
+    assert!(alone > 0.9, "{alone}: without a coarser grid it passes");
 }
 
 #[test]

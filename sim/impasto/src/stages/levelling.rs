@@ -9,6 +9,11 @@
 //! which a ripple of wave number k decays at γh³k⁴/3η; with one a ripple of amplitude τ_y/(γhk³) is left
 //! (Smith, Orchard and Rhind-Tutt 1961). Edges are pinned: paint flows onto bare ground only
 //! down a steep slope.
+//!
+//! A round is explicit, so on fine cells it can carry only so much. What it cannot, long waves above all, flows on
+//! grids of cells twice as large, up to those of [`COARSEST_M`] ([`coarse`]).
+
+mod coarse;
 
 use maulstick_canvas::window::{Area, Window};
 use maulstick_num::select::{larger, smaller};
@@ -24,6 +29,9 @@ pub const STABLE: f64 = 1.0 / 40.0;
 
 /// Slope at which an edge of wet paint advances onto bare ground; without a yield stress it wets all.
 pub const ADVANCES: f32 = 1.0;
+
+/// Largest cells of a coarser grid, m: on such and larger ones a second's rounds level all that a stroke leaves.
+const COARSEST_M: f64 = 1.25e-4;
 
 /// Rheology of a paint.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -70,6 +78,10 @@ pub struct Round {
     mobility: f32,
     /// The most of a mobility.
     most: f32,
+    /// The part of a mobility that the finer cells have.
+    finer: f32,
+    /// Number of coarser grids.
+    coarser: u32,
     /// Height of a quantum, cells.
     to_cells: f32,
     /// Quanta below which a cell counts as bare.
@@ -83,11 +95,15 @@ impl Round {
         // A yield stress of nothing: so small that it holds nothing.
         let yields = body.yield_pa.max(1e-9);
         let mobility = seconds * yields / body.viscosity_pa_s.max(1e-9);
+        let sides = (1..).map(|level| cell_m * f64::from(1 << level));
+        let coarser = sides.take_while(|side| *side <= COARSEST_M * (1.0 + 1e-9));
         Self {
             tension: (TENSION_N_PER_M / (cell_m * yields)) as f32,
             weight: (WEIGHT_N_PER_M3 * cell_m / yields) as f32,
             mobility: mobility as f32,
             most: (STABLE * cell_m * yields / TENSION_N_PER_M) as f32,
+            finer: 0.0,
+            coarser: coarser.count() as u32,
             to_cells,
             bare,
         }
@@ -173,8 +189,18 @@ impl Levelling {
             plane.clear();
             plane.resize(self.wet.len(), 0.0);
         }
+        let most = self.run(area, round, (rounds, rests));
+        let bare = round.bare * round.to_cells;
+        for (axis, faces) in faces.into_iter().enumerate() {
+            share_out(self, area, bare, axis, faces);
+        }
+        most
+    }
+
+    /// Lets heights flow for so many rounds, on coarser grids first; the largest flow of a round.
+    fn run(&mut self, area: &Area, round: &Round, (rounds, rests): (u32, f32)) -> f32 {
         let mut blocks = Blocks::default();
-        let mut most = 0.0f32;
+        let mut most = self.flow_on_coarser(area, round, (rounds, rests));
         for _ in 0..rounds {
             blocks.begin(area, rests);
             flow_once(self, area, round, &mut blocks);
@@ -184,10 +210,6 @@ impl Levelling {
             if flowed < rests {
                 break;
             }
-        }
-        let bare = round.bare * round.to_cells;
-        for (axis, faces) in faces.into_iter().enumerate() {
-            share_out(self, area, bare, axis, faces);
         }
         most
     }
@@ -297,7 +319,7 @@ fn flow(round: &Round, bare: f32, own: &Run<'_>, next: &Run<'_>, i: usize) -> [f
     let sheared = larger(height - yields / larger(gradient.abs(), 1e-12), 0.0);
     let mobility = round.mobility * 0.5 * (own.fluid[i] + next.fluid[i]);
     let mobility = mobility * sheared * sheared * (3.0 * height - sheared) / 6.0;
-    let goes = smaller(mobility, round.most) * gradient;
+    let goes = (smaller(mobility, round.most) - smaller(mobility, round.finer)) * gradient;
     let donor = if goes > 0.0 { wet } else { wet_next };
     let onto = if goes > 0.0 { wet_next } else { wet };
     let pinned = (donor <= bare) | (onto <= bare) & (drop.abs() < ADVANCES * yields);

@@ -186,4 +186,14 @@ mod tests {
             "a fault passes: {other:?}"
         );
     }
+
+    /// Where fine cells have no coarser grid to level on, ridges are left of 520 times the power.
+    #[test]
+    fn a_stroke_leaves_the_same_on_the_finest_cells() {
+        let [coarse, fine] =
+            [1, 2].map(|size| left_on(CELLS_MM[size], Painter::Able).expect("painted"));
+        let own = apart(&coarse, &fine);
+        println!("volume and spectrum apart by {own:.3?}");
+        assert!(own[0] <= MOST_VOLUME && own[1] <= MOST_POWER, "{own:?}");
+    }
 }

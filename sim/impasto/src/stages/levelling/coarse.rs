@@ -1,0 +1,119 @@
+//! Levelling on coarser grids: of each four cells one.
+//!
+//! An explicit round on cells of side a bounds the mobility by a (`STABLE`), and to level a wave takes rounds by the
+//! fourth power of the cells across it. A grid twice as coarse bears sixteen times the flow of the finer one; what of
+//! the mobility the finer grid has is left out there, so each share of the flow is counted once. Fluxes through
+//! coarse faces go back through the finer faces on them, and halfway between two of them through their mean: volumes
+//! are kept, and the two cells between change alike.
+
+use maulstick_canvas::window::Area;
+use maulstick_num::select::{larger, smaller};
+
+use super::{BLOCK, HALO, Levelling, Round};
+
+/// Largest part of a cell's paint that flows through a face at once.
+const LARGEST_SHARE: f32 = 0.25;
+
+impl Round {
+    /// The round on cells twice as large, without what the finer ones bear.
+    fn twice(&self) -> Self {
+        Self {
+            tension: 0.5 * self.tension,
+            weight: 2.0 * self.weight,
+            most: 2.0 * self.most,
+            // Of heights in cells a mobility is by their third power, its gradient in yields by cell.
+            finer: 0.125 * self.most,
+            coarser: self.coarser - 1,
+            to_cells: 0.5 * self.to_cells,
+            ..*self
+        }
+    }
+}
+
+impl Levelling {
+    /// Lets the heights of an area flow on coarser grids, where there are some; the largest flow of a round there.
+    pub(super) fn flow_on_coarser(
+        &mut self,
+        area: &Area,
+        round: &Round,
+        rounds: (u32, f32),
+    ) -> f32 {
+        if round.coarser == 0 {
+            return 0.0;
+        }
+        let twice = Area {
+            from: [0; 2],
+            size: area.size.map(|cells| cells.div_ceil(2)),
+        };
+        let mut coarse = self.halved(area, &twice);
+        let most = coarse.run(&twice, &round.twice(), rounds);
+        self.take_flows(area, &coarse, round.bare * round.to_cells);
+        let [across, up] = area.size.map(|cells| cells.div_ceil(BLOCK));
+        let blocks = (0..up).flat_map(|y| (0..across).map(move |x| [x, y]));
+        blocks.for_each(|block| self.carry(area, block));
+        most
+    }
+
+    /// The means of each four cells, in cells twice as large.
+    fn halved(&self, area: &Area, twice: &Area) -> Self {
+        let width = twice.size[0] + 2 * HALO;
+        let height = twice.size[1] + 2 * HALO;
+        // Beyond the halo it goes on as at its edge.
+        let fine = |coarse: usize, axis: usize| {
+            let last = area.size[axis] + 2 * HALO - 1;
+            [0, 1].map(|of| (2 * coarse + of).saturating_sub(HALO).min(last))
+        };
+        let columns: Vec<_> = (0..width).map(|x| fine(x, 0)).collect();
+        let mean = |plane: &[f32], scale: f32| {
+            let mut means = Vec::with_capacity(width * height + BLOCK);
+            for y in 0..height {
+                let [low, high] = fine(y, 1).map(|row| &plane[row * self.width..][..self.width]);
+                let sum = |[a, b]: &[usize; 2]| (low[*a] + low[*b]) + (high[*a] + high[*b]);
+                means.extend(columns.iter().map(|cells| scale * sum(cells)));
+            }
+            means.resize(width * height + BLOCK, 0.0);
+            means
+        };
+        let still = || vec![0.0; width * height + BLOCK];
+        Self {
+            width,
+            wet: mean(&self.wet, 0.125),
+            surface: mean(&self.surface, 0.125),
+            curve: still(),
+            body: [mean(&self.body[0], 0.25), mean(&self.body[1], 0.25)],
+            flows: [still(), still()],
+            sums: [still(), still()],
+            before: Vec::new(),
+        }
+    }
+
+    /// Lays the sums of what flowed on the coarser grid into the flows of the finer one; through bare cells nothing
+    /// goes.
+    fn take_flows(&mut self, area: &Area, coarse: &Self, bare: f32) {
+        for (axis, next) in [1, self.width].into_iter().enumerate() {
+            let beside = [1, coarse.width][axis];
+            let sums = &coarse.sums[axis];
+            for y in 0..area.size[1] {
+                for x in 0..area.size[0] {
+                    let at = (y + HALO) * self.width + x + HALO;
+                    let place = [x, y][axis];
+                    if place + 1 == area.size[axis] {
+                        self.flows[axis][at] = 0.0;
+                        continue;
+                    }
+                    let on = (y / 2 + HALO) * coarse.width + x / 2 + HALO;
+                    // A flow of one coarse cell's height is one of four through either of its two faces.
+                    let goes = match place % 2 {
+                        1 => 4.0 * sums[on],
+                        _ => 2.0 * (sums[on - beside] + sums[on]),
+                    };
+                    let (own, other) = (self.wet[at] - bare, self.wet[at + next] - bare);
+                    let most = LARGEST_SHARE * if goes > 0.0 { own } else { other };
+                    let dry = (own <= 0.0) | (other <= 0.0);
+                    let goes = larger(smaller(goes, most), -most);
+                    self.flows[axis][at] = if dry { 0.0 } else { goes };
+                }
+            }
+        }
+    }
+}
