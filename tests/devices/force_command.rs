@@ -1,5 +1,6 @@
 //! `maulstick force` as its users call it.
 
+#[path = "../support/mod.rs"]
 mod support;
 
 use serde_json::Value;

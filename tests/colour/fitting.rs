@@ -1,5 +1,6 @@
 //! `maulstick fit`, from a table of measurements to a paint file.
 
+#[path = "../support/mod.rs"]
 mod support;
 
 use support::{Place, fault, has};
@@ -7,7 +8,7 @@ use support::{Place, fault, has};
 #[test]
 fn fit_makes_paints_of_the_example_of_its_guide() {
     let place = Place::new();
-    let table = include_str!("../docs/examples/measurements.csv");
+    let table = include_str!("../../docs/examples/measurements.csv");
     std::fs::write(place.path("m.csv"), table).expect("written");
     let said = place.done(&["fit", "m.csv", "-o", "paints.csv"]);
     let said = String::from_utf8_lossy(&said.stdout).into_owned();
@@ -107,7 +108,7 @@ fn measurements_are_not_written_over() {
     let place = Place::new();
     std::fs::write(
         place.path("m.csv"),
-        include_str!("../docs/examples/measurements.csv"),
+        include_str!("../../docs/examples/measurements.csv"),
     )
     .expect("written");
     let said = fault(&place, &["fit", "m.csv", "-o", "m.csv"], 2);

@@ -1,6 +1,6 @@
 //! Files that commands and rigs write: over none that is not theirs; and files that somebody removes.
 
-#[path = "support/mod.rs"]
+#[path = "../support/mod.rs"]
 mod support;
 
 use nix::sys::signal::Signal;

@@ -1,6 +1,6 @@
 //! Another painting, another file and exports in a running rig.
 
-#[path = "support/mod.rs"]
+#[path = "../support/mod.rs"]
 mod support;
 
 use std::process::Stdio;

@@ -1,5 +1,6 @@
 //! A day at the easel as a script.
 
+#[path = "../support/mod.rs"]
 mod support;
 
 use support::{Place, assert_same, fault, has};

@@ -1,5 +1,6 @@
 //! Long runs, behind `./test --long`: the recording of a person's strokes, ten times at each rate.
 
+#[path = "../support/mod.rs"]
 mod support;
 
 use std::path::Path;

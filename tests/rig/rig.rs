@@ -1,5 +1,6 @@
 //! Rigs of real processes.
 
+#[path = "../support/mod.rs"]
 mod support;
 
 use std::process::Command;

@@ -1,5 +1,6 @@
 //! `maulstick brush` as its users call it.
 
+#[path = "../support/mod.rs"]
 mod support;
 
 use support::{Place, fault, has};

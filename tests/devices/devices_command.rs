@@ -1,6 +1,7 @@
 //! `maulstick devices` as its users call it: beside the devices of this machine, whatever they are,
 //! those of a rig.
 
+#[path = "../support/mod.rs"]
 mod support;
 
 use serde_json::Value;

@@ -1,6 +1,7 @@
 //! A painter's session in a real window: a synthetic mouse paints, mixes, dries, takes back, moves the canvas
 //! while it paints, and exports.
 
+#[path = "../support/mod.rs"]
 mod support;
 
 use std::fs::File;

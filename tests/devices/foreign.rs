@@ -1,5 +1,6 @@
 //! What others do to a rig: a device in another language, and messages that are none.
 
+#[path = "../support/mod.rs"]
 mod support;
 
 use std::io::{BufRead as _, BufReader};

@@ -1,5 +1,6 @@
 //! What a hand feels when processes of the rig die.
 
+#[path = "../support/mod.rs"]
 mod support;
 
 use std::time::Duration;

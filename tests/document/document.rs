@@ -1,6 +1,6 @@
 //! Paintings in files: kept, killed, damaged, and whatever else a file can be.
 
-#[path = "support/mod.rs"]
+#[path = "../support/mod.rs"]
 mod support;
 
 use std::process::Command;

@@ -3,6 +3,7 @@
 
 #![allow(clippy::panic, reason = "tests")]
 
+#[path = "../support/mod.rs"]
 mod support;
 
 use std::collections::BTreeMap;

@@ -1,5 +1,6 @@
 //! Mixing colours on the command line: what `mix`, `match` and `paints` print, draw and refuse.
 
+#[path = "../support/mod.rs"]
 mod support;
 
 use std::fmt::Write as _;

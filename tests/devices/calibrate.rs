@@ -1,5 +1,6 @@
 //! `maulstick calibrate`: a simulated hand shows the corners of the canvas, and the device fits it then.
 
+#[path = "../support/mod.rs"]
 mod support;
 
 use std::io::{BufRead as _, BufReader};

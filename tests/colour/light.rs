@@ -1,5 +1,6 @@
 //! Light and dry layers of a running rig.
 
+#[path = "../support/mod.rs"]
 mod support;
 
 use std::path::Path;

@@ -1,6 +1,7 @@
 //! Devices of a real rig: several at once, and those that are not there. Tablets are played from
 //! recordings.
 
+#[path = "../support/mod.rs"]
 mod support;
 
 use std::collections::BTreeMap;
@@ -14,7 +15,7 @@ use support::{Launcher, PATIENCE, Place, hear, listen, wait_for};
 
 /// A pen that draws a wave again and again, for a minute and a half.
 fn waves(place: &Place, name: &str) {
-    let wave = include_str!("../docs/examples/pen.hid");
+    let wave = include_str!("../../docs/examples/pen.hid");
     let (head, events): (Vec<&str>, Vec<&str>) =
         wave.lines().partition(|line| !line.starts_with("E:"));
     let mut text = head.join("\n") + "\n";

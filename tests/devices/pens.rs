@@ -1,5 +1,6 @@
 //! A pen in a rig of real processes, played from a recording, for no machine of a test has a tablet.
 
+#[path = "../support/mod.rs"]
 mod support;
 
 use std::path::Path;
