@@ -27,34 +27,10 @@ use std::path::Path;
 
 use leaf::Leaf;
 pub use page_size::{PageSize, PageSizeFrom};
-use store::{Payload, Store};
-
-/// Value of a row.
-#[derive(Debug, Clone, PartialEq)]
-pub enum Value {
-    /// NULL.
-    Null,
-    /// A whole number.
-    Int(i64),
-    /// A floating-point number.
-    Real(f64),
-    /// UTF-8 text; a row with other text counts as damaged.
-    Text(String),
-    /// Bytes.
-    Blob(Vec<u8>),
-}
-
-/// Copy of a page that a row was read from.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-pub enum Origin {
-    /// The main file.
-    Main,
-    /// A committed frame of the WAL, with nothing damaged before it.
-    Wal,
-    /// A frame of the WAL with a damaged one before it or in its transaction. Its own checksum matches, but SQLite would
-    /// not read it, and its transaction may never have been acknowledged.
-    WalPastDamage,
-}
+pub use record::Value;
+pub use store::Origin;
+use store::{PageCopy, Payload, Store};
+pub use wal::WalState;
 
 /// Row that was read completely.
 #[derive(Debug, Clone, PartialEq)]
@@ -85,18 +61,6 @@ pub struct Tally {
     pub rows_lost: u64,
     /// Reads that failed on the disk.
     pub reads_failed: u64,
-}
-
-/// State of the WAL.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
-pub struct WalState {
-    /// Committed frames before any damage, which SQLite would read.
-    pub frames_good: u64,
-    /// Committed frames with a matching checksum behind a damaged one.
-    pub frames_past_damage: u64,
-    /// True if bytes of this WAL are damaged, as far as that can be detected: a power cut during a commit looks the same,
-    /// and a damaged end looks like an unfinished commit.
-    pub damaged: bool,
 }
 
 /// Scan of a database, row by row: `F` is a file, or its bytes in a cursor.
@@ -228,14 +192,6 @@ fn root(row: Row) -> Option<u32> {
         }
         _ => None,
     }
-}
-
-/// Copy of a page, to be read.
-#[derive(Debug, Clone, Copy)]
-struct PageCopy {
-    page: u32,
-    origin: Origin,
-    current: bool,
 }
 
 /// Iterator over the rows of a [`Scan`].

@@ -1,6 +1,19 @@
 //! Values of a row: "Record Format", SQLite file format, section 2.1.
 
-use super::Value;
+/// Value of a row.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Value {
+    /// NULL.
+    Null,
+    /// A whole number.
+    Int(i64),
+    /// A floating-point number.
+    Real(f64),
+    /// UTF-8 text; a row with other text counts as damaged.
+    Text(String),
+    /// Bytes.
+    Blob(Vec<u8>),
+}
 
 /// SQLite's compile-time limit on columns (`SQLITE_MAX_COLUMN` cannot be raised above it).
 const MAX_COLUMNS: usize = 32_767;

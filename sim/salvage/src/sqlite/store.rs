@@ -5,8 +5,27 @@ use std::io::{self, Read, Seek, SeekFrom};
 use super::io::read_at;
 use super::leaf::{Cell, be32};
 use super::page_size::{PageSize, reserved, usable};
-use super::wal::{Frames, Header};
-use super::{Origin, PageCopy, WalState};
+use super::wal::{Frames, Header, WalState};
+
+/// Copy of a page that a row was read from.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Origin {
+    /// The main file.
+    Main,
+    /// A committed frame of the WAL, with nothing damaged before it.
+    Wal,
+    /// A frame of the WAL with a damaged one before it or in its transaction. Its own checksum matches, but SQLite would
+    /// not read it, and its transaction may never have been acknowledged.
+    WalPastDamage,
+}
+
+/// Copy of a page, to be read.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct PageCopy {
+    pub(super) page: u32,
+    pub(super) origin: Origin,
+    pub(super) current: bool,
+}
 
 /// Pages of a database.
 pub(super) struct Store<F> {

@@ -4,10 +4,9 @@
 use std::collections::BTreeSet;
 use std::io::{Read, Seek};
 
-use super::Origin;
 use super::leaf::{TABLE_LEAF, be16, be32};
 use super::page_size::is_header_valid;
-use super::store::Store;
+use super::store::{Origin, Store};
 
 /// The type byte of an interior page of a table.
 const TABLE_INTERIOR: u8 = 0x05;

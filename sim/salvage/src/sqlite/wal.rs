@@ -3,7 +3,6 @@
 use std::collections::BTreeMap;
 use std::io::{Read, Seek};
 
-use super::WalState;
 use super::io::read_at;
 use super::leaf::be32;
 use super::page_size::is_page_size;
@@ -19,6 +18,18 @@ const VERSION: u32 = 3_007_000;
 
 type Checksum = [u32; 2];
 type Salts = [u32; 2];
+
+/// State of the WAL.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub struct WalState {
+    /// Committed frames before any damage, which SQLite would read.
+    pub frames_good: u64,
+    /// Committed frames with a matching checksum behind a damaged one.
+    pub frames_past_damage: u64,
+    /// True if bytes of this WAL are damaged, as far as that can be detected: a power cut during a commit looks the same,
+    /// and a damaged end looks like an unfinished commit.
+    pub damaged: bool,
+}
 
 /// Intact header of a WAL.
 pub(super) struct Header {
