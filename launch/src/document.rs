@@ -63,7 +63,7 @@ pub fn go_on(config: &RigConfig, path: &Path) -> Result<(Document, Sequencer, u6
     let (document, opened) = Document::open(&settings).map_err(|error| wrong(path, &error))?;
     let (mut sequencer, since) = match opened {
         Some(opened) => {
-            let since = opened.kept().versions;
+            let since = opened.snapshot().versions;
             (opened.sequencer().map_err(refused)?, since)
         }
         None => {

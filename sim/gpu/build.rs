@@ -7,6 +7,10 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     check_shaders::check_all("src/shaders", &["films.wgsl"])?;
     check_shaders::check_all(
         "src/shaders/impasto",
-        &["impasto.wgsl", "shapes.wgsl", "axes.wgsl"],
+        &[
+            "common/impasto.wgsl",
+            "common/shapes.wgsl",
+            "common/axes.wgsl",
+        ],
     )
 }

@@ -47,7 +47,7 @@ pub(super) fn run(options: &PaintOptions) -> Result<i32, Fault> {
     let (memory, _) = member.config.paint.bytes().map_err(Fault::usage)?;
     node = node.with_memory(usize::try_from(memory).unwrap_or(usize::MAX));
     if let Some(document) = document {
-        frames = frames.with_shelf(document.shelf());
+        frames = frames.with_tile_cache(document.tile_cache());
         node = node.keeping(document, since);
     }
     let stop = member.stop.clone();

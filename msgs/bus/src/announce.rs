@@ -14,7 +14,7 @@ pub struct Announcer<M> {
     topic: String,
     origin: Origin,
     newest: Option<M>,
-    /// When it was sent last, ns.
+    /// Time at which it was last sent, ns.
     sent_ns: u64,
     /// Values sent so far.
     sent: u64,

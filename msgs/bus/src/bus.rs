@@ -26,7 +26,7 @@ pub enum BusError {
         /// Error of the transport.
         reason: String,
     },
-    /// Nobody answered in time.
+    /// No answer in time.
     #[error("{topic}: no answer within {limit_ms} ms")]
     NoAnswer {
         /// The topic.
@@ -52,7 +52,7 @@ pub enum BusError {
     },
 }
 
-/// Class of a topic. Every class may drop: a slow receiver never delays a sender.
+/// Quality of service of a topic. Every class may drop: a slow receiver never delays a sender.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Class {
     /// Samples, states and contact models.
@@ -74,9 +74,9 @@ pub struct Arrival {
     pub key: String,
     /// Header and body; empty for a token.
     pub bytes: Vec<u8>,
-    /// When it arrived, rig clock, ns.
+    /// Time of arrival, rig clock, ns.
     pub arrived_ns: u64,
-    /// For a token: whether it appeared (or went).
+    /// For a token: true if it appeared, false if it went.
     pub present: bool,
 }
 
@@ -134,7 +134,7 @@ pub struct Request {
 pub(crate) enum Answering<'a> {
     /// These bytes.
     Bytes(Vec<u8>),
-    /// So many bytes that are written into shared memory where there is some.
+    /// Bytes that are written into shared memory, if there is any.
     Written {
         /// Bytes.
         length: usize,

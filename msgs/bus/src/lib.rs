@@ -1,6 +1,6 @@
-//! How the processes of a rig reach each other.
+//! Transport between the processes of a rig.
 //!
-//! [`Bus`] is what a node sees: publishers, bounded subscriptions, queries, liveliness tokens and
+//! [`Bus`] is the interface of a node: publishers, bounded subscriptions, queries, liveliness tokens and
 //! the rig's clock. [`ZenohBus`] carries it between processes; [`MemoryNet`] carries it inside one
 //! process under a virtual clock, and loses, delays and reorders what a test tells it to. No other
 //! crate of the rig names zenoh; the benchmarks do, to put a bare zenoh beside this bus.
@@ -11,9 +11,9 @@
 //! | [`inbox`] | bounded queues and the wake-up that they share |
 //! | [`typed`] | messages instead of bytes |
 //! | [`credit`] | streams that lose nothing: credit, a ring, re-asking for gaps |
-//! | [`rivals`] | which of two senders is followed |
+//! | [`rivals`] | the choice between two senders under one name |
 //! | [`clock`] | the rig's clock |
-//! | [`rig`] | the rig's folder and what a foreign program needs to find it |
+//! | [`rig`] | the rig's folder, and the file by which a foreign program finds it |
 
 mod announce;
 pub mod bus;

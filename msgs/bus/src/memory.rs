@@ -1,7 +1,7 @@
 //! The bus inside one process, under a virtual clock, with faults on demand.
 //!
-//! Nothing arrives until [`MemoryNet::advance`] lets time pass; what arrives when is decided by a
-//! seeded random number generator alone, so a test that fails fails again.
+//! Messages arrive only while [`MemoryNet::advance`] lets time pass. Their order follows from a seeded random number
+//! generator alone, so a test that fails fails again.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError, Weak};

@@ -1,11 +1,11 @@
-//! A map of bounded size by name, for records of senders whose number is not limited.
+//! Map of bounded size by name, for records of senders whose number is not limited.
 
 use std::collections::BTreeMap;
 
-/// So many names are remembered.
+/// Largest number of names that are remembered.
 const NAMES: usize = 256;
 
-/// The values of the 256 names that were set last.
+/// Values of the 256 names that were set last.
 #[derive(Clone, Debug)]
 pub struct Recent<V> {
     values: BTreeMap<String, (u64, V)>,

@@ -12,16 +12,16 @@ use maulstick_types::{Flags, Header};
 /// Time without a message after which a sender is silent, and time of messages without a pause after which it is no
 /// stray, ns.
 pub const SILENCE_NS: u64 = 500_000_000;
-/// So many senders that are set aside are remembered for each stream.
+/// Largest number of senders set aside that are remembered for each stream.
 const REMEMBERED: usize = 8;
 
 /// One sender.
 #[derive(Clone, Copy, Debug)]
 struct Sender {
     epoch: u32,
-    /// When the first of its messages was sent, rig clock, ns.
+    /// Time at which its first message was sent, rig clock, ns.
     began_ns: u64,
-    /// When its newest message was sent, ns.
+    /// Time at which its newest message was sent, ns.
     sent_ns: u64,
     /// Start of its messages without a pause, ns.
     since_ns: u64,
@@ -49,7 +49,7 @@ pub struct Rivals {
     others: Vec<Sender>,
 }
 
-/// When a message was sent, ns: no later than it arrived.
+/// Time at which a message was sent, ns; at the latest that of its arrival.
 fn sent_ns(header: &Header, arrived_ns: u64) -> u64 {
     header.sent_ns.min(arrived_ns)
 }

@@ -89,13 +89,13 @@ pub struct Refusal {
 /// Reason for dropping a message.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum Reason {
-    /// It does not decode.
+    /// Message that does not decode.
     #[error(transparent)]
     Unread(#[from] DecodeError),
-    /// Its numbers are out of range.
+    /// Message with numbers out of range.
     #[error("{0}")]
     Fault(&'static str),
-    /// Two programs send as one.
+    /// Message of a second program under the same name.
     #[error(
         "a second program sends here under the same name; the one that started last is followed: \
          end the other, or give it another name"
@@ -149,7 +149,7 @@ impl Reader {
     }
 }
 
-/// So many streams are remembered; of more the one that was silent for longest is forgotten.
+/// Largest number of streams that are remembered; beyond it the one that was silent for longest is forgotten.
 const STREAMS: usize = 64;
 
 /// Receives one kind of message; of two senders of a real-time stream the one that started last.
@@ -265,7 +265,7 @@ impl<M> std::fmt::Debug for Receiver<M> {
 pub struct Received<M> {
     /// Its topic.
     pub key: String,
-    /// When it arrived, rig clock, ns.
+    /// Time of arrival, rig clock, ns.
     pub arrived_ns: u64,
     /// Its header.
     pub header: Header,

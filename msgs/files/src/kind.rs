@@ -35,9 +35,9 @@ pub enum Kind {
 const HEAD: usize = 64;
 /// The first bytes of every SQLite file.
 const DATABASE: &[u8] = b"SQLite format 3\0";
-/// What SQLite adds to the name of a database for the files beside it.
+/// Suffixes of the files that SQLite keeps beside a database.
 const COMPANIONS: [&str; 3] = ["-wal", "-shm", "-journal"];
-/// Whether the user asked to write over files of other kinds.
+/// True if the user asked to write over files of other kinds.
 static OVERWRITE: AtomicBool = AtomicBool::new(false);
 
 /// Lets this process write over files of other kinds, as `--overwrite` asks; over a painting never.
@@ -45,7 +45,7 @@ pub fn allow_overwriting() {
     OVERWRITE.store(true, Relaxed);
 }
 
-/// Whether a name is one that SQLite keeps the journal of a database under.
+/// True for a name under which SQLite keeps the journal of a database.
 #[must_use]
 pub fn is_companion(path: &Path) -> bool {
     let name = path.file_name().unwrap_or_default().as_encoded_bytes();
@@ -72,7 +72,7 @@ impl Kind {
         }
     }
 
-    /// Whether a file of `length` bytes that begins with `head` is of this kind.
+    /// True if a file of `length` bytes that begins with `head` is of this kind.
     fn has(self, head: &[u8], length: u64) -> bool {
         match self {
             Self::Png => head.starts_with(b"\x89PNG\r\n\x1a\n"),
@@ -101,11 +101,10 @@ fn is_text(head: &[u8]) -> bool {
         .all(|byte| (b' '..0x7f).contains(byte) || b"\t\r\n".contains(byte))
 }
 
-/// Where a file of a kind is really written, which is what a link leads to. There is nothing, an empty file,
-/// or one of the same kind.
+/// Target path of a file of a kind, with links resolved, if there is no file, an empty one, or one of the same kind.
 ///
 /// # Errors
-/// What stands there or what the name means, with what to do.
+/// Reason why the path cannot be written, with advice.
 pub(crate) fn destination(path: &Path, kind: Kind) -> Result<PathBuf, Error> {
     let to = std::fs::canonicalize(path).unwrap_or_else(|_| path.to_owned());
     if is_companion(path) || is_companion(&to) {
@@ -148,7 +147,7 @@ pub(crate) fn destination(path: &Path, kind: Kind) -> Result<PathBuf, Error> {
     ))
 }
 
-/// Whether what is at a path, if anything is, gives way to a file of a kind without being asked for.
+/// True if a file of a kind may be written at a path without `--overwrite`.
 #[must_use]
 pub fn gives_way(path: &Path, kind: Kind) -> bool {
     let mut head = [0; HEAD];

@@ -22,7 +22,7 @@ impl FileId {
     /// The file that a name leads to.
     ///
     /// # Errors
-    /// What the file system says where there is none.
+    /// The error of the file system.
     pub fn of(path: &Path) -> Result<Self, Error> {
         std::fs::metadata(path).map(|found| Self::from(&found))
     }
@@ -71,7 +71,7 @@ impl Drop for OpenDatabase {
 /// open in this process is not opened a second time.
 ///
 /// # Errors
-/// [`ErrorKind::ResourceBusy`] where the file is open here, or what the file system says.
+/// [`ErrorKind::ResourceBusy`] where the file is open here, or the error of the file system.
 pub fn read_head(path: &Path, head: &mut [u8]) -> Result<usize, Error> {
     // None is registered while the file is read.
     let open = open();
@@ -110,7 +110,7 @@ mod tests {
         }
     }
 
-    /// Whether this process holds a POSIX lock of the file, as the kernel lists them.
+    /// True if this process holds a POSIX lock of the file, as the kernel lists them.
     fn is_locked(file: FileId) -> bool {
         let me = std::process::id().to_string();
         let locks = std::fs::read_to_string("/proc/locks").expect("Linux");

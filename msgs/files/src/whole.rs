@@ -39,7 +39,7 @@ impl Drop for Unfinished {
 /// From now on SIGINT and SIGTERM end the process with `code`, and no half-written file stays.
 ///
 /// # Errors
-/// What the system says where signals cannot be watched.
+/// The system's error if signals cannot be watched.
 pub fn clear_on_signals(code: i32) -> Result<(), Error> {
     let mut signals = Signals::new([SIGTERM, SIGINT])?;
     let wait = move || {
@@ -71,8 +71,7 @@ fn beside(path: &Path) -> PathBuf {
 /// Writes a file of a kind through `fill`: whole under its name, or not at all.
 ///
 /// # Errors
-/// What stands there and may not be written over, or what the file system says; no half-written file is
-/// left.
+/// Reason why the file at the path may not be replaced, or the error of the file system; no half-written file is left.
 pub fn write_whole(
     path: &Path,
     kind: Kind,

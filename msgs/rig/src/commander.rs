@@ -10,10 +10,10 @@ use maulstick_types::command::{After, Command, CommandReply, CommandRequest, Out
 use maulstick_types::topics::Topics;
 use maulstick_types::{Origin, name_hash};
 
-/// A query for a command waits this long before it is asked again.
+/// Time after which an unanswered command is sent again.
 const ASK: Duration = Duration::from_secs(2);
 
-/// A client of a node.
+/// Client that sends commands to a node.
 pub struct Commander {
     bus: Arc<dyn Bus>,
     topic: String,
@@ -24,13 +24,13 @@ pub struct Commander {
 }
 
 impl Commander {
-    /// A client with a number of its own.
+    /// Client of the paint node, with a number of its own.
     #[must_use]
     pub fn new(bus: Arc<dyn Bus>, topics: &Topics) -> Self {
         Self::of(bus, topics, "paint")
     }
 
-    /// A client of another node.
+    /// Client of another node.
     #[must_use]
     pub fn of(bus: Arc<dyn Bus>, topics: &Topics, node: &str) -> Self {
         let me = Origin {
@@ -47,7 +47,7 @@ impl Commander {
         }
     }
 
-    /// Asks again after `ask` in the place of two seconds: who has to stop soon does not wait longer.
+    /// Sends again after `ask` instead of two seconds, for a process that may have to stop soon.
     #[must_use]
     pub fn asking(mut self, ask: Duration) -> Self {
         self.ask = ask;

@@ -211,11 +211,11 @@ impl ViewSection {
     }
 }
 
-/// When a node is started again.
+/// Policy of starting a node again.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Restart {
-    /// When it fails, at most three times in ten seconds.
+    /// After a failure, at most three times in ten seconds.
     #[default]
     OnFailure,
     /// Never.
@@ -226,7 +226,7 @@ pub enum Restart {
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct NodeSection {
-    /// When it is started again.
+    /// Policy of starting it again.
     pub restart: Restart,
 }
 

@@ -56,14 +56,14 @@ impl Fault {
         }
     }
 
-    /// Says where.
+    /// Adds the place.
     #[must_use]
     pub fn at(mut self, place: impl Into<String>) -> Self {
         self.place = Some(place.into());
         self
     }
 
-    /// Says what to do.
+    /// Adds advice.
     #[must_use]
     pub fn help(mut self, help: impl Into<String>) -> Self {
         self.help = Some(help.into());
@@ -93,9 +93,7 @@ impl Fault {
             std::io::ErrorKind::StorageFull => "free some space",
             std::io::ErrorKind::AlreadyExists => "give another name",
             std::io::ErrorKind::IsADirectory => "this is a folder: name a file",
-            std::io::ErrorKind::InvalidData => {
-                "this is no text, or not UTF-8: see that it is the file that is meant"
-            }
+            std::io::ErrorKind::InvalidData => "not a UTF-8 text file; check the path",
             _ => "check the path and the disk",
         };
         self.at(path.display().to_string()).help(help)

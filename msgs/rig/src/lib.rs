@@ -1,14 +1,14 @@
-//! `rig.toml`, and how a process of a rig lives.
+//! Settings of a rig, and the life of a process in it.
 //!
 //! | module | holds |
 //! | --- | --- |
 //! | [`commander`] | commands to a node, repeated until answered |
 //! | [`config`] | the settings of a rig |
-//! | [`fault`] | an error as the user sees it: what, where, what to do |
+//! | [`fault`] | an error as the user sees it: what, where, advice |
 //! | [`files`] | files: whole under their name, of one's own kind, open here |
 //! | [`log`] | log lines |
 //! | [`member`] | joining a rig, living in it, leaving it |
-//! | [`stop`] | when to stop: a signal, or the launcher's end |
+//! | [`stop`] | the stop flag: a signal, or the launcher's end |
 
 pub mod commander;
 pub mod config;

@@ -16,19 +16,19 @@ use crate::stop::Stop;
 
 /// Socket of the launcher, to which every other process connects first.
 pub const HUB: &str = "hub";
-/// The nodes that pictures go between, through memory that they share.
+/// Nodes that exchange pictures through shared memory.
 const SHARING: [&str; 2] = ["paint", "ui"];
 /// The settings in the rig's folder, as the nodes read them.
 pub const CONFIG_FILE: &str = "rig.toml";
 
-/// Where a process belongs.
+/// Place of a process in a rig.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct MemberArgs {
     /// The rig's folder.
     pub folder: PathBuf,
     /// Name of the node.
     pub node: String,
-    /// Whether a launcher holds our standard input open.
+    /// True if a launcher holds the standard input open.
     pub guarded: bool,
 }
 

@@ -1,4 +1,4 @@
-//! What the brush node says: the brush file, the solved states, and how far it has consumed.
+//! Messages of the brush node: the brush file, solved states, and credit to devices.
 
 use crate::define::{message, wire_struct};
 use crate::pose::Pose;
@@ -9,7 +9,7 @@ pub mod solve_flags {
     pub const RESTARTED: u32 = 1;
     /// The solver did not converge and kept its last good state.
     pub const NOT_CONVERGED: u32 = 2;
-    /// Where the brush is at a sample between two solves of its path: to be shown, not to be painted.
+    /// Pose at a sample between two solves of the path: to be shown, not to be painted.
     pub const PREVIEW: u32 = 4;
     /// The way to it is painted in steps twice as long as the brush's own, for painting was late.
     pub const TWICE: u32 = 8;
@@ -32,7 +32,7 @@ wire_struct! {
 wire_struct! {
     /// One solved pose.
     pub struct Solve {
-        /// When the stylus was there, rig clock, ns.
+        /// Time of the stylus's pose, rig clock, ns.
         pub event_ns: u64,
         /// The stroke, from 1 in the brush's epoch; 0 while nothing touches.
         pub stroke: u64,
@@ -46,7 +46,7 @@ wire_struct! {
         pub zoom: f64,
         /// θ and φ of each joint, rad, spine after spine.
         pub angles_rad: Vec<[f32; 2]>,
-        /// What touches.
+        /// Joints in contact.
         pub contacts: Vec<Contact>,
     }
 }
@@ -68,14 +68,14 @@ message! {
 /// Zooms that a surface may have.
 pub const ZOOMS: std::ops::RangeInclusive<f64> = 0.01..=100.0;
 
-/// No pose of a state is farther from its surface's origin than this, m.
+/// Limit on the distance of a pose from its surface's origin along each axis, m.
 pub const FARTHEST_M: f64 = 100.0;
 
 impl BrushState {
     /// Bytes of a message beside its solves.
     pub const WIRE_BYTES: usize = 2 * 4 + 2 * 8;
 
-    /// What is wrong with the numbers, if anything: a path over them would never end.
+    /// Fault of the numbers, if there is one: a path over them would never end.
     #[must_use]
     pub fn fault(&self) -> Option<&'static str> {
         self.solves.iter().find_map(Solve::fault)
@@ -83,7 +83,7 @@ impl BrushState {
 }
 
 impl Solve {
-    /// How many times the steps of the way to it are doubled: 0, 1 or 2.
+    /// Number of doublings of the step length on the way to it: 0, 1 or 2.
     #[must_use]
     pub const fn doublings(&self) -> u32 {
         if self.flags & solve_flags::FOUR_TIMES != 0 {
@@ -101,7 +101,7 @@ impl Solve {
         fixed + 8 * self.angles_rad.len() + 8 * self.contacts.len()
     }
 
-    /// What is wrong with its numbers, if anything.
+    /// Fault of its numbers, if there is one.
     #[must_use]
     pub fn fault(&self) -> Option<&'static str> {
         let near = |metres: &f64| metres.abs() <= FARTHEST_M;
@@ -159,8 +159,8 @@ message! {
 }
 
 message! {
-    /// How the paint on a brush looks, at most fifteen times a second and only where it has changed;
-    /// cached for late joiners.
+    /// Appearance of the paint on a brush, at most fifteen times a second and only after a change; cached for late
+    /// joiners.
     pub struct BrushLook [version 1, at most 263168 bytes] {
         /// Strips of the head: all of its file, or the first of them, each of which stands for those nearest to it.
         pub strips: u32,

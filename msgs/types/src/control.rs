@@ -1,13 +1,13 @@
-//! What the free hand does: a 6-DOF mouse that moves the canvas while the other hand paints.
+//! Messages of the free hand's device: a 6-DOF mouse that moves the canvas while the other hand paints.
 
 use crate::define::message;
 
 message! {
     /// One sample of a device for the free hand; `event_ns` of its header is the time of sampling.
     pub struct ControlSample [version 1, at most 256 bytes] {
-        /// How far it is pushed, each from -1 to 1: right, up along the desk, out of it.
+        /// Push along each axis, from -1 to 1: right, up along the desk, out of it.
         pub push: [f64; 3],
-        /// How far it is turned about those axes, right-handed, each from -1 to 1.
+        /// Turn about each of those axes, right-handed, from -1 to 1.
         pub turn: [f64; 3],
         /// A bit a pressed switch.
         pub switches: u64,
@@ -15,7 +15,7 @@ message! {
 }
 
 impl ControlSample {
-    /// A hand off the device.
+    /// Sample of a device that is not touched.
     #[must_use]
     pub fn at_rest() -> Self {
         Self {
@@ -25,7 +25,7 @@ impl ControlSample {
         }
     }
 
-    /// What is wrong with the numbers, if anything.
+    /// Fault of the numbers, if there is one.
     #[must_use]
     pub fn fault(&self) -> Option<&'static str> {
         let mut all = self.push.iter().chain(&self.turn);

@@ -25,7 +25,7 @@ pub struct FrameView<'a> {
     pub surface: u32,
     /// Epoch of the paint node.
     pub epoch: u32,
-    /// Ask for what is newer than this next.
+    /// Version to ask from the next time.
     pub version: u64,
     /// The level of the tiles.
     pub level: u32,
@@ -35,7 +35,7 @@ pub struct FrameView<'a> {
     pub journal: u64,
     /// The brush states that are in the picture.
     pub holds: Vec<FrameHolds>,
-    /// Whether further tiles wait for the next request.
+    /// True if further tiles wait for the next request.
     pub more: bool,
     /// The tiles.
     #[serde(borrow)]

@@ -1,4 +1,4 @@
-//! What crosses to a force-feedback device: models that it evaluates by itself, never forces.
+//! Messages to a force-feedback device: models that it evaluates by itself, never forces.
 
 use crate::define::{message, wire_enum, wire_struct};
 use crate::pose::Pose;
@@ -46,7 +46,7 @@ wire_enum! {
         },
         /// A force linearised about a pose.
         Local {
-            /// Where it holds.
+            /// Pose for which it holds.
             pose: Pose,
             /// Force there, N.
             force_n: [f64; 3],
@@ -62,8 +62,7 @@ wire_enum! {
 }
 
 message! {
-    /// What the hand feels until the next model: evaluated at the device's own rate. All in the
-    /// desk frame.
+    /// Contact force on the handle until the next model, evaluated at the device's own rate; in the desk frame.
     pub struct ContactModel [version 1, at most 4096 bytes] {
         /// The device that it is for: the source of its samples.
         pub device: u32,
@@ -95,9 +94,9 @@ message! {
 }
 
 impl ContactModel {
-    /// A model that would live for longer is refused, ns: of a brush that has died nothing is felt after that.
+    /// Longest lifetime of a model, ns: a brush that has died exerts no force after that.
     pub const TIME_TO_LIVE_MOST_NS: u64 = 1_000_000_000;
-    /// A model whose change would be spread over a longer time is refused, ns.
+    /// Longest time over which the change to a model is spread, ns.
     pub const RECOVERY_MOST_NS: u64 = 1_000_000_000;
 
     /// A dry, smooth canvas at the desk's z = 0 that pushes back by `law` on a head of
@@ -127,15 +126,15 @@ impl ContactModel {
 }
 
 wire_enum! {
-    /// What a painter wants of a device's force.
+    /// Request about a device's force.
     pub enum ForceOrder {
-        /// None, at once.
+        /// No force, at once.
         Off,
         /// Force, from nothing on.
         On,
         /// Weaker force.
         Strength {
-            /// Share of what the models ask for, 0 to 1.
+            /// Share of the models' force, 0 to 1.
             share: f64,
         },
         /// Force again after a fault, from nothing on.
@@ -144,21 +143,21 @@ wire_enum! {
 }
 
 message! {
-    /// Asks a device to do so; asking again is safe.
+    /// Request to a device to change its force; asking again is safe.
     pub struct ForceRequest [version 1, at most 256 bytes] {
-        /// What is wanted.
+        /// The change.
         pub order: ForceOrder,
     }
 }
 
 message! {
-    /// How a device gives force after what was asked.
+    /// State of a device's force after a request.
     pub struct ForceReply [version 1, at most 1024 bytes] {
-        /// Whether it is switched on.
+        /// True if it is switched on.
         pub is_on: bool,
-        /// Share of what the models ask for, 0 to 1.
+        /// Share of the models' force, 0 to 1.
         pub strength: f64,
-        /// What keeps it without force until it is armed again, in words; empty where nothing does.
+        /// Fault that blocks the force until it is armed again, in words; empty without one.
         pub fault: String,
     }
 }

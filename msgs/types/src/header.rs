@@ -5,7 +5,7 @@ pub const MAGIC: u16 = 0x4D4C;
 /// Length of the header in bytes.
 pub const HEADER_BYTES: usize = 48;
 
-/// What the 48 bytes hold, in this order, little endian: names and types as in field tables.
+/// Fields of the 48 bytes, in this order, little endian: names and types as in field tables.
 pub const HEADER_FIELDS: [(&str, &str); 10] = [
     ("magic", "u16"),
     ("version", "u16"),
@@ -41,14 +41,14 @@ impl Flags {
         Self(self.0 | other.0)
     }
 
-    /// Whether all bits of `other` are set.
+    /// True if all bits of `other` are set.
     #[must_use]
     pub const fn has(self, other: Self) -> bool {
         self.0 & other.0 == other.0
     }
 }
 
-/// Who sends: a number of its own, and one drawn at random at each start. Streams are told apart by
+/// Sender of a message: a number of its own, and one drawn at random at each start. Streams are told apart by
 /// their topics: two devices may have chosen the same number.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct Origin {
@@ -58,7 +58,7 @@ pub struct Origin {
     pub epoch: u32,
 }
 
-/// What every message begins with: magic, then these fields, little endian.
+/// Beginning of every message: magic, then these fields, little endian.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Header {
     /// Version of the message's field table.
@@ -75,9 +75,9 @@ pub struct Header {
     pub length: u32,
     /// Number of the message in its stream.
     pub seq: u64,
-    /// When what it tells was sampled, rig clock, ns.
+    /// Time at which its content was sampled, rig clock, ns.
     pub event_ns: u64,
-    /// When it was sent, rig clock, ns.
+    /// Time of sending, rig clock, ns.
     pub sent_ns: u64,
 }
 
@@ -154,7 +154,7 @@ impl Header {
     }
 }
 
-/// Why bytes are not the message that was expected.
+/// Error of decoding a message.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum DecodeError {
     /// Fewer bytes than a header.
@@ -169,12 +169,12 @@ pub enum DecodeError {
         /// The first two bytes.
         got: u16,
     },
-    /// The length field disagrees with what arrived.
+    /// The length field disagrees with the bytes received.
     #[error("the header promises a body of {says} bytes, {has} arrived")]
     Length {
-        /// What the header says.
+        /// Length in the header.
         says: usize,
-        /// What arrived.
+        /// Bytes received.
         has: usize,
     },
     /// Another message, or another version of it.
@@ -207,7 +207,7 @@ pub enum DecodeError {
     Body {
         /// The message.
         name: &'static str,
-        /// What the codec says.
+        /// Error of the codec.
         reason: String,
     },
     /// Bytes are left over.
@@ -215,7 +215,7 @@ pub enum DecodeError {
     Trailing {
         /// The message.
         name: &'static str,
-        /// How many.
+        /// Number of bytes left over.
         left: usize,
     },
 }

@@ -1,4 +1,4 @@
-//! What the processes of a rig say to each other.
+//! Messages between the processes of a rig.
 //!
 //! Every message is one definition (`define.rs`) from which its struct, its codec, its field
 //! table, its schema hash and its size limit follow. On the wire a message is a 48-byte

@@ -23,7 +23,7 @@ wire_struct! {
     }
 }
 
-/// Why a text is no mixture.
+/// Error of a text that is not a mixture.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum MixtureError {
     /// Nothing between the commas, or nothing at all.
@@ -34,7 +34,7 @@ pub enum MixtureError {
     Share {
         /// The paint.
         paint: String,
-        /// What stands after its `=`.
+        /// Text after its `=`.
         share: String,
     },
     /// The shares do not sum to 1.
@@ -68,7 +68,7 @@ impl Mixture {
     /// Checks shares and names.
     ///
     /// # Errors
-    /// What [`MixtureError`] lists.
+    /// [`MixtureError`].
     pub fn check(&self) -> Result<(), MixtureError> {
         if self.parts.is_empty() || self.parts.iter().any(|part| part.paint.is_empty()) {
             return Err(MixtureError::Empty);

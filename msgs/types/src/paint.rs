@@ -1,4 +1,4 @@
-//! What the paint node says: credit, journal, frames, status.
+//! Messages of the paint node: credit, journal, frames, status.
 
 use serde_bytes::ByteBuf;
 
@@ -9,7 +9,7 @@ use crate::define::{message, wire_enum, wire_struct};
 pub const TILE: usize = 64;
 
 wire_struct! {
-    /// How far the paint node has consumed a brush's states.
+    /// Credit to a brush, and the paint under it.
     pub struct BrushCredit {
         /// The brush: the source of its states.
         pub brush: u32,
@@ -37,7 +37,7 @@ message! {
 }
 
 wire_enum! {
-    /// What the sequencer accepted.
+    /// Record that the sequencer accepted.
     pub enum Entry {
         /// Brush states, from the first to the last of a range.
         States {
@@ -52,7 +52,7 @@ wire_enum! {
         },
         /// A command.
         Command {
-            /// Who sent it.
+            /// The sender.
             client: u64,
             /// Its number.
             number: u64,
@@ -77,7 +77,7 @@ message! {
     pub struct JournalEntry [version 6, at most 1049600 bytes] {
         /// From 0, without gaps.
         pub index: u64,
-        /// What was accepted.
+        /// The record.
         pub entry: Entry,
     }
 }
@@ -101,11 +101,11 @@ message! {
         pub tiles: [u32; 4],
         /// 0 is full resolution, each further level halves it.
         pub level: u32,
-        /// How long to wait where nothing changed, ms, at most 400.
+        /// Longest wait for a change, ms, at most 400.
         pub wait_ms: u32,
         /// The look that `since` belongs to.
         pub look: u64,
-        /// Whether a large reply may lie in memory that both processes share.
+        /// True if a large reply may lie in memory that both processes share.
         pub shared: bool,
     }
 }
@@ -142,7 +142,7 @@ message! {
         pub surface: u32,
         /// Epoch of the paint node: where it differs from the asker's, all tiles come anew.
         pub epoch: u32,
-        /// Ask for what is newer than this next.
+        /// Version to ask from the next time.
         pub version: u64,
         /// The level of the tiles.
         pub level: u32,
@@ -152,7 +152,7 @@ message! {
         pub journal: u64,
         /// The brush states that are in the picture.
         pub holds: Vec<FrameHolds>,
-        /// Whether further tiles wait for the next request.
+        /// True if further tiles wait for the next request.
         pub more: bool,
         /// The tiles.
         pub tiles: Vec<FrameTile>,
@@ -186,7 +186,7 @@ wire_struct! {
 }
 
 message! {
-    /// How the paint node fares, ten times a second.
+    /// Status of the paint node, ten times a second.
     pub struct PaintStatus [version 5, at most 32768 bytes] {
         /// Entries of the journal so far.
         pub journal: u64,
@@ -196,8 +196,7 @@ message! {
         pub footprint_cells: u64,
         /// Age of the oldest brush state that waits, ns.
         pub lag_ns: u64,
-        /// How many times longer than the brush's own the steps of the present stroke are: 1, or more where painting
-        /// is late.
+        /// Length of the present stroke's steps by the brush's own: 1, or more while painting is late.
         pub longer: u32,
         /// Bytes that the tiles take.
         pub memory_bytes: u64,
@@ -219,23 +218,23 @@ message! {
         pub merged: u64,
         /// Bytes that the painting with its history takes where it is kept.
         pub kept_bytes: u64,
-        /// Why the document does not take anything in at present; empty where it does.
+        /// Reason why the document is not written at present; empty if it is.
         pub fault: String,
         /// The painting's file; empty where it is in memory alone.
         pub path: String,
-        /// Whether all that was accepted is in the file.
+        /// True if all accepted records are in the file.
         pub all_committed: bool,
-        /// When something was last committed, rig clock, ns; 0 if not yet.
+        /// Time of the last commit, rig clock, ns; 0 if not yet.
         pub committed_ns: u64,
-        /// Whether nothing was ever painted or kept.
+        /// True if nothing was ever painted or kept.
         pub blank: bool,
-        /// Whether a take is being played.
+        /// True while a take is played.
         pub take: bool,
-        /// What dries on the canvas.
+        /// Layer that dries on the canvas.
         pub drying: Option<DryingStatus>,
         /// The export that goes on.
         pub export: Option<ExportStatus>,
-        /// What computes the paint: `cpu`, or `gpu` and the adapter's name.
+        /// Backend of the paint: `cpu`, or `gpu` and the adapter's name.
         pub backend: String,
     }
 }

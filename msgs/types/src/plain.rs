@@ -4,7 +4,7 @@
 use std::borrow::Cow;
 use std::fmt::Write as _;
 
-/// Whether a character would do something else than stand there.
+/// True if a character controls the line instead of being shown in it.
 fn acts(c: char) -> bool {
     // Line and paragraph separators, marks and embeddings of direction (Unicode, UAX 9).
     let moves =

@@ -13,13 +13,13 @@ wire_struct! {
 }
 
 impl Pose {
-    /// Parent and child coincide.
+    /// Pose of a child that coincides with its parent.
     pub const IDENTITY: Self = Self {
         position_m: [0.0; 3],
         orientation: [0.0, 0.0, 0.0, 1.0],
     };
 
-    /// Whether all numbers are finite and the quaternion is a unit one within 1e-6.
+    /// True if all numbers are finite and the quaternion is a unit one within 1e-6.
     #[must_use]
     pub fn is_valid(&self) -> bool {
         let norm: f64 = self.orientation.iter().map(|q| q * q).sum();

@@ -34,7 +34,7 @@ pub struct Variant {
     pub fields: Vec<Field>,
 }
 
-/// What a defined type is made of.
+/// Structure of a defined type.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Shape {
@@ -89,7 +89,7 @@ pub struct Schema {
     pub types: TypeTable,
 }
 
-/// How bodies are encoded, for who reads them without this program.
+/// Encoding of bodies, for readers without this program.
 pub const ENCODING: &str = "little endian, fixed width, no padding; Vec and String: u64 length; enum: u32 tag, \
                             the place of its variant; Option and bool: u8";
 

@@ -1,4 +1,4 @@
-//! What an input device says: samples, what it is, how it fares, and where a played take stands.
+//! Messages of an input device: samples, properties, status, and the position of a played take.
 
 use crate::command::After;
 use crate::define::{message, wire_enum, wire_struct};
@@ -18,7 +18,7 @@ pub mod axes {
     pub const TWIST: u32 = 16;
     /// Switches on the handle.
     pub const SWITCHES: u32 = 32;
-    /// Whether the pen is near.
+    /// Proximity of the pen.
     pub const PROXIMITY: u32 = 64;
     /// Force (driven by force-feedback devices).
     pub const FORCE: u32 = 128;
@@ -28,22 +28,22 @@ pub mod axes {
     pub const TORQUE: u32 = 512;
 }
 
-/// Bits of [`StylusSample::switches`] that are no switch of the handle.
+/// Bits of [`StylusSample::switches`] besides the switches of the handle.
 pub mod switch {
     /// The pen is turned round: its eraser is near.
     pub const ERASER: u32 = 1 << 31;
 }
 
-/// Tilt of a pen that senses none: 30° toward the lower right, radians about y and x as in
+/// Tilt of a pen that does not sense it: 30° toward the lower right, radians about y and x as in
 /// [`StylusPose::Contact`]: atan(tan 30° · cos 45°) and its negative.
 pub const DEFAULT_TILT_RAD: [f64; 2] = [0.387_596_686_655_180_66, -0.387_596_686_655_180_66];
 
-/// No coordinate of a sample is farther from the desk's origin than this, m: a motion over the
-/// whole of it can still be followed cell by cell.
+/// Limit on the distance of a sample from the desk's origin along each axis, m: a motion over all of it can still be
+/// followed cell by cell.
 pub const FARTHEST_M: f64 = 10.0;
 
 wire_enum! {
-    /// How a device says where the brush is, in the desk frame.
+    /// Pose of a stylus in the desk frame, as its device senses it.
     pub enum StylusPose {
         /// A 6-DOF device: the brush frame (origin where head and ferrule meet, bristles along −z).
         Ferrule {
@@ -68,23 +68,23 @@ wire_enum! {
 message! {
     /// One sample of an input device; `event_ns` of its header is the time of sampling.
     pub struct StylusSample [version 1, at most 512 bytes] {
-        /// What the device senses, see [`axes`].
+        /// Axes that the device senses, see [`axes`].
         pub senses: u32,
-        /// Where the brush is.
+        /// Pose of the brush.
         pub pose: StylusPose,
         /// Velocity of the ferrule or contact point, m/s, 0 where not sensed.
         pub velocity_m_s: [f64; 3],
-        /// Force applied to the hand, N, 0 where the device drives none.
+        /// Force applied to the hand, N, 0 of a device without force.
         pub force_n: [f64; 3],
         /// A bit a pressed switch.
         pub switches: u32,
-        /// Whether the stylus is near enough to count.
+        /// True if the stylus is in range.
         pub in_range: bool,
     }
 }
 
 impl StylusStatus {
-    /// Of a device that has just been started.
+    /// Status of a device that has just been started.
     #[must_use]
     pub fn fresh(bins: usize) -> Self {
         Self {
@@ -126,15 +126,14 @@ impl StylusSample {
         }
     }
 
-    /// Whether the stylus says itself that it touches nothing: out of range, or a pen without
-    /// pressure.
+    /// True if the stylus is in the air by its own word: out of range, or a pen without pressure.
     #[must_use]
     pub fn in_air(&self) -> bool {
         let lifted = matches!(self.pose, StylusPose::Contact { pressure, .. } if pressure <= 0.0);
         lifted || !self.in_range
     }
 
-    /// What is wrong with the numbers, if anything: a device in any language may send them.
+    /// Fault of the numbers, if there is one: a device in any language may send them.
     #[must_use]
     pub fn fault(&self) -> Option<&'static str> {
         let finite = |values: &[f64]| values.iter().all(|value| value.is_finite());
@@ -173,7 +172,7 @@ impl StylusSample {
 }
 
 message! {
-    /// What a device is; cached for late joiners.
+    /// Properties of a device; cached for late joiners.
     pub struct StylusInfo [version 1, at most 1024 bytes] {
         /// Name of the device as in its topics.
         pub device: String,
@@ -183,13 +182,13 @@ message! {
         pub brush: String,
         /// Of devices in range the one of highest priority paints.
         pub priority: i32,
-        /// What it senses, see [`axes`].
+        /// Axes that it senses, see [`axes`].
         pub senses: u32,
-        /// What it drives, see [`axes`].
+        /// Axes that it drives, see [`axes`].
         pub drives: u32,
         /// Samples a second.
         pub rate_hz: f64,
-        /// Largest force, N; 0 where it drives none.
+        /// Largest force, N; 0 without force.
         pub max_force_n: f64,
         /// Largest stiffness that it renders, N/m.
         pub max_stiffness_n_m: f64,
@@ -199,7 +198,7 @@ message! {
 }
 
 message! {
-    /// How a device fares, ten times a second.
+    /// Status of a device, ten times a second.
     pub struct StylusStatus [version 2, at most 4096 bytes] {
         /// Samples published since the start.
         pub samples: u64,
@@ -215,13 +214,13 @@ message! {
         pub force_n: f64,
         /// Messages dropped because they named another device, epoch or brush.
         pub foreign_models: u64,
-        /// Why there is no device now, and what to do about it; empty while there is one.
+        /// Reason why there is no device at present, with advice; empty while there is one.
         pub trouble: String,
-        /// Whether force is switched on.
+        /// True if force is switched on.
         pub is_on: bool,
-        /// Share of what the models ask for, 0 to 1.
+        /// Share of the models' force, 0 to 1.
         pub strength: f64,
-        /// Whether the amplifiers rest for want of contact.
+        /// True while the amplifiers rest for want of contact.
         pub resting: bool,
         /// Stiffness that the model asks for, N/m.
         pub asked_n_m: f64,
@@ -235,7 +234,7 @@ message! {
 }
 
 wire_struct! {
-    /// Where the end of a take lies in a brush's stream.
+    /// End of a take in a brush's stream.
     pub struct TakeEnd {
         /// The brush state that holds the take's last sample.
         pub after: After,
@@ -245,7 +244,7 @@ wire_struct! {
 }
 
 message! {
-    /// Where a played take stands, ten times a second and at its end.
+    /// Position of a played take, ten times a second and at its end.
     pub struct TakeStatus [version 1, at most 1024 bytes] {
         /// Epoch of this playing; a take played again has another.
         pub epoch: u32,

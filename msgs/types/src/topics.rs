@@ -9,7 +9,7 @@ pub struct Topics {
 /// Checks the name of a rig, device, brush or node: 1 to 32 letters, digits, `_` and `-`.
 ///
 /// # Errors
-/// What is wrong, in words.
+/// The error, in words.
 pub fn check_name(name: &str) -> Result<(), String> {
     let fits = |c: char| c.is_ascii_alphanumeric() || c == '_' || c == '-';
     if name.is_empty() || name.len() > 32 || !name.chars().all(fits) {
@@ -37,19 +37,19 @@ macro_rules! topics {
 topics! {
     /// Samples of a device: [`StylusSample`](crate::stylus::StylusSample).
     sample(device) = "stylus/{device}/sample";
-    /// What a device is: [`StylusInfo`](crate::stylus::StylusInfo), cached.
+    /// Properties of a device: [`StylusInfo`](crate::stylus::StylusInfo), cached.
     stylus_info(device) = "stylus/{device}/info";
-    /// How a device fares: [`StylusStatus`](crate::stylus::StylusStatus).
+    /// Status of a device: [`StylusStatus`](crate::stylus::StylusStatus).
     stylus_status(device) = "stylus/{device}/status";
-    /// Where a played take stands: [`TakeStatus`](crate::stylus::TakeStatus).
+    /// Position of a played take: [`TakeStatus`](crate::stylus::TakeStatus).
     take_status(device) = "stylus/{device}/take";
-    /// What the free hand does: [`ControlSample`](crate::control::ControlSample).
+    /// Samples of the free hand: [`ControlSample`](crate::control::ControlSample).
     control(device) = "control/{device}/sample";
-    /// What the hand feels: [`ContactModel`](crate::haptics::ContactModel).
+    /// Contact model for the hand: [`ContactModel`](crate::haptics::ContactModel).
     contact_model(device) = "haptics/{device}/model";
-    /// What the hand feels of moving paint: [`FluidForce`](crate::haptics::FluidForce).
+    /// Force of moving paint on the hand: [`FluidForce`](crate::haptics::FluidForce).
     fluid_force(device) = "haptics/{device}/fluid";
-    /// Whether and how strongly a device gives force, a query:
+    /// Switch and strength of a device's force, a query:
     /// [`ForceRequest`](crate::haptics::ForceRequest).
     force(device) = "haptics/{device}/force";
     /// A brush file: [`BrushDef`](crate::brush::BrushDef), cached.
@@ -70,7 +70,7 @@ topics! {
     frame() = "paint/frame";
     /// Small pictures of versions, a query: [`ThumbnailRequest`](crate::paint::ThumbnailRequest).
     thumbnail() = "paint/thumbnail";
-    /// How the paint node fares: [`PaintStatus`](crate::paint::PaintStatus).
+    /// Status of the paint node: [`PaintStatus`](crate::paint::PaintStatus).
     paint_status() = "paint/status";
     /// Frames that the window has completed: [`Presented`](crate::window::Presented).
     presented() = "ui/presented";
@@ -91,7 +91,7 @@ impl Topics {
         }
     }
 
-    /// What every topic of the rig begins with.
+    /// Prefix of every topic of the rig.
     #[must_use]
     pub fn prefix(&self) -> &str {
         &self.prefix

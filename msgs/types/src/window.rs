@@ -1,16 +1,16 @@
-//! What the window says of its frames.
+//! Message of the window about the frames that it has shown.
 
 use crate::define::message;
 use crate::paint::FrameHolds;
 
 message! {
-    /// A frame of the window that the graphics device has completed; `event_ns` of its header is when.
+    /// A frame of the window that the graphics device has completed; `event_ns` of its header is the time of completion.
     pub struct Presented [version 1, at most 4096 bytes] {
-        /// Its number since the window was opened, from 0.
+        /// Number of the frame since the window was opened, from 0.
         pub frame: u64,
-        /// When the window began to draw it, rig clock, ns.
+        /// Time at which the window began to draw it, rig clock, ns.
         pub begun_ns: u64,
-        /// Time that the window took until the graphics device had all of it to do, ns.
+        /// Time until all of it was submitted to the graphics device, ns.
         pub draw_ns: u64,
         /// The journal entries below this index are in its picture of the canvas.
         pub journal: u64,

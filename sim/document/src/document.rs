@@ -9,29 +9,29 @@ use std::time::Duration;
 use maulstick_canvas::page::Pager;
 use maulstick_painting::sequencer::Record;
 
-use crate::database::{Access, Database};
 use crate::error::DocumentError;
-use crate::moving::{Left, Move, Moving};
-use crate::opening::{Opened, opened};
-use crate::queues::{Life, Pages, Shared, Shelf};
-use crate::thread::Thread;
-use crate::writing::Moment;
+use crate::file::database::{Access, Database};
+use crate::file::relocate::{Relocate, RelocateRequest, Relocation, make_room};
+use crate::opening::{Opened, has_state, next_page, opened};
+use crate::thread::DocumentThread;
+use crate::thread::queues::{DocumentBacking, Life, PANICKED, Shared, TileCache};
+use crate::writing::Checkpoint;
 
 /// Settings for opening a document.
 #[derive(Clone, Debug)]
 pub struct DocumentSettings {
     /// The file.
     pub path: PathBuf,
-    /// Purpose.
+    /// Read or written.
     pub access: Access,
-    /// Most bytes of pages in memory.
+    /// Limit on the pages in memory, bytes.
     pub memory: usize,
-    /// Name of the SQLite VFS, if not the usual one.
+    /// Name of the SQLite VFS, if not the default.
     pub vfs: Option<String>,
 }
 
 impl DocumentSettings {
-    /// A file opened for this, with 1 GiB of memory.
+    /// Settings for a file, with 1 GiB of memory.
     #[must_use]
     pub fn new(path: &Path, access: Access) -> Self {
         Self {
@@ -52,35 +52,35 @@ pub struct Document {
 }
 
 impl Document {
-    /// Opens a painting, or begins one: then there is nothing opened.
+    /// Opens a painting, or creates its file: then there is no [`Opened`].
     ///
     /// # Errors
-    /// Any [`DocumentError`]; the file is as it was.
+    /// Any [`DocumentError`]; the file is unchanged.
     pub fn open(settings: &DocumentSettings) -> Result<(Self, Option<Opened>), DocumentError> {
         let vfs = settings.vfs.as_deref();
         let (database, new) = Database::open(&settings.path, settings.access, vfs)?;
         let shared: Arc<Shared> = Arc::default();
-        let backing = Arc::new(Pages(Arc::clone(&shared)));
+        let backing = Arc::new(DocumentBacking(Arc::clone(&shared)));
         let (pager, found) = match content(&database, new, backing, settings.memory) {
             Ok(content) => content,
             Err(error) => {
-                database.leave().ok();
+                database.close_unchanged().ok();
                 return Err(error);
             }
         };
         if let Some(found) = &found {
-            shared.committed.store(found.index(), SeqCst);
+            shared.committed.store(found.next_index(), SeqCst);
         }
-        let kept_versions = found.as_ref().map_or(0, |found| found.kept().versions);
+        let saved_version = found.as_ref().map_or(0, |found| found.snapshot().versions);
         let writes = settings.access == Access::Paint;
         let database = (database, &*settings.path);
-        let thread = Thread::new(Arc::clone(&shared), database, writes, kept_versions);
+        let thread = DocumentThread::new(Arc::clone(&shared), database, writes, saved_version);
         let document = Self::run(thread, &settings.path, shared, pager)?;
         Ok((document, found))
     }
 
     fn run(
-        thread: Thread,
+        thread: DocumentThread,
         path: &Path,
         shared: Arc<Shared>,
         pager: Arc<Pager>,
@@ -96,83 +96,91 @@ impl Document {
         })
     }
 
-    /// A document for a painting that was in memory alone, in a file that is not there yet. Its first
-    /// moment, which has to hold the whole painting, is written whole or not at all; once it is,
-    /// [`take_over`](Self::take_over) lets pages leave memory.
+    /// Creates a document for a painting that was in memory alone. Its first checkpoint, which has to contain the whole
+    /// painting, is written completely or not at all; after that [`limit_memory`](Self::limit_memory) lets pages leave
+    /// memory.
     ///
     /// # Errors
-    /// [`DocumentError::Taken`] where a file is there, or why it cannot be made.
+    /// [`DocumentError::Taken`] if there is a file already, or the reason why it cannot be created.
     pub fn begin(settings: &DocumentSettings, pager: &Arc<Pager>) -> Result<Self, DocumentError> {
-        crate::moving::make_room(&settings.path, false)?;
+        make_room(&settings.path, false)?;
         let vfs = settings.vfs.as_deref();
         let (database, _) = Database::open(&settings.path, Access::Paint, vfs)?;
         let shared: Arc<Shared> = Arc::default();
-        let thread = Thread::new(Arc::clone(&shared), (database, &settings.path), true, 0);
-        Self::run(thread.at_first(), &settings.path, shared, Arc::clone(pager))
+        let thread = DocumentThread::new(Arc::clone(&shared), (database, &settings.path), true, 0);
+        Self::run(
+            thread.for_first_checkpoint(),
+            &settings.path,
+            shared,
+            Arc::clone(pager),
+        )
     }
 
-    /// Takes a first moment back that could not be written; false where it is being tried just now.
+    /// Cancels a first checkpoint that could not be written; false if it is being written at this moment.
     #[must_use]
-    pub fn take_back(&self) -> bool {
+    pub fn cancel_checkpoint(&self) -> bool {
         let mut queues = self.shared.lock();
         queues.records.clear();
-        queues.moment.take().is_some()
+        queues.checkpoint.take().is_some()
     }
 
-    /// Has pages that are in the file leave memory: at most `memory` bytes stay.
-    pub fn take_over(&self, memory: usize) {
+    /// Lets pages that are in the file leave memory, so that at most `memory` bytes stay.
+    pub fn limit_memory(&self, memory: usize) {
         self.pager
-            .back(Arc::new(Pages(Arc::clone(&self.shared))), memory);
+            .back(Arc::new(DocumentBacking(Arc::clone(&self.shared))), memory);
     }
 
-    /// Moves the painting to another file, with everything handed over until then; painting goes on meanwhile.
-    /// [`arrived`](Self::arrived) returns the result.
-    pub fn move_to(&self, to: &Path, left: Left, replace: bool) -> Moving {
+    /// Relocates the painting, with everything handed over until then, while painting goes on.
+    /// [`poll_relocation`](Self::poll_relocation) returns the result.
+    pub fn relocate(&self, to: &Path, how: Relocate, replace: bool) -> Relocation {
         let (answer, outcome) = mpsc::channel();
         let mut queues = self.shared.lock();
         if queues.life != Life::Ended {
-            queues.moves.push(Move {
+            queues.relocations.push(RelocateRequest {
                 to: to.to_owned(),
-                left,
+                how,
                 replace,
                 answer,
             });
         }
         drop(queues);
-        self.shared.bell.notify_all();
-        Moving {
+        self.shared.wake.notify_all();
+        Relocation {
             to: to.to_owned(),
             outcome,
         }
     }
 
-    /// Result of a move; `None` while it runs. If it failed, the painting is still at its old path.
-    pub fn arrived(&mut self, moving: &Moving) -> Option<Result<(), DocumentError>> {
-        match moving.outcome.try_recv() {
-            Ok(outcome) => Some(self.come_to(moving, outcome)),
+    /// Result of a relocation; `None` while it runs. If it failed, the painting is still at its old path.
+    pub fn poll_relocation(
+        &mut self,
+        relocation: &Relocation,
+    ) -> Option<Result<(), DocumentError>> {
+        match relocation.outcome.try_recv() {
+            Ok(outcome) => Some(self.end_relocation(relocation, outcome)),
             Err(mpsc::TryRecvError::Empty) => None,
             Err(mpsc::TryRecvError::Disconnected) => Some(Err(self.unwritten())),
         }
     }
 
-    /// Waits for the end of a move.
+    /// Waits for the end of a relocation.
     ///
     /// # Errors
-    /// Why the painting is where it was.
-    pub fn wait_for(&mut self, moving: &Moving) -> Result<(), DocumentError> {
-        match moving.outcome.recv() {
-            Ok(outcome) => self.come_to(moving, outcome),
+    /// The reason why the painting is still at its old path.
+    pub fn wait_for_relocation(&mut self, relocation: &Relocation) -> Result<(), DocumentError> {
+        match relocation.outcome.recv() {
+            Ok(outcome) => self.end_relocation(relocation, outcome),
             Err(mpsc::RecvError) => Err(self.unwritten()),
         }
     }
 
-    fn come_to(
+    fn end_relocation(
         &mut self,
-        moving: &Moving,
+        relocation: &Relocation,
         outcome: Result<(), DocumentError>,
     ) -> Result<(), DocumentError> {
         if outcome.is_ok() {
-            self.path.clone_from(&moving.to);
+            self.path.clone_from(&relocation.to);
         }
         outcome
     }
@@ -181,67 +189,67 @@ impl Document {
         DocumentError::Unwritten(self.shared.lock().fault.clone())
     }
 
-    /// The file.
+    /// Path of the file.
     #[must_use]
     pub fn path(&self) -> &Path {
         &self.path
     }
 
-    /// The pages of the painting.
+    /// Pager of the painting.
     #[must_use]
     pub fn pager(&self) -> &Arc<Pager> {
         &self.pager
     }
 
-    /// Tiles as they were shown.
+    /// Cache of displayed tiles.
     #[must_use]
-    pub fn shelf(&self) -> Shelf {
-        Shelf(Arc::clone(&self.shared))
+    pub fn tile_cache(&self) -> TileCache {
+        TileCache(Arc::clone(&self.shared))
     }
 
-    /// Hands over what was accepted; it is in the file within a tenth of a second.
+    /// Hands over accepted records, which are in the file within a tenth of a second.
     pub fn record(&self, records: Vec<Record>) {
         if !records.is_empty() {
             self.shared.lock().records.extend(records);
-            self.shared.bell.notify_all();
+            self.shared.wake.notify_all();
         }
     }
 
-    /// True if the last checkpoint is written, so that the next one can be handed over.
+    /// True if the last checkpoint is written, so that the next one may be handed over.
     #[must_use]
     pub fn is_ready(&self) -> bool {
         let queues = self.shared.lock();
-        queues.moment.is_none() && !queues.writing
+        queues.checkpoint.is_none() && !queues.writing
     }
 
-    /// True if everything that was handed over is written.
+    /// True if everything handed over is written.
     #[must_use]
-    pub fn has_all(&self) -> bool {
+    pub fn is_saved(&self) -> bool {
         let queues = self.shared.lock();
-        let idle = queues.moment.is_none() && queues.records.is_empty();
+        let idle = queues.checkpoint.is_none() && queues.records.is_empty();
         idle && !queues.writing && queues.fault.is_empty()
     }
 
-    /// Hands a moment over. It has to hold all records that were handed over before, and the one
-    /// before it has to be written ([`is_ready`](Self::is_ready)).
-    pub fn keep(&self, moment: Moment) {
-        self.shared.lock().moment = Some(moment);
-        self.shared.bell.notify_all();
+    /// Hands over a checkpoint. It has to include all records handed over before, and the previous one has to be written
+    /// ([`is_ready`](Self::is_ready)).
+    pub fn write_checkpoint(&self, checkpoint: Checkpoint) {
+        self.shared.lock().checkpoint = Some(checkpoint);
+        self.shared.wake.notify_all();
     }
 
-    /// The journal entries below this index are in the file.
+    /// Index of the first journal entry that is not in the file.
     #[must_use]
     pub fn committed(&self) -> u64 {
         self.shared.committed.load(SeqCst)
     }
 
-    /// Time of the processor that was spent on reading pages.
+    /// Processor time spent on reading pages.
     #[must_use]
     pub fn page_in_cpu(&self) -> Duration {
         Duration::from_nanos(self.shared.page_in_ns.load(SeqCst))
     }
 
-    /// The reason why nothing is written at present, or the state of the file, with advice; `None` if all is well.
+    /// The reason why nothing is written at present, or a notice about the file, with advice; `None` if there is neither.
     #[must_use]
     pub fn fault(&self) -> Option<(String, &'static str)> {
         let queues = self.shared.lock();
@@ -249,14 +257,14 @@ impl Document {
         fault.or_else(|| queues.notice.clone())
     }
 
-    /// Takes in that the painting went on in another file because its own was gone.
-    pub fn follow(&mut self) {
-        if let Some(path) = self.shared.lock().went_to.take() {
+    /// Updates the path after the file was removed and the painting continued in another one.
+    pub fn update_path(&mut self) {
+        if let Some(path) = self.shared.lock().moved_to.take() {
             self.path = path;
         }
     }
 
-    /// Waits until all that was handed over is written, or could not be.
+    /// Waits until everything handed over is written, or writing has failed.
     pub fn flush(&self) {
         let (send, receive) = mpsc::channel();
         {
@@ -266,14 +274,14 @@ impl Document {
             }
             queues.flushes.push(send);
         }
-        self.shared.bell.notify_all();
+        self.shared.wake.notify_all();
         receive.recv().ok();
     }
 
-    /// Writes what was handed over, folds the journal in and closes the file.
+    /// Writes everything handed over, merges the journal and closes the file.
     ///
     /// # Errors
-    /// Why something could not be written.
+    /// The reason why data could not be written.
     pub fn close(mut self) -> Result<(), DocumentError> {
         self.end()
     }
@@ -285,11 +293,11 @@ impl Document {
                 queues.life = Life::Closing;
             }
         }
-        self.shared.bell.notify_all();
+        self.shared.wake.notify_all();
         match self.thread.take().map(JoinHandle::join) {
             None => Ok(()),
             Some(Ok(ended)) => ended,
-            Some(Err(_)) => Err(DocumentError::Other("its thread has fallen".to_owned())),
+            Some(Err(_)) => Err(DocumentError::Other(PANICKED.to_owned())),
         }
     }
 }
@@ -308,18 +316,18 @@ impl std::fmt::Debug for Document {
     }
 }
 
-/// The pages of a painting, and what it is; nothing where it is to be begun.
+/// Pager of a painting and its content; no content if it is to be created.
 fn content(
     database: &Database,
     new: bool,
-    backing: Arc<Pages>,
+    backing: Arc<DocumentBacking>,
     memory: usize,
 ) -> Result<(Arc<Pager>, Option<Opened>), DocumentError> {
-    // A painting that was begun, and not a second of it kept, begins anew.
-    if new || !crate::opening::has_state(database)? {
+    // A file without its first checkpoint counts as new.
+    if new || !has_state(database)? {
         return Ok((Pager::backed(backing, memory, 1), None));
     }
-    let pager = Pager::backed(backing, memory, crate::opening::next_page(database)?);
+    let pager = Pager::backed(backing, memory, next_page(database)?);
     let found = opened(database, &pager)?;
     Ok((pager, Some(found)))
 }

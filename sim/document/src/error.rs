@@ -1,4 +1,4 @@
-//! Errors of a document.
+//! Errors of a document, each with advice.
 
 use std::path::PathBuf;
 
@@ -7,13 +7,13 @@ use rusqlite::ffi;
 /// The reason why a document cannot be opened, read or written.
 #[derive(Debug, thiserror::Error)]
 pub enum DocumentError {
-    /// Something else than a painting.
+    /// File that is not a painting.
     #[error("this is no painting of Maulstick")]
     NoPainting,
-    /// No such file, where one is to be read.
+    /// No file at the path.
     #[error("there is no such file")]
     Missing,
-    /// A painting of a newer program.
+    /// Painting of a newer program.
     #[error("this painting has the format {found}, but this program knows formats up to {known}")]
     Newer {
         /// Its schema.
@@ -30,7 +30,7 @@ pub enum DocumentError {
     /// This program itself has it open, maybe by another name.
     #[error("it is the painting that is open here")]
     OpenHere,
-    /// The name is one that SQLite keeps the journal of another painting under.
+    /// Name under which SQLite keeps the journal of another painting.
     #[error("a name that ends so may belong to another painting")]
     Companion,
     /// The file or its folder cannot be written to.
@@ -39,10 +39,10 @@ pub enum DocumentError {
     /// No room on the disk.
     #[error("the disk is full")]
     Full,
-    /// No room on the disk of a painting that is to be closed, for what is in its journal.
+    /// No room on the disk to merge the journal of a painting that is to be closed.
     #[error("the disk of {} has no room to close the painting there", .0.display())]
-    Unfolded(PathBuf),
-    /// Bytes that do not hold together.
+    Unmerged(PathBuf),
+    /// Rows or bytes that are not intact.
     #[error("the painting is damaged: {0}")]
     Damaged(String),
     /// The latest strokes could not be written.
@@ -51,19 +51,16 @@ pub enum DocumentError {
     /// The file of an open painting is gone, and no other could be made.
     #[error("{0}")]
     Vanished(String),
-    /// The rest of a damaged painting is not enough for a painting.
-    #[error("the painting cannot be recovered: it has lost {0}")]
-    Lost(String),
-    /// A file is where a new one is to be written.
+    /// File at the path where a new one is to be written.
     #[error("there is a file of that name already")]
     Taken,
-    /// Anything else that SQLite or the system says.
+    /// Any other error of SQLite or the system.
     #[error("{0}")]
     Other(String),
 }
 
 impl DocumentError {
-    /// Advice.
+    /// Advice to the painter.
     #[must_use]
     pub fn help(&self) -> &'static str {
         match self {
@@ -77,12 +74,11 @@ impl DocumentError {
                 "close it there; if that program hangs, end it: what it had written is safe"
             }
             Self::ReadOnly(_) => "check the permissions of the file and its folder, or copy it",
-            Self::Full | Self::Unfolded(_) => "free some space: nothing that was written is lost",
+            Self::Full | Self::Unmerged(_) => "free some space: nothing that was written is lost",
             Self::Unwritten(_) => "nothing that was written before is lost",
             Self::Damaged(_) => {
                 "`maulstick painting recover FILE -o NEW.maul` takes out what is whole"
             }
-            Self::Lost(_) => "take the newest copy of it that is whole",
             Self::OpenHere | Self::Companion => "give another name",
             Self::Taken => "give another name: nothing is written over",
             Self::Vanished(_) => "save it under another name now: until then it is in memory alone",
@@ -96,7 +92,7 @@ impl From<rusqlite::Error> for DocumentError {
         let rusqlite::Error::SqliteFailure(code, _) = &error else {
             return match error {
                 rusqlite::Error::QueryReturnedNoRows => {
-                    Self::Damaged("something is missing".to_owned())
+                    Self::Damaged("a row is missing".to_owned())
                 }
                 rusqlite::Error::FromSqlConversionFailure(..)
                 | rusqlite::Error::InvalidColumnType(..)

@@ -10,15 +10,14 @@ use maulstick_types::{Flags, HEADER_BYTES, Header, Message, Origin, decode, enco
 
 use rusqlite::params;
 
-use crate::database::Database;
 use crate::error::DocumentError;
-use crate::schema::Table;
-use crate::sum::Sum;
+use crate::file::database::Database;
+use crate::tables::checksum::journal_checksum;
 
-/// A row's data has at most this many bytes.
-const MOST: usize = 1 << 28;
-/// Origin of records that no brush has sent.
-const ME: Origin = Origin {
+/// Largest size of a row's data, bytes.
+const ROW_MAX: usize = 1 << 28;
+/// Origin of records that did not come from a brush.
+const NO_ORIGIN: Origin = Origin {
     source: 0,
     epoch: 0,
 };
@@ -42,7 +41,7 @@ fn message(record: &Record) -> Result<Vec<u8>, DocumentError> {
                 index: record.index,
                 entry: entry.clone(),
             };
-            encode(&ME, Flags::NONE, record.serial, 0, 0, &entry)
+            encode(&NO_ORIGIN, Flags::NONE, record.serial, 0, 0, &entry)
         }
         Accepted::Brush { brush, toml } => {
             let def = BrushDef {
@@ -50,7 +49,7 @@ fn message(record: &Record) -> Result<Vec<u8>, DocumentError> {
                 toml: toml.clone(),
                 hash: name_hash(toml),
             };
-            encode(&ME, Flags::NONE, record.serial, 0, 0, &def)
+            encode(&NO_ORIGIN, Flags::NONE, record.serial, 0, 0, &def)
         }
     };
     bytes.map_err(damaged)
@@ -78,7 +77,7 @@ pub(crate) fn put(database: &Database, records: &[Record]) -> Result<(), Documen
     };
     let data = write(records)?;
     let ends = [first.serial, last.serial];
-    let sum = sum(ends, &data);
+    let sum = journal_checksum(ends, &data);
     let [first, last] = ends.map(|serial| serial as i64);
     database
         .connection
@@ -87,21 +86,15 @@ pub(crate) fn put(database: &Database, records: &[Record]) -> Result<(), Documen
     Ok(())
 }
 
-/// The checksum of a row of the journal.
-pub(crate) fn sum([first, last]: [u64; 2], data: &[u8]) -> i64 {
-    let sum = Sum::of(Table::Journal).int(first as i64).int(last as i64);
-    sum.bytes(data).done()
-}
-
 /// Reads records; the first has the serial number `first`.
 ///
 /// # Errors
 /// [`DocumentError::Damaged`].
 pub fn read(first: u64, bytes: &[u8]) -> Result<Vec<Record>, DocumentError> {
-    let mut packed = zstd::stream::read::Decoder::new(bytes)?.take(MOST as u64 + 1);
+    let mut packed = zstd::stream::read::Decoder::new(bytes)?.take(ROW_MAX as u64 + 1);
     let mut bytes = Vec::new();
     packed.read_to_end(&mut bytes).map_err(damaged)?;
-    if bytes.len() > MOST {
+    if bytes.len() > ROW_MAX {
         return Err(damaged("a row is too long"));
     }
     let (mut records, mut rest) = (Vec::new(), bytes.as_slice());
@@ -176,7 +169,7 @@ mod tests {
             read(5, &written).expect("read"),
             std::slice::from_ref(&record)
         );
-        let bytes = zstd::bulk::decompress(&written, MOST).expect("whole");
+        let bytes = zstd::bulk::decompress(&written, ROW_MAX).expect("whole");
         let of_schema = |hash: u32| {
             let mut bytes = bytes.clone();
             // Index and length lie before the header, magic and version before its schema.

@@ -1,48 +1,62 @@
 //! The painting as a file.
 //!
 //! A painting is one SQLite database (`.maul`), open in one program at a time. It holds the tiles with
-//! their history, the records accepted since then (the journal), named versions, the tiles as they are shown,
-//! and the files that the painting is made with. `docs/document.md` describes the tables.
+//! their history, the records accepted since the last checkpoint (the journal), named versions, tiles as they are
+//! displayed, and the files that the painting is made with. `docs/document.md` describes the tables.
 //!
 //! | module | holds |
 //! | --- | --- |
-//! | [`document`], `thread`, `queues` | an open painting, the thread that owns its file, and the queues between them |
-//! | [`database`] | the file: locks, pages read one by one |
+//! | [`document`], `thread` | an open painting; the thread that owns its file, and the queues between them |
 //! | [`writing`], [`opening`] | a checkpoint of a painting, written as one transaction and read back |
-//! | [`moving`], `watch` | its file under another name, or removed |
 //! | [`journal`] | accepted records as bytes |
-//! | [`contents`], [`pack`] | contents of a file; making it small |
-//! | [`planes`], [`loads`] | paint as bytes |
-//! | [`rows`], [`schema`], [`sum`] | tables, migrations, checksums |
-//! | [`scan`], [`mod@recover`] | rows out of damaged files; a new painting of the intact ones |
+//! | [`file`](mod@file) | the file: locks, pages read one by one, relocation, removal while it is open |
+//! | [`tables`] | tables and migrations, rows, checksums, paint as bytes |
+//! | [`stats`], [`pack`] | sizes and integrity of a file; making it small |
 //! | [`error`] | errors, each with advice |
+//!
+//! A painting in memory gets a file, is closed, and is opened again:
+//!
+//! ```
+//! use maulstick_document::{Access, Checkpoint, Document, DocumentSettings};
+//! use maulstick_optics::PaintLibrary;
+//! use maulstick_painting::{Painting, PaintingSetup, Sequencer};
+//!
+//! # fn main() -> Result<(), Box<dyn std::error::Error>> {
+//! let folder = tempfile::tempdir()?;
+//! let settings = DocumentSettings::new(&folder.path().join("sea.maul"), Access::Paint);
+//! let setup = PaintingSetup { cells: [128, 64], ..PaintingSetup::default() };
+//! let (document, opened) = Document::open(&settings)?;
+//! assert!(opened.is_none(), "the file is new");
+//! let pager = document.pager().clone();
+//! let painting = Painting::paged(&setup, PaintLibrary::measured()?, pager)?;
+//! document.write_checkpoint(Checkpoint::of(&mut Sequencer::new(painting), 0));
+//! document.close()?;
+//!
+//! let (document, opened) = Document::open(&settings)?;
+//! let opened = opened.ok_or("no painting")?;
+//! assert_eq!(opened.snapshot().scene.surfaces[0].cells, [128, 64]);
+//! document.close()?;
+//! # Ok(())
+//! # }
+//! ```
 
-pub mod contents;
-pub mod database;
 pub mod document;
 pub mod error;
+pub mod file;
 pub mod journal;
-pub mod loads;
-pub mod moving;
 pub mod opening;
 pub mod pack;
-pub mod planes;
-mod queues;
-pub mod recover;
-pub mod rows;
-pub mod scan;
-pub mod schema;
-pub mod sum;
+pub mod stats;
+pub mod tables;
 mod thread;
-mod watch;
 pub mod writing;
 
-pub use contents::Contents;
-pub use database::{Access, glance, scene};
 pub use document::{Document, DocumentSettings};
 pub use error::DocumentError;
-pub use moving::{Left, Moving, make_room, unfinished};
-pub use opening::Opened;
-pub use queues::Shelf;
-pub use recover::{Salvage, part_of, recover};
-pub use writing::{Moment, ShownTile};
+pub use file::database::Access;
+pub use file::relocate::{Relocate, Relocation, make_room, unfinished};
+pub use opening::{Opened, glance, scene};
+pub use stats::DocumentStats;
+pub use tables::rows;
+pub use thread::queues::TileCache;
+pub use writing::{Checkpoint, ShownTile};

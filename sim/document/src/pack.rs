@@ -1,42 +1,43 @@
-//! A painting's file made as small as possible.
+//! Packing: a painting's file made as small as possible.
 
 use std::path::Path;
 use std::sync::atomic::{AtomicUsize, Ordering::Relaxed};
 
 use rusqlite::params;
 
-use crate::database::{Access, Database, page_sum};
 use crate::document::{Document, DocumentSettings};
 use crate::error::DocumentError;
-use crate::planes;
-use crate::writing::Moment;
+use crate::file::database::{Access, Database};
+use crate::tables::checksum::page_checksum;
+use crate::tables::planes;
+use crate::writing::Checkpoint;
 
-/// Fate of a packed painting's history.
+/// History of a packed painting.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum History {
-    /// It stays.
+    /// All its steps stay.
     Kept,
-    /// Its steps go; versions stay.
+    /// Its steps are deleted; versions stay.
     Forgotten,
 }
 
-/// Pages that are compressed anew in one transaction.
+/// Pages recompressed in one transaction.
 const BATCH: usize = 256;
 
-/// Packs a painting; returns the bytes of its file before and after. Each step of it is a transaction
-/// of SQLite: whenever it is stopped, the painting is whole.
+/// Packs a painting; returns the size of its file before and after, bytes. Each step is a transaction of SQLite, so the
+/// painting is intact whenever it is interrupted.
 ///
 /// # Errors
 /// Any [`DocumentError`].
 pub fn pack(
     path: &Path,
     history: History,
-    tell: &mut dyn FnMut(u64, u64),
+    progress: &mut dyn FnMut(u64, u64),
 ) -> Result<[u64; 2], DocumentError> {
     if !path.exists() {
         return Err(DocumentError::Missing);
     }
-    settle(path, history)?;
+    replay_journal(path, history)?;
     let before = std::fs::metadata(path)?.len();
     let (database, _) = Database::open(path, Access::Paint, None)?;
     let pages: Vec<i64> = {
@@ -50,25 +51,28 @@ pub fn pack(
     for (batch, ids) in pages.chunks(BATCH).enumerate() {
         database.connection.execute_batch("BEGIN IMMEDIATE")?;
         compress(&database, ids)?;
-        tell((batch * BATCH + ids.len()) as u64, all);
+        progress((batch * BATCH + ids.len()) as u64, all);
         database.connection.execute_batch("COMMIT")?;
     }
-    // Its copy of the painting may take more room than there is memory.
+    // SQLite's copy of the painting may be larger than memory.
     database
         .connection
         .execute_batch("PRAGMA temp_store = FILE; VACUUM")?;
-    tell(all, all);
+    progress(all, all);
     database.close()?;
     Ok([before, std::fs::metadata(path)?.len()])
 }
 
-/// Does again what was left to be done again, and writes it; forgets the history if it is to go.
-pub(crate) fn settle(path: &Path, history: History) -> Result<(), DocumentError> {
+/// Replays the journal of a closed painting and writes the result; deletes the history if it is to be forgotten.
+///
+/// # Errors
+/// Any [`DocumentError`].
+pub fn replay_journal(path: &Path, history: History) -> Result<(), DocumentError> {
     let (document, opened) = Document::open(&DocumentSettings::new(path, Access::Paint))?;
     let Some(opened) = opened else {
         return document.close();
     };
-    let since = opened.kept().versions;
+    let since = opened.snapshot().versions;
     let mut sequencer = opened
         .sequencer()
         .map_err(|refusal| DocumentError::Damaged(refusal.what))?;
@@ -78,18 +82,18 @@ pub(crate) fn settle(path: &Path, history: History) -> Result<(), DocumentError>
     if history == History::Forgotten {
         sequencer.painting_mut().forget_history();
     }
-    document.keep(Moment::of(&mut sequencer, since));
+    document.write_checkpoint(Checkpoint::of(&mut sequencer, since));
     document.flush();
     if !document.is_ready() {
         return document.close();
     }
-    // Dropped steps go with the next checkpoint.
+    // Dropped steps are deleted with the next checkpoint.
     let versions = sequencer.painting().versions();
-    document.keep(Moment::of(&mut sequencer, versions));
+    document.write_checkpoint(Checkpoint::of(&mut sequencer, versions));
     document.close()
 }
 
-/// A page as its row has it.
+/// Row of a page.
 struct Row {
     id: u64,
     /// Base, depth and slots.
@@ -112,21 +116,21 @@ impl Row {
         })?)
     }
 
-    /// Its data and sum if they get smaller. The input of the compression is the same at every level, so no page that
-    /// it is a difference to is read.
-    fn smaller(&self) -> Result<Option<(Vec<u8>, i64)>, DocumentError> {
+    /// Recompressed data and their checksum, if they are smaller. The input of the compression is the same at every level,
+    /// so the page that it is a difference to is not read.
+    fn recompressed(&self) -> Result<Option<(Vec<u8>, i64)>, DocumentError> {
         let damaged = |what: &str| DocumentError::Damaged(format!("page {} {what}", self.id));
-        if page_sum(self.id, self.ints, &self.data) != self.sum {
+        if page_checksum(self.id, self.ints, &self.data) != self.sum {
             return Err(damaged("does not match its checksum"));
         }
         let packed = planes::repack(self.ints[2] as u32, &self.data, planes::PACKED_LEVEL);
         let packed = packed.map_err(|what| damaged(&what))?;
-        let sum = page_sum(self.id, self.ints, &packed);
+        let sum = page_checksum(self.id, self.ints, &packed);
         Ok((packed.len() < self.data.len()).then_some((packed, sum)))
     }
 }
 
-/// Compresses pages anew, on all cores.
+/// Recompresses pages, on all cores.
 fn compress(database: &Database, ids: &[i64]) -> Result<(), DocumentError> {
     let rows = ids.iter().map(|id| Row::read(database, *id));
     let rows = rows.collect::<Result<Vec<Row>, _>>()?;
@@ -134,7 +138,7 @@ fn compress(database: &Database, ids: &[i64]) -> Result<(), DocumentError> {
     let work = || -> Result<Vec<_>, DocumentError> {
         let mut smaller = Vec::new();
         while let Some(row) = rows.get(next.fetch_add(1, Relaxed)) {
-            smaller.extend(row.smaller()?.map(|packed| (row.id, packed)));
+            smaller.extend(row.recompressed()?.map(|packed| (row.id, packed)));
         }
         Ok(smaller)
     };

@@ -1,4 +1,4 @@
-//! A checkpoint as one transaction.
+//! Writing of a checkpoint, as one transaction.
 
 use std::collections::BTreeSet;
 use std::sync::Arc;
@@ -10,61 +10,60 @@ use maulstick_canvas::planes::Planes;
 use maulstick_impasto::brush::load::BrushLoad;
 use maulstick_painting::history::{Step, TileRef};
 use maulstick_painting::snapshot::SequencerSnapshot;
-use maulstick_painting::{Checkpoint, Named, Sequencer};
+use maulstick_painting::{Named, Sequencer};
 use rusqlite::{OptionalExtension as _, params};
 
-use crate::database::{DEPTH_MAX, Database, load_sum, page_sum, shown_sum};
 use crate::error::DocumentError;
-use crate::rows::{KeptDeed, KeptRest, numbers, packed, place_number};
-use crate::schema::Table;
-use crate::sum::Sum;
-use crate::{loads, planes};
+use crate::file::database::{DEPTH_MAX, Database};
+use crate::tables::checksum::{Checksum, load_checksum, page_checksum, shown_checksum};
+use crate::tables::rows::{
+    COPY, StoredNonTileState, StoredStepEffects, packed, page_ids, place_number,
+};
+use crate::tables::schema::Table;
+use crate::tables::{loads, planes};
 
-/// A moment of a painting with its place in the journal, and files that belong to it.
+/// Checkpoint of a painting, with its place in the journal and the files that belong to it.
 #[derive(Clone, Debug)]
-pub struct Moment {
+pub struct Checkpoint {
     /// The painting.
-    pub painting: Checkpoint,
+    pub painting: maulstick_painting::Checkpoint,
     /// The sequencer.
     pub sequencer: SequencerSnapshot,
     /// Pictures and spectra of grounds and teeth, by their hash.
     pub pictures: Vec<(String, Arc<[u8]>)>,
 }
 
-impl Moment {
-    /// A moment of a painting, with the tiles that are newer than the version `since`.
+impl Checkpoint {
+    /// Checkpoint of a painting, with the tiles that are newer than the version `since`.
     pub fn of(sequencer: &mut Sequencer, since: u64) -> Self {
-        let kept = sequencer.kept();
+        let snapshot = sequencer.kept();
         let embedded = sequencer.painting().embedded().iter();
         let pictures = embedded.map(|(hash, bytes)| (hash.to_owned(), Arc::clone(bytes)));
         Self {
             pictures: pictures.collect(),
             painting: sequencer.painting_mut().checkpoint(since),
-            sequencer: kept,
+            sequencer: snapshot,
         }
     }
 }
 
-/// A tile as it is shown.
+/// Tile as it is displayed.
 #[derive(Clone, Debug)]
 pub struct ShownTile {
-    /// Its place, [`crate::rows::shown_number`].
+    /// Its place, [`crate::tables::rows::shown_number`].
     pub place: i64,
-    /// The tile version that it shows.
+    /// Tile version that it shows.
     pub version: u64,
-    /// Look under which it is shown.
+    /// Hash of the look under which it is displayed.
     pub look: i64,
     /// Its planes.
     pub bytes: Vec<u8>,
 }
 
-/// Suffix of the keys of the second copy of the state: without that copy a single wrong bit would cost all.
-pub(crate) const COPY: &str = " copy";
+/// Callback between two pages, which serves readers that wait for one.
+pub(crate) type YieldHook<'a> = &'a mut dyn FnMut(&Database);
 
-/// Called between two pages: a reader may wait for one.
-pub(crate) type Breath<'a> = &'a mut dyn FnMut(&Database);
-
-/// Rows that were written, to be noted once they are committed.
+/// Pages that were written, to be marked as stored once they are committed.
 #[derive(Debug, Default)]
 pub(crate) struct Stored {
     planes: Vec<(Page<Planes>, usize)>,
@@ -73,8 +72,8 @@ pub(crate) struct Stored {
 }
 
 impl Stored {
-    /// Notes that the document has it all.
-    pub(crate) fn note(self) {
+    /// Marks the pages as stored.
+    pub(crate) fn mark(self) {
         self.planes
             .iter()
             .for_each(|(page, bytes)| page.note_stored(*bytes));
@@ -85,60 +84,60 @@ impl Stored {
     }
 }
 
-/// Number, depth and planes of a page that another one is a difference to.
+/// Number, depth and planes of the page that another one is stored as a difference to.
 type Base = (i64, i64, Arc<Planes>);
 
-/// Writes inside one transaction.
+/// Writer of rows inside one transaction.
 pub(crate) struct Writer<'a, 'b> {
     database: &'a Database,
-    breathe: Breath<'b>,
+    yield_hook: YieldHook<'b>,
     stored: Stored,
     written: BTreeSet<u64>,
 }
 
 impl<'a, 'b> Writer<'a, 'b> {
-    pub(crate) fn new(database: &'a Database, breathe: Breath<'b>) -> Self {
+    pub(crate) fn new(database: &'a Database, yield_hook: YieldHook<'b>) -> Self {
         Self {
             database,
-            breathe,
+            yield_hook,
             stored: Stored::default(),
             written: Default::default(),
         }
     }
 
-    /// Writes a checkpoint and deletes what it replaces. If its pages take longer than `until` only some of these are
-    /// written, still unreferenced, and false is returned.
-    pub(crate) fn moment(
+    /// Writes a checkpoint and deletes rows that it replaces. If its pages are not written by `until`, only some of them
+    /// are written, still unreferenced, and false is returned.
+    pub(crate) fn checkpoint(
         mut self,
-        moment: &Moment,
+        checkpoint: &Checkpoint,
         until: Instant,
     ) -> Result<(Stored, bool), DocumentError> {
-        let painting = &moment.painting;
+        let painting = &checkpoint.painting;
         let tiles = painting.tiles.iter().map(|(_, version)| &version.tile);
         let changes = painting.steps.iter().flat_map(|step| step.tiles.values());
         let steps = changes.flat_map(|change| [&change.before, &change.after]);
         let named = painting.named.iter().flat_map(|named| named.tiles.values());
-        for held in tiles.chain(steps).chain(named) {
-            self.held(held)?;
+        for tile in tiles.chain(steps).chain(named) {
+            self.write_tile(tile)?;
             if !self.written.is_empty() && Instant::now() > until {
                 return Ok((self.stored, false));
             }
         }
         for step in &painting.steps {
-            self.step(step)?;
+            self.write_step(step)?;
         }
         for version in &painting.named {
-            self.version(version)?;
+            self.write_version(version)?;
         }
         for page in painting.loads.values() {
-            self.load(page)?;
+            self.write_load(page)?;
         }
         let connection = &self.database.connection;
         for (place, version) in &painting.tiles {
             let place = place_number(*place);
-            let [page, dry] = numbers(&version.tile);
+            let [page, dry] = page_ids(&version.tile);
             let ints = [place, version.number as i64, page, dry];
-            let sum = ints.into_iter().fold(Sum::of(Table::Tile), Sum::int).done();
+            let sum = Checksum::of_ints(Table::Tile, &ints);
             connection
                 .prepare_cached("INSERT OR REPLACE INTO tile VALUES(6, ?1, ?2, ?3, ?4, ?5)")?
                 .execute(params![ints[0], ints[1], ints[2], ints[3], sum])?;
@@ -151,21 +150,21 @@ impl<'a, 'b> Writer<'a, 'b> {
         for name in &painting.gone_named {
             connection.execute("DELETE FROM version WHERE name = ?1", params![name])?;
         }
-        self.state(moment)?;
-        self.bury(&painting.dead)?;
+        self.write_state(checkpoint)?;
+        self.delete_unreferenced(&painting.dead)?;
         connection.execute(
             "DELETE FROM journal WHERE last < ?1",
-            params![moment.sequencer.serial as i64],
+            params![checkpoint.sequencer.serial as i64],
         )?;
         Ok((self.stored, true))
     }
 
-    fn held(&mut self, held: &TileRef) -> Result<(), DocumentError> {
-        let Some(tile) = held else {
+    fn write_tile(&mut self, tile: &TileRef) -> Result<(), DocumentError> {
+        let Some(tile) = tile else {
             return Ok(());
         };
         if let Some(page) = tile.wet_page() {
-            self.page(page)?;
+            self.write_page(page)?;
         }
         let mut next = tile.dry();
         while let Some(stack) = next.filter(|stack| !stack.is_stored()) {
@@ -173,7 +172,7 @@ impl<'a, 'b> Writer<'a, 'b> {
             if !self.written.insert(stack.id()) {
                 continue;
             }
-            self.page(&stack.layer().planes)?;
+            self.write_page(&stack.layer().planes)?;
             let below = stack.below().map_or(0, |below| below.id());
             let ints = [
                 stack.id(),
@@ -182,7 +181,7 @@ impl<'a, 'b> Writer<'a, 'b> {
                 stack.layer().planes.id(),
             ]
             .map(|number| number as i64);
-            let sum = ints.into_iter().fold(Sum::of(Table::Dry), Sum::int).done();
+            let sum = Checksum::of_ints(Table::Dry, &ints);
             self.database
                 .connection
                 .prepare_cached("INSERT OR REPLACE INTO dry VALUES(4, ?1, ?2, ?3, ?4, ?5)")?
@@ -192,11 +191,11 @@ impl<'a, 'b> Writer<'a, 'b> {
         Ok(())
     }
 
-    fn page(&mut self, page: &Page<Planes>) -> Result<(), DocumentError> {
+    fn write_page(&mut self, page: &Page<Planes>) -> Result<(), DocumentError> {
         if page.stored_bytes() > 0 || !self.written.insert(page.id()) {
             return Ok(());
         }
-        (self.breathe)(self.database);
+        (self.yield_hook)(self.database);
         let content = page.peek().ok_or_else(|| {
             DocumentError::Other(format!(
                 "page {} left memory before it was written",
@@ -216,7 +215,7 @@ impl<'a, 'b> Writer<'a, 'b> {
         )?;
         let (base, depth) = base.map_or((0, 0), |(id, depth, _)| (id, depth + 1));
         let slots = i64::from(planes::mask(&content));
-        let sum = page_sum(page.id(), [base, depth, slots], &data);
+        let sum = page_checksum(page.id(), [base, depth, slots], &data);
         self.database
             .connection
             .prepare_cached("INSERT OR REPLACE INTO page VALUES(3, ?1, ?2, ?3, ?4, ?5, ?6)")?
@@ -225,7 +224,7 @@ impl<'a, 'b> Writer<'a, 'b> {
         Ok(())
     }
 
-    /// Number, depth and planes of the page that another one is a difference to; `None` if the chain is long enough.
+    /// Base for a difference to `base`; `None` if its chain has the largest depth already.
     fn base_of(&self, base: &Page<Planes>) -> Result<Option<Base>, DocumentError> {
         let id = base.id() as i64;
         let depth: Option<i64> = self
@@ -241,7 +240,7 @@ impl<'a, 'b> Writer<'a, 'b> {
             Some(content) => content,
             None => match self.database.planes(base.id()) {
                 Ok(planes) => Arc::new(planes),
-                // Nothing new is to rest on a page that is damaged.
+                // Nothing new may depend on a damaged page.
                 Err(DocumentError::Damaged(_)) => return Ok(None),
                 Err(error) => return Err(error),
             },
@@ -249,7 +248,7 @@ impl<'a, 'b> Writer<'a, 'b> {
         Ok(Some((id, depth, content)))
     }
 
-    fn load(&mut self, page: &Page<BrushLoad>) -> Result<(), DocumentError> {
+    fn write_load(&mut self, page: &Page<BrushLoad>) -> Result<(), DocumentError> {
         if page.stored_bytes() > 0 || !self.written.insert(page.id()) {
             return Ok(());
         }
@@ -260,7 +259,7 @@ impl<'a, 'b> Writer<'a, 'b> {
             ))
         })?;
         let data = loads::encode(&content, self.database.level)?;
-        let sum = load_sum(page.id(), &data);
+        let sum = load_checksum(page.id(), &data);
         self.database
             .connection
             .prepare_cached("INSERT OR REPLACE INTO load VALUES(5, ?1, ?2, ?3)")?
@@ -269,20 +268,20 @@ impl<'a, 'b> Writer<'a, 'b> {
         Ok(())
     }
 
-    fn step(&mut self, step: &Step) -> Result<(), DocumentError> {
+    fn write_step(&mut self, step: &Step) -> Result<(), DocumentError> {
         let mut tiles = Vec::with_capacity(step.tiles.len() * 5);
         for (place, change) in &*step.tiles {
-            self.held(&change.before)?;
-            self.held(&change.after)?;
+            self.write_tile(&change.before)?;
+            self.write_tile(&change.after)?;
             tiles.push(place_number(*place));
-            tiles.extend(numbers(&change.before));
-            tiles.extend(numbers(&change.after));
+            tiles.extend(page_ids(&change.before));
+            tiles.extend(page_ids(&change.after));
         }
         for page in step.effects.loads.values().flatten() {
-            self.load(page)?;
+            self.write_load(page)?;
         }
         let loads = step.effects.loads.iter();
-        let effects = KeptDeed {
+        let effects = StoredStepEffects {
             loads: loads
                 .map(|(name, pages)| (name.clone(), pages.each_ref().map(Page::id)))
                 .collect(),
@@ -295,7 +294,7 @@ impl<'a, 'b> Writer<'a, 'b> {
         let tiles = packed(tiles);
         let brush = step.brush.as_deref().unwrap_or_default();
         let (id, operations) = (step.id as i64, step.operations as i64);
-        let sum = Sum::of(Table::Step)
+        let sum = Checksum::new(Table::Step)
             .int(id)
             .bytes(step.what.as_bytes())
             .bytes(brush.as_bytes())
@@ -303,7 +302,7 @@ impl<'a, 'b> Writer<'a, 'b> {
             .int(i64::from(step.done))
             .bytes(effects.as_bytes())
             .bytes(&tiles)
-            .done();
+            .finish();
         self.database
             .connection
             .prepare_cached(
@@ -315,18 +314,18 @@ impl<'a, 'b> Writer<'a, 'b> {
         Ok(())
     }
 
-    fn version(&mut self, version: &Named) -> Result<(), DocumentError> {
+    fn write_version(&mut self, version: &Named) -> Result<(), DocumentError> {
         let mut tiles = Vec::with_capacity(version.tiles.len() * 3);
-        for (place, held) in &*version.tiles {
-            self.held(held)?;
+        for (place, tile) in &*version.tiles {
+            self.write_tile(tile)?;
             tiles.push(place_number(*place));
-            tiles.extend(numbers(held));
+            tiles.extend(page_ids(tile));
         }
         for page in version.rest.loads.values() {
-            self.load(page)?;
+            self.write_load(page)?;
         }
         let loads = version.rest.loads.iter();
-        let rest = KeptRest {
+        let rest = StoredNonTileState {
             loads: loads
                 .map(|(name, page)| (name.clone(), page.id()))
                 .collect(),
@@ -338,12 +337,12 @@ impl<'a, 'b> Writer<'a, 'b> {
         let rest = serde_json::to_string(&rest)?;
         let tiles = packed(tiles);
         let parent = version.parent.as_deref().unwrap_or_default();
-        let sum = Sum::of(Table::Version)
+        let sum = Checksum::new(Table::Version)
             .bytes(version.name.as_bytes())
             .bytes(parent.as_bytes())
             .bytes(rest.as_bytes())
             .bytes(&tiles)
-            .done();
+            .finish();
         self.database.connection.execute(
             "INSERT OR REPLACE INTO version VALUES(8, ?1, ?2, ?3, ?4, ?5)",
             params![version.name, parent, rest, tiles, sum],
@@ -351,19 +350,19 @@ impl<'a, 'b> Writer<'a, 'b> {
         Ok(())
     }
 
-    /// Writes tiles as they are shown.
-    pub(crate) fn shown(self, tiles: &[ShownTile]) -> Result<(), DocumentError> {
+    /// Writes tiles as they are displayed.
+    pub(crate) fn write_shown(self, tiles: &[ShownTile]) -> Result<(), DocumentError> {
         for tile in tiles {
-            (self.breathe)(self.database);
-            self.show(tile)?;
+            (self.yield_hook)(self.database);
+            self.write_shown_tile(tile)?;
         }
         Ok(())
     }
 
-    fn show(&self, tile: &ShownTile) -> Result<(), DocumentError> {
+    fn write_shown_tile(&self, tile: &ShownTile) -> Result<(), DocumentError> {
         let data = zstd::bulk::compress(&tile.bytes, self.database.level)?;
         let version = tile.version as i64;
-        let sum = shown_sum(tile.place, version, tile.look, &data);
+        let sum = shown_checksum(tile.place, version, tile.look, &data);
         self.database
             .connection
             .prepare_cached("INSERT OR REPLACE INTO shown VALUES(10, ?1, ?2, ?3, ?4, ?5)")?
@@ -381,15 +380,15 @@ impl<'a, 'b> Writer<'a, 'b> {
         Ok(known.is_some())
     }
 
-    fn file(&self, kind: &str, name: &str, data: &[u8]) -> Result<String, DocumentError> {
+    fn write_file(&self, kind: &str, name: &str, data: &[u8]) -> Result<String, DocumentError> {
         let hash = hash_of(data);
         if !self.has_file(&hash)? {
-            let sum = Sum::of(Table::File)
+            let sum = Checksum::new(Table::File)
                 .bytes(hash.as_bytes())
                 .bytes(kind.as_bytes())
                 .bytes(name.as_bytes())
                 .bytes(data)
-                .done();
+                .finish();
             self.database.connection.execute(
                 "INSERT INTO file VALUES(2, ?1, ?2, ?3, ?4, ?5)",
                 params![hash, kind, name, data, sum],
@@ -398,31 +397,31 @@ impl<'a, 'b> Writer<'a, 'b> {
         Ok(hash)
     }
 
-    fn state(&self, moment: &Moment) -> Result<(), DocumentError> {
-        let mut kept = moment.painting.kept.clone();
-        kept.paints = self.file("paints", "paints.csv", kept.paints.as_bytes())?;
-        for (name, brush) in &mut kept.brushes {
-            brush.file = self.file("brush", name, brush.file.as_bytes())?;
+    fn write_state(&self, checkpoint: &Checkpoint) -> Result<(), DocumentError> {
+        let mut snapshot = checkpoint.painting.kept.clone();
+        snapshot.paints = self.write_file("paints", "paints.csv", snapshot.paints.as_bytes())?;
+        for (name, brush) in &mut snapshot.brushes {
+            brush.file = self.write_file("brush", name, brush.file.as_bytes())?;
         }
-        for (hash, data) in &moment.pictures {
+        for (hash, data) in &checkpoint.pictures {
             if !self.has_file(hash)? {
-                self.file(kind_of(data), hash, data)?;
+                self.write_file(kind_of(data), hash, data)?;
             }
         }
-        let painting = serde_json::to_string(&kept)?;
-        let sequencer = serde_json::to_string(&moment.sequencer)?;
+        let painting = serde_json::to_string(&snapshot)?;
+        let sequencer = serde_json::to_string(&checkpoint.sequencer)?;
         for copy in ["", COPY] {
-            self.put_state(&format!("painting{copy}"), &painting)?;
-            self.put_state(&format!("sequencer{copy}"), &sequencer)?;
+            self.write_state_row(&format!("painting{copy}"), &painting)?;
+            self.write_state_row(&format!("sequencer{copy}"), &sequencer)?;
         }
         Ok(())
     }
 
-    fn put_state(&self, key: &str, value: &str) -> Result<(), DocumentError> {
-        let sum = Sum::of(Table::State)
+    fn write_state_row(&self, key: &str, value: &str) -> Result<(), DocumentError> {
+        let sum = Checksum::new(Table::State)
             .bytes(key.as_bytes())
             .bytes(value.as_bytes())
-            .done();
+            .finish();
         self.database
             .connection
             .prepare_cached("INSERT OR REPLACE INTO state VALUES(1, ?1, ?2, ?3)")?
@@ -430,25 +429,25 @@ impl<'a, 'b> Writer<'a, 'b> {
         Ok(())
     }
 
-    /// Deletes pages and layers without references. Pages that are differences to one of them are written anew.
-    fn bury(&mut self, dead: &[u64]) -> Result<(), DocumentError> {
+    /// Deletes pages, layers and loads without references. Pages that are differences to one of them are rebased.
+    fn delete_unreferenced(&mut self, dead: &[u64]) -> Result<(), DocumentError> {
         let connection = &self.database.connection;
-        let gone: BTreeSet<u64> = dead.iter().copied().collect();
-        for id in &gone {
+        let dead: BTreeSet<u64> = dead.iter().copied().collect();
+        for id in &dead {
             for later in self.differences_to(*id)? {
-                if gone.contains(&later) {
+                if dead.contains(&later) {
                     continue;
                 }
-                (self.breathe)(self.database);
+                (self.yield_hook)(self.database);
                 match self.database.planes(later) {
                     Ok(content) => self.rebase(later, &content)?,
-                    // It is lost with its base or without; what is painted now is not.
+                    // It is lost with or without its base; this checkpoint is not.
                     Err(DocumentError::Damaged(_)) => {}
                     Err(error) => return Err(error),
                 }
             }
         }
-        for id in &gone {
+        for id in &dead {
             for table in ["page", "dry", "load"] {
                 connection
                     .prepare_cached(&format!("DELETE FROM {table} WHERE id = ?1"))?
@@ -467,11 +466,11 @@ impl<'a, 'b> Writer<'a, 'b> {
             .collect::<Result<_, rusqlite::Error>>()?)
     }
 
-    /// Writes a page that was a difference so that it needs no other.
+    /// Writes a page that was a difference without a base.
     fn rebase(&self, id: u64, content: &Planes) -> Result<(), DocumentError> {
         let data = planes::encode(content, None, self.database.level)?;
         let slots = i64::from(planes::mask(content));
-        let sum = page_sum(id, [0, 0, slots], &data);
+        let sum = page_checksum(id, [0, 0, slots], &data);
         let query =
             "UPDATE page SET base = 0, depth = 0, slots = ?2, data = ?3, sum = ?4 WHERE id = ?1";
         self.database

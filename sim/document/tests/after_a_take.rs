@@ -4,7 +4,7 @@ mod studio;
 
 use std::sync::Arc;
 
-use maulstick_document::{Access, Document, DocumentSettings, Moment};
+use maulstick_document::{Access, Checkpoint, Document, DocumentSettings};
 use maulstick_painting::Sequencer;
 use maulstick_types::command::Command;
 use maulstick_types::scene::CANVAS;
@@ -44,7 +44,7 @@ fn a_live_brush_paints_in_a_document_of_a_take() {
     stroke(&mut painter, &mut kept);
     assert_eq!(kept.ignored(), 1, "the take has the brush");
     let painting = kept.painting_mut().checkpoint(0);
-    document.keep(Moment {
+    document.write_checkpoint(Checkpoint {
         painting,
         sequencer: kept.kept(),
         pictures: Vec::new(),

@@ -4,7 +4,7 @@ mod studio;
 
 use std::sync::Arc;
 
-use maulstick_document::{Access, Document, DocumentSettings, Moment};
+use maulstick_document::{Access, Checkpoint, Document, DocumentSettings};
 use maulstick_painting::Sequencer;
 use maulstick_types::command::{Command, Outcome};
 use proptest::prelude::*;
@@ -92,12 +92,12 @@ proptest! {
         let mut since = 0;
         let mut log = Vec::new();
         kept.record();
-        let moment = |kept: &mut Sequencer, since: &mut u64| {
-            let moment = Moment::of(kept, *since);
-            *since = moment.painting.kept.versions;
-            moment
+        let checkpoint = |kept: &mut Sequencer, since: &mut u64| {
+            let checkpoint = Checkpoint::of(kept, *since);
+            *since = checkpoint.painting.kept.versions;
+            checkpoint
         };
-        document.as_ref().expect("open").keep(moment(&mut kept, &mut since));
+        document.as_ref().expect("open").write_checkpoint(checkpoint(&mut kept, &mut since));
         equip(&mut kept);
         for _ in 0..acts {
             let act = painter.next();
@@ -111,7 +111,7 @@ proptest! {
             let open = document.as_ref().expect("open");
             open.record(kept.take_records());
             if painter.dice.below(3) == 0 && open.is_ready() {
-                open.keep(moment(&mut kept, &mut since));
+                open.write_checkpoint(checkpoint(&mut kept, &mut since));
             }
             if painter.dice.below(8) == 0 {
                 open.flush();
@@ -127,7 +127,7 @@ proptest! {
                 drop(document.take());
                 let (again, opened) = Document::open(&settings).expect("opened");
                 let opened = opened.expect("a painting");
-                since = opened.kept().versions;
+                since = opened.snapshot().versions;
                 kept = opened.sequencer().expect("whole");
                 twin.go_on();
                 log.push("killed".to_owned());

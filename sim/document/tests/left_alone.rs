@@ -6,15 +6,15 @@ use std::path::Path;
 use std::sync::Arc;
 
 use maulstick_document::{
-    Access, Contents, Document, DocumentError, DocumentSettings, Moment, glance, recover,
+    Access, Checkpoint, Document, DocumentError, DocumentSettings, DocumentStats, glance,
 };
 use maulstick_painting::Sequencer;
 use rusqlite::{Connection, params};
 use studio::{Painter, equip, print, sequencer};
 
-fn moment(kept: &mut Sequencer, since: u64) -> Moment {
+fn checkpoint(kept: &mut Sequencer, since: u64) -> Checkpoint {
     let sequencer = kept.kept();
-    Moment {
+    Checkpoint {
         painting: kept.painting_mut().checkpoint(since),
         sequencer,
         pictures: Vec::new(),
@@ -32,7 +32,7 @@ fn painted(path: &Path) -> Vec<String> {
         let act = painter.next();
         painter.act(&mut kept, &act);
     }
-    document.keep(moment(&mut kept, 0));
+    document.write_checkpoint(checkpoint(&mut kept, 0));
     let print = print(&mut kept);
     document.close().expect("closed");
     print
@@ -54,7 +54,7 @@ fn another_programs_database_stays_as_it_is() {
     let before = bytes(&path);
     let refused = |error: Option<DocumentError>| matches!(error, Some(DocumentError::NoPainting));
     assert!(refused(glance(&path).err()));
-    assert!(refused(Contents::read(&path).err()));
+    assert!(refused(DocumentStats::read(&path).err()));
     for access in [Access::Paint, Access::Read] {
         let settings = DocumentSettings::new(&path, access);
         assert!(refused(Document::open(&settings).err()));
@@ -80,10 +80,10 @@ fn a_painting_that_turns_out_to_be_damaged_leaves_no_journal() {
     let settings = DocumentSettings::new(&path, Access::Paint);
     let (document, opened) = Document::open(&settings).expect("its rows are there");
     let opened = opened.expect("a painting");
-    let since = opened.kept().versions;
+    let since = opened.snapshot().versions;
     let mut kept = opened.sequencer().expect("nothing was read");
     kept.painting_mut().keep("before").expect("kept");
-    document.keep(moment(&mut kept, since));
+    document.write_checkpoint(checkpoint(&mut kept, since));
     document.flush();
     assert!(
         path.with_extension("maul-wal").exists(),
@@ -151,7 +151,7 @@ fn looking_at_a_painting_that_was_not_closed_leaves_its_journal() {
     let before = [bytes(&killed), bytes(&journal(&killed))];
     assert!(before[1].len() > 1000);
     assert!(glance(&killed).expect("a painting"));
-    Contents::read(&killed).expect("read");
+    DocumentStats::read(&killed).expect("read");
     assert!([bytes(&killed), bytes(&journal(&killed))] == before);
     // What it holds is damaged: it is told, and the journal is still there.
     let settings = DocumentSettings::new(&killed, Access::Paint);
@@ -184,24 +184,6 @@ fn a_wrong_bit_in_the_state_costs_nothing() {
     let mut sequencer = opened.expect("a painting").sequencer().expect("whole");
     assert_eq!(print(&mut sequencer), before);
     document.close().expect("closed");
-    let mended = folder.path().join("mended.maul");
-    let salvage = recover(&path, &mended, &mut |_, _| {}).expect("recovered");
-    assert!(!salvage.is_old && salvage.missing.is_empty(), "{salvage:?}");
-}
-
-#[test]
-fn a_newer_programs_painting_is_not_called_whole() {
-    let folder = tempfile::tempdir().expect("a folder");
-    let path = folder.path().join("a.maul");
-    painted(&path);
-    let open = Connection::open(&path).expect("opened");
-    open.execute_batch("PRAGMA journal_mode = DELETE; PRAGMA user_version = 2")
-        .expect("written");
-    open.close().expect("closed");
-    let to = folder.path().join("b.maul");
-    let salvage = recover(&path, &to, &mut |_, _| {}).expect("recovered");
-    assert_eq!(salvage.format, Some(2));
-    assert!(!salvage.is_whole());
 }
 
 #[test]

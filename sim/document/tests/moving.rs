@@ -10,7 +10,7 @@ use std::sync::Arc;
 use crash_vfs::Refused;
 use easel::Easel;
 use maulstick_document::{
-    Access, Document, DocumentError, DocumentSettings, Left, Moment, make_room, unfinished,
+    Access, Checkpoint, Document, DocumentError, DocumentSettings, Relocate, make_room, unfinished,
 };
 use maulstick_types::command::Command;
 use studio::{Painter, equip, print, sequencer};
@@ -23,12 +23,12 @@ fn settings(path: &Path) -> DocumentSettings {
 fn moved(
     document: &mut Document,
     to: &Path,
-    left: Left,
+    left: Relocate,
     replace: bool,
 ) -> Result<(), DocumentError> {
-    let moving = document.move_to(to, left, replace);
+    let moving = document.relocate(to, left, replace);
     loop {
-        if let Some(outcome) = document.arrived(&moving) {
+        if let Some(outcome) = document.poll_relocation(&moving) {
             return outcome;
         }
         std::thread::yield_now();
@@ -39,7 +39,7 @@ fn paint(easel: &mut Easel, painter: &mut Painter, acts: usize) {
     for _ in 0..acts {
         let act = painter.next();
         easel.act(painter, &act);
-        easel.moment();
+        easel.checkpoint();
     }
 }
 
@@ -56,7 +56,7 @@ fn a_copy_goes_on_and_the_file_before_stays_as_it_was() {
     let mut painter = Painter::new(7);
     paint(&mut easel, &mut painter, 20);
     let before = print(&mut easel.sequencer);
-    moved(&mut easel.document, &second, Left::Stays, false).expect("moved");
+    moved(&mut easel.document, &second, Relocate::Copy, false).expect("moved");
     assert_eq!(easel.document.path(), second);
     paint(&mut easel, &mut painter, 20);
     let after = print(&mut easel.sequencer);
@@ -84,18 +84,18 @@ fn what_was_in_memory_is_in_the_file_with_its_history() {
     assert!(!path.exists());
     kept.painting_mut().tell_all_again();
     kept.record();
-    let moment = Moment::of(&mut kept, 0);
-    let since = moment.painting.kept.versions;
-    document.keep(moment);
+    let checkpoint = Checkpoint::of(&mut kept, 0);
+    let since = checkpoint.painting.kept.versions;
+    document.write_checkpoint(checkpoint);
     document.flush();
-    document.take_over(1 << 16);
-    moved(&mut document, &path, Left::Goes, false).expect("moved");
+    document.limit_memory(1 << 16);
+    moved(&mut document, &path, Relocate::Rename, false).expect("moved");
     for _ in 0..15 {
         let act = painter.next();
         painter.act(&mut kept, &act);
         document.record(kept.take_records());
     }
-    document.keep(Moment::of(&mut kept, since));
+    document.write_checkpoint(Checkpoint::of(&mut kept, since));
     let end = print(&mut kept);
     let undo = |kept: &mut maulstick_painting::Sequencer| {
         let mut steps = 0;
@@ -126,7 +126,7 @@ fn what_may_not_go_is_not_written_over_and_the_painting_goes_on_where_it_was() {
     let held = print(&mut other.sequencer);
     std::fs::write(at("list.txt"), "a shopping list, longer than a head").expect("written");
     let to = |easel: &mut Easel, name: &str, replace: bool| {
-        moved(&mut easel.document, &at(name), Left::Stays, replace)
+        moved(&mut easel.document, &at(name), Relocate::Copy, replace)
     };
     let refused = to(&mut easel, "list.txt", true);
     assert!(
@@ -175,17 +175,17 @@ fn what_has_no_room_for_its_journal_stays_where_it_is_whole() {
     let mut painter = Painter::new(3);
     paint(&mut easel, &mut painter, 10);
     own.refuse(Refused::Writes);
-    let refused = moved(&mut easel.document, &at("b.maul"), Left::Stays, false);
+    let refused = moved(&mut easel.document, &at("b.maul"), Relocate::Copy, false);
     assert!(
-        matches!(&refused, Err(DocumentError::Unfolded(path)) if *path == at("a.maul")),
+        matches!(&refused, Err(DocumentError::Unmerged(path)) if *path == at("a.maul")),
         "{refused:?}"
     );
     assert!(!at("b.maul").exists());
     own.refuse(Refused::Nothing);
     left.refuse(Refused::Writes);
-    let refused = moved(&mut easel.document, &at("left.maul"), Left::Stays, true);
+    let refused = moved(&mut easel.document, &at("left.maul"), Relocate::Copy, true);
     assert!(
-        matches!(&refused, Err(DocumentError::Unfolded(path)) if *path == at("left.maul")),
+        matches!(&refused, Err(DocumentError::Unmerged(path)) if *path == at("left.maul")),
         "{refused:?}"
     );
     left.refuse(Refused::Nothing);
@@ -199,7 +199,7 @@ fn what_has_no_room_for_its_journal_stays_where_it_is_whole() {
 
 #[test]
 fn a_painting_that_cannot_be_opened_where_it_went_goes_on_where_it_was() {
-    for left in [Left::Stays, Left::Goes] {
+    for left in [Relocate::Copy, Relocate::Rename] {
         let folder = tempfile::tempdir().expect("a folder");
         let [first, second] = ["a.maul", "b.maul"].map(|name| folder.path().join(name));
         let log = crash_vfs::watch_by_default(&second);
@@ -213,7 +213,7 @@ fn a_painting_that_cannot_be_opened_where_it_went_goes_on_where_it_was() {
             "{refused:?}"
         );
         assert_eq!(easel.document.path(), first);
-        assert_eq!(second.exists(), left == Left::Stays);
+        assert_eq!(second.exists(), left == Relocate::Copy);
         paint(&mut easel, &mut painter, 10);
         let end = print(&mut easel.sequencer);
         easel.close();
@@ -232,7 +232,7 @@ fn a_link_leads_to_the_painting_that_took_the_place_of_another() {
     std::os::unix::fs::symlink(at("far/old.maul"), at("link.maul")).expect("a link");
     let mut easel = Easel::begin(&settings(&at("a.maul")));
     paint(&mut easel, &mut Painter::new(3), 10);
-    moved(&mut easel.document, &at("link.maul"), Left::Stays, true).expect("moved");
+    moved(&mut easel.document, &at("link.maul"), Relocate::Copy, true).expect("moved");
     let end = print(&mut easel.sequencer);
     easel.close();
     assert!(at("link.maul").is_symlink());

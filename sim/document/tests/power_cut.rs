@@ -56,7 +56,7 @@ impl Session {
             easel.act(&mut painter, &act);
             session.print(&mut easel);
             if dice.below(3) == 0 {
-                easel.moment();
+                easel.checkpoint();
             }
             if dice.below(4) == 0 {
                 easel.flush();

@@ -7,7 +7,7 @@ use std::os::unix::fs::MetadataExt as _;
 use std::path::{Path, PathBuf};
 
 use easel::Easel;
-use maulstick_document::{Access, Document, DocumentError, DocumentSettings, Left, make_room};
+use maulstick_document::{Access, Document, DocumentError, DocumentSettings, Relocate, make_room};
 use studio::{Painter, print};
 
 fn settings(path: &Path) -> DocumentSettings {
@@ -18,7 +18,7 @@ fn paint(easel: &mut Easel, painter: &mut Painter) {
     for _ in 0..10 {
         let act = painter.next();
         easel.act(painter, &act);
-        easel.moment();
+        easel.checkpoint();
     }
 }
 
@@ -59,7 +59,7 @@ fn painted_on_after(harm: impl Fn(&Path)) {
     harm(&path);
     // Nothing is painted meanwhile: it is seen all the same.
     let said = told(&easel.document);
-    easel.document.follow();
+    easel.document.update_path();
     let kept = folder.path().join("sea-kept.maul");
     assert!(
         said.contains("removed or replaced") && said.contains("sea-kept.maul"),
@@ -70,12 +70,12 @@ fn painted_on_after(harm: impl Fn(&Path)) {
     easel.document.flush();
     let seen = print(&mut easel.sequencer);
     assert_eq!(after_a_kill(&kept), seen);
-    assert!(easel.document.has_all());
+    assert!(easel.document.is_saved());
     // It is told for as long as the painter has given it no name.
     assert!(easel.document.fault().is_some());
     let named = folder.path().join("named.maul");
-    let moving = easel.document.move_to(&named, Left::Stays, false);
-    easel.document.wait_for(&moving).expect("moved");
+    let moving = easel.document.relocate(&named, Relocate::Copy, false);
+    easel.document.wait_for_relocation(&moving).expect("moved");
     assert_eq!(easel.document.fault(), None);
     easel.close();
     assert_eq!(after_a_kill(&named), seen);
@@ -142,10 +142,10 @@ fn a_painting_whose_folder_is_gone_is_told_of_and_can_be_saved() {
         "{said}"
     );
     paint(&mut easel, &mut painter);
-    assert!(!easel.document.has_all());
+    assert!(!easel.document.is_saved());
     let to = folder.path().join("b.maul");
-    let moving = easel.document.move_to(&to, Left::Stays, false);
-    easel.document.wait_for(&moving).expect("moved");
+    let moving = easel.document.relocate(&to, Relocate::Copy, false);
+    easel.document.wait_for_relocation(&moving).expect("moved");
     paint(&mut easel, &mut painter);
     easel.flush();
     let seen = print(&mut easel.sequencer);
@@ -180,7 +180,7 @@ fn a_second_name_is_told_of_for_as_long_as_it_is_there() {
         said.contains("second name") && said.contains("remove"),
         "{said}"
     );
-    assert!(easel.document.has_all(), "all is written");
+    assert!(easel.document.is_saved(), "all is written");
     std::fs::remove_file(&link).expect("removed");
     while easel.document.fault().is_some() {
         std::thread::yield_now();

@@ -1,9 +1,9 @@
 //! A painting kept in its document: each accepted message at once, a checkpoint each second.
 
-use maulstick_document::{Document, DocumentError, Moment};
+use maulstick_document::{Checkpoint, Document, DocumentError};
 use maulstick_painting::Sequencer;
 
-/// Time between two moments, ns: as much is done again after a crash at most.
+/// Time between two checkpoints, ns: as much is done again after a crash at most.
 const PERIOD_NS: u64 = 1_000_000_000;
 
 /// A painting's document, and what it knows of it.
@@ -12,9 +12,9 @@ pub struct Autosave {
     document: Document,
     /// Number of the newest tile version that it was told of.
     since: u64,
-    /// How many accepted things are in its newest moment.
+    /// How many accepted things are in its newest checkpoint.
     serial: u64,
-    kept_ns: u64,
+    saved_ns: u64,
 }
 
 impl Autosave {
@@ -26,7 +26,7 @@ impl Autosave {
             document,
             since,
             serial: 0,
-            kept_ns: 0,
+            saved_ns: 0,
         };
         autosave.hand_over(sequencer);
         autosave
@@ -52,19 +52,22 @@ impl Autosave {
     }
 
     fn hand_over(&mut self, sequencer: &mut Sequencer) {
-        let moment = Moment::of(sequencer, self.since);
-        (self.since, self.serial) = (moment.painting.kept.versions, moment.sequencer.serial);
-        self.document.keep(moment);
+        let checkpoint = Checkpoint::of(sequencer, self.since);
+        (self.since, self.serial) = (
+            checkpoint.painting.kept.versions,
+            checkpoint.sequencer.serial,
+        );
+        self.document.write_checkpoint(checkpoint);
     }
 
-    /// Hands over what was accepted since, and each second a moment. The journal of the sequencer was
+    /// Hands over what was accepted since, and each second a checkpoint. The journal of the sequencer was
     /// taken before.
     pub fn turn(&mut self, sequencer: &mut Sequencer, now_ns: u64) {
-        self.document.follow();
+        self.document.update_path();
         self.document.record(sequencer.take_records());
-        let due = now_ns >= self.kept_ns + PERIOD_NS || now_ns < self.kept_ns;
+        let due = now_ns >= self.saved_ns + PERIOD_NS || now_ns < self.saved_ns;
         if due && sequencer.serial() != self.serial && self.document.is_ready() {
-            self.kept_ns = now_ns;
+            self.saved_ns = now_ns;
             self.hand_over(sequencer);
         }
     }

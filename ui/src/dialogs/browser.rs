@@ -1,6 +1,8 @@
 //! File chooser: a path is typed, and the matching files are listed below it. ↓ and ↑ go through the list,
 //! → completes, Enter opens a folder or takes the file.
 
+pub(super) mod folder;
+
 use std::path::{Path, PathBuf};
 
 use eframe::egui::text::{CCursor, CCursorRange};
@@ -11,8 +13,8 @@ use eframe::egui::{
 };
 
 use crate::dialogs::dialog;
-use crate::dialogs::folder::{Entry, Folder};
 use crate::dialogs::paths;
+use folder::{Entry, Folder};
 
 /// Height of the list, points.
 const HEIGHT: f32 = 176.0;

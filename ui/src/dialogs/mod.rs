@@ -3,7 +3,7 @@
 //!
 //! | module | holds |
 //! | --- | --- |
-//! | `dialog`, `browser`, `folder`, `paths` | parts of dialogs: frame, file chooser, listing of a folder, paths |
+//! | `dialog`, `browser`, `paths` | parts of dialogs: frame, file chooser with the listing of a folder, paths |
 //! | `new`, `open`, `recent`, `save_as`, `export`, `picture` | one dialog each |
 //! | `discard_prompt` | asks before an unsaved painting is closed |
 //! | `dropped` | files dropped on the window |
@@ -15,7 +15,6 @@ mod discard_prompt;
 mod dropped;
 mod export;
 mod exporting;
-mod folder;
 mod new;
 mod open;
 pub(crate) mod paths;

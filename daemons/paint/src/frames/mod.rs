@@ -17,7 +17,7 @@ use maulstick_bus::typed::Reader;
 use maulstick_bus::{Bus, BusError, Request, Server, Wake};
 use maulstick_canvas::dry::DryStack;
 use maulstick_canvas::tile::{Tile, TileId};
-use maulstick_document::Shelf;
+use maulstick_document::TileCache;
 use maulstick_optics::backend::FilmBackend;
 use maulstick_painting::brush_colour::Carried;
 use maulstick_types::paint::{FrameHolds, FrameReply, FrameRequest, FrameTile};
@@ -180,8 +180,8 @@ impl FrameServer {
 
     /// Looks for tiles among those that were shown before, and puts new ones there.
     #[must_use]
-    pub fn with_shelf(mut self, shelf: Shelf) -> Self {
-        self.pyramid.shelf = Some(shelf);
+    pub fn with_tile_cache(mut self, tile_cache: TileCache) -> Self {
+        self.pyramid.tile_cache = Some(tile_cache);
         self
     }
 

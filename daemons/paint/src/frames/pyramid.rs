@@ -9,7 +9,7 @@ use maulstick_appearance::{Appearance, Bakery};
 use maulstick_canvas::dry::DryStack;
 use maulstick_canvas::tile::{Tile, TileId};
 use maulstick_document::rows::shown_number;
-use maulstick_document::{Shelf, ShownTile};
+use maulstick_document::{ShownTile, TileCache};
 use maulstick_optics::backend::FilmBackend;
 use maulstick_optics::{FilmPlanes, Under};
 
@@ -54,7 +54,7 @@ pub(super) struct Pyramid {
     bakery: Bakery,
     pub(super) films: SteadyFilms,
     /// Tiles as they were shown before, in the document.
-    pub(super) shelf: Option<Shelf>,
+    pub(super) tile_cache: Option<TileCache>,
     /// Generation of the look that all this shows.
     generation: Option<u64>,
     /// Dry layers still to be baked for it, unless a view needs them first.
@@ -232,8 +232,8 @@ impl Pyramid {
         version: u64,
     ) -> Option<Arc<DisplayTile>> {
         let (number, level, id) = place;
-        let shelf = self.shelf.as_ref().filter(|_| version > 0)?;
-        let bytes = shelf.get(shown_number(number, level, id), version, look.print())?;
+        let tile_cache = self.tile_cache.as_ref().filter(|_| version > 0)?;
+        let bytes = tile_cache.get(shown_number(number, level, id), version, look.print())?;
         DisplayTile::from_bytes(&bytes).map(Arc::new)
     }
 
@@ -272,9 +272,9 @@ impl Pyramid {
         version: u64,
         tile: &DisplayTile,
     ) {
-        if let Some(shelf) = self.shelf.as_ref().filter(|_| version > 0) {
+        if let Some(tile_cache) = self.tile_cache.as_ref().filter(|_| version > 0) {
             let (number, level, id) = place;
-            shelf.put(ShownTile {
+            tile_cache.put(ShownTile {
                 place: shown_number(number, level, id),
                 version,
                 look: look.print(),

@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 
 use maulstick_canvas::EditError;
 use maulstick_document::{
-    Access, Document, DocumentError, DocumentSettings, Left, Moving, make_room, unfinished,
+    Access, Document, DocumentError, DocumentSettings, Relocate, Relocation, make_room, unfinished,
 };
 use maulstick_types::command::Outcome;
 
@@ -29,7 +29,7 @@ enum Stage {
     /// It was in memory alone, and is written.
     Written,
     /// It is there, or was in another file: the document moves.
-    Moved(Moving),
+    Moved(Relocation),
 }
 
 fn refused(path: &Path, error: &DocumentError) -> EditError {
@@ -67,10 +67,12 @@ impl PaintNode {
         }
         let stage = match &self.autosave {
             Some(autosave) if self.unnamed => {
-                Stage::Moved(autosave.document().move_to(to, Left::Goes, replace))
+                Stage::Moved(autosave.document().relocate(to, Relocate::Rename, replace))
             }
             Some(autosave) if is_same(autosave.document().path(), to) => return Ok(there(to)),
-            Some(autosave) => Stage::Moved(autosave.document().move_to(to, Left::Stays, replace)),
+            Some(autosave) => {
+                Stage::Moved(autosave.document().relocate(to, Relocate::Copy, replace))
+            }
             None => {
                 self.begin_document(to, replace)
                     .map_err(|error| refused(to, &error))?;
@@ -106,7 +108,9 @@ impl PaintNode {
         let outcome = match &saving.stage {
             Stage::Written => {
                 let fault = autosave.document().fault();
-                if let Some((what, help)) = fault.filter(|_| autosave.document().take_back()) {
+                if let Some((what, help)) =
+                    fault.filter(|_| autosave.document().cancel_checkpoint())
+                {
                     // A painting in memory stays there, and leaves no part of it elsewhere.
                     let what = format!("{}: {what}", saving.to.display());
                     let refusal = EditError::new(what, help);
@@ -114,11 +118,12 @@ impl PaintNode {
                     Some(Err(refusal))
                 } else {
                     if autosave.document().is_ready() {
-                        autosave.document().take_over(self.memory);
-                        let moving =
-                            autosave
-                                .document()
-                                .move_to(&saving.to, Left::Goes, saving.replace);
+                        autosave.document().limit_memory(self.memory);
+                        let moving = autosave.document().relocate(
+                            &saving.to,
+                            Relocate::Rename,
+                            saving.replace,
+                        );
                         saving.stage = Stage::Moved(moving);
                     }
                     None
@@ -126,7 +131,7 @@ impl PaintNode {
             }
             Stage::Moved(moving) => autosave
                 .document_mut()
-                .arrived(moving)
+                .poll_relocation(moving)
                 .map(|arrived| arrived.map_err(|error| refused(&saving.to, &error))),
         };
         let Some(outcome) = outcome else {
@@ -170,16 +175,16 @@ impl PaintNode {
                 let is_written = autosave.settle(&mut self.sequencer);
                 if !is_written && autosave.document().committed() == 0 {
                     let fault = autosave.document().fault();
-                    if autosave.document().take_back() {
+                    if autosave.document().cancel_checkpoint() {
                         self.give_document_up();
                     }
                     let what = fault.map_or(String::new(), |(what, _)| what);
                     return Err(DocumentError::Unwritten(what));
                 }
-                autosave.document().move_to(&to, Left::Goes, replace)
+                autosave.document().relocate(&to, Relocate::Rename, replace)
             }
         };
-        let arrived = autosave.document_mut().wait_for(&moving);
+        let arrived = autosave.document_mut().wait_for_relocation(&moving);
         if arrived.is_err() {
             tell_where(autosave.document());
         }

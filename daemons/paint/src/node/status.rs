@@ -57,7 +57,7 @@ impl PaintNode {
             committed,
             committed_ns: self.committed.1,
             all_committed: committed >= self.sequencer.journal_next()
-                && named.is_some_and(Document::has_all),
+                && named.is_some_and(Document::is_saved),
             path: named.map_or(String::new(), |document| {
                 document.path().display().to_string()
             }),

@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use clap::Args;
-use maulstick_document::{Contents, DocumentError};
+use maulstick_document::{DocumentError, DocumentStats};
 use maulstick_rig::Fault;
 use maulstick_rig::size::show_bytes;
 use serde_json::json;
@@ -31,10 +31,10 @@ pub struct InfoOptions {
 /// A [`Fault`] where it cannot be read, or is damaged.
 pub(super) fn run(options: &InfoOptions) -> Result<i32, Fault> {
     let path = &options.file;
-    let contents = Contents::read(path).map_err(|error| wrong(path, &error))?;
+    let stats = DocumentStats::read(path).map_err(|error| wrong(path, &error))?;
     if options.check {
         let bar = super::bar("reading");
-        let checked = contents.check(path, &mut super::tell(&bar));
+        let checked = stats.check(path, &mut super::tell(&bar));
         bar.finish_and_clear();
         checked.map_err(|error| wrong(path, &error))?;
     }
@@ -71,8 +71,8 @@ pub(super) fn run(options: &InfoOptions) -> Result<i32, Fault> {
             .collect();
         print_json(&json!({
             "file": path.display().to_string(),
-            "format": contents.format,
-            "bytes": contents.bytes,
+            "format": stats.format,
+            "bytes": stats.bytes,
             "cells": canvas.cells,
             "size_cm": size_cm,
             "cells_per_mm": per_mm,
@@ -86,7 +86,7 @@ pub(super) fn run(options: &InfoOptions) -> Result<i32, Fault> {
             "versions": versions,
             "journal": journal,
             "pending": pending,
-            "tables": contents.tables,
+            "tables": stats.tables,
             "checked": options.check,
             "ledger": ledger,
         }))?;
@@ -131,10 +131,10 @@ pub(super) fn run(options: &InfoOptions) -> Result<i32, Fault> {
     );
     say!(
         "file      {}, format {}",
-        show_bytes(contents.bytes),
-        contents.format
+        show_bytes(stats.bytes),
+        stats.format
     );
-    for (table, bytes) in &contents.tables {
+    for (table, bytes) in &stats.tables {
         say!("          {table:<8} {}", show_bytes(*bytes));
     }
     if pending > 0 {

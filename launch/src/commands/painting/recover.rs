@@ -3,10 +3,11 @@
 use std::path::PathBuf;
 
 use clap::Args;
-use maulstick_document::{DocumentError, Salvage, part_of, recover};
+use maulstick_document::DocumentError;
 use maulstick_painting::history::TilePlace;
 use maulstick_rig::Fault;
 use maulstick_rig::files::{Kind, Unfinished, check_writable};
+use maulstick_salvage::{SalvageError, SalvageReport, recover, temporary_path};
 use maulstick_types::scene::{CANVAS, PALETTE};
 use serde_json::json;
 
@@ -40,18 +41,23 @@ pub(super) fn run(options: &RecoverOptions) -> Result<i32, Fault> {
     }
     std::fs::File::open(path).map_err(|error| Fault::reading(path, &error))?;
     check_writable(output, Kind::Own).map_err(|error| Fault::writing(output, &error))?;
-    let part = part_of(output);
+    let part = temporary_path(output);
     let beside = |suffix: &str| PathBuf::from(format!("{}{suffix}", part.display()));
     let _unfinished = Unfinished::new(["", "-wal", "-journal"].map(beside).into());
     let bar = super::bar("recovering");
     let recovered = recover(path, output, &mut super::tell(&bar));
     bar.finish_and_clear();
     let salvage = recovered.map_err(|error| match error {
-        DocumentError::Taken
-        | DocumentError::ReadOnly(_)
-        | DocumentError::Full
-        | DocumentError::Unwritten(_) => wrong(output, &error),
-        error => wrong(path, &error),
+        SalvageError::Document(
+            error @ (DocumentError::Taken
+            | DocumentError::ReadOnly(_)
+            | DocumentError::Full
+            | DocumentError::Unwritten(_)),
+        ) => wrong(output, &error),
+        SalvageError::Document(error) => wrong(path, &error),
+        error @ SalvageError::Lost(_) => Fault::usage(error.to_string())
+            .at(path.display().to_string())
+            .help(error.help()),
     })?;
     if options.json {
         print_json(&as_json(&salvage))?;
@@ -62,7 +68,7 @@ pub(super) fn run(options: &RecoverOptions) -> Result<i32, Fault> {
     Ok(0)
 }
 
-fn as_json(salvage: &Salvage) -> serde_json::Value {
+fn as_json(salvage: &SalvageReport) -> serde_json::Value {
     let places = |places: &[TilePlace]| -> Vec<_> {
         let each = places.iter();
         each.map(|(surface, id)| json!({"surface": surface, "column": id.x, "row": id.y}))
@@ -90,7 +96,7 @@ fn as_json(salvage: &Salvage) -> serde_json::Value {
     })
 }
 
-fn show(salvage: &Salvage) -> Result<(), Fault> {
+fn show(salvage: &SalvageReport) -> Result<(), Fault> {
     say!("tiles     {} are whole", salvage.tiles);
     let tiles = [
         (&salvage.older, "are as they were earlier"),

@@ -167,7 +167,7 @@ fn opened(config: &mut RigConfig, path: PathBuf) -> Result<(), Fault> {
         return Err(wrong(&path, &DocumentError::Missing));
     }
     let (document, opened) = read(&path)?;
-    measure(&mut config.canvas, &opened.kept().scene);
+    measure(&mut config.canvas, &opened.snapshot().scene);
     drop(opened);
     document.close().map_err(|error| wrong(&path, &error))?;
     config.paint.document = Some(path);

@@ -49,20 +49,20 @@ pub struct CreditReceiver<M> {
 /// so two devices may have the same one, and a stray sender does not take a topic over.
 type StreamKey = (String, u32);
 
-/// Path of a message.
+/// Delivery of a message.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Way {
-    /// As it was sent.
+    /// By its sender's own sending.
     Sent,
     /// In the answer to a question for a gap.
     AskedFor,
 }
 
-/// So many questions for one gap are open at a time.
+/// Largest number of open queries for one gap.
 const OPEN_QUESTIONS: usize = 8;
-/// So many senders are remembered; of more the one that was silent for longest is forgotten.
+/// Largest number of senders that are remembered; beyond it the one that was silent for longest is forgotten.
 const SENDERS: usize = 64;
-/// A sender that is silent for this long is forgotten, ns.
+/// Silence after which a sender is forgotten, ns.
 const FORGOTTEN_NS: u64 = 600_000_000_000;
 
 impl<M: Message> CreditReceiver<M> {

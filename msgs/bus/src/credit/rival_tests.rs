@@ -96,7 +96,7 @@ impl Rig {
         publisher.put(bytes.expect("encoded")).expect("sent");
     }
 
-    /// Whether the device's newest sample was handed on.
+    /// True if the device's newest sample was handed on.
     fn hears_the_device(&self) -> bool {
         self.got.last() == Some(&(DEVICE.epoch, self.device.next_seq() - 1))
     }
@@ -241,7 +241,7 @@ fn five_seconds_of_a_receiver_that_stood_still_are_made_up_for() {
     assert_eq!(rig.got.len() as u64, all);
 }
 
-/// What a stranger may send: epochs, numbers and flags of all kinds.
+/// Messages of a stranger: epochs, numbers and flags of all kinds.
 fn strays() -> impl Strategy<Value = Vec<(Stray, u64, bool)>> {
     let origin = prop_oneof![
         Just(DEVICE),

@@ -22,13 +22,13 @@ pub(super) struct Gap {
 /// Result for a message.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Taken {
-    /// It is new.
+    /// New message.
     New,
-    /// It is the newest in order, once more.
+    /// Repetition of the newest one in order.
     Again,
-    /// It was there already, or there is no room for it.
+    /// Message that was there already, or for which there is no room.
     Known,
-    /// It is of another sender.
+    /// Message of another sender.
     SetAside,
 }
 
@@ -38,7 +38,7 @@ pub(super) struct Stream<M> {
     pub epoch: u32,
     /// Number of the next message to hand on; `None` while the beginning of a replay is sought.
     next: Option<u64>,
-    /// When the newest message in order was sent, by its header, ns.
+    /// Time at which the newest message in order was sent, by its header, ns.
     sent_ns: u64,
     held: BTreeMap<u64, Received<M>>,
     /// In order, each with its place among those of all senders.

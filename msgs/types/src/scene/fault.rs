@@ -1,4 +1,4 @@
-//! What is wrong with a scene's numbers: a program in any language may send one.
+//! Faults of a scene's numbers: a program in any language may send one.
 
 use super::{BrushHandling, Layer, PaintSlot, Scene, Surface, Tuning};
 use crate::brush::ZOOMS;
@@ -7,7 +7,7 @@ use crate::brush::ZOOMS;
 const CELLS_MAX: u32 = 1 << 20;
 
 impl Scene {
-    /// What is wrong with the numbers, if anything: over a desk of such numbers no brush could be followed.
+    /// Fault of the numbers, if there is one: over such a desk no brush could be followed.
     #[must_use]
     pub fn fault(&self) -> Option<&'static str> {
         if let Some(fault) = self.surfaces.iter().find_map(Surface::fault) {

@@ -4,7 +4,7 @@
 
 use std::sync::Arc;
 
-use maulstick_document::{Document, DocumentSettings, Moment};
+use maulstick_document::{Checkpoint, Document, DocumentSettings};
 use maulstick_painting::Sequencer;
 use maulstick_types::command::Command;
 
@@ -41,7 +41,7 @@ impl Easel {
     pub fn open(settings: &DocumentSettings) -> Result<Self, String> {
         let (document, opened) = Document::open(settings).map_err(|error| error.to_string())?;
         let opened = opened.ok_or("there is no painting in it")?;
-        let since = opened.kept().versions;
+        let since = opened.snapshot().versions;
         let mut kept = opened.sequencer().map_err(|refusal| refusal.what)?;
         kept.record();
         match document.pager().fault() {
@@ -59,9 +59,9 @@ impl Easel {
     }
 
     fn hand_over(&mut self) {
-        let moment = Moment::of(&mut self.sequencer, self.since);
-        self.since = moment.painting.kept.versions;
-        self.document.keep(moment);
+        let checkpoint = Checkpoint::of(&mut self.sequencer, self.since);
+        self.since = checkpoint.painting.kept.versions;
+        self.document.write_checkpoint(checkpoint);
     }
 
     pub fn act(&mut self, painter: &mut Painter, act: &Act) {
@@ -69,8 +69,8 @@ impl Easel {
         self.record();
     }
 
-    /// Hands a moment over, if the last one is written.
-    pub fn moment(&mut self) {
+    /// Hands a checkpoint over, if the last one is written.
+    pub fn checkpoint(&mut self) {
         if self.document.is_ready() {
             self.hand_over();
         }
@@ -91,7 +91,7 @@ impl Easel {
         steps
     }
 
-    /// Writes all as a moment and closes the file.
+    /// Writes all as a checkpoint and closes the file.
     pub fn close(mut self) {
         self.flush();
         self.hand_over();

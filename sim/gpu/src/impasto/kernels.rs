@@ -71,9 +71,9 @@ pub(crate) struct Kernel {
 macro_rules! source {
     ($name:literal) => {
         concat!(
-            include_str!("../shaders/impasto/impasto.wgsl"),
-            include_str!("../shaders/impasto/shapes.wgsl"),
-            include_str!("../shaders/impasto/axes.wgsl"),
+            include_str!("../shaders/impasto/common/impasto.wgsl"),
+            include_str!("../shaders/impasto/common/shapes.wgsl"),
+            include_str!("../shaders/impasto/common/axes.wgsl"),
             include_str!(concat!("../shaders/impasto/", $name, ".wgsl")),
         )
     };

@@ -93,7 +93,7 @@ impl Easel {
         };
         let (document, opened) = Document::open(&settings).map_err(fault)?;
         let opened = opened.ok_or_else(|| fault("the painting is gone"))?;
-        let since = opened.kept().versions;
+        let since = opened.snapshot().versions;
         let mut sequencer = opened.sequencer().map_err(fault)?;
         let autosave = Autosave::new(document, &mut sequencer, since);
         let canvas = &sequencer.painting().scene().surfaces[0];

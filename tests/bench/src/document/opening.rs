@@ -35,7 +35,7 @@ fn once(path: &std::path::Path) -> Result<[f64; 2], Fault> {
     };
     let (document, opened) = Document::open(&settings).map_err(fault)?;
     let opened = opened.ok_or_else(|| fault("the painting is gone"))?;
-    let since = opened.kept().versions;
+    let since = opened.snapshot().versions;
     let sequencer = opened.sequencer().map_err(fault)?;
     let net = MemoryNet::new(1, 0, Faults::default());
     let bus: Arc<dyn Bus> = Arc::new(net.bus());
@@ -47,7 +47,7 @@ fn once(path: &std::path::Path) -> Result<[f64; 2], Fault> {
     let wake = Wake::new();
     let node = PaintNode::going_on(Arc::clone(&bus), &topics, &wake, me, sequencer)?;
     let frames = FrameServer::new(Arc::clone(&bus), &topics.frame(), node.feed(), &wake, me)?;
-    let mut frames = frames.with_shelf(document.shelf());
+    let mut frames = frames.with_tile_cache(document.tile_cache());
     let mut node = node.keeping(document, since);
     let mut asked = FrameRequest {
         surface: CANVAS,

@@ -1,5 +1,5 @@
 use super::*;
-use crate::dialogs::folder::Entry;
+use crate::dialogs::browser::folder::Entry;
 use crate::dialogs::recent::Recent;
 use crate::test_support::overlay_bench::picture;
 

@@ -1,0 +1,5 @@
+//! The file on disk: its lock, its names, and its rows one by one.
+
+pub mod database;
+pub mod relocate;
+pub(crate) mod watch;

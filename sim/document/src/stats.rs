@@ -1,0 +1,95 @@
+//! Sizes of the tables of a painting's file, and a check that all of it is intact.
+
+use std::path::Path;
+
+use rusqlite::params;
+
+use crate::error::DocumentError;
+use crate::file::database::{Access, Database};
+use crate::tables::schema::VERSION;
+
+/// Format and sizes of a file.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct DocumentStats {
+    /// Version of its schema.
+    pub format: i32,
+    /// Bytes of the file.
+    pub bytes: u64,
+    /// Bytes of data of each table that has any.
+    pub tables: Vec<(&'static str, u64)>,
+}
+
+/// Tables with data, and the column of that data.
+const DATA: [(&str, &str); 7] = [
+    ("page", "data"),
+    ("load", "data"),
+    ("step", "tiles"),
+    ("version", "tiles"),
+    ("file", "data"),
+    ("journal", "data"),
+    ("shown", "data"),
+];
+
+impl DocumentStats {
+    /// Reads the sizes of a file's tables.
+    ///
+    /// # Errors
+    /// Any [`DocumentError`].
+    pub fn read(path: &Path) -> Result<Self, DocumentError> {
+        let (database, _) = Database::open(path, Access::Read, None)?;
+        let mut tables = Vec::new();
+        for (table, column) in DATA {
+            let query = format!("SELECT coalesce(sum(length({column})), 0) FROM {table}");
+            let bytes: i64 = database
+                .connection
+                .query_row(&query, params![], |row| row.get(0))?;
+            if bytes > 0 {
+                tables.push((table, bytes as u64));
+            }
+        }
+        database.close_unchanged()?;
+        Ok(Self {
+            format: VERSION,
+            bytes: std::fs::metadata(path)?.len(),
+            tables,
+        })
+    }
+
+    /// Reads every page, of the painting and of its history.
+    ///
+    /// # Errors
+    /// [`DocumentError::Damaged`] with the first that is not intact.
+    pub fn check(
+        &self,
+        path: &Path,
+        progress: &mut dyn FnMut(u64, u64),
+    ) -> Result<(), DocumentError> {
+        let (database, _) = Database::open(path, Access::Read, None)?;
+        let ids = |table: &str| -> Result<Vec<i64>, DocumentError> {
+            let mut statement = database
+                .connection
+                .prepare(&format!("SELECT id FROM {table}"))?;
+            let rows = statement.query_map(params![], |row| row.get(0))?;
+            Ok(rows.collect::<Result<_, _>>()?)
+        };
+        let (pages, loads) = (ids("page")?, ids("load")?);
+        let all = (pages.len() + loads.len()) as u64;
+        for (done, id) in pages.iter().enumerate() {
+            database.planes(*id as u64)?;
+            progress(done as u64, all);
+        }
+        for id in loads {
+            database.load(id as u64)?;
+        }
+        let verdict: String =
+            database
+                .connection
+                .query_row("PRAGMA integrity_check(1)", params![], |row| row.get(0))?;
+        progress(all, all);
+        database.close_unchanged()?;
+        match verdict.as_str() {
+            "ok" => Ok(()),
+            other => Err(DocumentError::Damaged(other.to_owned())),
+        }
+    }
+}

@@ -1,0 +1,182 @@
+//! Count planes as bytes: differences, shuffled by significance, compressed.
+//!
+//! A plane is 64×64 counts, row after row from the bottom. What is compressed is, for each slot of the
+//! mask from the lowest, the plane's difference to the same plane of an older page, or without one to
+//! the count at its left (the first of a row to the one below it), each as a zigzag number of 32 bits;
+//! of a plane first the low bytes of all differences, then the next ones. Most of these bytes are 0.
+
+use std::sync::Arc;
+
+use maulstick_canvas::planes::{Planes, TILE_CELLS};
+use maulstick_canvas::quantum::{CELL_MAX, SLOTS};
+use maulstick_types::paint::TILE;
+
+/// zstd's level while the painter paints: a tile in a fraction of a millisecond.
+pub const LEVEL: i32 = 1;
+/// zstd's level of a packed painting: of strokes 17 leaves 1.2 % less, at a seventieth of the speed.
+pub const PACKED_LEVEL: i32 = 9;
+
+fn zigzag(difference: i32) -> u32 {
+    ((difference << 1) ^ (difference >> 31)) as u32
+}
+
+fn unzigzag(code: u32) -> i32 {
+    (code >> 1) as i32 ^ -((code & 1) as i32)
+}
+
+fn counts(plane: &[f32]) -> Vec<i32> {
+    plane.iter().map(|count| *count as i32).collect()
+}
+
+fn find(planes: &Planes, slot: usize) -> Option<&[f32]> {
+    let found = planes.iter().find(|(other, _)| *other == slot);
+    found.map(|(_, plane)| &**plane)
+}
+
+/// Predicted count of a cell without an older page: the count at its left, or below it in the first column.
+fn left_or_below(counts: &[i32], cell: usize) -> i32 {
+    match cell {
+        0 => 0,
+        _ if cell.is_multiple_of(TILE) => counts[cell - TILE],
+        _ => counts[cell - 1],
+    }
+}
+
+/// Bit mask of the slots that planes hold.
+#[must_use]
+pub fn mask(planes: &Planes) -> u32 {
+    planes.iter().fold(0, |mask, (slot, _)| mask | 1 << slot)
+}
+
+/// Planes as bytes, as a difference to `base` if there is one.
+///
+/// # Errors
+/// The error of the compressor.
+pub fn encode(planes: &Planes, base: Option<&Planes>, level: i32) -> std::io::Result<Vec<u8>> {
+    let mut shuffled = vec![0u8; planes.len() * TILE_CELLS * 4];
+    for ((slot, plane), bytes) in planes.iter().zip(shuffled.chunks_exact_mut(TILE_CELLS * 4)) {
+        let now = counts(plane);
+        let old = base.map(|base| find(base, *slot).map(counts).unwrap_or_default());
+        for cell in 0..TILE_CELLS {
+            let expected = match &old {
+                Some(old) => old.get(cell).copied().unwrap_or(0),
+                None => left_or_below(&now, cell),
+            };
+            let code = zigzag(now[cell] - expected).to_le_bytes();
+            for (byte, part) in code.iter().enumerate() {
+                bytes[byte * TILE_CELLS + cell] = *part;
+            }
+        }
+    }
+    zstd::bulk::compress(&shuffled, level)
+}
+
+/// Recompresses planes of the slots of `mask` at another level of zstd.
+///
+/// # Errors
+/// The defect of the bytes, in words.
+pub fn repack(mask: u32, bytes: &[u8], level: i32) -> Result<Vec<u8>, String> {
+    let length = (mask & ((1 << SLOTS) - 1)).count_ones() as usize * TILE_CELLS * 4;
+    let shuffled = zstd::bulk::decompress(bytes, length).map_err(|error| error.to_string())?;
+    if shuffled.len() != length {
+        return Err(format!("{} bytes instead of {length}", shuffled.len()));
+    }
+    zstd::bulk::compress(&shuffled, level).map_err(|error| error.to_string())
+}
+
+/// Reads planes of the slots of `mask`.
+///
+/// # Errors
+/// The defect of the bytes, in words.
+pub fn decode(mask: u32, bytes: &[u8], base: Option<&Planes>) -> Result<Planes, String> {
+    if mask >> SLOTS != 0 {
+        return Err("it names slots beyond the last one".to_owned());
+    }
+    let slots: Vec<usize> = (0..SLOTS).filter(|slot| mask >> slot & 1 == 1).collect();
+    let length = slots.len() * TILE_CELLS * 4;
+    let shuffled = zstd::bulk::decompress(bytes, length).map_err(|error| error.to_string())?;
+    if shuffled.len() != length {
+        return Err(format!("{} bytes instead of {length}", shuffled.len()));
+    }
+    let mut planes = Planes::with_capacity(slots.len());
+    for (slot, bytes) in slots.iter().zip(shuffled.chunks_exact(TILE_CELLS * 4)) {
+        let old = base.map(|base| find(base, *slot).map(counts).unwrap_or_default());
+        let mut now = vec![0i32; TILE_CELLS];
+        for cell in 0..TILE_CELLS {
+            let code: [u8; 4] = std::array::from_fn(|byte| bytes[byte * TILE_CELLS + cell]);
+            let expected = match &old {
+                Some(old) => old.get(cell).copied().unwrap_or(0),
+                None => left_or_below(&now, cell),
+            };
+            now[cell] = expected.wrapping_add(unzigzag(u32::from_le_bytes(code)));
+        }
+        if now
+            .iter()
+            .any(|count| !(0..=CELL_MAX as i32).contains(count))
+        {
+            return Err(format!("slot {slot} has a count above a cell's maximum"));
+        }
+        let plane: Arc<[f32]> = now.iter().map(|count| *count as f32).collect();
+        planes.push((*slot, plane));
+    }
+    Ok(planes)
+}
+
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::*;
+
+    use super::*;
+
+    fn planes() -> impl Strategy<Value = Planes> {
+        let plane = prop_oneof![
+            prop::collection::vec(0u32..=1 << 24, TILE_CELLS),
+            (0u32..1 << 24).prop_map(|count| vec![count; TILE_CELLS]),
+            (1usize..99).prop_map(|step| (0..TILE_CELLS).map(|i| (i / step * 77) as u32).collect()),
+        ];
+        let slots = prop::collection::btree_map(0..SLOTS, plane, 0..4);
+        slots.prop_map(|slots| {
+            let counts = |plane: Vec<u32>| plane.iter().map(|count| *count as f32).collect();
+            slots
+                .into_iter()
+                .map(|(slot, plane)| (slot, counts(plane)))
+                .collect()
+        })
+    }
+
+    proptest! {
+        #![proptest_config(ProptestConfig::with_cases(40))]
+
+        #[test]
+        fn planes_come_back_whatever_their_base(now in planes(), base in planes(), with in any::<bool>()) {
+            let base = with.then_some(&base);
+            let bytes = encode(&now, base, LEVEL).expect("bytes");
+            prop_assert_eq!(decode(mask(&now), &bytes, base), Ok(now.clone()));
+            if let Some(last) = now.len().checked_sub(1) {
+                let other = decode(mask(&now[..last].to_vec()), &bytes, base);
+                prop_assert!(other.is_err(), "a wrong mask is seen");
+            }
+            let packed = repack(mask(&now), &bytes, PACKED_LEVEL).expect("whole");
+            prop_assert_eq!(decode(mask(&now), &packed, base), Ok(now.clone()));
+        }
+
+        #[test]
+        fn no_bytes_make_it_panic(mask in any::<u32>(), bytes in prop::collection::vec(any::<u8>(), 0..200)) {
+            decode(mask & 0xffff, &bytes, None).ok();
+        }
+    }
+
+    #[test]
+    fn a_small_change_takes_few_bytes() {
+        let base: Planes = vec![(
+            3,
+            (0..TILE_CELLS).map(|i| (i * i % 99_991) as f32).collect(),
+        )];
+        let mut counts = base[0].1.to_vec();
+        (500..540).for_each(|cell| counts[cell] += 1234.0);
+        let now: Planes = vec![(3, counts.into())];
+        let whole = encode(&now, None, LEVEL).expect("bytes").len();
+        let part = encode(&now, Some(&base), LEVEL).expect("bytes").len();
+        assert!(part < 200 && whole > 20 * part, "{part} of {whole}");
+    }
+}

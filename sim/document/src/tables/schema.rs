@@ -1,0 +1,170 @@
+//! The tables of a painting. `docs/document.md` describes them for other programs.
+
+use std::path::Path;
+
+use rusqlite::{Connection, OpenFlags, params};
+
+use crate::error::DocumentError;
+
+/// `application_id` of a painting: "Maul".
+pub const APPLICATION_ID: i32 = 0x4D61_756C;
+/// The schema that this program writes.
+pub const VERSION: i32 = 1;
+
+/// Every row begins with its table's number, so that rows can be sorted even if the schema is lost, and ends with a
+/// checksum of its other columns.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[repr(i64)]
+pub enum Table {
+    /// The painting besides its tiles, JSON.
+    State = 1,
+    /// Files by hash: brushes, paints, pictures.
+    File = 2,
+    /// Planes of counts.
+    Page = 3,
+    /// Dry layers of tiles.
+    Dry = 4,
+    /// Loads of brushes.
+    Load = 5,
+    /// Contents of tiles.
+    Tile = 6,
+    /// Steps of the history.
+    Step = 7,
+    /// Named versions.
+    Version = 8,
+    /// Records accepted since the state.
+    Journal = 9,
+    /// Tiles as they are shown.
+    Shown = 10,
+}
+
+impl Table {
+    /// The table of this number.
+    #[must_use]
+    pub fn of(tag: i64) -> Option<Self> {
+        const ALL: [Table; 10] = [
+            Table::State,
+            Table::File,
+            Table::Page,
+            Table::Dry,
+            Table::Load,
+            Table::Tile,
+            Table::Step,
+            Table::Version,
+            Table::Journal,
+            Table::Shown,
+        ];
+        ALL.into_iter().find(|table| *table as i64 == tag)
+    }
+
+    /// Name of the table in SQL.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Table::State => "state",
+            Table::File => "file",
+            Table::Page => "page",
+            Table::Dry => "dry",
+            Table::Load => "load",
+            Table::Tile => "tile",
+            Table::Step => "step",
+            Table::Version => "version",
+            Table::Journal => "journal",
+            Table::Shown => "shown",
+        }
+    }
+
+    /// Kinds of the columns between tag and sum: `i` an integer, `t` a text, `b` a blob. An integer that comes
+    /// first is the row's key.
+    #[must_use]
+    pub fn columns(self) -> &'static str {
+        match self {
+            Table::State => "tt",
+            Table::File => "tttb",
+            Table::Page => "iiiib",
+            Table::Dry | Table::Tile => "iiii",
+            Table::Load => "ib",
+            Table::Step => "ittiitb",
+            Table::Version => "tttb",
+            Table::Journal => "iib",
+            Table::Shown => "iiib",
+        }
+    }
+}
+
+const TABLES: &str = "
+CREATE TABLE state(tag INTEGER NOT NULL, key TEXT PRIMARY KEY, value TEXT NOT NULL, sum INTEGER NOT NULL);
+CREATE TABLE file(tag INTEGER NOT NULL, hash TEXT PRIMARY KEY, kind TEXT NOT NULL, name TEXT NOT NULL, data BLOB NOT NULL, sum INTEGER NOT NULL);
+CREATE TABLE page(tag INTEGER NOT NULL, id INTEGER PRIMARY KEY, base INTEGER NOT NULL, depth INTEGER NOT NULL, slots INTEGER NOT NULL, data BLOB NOT NULL, sum INTEGER NOT NULL);
+CREATE INDEX page_base ON page(base) WHERE base > 0;
+CREATE TABLE dry(tag INTEGER NOT NULL, id INTEGER PRIMARY KEY, below INTEGER NOT NULL, layer INTEGER NOT NULL, page INTEGER NOT NULL, sum INTEGER NOT NULL);
+CREATE TABLE load(tag INTEGER NOT NULL, id INTEGER PRIMARY KEY, data BLOB NOT NULL, sum INTEGER NOT NULL);
+CREATE TABLE tile(tag INTEGER NOT NULL, place INTEGER PRIMARY KEY, version INTEGER NOT NULL, page INTEGER NOT NULL, dry INTEGER NOT NULL, sum INTEGER NOT NULL);
+CREATE TABLE step(tag INTEGER NOT NULL, id INTEGER PRIMARY KEY, what TEXT NOT NULL, brush TEXT NOT NULL, operations INTEGER NOT NULL, done INTEGER NOT NULL, deed TEXT NOT NULL, tiles BLOB NOT NULL, sum INTEGER NOT NULL);
+CREATE TABLE version(tag INTEGER NOT NULL, name TEXT PRIMARY KEY, parent TEXT NOT NULL, rest TEXT NOT NULL, tiles BLOB NOT NULL, sum INTEGER NOT NULL);
+CREATE TABLE journal(tag INTEGER NOT NULL, id INTEGER PRIMARY KEY, last INTEGER NOT NULL, data BLOB NOT NULL, sum INTEGER NOT NULL);
+CREATE TABLE shown(tag INTEGER NOT NULL, place INTEGER PRIMARY KEY, version INTEGER NOT NULL, look INTEGER NOT NULL, data BLOB NOT NULL, sum INTEGER NOT NULL);
+";
+
+/// Creates the tables of a new painting.
+///
+/// # Errors
+/// [`DocumentError`] where the file cannot be written.
+pub fn create(connection: &Connection) -> Result<(), DocumentError> {
+    connection.execute_batch(&format!(
+        "BEGIN IMMEDIATE; {TABLES} PRAGMA application_id = {APPLICATION_ID}; \
+         PRAGMA user_version = {VERSION}; COMMIT;"
+    ))?;
+    Ok(())
+}
+
+/// True if a database is empty and has no application id.
+///
+/// # Errors
+/// The error of SQLite.
+pub fn is_blank(connection: &Connection) -> Result<bool, DocumentError> {
+    let number = |query: &str| connection.query_row(query, params![], |row| row.get::<_, i64>(0));
+    Ok(number("PRAGMA application_id")? == 0
+        && number("PRAGMA user_version")? == 0
+        && number("SELECT count(*) FROM sqlite_schema")? == 0)
+}
+
+/// True if a file is another program's database. It is only read.
+///
+/// # Errors
+/// The error of SQLite.
+pub fn is_foreign(path: &Path) -> Result<bool, DocumentError> {
+    let flags = OpenFlags::SQLITE_OPEN_READ_ONLY | OpenFlags::SQLITE_OPEN_NO_MUTEX;
+    let connection = Connection::open_with_flags(path, flags)?;
+    let application: i32 =
+        connection.query_row("PRAGMA application_id", params![], |row| row.get(0))?;
+    Ok(application != APPLICATION_ID && !is_blank(&connection)?)
+}
+
+/// Steps from each older schema to the next; the first, to 2, will be the first here.
+const MIGRATIONS: [&str; (VERSION - 1) as usize] = [];
+
+/// Migrates an older painting to the schema of this program; rejects one of a newer program.
+///
+/// # Errors
+/// [`DocumentError::Newer`], [`DocumentError::NoPainting`], or what SQLite says.
+pub fn migrate(connection: &Connection) -> Result<(), DocumentError> {
+    let application: i32 =
+        connection.query_row("PRAGMA application_id", params![], |row| row.get(0))?;
+    let version: i32 = connection.query_row("PRAGMA user_version", params![], |row| row.get(0))?;
+    if application != APPLICATION_ID || version < 1 {
+        return Err(DocumentError::NoPainting);
+    }
+    if version > VERSION {
+        return Err(DocumentError::Newer {
+            found: version,
+            known: VERSION,
+        });
+    }
+    for (place, change) in MIGRATIONS.iter().enumerate().skip(version as usize - 1) {
+        let to = place + 2;
+        let change = format!("BEGIN IMMEDIATE; {change}; PRAGMA user_version = {to}; COMMIT;");
+        connection.execute_batch(&change)?;
+    }
+    Ok(())
+}

@@ -1,0 +1,93 @@
+//! Response to a file that was removed, replaced or linked while its painting is open.
+
+use std::path::Path;
+use std::time::Instant;
+
+use super::{DocumentThread, Part, Retry};
+use crate::error::DocumentError;
+use crate::file::database::{Access, Database};
+use crate::file::relocate;
+use crate::file::watch::{FileState, FileWatch};
+
+/// Advice about a hard link to the file.
+const LINK_ADVICE: &str = "remove that name: opened by it after a crash the painting would lack its journal, and be damaged";
+
+impl DocumentThread {
+    /// Checks that the files are at their paths, and continues in a new file if they are not.
+    pub(super) fn check_files(&mut self, hurry: bool) {
+        let gone = match self.watch.check() {
+            FileState::Gone(gone) => gone,
+            state => return self.note_links(state == FileState::Linked),
+        };
+        if !self.file.is_due(hurry) {
+            return;
+        }
+        let to = relocate::free_name_beside(&self.path);
+        // The file may have another name now, or only the journal be gone.
+        self.database.merge_journal();
+        let rescued = relocate::rescue(&self.database, &to, false);
+        match rescued.and_then(|()| self.continue_in(&to)) {
+            Ok(()) => {
+                let what = format!(
+                    "{} was removed or replaced: the painting goes on in {}",
+                    gone.display(),
+                    to.display()
+                );
+                let help = "keep that file, or save it under a name of your own";
+                tracing::error!("{what}; {help}");
+                let mut queues = self.shared.lock();
+                queues.moved_to = Some(to);
+                queues.notice = Some((what, help));
+            }
+            Err(error) => {
+                let error = DocumentError::Vanished(format!(
+                    "{} was removed or replaced, and {} cannot be made: {error}",
+                    gone.display(),
+                    to.display()
+                ));
+                let mut queues = self.shared.lock();
+                if self.file.failed.is_none() {
+                    tracing::error!("{error}; {}", error.help());
+                }
+                (queues.fault, queues.help) = (error.to_string(), error.help());
+                drop(queues);
+                self.file = Retry {
+                    failed: Some(Instant::now()),
+                    given_up: false,
+                };
+            }
+        }
+    }
+
+    /// Continues in a file with the same content as the previous one, which has no name any more.
+    pub(super) fn continue_in(&mut self, path: &Path) -> Result<(), DocumentError> {
+        let (database, _) = Database::open(path, Access::Paint, None)?;
+        std::mem::replace(&mut self.database, database).abandon();
+        self.watch.remove_journal();
+        self.watch = FileWatch::new(path);
+        path.clone_into(&mut self.path);
+        self.clear_notice();
+        self.note_written(Part::File);
+        Ok(())
+    }
+
+    /// Clears the notice about the previous file.
+    pub(super) fn clear_notice(&self) {
+        let mut queues = self.shared.lock();
+        (queues.notice, queues.moved_to) = (None, None);
+    }
+
+    /// Sets or clears the notice about a hard link to the file.
+    fn note_links(&self, is_linked: bool) {
+        let mut queues = self.shared.lock();
+        let notice = queues.notice.as_ref();
+        let is_noted = notice.is_some_and(|(_, help)| *help == LINK_ADVICE);
+        if is_linked && notice.is_none() {
+            let what = format!("{} has a second name, a hard link", self.path.display());
+            tracing::warn!("{what}; {LINK_ADVICE}");
+            queues.notice = Some((what, LINK_ADVICE));
+        } else if !is_linked && is_noted {
+            queues.notice = None;
+        }
+    }
+}

@@ -1,0 +1,171 @@
+//! Queues between the painter's threads and the document's: data to write, and pages to read.
+
+use std::any::{Any, TypeId};
+use std::collections::BTreeMap;
+use std::path::PathBuf;
+use std::sync::atomic::AtomicU64;
+use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError, mpsc};
+
+use maulstick_canvas::page::backing::Backing;
+use maulstick_canvas::planes::Planes;
+use maulstick_impasto::brush::load::BrushLoad;
+use maulstick_painting::sequencer::Record;
+
+use crate::file::relocate::RelocateRequest;
+use crate::writing::{Checkpoint, ShownTile};
+
+/// Largest number of displayed tiles that wait to be written.
+const SHOWN_MAX: usize = 4096;
+
+/// Page that a reader waits for.
+pub(crate) enum Fetch {
+    Planes(u64, mpsc::Sender<Result<Planes, String>>),
+    Load(u64, mpsc::Sender<Result<BrushLoad, String>>),
+    Shown([i64; 3], mpsc::Sender<Option<Vec<u8>>>),
+}
+
+/// State of the document's thread.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(crate) enum Life {
+    /// Serving.
+    #[default]
+    Open,
+    /// Writing the data handed over before it ends.
+    Closing,
+    /// Ended: requests are not answered any more.
+    Ended,
+}
+
+/// Data to write and pages to read, and the state of the thread.
+#[derive(Default)]
+pub(crate) struct Queues {
+    pub(crate) fetches: Vec<Fetch>,
+    pub(crate) records: Vec<Record>,
+    pub(crate) checkpoint: Option<Checkpoint>,
+    pub(crate) shown: BTreeMap<i64, ShownTile>,
+    /// True while a checkpoint is written. If that fails, it is written again before any later one.
+    pub(crate) writing: bool,
+    /// Threads that wait until everything handed over is written, or writing has failed.
+    pub(crate) flushes: Vec<mpsc::Sender<()>>,
+    /// Relocations to do once everything handed over is written.
+    pub(crate) relocations: Vec<RelocateRequest>,
+    pub(crate) life: Life,
+    /// Error that makes the painting in memory unreliable: a page could not be read. Nothing is written any more.
+    pub(crate) broken: Option<String>,
+    pub(crate) fault: String,
+    pub(crate) help: &'static str,
+    /// Notice about the file, with advice, although everything is written.
+    pub(crate) notice: Option<(String, &'static str)>,
+    /// File in which the painting continues after its own was removed.
+    pub(crate) moved_to: Option<PathBuf>,
+}
+
+/// State shared by the painter's threads and the document's.
+#[derive(Default)]
+pub(crate) struct Shared {
+    pub(crate) queues: Mutex<Queues>,
+    pub(crate) wake: Condvar,
+    pub(crate) committed: AtomicU64,
+    /// Processor time spent on reading pages, ns.
+    pub(crate) page_in_ns: AtomicU64,
+}
+
+impl Shared {
+    pub(crate) fn lock(&self) -> MutexGuard<'_, Queues> {
+        self.queues.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    /// Requests a page and waits for it; `None` if the thread has ended.
+    pub(crate) fn request<T>(&self, fetch: impl FnOnce(mpsc::Sender<T>) -> Fetch) -> Option<T> {
+        let (send, receive) = mpsc::channel();
+        {
+            let mut queues = self.lock();
+            if queues.life == Life::Ended {
+                return None;
+            }
+            queues.fetches.push(fetch(send));
+        }
+        self.wake.notify_all();
+        receive.recv().ok()
+    }
+}
+
+/// Guard that releases all waiting threads when the document's thread ends, even by a panic.
+pub(crate) struct EndGuard(pub(crate) Arc<Shared>);
+
+impl Drop for EndGuard {
+    fn drop(&mut self) {
+        let mut queues = self.0.lock();
+        queues.life = Life::Ended;
+        if std::thread::panicking() {
+            queues.fault = PANICKED.to_owned();
+            queues.broken = Some(queues.fault.clone());
+            queues.help = "start the rig again: what was committed is in the file";
+        }
+        queues.fetches.clear();
+        queues.flushes.clear();
+        queues.relocations.clear();
+    }
+}
+
+/// Backing of pages by the document's thread.
+pub(crate) struct DocumentBacking(pub(crate) Arc<Shared>);
+
+/// Error of a request after the end of the thread.
+const CLOSED: &str = "the document was closed";
+/// Error of a document whose thread panicked.
+pub(crate) const PANICKED: &str = "internal error: the document's thread panicked";
+
+impl Backing for DocumentBacking {
+    fn read(&self, id: u64, kind: TypeId) -> Result<Box<dyn Any>, String> {
+        if kind == TypeId::of::<Planes>() {
+            return self.page(|answer| Fetch::Planes(id, answer));
+        }
+        if kind == TypeId::of::<BrushLoad>() {
+            return self.page(|answer| Fetch::Load(id, answer));
+        }
+        Err(format!("page {id} is of a kind that no document holds"))
+    }
+}
+
+impl DocumentBacking {
+    fn page<T: 'static>(
+        &self,
+        fetch: impl FnOnce(mpsc::Sender<Result<T, String>>) -> Fetch,
+    ) -> Result<Box<dyn Any>, String> {
+        let read = self
+            .0
+            .request(fetch)
+            .unwrap_or_else(|| Err(CLOSED.to_owned()))?;
+        Ok(Box::new(read))
+    }
+}
+
+/// Cache of tiles as they are displayed, kept in the document.
+#[derive(Clone)]
+pub struct TileCache(pub(crate) Arc<Shared>);
+
+impl TileCache {
+    /// Planes of a tile as it is displayed under a look, if the document has them.
+    #[must_use]
+    pub fn get(&self, place: i64, version: u64, look: i64) -> Option<Vec<u8>> {
+        let bytes = self
+            .0
+            .request(|answer| Fetch::Shown([place, version as i64, look], answer))??;
+        zstd::bulk::decompress(&bytes, 1 << 20).ok()
+    }
+
+    /// Queues a tile, to be written after the checkpoint that contains it.
+    pub fn put(&self, tile: ShownTile) {
+        let mut queues = self.0.lock();
+        if queues.shown.len() < SHOWN_MAX && queues.life == Life::Open {
+            queues.shown.insert(tile.place, tile);
+        }
+    }
+}
+
+impl std::fmt::Debug for TileCache {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str("TileCache")
+    }
+}

@@ -1,0 +1,43 @@
+//! Errors of a recovery.
+
+use maulstick_document::DocumentError;
+
+/// The reason why a painting cannot be recovered.
+#[derive(Debug, thiserror::Error)]
+pub enum SalvageError {
+    /// The intact rows do not make a painting without this.
+    #[error("the painting cannot be recovered: it has lost {0}")]
+    Lost(String),
+    /// Error of the damaged file, or of the new painting.
+    #[error(transparent)]
+    Document(#[from] DocumentError),
+}
+
+impl SalvageError {
+    /// Advice to the painter.
+    #[must_use]
+    pub fn help(&self) -> &'static str {
+        match self {
+            Self::Lost(_) => "take the newest copy of it that is whole",
+            Self::Document(error) => error.help(),
+        }
+    }
+}
+
+impl From<rusqlite::Error> for SalvageError {
+    fn from(error: rusqlite::Error) -> Self {
+        Self::Document(error.into())
+    }
+}
+
+impl From<std::io::Error> for SalvageError {
+    fn from(error: std::io::Error) -> Self {
+        Self::Document(error.into())
+    }
+}
+
+impl From<serde_json::Error> for SalvageError {
+    fn from(error: serde_json::Error) -> Self {
+        Self::Document(error.into())
+    }
+}

@@ -1,0 +1,167 @@
+//! Light and dry layers of a running rig.
+
+#[path = "../support/mod.rs"]
+mod support;
+
+use std::path::Path;
+
+use maulstick_bus::Class;
+use maulstick_device::{Take, TakeSample};
+use maulstick_types::paint::PaintStatus;
+use maulstick_types::scene::Scene;
+use maulstick_types::stylus::{DEFAULT_TILT_RAD, StylusPose, StylusSample, axes};
+use support::{Launcher, Place, assert_same, hear, listen};
+
+/// A take of a hand that draws one stroke, lifts the brush and rests.
+fn one_stroke(path: &Path) {
+    let samples = (0..300u64).map(|number| TakeSample {
+        time_ns: number * 10_000_000,
+        sample: match number {
+            0..100 => StylusSample {
+                senses: axes::POSITION | axes::PRESSURE | axes::TILT,
+                pose: StylusPose::Contact {
+                    point_m: [4e-4 * number as f64 - 0.02, 0.0, 0.0],
+                    tilt_rad: DEFAULT_TILT_RAD,
+                    twist_rad: 0.0,
+                    pressure: 1.0,
+                },
+                in_range: true,
+                ..StylusSample::away()
+            },
+            _ => StylusSample::away(),
+        },
+    });
+    let take = Take {
+        setup: None,
+        device: "hand".into(),
+        samples: samples.collect(),
+    };
+    take.write(path).expect("written");
+}
+
+/// A rig in which a hand has painted a stroke and rests.
+fn painted(place: &Place) -> Launcher {
+    one_stroke(&place.path("stroke.mcap"));
+    let config = String::from_utf8(place.done(&["up", "--print-config"]).stdout).expect("UTF-8");
+    let config = config.replace("# hand = \"demo.mcap\"", "hand = \"stroke.mcap\"");
+    std::fs::write(place.path("rig.toml"), config).expect("written");
+    let mut launcher = Launcher::up(place, &["--rig", "rig.toml"]);
+    launcher.wait_says("is up");
+    // It is done when paint lies there and no more comes.
+    let mut before = 0.0;
+    let rests = support::wait_for(support::PATIENCE, || {
+        let now = support::on_canvas(place);
+        let same = now > 0.0 && now == before;
+        before = now;
+        same.then_some(())
+    });
+    assert!(rests.is_some(), "nothing painted: {}", launcher.said());
+    launcher
+}
+
+fn says(place: &Place, args: &[&str]) -> String {
+    String::from_utf8(place.done(args).stdout).expect("UTF-8")
+}
+
+#[test]
+fn a_painting_dries_and_is_seen_under_another_light() {
+    let place = Place::new();
+    let launcher = painted(&place);
+    let (bus, topics) = support::join(&place);
+    let mut scenes = listen::<Scene>(&bus, &topics.scene(), Class::Cached);
+    let mut statuses = listen::<PaintStatus>(&bus, &topics.paint_status(), Class::Background);
+    assert_eq!(says(&place, &["dry", "--layer", "sky"]), "dried: sky\n");
+    let dried = hear(&mut scenes, |scene| !scene.layers.is_empty()).expect("a layer");
+    assert_eq!(
+        (dried.layers[0].name.as_str(), dried.layers[0].number),
+        ("sky", 1)
+    );
+    place.done(&["snapshot", "-o", "day.png", "--ledger", "l.json"]);
+    let ledger: serde_json::Value = serde_json::from_slice(&place.bytes("l.json")).expect("JSON");
+    assert_eq!(ledger["quanta_missing"], 0);
+    assert!(ledger["accounts_m3"]["dry"].as_f64().expect("a number") > 0.0);
+
+    let told = says(
+        &place,
+        &["light", "--illuminant", "A", "--adapt", "false", "--json"],
+    );
+    let told: serde_json::Value = serde_json::from_str(&told).expect("JSON");
+    assert_eq!(
+        (told["illuminant"].as_str(), told["adapted"].as_bool()),
+        (Some("A"), Some(false))
+    );
+    let baked = hear(&mut statuses, |status| {
+        status.baking > 0 && status.baked == status.baking
+    });
+    assert!(baked.is_some(), "no tile is baked: {}", launcher.said());
+    place.done(&["snapshot", "-o", "lamp.png"]);
+    assert!(place.bytes("day.png") != place.bytes("lamp.png"));
+    // Under another spectrum the exposure is chosen anew, as for a painting that begins under it.
+    assert!(told["exposure"].as_f64() < Some(0.8), "{told}");
+    let by_hand = ["light", "--exposure", "0.5", "--json"];
+    let told: serde_json::Value = serde_json::from_str(&says(&place, &by_hand)).expect("JSON");
+    assert_eq!(told["exposure"].as_f64(), Some(0.5));
+    place.done(&["light", "--illuminant", "D65", "--adapt", "true"]);
+    place.done(&["snapshot", "-o", "again.png"]);
+    assert_same(
+        &place.bytes("day.png"),
+        &place.bytes("again.png"),
+        "back under daylight",
+    );
+
+    place.done(&["opacity", "1", "0.2"]);
+    place.done(&["snapshot", "-o", "glaze.png"]);
+    assert!(place.bytes("day.png") != place.bytes("glaze.png"));
+    assert_eq!(says(&place, &["undo"]), "undone: opacity\n");
+    assert_eq!(says(&place, &["undo"]), "undone: dry\n");
+    assert!(support::on_canvas(&place) > 0.0, "wet again");
+    bus.close();
+}
+
+#[test]
+fn what_a_rig_cannot_do_with_light_it_refuses_with_words() {
+    let place = Place::new();
+    let launcher = Launcher::up(&place, &[]);
+    let refused = |args: &[&str], words: &[&str]| {
+        let output = place.run(args);
+        let said = String::from_utf8_lossy(&output.stderr).into_owned();
+        assert_eq!(output.status.code(), Some(2), "{args:?}: {said}");
+        for word in words {
+            assert!(said.contains(word), "{args:?}: no '{word}' in: {said}");
+        }
+    };
+    std::fs::write(place.path("bad.csv"), "nm,power\n380,1\n400,-3\n").expect("written");
+    refused(
+        &["light", "--illuminant", "D56"],
+        &["'D56'", "did you mean 'D5"],
+    );
+    refused(
+        &["light", "--illuminant", "bad.csv"],
+        &["bad.csv:3", "column 2", "-3"],
+    );
+    refused(
+        &["light", "--illuminant", "none.csv"],
+        &["none.csv", "check the path"],
+    );
+    refused(&["light", "--samples", "3"], &["3 samples", "4 to 16"]);
+    refused(
+        &["light", "--rule", "simpson"],
+        &["gauss, fitted, reference"],
+    );
+    refused(&["light", "--exposure", "bright"], &["a number, or auto"]);
+    refused(&["light", "--intensity", "-1"], &["intensity", "-1"]);
+    refused(&["light", "--direction", "0,0,-1"], &["z > 0"]);
+    refused(&["light", "--direction", "1,2"], &["three numbers"]);
+    refused(&["dry"], &["nothing is wet"]);
+    refused(&["dry", "--share", "0"], &["share"]);
+    refused(
+        &["opacity", "3", "0.5"],
+        &["no dry layer 3", "maulstick dry"],
+    );
+    refused(&["opacity", "3", "1.5"], &["1.5", "0 to 1"]);
+    refused(&["load", "Colbat Blue"], &["did you mean 'Cobalt Blue'"]);
+    std::fs::write(place.path("mine.csv"), "nm,power\n380,1\n780,2\n").expect("written");
+    let told = says(&place, &["light", "--illuminant", "mine.csv"]);
+    assert!(told.starts_with("mine from"), "{told}");
+    drop(launcher);
+}

@@ -1,0 +1,92 @@
+//! What a hand feels when processes of the rig die.
+
+#[path = "../support/mod.rs"]
+mod support;
+
+use std::time::Duration;
+
+use maulstick_brush::BrushFile;
+use maulstick_bus::Class;
+use maulstick_bus::typed::Receiver;
+use maulstick_haptics::Limits;
+use maulstick_types::stylus::StylusSample;
+use nix::sys::signal::Signal;
+use support::{Launcher, PATIENCE, Place, drain, hear, listen, pressed, signal, wait_for};
+
+fn size(sample: &StylusSample) -> f64 {
+    sample.force_n.iter().map(|f| f * f).sum::<f64>().sqrt()
+}
+
+/// Whether two forces, `s` seconds apart, are farther apart than the servo may change its force.
+fn leaps(from: &[f64; 3], to: &[f64; 3], s: f64) -> bool {
+    let change = (0..3)
+        .map(|i| (to[i] - from[i]).powi(2))
+        .sum::<f64>()
+        .sqrt();
+    change > Limits::default().slew_n_s * s + 1e-9
+}
+
+/// Follows the samples until the hand has pressed without force for fifty of them; at no tick does the
+/// force leap.
+fn fades(samples: &mut Receiver<StylusSample>, head_length_m: f64) -> Option<()> {
+    let (mut last, mut without) = (None, 0);
+    wait_for(PATIENCE, || {
+        while let Some(received) = samples.try_recv() {
+            let (event_ns, sample) = (received.header.event_ns, received.message);
+            assert!(sample.in_range, "the hand has let go");
+            if let Some((before_ns, before)) = last.replace((event_ns, sample.force_n)) {
+                let s = (event_ns - before_ns) as f64 * 1e-9;
+                // A tick that stood still has no force at once: a suspended servo must not kick.
+                let stood = s > Limits::default().longest_tick_s && size(&sample) == 0.0;
+                assert!(
+                    stood || !leaps(&before, &sample.force_n, s),
+                    "{before:?} {sample:?}"
+                );
+            }
+            if pressed(&sample, head_length_m) {
+                without = if size(&sample) == 0.0 { without + 1 } else { 0 };
+            }
+        }
+        (without >= 50).then_some(())
+    })
+}
+
+#[test]
+fn whichever_of_brush_and_paint_dies_the_force_fades_without_a_leap_and_comes_back() {
+    let place = Place::new();
+    support::press_for_minutes(&place.path("press.mcap"));
+    let brush = BrushFile::library("round").expect("a brush");
+    let head_length_m = brush.scaled_to(10.0).expect("a size").length_m();
+    let config = String::from_utf8(place.done(&["up", "--print-config"]).stdout).expect("UTF-8");
+    let hand = config.replace("# hand = \"demo.mcap\"", "hand = \"press.mcap\"");
+    assert_ne!(hand, config);
+    std::fs::write(place.path("rig.toml"), hand).expect("written");
+    let mut launcher = Launcher::up(&place, &["--rig", "rig.toml"]);
+    let (bus, topics) = support::join(&place);
+    let mut samples = listen::<StylusSample>(&bus, &topics.sample("phantom"), Class::RealTime);
+    let felt = |sample: &StylusSample| size(sample) > 0.1;
+    for (program, node) in [
+        ("maulstick-brush", "brush-main"),
+        ("maulstick-paint", "paint"),
+    ] {
+        let pressed = hear(&mut samples, felt);
+        assert!(pressed.is_some(), "no force: {}", launcher.said());
+        let pid = wait_for(Duration::from_secs(20), || place.pid(program)).expect(program);
+        drain(&mut samples);
+        signal(pid, Signal::SIGKILL);
+        assert!(
+            fades(&mut samples, head_length_m).is_some(),
+            "{program}: the force is held"
+        );
+        launcher.wait_says(&format!("node '{node}' failed and is started again"));
+    }
+    assert!(hear(&mut samples, felt).is_some(), "{}", launcher.said());
+    bus.close();
+}
+
+/// The seeded fault: a force that goes at once is a leap.
+#[test]
+fn a_force_that_goes_at_once_is_found_out() {
+    assert!(leaps(&[0.0, 0.0, 1.0], &[0.0; 3], 1e-3));
+    assert!(!leaps(&[0.0, 0.0, 1.0], &[0.0, 0.0, 0.7], 1e-3));
+}

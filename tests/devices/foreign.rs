@@ -1,0 +1,279 @@
+//! What others do to a rig: a device in another language, and messages that are none.
+
+#[path = "../support/mod.rs"]
+mod support;
+
+use std::io::{BufRead as _, BufReader};
+use std::net::UdpSocket;
+use std::path::{Path, PathBuf};
+use std::process::{Child, Command, Stdio};
+use std::time::Duration;
+
+use glam::{DQuat, DVec3};
+use maulstick_bus::typed::Receiver;
+use maulstick_bus::{Bus, Class, Queue, Wake};
+use maulstick_num::geometry::{canonical, rotation};
+use maulstick_types::command::{Command as Order, CommandRequest};
+use maulstick_types::paint::PaintStatus;
+use maulstick_types::stylus::{DEFAULT_TILT_RAD, StylusPose, StylusSample};
+use maulstick_types::{Flags, Origin, Pose, encode};
+use support::{Launcher, PATIENCE, Place, hear, join, listen, on_canvas, wait_for};
+
+/// A pen that presses at `x`.
+fn pressing(x: f64) -> StylusSample {
+    StylusSample {
+        pose: StylusPose::Contact {
+            point_m: [x, 0.0, 0.0],
+            tilt_rad: DEFAULT_TILT_RAD,
+            twist_rad: 0.0,
+            pressure: 0.5,
+        },
+        in_range: true,
+        ..StylusSample::away()
+    }
+}
+
+#[test]
+fn a_sample_beyond_the_world_holds_nothing_up() {
+    let place = Place::new();
+    let mut launcher = Launcher::start(place.maulstick(&["up", "--headless"]));
+    launcher.wait_says("is up");
+    place.done(&["load", "Bone Black"]);
+    let (bus, topics) = join(&place);
+    let origin = Origin {
+        source: 9,
+        epoch: 9,
+    };
+    let topic = topics.sample("evil");
+    let publisher = bus.publisher(&topic, Class::RealTime).expect("declared");
+    let mut number = 0;
+    let mut send = |sample: StylusSample| {
+        let now_ns = bus.now_ns();
+        let bytes = encode(&origin, Flags::NONE, number, now_ns, now_ns, &sample).expect("encoded");
+        number += 1;
+        publisher.put(bytes).expect("sent");
+    };
+    // In contact, and within .1 s at the end of the world: followed cell by cell it would never end.
+    let mut painted = 0.0;
+    let patience = std::time::Instant::now() + PATIENCE;
+    while painted <= 0.0 && std::time::Instant::now() < patience {
+        for step in 0..20 {
+            send(pressing(1e-3 * f64::from(step)));
+            send(pressing(1e30));
+            wait_for(Duration::from_millis(4), || None::<()>);
+        }
+        painted = on_canvas(&place);
+    }
+    assert!(painted > 0.0, "nothing is painted: {}", launcher.said());
+    bus.close();
+}
+
+/// A program of `tests/python` that has been told of the rig in a place.
+fn python(place: &Place, program: &str, options: &[&str]) -> Child {
+    let root: PathBuf = Path::new(env!("CARGO_MANIFEST_DIR")).join("..");
+    let python = root.join("target/test-venv/bin/python");
+    assert!(
+        python.exists(),
+        "run ./test: it installs eclipse-zenoh for Python"
+    );
+    let endpoint = place.done(&["endpoint", "--json"]);
+    let mut child = Command::new(python)
+        .arg(root.join("tests/python").join(program))
+        .args(options)
+        .stdin(Stdio::piped())
+        .stderr(Stdio::piped())
+        .spawn()
+        .expect("started");
+    let mut stdin = child.stdin.take().expect("piped");
+    std::io::Write::write_all(&mut stdin, &endpoint.stdout).expect("written");
+    child
+}
+
+#[test]
+fn a_device_in_python_paints() {
+    let place = Place::new();
+    let launcher = Launcher::up(&place, &[]);
+    let stylus = python(&place, "stylus.py", &[]);
+    let ended = stylus.wait_with_output().expect("ended");
+    assert!(
+        ended.status.success(),
+        "{}",
+        String::from_utf8_lossy(&ended.stderr)
+    );
+    let painted = wait_for(PATIENCE, || (on_canvas(&place) > 0.0).then_some(()));
+    assert!(painted.is_some(), "{}", launcher.said());
+}
+
+/// A datagram as OpenTrack sends it: cm and degrees.
+fn datagram(numbers: [f64; 6]) -> Vec<u8> {
+    numbers.into_iter().flat_map(f64::to_le_bytes).collect()
+}
+
+/// The tracker's program, ended with this value.
+struct Tracker(Child);
+
+impl Drop for Tracker {
+    fn drop(&mut self) {
+        self.0.kill().ok();
+        self.0.wait().ok();
+    }
+}
+
+/// The ferrule of a sample, if it is one.
+fn held(sample: &StylusSample) -> Option<&Pose> {
+    match &sample.pose {
+        StylusPose::Ferrule { pose } => Some(pose),
+        StylusPose::Contact { .. } => None,
+    }
+}
+
+#[test]
+fn a_tracker_holds_the_ferrule_until_it_falls_silent() {
+    let place = Place::new();
+    let launcher = Launcher::up(&place, &[]);
+    let (bus, topics) = join(&place);
+    let mut heard = listen::<StylusSample>(&bus, &topics.sample("wand"), Class::RealTime);
+    let mut tracker = python(&place, "tracker.py", &["--port", "0", "--device", "wand"]);
+    let mut said = BufReader::new(tracker.stderr.take().expect("piped")).lines();
+    let _tracker = Tracker(tracker);
+    let line = said
+        .next()
+        .expect("it says where it listens")
+        .expect("text");
+    let address = line.strip_prefix("listening on ").expect(&line);
+    let socket = UdpSocket::bind("127.0.0.1:0").expect("a socket");
+    socket.connect(address).expect("there");
+    // What is no pose is passed over, and a turn by each angle alone tells which is which.
+    let [yaw, pitch, roll] = [40.0, -25.0, 130.0];
+    let turns = |yaw: f64, pitch: f64, roll: f64| -> DQuat {
+        let about = |axis: DVec3, degrees: f64| rotation(axis, degrees.to_radians());
+        canonical(about(DVec3::Y, yaw) * about(DVec3::X, pitch) * about(DVec3::Z, roll))
+    };
+    let mut off = [0.0f64; 2];
+    for (number, [yaw, pitch, roll]) in [
+        [0.0, 0.0, 0.0],
+        [yaw, 0.0, 0.0],
+        [0.0, pitch, 0.0],
+        [0.0, 0.0, roll],
+        [yaw, pitch, roll],
+        [200.0, 300.0, -190.0],
+    ]
+    .into_iter()
+    .enumerate()
+    {
+        // Each sample has a place of its own, by which it is known; the first ones may be missed.
+        let x_cm = 1.0 + number as f64;
+        let good = datagram([x_cm, -2.0, 30.0, yaw, pitch, roll]);
+        let far = datagram([1e9, 0.0, 0.0, 0.0, 0.0, 0.0]);
+        let none = datagram([f64::NAN, 0.0, 0.0, 0.0, 0.0, 0.0]);
+        let is_it = |sample: &StylusSample| {
+            assert_eq!(sample.fault(), None, "{sample:?}");
+            let pose = held(sample).expect("a ferrule");
+            sample.in_range && (pose.position_m[0] - 0.01 * x_cm).abs() < 1e-9
+        };
+        let sample = wait_for(PATIENCE, || {
+            for bytes in [&good[..47], &far, &none, &good, &[]] {
+                socket.send(bytes).expect("sent");
+            }
+            std::iter::from_fn(|| heard.try_recv())
+                .map(|received| received.message)
+                .find(&is_it)
+        });
+        let sample = sample.unwrap_or_else(|| panic!("{number}: {}", launcher.said()));
+        let pose = held(&sample).expect("a ferrule");
+        assert!((pose.position_m[1] + 0.02).abs() < 1e-9);
+        assert!((pose.position_m[2] - 0.3).abs() < 1e-9);
+        let told = DQuat::from_array(pose.orientation);
+        // Turned in the other order as a seeded fault.
+        for (off, expected) in off
+            .iter_mut()
+            .zip([turns(yaw, pitch, roll), turns(pitch, yaw, roll)])
+        {
+            *off = off.max(told.angle_between(expected));
+        }
+    }
+    assert!(off[0] < 1e-6 && off[1] > 0.1, "{off:?}");
+    // Silence: once, where it was.
+    let away = hear(&mut heard, |sample| !sample.in_range).expect("it leaves");
+    assert!((held(&away).expect("a ferrule").position_m[0] - 0.06).abs() < 1e-9);
+    bus.close();
+}
+
+#[test]
+fn hostile_messages_are_counted_and_dropped() {
+    let place = Place::new();
+    let launcher = Launcher::up(&place, &[]);
+    let before = place.processes();
+    let (bus, topics) = join(&place);
+    let wake = Wake::new();
+    let (topic, class) = (topics.paint_status(), Class::Background);
+    let mut status = Receiver::<PaintStatus>::new(&bus, &topic, class, Queue::Latest, &wake)
+        .expect("subscribed");
+    let origin = Origin {
+        source: 9,
+        epoch: 9,
+    };
+    let mark = CommandRequest {
+        client: 1,
+        number: 1,
+        after: None,
+        command: Order::Mark,
+    };
+    let good = encode(&origin, Flags::NONE, 0, 1, 1, &mark).expect("encoded");
+    let mut hostile = vec![Vec::new(), vec![0; 7], vec![0xff; 5000]];
+    // An unknown schema, a wrong length, a hostile length inside the body, a cut, a surplus.
+    for (at, byte) in [(4, 0x55), (20, 0x01), (48 + 16 + 1, 0xff)] {
+        let mut bytes = good.clone();
+        bytes[at] ^= byte;
+        hostile.push(bytes);
+    }
+    hostile.push(good[..good.len() - 1].to_vec());
+    hostile.push([&good[..], &[0]].concat());
+    let targets = [
+        topics.sample("evil"),
+        topics.brush_state("main"),
+        topics.contact_model("phantom"),
+        topics.scene(),
+        topics.paint_consumed(),
+        topics.brush_consumed("main"),
+        topics.brush_def("x"),
+    ];
+    let told = wait_for(PATIENCE, || {
+        for target in &targets {
+            let publisher = bus.publisher(target, Class::Data).expect("declared");
+            hostile
+                .iter()
+                .for_each(|bytes| publisher.put(bytes.clone()).expect("sent"));
+        }
+        for topic in [
+            topics.command("paint"),
+            topics.frame(),
+            topics.gap("brush/main/state"),
+        ] {
+            for bytes in &hostile {
+                let limit = Duration::from_millis(50);
+                drop(
+                    bus.ask(&topic, Class::Control, bytes.clone(), limit, &wake)
+                        .expect("asked"),
+                );
+            }
+        }
+        status.newest().filter(|status| status.message.refused > 10)
+    });
+    assert!(told.is_some(), "nothing was counted: {}", launcher.said());
+    assert_eq!(
+        place.processes(),
+        before,
+        "a node fell: {}",
+        launcher.said()
+    );
+    place.done(&["load", "Bone Black"]);
+    assert_eq!(on_canvas(&place), 0.0);
+    let said = launcher.said();
+    assert!(said.contains("schema") && said.contains("is not"), "{said}");
+    assert!(
+        said.matches("is not").count() < 20,
+        "it says it once: {said}"
+    );
+    bus.close();
+}

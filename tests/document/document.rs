@@ -1,0 +1,408 @@
+//! Paintings in files: kept, killed, damaged, and whatever else a file can be.
+
+#[path = "../support/mod.rs"]
+mod support;
+
+use std::process::Command;
+use std::time::Instant;
+
+use maulstick_bus::Class;
+use maulstick_types::paint::PaintStatus;
+use nix::sys::signal::Signal;
+use support::{
+    COARSE, Launcher, PATIENCE, Place, account, assert_same, fault, has, hear, info, join, listen,
+    signal, wait_for,
+};
+
+#[test]
+fn a_rendered_document_is_the_picture_and_goes_on() {
+    let place = Place::new();
+    place.short_demo("take.mcap", 4.0);
+    let render = |load: &str, more: &[&str]| {
+        let render = ["render", "take.mcap", "--load", load];
+        let coarse: &[&str] = match more.contains(&"64M") {
+            // It has cells of its own.
+            true => &[],
+            false => &COARSE,
+        };
+        place.done(&[&render[..], coarse, more].concat());
+    };
+    let blue = "Ultramarine Blue";
+    render(blue, &["-o", "memory.png"]);
+    render(blue, &["-o", "file.png", "--document", "ein Bild ä"]);
+    assert_same(
+        &place.bytes("memory.png"),
+        &place.bytes("file.png"),
+        "in memory and in a file",
+    );
+    let before = info(&place, "ein Bild ä");
+    assert!(before["undo"].as_u64() > Some(0) && before["pending"] == 0);
+    assert_eq!(before["size_cm"][0], 25.6);
+    // Little memory, and a second take over the first, with another paint.
+    let file = ["--document", "ein Bild ä", "--memory", "64M"];
+    let yellow = "Hansa Yellow Opaque";
+    render(yellow, &[&["-o", "twice.png"], &file[..]].concat());
+    let after = info(&place, "ein Bild ä");
+    assert!(after["undo"].as_u64() > before["undo"].as_u64());
+    assert_eq!(after["ledger"]["quanta_missing"], 0);
+    assert_eq!(after["paints"], serde_json::json!([blue, yellow]));
+    assert!(
+        !place.path("ein Bild ä-wal").exists(),
+        "its journal is folded in"
+    );
+}
+
+#[test]
+fn what_was_done_is_there_after_a_kill_and_can_be_undone() {
+    let place = Place::new();
+    let mut launcher = Launcher::up(&place, &["x.maul"]);
+    launcher.wait_says("painting in");
+    place.done(&["load", "Pyrrole Red"]);
+    place.done(&["fill", "Yellow Ochre", "--um", "40"]);
+    place.done(&["dry", "--layer", "ground colour"]);
+    place.done(&["fill", "Titanium White=0.5,Bone Black=0.5", "--um", "20"]);
+    place.done(&["painting", "versions", "--keep", "first"]);
+    place.done(&["ground", "grey"]);
+    let books =
+        |names: &[&str]| -> Vec<f64> { names.iter().map(|name| account(&place, name)).collect() };
+    const ACCOUNTS: [&str; 4] = ["brush", "canvas", "dry", "cleaner"];
+    let before = books(&ACCOUNTS);
+    assert!(
+        before
+            .iter()
+            .all(|volume| *volume > 0.0 || *volume == before[3])
+    );
+    let (bus, topics) = join(&place);
+    let mut status = listen::<PaintStatus>(&bus, &topics.paint_status(), Class::Background);
+    let whole = |status: &PaintStatus| status.committed == status.journal && status.undo >= 5;
+    hear(&mut status, whole).expect("all is in the file");
+    let killed = Instant::now();
+    signal(
+        place.pid("maulstick-paint").expect("a paint node"),
+        Signal::SIGKILL,
+    );
+    launcher.wait_says("is started again");
+    support::drain(&mut status);
+    hear(&mut status, |_| true).expect("the painting goes on");
+    println!("paints again after {:.2} s", killed.elapsed().as_secs_f64());
+    assert_eq!(books(&ACCOUNTS), before, "as it was");
+    let undone = |what: &str| {
+        let said = place.done(&["undo"]).stdout;
+        assert!(String::from_utf8_lossy(&said).contains(what), "{what}");
+    };
+    undone("ground");
+    undone("fill");
+    undone("dry");
+    assert_eq!(account(&place, "dry"), 0.0);
+    place.done(&["painting", "versions", "--return", "first"]);
+    assert_eq!(books(&ACCOUNTS), before, "back at the version");
+    bus.close();
+    launcher.close(&place);
+    let there = info(&place, "x.maul");
+    assert_eq!(there["versions"][0], "first");
+    assert_eq!(there["pending"], 0);
+}
+
+/// Paint that dries by the rig's clock, in a rig whose paint node is killed meanwhile.
+#[test]
+fn a_drying_goes_on_after_a_crash_and_layers_become_wet_again() {
+    let place = Place::new();
+    let mut launcher = Launcher::up(&place, &["x.maul", "--size", "512x512"]);
+    launcher.wait_says("painting in");
+    let refused = |args: &[&str], words: &[&str]| has(&fault(&place, args, 2), words);
+    refused(&["dry", "--over", "2s"], &["nothing is wet"]);
+    place.done(&["fill", "Yellow Ochre", "--um", "40"]);
+    let all = account(&place, "canvas");
+    place.done(&["dry", "--region", "0,0,64x128", "--layer", "left"]);
+    let half = account(&place, "dry");
+    assert!((half / all - 0.5).abs() < 1e-3, "{}", half / all);
+    refused(
+        &["dry", "--region", "200,0,9x9"],
+        &["holds no cell", "128.0x128.0 mm"],
+    );
+    place.done(&["dry", "--over", "4s", "--layer", "slow"]);
+    refused(&["dry", "--over", "4s"], &["--stop"]);
+    let (bus, topics) = join(&place);
+    let mut status = listen::<PaintStatus>(&bus, &topics.paint_status(), Class::Background);
+    // Thirty ticks a round: some paint has dried by then, and is in the file.
+    let begun = hear(&mut status, |_| true).expect("a rig").journal;
+    let dries = |status: &PaintStatus| status.committed > begun + 60;
+    hear(&mut status, dries).expect("time goes by");
+    signal(
+        place.pid("maulstick-paint").expect("a paint node"),
+        Signal::SIGKILL,
+    );
+    launcher.wait_says("is started again");
+    let is_dry = || (account(&place, "canvas") == 0.0).then_some(());
+    wait_for(PATIENCE, is_dry).expect("it goes on to its end");
+    assert_eq!(account(&place, "dry"), all);
+    place.done(&["opacity", "slow", "0.5"]);
+    refused(&["wet"], &["opacity of layer 2 (slow)", "opacity 2 1"]);
+    refused(&["opacity", "sky", "0.5"], &["'sky'", "2 (slow)"]);
+    place.done(&["undo"]);
+    place.done(&["wet", "--all"]);
+    assert_eq!(
+        (account(&place, "canvas"), account(&place, "dry")),
+        (all, 0.0)
+    );
+    place.done(&["undo"]);
+    assert_eq!(account(&place, "dry"), all);
+    std::fs::write(place.path("size.csv"), "400,0.2\n700,0.6\n").expect("written");
+    place.done(&["ground", "size.csv"]);
+    bus.close();
+    launcher.close(&place);
+    let there = info(&place, "x.maul");
+    assert_eq!(there["ledger"]["quanta_missing"], 0);
+    assert_eq!(there["layers"][1]["name"], "slow");
+}
+
+/// Kills the paint node `rounds` times while a take is played into a painting, each time with the whole
+/// rig, and sees that nothing that was committed is lost.
+fn kill_at_random(rounds: u32) {
+    let place = Place::new();
+    place.short_demo("take.mcap", 6.0);
+    let mut least = 0;
+    for round in 0..rounds {
+        let mut launcher = Launcher::up(
+            &place,
+            &[
+                "x.maul",
+                "--play",
+                "take.mcap",
+                "--rate",
+                "2",
+                "--load",
+                "Cobalt Blue",
+                "--size",
+                "512x512",
+                COARSE[0],
+                COARSE[1],
+            ][..if round == 0 { 11 } else { 7 }],
+        );
+        let (bus, topics) = join(&place);
+        let mut status = listen::<PaintStatus>(&bus, &topics.paint_status(), Class::Background);
+        // Somewhere in the take, later from round to round.
+        let steps = u64::from(30 + round * 137 % 700);
+        let told = hear(&mut status, |told| {
+            told.steps > steps && told.committed > least
+        });
+        let told = told.expect("something is committed");
+        signal(launcher.pid(), Signal::SIGSTOP);
+        signal(
+            place.pid("maulstick-paint").expect("a paint node"),
+            Signal::SIGKILL,
+        );
+        signal(launcher.pid(), Signal::SIGKILL);
+        launcher.wait(PATIENCE);
+        bus.close();
+        place.wait_empty(PATIENCE);
+        let there = info(&place, "x.maul");
+        let journal = there["journal"].as_u64().expect("a number");
+        assert!(
+            journal >= told.committed,
+            "round {round}: {journal} of {}",
+            told.committed
+        );
+        assert_eq!(there["ledger"]["quanta_missing"], 0, "round {round}");
+        assert!(there["undo"].as_u64() > Some(0), "round {round}");
+        least = journal;
+    }
+}
+
+#[test]
+fn nothing_committed_is_lost_when_the_rig_is_killed() {
+    kill_at_random(3);
+}
+
+#[test]
+#[ignore = "long: fifty rigs are killed"]
+fn nothing_committed_is_lost_when_fifty_rigs_are_killed() {
+    kill_at_random(50);
+}
+
+#[test]
+fn a_take_into_a_painting_begins_again_after_a_crash() {
+    let place = Place::new();
+    place.short_demo("take.mcap", 4.0);
+    let load = ["--load", "Cobalt Blue", COARSE[0], COARSE[1]];
+    place.done(&[&["render", "take.mcap", "-o", "whole.png"], &load[..]].concat());
+    let play = [
+        "up",
+        "--headless",
+        "x.maul",
+        "--play",
+        "take.mcap",
+        "--rate",
+        "2",
+        "--snapshot",
+        "p.png",
+    ];
+    let mut launcher = Launcher::start(place.maulstick(&[&play, &load[..]].concat()));
+    launcher.wait_says("is up");
+    let (bus, topics) = join(&place);
+    let mut status = listen::<PaintStatus>(&bus, &topics.paint_status(), Class::Background);
+    hear(&mut status, |told| told.steps > 200 && told.committed > 2).expect("painting");
+    signal(
+        place.pid("maulstick-paint").expect("a paint node"),
+        Signal::SIGKILL,
+    );
+    launcher.wait_says("is started again");
+    bus.close();
+    assert!(launcher.wait(PATIENCE).success(), "{}", launcher.said());
+    assert_same(
+        &place.bytes("whole.png"),
+        &place.bytes("p.png"),
+        "painted once, not twice",
+    );
+}
+
+#[test]
+fn what_is_no_painting_is_refused_and_stays_as_it_is() {
+    let place = Place::new();
+    place.short_demo("take.mcap", 2.0);
+    let write =
+        |name: &str, bytes: &[u8]| std::fs::write(place.path(name), bytes).expect("written");
+    write(
+        "text.maul",
+        b"a shopping list, and much more than sixteen bytes of it",
+    );
+    for args in [
+        &["up", "--headless", "text.maul"][..],
+        &["painting", "info", "text.maul"],
+        &["painting", "pack", "text.maul"],
+        &[
+            "render",
+            "take.mcap",
+            "-o",
+            "p.png",
+            "--document",
+            "text.maul",
+        ],
+    ] {
+        has(
+            &fault(&place, args, 2),
+            &["no painting", "text.maul", "help:"],
+        );
+    }
+    assert!(place.bytes("text.maul").starts_with(b"a shopping"));
+    assert!(!place.path("p.png").exists());
+    has(
+        &fault(&place, &["painting", "info", "none.maul"], 2),
+        &["no such file", "none.maul"],
+    );
+    has(
+        &fault(&place, &["up", "--headless", "no/folder/x.maul"], 2),
+        &["folder", "x.maul"],
+    );
+    has(
+        &fault(&place, &["up", "--headless", "."], 2),
+        &["no painting"],
+    );
+    place.done(&[
+        "render",
+        "take.mcap",
+        "-o",
+        "p.png",
+        "--document",
+        "x.maul",
+        "--load",
+        "Bone Black",
+    ]);
+    let there = place.bytes("x.maul");
+    let again = ["up", "--headless", "x.maul", "--size", "64x64"];
+    has(&fault(&place, &again, 2), &["--size", "x.maul"]);
+    has(
+        &fault(
+            &place,
+            &["up", "--headless", "y.maul", "--memory", "lots"],
+            2,
+        ),
+        &["lots", "512M"],
+    );
+    // A newer program's painting, and a damaged one.
+    let mut newer = there.clone();
+    newer[63] = 99;
+    write("newer.maul", &newer);
+    has(
+        &fault(&place, &["up", "--headless", "newer.maul"], 2),
+        &["format 99", "newer"],
+    );
+    write("torn.maul", &there[..there.len() / 2]);
+    has(
+        &fault(&place, &["painting", "info", "torn.maul"], 2),
+        &["damaged", "recover"],
+    );
+    assert_same(&place.bytes("newer.maul"), &newer, "a newer painting");
+    assert_eq!(place.bytes("torn.maul").len(), there.len() / 2);
+}
+
+#[test]
+fn a_painting_is_open_once() {
+    let place = Place::new();
+    let launcher = Launcher::up(&place, &["x.maul"]);
+    let pid = place.pid("maulstick-paint").expect("a paint node");
+    for args in [
+        &["up", "--headless", "--name", "other", "x.maul"][..],
+        &["painting", "info", "x.maul"],
+    ] {
+        has(
+            &fault(&place, args, 1),
+            &["open in another program", &pid.to_string(), "x.maul"],
+        );
+    }
+    launcher.close(&place);
+    place.done(&["painting", "info", "x.maul"]);
+}
+
+#[test]
+fn a_full_disk_is_told_and_what_was_written_is_safe() {
+    let place = Place::new();
+    place.short_demo("take.mcap", 5.0);
+    let disk = place.path("disk");
+    std::fs::create_dir(&disk).expect("a folder");
+    // A file system of its own, in a namespace of its own, too small for the painting.
+    let script = "mount -t tmpfs -o size=400k none disk && \
+        $0 render take.mcap -o p.png --document disk/x.maul --load 'Cobalt Blue'; echo code $?; \
+        $0 painting info disk/x.maul; echo info $?; umount disk";
+    let output = Command::new("unshare")
+        .args(["--mount", "sh", "-c", script, support::MAULSTICK])
+        .current_dir(place.path("."))
+        .output();
+    let Some(output) = output
+        .ok()
+        .filter(|output| !String::from_utf8_lossy(&output.stderr).contains("unshare failed"))
+    else {
+        eprintln!("skipped: no namespaces here");
+        return;
+    };
+    let (said, told) = (
+        String::from_utf8_lossy(&output.stdout).into_owned(),
+        String::from_utf8_lossy(&output.stderr).into_owned(),
+    );
+    assert!(
+        said.contains("code 1") && told.contains("full"),
+        "{said}{told}"
+    );
+    assert!(said.contains("info 0"), "it opens: {said}{told}");
+    assert!(
+        place.path("p.png").exists(),
+        "the picture is written all the same"
+    );
+}
+
+#[test]
+fn a_frozen_paint_node_is_replaced() {
+    let place = Place::new();
+    let mut launcher = Launcher::up(&place, &["x.maul"]);
+    place.done(&["fill", "Yellow Ochre", "--um", "40"]);
+    let before = account(&place, "canvas");
+    let pid = place.pid("maulstick-paint").expect("a paint node");
+    signal(pid, Signal::SIGSTOP);
+    launcher.wait_says("is started again");
+    let anew = wait_for(PATIENCE, || {
+        place.pid("maulstick-paint").filter(|anew| *anew != pid)
+    });
+    assert!(anew.is_some(), "{}", launcher.said());
+    assert_eq!(account(&place, "canvas"), before);
+    launcher.close(&place);
+}
