@@ -6,10 +6,10 @@ use clap::{CommandFactory as _, FromArgMatches as _, Parser, Subcommand};
 use maulstick_rig::Fault;
 use maulstick_rig::files::{allow_overwriting, clear_on_signals};
 
+use crate::advice;
 use crate::commands::{
-    begin, bench, brush, calibrate, control, demo, devices, endpoint, export, fit, force, import,
-    layers, light, matching, mix, mode, open, painting, paints, render, save_as, schema, surface,
-    take,
+    begin, bench, brush, calibrate, demo, devices, edit, endpoint, export, fit, force, import,
+    light, matching, mix, open, painting, paints, render, save_as, schema, snapshot, take,
 };
 use crate::processes::{self, NodeCommand};
 use crate::up;
@@ -38,26 +38,13 @@ enum Command {
     /// Show or repair takes
     #[command(subcommand)]
     Take(take::TakeCommand),
-    /// Load a brush with paint
-    Load(control::LoadOptions),
-    /// Make a brush stiffer or softer
-    Tune(control::TuneOptions),
-    /// Clean a brush
-    Clean(control::CleanOptions),
+    /// An edit of the painting
+    #[command(flatten)]
+    Edit(edit::EditCommand),
     /// Show or change the light
     Light(light::LightOptions),
-    /// Dry the wet paint into a new layer
-    Dry(layers::DryOptions),
-    /// Make dry layers wet again
-    Wet(layers::WetOptions),
-    /// Make a dry layer more or less opaque
-    Opacity(layers::OpacityOptions),
-    /// Undo the newest step
-    Undo(control::HistoryOptions),
-    /// Redo the newest undone step
-    Redo(control::HistoryOptions),
     /// Write the picture as a file
-    Snapshot(control::SnapshotOptions),
+    Snapshot(snapshot::SnapshotOptions),
     /// Open another painting in the running rig
     Open(open::OpenOptions),
     /// Begin a new painting in the running rig
@@ -81,16 +68,6 @@ enum Command {
     /// Show, export, import, repair, pack painting files; keep versions
     #[command(subcommand)]
     Painting(painting::PaintingCommand),
-    /// Lay a film of wet paint over the canvas
-    Fill(surface::FillOptions),
-    /// Change the ground of the canvas
-    Ground(surface::GroundOptions),
-    /// Change the tooth of the canvas
-    Tooth(surface::ToothOptions),
-    /// Size the canvas
-    Size(mode::SizeOptions),
-    /// Let paint on the palette deplete or last
-    Piles(mode::PilesOptions),
     /// List the paints
     Paints(paints::PaintsOptions),
     /// Mix paints and show their colour
@@ -162,6 +139,10 @@ pub fn run() -> Result<i32, Fault> {
         clear_on_signals(crate::EXIT_INTERRUPTED)
             .map_err(|error| Fault::failure(format!("cannot watch for signals: {error}")))?;
     }
+    carry_out(command).map_err(|fault| fault.worded(advice::words))
+}
+
+fn carry_out(command: Command) -> Result<i32, Fault> {
     match command {
         Command::Up(options) => up::run(&options),
         Command::Node(command) => processes::run(&command),
@@ -169,16 +150,9 @@ pub fn run() -> Result<i32, Fault> {
         Command::Import(options) => import::run(&options),
         Command::Demo(options) => demo::run(&options),
         Command::Take(command) => take::run(&command),
-        Command::Load(options) => control::load(&options),
-        Command::Tune(options) => control::tune(&options),
-        Command::Clean(options) => control::clean(&options),
+        Command::Edit(command) => edit::run(&command),
         Command::Light(options) => light::run(&options),
-        Command::Dry(options) => layers::dry(&options),
-        Command::Wet(options) => layers::wet(&options),
-        Command::Opacity(options) => layers::opacity(&options),
-        Command::Undo(options) => control::undo(&options),
-        Command::Redo(options) => control::redo(&options),
-        Command::Snapshot(options) => control::snapshot(&options),
+        Command::Snapshot(options) => snapshot::snapshot(&options),
         Command::Open(options) => open::run(&options),
         Command::New(options) => begin::run(&options),
         Command::SaveAs(options) => save_as::run(&options),
@@ -188,11 +162,6 @@ pub fn run() -> Result<i32, Fault> {
         Command::Schema(options) => schema::run(&options),
         Command::Brush(command) => brush::run(&command),
         Command::Painting(command) => painting::run(&command),
-        Command::Fill(options) => surface::fill(&options),
-        Command::Ground(options) => surface::ground(&options),
-        Command::Tooth(options) => surface::tooth(&options),
-        Command::Size(options) => mode::size(&options),
-        Command::Piles(options) => mode::piles(&options),
         Command::Paints(options) => paints::run(&options),
         Command::Mix(options) => mix::run(&options),
         Command::Match(options) => matching::run(&options),

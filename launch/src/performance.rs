@@ -223,13 +223,13 @@ pub fn mixture_of(text: &str, library: &PaintLibrary) -> Result<Mixture, Fault> 
     let mixture = text.parse().map_err(PaintError::Mixture);
     mixture
         .and_then(|mixture: Mixture| library.check(&mixture))
-        .map_err(|error| refused(EditError::paint(error)))
+        .map_err(|error| refused(error.into()))
 }
 
 /// A refusal of the painting as the user sees it.
 #[must_use]
 pub fn refused(refusal: EditError) -> Fault {
-    Fault::usage(refusal.what).help(refusal.help)
+    Fault::usage(refusal.to_string()).advise(refusal.advice())
 }
 
 /// The measured paints.
@@ -254,7 +254,7 @@ pub fn library_from(path: Option<&Path>) -> Result<PaintLibrary, Fault> {
         PaintError::File { line, what } => Fault::usage(what)
             .at(format!("{}:{line}", path.display()))
             .help("a row: paint, colour index, source, K or S, then 101 values, 380 to 780 nm"),
-        other => refused(EditError::paint(other)),
+        other => refused(other.into()),
     })
 }
 
@@ -296,7 +296,7 @@ pub fn painting_setup(config: &RigConfig, library: &PaintLibrary) -> Result<Pain
         .iter()
         .map(|text| {
             text.parse::<Mixture>()
-                .map_err(|error| refused(EditError::paint(error.into())).at("[palette] wells"))
+                .map_err(|error| refused(PaintError::from(error).into()).at("[palette] wells"))
         })
         .collect::<Result<_, _>>()?;
     let mut setup = PaintingSetup {

@@ -3,7 +3,10 @@
 use std::fmt;
 
 use maulstick_bus::BusError;
+use maulstick_types::advice::Advice;
 use maulstick_types::plain;
+use maulstick_types::scene::LightError;
+use maulstick_types::values::ValueError;
 
 /// Exit code for bad usage and bad input files.
 pub const EXIT_USAGE: i32 = 2;
@@ -17,8 +20,10 @@ pub struct Fault {
     pub what: String,
     /// A file with its line, or a topic.
     pub place: Option<String>,
-    /// Advice.
+    /// Advice, in words that hold everywhere.
     pub help: Option<String>,
+    /// Advice for which front ends have their own words.
+    pub advice: Option<Advice>,
     /// [`EXIT_USAGE`] or [`EXIT_FAILURE`].
     pub code: i32,
 }
@@ -31,6 +36,7 @@ impl Fault {
             what: what.into(),
             place: None,
             help: None,
+            advice: None,
             code: EXIT_USAGE,
         }
     }
@@ -52,6 +58,7 @@ impl Fault {
             what: what.into(),
             place: None,
             help: None,
+            advice: None,
             code: EXIT_FAILURE,
         }
     }
@@ -67,7 +74,26 @@ impl Fault {
     #[must_use]
     pub fn help(mut self, help: impl Into<String>) -> Self {
         self.help = Some(help.into());
+        self.advice = None;
         self
+    }
+
+    /// Says what to do, by an advice that front ends have their own words for.
+    #[must_use]
+    pub fn advise(self, advice: Advice) -> Self {
+        Self {
+            advice: Some(advice.clone()),
+            ..self.help(advice.to_string())
+        }
+    }
+
+    /// The same in the words of a front end, where it has its own.
+    #[must_use]
+    pub fn worded(self, words: impl Fn(&Advice) -> Option<String>) -> Self {
+        match self.advice.as_ref().and_then(words) {
+            Some(help) => self.help(help),
+            None => self,
+        }
     }
 
     /// An input file that cannot be read.
@@ -127,6 +153,18 @@ impl fmt::Display for Fault {
 
 impl std::error::Error for Fault {}
 
+impl From<ValueError> for Fault {
+    fn from(error: ValueError) -> Self {
+        Self::usage(error.to_string())
+    }
+}
+
+impl From<LightError> for Fault {
+    fn from(error: LightError) -> Self {
+        Self::usage(error.to_string())
+    }
+}
+
 impl From<BusError> for Fault {
     fn from(error: BusError) -> Self {
         match error {
@@ -137,7 +175,7 @@ impl From<BusError> for Fault {
             }
             BusError::Topic { topic, reason } => Self::failure(reason)
                 .at(topic)
-                .help("the node was restarted or the rig has stopped: look at `maulstick up`"),
+                .help("the node was restarted or the rig has stopped: look at the messages of the rig"),
             BusError::NoAnswer { topic, limit_ms } => {
                 Self::failure(format!("no answer within {limit_ms} ms"))
                     .at(topic)

@@ -27,6 +27,7 @@
 //! | [`bands`], [`picture`] | a surface row of tiles by row of tiles, and pictures of it |
 
 pub mod appearance;
+mod apply;
 pub mod assets;
 pub mod backing;
 pub mod bands;
@@ -69,6 +70,7 @@ pub mod transfer;
 mod weave;
 pub mod window;
 
+pub use apply::{Applied, Apply};
 pub use error::EditError;
 pub use model::PaintModel;
 pub use painting::Painting;

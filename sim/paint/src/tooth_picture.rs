@@ -46,11 +46,9 @@ impl ToothName {
     /// # Errors
     /// [`EditError`] with what is wrong with it.
     pub fn parse(name: &str) -> Result<Self, EditError> {
-        let wrong = |what: &str| {
-            EditError::new(
-                format!("'{name}' is no tooth: {what}"),
-                "write image:HASH@120mm,80um: a picture 120 mm wide, 80 µm deep",
-            )
+        let wrong = |fault| EditError::ToothName {
+            name: name.to_owned(),
+            fault,
         };
         let rest = name
             .strip_prefix(IMAGE)
@@ -204,7 +202,7 @@ mod tests {
         ] {
             let error = ToothName::parse(name).expect_err("wrong");
             assert!(error.what.contains(word), "{error}");
-            assert!(error.help.contains("@120mm,80um"));
+            assert!(error.advice().to_string().contains("@120mm,80um"));
         }
         let none = PictureTooth::called(
             &format!("image:{}@9mm,9um", "0".repeat(64)),

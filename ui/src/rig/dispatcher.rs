@@ -10,11 +10,13 @@ use maulstick_bus::typed::{ask, random_epoch};
 use maulstick_bus::{Bus, Class, Wake};
 use maulstick_rig::Fault;
 use maulstick_rig::commander::Commander;
-use maulstick_types::command::Command;
+use maulstick_types::command::{Command, FileCommand};
+use maulstick_types::edits::{Edit, Relight};
 use maulstick_types::haptics::{ForceOrder, ForceReply, ForceRequest};
 use maulstick_types::topics::Topics;
 use maulstick_types::{Origin, name_hash};
 
+use crate::advice;
 use crate::rig::requests::Request;
 use crate::rig::stroke_barrier::Ready;
 
@@ -169,7 +171,7 @@ fn address(request: &Request) -> String {
         // It takes long, and other commands to the node do not wait for its end.
         Request::Command {
             node,
-            command: Command::Export { .. },
+            command: Command::File(FileCommand::Export(_)),
         } => format!("{EXPORT} {node}"),
         Request::Command { node, .. } => format!("node {node}"),
         // Switching off waits for no earlier answer.
@@ -184,9 +186,12 @@ fn address(request: &Request) -> String {
 /// Longest wait for a command.
 fn patience(command: &Command) -> Duration {
     match command {
-        Command::Open { .. } | Command::New { .. } | Command::SaveAs { .. } => OPENING,
-        Command::Export { .. } => EXPORTING,
-        _ => PATIENCE,
+        Command::Rig(_) | Command::File(FileCommand::SaveAs(_)) => OPENING,
+        Command::File(FileCommand::Export(_)) => EXPORTING,
+        Command::File(FileCommand::StopExport)
+        | Command::Edit(_)
+        | Command::Take(_)
+        | Command::Brush(_) => PATIENCE,
     }
 }
 
@@ -196,7 +201,7 @@ fn replaces(newer: &Request, older: &Request) -> bool {
     let chooses = matches!(
         older,
         Request::Command {
-            command: Command::Relight { expose: true, .. },
+            command: Command::Edit(Edit::Relight(Relight { expose: true, .. })),
             ..
         }
     );
@@ -286,6 +291,7 @@ impl Worker {
                     patience(command),
                     &ended,
                 )
+                .map_err(|fault| fault.worded(advice::words))
             }
             Request::Force { device, order } => {
                 let me = Origin {

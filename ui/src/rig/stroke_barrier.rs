@@ -6,7 +6,7 @@ use std::collections::{BTreeMap, VecDeque};
 use maulstick_bus::typed::Receiver;
 use maulstick_bus::{Bus, BusError, Class, Queue, Wake};
 use maulstick_types::brush::BrushConsumed;
-use maulstick_types::command::{After, Command};
+use maulstick_types::command::{After, Command, FileCommand};
 use maulstick_types::name_hash;
 use maulstick_types::paint::{BrushCredit, PaintConsumed};
 use maulstick_types::topics::Topics;
@@ -185,7 +185,7 @@ impl Waiting {
 fn follows(request: &Request) -> bool {
     match request {
         Request::Command {
-            command: Command::StopExport,
+            command: Command::File(FileCommand::StopExport),
             ..
         }
         | Request::Force { .. } => false,

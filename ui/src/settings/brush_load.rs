@@ -3,7 +3,8 @@
 use maulstick_optics::{PaintLibrary, THINNER};
 use maulstick_rig::Fault;
 use maulstick_types::Mixture;
-use maulstick_types::command::Command;
+use maulstick_types::edits::Load;
+use maulstick_types::values::BrushName;
 use maulstick_types::mixture::Part;
 use serde::{Deserialize, Serialize};
 
@@ -34,20 +35,17 @@ impl BrushLoad {
         Ok(thinned(&mixture, thinner))
     }
 
-    /// The command that loads a brush so.
+    /// The edit that loads a brush so.
     ///
     /// # Errors
     /// A [`Fault`] that quotes what is no mixture of the paints.
-    pub fn command(&self, brush: &str, library: &PaintLibrary) -> Result<Command, Fault> {
-        let brush = brush.to_owned();
-        let mixture = self.mixture(&self.paint, library)?;
-        Ok(match &self.beside {
-            None => Command::Load { brush, mixture },
-            Some(other) => Command::LoadBeside {
-                brush,
-                left: mixture,
-                right: self.mixture(other, library)?,
-            },
+    pub fn edit(&self, brush: &str, library: &PaintLibrary) -> Result<Load, Fault> {
+        let beside = self.beside.as_ref();
+        let beside = beside.map(|other| self.mixture(other, library));
+        Ok(Load {
+            mixture: self.mixture(&self.paint, library)?,
+            beside: beside.transpose()?,
+            brush: BrushName::new(brush)?,
         })
     }
 }

@@ -66,7 +66,7 @@ impl RigConfig {
         )
         .map_err(|(what, help)| fault(what, "piles", "").help(help))?;
         self.light.light().check().map_err(|what| {
-            Fault::told(what).at(format!("{name}:{}", line_of(text, "[light]", "")))
+            Fault::from(what).at(format!("{name}:{}", line_of(text, "[light]", "")))
         })?;
         self.check_nodes()
             .map_err(|(what, help, node)| fault(what, "[node.", &node).help(help))?;

@@ -50,10 +50,7 @@ impl Support {
     /// [`ImportError`] for an unknown surface or paint, none, or more than 16 paints.
     pub fn of(painting: &Painting, surface: u32, paints: &[String]) -> Result<Self, ImportError> {
         let (Some(bare), Some(store)) = (painting.bare(surface), painting.store(surface)) else {
-            return Err(ImportError::Refused(maulstick_paint::EditError::new(
-                format!("there is no surface {surface}"),
-                "the canvas is 0, the palette 1",
-            )));
+            return Err(maulstick_paint::EditError::NoSurface(surface).into());
         };
         if !(1..=SLOTS).contains(&paints.len()) {
             return Err(ImportError::Paints(paints.len()));
@@ -61,7 +58,7 @@ impl Support {
         let mut found: Vec<Paint> = Vec::new();
         for name in paints {
             let paint = painting.library().find(name);
-            let paint = paint.map_err(maulstick_paint::EditError::paint)?;
+            let paint = paint.map_err(maulstick_paint::EditError::from)?;
             if !found.iter().any(|other| other.name == paint.name) {
                 found.push(paint.clone());
             }

@@ -190,9 +190,8 @@ impl Painting {
         }
         let ids: Vec<u32> = scene.surfaces.iter().map(|surface| surface.id).collect();
         if ids != [CANVAS, PALETTE] {
-            return Err(EditError::new(
+            return Err(EditError::Damaged(
                 "the document has no canvas and palette".to_owned(),
-                "`maulstick painting recover` takes out what is whole",
             ));
         }
         let mut look = Appearance::new(Studio::new(
@@ -200,7 +199,7 @@ impl Painting {
             library.paints(),
         ));
         for (place, slot) in scene.paints.iter().enumerate() {
-            let paint = library.find(&slot.name).map_err(EditError::paint)?;
+            let paint = library.find(&slot.name)?;
             paint_slot(&mut look.studio, paint, slot.file_hash);
             if paint.is_thinner() {
                 look.thinner = Some(place);
@@ -317,10 +316,9 @@ fn restored_track(
     sheets: &[SurfaceState],
 ) -> Result<PaintingBrush, EditError> {
     let file = BrushFile::parse(&brush.file).map_err(|error| {
-        EditError::new(
-            format!("the file of brush '{name}' in the document is wrong: {error}"),
-            "`maulstick painting recover` takes out what is whole",
-        )
+        EditError::Damaged(format!(
+            "the file of brush '{name}' in the document is wrong: {error}"
+        ))
     })?;
     let content = load.as_ref().map(Page::get);
     let thinned = match &content {

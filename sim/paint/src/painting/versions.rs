@@ -3,10 +3,11 @@
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-use maulstick_types::advice::choice;
+use maulstick_types::edits::{Branch, Forget, Keep, ReturnTo};
 use maulstick_types::scene::NamedVersion;
 
 use super::Painting;
+use crate::apply::{Applied, Apply};
 use crate::error::EditError;
 use crate::history::{NonTileState, TilePlace, TileRef, same};
 use crate::load::BrushLoad;
@@ -27,6 +28,30 @@ pub struct Named {
 /// Name of the current painting among its versions.
 pub const NOW: &str = "now";
 
+impl Apply for Keep {
+    fn apply(&self, painting: &mut Painting) -> Result<Applied, EditError> {
+        painting.keep(&self.name).map(|()| Applied::Done)
+    }
+}
+
+impl Apply for ReturnTo {
+    fn apply(&self, painting: &mut Painting) -> Result<Applied, EditError> {
+        painting.return_to(&self.name).map(|()| Applied::Done)
+    }
+}
+
+impl Apply for Branch {
+    fn apply(&self, painting: &mut Painting) -> Result<Applied, EditError> {
+        painting.branch(&self.from, &self.name).map(|()| Applied::Done)
+    }
+}
+
+impl Apply for Forget {
+    fn apply(&self, painting: &mut Painting) -> Result<Applied, EditError> {
+        painting.forget(&self.name).map(|()| Applied::Done)
+    }
+}
+
 impl Painting {
     /// The versions, by name.
     pub fn named(&self) -> impl Iterator<Item = &Named> {
@@ -41,25 +66,17 @@ impl Painting {
 
     pub(super) fn version(&self, name: &str) -> Result<&Named, EditError> {
         self.named.get(name).ok_or_else(|| {
-            let names: Vec<&str> = self.named.keys().map(String::as_str).collect();
-            let help = match names.is_empty() {
-                true => "this painting has none yet: keep one first".to_owned(),
-                false => choice(name, names),
-            };
-            EditError::new(format!("there is no version called '{name}'"), &help)
+            EditError::NoVersion {
+                name: name.to_owned(),
+                known: self.named.keys().cloned().collect(),
+            }
         })
     }
 
     fn check_new(&self, name: &str) -> Result<(), EditError> {
         match self.named.contains_key(name) {
-            _ if name == NOW => Err(EditError::new(
-                format!("'{NOW}' is the painting as it is, not a version"),
-                "choose another name",
-            )),
-            true => Err(EditError::new(
-                format!("there is a version called '{name}' already"),
-                "choose another name, or forget that version first",
-            )),
+            _ if name == NOW => Err(EditError::VersionNow(NOW)),
+            true => Err(EditError::VersionTaken(name.to_owned())),
             false => Ok(()),
         }
     }

@@ -7,9 +7,11 @@ use std::sync::Arc;
 
 use maulstick_brush::HeadPose;
 use maulstick_types::Mixture;
+use maulstick_types::edits::Wells;
 use maulstick_types::scene::{Well, WellKind};
 
 use super::{Painting, bare};
+use crate::apply::{Applied, Apply};
 use crate::blank_surface::WELL_M;
 use crate::error::EditError;
 use crate::ledger::Ledger;
@@ -62,12 +64,16 @@ fn is_in((pose, traits): (&HeadPose, &BrushTraits), well: &Well, cell_m: f64) ->
     })
 }
 
-impl Painting {
+impl Apply for Wells {
     /// Gives a surface other wells. Paint stirred in those that go stays there, wet.
-    ///
-    /// # Errors
-    /// [`EditError`] for an unknown surface or paint, or a well outside the surface.
-    pub fn set_wells(&mut self, surface: u32, wells: &[Well]) -> Result<(), EditError> {
+    fn apply(&self, painting: &mut Painting) -> Result<Applied, EditError> {
+        painting.set_wells(self.surface, &self.wells)?;
+        Ok(Applied::Done)
+    }
+}
+
+impl Painting {
+    fn set_wells(&mut self, surface: u32, wells: &[Well]) -> Result<(), EditError> {
         let mut changed = self.surface(surface)?.clone();
         let size = changed.cells.map(|cells| f64::from(cells) * changed.cell_m);
         changed.wells = wells.to_vec();
@@ -77,14 +83,13 @@ impl Painting {
                 low >= -EDGE_M && high <= size[i] + EDGE_M
             };
             if well.radius_m <= 0.0 || !(lies(0) && lies(1)) {
-                let [width, height] = size.map(|m| m * 1e3);
-                return Err(EditError::new(
-                    format!("well {} does not lie on the surface", place + 1),
-                    &format!("it is {width:.0}×{height:.0} mm: give a middle and a radius within"),
-                ));
+                return Err(EditError::WellBeside {
+                    place: place + 1,
+                    surface_mm: size.map(|m| m * 1e3),
+                });
             }
             if let WellKind::Paint { mixture } = &mut well.kind {
-                *mixture = self.library.check(mixture).map_err(EditError::paint)?;
+                *mixture = self.library.check(mixture)?;
             }
         }
         self.close_windows();
