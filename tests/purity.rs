@@ -51,8 +51,7 @@ fn text<'a>(value: &'a Value, key: &str) -> &'a str {
     value[key].as_str().expect("a text")
 }
 
-#[test]
-fn the_simulation_depends_on_no_transport() {
+fn metadata() -> Value {
     // Crates of other platforms are not fetched, so that nothing is downloaded.
     let platform = format!("{}-unknown-linux-gnu", std::env::consts::ARCH);
     let output = Command::new(env!("CARGO"))
@@ -62,7 +61,12 @@ fn the_simulation_depends_on_no_transport() {
         .output()
         .expect("cargo runs");
     let errors = String::from_utf8_lossy(&output.stderr);
-    let metadata = serde_json::from_slice(&output.stdout).expect(&errors);
+    serde_json::from_slice(&output.stdout).expect(&errors)
+}
+
+#[test]
+fn the_simulation_depends_on_no_transport() {
+    let metadata = metadata();
     let simulation = dependencies(&metadata, "sim");
     assert!(simulation.len() >= 10, "{:?}", simulation.keys());
     for (name, reached) in &simulation {
@@ -73,5 +77,26 @@ fn the_simulation_depends_on_no_transport() {
     assert!(
         node.contains("zenoh"),
         "a fault passes: the brush node hears the bus"
+    );
+}
+
+#[test]
+fn paint_knows_no_brush_a_model_no_light_and_light_no_brush() {
+    let simulation = dependencies(&metadata(), "sim");
+    let reaches = |name: &str, other: &str| {
+        simulation[&format!("maulstick-{name}")].contains(&format!("maulstick-{other}"))
+    };
+    for (name, unknown) in [
+        ("canvas", ["brush", "optics", "impasto", "appearance"]),
+        ("impasto", ["optics", "appearance", "painting", "document"]),
+        ("appearance", ["brush", "impasto", "painting", "document"]),
+    ] {
+        for other in unknown {
+            assert!(!reaches(name, other), "{name} reaches {other}");
+        }
+    }
+    assert!(
+        reaches("painting", "brush") && reaches("painting", "optics"),
+        "a fault passes: the painting knows them all"
     );
 }

@@ -1,7 +1,7 @@
 //! Backend of the paint's steps: as `[paint] backend` or `--backend` say.
 
 use maulstick_gpu::{Choice, Device, GpuImpasto};
-use maulstick_paint::Sequencer;
+use maulstick_painting::Sequencer;
 use maulstick_rig::Fault;
 
 /// Has a painting's steps computed by the GPU from now on, and journals that, if the settings want it and there is one:

@@ -3,10 +3,10 @@
 use std::path::Path;
 use std::sync::Arc;
 
+use maulstick_appearance::picture::Export;
 use maulstick_optics::colour::RgbSpace;
 use maulstick_optics::gamut::GamutMapping;
 use maulstick_optics::icc::{Profile, ProfileError};
-use maulstick_paint::picture::Export;
 use maulstick_rig::Fault;
 use maulstick_rig::config::ViewSection;
 

@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use maulstick_document::{Access, Document, DocumentError, DocumentSettings, Opened, glance};
-use maulstick_paint::{Painting, Sequencer};
+use maulstick_painting::{Painting, Sequencer};
 use maulstick_rig::Fault;
 use maulstick_rig::config::{CanvasSection, RigConfig};
 use maulstick_rig::fault::EXIT_FAILURE;
@@ -149,7 +149,7 @@ pub fn round(value: f64) -> f64 {
 
 #[cfg(test)]
 mod tests {
-    use maulstick_paint::PaintingSetup;
+    use maulstick_painting::PaintingSetup;
 
     use super::*;
 

@@ -4,10 +4,10 @@ use std::sync::Arc;
 use std::time::Instant;
 
 use indicatif::ProgressBar;
-use maulstick_paint::Sequencer;
-use maulstick_paint::assets::IMAGE;
-use maulstick_paint::light::changes_colour;
-use maulstick_paint::store::TileStore;
+use maulstick_appearance::light::changes_colour;
+use maulstick_canvas::assets::IMAGE;
+use maulstick_canvas::store::TileStore;
+use maulstick_painting::Sequencer;
 use maulstick_rig::Fault;
 use maulstick_session::{Autosave, Offline};
 use maulstick_types::Mixture;

@@ -3,10 +3,11 @@
 use std::path::Path;
 use std::sync::Arc;
 
+use maulstick_appearance::ground::add_spectrum;
+use maulstick_canvas::assets::{IMAGE, SPECTRUM};
 use maulstick_exchange::{Image, ImportError, embed};
 use maulstick_optics::Reflectance;
-use maulstick_paint::PaintingSetup;
-use maulstick_paint::assets::{IMAGE, SPECTRUM};
+use maulstick_painting::PaintingSetup;
 use maulstick_rig::Fault;
 use maulstick_rig::config::is_path;
 
@@ -77,7 +78,7 @@ impl GroundFile {
         setup.ground = match self {
             Self::Named(name) => name.clone(),
             Self::Spectrum(text) => {
-                let hash = setup.embedded.add_spectrum(text).map_err(refused)?;
+                let hash = add_spectrum(&mut setup.embedded, text).map_err(refused)?;
                 format!("{SPECTRUM}{hash}")
             }
             Self::Picture(..) => {

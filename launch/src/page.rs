@@ -1,7 +1,7 @@
 //! A page composed of pictures and words.
 
 use ab_glyph::{Font as _, FontRef, PxScale, ScaleFont as _};
-use maulstick_paint::picture::Picture;
+use maulstick_appearance::picture::Picture;
 use maulstick_rig::Fault;
 use maulstick_ui::render::brush::thumbnail::BrushThumbnail;
 

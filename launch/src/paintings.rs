@@ -5,7 +5,7 @@ use std::path::Path;
 use indicatif::ProgressBar;
 use maulstick_brush::BrushFile;
 use maulstick_optics::PaintLibrary;
-use maulstick_paint::{Painting, PaintingSetup};
+use maulstick_painting::{Painting, PaintingSetup};
 use maulstick_rig::Fault;
 use maulstick_session::Offline;
 

@@ -4,8 +4,10 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 use maulstick_brush::BrushFile;
+use maulstick_canvas::EditError;
 use maulstick_optics::{Illuminant, PaintError, PaintLibrary};
-use maulstick_paint::{EditError, PaintingSetup};
+use maulstick_painting::PaintingSetup;
+use maulstick_painting::paint_error;
 use maulstick_rig::Fault;
 use maulstick_rig::config::{BACKENDS, BrushSection, LightSection, RigConfig};
 use maulstick_types::Mixture;
@@ -223,7 +225,7 @@ pub fn mixture_of(text: &str, library: &PaintLibrary) -> Result<Mixture, Fault> 
     let mixture = text.parse().map_err(PaintError::Mixture);
     mixture
         .and_then(|mixture: Mixture| library.check(&mixture))
-        .map_err(|error| refused(error.into()))
+        .map_err(|error| refused(paint_error(error)))
 }
 
 /// A refusal of the painting as the user sees it.
@@ -254,7 +256,7 @@ pub fn library_from(path: Option<&Path>) -> Result<PaintLibrary, Fault> {
         PaintError::File { line, what } => Fault::usage(what)
             .at(format!("{}:{line}", path.display()))
             .help("a row: paint, colour index, source, K or S, then 101 values, 380 to 780 nm"),
-        other => refused(other.into()),
+        other => refused(paint_error(other)),
     })
 }
 
@@ -296,7 +298,7 @@ pub fn painting_setup(config: &RigConfig, library: &PaintLibrary) -> Result<Pain
         .iter()
         .map(|text| {
             text.parse::<Mixture>()
-                .map_err(|error| refused(PaintError::from(error).into()).at("[palette] wells"))
+                .map_err(|error| refused(paint_error(error.into())).at("[palette] wells"))
         })
         .collect::<Result<_, _>>()?;
     let mut setup = PaintingSetup {

@@ -1,6 +1,6 @@
 //! Curves over two axes, drawn on a page.
 
-use maulstick_paint::picture::Picture;
+use maulstick_appearance::picture::Picture;
 use maulstick_rig::Fault;
 
 use crate::page::Page;

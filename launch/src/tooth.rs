@@ -3,8 +3,8 @@
 use std::path::Path;
 use std::sync::Arc;
 
+use maulstick_canvas::relief::tooth_picture::{DEPTH_UM, ToothName, WIDTH_MM};
 use maulstick_exchange::{Image, embed};
-use maulstick_paint::tooth_picture::{DEPTH_UM, ToothName, WIDTH_MM};
 use maulstick_rig::Fault;
 
 use crate::ground::{is_picture, no_picture};

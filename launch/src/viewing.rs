@@ -3,8 +3,8 @@
 use std::path::Path;
 
 use clap::{Args, ValueEnum};
+use maulstick_appearance::light::illuminant_named;
 use maulstick_optics::{Illuminant, Observer, PaintLibrary, RuleKind, StudioSettings, Viewing};
-use maulstick_paint::light::illuminant_named;
 use maulstick_rig::Fault;
 use maulstick_rig::config::is_path;
 

@@ -7,7 +7,7 @@ use eframe::egui::{Pos2, Rect};
 use glam::DVec3;
 use maulstick_brush::palette_place::Side;
 use maulstick_bus::typed::Receiver;
-use maulstick_paint::PaintingSetup;
+use maulstick_painting::PaintingSetup;
 use maulstick_types::stylus::StylusSample;
 use maulstick_ui::app::rack;
 use maulstick_ui::settings::preferences::Preferences;

@@ -31,8 +31,8 @@ mod test_support;
 pub mod view;
 mod widgets;
 
+use maulstick_appearance::picture::Export;
 use maulstick_optics::PaintLibrary;
-use maulstick_paint::picture::Export;
 use maulstick_rig::{Fault, Member};
 
 /// Shows the window until it is closed; `mouse` is the name of the mouse as a device, `export` says

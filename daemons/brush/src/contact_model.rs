@@ -4,7 +4,7 @@ use glam::DVec3;
 use maulstick_brush::desk::Plane;
 use maulstick_brush::head_stiffness::Press;
 use maulstick_brush::{BrushFile, BrushModel};
-use maulstick_paint::tooth::Tooth;
+use maulstick_canvas::relief::tooth::Tooth;
 use maulstick_types::Origin;
 use maulstick_types::haptics::{ContactModel, ForceLaw, Grain};
 use maulstick_types::paint::BrushCredit;
@@ -182,7 +182,7 @@ pub fn contact_model(
 
 #[cfg(test)]
 mod tests {
-    use maulstick_paint::setup::PaintingSetup;
+    use maulstick_painting::PaintingSetup;
 
     use super::*;
 

@@ -24,19 +24,15 @@
 //! | [`daemon`] | the daemon |
 
 pub mod daemon;
-pub mod descriptor;
-pub mod device_source;
-pub mod hidraw;
-pub mod layout;
 pub mod open;
 pub mod pen;
 pub mod probe;
-pub mod recorder;
-pub mod recording;
-pub mod report_stream;
+mod reports;
 pub mod spacemouse;
 pub mod spacemouse_node;
 pub mod stylus;
 pub mod tablet;
-pub mod units;
-pub mod wacom;
+
+pub use reports::{
+    descriptor, device_source, hidraw, layout, recorder, recording, report_stream, units, wacom,
+};

@@ -1,6 +1,6 @@
 //! Refusals of what the node does besides painting, with advice.
 
-use maulstick_paint::EditError;
+use maulstick_canvas::EditError;
 use maulstick_types::advice::Advice;
 use maulstick_types::command::Outcome;
 

@@ -5,11 +5,11 @@ use std::collections::VecDeque;
 use std::path::{Path, PathBuf};
 use std::thread::JoinHandle;
 
+use maulstick_appearance::picture::{Depth, Export};
 use maulstick_exchange::{ExchangeError, write_lit_png};
 use maulstick_files::{Kind, write_whole};
-use maulstick_paint::Painting;
-use maulstick_paint::ledger::LedgerReport;
-use maulstick_paint::picture::{Depth, Export};
+use maulstick_painting::Painting;
+use maulstick_painting::ledger::LedgerReport;
 use maulstick_types::command::Outcome;
 use maulstick_types::scene::CANVAS;
 

@@ -7,7 +7,7 @@ use std::sync::{Arc, Weak};
 use maulstick_bus::typed::Reader;
 use maulstick_bus::{Bus, BusError, Request, Server, Wake};
 use maulstick_exchange::small_picture;
-use maulstick_paint::Painting;
+use maulstick_painting::Painting;
 use maulstick_types::paint::{ThumbnailReply, ThumbnailRequest};
 use maulstick_types::scene::{CANVAS, Light};
 use maulstick_types::{Flags, Origin, encode};

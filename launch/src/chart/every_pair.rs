@@ -1,7 +1,7 @@
 //! The mixing chart: every paint with every other, as painters keep one on the wall.
 
+use maulstick_appearance::picture::Picture;
 use maulstick_optics::{Blend, Coat, Paint, PaintLibrary, Viewing};
-use maulstick_paint::picture::Picture;
 use maulstick_rig::Fault;
 
 use crate::page::Page;

@@ -1,7 +1,7 @@
 //! One graded mixture by four ways of mixing, as in Baxter 2004, fig. 7.9.
 
+use maulstick_appearance::picture::Picture;
 use maulstick_optics::comparison::{Grading, Way};
-use maulstick_paint::picture::Picture;
 use maulstick_rig::Fault;
 
 use crate::page::Page;

@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use clap::Args;
 use indicatif::ProgressBar;
 use maulstick_device::demo::{Subject, performance};
-use maulstick_paint::picture::picture;
+use maulstick_painting::picture::picture;
 use maulstick_rig::Fault;
 use maulstick_rig::files::Kind;
 use maulstick_types::scene::CANVAS;

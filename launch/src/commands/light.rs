@@ -2,8 +2,8 @@
 
 use clap::Args;
 use indicatif::{ProgressBar, ProgressStyle};
+use maulstick_appearance::light::changes_colour;
 use maulstick_bus::Class;
-use maulstick_paint::light::changes_colour;
 use maulstick_rig::Fault;
 use maulstick_types::edits::{Exposure, LightChange, Relight};
 use maulstick_types::paint::PaintStatus;

@@ -6,6 +6,7 @@ use clap::Args;
 use maulstick_optics::colour::srgb_decode;
 use maulstick_optics::matching::{Proposal, Proposals, propose};
 use maulstick_optics::{Paint, PaintLibrary, Viewing};
+use maulstick_painting::paint_error;
 use maulstick_rig::Fault;
 use serde_json::{Value, json};
 
@@ -94,7 +95,7 @@ impl MatchOptions {
         let mut paints: Vec<Paint> = Vec::new();
         for name in &self.paint {
             let paint = library.find(name).map_err(|error| {
-                refused(error.into()).at(format!("--paint {name:?}"))
+                refused(paint_error(error)).at(format!("--paint {name:?}"))
             })?;
             if paints.iter().all(|other| other.name != paint.name) {
                 paints.push(paint.clone());

@@ -3,10 +3,10 @@
 use std::path::{Path, PathBuf};
 
 use clap::Args;
+use maulstick_appearance::picture::Picture;
 use maulstick_optics::comparison::compare;
 use maulstick_optics::surface::SurfaceCorrection;
 use maulstick_optics::{Blend, Coat, Layer, PaintLibrary, Seen, Spectrum};
-use maulstick_paint::picture::Picture;
 use maulstick_rig::Fault;
 use maulstick_rig::files::Kind;
 use serde_json::json;

@@ -31,8 +31,8 @@ use std::io::{ErrorKind, Write as _};
 use std::path::Path;
 
 use indicatif::{ProgressBar, ProgressStyle};
+use maulstick_appearance::picture::Picture;
 use maulstick_device::Take;
-use maulstick_paint::picture::Picture;
 use maulstick_rig::Fault;
 use maulstick_rig::files::{Kind, write_whole};
 use serde_json::Value;

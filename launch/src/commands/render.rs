@@ -4,8 +4,8 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 use maulstick_device::Take;
-use maulstick_paint::{Painting, Sequencer};
 use maulstick_paint_node::snapshots::write_snapshot;
+use maulstick_painting::{Painting, Sequencer};
 use maulstick_rig::files::Kind;
 use maulstick_rig::{Fault, RigConfig};
 use maulstick_session::{Autosave, Offline};

@@ -2,8 +2,9 @@
 
 use std::ops::Range;
 
-use maulstick_paint::picture::{Picture, unlit_picture};
-use maulstick_paint::quantum::QUANTUM_M;
+use maulstick_appearance::picture::Picture;
+use maulstick_canvas::quantum::QUANTUM_M;
+use maulstick_painting::picture::unlit_picture;
 use maulstick_types::paint::TILE;
 use maulstick_types::scene::CANVAS;
 

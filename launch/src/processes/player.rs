@@ -4,6 +4,7 @@ use std::path::PathBuf;
 
 use maulstick_device::Take;
 use maulstick_device::player::{self, PlayerSettings, Rate};
+use maulstick_painting::paint_error;
 use maulstick_rig::Fault;
 use maulstick_types::Mixture;
 use nix::sys::signal::Signal;
@@ -45,7 +46,7 @@ pub(super) fn run(options: &PlayerOptions) -> Result<i32, Fault> {
         .iter()
         .map(|text| {
             text.parse::<Mixture>()
-                .map_err(|error| refused(maulstick_optics::PaintError::from(error).into()))
+                .map_err(|error| refused(paint_error(error.into())))
         })
         .collect::<Result<_, _>>()?;
     let settings = PlayerSettings {

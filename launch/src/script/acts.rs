@@ -2,11 +2,12 @@
 
 use std::path::Path;
 
+use maulstick_appearance::ground::check_ground;
+use maulstick_canvas::assets::{Assets, IMAGE, SPECTRUM};
 use maulstick_device::Take;
 use maulstick_optics::PaintLibrary;
-use maulstick_paint::PaintingSetup;
-use maulstick_paint::assets::{Assets, IMAGE, SPECTRUM};
-use maulstick_paint::setup::{check_ground, relief_called};
+use maulstick_painting::PaintingSetup;
+use maulstick_painting::setup::relief_called;
 use maulstick_rig::Fault;
 use maulstick_rig::config::{BrushSection, is_path};
 use maulstick_types::edits::{Edit, Form, Ground, LightChange, Tooth};
@@ -41,7 +42,7 @@ pub(super) fn edit<E: Form>(step: &Step<'_>, library: &PaintLibrary) -> Result<A
     edit.check_idle()?;
     for mixture in edit.mixtures_mut() {
         let known = library.check(mixture);
-        *mixture = known.map_err(|error| refused(error.into()))?;
+        *mixture = known.map_err(|error| refused(maulstick_painting::paint_error(error)))?;
     }
     Ok(Act::Edit(Box::new(edit)))
 }

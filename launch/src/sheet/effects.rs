@@ -1,8 +1,8 @@
 //! The seven effects of Baxter 2004, fig. 6.2, and thinned paint.
 
+use maulstick_appearance::picture::Picture;
 use maulstick_brush::BrushFile;
 use maulstick_optics::PaintLibrary;
-use maulstick_paint::picture::Picture;
 use maulstick_rig::Fault;
 use maulstick_types::edits::{Dry, Load};
 use maulstick_types::values::{BrushName, Share};

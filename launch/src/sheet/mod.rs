@@ -16,12 +16,13 @@ pub mod softening;
 #[cfg(test)]
 mod tests;
 
+use maulstick_appearance::picture::Picture;
 use maulstick_brush::BrushFile;
 use maulstick_brush::file::library::LIBRARY;
 use maulstick_optics::PaintLibrary;
-use maulstick_paint::picture::{Picture, picture};
-use maulstick_paint::setup::PaintingSetup;
-use maulstick_paint::{EditError, Painting};
+use maulstick_painting::paint_error;
+use maulstick_painting::picture::picture;
+use maulstick_painting::{Painting, PaintingSetup};
 use maulstick_rig::Fault;
 use maulstick_session::Offline;
 use maulstick_types::Mixture;
@@ -148,11 +149,7 @@ impl Panel {
 }
 
 fn mixture_of(text: &str) -> Result<Mixture, Fault> {
-    let error = |error| {
-        refused(EditError::from(maulstick_optics::PaintError::Mixture(
-            error,
-        )))
-    };
+    let error = |error| refused(paint_error(maulstick_optics::PaintError::Mixture(error)));
     text.parse().map_err(error)
 }
 

@@ -1,7 +1,7 @@
 //! What the marks of a brush must look like, measured.
 
+use maulstick_appearance::picture::Picture;
 use maulstick_optics::PaintLibrary;
-use maulstick_paint::picture::Picture;
 
 use super::marks::stroke;
 use super::*;

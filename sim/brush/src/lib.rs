@@ -42,34 +42,27 @@
 //! # }
 //! ```
 
-pub mod blocks;
-pub mod core_spine;
-pub mod desk;
 pub mod energy;
 pub mod file;
+mod follow;
 pub mod gltf;
-pub mod handle_path;
 pub mod head;
 pub mod head_solver;
 pub mod head_stiffness;
-pub mod lead;
-pub mod mark;
-pub mod model;
-pub mod palette_place;
-pub mod placement;
-pub mod qp;
-pub mod single_spine;
+mod numeric;
 pub mod skin;
 pub mod solver;
-pub mod spine;
-pub mod spine_layout;
-pub mod spine_root;
-pub mod subdivide;
+mod spines;
+mod surfaces;
 
 pub use file::{BrushError, BrushFile};
+pub use follow::{handle_path, lead, mark, model};
 pub use head::{Head, HeadPose, Hold};
 pub use model::BrushModel;
+pub use numeric::{blocks, qp, subdivide};
 pub use solver::{Solution, Solver};
 pub use spine::{Spine, SpineShape};
 pub use spine_layout::SpineLayout;
 pub use spine_root::SpineRoot;
+pub use spines::{core_spine, single_spine, spine, spine_layout, spine_root};
+pub use surfaces::{desk, palette_place, placement};

@@ -6,8 +6,8 @@ use std::sync::{Arc, mpsc};
 use std::thread::JoinHandle;
 use std::time::Duration;
 
-use maulstick_paint::page::Pager;
-use maulstick_paint::sequencer::Record;
+use maulstick_canvas::page::Pager;
+use maulstick_painting::sequencer::Record;
 
 use crate::database::{Access, Database};
 use crate::error::DocumentError;

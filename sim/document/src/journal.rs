@@ -2,7 +2,7 @@
 
 use std::io::Read as _;
 
-use maulstick_paint::sequencer::{Accepted, Record};
+use maulstick_painting::sequencer::{Accepted, Record};
 use maulstick_types::brush::{BrushDef, BrushState};
 use maulstick_types::paint::JournalEntry;
 use maulstick_types::{Flags, Header, Message, Origin, decode, encode, name_hash};

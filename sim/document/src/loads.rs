@@ -3,8 +3,8 @@
 //! Number of texels, number of slots, steps (two numbers, the low one first); the films of all paints; then for each
 //! slot its number, its films and its paint inside.
 
-use maulstick_paint::load::BrushLoad;
-use maulstick_paint::quantum::SLOTS;
+use maulstick_canvas::quantum::SLOTS;
+use maulstick_impasto::brush::load::BrushLoad;
 
 /// A head has at most this many texels.
 const TEXELS_MAX: usize = 1 << 20;

@@ -3,19 +3,18 @@
 use std::collections::{BTreeMap, HashMap};
 use std::sync::Arc;
 
+use maulstick_canvas::EditError;
+use maulstick_canvas::assets::Assets;
+use maulstick_canvas::dry::{DryLayer, DryStack};
+use maulstick_canvas::page::{Page, Pager};
+use maulstick_canvas::planes::Planes;
+use maulstick_canvas::tile::{Tile, Version};
+use maulstick_impasto::brush::load::BrushLoad;
 use maulstick_optics::PaintLibrary;
-use maulstick_paint::EditError;
-use maulstick_paint::assets::Assets;
-use maulstick_paint::dry::{DryLayer, DryStack};
-use maulstick_paint::history::{Change, NonTileState, Step, StepEffects, TilePlace, TileRef};
-use maulstick_paint::load::BrushLoad;
-use maulstick_paint::page::{Page, Pager};
-use maulstick_paint::painting::{Named, Restored};
-use maulstick_paint::planes::Planes;
-use maulstick_paint::sequencer::Record;
-use maulstick_paint::snapshot::{PaintingSnapshot, SequencerSnapshot};
-use maulstick_paint::tile::{Tile, Version};
-use maulstick_paint::{Painting, Sequencer};
+use maulstick_painting::history::{Change, NonTileState, Step, StepEffects, TilePlace, TileRef};
+use maulstick_painting::sequencer::Record;
+use maulstick_painting::snapshot::{PaintingSnapshot, SequencerSnapshot};
+use maulstick_painting::{Named, Painting, Restored, Sequencer};
 use maulstick_types::paint::TILE;
 use maulstick_types::scene::Scene;
 use rusqlite::{OptionalExtension as _, params};
@@ -200,7 +199,7 @@ pub(crate) fn file(database: &Database, hash: &str) -> Result<Vec<u8>, DocumentE
         params![hash],
         |row| row.get(0),
     )?;
-    match maulstick_paint::assets::hash_of(&data) == hash {
+    match maulstick_canvas::assets::hash_of(&data) == hash {
         true => Ok(data),
         false => Err(damaged(format!("file {hash} is not what it was"))),
     }
@@ -329,7 +328,7 @@ impl Shelves {
     }
 }
 
-type Tiles = Vec<((u32, maulstick_paint::tile::TileId), Version)>;
+type Tiles = Vec<((u32, maulstick_canvas::tile::TileId), Version)>;
 
 fn tiles(database: &Database, shelves: &Shelves) -> Result<Tiles, DocumentError> {
     let query = "SELECT place, version, page, dry, sum FROM tile";

@@ -7,8 +7,8 @@
 
 use std::sync::Arc;
 
-use maulstick_paint::planes::{Planes, TILE_CELLS};
-use maulstick_paint::quantum::{CELL_MAX, SLOTS};
+use maulstick_canvas::planes::{Planes, TILE_CELLS};
+use maulstick_canvas::quantum::{CELL_MAX, SLOTS};
 use maulstick_types::paint::TILE;
 
 /// zstd's level while the painter paints: a tile in a fraction of a millisecond.

@@ -1,15 +1,16 @@
 //! Queues between the painter's threads and the document's: data that wait to be written, and readers that wait for a
 //! page.
 
+use std::any::{Any, TypeId};
 use std::collections::BTreeMap;
 use std::path::PathBuf;
 use std::sync::atomic::AtomicU64;
 use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError, mpsc};
 
-use maulstick_paint::backing::Backing;
-use maulstick_paint::load::BrushLoad;
-use maulstick_paint::planes::Planes;
-use maulstick_paint::sequencer::Record;
+use maulstick_canvas::page::backing::Backing;
+use maulstick_canvas::planes::Planes;
+use maulstick_impasto::brush::load::BrushLoad;
+use maulstick_painting::sequencer::Record;
 
 use crate::moving::Move;
 use crate::writing::{Moment, ShownTile};
@@ -112,14 +113,24 @@ pub(crate) struct Pages(pub(crate) Arc<Shared>);
 const GONE: &str = "the document was closed";
 
 impl Backing for Pages {
-    fn planes(&self, id: u64) -> Result<Planes, String> {
-        let read = self.0.ask(|answer| Fetch::Planes(id, answer));
-        read.unwrap_or_else(|| Err(GONE.to_owned()))
+    fn read(&self, id: u64, kind: TypeId) -> Result<Box<dyn Any>, String> {
+        if kind == TypeId::of::<Planes>() {
+            return self.page(|answer| Fetch::Planes(id, answer));
+        }
+        if kind == TypeId::of::<BrushLoad>() {
+            return self.page(|answer| Fetch::Load(id, answer));
+        }
+        Err(format!("page {id} is of a kind that no document holds"))
     }
+}
 
-    fn load(&self, id: u64) -> Result<BrushLoad, String> {
-        let read = self.0.ask(|answer| Fetch::Load(id, answer));
-        read.unwrap_or_else(|| Err(GONE.to_owned()))
+impl Pages {
+    fn page<T: 'static>(
+        &self,
+        fetch: impl FnOnce(mpsc::Sender<Result<T, String>>) -> Fetch,
+    ) -> Result<Box<dyn Any>, String> {
+        let read = self.0.ask(fetch).unwrap_or_else(|| Err(GONE.to_owned()))?;
+        Ok(Box::new(read))
     }
 }
 

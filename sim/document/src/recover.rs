@@ -25,8 +25,8 @@ mod tiles;
 
 use std::path::{Path, PathBuf};
 
-use maulstick_paint::history::TilePlace;
-use maulstick_paint::snapshot::{PaintingSnapshot, SequencerSnapshot};
+use maulstick_painting::history::TilePlace;
+use maulstick_painting::snapshot::{PaintingSnapshot, SequencerSnapshot};
 
 use crate::database::{Access, Database, beside, holder};
 use crate::error::DocumentError;

@@ -2,9 +2,9 @@
 
 use std::collections::BTreeMap;
 
-use maulstick_paint::history::{Booked, SurfaceMaterial, TilePlace, TileRef};
-use maulstick_paint::ledger::Ledger;
-use maulstick_paint::tile::{Tile, TileId};
+use maulstick_canvas::tile::{Tile, TileId};
+use maulstick_painting::history::{Booked, SurfaceMaterial, TilePlace, TileRef};
+use maulstick_painting::ledger::Ledger;
 use maulstick_types::scene::Layer;
 use serde::{Deserialize, Serialize};
 

@@ -8,7 +8,7 @@ use std::sync::atomic::Ordering::SeqCst;
 use std::sync::{Arc, PoisonError};
 use std::time::{Duration, Instant};
 
-use maulstick_paint::sequencer::Record;
+use maulstick_painting::sequencer::Record;
 
 use crate::database::{Access, Database, is_new};
 use crate::error::DocumentError;

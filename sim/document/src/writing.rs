@@ -4,14 +4,13 @@ use std::collections::BTreeSet;
 use std::sync::Arc;
 use std::time::Instant;
 
-use maulstick_paint::Sequencer;
-use maulstick_paint::assets::{hash_of, kind_of};
-use maulstick_paint::history::{Step, TileRef};
-use maulstick_paint::load::BrushLoad;
-use maulstick_paint::page::Page;
-use maulstick_paint::painting::{Checkpoint, Named};
-use maulstick_paint::planes::Planes;
-use maulstick_paint::snapshot::SequencerSnapshot;
+use maulstick_canvas::assets::{hash_of, kind_of};
+use maulstick_canvas::page::Page;
+use maulstick_canvas::planes::Planes;
+use maulstick_impasto::brush::load::BrushLoad;
+use maulstick_painting::history::{Step, TileRef};
+use maulstick_painting::snapshot::SequencerSnapshot;
+use maulstick_painting::{Checkpoint, Named, Sequencer};
 use rusqlite::{OptionalExtension as _, params};
 
 use crate::database::{DEPTH_MAX, Database, load_sum, page_sum, shown_sum};
@@ -70,7 +69,7 @@ pub(crate) type Breath<'a> = &'a mut dyn FnMut(&Database);
 pub(crate) struct Stored {
     planes: Vec<(Page<Planes>, usize)>,
     loads: Vec<(Page<BrushLoad>, usize)>,
-    stacks: Vec<Arc<maulstick_paint::dry::DryStack>>,
+    stacks: Vec<Arc<maulstick_canvas::dry::DryStack>>,
 }
 
 impl Stored {

@@ -5,7 +5,7 @@ mod studio;
 use std::sync::Arc;
 
 use maulstick_document::{Access, Document, DocumentSettings, Moment};
-use maulstick_paint::Sequencer;
+use maulstick_painting::Sequencer;
 use maulstick_types::command::{Command, Outcome};
 use proptest::prelude::*;
 use studio::{Painter, equip, print, sequencer};

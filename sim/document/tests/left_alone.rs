@@ -8,7 +8,7 @@ use std::sync::Arc;
 use maulstick_document::{
     Access, Contents, Document, DocumentError, DocumentSettings, Moment, glance, recover,
 };
-use maulstick_paint::Sequencer;
+use maulstick_painting::Sequencer;
 use rusqlite::{Connection, params};
 use studio::{Painter, equip, print, sequencer};
 

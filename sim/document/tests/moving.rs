@@ -97,7 +97,7 @@ fn what_was_in_memory_is_in_the_file_with_its_history() {
     }
     document.keep(Moment::of(&mut kept, since));
     let end = print(&mut kept);
-    let undo = |kept: &mut maulstick_paint::Sequencer| {
+    let undo = |kept: &mut maulstick_painting::Sequencer| {
         let mut steps = 0;
         while kept.ask(Command::Undo { brush: None }).is_ok() {
             steps += 1;

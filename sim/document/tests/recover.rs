@@ -11,7 +11,7 @@ use easel::Easel;
 use maulstick_document::rows::place_number;
 use maulstick_document::scan::{Row, Scan, Value};
 use maulstick_document::{Access, DocumentError, DocumentSettings, Salvage, recover};
-use maulstick_paint::history::TilePlace;
+use maulstick_painting::history::TilePlace;
 use proptest::prelude::*;
 use studio::{Dice, Painter, content, print, tiles};
 use tempfile::TempDir;

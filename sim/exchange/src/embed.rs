@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use maulstick_paint::assets::MOST_PIXELS;
+use maulstick_canvas::assets::MOST_PIXELS;
 
 use crate::fit_to::{colours, heights};
 use crate::import_error::ImportError;
@@ -76,7 +76,7 @@ mod tests {
     use std::io::Cursor;
 
     use image::{DynamicImage, ImageFormat, Rgb, RgbImage};
-    use maulstick_paint::assets::Assets;
+    use maulstick_canvas::assets::Assets;
 
     use super::*;
 

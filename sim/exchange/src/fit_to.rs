@@ -3,8 +3,8 @@
 
 use std::collections::VecDeque;
 
+use maulstick_canvas::assets::MOST_PIXELS;
 use maulstick_optics::colour::SrgbTable;
-use maulstick_paint::assets::MOST_PIXELS;
 
 use crate::import_error::ImportError;
 use crate::read_image::Image;

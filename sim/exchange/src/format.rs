@@ -3,8 +3,8 @@
 use std::io::{Seek, Write};
 use std::path::Path;
 
-use maulstick_paint::Painting;
-use maulstick_paint::picture::{Depth, Export};
+use maulstick_appearance::picture::{Depth, Export};
+use maulstick_painting::Painting;
 
 use crate::surface::Progress;
 use crate::{

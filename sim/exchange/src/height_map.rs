@@ -2,9 +2,9 @@
 
 use std::io::Write;
 
-use maulstick_paint::Painting;
-use maulstick_paint::bands::{Banded, in_order};
-use maulstick_paint::picture::{Depth, Pixels, density, write_png};
+use maulstick_appearance::bands::{Banded, in_order};
+use maulstick_appearance::picture::{Depth, Pixels, density, write_png};
+use maulstick_painting::Painting;
 
 use crate::ExchangeError;
 use crate::surface::{Progress, Steps, banded, check_whole};

@@ -2,16 +2,17 @@
 
 use std::io::Write;
 
-use maulstick_paint::Painting;
-use maulstick_paint::bands::in_order;
-use maulstick_paint::picture::{Depth, Drawing, Export, Pixels, density, write_png};
+use maulstick_appearance::bands::in_order;
+use maulstick_appearance::picture::{Depth, Export, Pixels, density, write_png};
+use maulstick_painting::Painting;
+use maulstick_painting::picture::lit_drawing;
 
 use crate::ExchangeError;
 use crate::surface::{Progress, Steps, check_whole};
 
 /// Writes a surface as it looks under the scene's lamp, a pixel a cell, for the profile and gamut of
 /// `export`: the profile is embedded, and `pHYs` says how large a cell is. With 8 bits a channel these
-/// are the bytes of [`Picture::encode_png`](maulstick_paint::picture::Picture::encode_png).
+/// are the bytes of [`Picture::encode_png`](maulstick_appearance::picture::Picture::encode_png).
 ///
 /// # Errors
 /// [`ExchangeError`].
@@ -23,7 +24,7 @@ pub fn write_lit_png(
     progress: Progress<'_>,
 ) -> Result<(), ExchangeError> {
     let drawing =
-        Drawing::lit(painting, surface, export).ok_or(ExchangeError::NoSurface(surface))?;
+        lit_drawing(painting, surface, export).ok_or(ExchangeError::NoSurface(surface))?;
     let banded = drawing.banded();
     let pixels = Pixels {
         size: banded.cells(),

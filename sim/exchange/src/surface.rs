@@ -1,7 +1,7 @@
 //! A painting's surface, on its way into a file.
 
-use maulstick_paint::Painting;
-use maulstick_paint::bands::Banded;
+use maulstick_appearance::bands::Banded;
+use maulstick_painting::{Painting, picture};
 
 use crate::ExchangeError;
 
@@ -33,7 +33,7 @@ impl<'a> Steps<'a> {
 
 /// A surface in bands.
 pub(crate) fn banded(painting: &mut Painting, surface: u32) -> Result<Banded<'_>, ExchangeError> {
-    Banded::of(painting, surface).ok_or(ExchangeError::NoSurface(surface))
+    picture::banded(painting, surface).ok_or(ExchangeError::NoSurface(surface))
 }
 
 /// Says so where a page could not be read: what was written lacks paint then.

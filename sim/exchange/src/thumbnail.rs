@@ -2,10 +2,11 @@
 
 use std::convert::Infallible;
 
+use maulstick_appearance::bands::in_order;
+use maulstick_appearance::picture::{Depth, Export, Picture};
 use maulstick_optics::colour::{SrgbTable, srgb_decode};
-use maulstick_paint::Painting;
-use maulstick_paint::bands::in_order;
-use maulstick_paint::picture::{Depth, Drawing, Export, Picture};
+use maulstick_painting::Painting;
+use maulstick_painting::picture::flat_drawing;
 
 /// Pixels of the longer side of a thumbnail in a file, at most.
 pub(crate) const SIDE: usize = 256;
@@ -14,7 +15,7 @@ pub(crate) const SIDE: usize = 256;
 /// such surface.
 pub fn small_picture(painting: &mut Painting, surface: u32, side: usize) -> Option<Picture> {
     let export = Export::default();
-    let drawing = Drawing::flat(painting, surface, &export)?;
+    let drawing = flat_drawing(painting, surface, &export)?;
     let mut small = Thumbnail::new(drawing.banded().cells(), side.max(1));
     let Ok(()) = in_order(
         drawing.banded().bands(),

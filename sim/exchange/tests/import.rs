@@ -4,15 +4,14 @@ use std::io::Cursor;
 use std::sync::Arc;
 
 use image::{DynamicImage, GrayImage, ImageFormat, Luma, Rgb, RgbImage};
+use maulstick_canvas::quantum::QUANTUM_M;
+use maulstick_canvas::tile::{Tile, TileId, Version};
 use maulstick_exchange::underpaint::underpaint;
 use maulstick_exchange::{Image, ImportError, Support, Underpainting, embed};
 use maulstick_optics::PaintLibrary;
 use maulstick_optics::colour::{apply, delta_e_2000, inverse, lab, srgb_decode, srgb_encode};
-use maulstick_paint::painting::Wetness;
-use maulstick_paint::quantum::QUANTUM_M;
-use maulstick_paint::setup::PALETTE_PAINTS;
-use maulstick_paint::tile::{Tile, TileId, Version};
-use maulstick_paint::{Painting, PaintingSetup};
+use maulstick_painting::setup::PALETTE_PAINTS;
+use maulstick_painting::{Painting, PaintingSetup, Wetness};
 use maulstick_types::scene::CANVAS;
 
 const FILM_M: f64 = 60e-6;
@@ -279,7 +278,7 @@ fn a_picture_is_a_ground_and_is_painted_over() {
         .set_ground(CANVAS, &format!("image:{hash}"))
         .expect("a ground");
     let pixel = maulstick_exchange::fit_to::colours(&image, [96, 80]).expect("fitted");
-    let picture = maulstick_paint::picture::unlit_picture(&mut painting, CANVAS);
+    let picture = maulstick_painting::picture::unlit_picture(&mut painting, CANVAS);
     let mut worst = 0.0f64;
     for (x, y) in [(0, 0), (40, 70), (95, 79), (64, 64)] {
         let want = pixel.rgb[y * 96 + x];
@@ -301,10 +300,10 @@ fn a_picture_is_a_ground_and_is_painted_over() {
     painting.undo(None).expect("ground");
     assert_eq!(painting.scene().surfaces[0].ground, "gesso");
     painting.redo(None).expect("ground");
-    let again = maulstick_paint::picture::unlit_picture(&mut painting, CANVAS);
+    let again = maulstick_painting::picture::unlit_picture(&mut painting, CANVAS);
     assert!(again == picture);
     painting.set_ground(CANVAS, "grey").expect("another ground");
-    let other = maulstick_paint::picture::unlit_picture(&mut painting, CANVAS);
+    let other = maulstick_painting::picture::unlit_picture(&mut painting, CANVAS);
     assert!(other != picture, "a fault would pass");
 }
 

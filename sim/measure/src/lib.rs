@@ -20,28 +20,21 @@
 //! | [`fit`](mod@fit) | the whole |
 //! | [`paint_file`](mod@paint_file) | the result as a file |
 
-pub mod determined;
 pub mod error;
 pub mod fit;
-pub mod headings;
-pub mod influence;
-pub mod instrument;
-pub mod layer;
-pub mod links;
-pub mod measurements;
-pub mod normal;
-pub mod notes;
+mod input;
 pub mod paint_file;
-pub mod programme;
-mod reading;
-pub mod residuals;
+mod solving;
 pub mod surface;
-pub mod table;
-pub mod usual;
-pub mod wavelength;
+
+pub use solving::{
+    determined, influence, layer, links, normal, programme, residuals, usual, wavelength,
+};
 
 pub use error::{MeasureError, Place};
 pub use fit::{Fit, FitOptions, fit};
+pub(crate) use input::reading;
+pub use input::{headings, instrument, measurements, notes, table};
 pub use notes::parse_surface;
 pub use paint_file::paint_file;
 pub use residuals::Residual;

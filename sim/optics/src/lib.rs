@@ -44,32 +44,23 @@
 //! ```
 
 pub mod backend;
-pub mod cie;
 pub mod colour;
-pub mod comparison;
 mod fitted;
 pub mod gamut;
 pub mod icc;
-pub mod km;
 pub mod light;
-pub mod matching;
-pub mod mixture;
-pub mod paints;
-pub mod quadrature;
-pub mod rule;
-pub mod search;
-pub mod spectrum;
-pub mod spectrum_file;
+mod mixing;
+mod spectra;
 pub mod studio;
-pub mod surface;
-pub mod upsampling;
 pub mod viewing;
 
 pub use backend::{BackendError, CpuFilms, FilmBackend};
 pub use cie::{Illuminant, Observer};
+pub use mixing::{comparison, km, matching, mixture, paints, search, surface};
 pub use mixture::{Blend, Coat, Layer};
 pub use paints::{Paint, PaintError, PaintLibrary, THINNER};
 pub use rule::SamplingRule;
+pub use spectra::{cie, quadrature, rule, spectrum, spectrum_file, upsampling};
 pub use spectrum::Spectrum;
 pub use spectrum_file::Reflectance;
 pub use studio::{FilmPlanes, RuleKind, Studio, StudioSettings, Under};

@@ -1,7 +1,7 @@
 //! A painting kept in its document: each accepted message at once, a checkpoint each second.
 
 use maulstick_document::{Document, DocumentError, Moment};
-use maulstick_paint::Sequencer;
+use maulstick_painting::Sequencer;
 
 /// Time between two moments, ns: as much is done again after a crash at most.
 const PERIOD_NS: u64 = 1_000_000_000;

@@ -11,7 +11,7 @@
 //! ```
 //! use maulstick_brush::BrushFile;
 //! use maulstick_optics::PaintLibrary;
-//! use maulstick_paint::{Painting, PaintingSetup};
+//! use maulstick_painting::{Painting, PaintingSetup};
 //! use maulstick_session::Offline;
 //! use maulstick_types::stylus::{StylusPose, StylusSample, axes};
 //!

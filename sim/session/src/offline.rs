@@ -5,9 +5,10 @@
 use std::sync::mpsc;
 
 use maulstick_brush::{BrushFile, BrushModel};
+use maulstick_canvas::EditError;
 use maulstick_num::fork_join::with_help_beyond;
-use maulstick_paint::clock::TICKS_A_SECOND;
-use maulstick_paint::{Applied, EditError, Painting, Sequencer};
+use maulstick_painting::clock::TICKS_A_SECOND;
+use maulstick_painting::{Applied, Painting, Sequencer};
 use maulstick_types::brush::BrushState;
 use maulstick_types::edits::Edit;
 use maulstick_types::stylus::StylusSample;

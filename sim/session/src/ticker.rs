@@ -1,6 +1,6 @@
 //! Ticks of a clock: sixtieths of a second, none lost and none twice.
 
-use maulstick_paint::clock::TICKS_A_SECOND;
+use maulstick_painting::clock::TICKS_A_SECOND;
 
 /// A second, ns.
 const SECOND_NS: u64 = 1_000_000_000;

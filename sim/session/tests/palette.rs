@@ -2,9 +2,9 @@
 
 use maulstick_brush::BrushFile;
 use maulstick_optics::PaintLibrary;
-use maulstick_paint::ledger::LedgerReport;
-use maulstick_paint::setup::wells_of;
-use maulstick_paint::{Painting, PaintingSetup};
+use maulstick_painting::ledger::LedgerReport;
+use maulstick_painting::setup::wells_of;
+use maulstick_painting::{Painting, PaintingSetup};
 use maulstick_session::Offline;
 use maulstick_types::Mixture;
 use maulstick_types::command::Command;
@@ -170,7 +170,7 @@ fn the_mixing_area_takes_and_gives_paint() {
 
 impl Hand {
     /// Lays other wells on the palette, as a client of the paint node would.
-    fn lay(&mut self, wells: Vec<Well>) -> Result<(), maulstick_paint::EditError> {
+    fn lay(&mut self, wells: Vec<Well>) -> Result<(), maulstick_canvas::EditError> {
         let surface = PALETTE;
         self.offline.command(Command::Wells { surface, wells })
     }

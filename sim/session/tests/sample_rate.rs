@@ -1,12 +1,12 @@
 //! A stroke is the same painting however often the device samples it.
 
 use maulstick_brush::BrushFile;
+use maulstick_canvas::planes::TILE_CELLS;
+use maulstick_canvas::quantum::QUANTUM_M;
 use maulstick_num::{sin, sin_cos};
 use maulstick_optics::PaintLibrary;
 use maulstick_optics::colour::delta_e_2000;
-use maulstick_paint::planes::TILE_CELLS;
-use maulstick_paint::quantum::QUANTUM_M;
-use maulstick_paint::{Painting, PaintingSetup};
+use maulstick_painting::{Painting, PaintingSetup};
 use maulstick_session::Offline;
 use maulstick_types::command::Command;
 use maulstick_types::scene::{BrushHandling, BrushMode};

@@ -3,13 +3,13 @@
 
 use std::time::Duration;
 
+use maulstick_canvas::relief::Relief;
+use maulstick_canvas::store::TileStore;
+use maulstick_canvas::window::{Area, Window};
 use maulstick_gpu::Device;
 use maulstick_gpu::impasto::measure::Measured;
-use maulstick_paint::impasto::advection::{Advection, Axis, STAIN};
-use maulstick_paint::impasto::velocity::Faces;
-use maulstick_paint::relief::Relief;
-use maulstick_paint::store::TileStore;
-use maulstick_paint::window::{Area, Window};
+use maulstick_impasto::stages::advection::{Advection, Axis, STAIN};
+use maulstick_impasto::stages::velocity::Faces;
 use maulstick_rig::Fault;
 
 use crate::report::{Report, quantile, sorted};

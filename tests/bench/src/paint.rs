@@ -7,7 +7,7 @@ use maulstick_brush::BrushFile;
 use maulstick_gpu::{Choice, Device, GpuImpasto, Traffic};
 use maulstick_num::fork_join::with_help;
 use maulstick_optics::PaintLibrary;
-use maulstick_paint::{Painting, PaintingSetup, Sequencer};
+use maulstick_painting::{Painting, PaintingSetup, Sequencer};
 use maulstick_rig::Fault;
 use maulstick_types::Pose;
 use maulstick_types::brush::{BrushState, Solve};

@@ -2,15 +2,15 @@
 
 use std::time::Instant;
 
+use maulstick_appearance::display::DisplayTile;
+use maulstick_appearance::lamp::lamp_over;
+use maulstick_appearance::picture::Export;
 use maulstick_brush::desk::Desk;
 use maulstick_brush::palette_place::Side;
 use maulstick_brush::{BrushFile, BrushModel, Head};
+use maulstick_canvas::planes::TILE_CELLS;
 use maulstick_num::geometry::Rigid;
-use maulstick_paint::PaintingSetup;
-use maulstick_paint::display::DisplayTile;
-use maulstick_paint::lamp::lamp_over;
-use maulstick_paint::picture::Export;
-use maulstick_paint::planes::TILE_CELLS;
+use maulstick_painting::PaintingSetup;
 use maulstick_rig::Fault;
 use maulstick_types::Origin;
 use maulstick_types::paint::TILE;

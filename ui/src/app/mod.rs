@@ -13,11 +13,11 @@ use std::time::Duration;
 
 use eframe::egui::{self, CentralPanel, Context, CursorIcon, Frame, Visuals};
 use eframe::egui_wgpu::RenderState;
+use maulstick_appearance::picture::Export;
 use maulstick_brush::palette_place::Side;
 use maulstick_bus::typed::{ask, random_epoch};
 use maulstick_bus::{Bus, Class, Wake};
 use maulstick_optics::PaintLibrary;
-use maulstick_paint::picture::Export;
 use maulstick_rig::{Fault, Member, Stop};
 use maulstick_types::paint::{ThumbnailReply, ThumbnailRequest};
 use maulstick_types::scene::Surface;

@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use eframe::egui::{ComboBox, Context, Grid, Key, TextEdit, Ui};
-use maulstick_paint::tooth::Tooth;
+use maulstick_canvas::relief::tooth::Tooth;
 use maulstick_types::command::{Command, NewCanvas, RigCommand};
 use maulstick_types::values::{MaterialName, ValueError, WholePath};
 use maulstick_types::scene::default_stain_m;

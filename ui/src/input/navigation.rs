@@ -270,7 +270,7 @@ mod tests {
     use egui_kittest::Harness;
     use maulstick_brush::palette_place::Side;
     use maulstick_num::geometry::Rigid;
-    use maulstick_paint::PaintingSetup;
+    use maulstick_painting::PaintingSetup;
     use maulstick_types::command::Command;
     use maulstick_types::edits::Edit;
 

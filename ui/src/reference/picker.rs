@@ -5,9 +5,9 @@ use std::sync::Arc;
 use std::task::Poll;
 
 use eframe::egui::Context;
+use maulstick_appearance::light::studio_settings;
 use maulstick_optics::matching::{Proposal, propose};
 use maulstick_optics::{Paint, PaintLibrary, Viewing};
-use maulstick_paint::light::studio_settings;
 use maulstick_types::Mixture;
 use maulstick_types::scene::{Light, Surface, WellKind};
 
@@ -153,7 +153,7 @@ impl Picker {
 #[cfg(test)]
 mod tests {
     use maulstick_optics::colour::srgb_decode;
-    use maulstick_paint::PaintingSetup;
+    use maulstick_painting::PaintingSetup;
     use maulstick_types::scene::PALETTE;
 
     use super::*;

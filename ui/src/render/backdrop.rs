@@ -147,7 +147,7 @@ impl CallbackTrait for Copy {
 
 #[cfg(test)]
 mod tests {
-    use maulstick_paint::picture::Export;
+    use maulstick_appearance::picture::Export;
 
     use super::*;
     use crate::render::gpu::testing::{draw, gpu, read, target};

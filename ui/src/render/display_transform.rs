@@ -4,10 +4,10 @@ use std::sync::{Arc, LazyLock};
 
 use eframe::egui::Color32;
 use glam::Vec3;
+use maulstick_appearance::picture::Export;
 use maulstick_optics::colour::srgb_decode;
 use maulstick_optics::gamut::Gamut;
 use maulstick_optics::icc::Profile;
-use maulstick_paint::picture::Export;
 
 /// Linear light of each sRGB byte.
 static LINEAR: LazyLock<[f32; 256]> =

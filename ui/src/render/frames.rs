@@ -7,7 +7,7 @@ use std::time::{Duration, Instant};
 use half::f16;
 use maulstick_bus::bus::Answer;
 use maulstick_bus::{Bus, BusError, Class, Payload, Wake};
-use maulstick_paint::planes::TILE_CELLS;
+use maulstick_canvas::planes::TILE_CELLS;
 use maulstick_rig::Stop;
 use maulstick_types::paint::{FrameHolds, FrameRequest};
 use maulstick_types::{DecodeError, Flags, FrameView, Origin, encode};
@@ -334,7 +334,7 @@ impl Puller<'_> {
 }
 
 /// The planes of a tile as texels of colour and gloss, and of height; `None` if the length is wrong. See
-/// [`DisplayTile::to_bytes`](maulstick_paint::display::DisplayTile::to_bytes).
+/// [`DisplayTile::to_bytes`](maulstick_appearance::display::DisplayTile::to_bytes).
 #[must_use]
 pub fn texels(planes: &[u8]) -> Option<(Vec<u8>, Vec<u8>)> {
     if planes.len() != HEIGHTS + 4 * TILE_CELLS {

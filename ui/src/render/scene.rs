@@ -6,10 +6,10 @@ use std::time::Duration;
 
 use eframe::egui::{Context, Shape};
 use eframe::egui_wgpu::{RenderState, wgpu};
+use maulstick_appearance::lamp::lamp_over;
+use maulstick_appearance::picture::Export;
 use maulstick_bus::typed::{Refusal, random_epoch};
 use maulstick_bus::{Bus, Wake};
-use maulstick_paint::lamp::lamp_over;
-use maulstick_paint::picture::Export;
 use maulstick_rig::Stop;
 use maulstick_types::scene::{CANVAS, PALETTE, Surface};
 use maulstick_types::{Origin, name_hash};

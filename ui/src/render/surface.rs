@@ -1,9 +1,9 @@
 //! A surface on the graphics device: its tiles are uploaded as they arrive, lit, and drawn.
 
 use eframe::egui_wgpu::wgpu;
+use maulstick_appearance::picture::Export;
 use maulstick_optics::gamut::Gamut;
 use maulstick_optics::light::Lamp;
-use maulstick_paint::picture::Export;
 use maulstick_types::scene::Surface;
 
 use crate::render::frames::Shown;
@@ -194,13 +194,13 @@ mod pan_zoom_tests;
 pub(crate) mod tests {
     use eframe::egui::{Rect, pos2, vec2};
     use glam::{DVec2, DVec3};
+    use maulstick_appearance::display::DisplayTile;
+    use maulstick_canvas::planes::TILE_CELLS;
     use maulstick_optics::colour::RgbSpace;
     use maulstick_optics::gamut::GamutMapping;
     use maulstick_optics::icc::Profile;
     use maulstick_optics::light::{Facet, HeightField, LampSetup, Spot, Surroundings, lit};
-    use maulstick_paint::PaintingSetup;
-    use maulstick_paint::display::DisplayTile;
-    use maulstick_paint::planes::TILE_CELLS;
+    use maulstick_painting::PaintingSetup;
     use maulstick_types::paint::TILE;
 
     use super::*;

@@ -3,10 +3,10 @@
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
+use maulstick_appearance::picture::Export;
 use maulstick_brush::BrushFile;
 use maulstick_brush::desk::Desk;
 use maulstick_optics::PaintLibrary;
-use maulstick_paint::picture::Export;
 use maulstick_types::command::Command;
 use maulstick_types::paint::PaintStatus;
 use maulstick_types::scene::{BrushHandling, CANVAS, PALETTE, Scene, Surface, Tuning};

@@ -6,7 +6,7 @@ use eframe::egui::{Theme, Ui, Vec2, vec2};
 use egui_kittest::{Harness, SnapshotOptions};
 use maulstick_brush::BrushFile;
 use maulstick_optics::PaintLibrary;
-use maulstick_paint::PaintingSetup;
+use maulstick_painting::PaintingSetup;
 use maulstick_types::command::Command;
 
 use crate::panels::Panel;

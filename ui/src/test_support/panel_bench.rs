@@ -6,7 +6,7 @@ use std::sync::Arc;
 use eframe::egui::{Theme, Ui};
 use egui_kittest::{Harness, SnapshotOptions};
 use maulstick_optics::PaintLibrary;
-use maulstick_paint::PaintingSetup;
+use maulstick_painting::PaintingSetup;
 use maulstick_types::command::Command;
 use maulstick_types::paint::PaintStatus;
 

@@ -199,7 +199,7 @@ mod tests {
     use maulstick_brush::palette_place::beside;
     use maulstick_brush::placement::placed;
     use maulstick_num::geometry::rotation;
-    use maulstick_paint::PaintingSetup;
+    use maulstick_painting::PaintingSetup;
     use maulstick_types::Pose;
 
     fn surfaces() -> Vec<Surface> {

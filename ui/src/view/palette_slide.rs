@@ -68,7 +68,7 @@ impl Slide {
 
 #[cfg(test)]
 mod tests {
-    use maulstick_paint::PaintingSetup;
+    use maulstick_painting::PaintingSetup;
 
     use super::*;
 

@@ -265,7 +265,7 @@ mod tests {
     use eframe::egui::{Rect, pos2, vec2};
     use glam::{DVec2, DVec3};
     use maulstick_num::geometry::rotation;
-    use maulstick_paint::PaintingSetup;
+    use maulstick_painting::PaintingSetup;
     use maulstick_types::Pose;
 
     use super::*;

@@ -104,7 +104,7 @@ pub(crate) fn draw(painter: &Painter, view: &View, palette: &Surface, shown: Sho
 
 #[cfg(test)]
 mod tests {
-    use maulstick_paint::PaintingSetup;
+    use maulstick_painting::PaintingSetup;
 
     use super::*;
 

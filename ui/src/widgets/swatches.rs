@@ -4,10 +4,10 @@ use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use eframe::egui::{Color32, CornerRadius, Rect, Stroke, StrokeKind, Ui, pos2};
+use maulstick_appearance::light::{changes_colour, studio_settings};
 use maulstick_optics::{
     Blend, Coat, Layer, Paint, PaintLibrary, RuleKind, StudioSettings, Viewing,
 };
-use maulstick_paint::light::{changes_colour, studio_settings};
 use maulstick_types::Mixture;
 use maulstick_types::scene::Light;
 
@@ -243,7 +243,7 @@ mod tests {
         let mut swatches = Swatches::default();
         let mixture = Mixture::pure("Cobalt Blue");
         let day = swatches.mixture(&rig, &mixture).expect("known");
-        let mut scene = maulstick_paint::PaintingSetup::default().scene();
+        let mut scene = maulstick_painting::PaintingSetup::default().scene();
         rig.lay(scene.clone());
         assert_eq!(swatches.mixture(&rig, &mixture), Some(day));
         scene.light.illuminant = "A".to_owned();

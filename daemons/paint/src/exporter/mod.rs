@@ -8,13 +8,13 @@ use std::sync::atomic::{AtomicBool, AtomicU32, Ordering::SeqCst};
 use std::sync::mpsc::{Receiver, TryRecvError, channel};
 use std::thread::JoinHandle;
 
+use maulstick_appearance::picture::{Depth, Export};
 use maulstick_exchange::{ExchangeError, Format, Order};
 use maulstick_files::{Kind, write_whole};
 use maulstick_optics::colour::RgbSpace;
 use maulstick_optics::gamut::GamutMapping;
 use maulstick_optics::icc::Profile;
-use maulstick_paint::Painting;
-use maulstick_paint::picture::{Depth, Export};
+use maulstick_painting::Painting;
 use maulstick_types::advice::Advice;
 use maulstick_types::command::{ExportOrder, Outcome};
 use maulstick_types::paint::ExportStatus;

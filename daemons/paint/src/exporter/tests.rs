@@ -3,7 +3,7 @@
 use std::time::{Duration, Instant};
 
 use maulstick_optics::PaintLibrary;
-use maulstick_paint::PaintingSetup;
+use maulstick_painting::PaintingSetup;
 
 use super::*;
 

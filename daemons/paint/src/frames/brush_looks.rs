@@ -3,11 +3,11 @@
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
+use maulstick_appearance::Appearance;
 use maulstick_brush::file::sections::Hair;
 use maulstick_bus::typed::Sender;
 use maulstick_bus::{Bus, BusError, Class};
-use maulstick_paint::appearance::Appearance;
-use maulstick_paint::brush_colour::{Carried, hair};
+use maulstick_painting::brush_colour::{Carried, hair};
 use maulstick_types::Origin;
 use maulstick_types::brush::BrushLook;
 use maulstick_types::topics::Topics;

@@ -4,14 +4,14 @@ use std::collections::{BTreeMap, VecDeque};
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
+use maulstick_appearance::display::{DisplayTile, WetFilms};
+use maulstick_appearance::{Appearance, Bakery};
+use maulstick_canvas::dry::DryStack;
+use maulstick_canvas::tile::{Tile, TileId};
 use maulstick_document::rows::shown_number;
 use maulstick_document::{Shelf, ShownTile};
 use maulstick_optics::backend::FilmBackend;
 use maulstick_optics::{FilmPlanes, Under};
-use maulstick_paint::appearance::{Appearance, Bakery};
-use maulstick_paint::display::{DisplayTile, WetFilms};
-use maulstick_paint::dry::DryStack;
-use maulstick_paint::tile::{Tile, TileId};
 
 use super::films::SteadyFilms;
 use super::{FedSurface, FrameState, Progress};

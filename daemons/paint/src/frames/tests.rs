@@ -6,14 +6,14 @@ use maulstick_bus::bus::Answer;
 use maulstick_bus::{Class, Faults, MemoryNet};
 use maulstick_types::decode;
 
+use maulstick_appearance::display::{DisplayTile, WetFilms};
+use maulstick_appearance::ground::Ground;
+use maulstick_appearance::{Appearance, Bakery};
+use maulstick_canvas::assets::Assets;
+use maulstick_canvas::planes::TILE_CELLS;
+use maulstick_canvas::relief::Relief;
 use maulstick_optics::backend::{CpuFilms, FilmBackend};
 use maulstick_optics::{Illuminant, PaintLibrary, Studio, StudioSettings, Under};
-use maulstick_paint::appearance::{Appearance, Bakery};
-use maulstick_paint::assets::Assets;
-use maulstick_paint::display::{DisplayTile, WetFilms};
-use maulstick_paint::ground::Ground;
-use maulstick_paint::planes::TILE_CELLS;
-use maulstick_paint::relief::Relief;
 
 use super::*;
 
@@ -344,7 +344,7 @@ fn a_look_of_a_brush_is_told_once_for_each_load_and_light() {
     use maulstick_brush::file::sections::Hair;
     use maulstick_bus::Queue;
     use maulstick_bus::typed::Receiver;
-    use maulstick_paint::load::BrushLoad;
+    use maulstick_impasto::brush::load::BrushLoad;
     use maulstick_types::brush::BrushLook;
 
     let mut rig = rig();

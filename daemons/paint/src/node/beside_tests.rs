@@ -8,7 +8,7 @@ use maulstick_bus::bus::{Answer, Pending};
 use maulstick_bus::{Faults, MemoryBus, MemoryNet};
 use maulstick_document::{Access, DocumentSettings};
 use maulstick_optics::PaintLibrary;
-use maulstick_paint::PaintingSetup;
+use maulstick_painting::PaintingSetup;
 use maulstick_types::command::{Command, CommandReply, CommandRequest, ExportOrder, Outcome};
 use maulstick_types::paint::{ThumbnailReply, ThumbnailRequest};
 use maulstick_types::scene::CANVAS;

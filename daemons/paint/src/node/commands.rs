@@ -3,8 +3,8 @@
 use std::path::Path;
 
 use maulstick_bus::Request;
-use maulstick_paint::Effect;
-use maulstick_paint::sequencer::Replied;
+use maulstick_painting::Effect;
+use maulstick_painting::sequencer::Replied;
 use maulstick_types::command::{
     Command, CommandReply, CommandRequest, FileCommand, Outcome, SaveAs,
 };

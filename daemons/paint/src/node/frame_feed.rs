@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-use maulstick_paint::Painting;
+use maulstick_painting::Painting;
 use maulstick_types::paint::FrameHolds;
 
 use super::PaintNode;

@@ -11,6 +11,7 @@ use std::path::Path;
 use std::sync::Arc;
 use std::time::Duration;
 
+use maulstick_appearance::picture::Export;
 use maulstick_brush::BrushFile;
 use maulstick_bus::rivals::Once;
 use maulstick_bus::typed::{Reader, Received, Receiver, Sender};
@@ -18,8 +19,7 @@ use maulstick_bus::{
     Announcer, Arrival, Bus, BusError, Class, CreditReceiver, Queue, Server, Subscription, Wake,
 };
 use maulstick_document::{Document, DocumentError};
-use maulstick_paint::picture::Export;
-use maulstick_paint::{Painting, Sequencer};
+use maulstick_painting::{Painting, Sequencer};
 use maulstick_types::brush::{BrushDef, BrushState};
 use maulstick_types::paint::{BrushCredit, JournalEntry, PaintConsumed, PaintStatus};
 use maulstick_types::scene::Scene;

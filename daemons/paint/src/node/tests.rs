@@ -2,12 +2,12 @@
 
 #![allow(clippy::panic, reason = "a test fails by it")]
 
+use maulstick_appearance::display::WetFilms;
 use maulstick_brush::BrushModel;
 use maulstick_bus::bus::Answer;
 use maulstick_bus::{Faults, MemoryNet};
 use maulstick_optics::{PaintLibrary, Under};
-use maulstick_paint::PaintingSetup;
-use maulstick_paint::display::WetFilms;
+use maulstick_painting::PaintingSetup;
 use maulstick_types::command::{Command, CommandReply, CommandRequest, Outcome};
 use maulstick_types::scene::CANVAS;
 use maulstick_types::stylus::{DEFAULT_TILT_RAD, StylusPose, StylusSample};

@@ -2,11 +2,11 @@
 
 use std::path::Path;
 
+use maulstick_appearance::picture::Picture;
 use maulstick_document::DocumentError;
 use maulstick_optics::colour::{RgbSpace, apply, delta_e_2000, lab, srgb_decode};
-use maulstick_paint::Sequencer;
-use maulstick_paint::painting::NOW;
-use maulstick_paint::picture::{Picture, picture};
+use maulstick_painting::picture::picture;
+use maulstick_painting::{NOW, Sequencer};
 use maulstick_rig::Fault;
 use maulstick_rig::files::Kind;
 use maulstick_types::edits::{ReturnTo, Undo};

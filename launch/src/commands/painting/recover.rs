@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use clap::Args;
 use maulstick_document::{DocumentError, Salvage, part_of, recover};
-use maulstick_paint::history::TilePlace;
+use maulstick_painting::history::TilePlace;
 use maulstick_rig::Fault;
 use maulstick_rig::files::{Kind, Unfinished, check_writable};
 use maulstick_types::scene::{CANVAS, PALETTE};

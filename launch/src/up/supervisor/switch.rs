@@ -444,7 +444,7 @@ fn ended_as_it_saved(to: &Path) -> Outcome {
     Outcome::refused(format!(
             "the paint node ended before it said that the painting is in {}",
             to.display()
-        ), "look whether that file has it, and open it there; the messages of the rig say what was \   wrong")
+        ), "look whether that file has it, and open it there; the messages of the rig say what was wrong")
 }
 
 fn fallen() -> Outcome {

@@ -4,7 +4,7 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs::File;
 
-use maulstick_paint::snapshot::{PaintingSnapshot, SequencerSnapshot};
+use maulstick_painting::snapshot::{PaintingSnapshot, SequencerSnapshot};
 use rusqlite::{OptionalExtension as _, params};
 
 use super::found::{Found, Read};

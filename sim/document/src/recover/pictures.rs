@@ -2,9 +2,9 @@
 
 use std::collections::BTreeSet;
 
-use maulstick_paint::PaintingSetup;
-use maulstick_paint::assets::{IMAGE, SPECTRUM};
-use maulstick_paint::history::SurfaceMaterial;
+use maulstick_canvas::assets::{IMAGE, SPECTRUM};
+use maulstick_painting::PaintingSetup;
+use maulstick_painting::history::SurfaceMaterial;
 use maulstick_types::scene::Scene;
 use rusqlite::params;
 

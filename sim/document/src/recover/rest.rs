@@ -3,11 +3,11 @@
 use std::collections::{BTreeMap, BTreeSet, HashMap};
 
 use maulstick_brush::BrushFile;
+use maulstick_canvas::quantum::{Counts, SLOTS, add};
+use maulstick_impasto::brush::load::BrushLoad;
 use maulstick_optics::PaintLibrary;
-use maulstick_paint::ledger::Ledger;
-use maulstick_paint::load::BrushLoad;
-use maulstick_paint::quantum::{Counts, SLOTS, add};
-use maulstick_paint::snapshot::{PaintingSnapshot, SequencerSnapshot};
+use maulstick_painting::ledger::Ledger;
+use maulstick_painting::snapshot::{PaintingSnapshot, SequencerSnapshot};
 use maulstick_types::scene::{NamedVersion, WellKind};
 use rusqlite::params;
 
@@ -84,7 +84,7 @@ fn put_file(
     name: &str,
     data: &str,
 ) -> Result<String, DocumentError> {
-    let hash = maulstick_paint::assets::hash_of(data.as_bytes());
+    let hash = maulstick_canvas::assets::hash_of(data.as_bytes());
     let texts = [hash.as_str(), kind, name].map(|text| Value::Text(text.to_owned()));
     let values = texts
         .into_iter()

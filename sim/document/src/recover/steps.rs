@@ -2,9 +2,9 @@
 
 use std::collections::{BTreeMap, HashMap};
 
-use maulstick_paint::history::SurfaceMaterial;
-use maulstick_paint::quantum::{Counts, SLOTS};
-use maulstick_paint::snapshot::PaintingSnapshot;
+use maulstick_canvas::quantum::{Counts, SLOTS};
+use maulstick_painting::history::SurfaceMaterial;
+use maulstick_painting::snapshot::PaintingSnapshot;
 use maulstick_types::scene::{Layer, Scene};
 
 use super::found::Found;

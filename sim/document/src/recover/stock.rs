@@ -2,8 +2,8 @@
 
 use std::collections::{BTreeMap, BTreeSet, HashMap};
 
-use maulstick_paint::planes::{Planes, plane_counts};
-use maulstick_paint::quantum::{Counts, SLOTS, add};
+use maulstick_canvas::planes::{Planes, plane_counts};
+use maulstick_canvas::quantum::{Counts, SLOTS, add};
 use rusqlite::params;
 
 use super::found::Found;

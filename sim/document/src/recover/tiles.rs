@@ -2,7 +2,7 @@
 
 use std::collections::{BTreeSet, HashMap};
 
-use maulstick_paint::snapshot::PaintingSnapshot;
+use maulstick_painting::snapshot::PaintingSnapshot;
 use maulstick_types::paint::TILE;
 
 use super::Salvage;

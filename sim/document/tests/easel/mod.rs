@@ -5,7 +5,7 @@
 use std::sync::Arc;
 
 use maulstick_document::{Document, DocumentSettings, Moment};
-use maulstick_paint::Sequencer;
+use maulstick_painting::Sequencer;
 use maulstick_types::command::Command;
 
 use crate::studio::{Act, Painter, equip, sequencer};

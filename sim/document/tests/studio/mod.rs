@@ -3,10 +3,10 @@
 #![allow(dead_code, unreachable_pub, reason = "each test uses a part")]
 
 use maulstick_brush::BrushFile;
+use maulstick_canvas::page::Pager;
 use maulstick_optics::PaintLibrary;
-use maulstick_paint::history::{TilePlace, TileRef};
-use maulstick_paint::page::Pager;
-use maulstick_paint::{Painting, PaintingSetup, Sequencer};
+use maulstick_painting::history::{TilePlace, TileRef};
+use maulstick_painting::{Painting, PaintingSetup, Sequencer};
 use maulstick_types::brush::{BrushState, Solve};
 use maulstick_types::command::{Command, CommandRequest, Outcome};
 use maulstick_types::scene::{CANVAS, PALETTE};
@@ -318,7 +318,7 @@ impl Painter {
 pub fn content(held: &TileRef) -> Vec<u64> {
     let Some(tile) = held else { return Vec::new() };
     let mut words = Vec::new();
-    let mut add = |planes: &maulstick_paint::planes::Planes| {
+    let mut add = |planes: &maulstick_canvas::planes::Planes| {
         for (slot, plane) in planes {
             words.push(*slot as u64);
             let sum = plane.iter().enumerate().fold(17u64, |sum, (cell, count)| {

@@ -23,10 +23,10 @@ use exr::math::Vec2;
 use exr::meta::BlockDescription;
 use exr::meta::attribute::{ChannelDescription, Chromaticities, LineOrder, SampleType, Text};
 use exr::meta::header::{Header, LayerAttributes};
-use maulstick_paint::Painting;
-use maulstick_paint::bands::in_order;
+use maulstick_appearance::bands::in_order;
 #[cfg(doc)]
-use maulstick_paint::quantum::QUANTUM_M;
+use maulstick_canvas::quantum::QUANTUM_M;
+use maulstick_painting::Painting;
 use maulstick_types::paint::TILE;
 
 use self::channels::{Source, channels};

@@ -2,11 +2,11 @@
 
 use std::ops::Range;
 
-use maulstick_paint::appearance::Bakery;
-use maulstick_paint::bands::{Banded, Shelf};
-use maulstick_paint::planes::Planes;
-use maulstick_paint::quantum::{QUANTUM_M, SLOTS};
-use maulstick_paint::tile::{Tile, TileId};
+use maulstick_appearance::Bakery;
+use maulstick_appearance::bands::{Banded, Shelf};
+use maulstick_canvas::planes::Planes;
+use maulstick_canvas::quantum::{QUANTUM_M, SLOTS};
+use maulstick_canvas::tile::{Tile, TileId};
 use maulstick_types::paint::TILE;
 
 use super::channels::Source;

@@ -3,12 +3,12 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
-use maulstick_paint::appearance::Bakery;
-use maulstick_paint::bands::Banded;
-use maulstick_paint::dry::DryStack;
-use maulstick_paint::picture::{Depth, Drawing};
-use maulstick_paint::planes::{Planes, TILE_CELLS};
-use maulstick_paint::tile::{Tile, TileId};
+use maulstick_appearance::Bakery;
+use maulstick_appearance::bands::Banded;
+use maulstick_appearance::picture::{Depth, Drawing};
+use maulstick_canvas::dry::DryStack;
+use maulstick_canvas::planes::{Planes, TILE_CELLS};
+use maulstick_canvas::tile::{Tile, TileId};
 use maulstick_types::paint::TILE;
 use maulstick_types::scene::Layer;
 

@@ -10,9 +10,10 @@ mod images;
 use std::fmt::Write as _;
 use std::io::{Seek, Write};
 
-use maulstick_paint::Painting;
-use maulstick_paint::bands::in_order;
-use maulstick_paint::picture::{Depth, Drawing, Export, Pixels, density, write_png};
+use maulstick_appearance::bands::in_order;
+use maulstick_appearance::picture::{Depth, Drawing, Export, Pixels, density, write_png};
+use maulstick_painting::Painting;
+use maulstick_painting::picture::flat_drawing;
 use zip::write::SimpleFileOptions;
 use zip::{CompressionMethod, DateTime, System, ZipWriter};
 
@@ -44,7 +45,7 @@ pub fn write_open_raster(
     let export = Export::default();
     let layers = painting.scene().layers.clone();
     let drawing =
-        Drawing::flat(painting, surface, &export).ok_or(ExchangeError::NoSurface(surface))?;
+        flat_drawing(painting, surface, &export).ok_or(ExchangeError::NoSurface(surface))?;
     let banded = drawing.banded();
     let size = banded.cells();
     let images = images(banded, &layers);

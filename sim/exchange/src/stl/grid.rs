@@ -1,6 +1,6 @@
 //! Vertices over a surface, and their heights.
 
-use maulstick_paint::bands::{Banded, in_order};
+use maulstick_appearance::bands::{Banded, in_order};
 
 use crate::ExchangeError;
 use crate::surface::Steps;

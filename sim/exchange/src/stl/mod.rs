@@ -9,7 +9,7 @@ mod grid;
 
 use std::io::{BufWriter, Write};
 
-use maulstick_paint::Painting;
+use maulstick_painting::Painting;
 
 use self::grid::Grid;
 use crate::ExchangeError;

@@ -1,8 +1,8 @@
 //! Mixtures from which the search for a colour begins: each paint alone, pairs and triples on a grid of
 //! the logarithms of their ratios.
 
+use maulstick_canvas::quantum::SLOTS;
 use maulstick_num::exp;
-use maulstick_paint::quantum::SLOTS;
 
 use super::films::{Films, Shares};
 

@@ -1,10 +1,10 @@
 //! The colour of a film of mixed paints over a ground, and how it changes with the shares.
 
+use maulstick_canvas::quantum::SLOTS;
 use maulstick_optics::colour::lab;
 use maulstick_optics::km::over_with_slopes;
 use maulstick_optics::upsampling::lab_with_slopes;
 use maulstick_optics::{Paint, Studio};
-use maulstick_paint::quantum::SLOTS;
 
 /// Shares of paints by volume, of the sum 1.
 pub(crate) type Shares = [f64; SLOTS];
@@ -104,7 +104,7 @@ impl Films {
 #[cfg(test)]
 pub(crate) mod tests {
     use maulstick_optics::{PaintLibrary, StudioSettings};
-    use maulstick_paint::setup::PALETTE_PAINTS;
+    use maulstick_painting::setup::PALETTE_PAINTS;
 
     use super::*;
 

@@ -12,15 +12,14 @@ mod search;
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
+use maulstick_appearance::Appearance;
+use maulstick_appearance::blank_surface::BlankSurface;
+use maulstick_appearance::ground::Ground;
+use maulstick_canvas::planes::TILE_CELLS;
+use maulstick_canvas::quantum::{QUANTUM_M, SLOTS};
+use maulstick_canvas::tile::TileId;
 use maulstick_optics::Paint;
-use maulstick_paint::Painting;
-use maulstick_paint::appearance::Appearance;
-use maulstick_paint::blank_surface::BlankSurface;
-use maulstick_paint::ground::Ground;
-use maulstick_paint::painting::LaidTile;
-use maulstick_paint::planes::TILE_CELLS;
-use maulstick_paint::quantum::{QUANTUM_M, SLOTS};
-use maulstick_paint::tile::TileId;
+use maulstick_painting::{LaidTile, Painting};
 use maulstick_types::paint::TILE;
 
 use self::films::{Films, Shares};
@@ -50,7 +49,7 @@ impl Support {
     /// [`ImportError`] for an unknown surface or paint, none, or more than 16 paints.
     pub fn of(painting: &Painting, surface: u32, paints: &[String]) -> Result<Self, ImportError> {
         let (Some(bare), Some(store)) = (painting.bare(surface), painting.store(surface)) else {
-            return Err(maulstick_paint::EditError::NoSurface(surface).into());
+            return Err(maulstick_canvas::EditError::NoSurface(surface).into());
         };
         if !(1..=SLOTS).contains(&paints.len()) {
             return Err(ImportError::Paints(paints.len()));
@@ -58,7 +57,7 @@ impl Support {
         let mut found: Vec<Paint> = Vec::new();
         for name in paints {
             let paint = painting.library().find(name);
-            let paint = paint.map_err(maulstick_paint::EditError::from)?;
+            let paint = paint.map_err(maulstick_painting::paint_error)?;
             if !found.iter().any(|other| other.name == paint.name) {
                 found.push(paint.clone());
             }

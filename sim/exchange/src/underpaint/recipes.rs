@@ -8,8 +8,8 @@
 //! mixtures change as little, and as smoothly, as colours do. Paints that would go below 0 are left out
 //! and the step is taken anew without them.
 
+use maulstick_canvas::quantum::SLOTS;
 use maulstick_optics::colour::{Matrix, apply, delta_e_2000_near, solve3};
-use maulstick_paint::quantum::SLOTS;
 
 use super::films::{Films, Shares};
 

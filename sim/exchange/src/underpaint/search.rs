@@ -13,10 +13,10 @@
 
 use std::thread::scope;
 
+use maulstick_canvas::quantum::SLOTS;
 use maulstick_optics::Studio;
 use maulstick_optics::colour::{Matrix, RgbSpace, apply, delta_e_2000, inverse, lab, srgb_decode};
 use maulstick_optics::gamut::{FOR_COLOUR, Gamut, GamutMapping};
-use maulstick_paint::quantum::SLOTS;
 
 use super::candidates::Candidates;
 use super::films::{Films, Shares};

@@ -6,13 +6,13 @@ use std::io::Cursor;
 use exr::compression::Compression;
 use exr::image::{AnyChannels, FlatSamples, Layer};
 use exr::prelude::{ReadChannels as _, ReadLayers as _, read};
+use maulstick_canvas::quantum::QUANTUM_M;
 use maulstick_optics::colour::RgbSpace;
 use maulstick_optics::gamut::{Gamut, GamutMapping};
 use maulstick_optics::icc::Profile;
 use maulstick_optics::light::SURFACE;
-use maulstick_paint::Painting;
-use maulstick_paint::picture::unlit_picture;
-use maulstick_paint::quantum::QUANTUM_M;
+use maulstick_painting::Painting;
+use maulstick_painting::picture::unlit_picture;
 use maulstick_types::paint::TILE;
 use maulstick_types::scene::CANVAS;
 

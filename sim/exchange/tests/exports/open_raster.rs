@@ -2,8 +2,8 @@
 
 use std::io::{Cursor, Read as _};
 
-use maulstick_paint::Painting;
-use maulstick_paint::picture::unlit_picture;
+use maulstick_painting::Painting;
+use maulstick_painting::picture::unlit_picture;
 use maulstick_types::scene::CANVAS;
 use zip::{CompressionMethod, ZipArchive};
 

@@ -3,8 +3,8 @@
 use std::io::Cursor;
 
 use maulstick_exchange::{HeightRange, write_height_map};
-use maulstick_paint::Painting;
-use maulstick_paint::picture::picture;
+use maulstick_painting::Painting;
+use maulstick_painting::picture::picture;
 use maulstick_types::scene::CANVAS;
 
 use crate::support::{CELLS, bare, decoded, file, heights, painted, speck};

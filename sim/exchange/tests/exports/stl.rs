@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::io::Cursor;
 
 use maulstick_exchange::{ExchangeError, STL_TRIANGLES, StlSetup, StlSize, stl_step, write_stl};
-use maulstick_paint::Painting;
+use maulstick_painting::Painting;
 use maulstick_types::scene::CANVAS;
 
 use crate::support::{CELL_M, CELLS, STL, bare, heights, painted, speck};

@@ -2,15 +2,15 @@
 
 use std::io::Cursor;
 
+use maulstick_appearance::picture::{Depth, Export};
 use maulstick_brush::BrushFile;
 use maulstick_exchange::{
     ExchangeError, StlSetup, write_height_map, write_lit_png, write_open_exr, write_open_raster,
     write_stl,
 };
 use maulstick_optics::PaintLibrary;
-use maulstick_paint::bands::Banded;
-use maulstick_paint::picture::{Depth, Export};
-use maulstick_paint::{Painting, PaintingSetup};
+use maulstick_painting::picture::banded;
+use maulstick_painting::{Painting, PaintingSetup};
 use maulstick_types::Pose;
 use maulstick_types::brush::{BrushState, Solve};
 use maulstick_types::scene::CANVAS;
@@ -99,7 +99,7 @@ pub(crate) fn speck() -> Painting {
 
 /// Heights of a whole surface, m, row after row from the top.
 pub(crate) fn heights(painting: &mut Painting) -> Vec<f32> {
-    let banded = Banded::of(painting, CANVAS).expect("a canvas");
+    let banded = banded(painting, CANVAS).expect("a canvas");
     let width = banded.cells()[0];
     let rows = |band: usize| {
         let heights = banded.heights(band);

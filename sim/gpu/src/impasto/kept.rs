@@ -3,10 +3,10 @@
 use std::sync::Arc;
 
 use maulstick_brush::{Head, HeadPose};
-use maulstick_paint::load::BrushLoad;
-use maulstick_paint::model::{Handling, PaintModel, Step, StepReport, Sweep};
-use maulstick_paint::traits::BrushTraits;
-use maulstick_paint::window::Window;
+use maulstick_canvas::window::Window;
+use maulstick_impasto::brush::load::BrushLoad;
+use maulstick_impasto::brush::traits::BrushTraits;
+use maulstick_impasto::model::{Handling, PaintModel, Step, StepReport, Sweep};
 
 /// A step without window and load.
 struct KeptStep {

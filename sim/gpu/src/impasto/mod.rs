@@ -27,10 +27,10 @@ mod workspace;
 
 use std::sync::Arc;
 
-use maulstick_paint::impasto::Impasto;
-use maulstick_paint::load::BrushLoad;
-use maulstick_paint::model::{PaintModel, Step, StepReport, Transfer};
-use maulstick_paint::window::Window;
+use maulstick_canvas::window::Window;
+use maulstick_impasto::Impasto;
+use maulstick_impasto::brush::load::BrushLoad;
+use maulstick_impasto::model::{PaintModel, Step, StepReport, Transfer};
 
 use crate::device::{Device, GpuError};
 use kept::KeptSteps;

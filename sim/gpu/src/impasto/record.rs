@@ -2,11 +2,11 @@
 
 use bytemuck::{Pod, Zeroable};
 use maulstick_brush::head::STATIONS;
-use maulstick_paint::head::border;
-use maulstick_paint::impasto::advection::STAIN;
-use maulstick_paint::impasto::band::{middle, rank};
-use maulstick_paint::model::{Step, Transfer};
-use maulstick_paint::quantum::CELL_MAX;
+use maulstick_canvas::quantum::CELL_MAX;
+use maulstick_impasto::brush::head::border;
+use maulstick_impasto::model::{Step, Transfer};
+use maulstick_impasto::stages::advection::STAIN;
+use maulstick_impasto::stages::band::{middle, rank};
 
 use super::residence::Residence;
 

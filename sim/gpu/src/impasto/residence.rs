@@ -3,10 +3,10 @@
 use bytemuck::{cast_slice, pod_collect_to_vec};
 use maulstick_brush::Head;
 use maulstick_brush::head::STATIONS;
-use maulstick_paint::load::BrushLoad;
-use maulstick_paint::model::Step;
-use maulstick_paint::quantum::SLOTS;
-use maulstick_paint::window::Window;
+use maulstick_canvas::quantum::SLOTS;
+use maulstick_canvas::window::Window;
+use maulstick_impasto::brush::load::BrushLoad;
+use maulstick_impasto::model::Step;
 use maulstick_types::paint::TILE;
 
 /// Most bytes of a buffer that every device can bind.

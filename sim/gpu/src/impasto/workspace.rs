@@ -5,9 +5,9 @@ use std::sync::Arc;
 
 use bytemuck::cast_slice;
 use maulstick_brush::Head;
-use maulstick_paint::load::BrushLoad;
-use maulstick_paint::model::StepReport;
-use maulstick_paint::window::Window;
+use maulstick_canvas::window::Window;
+use maulstick_impasto::brush::load::BrushLoad;
+use maulstick_impasto::model::StepReport;
 use wgpu::BufferUsages as Usage;
 
 use super::kernels::{Binding, Groups, KERNELS, PUSHES, Pipeline};

@@ -1,11 +1,12 @@
 //! A painting with a brush, strokes for it, and what two such paintings differ by.
 
+use maulstick_appearance::picture::{Depth, Export};
 use maulstick_brush::BrushFile;
 use maulstick_gpu::{Device, GpuImpasto};
 use maulstick_optics::PaintLibrary;
 use maulstick_optics::colour::{RgbSpace, apply, delta_e_2000, lab, srgb_decode};
-use maulstick_paint::picture::{Depth, Drawing, Export};
-use maulstick_paint::{Painting, PaintingSetup};
+use maulstick_painting::picture::flat_drawing;
+use maulstick_painting::{Painting, PaintingSetup};
 use maulstick_types::brush::{BrushState, Solve};
 use maulstick_types::scene::CANVAS;
 use maulstick_types::{Mixture, Pose};
@@ -136,7 +137,7 @@ pub(crate) fn all(painting: &mut Painting) -> Vec<Vec<u32>> {
 
 fn colours(painting: &mut Painting) -> Vec<[f64; 3]> {
     let export = Export::default();
-    let drawing = Drawing::flat(painting, CANVAS, &export).expect("a canvas");
+    let drawing = flat_drawing(painting, CANVAS, &export).expect("a canvas");
     let to_xyz = RgbSpace::Srgb.to_xyz();
     let white = apply(&to_xyz, [1.0; 3]);
     let mut colours = Vec::new();

@@ -1,7 +1,7 @@
 //! The stages of an impasto step on the device beside those of the processor, on the seeded scenes of
 //! these; whole strokes; a device that is lost.
 
-#[path = "../../../paint/tests/oracle/scene.rs"]
+#[path = "../../../impasto/tests/oracle/scene.rs"]
 #[allow(
     dead_code,
     reason = "the scenes of the paint's oracle: not all of it is used here"

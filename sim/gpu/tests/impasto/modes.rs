@@ -1,10 +1,10 @@
 //! Whole steps of a brush that is used otherwise than for painting, beside those of the processor.
 
+use maulstick_canvas::quantum::{Counts, SLOTS};
 use maulstick_gpu::GpuImpasto;
-use maulstick_paint::impasto::Impasto;
-use maulstick_paint::load::BrushLoad;
-use maulstick_paint::model::{Handling, PaintModel, StepReport, Transfer};
-use maulstick_paint::quantum::{Counts, SLOTS};
+use maulstick_impasto::Impasto;
+use maulstick_impasto::brush::load::BrushLoad;
+use maulstick_impasto::model::{Handling, PaintModel, StepReport, Transfer};
 
 use crate::device;
 use crate::scene::{Scene, lying};

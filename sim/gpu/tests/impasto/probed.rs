@@ -2,10 +2,10 @@
 
 use std::collections::BTreeMap;
 
+use maulstick_canvas::quantum::{QUANTA_PER_UNIT, SLOTS};
 use maulstick_gpu::impasto::probe::{Probe, Prober};
-use maulstick_paint::impasto::contact::Contact;
-use maulstick_paint::load::BrushLoad;
-use maulstick_paint::quantum::{QUANTA_PER_UNIT, SLOTS};
+use maulstick_impasto::brush::load::BrushLoad;
+use maulstick_impasto::stages::contact::Contact;
 
 use crate::scene::{PAINTS, Random, Scene};
 

@@ -1,7 +1,7 @@
 //! Whole strokes: beside those of the processor, twice the same, with the books in order.
 
 use maulstick_gpu::GpuError;
-use maulstick_paint::{Painting, Sequencer};
+use maulstick_painting::{Painting, Sequencer};
 use maulstick_types::brush::BrushState;
 use maulstick_types::paint::Entry;
 use maulstick_types::{Flags, Header, Message as _, name_hash};

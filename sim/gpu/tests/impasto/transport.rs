@@ -2,11 +2,11 @@
 
 use std::collections::BTreeMap;
 
+use maulstick_canvas::quantum::{CELL_MAX, QUANTA_PER_UNIT, SLOTS};
 use maulstick_gpu::impasto::probe::{Probe, Prober};
-use maulstick_paint::impasto::advection::STAIN;
-use maulstick_paint::impasto::velocity::{EASE, SQUISH, STABLE};
-use maulstick_paint::quantum::{CELL_MAX, QUANTA_PER_UNIT, SLOTS};
-use maulstick_paint::transfer::{Exchanging, SWAP_FILM};
+use maulstick_impasto::stages::advection::STAIN;
+use maulstick_impasto::stages::velocity::{EASE, SQUISH, STABLE};
+use maulstick_impasto::transfer::{Exchanging, SWAP_FILM};
 
 use crate::device;
 use crate::probed::{Grid, SLOW, ahead, run, scene};
@@ -295,7 +295,7 @@ fn paint_goes_both_ways() {
         let mut expected = exchanged(&probe, &pushed, rule);
         // In every second strip paint flows besides.
         expected.retain(|(is_cell, _, at), _| {
-            *is_cell || (at / maulstick_paint::traits::TEXELS_PER_STRIP).is_multiple_of(2)
+            *is_cell || (at / maulstick_impasto::brush::traits::TEXELS_PER_STRIP).is_multiple_of(2)
         });
         let mut scene = scene();
         let last = run(&mut prober, &mut scene, "bristle_flow");

@@ -1,12 +1,12 @@
 //! Paint within the head, on what the stages before left: beside the processor's.
 
+use maulstick_canvas::quantum::SLOTS;
 use maulstick_gpu::impasto::probe::Prober;
-use maulstick_paint::impasto::bristle_flow::flow;
-use maulstick_paint::impasto::contact::Contact;
-use maulstick_paint::impasto::seep::seep;
-use maulstick_paint::load::BrushLoad;
-use maulstick_paint::quantum::SLOTS;
-use maulstick_paint::traits::TEXELS_PER_STRIP;
+use maulstick_impasto::brush::load::BrushLoad;
+use maulstick_impasto::brush::traits::TEXELS_PER_STRIP;
+use maulstick_impasto::stages::bristle_flow::flow;
+use maulstick_impasto::stages::contact::Contact;
+use maulstick_impasto::stages::seep::seep;
 
 use crate::device;
 use crate::probed::{run, scene, stepped};

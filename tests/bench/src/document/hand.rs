@@ -6,7 +6,7 @@ use std::time::{Duration, Instant};
 use maulstick_brush::BrushFile;
 use maulstick_document::{Access, Document, DocumentSettings};
 use maulstick_optics::PaintLibrary;
-use maulstick_paint::{Painting, PaintingSetup, Sequencer};
+use maulstick_painting::{Painting, PaintingSetup, Sequencer};
 use maulstick_rig::Fault;
 use maulstick_session::Autosave;
 use maulstick_types::Pose;

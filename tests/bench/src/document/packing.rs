@@ -2,7 +2,7 @@
 
 use maulstick_document::pack::{History, pack};
 use maulstick_exchange::write_open_exr;
-use maulstick_paint::Painting;
+use maulstick_painting::Painting;
 use maulstick_rig::Fault;
 use maulstick_types::scene::CANVAS;
 

@@ -8,9 +8,9 @@
 use std::path::Path;
 
 use eframe::egui::{CollapsingHeader, DragValue, Key, TextEdit, Ui};
-use maulstick_paint::assets::{IMAGE, SPECTRUM};
-use maulstick_paint::setup::GROUNDS;
-use maulstick_paint::tooth;
+use maulstick_appearance::ground::GROUNDS;
+use maulstick_canvas::assets::{IMAGE, SPECTRUM};
+use maulstick_canvas::relief::tooth;
 use maulstick_types::edits::{Ground, Piles, Place, Size, Tooth};
 use maulstick_types::scene::{CANVAS, PALETTE, Surface};
 use maulstick_types::values::{MaterialName, StainThickness};

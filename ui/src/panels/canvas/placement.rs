@@ -60,7 +60,7 @@ impl Posture {
 
 #[cfg(test)]
 mod tests {
-    use maulstick_paint::PaintingSetup;
+    use maulstick_painting::PaintingSetup;
 
     use super::*;
 

@@ -1,7 +1,7 @@
 //! Controls for drying: share, region, at once or over time.
 
 use eframe::egui::{DragValue, ProgressBar, TextEdit, Ui};
-use maulstick_paint::clock::TICKS_A_SECOND;
+use maulstick_painting::clock::TICKS_A_SECOND;
 use maulstick_types::Region;
 use maulstick_types::command::DRYING_TICKS;
 use maulstick_types::edits::{Dry, StopDrying, Wet};

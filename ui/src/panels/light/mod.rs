@@ -8,8 +8,8 @@
 use std::path::Path;
 
 use eframe::egui::{CollapsingHeader, TextEdit, TextureHandle, TextureOptions, Ui};
+use maulstick_appearance::light::changes_colour;
 use maulstick_optics::cie::ILLUMINANTS;
-use maulstick_paint::light::changes_colour;
 use maulstick_types::edits::Relight;
 use maulstick_types::scene::{Light, RULES, SAMPLES};
 use maulstick_types::values::ValueError;

@@ -1,8 +1,8 @@
 //! A ball lit by the lamp, seen from above.
 
 use eframe::egui::{Color32, ColorImage, Rgba};
+use maulstick_appearance::light::cast;
 use maulstick_optics::light::{AMBIENT, Lamp, LampSetup};
-use maulstick_paint::light::cast;
 use maulstick_types::scene::Light;
 
 /// Side of the picture, pixels.

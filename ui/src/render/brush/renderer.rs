@@ -6,11 +6,11 @@ use std::sync::Arc;
 use eframe::egui::{Pos2, Shape};
 use eframe::egui_wgpu::wgpu;
 use glam::{DVec3, Vec2, Vec3};
+use maulstick_appearance::picture::Export;
 use maulstick_brush::desk::{Desk, Plane};
 use maulstick_brush::{Head, HeadPose, Hold};
 use maulstick_num::geometry::Rigid;
 use maulstick_optics::light::Lamp;
-use maulstick_paint::picture::Export;
 use maulstick_types::scene::{CANVAS, PALETTE};
 
 use crate::render::brush::bristles::{Bristles, ribbons, tones};

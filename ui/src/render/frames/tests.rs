@@ -1,5 +1,5 @@
 use half::f16;
-use maulstick_paint::display::DisplayTile;
+use maulstick_appearance::display::DisplayTile;
 
 use maulstick_bus::typed::Reader;
 use maulstick_bus::{Faults, MemoryNet, Request, Server};

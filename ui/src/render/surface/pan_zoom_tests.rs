@@ -2,10 +2,10 @@
 
 use eframe::egui::{Rect, pos2, vec2};
 use glam::{DVec2, DVec3};
+use maulstick_appearance::display::DisplayTile;
+use maulstick_canvas::planes::TILE_CELLS;
 use maulstick_num::geometry::rotation;
 use maulstick_optics::light::shadow::REACH;
-use maulstick_paint::display::DisplayTile;
-use maulstick_paint::planes::TILE_CELLS;
 use maulstick_types::FrameView;
 use maulstick_types::paint::TILE;
 

@@ -1,7 +1,7 @@
 use maulstick_brush::BrushModel;
 use maulstick_bus::typed::Sender;
 use maulstick_bus::{Faults, MemoryBus, MemoryNet};
-use maulstick_paint::PaintingSetup;
+use maulstick_painting::PaintingSetup;
 use maulstick_types::Origin;
 use maulstick_types::stylus::{DEFAULT_TILT_RAD, StylusPose};
 

@@ -1,7 +1,7 @@
 // What each cell wants of its texel and offers it (Baxter 2004, Algorithm 3, by path length), summed by
 // texel.
 
-// Constants of transfer.rs in maulstick-paint.
+// Constants of transfer.rs in maulstick-impasto.
 override SWAP_FILM: f32;
 
 // Share of a gap that fills where `share` of a difference evens out: 1 − (1 − share)¹⁶.

@@ -1,5 +1,5 @@
 // Paint between bristles: where a film has become thinner than the one beside it, so much of the fuller one
-// seeps over that they even out (seep.rs in maulstick-paint). An invocation evens out two texels.
+// seeps over that they even out (seep.rs in maulstick-impasto). An invocation evens out two texels.
 
 // The first pass goes between strips that stand beside each other, the second one along each strip.
 override second: u32 = 0u;

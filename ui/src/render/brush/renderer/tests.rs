@@ -1,9 +1,9 @@
 use eframe::egui::{Color32, Rect, pos2, vec2};
 use eframe::egui_wgpu::wgpu::util::DeviceExt as _;
 use glam::DVec2;
+use maulstick_appearance::lamp::lamp_over;
 use maulstick_brush::{BrushFile, BrushModel};
-use maulstick_paint::PaintingSetup;
-use maulstick_paint::lamp::lamp_over;
+use maulstick_painting::PaintingSetup;
 use maulstick_types::Origin;
 use maulstick_types::scene::Scene;
 use maulstick_types::stylus::{DEFAULT_TILT_RAD, StylusPose, StylusSample};

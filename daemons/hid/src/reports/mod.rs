@@ -1,0 +1,11 @@
+//! Reports of HID devices: descriptors, layouts, the devices of this machine, recordings.
+
+pub mod descriptor;
+pub mod device_source;
+pub mod hidraw;
+pub mod layout;
+pub mod recorder;
+pub mod recording;
+pub mod report_stream;
+pub mod units;
+pub mod wacom;

@@ -1,0 +1,330 @@
+//! Appearance of a painting under its light: the studio, the opacity of its dry layers, and those layers baked into the
+//! reflectances of the ground under the wet paint (Baxter 2004, § 7.8).
+
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
+use maulstick_canvas::dry::{DryLayer, DryStack};
+use maulstick_canvas::planes::{Planes, TILE_CELLS};
+use maulstick_canvas::quantum::QUANTUM_M;
+use maulstick_canvas::tile::TileId;
+use maulstick_optics::backend::FilmBackend;
+use maulstick_optics::{FilmPlanes, Studio, Under};
+use maulstick_types::scene::Layer;
+
+/// Baked tiles take this much at most, bytes; one with sixteen wavelengths takes 256 KiB.
+const KEPT_BYTES: usize = 128 << 20;
+
+/// Everything that turns the paint of a tile into colour.
+#[derive(Clone, Debug)]
+pub struct Appearance {
+    /// The optics of the paints in use.
+    pub studio: Studio,
+    /// Slot of the thinner, if it is in use.
+    pub thinner: Option<usize>,
+    /// Factor on the optical thickness of dry layers by number, where it is not 1.
+    opacities: BTreeMap<u32, f32>,
+    generation: u64,
+    print: i64,
+}
+
+impl Appearance {
+    /// The first look of a painting.
+    #[must_use]
+    pub fn new(studio: Studio) -> Self {
+        Self {
+            studio,
+            thinner: None,
+            opacities: BTreeMap::new(),
+            generation: 0,
+            print: 0,
+        }
+    }
+
+    /// Content hash: looks with equal hashes show the same paint alike, in every process.
+    #[must_use]
+    pub fn print(&self) -> i64 {
+        self.print
+    }
+
+    /// Notes what it is made of.
+    pub fn note(&mut self, made_of: &str) {
+        // FNV-1a, 64 bits (Fowler, Noll, Vo).
+        let hash = made_of
+            .bytes()
+            .fold(0xcbf2_9ce4_8422_2325, |hash: u64, byte| {
+                (hash ^ u64::from(byte)).wrapping_mul(0x0000_0100_0000_01b3)
+            });
+        self.print = hash as i64;
+    }
+
+    /// Grows when light or opacities change: what was baked and shown before is to be done anew.
+    #[must_use]
+    pub fn generation(&self) -> u64 {
+        self.generation
+    }
+
+    /// The look under another light; `studio` has the same paints in the same slots.
+    pub fn relight(&mut self, studio: Studio) {
+        self.studio = studio;
+        self.generation += 1;
+    }
+
+    /// The look of surfaces that were made anew.
+    pub fn renew(&mut self) {
+        self.generation += 1;
+    }
+
+    /// Takes over the opacities of `layers`.
+    pub fn set_layers(&mut self, layers: &[Layer]) {
+        let changed = layers.iter().filter(|layer| layer.opacity != 1.0);
+        let opacities = changed.map(|layer| (layer.number, layer.opacity)).collect();
+        if self.opacities != opacities {
+            self.opacities = opacities;
+            self.generation += 1;
+        }
+    }
+
+    /// Internal reflectances over `under` with one more dry layer. If the backend fails, which is a fault of the
+    /// program, the layer is left out.
+    fn with_layer(
+        &self,
+        layer: &DryLayer,
+        under: Under<'_>,
+        backend: &mut dyn FilmBackend,
+    ) -> Vec<f32> {
+        let films = thickness(&layer.planes.get());
+        let paints: Vec<(usize, &[f32])> = films
+            .iter()
+            .map(|(slot, film)| (*slot, film.as_slice()))
+            .collect();
+        let opacity = self.opacities.get(&layer.number).copied().unwrap_or(1.0);
+        let films = FilmPlanes {
+            paints: &paints,
+            opacity,
+            under,
+        };
+        let baked = backend.bake(&self.studio, &[films]).ok();
+        baked.and_then(|mut tiles| tiles.pop()).unwrap_or_else(|| {
+            let nothing = FilmPlanes {
+                paints: &[],
+                ..films
+            };
+            self.studio.bake(&nothing, TILE_CELLS)
+        })
+    }
+
+    /// Internal reflectances of a stack over a ground, from `baked`, those of the stack's lower part
+    /// `known`, on.
+    fn bake(
+        &self,
+        stack: &DryStack,
+        ground: Under<'_>,
+        known: Option<(&DryStack, &[f32])>,
+        backend: &mut dyn FilmBackend,
+    ) -> Vec<f32> {
+        let mut above: Vec<&DryStack> = Vec::new();
+        let mut next = Some(stack);
+        let mut start = None;
+        while let Some(link) = next {
+            if let Some((stack, baked)) = known
+                && std::ptr::eq(stack, link)
+            {
+                start = Some(baked.to_vec());
+                break;
+            }
+            above.push(link);
+            next = link.below().map(|below| &**below);
+        }
+        let mut baked = start;
+        for link in above.iter().rev() {
+            let under = baked
+                .as_ref()
+                .map_or(ground, |planes| Under::Planes(planes));
+            baked = Some(self.with_layer(link.layer(), under, backend));
+        }
+        baked.unwrap_or_default()
+    }
+}
+
+/// Thickness of each paint of planes of counts, m, by slot.
+#[must_use]
+pub(crate) fn thickness(planes: &Planes) -> Vec<(usize, Vec<f32>)> {
+    let film = |plane: &[f32]| plane.iter().map(|count| count * QUANTUM_M as f32).collect();
+    planes
+        .iter()
+        .map(|(slot, plane)| (*slot, film(plane)))
+        .collect()
+}
+
+/// A baked tile: of which stack, and when it was last looked at.
+#[derive(Debug)]
+struct Baked {
+    stack: Arc<DryStack>,
+    planes: Arc<[f32]>,
+    used: u64,
+}
+
+/// Baked tiles of one look, cached until they are next looked at.
+#[derive(Debug, Default)]
+pub struct Bakery {
+    kept: BTreeMap<(u32, TileId), Baked>,
+    bytes: usize,
+    looks: u64,
+    generation: u64,
+}
+
+impl Bakery {
+    /// True if a tile of a surface need not be baked.
+    #[must_use]
+    pub fn holds(
+        &self,
+        look: &Appearance,
+        surface: u32,
+        id: TileId,
+        stack: &Arc<DryStack>,
+    ) -> bool {
+        let kept = self.kept.get(&(surface, id));
+        self.generation == look.generation
+            && kept.is_some_and(|kept| Arc::ptr_eq(&kept.stack, stack))
+    }
+
+    /// Internal reflectances of what has dried on a tile, a plane a wavelength, over `ground`. Of a
+    /// stack that only grew since, just the new layers are computed.
+    pub fn planes(
+        &mut self,
+        (look, backend): (&Appearance, &mut dyn FilmBackend),
+        surface: u32,
+        id: TileId,
+        (stack, ground): (&Arc<DryStack>, Under<'_>),
+    ) -> Arc<[f32]> {
+        if self.generation != look.generation {
+            self.kept.clear();
+            (self.generation, self.bytes) = (look.generation, 0);
+        }
+        self.looks += 1;
+        let (place, used) = ((surface, id), self.looks);
+        let kept = self.kept.get_mut(&place);
+        if let Some(kept) = kept
+            && Arc::ptr_eq(&kept.stack, stack)
+        {
+            kept.used = used;
+            return Arc::clone(&kept.planes);
+        }
+        let kept = self.kept.remove(&place);
+        self.bytes -= kept.as_ref().map_or(0, |kept| size_of_val(&*kept.planes));
+        let known = kept.as_ref().map(|kept| (&*kept.stack, &*kept.planes));
+        let planes: Arc<[f32]> = look.bake(stack, ground, known, backend).into();
+        self.bytes += size_of_val(&*planes);
+        while self.bytes > KEPT_BYTES {
+            let oldest = self.kept.iter().min_by_key(|(_, kept)| kept.used);
+            let Some(place) = oldest.map(|(place, _)| *place) else {
+                break;
+            };
+            let gone = self.kept.remove(&place);
+            self.bytes -= gone.map_or(0, |gone| size_of_val(&*gone.planes));
+        }
+        let (stack, shared) = (Arc::clone(stack), Arc::clone(&planes));
+        self.kept.insert(
+            place,
+            Baked {
+                stack,
+                planes: shared,
+                used,
+            },
+        );
+        planes
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use maulstick_optics::PaintLibrary;
+    use maulstick_optics::backend::CpuFilms;
+
+    use super::*;
+
+    fn look() -> Appearance {
+        let library = PaintLibrary::measured().expect("whole");
+        let mut studio = Studio::daylight();
+        studio.add(library.find("Ultramarine Blue").expect("known"));
+        studio.add(library.find("Hansa Yellow Opaque").expect("known"));
+        Appearance::new(studio)
+    }
+
+    fn layer(number: u32, slot: usize, quanta: usize) -> DryLayer {
+        let plane: Arc<[f32]> = (0..TILE_CELLS).map(|i| (i % 5 * quanta) as f32).collect();
+        DryLayer {
+            number,
+            planes: maulstick_canvas::page::Page::loose(vec![(slot, plane)]),
+        }
+    }
+
+    #[test]
+    fn a_stack_that_grew_is_baked_as_one_that_is_baked_anew() {
+        let look = look();
+        let even = vec![0.9; look.studio.wavelengths()];
+        let ground = Under::Even(&even);
+        let id = TileId { x: 0, y: 0 };
+        let first = DryStack::over(None, layer(1, 0, 9000));
+        let second = DryStack::over(Some(Arc::clone(&first)), layer(2, 1, 4000));
+        let mut grown = Bakery::default();
+        grown.planes((&look, &mut CpuFilms::new()), 0, id, (&first, ground));
+        assert!(!grown.holds(&look, 0, id, &second));
+        let one = grown.planes((&look, &mut CpuFilms::new()), 0, id, (&second, ground));
+        let two = Bakery::default().planes((&look, &mut CpuFilms::new()), 0, id, (&second, ground));
+        assert!(one == two && grown.holds(&look, 0, id, &second));
+        // Back to the older stack, as an undo goes.
+        let back = grown.planes((&look, &mut CpuFilms::new()), 0, id, (&first, ground));
+        assert!(
+            back == Bakery::default().planes(
+                (&look, &mut CpuFilms::new()),
+                0,
+                id,
+                (&first, ground)
+            )
+        );
+        assert!(back != one);
+    }
+
+    #[test]
+    fn opacity_scales_the_optical_thickness_and_is_baked_anew() {
+        let mut look = look();
+        let even = vec![0.9; look.studio.wavelengths()];
+        let ground = Under::Even(&even);
+        let id = TileId { x: 0, y: 0 };
+        let stack = DryStack::over(None, layer(7, 0, 8000));
+        let mut bakery = Bakery::default();
+        let full = bakery.planes((&look, &mut CpuFilms::new()), 0, id, (&stack, ground));
+        let set = |look: &mut Appearance, opacity: f32| {
+            look.set_layers(&[Layer {
+                number: 7,
+                name: String::new(),
+                opacity,
+            }]);
+        };
+        set(&mut look, 0.5);
+        assert!(!bakery.holds(&look, 0, id, &stack));
+        let half = bakery.planes((&look, &mut CpuFilms::new()), 0, id, (&stack, ground));
+        let thinner = DryStack::over(None, layer(7, 0, 4000));
+        set(&mut look, 1.0);
+        let same =
+            Bakery::default().planes((&look, &mut CpuFilms::new()), 0, id, (&thinner, ground));
+        assert!(
+            half.iter()
+                .zip(same.iter())
+                .all(|(a, b)| (a - b).abs() < 1e-6)
+        );
+        assert!(
+            half.iter()
+                .zip(full.iter())
+                .any(|(a, b)| (a - b).abs() > 1e-2)
+        );
+        set(&mut look, 0.0);
+        let none = bakery.planes((&look, &mut CpuFilms::new()), 0, id, (&stack, ground));
+        assert!(
+            none.iter().all(|r| (r - 0.9).abs() < 1e-6),
+            "the ground shows"
+        );
+    }
+}

@@ -1,0 +1,84 @@
+//! A surface where no brush has been: its ground, its relief, and the paint in its wells.
+//!
+//! A well's paint is booked when a brush first comes to it; until then it is only shown.
+
+use std::sync::Arc;
+
+use maulstick_canvas::relief::Relief;
+use maulstick_canvas::tile::TileId;
+use maulstick_optics::{FilmPlanes, Studio, Under};
+use maulstick_types::paint::TILE;
+
+use crate::ground::Ground;
+
+/// Thickness of the paint in a well, m.
+pub const WELL_M: f64 = 2e-3;
+
+/// A well as it looks.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct WellLook {
+    /// Its middle, cells.
+    pub center: [f64; 2],
+    /// Its radius, cells.
+    pub radius: f64,
+    /// Its unlit colour, linear sRGB.
+    pub rgb: [f32; 3],
+    /// Height of its paint, m.
+    pub height_m: f32,
+}
+
+/// The cleaner, as it looks: a jar of spirits, linear sRGB.
+pub const CLEANER_RGB: [f32; 3] = [0.30, 0.37, 0.40];
+
+/// A surface without what was painted on it.
+#[derive(Clone, Debug)]
+pub struct BlankSurface {
+    /// Ground that it is primed with.
+    pub ground: Ground,
+    /// Heights of the ground under the paint.
+    pub relief: Arc<Relief>,
+    /// Its wells.
+    pub wells: Vec<WellLook>,
+}
+
+impl BlankSurface {
+    /// The cells of a tile that lie in a well, by their place in the tile, with the well.
+    pub fn in_wells(&self, id: TileId) -> impl Iterator<Item = (usize, &WellLook)> {
+        let corner = [f64::from(id.x), f64::from(id.y)].map(|tile| tile * TILE as f64);
+        self.wells.iter().flat_map(move |well| {
+            let span = |i: usize| {
+                let inside = |cell: f64| (cell - corner[i]).clamp(0.0, TILE as f64) as usize;
+                inside((well.center[i] - well.radius).floor())
+                    ..inside((well.center[i] + well.radius).ceil())
+            };
+            let across = span(0);
+            span(1)
+                .flat_map(move |y| across.clone().map(move |x| (x, y)))
+                .filter(move |(x, y)| {
+                    let dx = corner[0] + *x as f64 + 0.5 - well.center[0];
+                    let dy = corner[1] + *y as f64 + 0.5 - well.center[1];
+                    dx * dx + dy * dy < well.radius * well.radius
+                })
+                .map(move |(x, y)| (y * TILE + x, well))
+        })
+    }
+}
+
+/// The colour of paint as thick as in a well: its slots and shares in `studio`.
+#[must_use]
+pub fn well_colour(studio: &Studio, shares: &[(usize, f64)], ground: &[f32]) -> [f32; 3] {
+    let films: Vec<(usize, [f32; 1])> = shares
+        .iter()
+        .map(|(slot, share)| (*slot, [(share * WELL_M) as f32]))
+        .collect();
+    let paints: Vec<(usize, &[f32])> = films.iter().map(|(slot, d)| (*slot, &d[..])).collect();
+    let mut rgb = [[0.0f32]; 3];
+    let [red, green, blue] = &mut rgb;
+    let planes = FilmPlanes {
+        paints: &paints,
+        opacity: 1.0,
+        under: Under::Even(ground),
+    };
+    studio.shade(&planes, [red, green, blue]);
+    rgb.map(|channel| channel[0])
+}

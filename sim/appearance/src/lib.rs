@@ -1,0 +1,49 @@
+//! Paint under light: what the counts of a canvas look like.
+//!
+//! Pure: tiles, a ground and a light come in, colour, gloss and height go out, and pictures of whole surfaces.
+//!
+//! | module | holds |
+//! | --- | --- |
+//! | [`Appearance`], [`Bakery`] | optics of the paints in use, opacity of dry layers, and those layers baked |
+//! | [`light`], [`lamp`] | the scene's light as input of the optics, and its lamp over a surface |
+//! | [`ground`], [`blank_surface`] | what lies under the paint, and a surface without any |
+//! | [`display`] | a tile as it is shown before light: colour, gloss, height |
+//! | [`bands`] | a surface row of tiles by row of tiles |
+//! | [`picture`] | surfaces under light as pixels |
+//!
+//! A film of 40 µm of ultramarine is darker over grey than over gesso:
+//!
+//! ```
+//! use maulstick_appearance::display::WetFilms;
+//! use maulstick_appearance::ground::Ground;
+//! use maulstick_canvas::assets::Assets;
+//! use maulstick_canvas::planes::TILE_CELLS;
+//! use maulstick_canvas::quantum::QUANTUM_M;
+//! use maulstick_canvas::tile::{Tile, TileId};
+//! use maulstick_optics::{PaintLibrary, Studio};
+//!
+//! # fn main() -> Result<(), Box<dyn std::error::Error>> {
+//! let mut studio = Studio::daylight();
+//! let blue = studio.add(PaintLibrary::measured()?.find("Ultramarine Blue")?);
+//! let counts = (40e-6 / QUANTUM_M).round() as f32;
+//! let tile = Tile::new([(blue, vec![counts; TILE_CELLS].into())].into_iter(), None);
+//! let films = WetFilms::of(Some(&tile));
+//! let [gesso, grey] = ["gesso", "grey"]
+//!     .map(|name| Ground::called(name, [64, 64], &studio, &Assets::default()));
+//! let [over_gesso, over_grey] = [gesso?, grey?]
+//!     .map(|ground| films.shade(&studio, ground.tile(TileId { x: 0, y: 0 }).under()));
+//! assert!(over_grey[2][0] < over_gesso[2][0]);
+//! # Ok(())
+//! # }
+//! ```
+
+mod appearance;
+pub mod bands;
+pub mod blank_surface;
+pub mod display;
+pub mod ground;
+pub mod lamp;
+pub mod light;
+pub mod picture;
+
+pub use appearance::{Appearance, Bakery};

@@ -1,0 +1,77 @@
+//! The scene's light as input of the optics.
+
+use maulstick_canvas::EditError;
+use maulstick_optics::colour::apply;
+use maulstick_optics::{Illuminant, Observer, RuleKind, Spectrum, StudioSettings};
+use maulstick_types::scene::Light;
+
+/// Optical settings of the light; its direction and strength are not among them.
+///
+/// # Errors
+/// [`EditError`] for a light out of bounds, or a name of no illuminant.
+pub fn studio_settings(light: &Light) -> Result<StudioSettings, EditError> {
+    light.check()?;
+    let spectrum: Result<[f64; maulstick_optics::spectrum::SAMPLES], _> =
+        light.spectrum.as_slice().try_into();
+    let illuminant = match spectrum {
+        Ok(power) => {
+            let found = Illuminant {
+                name: light.illuminant.clone(),
+                power: Spectrum(power),
+            };
+            found.check().map_err(EditError::Dark)?;
+            found
+        }
+        Err(_) => illuminant_named(&light.illuminant)?,
+    };
+    Ok(StudioSettings {
+        light: illuminant,
+        observer: match light.observer {
+            1964 => Observer::Cie1964,
+            _ => Observer::Cie1931,
+        },
+        rule: RuleKind::named(&light.rule).unwrap_or_default(),
+        samples: light.samples as usize,
+        adapted: light.adapted,
+    })
+}
+
+/// One of the CIE's illuminants.
+///
+/// # Errors
+/// [`EditError`] with the nearest name and all of them.
+pub fn illuminant_named(name: &str) -> Result<Illuminant, EditError> {
+    Illuminant::named(name).ok_or_else(|| EditError::NoIlluminant {
+        name: name.to_owned(),
+        known: maulstick_optics::cie::ILLUMINANTS.to_vec(),
+    })
+}
+
+/// The light's own colour in linear sRGB: white to an eye that is adapted to it.
+#[must_use]
+pub fn cast(light: &Light) -> [f64; 3] {
+    if light.adapted {
+        return [1.0; 3];
+    }
+    studio_settings(light).map_or([1.0; 3], |settings| {
+        apply(&settings.to_rgb(), settings.white())
+    })
+}
+
+/// True if two lights differ in their optical settings, so that all colours are to be computed anew.
+#[must_use]
+pub fn changes_colour(one: &Light, other: &Light) -> bool {
+    let spectral = |light: &Light| {
+        let Light {
+            illuminant,
+            spectrum,
+            observer,
+            rule,
+            samples,
+            adapted,
+            ..
+        } = light.clone();
+        (illuminant, spectrum, observer, rule, samples, adapted)
+    };
+    spectral(one) != spectral(other)
+}

@@ -1,0 +1,6 @@
+//! The brush that follows a stylus: the path between samples, the lead, the mark.
+
+pub mod handle_path;
+pub mod lead;
+pub mod mark;
+pub mod model;

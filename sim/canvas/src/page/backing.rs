@@ -1,0 +1,41 @@
+//! Content of pages, and the document that holds those that are not in memory.
+
+use std::any::{Any, TypeId};
+
+use crate::planes::{Planes, TILE_CELLS};
+
+/// Storage of pages that are not in memory.
+pub trait Backing: Send + Sync {
+    /// Reads a page whose [`Content`] has the type `kind`: the box holds that type.
+    ///
+    /// # Errors
+    /// The defect, in words.
+    fn read(&self, id: u64, kind: TypeId) -> Result<Box<dyn Any>, String>;
+}
+
+/// Content of a page.
+pub trait Content: Send + Sync + Sized + 'static {
+    /// Bytes in memory.
+    fn bytes(&self) -> usize;
+    /// Stand-in for a page that cannot be read.
+    fn nothing() -> Self;
+}
+
+impl dyn Backing {
+    /// Reads a page of a kind that is known.
+    pub(super) fn fetch<T: Content>(&self, id: u64) -> Result<T, String> {
+        let read = self.read(id, TypeId::of::<T>())?.downcast();
+        let content = read.map_err(|_| format!("page {id} holds something else"))?;
+        Ok(*content)
+    }
+}
+
+impl Content for Planes {
+    fn bytes(&self) -> usize {
+        self.len() * TILE_CELLS * size_of::<f32>()
+    }
+
+    fn nothing() -> Self {
+        Self::new()
+    }
+}

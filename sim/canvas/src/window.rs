@@ -1,0 +1,396 @@
+//! A window: leased tiles copied into contiguous planes, on which the kernels work.
+
+use std::sync::Arc;
+
+use maulstick_types::paint::TILE;
+
+use crate::dry::DryStack;
+use crate::quantum::{QUANTUM_M, SLOTS};
+use crate::relief::Relief;
+use crate::relief::ride::ride;
+use crate::store::{TileRect, TileStore};
+use crate::tile::{Tile, TileId, Version};
+
+/// A rectangle of a window's cells.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Area {
+    /// Its lowest column and row.
+    pub from: [usize; 2],
+    /// Columns and rows.
+    pub size: [usize; 2],
+}
+
+impl Area {
+    /// True if it has no cell.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        self.size.contains(&0)
+    }
+
+    /// Its lower and its upper rows, half of them each.
+    #[must_use]
+    pub fn halves(&self) -> [Self; 2] {
+        let lower = self.size[1] / 2;
+        let upper = Self {
+            from: [self.from[0], self.from[1] + lower],
+            size: [self.size[0], self.size[1] - lower],
+        };
+        let size = [self.size[0], lower];
+        [Self { size, ..*self }, upper]
+    }
+
+    /// Number of its cells.
+    #[must_use]
+    pub fn cells(&self) -> usize {
+        self.size[0] * self.size[1]
+    }
+
+    /// Its rows as ranges of the planes of a window of this width.
+    pub fn rows(&self, width: usize) -> impl Iterator<Item = std::ops::Range<usize>> + use<> {
+        let (from, size) = (self.from, self.size);
+        (0..size[1]).map(move |y| {
+            let start = (from[1] + y) * width + from[0];
+            start..start + size[0]
+        })
+    }
+}
+
+/// The planes of a rectangle of tiles, row after row from the bottom.
+#[derive(Debug)]
+pub struct Window {
+    rect: TileRect,
+    width: usize,
+    height: usize,
+    limit: [usize; 2],
+    wet: [Option<Vec<f32>>; SLOTS],
+    base: Vec<f32>,
+    ride: Vec<f32>,
+    ride_below: f32,
+    /// Dried paint of each tile.
+    dry: Vec<Option<Arc<DryStack>>>,
+    top: f32,
+    dirty: Vec<bool>,
+}
+
+impl Window {
+    /// Leases `rect` and copies its tiles; `None` if it is leased already. `relief` gives the heights that catch paint,
+    /// m.
+    pub fn open(store: &mut TileStore, rect: TileRect, relief: &Relief) -> Option<Self> {
+        if !store.lease(&rect) {
+            return None;
+        }
+        let [width, height] = rect.cells();
+        let tiles = rect.tiles().count();
+        let surface = store.cells().map(|cells| cells as usize);
+        let mut window = Self {
+            rect,
+            width,
+            height,
+            limit: [0, 1].map(|i| rect.cells()[i].min(surface[i] - rect.from[i] as usize * TILE)),
+            wet: [const { None }; SLOTS],
+            base: vec![0.0; width * height],
+            ride: Vec::new(),
+            ride_below: relief.depth_m() as f32 * relief.cells_per_m(),
+            dry: rect
+                .tiles()
+                .map(|id| store.version(id).tile.as_ref()?.dry().cloned())
+                .collect(),
+            top: 0.0,
+            dirty: vec![false; tiles],
+        };
+        for id in rect.tiles() {
+            let start = window.corner(id);
+            let heights = relief.tile(id);
+            for (row, heights) in heights.chunks_exact(TILE).enumerate() {
+                let to = &mut window.base[start + row * width..][..TILE];
+                to.iter_mut()
+                    .zip(heights)
+                    .for_each(|(base, m)| *base = m * relief.cells_per_m());
+            }
+        }
+        window.lay_dry(relief.cells_per_m() * QUANTUM_M as f32);
+        window.ride = ride(&window.base, width, f64::from(relief.cells_per_m()));
+        for id in rect.tiles() {
+            let Some(tile) = &store.version(id).tile else {
+                continue;
+            };
+            let start = window.corner(id);
+            for (slot, plane) in &*tile.wet() {
+                let to = window.wet[*slot].get_or_insert_with(|| vec![0.0; width * height]);
+                for (row, cells) in plane.chunks_exact(TILE).enumerate() {
+                    to[start + row * width..][..TILE].copy_from_slice(cells);
+                }
+            }
+        }
+        Some(window)
+    }
+
+    /// Raises what catches paint by what has dried on it.
+    fn lay_dry(&mut self, cells_per_quantum: f32) {
+        for (place, id) in self.rect.tiles().enumerate() {
+            let Some(stack) = self.dry[place].clone() else {
+                continue;
+            };
+            let start = self.corner(id);
+            for (row, dry) in stack.height().chunks_exact(TILE).enumerate() {
+                let to = &mut self.base[start + row * self.width..][..TILE];
+                for (base, quanta) in to.iter_mut().zip(dry) {
+                    *base += quanta * cells_per_quantum;
+                }
+            }
+        }
+    }
+
+    /// Columns and rows, from the lower left corner, that are on the surface.
+    #[must_use]
+    pub fn limit(&self) -> [usize; 2] {
+        self.limit
+    }
+
+    /// Height of what catches paint, tooth and dry relief, cells; at most 0 where nothing is dry.
+    #[must_use]
+    pub fn base(&self) -> &[f32] {
+        &self.base
+    }
+
+    /// Height of a pressed bristle on the relief ([`ride`]), cells.
+    #[must_use]
+    pub fn ride(&self) -> &[f32] {
+        &self.ride
+    }
+
+    /// Lowest ride anywhere on the surface, cells below 0: a step must not depend on what else its window holds.
+    #[must_use]
+    pub fn ride_below(&self) -> f32 {
+        self.ride_below
+    }
+
+    /// The highest that brushes have met paint in the window, wet on dry, quanta.
+    #[must_use]
+    pub fn top(&self) -> f32 {
+        self.top
+    }
+
+    /// Notes that paint stands so high, quanta.
+    pub fn note_top(&mut self, quanta: f32) {
+        self.top = self.top.max(quanta);
+    }
+
+    /// The tiles.
+    #[must_use]
+    pub fn rect(&self) -> TileRect {
+        self.rect
+    }
+
+    /// Cells across.
+    #[must_use]
+    pub fn width(&self) -> usize {
+        self.width
+    }
+
+    /// Cells up.
+    #[must_use]
+    pub fn height(&self) -> usize {
+        self.height
+    }
+
+    /// The surface's cell at the window's lower left corner.
+    #[must_use]
+    pub fn origin(&self) -> [i64; 2] {
+        self.rect.from.map(|tile| i64::from(tile) * TILE as i64)
+    }
+
+    /// The plane of a slot, made if it is not there.
+    pub fn plane_mut(&mut self, slot: usize) -> &mut Vec<f32> {
+        let cells = self.width * self.height;
+        self.wet[slot].get_or_insert_with(|| vec![0.0; cells])
+    }
+
+    /// The plane of a slot, if it is in use.
+    #[must_use]
+    pub fn plane(&self, slot: usize) -> Option<&[f32]> {
+        self.wet[slot].as_deref()
+    }
+
+    /// The planes in use, in order of slot.
+    pub fn planes(&self) -> impl Iterator<Item = (usize, &[f32])> {
+        self.wet
+            .iter()
+            .enumerate()
+            .filter_map(|(slot, plane)| Some((slot, plane.as_deref()?)))
+    }
+
+    /// The planes in use.
+    pub fn planes_mut(&mut self) -> impl Iterator<Item = (usize, &mut Vec<f32>)> {
+        self.wet
+            .iter_mut()
+            .enumerate()
+            .filter_map(|(slot, plane)| Some((slot, plane.as_mut()?)))
+    }
+
+    /// The planes in two parts, each with as many that are in use, or one more.
+    pub fn planes_halved(&mut self) -> [&mut [Option<Vec<f32>>]; 2] {
+        let used = self.wet.iter().flatten().count();
+        let mut left = used.div_ceil(2);
+        let first = self.wet.iter().position(|plane| {
+            let over = left == 0;
+            left -= usize::from(plane.is_some() && !over);
+            over
+        });
+        let (one, other) = self.wet.split_at_mut(first.unwrap_or(SLOTS));
+        [one, other]
+    }
+
+    /// Counts of all paints in a cell.
+    #[must_use]
+    pub fn total(&self, cell: usize) -> f32 {
+        self.wet.iter().flatten().map(|plane| plane[cell]).sum()
+    }
+
+    /// The cells `from`..`to` of the surface, as far as they are in the window and on the surface.
+    #[must_use]
+    pub fn area(&self, from: [i64; 2], to: [i64; 2]) -> Area {
+        let origin = self.origin();
+        let inside =
+            |value: i64, i: usize| (value - origin[i]).clamp(0, self.limit[i] as i64) as usize;
+        let from = [0, 1].map(|i| inside(from[i], i));
+        Area {
+            from,
+            size: [0, 1].map(|i| inside(to[i], i).saturating_sub(from[i])),
+        }
+    }
+
+    /// Wet quanta of all paints on each cell of an area, row after row.
+    pub fn weigh(&self, area: &Area, totals: &mut [f32]) {
+        totals.fill(0.0);
+        for plane in self.wet.iter().flatten() {
+            let sums = totals.chunks_exact_mut(area.size[0].max(1));
+            for (sums, row) in sums.zip(area.rows(self.width)) {
+                let counts = sums.iter_mut().zip(&plane[row]);
+                counts.for_each(|(sum, count)| *sum += count);
+            }
+        }
+    }
+
+    /// Wet quanta of all paints on each of these cells.
+    pub fn totals(&self, cells: &[u32], totals: &mut Vec<f32>) {
+        totals.clear();
+        totals.resize(cells.len(), 0.0);
+        for plane in self.wet.iter().flatten() {
+            for (total, cell) in totals.iter_mut().zip(cells) {
+                *total += plane[*cell as usize];
+            }
+        }
+    }
+
+    /// True if the window may have any of a paint.
+    #[must_use]
+    pub fn has(&self, slot: usize) -> bool {
+        self.wet[slot].is_some()
+    }
+
+    /// Remembers that single cells change.
+    pub fn touch_cells(&mut self, cells: &[usize]) {
+        let across = self.width / TILE;
+        for cell in cells {
+            self.dirty[cell / self.width / TILE * across + cell % self.width / TILE] = true;
+        }
+    }
+
+    /// Remembers that cells `from`..`to` (of the window) change.
+    pub fn touch(&mut self, (from, to): ([usize; 2], [usize; 2])) {
+        let across = self.width / TILE;
+        let to = [to[0].min(self.width), to[1].min(self.height)];
+        for y in from[1] / TILE..to[1].div_ceil(TILE) {
+            for x in from[0] / TILE..to[0].div_ceil(TILE) {
+                self.dirty[y * across + x] = true;
+            }
+        }
+    }
+
+    /// Writes the changed tiles back as new versions, numbered from `next` on, and reports each
+    /// with the version that it replaced.
+    pub fn commit(
+        &mut self,
+        store: &mut TileStore,
+        next: &mut u64,
+        mut replaced: impl FnMut(TileId, Version),
+    ) {
+        for (place, id) in self.rect.tiles().enumerate() {
+            if !std::mem::take(&mut self.dirty[place]) {
+                continue;
+            }
+            let start = self.corner(id);
+            let planes = self.wet.iter().enumerate().filter_map(|(slot, plane)| {
+                let plane = plane.as_ref()?;
+                let mut cells = Vec::with_capacity(TILE * TILE);
+                for row in 0..TILE {
+                    cells.extend_from_slice(&plane[start + row * self.width..][..TILE]);
+                }
+                Some((slot, Arc::from(cells)))
+            });
+            let before = store.version(id).tile.as_deref();
+            let dry = self.dry[place].clone();
+            let tile = Some(Arc::new(Tile::paged(store.pager(), planes, dry, before)));
+            *next += 1;
+            replaced(
+                id,
+                store.replace(
+                    id,
+                    Version {
+                        number: *next,
+                        tile,
+                    },
+                ),
+            );
+        }
+    }
+
+    /// Gives the tiles back; what was not committed is gone.
+    pub fn close(self, store: &mut TileStore) {
+        store.release(&self.rect);
+    }
+
+    fn corner(&self, id: TileId) -> usize {
+        let x = (id.x - self.rect.from[0]) as usize * TILE;
+        let y = (id.y - self.rect.from[1]) as usize * TILE;
+        y * self.width + x
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_is_written_through_a_window_is_read_through_another() {
+        let mut store = TileStore::new([200, 200]);
+        let relief = Relief::flat(2.5e-4);
+        let mut next = 0;
+        let rect = TileRect {
+            from: [1, 0],
+            to: [3, 2],
+        };
+        let mut window = Window::open(&mut store, rect, &relief).expect("free");
+        let cell = 70 * window.width() + 65;
+        window.plane_mut(3)[cell] = 5.0;
+        window.touch(([65, 70], [66, 71]));
+        let mut changed = Vec::new();
+        window.commit(&mut store, &mut next, |id, _| changed.push(id));
+        assert_eq!(changed, vec![TileId { x: 2, y: 1 }]);
+        window.close(&mut store);
+        assert_eq!(store.counts()[3], 5);
+        let whole = TileRect {
+            from: [0, 0],
+            to: [4, 4],
+        };
+        let window = Window::open(&mut store, whole, &relief).expect("free again");
+        let (slot, plane) = window.planes().next().expect("one plane");
+        assert_eq!((slot, plane[70 * window.width() + 64 + 65]), (3, 5.0));
+        assert_eq!(store.version(TileId { x: 2, y: 1 }).number, next);
+        assert!(
+            Window::open(&mut store, whole, &relief).is_none(),
+            "leases are exclusive"
+        );
+    }
+}

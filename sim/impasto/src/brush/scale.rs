@@ -1,0 +1,25 @@
+//! Lengths of a brush in cells of a surface.
+
+/// Scale of a brush's lengths on a surface.
+#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
+pub struct Scale {
+    /// Side of a cell in the surface's own lengths, m.
+    pub cell_m: f64,
+    /// Desk lengths per surface length.
+    pub zoom: f64,
+}
+
+/// Way of a brush in one step, m of its own lengths.
+pub(crate) const STEP_M: f64 = 0.25e-3;
+
+impl Scale {
+    /// Way of a brush in one step, cells: at least one. One that is `fine` goes no farther: paint goes before the
+    /// edge of a blade, which is narrow, and a hairline would become wider by what its slanting hair sweeps.
+    #[must_use]
+    pub fn step_cells(&self, fine: bool) -> f64 {
+        if fine {
+            return 1.0;
+        }
+        (STEP_M / (self.cell_m * self.zoom)).max(1.0)
+    }
+}

@@ -1,0 +1,139 @@
+//! The interface of paint models: one step of a brush on a surface.
+
+use maulstick_brush::head::{Head, HeadPose};
+use maulstick_canvas::quantum::{CELL_MAX, Counts, SLOTS};
+use maulstick_canvas::window::Window;
+
+use crate::brush::load::BrushLoad;
+use crate::brush::traits::BrushTraits;
+
+/// The motion of a head in one step, in cells of the surface.
+#[derive(Clone, Copy, Debug)]
+pub struct Sweep<'a> {
+    /// Pose at the previous step.
+    pub from: &'a HeadPose,
+    /// Pose now.
+    pub to: &'a HeadPose,
+}
+
+/// Transfer between brush and canvas (Baxter 2004, § 6.8).
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub enum Transfer {
+    /// Paint is transferred both ways and is counted.
+    #[default]
+    Paint,
+    /// The brush stays as it is: a full one never runs out, an empty one never fills.
+    Sponge,
+    /// The brush lays down so much paint along a reference cell and takes nothing up.
+    Marker {
+        /// Units.
+        flow: f32,
+    },
+    /// The brush takes on the colours that it touches; the canvas stays as it is.
+    Sampler,
+    /// Lifts the paint that the brush touches, and leaves the brush clean.
+    Vacuum,
+}
+
+/// Handling of a brush.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Handling {
+    /// True if it pushes paint.
+    pub push: bool,
+    /// Its transfer.
+    pub transfer: Transfer,
+    /// It adds no paint to a cell with more wet paint than this, quanta.
+    pub most: f32,
+}
+
+impl Default for Handling {
+    fn default() -> Self {
+        Self {
+            push: true,
+            transfer: Transfer::Paint,
+            most: CELL_MAX as f32,
+        }
+    }
+}
+
+/// One step of a brush on a surface.
+#[derive(Debug)]
+pub struct Step<'a> {
+    /// The cells.
+    pub window: &'a mut Window,
+    /// The head.
+    pub head: &'a Head,
+    /// Motion in this step.
+    pub sweep: Sweep<'a>,
+    /// The cells of the surface that it may reach, from the first up to but not with the second.
+    pub bounds: ([i64; 2], [i64; 2]),
+    /// Load of the brush.
+    pub load: &'a mut BrushLoad,
+    /// Its traits.
+    pub traits: BrushTraits,
+    /// Handling of the brush.
+    pub handling: Handling,
+    /// Quanta that stay on a cell however hard it is brushed (Baxter 2004, § 6.4.1, size).
+    pub stain: f32,
+    /// True if paint that the brush takes up stays on the surface all the same (Baxter 2004, § 6.7).
+    pub lasting: bool,
+    /// The slot of the thinner, if the painting has one.
+    pub thinner: Option<usize>,
+}
+
+/// Result of a step.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct StepReport {
+    /// Cells that the head touched.
+    pub footprint_cells: u64,
+    /// Wet quanta on them before the step.
+    pub wet: u64,
+    /// Those of them that are thinner.
+    pub thinner: u64,
+    /// By slot, quanta on canvas and brush that came from nowhere, as the brush's mode has it.
+    pub from_nowhere: [i64; SLOTS],
+    /// By slot, quanta that were lifted off for good.
+    pub lifted: Counts,
+}
+
+impl StepReport {
+    /// Adds what another step did.
+    pub fn add(&mut self, other: &Self) {
+        self.footprint_cells += other.footprint_cells;
+        self.wet += other.wet;
+        self.thinner += other.thinner;
+        maulstick_canvas::quantum::add(&mut self.lifted, &other.lifted);
+        let came = self.from_nowhere.iter_mut().zip(other.from_nowhere);
+        came.for_each(|(sum, came)| *sum += came);
+    }
+}
+
+/// A paint model: how paint moves in one step.
+pub trait PaintModel: Send {
+    /// Its name in `rig.toml`.
+    fn name(&self) -> &'static str;
+    /// Moves the paint of one step.
+    fn step(&mut self, step: &mut Step<'_>) -> StepReport;
+    /// Backend of its steps: `cpu`, or `gpu` and the adapter's name.
+    fn backend(&self) -> String {
+        "cpu".to_owned()
+    }
+    /// True if the results of steps stay on another device until they are [settled](Self::settle). Until then nobody
+    /// else may change window and load, and all steps are of the same two.
+    fn defers(&self) -> bool {
+        false
+    }
+    /// As [`step`](Self::step), but window and load, which must be settled, have what it did at once.
+    fn step_now(&mut self, step: &mut Step<'_>) -> StepReport {
+        self.step(step)
+    }
+    /// Writes what deferred steps did into their window and load; what they did in all, besides what
+    /// they reported themselves.
+    fn settle(&mut self, _window: &mut Window, _load: &mut BrushLoad) -> StepReport {
+        StepReport::default()
+    }
+    /// The reason why the backend changed, returned once. No paint is lost by it.
+    fn take_fall(&mut self) -> Option<String> {
+        None
+    }
+}

@@ -1,0 +1,421 @@
+//! Stages 4 and 5: paint goes from brush to canvas or from canvas to brush (Baxter 2004, § 6.5).
+//!
+//! Algorithm 3 decides for each cell, once for both sides, how much is transferred. Where both carry paint, their films
+//! are also swapped: so a brush that is full, or that carries as much as the canvas, still takes on the colour that it
+//! meets. Cells that draw on one brush texel have their demands summed, scaled together where they exceed what it
+//! holds, and truncated once.
+
+use maulstick_canvas::quantum::{CELL_MAX, QUANTA_PER_UNIT, SLOTS};
+use maulstick_num::fork_join::{Balance, both_if};
+use maulstick_num::select::{larger, smaller};
+use maulstick_num::wide;
+
+use super::PARALLEL_MIN_CELLS;
+use super::contact::Contact;
+use super::footprint::Footprint;
+use crate::brush::load::BrushLoad;
+use crate::brush::traits::BrushTraits;
+use crate::model::{Handling, Step, Transfer};
+use crate::transfer::Exchanging;
+
+/// Room for a step. Of the brush's many texels few touch at a time: these are numbered afresh in each
+/// step, so that the others cost nothing.
+#[derive(Clone, Debug, Default)]
+pub struct Exchange {
+    /// The contacts, half of them each.
+    halves: [Half; 2],
+    /// The texels that touch.
+    texels: Vec<u32>,
+    /// The place of each texel of the brush in `texels`; [`ABSENT`] but for those that touch.
+    place_of: Vec<u32>,
+    granted: Granted,
+    balance: Balance,
+    /// Of one paint: what each of these texels gives by quantum that is wanted of it.
+    gives: Vec<f32>,
+    /// Of one paint: quanta on each of these texels.
+    held: Vec<f32>,
+}
+
+/// Paint that each touching texel gives and takes.
+#[derive(Clone, Debug, Default)]
+struct Granted {
+    /// Quanta wanted of it, and offered to it; then what it gives by quantum in its film.
+    asked: Vec<[f32; 2]>,
+    /// Share of its offers that it takes.
+    taken: Vec<f32>,
+    /// Quanta in its film.
+    film: Vec<f32>,
+}
+
+/// One core's contacts.
+#[derive(Clone, Debug, Default)]
+struct Half {
+    meetings: Meetings,
+    /// Quanta that each contact wants from the brush, and that it gives to it.
+    wants: [Vec<f32>; 2],
+    /// Its cell.
+    cells: Vec<u32>,
+    /// The place of each contact's texel among those that touch.
+    places: Vec<u32>,
+    /// Share of the wet paint on each contact's cell that goes to the brush.
+    shares: Vec<f32>,
+    /// Share of what is taken up that leaves each contact's cell.
+    leaves: Vec<f32>,
+    /// Quanta by which one paint changes on each of the texels: a wide one holds more than an `f32` counts.
+    change: Vec<i32>,
+}
+
+/// [`Meeting`]s, a plane each.
+#[derive(Clone, Debug, Default)]
+struct Meetings {
+    travel: Vec<f32>,
+    cover: Vec<f32>,
+    on_brush: Vec<f32>,
+    lying: Vec<f32>,
+    fraction: Vec<f32>,
+    gap: Vec<f32>,
+}
+
+impl Meetings {
+    fn of(&mut self, contacts: &[Contact], films: &[u32], traits: &BrushTraits) {
+        let travel = |contact: &Contact| {
+            let [u, v] = contact.moved;
+            (u * u + v * v).sqrt() * traits.cell_per_reference
+        };
+        let on_brush = |contact: &Contact| {
+            films[contact.texel as usize] as f32 * traits.film_units_per_quantum
+        };
+        for plane in [
+            &mut self.travel,
+            &mut self.cover,
+            &mut self.on_brush,
+            &mut self.fraction,
+            &mut self.gap,
+        ] {
+            plane.clear();
+        }
+        self.travel.extend(contacts.iter().map(travel));
+        self.cover
+            .extend(contacts.iter().map(|contact| contact.cover));
+        self.on_brush.extend(contacts.iter().map(on_brush));
+        self.fraction
+            .extend(contacts.iter().map(|contact| contact.fraction));
+        let gap = |contact: &Contact| contact.gap * traits.units_per_cell;
+        self.gap.extend(contacts.iter().map(gap));
+    }
+}
+
+/// The place of a texel that does not touch.
+const ABSENT: u32 = u32::MAX;
+/// Share of a film that is used up entirely: reduced so that rounding never takes more than there is.
+const SAFE_SHARE: f32 = 1.0 - 1.0 / 1_048_576.0;
+
+/// State of a contact before the exchange.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Meeting {
+    /// Way of the brush, reference cells.
+    pub travel: f32,
+    /// Share of the cell that is covered, 0 to 1.
+    pub cover: f32,
+    /// The brush's film, units.
+    pub on_brush: f32,
+    /// Wet paint on the cell, quanta.
+    pub lying: f32,
+    /// Share of it that the brush reaches.
+    pub fraction: f32,
+    /// Gap between brush and paint, units.
+    pub gap: f32,
+}
+
+/// Demand of a contact: quanta from the brush, and to it.
+#[must_use]
+#[inline(always)]
+pub(crate) fn wanted(meeting: &Meeting, rule: &Exchanging, handling: &Handling) -> [f32; 2] {
+    let quanta = meeting.cover * QUANTA_PER_UNIT as f32;
+    let lying = meeting.lying * (1.0 / QUANTA_PER_UNIT as f32);
+    let on_canvas = lying * meeting.fraction;
+    let (net, swap) = match handling.transfer {
+        Transfer::Marker { flow } => (flow * meeting.travel, 0.0),
+        _ => {
+            let share = rule.share(meeting.travel);
+            let amounts = [meeting.on_brush, on_canvas, lying, meeting.gap];
+            let net = rule.transfer(amounts, meeting.travel, share);
+            (net, rule.swapped(meeting.on_brush, on_canvas, share))
+        }
+    };
+    let most = smaller(handling.most, CELL_MAX as f32);
+    let room = larger(most - meeting.lying, 0.0);
+    // Swapped paint has room on both sides, or stays on both.
+    let swap = smaller(swap * quanta, room);
+    let given = smaller(larger(net, 0.0) * quanta + swap, room);
+    let taken = smaller(larger(-net, 0.0) * quanta + swap, meeting.lying);
+    [given.floor(), taken.floor()]
+}
+
+wide! {
+    /// Demands of all contacts: quanta from the brush, and to it.
+    fn want(
+        meetings: &Meetings,
+        rule: &Exchanging,
+        handling: &Handling,
+        wants: &mut [Vec<f32>; 2],
+    ) {
+        let count = meetings.travel.len();
+        let [given, taken] = wants;
+        for plane in [&mut *given, &mut *taken] {
+            plane.clear();
+            plane.resize(count, 0.0);
+        }
+        let (given, taken) = (&mut given[..count], &mut taken[..count]);
+        let (travel, cover) = (&meetings.travel[..count], &meetings.cover[..count]);
+        let (on_brush, lying) = (&meetings.on_brush[..count], &meetings.lying[..count]);
+        let (fraction, gap) = (&meetings.fraction[..count], &meetings.gap[..count]);
+        for i in 0..count {
+            let meeting = Meeting {
+                travel: travel[i],
+                cover: cover[i],
+                on_brush: on_brush[i],
+                lying: lying[i],
+                fraction: fraction[i],
+                gap: gap[i],
+            };
+            [given[i], taken[i]] = wanted(&meeting, rule, handling);
+        }
+    }
+}
+
+wide! {
+    /// One paint, both ways: `change` is the amount added to each texel.
+    fn swap_paint(half: &mut Half, gives: &[f32], plane: Cells<'_>) {
+        let asked = half.wants[0].iter().zip(&half.shares);
+        let ways = half.cells.iter().zip(&half.places);
+        for (((cell, place), (given, share)), leaves) in ways.zip(asked).zip(&half.leaves) {
+            let count = &mut plane.cells[*cell as usize - plane.first];
+            let place = *place as usize;
+            let given = (given * gives[place]).floor();
+            let taken = (*count * share).floor();
+            *count += given - (leaves * taken).floor();
+            half.change[place] += (taken - given) as i32;
+        }
+    }
+}
+
+/// Cells of a plane from the place `first` on.
+struct Cells<'a> {
+    first: usize,
+    cells: &'a mut [f32],
+}
+
+impl Exchange {
+    /// Exchanges the paint of one step; by slot, what came onto the canvas from nowhere.
+    pub fn run(&mut self, footprint: &Footprint, step: &mut Step<'_>) -> [i64; SLOTS] {
+        let contacts = footprint.contacts.len();
+        let middle = match contacts >= PARALLEL_MIN_CELLS {
+            true => self.balance.cut(contacts),
+            false => contacts,
+        };
+        self.find_texels(footprint, middle, step.load.texels());
+        let (texels, [low, high]) = (self.texels.len(), &mut self.halves);
+        let contacts = footprint.contacts.split_at(middle);
+        let shared = &*step;
+        let mut one = || low.demand(contacts.0, shared);
+        let mut other = || high.demand(contacts.1, shared);
+        match contacts.1.is_empty() {
+            true => (one(), other()),
+            false => self.balance.both(one, other),
+        };
+        let granted = &mut self.granted;
+        granted.asked.clear();
+        granted.asked.resize(texels, [0.0; 2]);
+        for half in [&*low, high] {
+            half.ask(&mut granted.asked);
+        }
+        let sponge = step.handling.transfer == Transfer::Sponge;
+        granted.grant(&self.texels, step.load, &step.traits, sponge);
+        let (granted, lasting) = (&*granted, step.lasting);
+        both_if(
+            !contacts.1.is_empty(),
+            || low.share(granted, lasting),
+            || high.share(granted, lasting),
+        );
+        let mut from_nowhere = [0; SLOTS];
+        for slot in 0..SLOTS {
+            let change = self.exchange(slot, step);
+            from_nowhere[slot] = change;
+            if !sponge {
+                self.note_on_brush(slot, step.load);
+            }
+        }
+        step.load.count_films_of(&self.texels);
+        from_nowhere
+    }
+
+    fn find_texels(&mut self, footprint: &Footprint, middle: usize, texels: usize) {
+        for texel in self.texels.drain(..) {
+            self.place_of[texel as usize] = ABSENT;
+        }
+        self.place_of.resize(texels, ABSENT);
+        let (low, high) = footprint.contacts.split_at(middle);
+        for (half, contacts) in self.halves.iter_mut().zip([low, high]) {
+            half.places.clear();
+            for contact in contacts {
+                let place = &mut self.place_of[contact.texel as usize];
+                if *place == ABSENT {
+                    *place = self.texels.len() as u32;
+                    self.texels.push(contact.texel);
+                }
+                half.places.push(*place);
+            }
+        }
+    }
+
+    /// One slot, both ways; the quanta that came from nowhere. What the brush gains is noted in the
+    /// halves' `change`.
+    fn exchange(&mut self, slot: usize, step: &mut Step<'_>) -> i64 {
+        self.held.clear();
+        match step.load.film_of(slot) {
+            Some(film) => {
+                let there = self.texels.iter().map(|texel| film[*texel as usize] as f32);
+                self.held.extend(there);
+            }
+            None => self.held.resize(self.texels.len(), 0.0),
+        }
+        let on_brush = self.held.iter().any(|count| *count > 0.0);
+        for half in &mut self.halves {
+            half.change.clear();
+            half.change.resize(self.texels.len(), 0);
+        }
+        if !on_brush && !step.window.has(slot) {
+            return 0;
+        }
+        let held = self.held.iter().zip(&self.granted.asked);
+        self.gives.clear();
+        self.gives
+            .extend(held.map(|(held, [drawn, _])| held * drawn));
+        let plane = step.window.plane_mut(slot);
+        let sponge = step.handling.transfer == Transfer::Sponge;
+        let counted = sponge || step.lasting;
+        let before = if counted { self.on_cells(plane) } else { 0 };
+        let (gives, [low, high]) = (&self.gives, &mut self.halves);
+        // Contacts come in the order of their cells.
+        let first = high
+            .cells
+            .first()
+            .map_or(plane.len(), |cell| *cell as usize);
+        let (below, above) = plane.split_at_mut(first);
+        let [below, above] =
+            [(0, below), (first, above)].map(|(first, cells)| Cells { first, cells });
+        both_if(
+            !high.cells.is_empty(),
+            || swap_paint(low, gives, below),
+            || swap_paint(high, gives, above),
+        );
+        // Otherwise what one side gains the other loses.
+        if !counted {
+            return 0;
+        }
+        let changes = self.halves.iter().flat_map(|half| &half.change);
+        let onto_brush: i64 = match sponge {
+            true => 0,
+            false => changes.map(|change| i64::from(*change)).sum(),
+        };
+        self.on_cells(step.window.plane_mut(slot)) - before + onto_brush
+    }
+
+    /// Quanta of a plane on the contacts.
+    fn on_cells(&self, plane: &[f32]) -> i64 {
+        let cells = self.halves.iter().flat_map(|half| &half.cells);
+        cells.map(|cell| plane[*cell as usize] as i64).sum()
+    }
+
+    fn note_on_brush(&self, slot: usize, load: &mut BrushLoad) {
+        let [low, high] = &self.halves;
+        let changes = low.change.iter().zip(&high.change);
+        for (texel, (low, high)) in self.texels.iter().zip(changes) {
+            let change = low + high;
+            if change != 0 {
+                load.change_film(slot, *texel as usize, change);
+            }
+        }
+    }
+}
+
+impl Half {
+    /// Demand of each contact on its texel, and its offer to it.
+    fn demand(&mut self, contacts: &[Contact], step: &Step<'_>) {
+        self.cells.clear();
+        self.cells
+            .extend(contacts.iter().map(|contact| contact.cell));
+        step.window.totals(&self.cells, &mut self.meetings.lying);
+        self.meetings.of(contacts, step.load.films(), &step.traits);
+        want(
+            &self.meetings,
+            &step.traits.exchanging,
+            &step.handling,
+            &mut self.wants,
+        );
+    }
+
+    /// Adds up what is wanted of each texel, and offered to it.
+    fn ask(&self, asked: &mut [[f32; 2]]) {
+        let [given, taken] = &self.wants;
+        for (place, (given, taken)) in self.places.iter().zip(given.iter().zip(taken)) {
+            let asked = &mut asked[*place as usize];
+            asked[0] += given;
+            asked[1] += taken;
+        }
+    }
+
+    /// Paint of each contact's cell that goes to the brush.
+    ///
+    /// Paint that lasts loses only as much as it gains: it takes on the brush's colour, but never becomes less.
+    fn share(&mut self, granted: &Granted, lasting: bool) {
+        self.shares.clear();
+        let offers = self.wants[1].iter().zip(&self.places);
+        let offers = offers.zip(&self.meetings.lying);
+        self.shares.extend(offers.map(|((offered, place), lying)| {
+            let goes = offered * granted.taken[*place as usize];
+            if *lying > 0.0 { goes / lying } else { 0.0 }
+        }));
+        self.leaves.clear();
+        if !lasting {
+            self.leaves.resize(self.cells.len(), 1.0);
+            return;
+        }
+        let [given, offered] = &self.wants;
+        let amounts = given.iter().zip(offered).zip(&self.places);
+        self.leaves.extend(amounts.map(|((given, offered), place)| {
+            let place = *place as usize;
+            let comes = given * granted.asked[place][0] * granted.film[place];
+            let goes = offered * granted.taken[place];
+            if goes > comes { comes / goes } else { 1.0 }
+        }));
+    }
+}
+
+impl Granted {
+    /// Scales what is wanted of each texel, and offered to it, to what it has and has room for.
+    fn grant(&mut self, texels: &[u32], load: &BrushLoad, traits: &BrushTraits, sponge: bool) {
+        let most = traits.film_most as f32;
+        self.taken.clear();
+        self.film.clear();
+        for (texel, [drawn, offered]) in texels.iter().zip(&mut self.asked) {
+            let film = load.film(*texel as usize) as f32;
+            let granted = if *drawn > film && !sponge {
+                SAFE_SHARE * film / *drawn
+            } else {
+                1.0
+            };
+            let room = (most - film + *drawn * granted).max(0.0);
+            let taken = if *offered > room && !sponge {
+                room / *offered
+            } else {
+                1.0
+            };
+            // By quantum of all paints in the film, so that a paint's share comes out.
+            *drawn = if film > 0.0 { granted / film } else { 0.0 };
+            self.taken.push(taken);
+            self.film.push(film);
+        }
+    }
+}

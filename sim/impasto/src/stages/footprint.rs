@@ -1,0 +1,181 @@
+//! Stage 1: the cells that the head touches, with the touching strip and its depth.
+//!
+//! Strips are ribbons that turn their flat side to the surface (Baxter 2004, § 3.5.2). In each cell the deepest one
+//! counts. It touches where it, with the film of paint that it carries, reaches the top of the surface there: tooth,
+//! dry relief and wet paint. All lengths are in cells.
+
+use maulstick_canvas::window::{Area, Window};
+use maulstick_num::fork_join::{Balance, both_if};
+
+use super::PARALLEL_MIN_CELLS;
+use super::band::{Band, draw_strips};
+use super::contact::Contact;
+use crate::model::{Step, StepReport};
+
+/// The footprint of one step.
+#[derive(Clone, Debug, Default)]
+pub struct Footprint {
+    /// The cells in contact, row after row.
+    pub contacts: Vec<Contact>,
+    /// The cells of the window on which the head is drawn.
+    pub grid: Area,
+    /// The contacts and one cell more to each side, as far as the surface goes: where paint may move.
+    pub around: Area,
+    /// Wet quanta of all paints on each contact, before the step.
+    pub wet: Vec<f32>,
+    /// The same on the cells of the grid, and afterwards on those around.
+    lying: Vec<f32>,
+    bands: [Band; 2],
+    balance: Balance,
+}
+
+impl Footprint {
+    /// Finds what the head touches after the step's motion.
+    pub fn find(&mut self, step: &mut Step<'_>) {
+        self.contacts.clear();
+        let traits = step.traits;
+        let sink = traits.sink * step.sweep.to.press;
+        self.grid = step.window.area(step.bounds.0, step.bounds.1);
+        if self.grid.is_empty() {
+            return;
+        }
+        // Of the cells around the brush alone: what else the window holds must not matter.
+        let top = self.weigh(self.grid, step);
+        let loose = traits.loose(step.sweep.to.press);
+        // The pressed head lies lower than it was solved by as much as the ride does.
+        let low = top + sink + step.window.ride_below();
+        let film = step.load.thickest() as f32 * traits.film_cells_per_quantum;
+        let recede = traits.recede * step.sweep.to.splay;
+        // Strips are drawn in the coordinates of the surface.
+        let origin = step.window.origin();
+        let offset = [0, 1].map(|i| (origin[i] + self.grid.from[i] as i64) as f32);
+        let (grid, lying, height) = (self.grid, &self.lying, self.grid.size[1]);
+        let step = &*step;
+        let find = |band: &mut Band, rows| {
+            band.begin(grid, offset, rows);
+            band.draw_skin(step, low + film, recede);
+            draw_strips(band, step, low, loose);
+            band.touch(step, lying, sink);
+        };
+        let middle = match grid.cells() >= PARALLEL_MIN_CELLS {
+            true => self.balance.cut(height),
+            false => height,
+        };
+        let [lower, upper] = &mut self.bands;
+        if middle == height {
+            find(lower, 0..height);
+            upper.begin(grid, offset, height..height);
+        } else {
+            self.balance
+                .both(|| find(lower, 0..middle), || find(upper, middle..height));
+        }
+        self.gather(step.window);
+    }
+
+    /// Weighs the wet paint of an area, and notes and returns how high it stands, cells.
+    fn weigh(&mut self, area: Area, step: &mut Step<'_>) -> f32 {
+        let (window, to_cells) = (&*step.window, step.traits.cells_per_quantum);
+        self.lying.resize(area.cells(), 0.0);
+        let weigh = |area: &Area, lying: &mut [f32]| {
+            window.weigh(area, lying);
+            highest(lying, area, window, to_cells)
+        };
+        let [low, high] = area.halves();
+        let (below, above) = self.lying.split_at_mut(low.cells());
+        let one = || weigh(&low, below);
+        let (below, above) = both_if(area.cells() >= PARALLEL_MIN_CELLS, one, || {
+            weigh(&high, above)
+        });
+        let top = below.max(above);
+        step.window.note_top(top / to_cells);
+        top
+    }
+
+    /// Notes how high paint stands where the brush has left it.
+    pub(crate) fn note_left(&mut self, step: &mut Step<'_>) {
+        self.weigh(self.around, step);
+    }
+
+    /// Gathers the contacts of the bands, and lays the cells around them.
+    fn gather(&mut self, window: &Window) {
+        self.contacts.clear();
+        self.wet.clear();
+        self.around = Area::default();
+        let [lower, upper] = &self.bands;
+        if lower.contacts.len() + upper.contacts.len() == 0 {
+            return;
+        }
+        let (one, other) = (lower.reach, upper.reach);
+        let from = [0, 1].map(|i| one.0[i].min(other.0[i]));
+        let to = [0, 1].map(|i| one.1[i].max(other.1[i]));
+        let limit = window.limit();
+        let from = [0, 1].map(|i| (self.grid.from[i] + from[i]).saturating_sub(1));
+        let size = [0, 1].map(|i| (self.grid.from[i] + to[i] + 1).min(limit[i]) - from[i]);
+        self.around = Area { from, size };
+        let inset = [0, 1].map(|i| self.grid.from[i] as i64 - from[i] as i64);
+        let (width, row) = (self.grid.size[0] as u32, size[0] as i64);
+        for band in [lower, upper] {
+            self.wet.extend_from_slice(&band.wet);
+            self.contacts.extend(band.contacts.iter().map(|contact| {
+                let (x, y) = (contact.local % width, contact.local / width);
+                let place = (i64::from(y) + inset[1]) * row + i64::from(x) + inset[0];
+                Contact {
+                    local: place as u32,
+                    ..*contact
+                }
+            }));
+        }
+    }
+
+    /// Amount of wet paint under the brush before the step.
+    #[must_use]
+    pub fn report(&self, step: &Step<'_>) -> StepReport {
+        let wet = self.wet.iter().map(|quanta| *quanta as u64);
+        let thinner = step.thinner.and_then(|slot| step.window.plane(slot));
+        let thinner = thinner.map_or(0, |plane| {
+            let cells = self.contacts.iter().map(|contact| contact.cell as usize);
+            cells.map(|cell| plane[cell] as u64).sum()
+        });
+        StepReport {
+            footprint_cells: self.contacts.len() as u64,
+            wet: wet.sum(),
+            thinner,
+            ..StepReport::default()
+        }
+    }
+
+    /// The cells of the window that the step may have changed: from, up to but not with.
+    #[must_use]
+    pub fn reached(&self) -> ([usize; 2], [usize; 2]) {
+        let Area { from, size } = self.around;
+        (from, [from[0] + size[0], from[1] + size[1]])
+    }
+}
+
+/// The highest that paint of `lying` quanta stands on the cells of an area, cells; 0 where none does.
+fn highest(lying: &[f32], area: &Area, window: &Window, to_cells: f32) -> f32 {
+    let rows = area.rows(window.width());
+    let lying = lying.chunks_exact(area.size[0].max(1));
+    rows.zip(lying).fold(0.0, |most, (row, lying)| {
+        highest_of(lying, &window.base()[row], to_cells).max(most)
+    })
+}
+
+/// The highest that paint of `lying` quanta stands on `base`, cells; 0 where none does.
+fn highest_of(lying: &[f32], base: &[f32], to_cells: f32) -> f32 {
+    let mut highest = [0.0f32; 8];
+    let (runs, bases) = (lying.chunks_exact(8), base.chunks_exact(8));
+    let rest = runs.remainder().iter().zip(bases.remainder());
+    for (lying, base) in runs.zip(bases) {
+        for i in 0..8 {
+            let height = base[i] + lying[i] * to_cells;
+            highest[i] = if height > highest[i] {
+                height
+            } else {
+                highest[i]
+            };
+        }
+    }
+    let rest = rest.map(|(lying, base)| base + lying * to_cells);
+    rest.chain(highest).fold(0.0, f32::max)
+}

@@ -1,0 +1,427 @@
+//! Levelling: wet paint flows under its own surface tension and weight until its yield stress holds it.
+//!
+//! The film is a thin layer of a Bingham fluid (Balmforth, Craster, Rust and Sassi 2006, "Viscoplastic
+//! flow over an inclined surface"): under a pressure gradient G it flows by
+//!
+//! q = −Y²(3h − Y)/6η · ∇p,  Y = max(0, h − τ_y/|G|),  p = ρg·s − γ∇²s,
+//!
+//! s the height of its surface. Without a yield stress that is Orchard's levelling (1962), by h³/3η, in
+//! which a ripple of wave number k decays at γh³k⁴/3η; with one a ripple of amplitude τ_y/(γhk³) is left
+//! (Smith, Orchard and Rhind-Tutt 1961). Edges are pinned: paint flows onto bare ground only
+//! down a steep slope.
+
+use maulstick_canvas::window::{Area, Window};
+use maulstick_num::select::{larger, smaller};
+use maulstick_num::{exp_f32, wide};
+
+/// Surface tension of linseed oil, N/m.
+pub(crate) const TENSION_N_PER_M: f64 = 0.03;
+/// Weight of oil paint, N/m³: 1,800 kg/m³ (lead-free tube colours lie at 1,200 to 2,200).
+pub(crate) const WEIGHT_N_PER_M3: f64 = 1800.0 * 9.81;
+/// The most of the difference of curvature between two cells that flows in one round, of a cell's height: an
+/// explicit scheme of fourth order is stable up to 1/32 in two dimensions.
+pub const STABLE: f64 = 1.0 / 40.0;
+
+/// Slope at which an edge of wet paint advances onto bare ground; without a yield stress it wets all.
+pub const ADVANCES: f32 = 1.0;
+
+/// Rheology of a paint.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Body {
+    /// Yield stress, Pa.
+    pub yield_pa: f64,
+    /// Viscosity beyond it, Pa·s.
+    pub viscosity_pa_s: f64,
+}
+
+impl Body {
+    /// Paint from the tube that the brush has just worked: oil colours yield at tens to hundreds of Pa at rest, and
+    /// at a fraction of that as long as their structure is sheared apart.
+    pub const TUBE: Self = Self {
+        yield_pa: 12.0,
+        viscosity_pa_s: 20.0,
+    };
+}
+
+/// Yield stress and fluidity of paint of which `thinner` is a share of 0 to 1, by those of paint from the
+/// tube: half of it takes the yield stress away.
+#[must_use]
+#[inline(always)]
+pub fn thinned(thinner: f32) -> [f32; 2] {
+    let left = if thinner < 0.5 {
+        1.0 - 2.0 * thinner
+    } else {
+        0.0
+    };
+    [left * left * left, 1.0 / exp_f32(-THINS * thinner)]
+}
+
+/// ln of how much thinner alone is more fluid than paint.
+pub(crate) const THINS: f32 = 7.0;
+
+/// Scaling of the flow of one round: everything in cells of `cell_m`, for `seconds`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Round {
+    /// Gradient by difference of curvature between two cells, in yields of paint one cell thick.
+    tension: f32,
+    /// The same by difference of height.
+    weight: f32,
+    /// Mobility of paint one cell thick, by `tension`.
+    mobility: f32,
+    /// The most of a mobility.
+    most: f32,
+    /// Height of a quantum, cells.
+    to_cells: f32,
+    /// Quanta below which a cell counts as bare.
+    bare: f32,
+}
+
+impl Round {
+    /// A round of so many seconds of a body on cells of `cell_m`; cells with at most `bare` quanta are dry.
+    #[must_use]
+    pub fn new(body: Body, cell_m: f64, seconds: f64, to_cells: f32, bare: f32) -> Self {
+        // A yield stress of nothing: so small that it holds nothing.
+        let yields = body.yield_pa.max(1e-9);
+        let mobility = seconds * yields / body.viscosity_pa_s.max(1e-9);
+        Self {
+            tension: (TENSION_N_PER_M / (cell_m * yields)) as f32,
+            weight: (WEIGHT_N_PER_M3 * cell_m / yields) as f32,
+            mobility: mobility as f32,
+            most: (STABLE * cell_m * yields / TENSION_N_PER_M) as f32,
+            to_cells,
+            bare,
+        }
+    }
+}
+
+/// Room for the flow of an area.
+#[derive(Clone, Debug, Default)]
+pub struct Levelling {
+    /// Cells of a row, with two more on either side.
+    width: usize,
+    /// Height of the wet paint, cells.
+    wet: Vec<f32>,
+    /// Height of its surface, cells.
+    surface: Vec<f32>,
+    /// Its Laplacian.
+    curve: Vec<f32>,
+    /// Yield stress and fluidity by those of paint from the tube.
+    body: [Vec<f32>; 2],
+    /// Flow through the right and the upper face of each cell in a round, and in all, cells.
+    flows: [Vec<f32>; 2],
+    sums: [Vec<f32>; 2],
+    /// Height of the wet paint before.
+    before: Vec<f32>,
+}
+
+/// Columns and rows of a block, which rests as a whole.
+const BLOCK: usize = 16;
+
+/// Blocks of an area, row after row.
+#[derive(Clone, Debug, Default)]
+struct Blocks {
+    /// The most that flowed in each in the last round; empty before the first.
+    flowed: Vec<f32>,
+    /// Cells that may flow.
+    active: Vec<bool>,
+}
+
+impl Blocks {
+    /// Begins a round: those may flow where at least `rests` did, and those beside them.
+    fn begin(&mut self, area: &Area, rests: f32) {
+        let [across, up] = area.size.map(|cells| cells.div_ceil(BLOCK));
+        self.active.clear();
+        if self.flowed.len() == across * up {
+            let around = |i: usize, most: usize| i.saturating_sub(1)..(i + 2).min(most);
+            let flows = |x: usize, y: usize| self.flowed[y * across + x] >= rests;
+            let may = |x, y| around(y, up).any(|j| around(x, across).any(|i| flows(i, j)));
+            let blocks = (0..up).flat_map(|y| (0..across).map(move |x| (x, y)));
+            self.active.extend(blocks.map(|(x, y)| may(x, y)));
+        }
+        self.active.resize(across * up, true);
+        self.flowed.clear();
+        self.flowed.resize(across * up, 0.0);
+    }
+}
+
+/// Cells beside the area that are looked at.
+pub const HALO: usize = 2;
+
+impl Levelling {
+    /// Adds the flow of so many rounds to the velocities through the right and upper faces of an area's cells: the
+    /// share of a donor's paint that goes through. Nothing leaves the area; beyond the window it is as at its edge.
+    /// Returns the largest flow of a round.
+    ///
+    /// Heights alone go through the rounds: paint follows once, by their sum. Where less than `rests` flowed in the
+    /// last round, and all around, nothing flows in the next.
+    pub fn add(
+        &mut self,
+        window: &Window,
+        area: &Area,
+        round: &Round,
+        thinner: Option<usize>,
+        (rounds, rests): (u32, f32),
+        faces: [&mut [f32]; 2],
+    ) -> f32 {
+        if area.is_empty() {
+            return 0.0;
+        }
+        self.look(window, area, round.to_cells);
+        self.soften(window, area, round.to_cells, thinner);
+        self.before.clone_from(&self.wet);
+        for plane in self.flows.iter_mut().chain(&mut self.sums) {
+            plane.clear();
+            plane.resize(self.wet.len(), 0.0);
+        }
+        let mut blocks = Blocks::default();
+        let mut most = 0.0f32;
+        for _ in 0..rounds {
+            blocks.begin(area, rests);
+            flow_once(self, area, round, &mut blocks);
+            let flowed = blocks.flowed.iter();
+            let flowed = flowed.fold(0.0, |most: f32, flowed| most.max(*flowed));
+            most = most.max(flowed);
+            if flowed < rests {
+                break;
+            }
+        }
+        let bare = round.bare * round.to_cells;
+        for (axis, faces) in faces.into_iter().enumerate() {
+            share_out(self, area, bare, axis, faces);
+        }
+        most
+    }
+
+    /// Wet heights and surfaces of the area and its halo, and the curvature.
+    fn look(&mut self, window: &Window, area: &Area, to_cells: f32) {
+        let limit = window.limit();
+        self.width = area.size[0] + 2 * HALO;
+        let height = area.size[1] + 2 * HALO;
+        for plane in [&mut self.wet, &mut self.surface, &mut self.curve] {
+            plane.clear();
+            // The last block is read as a whole.
+            plane.resize(self.width * height + BLOCK, 0.0);
+        }
+        // Columns of the window that the halo covers, as far as the window goes.
+        let first = area.from[0].saturating_sub(HALO);
+        let last = (area.from[0] + area.size[0] + HALO).min(limit[0]);
+        let inset = first + HALO - area.from[0];
+        for row in 0..height {
+            let y = (area.from[1] + row).saturating_sub(HALO).min(limit[1] - 1);
+            let from = y * window.width();
+            let start = row * self.width;
+            let wet = &mut self.wet[start..start + self.width];
+            for (_, plane) in window.planes() {
+                let counts = &plane[from + first..from + last];
+                let into = wet[inset..].iter_mut().zip(counts);
+                into.for_each(|(wet, count)| *wet += count);
+            }
+            wet.iter_mut().for_each(|wet| *wet *= to_cells);
+            let surface = &mut self.surface[start..start + self.width];
+            let base = &window.base()[from + first..from + last];
+            surface[inset..inset + base.len()].copy_from_slice(base);
+            let end = inset + base.len();
+            let ends = [
+                (wet[inset], surface[inset]),
+                (wet[end - 1], surface[end - 1]),
+            ];
+            for k in 0..inset {
+                (wet[k], surface[k]) = ends[0];
+            }
+            for k in end..wet.len() {
+                (wet[k], surface[k]) = ends[1];
+            }
+            surface.iter_mut().zip(wet).for_each(|(s, wet)| *s += *wet);
+        }
+    }
+
+    /// Changes the paint's rheology by its thinner.
+    fn soften(&mut self, window: &Window, area: &Area, to_cells: f32, thinner: Option<usize>) {
+        for plane in &mut self.body {
+            plane.clear();
+            plane.resize(self.wet.len(), 1.0);
+        }
+        let Some(thin) = thinner.and_then(|slot| window.plane(slot)) else {
+            return;
+        };
+        for (row, cells) in area.rows(window.width()).enumerate() {
+            let start = (row + HALO) * self.width + HALO;
+            for (x, count) in thin[cells].iter().enumerate() {
+                if *count > 0.0 {
+                    let at = start + x;
+                    [self.body[0][at], self.body[1][at]] = thinned(count * to_cells / self.wet[at]);
+                }
+            }
+        }
+    }
+}
+
+/// Values that levelling has read, of cells side by side in a row.
+struct Run<'a> {
+    wet: &'a [f32; BLOCK],
+    surface: &'a [f32; BLOCK],
+    curve: &'a [f32; BLOCK],
+    yields: &'a [f32; BLOCK],
+    fluid: &'a [f32; BLOCK],
+}
+
+/// As many cells of a plane as a block has columns.
+#[inline(always)]
+fn run(plane: &[f32], at: usize) -> &[f32; BLOCK] {
+    plane[at..].first_chunk().expect("planes go on beyond")
+}
+
+impl<'a> Run<'a> {
+    #[inline(always)]
+    fn of(levelling: &'a Levelling, at: usize) -> Self {
+        let [yields, fluid] = &levelling.body;
+        Self {
+            wet: run(&levelling.wet, at),
+            surface: run(&levelling.surface, at),
+            curve: run(&levelling.curve, at),
+            yields: run(yields, at),
+            fluid: run(fluid, at),
+        }
+    }
+}
+
+/// The share of what a donor may give that flows from a cell to the one beside it, and what it may give.
+#[inline(always)]
+fn flow(round: &Round, bare: f32, own: &Run<'_>, next: &Run<'_>, i: usize) -> [f32; 2] {
+    let (wet, wet_next) = (own.wet[i], next.wet[i]);
+    let drop = own.surface[i] - next.surface[i];
+    // Pressure falls where curvature grows.
+    let gradient = round.tension * (next.curve[i] - own.curve[i]) + round.weight * drop;
+    let height = 0.5 * (wet + wet_next);
+    let yields = 0.5 * (own.yields[i] + next.yields[i]);
+    let sheared = larger(height - yields / larger(gradient.abs(), 1e-12), 0.0);
+    let mobility = round.mobility * 0.5 * (own.fluid[i] + next.fluid[i]);
+    let mobility = mobility * sheared * sheared * (3.0 * height - sheared) / 6.0;
+    let goes = smaller(mobility, round.most) * gradient;
+    let donor = if goes > 0.0 { wet } else { wet_next };
+    let onto = if goes > 0.0 { wet_next } else { wet };
+    let pinned = (donor <= bare) | (onto <= bare) & (drop.abs() < ADVANCES * yields);
+    let share = goes / larger(donor, 1e-9);
+    let share = if pinned { 0.0 } else { share };
+    [
+        larger(smaller(share, 0.25), -0.25),
+        larger(donor - bare, 0.0),
+    ]
+}
+
+wide! {
+    /// A round in the active blocks.
+    fn flow_once(levelling: &mut Levelling, area: &Area, round: &Round, blocks: &mut Blocks) {
+        let width = levelling.width;
+        let bare = round.bare * round.to_cells;
+        let of_row = area.size[0].div_ceil(BLOCK);
+        for place in 0..blocks.active.len() {
+            if blocks.active[place] {
+                levelling.bend(area, [place % of_row, place / of_row]);
+            }
+        }
+        for place in 0..blocks.active.len() {
+            if !blocks.active[place] {
+                continue;
+            }
+            let (from, size) = block_of(area, [place % of_row, place / of_row]);
+            let mut most = [0.0f32; BLOCK];
+            for y in from[1]..from[1] + size[1] {
+                let at = (y + HALO) * width + from[0] + HALO;
+                // Nothing goes through the border of the area: it would be lost there.
+                let inner = [
+                    size[0].min(area.size[0] - 1 - from[0]),
+                    if y + 1 < area.size[1] { size[0] } else { 0 },
+                ];
+                for (axis, next) in [1, width].into_iter().enumerate() {
+                    let (own, beside) = (Run::of(levelling, at), Run::of(levelling, at + next));
+                    let mut flows = [0.0f32; BLOCK];
+                    for i in 0..BLOCK {
+                        let [share, loose] = flow(round, bare, &own, &beside, i);
+                        let share = if i < inner[axis] { share } else { 0.0 };
+                        flows[i] = share * loose;
+                        most[i] = larger(share.abs(), most[i]);
+                    }
+                    let cells = inner[axis];
+                    levelling.flows[axis][at..at + cells].copy_from_slice(&flows[..cells]);
+                }
+            }
+            blocks.flowed[place] = most.into_iter().fold(0.0, larger);
+        }
+        for place in 0..blocks.active.len() {
+            if blocks.active[place] {
+                levelling.carry(area, [place % of_row, place / of_row]);
+            }
+        }
+    }
+}
+
+wide! {
+    /// Adds the shares of what donors had that flowed through the faces of an axis.
+    fn share_out(levelling: &Levelling, area: &Area, bare: f32, axis: usize, faces: &mut [f32]) {
+        let next = [1, levelling.width][axis];
+        for (row, faces) in faces.chunks_exact_mut(area.size[0]).enumerate() {
+            let at = (row + HALO) * levelling.width + HALO;
+            let flows = &levelling.sums[axis][at..at + faces.len()];
+            let own = &levelling.before[at..at + faces.len()];
+            let beside = &levelling.before[at + next..at + next + faces.len()];
+            for (i, face) in faces.iter_mut().enumerate() {
+                let donor = if flows[i] > 0.0 { own[i] } else { beside[i] };
+                let share = flows[i] / larger(donor - bare, 1e-9);
+                *face += larger(smaller(share, 1.0), -1.0);
+            }
+        }
+    }
+}
+
+/// The first cell of a block of an area, and its columns and rows.
+fn block_of(area: &Area, block: [usize; 2]) -> ([usize; 2], [usize; 2]) {
+    let from = block.map(|place| place * BLOCK);
+    (from, [0, 1].map(|i| BLOCK.min(area.size[i] - from[i])))
+}
+
+impl Levelling {
+    /// The five-point Laplacian of a block and the cells beside it.
+    #[inline(always)]
+    fn bend(&mut self, area: &Area, block: [usize; 2]) {
+        let (from, size) = block_of(area, block);
+        let (width, surface) = (self.width, &self.surface);
+        for y in from[1] + HALO - 1..from[1] + HALO + size[1] + 1 {
+            let at = y * width + from[0] + HALO - 1;
+            let cells = size[0] + 2;
+            let out = &mut self.curve[at..at + cells];
+            let (low, high) = (
+                &surface[at - width..][..cells],
+                &surface[at + width..][..cells],
+            );
+            let (own, left, right) = (
+                &surface[at..][..cells],
+                &surface[at - 1..][..cells],
+                &surface[at + 1..][..cells],
+            );
+            for x in 0..cells {
+                out[x] = low[x] + high[x] + left[x] + right[x] - 4.0 * own[x];
+            }
+        }
+    }
+
+    /// Carries over what flowed in a block.
+    #[inline(always)]
+    fn carry(&mut self, area: &Area, block: [usize; 2]) {
+        let (from, size) = block_of(area, block);
+        for (axis, next) in [1, self.width].into_iter().enumerate() {
+            for y in from[1]..from[1] + size[1] {
+                let at = (y + HALO) * self.width + from[0] + HALO;
+                let flows = &self.flows[axis][at..at + size[0]];
+                let sums = self.sums[axis][at..at + size[0]].iter_mut();
+                sums.zip(flows).for_each(|(sum, flow)| *sum += flow);
+                for plane in [&mut self.wet, &mut self.surface] {
+                    let own = plane[at..at + size[0]].iter_mut();
+                    own.zip(flows).for_each(|(height, flow)| *height -= flow);
+                    let beside = plane[at + next..at + next + size[0]].iter_mut();
+                    beside.zip(flows).for_each(|(height, flow)| *height += flow);
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,416 @@
+//! Drawing the head into a grid of cells: in each cell the piece that counts as the lowest stays.
+//!
+//! Rows are drawn eight cells at a time. Only the height and the number of the piece are kept; what
+//! else is known of a cell is computed for those pieces alone that are left.
+
+use std::ops::Range;
+
+use maulstick_num::lanes::Lanes;
+
+use crate::brush::traits::TEXELS_PER_STRIP;
+
+/// A ribbon that covers a cell only in part counts as higher by this much, cells: of ribbons beside each
+/// other each has the cells that it covers most, so more of them give paint where cells are coarse.
+const EDGE_PENALTY: f32 = 0.9;
+/// Nothing here.
+const NOTHING: f32 = -1.0;
+/// An end is soft over so many cells at least.
+const SHARP: f32 = 0.25;
+/// Length by which a strip extends past its tip, cells.
+const TIP: f32 = 0.5;
+/// Cells drawn at a time; rows are padded so that such a run never ends in the next one.
+const LANES: usize = 8;
+const LANE: [f32; LANES] = [0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0];
+/// Larger than any cover: what is multiplied by it limits a cover only where it is not positive.
+const BEYOND: f32 = 1e6;
+
+/// A piece of the head: each quantity at its beginning, and how much it changes to its end.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Piece {
+    /// The first texel of its strip.
+    pub(super) texel: u32,
+    /// Place along the strip in texels.
+    pub(super) along: [f32; 2],
+    /// Height of the middle line, cells.
+    pub(super) z: [f32; 2],
+    /// Clearance over what it lies on, cells.
+    pub(super) bottom: f32,
+    /// By how much its edges are higher than its middle, cells: a bristle is round below.
+    pub(super) round: f32,
+    /// By how much it counts as higher, cells.
+    pub(super) rank: f32,
+    /// Travel since the previous step, cells.
+    pub(super) moved: [[f32; 2]; 2],
+    /// Its line on the grid.
+    pub(super) line: Line,
+}
+
+/// The middle line of a piece on the grid, by columns of its major axis.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Line {
+    /// 0 where it goes rather across than up, 1 otherwise.
+    pub(super) major: usize,
+    /// Its beginning.
+    pub(super) start: [f32; 2],
+    /// Share of the piece by column.
+    pub(super) inverse: f32,
+    /// Rise of the minor axis by column.
+    pub(super) slope: f32,
+    /// Of the angle to the major axis.
+    pub(super) cosine: f32,
+    /// Half the width, cells.
+    pub(super) half: f32,
+    /// Cells over which an edge is soft: a cell, or the width across.
+    pub(super) soft: f32,
+    /// The most of a cell that it covers.
+    pub(super) most: f32,
+    /// Share of a column before the beginning and after the end, by column: factor and at column 0.
+    pub(super) fades: [[f32; 2]; 2],
+}
+
+impl Line {
+    /// The middle line of a ribbon that moves by `way` in the step, in the middle of which it begins at `start` and
+    /// goes by `d`, half of it `half` wide, cells; and the range of columns that it covers. `ends` is true where
+    /// nothing continues it, before its beginning and after its end: there it is soft by its motion along the line.
+    #[inline(always)]
+    pub(super) fn swept(
+        start: [f32; 2],
+        d: [f32; 2],
+        way: [f32; 2],
+        half: f32,
+        [begins, stops]: [bool; 2],
+    ) -> (Self, [f32; 2]) {
+        let major = usize::from(d[1].abs() > d[0].abs());
+        let length = d[major].abs();
+        let inverse = if length > 1e-4 { 1.0 / d[major] } else { 0.0 };
+        let slope = d[1 - major] * inverse;
+        let cosine = 1.0 / (1.0 + slope * slope).sqrt();
+        let soft = ((way[1 - major] - slope * way[major]).abs() * cosine).max(1.0);
+        let along = (way[major] + slope * way[1 - major]).abs() * cosine * cosine;
+        let blurred = along.max(SHARP);
+        let tip = if stops { TIP } else { 0.0 };
+        let past = [begins, stops].map(|ends| if ends { 0.5 * blurred } else { 0.0 });
+        // Segments of a strip share their ends: each has the columns from its first up to its last.
+        let on = [past[0], past[1] + tip];
+        let (low, [below, above]) = match d[major] >= 0.0 {
+            true => (start[major], on),
+            false => (start[major] - length, [on[1], on[0]]),
+        };
+        let (low, high) = (low - below, low + length + above);
+        let rate = 1.0 / blurred;
+        let whole = [0.0, 1.0];
+        let rises = [rate, (0.5 - low) * rate];
+        let falls = [-rate, (high - 0.5) * rate];
+        let dwells = match begins && stops {
+            true => ((length + tip) * rate).min(1.0),
+            false => 1.0,
+        };
+        let line = Self {
+            major,
+            start,
+            inverse,
+            slope,
+            cosine,
+            half,
+            soft,
+            most: (half / soft + 0.5).min(1.0) * dwells,
+            fades: [
+                if below > 0.0 { rises } else { whole },
+                if above > 0.0 { falls } else { whole },
+            ],
+        };
+        (line, [low, high])
+    }
+
+    /// Of a column: the place along the piece, 0 to 1, and that of the middle across it.
+    #[inline(always)]
+    fn at(&self, column: f32) -> (f32, f32) {
+        let off = column + 0.5 - self.start[self.major];
+        let t = (off * self.inverse).clamp(0.0, 1.0);
+        (t, self.start[1 - self.major] + off * self.slope - 0.5)
+    }
+
+    /// The places along and across the piece of a cell.
+    fn place(&self, cell: [f32; 2]) -> [f32; 2] {
+        let (t, middle) = self.at(cell[self.major]);
+        let off = (cell[1 - self.major] - middle).abs() * self.cosine;
+        let off = (off - 0.5 * (self.soft - 1.0)).max(0.0);
+        [t, (off / self.half).min(1.0)]
+    }
+
+    /// Largest distance from its middle that it covers.
+    fn reach(&self) -> f32 {
+        self.half + 0.5 * self.soft
+    }
+}
+
+impl Piece {
+    #[inline(always)]
+    fn lower_side(&self, t: f32) -> f32 {
+        self.z[0] + t * self.z[1] + self.bottom
+    }
+}
+
+/// The part of the head over a cell.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Over<'a> {
+    piece: &'a Piece,
+    t: f32,
+    /// Place across, 0 in the middle to 1 at an edge.
+    across: f32,
+    /// Share of the cell that is covered, 0 to 1.
+    pub(super) cover: f32,
+}
+
+impl Over<'_> {
+    /// Height of the lower side where the bristle, at rest on `ride`, may sink in by `sink`, cells.
+    ///
+    /// A pressed bristle has its solved height at 0: it follows the ride into the valleys of the tooth, and is lifted
+    /// by higher parts.
+    pub(super) fn bottom(&self, ride: f32, sink: f32) -> f32 {
+        let z = self.piece.z[0] + self.t * self.piece.z[1];
+        let rests = (z + ride.min(0.0)).max(ride);
+        rests - sink + self.piece.bottom + self.piece.round * self.across * self.across
+    }
+
+    /// The texel.
+    pub(super) fn texel(&self) -> u32 {
+        let along = (self.piece.along[0] + self.t * self.piece.along[1]) as usize;
+        self.piece.texel + along.min(TEXELS_PER_STRIP - 1) as u32
+    }
+
+    /// Travel since the previous step, cells.
+    pub(super) fn moved(&self) -> [f32; 2] {
+        let [from, change] = self.piece.moved;
+        [0, 1].map(|i| from[i] + self.t * change[i])
+    }
+}
+
+/// The grid.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Drawing {
+    size: [usize; 2],
+    /// The rows that are drawn.
+    rows: Range<usize>,
+    stride: usize,
+    score: Vec<f32>,
+    /// The lowest piece; whole numbers.
+    number: Vec<f32>,
+    /// Share of each cell that all pieces leave open. They overlap at random: each covers its share of the area that
+    /// the others leave open.
+    open: Vec<f32>,
+    pieces: Vec<Piece>,
+}
+
+impl Drawing {
+    /// An empty grid of so many columns and rows, of which only those `rows` are drawn.
+    pub(super) fn begin(&mut self, size: [usize; 2], rows: Range<usize>) {
+        self.size = size;
+        self.stride = size[0].next_multiple_of(LANES) + LANES;
+        self.pieces.clear();
+        let cells = self.stride * rows.len();
+        self.rows = rows;
+        self.score.clear();
+        self.score.resize(cells, f32::MAX);
+        self.number.clear();
+        self.number.resize(cells, NOTHING);
+        self.open.clear();
+        self.open.resize(cells, 1.0);
+    }
+
+    /// The rows that are drawn.
+    pub(super) fn rows(&self) -> Range<usize> {
+        self.rows.clone()
+    }
+
+    /// The part of the head over a cell of these rows.
+    pub(super) fn over(&self, x: usize, y: usize) -> Option<Over<'_>> {
+        let at = (y - self.rows.start) * self.stride + x;
+        let number = self.number[at];
+        let piece = (number >= 0.0).then(|| &self.pieces[number as usize])?;
+        let [t, across] = piece.line.place([x as f32, y as f32]);
+        let cover = 1.0 - self.open[at];
+        Some(Over {
+            piece,
+            t,
+            across,
+            cover,
+        })
+    }
+
+    /// Draws a piece of a ribbon over those columns of its major axis.
+    #[inline(always)]
+    pub(super) fn draw<L: Lanes>(&mut self, piece: &Piece, columns: Range<usize>) {
+        let number = self.pieces.len() as f32;
+        self.pieces.push(*piece);
+        match piece.line.major {
+            0 => self.draw_across::<L>(piece, number, columns),
+            _ => self.draw_up::<L>(piece, number, columns),
+        }
+    }
+
+    /// A piece that goes rather up than across: in each row all is the same but the cover.
+    #[inline(always)]
+    fn draw_up<L: Lanes>(&mut self, piece: &Piece, number: f32, rows: Range<usize>) {
+        let line = &piece.line;
+        let across = line.reach() / line.cosine;
+        let edge = self.size[0] as f32;
+        let hard = 1.0 / line.soft;
+        let [reach, cosine] = [line.reach() * hard, line.cosine * hard].map(L::splat);
+        for row in rows.start.max(self.rows.start)..rows.end.min(self.rows.end) {
+            let (t, middle) = line.at(row as f32);
+            let fade = |[rate, at]: [f32; 2]| at + rate * row as f32;
+            let fade = fade(line.fades[0]).min(fade(line.fades[1])).clamp(0.0, 1.0);
+            let (most, fade) = (L::splat(line.most), L::splat(fade));
+            let lowest = piece.lower_side(t) + piece.rank;
+            let from = (middle - across + 1.0).clamp(0.0, edge) as usize;
+            let to = (middle + across + 1.0).clamp(0.0, edge) as usize;
+            let mut x = from;
+            while x < to {
+                let column = L::splat(x as f32) + L::of(&LANE);
+                let off = (column - L::splat(middle)).abs();
+                let cover = (reach - off * cosine).least(most) * fade;
+                self.lanes::<L>(row, x, number, cover, L::splat(lowest));
+                x += LANES;
+            }
+        }
+    }
+
+    /// A piece that goes rather across than up: of each row the columns near its middle line.
+    #[inline(always)]
+    fn draw_across<L: Lanes>(&mut self, piece: &Piece, number: f32, columns: Range<usize>) {
+        let line = &piece.line;
+        let across = line.reach() / line.cosine;
+        let (_, first) = line.at(columns.start as f32);
+        let (_, last) = line.at(columns.end as f32 - 1.0);
+        let edge = self.size[1] as f32;
+        let from = (first.min(last) - across + 1.0).clamp(0.0, edge) as usize;
+        let to = (first.max(last) + across + 1.0).clamp(0.0, edge) as usize;
+        let (_, origin) = line.at(0.0);
+        let (low, high) = (columns.start as f32, columns.end as f32);
+        // On a flat line a row has all of its columns.
+        let steep = line.slope.abs() * (high - low) > across;
+        let per_row = if steep { 1.0 / line.slope } else { 0.0 };
+        let [start, aside] = line.start.map(L::splat);
+        let [inverse, slope] = [line.inverse, line.slope].map(L::splat);
+        let hard = 1.0 / line.soft;
+        let [reach, cosine] = [line.reach() * hard, line.cosine * hard].map(L::splat);
+        let most = L::splat(line.most);
+        let [starts, ends] = line.fades.map(|fade| fade.map(L::splat));
+        let [z, rise] = piece.z.map(L::splat);
+        let [bottom, rank] = [piece.bottom, piece.rank].map(L::splat);
+        for row in from.max(self.rows.start)..to.min(self.rows.end) {
+            let y = row as f32;
+            let (x, end) = if steep {
+                let middle = (y - origin) * per_row;
+                let half = (across * per_row).abs() + 1.0;
+                let x = (middle - half).clamp(low, high);
+                (x as usize, (middle + half + 1.0).clamp(low, high) as usize)
+            } else {
+                (columns.start, columns.end)
+            };
+            let mut x = x;
+            while x < end {
+                let column = L::splat(x as f32) + L::of(&LANE);
+                let off = column + L::splat(0.5) - start;
+                let middle = aside + off * slope - L::splat(0.5);
+                let cover = (reach - (L::splat(y) - middle).abs() * cosine).least(most);
+                let fade = (starts[1] + starts[0] * column).least(ends[1] + ends[0] * column);
+                let cover = cover * fade.least(L::splat(1.0)).most(L::splat(0.0));
+                let inside = (L::splat(high) - column) * L::splat(BEYOND);
+                let t = (off * inverse).most(L::splat(0.0)).least(L::splat(1.0));
+                let lowest = z + t * rise + bottom + rank;
+                self.lanes::<L>(row, x, number, cover.least(inside), lowest);
+                x += LANES;
+            }
+        }
+    }
+
+    /// Eight cells of a row from `x` on, with the cover and the height of each.
+    #[inline(always)]
+    fn lanes<L: Lanes>(&mut self, row: usize, x: usize, number: f32, cover: L, lowest: L) {
+        let at = (row - self.rows.start) * self.stride + x;
+        let (Some(scores), Some(numbers), Some(open)) = (
+            self.score[at..].first_chunk_mut(),
+            self.number[at..].first_chunk_mut(),
+            self.open[at..].first_chunk_mut(),
+        ) else {
+            return;
+        };
+        let (zero, one) = (L::splat(0.0), L::splat(1.0));
+        let cover = cover.least(one);
+        let height = lowest + (one - cover) * L::splat(EDGE_PENALTY);
+        *open = (L::of(open) * (one - cover.most(zero))).values();
+        let old = L::of(scores);
+        let height = zero.less(cover).choose(height, L::splat(f32::MAX));
+        let wins = height.less(old).choose(one, zero);
+        *scores = height.least(old).values();
+        // Of a choice between what lies there and another, compilers make a store of some lanes, which
+        // takes many times as long on some processors.
+        let before = L::of(numbers);
+        *numbers = (before + wins * (L::splat(number) - before)).values();
+    }
+
+    /// Draws a piece over one whole cell.
+    pub(super) fn draw_cell(&mut self, x: usize, y: usize, piece: Piece) {
+        let at = (y - self.rows.start) * self.stride + x;
+        self.open[at] = 0.0;
+        let lowest = piece.lower_side(0.0);
+        if lowest < self.score[at] {
+            self.score[at] = lowest;
+            self.number[at] = self.pieces.len() as f32;
+            self.pieces.push(piece);
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use maulstick_num::lanes::Plain;
+
+    use super::*;
+
+    /// Whatever is drawn in runs of eight is what each cell by itself would say.
+    #[test]
+    fn runs_of_cells_agree_with_single_cells() {
+        let mut drawing = Drawing::default();
+        let size = [37, 29];
+        let mut won = 0;
+        for case in 0..400u32 {
+            drawing.begin(size, 0..size[1]);
+            let unit = |n: u32| ((case.wrapping_mul(2_654_435_761) >> n) & 255) as f32 / 255.0;
+            let line = Line {
+                major: (case & 1) as usize,
+                start: [unit(1) * 40.0 - 2.0, unit(5) * 30.0 - 2.0],
+                inverse: 0.2,
+                slope: [0.0, 2.0 * unit(9) - 1.0][(case as usize >> 1) & 1],
+                cosine: 0.8,
+                half: 0.1 + 3.0 * unit(13),
+                soft: 1.0,
+                most: 1.0,
+                fades: [[0.0, 1.0]; 2],
+            };
+            let piece = Piece {
+                z: [unit(3), -0.5],
+                line,
+                ..Piece::default()
+            };
+            let columns = (size[line.major] / 5)..(size[line.major] * 4 / 5);
+            drawing.draw::<Plain>(&piece, columns.clone());
+            for y in 0..size[1] {
+                for x in 0..size[0] {
+                    let cell = [x as f32, y as f32];
+                    let (_, middle) = line.at(cell[line.major]);
+                    let cover = line.reach() - (cell[1 - line.major] - middle).abs() * line.cosine;
+                    let inside = columns.contains(&[x, y][line.major]) && cover > 1e-4;
+                    let outside = !columns.contains(&[x, y][line.major]) || cover < -1e-4;
+                    let drawn = drawing.over(x, y).is_some();
+                    assert!(drawn || !inside, "case {case}: {x} {y} is not drawn");
+                    assert!(!drawn || !outside, "case {case}: {x} {y} is drawn");
+                    won += usize::from(drawn);
+                }
+            }
+        }
+        assert!(won > 5000, "{won}");
+    }
+}

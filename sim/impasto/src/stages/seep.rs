@@ -1,0 +1,140 @@
+//! Paint between bristles: where a film has become thinner than the one beside it, paint seeps over,
+//! from strip to strip and along each strip.
+//!
+//! Only what evens the films out goes over, with the mixture of the fuller one: so the whole head feeds
+//! the bristles that touch, and two colours beside each other stay two. Between strips the yield stress holds
+//! a difference, so that a bristle that took up more paints its streak to the end.
+
+use maulstick_num::select::larger;
+use maulstick_num::wide;
+
+use super::bristle_flow::{first_of, part};
+use crate::brush::load::PaintOnBrush;
+use crate::brush::traits::{BrushTraits, TEXELS_PER_STRIP};
+use crate::model::Step;
+
+/// Evens films out: in turn between strips of either order, and along them.
+pub fn seep(step: &mut Step<'_>) {
+    let steps = step.load.steps();
+    let seep = step.traits.seep;
+    let holds = BrushTraits::HOLDS * step.traits.film_full;
+    let (films, paints) = step.load.parts_mut();
+    let mut paints: Vec<PaintOnBrush<'_>> = paints.collect();
+    let turn = steps / BrushTraits::FLOW_STEPS;
+    let order = &step.head.beside()[(turn % 2) as usize];
+    let first = (turn / 2 % 2) as usize;
+    between_strips(
+        films,
+        &mut paints,
+        &order[first..],
+        seep.beside,
+        holds,
+        steps,
+    );
+    along_strips(films, &mut paints, seep.along, steps);
+}
+
+wide! {
+    fn between_strips(
+        films: &mut [u32],
+        paints: &mut [PaintOnBrush<'_>],
+        order: &[u32],
+        share: f64,
+        holds: f64,
+        steps: u64,
+    ) {
+        let every = BrushTraits::FLOW_STEPS as usize;
+        for pair in order.as_chunks::<2>().0.iter().skip(first_of(steps)).step_by(every) {
+            let pair = pair.map(|strip| strip as usize);
+            let [one, other] = of_strips(films, pair);
+            let (mut on, mut back, mut goes) = ([0.0; TEXELS_PER_STRIP], [0.0; TEXELS_PER_STRIP], 0.0);
+            for k in 0..TEXELS_PER_STRIP {
+                let fall = f64::from(one[k]) - f64::from(other[k]);
+                on[k] = given(share, fall - holds, one[k]);
+                back[k] = given(share, -fall - holds, other[k]);
+                goes = larger(goes, on[k] + back[k]);
+            }
+            if goes == 0.0 {
+                continue;
+            }
+            let mut sums = [[0; TEXELS_PER_STRIP]; 2];
+            for paint in &mut *paints {
+                let [mut one, mut other] = of_strips(paint.film, pair);
+                for k in 0..TEXELS_PER_STRIP {
+                    let (on, back) = (part(one[k], on[k]), part(other[k], back[k]));
+                    one[k] = one[k] - on + back;
+                    other[k] = other[k] + on - back;
+                    sums[0][k] += one[k];
+                    sums[1][k] += other[k];
+                }
+                put(paint.film, pair, [one, other]);
+            }
+            put(films, pair, sums);
+        }
+    }
+}
+
+/// The texels of two strips.
+#[inline(always)]
+fn of_strips(plane: &[u32], pair: [usize; 2]) -> [[u32; TEXELS_PER_STRIP]; 2] {
+    pair.map(|strip| plane.as_chunks().0[strip])
+}
+
+#[inline(always)]
+fn put(plane: &mut [u32], pair: [usize; 2], texels: [[u32; TEXELS_PER_STRIP]; 2]) {
+    for (strip, texels) in pair.into_iter().zip(texels) {
+        plane.as_chunks_mut().0[strip] = texels;
+    }
+}
+
+wide! {
+    fn along_strips(
+        films: &mut [u32],
+        paints: &mut [PaintOnBrush<'_>],
+        share: f64,
+        steps: u64,
+    ) {
+        let every = BrushTraits::FLOW_STEPS as usize;
+        let strips = films.as_chunks_mut::<TEXELS_PER_STRIP>().0.iter_mut().enumerate();
+        for (strip, films) in strips.skip(first_of(steps)).step_by(every) {
+            // In turn from the first and from the second texel on.
+            let first = (steps as usize + strip) / every % 2;
+            // By each texel but the last, what goes between it and the next; of every second pair.
+            let (mut on, mut back, mut falls) = ([0.0; TEXELS_PER_STRIP], [0.0; TEXELS_PER_STRIP], 0.0);
+            for k in 0..TEXELS_PER_STRIP - 1 {
+                let own = if k % 2 == first { share } else { 0.0 };
+                let fall = f64::from(films[k]) - f64::from(films[k + 1]);
+                on[k] = given(own, fall, films[k]);
+                back[k] = given(own, -fall, films[k + 1]);
+                falls = larger(falls, own * fall.abs());
+            }
+            // Not a quantum would go.
+            if falls < 2.0 {
+                continue;
+            }
+            *films = [0; TEXELS_PER_STRIP];
+            for paint in &mut *paints {
+                let film = &mut paint.film.as_chunks_mut::<TEXELS_PER_STRIP>().0[strip];
+                let before = *film;
+                let (mut leaves, mut comes) = ([0; TEXELS_PER_STRIP], [0; TEXELS_PER_STRIP]);
+                for k in 0..TEXELS_PER_STRIP - 1 {
+                    leaves[k] = part(before[k], on[k]);
+                    comes[k] = part(before[k + 1], back[k]);
+                }
+                for k in 0..TEXELS_PER_STRIP - 1 {
+                    film[k] = film[k] - leaves[k] + comes[k];
+                }
+                for k in 1..TEXELS_PER_STRIP {
+                    film[k] = film[k] + leaves[k - 1] - comes[k - 1];
+                }
+                films.iter_mut().zip(film).for_each(|(sum, count)| *sum += *count);
+            }
+        }
+    }
+}
+
+/// The share of a film that goes over, where it is fuller by `fall` quanta than the one beside it.
+#[inline(always)]
+fn given(share: f64, fall: f64, film: u32) -> f64 {
+    0.5 * share * larger(fall, 0.0) / larger(f64::from(film), 1.0)
+}

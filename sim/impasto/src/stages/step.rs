@@ -1,0 +1,73 @@
+//! The whole step.
+
+use maulstick_canvas::quantum::add;
+
+use super::advection::{Advection, Axis};
+use super::bristle_flow::flow;
+use super::exchange::Exchange;
+use super::footprint::Footprint;
+use super::modes::{sample, vacuum};
+use super::seep::seep;
+use super::velocity::Faces;
+use crate::model::{PaintModel, Step, StepReport, Transfer};
+
+/// The paint model `impasto`, with room for its stages.
+#[derive(Debug, Default)]
+pub struct Impasto {
+    footprint: Footprint,
+    faces: Faces,
+    advection: Advection,
+    exchange: Exchange,
+}
+
+impl PaintModel for Impasto {
+    fn name(&self) -> &'static str {
+        "impasto"
+    }
+
+    fn step(&mut self, step: &mut Step<'_>) -> StepReport {
+        let footprint = &mut self.footprint;
+        footprint.find(step);
+        if footprint.contacts.is_empty() {
+            return StepReport::default();
+        }
+        let mut report = footprint.report(step);
+        match step.handling.transfer {
+            Transfer::Sampler => {
+                report.from_nowhere = sample(footprint, step);
+                return report;
+            }
+            Transfer::Vacuum => {
+                report.lifted = vacuum(footprint, step);
+                if step.load.total() > 0 {
+                    add(&mut report.lifted, &step.load.take_all());
+                }
+            }
+            _ => {
+                if step.handling.push {
+                    self.faces.find(footprint, step);
+                    let first = if step.load.steps().is_multiple_of(2) {
+                        Axis::X
+                    } else {
+                        Axis::Y
+                    };
+                    for _ in 0..step.traits.parts {
+                        self.advection.run(
+                            footprint.around,
+                            &self.faces,
+                            step.window,
+                            first,
+                            step.stain,
+                        );
+                    }
+                }
+                report.from_nowhere = self.exchange.run(footprint, step);
+                flow(step);
+                seep(step);
+            }
+        }
+        footprint.note_left(step);
+        step.window.touch(footprint.reached());
+        report
+    }
+}

@@ -1,0 +1,265 @@
+//! Levelling under the brush: the flow of a thin layer of a Bingham fluid, face by face.
+
+use maulstick_canvas::window::{Area, Window};
+use maulstick_impasto::stages::levelling::{Body, Levelling, Round};
+use maulstick_impasto::stages::velocity::Faces;
+
+use crate::scene::{CELL_M, Random, Scene};
+
+/// Surface tension of linseed oil, N/m, and weight of paint of 1,800 kg/m³, N/m³.
+const TENSION: f64 = 0.03;
+const WEIGHT: f64 = 1800.0 * 9.81;
+/// An explicit scheme of fourth order is stable up to 1/32; it is kept below.
+const STABLE: f64 = 1.0 / 40.0;
+/// The slope at which an edge advances onto bare ground.
+const ADVANCES: f64 = 1.0;
+/// The most of a donor that goes through one of its four faces.
+const MOST: f64 = 0.25;
+/// 2⁻²⁴, the rounding of a height.
+const EPS: f64 = 1.0 / 16_777_216.0;
+
+/// What an area's paint does for so many seconds.
+struct Film<'a> {
+    window: &'a Window,
+    body: Body,
+    seconds: f64,
+    bare: f64,
+    thinner: Option<usize>,
+    to_cells: f64,
+}
+
+impl Film<'_> {
+    /// Quanta on a cell; beyond the surface those of its edge.
+    fn quanta(&self, [x, y]: [i64; 2]) -> f64 {
+        let place = self.place([x, y]);
+        let planes = self.window.planes();
+        planes.map(|(_, plane)| f64::from(plane[place])).sum()
+    }
+
+    fn place(&self, at: [i64; 2]) -> usize {
+        let limit = self.window.limit();
+        let [x, y] = [0, 1].map(|i| at[i].clamp(0, limit[i] as i64 - 1) as usize);
+        y * self.window.width() + x
+    }
+
+    /// Height of the surface, m.
+    fn surface(&self, at: [i64; 2]) -> f64 {
+        let base = f64::from(self.window.base()[self.place(at)]);
+        CELL_M * (base + self.to_cells * self.quanta(at))
+    }
+
+    /// Curvature, 1/m.
+    fn curvature(&self, [x, y]: [i64; 2]) -> f64 {
+        let beside = [[x - 1, y], [x + 1, y], [x, y - 1], [x, y + 1]];
+        let sum: f64 = beside.map(|at| self.surface(at)).iter().sum();
+        (sum - 4.0 * self.surface([x, y])) / (CELL_M * CELL_M)
+    }
+
+    /// Share of thinner.
+    fn thin(&self, at: [i64; 2]) -> f64 {
+        let plane = self.thinner.and_then(|slot| self.window.plane(slot));
+        let thin = plane.map_or(0.0, |plane| f64::from(plane[self.place(at)]));
+        if thin > 0.0 {
+            thin / self.quanta(at)
+        } else {
+            0.0
+        }
+    }
+
+    /// The least and the most of the donor's paint that goes from `at` to `next`, as the gradient's
+    /// rounding leaves it.
+    fn share(&self, at: [i64; 2], next: [i64; 2]) -> [f64; 2] {
+        let (s, s_next) = (self.surface(at), self.surface(next));
+        let curved = (self.curvature(next) - self.curvature(at)) / CELL_M;
+        let gradient = WEIGHT * (s - s_next) / CELL_M + TENSION * curved;
+        // The highest that something stands is eight cells.
+        let rounding = 8.0 * CELL_M * EPS;
+        let off = 24.0 * rounding * (TENSION / CELL_M.powi(3) + WEIGHT / CELL_M);
+        let off = off + 8.0 * EPS * gradient.abs();
+        let mean = |of: &dyn Fn([i64; 2]) -> f64| 0.5 * (of(at) + of(next));
+        let height = mean(&|at| self.to_cells * self.quanta(at) * CELL_M);
+        // Half of it takes the yield stress away; alone it is e⁷ times as fluid.
+        let left = |at| (1.0 - 2.0 * self.thin(at)).max(0.0).powi(3);
+        let yields = self.body.yield_pa.max(1e-9) * mean(&left);
+        let advances = ADVANCES * mean(&left);
+        let fluid = mean(&|at| maulstick_num::exp(7.0 * self.thin(at)));
+        let viscosity = self.body.viscosity_pa_s.max(1e-9) / fluid;
+        let goes = |gradient: f64| {
+            let sheared = (height - yields / gradient.abs().max(1e-300)).max(0.0);
+            let mobility = sheared * sheared * (3.0 * height - sheared) / (6.0 * viscosity);
+            // As a share of a cell's height, in the time of the round.
+            let mobility = mobility * self.seconds / (CELL_M * CELL_M);
+            let most = STABLE * CELL_M * CELL_M / TENSION;
+            let volume = mobility.min(most) * gradient;
+            let (donor, onto) = if volume > 0.0 { (at, next) } else { (next, at) };
+            let held = self.quanta(donor);
+            let bare = self.quanta(onto) <= self.bare;
+            let steep = (s - s_next).abs() / CELL_M >= advances;
+            if held <= self.bare || bare && !steep {
+                return 0.0;
+            }
+            (volume / (self.to_cells * held)).clamp(-MOST, MOST)
+        };
+        let mut shares = [goes(gradient - off), goes(gradient), goes(gradient + off)];
+        // A slope that is steep within rounding may count as either.
+        if ((s - s_next).abs() / CELL_M - advances).abs() < 1e-5 {
+            shares[1] = 0.0;
+        }
+        shares.sort_by(f64::total_cmp);
+        let off = |share: f64| 1e-5 * share.abs() + 1e-7;
+        [shares[0] - off(shares[0]), shares[2] + off(shares[2])]
+    }
+
+    /// Through the right and upper faces of an area's cells; nothing through its border.
+    fn oracle(&self, area: &Area) -> [Vec<[f64; 2]>; 2] {
+        let [columns, rows] = area.size;
+        [0, 1].map(|axis| {
+            let cells = (0..rows).flat_map(|y| (0..columns).map(move |x| [x, y]));
+            let face = |[x, y]: [usize; 2]| {
+                let border = [x + 1 == columns, y + 1 == rows][axis];
+                let at = [x + area.from[0], y + area.from[1]].map(|cell| cell as i64);
+                let next = [at[0] + [1, 0][axis], at[1] + [0, 1][axis]];
+                if border {
+                    [0.0; 2]
+                } else {
+                    self.share(at, next)
+                }
+            };
+            cells.map(face).collect()
+        })
+    }
+}
+
+fn agrees(faces: &Faces, want: &[Vec<[f64; 2]>; 2]) -> bool {
+    let near = |got: &[f32], want: &[[f64; 2]]| {
+        let mut pairs = got.iter().zip(want);
+        got.len() == want.len()
+            && pairs.all(|(got, [low, high])| (*low..=*high).contains(&f64::from(*got)))
+    };
+    near(&faces.right, &want[0]) && near(&faces.above, &want[1])
+}
+
+/// What levels on an area by itself.
+fn levelled(film: &Film<'_>, area: &Area) -> (Faces, f32) {
+    let to_cells = film.to_cells as f32;
+    let round = Round::new(film.body, CELL_M, film.seconds, to_cells, film.bare as f32);
+    let mut faces = Faces::still(area);
+    let planes = [&mut faces.right[..], &mut faces.above[..]];
+    let most = Levelling::default().add(film.window, area, &round, film.thinner, (1, 0.0), planes);
+    (faces, most)
+}
+
+/// An area anywhere on the surface, now and then all of it or a row.
+fn area(random: &mut Random, limit: [usize; 2]) -> Area {
+    let from = limit.map(|cells| random.below(cells - 1));
+    let size = [0, 1].map(|i| 1 + random.below(limit[i] - from[i]));
+    match random.below(4) {
+        0 => Area {
+            from: [0; 2],
+            size: limit,
+        },
+        1 => Area {
+            from,
+            size: [size[0], 1],
+        },
+        _ => Area { from, size },
+    }
+}
+
+#[test]
+fn paint_levels_as_a_bingham_fluid() {
+    let mut seen = [0; 4];
+    for seed in 0..24 {
+        let mut random = Random::new(seed);
+        let scene = Scene::new(seed);
+        let film = Film {
+            window: &scene.window,
+            body: [
+                Body::TUBE,
+                Body {
+                    yield_pa: 0.0,
+                    viscosity_pa_s: 20.0,
+                },
+                Body {
+                    yield_pa: 300.0,
+                    viscosity_pa_s: 2.0,
+                },
+            ][seed as usize % 3],
+            seconds: [2e-3, 0.06][seed as usize / 3 % 2],
+            bare: [0.0, 2013.0][seed as usize / 2 % 2],
+            thinner: [None, Some(2)][seed as usize / 4 % 2],
+            to_cells: f64::from(scene.traits.cells_per_quantum),
+        };
+        let area = area(&mut random, scene.window.limit());
+        let (mut faces, most) = levelled(&film, &area);
+        let want = film.oracle(&area);
+        assert!(agrees(&faces, &want), "scene {seed}");
+        let all = || faces.right.iter().chain(&faces.above);
+        assert_eq!(all().fold(0.0, |most, v| v.abs().max(most)), most);
+        for v in all() {
+            let kinds = [*v == 0.0, *v > 0.0, *v < 0.0, v.abs() > 0.02];
+            seen = std::array::from_fn(|i| seen[i] + usize::from(kinds[i]));
+        }
+        if most < 1e-3 {
+            continue;
+        }
+        // Paint a hundredth more fluid, or that yields a fiftieth later, is told apart where it flows.
+        let place = all().position(|v| v.abs() == most).expect("the most");
+        let planes = [&mut faces.right, &mut faces.above];
+        let count = planes[0].len();
+        let fault = &mut planes[place / count][place % count];
+        *fault *= 1.01;
+        assert!(!agrees(&faces, &want), "a fault in scene {seed} passes");
+    }
+    assert!(seen.iter().all(|seen| *seen > 100), "{seen:?}");
+}
+
+/// Seeded faults in what the flow depends on.
+#[test]
+fn other_paint_is_told_apart() {
+    let scene = Scene::new(1);
+    let limit = scene.window.limit();
+    let all = Area {
+        from: [0; 2],
+        size: limit,
+    };
+    let film = |change: fn(&mut Film<'_>)| {
+        let mut film = Film {
+            window: &scene.window,
+            body: Body {
+                yield_pa: 80.0,
+                viscosity_pa_s: 20.0,
+            },
+            seconds: 2e-3,
+            bare: 2013.0,
+            thinner: Some(2),
+            to_cells: f64::from(scene.traits.cells_per_quantum),
+        };
+        change(&mut film);
+        levelled(&film, &all).0
+    };
+    let own = |_: &mut Film<'_>| {};
+    let want = Film {
+        window: &scene.window,
+        body: Body {
+            yield_pa: 80.0,
+            viscosity_pa_s: 20.0,
+        },
+        seconds: 2e-3,
+        bare: 2013.0,
+        thinner: Some(2),
+        to_cells: f64::from(scene.traits.cells_per_quantum),
+    }
+    .oracle(&all);
+    assert!(agrees(&film(own), &want));
+    let faults: [fn(&mut Film<'_>); 5] = [
+        |film| film.body.yield_pa *= 1.02,
+        |film| film.body.viscosity_pa_s *= 1.02,
+        |film| film.seconds *= 0.98,
+        |film| film.bare = 50_000.0,
+        |film| film.thinner = None,
+    ];
+    for (number, fault) in faults.iter().enumerate() {
+        assert!(!agrees(&film(*fault), &want), "fault {number} passes");
+    }
+}

@@ -1,0 +1,155 @@
+//! The ride of a bristle: no cell within reach stands higher than the parabola that it lies on.
+
+use maulstick_canvas::relief::Relief;
+use maulstick_canvas::relief::ride::{RADIUS_M, REACH_M, ride};
+use maulstick_canvas::relief::tooth::Tooth;
+use maulstick_canvas::store::TileStore;
+use maulstick_canvas::window::Window;
+
+use crate::scene::{Random, window};
+
+/// Four roundings of a height of a few cells.
+const TOLERANCE: f64 = 4.0 * 8.0 / 16_777_216.0;
+
+/// Heights in cells, rows of `width`, of cells of `cell_m`.
+struct Ground {
+    base: Vec<f32>,
+    width: usize,
+    cell_m: f64,
+}
+
+/// Tooth, and ridges and spots of dry paint of up to `most_m` on it.
+fn ground(seed: u64, kind: &str, cell_m: f64, most_m: f64) -> Ground {
+    let mut random = Random::new(seed);
+    let tooth = Tooth::new(kind, seed, cell_m).expect(kind);
+    let window = window(&Relief::new(tooth, cell_m));
+    let (mut base, width) = (window.base().to_vec(), window.width());
+    let rows = base.len() / width;
+    for _ in 0..5 {
+        let (x, y) = (random.below(width), random.below(rows));
+        let wide = 1 + random.below(4);
+        let dry = (most_m * random.unit() / cell_m) as f32;
+        for row in y..(y + 20).min(rows) {
+            base[row * width + x..row * width + (x + wide).min(width)]
+                .iter_mut()
+                .for_each(|base| *base = base.max(dry));
+        }
+    }
+    Ground {
+        base,
+        width,
+        cell_m,
+    }
+}
+
+/// The highest parabola at a cell, cells: of each cell within reach, and the reach is a disc or a square.
+fn oracle(ground: &Ground, radius_m: f64, [x, y]: [usize; 2], round: bool) -> f64 {
+    let reach = (REACH_M / ground.cell_m).ceil() as i64;
+    let rows = (ground.base.len() / ground.width) as i64;
+    let mut highest = f64::MIN;
+    for dy in -reach..=reach {
+        for dx in -reach..=reach {
+            let (i, j) = (x as i64 + dx, y as i64 + dy);
+            let off_m2 = (dx * dx + dy * dy) as f64 * ground.cell_m * ground.cell_m;
+            let inside = i >= 0 && j >= 0 && i < ground.width as i64 && j < rows;
+            if !inside || round && off_m2 > REACH_M * REACH_M {
+                continue;
+            }
+            let base = ground.base[j as usize * ground.width + i as usize];
+            highest = highest.max(f64::from(base) - off_m2 / (2.0 * radius_m * ground.cell_m));
+        }
+    }
+    highest
+}
+
+fn agrees(ground: &Ground, ride: &[f32], radius_m: f64, round: bool) -> bool {
+    let width = ground.width;
+    (0..ride.len()).all(|place| {
+        let want = oracle(ground, radius_m, [place % width, place / width], round);
+        (f64::from(ride[place]) - want).abs() <= TOLERANCE
+    })
+}
+
+fn ridden(ground: &Ground) -> Vec<f32> {
+    ride(&ground.base, ground.width, 1.0 / ground.cell_m)
+}
+
+#[test]
+fn a_bristle_lies_on_the_highest_parabola() {
+    for (seed, kind) in (0..).zip(["linen", "cotton", "panel", "paper"]) {
+        let cell_m = [2.5e-4, 5e-4][seed as usize % 2];
+        // What is lower than its parabola at the reach carries no bristle beyond: the reach may be a disc.
+        let low = ground(
+            seed,
+            kind,
+            cell_m,
+            0.6 * REACH_M * REACH_M / (2.0 * RADIUS_M),
+        );
+        let ride = ridden(&low);
+        assert!(agrees(&low, &ride, RADIUS_M, true), "{kind}");
+        assert!(
+            !agrees(&low, &ride, 1.02 * RADIUS_M, true),
+            "another bend passes"
+        );
+        assert!(!agrees(&low, &low.base, RADIUS_M, true), "no ride passes");
+        let high = ground(seed, kind, cell_m, 4e-3);
+        assert!(
+            agrees(&high, &ridden(&high), RADIUS_M, false),
+            "{kind}, high"
+        );
+    }
+}
+
+/// On flat ground it lies on the ground, also far above or below; on less than a row as well.
+#[test]
+fn on_flat_ground_it_lies_on_the_ground() {
+    for (height, width, cells) in [
+        (0.0f32, 64, 4096),
+        (-3.5, 64, 4096),
+        (7.25, 5, 25),
+        (1.0, 1, 9),
+    ] {
+        let base = vec![height; cells];
+        assert_eq!(ride(&base, width, 4000.0), base);
+    }
+}
+
+/// The ride is never below the ground nor below the deepest valley of the tooth, and it is what it is
+/// whatever else the window holds.
+#[test]
+fn the_ride_is_the_same_in_every_window() {
+    for kind in Tooth::names() {
+        let relief = Relief::new(Tooth::new(kind, 5, 2.5e-4).expect(kind), 2.5e-4);
+        let open = |from: [i64; 2], to: [i64; 2]| {
+            let mut store = TileStore::new([320, 256]);
+            let rect = store.around(from, to).expect("on the surface");
+            Window::open(&mut store, rect, &relief).expect("free")
+        };
+        let all = open([0; 2], [320, 256]);
+        let part = open([100, 70], [180, 100]);
+        let (width, origin) = (all.width(), part.origin());
+        assert!(part.width() < width && origin[0] > 0);
+        let reach = maulstick_canvas::relief::ride::reach(2.5e-4) as i64;
+        for y in 70 - reach..100 + reach {
+            for x in 100 - reach..180 + reach {
+                // As far as the planes go on by the reach.
+                if !(64 + reach..192 - reach).contains(&x)
+                    || !(64 + reach..128 - reach).contains(&y)
+                {
+                    continue;
+                }
+                let in_all = all.ride()[y as usize * width + x as usize];
+                let at = [x - origin[0], y - origin[1]].map(|cell| cell as usize);
+                assert_eq!(in_all, part.ride()[at[1] * part.width() + at[0]], "{x} {y}");
+            }
+        }
+        assert_eq!(all.ride_below(), part.ride_below());
+        let lower = all.ride().iter().zip(all.base());
+        assert!(lower.clone().all(|(ride, base)| ride >= base));
+        let deepest = lower.fold(0.0f32, |most, (ride, _)| most.max(-ride));
+        assert!(
+            deepest > 0.0 && deepest <= all.ride_below() + 1e-6,
+            "{kind}"
+        );
+    }
+}

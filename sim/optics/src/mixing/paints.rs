@@ -1,0 +1,323 @@
+//! The measured paints: K and S at 101 wavelengths, relative to titanium white, in `data/`.
+
+use std::collections::BTreeMap;
+
+use maulstick_types::{Mixture, MixtureError};
+
+use crate::spectrum::{SAMPLES, Spectrum};
+
+/// Scattering of titanium white, per metre: over black 25 µm reflect .79, 100 µm .94.
+pub const WHITE_S_PER_M: f64 = 150_000.0;
+
+/// A paint.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Paint {
+    /// Its name.
+    pub name: String,
+    /// Colour index of its pigments.
+    pub colour_index: String,
+    /// Who measured it.
+    pub source: String,
+    /// Absorption, per metre.
+    pub k: Spectrum,
+    /// Scattering, per metre.
+    pub s: Spectrum,
+}
+
+/// Name of the thinner, which every palette has: a medium that absorbs and scatters nothing.
+pub const THINNER: &str = "Thinner";
+
+impl Paint {
+    /// The thinner.
+    fn thinner() -> Self {
+        Self {
+            name: THINNER.to_owned(),
+            colour_index: String::new(),
+            source: "transparent by definition".to_owned(),
+            k: Spectrum::flat(0.0),
+            s: Spectrum::flat(0.0),
+        }
+    }
+
+    /// Whether it is the thinner.
+    #[must_use]
+    pub fn is_thinner(&self) -> bool {
+        self.name == THINNER
+    }
+}
+
+/// Why paints cannot be had.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum PaintError {
+    /// No such paint; the nearest name is proposed.
+    #[error("there is no paint called '{name}'{}", meant(.nearest.as_deref()))]
+    Unknown {
+        /// What was asked for.
+        name: String,
+        /// The nearest name, if one is near.
+        nearest: Option<String>,
+    },
+    /// The mixture itself is wrong.
+    #[error(transparent)]
+    Mixture(#[from] MixtureError),
+    /// A line of a paint file cannot be read.
+    #[error("line {line}: {what}")]
+    File {
+        /// The line, from 1.
+        line: usize,
+        /// What is wrong.
+        what: String,
+    },
+}
+
+fn meant(nearest: Option<&str>) -> String {
+    nearest.map_or(String::new(), |name| format!("; did you mean '{name}'?"))
+}
+
+/// Largest K or S relative to titanium white's S: a black of which 0.02 µm hide.
+const MOST: f64 = 1e6;
+/// The name of a paint has at most this many bytes.
+const NAME_MAX: usize = maulstick_types::command::PAINT_NAME_MAX;
+
+/// Whether a paint may have this name: mixtures are written with it.
+///
+/// # Errors
+/// What is wrong, in words.
+pub fn check_paint_name(name: &str) -> Result<(), String> {
+    if name.trim().is_empty() {
+        return Err("a paint has no name".into());
+    }
+    if name.len() > NAME_MAX {
+        return Err(format!(
+            "a paint's name of {} bytes is over {NAME_MAX}",
+            name.len()
+        ));
+    }
+    if name.contains(['=', ',', '"']) || name.contains(char::is_control) {
+        return Err(format!(
+            "the name '{name}' has one of = , \" in it, as mixtures are written with"
+        ));
+    }
+    if name.eq_ignore_ascii_case(THINNER) {
+        return Err(format!(
+            "'{THINNER}' is the medium that every palette has; call the paint otherwise"
+        ));
+    }
+    Ok(())
+}
+
+/// The header names the wavelengths of the samples.
+fn check_header(cells: &[&str]) -> Result<(), String> {
+    for (i, cell) in cells.iter().skip(4).enumerate() {
+        let nm = crate::spectrum::wavelength(i);
+        if cell.trim().parse::<f64>() != Ok(nm) {
+            return Err(format!(
+                "column {}: wavelength '{cell}' instead of {nm}",
+                i + 5
+            ));
+        }
+    }
+    Ok(())
+}
+
+/// The paints to choose from.
+#[derive(Clone, Debug, PartialEq)]
+pub struct PaintLibrary {
+    paints: Vec<Paint>,
+    thinner: Paint,
+    hash: u32,
+    text: std::sync::Arc<str>,
+}
+
+/// The paints that come with the crate: 28 acrylic artists' paints (Berns 2016, Okumura 2005).
+pub const MEASURED: &str = include_str!("../../data/paints.csv");
+
+impl PaintLibrary {
+    /// The 28 measured paints.
+    ///
+    /// # Errors
+    /// None in practice: the file is part of the crate and tested.
+    pub fn measured() -> Result<Self, PaintError> {
+        Self::parse(MEASURED)
+    }
+
+    /// Reads a paint file: `paint,colour_index,source,quantity`, then 101 values of K or S relative
+    /// to titanium white's S, 380 to 780 nm.
+    ///
+    /// # Errors
+    /// [`PaintError::File`] with the line.
+    pub fn parse(text: &str) -> Result<Self, PaintError> {
+        let mut found: BTreeMap<String, [Option<Spectrum>; 2]> = BTreeMap::new();
+        let mut order: Vec<(String, String, String)> = Vec::new();
+        let lines = text.lines().enumerate().map(|(i, line)| (i + 1, line));
+        for (line, row) in lines.filter(|(_, row)| !row.starts_with('#') && !row.is_empty()) {
+            let fault = |what: String| PaintError::File { line, what };
+            let cells: Vec<&str> = row.split(',').collect();
+            if cells[0] == "paint" {
+                check_header(&cells).map_err(fault)?;
+                continue;
+            }
+            if cells.len() != 4 + SAMPLES {
+                return Err(fault(format!(
+                    "{} columns instead of {}",
+                    cells.len(),
+                    4 + SAMPLES
+                )));
+            }
+            let mut values = [0.0; SAMPLES];
+            for (i, (value, cell)) in values.iter_mut().zip(&cells[4..]).enumerate() {
+                let number: f64 = cell
+                    .parse()
+                    .map_err(|_| fault(format!("column {}: '{cell}' is not a number", i + 5)))?;
+                if !(0.0..=MOST).contains(&number) {
+                    let what = format!("column {}: {cell} is not 0 to {MOST:.0}", i + 5);
+                    return Err(fault(what));
+                }
+                *value = number * WHITE_S_PER_M;
+            }
+            let place = match cells[3] {
+                "K" => 0,
+                "S" => 1,
+                other => return Err(fault(format!("quantity '{other}' is neither K nor S"))),
+            };
+            if !found.contains_key(cells[0]) {
+                check_paint_name(cells[0]).map_err(fault)?;
+                order.push((cells[0].into(), cells[1].into(), cells[2].into()));
+            }
+            let rows = found.entry(cells[0].to_owned()).or_default();
+            if rows[place].replace(Spectrum(values)).is_some() {
+                let what = format!("a second row of {} of '{}'", cells[3], cells[0]);
+                return Err(fault(what));
+            }
+        }
+        let mut paints = Vec::new();
+        for (name, colour_index, source) in order {
+            let Some([Some(k), Some(s)]) = found.remove(&name) else {
+                let what = format!("'{name}' lacks its row of K or of S");
+                return Err(PaintError::File {
+                    line: text.lines().count(),
+                    what,
+                });
+            };
+            paints.push(Paint {
+                name,
+                colour_index,
+                source,
+                k,
+                s,
+            });
+        }
+        if paints.is_empty() {
+            return Err(PaintError::File {
+                line: 1,
+                what: "the file holds no paint".into(),
+            });
+        }
+        Ok(Self {
+            paints,
+            thinner: Paint::thinner(),
+            hash: maulstick_types::name_hash(text),
+            text: text.into(),
+        })
+    }
+
+    /// All paints, in the order of the file; the thinner is none of them.
+    #[must_use]
+    pub fn paints(&self) -> &[Paint] {
+        &self.paints
+    }
+
+    /// FNV-1a of the file.
+    #[must_use]
+    pub fn hash(&self) -> u32 {
+        self.hash
+    }
+
+    /// The file.
+    #[must_use]
+    pub fn text(&self) -> &str {
+        &self.text
+    }
+
+    /// The paint called `name`, whatever its case.
+    ///
+    /// # Errors
+    /// [`PaintError::Unknown`] with the nearest name.
+    pub fn find(&self, name: &str) -> Result<&Paint, PaintError> {
+        let all = || self.paints.iter().chain([&self.thinner]);
+        if let Some(paint) = all().find(|p| p.name.eq_ignore_ascii_case(name)) {
+            return Ok(paint);
+        }
+        let names = all().map(|paint| paint.name.as_str());
+        Err(PaintError::Unknown {
+            name: name.to_owned(),
+            nearest: maulstick_types::nearest(name, names).map(str::to_owned),
+        })
+    }
+
+    /// Checks that a mixture's shares are right and its paints exist, and spells their names as the
+    /// file does.
+    ///
+    /// # Errors
+    /// [`PaintError::Mixture`] or [`PaintError::Unknown`].
+    pub fn check(&self, mixture: &Mixture) -> Result<Mixture, PaintError> {
+        mixture.check()?;
+        let mut mixture = mixture.clone();
+        for part in &mut mixture.parts {
+            part.paint = self.find(&part.paint)?.name.clone();
+        }
+        Ok(mixture)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_measured_paints_are_all_there() {
+        let library = PaintLibrary::measured().expect("the file is whole");
+        assert_eq!(library.paints().len(), 28);
+        let white = library.find("titanium white").expect("white");
+        assert_eq!(
+            (white.s.0[40], white.colour_index.as_str()),
+            (WHITE_S_PER_M, "PW6")
+        );
+    }
+
+    #[test]
+    fn an_unknown_paint_gets_the_nearest_name() {
+        let library = PaintLibrary::measured().expect("the file is whole");
+        let error = library.find("Colbat Blue").expect_err("misspelt");
+        assert_eq!(
+            error.to_string(),
+            "there is no paint called 'Colbat Blue'; did you mean 'Cobalt Blue'?"
+        );
+        let error = library.find("zzz").expect_err("far from all");
+        assert_eq!(error.to_string(), "there is no paint called 'zzz'");
+    }
+
+    #[test]
+    fn a_broken_file_names_its_line() {
+        let row = |quantity: &str, value: &str| {
+            format!("X,PX,me,{quantity}{}", format!(",{value}").repeat(SAMPLES))
+        };
+        let error = |text: String| PaintLibrary::parse(&text).expect_err("broken").to_string();
+        assert!(error("X,PX,me,K,1".into()).starts_with("line 1: 5 columns"));
+        assert!(error(row("K", "x")).starts_with("line 1: column 5: 'x'"));
+        assert!(error(row("K", "-1")).contains("not 0 to"));
+        assert!(error(row("K", "NaN")).contains("not 0 to"));
+        assert!(error(row("Q", "1")).contains("neither K nor S"));
+        assert!(error(row("K", "1")).contains("lacks its row"));
+        assert!(error(String::new()).contains("no paint"));
+        assert!(error(row("K", "1e300")).contains("not 0 to"));
+        let twice = format!("{}\n{}", row("K", "1"), row("K", "2"));
+        assert!(error(twice).starts_with("line 2: a second row of K of 'X'"));
+        for (name, word) in [("a=b", "mixtures"), ("thinner", "medium"), (" ", "no name")] {
+            let named = row("K", "1").replacen('X', name, 1);
+            assert!(error(named).contains(word), "{name}");
+        }
+        let header = format!("paint,i,s,q{}", ",380".repeat(SAMPLES));
+        assert!(error(header).starts_with("line 1: column 6: wavelength '380' instead of 384"));
+    }
+}

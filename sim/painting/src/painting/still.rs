@@ -1,0 +1,123 @@
+//! A painting as it is at a moment, to be looked at beside the one that is painted on.
+
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
+use maulstick_canvas::EditError;
+use maulstick_canvas::tile::Version;
+use maulstick_impasto::Impasto;
+
+use super::backend::BackendFallback;
+use super::{Painting, SurfaceState};
+use crate::clock::Clock;
+use crate::history::History;
+
+impl Painting {
+    /// The painting as it is, with its versions, without brushes and history. Its tiles are shared with
+    /// this one, whatever becomes of that; to make it takes as long as to count them.
+    pub fn still(&mut self) -> Self {
+        self.commit();
+        let sheets = self.sheets.iter().map(|sheet| SurfaceState {
+            id: sheet.id,
+            cell_m: sheet.cell_m,
+            store: sheet.store.clone(),
+            bare: Arc::clone(&sheet.bare),
+            top: sheet.top,
+        });
+        Self {
+            sheets: sheets.collect(),
+            scene: self.scene.clone(),
+            library: self.library.clone(),
+            look: Arc::clone(&self.look),
+            embedded: self.embedded.clone(),
+            brushes: BTreeMap::new(),
+            model: Box::new(Impasto::default()),
+            unsettled: None,
+            fall: BackendFallback::default(),
+            ledger: self.ledger.clone(),
+            accounted: self.accounted.clone(),
+            history: History::default(),
+            quota: self.quota,
+            named: self.named.clone(),
+            named_touched: Default::default(),
+            line: self.line.clone(),
+            pager: Arc::clone(&self.pager),
+            versions: self.versions,
+            steps: self.steps,
+            footprint_cells: self.footprint_cells,
+            span_ns: self.span_ns,
+            clock: Clock::default(),
+        }
+    }
+
+    /// Has a [`still`](Self::still) show the painting as it was in a version.
+    ///
+    /// # Errors
+    /// [`EditError`] for an unknown version.
+    pub fn show_version(&mut self, name: &str) -> Result<(), EditError> {
+        let version = self.version(name)?.clone();
+        for sheet in &mut self.sheets {
+            let [across, up] = sheet.store.grid();
+            let ids = (0..up)
+                .flat_map(|y| (0..across).map(move |x| maulstick_canvas::tile::TileId { x, y }));
+            for id in ids {
+                let tile = version.tiles.get(&(sheet.id, id)).cloned().flatten();
+                let number = sheet.store.version(id).number;
+                sheet.store.replace(id, Version { number, tile });
+            }
+        }
+        self.turn_rest(Some(&version.rest.layers), Some(&version.rest.makes));
+        Ok(())
+    }
+
+    /// True if no paint was ever applied to it, and no version saved: loads of brushes do not count.
+    #[must_use]
+    pub fn is_blank(&self) -> bool {
+        let untouched = self.history.steps().all(|step| step.tiles.is_empty());
+        self.steps == 0 && self.named.is_empty() && untouched
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use maulstick_optics::PaintLibrary;
+    use maulstick_types::Mixture;
+    use maulstick_types::scene::CANVAS;
+
+    use super::*;
+    use crate::picture::picture;
+    use crate::setup::PaintingSetup;
+
+    #[test]
+    fn a_still_stays_as_it_is_and_shows_versions_as_returning_to_them_does() {
+        let setup = PaintingSetup {
+            cells: [128, 128],
+            ..PaintingSetup::default()
+        };
+        let library = PaintLibrary::measured().expect("whole");
+        let mut painting = Painting::new(&setup, library).expect("a painting");
+        assert!(painting.is_blank());
+        let lay = |painting: &mut Painting, paint: &str| {
+            painting
+                .lay(CANVAS, &Mixture::pure(paint), 4e-5)
+                .expect("laid");
+        };
+        lay(&mut painting, "Yellow Ochre");
+        assert!(!painting.is_blank());
+        painting.dry(CANVAS, 1.0, "first").expect("dried");
+        painting.keep("yellow").expect("kept");
+        let yellow = picture(&mut painting, CANVAS);
+        lay(&mut painting, "Bone Black");
+        painting.set_ground(CANVAS, "grey").expect("a ground");
+        let black = picture(&mut painting, CANVAS);
+        let mut still = painting.still();
+        lay(&mut painting, "Pyrrole Red");
+        painting.forget("yellow").expect("forgotten");
+        assert_eq!(picture(&mut still, CANVAS), black);
+        assert!(still.show_version("yelow").is_err());
+        still.show_version("yellow").expect("it had it");
+        assert_eq!(picture(&mut still, CANVAS), yellow);
+        let red = picture(&mut painting, CANVAS);
+        assert!(red != black && red != yellow, "a fault would pass");
+    }
+}

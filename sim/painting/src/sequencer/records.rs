@@ -1,0 +1,269 @@
+//! Journal records as a document saves them: accepted commands and states, to be accepted again.
+
+use maulstick_brush::BrushFile;
+use maulstick_canvas::EditError;
+use maulstick_types::brush::BrushState;
+use maulstick_types::command::{Command, CommandRequest, Outcome, TakeCommand};
+use maulstick_types::edits::Edit;
+use maulstick_types::paint::Entry;
+use maulstick_types::values::BrushName;
+use maulstick_types::{Header, Mixture, Origin};
+
+use super::Sequencer;
+use crate::apply::{Applied, Apply as _};
+use crate::painting::Painting;
+use crate::snapshot::SequencerSnapshot;
+
+/// The client that runs the sequencer.
+const OWN: u64 = 0;
+
+/// The decision that a painting goes on after its program ended: what its brushes did last is not
+/// joined to what they do next.
+const GOES_ON: &str = "the painting goes on";
+
+/// Something that was accepted.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Accepted {
+    /// A state of a brush.
+    State {
+        /// Its header, as it came.
+        header: Header,
+        /// Itself.
+        state: BrushState,
+    },
+    /// A command, a tick or a decision.
+    Entry(Entry),
+    /// A brush and its file, TOML.
+    Brush {
+        /// Its name.
+        brush: String,
+        /// The file.
+        toml: String,
+    },
+}
+
+/// An accepted thing and its place.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Record {
+    /// Counts all that was accepted, from 0.
+    pub serial: u64,
+    /// Index of its journal entry; a range of states shares one.
+    pub index: u64,
+    /// The thing.
+    pub what: Accepted,
+}
+
+impl Record {
+    /// Index of the next journal entry after it.
+    #[must_use]
+    pub fn next(&self) -> u64 {
+        match self.what {
+            // No entry tells of it.
+            Accepted::Brush { .. } => self.index,
+            Accepted::State { .. } | Accepted::Entry(_) => self.index + 1,
+        }
+    }
+}
+
+impl Sequencer {
+    /// Keeps what is accepted from now on, for [`take_records`](Self::take_records).
+    pub fn record(&mut self) {
+        self.records.get_or_insert_default();
+    }
+
+    /// Keeps nothing of what is accepted from now on.
+    pub fn stop_recording(&mut self) {
+        self.records = None;
+    }
+
+    /// Number of accepted records.
+    #[must_use]
+    pub fn serial(&self) -> u64 {
+        self.serial
+    }
+
+    /// Records accepted since the last call.
+    pub fn take_records(&mut self) -> Vec<Record> {
+        self.records
+            .as_mut()
+            .map(std::mem::take)
+            .unwrap_or_default()
+    }
+
+    pub(super) fn note(&mut self, index: u64, what: impl FnOnce() -> Accepted) {
+        let serial = self.serial;
+        self.serial += 1;
+        if let Some(records) = &mut self.records {
+            records.push(Record {
+                serial,
+                index,
+                what: what(),
+            });
+        }
+    }
+
+    /// Applies an edit of the one who runs the sequencer, at once.
+    ///
+    /// # Errors
+    /// [`EditError`] where the painting refuses it.
+    pub fn edit(&mut self, edit: impl Into<Edit>) -> Result<Applied, EditError> {
+        let edit = edit.into();
+        let applied = edit.apply(&mut self.painting)?;
+        self.accept_own(edit.into());
+        Ok(applied)
+    }
+
+    /// Begins a take of the one who runs the sequencer: its samples have this device and epoch.
+    ///
+    /// # Errors
+    /// [`EditError`] where a load is wrong.
+    pub fn begin_own_take(
+        &mut self,
+        brush: &str,
+        [device, device_epoch]: [u32; 2],
+        loads: Vec<Mixture>,
+    ) -> Result<(), EditError> {
+        let brush = BrushName::new(brush)?;
+        self.begin_take(&brush, [device, device_epoch], &loads, false)?;
+        let command = TakeCommand::Begin {
+            brush,
+            device,
+            device_epoch,
+            loads,
+            again: false,
+        };
+        self.accept_own(command.into());
+        Ok(())
+    }
+
+    fn accept_own(&mut self, command: Command) {
+        let number = self.replies.newest(OWN).map_or(1, |newest| newest + 1);
+        self.enter_command(OWN, number, command);
+        self.remember(OWN, number, Outcome::done(""));
+        self.drain_journal();
+    }
+
+    /// Resumes after the program ended: the next states of brushes begin new paths, and no take has a brush until its
+    /// player is there again.
+    pub fn go_on(&mut self) {
+        self.let_go();
+        self.decide(GOES_ON);
+    }
+
+    fn let_go(&mut self) {
+        self.painting.lift_brushes();
+        let players = self.announced.values().map(|take| take.device);
+        self.gone.extend(players);
+    }
+
+    /// True while a take is being played: its brush belongs to it.
+    #[must_use]
+    pub fn is_taking(&self) -> bool {
+        let mut takes = self.announced.values();
+        takes.any(|take| !take.ended && !self.gone.contains(&take.device))
+    }
+
+    /// Introduces a brush, or gives a known one another file.
+    pub fn define_brush(&mut self, brush: &str, file: BrushFile) {
+        let toml = file.to_toml().unwrap_or_default();
+        if self.painting.define_brush(brush, file) {
+            let index = self.next;
+            self.note(index, || Accepted::Brush {
+                brush: brush.to_owned(),
+                toml,
+            });
+        }
+    }
+
+    /// Accepts a saved record again. Its effect on the painting is repeated; its effect on the outside world is not.
+    pub fn replay(&mut self, record: Record) {
+        let recording = self.records.take();
+        let next = record.next();
+        self.next = record.index;
+        match record.what {
+            Accepted::State { header, state } => self.replay_state(&header, &state),
+            Accepted::Entry(Entry::Command {
+                client,
+                number,
+                command,
+            }) => {
+                let request = CommandRequest {
+                    client,
+                    number,
+                    after: None,
+                    command,
+                };
+                self.execute(&request);
+            }
+            Accepted::Entry(Entry::Decision { what }) => {
+                if what == GOES_ON {
+                    self.let_go();
+                }
+                self.decide(&what);
+            }
+            Accepted::Entry(Entry::Tick { .. }) => self.painting.tick(),
+            Accepted::Entry(Entry::States { .. }) => {}
+            Accepted::Brush { brush, toml } => {
+                if let Ok(file) = BrushFile::parse(&toml) {
+                    self.painting.define_brush(&brush, file);
+                }
+            }
+        }
+        self.journal.clear();
+        self.next = next;
+        self.serial = record.serial + 1;
+        self.records = recording;
+    }
+
+    /// Enters that something else computes the paint than before, if that is so.
+    pub(super) fn tell_fall(&mut self) {
+        if let Some(why) = self.painting.take_fall() {
+            self.decide(&format!("backend {}: {why}", self.painting.backend()));
+        }
+    }
+
+    fn replay_state(&mut self, header: &Header, state: &BrushState) {
+        let brush = self.painting.brush_of(header.source).map(str::to_owned);
+        if let Some(brush) = brush.filter(|_| state.fault().is_none()) {
+            // A state that was refused then is refused now.
+            self.paint(&brush, header, state).ok();
+            self.consume(&brush, header);
+        }
+    }
+
+    /// The sequencer besides its painting, as a document keeps it.
+    #[must_use]
+    pub fn kept(&self) -> SequencerSnapshot {
+        let consumed = self.consumed.iter();
+        SequencerSnapshot {
+            next: self.next,
+            serial: self.serial,
+            takes: self.announced.clone(),
+            gone: self.gone.iter().copied().collect(),
+            consumed: consumed
+                .map(|(origin, next)| (origin.source, origin.epoch, *next))
+                .collect(),
+            replies: self.replies.clone(),
+        }
+    }
+
+    /// A sequencer restored from its snapshot.
+    #[must_use]
+    pub fn restored(mut painting: Painting, kept: SequencerSnapshot) -> Self {
+        let consumed = kept
+            .consumed
+            .into_iter()
+            .map(|(source, epoch, next)| (Origin { source, epoch }, next));
+        let newest = kept.takes.values().map(|take| take.step).max();
+        painting.part_history(newest.unwrap_or(0));
+        Self {
+            next: kept.next,
+            serial: kept.serial,
+            announced: kept.takes,
+            gone: kept.gone.into_iter().collect(),
+            consumed: consumed.collect(),
+            replies: kept.replies,
+            ..Self::new(painting)
+        }
+    }
+}

@@ -1,0 +1,123 @@
+//! Snapshots: a painting and its sequencer as a document saves them, without tiles, history and versions.
+
+use std::collections::BTreeMap;
+
+use maulstick_impasto::brush::head::WaypointSnapshot;
+use maulstick_impasto::brush::scale::Scale;
+use maulstick_types::Mixture;
+use maulstick_types::reply_cache::ReplyCache;
+use maulstick_types::scene::Scene;
+use serde::{Deserialize, Serialize};
+
+use crate::clock::Clock;
+use crate::ledger::Ledger;
+
+/// A brush as the painting knows it.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct BrushSnapshot {
+    /// Its file, TOML; in the document the file's hash.
+    pub file: String,
+    /// The page of what it carries.
+    pub load: u64,
+    /// Epoch of the brush and number of the newest stroke.
+    pub stroke: Option<(u32, u64)>,
+    /// While it paints, on which surface, where it stepped last, and where it has come to since.
+    pub path: Option<(u32, Scale, WaypointSnapshot, Option<WaypointSnapshot>)>,
+    /// Loads that its strokes take in turn, and the number of strokes since its take began.
+    pub loads: Vec<Mixture>,
+    /// See `loads`.
+    pub strokes: usize,
+    /// Seed of the disorder of its bristles.
+    pub seed: u64,
+}
+
+/// A step that is not finished.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct OpenStepSnapshot {
+    /// Its number.
+    pub step: u64,
+    /// The tiles that it may have changed: surface, column, row.
+    pub reached: Vec<[u32; 3]>,
+    /// Most quanta that a cell of a surface ever had, before it.
+    pub tops: BTreeMap<u32, f32>,
+}
+
+/// A painting besides its tiles.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct PaintingSnapshot {
+    /// The desk.
+    pub scene: Scene,
+    /// The paints, as a file; in the document the file's hash.
+    pub paints: String,
+    /// Most quanta that a cell of a surface ever had.
+    pub tops: BTreeMap<u32, f32>,
+    /// The brushes, by name.
+    pub brushes: BTreeMap<String, BrushSnapshot>,
+    /// The books.
+    pub ledger: Ledger,
+    /// Number of the newest tile version.
+    pub versions: u64,
+    /// Number of the next page.
+    pub next_page: u64,
+    /// Number of the newest step.
+    pub step: u64,
+    /// The steps that are not finished.
+    pub open_steps: Vec<OpenStepSnapshot>,
+    /// Steps that were undone, the last one at the end.
+    pub undone: Vec<u64>,
+    /// The version from which the painter goes on.
+    pub line: Option<String>,
+    /// Steps of the paint model.
+    pub steps: u64,
+    /// Cells of its footprints.
+    pub footprint_cells: u64,
+    /// Time of the first and of the last state, ns.
+    pub span_ns: Option<(u64, u64)>,
+    /// Most bytes of the history.
+    pub quota: u64,
+    /// Time elapsed, and dryings in progress.
+    pub clock: Clock,
+    /// Rows that the document has of it; `None` in paintings from before rows were counted.
+    pub rows: Option<RowCounts>,
+}
+
+/// Numbers of rows that a document has of the painter's work.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub struct RowCounts {
+    /// Tiles that were ever painted on.
+    pub tiles: u64,
+    /// Steps of the history, those that are not finished among them.
+    pub steps: u64,
+    /// Named versions.
+    pub versions: u64,
+}
+
+/// A take that may paint.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct TakeSnapshot {
+    /// Its player.
+    pub device: u32,
+    /// Epoch of its playing.
+    pub epoch: u32,
+    /// True once its last state has arrived.
+    pub ended: bool,
+    /// The newest step when it began.
+    pub step: u64,
+}
+
+/// The sequencer at a place of its journal.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct SequencerSnapshot {
+    /// Index of the next journal entry.
+    pub next: u64,
+    /// Number of accepted records.
+    pub serial: u64,
+    /// Takes that may paint, by brush.
+    pub takes: BTreeMap<String, TakeSnapshot>,
+    /// Players that are gone.
+    pub gone: Vec<u32>,
+    /// Consumed states of brushes: source, epoch, next.
+    pub consumed: Vec<(u32, u32, u64)>,
+    /// The newest reply to each client.
+    pub replies: ReplyCache,
+}

@@ -1,0 +1,495 @@
+//! Paint that dries in part, in places and while time goes by, and becomes wet again.
+
+use std::collections::BTreeSet;
+
+use maulstick_appearance::Bakery;
+use maulstick_appearance::bands::Banded;
+use maulstick_brush::BrushFile;
+use maulstick_canvas::planes::TILE_CELLS;
+use maulstick_canvas::quantum::{Counts, SLOTS};
+use maulstick_optics::PaintLibrary;
+use maulstick_painting::{Painting, PaintingSetup, Sequencer};
+use maulstick_types::brush::{BrushState, Solve};
+use maulstick_types::command::Command;
+use maulstick_types::paint::Entry;
+use maulstick_types::scene::CANVAS;
+use maulstick_types::{Flags, Header, Pose, Region, name_hash};
+use proptest::prelude::*;
+
+const CELLS: [u32; 2] = [150, 100];
+const CELL_M: f64 = 2.5e-4;
+
+fn brush() -> BrushFile {
+    let mut file = BrushFile::library("round").expect("round");
+    file.strips.count = 48;
+    file.scaled_to(8.0).expect("a size")
+}
+
+fn sequencer() -> Sequencer {
+    let setup = PaintingSetup {
+        cells: CELLS,
+        cell_m: CELL_M,
+        ..PaintingSetup::default()
+    };
+    let library = PaintLibrary::measured().expect("whole");
+    let painting = Painting::new(&setup, library).expect("a painting");
+    let mut sequencer = Sequencer::new(painting);
+    sequencer.define_brush("main", brush());
+    sequencer
+}
+
+fn fill(mixture: &str, um: f64) -> Command {
+    Command::Fill {
+        surface: CANVAS,
+        mixture: mixture.parse().expect("a mixture"),
+        thickness_m: um * 1e-6,
+    }
+}
+
+fn load(mixture: &str) -> Command {
+    Command::Load {
+        brush: "main".to_owned(),
+        mixture: mixture.parse().expect("a mixture"),
+    }
+}
+
+fn dry_over(ticks: u32) -> Command {
+    Command::DryOver {
+        surface: CANVAS,
+        ticks,
+        name: "slow".to_owned(),
+        region: None,
+    }
+}
+
+fn wet(layers: u32, region: Option<Region>) -> Command {
+    Command::Wet {
+        surface: CANVAS,
+        layers,
+        region,
+    }
+}
+
+/// A part of a stroke from left to right; at the end the brush is lifted if `lifts`.
+fn stroke(sequencer: &mut Sequencer, seq: u64, stroke: u64, y_mm: f64, lifts: bool) {
+    let file = brush();
+    let solve = |x_mm: f64, stroke: u64| Solve {
+        event_ns: 0,
+        stroke,
+        surface: CANVAS,
+        flags: 0,
+        pose: Pose {
+            position_m: [x_mm * 1e-3, y_mm * 1e-3, 0.6 * file.length_m()],
+            ..Pose::IDENTITY
+        },
+        zoom: 1.0,
+        angles_rad: vec![[0.2, 0.3]; file.spines.all_joints()],
+        contacts: Vec::new(),
+    };
+    let mut solves = vec![solve(6.0, stroke), solve(18.0, stroke), solve(30.0, stroke)];
+    if lifts {
+        solves.push(solve(30.0, 0));
+    }
+    let header = Header {
+        version: 1,
+        schema: 0,
+        source: name_hash("main"),
+        epoch: 1,
+        flags: Flags::NONE,
+        length: 0,
+        seq,
+        event_ns: 0,
+        sent_ns: 0,
+    };
+    let state = BrushState {
+        device: 1,
+        device_epoch: 1,
+        device_seq: seq,
+        solves,
+    };
+    sequencer.state("main", &header, &state).1.expect("it fits");
+}
+
+fn ticks(sequencer: &mut Sequencer, count: u32) {
+    (0..count).for_each(|_| sequencer.tick());
+}
+
+/// Wet and dry counts of the canvas.
+fn counts(sequencer: &mut Sequencer) -> [Counts; 2] {
+    let painting = sequencer.painting_mut();
+    assert_eq!(painting.report().quanta_missing, 0);
+    let store = painting.store(CANVAS).expect("a canvas");
+    [store.counts(), store.dry_counts()]
+}
+
+fn sum(counts: &Counts) -> u64 {
+    counts.iter().sum()
+}
+
+fn both([wet, dry]: [Counts; 2]) -> Counts {
+    std::array::from_fn(|slot| wet[slot] + dry[slot])
+}
+
+/// The wet counts of all cells by slot, row after row from the bottom.
+fn wet_cells(sequencer: &mut Sequencer) -> Vec<[u32; SLOTS]> {
+    let painting = sequencer.painting_mut();
+    painting.commit();
+    let store = painting.store(CANVAS).expect("a canvas");
+    let mut cells = vec![[0; SLOTS]; (CELLS[0] * CELLS[1]) as usize];
+    for (id, version) in store.iter() {
+        let planes = version
+            .tile
+            .as_ref()
+            .map(|tile| tile.wet())
+            .unwrap_or_default();
+        for (slot, plane) in &*planes {
+            for (cell, count) in plane.iter().enumerate().filter(|(_, count)| **count > 0.0) {
+                let at = [
+                    id.x as usize * 64 + cell % 64,
+                    id.y as usize * 64 + cell / 64,
+                ];
+                cells[at[1] * CELLS[0] as usize + at[0]][*slot] = *count as u32;
+            }
+        }
+    }
+    cells
+}
+
+/// Unlit linear colours of all cells of the canvas.
+fn colours(sequencer: &mut Sequencer) -> Vec<[f32; 3]> {
+    let painting = sequencer.painting_mut();
+    painting.commit();
+    let store = painting.store(CANVAS).expect("a canvas");
+    let bare = painting.bare(CANVAS).expect("a canvas");
+    let banded = Banded::new(store, bare, painting.look(), CELL_M);
+    let mut bakery = Bakery::default();
+    let shown = store.iter().map(|(id, version)| {
+        let tile = banded.shown(id, version.tile.as_deref(), &mut bakery);
+        (0..TILE_CELLS).map(move |cell| [0, 1, 2].map(|c| tile.rgb[c][cell]))
+    });
+    shown.flatten().collect()
+}
+
+fn farthest(one: &[[f32; 3]], other: &[[f32; 3]]) -> f32 {
+    let pairs = one.iter().flatten().zip(other.iter().flatten());
+    pairs.map(|(a, b)| (a - b).abs()).fold(0.0, f32::max)
+}
+
+/// The mean of how far channels are apart.
+fn mean_off(one: &[[f32; 3]], other: &[[f32; 3]]) -> f64 {
+    let pairs = one.iter().flatten().zip(other.iter().flatten());
+    let sum: f64 = pairs.map(|(a, b)| f64::from((a - b).abs())).sum();
+    sum / (3 * one.len()) as f64
+}
+
+/// Links of the stacks, at most.
+fn depth(sequencer: &Sequencer) -> usize {
+    let store = sequencer.painting().store(CANVAS).expect("a canvas");
+    let tiles = store.iter().filter_map(|(_, version)| version.tile.clone());
+    tiles
+        .filter_map(|tile| Some(tile.dry()?.depth()))
+        .max()
+        .unwrap_or(0)
+}
+
+fn painted() -> Sequencer {
+    let mut sequencer = sequencer();
+    sequencer
+        .ask(fill("Yellow Ochre=0.3,Titanium White=0.7", 30.0))
+        .expect("filled");
+    sequencer
+        .ask(load("Ultramarine Blue=0.6,Titanium White=0.4"))
+        .expect("loaded");
+    stroke(&mut sequencer, 0, 1, 8.0, true);
+    stroke(&mut sequencer, 1, 2, 14.0, true);
+    sequencer
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::with_cases(12) })]
+
+    /// Film under film of one mixture is one film (Baxter 2004, eq. 7.7). What is left is that a layer
+    /// holds whole quanta: where paint is thin and has a trace of another in it, one quantum of 1.5 nm of
+    /// that lies in the other film, which shows as 4e-4 at worst, and as 2e-5 in the mean.
+    #[test]
+    fn drying_any_shares_changes_no_colour_and_loses_no_quantum(
+        shares in proptest::collection::vec(0.01f32..=1.0, 1..5),
+        part in any::<bool>(),
+    ) {
+        let mut sequencer = painted();
+        let (before, paint) = (colours(&mut sequencer), both(counts(&mut sequencer)));
+        for share in &shares {
+            let (surface, share, name) = (CANVAS, *share, String::new());
+            let region = "5,5,20x10".parse().expect("a region");
+            let command = match part {
+                true => Command::DryRegion { surface, share, name, region },
+                false => Command::Dry { surface, share, name },
+            };
+            // All may be dry already.
+            sequencer.ask(command).ok();
+            prop_assert_eq!(both(counts(&mut sequencer)), paint);
+        }
+        let after = colours(&mut sequencer);
+        let (worst, mean) = (farthest(&before, &after), mean_off(&before, &after));
+        println!("worst {worst:e}, mean {mean:e}");
+        prop_assert!(worst < 1e-3 && mean < 5e-5, "{worst} {mean}");
+        // A fault would be seen: a film of a micrometre.
+        sequencer.ask(fill("Bone Black", 1.0)).expect("filled");
+        let faulty = mean_off(&before, &colours(&mut sequencer));
+        prop_assert!(faulty > 1e-3, "a fault would pass: {faulty}");
+    }
+
+    #[test]
+    fn what_dried_becomes_wet_as_it_was(shares in proptest::collection::vec(0.01f32..=1.0, 1..5)) {
+        let mut sequencer = painted();
+        let (cells, colour) = (wet_cells(&mut sequencer), colours(&mut sequencer));
+        for share in &shares {
+            let (surface, share, name) = (CANVAS, *share, String::new());
+            sequencer.ask(Command::Dry { surface, share, name }).ok();
+        }
+        prop_assert!(wet_cells(&mut sequencer) != cells);
+        sequencer.ask(wet(0, None)).expect("dry");
+        prop_assert_eq!(wet_cells(&mut sequencer), cells);
+        prop_assert_eq!(colours(&mut sequencer), colour);
+        prop_assert_eq!(depth(&sequencer), 0);
+        prop_assert!(sequencer.painting().scene().layers.is_empty());
+    }
+}
+
+#[test]
+fn a_region_dries_where_the_middles_of_its_cells_lie_and_nowhere_else() {
+    let mut sequencer = painted();
+    let before = wet_cells(&mut sequencer);
+    let region: Region = "10,5,12.5x7.6".parse().expect("a region");
+    let [from, to] = region.cells(CELLS, CELL_M).expect("cells");
+    assert_eq!([from, to], [[40, 20], [90, 50]]);
+    sequencer
+        .ask(Command::DryRegion {
+            surface: CANVAS,
+            share: 1.0,
+            name: "sky".into(),
+            region,
+        })
+        .expect("wet");
+    let after = wet_cells(&mut sequencer);
+    for (cell, (before, after)) in before.iter().zip(&after).enumerate() {
+        let at = [cell as u32 % CELLS[0], cell as u32 / CELLS[0]];
+        let within = (0..2).all(|i| (from[i]..to[i]).contains(&at[i]));
+        let expected = if within { [0; SLOTS] } else { *before };
+        assert_eq!(*after, expected, "{at:?}");
+    }
+    let refused = |sequencer: &mut Sequencer, region: &str, word: &str| {
+        let region: Region = region.parse().expect("a region");
+        let commands = [
+            Command::DryRegion {
+                surface: CANVAS,
+                share: 0.5,
+                name: String::new(),
+                region: region.clone(),
+            },
+            wet(1, Some(region)),
+        ];
+        let depth = sequencer.painting().history_depth();
+        for command in commands {
+            let error = sequencer.ask(command).expect_err("refused");
+            assert!(error.what.contains(word), "{}", error.what);
+        }
+        assert_eq!(sequencer.painting().history_depth(), depth);
+    };
+    refused(&mut sequencer, "40,0,10x10", "holds no cell");
+    refused(&mut sequencer, "1,1,0.01x5", "holds no cell");
+    let endless = Region {
+        corner_m: [0.0, f64::NAN],
+        size_m: [1.0, 1.0],
+    };
+    assert!(sequencer.ask(wet(1, Some(endless))).is_err());
+}
+
+#[test]
+fn paint_dries_evenly_into_one_layer_over_the_time() {
+    let mut sequencer = painted();
+    let all = counts(&mut sequencer);
+    let (paint, colour) = (both(all), colours(&mut sequencer));
+    sequencer.ask(dry_over(5400)).expect("wet");
+    ticks(&mut sequencer, 12);
+    for tick in 13..=5400u32 {
+        sequencer.tick();
+        if tick % 600 == 0 && tick < 5400 {
+            let [wet, dry] = counts(&mut sequencer);
+            assert_eq!(both([wet, dry]), paint);
+            let share = sum(&dry) as f64 / sum(&paint) as f64;
+            // It goes in rounds of a 32nd of the time.
+            let due = f64::from(tick) / 5400.0;
+            assert!(
+                share <= due && share > due - 1.0 / 32.0 - 1e-3,
+                "{tick}: {share} of {due}"
+            );
+        }
+    }
+    assert!(!sequencer.painting().is_drying());
+    let [wet, dry] = counts(&mut sequencer);
+    assert_eq!((sum(&wet), dry), (0, paint));
+    assert_eq!(depth(&sequencer), 1, "one link a tile");
+    let layers = &sequencer.painting().scene().layers;
+    assert_eq!((layers.len(), layers[0].name.as_str()), (1, "slow"));
+    let worst = farthest(&colour, &colours(&mut sequencer));
+    println!("worst {worst:e}");
+    assert!(worst < 1e-5, "{worst}");
+    let entries = sequencer.drain_journal();
+    let counted = entries.iter().filter_map(|entry| match entry.entry {
+        Entry::Tick { count } => Some(count),
+        _ => None,
+    });
+    assert!(counted.eq(1..=5400), "each tick is in the journal");
+    sequencer.tick();
+    assert!(
+        sequencer.drain_journal().is_empty(),
+        "nothing dries any more"
+    );
+}
+
+#[test]
+fn a_stroke_meanwhile_is_one_step_and_dries_in_what_is_left() {
+    let mut sequencer = painted();
+    sequencer.ask(dry_over(600)).expect("wet");
+    ticks(&mut sequencer, 300);
+    let [_, dry] = counts(&mut sequencer);
+    assert!(sum(&dry) > 0);
+    let (steps, _) = sequencer.painting().history_depth();
+    // Contacts less than .15 s apart, .1 s here, are one stroke; time goes by all along.
+    for part in 0..4 {
+        stroke(&mut sequencer, 2 + part, 3, 11.0, true);
+        ticks(&mut sequencer, 6);
+        assert_eq!(
+            counts(&mut sequencer)[1],
+            dry,
+            "nothing dries under the brush"
+        );
+    }
+    assert_eq!(sequencer.painting().history_depth().0, steps + 1);
+    let colour = colours(&mut sequencer);
+    ticks(&mut sequencer, 300);
+    let [wet, _] = counts(&mut sequencer);
+    assert_eq!(sum(&wet), 0, "what was laid late is dry in time");
+    assert_eq!(sequencer.painting().history_depth().0, steps + 2);
+    assert!(farthest(&colour, &colours(&mut sequencer)) < 1e-5);
+    assert_eq!(depth(&sequencer), 2, "another mixture, another link");
+    assert_eq!(sequencer.painting().scene().layers.len(), 1);
+}
+
+#[test]
+fn undo_takes_back_what_dried_since_the_last_step_and_ends_the_drying() {
+    let mut sequencer = painted();
+    let before = wet_cells(&mut sequencer);
+    let undo = Command::Undo { brush: None };
+    sequencer.ask(dry_over(600)).expect("wet");
+    ticks(&mut sequencer, 200);
+    sequencer.ask(load("Bone Black")).expect("loaded");
+    stroke(&mut sequencer, 2, 3, 11.0, true);
+    ticks(&mut sequencer, 200);
+    let late = counts(&mut sequencer);
+    assert_eq!(sequencer.ask(undo.clone()).as_deref(), Ok("drying"));
+    assert!(!sequencer.painting().is_drying());
+    ticks(&mut sequencer, 200);
+    assert_eq!(sequencer.ask(undo.clone()).as_deref(), Ok("stroke"));
+    assert_eq!(sequencer.ask(undo.clone()).as_deref(), Ok("load main"));
+    assert_eq!(sequencer.ask(undo).as_deref(), Ok("drying"));
+    assert_eq!(wet_cells(&mut sequencer), before);
+    assert!(sequencer.painting().scene().layers.is_empty());
+    for _ in 0..4 {
+        sequencer
+            .ask(Command::Redo { brush: None })
+            .expect("undone");
+    }
+    assert_eq!(counts(&mut sequencer), late);
+    assert_eq!(sequencer.painting().scene().layers.len(), 1);
+}
+
+#[test]
+fn a_drying_ends_when_it_is_told_to_and_there_is_one_at_a_time() {
+    let mut sequencer = painted();
+    let stop = Command::StopDrying { surface: CANVAS };
+    let none = sequencer.ask(stop.clone()).expect_err("none goes on");
+    assert!(none.help.contains("--over"));
+    sequencer.ask(dry_over(600)).expect("wet");
+    let other = sequencer.ask(dry_over(60)).expect_err("one goes on");
+    assert!(other.help.contains("--stop"));
+    ticks(&mut sequencer, 200);
+    let before = counts(&mut sequencer);
+    assert!(sum(&before[0]) > 0 && sum(&before[1]) > 0);
+    sequencer.ask(stop).expect("it goes on");
+    ticks(&mut sequencer, 900);
+    assert_eq!(counts(&mut sequencer), before);
+    let mut empty = self::sequencer();
+    let refused = empty.ask(dry_over(60)).expect_err("bare");
+    assert!(refused.what.contains("nothing is wet"));
+}
+
+#[test]
+fn the_newest_layer_becomes_wet_in_a_region_and_an_opacity_is_not_lost() {
+    let mut sequencer = painted();
+    let all = both(counts(&mut sequencer));
+    let dry = |name: &str| Command::Dry {
+        surface: CANVAS,
+        share: 1.0,
+        name: name.to_owned(),
+    };
+    sequencer.ask(dry("low")).expect("wet");
+    sequencer.ask(load("Pyrrole Red")).expect("loaded");
+    stroke(&mut sequencer, 2, 3, 11.0, true);
+    sequencer.ask(dry("high")).expect("wet");
+    let opacity = |layer: &str, opacity: f32| Command::LayerOpacity {
+        layer: layer.to_owned(),
+        opacity,
+    };
+    sequencer.ask(opacity("high", 0.5)).expect("a layer");
+    let veiled = sequencer
+        .ask(wet(1, None))
+        .expect_err("no wet paint is veiled");
+    assert!(veiled.what.contains("high") && veiled.help.contains("opacity 2 1"));
+    sequencer
+        .ask(opacity("2", 1.0))
+        .expect("a layer by its number");
+    let unknown = sequencer.ask(opacity("sky", 1.0)).expect_err("no layer");
+    assert!(unknown.what.contains("'sky'") && unknown.help.contains("2 (high)"));
+
+    let names = |sequencer: &Sequencer| -> Vec<String> {
+        let layers = &sequencer.painting().scene().layers;
+        layers.iter().map(|layer| layer.name.clone()).collect()
+    };
+    let name = |layer: u32| Command::NameLayer {
+        layer,
+        name: " sky ".to_owned(),
+    };
+    sequencer.ask(name(1)).expect("a layer");
+    assert_eq!(names(&sequencer), ["sky", "high"]);
+    sequencer
+        .ask(Command::Undo { brush: None })
+        .expect("a step");
+    assert_eq!(names(&sequencer), ["low", "high"]);
+    let unknown = sequencer.ask(name(3)).expect_err("no layer");
+    assert!(unknown.what.contains('3') && unknown.help.contains("2 (high)"));
+
+    let region: Region = "6,6,10x10".parse().expect("a region");
+    assert_eq!(sequencer.ask(wet(1, Some(region))).as_deref(), Ok("high"));
+    let layers = |sequencer: &Sequencer| -> BTreeSet<u32> {
+        let layers = &sequencer.painting().scene().layers;
+        layers.iter().map(|layer| layer.number).collect()
+    };
+    assert_eq!(layers(&sequencer), BTreeSet::from([1, 2]));
+    let [wet_part, dry_part] = counts(&mut sequencer);
+    assert!(sum(&wet_part) > 0 && wet_part[..2] == [0, 0] && sum(&dry_part) > sum(&all));
+    let painted = wet_cells(&mut sequencer);
+    sequencer.ask(wet(1, None)).expect("the rest of it");
+    assert_eq!(layers(&sequencer), BTreeSet::from([1]));
+    assert_eq!(counts(&mut sequencer)[1], all, "the lower one is dry");
+    sequencer.ask(wet(0, None)).expect("all");
+    assert_eq!((layers(&sequencer).len(), depth(&sequencer)), (0, 0));
+    let nothing = sequencer.ask(wet(0, None)).expect_err("all is wet");
+    assert!(nothing.what.contains("nothing has dried"));
+    for _ in 0..2 {
+        sequencer.ask(Command::Undo { brush: None }).expect("done");
+    }
+    assert_eq!(wet_cells(&mut sequencer), painted);
+    assert_eq!(layers(&sequencer), BTreeSet::from([1, 2]));
+}
