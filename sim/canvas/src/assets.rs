@@ -295,7 +295,7 @@ pub(crate) mod tests {
     fn what_is_no_such_picture_is_refused() {
         let mut embedded = Assets::default();
         let says = |error: EditError, word: &str| {
-            assert!(error.what.contains(word), "{error}");
+            assert!(error.to_string().contains(word), "{error}");
         };
         says(embedded.add((*b"GIF89a").into()).expect_err("no"), "PNG");
         let small = png_of(

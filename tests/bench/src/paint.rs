@@ -11,8 +11,9 @@ use maulstick_painting::{Painting, PaintingSetup, Sequencer};
 use maulstick_rig::Fault;
 use maulstick_types::Pose;
 use maulstick_types::brush::{BrushState, Solve};
-use maulstick_types::command::Command;
 use maulstick_types::scene::CANVAS;
+use maulstick_types::edits::{Fill, FillPaint, Load};
+use maulstick_types::values::{BrushName, FilmThickness};
 
 use crate::advection;
 use crate::header::header_of;
@@ -70,17 +71,10 @@ impl Round {
         let mut sequencer = Sequencer::new(painting);
         sequencer.define_brush(BRUSH, file.clone());
         let mixture = || FILM.parse().map_err(fault);
-        let load = Command::Load {
-            brush: BRUSH.to_owned(),
-            mixture: mixture()?,
-        };
-        let fill = Command::Fill {
-            surface: CANVAS,
-            mixture: mixture()?,
-            thickness_m: FILM_M,
-        };
+        let load = Load { mixture: mixture()?, beside: None, brush: BrushName::new(BRUSH).expect("valid") };
+        let fill = Fill { paint: FillPaint::Mixture { mixture: mixture()? }, thickness: FilmThickness::new(FILM_M).expect("in range"), surface: CANVAS };
         for command in [load, fill] {
-            sequencer.ask(command).map_err(fault)?;
+            sequencer.edit(command).map_err(fault)?;
         }
         let size_m = f64::from(cells) * setup.cell_m;
         let radius_m = 0.25 * size_m;

@@ -343,6 +343,8 @@ impl std::fmt::Debug for CommandDispatcher {
 mod tests {
     use maulstick_types::Pose;
     use maulstick_types::scene::{Light, Tuning};
+    use maulstick_types::edits::{Place, Tune, Undo};
+    use maulstick_types::command::{TakeCommand};
 
     use super::*;
 
@@ -358,20 +360,14 @@ mod tests {
     }
 
     fn place(surface: u32, zoom: f64) -> Request {
-        request(Command::Place {
-            surface,
-            pose: Pose::IDENTITY,
-            zoom,
-        })
+        request(Command::from(Place::new(surface, Pose::IDENTITY, zoom).expect("in reach")))
     }
 
     #[test]
     fn nothing_waits_for_the_end_of_an_export() {
-        let export = Command::Export {
-            order: maulstick_types::command::ExportOrder::to("/a.png"),
-        };
-        assert!(patience(&export) > patience(&Command::Mark));
-        let (undo, stop) = (Command::Undo { brush: None }, Command::StopExport);
+        let export = Command::from(FileCommand::Export(maulstick_types::command::ExportOrder::to("/a.png")));
+        assert!(patience(&export) > patience(&Command::from(TakeCommand::Mark)));
+        let (undo, stop) = (Command::from(Undo { brush: None }), Command::from(FileCommand::StopExport));
         assert_eq!(address(&request(undo)), address(&request(stop.clone())));
         assert_ne!(address(&request(export)), address(&request(stop)));
     }
@@ -381,13 +377,11 @@ mod tests {
         let tune = |brush: &str, stiffness: f64| {
             let brush = brush.to_owned();
             let wetness = 0.0;
-            request(Command::Tune {
-                tuning: Tuning {
+            request(Command::from(Tune::try_from(&Tuning {
                     brush,
                     stiffness,
                     wetness,
-                },
-            })
+                }).expect("in range")))
         };
         let mut waiting = VecDeque::new();
         for request in [
@@ -410,7 +404,7 @@ mod tests {
 
     #[test]
     fn of_places_that_wait_the_newest_is_sent_and_nothing_overtakes() {
-        let undo = || request(Command::Undo { brush: None });
+        let undo = || request(Command::from(Undo { brush: None }));
         let mut waiting = VecDeque::new();
         for request in [
             place(0, 1.0),
@@ -433,7 +427,7 @@ mod tests {
                 intensity,
                 ..Light::default()
             };
-            request(Command::Relight { light, expose })
+            request(Command::from(Relight { light: light, expose: expose }))
         };
         let mut waiting = VecDeque::new();
         for request in [

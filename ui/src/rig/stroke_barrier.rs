@@ -230,6 +230,7 @@ mod tests {
     use maulstick_bus::typed::Sender;
     use maulstick_bus::{Faults, MemoryNet};
     use maulstick_types::{Origin, Pose};
+    use maulstick_types::edits::{Place, Undo};
 
     use super::*;
 
@@ -334,14 +335,10 @@ mod tests {
         }
     }
 
-    const UNDO: Command = Command::Undo { brush: None };
+    const UNDO: Command = Command::from(Undo { brush: None });
 
     fn place() -> Command {
-        Command::Place {
-            surface: 0,
-            pose: Pose::IDENTITY,
-            zoom: 1.0,
-        }
+        Command::from(Place::new(0, Pose::IDENTITY, 1.0).expect("in reach"))
     }
 
     #[test]

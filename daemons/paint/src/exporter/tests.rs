@@ -1,5 +1,6 @@
 //! Exports are whole files, refused in words, or stopped.
 
+use maulstick_canvas::EditError;
 use std::time::{Duration, Instant};
 
 use maulstick_optics::PaintLibrary;

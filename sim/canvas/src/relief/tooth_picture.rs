@@ -201,7 +201,7 @@ mod tests {
             ("image:ab@120mm,1e9um", "depth"),
         ] {
             let error = ToothName::parse(name).expect_err("wrong");
-            assert!(error.what.contains(word), "{error}");
+            assert!(error.to_string().contains(word), "{error}");
             assert!(error.advice().to_string().contains("@120mm,80um"));
         }
         let none = PictureTooth::called(
@@ -209,6 +209,6 @@ mod tests {
             1e-3,
             &Assets::default(),
         );
-        assert!(none.expect_err("none").what.contains("no picture"));
+        assert!(none.expect_err("none").to_string().contains("no picture"));
     }
 }

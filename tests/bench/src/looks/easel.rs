@@ -12,6 +12,8 @@ use maulstick_types::command::Command;
 use maulstick_types::paint::TILE;
 use maulstick_types::scene::CANVAS;
 use maulstick_types::stylus::{StylusPose, StylusSample, axes};
+use maulstick_types::edits::{Dry, Load};
+use maulstick_types::values::{BrushName, Share};
 
 /// Samples a second.
 const RATE_HZ: f64 = 250.0;
@@ -109,15 +111,11 @@ impl Easel {
             .parse()
             .map_err(|error| Fault::failure(format!("{error}")))?;
         let brush = self.offline.brush().to_owned();
-        self.command(Command::Load { brush, mixture })
+        self.command(Load { mixture: mixture, beside: None, brush: BrushName::new(brush).expect("valid") })
     }
 
     pub(crate) fn dry(&mut self) -> Result<(), Fault> {
-        self.command(Command::Dry {
-            surface: CANVAS,
-            share: 1.0,
-            name: String::new(),
-        })
+        self.command(Dry { share: Share::new(1.0).expect("in range"), ..Dry::whole(CANVAS) })
     }
 
     pub(crate) fn stroke(&mut self, stroke: &Stroke) -> Result<(), Fault> {

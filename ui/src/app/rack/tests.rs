@@ -6,6 +6,8 @@ use eframe::egui::{Key, vec2};
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable as _;
 use maulstick_types::command::Command;
+use maulstick_types::values::{BrushName, BrushToml};
+use maulstick_types::command::{BrushCommand};
 
 use super::*;
 use crate::rig::requests::Request as Asked;
@@ -30,7 +32,7 @@ fn a_click_takes_a_brush_into_the_hand_at_its_width() {
     let [
         Asked::Command {
             node,
-            command: Command::Define { brush, toml },
+            command: Command::Brush(BrushCommand::Define { brush, toml }),
         },
     ] = &requests[..]
     else {
@@ -93,7 +95,7 @@ fn files_of_ones_own_join_it_and_a_lost_one_is_told() {
     harness.run();
     let commands = harness.state_mut().commands();
     assert!(
-        matches!(&commands[..], [Command::Define { .. }]),
+        matches!(&commands[..], [Command::Brush(BrushCommand::Define { .. })]),
         "{commands:?}"
     );
     harness.get_by_label("Lost").click_accesskit();
