@@ -10,7 +10,9 @@ pub fn words(advice: &Advice) -> Option<String> {
         Advice::BeginDrying => "`maulstick dry --over 90s` begins one",
         Advice::DryFirst => "`maulstick dry` dries wet paint into a layer",
         Advice::FullOpacity { layer } => {
-            return Some(format!("`maulstick opacity {layer} 1` makes it as it was laid"));
+            return Some(format!(
+                "`maulstick opacity {layer} 1` makes it as it was laid"
+            ));
         }
         Advice::ListPaints => "`maulstick paints` lists them all",
         Advice::UndoNewest => {
@@ -19,9 +21,7 @@ pub fn words(advice: &Advice) -> Option<String> {
         Advice::Recover => "`maulstick painting recover` takes out what is whole",
         Advice::StopExport => "wait for its end, or stop it: `maulstick export --stop`",
         Advice::BeginExport => "`maulstick export FILE` begins an export",
-        Advice::ListFormats => {
-            "`maulstick painting export --help` says what each format takes"
-        }
+        Advice::ListFormats => "`maulstick painting export --help` says what each format takes",
         Advice::Replace => {
             "give another name, or say that the one that is there may go: `--replace`"
         }

@@ -10,7 +10,9 @@ pub(crate) fn words(advice: &Advice) -> Option<String> {
         Advice::BeginDrying => "press Start in the panel Layers",
         Advice::DryFirst => "press Dry in the panel Layers",
         Advice::FullOpacity { layer } => {
-            return Some(format!("set the opacity of layer {layer} to 100 % in the panel Layers"));
+            return Some(format!(
+                "set the opacity of layer {layer} to 100 % in the panel Layers"
+            ));
         }
         Advice::ListPaints => "choose one of the panel Tubes",
         Advice::UndoNewest => "undo that first: Ctrl+Z takes the newest step of all",
@@ -19,7 +21,7 @@ pub(crate) fn words(advice: &Advice) -> Option<String> {
         Advice::SaveOrForget => "save it under another name first, or tick that it may go",
         Advice::Say { .. } | Advice::Recover | Advice::BeginExport | Advice::ListFormats => {
             return None;
-        },
+        }
     };
     Some(words.to_owned())
 }

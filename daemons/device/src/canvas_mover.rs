@@ -16,8 +16,8 @@ use maulstick_bus::typed::Receiver;
 use maulstick_bus::{Bus, Class, Queue, Wake};
 use maulstick_num::exp;
 use maulstick_rig::Fault;
-use maulstick_types::edits::Place;
 use maulstick_types::control::ControlSample;
+use maulstick_types::edits::Place;
 use maulstick_types::scene::{CANVAS, Scene};
 use maulstick_types::topics::Topics;
 

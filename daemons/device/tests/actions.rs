@@ -14,10 +14,10 @@ use maulstick_device::actions::{Actions, Actor};
 use maulstick_rig::config::DeviceSection;
 use maulstick_types::command::Command;
 use maulstick_types::edits::{Clean, Edit, Handle, Place, Undo};
-use maulstick_types::values::{BrushName};
 use maulstick_types::paint::{Entry, JournalEntry};
 use maulstick_types::scene::{BrushHandling, BrushMode, CANVAS, PALETTE, Scene, Surface};
 use maulstick_types::stylus::{StylusSample, switch};
+use maulstick_types::values::BrushName;
 
 use crate::support::{Live, START_NS};
 
@@ -136,9 +136,13 @@ fn undo_takes_the_newest_step_of_its_brush_back_and_clean_cleans_it() {
     hold(&mut actor, 0);
     hold(&mut actor, CLEAN);
     rig.until("a cleaning", |rig| {
-        rig.commands.contains(&Command::from(Clean { brush: BrushName::main() }))
+        rig.commands.contains(&Command::from(Clean {
+            brush: BrushName::main(),
+        }))
     });
-    let undone = Command::from(Undo { brush: Some(BrushName::main()) });
+    let undone = Command::from(Undo {
+        brush: Some(BrushName::main()),
+    });
     assert_eq!(rig.commands.iter().filter(|c| **c == undone).count(), 1);
 }
 
@@ -152,7 +156,10 @@ fn a_brush_picks_while_its_switch_is_held_and_is_used_as_before_then() {
         ..BrushHandling::normal("main")
     };
     let handling = before.clone();
-    rig.live.command(1, Command::from(Handle::try_from(&handling).expect("in range")));
+    rig.live.command(
+        1,
+        Command::from(Handle::try_from(&handling).expect("in range")),
+    );
     hold(&mut actor, PICK);
     rig.until_mode(&BrushMode::Sampler);
     hold(&mut actor, 0);

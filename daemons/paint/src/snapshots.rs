@@ -13,8 +13,8 @@ use maulstick_painting::ledger::LedgerReport;
 use maulstick_types::command::Outcome;
 use maulstick_types::scene::CANVAS;
 
-use crate::refusal::Refusal;
 use crate::exporter::{Asker, unwritable};
+use crate::refusal::Refusal;
 
 /// Snapshots that wait, at most: each keeps the tiles that it shows.
 const WAITING: usize = 16;

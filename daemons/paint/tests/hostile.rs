@@ -4,11 +4,11 @@ mod support;
 
 use maulstick_bus::typed::Receiver;
 use maulstick_bus::{Class, Faults, MemoryNet, Queue, Wake};
+use maulstick_types::command::TakeCommand;
 use maulstick_types::command::{Command, Outcome};
 use maulstick_types::edits::{Clean, Load};
-use maulstick_types::values::{BrushName, WholePath};
-use maulstick_types::command::{TakeCommand};
 use maulstick_types::paint::JournalEntry;
+use maulstick_types::values::{BrushName, WholePath};
 use maulstick_types::{Message as _, Mixture};
 use support::{Live, START_NS};
 
@@ -22,9 +22,18 @@ fn a_text_too_long_to_be_answered_is_refused_in_short() {
     let long = "x".repeat(70_000);
     let (path, brush) = (long.clone(), long.clone());
     let hostile = [
-        Command::from(Clean { brush: BrushName::new(brush).expect("valid") }),
-        Command::from(TakeCommand::Snapshot { path: WholePath::new(path).expect("valid"), ledger: None }),
-        Command::from(Load { mixture: Mixture::pure(&long), beside: None, brush: BrushName::main() }),
+        Command::from(Clean {
+            brush: BrushName::new(brush).expect("valid"),
+        }),
+        Command::from(TakeCommand::Snapshot {
+            path: WholePath::new(path).expect("valid"),
+            ledger: None,
+        }),
+        Command::from(Load {
+            mixture: Mixture::pure(&long),
+            beside: None,
+            brush: BrushName::main(),
+        }),
     ];
     for (number, command) in hostile.into_iter().enumerate() {
         let outcome = live.ask("paint", number as u64 + 1, command);
@@ -48,7 +57,13 @@ fn the_largest_command_fits_into_the_journal() {
     let load = Mixture::pure("Bone Black");
     let limit = maulstick_types::command::CommandRequest::MAX_BYTES;
     let loads = vec![load; (limit - 49) / 34];
-    let command = Command::from(TakeCommand::Begin { brush: BrushName::main(), device: 1, device_epoch: 1, loads: loads, again: false });
+    let command = Command::from(TakeCommand::Begin {
+        brush: BrushName::main(),
+        device: 1,
+        device_epoch: 1,
+        loads,
+        again: false,
+    });
     live.command(1, command);
     live.net.advance(1_000_000);
     let entries: Vec<JournalEntry> =

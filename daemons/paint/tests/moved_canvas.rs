@@ -5,10 +5,10 @@ mod support;
 use maulstick_bus::typed::Receiver;
 use maulstick_bus::{Class, Faults, MemoryNet, Queue, Wake};
 use maulstick_types::brush::BrushState;
-use maulstick_types::edits::{Load, Place};
-use maulstick_types::values::{BrushName};
 use maulstick_types::command::Command;
+use maulstick_types::edits::{Load, Place};
 use maulstick_types::scene::CANVAS;
+use maulstick_types::values::BrushName;
 use support::{Device, Live, START_NS, loads, painting, pen};
 
 /// Time of a turn, ns.
@@ -104,11 +104,17 @@ fn a_device_is_told_of_its_samples_once_they_are_solved() {
 fn covered(zoom: Option<Zoomed>) -> u64 {
     let mut live = Live::new(MemoryNet::new(1, START_NS, Faults::default()));
     let mut mouse = live.device("mouse", 5);
-    let load = Command::from(Load { mixture: loads()[0].clone(), beside: None, brush: BrushName::main() });
+    let load = Command::from(Load {
+        mixture: loads()[0].clone(),
+        beside: None,
+        brush: BrushName::main(),
+    });
     live.command(1, load);
     live.net.advance(MILLISECOND);
     live.brush.turn().expect("turned");
-    let larger = Command::from(Place::new(CANVAS, painting().scene().surfaces[0].pose.clone(), 1.3).expect("in reach"));
+    let larger = Command::from(
+        Place::new(CANVAS, painting().scene().surfaces[0].pose.clone(), 1.3).expect("in reach"),
+    );
     if zoom == Some(Zoomed::Before) {
         live.command(2, larger.clone());
         live.net.advance(MILLISECOND);

@@ -8,8 +8,8 @@ use maulstick_paint_node::exporter::kind_of;
 use maulstick_rig::Fault;
 use maulstick_rig::files::Kind;
 use maulstick_types::command::{ExportOrder, FileCommand, png_bits};
-use maulstick_types::values::ValueError;
 use maulstick_types::scene::{CANVAS, PALETTE};
+use maulstick_types::values::ValueError;
 
 use super::open::LONGEST;
 use super::painting::formats;

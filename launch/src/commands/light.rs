@@ -27,6 +27,14 @@ pub struct LightOptions {
     target: Target,
 }
 
+impl LightOptions {
+    /// The change that is asked for.
+    #[must_use]
+    pub fn change(&self) -> &LightChange {
+        &self.change
+    }
+}
+
 /// Changes the light and waits until the dry layers are computed anew; without changes it only prints the light.
 ///
 /// # Errors

@@ -94,9 +94,9 @@ impl MatchOptions {
         }
         let mut paints: Vec<Paint> = Vec::new();
         for name in &self.paint {
-            let paint = library.find(name).map_err(|error| {
-                refused(paint_error(error)).at(format!("--paint {name:?}"))
-            })?;
+            let paint = library
+                .find(name)
+                .map_err(|error| refused(paint_error(error)).at(format!("--paint {name:?}")))?;
             if paints.iter().all(|other| other.name != paint.name) {
                 paints.push(paint.clone());
             }

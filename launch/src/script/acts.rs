@@ -10,6 +10,7 @@ use maulstick_painting::PaintingSetup;
 use maulstick_painting::setup::relief_called;
 use maulstick_rig::Fault;
 use maulstick_rig::config::{BrushSection, is_path};
+use maulstick_types::advice::choice;
 use maulstick_types::edits::{Edit, Form, Ground, LightChange, Tooth};
 use maulstick_types::scene::CANVAS;
 use maulstick_types::topics::check_name;
@@ -272,6 +273,11 @@ pub(super) fn light(step: &Step<'_>, _: &PaintLibrary) -> Result<Act, Fault> {
         return Err(Fault::usage(
             "a light of which nothing is said changes nothing",
         ));
+    }
+    let given = keys.keys();
+    if let Some(key) = given.iter().find(|key| !LightChange::KEYS.contains(key)) {
+        let fault = keys.fault(key, format!("a light has no key '{key}'"));
+        return Err(fault.help(choice(key, LightChange::KEYS)));
     }
     let mut change: LightChange = keys.read(LightChange::deserialize)?;
     change.illuminant = change.illuminant.map(|name| keys.beside(&name));

@@ -165,11 +165,14 @@ impl<'a> Entries<'a> {
         let table = Spanned::new(0..0, DeValue::Table(self.table.clone()));
         read(ValueDeserializer::from(table)).map_err(|error| {
             let start = error.span().map(|span| span.start);
-            let holds = |value: &Spanned<DeValue<'_>>| start.is_some_and(|at| value.span().contains(&at));
+            let holds =
+                |value: &Spanned<DeValue<'_>>| start.is_some_and(|at| value.span().contains(&at));
             let found = self.table.iter().find(|(_, value)| holds(value));
             let message = error.message().lines().next().unwrap_or_default();
             let fault = match found {
-                Some((key, _)) => self.fault(key.get_ref(), format!("'{}': {message}", key.get_ref())),
+                Some((key, _)) => {
+                    self.fault(key.get_ref(), format!("'{}': {message}", key.get_ref()))
+                }
                 None => Fault::usage(message),
             };
             fault.help(self.for_example())

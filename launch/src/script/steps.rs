@@ -111,7 +111,13 @@ pub(super) struct Step<'a> {
 impl<'a> Step<'a> {
     /// A step that does one thing, and whose other keys are that thing's.
     fn of(source: Source<'a>, table: &'a DeTable<'a>, start: usize) -> Result<Self, Fault> {
-        let all = || KINDS.iter().map(|kind| kind.form.key).collect::<Vec<_>>().join(", ");
+        let all = || {
+            KINDS
+                .iter()
+                .map(|kind| kind.form.key)
+                .collect::<Vec<_>>()
+                .join(", ")
+        };
         let keys = Entries {
             source,
             table,

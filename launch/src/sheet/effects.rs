@@ -5,8 +5,8 @@ use maulstick_brush::BrushFile;
 use maulstick_optics::PaintLibrary;
 use maulstick_rig::Fault;
 use maulstick_types::edits::{Dry, Load};
-use maulstick_types::values::{BrushName, Share};
 use maulstick_types::scene::CANVAS;
+use maulstick_types::values::{BrushName, Share};
 
 use super::gesture::{Gesture, Moment, swell};
 use super::marks::stroke;

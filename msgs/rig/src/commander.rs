@@ -6,7 +6,9 @@ use std::time::{Duration, Instant};
 use crate::fault::Fault;
 use maulstick_bus::typed::{ask, random_epoch, random_u64};
 use maulstick_bus::{Bus, BusError, Class};
-use maulstick_types::command::{After, Command, CommandReply, CommandRequest, Outcome, TakeCommand};
+use maulstick_types::command::{
+    After, Command, CommandReply, CommandRequest, Outcome, TakeCommand,
+};
 use maulstick_types::topics::Topics;
 use maulstick_types::{Origin, name_hash};
 

@@ -173,9 +173,9 @@ impl From<BusError> for Fault {
                     .at(at)
                     .help("see that the rig is running and that its folder is yours")
             }
-            BusError::Topic { topic, reason } => Self::failure(reason)
-                .at(topic)
-                .help("the node was restarted or the rig has stopped: look at the messages of the rig"),
+            BusError::Topic { topic, reason } => Self::failure(reason).at(topic).help(
+                "the node was restarted or the rig has stopped: look at the messages of the rig",
+            ),
             BusError::NoAnswer { topic, limit_ms } => {
                 Self::failure(format!("no answer within {limit_ms} ms"))
                     .at(topic)

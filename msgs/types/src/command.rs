@@ -452,7 +452,10 @@ mod tests {
             (0.3, f64::INFINITY, "cell of inf mm"),
             (0.6, 1e-5, "million cells"),
         ] {
-            let what = new(width_m, cell_m).check().expect_err("rejected").to_string();
+            let what = new(width_m, cell_m)
+                .check()
+                .expect_err("rejected")
+                .to_string();
             assert!(what.contains(word) && what.contains("choose"), "{what}");
         }
         assert!(png_bits(16).is_ok() && png_bits(12).is_err());

@@ -92,7 +92,10 @@ mod tests {
         replies.keep(0, 2, Outcome::Waiting);
         replies.keep(1000, 1, Outcome::Waiting);
         assert_eq!(replies.find(&request(0, 2)), Some(Outcome::Waiting));
-        assert!(matches!(replies.find(&request(0, 1)), Some(Outcome::Refused { .. })), "too late");
+        assert!(
+            matches!(replies.find(&request(0, 1)), Some(Outcome::Refused { .. })),
+            "too late"
+        );
         assert_eq!(replies.find(&request(0, 3)), None);
         assert_eq!(replies.find(&request(1, 1)), None, "answered longest ago");
         assert!(replies.find(&request(1000, 1)).is_some());

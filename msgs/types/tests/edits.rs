@@ -63,7 +63,10 @@ fn no_edit_decodes_with_a_number_that_is_none() {
         let name = format!("{edit:?}");
         let name = name.split('(').next().unwrap_or_default();
         let mut rejected = 0;
-        for nan in [f64::NAN.to_le_bytes().to_vec(), f32::NAN.to_le_bytes().to_vec()] {
+        for nan in [
+            f64::NAN.to_le_bytes().to_vec(),
+            f32::NAN.to_le_bytes().to_vec(),
+        ] {
             for at in 48 + 8 + 8 + 1 + 8..whole.len().saturating_sub(nan.len() - 1) {
                 let mut bytes = whole.clone();
                 bytes[at..at + nan.len()].copy_from_slice(&nan);
@@ -73,7 +76,10 @@ fn no_edit_decodes_with_a_number_that_is_none() {
                 }
             }
         }
-        assert!(rejected > 0 || floats(table, name) == 0, "{name} is never rejected");
+        assert!(
+            rejected > 0 || floats(table, name) == 0,
+            "{name} is never rejected"
+        );
     }
 }
 
@@ -85,7 +91,9 @@ fn a_request_out_of_range_still_has_its_number() {
     // Client, number, no place, two tags, and the share.
     let at = 48 + 8 + 8 + 1 + 4 + 4;
     bytes[at..at + 4].copy_from_slice(&2.0f32.to_le_bytes());
-    let error = decode::<CommandRequest>(&bytes).expect_err("out of range").to_string();
+    let error = decode::<CommandRequest>(&bytes)
+        .expect_err("out of range")
+        .to_string();
     assert!(error.contains("a share of 2 is out of range"), "{error}");
     assert_eq!(CommandRequest::number_in(&bytes), Some(2));
 }

@@ -270,20 +270,17 @@ pub(crate) fn ground_reflectance(name: &str) -> Result<Spectrum, EditError> {
         .iter()
         .find(|(ground, _)| *ground == name)
         .map(|(_, reflectance)| Spectrum::flat(*reflectance))
-        .ok_or_else(|| {
-            EditError::NoGround {
-                name: name.to_owned(),
-                known: GROUNDS.map(|(ground, _)| ground).to_vec(),
-            }
+        .ok_or_else(|| EditError::NoGround {
+            name: name.to_owned(),
+            known: GROUNDS.map(|(ground, _)| ground).to_vec(),
         })
 }
 
 /// Reads a table of nm,reflectance.
 fn parsed(bytes: &[u8]) -> Result<Reflectance, EditError> {
     let text = std::str::from_utf8(bytes).unwrap_or_default();
-    Reflectance::parse(text.trim_start_matches('\u{feff}')).map_err(|error| {
-        EditError::Spectrum(error.to_string())
-    })
+    Reflectance::parse(text.trim_start_matches('\u{feff}'))
+        .map_err(|error| EditError::Spectrum(error.to_string()))
 }
 
 /// Takes a spectrum in and returns its hash.

@@ -181,7 +181,8 @@ impl Assets {
 
 /// Reads a PNG of either kind.
 fn decode(bytes: &[u8]) -> Result<Decoded, EditError> {
-    let wrong = |error: png::DecodingError| EditError::Picture(format!("this is no whole PNG: {error}"));
+    let wrong =
+        |error: png::DecodingError| EditError::Picture(format!("this is no whole PNG: {error}"));
     let limits = png::Limits { bytes: 1 << 30 };
     let decoder = png::Decoder::new_with_limits(Cursor::new(bytes), limits);
     let mut reader = decoder.read_info().map_err(wrong)?;

@@ -219,12 +219,16 @@ impl EditError {
         let size = |[width, height]: &[f64; 2]| format!("{width:.1}x{height:.1} mm");
         match self {
             Self::NoPaint { .. } => Advice::ListPaints,
-            Self::Mixture(_) | Self::PaintFile { .. } => say("write mixtures as \"Cobalt Blue=0.7,Titanium White=0.3\""),
+            Self::Mixture(_) | Self::PaintFile { .. } => {
+                say("write mixtures as \"Cobalt Blue=0.7,Titanium White=0.3\"")
+            }
             Self::TooManyPaints(_) => {
                 say("a painting has at most 16 paints: mix it from those in use")
             }
             Self::NoSlot(_) | Self::EmptyBrush(_) => say("load it first"),
-            Self::NoBrush { known, .. } => Advice::say(format!("choose one of: {}", known.join(", "))),
+            Self::NoBrush { known, .. } => {
+                Advice::say(format!("choose one of: {}", known.join(", ")))
+            }
             Self::State { .. } => say("restart the program that sends it, or report its fault"),
             Self::Unfit(_) => say("restart the brush node: it runs with another file"),
             Self::NoSurface(_) => say("the canvas is 0, the palette 1"),
@@ -241,8 +245,13 @@ impl EditError {
             Self::NotDrying => Advice::BeginDrying,
             Self::NoLayer { known, .. } if known.is_empty() => Advice::DryFirst,
             Self::NoLayer { known, .. } => {
-                let known = known.iter().map(|(number, name)| format!("{number} ({name})"));
-                Advice::say(format!("there are {}", known.collect::<Vec<_>>().join(", ")))
+                let known = known
+                    .iter()
+                    .map(|(number, name)| format!("{number} ({name})"));
+                Advice::say(format!(
+                    "there are {}",
+                    known.collect::<Vec<_>>().join(", ")
+                ))
             }
             Self::NothingToRedo => say("only what was undone and not painted over can be redone"),
             Self::Covered { .. } => Advice::UndoNewest,

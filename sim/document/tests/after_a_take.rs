@@ -7,14 +7,20 @@ use std::sync::Arc;
 use maulstick_document::{Access, Document, DocumentSettings, Moment};
 use maulstick_painting::Sequencer;
 use maulstick_types::command::Command;
-use maulstick_types::edits::{Load};
-use maulstick_types::values::{BrushName};
-use maulstick_types::command::{TakeCommand};
+use maulstick_types::command::TakeCommand;
+use maulstick_types::edits::Load;
 use maulstick_types::scene::CANVAS;
+use maulstick_types::values::BrushName;
 use studio::{Act, BRUSHES, Painter, equip, mixture, sequencer};
 
 fn take(again: bool, loads: &[&str]) -> Command {
-    Command::from(TakeCommand::Begin { brush: BrushName::new(BRUSHES[0]).expect("valid"), device: 9, device_epoch: 1, loads: loads.iter().map(|load| mixture(load)).collect(), again: again })
+    Command::from(TakeCommand::Begin {
+        brush: BrushName::new(BRUSHES[0]).expect("valid"),
+        device: 9,
+        device_epoch: 1,
+        loads: loads.iter().map(|load| mixture(load)).collect(),
+        again,
+    })
 }
 
 /// A live stroke of the first brush on the canvas.
@@ -50,7 +56,11 @@ fn a_live_brush_paints_in_a_document_of_a_take() {
 
     let (_document, opened) = Document::open(&settings).expect("opened");
     let mut again = opened.expect("a painting").sequencer().expect("whole");
-    let load = Load { mixture: mixture("Ultramarine Blue"), beside: None, brush: BrushName::new(BRUSHES[0]).expect("valid") };
+    let load = Load {
+        mixture: mixture("Ultramarine Blue"),
+        beside: None,
+        brush: BrushName::new(BRUSHES[0]).expect("valid"),
+    };
     painter.command(&mut again, load);
     for _ in 0..6 {
         stroke(&mut painter, &mut again);
@@ -75,7 +85,11 @@ fn a_take_that_begins_again_takes_back_its_own_strokes_alone() {
     for _ in 0..24 {
         stroke(&mut painter, &mut sequencer);
     }
-    let load = Load { mixture: mixture("Ultramarine Blue"), beside: None, brush: BrushName::new(BRUSHES[0]).expect("valid") };
+    let load = Load {
+        mixture: mixture("Ultramarine Blue"),
+        beside: None,
+        brush: BrushName::new(BRUSHES[0]).expect("valid"),
+    };
     painter.command(&mut sequencer, load);
     painter.command(&mut sequencer, take(false, &[]));
     let before = studio::tiles(&mut sequencer);

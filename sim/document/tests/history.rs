@@ -6,7 +6,7 @@ use std::sync::Arc;
 
 use maulstick_document::{Access, Document, DocumentSettings, Moment};
 use maulstick_painting::Sequencer;
-use maulstick_types::command::{Command, Outcome};
+use maulstick_types::command::Outcome;
 use maulstick_types::edits::{Redo, Undo};
 use proptest::prelude::*;
 use studio::{Painter, equip, print, sequencer};

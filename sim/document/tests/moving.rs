@@ -4,8 +4,8 @@ mod crash_vfs;
 mod easel;
 mod studio;
 
+use maulstick_types::edits::Undo;
 use std::path::Path;
-use maulstick_types::edits::{Undo};
 use std::sync::Arc;
 
 use crash_vfs::Refused;

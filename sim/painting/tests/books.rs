@@ -6,9 +6,13 @@ use maulstick_num::fork_join::with_help;
 use maulstick_optics::PaintLibrary;
 use maulstick_painting::{Painting, PaintingSetup};
 use maulstick_types::brush::{BrushState, Solve, solve_flags};
-use maulstick_types::edits::{Clean, Dry, Fill, FillPaint, Handle, LayerRef, Load, Opacity, Piles, Size};
-use maulstick_types::values::{BrushName, FilmThickness, LayerName, OpacityFactor, Share, StainThickness};
+use maulstick_types::edits::{
+    Clean, Dry, Fill, FillPaint, Handle, LayerRef, Load, Opacity, Piles, Size,
+};
 use maulstick_types::scene::{BrushHandling, BrushMode, CANVAS, PALETTE};
+use maulstick_types::values::{
+    BrushName, FilmThickness, LayerName, OpacityFactor, Share, StainThickness,
+};
 use maulstick_types::{Mixture, Pose};
 use proptest::prelude::*;
 use proptest::strategy::ValueTree as _;
@@ -183,10 +187,19 @@ fn perform(painting: &mut Painting, strokes: &mut [u64; 2], act: &Act) {
         Act::Paint(b, places) => paint(painting, BRUSHES[*b], 10.0, strokes[*b], places),
         Act::NextStroke(b) => strokes[*b] += 1,
         Act::Load(b, l) => painting
-            .apply(Load { mixture: mixture(MIXTURES[*l]), beside: None, brush: BrushName::new(BRUSHES[*b]).expect("valid") })
+            .apply(Load {
+                mixture: mixture(MIXTURES[*l]),
+                beside: None,
+                brush: BrushName::new(BRUSHES[*b]).expect("valid"),
+            })
             .map(drop)
             .expect("known"),
-        Act::Clean(b) => painting.apply(Clean { brush: BrushName::new(BRUSHES[*b]).expect("valid") }).map(drop).expect("known"),
+        Act::Clean(b) => painting
+            .apply(Clean {
+                brush: BrushName::new(BRUSHES[*b]).expect("valid"),
+            })
+            .map(drop)
+            .expect("known"),
         Act::Take(b, loads) => {
             let loads: Vec<Mixture> = loads.iter().map(|l| mixture(MIXTURES[*l])).collect();
             painting.take(BRUSHES[*b], &loads).expect("known");
@@ -195,8 +208,14 @@ fn perform(painting: &mut Painting, strokes: &mut [u64; 2], act: &Act) {
             painting.define_brush(BRUSHES[*b], brush(10.0, *strips));
         }
         // There may be nothing to dry, to undo or to redo.
-        Act::Dry(surface, share) => drop(painting.apply(Dry { share: Share::new(*share).expect("in range"), ..Dry::whole(*surface) })),
-        Act::Opacity(layer, opacity) => drop(painting.apply(Opacity { layer: LayerRef::Number { number: *layer }, opacity: OpacityFactor::new(*opacity).expect("in range") })),
+        Act::Dry(surface, share) => drop(painting.apply(Dry {
+            share: Share::new(*share).expect("in range"),
+            ..Dry::whole(*surface)
+        })),
+        Act::Opacity(layer, opacity) => drop(painting.apply(Opacity {
+            layer: LayerRef::Number { number: *layer },
+            opacity: OpacityFactor::new(*opacity).expect("in range"),
+        })),
         Act::Handle(b, mode) => {
             let handling = BrushHandling {
                 mode: BrushMode::NAMES[*mode].1.clone(),
@@ -204,14 +223,32 @@ fn perform(painting: &mut Painting, strokes: &mut [u64; 2], act: &Act) {
                 most_m: [0.0, 4e-5][mode % 2],
                 brush: BRUSHES[*b].to_owned(),
             };
-            painting.apply(Handle::try_from(&handling).expect("in range")).expect("known");
+            painting
+                .apply(Handle::try_from(&handling).expect("in range"))
+                .expect("known");
         }
         // It may carry nothing.
-        Act::FillWith(b) => drop(painting.apply(Fill { paint: FillPaint::Carried { brush: BrushName::new(BRUSHES[*b]).expect("valid") }, thickness: FilmThickness::new(2e-5).expect("in range"), surface: CANVAS })),
+        Act::FillWith(b) => drop(painting.apply(Fill {
+            paint: FillPaint::Carried {
+                brush: BrushName::new(BRUSHES[*b]).expect("valid"),
+            },
+            thickness: FilmThickness::new(2e-5).expect("in range"),
+            surface: CANVAS,
+        })),
         Act::Prepare(surface, last) => {
-            painting.apply(Piles { last: *last, surface: *surface }).expect("a surface");
+            painting
+                .apply(Piles {
+                    last: *last,
+                    surface: *surface,
+                })
+                .expect("a surface");
             let stain_m = if *last { 0.0 } else { 1e-5 };
-            painting.apply(Size { stain: StainThickness::new(stain_m).expect("in range"), surface: *surface }).expect("a surface");
+            painting
+                .apply(Size {
+                    stain: StainThickness::new(stain_m).expect("in range"),
+                    surface: *surface,
+                })
+                .expect("a surface");
         }
         Act::Undo => drop(painting.undo(None)),
         Act::Redo => drop(painting.redo(None)),
@@ -310,8 +347,24 @@ fn across(from_mm: f64, to_mm: f64) -> Vec<Place> {
 #[test]
 fn what_is_painted_after_a_command_within_a_stroke_is_undone_too() {
     let commands: [fn(&mut Painting); 4] = [
-        |painting| painting.apply(Load { mixture: mixture(MIXTURES[0]), beside: None, brush: BrushName::main() }).map(drop).expect("known"),
-        |painting| painting.apply(Clean { brush: BrushName::new("other").expect("valid") }).map(drop).expect("known"),
+        |painting| {
+            painting
+                .apply(Load {
+                    mixture: mixture(MIXTURES[0]),
+                    beside: None,
+                    brush: BrushName::main(),
+                })
+                .map(drop)
+                .expect("known")
+        },
+        |painting| {
+            painting
+                .apply(Clean {
+                    brush: BrushName::new("other").expect("valid"),
+                })
+                .map(drop)
+                .expect("known")
+        },
         |painting| drop(painting.undo(None).expect("a stroke")),
         |painting| {
             painting.undo(None).expect("a stroke");
@@ -320,7 +373,13 @@ fn what_is_painted_after_a_command_within_a_stroke_is_undone_too() {
     ];
     for command in commands {
         let mut painting = painting(10.0);
-        painting.apply(Load { mixture: mixture(MIXTURES[1]), beside: None, brush: BrushName::main() }).expect("known");
+        painting
+            .apply(Load {
+                mixture: mixture(MIXTURES[1]),
+                beside: None,
+                brush: BrushName::main(),
+            })
+            .expect("known");
         paint(&mut painting, "main", 10.0, 1, &across(4.0, 8.0));
         command(&mut painting);
         paint(&mut painting, "main", 10.0, 1, &across(8.0, 12.0));
@@ -345,8 +404,20 @@ fn what_is_painted_after_a_command_within_a_stroke_is_undone_too() {
 fn a_load_from_before_a_brush_had_other_strips_comes_back() {
     for strips in [31, 60] {
         let mut painting = painting(10.0);
-        painting.apply(Load { mixture: mixture(MIXTURES[0]), beside: None, brush: BrushName::main() }).expect("known");
-        painting.apply(Load { mixture: mixture(MIXTURES[1]), beside: None, brush: BrushName::main() }).expect("known");
+        painting
+            .apply(Load {
+                mixture: mixture(MIXTURES[0]),
+                beside: None,
+                brush: BrushName::main(),
+            })
+            .expect("known");
+        painting
+            .apply(Load {
+                mixture: mixture(MIXTURES[1]),
+                beside: None,
+                brush: BrushName::main(),
+            })
+            .expect("known");
         painting.define_brush("main", brush(10.0, strips));
         painting.undo(None).expect("the second load");
         assert_eq!(painting.report().quanta_missing, 0);
@@ -359,7 +430,13 @@ fn a_load_from_before_a_brush_had_other_strips_comes_back() {
 fn a_head_in_the_air_and_a_clean_one_leave_nothing() {
     let mut painting = painting(10.0);
     paint(&mut painting, "main", 10.0, 1, &across(4.0, 12.0));
-    painting.apply(Load { mixture: mixture(MIXTURES[0]), beside: None, brush: BrushName::main() }).expect("known");
+    painting
+        .apply(Load {
+            mixture: mixture(MIXTURES[0]),
+            beside: None,
+            brush: BrushName::main(),
+        })
+        .expect("known");
     let high = |place: Place| Place {
         height: 1.3,
         bend: [0.0; 2],
@@ -375,7 +452,13 @@ fn a_head_in_the_air_and_a_clean_one_leave_nothing() {
 #[test]
 fn a_restart_paints_nothing_on_its_way() {
     let mut painting = painting(10.0);
-    painting.apply(Load { mixture: mixture(MIXTURES[0]), beside: None, brush: BrushName::main() }).expect("known");
+    painting
+        .apply(Load {
+            mixture: mixture(MIXTURES[0]),
+            beside: None,
+            brush: BrushName::main(),
+        })
+        .expect("known");
     let file = brush(10.0, 48);
     for place in across(4.0, 12.0) {
         let state = BrushState {
@@ -394,12 +477,25 @@ fn a_restart_paints_nothing_on_its_way() {
 #[test]
 fn what_has_dried_stays_and_catches_paint() {
     let mut painting = painting(10.0);
-    painting.apply(Load { mixture: mixture(MIXTURES[0]), beside: None, brush: BrushName::main() }).expect("known");
+    painting
+        .apply(Load {
+            mixture: mixture(MIXTURES[0]),
+            beside: None,
+            brush: BrushName::main(),
+        })
+        .expect("known");
     paint(&mut painting, "main", 10.0, 1, &across(4.0, 12.0));
     painting.commit();
     let wet = painting.store(CANVAS).expect("a canvas").counts();
     assert_eq!(
-        painting.apply(Dry { share: Share::new(1.0).expect("in range"), layer: LayerName::new("underpainting").ok(), ..Dry::whole(CANVAS) }).map(|done| done.to_string()).as_deref(),
+        painting
+            .apply(Dry {
+                share: Share::new(1.0).expect("in range"),
+                layer: LayerName::new("underpainting").ok(),
+                ..Dry::whole(CANVAS)
+            })
+            .map(|done| done.to_string())
+            .as_deref(),
         Ok("underpainting")
     );
     let store = painting.store(CANVAS).expect("a canvas");
@@ -407,10 +503,24 @@ fn what_has_dried_stays_and_catches_paint() {
     let report = painting.report();
     assert_eq!(report.quanta_missing, 0);
     assert!(report.accounts_m3["dry"] > 0.0 && report.accounts_m3["canvas"] == 0.0);
-    assert!(painting.apply(Dry { share: Share::new(1.0).expect("in range"), ..Dry::whole(CANVAS) }).is_err(), "nothing is wet");
+    assert!(
+        painting
+            .apply(Dry {
+                share: Share::new(1.0).expect("in range"),
+                ..Dry::whole(CANVAS)
+            })
+            .is_err(),
+        "nothing is wet"
+    );
     // A brush so high that it only touched the first stroke's relief.
     let deposited = |painting: &mut Painting, stroke: u64| {
-        painting.apply(Load { mixture: mixture(MIXTURES[0]), beside: None, brush: BrushName::main() }).expect("known");
+        painting
+            .apply(Load {
+                mixture: mixture(MIXTURES[0]),
+                beside: None,
+                brush: BrushName::main(),
+            })
+            .expect("known");
         let before = painting.store(CANVAS).expect("a canvas").counts()[0];
         paint(painting, "main", 10.0, stroke, &across(4.0, 12.0));
         painting.commit();
@@ -419,8 +529,20 @@ fn what_has_dried_stays_and_catches_paint() {
     let over_dry = deposited(&mut painting, 2);
     assert!(over_dry > 0);
     assert_eq!(painting.report().quanta_missing, 0);
-    assert!(painting.apply(Opacity { layer: LayerRef::Number { number: 9 }, opacity: OpacityFactor::new(0.5).expect("in range") }).is_err());
-    painting.apply(Opacity { layer: LayerRef::Number { number: 1 }, opacity: OpacityFactor::new(0.5).expect("in range") }).expect("the layer");
+    assert!(
+        painting
+            .apply(Opacity {
+                layer: LayerRef::Number { number: 9 },
+                opacity: OpacityFactor::new(0.5).expect("in range")
+            })
+            .is_err()
+    );
+    painting
+        .apply(Opacity {
+            layer: LayerRef::Number { number: 1 },
+            opacity: OpacityFactor::new(0.5).expect("in range"),
+        })
+        .expect("the layer");
     assert_eq!(painting.scene().layers[0].opacity, 0.5);
     painting.undo(None).expect("the opacity");
     assert_eq!(painting.scene().layers[0].opacity, 1.0);
@@ -437,7 +559,13 @@ fn a_wide_brush_loses_no_quantum_of_its_broad_strips() {
         turn: 0.0,
     };
     let mut painting = painting(60.0);
-    painting.apply(Load { mixture: mixture(MIXTURES[0]), beside: None, brush: BrushName::main() }).expect("known");
+    painting
+        .apply(Load {
+            mixture: mixture(MIXTURES[0]),
+            beside: None,
+            brush: BrushName::main(),
+        })
+        .expect("known");
     let places = [place([-0.075_547_72, 0.0]), place([0.0, 0.311_891_85])];
     paint(&mut painting, "main", 60.0, 1, &places);
     let report = painting.report();

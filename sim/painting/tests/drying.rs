@@ -5,18 +5,19 @@ use std::collections::BTreeSet;
 use maulstick_appearance::Bakery;
 use maulstick_appearance::bands::Banded;
 use maulstick_brush::BrushFile;
+use maulstick_canvas::EditError;
 use maulstick_canvas::planes::TILE_CELLS;
 use maulstick_canvas::quantum::{Counts, SLOTS};
 use maulstick_optics::PaintLibrary;
 use maulstick_painting::{Painting, PaintingSetup, Sequencer};
-use maulstick_types::brush::{BrushState, Solve};
-use maulstick_canvas::EditError;
 use maulstick_types::advice::Advice;
-use maulstick_types::edits::{Edit, Dry, Fill, FillPaint, Load, NameLayer, Opacity, Redo, StopDrying, Undo, Wet};
-use maulstick_types::values::{BrushName, FilmThickness, LayerName, OpacityFactor, Share, Ticks};
-use maulstick_types::command::Command;
+use maulstick_types::brush::{BrushState, Solve};
+use maulstick_types::edits::{
+    Dry, Edit, Fill, FillPaint, Load, NameLayer, Opacity, Redo, StopDrying, Undo, Wet,
+};
 use maulstick_types::paint::Entry;
 use maulstick_types::scene::CANVAS;
+use maulstick_types::values::{BrushName, FilmThickness, LayerName, OpacityFactor, Share, Ticks};
 use maulstick_types::{Flags, Header, Pose, Region, name_hash};
 use proptest::prelude::*;
 
@@ -43,19 +44,37 @@ fn sequencer() -> Sequencer {
 }
 
 fn fill(mixture: &str, um: f64) -> Fill {
-    Fill { paint: FillPaint::Mixture { mixture: mixture.parse().expect("a mixture") }, thickness: FilmThickness::new(um * 1e-6).expect("in range"), surface: CANVAS }
+    Fill {
+        paint: FillPaint::Mixture {
+            mixture: mixture.parse().expect("a mixture"),
+        },
+        thickness: FilmThickness::new(um * 1e-6).expect("in range"),
+        surface: CANVAS,
+    }
 }
 
 fn load(mixture: &str) -> Load {
-    Load { mixture: mixture.parse().expect("a mixture"), beside: None, brush: BrushName::main() }
+    Load {
+        mixture: mixture.parse().expect("a mixture"),
+        beside: None,
+        brush: BrushName::main(),
+    }
 }
 
 fn dry_over(ticks: u32) -> Dry {
-    Dry { layer: LayerName::new("slow").ok(), over: Some(Ticks::new(ticks).expect("in range")), ..Dry::whole(CANVAS) }
+    Dry {
+        layer: LayerName::new("slow").ok(),
+        over: Some(Ticks::new(ticks).expect("in range")),
+        ..Dry::whole(CANVAS)
+    }
 }
 
 fn wet(layers: u32, region: Option<Region>) -> Wet {
-    Wet { layers: (layers > 0).then_some(layers), region: region, surface: CANVAS }
+    Wet {
+        layers: (layers > 0).then_some(layers),
+        region,
+        surface: CANVAS,
+    }
 }
 
 /// A part of a stroke from left to right; at the end the brush is lifted if `lifts`.
@@ -252,7 +271,12 @@ fn a_region_dries_where_the_middles_of_its_cells_lie_and_nowhere_else() {
     let [from, to] = region.cells(CELLS, CELL_M).expect("cells");
     assert_eq!([from, to], [[40, 20], [90, 50]]);
     sequencer
-        .edit(Dry { share: Share::new(1.0).expect("in range"), layer: LayerName::new("sky").ok(), region: Some(region), ..Dry::whole(CANVAS) })
+        .edit(Dry {
+            share: Share::new(1.0).expect("in range"),
+            layer: LayerName::new("sky").ok(),
+            region: Some(region),
+            ..Dry::whole(CANVAS)
+        })
         .expect("wet");
     let after = wet_cells(&mut sequencer);
     for (cell, (before, after)) in before.iter().zip(&after).enumerate() {
@@ -264,7 +288,11 @@ fn a_region_dries_where_the_middles_of_its_cells_lie_and_nowhere_else() {
     let refused = |sequencer: &mut Sequencer, region: &str, word: &str| {
         let region: Region = region.parse().expect("a region");
         let commands = [
-            Edit::from(Dry { share: Share::new(0.5).expect("in range"), region: Some(region.clone()), ..Dry::whole(CANVAS) }),
+            Edit::from(Dry {
+                share: Share::new(0.5).expect("in range"),
+                region: Some(region.clone()),
+                ..Dry::whole(CANVAS)
+            }),
             wet(1, Some(region)).into(),
         ];
         let depth = sequencer.painting().history_depth();
@@ -366,18 +394,37 @@ fn undo_takes_back_what_dried_since_the_last_step_and_ends_the_drying() {
     stroke(&mut sequencer, 2, 3, 11.0, true);
     ticks(&mut sequencer, 200);
     let late = counts(&mut sequencer);
-    assert_eq!(sequencer.edit(undo.clone()).map(|done| done.to_string()).as_deref(), Ok("drying"));
+    assert_eq!(
+        sequencer
+            .edit(undo.clone())
+            .map(|done| done.to_string())
+            .as_deref(),
+        Ok("drying")
+    );
     assert!(!sequencer.painting().is_drying());
     ticks(&mut sequencer, 200);
-    assert_eq!(sequencer.edit(undo.clone()).map(|done| done.to_string()).as_deref(), Ok("stroke"));
-    assert_eq!(sequencer.edit(undo.clone()).map(|done| done.to_string()).as_deref(), Ok("load main"));
-    assert_eq!(sequencer.edit(undo).map(|done| done.to_string()).as_deref(), Ok("drying"));
+    assert_eq!(
+        sequencer
+            .edit(undo.clone())
+            .map(|done| done.to_string())
+            .as_deref(),
+        Ok("stroke")
+    );
+    assert_eq!(
+        sequencer
+            .edit(undo.clone())
+            .map(|done| done.to_string())
+            .as_deref(),
+        Ok("load main")
+    );
+    assert_eq!(
+        sequencer.edit(undo).map(|done| done.to_string()).as_deref(),
+        Ok("drying")
+    );
     assert_eq!(wet_cells(&mut sequencer), before);
     assert!(sequencer.painting().scene().layers.is_empty());
     for _ in 0..4 {
-        sequencer
-            .edit(Redo { brush: None })
-            .expect("undone");
+        sequencer.edit(Redo { brush: None }).expect("undone");
     }
     assert_eq!(counts(&mut sequencer), late);
     assert_eq!(sequencer.painting().scene().layers.len(), 1);
@@ -407,39 +454,57 @@ fn a_drying_ends_when_it_is_told_to_and_there_is_one_at_a_time() {
 fn the_newest_layer_becomes_wet_in_a_region_and_an_opacity_is_not_lost() {
     let mut sequencer = painted();
     let all = both(counts(&mut sequencer));
-    let dry = |name: &str| Dry { share: Share::new(1.0).expect("in range"), layer: LayerName::new(name).ok(), ..Dry::whole(CANVAS) };
+    let dry = |name: &str| Dry {
+        share: Share::new(1.0).expect("in range"),
+        layer: LayerName::new(name).ok(),
+        ..Dry::whole(CANVAS)
+    };
     sequencer.edit(dry("low")).expect("wet");
     sequencer.edit(load("Pyrrole Red")).expect("loaded");
     stroke(&mut sequencer, 2, 3, 11.0, true);
     sequencer.edit(dry("high")).expect("wet");
-    let opacity = |layer: &str, opacity: f32| Opacity { layer: layer.parse().expect("valid"), opacity: OpacityFactor::new(opacity).expect("in range") };
+    let opacity = |layer: &str, opacity: f32| Opacity {
+        layer: layer.parse().expect("valid"),
+        opacity: OpacityFactor::new(opacity).expect("in range"),
+    };
     sequencer.edit(opacity("high", 0.5)).expect("a layer");
     let veiled = sequencer
         .edit(wet(1, None))
         .expect_err("no wet paint is veiled");
-    assert!(veiled.to_string().contains("high") && veiled.advice() == Advice::FullOpacity { layer: 2 });
+    assert!(
+        veiled.to_string().contains("high") && veiled.advice() == Advice::FullOpacity { layer: 2 }
+    );
     sequencer
         .edit(opacity("2", 1.0))
         .expect("a layer by its number");
     let unknown = sequencer.edit(opacity("sky", 1.0)).expect_err("no layer");
-    assert!(unknown.to_string().contains("'sky'") && unknown.advice().to_string().contains("2 (high)"));
+    assert!(
+        unknown.to_string().contains("'sky'") && unknown.advice().to_string().contains("2 (high)")
+    );
 
     let names = |sequencer: &Sequencer| -> Vec<String> {
         let layers = &sequencer.painting().scene().layers;
         layers.iter().map(|layer| layer.name.clone()).collect()
     };
-    let name = |layer: u32| NameLayer { layer: layer, name: LayerName::new(" sky ").expect("valid") };
+    let name = |layer: u32| NameLayer {
+        layer,
+        name: LayerName::new(" sky ").expect("valid"),
+    };
     sequencer.edit(name(1)).expect("a layer");
     assert_eq!(names(&sequencer), ["sky", "high"]);
-    sequencer
-        .edit(Undo { brush: None })
-        .expect("a step");
+    sequencer.edit(Undo { brush: None }).expect("a step");
     assert_eq!(names(&sequencer), ["low", "high"]);
     let unknown = sequencer.edit(name(3)).expect_err("no layer");
     assert!(unknown.to_string().contains('3') && unknown.advice().to_string().contains("2 (high)"));
 
     let region: Region = "6,6,10x10".parse().expect("a region");
-    assert_eq!(sequencer.edit(wet(1, Some(region))).map(|done| done.to_string()).as_deref(), Ok("high"));
+    assert_eq!(
+        sequencer
+            .edit(wet(1, Some(region)))
+            .map(|done| done.to_string())
+            .as_deref(),
+        Ok("high")
+    );
     let layers = |sequencer: &Sequencer| -> BTreeSet<u32> {
         let layers = &sequencer.painting().scene().layers;
         layers.iter().map(|layer| layer.number).collect()

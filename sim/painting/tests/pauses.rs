@@ -9,10 +9,10 @@ use maulstick_optics::PaintLibrary;
 use maulstick_painting::{Painting, PaintingSetup, Sequencer};
 use maulstick_types::brush::BrushState;
 use maulstick_types::edits::{Load, Undo};
-use maulstick_types::values::{BrushName};
 use maulstick_types::paint::TILE;
 use maulstick_types::scene::CANVAS;
 use maulstick_types::stylus::{DEFAULT_TILT_RAD, StylusPose, StylusSample};
+use maulstick_types::values::BrushName;
 use maulstick_types::{Flags, Header, Message as _, Origin};
 
 const CELL_MM: f64 = 0.25;
@@ -70,7 +70,11 @@ fn stroke(kind: &str, pause: Range<u64>, hand: Hand, after: After) -> Stroke {
     let mut model = BrushModel::new(file.clone(), 0.5);
     model.set_scene(sequencer.painting_mut().scene());
     sequencer.define_brush("main", file);
-    let load = Load { mixture: "Bone Black".parse().expect("a mixture"), beside: None, brush: BrushName::main() };
+    let load = Load {
+        mixture: "Bone Black".parse().expect("a mixture"),
+        beside: None,
+        brush: BrushName::main(),
+    };
     sequencer.edit(load).expect("loaded");
     let rested = match hand {
         Hand::Moves => 0,
@@ -126,7 +130,9 @@ fn stroke(kind: &str, pause: Range<u64>, hand: Hand, after: After) -> Stroke {
     numbers.dedup();
     let film = film(sequencer.painting_mut(), cells);
     let undo = || Undo { brush: None };
-    let undone = (0..8).take_while(|_| sequencer.edit(undo()).is_ok()).count();
+    let undone = (0..8)
+        .take_while(|_| sequencer.edit(undo()).is_ok())
+        .count();
     Stroke {
         cells: film,
         numbers,

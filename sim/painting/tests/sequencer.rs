@@ -4,10 +4,10 @@ use maulstick_brush::BrushFile;
 use maulstick_optics::PaintLibrary;
 use maulstick_painting::{Effect, Painting, PaintingSetup, Sequencer};
 use maulstick_types::brush::{BrushState, Solve};
-use maulstick_types::edits::{Clean};
-use maulstick_types::values::{BrushName, WholePath};
-use maulstick_types::command::{TakeCommand};
+use maulstick_types::command::TakeCommand;
 use maulstick_types::command::{After, Command, CommandRequest, Outcome};
+use maulstick_types::edits::Clean;
+use maulstick_types::values::{BrushName, WholePath};
 use maulstick_types::{Flags, Header, Pose};
 
 const BRUSH: u32 = 3;
@@ -70,7 +70,10 @@ fn request(client: u64, number: u64, command: Command) -> CommandRequest {
 #[test]
 fn a_command_that_waits_for_a_refused_state_is_done_with_its_effect() {
     let mut sequencer = sequencer();
-    let command = Command::from(TakeCommand::Snapshot { path: WholePath::new("p.png").expect("valid"), ledger: None });
+    let command = Command::from(TakeCommand::Snapshot {
+        path: WholePath::new("p.png").expect("valid"),
+        ledger: None,
+    });
     let snapshot = CommandRequest {
         after: Some(After {
             brush: BRUSH,
@@ -133,7 +136,10 @@ fn a_repeated_command_is_done_once_among_many_clients() {
     let clean = request(
         1,
         1,
-        Clean { brush: BrushName::main() }.into(),
+        Clean {
+            brush: BrushName::main(),
+        }
+        .into(),
     );
     let done = sequencer.command(clean.clone()).outcome;
     assert!(matches!(done, Outcome::Done { .. }), "{done:?}");

@@ -8,8 +8,8 @@ use maulstick_optics::PaintLibrary;
 use maulstick_optics::colour::delta_e_2000;
 use maulstick_painting::{Painting, PaintingSetup};
 use maulstick_session::Offline;
+use maulstick_types::edits::Handle;
 use maulstick_types::scene::{BrushHandling, BrushMode};
-use maulstick_types::edits::{Handle};
 use maulstick_types::stylus::{DEFAULT_TILT_RAD, StylusPose, StylusSample};
 
 const SECONDS: f64 = 2.0;

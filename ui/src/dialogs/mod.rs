@@ -347,14 +347,11 @@ fn done(command: &Command) -> Option<String> {
             Some(path) => format!("A new painting, kept in {}.", file(path)),
             None => "A new painting, in no file.".to_owned(),
         },
-        Command::Rig(RigCommand::SaveAs(save_as))
-        | Command::File(FileCommand::SaveAs(save_as)) => {
+        Command::Rig(RigCommand::SaveAs(save_as)) | Command::File(FileCommand::SaveAs(save_as)) => {
             format!("The painting is in {} now.", file(&save_as.path))
         }
         Command::File(FileCommand::Export(order)) => format!("Written: {}.", file(&order.path)),
-        Command::File(FileCommand::StopExport) => {
-            "The export has ended without a file.".to_owned()
-        }
+        Command::File(FileCommand::StopExport) => "The export has ended without a file.".to_owned(),
         Command::Edit(_) | Command::Take(_) | Command::Brush(_) => return None,
     })
 }

@@ -5,8 +5,8 @@ use std::path::Path;
 use eframe::egui::{ComboBox, Context, Grid, Key, TextEdit, Ui};
 use maulstick_canvas::relief::tooth::Tooth;
 use maulstick_types::command::{Command, NewCanvas, RigCommand};
-use maulstick_types::values::{MaterialName, ValueError, WholePath};
 use maulstick_types::scene::default_stain_m;
+use maulstick_types::values::{MaterialName, ValueError, WholePath};
 
 use crate::dialogs::dialog::{self, Answer, Foot, in_words, line, number};
 use crate::dialogs::discard_prompt::Unkept;

@@ -1,13 +1,13 @@
-use maulstick_types::command::PAINT_NODE as PAINT;
 use eframe::egui::{Key, Modifiers};
 use egui_kittest::kittest::Queryable as _;
 use maulstick_brush::BrushFile;
 use maulstick_rig::Fault;
+use maulstick_types::command::PAINT_NODE as PAINT;
 use maulstick_types::command::{ExportOrder, NewCanvas};
-use maulstick_types::edits::{Undo};
-use maulstick_types::values::{WholePath};
 use maulstick_types::command::{FileCommand, RigCommand, SaveAs};
+use maulstick_types::edits::Undo;
 use maulstick_types::paint::ExportStatus;
+use maulstick_types::values::WholePath;
 
 use super::*;
 use crate::test_support::overlay_bench::{ctrl, let_go, press, until, window, write};
@@ -34,15 +34,19 @@ fn a_new_painting_is_begun_by_keys_alone() {
     harness.get_by_label("Height").type_text("10");
     press(&mut harness, Key::Enter);
     let asked = harness.state_mut().asked();
-    let command = Command::from(RigCommand::New { path: Some(WholePath::new(text(&folder.path().join("Painting.maul"))).expect("valid")), canvas: NewCanvas {
+    let command = Command::from(RigCommand::New {
+        path: Some(WholePath::new(text(&folder.path().join("Painting.maul"))).expect("valid")),
+        canvas: NewCanvas {
             width_m: 0.125,
             height_m: 0.1,
             cell_m: 2.5e-4,
-            ground: "gesso".into(),
-            tooth: "linen".into(),
+            ground: "gesso".parse().expect("a name"),
+            tooth: "linen".parse().expect("a name"),
             tooth_seed: 1,
             stain_m: 3e-6,
-        }, forget: false });
+        },
+        forget: false,
+    });
     assert_eq!(asked, [(RIG.to_owned(), command)]);
     // It is asked for once, however often Enter is pressed.
     press(&mut harness, Key::Enter);
@@ -95,7 +99,13 @@ fn a_painting_is_found_by_typing_and_opened() {
     press(&mut harness, Key::Enter);
     let open = |path: PathBuf, forget: bool| {
         let path = text(&path);
-        (RIG.to_owned(), Command::from(RigCommand::Open { path: WholePath::new(path).expect("valid"), forget: forget }))
+        (
+            RIG.to_owned(),
+            Command::from(RigCommand::Open {
+                path: WholePath::new(path).expect("valid"),
+                forget,
+            }),
+        )
     };
     let sea = open(folder.path().join("sea.maul"), false);
     assert_eq!(harness.state_mut().asked(), [sea]);
@@ -159,7 +169,13 @@ fn saving_is_confirmed_and_what_is_in_no_file_gets_one() {
     let path = folder.path().join("Painting.maul");
     let save = |replace: bool| {
         let path = text(&path);
-        (RIG.to_owned(), Command::from(RigCommand::SaveAs(SaveAs { path: WholePath::new(path).expect("valid"), replace: replace })))
+        (
+            RIG.to_owned(),
+            Command::from(RigCommand::SaveAs(SaveAs {
+                path: WholePath::new(path).expect("valid"),
+                replace,
+            })),
+        )
     };
     assert_eq!(harness.state_mut().asked(), [save(false)]);
     harness
@@ -197,7 +213,7 @@ fn an_export_goes_on_by_itself_and_can_be_stopped() {
     let path = text(&folder.path().join("Painting.png"));
     let order = ExportOrder {
         format: "png".into(),
-        ..ExportOrder::to(&path)
+        ..ExportOrder::to(path.parse().expect("whole"))
     };
     let asked = (PAINT.to_owned(), Command::from(FileCommand::Export(order)));
     assert_eq!(harness.state_mut().asked(), std::slice::from_ref(&asked));
@@ -232,7 +248,10 @@ fn a_file_that_is_dropped_becomes_what_it_is() {
     until(&mut harness, |harness| {
         harness.state().told().contains("Opening sea.maul")
     });
-    let open = Command::from(RigCommand::Open { path: WholePath::new(text(&painting)).expect("valid"), forget: false });
+    let open = Command::from(RigCommand::Open {
+        path: WholePath::new(text(&painting)).expect("valid"),
+        forget: false,
+    });
     assert_eq!(harness.state_mut().asked(), [(RIG.to_owned(), open)]);
     let toml = BrushFile::library_text("flat").expect("a brush");
     let_go(&mut harness, &[&put("mine.toml", toml)]);

@@ -6,7 +6,6 @@ use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable as _;
 use maulstick_types::Mixture;
 use maulstick_types::edits::{Edit, Load, Wells};
-use maulstick_types::values::{BrushName};
 use maulstick_types::scene::{Well, WellKind};
 
 use super::*;

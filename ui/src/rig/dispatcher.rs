@@ -285,13 +285,14 @@ impl Worker {
                 let commander = self.commander.get_or_insert_with(|| {
                     Commander::of(Arc::clone(bus), topics, node).asking(ASK)
                 });
-                commander.send(
-                    command.clone(),
-                    ready.after.clone(),
-                    patience(command),
-                    &ended,
-                )
-                .map_err(|fault| fault.worded(advice::words))
+                commander
+                    .send(
+                        command.clone(),
+                        ready.after.clone(),
+                        patience(command),
+                        &ended,
+                    )
+                    .map_err(|fault| fault.worded(advice::words))
             }
             Request::Force { device, order } => {
                 let me = Origin {
@@ -342,9 +343,9 @@ impl std::fmt::Debug for CommandDispatcher {
 #[cfg(test)]
 mod tests {
     use maulstick_types::Pose;
-    use maulstick_types::scene::{Light, Tuning};
+    use maulstick_types::command::TakeCommand;
     use maulstick_types::edits::{Place, Tune, Undo};
-    use maulstick_types::command::{TakeCommand};
+    use maulstick_types::scene::{Light, Tuning};
 
     use super::*;
 
@@ -360,14 +361,21 @@ mod tests {
     }
 
     fn place(surface: u32, zoom: f64) -> Request {
-        request(Command::from(Place::new(surface, Pose::IDENTITY, zoom).expect("in reach")))
+        request(Command::from(
+            Place::new(surface, Pose::IDENTITY, zoom).expect("in reach"),
+        ))
     }
 
     #[test]
     fn nothing_waits_for_the_end_of_an_export() {
-        let export = Command::from(FileCommand::Export(maulstick_types::command::ExportOrder::to("/a.png")));
+        let export = Command::from(FileCommand::Export(
+            maulstick_types::command::ExportOrder::to("/a.png".parse().expect("whole")),
+        ));
         assert!(patience(&export) > patience(&Command::from(TakeCommand::Mark)));
-        let (undo, stop) = (Command::from(Undo { brush: None }), Command::from(FileCommand::StopExport));
+        let (undo, stop) = (
+            Command::from(Undo { brush: None }),
+            Command::from(FileCommand::StopExport),
+        );
         assert_eq!(address(&request(undo)), address(&request(stop.clone())));
         assert_ne!(address(&request(export)), address(&request(stop)));
     }
@@ -377,11 +385,14 @@ mod tests {
         let tune = |brush: &str, stiffness: f64| {
             let brush = brush.to_owned();
             let wetness = 0.0;
-            request(Command::from(Tune::try_from(&Tuning {
+            request(Command::from(
+                Tune::try_from(&Tuning {
                     brush,
                     stiffness,
                     wetness,
-                }).expect("in range")))
+                })
+                .expect("in range"),
+            ))
         };
         let mut waiting = VecDeque::new();
         for request in [
@@ -427,7 +438,7 @@ mod tests {
                 intensity,
                 ..Light::default()
             };
-            request(Command::from(Relight { light: light, expose: expose }))
+            request(Command::from(Relight { light, expose }))
         };
         let mut waiting = VecDeque::new();
         for request in [

@@ -229,8 +229,9 @@ impl std::fmt::Debug for StrokeBarrier {
 mod tests {
     use maulstick_bus::typed::Sender;
     use maulstick_bus::{Faults, MemoryNet};
-    use maulstick_types::{Origin, Pose};
+    use maulstick_types::edits::Edit;
     use maulstick_types::edits::{Place, Undo};
+    use maulstick_types::{Origin, Pose};
 
     use super::*;
 
@@ -335,7 +336,7 @@ mod tests {
         }
     }
 
-    const UNDO: Command = Command::from(Undo { brush: None });
+    const UNDO: Command = Command::Edit(Edit::Undo(Undo { brush: None }));
 
     fn place() -> Command {
         Command::from(Place::new(0, Pose::IDENTITY, 1.0).expect("in reach"))

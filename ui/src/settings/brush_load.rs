@@ -4,8 +4,8 @@ use maulstick_optics::{PaintLibrary, THINNER};
 use maulstick_rig::Fault;
 use maulstick_types::Mixture;
 use maulstick_types::edits::Load;
-use maulstick_types::values::BrushName;
 use maulstick_types::mixture::Part;
+use maulstick_types::values::BrushName;
 use serde::{Deserialize, Serialize};
 
 /// Largest share of thinner in a load; pure thinner is a paint by itself.
@@ -150,14 +150,22 @@ mod tests {
         let pure = edit(loading("cobalt blue", None, 0.0)).expect("a paint");
         assert_eq!(
             pure,
-            Load { mixture: Mixture::pure("Cobalt Blue"), beside: None, brush: BrushName::main() }
+            Load {
+                mixture: Mixture::pure("Cobalt Blue"),
+                beside: None,
+                brush: BrushName::main()
+            }
         );
         let two = edit(loading(
             "Cobalt Blue=0.5,Thinner=0.5",
             Some("Bone Black"),
             0.5,
         ));
-        let Load { mixture: left, beside, .. } = two.expect("two");
+        let Load {
+            mixture: left,
+            beside,
+            ..
+        } = two.expect("two");
         let right = beside.expect("two halves");
         assert_eq!(left.to_string(), "Cobalt Blue=0.25,Thinner=0.75");
         assert_eq!(right.to_string(), "Bone Black=0.5,Thinner=0.5");

@@ -319,7 +319,10 @@ mod tests {
         let asked = harness.state_mut().requests.take();
         let back = Asked::Command {
             node: "paint".into(),
-            command: Command::from(Relight { light: scene.light, expose: false }),
+            command: Command::from(Relight {
+                light: scene.light,
+                expose: false,
+            }),
         };
         assert_eq!(asked, [back]);
         harness.state_mut().baked(40.0, 100);

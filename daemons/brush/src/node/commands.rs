@@ -84,7 +84,8 @@ impl BrushNode {
         }
         let command = match &asked.command {
             Command::Brush(command) => command,
-            command @ (Command::Edit(_) | Command::Take(_) | Command::File(_) | Command::Rig(_)) => {
+            command
+            @ (Command::Edit(_) | Command::Take(_) | Command::File(_) | Command::Rig(_)) => {
                 return Ok(command.misaddressed());
             }
         };

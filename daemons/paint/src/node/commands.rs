@@ -66,7 +66,9 @@ impl PaintNode {
     fn beside(&mut self, asked: &CommandRequest, now_ns: u64) -> Option<Outcome> {
         let command = match &asked.command {
             Command::File(command) => command,
-            Command::Edit(_) | Command::Take(_) | Command::Brush(_) | Command::Rig(_) => return None,
+            Command::Edit(_) | Command::Take(_) | Command::Brush(_) | Command::Rig(_) => {
+                return None;
+            }
         };
         if let Some(outcome) = self.replies.find(asked) {
             return Some(outcome);

@@ -10,9 +10,9 @@ use maulstick_optics::{PaintLibrary, Under};
 use maulstick_painting::PaintingSetup;
 use maulstick_types::command::{Command, CommandReply, CommandRequest, Outcome};
 use maulstick_types::edits::{Dry, Fill, FillPaint, Load};
-use maulstick_types::values::{BrushName, FilmThickness, Ticks};
 use maulstick_types::scene::CANVAS;
 use maulstick_types::stylus::{DEFAULT_TILT_RAD, StylusPose, StylusSample};
+use maulstick_types::values::{BrushName, FilmThickness, Ticks};
 use maulstick_types::{Flags, Header, Mixture, decode};
 
 use super::*;
@@ -44,7 +44,11 @@ fn node(net: &MemoryNet) -> (PaintNode, BrushModel) {
 }
 
 fn load(node: &mut PaintNode, number: u64, paint: &str) {
-    let command = Command::from(Load { mixture: Mixture::pure(paint), beside: None, brush: BrushName::main() });
+    let command = Command::from(Load {
+        mixture: Mixture::pure(paint),
+        beside: None,
+        brush: BrushName::main(),
+    });
     let request = CommandRequest {
         client: 1,
         number,
@@ -153,8 +157,19 @@ fn paint_dries_by_the_clock_of_the_node_and_each_tick_is_in_the_journal() {
         let outcome = node.sequencer.command(request).outcome;
         assert!(matches!(outcome, Outcome::Done { .. }), "{outcome:?}");
     };
-    let fill = Command::from(Fill { paint: FillPaint::Mixture { mixture: Mixture::pure("Bone Black") }, thickness: FilmThickness::new(3e-5).expect("in range"), surface: CANVAS });
-    let over = |ticks: u32| Command::from(Dry { over: Some(Ticks::new(ticks).expect("in range")), ..Dry::whole(CANVAS) });
+    let fill = Command::from(Fill {
+        paint: FillPaint::Mixture {
+            mixture: Mixture::pure("Bone Black"),
+        },
+        thickness: FilmThickness::new(3e-5).expect("in range"),
+        surface: CANVAS,
+    });
+    let over = |ticks: u32| {
+        Command::from(Dry {
+            over: Some(Ticks::new(ticks).expect("in range")),
+            ..Dry::whole(CANVAS)
+        })
+    };
     ask(&mut node, 1, fill.clone());
     net.advance(5_000_000_000);
     node.turn().expect("a turn");

@@ -41,9 +41,9 @@ impl Supervisor {
                     beside: None,
                     brush,
                 });
-                let loaded = load.map_err(Fault::from).and_then(|load| {
-                    commander.send(load, None, LOAD_TIME, &|| stop.requested())
-                });
+                let loaded = load
+                    .map_err(Fault::from)
+                    .and_then(|load| commander.send(load, None, LOAD_TIME, &|| stop.requested()));
                 if let Err(fault) = loaded {
                     tracing::warn!("{}", fault.what);
                 }

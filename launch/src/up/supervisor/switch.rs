@@ -353,7 +353,10 @@ impl Supervisor {
                             true => "it is open again with all that its file has",
                             false => "it was in memory alone, and another is begun",
                         };
-                        Stage::Returning(Outcome::refused("the painting could not be closed as it should be", format!("{help}; the messages of the rig say what was wrong")))
+                        Stage::Returning(Outcome::refused(
+                            "the painting could not be closed as it should be",
+                            format!("{help}; the messages of the rig say what was wrong"),
+                        ))
                     }
                 };
                 self.switch = Some(Switch { asker, stage });
@@ -412,7 +415,10 @@ impl Supervisor {
                        start it again with the painting before"
             }
         };
-        Ok(Stage::Returning(Outcome::refused(format!("{} could not be opened", plan.name()), help)))
+        Ok(Stage::Returning(Outcome::refused(
+            format!("{} could not be opened", plan.name()),
+            help,
+        )))
     }
 
     /// Starts the paint node; what was in memory alone is gone, and its brushes are loaded anew.
@@ -441,12 +447,18 @@ impl Supervisor {
 }
 
 fn ended_as_it_saved(to: &Path) -> Outcome {
-    Outcome::refused(format!(
+    Outcome::refused(
+        format!(
             "the paint node ended before it said that the painting is in {}",
             to.display()
-        ), "look whether that file has it, and open it there; the messages of the rig say what was wrong")
+        ),
+        "look whether that file has it, and open it there; the messages of the rig say what was wrong",
+    )
 }
 
 fn fallen() -> Outcome {
-    Outcome::refused("internal error: the file worker panicked", "see the messages of the rig, and report the fault")
+    Outcome::refused(
+        "internal error: the file worker panicked",
+        "see the messages of the rig, and report the fault",
+    )
 }

@@ -55,6 +55,8 @@ impl StepForm {
 pub struct CommandForm {
     /// Name of the command.
     pub name: &'static str,
+    /// Heading under which the list of commands has it.
+    pub group: &'static str,
     /// Adds its options.
     pub augment: fn(clap::Command) -> clap::Command,
     /// Reads them.
@@ -65,9 +67,10 @@ pub struct CommandForm {
 impl CommandForm {
     /// A command whose options are those of `T`.
     #[must_use]
-    pub const fn of<T: clap::Args + Into<Edit>>(name: &'static str) -> Self {
+    pub const fn of<T: clap::Args + Into<Edit>>(name: &'static str, group: &'static str) -> Self {
         Self {
             name,
+            group,
             augment: T::augment_args,
             read: |matches| T::from_arg_matches(matches).map(Into::into),
         }

@@ -21,7 +21,8 @@ pub use form::{Form, StepForm};
 pub use history::{Branch, Forget, Keep, Redo, ReturnTo, Undo};
 pub use layer::{Dry, LayerRef, NameLayer, Opacity, StopDrying, Wet};
 pub use surface::{
-    Exposure, Fill, FillPaint, Ground, GroundSource, LightChange, Piles, Place, Relight, Size, Tooth, Wells,
+    Exposure, Fill, FillPaint, Ground, GroundSource, LightChange, Piles, Place, Relight, Size,
+    Tooth, Wells,
 };
 
 /// Hands the list of all edits to a macro.

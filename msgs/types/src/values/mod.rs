@@ -85,7 +85,9 @@ pub enum ValueError {
         choice: String,
     },
     /// A surface out of reach, or a pose that is none.
-    #[error("a surface's pose is finite, its quaternion a unit one, within {FARTHEST_M} m of the desk's origin")]
+    #[error(
+        "a surface's pose is finite, its quaternion a unit one, within {FARTHEST_M} m of the desk's origin"
+    )]
     Pose,
     /// A palette of too many wells.
     #[error("a palette of {0} wells: it has at most 64")]

@@ -30,7 +30,10 @@ impl Visitor<'_> for Word {
     fn visit_i64<E: Error>(self, number: i64) -> Result<String, E> {
         match number >= 0 {
             true => Ok(number.to_string()),
-            false => Err(E::invalid_value(serde::de::Unexpected::Signed(number), &self)),
+            false => Err(E::invalid_value(
+                serde::de::Unexpected::Signed(number),
+                &self,
+            )),
         }
     }
 }
@@ -210,8 +213,13 @@ mod tests {
     #[test]
     fn what_is_too_long_is_rejected_in_few_words() {
         let long = "x".repeat(70_000);
-        let error = BrushName::new(long.clone()).expect_err("too long").to_string();
-        assert!(error.contains("70000 bytes") && error.len() < 200, "{error}");
+        let error = BrushName::new(long.clone())
+            .expect_err("too long")
+            .to_string();
+        assert!(
+            error.contains("70000 bytes") && error.len() < 200,
+            "{error}"
+        );
         assert!(LayerName::new(long.clone()).is_err());
         assert!(WholePath::new(format!("/{long}")).is_err());
         assert!(BrushName::new("a/b").is_err());
@@ -221,7 +229,10 @@ mod tests {
     fn names_can_be_read_and_paths_are_whole() {
         assert!(LayerName::new("Sky").is_ok());
         for name in ["", "  ", "a\nb"] {
-            assert!(LayerName::new(name).is_err() && VersionName::new(name).is_err(), "{name:?}");
+            assert!(
+                LayerName::new(name).is_err() && VersionName::new(name).is_err(),
+                "{name:?}"
+            );
         }
         assert!(WholePath::new("/tmp/a.maul").is_ok());
         for path in ["", "a.maul", "/a\0b"] {

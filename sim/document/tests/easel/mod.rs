@@ -2,8 +2,8 @@
 
 #![allow(dead_code, unreachable_pub, reason = "each test uses a part")]
 
+use maulstick_types::edits::Undo;
 use std::sync::Arc;
-use maulstick_types::edits::{Undo};
 
 use maulstick_document::{Document, DocumentSettings, Moment};
 use maulstick_painting::Sequencer;

@@ -8,10 +8,15 @@ use maulstick_optics::PaintLibrary;
 use maulstick_painting::history::{TilePlace, TileRef};
 use maulstick_painting::{Painting, PaintingSetup, Sequencer};
 use maulstick_types::brush::{BrushState, Solve};
-use maulstick_types::edits::{Branch, Clean, Dry, Fill, FillPaint, Forget, Ground, Keep, LayerRef, Load, NameLayer, Opacity, Redo, ReturnTo, StopDrying, Tooth, Undo, Wet};
-use maulstick_types::values::{BrushName, FilmThickness, LayerName, MaterialName, OpacityFactor, Share, Ticks, VersionName};
 use maulstick_types::command::{Command, CommandRequest, Outcome};
+use maulstick_types::edits::{
+    Branch, Clean, Dry, Fill, FillPaint, Forget, Ground, Keep, LayerRef, Load, NameLayer, Opacity,
+    Redo, ReturnTo, StopDrying, Tooth, Undo, Wet,
+};
 use maulstick_types::scene::{CANVAS, PALETTE};
+use maulstick_types::values::{
+    BrushName, FilmThickness, LayerName, MaterialName, OpacityFactor, Share, Ticks, VersionName,
+};
 use maulstick_types::{Flags, Header, Mixture, Pose, Region, name_hash};
 use proptest::prelude::ProptestConfig;
 use rand_pcg::Pcg64Mcg;
@@ -186,30 +191,99 @@ impl Painter {
                 let way = self.way(self.strokes[b]);
                 return Act::Paint(b, new, way);
             }
-            15..18 => Command::from(Load { mixture: mixture, beside: None, brush: BrushName::new(brush).expect("valid") }),
-            18 => Command::from(Clean { brush: BrushName::new(brush).expect("valid") }),
-            19..21 => Command::from(Dry { share: Share::new([1.0, 0.4][self.dice.below(2) as usize]).expect("in range"), ..Dry::whole(CANVAS) }),
-            21 => Command::from(Opacity { layer: LayerRef::Number { number: 1 + self.dice.below(3) as u32 }, opacity: OpacityFactor::new(0.5).expect("in range") }),
-            22 => Command::from(Fill { paint: FillPaint::Mixture { mixture: mixture }, thickness: FilmThickness::new(2e-5).expect("in range"), surface: CANVAS }),
-            23 => Command::from(Ground::named(CANVAS, &["gesso", "grey", "black"][self.dice.below(3) as usize]).expect("valid")),
-            24 => Command::from(Tooth { tooth: MaterialName::new(["linen", "paper"][self.dice.below(2) as usize]).expect("valid"), seed: self.dice.below(3), surface: CANVAS }),
-            25..27 => Command::from(Keep { name: VersionName::new(named(&mut self.dice)).expect("valid") }),
-            27 => Command::from(ReturnTo { name: VersionName::new(named(&mut self.dice)).expect("valid") }),
-            28 => Command::from(Branch { from: VersionName::new(named(&mut self.dice)).expect("valid"), name: VersionName::new(named(&mut self.dice)).expect("valid") }),
-            29 => Command::from(Forget { name: VersionName::new(named(&mut self.dice)).expect("valid") }),
-            30..35 => Command::from(Undo { brush: maybe(&mut self.dice, &brush).map(|it| BrushName::new(it).expect("valid")) }),
-            35..39 => Command::from(Redo { brush: maybe(&mut self.dice, &brush).map(|it| BrushName::new(it).expect("valid")) }),
+            15..18 => Command::from(Load {
+                mixture,
+                beside: None,
+                brush: BrushName::new(brush).expect("valid"),
+            }),
+            18 => Command::from(Clean {
+                brush: BrushName::new(brush).expect("valid"),
+            }),
+            19..21 => Command::from(Dry {
+                share: Share::new([1.0, 0.4][self.dice.below(2) as usize]).expect("in range"),
+                ..Dry::whole(CANVAS)
+            }),
+            21 => Command::from(Opacity {
+                layer: LayerRef::Number {
+                    number: 1 + self.dice.below(3) as u32,
+                },
+                opacity: OpacityFactor::new(0.5).expect("in range"),
+            }),
+            22 => Command::from(Fill {
+                paint: FillPaint::Mixture { mixture },
+                thickness: FilmThickness::new(2e-5).expect("in range"),
+                surface: CANVAS,
+            }),
+            23 => Command::from(
+                Ground::named(
+                    CANVAS,
+                    &["gesso", "grey", "black"][self.dice.below(3) as usize],
+                )
+                .expect("valid"),
+            ),
+            24 => Command::from(Tooth {
+                tooth: MaterialName::new(["linen", "paper"][self.dice.below(2) as usize])
+                    .expect("valid"),
+                seed: self.dice.below(3),
+                surface: CANVAS,
+            }),
+            25..27 => Command::from(Keep {
+                name: VersionName::new(named(&mut self.dice)).expect("valid"),
+            }),
+            27 => Command::from(ReturnTo {
+                name: VersionName::new(named(&mut self.dice)).expect("valid"),
+            }),
+            28 => Command::from(Branch {
+                from: VersionName::new(named(&mut self.dice)).expect("valid"),
+                name: VersionName::new(named(&mut self.dice)).expect("valid"),
+            }),
+            29 => Command::from(Forget {
+                name: VersionName::new(named(&mut self.dice)).expect("valid"),
+            }),
+            30..35 => Command::from(Undo {
+                brush: maybe(&mut self.dice, &brush).map(|it| BrushName::new(it).expect("valid")),
+            }),
+            35..39 => Command::from(Redo {
+                brush: maybe(&mut self.dice, &brush).map(|it| BrushName::new(it).expect("valid")),
+            }),
             39 => return Act::Redefine(b, [31, 48][self.dice.below(2) as usize]),
             40..46 => return Act::Ticks([7, 45, 150, 400][self.dice.below(4) as usize]),
-            46..49 => Command::from(Dry { region: self.region(), over: Some(Ticks::new([20, 200, 2000][self.dice.below(3) as usize]).expect("in range")), ..Dry::whole(CANVAS) }),
+            46..49 => Command::from(Dry {
+                region: self.region(),
+                over: Some(
+                    Ticks::new([20, 200, 2000][self.dice.below(3) as usize]).expect("in range"),
+                ),
+                ..Dry::whole(CANVAS)
+            }),
             49 => Command::from(StopDrying { surface: CANVAS }),
-            50..52 => Command::from(Dry { share: Share::new([1.0, 0.4][self.dice.below(2) as usize]).expect("in range"), layer: LayerName::new("part").ok(), region: Some(part(&mut self.dice)), ..Dry::whole(CANVAS) }),
-            52..54 => Command::from(Wet { layers: (self.dice.below(3) as u32 > 0).then_some(self.dice.below(3) as u32), region: self.region(), surface: CANVAS }),
+            50..52 => Command::from(Dry {
+                share: Share::new([1.0, 0.4][self.dice.below(2) as usize]).expect("in range"),
+                layer: LayerName::new("part").ok(),
+                region: Some(part(&mut self.dice)),
+                ..Dry::whole(CANVAS)
+            }),
+            52..54 => Command::from(Wet {
+                layers: (self.dice.below(3) as u32 > 0).then_some(self.dice.below(3) as u32),
+                region: self.region(),
+                surface: CANVAS,
+            }),
             54 => match self.dice.below(2) {
-                0 => Command::from(Opacity { layer: "part".parse().expect("valid"), opacity: OpacityFactor::new(0.5).expect("in range") }),
-                _ => Command::from(NameLayer { layer: 1, name: LayerName::new("renamed").expect("valid") }),
+                0 => Command::from(Opacity {
+                    layer: "part".parse().expect("valid"),
+                    opacity: OpacityFactor::new(0.5).expect("in range"),
+                }),
+                _ => Command::from(NameLayer {
+                    layer: 1,
+                    name: LayerName::new("renamed").expect("valid"),
+                }),
             },
-            _ => Command::from(Ground::spectrum(CANVAS, &format!("400,0.{}\n700,0.5", 1 + self.dice.below(3))).expect("valid")),
+            _ => Command::from(
+                Ground::spectrum(
+                    CANVAS,
+                    &format!("400,0.{}\n700,0.5", 1 + self.dice.below(3)),
+                )
+                .expect("valid"),
+            ),
         };
         Act::Command(command)
     }

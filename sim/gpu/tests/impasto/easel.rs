@@ -9,8 +9,8 @@ use maulstick_painting::picture::flat_drawing;
 use maulstick_painting::{Painting, PaintingSetup};
 use maulstick_types::brush::{BrushState, Solve};
 use maulstick_types::edits::{Fill, FillPaint, Load};
-use maulstick_types::values::{BrushName, FilmThickness};
 use maulstick_types::scene::CANVAS;
+use maulstick_types::values::{BrushName, FilmThickness};
 use maulstick_types::{Mixture, Pose};
 
 /// Cells of .25 mm of the canvas either way.
@@ -50,13 +50,27 @@ pub(crate) fn easel_of(finer: u32, gpu: Option<Device>) -> Painting {
         painting.define_brush(name, brush());
     }
     painting
-        .apply(Fill { paint: FillPaint::Mixture { mixture: mixture("Titanium White") }, thickness: FilmThickness::new(40e-6).expect("in range"), surface: CANVAS })
+        .apply(Fill {
+            paint: FillPaint::Mixture {
+                mixture: mixture("Titanium White"),
+            },
+            thickness: FilmThickness::new(40e-6).expect("in range"),
+            surface: CANVAS,
+        })
         .expect("laid");
     painting
-        .apply(Load { mixture: mixture("Ultramarine Blue=0.6,Yellow Ochre=0.4"), beside: None, brush: BrushName::main() })
+        .apply(Load {
+            mixture: mixture("Ultramarine Blue=0.6,Yellow Ochre=0.4"),
+            beside: None,
+            brush: BrushName::main(),
+        })
         .expect("loaded");
     painting
-        .apply(Load { mixture: mixture("Pyrrole Red"), beside: None, brush: BrushName::new("other").expect("valid") })
+        .apply(Load {
+            mixture: mixture("Pyrrole Red"),
+            beside: None,
+            brush: BrushName::new("other").expect("valid"),
+        })
         .expect("loaded");
     painting
 }

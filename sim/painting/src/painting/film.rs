@@ -57,7 +57,12 @@ impl Apply for Fill {
             FillPaint::Carried { brush } => {
                 painting.surface(self.surface)?;
                 let mixture = painting.carried_mixture(brush)?;
-                painting.lay_from(self.surface, &mixture, thickness_m, Ledger::from_mode_counts)?;
+                painting.lay_from(
+                    self.surface,
+                    &mixture,
+                    thickness_m,
+                    Ledger::from_mode_counts,
+                )?;
             }
         }
         Ok(Applied::Done)

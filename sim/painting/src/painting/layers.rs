@@ -63,7 +63,9 @@ impl Apply for NameLayer {
         let number = self.layer;
         let place = painting.place_of(&LayerRef::Number { number })?;
         painting.begin_step("name", None);
-        self.name.trim().clone_into(&mut painting.scene.layers[place].name);
+        self.name
+            .trim()
+            .clone_into(&mut painting.scene.layers[place].name);
         painting.scene.version += 1;
         painting.end_own_step();
         Ok(Applied::Done)

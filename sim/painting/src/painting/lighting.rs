@@ -9,8 +9,8 @@ use maulstick_types::edits::Relight;
 use maulstick_types::scene::{CANVAS, Light, PaintSlot};
 
 use super::{Painting, bare};
-use crate::error::paint_error;
 use crate::apply::{Applied, Apply};
+use crate::error::paint_error;
 
 /// Thickness of an opaque layer, m.
 const OPAQUE_M: f64 = 0.01;

@@ -2,15 +2,15 @@
 
 use std::sync::Arc;
 
+use super::{Painting, bare};
+use crate::apply::{Applied, Apply};
+use crate::history::SurfaceMaterial;
+use crate::setup::relief_called;
 use maulstick_appearance::ground::{add_spectrum, check_ground};
 use maulstick_canvas::EditError;
 use maulstick_canvas::assets::SPECTRUM;
-use maulstick_types::scene::Surface;
-use super::{Painting, bare};
-use crate::apply::{Applied, Apply};
 use maulstick_types::edits::{Ground, GroundSource, Tooth};
-use crate::history::SurfaceMaterial;
-use crate::setup::relief_called;
+use maulstick_types::scene::Surface;
 
 impl Apply for Ground {
     fn apply(&self, painting: &mut Painting) -> Result<Applied, EditError> {

@@ -190,9 +190,10 @@ impl Painting {
         let own = |step: &OpenStep| brush.is_none() || step.brush.as_deref() == brush;
         // Nothing lies over a step that is not finished.
         if !self.history.open().any(own) {
-            let step = self.history.last_done(brush).ok_or_else(|| {
-                EditError::NothingToUndo(brush.map(str::to_owned))
-            })?;
+            let step = self
+                .history
+                .last_done(brush)
+                .ok_or_else(|| EditError::NothingToUndo(brush.map(str::to_owned)))?;
             self.check(step, Way::Back)?;
         }
         self.end_step(|_| true);

@@ -3,13 +3,13 @@
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-use maulstick_canvas::EditError;
-use maulstick_impasto::brush::load::BrushLoad;
-use maulstick_types::scene::NamedVersion;
 use super::Painting;
 use crate::apply::{Applied, Apply};
-use maulstick_types::edits::{Branch, Forget, Keep, ReturnTo};
 use crate::history::{NonTileState, TilePlace, TileRef, same};
+use maulstick_canvas::EditError;
+use maulstick_impasto::brush::load::BrushLoad;
+use maulstick_types::edits::{Branch, Forget, Keep, ReturnTo};
+use maulstick_types::scene::NamedVersion;
 
 /// A painting as it was.
 #[derive(Clone, Debug)]
@@ -41,7 +41,9 @@ impl Apply for ReturnTo {
 
 impl Apply for Branch {
     fn apply(&self, painting: &mut Painting) -> Result<Applied, EditError> {
-        painting.branch(&self.from, &self.name).map(|()| Applied::Done)
+        painting
+            .branch(&self.from, &self.name)
+            .map(|()| Applied::Done)
     }
 }
 
@@ -64,11 +66,9 @@ impl Painting {
     }
 
     pub(super) fn version(&self, name: &str) -> Result<&Named, EditError> {
-        self.named.get(name).ok_or_else(|| {
-            EditError::NoVersion {
-                name: name.to_owned(),
-                known: self.named.keys().cloned().collect(),
-            }
+        self.named.get(name).ok_or_else(|| EditError::NoVersion {
+            name: name.to_owned(),
+            known: self.named.keys().cloned().collect(),
         })
     }
 

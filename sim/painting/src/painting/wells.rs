@@ -16,8 +16,8 @@ use maulstick_types::edits::Wells;
 use maulstick_types::scene::{Well, WellKind};
 
 use super::{Painting, bare};
-use crate::error::paint_error;
 use crate::apply::{Applied, Apply};
+use crate::error::paint_error;
 use crate::ledger::Ledger;
 
 /// Wells may reach beyond the edge of their surface by what rounding makes of it, m.

@@ -3,12 +3,12 @@
 use std::collections::BTreeSet;
 use std::sync::Arc;
 
-use maulstick_canvas::EditError;
-use maulstick_canvas::planes::TILE_CELLS;
-use maulstick_canvas::tile::{Tile, TileId};
 use super::Painting;
 use super::layers::{Changed, Part};
 use crate::apply::{Applied, Apply};
+use maulstick_canvas::EditError;
+use maulstick_canvas::planes::TILE_CELLS;
+use maulstick_canvas::tile::{Tile, TileId};
 use maulstick_types::edits::Wet;
 
 impl Apply for Wet {

@@ -11,9 +11,9 @@ use maulstick_rig::Fault;
 use maulstick_session::Autosave;
 use maulstick_types::Pose;
 use maulstick_types::brush::{BrushState, Solve};
+use maulstick_types::edits::Load;
 use maulstick_types::scene::CANVAS;
-use maulstick_types::edits::{Load};
-use maulstick_types::values::{BrushName};
+use maulstick_types::values::BrushName;
 use rand_pcg::Pcg64Mcg;
 use rand_pcg::rand_core::Rng as _;
 
@@ -118,7 +118,11 @@ impl Easel {
     /// Loads a paint in turn.
     pub(super) fn load(&mut self) -> Result<(), Fault> {
         let text = PAINTS[self.stroke as usize % PAINTS.len()];
-        let command = Load { mixture: text.parse().map_err(fault)?, beside: None, brush: BrushName::new(BRUSH).expect("valid") };
+        let command = Load {
+            mixture: text.parse().map_err(fault)?,
+            beside: None,
+            brush: BrushName::new(BRUSH).expect("valid"),
+        };
         self.sequencer.edit(command).map_err(fault)?;
         Ok(())
     }

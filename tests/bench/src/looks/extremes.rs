@@ -1,8 +1,8 @@
 //! Paint, tools and grounds beyond what a painter takes: all stays finite and no quantum is lost.
 
-use maulstick_types::scene::CANVAS;
 use maulstick_types::edits::{Fill, FillPaint};
-use maulstick_types::values::{FilmThickness};
+use maulstick_types::scene::CANVAS;
+use maulstick_types::values::FilmThickness;
 
 use super::easel::{Easel, Stroke, brush};
 
@@ -21,8 +21,14 @@ fn easel(kind: &str) -> Easel {
 }
 
 fn fill(easel: &mut Easel, film_mm: f64) {
-    let fill = Fill { paint: FillPaint::Mixture { mixture: "Titanium White".parse().expect("a mixture") }, thickness: FilmThickness::new(1e-3 * film_mm).expect("in range"), surface: CANVAS };
-    easel.command(fill).expect("filled");
+    let fill = Fill {
+        paint: FillPaint::Mixture {
+            mixture: "Titanium White".parse().expect("a mixture"),
+        },
+        thickness: FilmThickness::new(1e-3 * film_mm).expect("in range"),
+        surface: CANVAS,
+    };
+    easel.edit(fill).expect("filled");
 }
 
 #[test]
@@ -33,8 +39,7 @@ fn a_film_of_a_metre_is_refused() {
     let said = maulstick_brush::BrushFile::parse(&text).expect_err("refused");
     assert!(said.to_string().contains("load.film_um"), "{said}");
     let mut easel = easel("flat");
-    let metre = Fill { paint: FillPaint::Mixture { mixture: "Titanium White".parse().expect("a mixture") }, thickness: FilmThickness::new(1.0).expect("in range"), surface: CANVAS };
-    assert!(easel.command(metre).is_err());
+    assert!(FilmThickness::new(1.0).is_err());
     whole(&mut easel);
 }
 

@@ -5,9 +5,8 @@ use std::cell::Cell;
 use eframe::egui::{Key, vec2};
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable as _;
+use maulstick_types::command::BrushCommand;
 use maulstick_types::command::Command;
-use maulstick_types::values::{BrushName, BrushToml};
-use maulstick_types::command::{BrushCommand};
 
 use super::*;
 use crate::rig::requests::Request as Asked;

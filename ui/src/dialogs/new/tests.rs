@@ -57,7 +57,9 @@ fn it_is_kept_in_a_file_that_is_not_there_yet() {
     let words = asked(|new| new.ground = FILE).expect_err("no file");
     assert!(words.starts_with("Ground"), "{words}");
     let ground = asked(|new| (new.ground, new.ground_file) = (FILE, "/g/oak.png".into()));
-    assert!(matches!(ground, Ok(Command::Rig(RigCommand::New { canvas, .. })) if canvas.ground == "/g/oak.png"));
+    assert!(
+        matches!(ground, Ok(Command::Rig(RigCommand::New { canvas, .. })) if canvas.ground == "/g/oak.png")
+    );
 }
 
 #[test]

@@ -1,8 +1,8 @@
 //! Requests of rack, keys and presets.
 
 use maulstick_rig::Fault;
-use maulstick_types::edits::{Clean};
-use maulstick_types::values::{BrushName};
+use maulstick_types::edits::Clean;
+use maulstick_types::values::BrushName;
 
 use super::*;
 use crate::rig::requests::PAINT;
@@ -100,7 +100,11 @@ fn a_brush_comes_back_at_the_width_it_was_used_at() {
 #[test]
 fn a_brush_that_refuses_keeps_what_it_has_and_one_that_does_takes_up_its_paint() {
     let refused = || Err(Fault::failure("the brush is painting"));
-    let load = || Command::from(Clean { brush: BrushName::main() });
+    let load = || {
+        Command::from(Clean {
+            brush: BrushName::main(),
+        })
+    };
     let mut bench = Bench::new();
     bench.work().step_width(true);
     bench.work().then(load());

@@ -1,14 +1,14 @@
 //! Brush panel: requests of its controls, and its snapshot.
 
-use maulstick_types::command::BrushCommand;
-use maulstick_types::command::Command;
 use eframe::egui::{Key, Modifiers, Role};
 use egui_kittest::Harness;
 use egui_kittest::kittest::{NodeT as _, Queryable as _};
 use maulstick_types::Mixture;
+use maulstick_types::command::BrushCommand;
+use maulstick_types::command::Command;
 use maulstick_types::edits::{Clean, Edit, Handle, Load, Tune};
-use maulstick_types::values::{BrushName};
 use maulstick_types::scene::{BrushMode, MARKER_FLOW};
+use maulstick_types::values::BrushName;
 
 use super::*;
 use crate::settings::presets::Preset;
@@ -124,7 +124,9 @@ fn the_way_shows_what_belongs_to_it() {
     };
     assert_eq!(
         harness.state_mut().commands(),
-        [Command::from(Handle::try_from(&handling).expect("in range"))]
+        [Command::from(
+            Handle::try_from(&handling).expect("in range")
+        )]
     );
     assert!(
         harness
@@ -150,11 +152,23 @@ fn a_paint_is_completed_thinned_and_loaded() {
     let mixture: Mixture = "Ultramarine Blue=0.8,Thinner=0.2".parse().expect("one");
     let brush = "main".to_owned();
     let commands = harness.state_mut().commands();
-    assert_eq!(commands, [Command::from(Load { mixture: mixture, beside: None, brush: BrushName::new(brush).expect("valid") })]);
+    assert_eq!(
+        commands,
+        [Command::from(Load {
+            mixture,
+            beside: None,
+            brush: BrushName::new(brush).expect("valid")
+        })]
+    );
     harness.get_by_label("Clean").click();
     harness.run();
     let brush = "main".to_owned();
-    assert_eq!(harness.state_mut().commands(), [Command::from(Clean { brush: BrushName::new(brush).expect("valid") })]);
+    assert_eq!(
+        harness.state_mut().commands(),
+        [Command::from(Clean {
+            brush: BrushName::new(brush).expect("valid")
+        })]
+    );
 }
 
 #[test]
@@ -177,7 +191,14 @@ fn two_paints_side_by_side_and_one_that_there_is_not() {
     harness.key_press(Key::Enter);
     harness.run();
     let commands = harness.state_mut().commands();
-    let [Command::Edit(Edit::Load(Load { mixture: left, beside: Some(right), .. }))] = &commands[..] else {
+    let [
+        Command::Edit(Edit::Load(Load {
+            mixture: left,
+            beside: Some(right),
+            ..
+        })),
+    ] = &commands[..]
+    else {
         panic!("{commands:?}")
     };
     assert_eq!(left, &Mixture::pure("Bone Black"));

@@ -1,8 +1,8 @@
-use maulstick_types::command::Command;
 use eframe::egui::accesskit::Role;
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable as _;
 use maulstick_types::Mixture;
+use maulstick_types::command::Command;
 use maulstick_types::edits::{Fill, FillPaint, Ground, Piles, Place, Size, Tooth};
 use maulstick_types::values::{BrushName, FilmThickness, MaterialName, StainThickness};
 
@@ -35,12 +35,21 @@ fn tooth_ground_and_sizing_are_asked_for() {
     set(&mut harness, Role::SpinButton, "Piece", 7.0);
     choose(&mut harness, "Ground", "grey");
     set(&mut harness, Role::Slider, "Stain", 12.0);
-    let tooth = |tooth: &str, seed: u64| Command::from(Tooth { tooth: MaterialName::new(tooth).expect("valid"), seed: seed, surface: CANVAS });
+    let tooth = |tooth: &str, seed: u64| {
+        Command::from(Tooth {
+            tooth: MaterialName::new(tooth).expect("valid"),
+            seed,
+            surface: CANVAS,
+        })
+    };
     let expected = [
         tooth("paper", seed),
         tooth("linen", 7),
         Command::from(Ground::named(CANVAS, "grey").expect("valid")),
-        Command::from(Size { stain: StainThickness::new(12.0 * 1e-6).expect("in range"), surface: CANVAS }),
+        Command::from(Size {
+            stain: StainThickness::new(12.0 * 1e-6).expect("in range"),
+            surface: CANVAS,
+        }),
     ];
     assert_eq!(harness.state_mut().asked(), expected);
     set(&mut harness, Role::Slider, "Stain", 5e4);
@@ -121,7 +130,10 @@ fn the_hand_and_the_lasting_paint_are_switched() {
     assert!(harness.state().preferences.left_handed);
     harness.get_by_label("Paint on the palette lasts").click();
     harness.run();
-    let expected = Command::from(Piles { last: true, surface: PALETTE });
+    let expected = Command::from(Piles {
+        last: true,
+        surface: PALETTE,
+    });
     assert_eq!(harness.state_mut().asked(), [expected]);
 }
 
@@ -138,8 +150,20 @@ fn a_film_is_of_a_paint_or_of_what_the_brush_carries() {
     harness.run();
     let surface = CANVAS;
     let expected = [
-        Command::from(Fill { paint: FillPaint::Carried { brush: BrushName::main() }, thickness: FilmThickness::new(50.0 * 1e-6).expect("in range"), surface: surface }),
-        Command::from(Fill { paint: FillPaint::Mixture { mixture: Mixture::pure("Titanium White") }, thickness: FilmThickness::new(20.0 * 1e-6).expect("in range"), surface: surface }),
+        Command::from(Fill {
+            paint: FillPaint::Carried {
+                brush: BrushName::main(),
+            },
+            thickness: FilmThickness::new(50.0 * 1e-6).expect("in range"),
+            surface,
+        }),
+        Command::from(Fill {
+            paint: FillPaint::Mixture {
+                mixture: Mixture::pure("Titanium White"),
+            },
+            thickness: FilmThickness::new(20.0 * 1e-6).expect("in range"),
+            surface,
+        }),
     ];
     assert_eq!(harness.state_mut().asked(), expected);
     set(&mut harness, Role::Slider, "Thickness", 9000.0);

@@ -1,9 +1,9 @@
-use maulstick_types::command::Command;
 use eframe::egui::accesskit::Role;
-use maulstick_types::edits::{Branch, Forget, Keep, Redo, ReturnTo, Undo};
-use maulstick_types::values::{VersionName};
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable as _;
+use maulstick_types::command::Command;
+use maulstick_types::edits::{Branch, Forget, Keep, Redo, ReturnTo, Undo};
+use maulstick_types::values::VersionName;
 
 use super::*;
 use crate::rig::state::{PaintNode, RigState};
@@ -96,9 +96,16 @@ fn versions_are_kept_returned_to_and_branched_from() {
     harness.run();
     let name = |name: &str| name.to_owned();
     let expected = [
-        Command::from(Keep { name: VersionName::new(name("Trees")).expect("valid") }),
-        Command::from(ReturnTo { name: VersionName::new(name("Sketch")).expect("valid") }),
-        Command::from(Branch { from: VersionName::new(name("Warm")).expect("valid"), name: VersionName::new(name("Hot")).expect("valid") }),
+        Command::from(Keep {
+            name: VersionName::new(name("Trees")).expect("valid"),
+        }),
+        Command::from(ReturnTo {
+            name: VersionName::new(name("Sketch")).expect("valid"),
+        }),
+        Command::from(Branch {
+            from: VersionName::new(name("Warm")).expect("valid"),
+            name: VersionName::new(name("Hot")).expect("valid"),
+        }),
     ];
     assert_eq!(harness.state_mut().asked(), expected);
     assert!(harness.query_by_label("Name of the new version").is_none());
@@ -113,7 +120,12 @@ fn a_version_is_forgotten_after_a_question() {
     click(&mut harness, "Forget Warm?");
     click(&mut harness, "Forget Warm");
     let name = "Warm".to_owned();
-    assert_eq!(harness.state_mut().asked(), [Command::from(Forget { name: VersionName::new(name).expect("valid") })]);
+    assert_eq!(
+        harness.state_mut().asked(),
+        [Command::from(Forget {
+            name: VersionName::new(name).expect("valid")
+        })]
+    );
 }
 
 #[test]

@@ -1,11 +1,11 @@
-use maulstick_types::command::Command;
 use eframe::egui::{Key, accesskit::Role, vec2};
 use egui_kittest::Harness;
 use egui_kittest::kittest::{NodeT as _, Queryable as _};
 use maulstick_types::Region;
+use maulstick_types::command::Command;
 use maulstick_types::edits::{Dry, Edit, LayerRef, NameLayer, Opacity, StopDrying, Wet};
-use maulstick_types::values::{LayerName, OpacityFactor, Share, Ticks};
 use maulstick_types::scene::CANVAS;
+use maulstick_types::values::{LayerName, OpacityFactor, Share, Ticks};
 
 use super::*;
 use crate::rig::state::RigState;
@@ -33,7 +33,10 @@ fn panel() -> Harness<'static, Bench<LayersPanel>> {
 }
 
 fn opacity(layer: u32, opacity: f32) -> Command {
-    Command::from(Opacity { layer: LayerRef::Number { number: layer }, opacity: OpacityFactor::new(opacity).expect("in range") })
+    Command::from(Opacity {
+        layer: LayerRef::Number { number: layer },
+        opacity: OpacityFactor::new(opacity).expect("in range"),
+    })
 }
 
 #[test]
@@ -84,7 +87,10 @@ fn a_click_on_a_name_gives_another_one() {
     harness.run();
     harness.key_press(Key::Enter);
     harness.run();
-    let named = Command::from(NameLayer { layer: 2, name: LayerName::new("Sky at dusk").expect("valid") });
+    let named = Command::from(NameLayer {
+        layer: 2,
+        name: LayerName::new("Sky at dusk").expect("valid"),
+    });
     assert_eq!(harness.state_mut().asked(), [named]);
     harness.get_by_label("Trees").click();
     harness.run();
@@ -118,10 +124,21 @@ fn paint_dries_at_once_in_time_or_becomes_wet_again() {
     harness.run();
     let surface = CANVAS;
     let expected = [
-        Command::from(Dry { share: Share::new(0.4).expect("in range"), layer: LayerName::new("Fog").ok(), ..Dry::whole(surface) }),
-        Command::from(Dry { over: Some(Ticks::new(120 * 60).expect("in range")), ..Dry::whole(surface) }),
-        Command::from(StopDrying { surface: surface }),
-        Command::from(Wet { layers: Some(1), region: None, surface: surface }),
+        Command::from(Dry {
+            share: Share::new(0.4).expect("in range"),
+            layer: LayerName::new("Fog").ok(),
+            ..Dry::whole(surface)
+        }),
+        Command::from(Dry {
+            over: Some(Ticks::new(120 * 60).expect("in range")),
+            ..Dry::whole(surface)
+        }),
+        Command::from(StopDrying { surface }),
+        Command::from(Wet {
+            layers: Some(1),
+            region: None,
+            surface,
+        }),
     ];
     assert_eq!(harness.state_mut().asked(), expected);
 }
@@ -145,7 +162,13 @@ fn a_part_is_drawn_and_one_that_is_none_is_told() {
     harness.get_by_label("Dry").click();
     harness.run();
     let asked = harness.state_mut().asked();
-    let [Command::Edit(Edit::Dry(Dry { region: Some(region), .. }))] = &asked[..] else {
+    let [
+        Command::Edit(Edit::Dry(Dry {
+            region: Some(region),
+            ..
+        })),
+    ] = &asked[..]
+    else {
         panic!("{asked:?}");
     };
     let canvas = harness.state().rig.canvas().expect("a canvas");

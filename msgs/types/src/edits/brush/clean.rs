@@ -20,7 +20,7 @@ impl Form for Clean {
     const ARGUMENTS: Option<&'static str> = Some("clean");
     #[cfg(feature = "cli")]
     const COMMAND: Option<crate::edits::CommandForm> =
-        Some(crate::edits::CommandForm::of::<Self>("clean"));
+        Some(crate::edits::CommandForm::of::<Self>("clean", "Brush"));
 
     fn example() -> Result<Self, ValueError> {
         Ok(Self {

@@ -3,7 +3,7 @@
 use crate::define::wire_struct;
 use crate::edits::{Form, StepForm};
 use crate::scene::Tuning;
-use crate::values::{BrushName, Stiffness, Wetness, ValueError};
+use crate::values::{BrushName, Stiffness, ValueError, Wetness};
 
 wire_struct! {
     /// Make a brush stiffer or softer
@@ -48,7 +48,7 @@ impl Form for Tune {
     const ARGUMENTS: Option<&'static str> = Some("tune|--stiffness|1.5|--wetness|0.5");
     #[cfg(feature = "cli")]
     const COMMAND: Option<crate::edits::CommandForm> =
-        Some(crate::edits::CommandForm::of::<Self>("tune"));
+        Some(crate::edits::CommandForm::of::<Self>("tune", "Brush"));
 
     fn example() -> Result<Self, ValueError> {
         let tuning = Tuning {

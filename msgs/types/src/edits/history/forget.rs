@@ -2,7 +2,7 @@
 
 use crate::define::wire_struct;
 use crate::edits::{Form, StepForm};
-use crate::values::{VersionName, ValueError};
+use crate::values::{ValueError, VersionName};
 
 wire_struct! {
     /// Delete a version

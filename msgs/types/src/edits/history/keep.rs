@@ -2,7 +2,7 @@
 
 use crate::define::wire_struct;
 use crate::edits::{Form, StepForm};
-use crate::values::{VersionName, ValueError};
+use crate::values::{ValueError, VersionName};
 
 wire_struct! {
     /// Keep the painting as a version
@@ -14,7 +14,11 @@ wire_struct! {
 }
 
 impl Form for Keep {
-    const STEPS: &'static [StepForm] = &[StepForm::new("keep", &[], "{ keep = \"before the glaze\" }")];
+    const STEPS: &'static [StepForm] = &[StepForm::new(
+        "keep",
+        &[],
+        "{ keep = \"before the glaze\" }",
+    )];
     const ARGUMENTS: Option<&'static str> = Some("painting|versions|--keep|before the glaze");
 
     fn example() -> Result<Self, ValueError> {

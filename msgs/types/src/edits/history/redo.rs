@@ -21,7 +21,7 @@ impl Form for Redo {
     const ARGUMENTS: Option<&'static str> = Some("redo|--brush|main");
     #[cfg(feature = "cli")]
     const COMMAND: Option<crate::edits::CommandForm> =
-        Some(crate::edits::CommandForm::of::<Self>("redo"));
+        Some(crate::edits::CommandForm::of::<Self>("redo", "Paint"));
 
     fn example() -> Result<Self, ValueError> {
         Ok(Self {

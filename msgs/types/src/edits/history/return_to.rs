@@ -2,7 +2,7 @@
 
 use crate::define::wire_struct;
 use crate::edits::{Form, StepForm};
-use crate::values::{VersionName, ValueError};
+use crate::values::{ValueError, VersionName};
 
 wire_struct! {
     /// Return the painting to a version; this can be undone

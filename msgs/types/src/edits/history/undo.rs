@@ -21,7 +21,7 @@ impl Form for Undo {
     const ARGUMENTS: Option<&'static str> = Some("undo");
     #[cfg(feature = "cli")]
     const COMMAND: Option<crate::edits::CommandForm> =
-        Some(crate::edits::CommandForm::of::<Self>("undo"));
+        Some(crate::edits::CommandForm::of::<Self>("undo", "Paint"));
 
     fn example() -> Result<Self, ValueError> {
         Ok(Self { brush: None })

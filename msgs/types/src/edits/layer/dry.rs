@@ -97,6 +97,7 @@ mod cli {
 
     pub(super) const COMMAND: CommandForm = CommandForm {
         name: "dry",
+        group: "Layers",
         augment: <DryOrStop as clap::Args>::augment_args,
         read: |matches| {
             let DryOrStop { dry, stop } = clap::FromArgMatches::from_arg_matches(matches)?;

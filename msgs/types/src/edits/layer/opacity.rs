@@ -73,7 +73,7 @@ impl Form for Opacity {
     const ARGUMENTS: Option<&'static str> = Some("opacity|sky|0.7");
     #[cfg(feature = "cli")]
     const COMMAND: Option<crate::edits::CommandForm> =
-        Some(crate::edits::CommandForm::of::<Self>("opacity"));
+        Some(crate::edits::CommandForm::of::<Self>("opacity", "Layers"));
 
     fn example() -> Result<Self, ValueError> {
         Ok(Self {

@@ -15,8 +15,11 @@ wire_struct! {
 }
 
 impl Form for StopDrying {
-    const STEPS: &'static [StepForm] =
-        &[StepForm::switch("stop_drying", &[], "{ stop_drying = true }")];
+    const STEPS: &'static [StepForm] = &[StepForm::switch(
+        "stop_drying",
+        &[],
+        "{ stop_drying = true }",
+    )];
     const ARGUMENTS: Option<&'static str> = Some("dry|--stop");
 
     fn example() -> Result<Self, ValueError> {

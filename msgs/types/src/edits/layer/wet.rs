@@ -70,8 +70,9 @@ impl Form for Wet {
     )];
     const ARGUMENTS: Option<&'static str> = Some("wet");
     #[cfg(feature = "cli")]
-    const COMMAND: Option<crate::edits::CommandForm> =
-        Some(crate::edits::CommandForm::of::<cli::WetOptions>("wet"));
+    const COMMAND: Option<crate::edits::CommandForm> = Some(crate::edits::CommandForm::of::<
+        cli::WetOptions,
+    >("wet", "Layers"));
 
     fn example() -> Result<Self, ValueError> {
         Ok(Self {

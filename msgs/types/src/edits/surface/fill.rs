@@ -52,12 +52,18 @@ impl Form for Fill {
             &["um"],
             "{ fill = \"Yellow Ochre=0.3,Titanium White=0.7\", um = 40 }",
         ),
-        StepForm::switch("fill_with_brush", &["um"], "{ fill_with_brush = true, um = 30 }"),
+        StepForm::switch(
+            "fill_with_brush",
+            &["um"],
+            "{ fill_with_brush = true, um = 30 }",
+        ),
     ];
-    const ARGUMENTS: Option<&'static str> = Some("fill|Yellow Ochre=0.3,Titanium White=0.7|--um|40");
+    const ARGUMENTS: Option<&'static str> =
+        Some("fill|Yellow Ochre=0.3,Titanium White=0.7|--um|40");
     #[cfg(feature = "cli")]
-    const COMMAND: Option<crate::edits::CommandForm> =
-        Some(crate::edits::CommandForm::of::<cli::FillOptions>("fill"));
+    const COMMAND: Option<crate::edits::CommandForm> = Some(crate::edits::CommandForm::of::<
+        cli::FillOptions,
+    >("fill", "Paint"));
 
     fn example() -> Result<Self, ValueError> {
         Ok(Self {
@@ -73,8 +79,8 @@ impl Form for Fill {
         let FillStep { fill, um } = FillStep::deserialize(from)?;
         let brush = BrushName::main();
         Ok(Self {
-            paint: fill.map_or(FillPaint::Carried { brush }, |mixture| {
-                FillPaint::Mixture { mixture }
+            paint: fill.map_or(FillPaint::Carried { brush }, |mixture| FillPaint::Mixture {
+                mixture,
             }),
             thickness: um,
             surface: CANVAS,

@@ -72,12 +72,11 @@ impl Ground {
 }
 
 impl Form for Ground {
-    const STEPS: &'static [StepForm] =
-        &[StepForm::new("ground", &[], "{ ground = \"grey\" }")];
+    const STEPS: &'static [StepForm] = &[StepForm::new("ground", &[], "{ ground = \"grey\" }")];
     const ARGUMENTS: Option<&'static str> = Some("ground|grey");
     #[cfg(feature = "cli")]
     const COMMAND: Option<crate::edits::CommandForm> =
-        Some(crate::edits::CommandForm::of::<Self>("ground"));
+        Some(crate::edits::CommandForm::of::<Self>("ground", "Canvas"));
 
     fn example() -> Result<Self, ValueError> {
         Self::named(CANVAS, "grey")

@@ -54,7 +54,7 @@ impl Form for Piles {
     const ARGUMENTS: Option<&'static str> = Some("piles|last");
     #[cfg(feature = "cli")]
     const COMMAND: Option<crate::edits::CommandForm> =
-        Some(crate::edits::CommandForm::of::<Self>("piles"));
+        Some(crate::edits::CommandForm::of::<Self>("piles", "Brush"));
 
     fn example() -> Result<Self, ValueError> {
         Ok(Self {

@@ -72,6 +72,22 @@ pub enum Exposure {
     Factor(f64),
 }
 
+impl LightChange {
+    /// Names of its fields.
+    pub const KEYS: [&'static str; 10] = [
+        "illuminant",
+        "direction",
+        "intensity",
+        "exposure",
+        "relief",
+        "softness",
+        "observer",
+        "rule",
+        "samples",
+        "adapted",
+    ];
+}
+
 impl<'de> Deserialize<'de> for Exposure {
     fn deserialize<D: Deserializer<'de>>(from: D) -> Result<Self, D::Error> {
         f64::deserialize(from).map(Self::Factor)
@@ -155,8 +171,7 @@ impl Form for Relight {
         &[],
         "{ light = { intensity = 2.0, direction = [-0.7, 0.3, 0.5] } }",
     )];
-    const ARGUMENTS: Option<&'static str> =
-        Some("light|--intensity|2|--direction|-0.7,0.3,0.5");
+    const ARGUMENTS: Option<&'static str> = Some("light|--intensity|2|--direction|-0.7,0.3,0.5");
 
     fn example() -> Result<Self, ValueError> {
         let change = LightChange {

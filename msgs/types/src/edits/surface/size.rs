@@ -25,7 +25,7 @@ impl Form for Size {
     const ARGUMENTS: Option<&'static str> = Some("size|3");
     #[cfg(feature = "cli")]
     const COMMAND: Option<crate::edits::CommandForm> =
-        Some(crate::edits::CommandForm::of::<Self>("size"));
+        Some(crate::edits::CommandForm::of::<Self>("size", "Canvas"));
 
     fn example() -> Result<Self, ValueError> {
         Ok(Self {

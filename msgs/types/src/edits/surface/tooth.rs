@@ -35,7 +35,7 @@ impl Form for Tooth {
     const ARGUMENTS: Option<&'static str> = Some("tooth|linen|--seed|2");
     #[cfg(feature = "cli")]
     const COMMAND: Option<crate::edits::CommandForm> =
-        Some(crate::edits::CommandForm::of::<Self>("tooth"));
+        Some(crate::edits::CommandForm::of::<Self>("tooth", "Canvas"));
 
     fn example() -> Result<Self, ValueError> {
         Ok(Self {

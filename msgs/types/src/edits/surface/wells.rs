@@ -78,7 +78,10 @@ mod tests {
             Wells::new(PALETTE, vec![well; count]).map(drop)
         };
         assert_eq!(check(0.01, 0.1, WELLS_MAX), Ok(()));
-        assert_eq!(check(0.01, 0.1, WELLS_MAX + 1), Err(ValueError::Wells(WELLS_MAX + 1)));
+        assert_eq!(
+            check(0.01, 0.1, WELLS_MAX + 1),
+            Err(ValueError::Wells(WELLS_MAX + 1))
+        );
         for (radius_m, x) in [(0.0, 0.1), (f64::NAN, 0.1), (1e9, 0.1), (0.01, f64::NAN)] {
             let error = check(radius_m, x, 1).expect_err("no well").to_string();
             assert!(error.contains("within the surface"), "{error}");
