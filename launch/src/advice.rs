@@ -18,7 +18,7 @@ pub fn words(advice: &Advice) -> Option<String> {
         Advice::UndoNewest => {
             "undo that first: `maulstick undo` without a brush takes the newest step of all"
         }
-        Advice::Recover => "`maulstick painting recover` takes out what is whole",
+        Advice::Recover => "`maulstick painting recover FILE -o NEW.maul` takes out what is whole",
         Advice::StopExport => "wait for its end, or stop it: `maulstick export --stop`",
         Advice::BeginExport => "`maulstick export FILE` begins an export",
         Advice::ListFormats => "`maulstick painting export --help` says what each format takes",
@@ -28,6 +28,13 @@ pub fn words(advice: &Advice) -> Option<String> {
         Advice::SaveOrForget => {
             "keep it first: `maulstick save-as FILE.maul`; or say that it may go: `--forget`"
         }
+        Advice::NamePainting => {
+            "give a file that `maulstick up FILE.maul` made, or a new name; of a painting whose beginning is \
+             damaged `maulstick painting recover FILE -o NEW.maul` takes out what is whole"
+        }
+        Advice::BeginPainting => "check the path; `maulstick up FILE.maul` begins a painting",
+        Advice::StartRig => "start one with `maulstick up`, or name another with `--name`",
+        Advice::DefaultSettings => "see the commented default: `maulstick up --print-config`",
         Advice::Say { .. } => return None,
     };
     Some(words.to_owned())

@@ -19,9 +19,14 @@ pub(crate) fn words(advice: &Advice) -> Option<String> {
         Advice::StopExport => "wait for its end, or press Stop",
         Advice::Replace => "write another name, or tick that the one that is there may go",
         Advice::SaveOrForget => "save it under another name first, or tick that it may go",
-        Advice::Say { .. } | Advice::Recover | Advice::BeginExport | Advice::ListFormats => {
-            return None;
-        }
+        Advice::Say { .. }
+        | Advice::Recover
+        | Advice::BeginExport
+        | Advice::ListFormats
+        | Advice::NamePainting
+        | Advice::BeginPainting
+        | Advice::StartRig
+        | Advice::DefaultSettings => return None,
     };
     Some(words.to_owned())
 }

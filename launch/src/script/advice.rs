@@ -22,7 +22,11 @@ pub fn words(advice: &Advice) -> Option<String> {
         | Advice::BeginExport
         | Advice::ListFormats
         | Advice::Replace
-        | Advice::SaveOrForget => return None,
+        | Advice::SaveOrForget
+        | Advice::NamePainting
+        | Advice::BeginPainting
+        | Advice::StartRig
+        | Advice::DefaultSettings => return None,
     };
     Some(words.to_owned())
 }

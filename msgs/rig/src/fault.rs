@@ -184,6 +184,7 @@ impl From<BusError> for Fault {
             BusError::Message { topic, source } => Self::failure(source.to_string())
                 .at(topic)
                 .help("all nodes of a rig must be of the same build"),
+            BusError::NoRig(_) => Self::failure(error.to_string()).advise(Advice::StartRig),
             BusError::Folder { reason, help } => Self::failure(reason).help(help),
         }
     }

@@ -42,6 +42,14 @@ wire_enum! {
         Replace,
         /// Save the painting first, or say that it may go.
         SaveOrForget,
+        /// Name a painting's file, or a new one; of a damaged one take out what is whole.
+        NamePainting,
+        /// Check the path, or begin a painting there.
+        BeginPainting,
+        /// Start a rig, or name another one.
+        StartRig,
+        /// Compare with the default settings.
+        DefaultSettings,
     }
 }
 
@@ -71,6 +79,12 @@ impl fmt::Display for Advice {
             Self::ListFormats => "see what each format takes",
             Self::Replace => "give another name, or say that the one that is there may go",
             Self::SaveOrForget => "save it first, or say that it may go",
+            Self::NamePainting => {
+                "name the file of a painting, or a new one; of a damaged painting recover what is whole"
+            }
+            Self::BeginPainting => "check the path, or begin a painting there",
+            Self::StartRig => "start one, or name another one",
+            Self::DefaultSettings => "compare with the default settings",
         })
     }
 }

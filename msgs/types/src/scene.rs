@@ -75,10 +75,8 @@ wire_struct! {
         pub wells: Vec<Well>,
         /// Thickness of paint that stays however hard it is brushed, m: little on a canvas that is
         /// heavily sized (Baxter 2004, § 6.4.1).
-        #[serde(default = "default_stain_m")]
         pub stain_m: f64,
         /// Whether paint that brushes take up from it stays there all the same (Baxter 2004, § 6.7).
-        #[serde(default)]
         pub piles_last: bool,
     }
 }
@@ -378,7 +376,6 @@ message! {
         /// The versions that were kept, by name.
         pub versions: Vec<NamedVersion>,
         /// Brushes that are used in a way of their own.
-        #[serde(default)]
         pub handlings: Vec<BrushHandling>,
     }
 }

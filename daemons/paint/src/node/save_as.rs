@@ -36,7 +36,7 @@ enum Stage {
 fn refused(path: &Path, error: &DocumentError) -> Refusal {
     let advice = match error {
         DocumentError::Taken => Advice::Replace,
-        error => Advice::say(error.help()),
+        error => error.advice(),
     };
     Refusal::new(format!("{}: {error}", path.display()), advice)
 }

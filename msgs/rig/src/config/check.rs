@@ -162,8 +162,7 @@ impl RigConfig {
         if let Some(corners) = device.corners_m
             && !are_corners(&corners)
         {
-            let help =
-                "three places in metres, not on one line, as `maulstick calibrate` writes them";
+            let help = "three places in metres, not on one line, as a calibration writes them";
             return Err(Wrong::value(name, "corners_m", corners, help));
         }
         if !is_curve(&device.pressure_curve) {
