@@ -41,16 +41,6 @@ impl Fault {
         }
     }
 
-    /// Bad usage, from a line with error and advice, split by [`parted`](maulstick_types::advice::parted).
-    #[must_use]
-    pub fn told(line: impl AsRef<str>) -> Self {
-        let (what, help) = maulstick_types::advice::parted(line.as_ref());
-        Self {
-            help: help.map(str::to_owned),
-            ..Self::usage(what)
-        }
-    }
-
     /// A failure.
     #[must_use]
     pub fn failure(what: impl Into<String>) -> Self {

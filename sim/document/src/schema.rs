@@ -167,7 +167,11 @@ pub fn migrate(connection: &Connection) -> Result<(), DocumentError> {
             known: VERSION,
         });
     }
-    for (place, change) in MIGRATIONS.iter().enumerate().skip((version - OLDEST) as usize) {
+    for (place, change) in MIGRATIONS
+        .iter()
+        .enumerate()
+        .skip((version - OLDEST) as usize)
+    {
         let to = OLDEST + 1 + place as i32;
         let change = format!("BEGIN IMMEDIATE; {change}; PRAGMA user_version = {to}; COMMIT;");
         connection.execute_batch(&change)?;

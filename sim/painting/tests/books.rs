@@ -25,6 +25,30 @@ const MIXTURES: [&str; 3] = [
     "Yellow Ochre=0.5,Pyrrole Red=0.25,Bone Black=0.25",
 ];
 
+fn load(brush: &str, mixture: Mixture) -> Load {
+    let (beside, brush) = (None, BrushName::new(brush).expect("a name"));
+    Load {
+        mixture,
+        beside,
+        brush,
+    }
+}
+
+fn dry(surface: u32, share: f32, name: &str) -> Dry {
+    Dry {
+        share: Share::new(share).expect("in range"),
+        layer: LayerName::new(name).ok(),
+        ..Dry::whole(surface)
+    }
+}
+
+fn opacity(number: u32, opacity: f32) -> Opacity {
+    Opacity {
+        layer: LayerRef::Number { number },
+        opacity: OpacityFactor::new(opacity).expect("in range"),
+    }
+}
+
 /// The library's round brush at a size, with so many strips, for speed.
 fn brush(size_mm: f64, strips: usize) -> BrushFile {
     let mut file = BrushFile::library("round").expect("round");
@@ -187,11 +211,7 @@ fn perform(painting: &mut Painting, strokes: &mut [u64; 2], act: &Act) {
         Act::Paint(b, places) => paint(painting, BRUSHES[*b], 10.0, strokes[*b], places),
         Act::NextStroke(b) => strokes[*b] += 1,
         Act::Load(b, l) => painting
-            .apply(Load {
-                mixture: mixture(MIXTURES[*l]),
-                beside: None,
-                brush: BrushName::new(BRUSHES[*b]).expect("valid"),
-            })
+            .apply(load(BRUSHES[*b], mixture(MIXTURES[*l])))
             .map(drop)
             .expect("known"),
         Act::Clean(b) => painting
@@ -208,14 +228,8 @@ fn perform(painting: &mut Painting, strokes: &mut [u64; 2], act: &Act) {
             painting.define_brush(BRUSHES[*b], brush(10.0, *strips));
         }
         // There may be nothing to dry, to undo or to redo.
-        Act::Dry(surface, share) => drop(painting.apply(Dry {
-            share: Share::new(*share).expect("in range"),
-            ..Dry::whole(*surface)
-        })),
-        Act::Opacity(layer, opacity) => drop(painting.apply(Opacity {
-            layer: LayerRef::Number { number: *layer },
-            opacity: OpacityFactor::new(*opacity).expect("in range"),
-        })),
+        Act::Dry(surface, share) => drop(painting.apply(dry(*surface, *share, ""))),
+        Act::Opacity(layer, opacity) => drop(painting.apply(self::opacity(*layer, *opacity))),
         Act::Handle(b, mode) => {
             let handling = BrushHandling {
                 mode: BrushMode::NAMES[*mode].1.clone(),
@@ -349,11 +363,7 @@ fn what_is_painted_after_a_command_within_a_stroke_is_undone_too() {
     let commands: [fn(&mut Painting); 4] = [
         |painting| {
             painting
-                .apply(Load {
-                    mixture: mixture(MIXTURES[0]),
-                    beside: None,
-                    brush: BrushName::main(),
-                })
+                .apply(load("main", mixture(MIXTURES[0])))
                 .map(drop)
                 .expect("known")
         },
@@ -374,11 +384,7 @@ fn what_is_painted_after_a_command_within_a_stroke_is_undone_too() {
     for command in commands {
         let mut painting = painting(10.0);
         painting
-            .apply(Load {
-                mixture: mixture(MIXTURES[1]),
-                beside: None,
-                brush: BrushName::main(),
-            })
+            .apply(load("main", mixture(MIXTURES[1])))
             .expect("known");
         paint(&mut painting, "main", 10.0, 1, &across(4.0, 8.0));
         command(&mut painting);
@@ -405,18 +411,10 @@ fn a_load_from_before_a_brush_had_other_strips_comes_back() {
     for strips in [31, 60] {
         let mut painting = painting(10.0);
         painting
-            .apply(Load {
-                mixture: mixture(MIXTURES[0]),
-                beside: None,
-                brush: BrushName::main(),
-            })
+            .apply(load("main", mixture(MIXTURES[0])))
             .expect("known");
         painting
-            .apply(Load {
-                mixture: mixture(MIXTURES[1]),
-                beside: None,
-                brush: BrushName::main(),
-            })
+            .apply(load("main", mixture(MIXTURES[1])))
             .expect("known");
         painting.define_brush("main", brush(10.0, strips));
         painting.undo(None).expect("the second load");
@@ -431,11 +429,7 @@ fn a_head_in_the_air_and_a_clean_one_leave_nothing() {
     let mut painting = painting(10.0);
     paint(&mut painting, "main", 10.0, 1, &across(4.0, 12.0));
     painting
-        .apply(Load {
-            mixture: mixture(MIXTURES[0]),
-            beside: None,
-            brush: BrushName::main(),
-        })
+        .apply(load("main", mixture(MIXTURES[0])))
         .expect("known");
     let high = |place: Place| Place {
         height: 1.3,
@@ -453,11 +447,7 @@ fn a_head_in_the_air_and_a_clean_one_leave_nothing() {
 fn a_restart_paints_nothing_on_its_way() {
     let mut painting = painting(10.0);
     painting
-        .apply(Load {
-            mixture: mixture(MIXTURES[0]),
-            beside: None,
-            brush: BrushName::main(),
-        })
+        .apply(load("main", mixture(MIXTURES[0])))
         .expect("known");
     let file = brush(10.0, 48);
     for place in across(4.0, 12.0) {
@@ -478,22 +468,14 @@ fn a_restart_paints_nothing_on_its_way() {
 fn what_has_dried_stays_and_catches_paint() {
     let mut painting = painting(10.0);
     painting
-        .apply(Load {
-            mixture: mixture(MIXTURES[0]),
-            beside: None,
-            brush: BrushName::main(),
-        })
+        .apply(load("main", mixture(MIXTURES[0])))
         .expect("known");
     paint(&mut painting, "main", 10.0, 1, &across(4.0, 12.0));
     painting.commit();
     let wet = painting.store(CANVAS).expect("a canvas").counts();
     assert_eq!(
         painting
-            .apply(Dry {
-                share: Share::new(1.0).expect("in range"),
-                layer: LayerName::new("underpainting").ok(),
-                ..Dry::whole(CANVAS)
-            })
+            .apply(dry(CANVAS, 1.0, "underpainting"))
             .map(|done| done.to_string())
             .as_deref(),
         Ok("underpainting")
@@ -504,22 +486,13 @@ fn what_has_dried_stays_and_catches_paint() {
     assert_eq!(report.quanta_missing, 0);
     assert!(report.accounts_m3["dry"] > 0.0 && report.accounts_m3["canvas"] == 0.0);
     assert!(
-        painting
-            .apply(Dry {
-                share: Share::new(1.0).expect("in range"),
-                ..Dry::whole(CANVAS)
-            })
-            .is_err(),
+        painting.apply(dry(CANVAS, 1.0, "")).is_err(),
         "nothing is wet"
     );
     // A brush so high that it only touched the first stroke's relief.
     let deposited = |painting: &mut Painting, stroke: u64| {
         painting
-            .apply(Load {
-                mixture: mixture(MIXTURES[0]),
-                beside: None,
-                brush: BrushName::main(),
-            })
+            .apply(load("main", mixture(MIXTURES[0])))
             .expect("known");
         let before = painting.store(CANVAS).expect("a canvas").counts()[0];
         paint(painting, "main", 10.0, stroke, &across(4.0, 12.0));
@@ -537,12 +510,7 @@ fn what_has_dried_stays_and_catches_paint() {
             })
             .is_err()
     );
-    painting
-        .apply(Opacity {
-            layer: LayerRef::Number { number: 1 },
-            opacity: OpacityFactor::new(0.5).expect("in range"),
-        })
-        .expect("the layer");
+    painting.apply(opacity(1, 0.5)).expect("the layer");
     assert_eq!(painting.scene().layers[0].opacity, 0.5);
     painting.undo(None).expect("the opacity");
     assert_eq!(painting.scene().layers[0].opacity, 1.0);
@@ -560,11 +528,7 @@ fn a_wide_brush_loses_no_quantum_of_its_broad_strips() {
     };
     let mut painting = painting(60.0);
     painting
-        .apply(Load {
-            mixture: mixture(MIXTURES[0]),
-            beside: None,
-            brush: BrushName::main(),
-        })
+        .apply(load("main", mixture(MIXTURES[0])))
         .expect("known");
     let places = [place([-0.075_547_72, 0.0]), place([0.0, 0.311_891_85])];
     paint(&mut painting, "main", 60.0, 1, &places);

@@ -61,6 +61,15 @@ fn load(mixture: &str) -> Load {
     }
 }
 
+fn dry(share: f32, layer: &str, region: Option<Region>) -> Dry {
+    Dry {
+        share: Share::new(share).expect("in range"),
+        layer: LayerName::new(layer).ok(),
+        region,
+        ..Dry::whole(CANVAS)
+    }
+}
+
 fn dry_over(ticks: u32) -> Dry {
     Dry {
         layer: LayerName::new("slow").ok(),
@@ -226,11 +235,11 @@ proptest! {
         let mut sequencer = painted();
         let (before, paint) = (colours(&mut sequencer), both(counts(&mut sequencer)));
         for share in &shares {
-            let (surface, share, name) = (CANVAS, *share, String::new());
+            let share = *share;
             let region = "5,5,20x10".parse().expect("a region");
             let command = match part {
-                true => Dry { share: Share::new(share).expect("in range"), layer: LayerName::new(name).ok(), region: Some(region), ..Dry::whole(surface) },
-                false => Dry { share: Share::new(share).expect("in range"), layer: LayerName::new(name).ok(), ..Dry::whole(surface) },
+                true => dry(share, "", Some(region)),
+                false => dry(share, "", None),
             };
             // All may be dry already.
             sequencer.edit(command).ok();
@@ -251,8 +260,8 @@ proptest! {
         let mut sequencer = painted();
         let (cells, colour) = (wet_cells(&mut sequencer), colours(&mut sequencer));
         for share in &shares {
-            let (surface, share, name) = (CANVAS, *share, String::new());
-            sequencer.edit(Dry { share: Share::new(share).expect("in range"), layer: LayerName::new(name).ok(), ..Dry::whole(surface) }).ok();
+            let share = *share;
+            sequencer.edit(dry(share, "", None)).ok();
         }
         prop_assert!(wet_cells(&mut sequencer) != cells);
         sequencer.edit(wet(0, None)).expect("dry");
@@ -270,14 +279,7 @@ fn a_region_dries_where_the_middles_of_its_cells_lie_and_nowhere_else() {
     let region: Region = "10,5,12.5x7.6".parse().expect("a region");
     let [from, to] = region.cells(CELLS, CELL_M).expect("cells");
     assert_eq!([from, to], [[40, 20], [90, 50]]);
-    sequencer
-        .edit(Dry {
-            share: Share::new(1.0).expect("in range"),
-            layer: LayerName::new("sky").ok(),
-            region: Some(region),
-            ..Dry::whole(CANVAS)
-        })
-        .expect("wet");
+    sequencer.edit(dry(1.0, "sky", Some(region))).expect("wet");
     let after = wet_cells(&mut sequencer);
     for (cell, (before, after)) in before.iter().zip(&after).enumerate() {
         let at = [cell as u32 % CELLS[0], cell as u32 / CELLS[0]];
@@ -288,11 +290,7 @@ fn a_region_dries_where_the_middles_of_its_cells_lie_and_nowhere_else() {
     let refused = |sequencer: &mut Sequencer, region: &str, word: &str| {
         let region: Region = region.parse().expect("a region");
         let commands = [
-            Edit::from(Dry {
-                share: Share::new(0.5).expect("in range"),
-                region: Some(region.clone()),
-                ..Dry::whole(CANVAS)
-            }),
+            Edit::from(dry(0.5, "", Some(region.clone()))),
             wet(1, Some(region)).into(),
         ];
         let depth = sequencer.painting().history_depth();
@@ -454,11 +452,7 @@ fn a_drying_ends_when_it_is_told_to_and_there_is_one_at_a_time() {
 fn the_newest_layer_becomes_wet_in_a_region_and_an_opacity_is_not_lost() {
     let mut sequencer = painted();
     let all = both(counts(&mut sequencer));
-    let dry = |name: &str| Dry {
-        share: Share::new(1.0).expect("in range"),
-        layer: LayerName::new(name).ok(),
-        ..Dry::whole(CANVAS)
-    };
+    let dry = |name: &str| dry(1.0, name, None);
     sequencer.edit(dry("low")).expect("wet");
     sequencer.edit(load("Pyrrole Red")).expect("loaded");
     stroke(&mut sequencer, 2, 3, 11.0, true);

@@ -71,7 +71,7 @@ fn request(client: u64, number: u64, command: Command) -> CommandRequest {
 fn a_command_that_waits_for_a_refused_state_is_done_with_its_effect() {
     let mut sequencer = sequencer();
     let command = Command::from(TakeCommand::Snapshot {
-        path: WholePath::new("p.png").expect("valid"),
+        path: WholePath::new("/p.png").expect("valid"),
         ledger: None,
     });
     let snapshot = CommandRequest {

@@ -85,8 +85,8 @@ impl ImportOptions {
     fn fault(&self, error: &ImportError) -> Fault {
         match error {
             ImportError::File(error) => Fault::reading(&self.picture, error),
-            ImportError::Thickness(_) => Fault::told(error.to_string()).at("--um"),
-            ImportError::Paints(_) => Fault::told(error.to_string()).at("--paint"),
+            ImportError::Thickness(_) => Fault::usage(error.to_string()).at("--um"),
+            ImportError::Paints(_) => Fault::usage(error.to_string()).at("--paint"),
             ImportError::Refused(refusal) => refused(refusal.clone()).at("--paint"),
             ImportError::Canvas(..) => Fault::usage(error.to_string())
                 .at(self.file.display().to_string())

@@ -217,7 +217,7 @@ impl Painter {
             23 => Command::from(
                 Ground::named(
                     CANVAS,
-                    &["gesso", "grey", "black"][self.dice.below(3) as usize],
+                    ["gesso", "grey", "black"][self.dice.below(3) as usize],
                 )
                 .expect("valid"),
             ),
@@ -249,10 +249,10 @@ impl Painter {
             39 => return Act::Redefine(b, [31, 48][self.dice.below(2) as usize]),
             40..46 => return Act::Ticks([7, 45, 150, 400][self.dice.below(4) as usize]),
             46..49 => Command::from(Dry {
-                region: self.region(),
                 over: Some(
                     Ticks::new([20, 200, 2000][self.dice.below(3) as usize]).expect("in range"),
                 ),
+                region: self.region(),
                 ..Dry::whole(CANVAS)
             }),
             49 => Command::from(StopDrying { surface: CANVAS }),
@@ -263,7 +263,8 @@ impl Painter {
                 ..Dry::whole(CANVAS)
             }),
             52..54 => Command::from(Wet {
-                layers: (self.dice.below(3) as u32 > 0).then_some(self.dice.below(3) as u32),
+                // None is all.
+                layers: Some(self.dice.below(3) as u32).filter(|count| *count > 0),
                 region: self.region(),
                 surface: CANVAS,
             }),
