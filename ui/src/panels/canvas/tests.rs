@@ -87,7 +87,7 @@ fn a_measured_ground_is_read_or_told_with_its_line() {
     let good = "400,0.4\n700,0.6\n";
     std::fs::write(&path, good).expect("written");
     field(&mut harness, "");
-    let expected = Command::from(Ground::spectrum(CANVAS, &good).expect("valid"));
+    let expected = Command::from(Ground::spectrum(CANVAS, good).expect("valid"));
     assert_eq!(harness.state_mut().asked(), [expected]);
 }
 
